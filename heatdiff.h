@@ -48,8 +48,8 @@
      HEATDIFF_STATIC           wherever the file is included: all functions are static (implies one user, one file)
      HEATDIFF_API              beside the declarations and the implementation alike: your own linkage attribute
      HEATDIFF_ASSERT(x)        beside the implementation: your own assert; without it, assert() unless NDEBUG
-     HEATDIFF_MALLOC(size), HEATDIFF_REALLOC(p, size), HEATDIFF_FREE(p)
-                               beside the implementation: all three or none; the default of contexts without allocator
+     HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
+                               beside the implementation: both or none; what contexts without an allocator use
      HEATDIFF_NO_OPENMP        beside the implementation: no OpenMP even when compiled with it
      No macro changes a public type or prototype.
 
@@ -128,11 +128,10 @@ typedef struct hd_error {
  * than these two is HD_ERR_ARGUMENT). */
 typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x200 } hd_progress;
 
-/* Memory. alloc and realloc return NULL when there is none; blocks must be aligned to 16 bytes. realloc and free receive
- * the size the block had. Called by one thread at a time for one context. */
+/* Memory. alloc returns NULL when there is none; blocks must be aligned to 8 bytes. free receives the size the block had.
+ * Nothing is ever resized, so there is no realloc to write. Called by the calling thread only. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
-    void *(*realloc)(void *user, void *block, size_t old_size, size_t new_size);
     void (*free)(void *user, void *block, size_t size);
     void *user;
 } hd_allocator;
@@ -144,9 +143,9 @@ typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
  * when compiled with OpenMP (serial otherwise). The context belongs to the caller and must outlive every object made
  * with it; wherever a function takes a context, NULL means one of these defaults. */
 typedef struct hd_context {
-    hd_allocator allocator;     /* all three functions or none */
+    hd_allocator allocator;     /* both functions or none */
     uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit */
-    uint64_t allocation_limit;  /* most calls of alloc and realloc; 0: no limit */
+    uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
     /* Called now and then during long work, by the calling thread only. stage names the work, done runs from 0 to 1
      * within it. Cancelling makes the running function return HD_ERR_CANCELLED with everything freed. */
@@ -318,7 +317,7 @@ typedef struct hd_report {
     double error_solver;        /* bound of the solvers' part, |.|_B / |answer|_B */
     double error_bound_b;       /* the two together */
     double error_bound;         /* bound of the largest error at a vertex, relative to the largest |value| of the answer */
-    double mass_drift;          /* |1'B u - 1'B f| / 1'B|f|, 0 when the pair does not conserve heat or the filter is the caller's */
+    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|, 0 when the pair does not conserve heat or the filter is the caller's */
 } hd_report;
 
 /* ==== [D] functions ==== */
@@ -450,3 +449,3242 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 #endif
 
 #endif /* HEATDIFF_H */
+
+/* ===================================================================================================================== */
+#ifdef HEATDIFF_IMPLEMENTATION
+#ifndef HEATDIFF_IMPLEMENTED
+#define HEATDIFF_IMPLEMENTED
+
+/* ==== [00] platform ====
+ * Compilers and the C library. Everything that depends on either is here. */
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+#if defined(_OPENMP) && !defined(HEATDIFF_NO_OPENMP)
+#include <omp.h>
+#define HDI_OPENMP 1
+#else
+#define HDI_OPENMP 0
+#endif
+
+#if defined(HEATDIFF_MALLOC) && defined(HEATDIFF_FREE)
+#elif !defined(HEATDIFF_MALLOC) && !defined(HEATDIFF_FREE)
+#include <stdlib.h>
+#define HEATDIFF_MALLOC(size) malloc(size)
+#define HEATDIFF_FREE(p) free(p)
+#else
+#error "heatdiff.h: define both of HEATDIFF_MALLOC and HEATDIFF_FREE, or none"
+#endif
+
+#ifndef HEATDIFF_ASSERT
+#include <assert.h>
+#define HEATDIFF_ASSERT(x) assert(x)
+#endif
+
+#if defined(__GNUC__) || defined(__clang__)
+#define HDI_RESTRICT __restrict__
+#define HDI_NODISCARD __attribute__((warn_unused_result))
+#define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
+#define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
+#else
+#define HDI_RESTRICT
+#define HDI_NODISCARD
+#define HDI_LOAD(p) (*(p))
+#define HDI_STORE(p, v) (*(p) = (v))
+#endif
+
+#ifdef __cplusplus
+#define HDI_CAST(type, x) static_cast<type>(x)
+extern "C" {
+#else
+#define HDI_CAST(type, x) ((type)(x))
+#endif
+
+/* ==== [01] scalar ====
+ * Numbers: complex arithmetic without the language's care for NaN, checked sizes. May call [00]. */
+
+static hd_c64 hdi_c(double re, double im) { hd_c64 z; z.re = re; z.im = im; return z; }
+static hd_c64 hdi_cadd(hd_c64 a, hd_c64 b) { return hdi_c(a.re + b.re, a.im + b.im); }
+static hd_c64 hdi_csub(hd_c64 a, hd_c64 b) { return hdi_c(a.re - b.re, a.im - b.im); }
+static hd_c64 hdi_cmul(hd_c64 a, hd_c64 b) { return hdi_c(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re); }
+static hd_c64 hdi_cscale(double s, hd_c64 a) { return hdi_c(s * a.re, s * a.im); }
+static hd_c64 hdi_cconj(hd_c64 a) { return hdi_c(a.re, -a.im); }
+static double hdi_cabs2(hd_c64 a) { return a.re * a.re + a.im * a.im; }
+static double hdi_cabs(hd_c64 a) { return hypot(a.re, a.im); }
+
+/* a / b, scaled by the larger part of b so that no square overflows (Smith 1962). */
+static hd_c64 hdi_cdiv(hd_c64 a, hd_c64 b) {
+    double q, d;
+    if (fabs(b.re) >= fabs(b.im)) {
+        q = b.im / b.re;
+        d = b.re + b.im * q;
+        return hdi_c((a.re + a.im * q) / d, (a.im - a.re * q) / d);
+    }
+    q = b.re / b.im;
+    d = b.re * q + b.im;
+    return hdi_c((a.re * q + a.im) / d, (a.im * q - a.re) / d);
+}
+
+static int hdi_finite(double x) { return fabs(x) <= DBL_MAX; }
+static int hdi_cfinite(hd_c64 a) { return hdi_finite(a.re) && hdi_finite(a.im); }
+static double hdi_max(double a, double b) { return a > b ? a : b; }
+static double hdi_min(double a, double b) { return a < b ? a : b; }
+
+/* *out = a * b + c; 0 if that does not fit. */
+static int hdi_size(size_t a, size_t b, size_t c, size_t *out) {
+    if (b && a > (SIZE_MAX - c) / b) return 0;
+    *out = a * b + c;
+    return 1;
+}
+
+/* ==== [02] error ====
+ * Status texts and filled errors. Internal functions take an error that is never NULL. May call [01]. */
+
+static void hdi_error_clear(hd_error *e) {
+    memset(e, 0, sizeof *e);
+    e->face = e->vertex = e->row = e->column = e->pole = -1;
+}
+
+/* The one place where an error is born: a good line for a breakpoint. */
+static hd_status hdi_fail(hd_error *e, hd_status status, const char *text) {
+    size_t len = strlen(text);
+    hdi_error_clear(e);
+    if (len > sizeof e->text - 1) len = sizeof e->text - 1;
+    memcpy(e->text, text, len);
+    e->status = status;
+    return status;
+}
+
+static hd_status hdi_fail_row(hd_error *e, hd_status status, const char *text, int64_t row, int64_t column, double value) {
+    hdi_fail(e, status, text);
+    e->row = row;
+    e->column = column;
+    e->value = value;
+    return status;
+}
+
+static hd_status hdi_fail_face(hd_error *e, hd_status status, const char *text, int64_t face, int64_t vertex, double value) {
+    hdi_fail(e, status, text);
+    e->face = face;
+    e->vertex = vertex;
+    e->value = value;
+    return status;
+}
+
+/* ==== [03] memory ====
+ * Counted allocation, aligned to 64 bytes with the block's size kept in front; and scopes, which free the work arrays of a
+ * function at its one exit. May call [02]. */
+
+enum { HDI_ALIGN = 64, HDI_HEADER = 2 * sizeof(uint64_t) };
+
+static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
+    const int bytes = ctx->byte_limit && (total > ctx->byte_limit || ctx->bytes_in_use > ctx->byte_limit - total);
+    if (bytes || (ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit)) {
+        hdi_fail(e, HD_ERR_MEMORY_LIMIT, bytes ? "the byte limit of the context is reached" : "the allocation limit of the context is reached");
+        e->value = HDI_CAST(double, total);
+    }
+    return e->status;
+}
+
+/* [count] elements of size bytes, not cleared. NULL with e filled when there are none to have; e must be clear before. */
+static void *hdi_alloc(hd_context *ctx, size_t count, size_t size, hd_error *e) {
+    size_t total, offset;
+    uint64_t head[2];
+    char *raw;
+    if (!hdi_size(count, size, HDI_ALIGN + HDI_HEADER, &total)) {
+        hdi_fail(e, HD_ERR_TOO_LARGE, "an array would be larger than the address space");
+        return NULL;
+    }
+    if (hdi_alloc_check(ctx, total, e) < 0) return NULL;
+    ctx->allocations++;
+    raw = HDI_CAST(char *, ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total) : HEATDIFF_MALLOC(total));
+    if (!raw) {
+        hdi_fail(e, HD_ERR_MEMORY, "out of memory");
+        e->value = HDI_CAST(double, total);
+        return NULL;
+    }
+    ctx->bytes_in_use += total;
+    if (ctx->bytes_peak < ctx->bytes_in_use) ctx->bytes_peak = ctx->bytes_in_use;
+    offset = HDI_HEADER + (HDI_ALIGN - ((size_t)raw + HDI_HEADER) % HDI_ALIGN) % HDI_ALIGN;
+    head[0] = total;
+    head[1] = offset;
+    memcpy(raw + offset - HDI_HEADER, head, sizeof head);
+    return raw + offset;
+}
+
+static void hdi_free(hd_context *ctx, void *block) {
+    uint64_t head[2];
+    char *raw;
+    if (!block) return;
+    memcpy(head, HDI_CAST(char *, block) - HDI_HEADER, sizeof head);
+    raw = HDI_CAST(char *, block) - head[1];
+    ctx->bytes_in_use -= head[0];
+    if (ctx->allocator.free) ctx->allocator.free(ctx->allocator.user, raw, HDI_CAST(size_t, head[0]));
+    else HEATDIFF_FREE(raw);
+}
+
+/* Work arrays of one function. After a failed take all further ones give NULL, so one check of e->status serves for many. */
+typedef struct hdi_scope {
+    hd_context *ctx;
+    hd_error *e;
+    int32_t n;
+    void *block[24];
+} hdi_scope;
+
+static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
+    hdi_scope s;
+    memset(&s, 0, sizeof s);
+    hdi_error_clear(e);
+    s.ctx = ctx;
+    s.e = e;
+    return s;
+}
+
+static void *hdi_take(hdi_scope *s, size_t count, size_t size) {
+    void *p;
+    HEATDIFF_ASSERT(s->n < HDI_CAST(int32_t, sizeof s->block / sizeof *s->block));
+    if (s->e->status < 0) return NULL;
+    p = hdi_alloc(s->ctx, count, size, s->e);
+    if (p) s->block[s->n++] = p;
+    return p;
+}
+
+static void *hdi_take_zero(hdi_scope *s, size_t count, size_t size) {
+    void *p = hdi_take(s, count, size);
+    if (p) memset(p, 0, count * size);
+    return p;
+}
+
+/* Takes a block out of the scope: it becomes the caller's. */
+static void *hdi_keep(hdi_scope *s, void *block) {
+    int32_t i;
+    for (i = 0; i < s->n; i++)
+        if (s->block[i] == block) s->block[i] = NULL;
+    return block;
+}
+
+static hd_status hdi_scope_end(hdi_scope *s) {
+    while (s->n > 0) hdi_free(s->ctx, s->block[--s->n]);
+    return s->e->status;
+}
+
+#define HDI_TAKE(scope, type, count) HDI_CAST(type *, hdi_take(scope, HDI_CAST(size_t, count), sizeof(type)))
+#define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(size_t, count), sizeof(type)))
+
+/* ==== [04] context ====
+ * Progress, cancelling and parallel loops. May call [03]. */
+
+static hd_status hdi_context_check(const hd_context *ctx, hd_error *e) {
+    if (!ctx->allocator.alloc != !ctx->allocator.free)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "context: the allocator needs both alloc and free, or none");
+    if (ctx->threads < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "context: threads is negative");
+    return HD_OK;
+}
+
+/* By the calling thread only. */
+static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, hd_error *e) {
+    hd_progress answer;
+    if (!ctx->progress) return HD_OK;
+    answer = ctx->progress(ctx->progress_user, stage, done);
+    if (answer == HD_PROGRESS_CONTINUE) return HD_OK;
+    if (answer == HD_PROGRESS_CANCEL) return hdi_fail(e, HD_ERR_CANCELLED, "cancelled by the progress callback");
+    return hdi_fail(e, HD_ERR_ARGUMENT, "context: progress returned neither HD_PROGRESS_CONTINUE nor HD_PROGRESS_CANCEL");
+}
+
+static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
+    int64_t i;
+    if (ctx->parallel_for && n_tasks > 1) {
+        ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
+        return;
+    }
+#if HDI_OPENMP
+    if (n_tasks > 1 && ctx->threads != 1 && !omp_in_parallel()) {
+        const int threads = ctx->threads > 0 ? ctx->threads : omp_get_max_threads();
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+        for (i = 0; i < n_tasks; i++) task(arg, i, omp_get_thread_num());
+        return;
+    }
+#endif
+    for (i = 0; i < n_tasks; i++) task(arg, i, 0);
+}
+
+/* ==== [05] arrays ====
+ * Sorting, prefix sums, union-find. May call [04]. */
+
+/* count[i] becomes the sum of those before it, count[n] the sum of all. */
+static int64_t hdi_prefix_sum(int64_t *count, int64_t n) {
+    int64_t i, sum = 0;
+    for (i = 0; i < n; i++) {
+        const int64_t c = count[i];
+        count[i] = sum;
+        sum += c;
+    }
+    count[n] = sum;
+    return sum;
+}
+
+/* A key with a payload; ordered by both, so that sorting is stable where payloads ascend. */
+typedef struct hdi_pair { uint64_t key; int64_t id; } hdi_pair;
+
+static int hdi_pair_less(const hdi_pair *a, const hdi_pair *b) { return a->key != b->key ? a->key < b->key : a->id < b->id; }
+
+static void hdi_sift_down(hdi_pair *a, int64_t i, int64_t n) {
+    const hdi_pair x = a[i];
+    int64_t child;
+    while ((child = 2 * i + 1) < n) {
+        if (child + 1 < n && hdi_pair_less(a + child, a + child + 1)) child++;
+        if (!hdi_pair_less(&x, a + child)) break;
+        a[i] = a[child];
+        i = child;
+    }
+    a[i] = x;
+}
+
+/* Insertion sort for the short lists that meshes are full of, heapsort for the rest: never quadratic. */
+static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
+    int64_t i, j;
+    if (n <= 24) {
+        for (i = 1; i < n; i++) {
+            const hdi_pair x = a[i];
+            for (j = i; j > 0 && hdi_pair_less(&x, a + j - 1); j--) a[j] = a[j - 1];
+            a[j] = x;
+        }
+        return;
+    }
+    for (i = n / 2; i-- > 0;) hdi_sift_down(a, i, n);
+    for (i = n; i-- > 1;) {
+        const hdi_pair x = a[i];
+        a[i] = a[0];
+        a[0] = x;
+        hdi_sift_down(a, 0, i);
+    }
+}
+
+/* Sorts n indices; work [n] for long lists. */
+static void hdi_sort_indices(int32_t *a, int64_t n, hdi_pair *work) {
+    int64_t i, j;
+    if (n <= 24) {
+        for (i = 1; i < n; i++) {
+            const int32_t x = a[i];
+            for (j = i; j > 0 && x < a[j - 1]; j--) a[j] = a[j - 1];
+            a[j] = x;
+        }
+        return;
+    }
+    for (i = 0; i < n; i++) {
+        work[i].key = HDI_CAST(uint64_t, a[i]);
+        work[i].id = 0;
+    }
+    hdi_sort_pairs(work, n);
+    for (i = 0; i < n; i++) a[i] = HDI_CAST(int32_t, work[i].key);
+}
+
+/* Union-find with path halving; the smaller id is always the root, so roots do not depend on the order of the calls. */
+static int32_t hdi_find(int32_t *parent, int32_t i) {
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
+    const int32_t a = hdi_find(parent, i), b = hdi_find(parent, j);
+    if (a < b) parent[b] = a;
+    else parent[a] = b;
+}
+
+/* ==== [06] dense ====
+ * Vectors. May call [01]. Sums run in four fixed strands: quick without -ffast-math, and the same on every run. */
+
+static double hdi_dot(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y, int64_t n) {
+    double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+    int64_t i;
+    for (i = 0; i + 4 <= n; i += 4) {
+        s0 += x[i] * y[i];
+        s1 += x[i + 1] * y[i + 1];
+        s2 += x[i + 2] * y[i + 2];
+        s3 += x[i + 3] * y[i + 3];
+    }
+    for (; i < n; i++) s0 += x[i] * y[i];
+    return (s0 + s1) + (s2 + s3);
+}
+
+/* x' y, no conjugate: the bilinear form of complex-symmetric methods. */
+static hd_c64 hdi_cdotu(const hd_c64 *HDI_RESTRICT x, const hd_c64 *HDI_RESTRICT y, int64_t n) {
+    hd_c64 s0 = hdi_c(0, 0), s1 = s0;
+    int64_t i;
+    for (i = 0; i + 2 <= n; i += 2) {
+        s0 = hdi_cadd(s0, hdi_cmul(x[i], y[i]));
+        s1 = hdi_cadd(s1, hdi_cmul(x[i + 1], y[i + 1]));
+    }
+    for (; i < n; i++) s0 = hdi_cadd(s0, hdi_cmul(x[i], y[i]));
+    return hdi_cadd(s0, s1);
+}
+
+/* sum w_i |x_i|^2 */
+static double hdi_cnorm2w(const hd_c64 *HDI_RESTRICT x, const double *HDI_RESTRICT w, int64_t n) {
+    double s0 = 0, s1 = 0;
+    int64_t i;
+    for (i = 0; i + 2 <= n; i += 2) {
+        s0 += w[i] * hdi_cabs2(x[i]);
+        s1 += w[i + 1] * hdi_cabs2(x[i + 1]);
+    }
+    for (; i < n; i++) s0 += w[i] * hdi_cabs2(x[i]);
+    return s0 + s1;
+}
+
+static double hdi_norm2w(const double *HDI_RESTRICT x, const double *HDI_RESTRICT w, int64_t n) {
+    double s0 = 0, s1 = 0;
+    int64_t i;
+    for (i = 0; i + 2 <= n; i += 2) {
+        s0 += w[i] * (x[i] * x[i]);
+        s1 += w[i + 1] * (x[i + 1] * x[i + 1]);
+    }
+    for (; i < n; i++) s0 += w[i] * (x[i] * x[i]);
+    return s0 + s1;
+}
+
+static void hdi_axpy(double a, const double *HDI_RESTRICT x, double *HDI_RESTRICT y, int64_t n) {
+    int64_t i;
+    for (i = 0; i < n; i++) y[i] += a * x[i];
+}
+
+/* Eigenvalues of the symmetric tridiagonal matrix with diagonal d [m] and off-diagonal e [m] (e[i] between i and i + 1; e[m - 1] unused),
+ * by implicit QL with Wilkinson's shift (Bowdler, Martin, Reinsch, Wilkinson 1968). z0, z1 [m] are two rows that go through the same
+ * rotations: put in rows of the identity, they come out as rows of the eigenvectors. Overwrites all. 0 when it does not converge. */
+static int hdi_tridiag_eigen(double *d, double *e, double *z0, double *z1, int32_t m) {
+    int32_t l, i, k, sweep;
+    if (m > 0) e[m - 1] = 0;
+    for (l = 0; l < m; l++) {
+        for (sweep = 0;; sweep++) {
+            double g, r, s = 1, c = 1, p = 0;
+            for (k = l; k < m - 1; k++)
+                if (fabs(e[k]) <= DBL_EPSILON * (fabs(d[k]) + fabs(d[k + 1]))) break;
+            if (k == l) break;
+            if (sweep == 60) return 0;
+            g = (d[l + 1] - d[l]) / (2 * e[l]);
+            r = hypot(g, 1);
+            g = d[k] - d[l] + e[l] / (g + (g >= 0 ? r : -r));
+            for (i = k - 1; i >= l; i--) {       /* chase the bulge upwards */
+                const double f = s * e[i], b = c * e[i];
+                double z;
+                r = hypot(f, g);
+                e[i + 1] = r;
+                if (r == 0) {
+                    d[i + 1] -= p;
+                    e[k] = 0;
+                    break;
+                }
+                s = f / r;
+                c = g / r;
+                g = d[i + 1] - p;
+                r = (d[i] - g) * s + 2 * c * b;
+                p = s * r;
+                d[i + 1] = g + p;
+                g = c * r - b;
+                z = z0[i + 1];
+                z0[i + 1] = s * z0[i] + c * z;
+                z0[i] = c * z0[i] - s * z;
+                z = z1[i + 1];
+                z1[i + 1] = s * z1[i] + c * z;
+                z1[i] = c * z1[i] - s * z;
+            }
+            if (r == 0 && i >= l) continue;
+            d[l] -= p;
+            e[l] = g;
+            e[k] = 0;
+        }
+    }
+    return 1;
+}
+
+/* ==== [07] sparse ====
+ * Compressed rows: build, check, transpose, multiply, renumber. May call [06]. */
+
+static void hdi_csr_free(hd_context *ctx, hd_csr *a) {
+    hdi_free(ctx, a->row_ptr);
+    hdi_free(ctx, a->col);
+    hdi_free(ctx, a->val);
+    memset(a, 0, sizeof *a);
+}
+
+/* An empty shell with room for nnz entries in s. */
+static hd_csr hdi_csr_take(hdi_scope *s, int32_t n_rows, int32_t n_cols, int64_t nnz, int values) {
+    hd_csr a;
+    a.n_rows = n_rows;
+    a.n_cols = n_cols;
+    a.nnz = nnz;
+    a.row_ptr = HDI_TAKE_ZERO(s, int64_t, HDI_CAST(int64_t, n_rows) + 1);
+    a.col = HDI_TAKE(s, int32_t, nnz);
+    a.val = values ? HDI_TAKE(s, double, nnz) : NULL;
+    return a;
+}
+
+static hd_csr hdi_csr_keep(hdi_scope *s, hd_csr a) {
+    hdi_keep(s, a.row_ptr);
+    hdi_keep(s, a.col);
+    hdi_keep(s, a.val);
+    return a;
+}
+
+/* t = a' into arrays of the right size; t->row_ptr zero. The columns of t ascend whatever the order in a. */
+static void hdi_csr_transpose_into(const hd_csr *a, hd_csr *t) {
+    int64_t p;
+    int32_t i;
+    for (p = 0; p < a->nnz; p++) t->row_ptr[a->col[p]]++;
+    hdi_prefix_sum(t->row_ptr, t->n_rows);
+    for (i = 0; i < a->n_rows; i++) {
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            const int64_t q = t->row_ptr[a->col[p]]++;
+            t->col[q] = i;
+            if (t->val) t->val[q] = a->val[p];
+        }
+    }
+    for (i = t->n_rows; i > 0; i--) t->row_ptr[i] = t->row_ptr[i - 1];
+    t->row_ptr[0] = 0;
+}
+
+/* Sums entries with the same place, in their order. */
+static void hdi_csr_merge(hd_csr *a) {
+    int64_t p, q = 0, end = 0;
+    int32_t i;
+    for (i = 0; i < a->n_rows; i++) {
+        const int64_t begin = q;
+        p = end;
+        end = a->row_ptr[i + 1];
+        for (; p < end; p++) {
+            if (q > begin && a->col[q - 1] == a->col[p]) {
+                if (a->val) a->val[q - 1] += a->val[p];
+                continue;
+            }
+            a->col[q] = a->col[p];
+            if (a->val) a->val[q] = a->val[p];
+            q++;
+        }
+        a->row_ptr[i + 1] = q;
+    }
+    a->nnz = q;
+}
+
+static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n, const int32_t *ti, const int32_t *tj,
+                                       const double *tv, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    hd_csr t, a;
+    int64_t q;
+    for (q = 0; q < n; q++) {
+        if (ti[q] < 0 || ti[q] >= n_rows || tj[q] < 0 || tj[q] >= n_cols)
+            return hdi_fail_row(e, HD_ERR_INDEX, "triplet: row or column out of range", q, -1, ti[q] < 0 || ti[q] >= n_rows ? ti[q] : tj[q]);
+        if (tv && !hdi_finite(tv[q])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "triplet: value not finite", q, -1, tv[q]);
+    }
+    t = hdi_csr_take(&s, n_cols, n_rows, n, tv != NULL);   /* by columns, in the order given; its transpose has sorted rows */
+    a = hdi_csr_take(&s, n_rows, n_cols, n, tv != NULL);
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (q = 0; q < n; q++) t.row_ptr[tj[q]]++;
+    hdi_prefix_sum(t.row_ptr, n_cols);
+    for (q = 0; q < n; q++) {
+        const int64_t p = t.row_ptr[tj[q]]++;
+        t.col[p] = ti[q];
+        if (tv) t.val[p] = tv[q];
+    }
+    for (q = n_cols; q > 0; q--) t.row_ptr[q] = t.row_ptr[q - 1];
+    t.row_ptr[0] = 0;
+    hdi_csr_transpose_into(&t, &a);
+    hdi_csr_merge(&a);
+    *out = hdi_csr_keep(&s, a);
+    return hdi_scope_end(&s);
+}
+
+static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    if (a->n_rows < 0 || a->n_cols < 0 || a->nnz < 0 || !a->row_ptr || (a->nnz && !a->col))
+        return hdi_fail(e, HD_ERR_STRUCTURE, "matrix: negative size or missing array");
+    if (a->row_ptr[0] != 0) return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not begin with 0", 0, -1, 0);
+    for (i = 0; i < a->n_rows; i++)
+        if (a->row_ptr[i + 1] < a->row_ptr[i] || a->row_ptr[i + 1] > a->nnz)
+            return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr descends or exceeds nnz", i, -1, HDI_CAST(double, a->row_ptr[i + 1]));
+    if (a->row_ptr[a->n_rows] != a->nnz)
+        return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not end with nnz", a->n_rows, -1, HDI_CAST(double, a->row_ptr[a->n_rows]));
+    for (i = 0; i < a->n_rows; i++) {
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            if (a->col[p] < 0 || a->col[p] >= a->n_cols)
+                return hdi_fail_row(e, HD_ERR_INDEX, "matrix: column out of range", i, a->col[p], a->col[p]);
+            if (p > a->row_ptr[i] && a->col[p] <= a->col[p - 1])
+                return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: columns do not ascend in a row", i, a->col[p], a->col[p]);
+            if (a->val && !hdi_finite(a->val[p])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "matrix: value not finite", i, a->col[p], a->val[p]);
+        }
+    }
+    return HD_OK;
+}
+
+static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    hd_csr t;
+    int32_t i;
+    if (a->n_rows != a->n_cols) return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not square", a->n_rows, a->n_cols, 0);
+    t = hdi_csr_take(&s, a->n_cols, a->n_rows, a->nnz, a->val != NULL);
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_csr_transpose_into(a, &t);
+    for (i = 0; i < a->n_rows && !e->status; i++) {   /* merge the rows: a missing entry is a zero */
+        int64_t p = a->row_ptr[i], q = t.row_ptr[i];
+        const int64_t p_end = a->row_ptr[i + 1], q_end = t.row_ptr[i + 1];
+        while ((p < p_end || q < q_end) && !e->status) {
+            const int32_t cp = p < p_end ? a->col[p] : INT32_MAX, cq = q < q_end ? t.col[q] : INT32_MAX;
+            const double x = a->val ? (cp <= cq ? a->val[p] : 0) : cp <= cq, y = a->val ? (cq <= cp ? t.val[q] : 0) : cq <= cp;
+            if (fabs(x - y) > 1e-12 * hdi_max(fabs(x), fabs(y)))
+                hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", i, cp <= cq ? cp : cq, x - y);
+            p += cp <= cq;
+            q += cq <= cp;
+        }
+    }
+    return hdi_scope_end(&s);
+}
+
+static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_context *ctx, hd_error *e) {
+    if (hdi_csr_check_rows(a, e) < 0) return e->status;
+    return symmetric ? hdi_csr_check_symmetric(a, ctx, e) : HD_OK;
+}
+
+static hd_status hdi_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    hd_csr t = hdi_csr_take(&s, a->n_cols, a->n_rows, a->nnz, a->val != NULL);
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_csr_transpose_into(a, &t);
+    *out = hdi_csr_keep(&s, t);
+    return hdi_scope_end(&s);
+}
+
+/* Columns of row i of A B, unsorted, into col (NULL: counted only). mark [b->n_cols] holds the last row that saw a column. */
+static int64_t hdi_product_row(const hd_csr *a, const hd_csr *b, int32_t i, int32_t *mark, int32_t *col) {
+    int64_t p, q, n = 0;
+    for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+        const int32_t k = a->col[p];
+        for (q = b->row_ptr[k]; q < b->row_ptr[k + 1]; q++) {
+            if (mark[b->col[q]] == i) continue;
+            mark[b->col[q]] = i;
+            if (col) col[n] = b->col[q];
+            n++;
+        }
+    }
+    return n;
+}
+
+static void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
+    int64_t i;
+    for (i = 0; i < n; i++) a[i] = value;
+}
+
+static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    const int values = a->val && b->val;
+    int32_t *mark = HDI_TAKE(&s, int32_t, b->n_cols);
+    double *sum = HDI_TAKE(&s, double, b->n_cols);
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, b->n_cols);
+    int64_t nnz = 0, p, q;
+    hd_csr c;
+    int32_t i;
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_i32(mark, b->n_cols, -1);
+    for (i = 0; i < a->n_rows; i++) nnz += hdi_product_row(a, b, i, mark, NULL);
+    c = hdi_csr_take(&s, a->n_rows, b->n_cols, nnz, values);
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_i32(mark, b->n_cols, -1);
+    for (i = 0; i < a->n_rows; i++) {
+        int32_t *col = c.col + c.row_ptr[i];
+        const int64_t n = hdi_product_row(a, b, i, mark, col);
+        c.row_ptr[i + 1] = c.row_ptr[i] + n;
+        hdi_sort_indices(col, n, work);
+        if (!values) continue;
+        for (p = 0; p < n; p++) sum[col[p]] = 0;
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
+            for (q = b->row_ptr[a->col[p]]; q < b->row_ptr[a->col[p] + 1]; q++) sum[b->col[q]] += a->val[p] * b->val[q];
+        for (p = 0; p < n; p++) c.val[c.row_ptr[i] + p] = sum[col[p]];
+    }
+    *out = hdi_csr_keep(&s, c);
+    return hdi_scope_end(&s);
+}
+
+static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    int32_t *inverse = HDI_TAKE(&s, int32_t, a->n_rows);
+    hd_csr b, t;
+    int32_t i;
+    int64_t p;
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_i32(inverse, a->n_rows, -1);
+    for (i = 0; i < a->n_rows; i++) {
+        if (perm[i] < 0 || perm[i] >= a->n_rows || inverse[perm[i]] >= 0) {
+            hdi_fail_row(e, HD_ERR_INDEX, "permutation: an index is out of range or occurs twice", i, -1, perm[i]);
+            return hdi_scope_end(&s);
+        }
+        inverse[perm[i]] = i;
+    }
+    t = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);   /* (P A P')', rows in the old order of columns */
+    b = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i < a->n_rows; i++) {
+        int64_t q = t.row_ptr[i];
+        for (p = a->row_ptr[perm[i]]; p < a->row_ptr[perm[i] + 1]; p++, q++) {
+            t.col[q] = inverse[a->col[p]];
+            if (t.val) t.val[q] = a->val[p];
+        }
+        t.row_ptr[i + 1] = q;
+    }
+    hdi_csr_transpose_into(&t, &b);    /* twice transposed: the columns of every row ascend */
+    memset(t.row_ptr, 0, (HDI_CAST(size_t, t.n_rows) + 1) * sizeof *t.row_ptr);
+    hdi_csr_transpose_into(&b, &t);
+    *out = hdi_csr_keep(&s, t);
+    return hdi_scope_end(&s);
+}
+
+/* y = A x for rows [begin, end). */
+static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x, double *HDI_RESTRICT y, int32_t begin, int32_t end) {
+    const int64_t *HDI_RESTRICT Ap = a->row_ptr;
+    const int32_t *HDI_RESTRICT Aj = a->col;
+    const double *HDI_RESTRICT Ax = a->val;
+    int64_t p = Ap[begin];
+    int32_t i;
+    for (i = begin; i < end; i++) {
+        const int64_t row_end = Ap[i + 1];
+        double sum = 0;
+        for (; p < row_end; p++) sum += Ax[p] * x[Aj[p]];
+        y[i] = sum;
+    }
+}
+
+/* Rows in blocks of about the same number of non-zeros would be fairer, but surface rows are all alike. */
+enum { HDI_ROWS_PER_TASK = 16384 };
+
+typedef struct hdi_apply_job { const hd_csr *a; const double *x; double *y; } hdi_apply_job;
+
+static void hdi_apply_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_apply_job *job = HDI_CAST(const hdi_apply_job *, arg);
+    const int64_t begin = index * HDI_ROWS_PER_TASK, end = begin + HDI_ROWS_PER_TASK;
+    (void)worker;
+    hdi_csr_apply_rows(job->a, job->x, job->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end < job->a->n_rows ? end : job->a->n_rows));
+}
+
+static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
+    hdi_apply_job job;
+    job.a = a;
+    job.x = x;
+    job.y = y;
+    hdi_parallel(ctx, (HDI_CAST(int64_t, a->n_rows) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK, hdi_apply_task, &job);
+}
+
+/* ==== [09] geometry ====
+ * Triangles: checks, corner cotangents, which faces are left out, and who meets at a vertex. May call [05]. */
+
+typedef struct hdi_mesh {
+    const double *xyz;
+    const int32_t *tri;
+    int32_t n, m;
+    double *cot;        /* [3 m] cotangent at each corner */
+    double *area;       /* [m] 0: the face is left out */
+    int64_t *corner_ptr;/* [n + 1] corners at each vertex, as indices into tri, faces ascending */
+    int32_t *corner;    /* [3 m]; corners of faces left out are not listed */
+} hdi_mesh;
+
+static void hdi_sub3(const double *a, const double *b, double *out) {
+    out[0] = a[0] - b[0];
+    out[1] = a[1] - b[1];
+    out[2] = a[2] - b[2];
+}
+
+static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the rounding of one product
+ * where exactly zero is right; when the result is that small it is computed again in steps that cannot be fused. */
+static double hdi_det2(double a, double b, double c, double d) {
+    const double x = a * b - c * d;
+    volatile double p, q;
+    if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
+    p = a * b;
+    q = c * d;
+    return p - q;
+}
+
+static void hdi_cross3(const double *a, const double *b, double *out) {
+    out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
+    out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
+    out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
+}
+
+/* Length without squares that underflow or overflow. */
+static double hdi_norm3(const double *a) {
+    const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
+    double b[3];
+    if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
+    b[0] = a[0] / m;
+    b[1] = a[1] / m;
+    b[2] = a[2] / m;
+    return m * sqrt(hdi_dot3(b, b));
+}
+
+static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_error *e) {
+    int64_t i;
+    for (i = 0; i < 3 * HDI_CAST(int64_t, n); i++)
+        if (!hdi_finite(xyz[i])) return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, xyz[i]);
+    for (i = 0; i < 3 * HDI_CAST(int64_t, m); i++)
+        if (tri[i] < 0 || tri[i] >= n) return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1, tri[i]);
+    return HD_OK;
+}
+
+/* Area and cotangents of face f; area 0 where it has none or where a cotangent would not be finite. */
+static hd_status hdi_face_measure(hdi_mesh *mesh, int32_t f, hd_mesh_report *rep, hd_error *e) {
+    const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
+    double edge[3][3], cross[3], twice, *cot = mesh->cot + 3 * HDI_CAST(int64_t, f);
+    int q;
+    mesh->area[f] = 0;
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
+        rep->n_repeated_corner++;
+        return HD_OK;
+    }
+    for (q = 0; q < 3; q++)   /* edge q runs opposite to corner q */
+        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 2) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), edge[q]);
+    hdi_cross3(edge[2], edge[0], cross);
+    twice = hdi_norm3(cross);
+    if (!hdi_finite(twice)) return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f, v[0], twice);
+    for (q = 0; q < 3; q++) cot[q] = -hdi_dot3(edge[(q + 1) % 3], edge[(q + 2) % 3]) / twice;
+    if (twice / 24 < DBL_MIN || !hdi_finite(cot[0]) || !hdi_finite(cot[1]) || !hdi_finite(cot[2])) {
+        rep->n_zero_area++;
+        return HD_OK;
+    }
+    mesh->area[f] = twice / 2;
+    rep->smallest_angle = hdi_min(rep->smallest_angle, atan2(1, hdi_max(cot[0], hdi_max(cot[1], cot[2]))));
+    return HD_OK;
+}
+
+/* Corner lists of all vertices, over the faces that have an area. */
+static void hdi_mesh_corners(hdi_mesh *mesh) {
+    const int64_t n_corners = 3 * HDI_CAST(int64_t, mesh->m);
+    int64_t c;
+    int32_t i;
+    memset(mesh->corner_ptr, 0, (HDI_CAST(size_t, mesh->n) + 1) * sizeof *mesh->corner_ptr);
+    for (c = 0; c < n_corners; c++)
+        if (mesh->area[c / 3] > 0) mesh->corner_ptr[mesh->tri[c]]++;
+    hdi_prefix_sum(mesh->corner_ptr, mesh->n);
+    for (c = 0; c < n_corners; c++)
+        if (mesh->area[c / 3] > 0) mesh->corner[mesh->corner_ptr[mesh->tri[c]]++] = HDI_CAST(int32_t, c);
+    for (i = mesh->n; i > 0; i--) mesh->corner_ptr[i] = mesh->corner_ptr[i - 1];
+    mesh->corner_ptr[0] = 0;
+}
+
+/* Gives faces with the corners of an earlier one area 0: around each vertex, the faces in which it is the smallest corner are sorted
+ * by their two other corners. work: as many pairs as the busiest vertex has corners. */
+static void hdi_mesh_repeats(hdi_mesh *mesh, hdi_pair *work, hd_mesh_report *rep) {
+    int32_t i;
+    int64_t p, n;
+    for (i = 0; i < mesh->n; i++) {
+        n = 0;
+        for (p = mesh->corner_ptr[i]; p < mesh->corner_ptr[i + 1]; p++) {
+            const int32_t c = mesh->corner[p], f = c / 3, *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
+            const int32_t a = v[(c + 1) % 3], b = v[(c + 2) % 3], lo = a < b ? a : b, hi = a < b ? b : a;
+            if (lo < i) continue;
+            work[n].key = HDI_CAST(uint64_t, lo) << 32 | HDI_CAST(uint64_t, hi);
+            work[n++].id = f;
+        }
+        hdi_sort_pairs(work, n);
+        for (p = 1; p < n; p++) {
+            if (work[p].key != work[p - 1].key) continue;
+            mesh->area[work[p].id] = 0;
+            rep->n_repeated_face++;
+        }
+    }
+}
+
+static int64_t hdi_most_corners(const hdi_mesh *mesh) {
+    int64_t most = 1;
+    int32_t i;
+    for (i = 0; i < mesh->n; i++)
+        if (mesh->corner_ptr[i + 1] - mesh->corner_ptr[i] > most) most = mesh->corner_ptr[i + 1] - mesh->corner_ptr[i];
+    return most;
+}
+
+/* Checks the mesh, measures the faces, and leaves out those that contribute nothing. The arrays live in s. */
+static hd_status hdi_mesh_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep,
+                               hdi_scope *s) {
+    const int64_t n_corners = 3 * HDI_CAST(int64_t, m);
+    hdi_pair *work;
+    int32_t f;
+    memset(mesh, 0, sizeof *mesh);
+    mesh->xyz = xyz;
+    mesh->tri = tri;
+    mesh->n = n;
+    mesh->m = m;
+    rep->n_faces = m;
+    rep->smallest_angle = m > 0 ? 4 : 0;
+    if (n_corners > INT32_MAX) return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (hdi_mesh_check(xyz, n, tri, m, s->e) < 0) return s->e->status;
+    mesh->cot = HDI_TAKE(s, double, n_corners);
+    mesh->area = HDI_TAKE(s, double, m);
+    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
+    mesh->corner = HDI_TAKE(s, int32_t, n_corners);
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0; f < m; f++)
+        if (hdi_face_measure(mesh, f, rep, s->e) < 0) return s->e->status;
+    hdi_mesh_corners(mesh);
+    work = HDI_TAKE(s, hdi_pair, hdi_most_corners(mesh));
+    if (!work) return s->e->status;
+    hdi_mesh_repeats(mesh, work, rep);
+    if (rep->n_repeated_face) hdi_mesh_corners(mesh);
+    for (f = 0; f < m; f++) rep->n_faces_used += mesh->area[f] > 0;
+    if (!rep->n_faces_used) rep->smallest_angle = 0;
+    return HD_OK;
+}
+
+/* ==== [10] operators ====
+ * The pair (L, B) on one pattern. May call [09] and [07].
+ * This work is based on
+ *   U. Pinkall, K. Polthier, Computing discrete minimal surfaces and their conjugates, 1993 (cotangent weights)
+ *   M. Meyer, M. Desbrun, P. Schroeder, A. Barr, Discrete differential-geometry operators for triangulated 2-manifolds, 2003 (mixed areas)
+ * Deviation: the paper cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas go negative on obtuse triangles. */
+
+static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
+    if (!lap) return;
+    hdi_csr_free(ctx, &lap->L);
+    if (lap->b_diag != lap->mass) hdi_free(ctx, lap->b_diag);
+    hdi_free(ctx, lap->B);
+    hdi_free(ctx, lap->mass);
+    hdi_free(ctx, lap->vertex);
+    hdi_free(ctx, lap->row);
+    hdi_free(ctx, lap->component);
+    hdi_free(ctx, lap->component_mass);
+    hdi_free(ctx, lap);
+}
+
+/* Area that corner c of a face contributes to its vertex under the mixed rule. */
+static double hdi_mixed_area(const hdi_mesh *mesh, int32_t c) {
+    const int32_t f = c / 3, q = c % 3, a = mesh->tri[c];
+    const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, f), area = mesh->area[f];
+    double sum = 0, edge[3];
+    int k;
+    if (cot[0] < 0 || cot[1] < 0 || cot[2] < 0) return cot[q] < 0 ? area / 2 : area / 4;
+    for (k = 1; k <= 2; k++) {   /* |a b|^2 cot(c) + |a c|^2 cot(b) */
+        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[3 * f + (q + k) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, a), edge);
+        sum += hdi_dot3(edge, edge) * cot[(q + 3 - k) % 3];
+    }
+    return sum / 8;
+}
+
+static double hdi_vertex_mass(const hdi_mesh *mesh, int32_t v, hd_laplacian_kind kind) {
+    double sum = 0;
+    int64_t p;
+    if (mesh->corner_ptr[v] == mesh->corner_ptr[v + 1]) return 0;
+    if (kind == HD_LAPLACIAN_COT) return 1;
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++)
+        sum += kind == HD_LAPLACIAN_FEM ? mesh->area[mesh->corner[p] / 3] / 3 : hdi_mixed_area(mesh, mesh->corner[p]);
+    return sum;
+}
+
+/* Numbers the rows: vertices with mass in their order. Fills row, vertex, mass, b_diag, n_active. */
+static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
+    int32_t v, k = 0;
+    hd_context *ctx = lap->context;
+    lap->row = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n), sizeof(int32_t), e));
+    if (!lap->row) return e->status;
+    for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : -1;
+    lap->n_active = k;
+    lap->mesh.n_inert = lap->n - k;
+    if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    lap->vertex = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(size_t, k), sizeof(int32_t), e));
+    if (lap->vertex) lap->mass = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, k), sizeof(double), e));
+    if (e->status < 0) return e->status;
+    lap->b_diag = lap->mass;
+    for (v = 0; v < lap->n; v++) {
+        if (lap->row[v] < 0) continue;
+        lap->vertex[lap->row[v]] = v;
+        lap->mass[lap->row[v]] = vertex_mass[v];
+    }
+    return HD_OK;
+}
+
+/* Components over the pattern of L, numbered by their first row, and their masses. */
+static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int32_t *parent = HDI_TAKE(&s, int32_t, lap->n_active), i;
+    int64_t p;
+    if (!parent) return hdi_scope_end(&s);
+    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_active), sizeof(int32_t), e));
+    if (!lap->component) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) parent[i] = i;
+    for (i = 0; i < lap->n_active; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) hdi_unite(parent, i, lap->L.col[p]);
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t root = hdi_find(parent, i);    /* roots are smallest members, so they have their number already */
+        lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
+    }
+    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_components), sizeof(double), e));
+    if (!lap->component_mass) return hdi_scope_end(&s);
+    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
+    return hdi_scope_end(&s);
+}
+
+/* Distinct neighbours of vertex v and v itself, as rows of lap, unsorted, into col. mark [n_active] as in hdi_product_row. */
+static int64_t hdi_ring(const hdi_mesh *mesh, const hd_laplacian *lap, int32_t v, int32_t *mark, int32_t *col) {
+    const int32_t i = lap->row[v];
+    int64_t p, n = 1;
+    int k;
+    mark[i] = i;
+    col[0] = i;
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], f = c / 3;
+        for (k = 1; k <= 2; k++) {
+            const int32_t j = lap->row[mesh->tri[3 * f + (c + k) % 3]];
+            if (mark[j] == i) continue;
+            mark[j] = i;
+            col[n++] = j;
+        }
+    }
+    return n;
+}
+
+/* The pattern of L, columns ascending. */
+static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_mesh *mesh, int32_t *mark, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int64_t ring = 2 * hdi_most_corners(mesh) + 1;
+    int32_t *col = HDI_TAKE(&s, int32_t, ring), i;
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, ring);
+    int64_t nnz = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_i32(mark, lap->n_active, -1);
+    for (i = 0; i < lap->n_active; i++) nnz += hdi_ring(mesh, lap, lap->vertex[i], mark, col);
+    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    if (e->status < 0) {
+        memset(&lap->L, 0, sizeof lap->L);
+        return hdi_scope_end(&s);
+    }
+    hdi_fill_i32(mark, lap->n_active, -1);
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t begin = lap->L.row_ptr[i], n = hdi_ring(mesh, lap, lap->vertex[i], mark, col);
+        hdi_sort_indices(col, n, work);
+        memcpy(lap->L.col + begin, col, HDI_CAST(size_t, n) * sizeof *col);
+        lap->L.row_ptr[i + 1] = begin + n;
+    }
+    lap->L = hdi_csr_keep(&s, lap->L);
+    return hdi_scope_end(&s);
+}
+
+/* Values of row i. Contributions come in the order of the faces in both rows of an edge, so L and B are symmetric to the last bit.
+ * place [n_active]: where a column stands in this row. */
+static void hdi_lap_row_values(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, int64_t *place) {
+    const int32_t v = lap->vertex[i];
+    const int64_t begin = lap->L.row_ptr[i], end = lap->L.row_ptr[i + 1];
+    double *L = lap->L.val, *B = lap->B, sum = 0;
+    int64_t p;
+    int k;
+    for (p = begin; p < end; p++) {
+        place[lap->L.col[p]] = p;
+        L[p] = 0;
+        if (B) B[p] = 0;
+    }
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], f = c / 3, q = c % 3;
+        for (k = 1; k <= 2; k++) {   /* the edge to corner q + k is opposite to the third one */
+            const int64_t at = place[lap->row[mesh->tri[3 * f + (q + k) % 3]]];
+            L[at] -= mesh->cot[3 * f + (q + 3 - k) % 3] / 2;
+            if (B) B[at] += mesh->area[f] / 12;
+        }
+        if (B) B[place[i]] += mesh->area[f] / 6;
+    }
+    for (p = begin; p < end; p++)
+        if (lap->L.col[p] != i) sum += L[p];
+    L[place[i]] = -sum;
+}
+
+/* Faces along each edge of row i to later rows: how many, and in which direction. */
+static void hdi_edge_counts(const hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, const int64_t *place, int32_t *count, int32_t *turn) {
+    const int32_t v = lap->vertex[i];
+    const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
+    int64_t p;
+    int k;
+    for (p = 0; p < n; p++) count[p] = turn[p] = 0;
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], f = c / 3;
+        for (k = 1; k <= 2; k++) {
+            const int64_t at = place[lap->row[mesh->tri[3 * f + (c + k) % 3]]] - begin;
+            count[at]++;
+            turn[at] += k == 1 ? 1 : -1;
+        }
+    }
+}
+
+/* Statistics of the edges of row i, and the union of boundary edges in parent [n_active]. Returns the sum of the edges' lengths. */
+static double hdi_edge_report(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, const int32_t *count, const int32_t *turn, int32_t *parent) {
+    const int64_t begin = lap->L.row_ptr[i];
+    hd_mesh_report *rep = &lap->mesh;
+    double sum = 0, edge[3];
+    int64_t p;
+    for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
+        const int32_t j = lap->L.col[p], faces = count[p - begin];
+        if (j <= i) continue;
+        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, lap->vertex[j]), mesh->xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), edge);
+        sum += hdi_norm3(edge);
+        rep->n_edges++;
+        rep->n_nonmanifold_edges += faces > 2;
+        rep->n_misoriented_edges += faces == 2 && turn[p - begin] != 0;
+        rep->n_negative_weights += lap->L.val[p] > 0;
+        if (faces != 1) continue;
+        rep->n_boundary_edges++;
+        hdi_unite(parent, i, j);
+    }
+    return sum;
+}
+
+/* Values of L and B, edge statistics and h. */
+static hd_status hdi_lap_values(hd_laplacian *lap, const hdi_mesh *mesh, int32_t *parent, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active), widest = 1;
+    int32_t *count, *turn, i;
+    double length = 0;
+    for (i = 0; i < lap->n_active; i++)
+        if (lap->L.row_ptr[i + 1] - lap->L.row_ptr[i] > widest) widest = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
+    count = HDI_TAKE(&s, int32_t, widest);
+    turn = HDI_TAKE(&s, int32_t, widest);
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) parent[i] = i;
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_lap_row_values(lap, mesh, i, place);
+        hdi_edge_counts(lap, mesh, i, place, count, turn);
+        length += hdi_edge_report(lap, mesh, i, count, turn, parent);
+        if (lap->B) lap->b_diag[i] = lap->B[place[i]];
+    }
+    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
+    for (i = 0; i < lap->n_active; i++) {   /* a loop is a root with another vertex in its set */
+        const int32_t root = hdi_find(parent, i);
+        if (root == i || place[root] == -1) continue;
+        place[root] = -1;
+        lap->mesh.n_boundary_loops++;
+    }
+    return hdi_scope_end(&s);
+}
+
+static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hdi_mesh mesh;
+    double *vertex_mass;
+    int32_t *mark, v, f;
+    if (hdi_mesh_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
+    vertex_mass = HDI_TAKE(&s, double, lap->n);
+    if (!vertex_mass) return hdi_scope_end(&s);
+    for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_vertex_mass(&mesh, v, lap->kind);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0) return hdi_scope_end(&s);
+    mark = HDI_TAKE(&s, int32_t, lap->n_active);
+    if (!mark || hdi_lap_pattern(lap, &mesh, mark, e) < 0) return hdi_scope_end(&s);
+    if (lap->kind == HD_LAPLACIAN_FEM) {
+        lap->B = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->L.nnz), sizeof(double), e));
+        if (!lap->B) return hdi_scope_end(&s);
+        lap->b_diag = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+        if (!lap->b_diag) return hdi_scope_end(&s);
+    }
+    if (hdi_lap_values(lap, &mesh, mark, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
+    for (f = 0; f < m; f++) lap->area += mesh.area[f];
+    lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;   /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
+    lap->conserves = 1;
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* y = (alpha L + beta B) x on rows. */
+static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta, const double *HDI_RESTRICT x, double *HDI_RESTRICT y) {
+    const int64_t *HDI_RESTRICT Ap = lap->L.row_ptr;
+    const int32_t *HDI_RESTRICT Aj = lap->L.col;
+    const double *HDI_RESTRICT Lx = lap->L.val, *HDI_RESTRICT Bx = lap->B;
+    int32_t i;
+    int64_t p = 0;
+    for (i = 0; i < lap->n_active; i++) {
+        double l = 0, b = 0;
+        if (Bx) {
+            for (; p < Ap[i + 1]; p++) {
+                l += Lx[p] * x[Aj[p]];
+                b += Bx[p] * x[Aj[p]];
+            }
+        } else {
+            for (; p < Ap[i + 1]; p++) l += Lx[p] * x[Aj[p]];
+            b = lap->mass[i] * x[i];
+        }
+        y[i] = alpha * l + beta * b;
+    }
+}
+
+/* |x|_B^2; work [n_active] is used when B is not diagonal. */
+static double hdi_b_norm2(const hd_laplacian *lap, const double *x, double *work) {
+    if (!lap->B) return hdi_norm2w(x, lap->mass, lap->n_active);
+    hdi_pair_apply(lap, 0, 1, x, work);
+    return hdi_dot(x, work, lap->n_active);
+}
+
+/* Means over the components in the B inner product, of a functional b'x: out[c] = sum over c of weight_i x_i. */
+static void hdi_component_sums(const hd_laplacian *lap, const double *weight, const double *x, double *out) {
+    int32_t i;
+    if (lap->n_components == 1) {
+        out[0] = weight ? hdi_dot(weight, x, lap->n_active) : 0;
+        for (i = 0; !weight && i < lap->n_active; i++) out[0] += x[i];
+        return;
+    }
+    memset(out, 0, HDI_CAST(size_t, lap->n_components) * sizeof *out);
+    for (i = 0; i < lap->n_active; i++) out[lap->component[i]] += weight ? weight[i] * x[i] : x[i];
+}
+
+/* x_i += value[component of i] */
+static void hdi_component_add(const hd_laplacian *lap, const double *value, double *x) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) x[i] += value[lap->component[i]];
+}
+
+/* ---- the caller's own matrices ---- */
+
+/* Merges row i of L and B (both over vertices) on the active columns, the diagonal always there. col NULL: counts only. */
+static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v, int32_t *col, double *Lx, double *Bx) {
+    int64_t p = L->row_ptr[v], q = B->row_ptr[v], n = 0;
+    const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
+    int diagonal = 0;
+    while (p < p_end || q < q_end || !diagonal) {
+        const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX, cd = diagonal ? INT32_MAX : v;
+        const int32_t c = cp < cq ? (cp < cd ? cp : cd) : (cq < cd ? cq : cd);
+        if (lap->row[c] >= 0) {
+            if (col) {
+                col[n] = lap->row[c];
+                Lx[n] = cp == c ? L->val[p] : 0;
+                Bx[n] = cq == c ? B->val[q] : 0;
+            }
+            n++;
+        }
+        p += cp == c;
+        q += cq == c;
+        diagonal |= cd == c;
+    }
+    return n;
+}
+
+/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0. */
+static hd_status hdi_pair_measure(hd_laplacian *lap, int *diagonal, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    *diagonal = 1;
+    lap->conserves = 1;
+    lap->b_ratio = 1;
+    for (i = 0; i < lap->n_active; i++) {
+        double l_sum = 0, l_abs = 0, b_sum = 0, b_off = 0, b_diag = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            l_sum += lap->L.val[p];
+            l_abs += fabs(lap->L.val[p]);
+            b_sum += lap->B[p];
+            if (lap->L.col[p] == i) b_diag = lap->B[p];
+            else b_off += fabs(lap->B[p]);
+        }
+        if (!(b_diag > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", lap->vertex[i], lap->vertex[i], b_diag);
+        if (fabs(l_sum) > 1e-11 * l_abs) lap->conserves = 0;
+        if (b_off > 0) *diagonal = 0;
+        lap->b_ratio = hdi_min(lap->b_ratio, 1 - b_off / b_diag);
+        lap->mass[i] = b_sum;
+        lap->b_diag[i] = b_diag;
+        lap->area += b_sum;
+    }
+    return HD_OK;
+}
+
+/* Where rows of B are not dominated by their diagonal, as in finite elements: the smallest eigenvalue of D^-1 B, D = diag(B), by 40 Lanczos
+ * steps, a fifth taken off for safety. An estimate, not a bound: meshes know theirs exactly. work [4 n]. */
+static hd_status hdi_pair_ratio(hd_laplacian *lap, double *work, hd_error *e) {
+    enum { STEPS = 40 };
+    const int32_t n = lap->n_active;
+    double *v = work, *v_old = v + n, *w = v_old + n, *s = w + n, d[STEPS], off[STEPS], z[2 * STEPS], beta = 0, norm = 0, least;
+    int32_t i, m = 0, k;
+    for (i = 0; i < n; i++) {                    /* B in the scaling D^-1/2 B D^-1/2; an uneven start, the same every time */
+        s[i] = 1 / sqrt(lap->b_diag[i]);
+        v[i] = 1 + 0.5 * sin(1.7 * i);
+        v_old[i] = 0;
+        norm += v[i] * v[i];
+    }
+    for (i = 0; i < n; i++) v[i] /= sqrt(norm);
+    while (m < STEPS && m < n) {
+        double alpha = 0;
+        norm = 0;
+        for (i = 0; i < n; i++) v[i] *= s[i];
+        hdi_pair_apply(lap, 0, 1, v, w);
+        for (i = 0; i < n; i++) {
+            v[i] /= s[i];
+            w[i] = w[i] * s[i] - beta * v_old[i];
+            alpha += v[i] * w[i];
+        }
+        for (i = 0; i < n; i++) {
+            w[i] -= alpha * v[i];
+            norm += w[i] * w[i];
+        }
+        d[m] = alpha;
+        beta = sqrt(norm);
+        off[m++] = beta;
+        if (beta < 1e-14) break;
+        for (i = 0; i < n; i++) {
+            v_old[i] = v[i];
+            v[i] = w[i] / beta;
+        }
+    }
+    for (k = 0; k < 2 * STEPS; k++) z[k] = 0;
+    if (!hdi_tridiag_eigen(d, off, z, z + STEPS, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "B: the estimate of its smallest eigenvalue did not converge");
+    for (least = d[0], k = 1; k < m; k++) least = hdi_min(least, d[k]);
+    if (!(least > 1e-12)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B is not positive definite", -1, -1, least);
+    lap->b_ratio = hdi_min(1, 0.8 * least);
+    return HD_OK;
+}
+
+static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag;
+    int64_t nnz = 0, p;
+    int32_t i;
+    int diagonal;
+    if (!present) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n; i++)
+        for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++)
+            if (B->val[p] != 0) present[i] = 1;
+    if (hdi_lap_rows(lap, present, e) < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_row(lap, L, B, lap->vertex[i], NULL, NULL, NULL);
+    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    lap->B = HDI_TAKE(&s, double, nnz);
+    b_diag = HDI_TAKE(&s, double, lap->n_active);
+    if (e->status < 0) {
+        memset(&lap->L, 0, sizeof lap->L);
+        lap->B = NULL;
+        return hdi_scope_end(&s);
+    }
+    lap->L = hdi_csr_keep(&s, lap->L);
+    lap->B = HDI_CAST(double *, hdi_keep(&s, lap->B));
+    lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    for (i = 0; i < lap->n_active; i++) {
+        p = lap->L.row_ptr[i];
+        lap->L.row_ptr[i + 1] = p + hdi_pair_row(lap, L, B, lap->vertex[i], lap->L.col + p, lap->L.val + p, lap->B + p);
+    }
+    if (hdi_pair_measure(lap, &diagonal, e) < 0) return hdi_scope_end(&s);
+    if (diagonal) {
+        hdi_free(lap->context, lap->B);
+        hdi_free(lap->context, lap->b_diag);
+        lap->B = NULL;
+        lap->b_diag = lap->mass;
+    }
+    if (lap->b_ratio < 0.01) {
+        double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active));
+        if (!work || hdi_pair_ratio(lap, work, e) < 0) return hdi_scope_end(&s);
+    }
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ==== [14] precond ====
+ * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal: one application serves them all,
+ * complex-symmetric and real. May call [10].
+ *   none    D = I, U = 0         jacobi  D = diag(A), U = 0
+ *   ssor    D = diag(A), U = D^-1 upper(A): with omega = 1 the product form of SSOR
+ *   ildl    incomplete LDL' without fill
+ *   mildl   the same, with a part of the dropped fill added to the diagonal (I. Gustafsson, A class of first order factorization
+ *           methods, 1978), which keeps what smooth vectors see of A. */
+
+/* The strictly upper pattern of L: rows ascend, and so do columns within a row. */
+typedef struct hdi_upper {
+    int32_t n;
+    int64_t *ptr;    /* [n + 1] */
+    int32_t *col;
+} hdi_upper;
+
+static void hdi_upper_free(hd_context *ctx, hdi_upper *u) {
+    hdi_free(ctx, u->ptr);
+    hdi_free(ctx, u->col);
+    memset(u, 0, sizeof *u);
+}
+
+static hd_status hdi_upper_make(hdi_upper *u, const hd_csr *L, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    int64_t *ptr = HDI_TAKE(&s, int64_t, HDI_CAST(int64_t, L->n_rows) + 1), p, nnz = 0;
+    int32_t *col = HDI_TAKE(&s, int32_t, (L->nnz - L->n_rows) / 2), i;   /* a symmetric pattern with full diagonal */
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i < L->n_rows; i++) {
+        ptr[i] = nnz;
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
+            if (L->col[p] > i) col[nnz++] = L->col[p];
+    }
+    ptr[L->n_rows] = nnz;
+    u->n = L->n_rows;
+    u->ptr = HDI_CAST(int64_t *, hdi_keep(&s, ptr));
+    u->col = HDI_CAST(int32_t *, hdi_keep(&s, col));
+    return hdi_scope_end(&s);
+}
+
+/* A = t L + theta B, never formed. */
+typedef struct hdi_system {
+    const hd_laplacian *lap;
+    double t;
+    hd_c64 theta;
+} hdi_system;
+
+/* Upper values and diagonal of A. */
+static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u, hd_c64 *d) {
+    const hd_laplacian *lap = a->lap;
+    int32_t i;
+    int64_t p, q = 0;
+    for (i = 0; i < up->n; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const double l = a->t * lap->L.val[p];
+            if (lap->L.col[p] < i) continue;
+            if (lap->L.col[p] == i) {
+                d[i] = hdi_c(l + a->theta.re * lap->b_diag[i], a->theta.im * lap->b_diag[i]);
+                continue;
+            }
+            u[q++] = lap->B ? hdi_c(l + a->theta.re * lap->B[p], a->theta.im * lap->B[p]) : hdi_c(l, 0);
+        }
+    }
+}
+
+/* First entry of row i of u at or after column c; columns are few. */
+static int64_t hdi_upper_find(const hdi_upper *up, int32_t i, int32_t c) {
+    int64_t lo = up->ptr[i], hi = up->ptr[i + 1];
+    while (lo < hi) {
+        const int64_t mid = lo + (hi - lo) / 2;
+        if (up->col[mid] < c) lo = mid + 1;
+        else hi = mid;
+    }
+    return lo;
+}
+
+/* A pivot that lost nearly all of its diagonal entry, or turned away from it, is replaced by that entry: an incomplete factorisation
+ * may break down where the complete one cannot. */
+static hd_c64 hdi_pivot(hd_c64 d, hd_c64 a) {
+    const double along = d.re * a.re + d.im * a.im;
+    if (along > 1e-3 * hdi_cabs2(a) && hdi_cfinite(d)) return d;
+    return a;
+}
+
+/* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. On entry u holds the upper part, d and diag the diagonal; on
+ * exit u the factor. Row k updates the entries (i, j) between its own columns; where the pattern has none, `keep` of the update
+ * goes to the diagonal entries of i and j. Work per row k: the shorter of the two searches, so that a vertex with very many neighbours
+ * costs no square of their number. mark [n] = -1 on entry. */
+static void hdi_ildl(const hdi_upper *up, hd_c64 *u, hd_c64 *d, const hd_c64 *diag, double keep, int64_t *mark) {
+    int32_t k;
+    int64_t p, q;
+    for (k = 0; k < up->n; k++) {
+        const int64_t begin = up->ptr[k], end = up->ptr[k + 1];
+        hd_c64 sum = hdi_c(0, 0);
+        d[k] = hdi_pivot(d[k], diag[k]);
+        for (p = begin; p < end; p++) {
+            mark[up->col[p]] = p;
+            u[p] = hdi_cdiv(u[p], d[k]);
+            sum = hdi_cadd(sum, u[p]);
+        }
+        for (p = begin; p < end; p++) {
+            const int32_t i = up->col[p];
+            const int64_t row_len = up->ptr[i + 1] - up->ptr[i];
+            const hd_c64 w = hdi_cmul(u[p], d[k]);
+            hd_c64 kept = hdi_c(0, 0);
+            if (row_len > 8 * (end - p)) {     /* look up the columns of k in the longer row i */
+                for (q = p + 1; q < end; q++) {
+                    const int64_t at = hdi_upper_find(up, i, up->col[q]);
+                    if (at == up->ptr[i + 1] || up->col[at] != up->col[q]) continue;
+                    u[at] = hdi_csub(u[at], hdi_cmul(w, u[q]));
+                    d[up->col[q]] = hdi_cadd(d[up->col[q]], hdi_cscale(keep, hdi_cmul(w, u[q])));
+                    kept = hdi_cadd(kept, u[q]);
+                }
+            } else {
+                for (q = up->ptr[i]; q < up->ptr[i + 1]; q++) {
+                    const int64_t at = mark[up->col[q]];
+                    if (at < begin) continue;
+                    u[q] = hdi_csub(u[q], hdi_cmul(w, u[at]));
+                    d[up->col[q]] = hdi_cadd(d[up->col[q]], hdi_cscale(keep, hdi_cmul(w, u[at])));
+                    kept = hdi_cadd(kept, u[at]);
+                }
+            }
+            /* own update, and of the rest of the row what was not kept: the part before p is put back by the lines above */
+            d[i] = hdi_csub(d[i], hdi_cmul(w, u[p]));
+            d[i] = hdi_csub(d[i], hdi_cscale(keep, hdi_cmul(w, hdi_csub(hdi_csub(sum, u[p]), kept))));
+        }
+    }
+}
+
+typedef struct hdi_precond {
+    hd_precond kind;
+    const hdi_upper *up;
+    hd_c64 *u;        /* [nnz of up] or NULL */
+    hd_c64 *d_inv;    /* [n] or NULL */
+} hdi_precond;
+
+/* Fills m, whose arrays are there. work [n] complex, mark [n]. */
+static void hdi_precond_make(hdi_precond *m, const hdi_system *a, hd_c64 *work, int64_t *mark) {
+    const int32_t n = m->up->n;
+    int32_t i;
+    int64_t p;
+    if (m->kind == HD_PRECOND_NONE) return;
+    if (m->kind == HD_PRECOND_JACOBI) {
+        for (p = 0, i = 0; i < n; i++) {
+            while (a->lap->L.col[p] < i || p < a->lap->L.row_ptr[i]) p++;
+            m->d_inv[i] = hdi_cdiv(hdi_c(1, 0), hdi_c(a->t * a->lap->L.val[p] + a->theta.re * a->lap->b_diag[i], a->theta.im * a->lap->b_diag[i]));
+        }
+        return;
+    }
+    hdi_system_upper(a, m->up, m->u, m->d_inv);
+    if (m->kind == HD_PRECOND_SSOR) {
+        for (i = 0; i < n; i++)
+            for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d_inv[i]);
+    } else {
+        memcpy(work, m->d_inv, HDI_CAST(size_t, n) * sizeof *work);
+        for (i = 0; i < n; i++) mark[i] = -1;
+        hdi_ildl(m->up, m->u, m->d_inv, work, m->kind == HD_PRECOND_MILDL ? 0.97 : 0, mark);
+    }
+    for (i = 0; i < n; i++) m->d_inv[i] = hdi_cdiv(hdi_c(1, 0), m->d_inv[i]);
+}
+
+/* z = M^-1 r: (I + U') w = r, z = (I + U)^-1 D^-1 w. z may not be r. */
+static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    const int64_t *HDI_RESTRICT ptr = m->up->ptr;
+    const int32_t *HDI_RESTRICT col = m->up->col;
+    const hd_c64 *HDI_RESTRICT u = m->u;
+    const int32_t n = m->up->n;
+    int32_t i;
+    int64_t p;
+    if (!m->d_inv) {
+        memcpy(z, r, HDI_CAST(size_t, n) * sizeof *z);
+        return;
+    }
+    if (!u) {
+        for (i = 0; i < n; i++) z[i] = hdi_cmul(r[i], m->d_inv[i]);
+        return;
+    }
+    memcpy(z, r, HDI_CAST(size_t, n) * sizeof *z);
+    for (i = 0; i < n; i++) {
+        const hd_c64 w = z[i];
+        for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
+    }
+    for (i = n; i-- > 0;) {
+        hd_c64 w = hdi_cmul(z[i], m->d_inv[i]);
+        for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
+        z[i] = w;
+    }
+}
+
+/* ==== [15] krylov ====
+ * Iterative solvers for (t L + theta B) x = b, complex symmetric: every inner product is x'y without conjugate, unless it is a norm.
+ * For real theta and b every number stays real and cocg is the conjugate gradient method. May call [14].
+ * This work is based on
+ *   H. van der Vorst, J. Melissen, A Petrov-Galerkin type method for solving Ax = b, where A is symmetric complex, 1990 (cocg)
+ *   T. Sogabe, S.-L. Zhang, A COCR method for solving complex symmetric linear systems, 2007 (cocr)
+ *   S.-C. Choi, Minimal residual methods for complex symmetric, skew symmetric, and skew Hermitian systems, 2013 (minres)
+ *   Y. Saad, M. Yeung, J. Erhel, F. Guyomarc'h, A deflated version of the conjugate gradient algorithm, 2000 (deflation)
+ * Where L 1 = 0, the constants W of the components are known eigenvectors: A W = theta B W. They are solved for exactly by the start vector
+ * and kept out of all directions, which conserves heat and takes the smallest eigenvalue out of the iteration. */
+
+/* y = A x on rows; returns x'y. */
+static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
+    const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
+    const int32_t *HDI_RESTRICT Aj = a->lap->L.col;
+    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B, *HDI_RESTRICT b = a->lap->mass;
+    const double t = a->t;
+    const hd_c64 theta = a->theta;
+    hd_c64 dot = hdi_c(0, 0);
+    const int32_t n = a->lap->n_active;
+    int32_t i;
+    int64_t p = 0;
+    for (i = 0; i < n; i++) {
+        const int64_t end = Ap[i + 1];
+        hd_c64 l = hdi_c(0, 0), m = hdi_c(0, 0), s;
+        if (Bx) {
+            for (; p < end; p++) {
+                const hd_c64 v = x[Aj[p]];
+                l.re += Lx[p] * v.re;
+                l.im += Lx[p] * v.im;
+                m.re += Bx[p] * v.re;
+                m.im += Bx[p] * v.im;
+            }
+        } else {
+            for (; p < end; p++) {
+                const hd_c64 v = x[Aj[p]];
+                l.re += Lx[p] * v.re;
+                l.im += Lx[p] * v.im;
+            }
+            m = hdi_cscale(b[i], x[i]);
+        }
+        s = hdi_cadd(hdi_cscale(t, l), hdi_cmul(theta, m));
+        y[i] = s;
+        dot = hdi_cadd(dot, hdi_cmul(x[i], s));
+    }
+    return dot;
+}
+
+/* Takes the B-mean of every component out of z. sums [n_components]. */
+static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
+    const double *b = lap->mass;
+    const int32_t *comp = lap->component;
+    int32_t i;
+    if (!lap->conserves) return;
+    if (lap->n_components == 1) {
+        hd_c64 s0 = hdi_c(0, 0), s1 = s0;
+        for (i = 0; i + 2 <= lap->n_active; i += 2) {
+            s0 = hdi_cadd(s0, hdi_cscale(b[i], z[i]));
+            s1 = hdi_cadd(s1, hdi_cscale(b[i + 1], z[i + 1]));
+        }
+        for (; i < lap->n_active; i++) s0 = hdi_cadd(s0, hdi_cscale(b[i], z[i]));
+        s0 = hdi_cscale(1 / lap->component_mass[0], hdi_cadd(s0, s1));
+        for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], s0);
+        return;
+    }
+    memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
+    for (i = 0; i < lap->n_active; i++) sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(b[i], z[i]));
+    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
+    for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], sums[comp[i]]);
+}
+
+enum { HDI_KRYLOV_VECTORS = 8 };
+
+/* One system under solution. It can be stopped and taken up again. */
+typedef struct hdi_krylov {
+    hdi_system a;
+    hdi_precond m;
+    hd_solver solver;
+    const double *weight;                /* [n] 1/diag(B): the residual's norm */
+    hd_c64 *sums;                        /* [n_components] */
+    hd_c64 *x, *r;                       /* [n] solution and residual */
+    hd_c64 *v[HDI_KRYLOV_VECTORS - 2];   /* [n] each, as many as the solver needs */
+    double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
+    int64_t iterations;
+    int32_t broken, ready;
+    hd_c64 rho, phibar, s1, s2;          /* recurrences */
+    double beta, beta_old, c1, c2;
+} hdi_krylov;
+
+static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_COCG ? 4 : solver == HD_SOLVER_COCR ? 7 : 8; }
+
+static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
+    hdi_precond_apply(&k->m, r, z);
+    hdi_deflate(k->a.lap, z, k->sums);
+}
+
+/* r = b - A x from x, and its norm: the truth that recurrences drift away from. */
+static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
+    const int32_t n = k->a.lap->n_active;
+    int32_t i;
+    hdi_system_apply(&k->a, k->x, k->r);
+    for (i = 0; i < n; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
+    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
+    k->ready = 0;
+}
+
+/* x += alpha p, r -= alpha q; returns the new norm of r. */
+static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RESTRICT p, const hd_c64 *HDI_RESTRICT q) {
+    hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
+    const double *HDI_RESTRICT w = k->weight;
+    const int32_t n = k->a.lap->n_active;
+    double norm = 0;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        x[i] = hdi_cadd(x[i], hdi_cmul(alpha, p[i]));
+        r[i] = hdi_csub(r[i], hdi_cmul(alpha, q[i]));
+        norm += w[i] * hdi_cabs2(r[i]);
+    }
+    return sqrt(norm);
+}
+
+/* p = z + beta p */
+static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p, int32_t n) {
+    int32_t i;
+    for (i = 0; i < n; i++) p[i] = hdi_cadd(z[i], hdi_cmul(beta, p[i]));
+}
+
+/* A quotient of the recurrence; marks the method as broken when it is none. */
+static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
+    const hd_c64 q = hdi_cdiv(a, b);
+    if (!hdi_cfinite(q)) k->broken = 1;
+    return q;
+}
+
+static void hdi_cocg_step(hdi_krylov *k) {
+    const int32_t n = k->a.lap->n_active;
+    hd_c64 *p = k->v[0], *q = k->v[1], alpha, rho;
+    if (!k->ready) {
+        hdi_krylov_precond(k, k->r, p);
+        k->rho = hdi_cdotu(k->r, p, n);
+    }
+    alpha = hdi_krylov_quotient(k, k->rho, hdi_system_apply(&k->a, p, q));
+    if (k->broken) return;
+    k->r_norm = hdi_krylov_step(k, alpha, p, q);
+    hdi_krylov_precond(k, k->r, q);              /* q is free now: z = M^-1 r */
+    rho = hdi_cdotu(k->r, q, n);
+    hdi_krylov_direction(hdi_krylov_quotient(k, rho, k->rho), q, p, n);
+    k->rho = rho;
+}
+
+static void hdi_cocr_step(hdi_krylov *k) {
+    const int32_t n = k->a.lap->n_active;
+    hd_c64 *p = k->v[0], *q = k->v[1], *z = k->v[2], *az = k->v[3], *mq = k->v[4], alpha, rho;
+    int32_t i;
+    if (!k->ready) {
+        hdi_krylov_precond(k, k->r, z);
+        k->rho = hdi_system_apply(&k->a, z, az);
+        memcpy(p, z, HDI_CAST(size_t, n) * sizeof *p);
+        memcpy(q, az, HDI_CAST(size_t, n) * sizeof *q);
+    }
+    hdi_krylov_precond(k, q, mq);
+    alpha = hdi_krylov_quotient(k, k->rho, hdi_cdotu(q, mq, n));
+    if (k->broken) return;
+    k->r_norm = hdi_krylov_step(k, alpha, p, q);
+    for (i = 0; i < n; i++) z[i] = hdi_csub(z[i], hdi_cmul(alpha, mq[i]));
+    rho = hdi_system_apply(&k->a, z, az);
+    alpha = hdi_krylov_quotient(k, rho, k->rho);
+    hdi_krylov_direction(alpha, z, p, n);
+    hdi_krylov_direction(alpha, az, q, n);
+    k->rho = rho;
+}
+
+/* sqrt of y^* M y for y = M^-1 w, by w^* y; M is real and positive definite. */
+static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
+    const int32_t n = k->a.lap->n_active;
+    double s = 0;
+    int32_t i;
+    for (i = 0; i < n; i++) s += w[i].re * y[i].re + w[i].im * y[i].im;
+    if (!(s >= 0)) k->broken = 1;
+    return s > 0 ? sqrt(s) : 0;
+}
+
+/* The Saunders process A conj(V_k) = V_(k+1) T_k, with unitary V (in the M geometry) and a complex-symmetric tridiagonal T whose
+ * off-diagonals are real, and the QR factorisation of T by rotations [c s; -conj(s) c]. */
+static void hdi_minres_step(hdi_krylov *k) {
+    const int32_t n = k->a.lap->n_active;
+    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *v = k->v[3], *d = k->v[4], *d_old = k->v[5];
+    hd_c64 alpha, eps, dbar, delta, gbar, gamma, phi, s;
+    double beta, size, c;
+    int32_t i;
+    if (!k->ready) {
+        memcpy(w, k->r, HDI_CAST(size_t, n) * sizeof *w);
+        hdi_krylov_precond(k, w, y);
+        k->beta = hdi_minres_beta(k, w, y);
+        k->beta_old = 1;
+        k->phibar = hdi_c(k->beta, 0);
+        k->c1 = k->c2 = 1;
+        k->s1 = k->s2 = hdi_c(0, 0);
+        for (i = 0; i < n; i++) w_old[i] = d[i] = d_old[i] = hdi_c(0, 0);
+        if (k->beta == 0) k->broken = 1;
+    }
+    if (k->broken) return;
+    beta = k->beta;
+    for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(y[i]));
+    alpha = hdi_system_apply(&k->a, v, y);
+    for (i = 0; i < n; i++) {                    /* w_old becomes the new w */
+        const hd_c64 u = hdi_csub(y[i], hdi_cscale(beta / k->beta_old, w_old[i]));
+        w_old[i] = hdi_csub(u, hdi_cscale(1 / beta, hdi_cmul(alpha, w[i])));
+    }
+    k->v[0] = w;
+    k->v[1] = w_old;
+    hdi_krylov_precond(k, w_old, y);
+    k->beta_old = beta;
+    k->beta = hdi_minres_beta(k, w_old, y);
+    /* column of T: (eps) (delta) gamma below the two old rotations */
+    eps = hdi_cscale(beta, k->s2);
+    dbar = hdi_c(k->c2 * beta, 0);
+    if (!k->ready) eps = dbar = hdi_c(0, 0);
+    delta = hdi_cadd(hdi_cscale(k->c1, dbar), hdi_cmul(k->s1, alpha));
+    gbar = hdi_csub(hdi_cscale(k->c1, alpha), hdi_cmul(hdi_cconj(k->s1), dbar));
+    size = hypot(hdi_cabs(gbar), k->beta);
+    if (size == 0) {
+        k->broken = 1;
+        return;
+    }
+    c = hdi_cabs(gbar) / size;
+    gamma = hdi_cabs(gbar) > 0 ? hdi_cscale(size / hdi_cabs(gbar), gbar) : hdi_c(size, 0);
+    s = hdi_cscale(k->beta / (size * size), gamma);
+    phi = hdi_cscale(c, k->phibar);
+    k->phibar = hdi_cscale(-1, hdi_cmul(hdi_cconj(s), k->phibar));
+    for (i = 0; i < n; i++) {
+        const hd_c64 u = hdi_csub(hdi_csub(v[i], hdi_cmul(delta, d[i])), hdi_cmul(eps, d_old[i]));
+        d_old[i] = hdi_cdiv(u, gamma);
+        k->x[i] = hdi_cadd(k->x[i], hdi_cmul(phi, d_old[i]));
+    }
+    k->v[4] = d_old;
+    k->v[5] = d;
+    phi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
+    for (i = 0; i < n; i++) k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, w_old[i]));
+    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
+    k->c2 = k->c1;
+    k->s2 = k->s1;
+    k->c1 = c;
+    k->s1 = s;
+}
+
+/* Start: x solves for the constants exactly (mean of b over theta), or is zero. b real [n]. */
+static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b) {
+    const hd_laplacian *lap = k->a.lap;
+    int32_t i;
+    k->b_norm = sqrt(hdi_cnorm2w(b, k->weight, lap->n_active));
+    memset(k->x, 0, HDI_CAST(size_t, lap->n_active) * sizeof *k->x);
+    if (lap->conserves) {
+        memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
+        for (i = 0; i < lap->n_active; i++) k->sums[lap->component[i]] = hdi_cadd(k->sums[lap->component[i]], b[i]);
+        for (i = 0; i < lap->n_components; i++) k->sums[i] = hdi_cdiv(hdi_cscale(1 / lap->component_mass[i], k->sums[i]), k->a.theta);
+        for (i = 0; i < lap->n_active; i++) k->x[i] = k->sums[lap->component[i]];
+    }
+    hdi_krylov_residual(k, b);
+}
+
+/* What a solver is told and tells while it runs. */
+typedef struct hdi_watch {
+    hd_context *ctx;             /* for progress; NULL: not the calling thread */
+    int32_t *stop;               /* set by any thread that failed, read by all */
+    double from, share;          /* of the progress bar */
+    const char *stage;
+} hdi_watch;
+
+static hd_status hdi_watch_look(const hdi_watch *w, double done, hd_error *e) {
+    if (w->stop && HDI_LOAD(w->stop)) return hdi_fail(e, HD_ERR_CANCELLED, "stopped because another task failed or was cancelled");
+    if (!w->ctx) return HD_OK;
+    return hdi_progress(w->ctx, w->stage, w->from + w->share * hdi_min(1, hdi_max(0, done)), e);
+}
+
+static double hdi_krylov_done(double start, double now, double target) {
+    if (!(now > target) || !(start > target)) return 1;
+    return target > 0 ? log(start / now) / log(start / target) : 0;
+}
+
+/* Iterates until the residual norm, computed from x at the end, is at most target. Rounding may keep it above: then it stops where
+ * another round no longer halves it, with HD_WARN_ACCURACY. */
+static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations, const hdi_watch *watch, hd_error *e) {
+    const double start = k->r_norm;
+    double before = k->r_norm;
+    int64_t left = max_iterations;
+    int64_t look = 0;
+    while (k->r_norm > target) {
+        while (k->r_norm > target && !k->broken) {
+            if (left-- <= 0) break;
+            if (look++ % 16 == 0 && hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
+            if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
+            else if (k->solver == HD_SOLVER_COCR) hdi_cocr_step(k);
+            else hdi_minres_step(k);
+            if (!hdi_finite(k->r_norm)) k->broken = 1;
+            k->ready = 1;
+            k->iterations += !k->broken;
+        }
+        hdi_krylov_residual(k, b);               /* the recurrence says done: believe x alone */
+        if (!hdi_finite(k->r_norm)) return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: its numbers are no longer finite");
+        if (k->r_norm <= target) return HD_OK;
+        if (left <= 0) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "the iteration did not reach the tolerance in max_iterations steps");
+        if (k->r_norm > before / 2) return HD_WARN_ACCURACY;
+        before = k->r_norm;
+        k->broken = 0;
+    }
+    return HD_OK;
+}
+
+/* ---- conjugate gradients for B u = w, with the diagonal as preconditioner ---- */
+
+/* Condition of diag(B)^-1 B is at most 4 for linear elements: about 30 steps to rounding. work [3 n]. u is the start too when warm. */
+static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double *u, double *work, hd_error *e) {
+    const int32_t n = lap->n_active;
+    double *r = work, *p = work + n, *q = work + 2 * HDI_CAST(int64_t, n), rho = 0, rho_new, start;
+    int32_t i, step;
+    if (!lap->B) {
+        for (i = 0; i < n; i++) u[i] = w[i] / lap->mass[i];
+        return HD_OK;
+    }
+    for (i = 0; i < n; i++) {
+        u[i] = 0;
+        r[i] = w[i];
+        p[i] = w[i] / lap->b_diag[i];
+        rho += r[i] * p[i];
+    }
+    start = rho;
+    for (step = 0; step < 1000 && rho > 1e-30 * start; step++) {
+        double alpha, mu;
+        hdi_pair_apply(lap, 0, 1, p, q);
+        mu = hdi_dot(p, q, n);
+        if (!(mu > 0)) return hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: a vector with x'Bx <= 0 was met");
+        alpha = rho / mu;
+        rho_new = 0;
+        for (i = 0; i < n; i++) {
+            u[i] += alpha * p[i];
+            r[i] -= alpha * q[i];
+            rho_new += r[i] * (r[i] / lap->b_diag[i]);
+        }
+        for (i = 0; i < n; i++) p[i] = r[i] / lap->b_diag[i] + rho_new / rho * p[i];
+        rho = rho_new;
+    }
+    if (rho > 1e-24 * start) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
+    return HD_OK;
+}
+
+/* ==== [16] rational ====
+ * Pole sets: the constants, evaluation, lookup. May call [02].
+ * This work is based on
+ *   W. Cody, G. Meinardus, R. Varga, Chebyshev rational approximations to e^-x in [0, inf), 1969
+ *   A. Carpenter, A. Ruttan, R. Varga, Extended numerical computations on the "1/9" conjecture, 1984 (the errors, to many digits)
+ * The table is printed by tools/poles.py, which also checks it. Deviation: the paper takes coefficients from E. Gallopoulos and Y. Saad,
+ * Efficient solution of parabolic equations by Krylov approximation methods, 1992, whose order-14 table is wrong in its last digits. */
+
+/* poles.py: begin */
+/* Computed by tools/poles.py, which also checks these digits. For every set: a0, max |e|, max (1 + |x|)|e| (0 for
+ * uniform sets, where it is infinite); then per pole Re theta, Im theta, Re a, Im a, the real pole first (odd r),
+ * then one of each conjugate pair by ascending Im theta. */
+static const double hdi_rat_table[] = {
+    /* uniform r = 1 */
+    -0.066831042161850457, 0.066831042161850457, 0,
+    0.57899948579809069, 0, -0.65638976389221459, 0,
+    /* uniform r = 2 */
+    0.0073586701695805296, 0.0073586701695805296, 0,
+    0.58479863263849063, 1.1855377812415786, 0.16885872734712942, -0.80945019772077931,
+    /* uniform r = 3 */
+    -0.00079938063633568784, 0.00079938063633568784, 0,
+    1.3688493230338539, 0, -1.4838485523029699, 0,
+    0.1982084787507408, 2.4107321029593383, 0.69116392297431128, 0.043182218073431144,
+    /* uniform r = 4 */
+    8.6522406952888525e-05, 8.6522406952888525e-05, 0,
+    1.5483932232971223, 1.1918229466274257, -0.061686779567832924, -1.9050409793030814,
+    -0.36784538618153984, 3.6581212986786671, 0.073395957163942205, 0.44999992247406273,
+    /* uniform r = 5 */
+    -9.3457131530266459e-06, 9.3457131530266459e-06, 0,
+    2.1554154620085582, 0, -3.2718193944526841, 0,
+    1.4405959942514726, 2.3969835252938436, 1.872385779133247, -0.37820630682407314,
+    -1.039505662793798, 4.9213907336950271, -0.23878868408807533, 0.1037386723036791,
+    /* uniform r = 6 */
+    1.0084543748996708e-06, 1.0084543748996708e-06, 0,
+    2.4006027476632035, 1.1931292641501556, -0.5790130101295049, -4.2868875753470874,
+    1.1585523628230172, 3.6147724480383845, 0.66300688564711041, 1.4514124962062376,
+    -1.7819885196256904, 6.1965120962654252, -0.083581626491457076, -0.1064292055299528,
+    /* uniform r = 7 */
+    -1.0874974913752479e-07, 1.0874974913752479e-07, 0,
+    2.9410969231931401, 0, -7.1876259359111989, 0,
+    2.4231963513685186, 2.3930293109369369, 4.4566693870505469, -1.5604498955857686,
+    0.75760863371246978, 4.8436185091371495, -0.90260521366982582, 0.74003615604162754,
+    -2.575726086391994, 7.4809774314099506, 0.039680465809293214, -0.052477616257074373,
+    /* uniform r = 8 */
+    1.1722652116334906e-08, 1.1722652116334906e-08, 0,
+    3.2209452399451135, 1.193619604620652, -1.8317717057715204, -9.5256080740643352,
+    2.292249142304867, 3.6007714934833812, 2.4362407257817651, 3.7167556135083242,
+    0.26949098091275148, 6.0820325874935435, -0.63258805131157436, -0.44392309694789683,
+    -3.4085395096636528, 8.7730345535790395, 0.028129757023298989, 0.011577384208923706,
+    /* uniform r = 9 */
+    -1.2632924833223142e-09, 1.2632924833223142e-09, 0,
+    3.7264404432550844, 0, -15.772898239504569, 0,
+    3.319683616428744, 2.391341566842359, 10.197195761527098, -4.5617679367058406,
+    2.0477955245274946, 4.8162322656968408, -2.463888128203831, 2.7896859476773539,
+    -0.2857163595193854, 7.328757959381476, 0.15496216680440175, -0.44758718068124026,
+    -4.2722773396054796, 10.071413406121069, -0.001822294456751083, 0.013400277260199545,
+    /* uniform r = 10 */
+    1.3611205233454478e-10, 1.3611205233454478e-10, 0,
+    4.0277324675187485, 1.1938560664553324, -4.8183819908450349, -21.054597238399712,
+    3.2837528832313008, 3.5943867723559029, 7.1171651040990547, 8.819533157873197,
+    1.7154060157689568, 6.0389349254839191, -2.5655849548411278, -1.216385706120203,
+    -0.89440470160948071, 8.582756898613388, 0.27258698029640305, 0.014211727031631144,
+    -5.1611912720200763, 11.375156251916541, -0.0057849038580128857, 0.00068585070894470123,
+    /* uniform r = 11 */
+    -1.466311194937487e-11, 1.466311194937487e-11, 0,
+    4.5116223104974447, 0, -34.597639064522525, 0,
+    4.1765093418863453, 2.3904652786364111, 22.940708037241691, -11.849855003577504,
+    3.1429903144926743, 4.8030732473603912, -5.9835669564958307, 8.464457243990104,
+    1.3125381205883064, 7.2683188400373346, 0.30851281175845968, -1.9833753212408136,
+    -1.5468803139623493, 9.8431732969045136, 0.034047278889549823, 0.14565219397515317,
+    -6.07106100332373, 12.683520454768697, -0.00088167237609111193, -0.0022803681114908587,
+    /* uniform r = 12 */
+    1.5794568370512388e-12, 1.5794568370512388e-12, 0,
+    4.8274934521610646, 1.1939879912230829, -11.799379956012233, -46.411635333526789,
+    4.2061242043183009, 3.5909207588846161, 18.785977421525416, 20.237285126063455,
+    2.9178685450793056, 6.0173459240923721, -8.2382559342348074, -2.7961912623038074,
+    0.85170709671550171, 8.5038328256346354, 1.3194115340711865, -0.18352358287334647,
+    -2.2359682461306796, 11.109296232702841, -0.068571494249760098, 0.038419082886648047,
+    -6.9986879086036167, 13.995916624970729, 0.00081843349926244424, -0.00058135358242612139,
+    /* uniform r = 13 */
+    -1.701187076340353e-13, 1.701187076340353e-13, 0,
+    5.2967144802299906, 0, -75.873006181213668, 0,
+    5.0116980787831418, 2.3899519823816431, 51.163592836068737, -29.08335883143636,
+    4.1395468351420019, 4.795667068660693, -13.766087342116609, 23.108957560381263,
+    2.6231285284511738, 7.2369922995548599, 0.21557854180001412, -6.7885062085917687,
+    0.34222764042845077, 9.7449668797523543, 0.3514391652167202, 0.76099293791750688,
+    -2.9561938216958206, 12.3805302110159, -0.028327816379376824, -0.028043097521075505,
+    -7.941584223750314, 15.311867991179952, 0.00030770539329353248, 0.00026269393788859625,
+    /* uniform r = 14 */
+    1.8321743782540412e-14, 1.8321743782540412e-14, 0,
+    5.6231425727459774, 1.1940690463439669, -27.875161940145645, -102.14733999056452,
+    5.0893450605806247, 3.5888240290270064, 46.933274488831294, 45.643649768827764,
+    3.9933697105785684, 6.004831642235037, -23.498232091082702, -5.8083591297142076,
+    2.2697838292311125, 8.461737973040222, 4.8071120988325085, -1.3209793837428725,
+    -0.20875863825013014, 10.99126056190126, -0.3763600387822697, 0.33518347029450102,
+    -3.7032750494234481, 13.656371871483268, 0.0094390253107361696, -0.017184791958483017,
+    -8.8977731864688892, 16.630982619902085, -7.1542880635890667e-05, 0.000143610433495413,
+    /* kernel r = 2 */
+    0, 0.051108697372623239, 0.063980688685425308,
+    0.16320527768573678, 0.87733679087466765, 0.031990344342712654, -0.45979936196783966,
+    /* kernel r = 3 */
+    0, 0.00745906676988528, 0.0088183221102323874,
+    0.8798015821197086, 0, -0.73534036524477964, 0,
+    -0.33721344119511504, 1.9541487926740835, 0.36326102156727363, -0.10252518797876559,
+    /* kernel r = 4 */
+    0, 0.0010120856976999712, 0.0011532131178395126,
+    1.0012360323169205, 1.0127617101099595, -0.13761671564544589, -0.95434825302787096,
+    -0.97286730739639971, 3.1161187929322116, 0.13819332220436564, 0.19529624922132863,
+    /* kernel r = 5 */
+    0, 0.00013078245680312435, 0.00014551067979511832,
+    1.5806093311274052, 0, -1.6122437160843628, 0,
+    0.843553972886251, 2.1013943510247364, 0.88359375622762082, -0.3972530923862384,
+    -1.6952612176103943, 4.3211502060056315, -0.077544653525337001, 0.10643877122683623,
+    /* kernel r = 6 */
+    0, 1.638314696524711e-05, 1.7924880198471096e-05,
+    1.7945759395664347, 1.0668585076598631, -0.47709182719857313, -2.0765388880040847,
+    0.52082001907831077, 3.2368346334064566, 0.54011018294395463, 0.58917410821405081,
+    -2.4764673804111004, 5.5538270612585094, -0.063009393305282255, -0.020796603152995204,
+    /* kernel r = 7 */
+    0, 2.007830442073598e-06, 2.1697492625409359e-06,
+    2.3180179159733298, 0, -3.4984001114290937, 0,
+    1.7872478061237842, 2.1731406610644242, 2.0241255609443409, -1.1357867052202091,
+    0.086340585596481098, 4.4039484306993435, -0.275547357094857, 0.50411746985771744,
+    -3.3010696378106434, 6.8056689480255645, 0.00062076699043166618, -0.031415613930841656,
+    /* kernel r = 8 */
+    0, 2.4209559291471657e-07, 2.5914832316995525e-07,
+    2.5778411129104528, 1.0959438169159568, -1.2402897408000026, -4.535665340747884,
+    1.6292171157213193, 3.3086435834880898, 1.5945552799403819, 1.4693800628500309,
+    -0.42983460476831181, 5.5940888506046926, -0.36795890305394635, -0.064109325493075353,
+    -4.1592354424518296, 8.0717415744368086, 0.013693493487728595, -0.0037850242658920568,
+    /* kernel r = 9 */
+    0, 2.8825963558001348e-08, 3.0626155801710728e-08,
+    3.0713450226657519, 0, -7.5893629384965875, 0,
+    2.6562121325966497, 2.2160275244154701, 4.5534535733548021, -2.8906843944388783,
+    1.3606863883385651, 4.4665319611831311, -0.72817698410138931, 1.6425105098106356,
+    -1.0088910545423591, 6.8018482204817037, -0.033839861426141794, -0.22239372477279631,
+    -5.0442868895785287, 9.3488471465502485, 0.0032447261079453621, 0.0052781650662087473,
+    /* kernel r = 10 */
+    0, 3.3980492073661269e-09, 3.5884693817965778e-09,
+    3.3584002402004272, 1.1141516278605672, -2.9677205307755861, -9.91052365991907,
+    2.6007667800133114, 3.3559120538410001, 4.20480425256613, 3.4491641122160686,
+    1.0069637754111034, 5.6421429560295602, -1.3490724118382724, -0.11632133222631107,
+    -1.6381413993361127, 8.0236147586366826, 0.11376754023753484, -0.057681865180030337,
+    -5.9514487693418872, 10.634797950299786, -0.001778848395571201, 0.0019297581104926614,
+    /* kernel r = 11 */
+    0, 3.9730696947998664e-10, 4.1748342453909563e-10,
+    3.8332183712946759, 0, -16.481507483830317, 0,
+    3.4922192648607329, 2.2446054795526318, 10.153504941666789, -6.9635953747327139,
+    2.4418021196743629, 4.5121760948739746, -1.730833523918363, 4.621644764708309,
+    0.58514520103460266, 6.832187993893176, -0.22948944346560068, -0.91711736213774675,
+    -2.3085659875823956, 9.2568448861169603, 0.048536753145843402, 0.048861184803813074,
+    -6.8771737021020174, 11.928023400569286, -0.00096498572225115387, -0.00049687257940143144,
+    /* kernel r = 12 */
+    0, 4.6139281299509227e-11, 4.8280233496799053e-11,
+    4.1382945420084258, 1.1266387346355662, -6.8546772558004792, -21.655019778353157,
+    3.5069928511369963, 3.3893169577755753, 10.45426176342802, 7.8859541106539766,
+    2.1999034387642564, 5.6821853529458179, -4.1035264683107693, -0.10172864885451351,
+    0.10739752362683333, 8.0342672070492611, 0.52037335075659918, -0.33671566992549118,
+    -3.0134905313773017, 10.49967209249359, -0.016523575004090227, 0.031651031786665867,
+    -7.8187452945066056, 13.22735490579292, 9.218495485902652e-05, -0.00043011639656504916,
+    /* kernel r = 13 */
+    0, 5.3274682645140082e-12, 5.5549314504561607e-12,
+    4.6003186239560838, 0, -35.832702967153821, 0,
+    4.3109379106874526, 2.2650278330294737, 22.524786855717082, -16.280365555487887,
+    3.4261195237858839, 4.5464533066236994, -3.9237379660439289, 12.051278497946296,
+    1.8897702502524776, 6.8639047258691539, -0.96932272715987244, -3.0226093342264937,
+    -0.41726813627308068, 9.2465740514728552, 0.30205114620199147, 0.23951267078582653,
+    -3.7478189492516516, 11.750680664732304, -0.017600832317060167, -0.0031747712607510634,
+    -8.7740317501807983, 14.531897139913655, 0.00017500717591853763, -8.5810658868229069e-06,
+    /* kernel r = 14 */
+    0, 6.1211671246271845e-13, 6.3630943624031441e-13,
+    4.9181935097255458, 1.1357420011221835, -15.547814833333383, -47.319463172876425,
+    4.3768473690907914, 3.4141584431277341, 25.103289328651723, 17.784530104821886,
+    3.2663886298189055, 5.7144627312626648, -11.320276072648364, 0.24037867645161715,
+    1.5223129087577738, 8.0557414538243783, 1.843962196246469, -1.387416066359866,
+    -0.98196506093423674, 10.467711454192054, -0.078142978167783206, 0.21550257610584828,
+    -4.5075605895604021, 13.008767567859003, -0.0010383125651999775, -0.0086362070804686056,
+    -9.7413256359447953, 15.840947521360885, 2.0671816855185641e-05, 6.5573823084788806e-05,
+};
+/* poles.py: end */
+
+enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };
+
+static int32_t hdi_rat_size(int32_t degree) { return 3 + 4 * ((degree + 1) / 2); }
+
+static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
+    const double *row = hdi_rat_table;
+    int32_t r, i;
+    if (kind != HD_POLES_UNIFORM && kind != HD_POLES_KERNEL) return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform or kernel");
+    if (kind == HD_POLES_UNIFORM && (degree < 1 || degree > HDI_RAT_UNIFORM_MAX))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: uniform sets have degrees 1 to 14", -1, -1, degree);
+    if (kind == HD_POLES_KERNEL && (degree < HDI_RAT_KERNEL_MIN || degree > HDI_RAT_KERNEL_MAX))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel sets have degrees 2 to 14", -1, -1, degree);
+    for (r = 1; r < (kind == HD_POLES_UNIFORM ? degree : HDI_RAT_UNIFORM_MAX + 1); r++) row += hdi_rat_size(r);
+    for (r = HDI_RAT_KERNEL_MIN; kind == HD_POLES_KERNEL && r < degree; r++) row += hdi_rat_size(r);
+    memset(out, 0, sizeof *out);
+    out->kind = kind;
+    out->degree = degree;
+    out->n_poles = (degree + 1) / 2;
+    out->a0 = row[0];
+    /* The table's errors are the exact optimum; its numbers, rounded to double, lose up to 7 % of that at degree 14, and the sum of
+     * a dozen terms of size 1e4 some more. */
+    out->max_error = 1.1 * row[1] + 2e-15;
+    out->max_weighted_error = row[2] > 0 ? 1.1 * row[2] + 2e-15 : 0;
+    for (i = 0; i < out->n_poles; i++) {
+        out->theta[i] = hdi_c(row[3 + 4 * i], row[4 + 4 * i]);
+        out->a[i] = hdi_c(row[5 + 4 * i], row[6 + 4 * i]);
+    }
+    return HD_OK;
+}
+
+/* 1 for a real pole, 2 for a pair. */
+static double hdi_rat_count(const hd_rational *set, int32_t i) { return set->theta[i].im == 0 ? 1 : 2; }
+
+static double hdi_rational_eval(const hd_rational *set, double x) {
+    double sum = set->a0;
+    int32_t i;
+    for (i = 0; i < set->n_poles; i++)
+        sum += hdi_rat_count(set, i) * hdi_cdiv(set->a[i], hdi_csub(hdi_c(x, 0), set->theta[i])).re;
+    return sum;
+}
+
+static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
+    int32_t i;
+    if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES) return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
+    if (!hdi_finite(set->a0) || !(set->max_error >= 0) || !(set->max_weighted_error >= 0))
+        return hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
+    for (i = 0; i < set->n_poles; i++) {
+        const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
+        const char *text = bad ? "own pole set: a pole or weight is not finite" : "own pole set: theta needs Im > 0, or Im = 0 and Re > 0";
+        if (!bad && (set->theta[i].im > 0 || (set->theta[i].im == 0 && set->theta[i].re > 0))) continue;
+        hdi_fail(e, bad ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT, text);
+        e->pole = i;
+        return e->status;
+    }
+    return HD_OK;
+}
+
+/* min |x - theta| over x <= 0, i.e. min |t lambda + theta|: how far A stays from singular, in the B geometry. */
+static double hdi_pole_distance(hd_c64 theta) { return theta.re >= 0 ? hdi_cabs(theta) : fabs(theta.im); }
+
+/* ==== [17] shifted ====
+ * The family t L + theta_i B over the poles of a set: preconditioners, solutions, their weighted sum, and what it can be off by.
+ * The systems are independent: one parallel task each. May call [15] and [16]. */
+
+typedef struct hdi_poles {
+    hd_rational set;
+    double t;
+    int32_t n_systems;           /* arrays are there for so many */
+    int32_t filled;              /* preconditioners are those of set and t */
+    hdi_krylov *k;               /* [n_systems] */
+    hd_c64 *vectors, *values;    /* blocks behind the pointers in k */
+} hdi_poles;
+
+/* What all poles share and the caller keeps. */
+typedef struct hdi_family {
+    hd_context *ctx;
+    const hd_laplacian *lap;
+    const hdi_upper *up;
+    const double *weight;        /* [n] 1/diag(B) */
+    hd_solver solver;
+    hd_precond precond;
+    int64_t max_iterations;
+} hdi_family;
+
+static void hdi_poles_free(hdi_poles *ps, hd_context *ctx) {
+    hdi_free(ctx, ps->k);
+    hdi_free(ctx, ps->vectors);
+    hdi_free(ctx, ps->values);
+    memset(ps, 0, sizeof *ps);
+}
+
+static size_t hdi_precond_size(const hdi_family *fam) {
+    const size_t n = HDI_CAST(size_t, fam->lap->n_active);
+    if (fam->precond == HD_PRECOND_NONE) return 0;
+    return fam->precond == HD_PRECOND_JACOBI ? n : n + HDI_CAST(size_t, fam->up->ptr[n]);
+}
+
+static hd_status hdi_poles_alloc(hdi_poles *ps, const hdi_family *fam, int32_t n_systems, hd_error *e) {
+    const size_t n = HDI_CAST(size_t, fam->lap->n_active), n_comp = HDI_CAST(size_t, fam->lap->n_components);
+    const size_t n_vec = HDI_CAST(size_t, hdi_krylov_vectors(fam->solver)), n_val = hdi_precond_size(fam), count = HDI_CAST(size_t, n_systems);
+    size_t i, j;
+    if (ps->n_systems == n_systems) return HD_OK;
+    hdi_poles_free(ps, fam->ctx);
+    ps->k = HDI_CAST(hdi_krylov *, hdi_alloc(fam->ctx, count, sizeof *ps->k, e));
+    if (ps->k) ps->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count, (n_vec * n + n_comp) * sizeof(hd_c64), e));
+    if (ps->vectors) ps->values = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count, (n_val + 1) * sizeof(hd_c64), e));
+    if (!ps->values) {
+        hdi_poles_free(ps, fam->ctx);
+        return e->status;
+    }
+    memset(ps->k, 0, count * sizeof *ps->k);
+    for (i = 0; i < count; i++) {
+        hdi_krylov *k = ps->k + i;
+        hd_c64 *v = ps->vectors + i * (n_vec * n + n_comp);
+        k->x = v;
+        k->r = v + n;
+        for (j = 2; j < n_vec; j++) k->v[j - 2] = v + j * n;
+        k->sums = v + n_vec * n;
+        k->m.d_inv = n_val ? ps->values + i * (n_val + 1) : NULL;
+        k->m.u = n_val > n ? k->m.d_inv + n : NULL;
+    }
+    ps->n_systems = n_systems;
+    return HD_OK;
+}
+
+typedef struct hdi_pole_job {
+    const hdi_family *fam;
+    hdi_poles *ps;
+    const hd_c64 *b;             /* NULL: make the preconditioners */
+    double target[HD_MAX_POLES]; /* residual norms to reach */
+    hd_status status[HD_MAX_POLES];
+    hd_error error[HD_MAX_POLES];
+    int32_t stop;
+    double from, share;
+} hdi_pole_job;
+
+static void hdi_pole_task(void *arg, int64_t index, int32_t worker) {
+    hdi_pole_job *job = HDI_CAST(hdi_pole_job *, arg);
+    hdi_krylov *k = job->ps->k + index;
+    hdi_watch watch;
+    const double n = HDI_CAST(double, job->ps->set.n_poles);
+    watch.ctx = worker == 0 ? job->fam->ctx : NULL;
+    watch.stop = &job->stop;
+    watch.from = job->from + job->share * HDI_CAST(double, index) / n;
+    watch.share = job->share / n;
+    watch.stage = job->b ? "solve" : "precondition";
+    hdi_error_clear(job->error + index);
+    job->status[index] = hdi_watch_look(&watch, 0, job->error + index);
+    if (job->status[index] < 0) {
+        HDI_STORE(&job->stop, 1);
+        return;
+    }
+    if (!job->b) {
+        hdi_system a = k->a;
+        if (k->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
+        hdi_precond_make(&k->m, &a, k->x, HDI_CAST(int64_t *, HDI_CAST(void *, k->r)));
+        return;
+    }
+    job->status[index] = hdi_krylov_run(k, job->b, job->target[index], job->fam->max_iterations - k->iterations, &watch, job->error + index);
+    if (job->status[index] < 0) HDI_STORE(&job->stop, 1);
+}
+
+/* The first failure that is not "another task failed" is the one to report. */
+static hd_status hdi_pole_verdict(const hdi_pole_job *job, hd_error *e) {
+    int32_t i, n = job->ps->set.n_poles;
+    hd_status worst = HD_OK;
+    for (i = 0; i < n; i++) {
+        if (job->status[i] > worst && worst >= 0) worst = job->status[i];
+        if (job->status[i] >= 0 || (worst < 0 && worst != HD_ERR_CANCELLED)) continue;
+        worst = job->status[i];
+        *e = job->error[i];
+        e->pole = worst == HD_ERR_CANCELLED ? -1 : i;
+        if (worst == HD_ERR_NOT_CONVERGED) e->value = job->ps->k[i].r_norm / job->ps->k[i].b_norm;
+    }
+    return worst;
+}
+
+/* Systems and preconditioners for a set and a time. */
+static hd_status hdi_poles_prepare(hdi_poles *ps, const hdi_family *fam, const hd_rational *set, double t, hd_error *e) {
+    hdi_pole_job job;
+    int32_t i;
+    if (ps->filled && ps->t == t && memcmp(&ps->set, set, sizeof *set) == 0) return HD_OK;
+    if (hdi_poles_alloc(ps, fam, set->n_poles, e) < 0) return e->status;
+    ps->set = *set;
+    ps->t = t;
+    ps->filled = 0;
+    for (i = 0; i < set->n_poles; i++) {
+        hdi_krylov *k = ps->k + i;
+        k->a.lap = fam->lap;
+        k->a.t = t;
+        k->a.theta = set->theta[i];
+        k->solver = fam->solver;
+        k->weight = fam->weight;
+        k->m.kind = fam->precond;
+        k->m.up = fam->up;
+    }
+    memset(&job, 0, sizeof job);
+    job.fam = fam;
+    job.ps = ps;
+    hdi_parallel(fam->ctx, set->n_poles, hdi_pole_task, &job);
+    if (hdi_pole_verdict(&job, e) < 0) return e->status;
+    ps->filled = 1;
+    return HD_OK;
+}
+
+/* Bound of |x_i - exact|_B by the residual: |A^-1 r|_B <= |r|_(B^-1) / min |t lambda + theta|, and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio. */
+static double hdi_pole_error(const hdi_krylov *k) {
+    return k->r_norm / (sqrt(k->a.lap->b_ratio) * hdi_pole_distance(k->a.theta));
+}
+
+/* u = a0 f - sum a_i x_i, in the order of the poles. f may be NULL when a0 = 0. Returns the bound of the solvers' part in the B norm. */
+static double hdi_poles_sum(const hdi_poles *ps, const double *f, double *u) {
+    const int32_t n = ps->n_systems ? ps->k[0].a.lap->n_active : 0;
+    double error = 0;
+    int32_t i, j;
+    for (j = 0; j < n; j++) u[j] = f && ps->set.a0 != 0 ? ps->set.a0 * f[j] : 0;
+    for (i = 0; i < ps->set.n_poles; i++) {
+        const hd_c64 *HDI_RESTRICT x = ps->k[i].x;
+        const double c = hdi_rat_count(&ps->set, i), are = c * ps->set.a[i].re, aim = c * ps->set.a[i].im;
+        for (j = 0; j < n; j++) u[j] -= are * x[j].re - aim * x[j].im;
+        error += c * hdi_cabs(ps->set.a[i]) * hdi_pole_error(ps->k + i);
+    }
+    return error;
+}
+
+/* max (1 + x)^-1 |x + theta| over x >= 0: then |(B + t L)^-1 B f|_B <= this |(t L + theta B)^-1 B f|_B. */
+static double hdi_resolvent_ratio(hd_c64 theta) {
+    const double x = theta.re < 1 ? theta.im * theta.im / (1 - theta.re) - theta.re : -1;
+    const double inside = x > 0 ? hypot(x + theta.re, theta.im) / (1 + x) : 0;
+    return hdi_max(inside, hdi_max(1, hdi_cabs(theta)));
+}
+
+/* ==== [18] heat ====
+ * K_t f for one field: through the poles, or by Lanczos for the exponential; the stopping rule, conservation, and the bound of the error.
+ * May call [17].
+ * This work is based on
+ *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013, eqs. (8), (9)
+ *   M. Hochbruck, Ch. Lubich, On Krylov subspace approximations to the matrix exponential operator, 1997 (Lanczos and its error)
+ * Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver); the constants of each component are carried
+ * exactly, so that uniform sets conserve heat too. */
+
+struct hd_heat {
+    hd_context own_context;
+    hd_context *ctx;
+    const hd_laplacian *lap;
+    hd_heat_opts opts;           /* resolved */
+    hd_rational own_set;
+    hdi_upper up;
+    double *weight;              /* [n] 1/diag(B) */
+    hdi_poles poles;             /* of the last set and time */
+    double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
+};
+
+/* Work arrays of one call, all [n] rows. */
+typedef struct hdi_heat_work {
+    double *f, *rhs, *u, *tmp;   /* tmp [4 n] */
+    double *sums, *target;       /* [n_components] */
+    hd_c64 *b;
+} hdi_heat_work;
+
+/* Sums of a hdi_heat_field call that the report needs. All norms absolute. */
+typedef struct hdi_outcome {
+    double f_norm, u_norm;
+    double rational, solver;     /* bounds in the B norm */
+    double residual;
+} hdi_outcome;
+
+/* Puts the heat of each component to that of the right-hand side: 1'B u = 1'rhs. */
+static void hdi_conserve(const hd_laplacian *lap, const hdi_heat_work *w) {
+    int32_t c;
+    if (!lap->conserves) return;
+    hdi_component_sums(lap, lap->mass, w->u, w->sums);
+    for (c = 0; c < lap->n_components; c++) w->sums[c] = (w->target[c] - w->sums[c]) / lap->component_mass[c];
+    hdi_component_add(lap, w->sums, w->u);
+}
+
+/* ---- Lanczos for the exponential ---- */
+
+enum { HDI_LANCZOS_CHUNK = 16, HDI_LANCZOS_CHUNKS = 256, HDI_LANCZOS_MAX = HDI_LANCZOS_CHUNK * HDI_LANCZOS_CHUNKS };
+
+typedef struct hdi_lanczos {
+    double *chunk[HDI_LANCZOS_CHUNKS];    /* basis vectors, B-orthonormal */
+    double *alpha, *beta;                 /* [MAX + 1] T: diagonal, and beta[j] between j - 1 and j */
+    double *d, *e, *z0, *z1, *y;          /* [MAX + 1] */
+    int32_t m;
+} hdi_lanczos;
+
+static double *hdi_lanczos_vector(const hdi_lanczos *z, int32_t j, int32_t n) {
+    return z->chunk[j / HDI_LANCZOS_CHUNK] + HDI_CAST(size_t, j % HDI_LANCZOS_CHUNK) * HDI_CAST(size_t, n);
+}
+
+/* t beta_(m+1) |e_m' phi_1(-t T) e_1|, phi_1(z) = (e^z - 1)/z: bounds the error of m steps from a vector of norm one. For the error is
+ * beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds, the last factor has one sign for all s, and the first shrinks. */
+static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_error *e) {
+    const int32_t m = z->m;
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < m; i++) {
+        z->d[i] = z->alpha[i];
+        z->e[i] = i + 1 < m ? z->beta[i + 1] : 0;
+        z->z0[i] = i == 0;
+        z->z1[i] = i == m - 1;
+    }
+    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+    for (i = 0; i < m; i++) {
+        const double x = t * z->d[i];
+        sum += z->z0[i] * z->z1[i] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
+    }
+    *bound = t * z->beta[m] * fabs(sum);
+    return HD_OK;
+}
+
+/* y = exp(-t T) e_1 through the best uniform set of degree 14: O(m) a pole, and as exact as rounding would leave an eigensolution. */
+static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set, hd_c64 *work) {
+    const int32_t m = z->m;
+    hd_c64 *d = work, *g = work + m;
+    int32_t i, p;
+    for (i = 0; i < m; i++) z->y[i] = i == 0 ? set->a0 : 0;
+    for (p = 0; p < set->n_poles; p++) {
+        for (i = 0; i < m; i++) {                /* (t T + theta) g = e_1 by L D L' */
+            const double off = i ? t * z->beta[i] : 0;
+            d[i] = hdi_c(t * z->alpha[i] + set->theta[p].re, set->theta[p].im);
+            g[i] = hdi_c(i == 0, 0);
+            if (!i) continue;
+            d[i] = hdi_csub(d[i], hdi_cdiv(hdi_c(off * off, 0), d[i - 1]));
+            g[i] = hdi_cscale(-off, hdi_cdiv(g[i - 1], d[i - 1]));
+        }
+        for (i = m; i-- > 0;) {
+            if (i + 1 < m) g[i] = hdi_csub(g[i], hdi_cscale(t * z->beta[i + 1], g[i + 1]));
+            g[i] = hdi_cdiv(g[i], d[i]);
+            z->y[i] -= hdi_rat_count(set, p) * hdi_cmul(set->a[p], g[i]).re;
+        }
+    }
+}
+
+/* One step: from v_j (and B v_j, B v_(j-1) in c, c_old) the next basis vector. Returns beta_(j+1) in z. mass [3 n] is for B. */
+static hd_status hdi_lanczos_step(const hd_laplacian *lap, hdi_lanczos *z, double *c, double *c_old, double *w, double *mass, hd_error *e) {
+    const int32_t n = lap->n_active, j = z->m;
+    const double *v = hdi_lanczos_vector(z, j, n);
+    double *next = hdi_lanczos_vector(z, j + 1, n);
+    double alpha = 0, norm = 0;
+    int32_t i;
+    hdi_csr_apply_rows(&lap->L, v, w, 0, n);
+    for (i = 0; i < n; i++) {
+        w[i] -= z->beta[j] * c_old[i];
+        alpha += v[i] * w[i];
+    }
+    for (i = 0; i < n; i++) w[i] -= alpha * c[i];
+    if (hdi_mass_solve(lap, w, next, mass, e) < 0) return e->status;
+    for (i = 0; i < n; i++) norm += w[i] * next[i];
+    z->alpha[j] = alpha;
+    z->beta[j + 1] = norm > 0 ? sqrt(norm) : 0;
+    z->m = j + 1;
+    if (z->beta[j + 1] == 0) return HD_OK;
+    for (i = 0; i < n; i++) {
+        next[i] /= z->beta[j + 1];
+        c_old[i] = w[i] / z->beta[j + 1];
+    }
+    return HD_OK;
+}
+
+static hd_status hdi_lanczos_room(hdi_lanczos *z, int32_t j, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
+    const int32_t at = j / HDI_LANCZOS_CHUNK;
+    if (z->chunk[at]) return HD_OK;
+    z->chunk[at] = HDI_CAST(double *, hdi_alloc(ctx, HDI_LANCZOS_CHUNK * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+    return z->chunk[at] ? HD_OK : e->status;
+}
+
+/* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
+static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before, double target) {
+    const int32_t most = 1 + m / 8;
+    double rate, want;
+    if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
+    rate = log(bound_before / bound) / (m - m_before);
+    want = 0.5 * log(bound / target) / rate;
+    return want < 1 ? 1 : want > most ? most : HDI_CAST(int32_t, want);
+}
+
+/* u += exp(-t B^-1 L) f0 for f0 without constants, of norm f0_norm; fixed_norm2 is what |u|_B^2 has besides. */
+static hd_status hdi_lanczos_run(hd_heat *heat, double t, double f0_norm, double fixed_norm2, hdi_heat_work *w, hdi_lanczos *z,
+                                 hdi_outcome *out, hd_report *rep, const hdi_watch *watch, hd_error *e) {
+    const hd_laplacian *lap = heat->lap;
+    const int32_t n = lap->n_active;
+    const int64_t most = heat->opts.max_iterations < HDI_LANCZOS_MAX - 1 ? heat->opts.max_iterations : HDI_LANCZOS_MAX - 1;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    double *c = HDI_TAKE(&s, double, n), *c_old = HDI_TAKE_ZERO(&s, double, n), *keep, bound = 0, bound_before = 0, start = 0, y2;
+    hd_c64 *work = HDI_TAKE(&s, hd_c64, 2 * (HDI_LANCZOS_MAX + 1));
+    int32_t i, j, look = 1, looked = 0;
+    hd_rational set;
+    if (e->status < 0 || hdi_rational_get(&set, HD_POLES_UNIFORM, 14, e) < 0) return hdi_scope_end(&s);
+    memcpy(c, w->rhs, HDI_CAST(size_t, n) * sizeof *c);
+    for (i = 0; i < n; i++) {
+        c[i] /= f0_norm;
+        hdi_lanczos_vector(z, 0, n)[i] = w->f[i] / f0_norm;
+    }
+    z->beta[0] = 0;
+    for (;;) {
+        if (hdi_lanczos_room(z, z->m + 1, lap, heat->ctx, e) < 0) return hdi_scope_end(&s);
+        if (hdi_lanczos_step(lap, z, c, c_old, w->tmp, w->tmp + n, e) < 0) return hdi_scope_end(&s);
+        keep = c_old;
+        c_old = c;
+        c = keep;
+        if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
+        if (hdi_lanczos_bound(z, t, &bound, e) < 0) return hdi_scope_end(&s);
+        hdi_lanczos_coefficients(z, t, &set, work);
+        y2 = hdi_dot(z->y, z->y, z->m);
+        out->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * y2);
+        out->solver = f0_norm * bound;
+        if (out->solver <= heat->opts.tol * out->u_norm || z->beta[z->m] == 0) break;
+        if (z->m >= most) {
+            hdi_fail(e, HD_ERR_NOT_CONVERGED, "Lanczos did not reach the tolerance in its largest number of steps; use poles");
+            e->value = out->solver / out->u_norm;
+            return hdi_scope_end(&s);
+        }
+        if (start == 0) start = out->solver;
+        if (hdi_watch_look(watch, hdi_krylov_done(start, out->solver, heat->opts.tol * out->u_norm), e) < 0) return hdi_scope_end(&s);
+        look = z->m + hdi_lanczos_pace(z->m, looked, f0_norm * bound, f0_norm * bound_before, heat->opts.tol * out->u_norm);
+        looked = z->m;
+        bound_before = bound;
+    }
+    for (j = 0; j < z->m; j++) hdi_axpy(f0_norm * z->y[j], hdi_lanczos_vector(z, j, n), w->u, n);
+    out->rational = f0_norm * set.max_error;
+    rep->iterations += z->m;
+    return hdi_scope_end(&s);
+}
+
+/* K_t f by Lanczos. The constants of each component need none of it. */
+static hd_status hdi_heat_lanczos(hd_heat *heat, double t, hdi_heat_work *w, hdi_outcome *out, hd_report *rep, const hdi_watch *watch, hd_error *e) {
+    const hd_laplacian *lap = heat->lap;
+    const int32_t n = lap->n_active;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    double f0_norm, fixed = 0;
+    hdi_lanczos z;
+    int32_t i;
+    memset(&z, 0, sizeof z);
+    z.alpha = HDI_TAKE(&s, double, 7 * (HDI_LANCZOS_MAX + 1));
+    if (!z.alpha || hdi_lanczos_room(&z, 0, lap, heat->ctx, e) < 0) return hdi_scope_end(&s);
+    z.beta = z.alpha + HDI_LANCZOS_MAX + 1;
+    z.d = z.beta + HDI_LANCZOS_MAX + 1;
+    z.e = z.d + HDI_LANCZOS_MAX + 1;
+    z.z0 = z.e + HDI_LANCZOS_MAX + 1;
+    z.z1 = z.z0 + HDI_LANCZOS_MAX + 1;
+    z.y = z.z1 + HDI_LANCZOS_MAX + 1;
+    memset(w->u, 0, HDI_CAST(size_t, n) * sizeof *w->u);
+    if (lap->conserves) {
+        for (i = 0; i < lap->n_components; i++) {
+            w->sums[i] = -w->target[i] / lap->component_mass[i];
+            fixed += w->target[i] * w->target[i] / lap->component_mass[i];
+        }
+        hdi_component_add(lap, w->sums, w->f);                     /* f0 = f - constants, rhs0 = B f0 */
+        for (i = 0; i < n; i++) w->rhs[i] += lap->mass[i] * w->sums[lap->component[i]];
+        for (i = 0; i < n; i++) w->u[i] = -w->sums[lap->component[i]];
+    }
+    f0_norm = hdi_dot(w->f, w->rhs, n);
+    f0_norm = f0_norm > 0 ? sqrt(f0_norm) : 0;
+    out->u_norm = sqrt(fixed);
+    if (f0_norm > DBL_EPSILON * out->f_norm) hdi_lanczos_run(heat, t, f0_norm, fixed, w, &z, out, rep, watch, e);
+    for (i = 0; i < HDI_LANCZOS_CHUNKS; i++) hdi_free(heat->ctx, z.chunk[i]);
+    if (e->status >= 0) hdi_conserve(lap, w);
+    return hdi_scope_end(&s);
+}
+
+/* ---- through the poles ---- */
+
+/* Residual targets such that the solvers' part of the error is at most `error`, shared equally by the poles. */
+static void hdi_pole_targets(hdi_pole_job *job, double error) {
+    const hd_rational *set = &job->ps->set;
+    int32_t i;
+    for (i = 0; i < set->n_poles; i++) {
+        const double weight = hdi_rat_count(set, i) * hdi_cabs(set->a[i]) * set->n_poles;
+        job->target[i] = weight > 0 ? error / weight * sqrt(job->fam->lap->b_ratio) * hdi_pole_distance(set->theta[i]) : DBL_MAX;
+    }
+}
+
+/* |x|_B of a complex vector; tmp [3 n]. */
+static double hdi_b_norm_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
+    const int32_t n = lap->n_active;
+    double sum = 0;
+    int32_t i;
+    if (!lap->B) return sqrt(hdi_cnorm2w(x, lap->mass, n));
+    for (i = 0; i < n; i++) {
+        tmp[i] = x[i].re;
+        tmp[n + i] = x[i].im;
+    }
+    sum = hdi_b_norm2(lap, tmp, tmp + 2 * HDI_CAST(int64_t, n)) + hdi_b_norm2(lap, tmp + n, tmp + 2 * HDI_CAST(int64_t, n));
+    return sqrt(hdi_max(sum, 0));
+}
+
+/* Bound of |(exp - c)(-t B^-1 L) f|_B. A weighted set's error is relative to the resolvent (B + t L)^-1 B f, which one of the solutions
+ * bounds; the constants are exact and drop out of uniform sets. */
+static double hdi_rational_bound(const hd_heat *heat, const hdi_heat_work *w, double f_norm) {
+    const hdi_poles *ps = &heat->poles;
+    double bound = ps->set.max_error * f_norm;
+    if (ps->set.max_weighted_error > 0 && ps->set.n_poles > 0) {
+        const double g = hdi_b_norm_complex(heat->lap, ps->k[0].x, w->tmp) + hdi_pole_error(ps->k);
+        bound = hdi_min(bound, ps->set.max_weighted_error * hdi_resolvent_ratio(ps->set.theta[0]) * g);
+    }
+    return bound;
+}
+
+/* K_t f through a pole set. The tolerance is relative to the answer, which is not known before: a first round aims at it relative to f,
+ * which is never too strict as |K_t f|_B <= |f|_B, and the next ones go on from there relative to what came out. */
+static hd_status hdi_heat_poles(hd_heat *heat, const hdi_family *fam, hdi_heat_work *w, hdi_outcome *out, hd_report *rep, const hdi_watch *watch,
+                                hd_error *e) {
+    const hd_laplacian *lap = heat->lap;
+    hdi_poles *ps = &heat->poles;
+    hdi_pole_job job;
+    double aim = heat->opts.tol * out->f_norm, room;
+    hd_status status = HD_OK;
+    int32_t i, round;
+    memset(&job, 0, sizeof job);
+    job.fam = fam;
+    job.ps = ps;
+    job.b = w->b;
+    for (i = 0; i < lap->n_active; i++) w->b[i] = hdi_c(w->rhs[i], 0);
+    for (i = 0; i < ps->set.n_poles; i++) {
+        hdi_krylov_start(ps->k + i, w->b);
+        ps->k[i].iterations = 0;
+        ps->k[i].broken = 0;
+    }
+    for (round = 0; round < 6; round++) {
+        job.from = watch->from + watch->share * (round ? 0.7 : 0);
+        job.share = watch->share * (round ? 0.3 : 0.7);
+        hdi_pole_targets(&job, aim);
+        hdi_parallel(heat->ctx, ps->set.n_poles, hdi_pole_task, &job);
+        status = hdi_pole_verdict(&job, e);
+        if (status < 0) return status;
+        out->solver = hdi_poles_sum(ps, w->f, w->u);
+        if (ps->set.kind != HD_POLES_OWN) hdi_conserve(lap, w);
+        out->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, w->u, w->tmp)));
+        room = heat->opts.tol * (out->u_norm - out->solver);
+        if (out->solver <= room || status == HD_WARN_ACCURACY) break;
+        aim = room > 0.01 * aim ? 0.9 * room : 0.01 * aim;
+    }
+    for (i = 0; i < ps->set.n_poles; i++) {
+        rep->pole_iterations[i] += ps->k[i].iterations;
+        rep->iterations += ps->k[i].iterations;
+        if (ps->k[i].b_norm > 0) out->residual = hdi_max(out->residual, ps->k[i].r_norm / ps->k[i].b_norm);
+    }
+    out->rational = hdi_rational_bound(heat, w, out->f_norm);
+    return status;
+}
+
+/* Fills the report's numbers from one field: the worst so far stays. */
+static void hdi_heat_judge(const hd_heat *heat, const hdi_heat_work *w, const hdi_outcome *out, hd_report *rep) {
+    const hd_laplacian *lap = heat->lap;
+    const double floor_b = out->u_norm - out->solver - out->rational, total = out->solver + out->rational;
+    double largest = 0, smallest_b = DBL_MAX, mass = 0, heat_in = 0, heat_abs = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        largest = hdi_max(largest, fabs(w->u[i]));
+        if (w->u[i] != 0) smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
+        mass += lap->mass[i] * w->u[i];
+        heat_abs += fabs(lap->mass[i] * w->u[i]);
+    }
+    for (i = 0; i < lap->n_components; i++) heat_in += w->target[i];
+    if (total > 0) {
+        rep->error_solver = hdi_max(rep->error_solver, floor_b > 0 ? out->solver / floor_b : HUGE_VAL);
+        rep->error_rational = hdi_max(rep->error_rational, floor_b > 0 ? out->rational / floor_b : HUGE_VAL);
+        rep->error_bound_b = hdi_max(rep->error_bound_b, floor_b > 0 ? total / floor_b : HUGE_VAL);
+        rep->error_bound = hdi_max(rep->error_bound, largest > 0 ? total / sqrt(lap->b_ratio * smallest_b) / largest : HUGE_VAL);
+    }
+    rep->residual = hdi_max(rep->residual, out->residual);
+    if (lap->conserves && rep->poles != HD_POLES_OWN && heat_abs > 0) rep->mass_drift = hdi_max(rep->mass_drift, fabs(mass - heat_in) / heat_abs);
+}
+
+/* ==== [21] api ====
+ * Argument checks, defaults, lifetimes; the bodies of the public functions. May call everything. */
+
+HEATDIFF_API const char *hd_status_name(hd_status status) {
+    switch (status) {
+#define HD_STATUS_NAME(name, value, text) case name: return #name;
+        HD_STATUS_LIST(HD_STATUS_NAME)
+#undef HD_STATUS_NAME
+        case HD_STATUS_FORCE_INT: break;
+    }
+    return "HD_UNKNOWN_STATUS";
+}
+
+HEATDIFF_API const char *hd_status_text(hd_status status) {
+    switch (status) {
+#define HD_STATUS_TEXT(name, value, text) case name: return text;
+        HD_STATUS_LIST(HD_STATUS_TEXT)
+#undef HD_STATUS_TEXT
+        case HD_STATUS_FORCE_INT: break;
+    }
+    return "unknown status";
+}
+
+/* What a public function works with: an error and a context that are there, whatever the caller gave. */
+typedef struct hdi_call {
+    hd_error error;
+    hd_error *e;
+    hd_context context;
+    hd_context *ctx;
+} hdi_call;
+
+static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
+    memset(&c->context, 0, sizeof c->context);
+    c->e = err ? err : &c->error;
+    c->ctx = ctx ? ctx : &c->context;
+    hdi_error_clear(c->e);
+    return hdi_context_check(c->ctx, c->e);
+}
+
+static hd_status hdi_missing(hd_error *e) { return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL"); }
+
+HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
+                                            const int32_t *j, const double *v, hd_context *ctx, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    if (!out || (n_triplets > 0 && (!i || !j))) return hdi_missing(c.e);
+    if (n_rows < 0 || n_cols < 0 || n_triplets < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "triplets: a size is negative");
+    return hdi_csr_from_triplets(out, n_rows, n_cols, n_triplets, i, j, v, c.ctx, c.e);
+}
+
+HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    return a ? hdi_csr_check(a, symmetric, c.ctx, c.e) : hdi_missing(c.e);
+}
+
+HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    if (!out || !a) return hdi_missing(c.e);
+    return hdi_csr_check_rows(a, c.e) < 0 ? c.e->status : hdi_csr_transpose(out, a, c.ctx, c.e);
+}
+
+HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    if (!out || !a || !b) return hdi_missing(c.e);
+    if (hdi_csr_check_rows(a, c.e) < 0 || hdi_csr_check_rows(b, c.e) < 0) return c.e->status;
+    if (a->n_cols != b->n_rows) return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "product: the inner sizes differ", a->n_cols, b->n_rows, 0);
+    return hdi_csr_product(out, a, b, c.ctx, c.e);
+}
+
+HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    if (!out || !a || (a->n_rows > 0 && !perm)) return hdi_missing(c.e);
+    if (hdi_csr_check_rows(a, c.e) < 0) return c.e->status;
+    if (a->n_rows != a->n_cols) return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "permute: the matrix is not square", a->n_rows, a->n_cols, 0);
+    return hdi_csr_permute(out, a, perm, c.ctx, c.e);
+}
+
+HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
+    hdi_call c;
+    if (hdi_enter(&c, ctx, NULL) < 0) c.ctx = &c.context;
+    hdi_csr_apply(a, x, y, c.ctx);
+}
+
+HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
+    hdi_call c;
+    (void)hdi_enter(&c, ctx, NULL);
+    if (a) hdi_csr_free(c.ctx, a);
+}
+
+/* ---- operators ---- */
+
+/* A Laplacian without content, with a context that lives as long as it does. A context of the library's own sits behind the struct. */
+typedef struct hdi_laplacian { hd_laplacian lap; hd_context context; } hdi_laplacian;
+
+static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind, hd_error *err, hdi_call *c) {
+    hdi_laplacian *shell;
+    if (hdi_enter(c, opts ? opts->context : NULL, err) < 0) return NULL;
+    if (opts && (opts->begin_zero || opts->end_zero)) {
+        hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian options: not cleared before use");
+        return NULL;
+    }
+    if (n < 0) {
+        hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian: a size is negative");
+        return NULL;
+    }
+    shell = HDI_CAST(hdi_laplacian *, hdi_alloc(c->ctx, 1, sizeof *shell, c->e));
+    if (!shell) return NULL;
+    memset(shell, 0, sizeof *shell);
+    shell->lap.n = n;
+    shell->lap.kind = kind;
+    if (c->ctx == &c->context) {                 /* what was counted on the stack moves along */
+        shell->context = c->context;
+        c->ctx = &shell->context;
+    }
+    shell->lap.context = c->ctx;
+    return &shell->lap;
+}
+
+static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status status) {
+    if (status >= 0) *out = lap;
+    else hd_laplacian_free(lap);
+    return status;
+}
+
+HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
+                                              const hd_laplacian_opts *opts, hd_error *err) {
+    const hd_laplacian_kind kind = opts ? opts->kind : HD_LAPLACIAN_FEM;
+    hdi_call c;
+    hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
+    if (!lap) return c.e->status;
+    if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (n_tri < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
+    if (kind != HD_LAPLACIAN_FEM && kind != HD_LAPLACIAN_VORONOI_COT && kind != HD_LAPLACIAN_COT)
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: the kind is fem, voronoi-cot or cot"));
+    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, c.e));
+}
+
+HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
+                                             hd_error *err) {
+    hdi_call c;
+    hd_laplacian *lap = hdi_lap_new(opts, L ? L->n_rows : 0, HD_LAPLACIAN_MATRICES, err, &c);
+    if (!lap) return c.e->status;
+    if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (!(h >= 0) || !hdi_finite(h)) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: h is negative or not finite"));
+    if (hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    if (L->n_rows != B->n_rows)
+        return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
+    lap->h = h;
+    return hdi_lap_done(out, lap, hdi_lap_matrices(lap, L, B, c.e));
+}
+
+static void hdi_gather(const hd_laplacian *lap, const double *on_vertices, double *on_rows) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) on_rows[i] = on_vertices[lap->vertex[i]];
+}
+
+HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y, hd_error *err) {
+    hdi_call c;
+    hdi_scope s;
+    double *in, *out;
+    int32_t v;
+    if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (!lap || !x || !y) return hdi_missing(c.e);
+    s = hdi_scope_begin(c.ctx, c.e);
+    in = HDI_TAKE(&s, double, lap->n_active);
+    out = HDI_TAKE(&s, double, lap->n_active);
+    if (c.e->status < 0) return hdi_scope_end(&s);
+    hdi_gather(lap, x, in);
+    hdi_pair_apply(lap, alpha, beta, in, out);
+    for (v = 0; v < lap->n; v++) y[v] = lap->row[v] >= 0 ? out[lap->row[v]] : 0;
+    return hdi_scope_end(&s);
+}
+
+HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) {
+    hd_context ctx;
+    hd_context *use;
+    if (!lap) return;
+    use = lap->context;
+    if (use == &HDI_CAST(hdi_laplacian *, HDI_CAST(void *, lap))->context) {   /* about to be freed itself */
+        ctx = *use;
+        use = &ctx;
+    }
+    hdi_laplacian_free(lap, use);
+}
+
+/* ---- rational approximations ---- */
+
+HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *err) {
+    hdi_call c;
+    (void)hdi_enter(&c, NULL, err);
+    return out ? hdi_rational_get(out, kind, degree, c.e) : hdi_missing(c.e);
+}
+
+HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return hdi_rational_eval(set, x); }
+
+/* ---- shifted systems ---- */
+
+static double *hdi_make_weight(hdi_scope *s, const hd_laplacian *lap) {
+    double *w = HDI_TAKE(s, double, lap->n_active);
+    int32_t i;
+    for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
+    return w;
+}
+
+static hd_status hdi_solve_check(const hd_laplacian *lap, double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
+    (void)lap;
+    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "solve options: not cleared before use");
+    if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
+    if (!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: theta lies on (-inf, 0] or is not finite");
+    if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: the solver is cocg, cocr or minres");
+    if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: unknown preconditioner");
+    if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: tol is not in [0, 1)");
+    if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: max_iterations is negative");
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
+                                        const hd_solve_opts *opts, hd_solve_report *report, hd_error *err) {
+    hd_solve_opts o;
+    hdi_call c;
+    hdi_scope s;
+    hdi_upper up;
+    hdi_family fam;
+    hdi_poles ps;
+    hdi_watch watch;
+    hd_rational set;
+    hd_c64 *b;
+    double *tmp;
+    hd_status status;
+    int32_t i, v;
+    memset(&o, 0, sizeof o);
+    if (opts) o = *opts;
+    if (hdi_enter(&c, o.context ? o.context : lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (!lap || !rhs || !x) return hdi_missing(c.e);
+    if (hdi_solve_check(lap, t, theta, &o, c.e) < 0) return c.e->status;
+    s = hdi_scope_begin(c.ctx, c.e);
+    memset(&up, 0, sizeof up);
+    memset(&ps, 0, sizeof ps);
+    memset(&fam, 0, sizeof fam);
+    memset(&set, 0, sizeof set);
+    b = HDI_TAKE(&s, hd_c64, lap->n_active);
+    tmp = HDI_TAKE(&s, double, 3 * HDI_CAST(int64_t, lap->n_active));
+    fam.ctx = c.ctx;
+    fam.lap = lap;
+    fam.up = &up;
+    fam.weight = hdi_make_weight(&s, lap);
+    fam.solver = o.solver ? o.solver : HD_SOLVER_COCG;
+    fam.precond = o.precond ? o.precond : HD_PRECOND_MILDL;
+    fam.max_iterations = o.max_iterations ? o.max_iterations : 20000;
+    set.n_poles = 1;
+    set.theta[0] = theta;
+    if (c.e->status >= 0) hdi_upper_make(&up, &lap->L, c.ctx, c.e);
+    if (c.e->status >= 0) hdi_poles_prepare(&ps, &fam, &set, t, c.e);
+    if (c.e->status >= 0) {
+        memset(&watch, 0, sizeof watch);
+        watch.ctx = c.ctx;
+        watch.share = 1;
+        watch.stage = "solve";
+        for (i = 0; i < lap->n_active; i++) b[i] = rhs[lap->vertex[i]];
+        hdi_krylov_start(ps.k, b);
+        status = hdi_krylov_run(ps.k, b, (o.tol > 0 ? o.tol : 1e-10) * ps.k->b_norm, fam.max_iterations, &watch, c.e);
+        if (report) {
+            const double error = hdi_pole_error(ps.k), norm = hdi_b_norm_complex(lap, ps.k->x, tmp) - error;
+            report->iterations = ps.k->iterations;
+            report->residual = ps.k->b_norm > 0 ? ps.k->r_norm / ps.k->b_norm : 0;
+            report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
+        }
+        for (v = 0; v < lap->n && status >= 0; v++) x[v] = lap->row[v] >= 0 ? ps.k->x[lap->row[v]] : hdi_c(0, 0);
+        if (status > 0) c.e->status = status;
+    }
+    hdi_poles_free(&ps, c.ctx);
+    hdi_upper_free(c.ctx, &up);
+    return hdi_scope_end(&s);
+}
+
+/* ---- heat ---- */
+
+static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
+    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "heat options: not cleared before use");
+    if (o->method < HD_METHOD_AUTO || o->method > HD_METHOD_ITERATIVE) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown method");
+    if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown solver");
+    if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown preconditioner");
+    if (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: poles are uniform or kernel; own sets go into rational");
+    if (o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the degree is not in 1..14", -1, -1, o->degree);
+    if (o->poles == HD_POLES_KERNEL && o->degree && o->degree < HDI_RAT_KERNEL_MIN)
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: kernel sets have degrees 2 to 14", -1, -1, o->degree);
+    if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
+    if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: max_iterations is negative");
+    if (o->rational && o->solver == HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: Lanczos has no use for a pole set");
+    return o->rational ? hdi_rational_check(o->rational, e) : HD_OK;
+}
+
+/* Gershgorin: every eigenvalue of B^-1 L is below this. */
+static double hdi_lambda_bound(const hd_laplacian *lap) {
+    double most = 0;
+    int32_t i;
+    int64_t p = 0;
+    for (i = 0; i < lap->n_active; i++) {
+        double sum = 0;
+        for (; p < lap->L.row_ptr[i + 1]; p++) sum += fabs(lap->L.val[p]);
+        most = hdi_max(most, sum / lap->b_diag[i]);
+    }
+    return most / lap->b_ratio;
+}
+
+HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err) {
+    hdi_call c;
+    hd_heat *heat;
+    hdi_scope s;
+    if (hdi_enter(&c, opts && opts->context ? opts->context : lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (!out || !lap) return hdi_missing(c.e);
+    if (opts && hdi_heat_check(opts, c.e) < 0) return c.e->status;
+    s = hdi_scope_begin(c.ctx, c.e);
+    heat = HDI_TAKE_ZERO(&s, hd_heat, 1);
+    if (!heat) return hdi_scope_end(&s);
+    heat->weight = hdi_make_weight(&s, lap);
+    if (!heat->weight || hdi_upper_make(&heat->up, &lap->L, c.ctx, c.e) < 0) return hdi_scope_end(&s);
+    if (opts) heat->opts = *opts;
+    if (heat->opts.rational) {
+        heat->own_set = *heat->opts.rational;
+        heat->own_set.kind = HD_POLES_OWN;
+        heat->opts.rational = &heat->own_set;
+    }
+    heat->ctx = c.ctx;
+    heat->lap = lap;
+    heat->opts.precond = heat->opts.precond ? heat->opts.precond : HD_PRECOND_MILDL;
+    heat->opts.tol = heat->opts.tol > 0 ? heat->opts.tol : 1e-9;
+    heat->opts.max_iterations = heat->opts.max_iterations ? heat->opts.max_iterations : 20000;
+    heat->lambda_max = hdi_lambda_bound(lap);
+    hdi_keep(&s, heat->weight);
+    *out = HDI_CAST(hd_heat *, hdi_keep(&s, heat));
+    return hdi_scope_end(&s);
+}
+
+HEATDIFF_API void hd_heat_free(hd_heat *heat) {
+    hd_context *ctx;
+    if (!heat) return;
+    ctx = heat->ctx;
+    hdi_poles_free(&heat->poles, ctx);
+    hdi_upper_free(ctx, &heat->up);
+    hdi_free(ctx, heat->weight);
+    hdi_free(ctx, heat);
+}
+
+/* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and its steps are few: a step reads L once and
+ * streams about ten vectors, and stores one; through the poles a step reads as much five times over, in complex. */
+static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
+    const hd_heat_opts *o = &heat->opts;
+    const double steps = 1.2 * sqrt(t * heat->lambda_max) + 10;
+    if (o->solver) return o->solver;
+    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->lap->B) return HD_SOLVER_COCG;
+    return steps <= 400 ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
+}
+
+typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
+
+/* A heat call under way: the work arrays, the choice of solver, and progress over k fields. */
+typedef struct hdi_heat_call {
+    hd_heat *heat;
+    hdi_query query;
+    double t;
+    int32_t k, index;            /* fields, and the one under way */
+    hd_report *rep;
+    hd_report own_report;
+    hd_error *e;
+    hdi_scope s;
+    hdi_heat_work w;
+    hdi_family fam;
+} hdi_heat_call;
+
+static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, double t, int32_t k, hd_report *report) {
+    int64_t n;
+    memset(h, 0, sizeof *h);
+    h->rep = report ? report : &h->own_report;
+    memset(h->rep, 0, sizeof *h->rep);
+    h->e = &h->rep->error;
+    hdi_error_clear(h->e);
+    h->heat = heat;
+    h->query = query;
+    h->t = t;
+    h->k = k;
+    if (!heat) return hdi_missing(h->e);
+    h->s = hdi_scope_begin(heat->ctx, h->e);
+    if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
+    if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    n = heat->lap->n_active;
+    h->w.f = HDI_TAKE(&h->s, double, n);
+    h->w.rhs = HDI_TAKE(&h->s, double, n);
+    h->w.u = HDI_TAKE(&h->s, double, n);
+    h->w.tmp = HDI_TAKE(&h->s, double, 4 * n);
+    h->w.sums = HDI_TAKE(&h->s, double, heat->lap->n_components);
+    h->w.target = HDI_TAKE(&h->s, double, heat->lap->n_components);
+    if (h->e->status < 0) return h->e->status;
+    h->fam.ctx = heat->ctx;
+    h->fam.lap = heat->lap;
+    h->fam.up = &heat->up;
+    h->fam.weight = heat->weight;
+    h->fam.solver = hdi_heat_choose(heat, t);
+    h->fam.precond = heat->opts.precond;
+    h->fam.max_iterations = heat->opts.max_iterations;
+    h->rep->method = HD_METHOD_ITERATIVE;
+    h->rep->solver = h->fam.solver;
+    if (h->fam.solver != HD_SOLVER_LANCZOS) h->rep->precond = h->fam.precond;
+    return HD_OK;
+}
+
+static hd_status hdi_heat_end(hdi_heat_call *h) {
+    const hd_status warned = h->rep->status;
+    const hd_status st = h->s.e ? hdi_scope_end(&h->s) : h->e->status;
+    h->rep->status = st < 0 ? st : warned;
+    return h->rep->status;
+}
+
+/* Norm of f and heat per component, from f and rhs. */
+static void hdi_heat_measure(const hd_laplacian *lap, hdi_heat_work *w, hdi_outcome *out) {
+    const double f2 = hdi_dot(w->f, w->rhs, lap->n_active);
+    memset(out, 0, sizeof *out);
+    out->f_norm = f2 > 0 ? sqrt(f2) : 0;
+    hdi_component_sums(lap, NULL, w->rhs, w->target);
+}
+
+/* Degree of a uniform set: even ones, as an odd one costs as much as the next; the first whose error is 1e-9 of the least that the
+ * answer can be, which is what its constants amount to. */
+static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_heat_work *w, double f_norm) {
+    hd_rational set;
+    hd_error e;
+    double least = 0;
+    int32_t c, r;
+    for (c = 0; c < lap->n_components && lap->conserves; c++) least += w->target[c] * w->target[c] / lap->component_mass[c];
+    for (r = 8; r < HDI_RAT_UNIFORM_MAX; r += 2)
+        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * f_norm <= 1e-9 * sqrt(least)) break;
+    return r;
+}
+
+/* The pole set for this call; fields may need more than those before them. */
+static hd_status hdi_heat_set(hdi_heat_call *h, double f_norm, hd_rational *set) {
+    const hd_heat_opts *o = &h->heat->opts;
+    const hd_pole_kind kind = o->poles ? o->poles : h->query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
+    int32_t degree = o->degree;
+    if (o->rational) {
+        *set = *o->rational;
+        return HD_OK;
+    }
+    if (!degree && kind == HD_POLES_KERNEL) degree = 10;
+    if (!degree) {
+        degree = hdi_uniform_degree(h->heat->lap, &h->w, f_norm);
+        if (degree < h->rep->degree) degree = h->rep->degree;
+    }
+    return hdi_rational_get(set, kind, degree, h->e);
+}
+
+/* w.u = K_t of the field in w.f and w.rhs = B f. */
+static hd_status hdi_heat_field(hdi_heat_call *h) {
+    const hd_laplacian *lap = h->heat->lap;
+    hdi_outcome out;
+    hdi_watch watch;
+    hd_rational set;
+    hd_status status;
+    memset(&watch, 0, sizeof watch);
+    watch.ctx = h->heat->ctx;
+    watch.stage = "solve";
+    watch.share = 1.0 / h->k;
+    watch.from = h->index * watch.share;
+    hdi_heat_measure(lap, &h->w, &out);
+    if (hdi_watch_look(&watch, 0, h->e) < 0) return h->e->status;
+    if (h->fam.solver == HD_SOLVER_LANCZOS) {
+        status = hdi_heat_lanczos(h->heat, h->t, &h->w, &out, h->rep, &watch, h->e);
+    } else {
+        if (hdi_heat_set(h, out.f_norm, &set) < 0) return h->e->status;
+        h->rep->poles = set.kind;
+        h->rep->degree = set.degree;
+        h->rep->n_poles = set.n_poles;
+        if (!h->w.b) h->w.b = HDI_TAKE(&h->s, hd_c64, lap->n_active);
+        if (!h->w.b || hdi_poles_prepare(&h->heat->poles, &h->fam, &set, h->t, h->e) < 0) return h->e->status;
+        status = hdi_heat_poles(h->heat, &h->fam, &h->w, &out, h->rep, &watch, h->e);
+    }
+    if (h->e->status < 0) return h->e->status;
+    if (status > h->rep->status) h->rep->status = status;
+    hdi_heat_judge(h->heat, &h->w, &out, h->rep);
+    return HD_OK;
+}
+
+/* w.u = column `source` of the kernel, which has mass. */
+static hd_status hdi_heat_unit(hdi_heat_call *h, int32_t row) {
+    const hd_laplacian *lap = h->heat->lap;
+    const size_t bytes = HDI_CAST(size_t, lap->n_active) * sizeof(double);
+    memset(h->w.f, 0, bytes);
+    memset(h->w.rhs, 0, bytes);
+    if (h->query == HDI_QUERY_OPERATOR) {
+        h->w.f[row] = 1;
+        hdi_pair_apply(lap, 0, 1, h->w.f, h->w.rhs);
+    } else {
+        h->w.rhs[row] = 1;
+        if (hdi_mass_solve(lap, h->w.rhs, h->w.f, h->w.tmp, h->e) < 0) return h->e->status;
+    }
+    if (h->t > 0) return hdi_heat_field(h);
+    memcpy(h->w.u, h->w.f, bytes);
+    return HD_OK;
+}
+
+static void hdi_scatter(const hd_laplacian *lap, const double *on_rows, double *on_vertices) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) on_vertices[lap->vertex[i]] = on_rows[i];
+}
+
+HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const double *F, size_t ldf, double *U, size_t ldu,
+                                     hd_report *report) {
+    hdi_heat_call h;
+    int32_t v;
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, t, k, report) < 0) return hdi_heat_end(&h);
+    if (k > 0 && (!F || !U)) {
+        hdi_missing(h.e);
+        return hdi_heat_end(&h);
+    }
+    if (!ldf) ldf = HDI_CAST(size_t, heat->lap->n);
+    if (!ldu) ldu = HDI_CAST(size_t, heat->lap->n);
+    if (ldf < HDI_CAST(size_t, heat->lap->n) || ldu < HDI_CAST(size_t, heat->lap->n)) {
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
+        return hdi_heat_end(&h);
+    }
+    for (h.index = 0; h.index < k; h.index++) {
+        const double *f = F + HDI_CAST(size_t, h.index) * ldf;
+        double *u = U + HDI_CAST(size_t, h.index) * ldu;
+        for (v = 0; v < heat->lap->n; v++) {
+            if (hdi_finite(f[v])) continue;
+            hdi_fail_row(h.e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v, h.index, f[v]);
+            return hdi_heat_end(&h);
+        }
+        hdi_gather(heat->lap, f, h.w.f);
+        hdi_pair_apply(heat->lap, 0, 1, h.w.f, h.w.rhs);
+        if (t > 0 && hdi_heat_field(&h) < 0) return hdi_heat_end(&h);
+        if (u != f) memmove(u, f, HDI_CAST(size_t, heat->lap->n) * sizeof *u);   /* vertices without mass keep theirs */
+        if (t > 0) hdi_scatter(heat->lap, h.w.u, u);
+    }
+    return hdi_heat_end(&h);
+}
+
+static hd_status hdi_heat_source(hdi_heat_call *h, int32_t source, double *u) {
+    const hd_laplacian *lap = h->heat->lap;
+    memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
+    if (lap->row[source] < 0) {
+        u[source] = h->query == HDI_QUERY_OPERATOR;
+        return HD_OK;
+    }
+    if (hdi_heat_unit(h, lap->row[source]) < 0) return h->e->status;
+    hdi_scatter(lap, h->w.u, u);
+    return HD_OK;
+}
+
+static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
+    if (v >= 0 && v < lap->n) return HD_OK;
+    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, lap->n);
+}
+
+HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, double t, hd_kernel kernel, int32_t k, const int32_t *sources, double *U, size_t ldu,
+                                       hd_report *report) {
+    hdi_heat_call h;
+    if (hdi_heat_begin(&h, heat, kernel == HD_KERNEL_OPERATOR ? HDI_QUERY_OPERATOR : HDI_QUERY_SYMMETRIC, t, k, report) < 0) return hdi_heat_end(&h);
+    if (k > 0 && (!sources || !U)) hdi_missing(h.e);
+    else if (kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the kernel is operator or symmetric");
+    if (!ldu) ldu = HDI_CAST(size_t, heat->lap->n);
+    if (ldu < HDI_CAST(size_t, heat->lap->n)) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
+    for (h.index = 0; h.index < k && !h.e->status; h.index++)
+        if (hdi_vertex_check(heat->lap, sources[h.index], h.e) < 0) h.e->column = h.index;
+    for (h.index = 0; h.index < k && h.e->status >= 0; h.index++)
+        (void)hdi_heat_source(&h, sources[h.index], U + HDI_CAST(size_t, h.index) * ldu);
+    return hdi_heat_end(&h);
+}
+
+HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, double t, int32_t source, double *u, hd_report *report) {
+    return hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 1, &source, u, 0, report);
+}
+
+HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
+                                       double *values, hd_report *report) {
+    hdi_heat_call h;
+    hdi_pair *order;
+    double *u;
+    int64_t q, p;
+    if (hdi_heat_begin(&h, heat, kernel == HD_KERNEL_OPERATOR ? HDI_QUERY_OPERATOR : HDI_QUERY_SYMMETRIC, t, 0, report) < 0) return hdi_heat_end(&h);
+    if (n_pairs < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
+    else if (n_pairs > 0 && (!i || !j || !values)) hdi_missing(h.e);
+    else if (kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the kernel is operator or symmetric");
+    for (q = 0; q < n_pairs && !h.e->status; q++)
+        if (hdi_vertex_check(heat->lap, i[q], h.e) < 0 || hdi_vertex_check(heat->lap, j[q], h.e) < 0) h.e->row = q;
+    order = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, hdi_pair, n_pairs);
+    u = HDI_TAKE(&h.s, double, heat->lap->n);
+    if (h.e->status < 0) return hdi_heat_end(&h);
+    for (q = 0; q < n_pairs; q++) {
+        order[q].key = HDI_CAST(uint64_t, j[q]);
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, n_pairs);
+    for (q = 0; q < n_pairs; q++) h.k += q == 0 || order[q].key != order[q - 1].key;
+    for (q = 0; q < n_pairs; q = p, h.index++) {
+        if (hdi_heat_source(&h, j[order[q].id], u) < 0) break;
+        for (p = q; p < n_pairs && order[p].key == order[q].key; p++) values[order[p].id] = u[i[order[p].id]];
+    }
+    return hdi_heat_end(&h);
+}
+
+/* ==== [22] closing ==== */
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* HEATDIFF_IMPLEMENTED */
+#endif /* HEATDIFF_IMPLEMENTATION */
+
+/* Two licences, take the one you like better.
+
+   MIT License. Copyright (c) 2026 The heatdiff authors.
+   Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated documentation files (the
+   "Software"), to deal in the Software without restriction, including without limitation the rights to use, copy, modify, merge, publish,
+   distribute, sublicense, and/or sell copies of the Software, and to permit persons to whom the Software is furnished to do so, subject to
+   the following conditions: The above copyright notice and this permission notice shall be included in all copies or substantial portions
+   of the Software. THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE
+   WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS
+   BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN
+   CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE.
+
+   Public domain (www.unlicense.org). This is free and unencumbered software released into the public domain. Anyone is free to copy, modify,
+   publish, use, compile, sell, or distribute this software, either in source code form or as a compiled binary, for any purpose, commercial or
+   non-commercial, and by any means. THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED
+   TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS BE LIABLE FOR ANY
+   CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE
+   SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE. */
