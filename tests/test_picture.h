@@ -1,0 +1,681 @@
+/* test_picture.h - the pictures (tools/picture.h) and the shapes (tools/shapes.h)
+
+   The runner defines CHECK and CHECK_MSG and test_tmp_dir() before including this. PNG files are read back by a reader of
+   our own that shares no line with the writer. */
+
+#ifndef TEST_PICTURE_H
+#define TEST_PICTURE_H
+
+#include "../tools/picture.h"
+#include "../tools/shapes.h"
+
+/* ---- a PNG reader ---- */
+
+typedef struct tpic_bits { const uint8_t *p; size_t n, at; int failed; } tpic_bits;    /* at: next bit */
+
+static uint32_t tpic_take(tpic_bits *b, int count)
+{
+    uint32_t v = 0;
+    int i;
+    for (i = 0; i < count; i++, b->at++) {
+        if (b->at / 8 >= b->n) { b->failed = 1; return 0; }
+        v |= (uint32_t)(b->p[b->at / 8] >> (b->at % 8) & 1) << i;
+    }
+    return v;
+}
+
+/* A Huffman code by counts: how many codes of each length, and the symbols in code order. */
+typedef struct tpic_code { int count[16], symbol[320]; } tpic_code;
+
+/* Returns how many codes of the longest length are left over: 0 for a complete code, negative for an impossible one. */
+static int tpic_code_make(tpic_code *c, const uint8_t *len, int n)
+{
+    int at[17] = {0}, i, left = 1;
+    memset(c, 0, sizeof *c);
+    for (i = 0; i < n; i++) c->count[len[i]]++;
+    c->count[0] = 0;
+    for (i = 1; i < 16; i++) { left = 2 * left - c->count[i]; at[i + 1] = at[i] + c->count[i]; }
+    for (i = 0; i < n; i++) if (len[i]) c->symbol[at[len[i]]++] = i;
+    return left;
+}
+
+static int tpic_decode(tpic_bits *b, const tpic_code *c)
+{
+    int code = 0, first = 0, index = 0, len;
+    for (len = 1; len < 16; len++) {
+        code = code << 1 | (int)tpic_take(b, 1);
+        if (code - first < c->count[len]) return c->symbol[index + code - first];
+        index += c->count[len];
+        first = (first + c->count[len]) << 1;
+    }
+    b->failed = 1;
+    return 0;
+}
+
+static void tpic_dynamic_codes(tpic_bits *b, tpic_code *lit, tpic_code *dist)
+{
+    static const uint8_t order[19] = {16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15};
+    const int n_lit = (int)tpic_take(b, 5) + 257, n_dist = (int)tpic_take(b, 5) + 1, n_len = (int)tpic_take(b, 4) + 4;
+    uint8_t len[320] = {0};
+    tpic_code runs;
+    int i, k;
+    for (i = 0; i < n_len; i++) len[order[i]] = (uint8_t)tpic_take(b, 3);
+    CHECK(tpic_code_make(&runs, len, 19) == 0);
+    for (i = 0; i < n_lit + n_dist && !b->failed; ) {
+        const int sym = tpic_decode(b, &runs);
+        uint8_t value = 0;
+        if (sym < 16) { len[i++] = (uint8_t)sym; continue; }
+        if (sym == 16 && i > 0) value = len[i - 1];
+        k = sym == 16 ? 3 + (int)tpic_take(b, 2) : sym == 17 ? 3 + (int)tpic_take(b, 3) : 11 + (int)tpic_take(b, 7);
+        if (i + k > n_lit + n_dist) { b->failed = 1; return; }
+        while (k-- > 0) len[i++] = value;
+    }
+    CHECK(tpic_code_make(lit, len, n_lit) == 0);
+    CHECK(tpic_code_make(dist, len + n_lit, n_dist) == 0);
+}
+
+static void tpic_fixed_codes(tpic_code *lit, tpic_code *dist)
+{
+    uint8_t len[288];
+    int i;
+    for (i = 0; i < 288; i++) len[i] = (uint8_t)(i < 144 ? 8 : i < 256 ? 9 : i < 280 ? 7 : 8);
+    tpic_code_make(lit, len, 288);
+    memset(len, 5, 30);
+    tpic_code_make(dist, len, 30);
+}
+
+static size_t tpic_inflate_block(tpic_bits *b, const tpic_code *lit, const tpic_code *dist, uint8_t *out, size_t at, size_t room)
+{
+    while (!b->failed) {
+        int sym = tpic_decode(b, lit), extra, length, distance;
+        if (sym == 256) return at;
+        if (sym < 256) {
+            if (at >= room) break;
+            out[at++] = (uint8_t)sym;
+            continue;
+        }
+        sym -= 257;
+        extra = sym < 8 || sym == 28 ? 0 : sym / 4 - 1;
+        length = sym == 28 ? 258 : sym < 8 ? sym + 3 : ((4 + sym % 4) << extra) + 3;
+        length += (int)tpic_take(b, extra);
+        sym = tpic_decode(b, dist);
+        extra = sym < 4 ? 0 : sym / 2 - 1;
+        distance = sym < 4 ? sym + 1 : ((2 + sym % 2) << extra) + 1;
+        distance += (int)tpic_take(b, extra);
+        if ((size_t)distance > at || at + (size_t)length > room) break;
+        for (; length > 0; length--, at++) out[at] = out[at - (size_t)distance];
+    }
+    b->failed = 1;
+    return at;
+}
+
+/* Inflates a zlib stream of known length, checksum included. Returns 1 when all is well. */
+static int tpic_inflate(const uint8_t *p, size_t n, uint8_t *out, size_t room)
+{
+    tpic_bits b = {p, n, 16, 0};
+    size_t at = 0, i;
+    uint32_t a1 = 1, a2 = 0, sum = 0, last = 0;
+    tpic_code lit, dist;
+    if (n < 6 || (p[0] & 15) != 8 || (p[0] * 256 + p[1]) % 31 != 0) return 0;
+    while (!last && !b.failed) {
+        uint32_t kind;
+        last = tpic_take(&b, 1);
+        kind = tpic_take(&b, 2);
+        if (kind == 2) tpic_dynamic_codes(&b, &lit, &dist);
+        else if (kind == 1) tpic_fixed_codes(&lit, &dist);
+        else return 0;
+        at = tpic_inflate_block(&b, &lit, &dist, out, at, room);
+    }
+    for (i = 0; i < at; i++) { a1 = (a1 + out[i]) % 65521u; a2 = (a2 + a1) % 65521u; }
+    b.at = (b.at + 7) / 8 * 8;
+    for (i = 0; i < 4; i++) sum = sum << 8 | tpic_take(&b, 8);
+    return !b.failed && at == room && b.at == 8 * n && sum == (a2 << 16 | a1);
+}
+
+static uint32_t tpic_be32(const uint8_t *p) { return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3]; }
+
+static uint32_t tpic_crc(const uint8_t *p, size_t n)
+{
+    uint32_t c = 0xffffffffu;
+    int k;
+    for (; n > 0; n--, p++) for (c ^= *p, k = 0; k < 8; k++) c = c & 1u ? c >> 1 ^ 0xedb88320u : c >> 1;
+    return ~c;
+}
+
+static void tpic_unfilter(uint8_t *raw, int32_t w, int32_t h)
+{
+    const size_t row = (size_t)w * 3 + 1;
+    size_t i;
+    int32_t y;
+    for (y = 0; y < h; y++) for (i = 1; i < row; i++) {
+        uint8_t *p = raw + (size_t)y * row;
+        const uint8_t *up = y > 0 ? p - row : NULL;
+        const int a = i > 3 ? p[i - 3] : 0, b = up ? up[i] : 0, c = up && i > 3 ? up[i - 3] : 0;
+        const int q = a + b - c, qa = abs(q - a), qb = abs(q - b), qc = abs(q - c);
+        const int paeth = qa <= qb && qa <= qc ? a : qb <= qc ? b : c;
+        p[i] = (uint8_t)(p[i] + (p[0] == 0 ? 0 : p[0] == 1 ? a : p[0] == 2 ? b : p[0] == 3 ? (a + b) / 2 : paeth));
+    }
+}
+
+/* Whether the PNG file in memory holds exactly these pixels and nothing out of order. */
+static int tpic_png_holds(const uint8_t *png, size_t n, const uint8_t *rgb, int32_t w, int32_t h)
+{
+    static const uint8_t signature[8] = {137, 80, 78, 71, 13, 10, 26, 10};
+    const size_t row = (size_t)w * 3 + 1;
+    uint8_t *raw = (uint8_t *)malloc(row * (size_t)h);
+    size_t at = 8;
+    int32_t y;
+    int ok = raw && n > 8 && memcmp(png, signature, 8) == 0, chunks = 0, ended = 0, data = 0;
+    while (ok && at < n) {
+        const size_t size = n - at >= 12 ? tpic_be32(png + at) : n;
+        const uint8_t *name = png + at + 4;
+        ok = size <= n - at - 12 && !ended && tpic_crc(name, size + 4) == tpic_be32(name + 4 + size);
+        if (!ok) break;
+        if (chunks == 0) ok = memcmp(name, "IHDR", 4) == 0 && size == 13 && tpic_be32(name + 4) == (uint32_t)w
+                           && tpic_be32(name + 8) == (uint32_t)h && name[12] == 8 && name[13] == 2 && name[16] == 0;
+        if (memcmp(name, "IDAT", 4) == 0) { ok = ok && tpic_inflate(name + 4, size, raw, row * (size_t)h); data++; }
+        if (memcmp(name, "IEND", 4) == 0) ended = 1;
+        chunks++;
+        at += size + 12;
+    }
+    ok = ok && ended && data == 1;
+    if (ok) tpic_unfilter(raw, w, h);
+    for (y = 0; ok && y < h; y++) ok = memcmp(raw + (size_t)y * row + 1, rgb + (size_t)y * (row - 1), row - 1) == 0;
+    free(raw);
+    return ok;
+}
+
+static void tpic_check_png(const uint8_t *rgb, int32_t w, int32_t h, const char *what)
+{
+    uint8_t *png = NULL;
+    size_t n = 0;
+    CHECK_MSG(pic_png_encode(&png, &n, rgb, w, h) == PIC_OK, "%s: not encoded", what);
+    CHECK_MSG(png && tpic_png_holds(png, n, rgb, w, h), "%s: %d x %d does not come back", what, (int)w, (int)h);
+    free(png);
+}
+
+/* ---- PNG ---- */
+
+static void tpic_test_png_pixels(void)
+{
+    const int32_t w = 317, h = 211;
+    uint8_t *rgb = (uint8_t *)calloc((size_t)w * (size_t)h, 3);
+    uint64_t seed = 5;
+    int32_t i;
+    const int32_t n = 3 * w * h;
+    CHECK(rgb != NULL);
+    if (!rgb) return;
+    tpic_check_png(rgb, w, h, "black");
+    for (i = 0; i < n; i++) rgb[i] = (uint8_t)(shape_random(&seed) & 255u);
+    tpic_check_png(rgb, w, h, "noise");
+    tpic_check_png(rgb, 1, 1, "one pixel");
+    tpic_check_png(rgb, 1, 200, "one column");
+    tpic_check_png(rgb, 300, 1, "one row");
+    for (i = 0; i < n; i++) rgb[i] = (uint8_t)(i / 3 % w + i / 3 / w * (i % 3));
+    tpic_check_png(rgb, w, h, "ramps");
+    /* Symbol counts that grow like Fibonacci numbers want codes longer than 15 bits: the limit must hold. */
+    {
+        int32_t a = 1, b = 1, k, s = 0;
+        for (i = 0; i < n; s++) {
+            for (k = 0; k < a && i < n; k++) rgb[i++] = (uint8_t)((s * 37) & 255);
+            k = a + b; a = b; b = k;
+            if (s == 22) { a = b = 1; s = 0; }
+        }
+        for (i = n - 1; i > 0; i--) {
+            const int32_t j = (int32_t)(shape_random(&seed) % (uint64_t)(i + 1));
+            const uint8_t swap = rgb[i];
+            rgb[i] = rgb[j];
+            rgb[j] = swap;
+        }
+        tpic_check_png(rgb, w, h, "skewed");
+    }
+    /* Repeats at the far end of the window, and just beyond. */
+    for (i = 0; i < n; i++) rgb[i] = i < 32768 + 2 ? (uint8_t)(shape_random(&seed) & 255u) : rgb[i - 32768 + i / 65536];
+    tpic_check_png(rgb, w, h, "window");
+    free(rgb);
+}
+
+/* The Huffman lengths themselves: within the limit, complete, and never longer for a more frequent symbol. */
+static void tpic_test_huffman(void)
+{
+    uint32_t freq[286];
+    uint8_t len[286];
+    int n, i, j, k;
+    for (n = 2; n <= 286; n += n < 40 ? 1 : 41) for (k = 0; k < 3; k++) {
+        uint64_t seed = (uint64_t)n;
+        double full = 0;
+        for (i = 0; i < n; i++)
+            freq[i] = k == 0 ? 1u : k == 1 ? 1u << (i < 28 ? i : 28) : (uint32_t)(shape_random(&seed) % 1000) + 1;
+        pic_huffman_lengths(freq, n, 15, len);
+        for (i = 0; i < n; i++) { CHECK(len[i] >= 1 && len[i] <= 15); full += pow(2, -len[i]); }
+        CHECK_MSG(fabs(full - 1) < 1e-12, "n = %d: Kraft sum %g", n, full);
+        for (i = 0; i < n; i++) for (j = 0; j < n; j++) if (freq[i] > freq[j]) CHECK(len[i] <= len[j]);
+    }
+}
+
+static void tpic_test_png_file(void)
+{
+    uint8_t rgb[2 * 2 * 3] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 8, 7}, back[4096];
+    char path[1024], part[1040];
+    size_t n = 0;
+    FILE *f;
+    snprintf(path, sizeof path, "%s/picture_test.png", test_tmp_dir());
+    snprintf(part, sizeof part, "%s.part", path);
+    CHECK(pic_png_write(path, rgb, 2, 2) == PIC_OK);
+    CHECK(pic_png_write(path, rgb, 2, 2) == PIC_OK);    /* over an existing one */
+    f = fopen(path, "rb");
+    CHECK(f != NULL);
+    if (f) { n = fread(back, 1, sizeof back, f); fclose(f); }
+    CHECK(tpic_png_holds(back, n, rgb, 2, 2));
+    f = fopen(part, "rb");
+    CHECK(f == NULL);
+    if (f) fclose(f);
+    remove(path);
+    snprintf(path, sizeof path, "%s/no such folder/x.png", test_tmp_dir());
+    CHECK(pic_png_write(path, rgb, 2, 2) == PIC_ERR_FILE);
+    CHECK(pic_png_write(path, rgb, 0, 2) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_write("", rgb, 2, 2) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_write(path, NULL, 2, 2) == PIC_ERR_ARGUMENT);
+}
+
+/* ---- colour ---- */
+
+static double tpic_lightness(const uint8_t rgb[3])
+{
+    double lin[3];
+    int c;
+    for (c = 0; c < 3; c++) lin[c] = pow(rgb[c] / 255.0, 2.2);
+    return cbrt(0.2126 * lin[0] + 0.7152 * lin[1] + 0.0722 * lin[2]);
+}
+
+static void tpic_test_colormaps(void)
+{
+    int map, i;
+    for (map = 0; map < PIC_MAP_COUNT; map++) {
+        double last = -1, low, high;
+        uint8_t rgb[3];
+        pic_colormap(0, rgb, map);
+        low = tpic_lightness(rgb);
+        pic_colormap(map == PIC_MAP_DIVERGING ? 0.5 : 1, rgb, map);
+        high = tpic_lightness(rgb);
+        CHECK_MSG(high - low > 0.4, "map %d: lightness only from %g to %g", map, low, high);
+        for (i = 0; i <= 400; i++) {
+            const double s = i / 400.0;
+            double l;
+            pic_colormap(s, rgb, map);
+            l = tpic_lightness(rgb) * (map == PIC_MAP_DIVERGING && s > 0.5 ? -1 : 1);
+            if (map == PIC_MAP_DIVERGING && fabs(s - 0.5) < 0.004) last = -2;       /* the turning point */
+            CHECK_MSG(l > last - 0.004, "map %d: lightness falls at %g", map, s);
+            if (l > last) last = l;     /* against the highest so far: slow falls count too */
+        }
+    }
+    {
+        uint8_t a[3], b[3];
+        pic_colormap(-3, a, 0); pic_colormap(0, b, 0);
+        CHECK(memcmp(a, b, 3) == 0);
+        pic_colormap(7, a, 0); pic_colormap(1, b, 0);
+        CHECK(memcmp(a, b, 3) == 0);
+        pic_colormap((double)NAN, a, 0);
+        CHECK(a[0] == a[1] && a[1] == a[2]);
+    }
+}
+
+/* ---- pictures ---- */
+
+static pic_panel tpic_panel(const shape *s, const double *field)
+{
+    pic_panel p;
+    memset(&p, 0, sizeof p);
+    p.n = s->n; p.xyz = s->xyz; p.n_tri = s->n_tri; p.tri = s->tri; p.field = field;
+    return p;
+}
+
+static pic_opts tpic_small(void)
+{
+    pic_opts o;
+    memset(&o, 0, sizeof o);
+    o.width = 320; o.height = 240; o.supersample = 2;
+    o.title = "title"; o.subtitle = "sub"; o.label = "u";
+    return o;
+}
+
+/* How many pixels are clearly coloured: those of the shape and of the bar. */
+static int tpic_coloured(const pic_image *img)
+{
+    int count = 0;
+    int32_t i;
+    for (i = 0; i < img->width * img->height; i++) {
+        const uint8_t *p = img->rgb + 3 * i;
+        const int hi = p[0] > p[1] ? (p[0] > p[2] ? p[0] : p[2]) : (p[1] > p[2] ? p[1] : p[2]);
+        const int lo = p[0] < p[1] ? (p[0] < p[2] ? p[0] : p[2]) : (p[1] < p[2] ? p[1] : p[2]);
+        count += hi - lo > 60;
+    }
+    return count;
+}
+
+static void tpic_test_isolines(void)
+{
+    shape s = shape_grid(41, 31, 0.2);
+    double *f = (double *)malloc((size_t)s.n * sizeof *f);
+    pic_opts o = tpic_small();
+    pic_image plain, lines;
+    pic_panel p;
+    int32_t i, x, crossed = 0;
+    CHECK(s.xyz && f);
+    if (!s.xyz || !f) { free(f); shape_free(&s); return; }
+    for (i = 0; i < s.n; i++) f[i] = s.xyz[3 * i];
+    p = tpic_panel(&s, f);
+    o.view_given = 1;           /* straight at the square, x to the right */
+    o.no_legend = 1;
+    o.isolines = -1;
+    CHECK(pic_render(&plain, &p, &o) == PIC_OK);
+    o.isolines = 7;
+    CHECK(pic_render(&lines, &p, &o) == PIC_OK);
+    if (plain.rgb && lines.rgb) {
+        const size_t row = (size_t)(lines.height * 11 / 20) * (size_t)lines.width * 3;
+        int inside = 0;
+        for (x = 0; x < lines.width; x++) {
+            const uint8_t *a = plain.rgb + row + 3 * x, *b = lines.rgb + row + 3 * x;
+            const int darker = a[0] + a[1] + a[2] - b[0] - b[1] - b[2] > 30;
+            CHECK(a[0] + a[1] + a[2] - b[0] - b[1] - b[2] >= -2);       /* lines only darken */
+            crossed += darker && !inside;
+            inside = darker;
+        }
+        CHECK_MSG(crossed == 7, "%d isolines instead of 7", (int)crossed);
+    }
+    pic_image_free(&plain);
+    pic_image_free(&lines);
+    free(f);
+    shape_free(&s);
+}
+
+static void tpic_test_scale(void)
+{
+    static const double v[5] = {-1e-18, 1e-9, 1e-3, 10, (double)NAN};
+    pic_opts o;
+    pic_panel p;
+    pic_scale sc;
+    pic_ticks t;
+    int i;
+    memset(&o, 0, sizeof o);
+    memset(&p, 0, sizeof p);
+    p.n = 5; p.field = v;
+    pic_scale_make(&sc, &p, 0, 1, &o);
+    CHECK(sc.lo == -1e-18 && sc.hi == 10 && !sc.is_log && sc.n_levels >= 7 && sc.n_levels <= 20);
+    CHECK(fabs(pic_scale_at(&sc, 5) - 0.5) < 1e-12 && !pic_finite(pic_scale_at(&sc, (double)NAN)));
+    o.log_decades = 6;
+    pic_scale_make(&sc, &p, 0, 1, &o);
+    CHECK(sc.is_log && fabs(sc.lo - 1e-5) < 1e-12 && pic_scale_at(&sc, -1) < 0 && fabs(pic_scale_at(&sc, 1e-2) - 0.5) < 1e-9);
+    pic_ticks_make(&t, &sc);
+    for (i = 0; i < t.n; i++) if (t.text[i][0]) CHECK(strncmp(t.text[i], "10^", 3) == 0);
+    CHECK(t.n >= 7);
+    o.log_decades = 0;
+    for (i = -300; i <= 300; i += 50) {         /* ticks and levels for ranges of every size */
+        double w[2];
+        w[0] = -pow(10, i); w[1] = 3 * pow(10, i);
+        p.n = 2; p.field = w;
+        pic_scale_make(&sc, &p, 0, 1, &o);
+        pic_ticks_make(&t, &sc);
+        CHECK_MSG(t.n >= 4 && t.n <= 12, "10^%d: %d ticks", i, t.n);
+        CHECK_MSG(sc.n_levels >= 7 && sc.n_levels <= 20, "10^%d: %d levels", i, (int)sc.n_levels);
+    }
+    {
+        const double w[2] = {-1.7e308, 1.7e308}, near1[2] = {1, 1.0000000000000002}, same[2] = {4, 4};
+        p.n = 2; p.field = w;
+        pic_scale_make(&sc, &p, 0, 1, &o);
+        pic_ticks_make(&t, &sc);
+        CHECK(fabs(pic_scale_at(&sc, 0) - 0.5) < 1e-9);
+        p.field = near1;
+        pic_scale_make(&sc, &p, 0, 1, &o);
+        pic_ticks_make(&t, &sc);
+        p.field = same;
+        pic_scale_make(&sc, &p, 0, 1, &o);
+        CHECK(sc.constant && sc.n_levels == 0 && fabs(pic_scale_at(&sc, 4) - 0.5) < 1e-15);
+    }
+}
+
+static void tpic_render_ok(const pic_panel *p, int32_t n, const pic_opts *o, const char *what)
+{
+    pic_image img;
+    const int status = pic_render_grid(&img, p, n, o);
+    CHECK_MSG(status == PIC_OK && img.rgb, "%s: status %d", what, status);
+    pic_image_free(&img);
+}
+
+static void tpic_test_degenerate(void)
+{
+    static const double flat[9] = {0, 0, 0, 1, 0, 0, 2, 0, 0}, big[9] = {-1.7e308, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 1},
+                        tiny[9] = {0, 0, 0, 1e-300, 0, 0, 0, 1e-300, 0}, broken[9] = {0, 0, 0, 1, (double)NAN, 0, 0, 1, HUGE_VAL},
+                        here[9] = {5, 5, 5, 5, 5, 5, 5, 5, 5}, values[3] = {(double)NAN, HUGE_VAL, -HUGE_VAL}, same[3] = {2, 2, 2};
+    static const int32_t one[3] = {0, 1, 2}, wild[6] = {0, 1, 7, -1, 0, 0}, marks[3] = {0, 99, -4};
+    const double *const places[5] = {flat, big, tiny, broken, here};
+    pic_opts o = tpic_small();
+    pic_panel p, four[5];
+    pic_image img;
+    int i, faces, log_on;
+    memset(&p, 0, sizeof p);
+    o.width = 160; o.height = 120;
+    tpic_render_ok(&p, 1, &o, "nothing");
+    for (i = 0; i < 5; i++) for (faces = 0; faces < 2; faces++) for (log_on = 0; log_on < 2; log_on++) {
+        p.n = 3; p.xyz = places[i]; p.n_tri = faces; p.tri = one; p.markers = marks; p.n_markers = 3;
+        o.log_decades = log_on ? 5 : 0;
+        p.field = NULL;
+        tpic_render_ok(&p, 1, &o, "no field");
+        p.field = values;
+        tpic_render_ok(&p, 1, &o, "no finite value");
+        p.field = same;
+        tpic_render_ok(&p, 1, &o, "constant");
+        p.field = flat;
+        tpic_render_ok(&p, 1, &o, "odd places");
+    }
+    p.xyz = tiny; p.n_tri = 2; p.tri = wild;
+    tpic_render_ok(&p, 1, &o, "indices out of range");
+    for (i = 0; i < 5; i++) { four[i] = p; four[i].caption = i % 2 ? "caption" : NULL; }
+    tpic_render_ok(four, 5, &o, "five panels");
+    o.own_scale = 1;
+    tpic_render_ok(four, 5, &o, "five panels, own scales");
+    for (i = 1; i < 40; i += 3) {       /* too small for anything to fit */
+        o.width = i; o.height = 1 + i / 2;
+        tpic_render_ok(four, 5, &o, "thumbnail");
+    }
+    o.width = 20000;
+    CHECK(pic_render(&img, &p, &o) == PIC_ERR_ARGUMENT && !img.rgb);
+    o.width = 0;
+    CHECK(pic_render_grid(&img, &p, 0, &o) == PIC_ERR_ARGUMENT && !img.rgb);
+    p.xyz = NULL;
+    CHECK(pic_render(&img, &p, &o) == PIC_ERR_ARGUMENT && !img.rgb);
+}
+
+/* A sphere fills about as much of the picture as it should, as faces and as points, whichever way its faces are turned. */
+static void tpic_test_picture_of_sphere(void)
+{
+    shape s = shape_icosphere(3);
+    double *f = (double *)malloc((size_t)s.n * sizeof *f);
+    pic_opts o = tpic_small();
+    pic_panel p;
+    pic_image a, b, c;
+    uint64_t seed = 3;
+    int32_t i;
+    CHECK(s.xyz && f);
+    if (!s.xyz || !f) { free(f); shape_free(&s); return; }
+    for (i = 0; i < s.n; i++) f[i] = s.xyz[3 * i];
+    p = tpic_panel(&s, f);
+    o.title = o.subtitle = NULL;
+    o.isolines = -1;
+    CHECK(pic_render(&a, &p, &o) == PIC_OK);
+    p.n_tri = 0;
+    CHECK(pic_render(&b, &p, &o) == PIC_OK);
+    p.n_tri = s.n_tri;
+    for (i = 0; i < s.n_tri; i++) if (shape_random(&seed) & 1u) {
+        const int32_t swap = s.tri[3 * i];
+        s.tri[3 * i] = s.tri[3 * i + 1];
+        s.tri[3 * i + 1] = swap;
+    }
+    CHECK(pic_render(&c, &p, &o) == PIC_OK);
+    if (a.rgb && b.rgb && c.rgb) {
+        const double disc = 3.14159 / 4 * pow(0.86 * 0.95 * 240, 2), seen = tpic_coloured(&a), seen_b = tpic_coloured(&b);
+        int64_t differ = 0;
+        for (i = 0; i < 3 * a.width * a.height; i++) differ += abs(a.rgb[i] - c.rgb[i]) > 3;
+        CHECK_MSG(seen > 0.7 * disc && seen < 1.3 * disc, "sphere: %g coloured pixels, disc %g", seen, disc);
+        CHECK_MSG(seen_b > 0.7 * seen && seen_b < 1.3 * seen, "points: %g coloured pixels, faces %g", seen_b, seen);
+        CHECK_MSG(differ < a.width, "orientation of faces shows in %d bytes", (int)differ);
+        tpic_check_png(a.rgb, a.width, a.height, "a picture");
+    }
+    pic_image_free(&a);
+    pic_image_free(&b);
+    pic_image_free(&c);
+    free(f);
+    shape_free(&s);
+}
+
+/* ---- shapes ---- */
+
+typedef struct tpic_edge { int32_t a, b, way; } tpic_edge;
+
+static int tpic_compare_edges(const void *pa, const void *pb)
+{
+    const tpic_edge *x = (const tpic_edge *)pa, *y = (const tpic_edge *)pb;
+    if (x->a != y->a) return x->a < y->a ? -1 : 1;
+    if (x->b != y->b) return x->b < y->b ? -1 : 1;
+    return x->way - y->way;
+}
+
+static int32_t tpic_root(int32_t *parent, int32_t v)
+{
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+}
+
+/* Checks that s is manifold and consistently oriented, with so many border edges, pieces and that Euler characteristic, no
+ * vertex unused, and volume at least `volume`. */
+static void tpic_check_shape(const shape *s, const char *what, int euler, int border, int pieces, double volume)
+{
+    tpic_edge *e = (tpic_edge *)malloc((size_t)s->n_tri * 3 * sizeof *e);
+    int32_t *parent = (int32_t *)malloc((size_t)s->n * sizeof *parent), *faces = (int32_t *)calloc((size_t)s->n, sizeof *faces);
+    int32_t i, n_edges = 0, n_border = 0, n_pieces = 0, wrong = 0, unused = 0;
+    double sum = 0;
+    int c;
+    CHECK_MSG(s->xyz && e && parent && faces, "%s: no memory", what);
+    if (!s->xyz || !e || !parent || !faces) { free(e); free(parent); free(faces); return; }
+    for (i = 0; i < s->n; i++) parent[i] = i;
+    for (i = 0; i < s->n_tri; i++) {
+        const int32_t *t = s->tri + 3 * i;
+        double n[3];
+        for (c = 0; c < 3; c++) {
+            const int32_t a = t[c], b = t[(c + 1) % 3];
+            e[3 * i + c].a = a < b ? a : b; e[3 * i + c].b = a < b ? b : a; e[3 * i + c].way = a < b;
+            parent[tpic_root(parent, a)] = tpic_root(parent, b);
+            faces[a]++;
+            wrong += a == b;
+        }
+        shape_normal(s->xyz + 3 * t[0], s->xyz + 3 * t[1], s->xyz + 3 * t[2], n);
+        sum += shape_dot(n, s->xyz + 3 * t[0]) / 6;
+    }
+    qsort(e, (size_t)s->n_tri * 3, sizeof *e, tpic_compare_edges);
+    for (i = 0; i < 3 * s->n_tri; n_edges++) {
+        int32_t same = 1;
+        while (i + same < 3 * s->n_tri && e[i + same].a == e[i].a && e[i + same].b == e[i].b) same++;
+        n_border += same == 1;
+        wrong += same > 2 || (same == 2 && e[i].way == e[i + 1].way);
+        i += same;
+    }
+    for (i = 0; i < s->n; i++) { n_pieces += tpic_root(parent, i) == i; unused += faces[i] == 0; }
+    CHECK_MSG(wrong == 0, "%s: %d edges not manifold or not consistent", what, (int)wrong);
+    CHECK_MSG(unused == 0, "%s: %d vertices unused", what, (int)unused);
+    CHECK_MSG(n_border == border, "%s: %d border edges, not %d", what, (int)n_border, border);
+    CHECK_MSG(n_pieces == pieces, "%s: %d pieces, not %d", what, (int)n_pieces, pieces);
+    n_edges = s->n - n_edges + s->n_tri;
+    CHECK_MSG(n_edges == euler, "%s: Euler characteristic %d, not %d", what, (int)n_edges, euler);
+    CHECK_MSG(border > 0 || sum > volume, "%s: volume %g, not above %g", what, sum, volume);
+    free(e);
+    free(parent);
+    free(faces);
+}
+
+static void tpic_test_simple_shapes(void)
+{
+    static const double offset[3] = {5, 0, 0};
+    shape a = shape_icosphere(0), b, c;
+    tpic_check_shape(&a, "icosahedron", 2, 0, 1, 2.5);
+    CHECK(a.n == 12 && a.n_tri == 20);
+    b = shape_icosphere(4);
+    tpic_check_shape(&b, "icosphere", 2, 0, 1, 4.1);
+    CHECK(b.n == 2562 && b.n_tri == 5120);
+    c = shape_disjoint(&a, &b, offset);
+    tpic_check_shape(&c, "two balls", 4, 0, 2, 6.6);
+    shape_free(&a); shape_free(&b); shape_free(&c);
+    a = shape_torus(40, 20, 1, 0.4);
+    tpic_check_shape(&a, "torus", 0, 0, 1, 2.9);
+    b = shape_bumpy(4, 11);
+    tpic_check_shape(&b, "bumpy", 2, 0, 1, 2);
+    c = shape_bumpy(4, 11);
+    CHECK(b.n == c.n && b.xyz && c.xyz && memcmp(b.xyz, c.xyz, (size_t)b.n * 24) == 0);
+    shape_free(&a); shape_free(&b); shape_free(&c);
+    a = shape_grid(9, 6, 0.4);
+    tpic_check_shape(&a, "grid", 1, 2 * 8 + 2 * 5, 1, 0);
+    b = shape_cylinder(12, 5, 1, 2);
+    tpic_check_shape(&b, "cylinder", 0, 24, 1, 0);
+    shape_free(&a); shape_free(&b);
+    a = shape_torus(2, 5, 1, 0.4); CHECK(!a.xyz && a.n == 0);
+    a = shape_grid(1, 5, 0); CHECK(!a.xyz && a.n == 0);
+    a = shape_icosphere(-1); CHECK(!a.xyz && a.n == 0);
+    a = shape_icosphere(11); CHECK(!a.xyz && a.n == 0);
+    a = shape_cylinder(3, 1, 1, 1); CHECK(!a.xyz && a.n == 0);
+}
+
+/* All triangles of a grid look up, also the jittered ones; the random generator gives its published first number. */
+static void tpic_test_grid_upright(void)
+{
+    shape s = shape_grid(30, 20, 0.3);
+    uint64_t seed = 0;
+    int32_t i, bad = 0;
+    for (i = 0; i < s.n_tri; i++) {
+        double n[3];
+        shape_normal(s.xyz + 3 * s.tri[3 * i], s.xyz + 3 * s.tri[3 * i + 1], s.xyz + 3 * s.tri[3 * i + 2], n);
+        bad += !(n[2] > 0);
+    }
+    CHECK(s.n == 600 && bad == 0);
+    shape_free(&s);
+    CHECK(shape_random(&seed) == 0xe220a8397b1dcdafu);
+}
+
+static void tpic_test_demo(void)
+{
+    static const int32_t sizes[3] = {2000, 0, 36000};
+    int k, c;
+    for (k = 0; k < 3; k++) {
+        shape s = shape_demo(sizes[k]);
+        const double wanted = sizes[k] ? sizes[k] : 12000;
+        int32_t i, slim = 0, odd = 0, *valence = (int32_t *)calloc((size_t)s.n + 1, sizeof *valence);
+        tpic_check_shape(&s, "demo", -2, 0, 1, 1.7);
+        CHECK_MSG(s.n > 0.85 * wanted && s.n < 1.15 * wanted, "demo: %d vertices for %g", (int)s.n, wanted);
+        for (i = 0; i < s.n_tri; i++) for (c = 0; c < 3; c++) {
+            const int32_t *t = s.tri + 3 * i;
+            const double angle = shape_cosine(s.xyz + 3 * t[c], s.xyz + 3 * t[(c + 1) % 3], s.xyz + 3 * t[(c + 2) % 3]);
+            slim += angle > cos(15 * 0.0174533);
+            if (valence) valence[t[c]]++;
+        }
+        for (i = 0; valence && i < s.n; i++) odd += valence[i] != 6;
+        CHECK_MSG(slim <= s.n_tri / 2000, "demo: %d angles below 15 degrees", (int)slim);
+        CHECK_MSG(odd > s.n / 20, "demo: only %d irregular vertices", (int)odd);
+        free(valence);
+        shape_free(&s);
+    }
+}
+
+static void test_picture(void)
+{
+    tpic_test_png_pixels();
+    tpic_test_huffman();
+    tpic_test_png_file();
+    tpic_test_colormaps();
+    tpic_test_scale();
+    tpic_test_isolines();
+    tpic_test_degenerate();
+    tpic_test_picture_of_sphere();
+    tpic_test_simple_shapes();
+    tpic_test_grid_upright();
+    tpic_test_demo();
+}
+
+#endif
