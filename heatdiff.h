@@ -2189,7 +2189,7 @@ static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
     k->ready = 0;
 }
 
-/* About what rounding contributes to the residual of x, in the same norm: no solver gets below it. */
+/* What rounding contributes to the residual of x at most, in the same norm; in practice less than half of it. */
 static double hdi_krylov_noise(const hdi_krylov *k) {
     const hd_laplacian *lap = k->a.lap;
     const double theta = hdi_cabs(k->a.theta);
@@ -2376,12 +2376,13 @@ static double hdi_krylov_done(double start, double now, double target) {
  * another round no longer halves it or it is no more than rounding, with HD_WARN_ACCURACY. */
 static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations, const hdi_watch *watch, hd_error *e) {
     const double start = k->r_norm;
-    double before = k->r_norm, best;
+    double before = k->r_norm, best, floor = -1;
     int64_t left = max_iterations, look = 0, step, best_step;
     while (k->r_norm > target) {
         best = k->r_norm;
         best_step = 0;
-        for (step = 1; k->r_norm > target && !k->broken; step++) {
+        for (step = 1; k->r_norm > hdi_max(target, floor) && !k->broken; step++) {
+            if (floor < 0 && k->r_norm < 1e-9 * k->b_norm) floor = hdi_krylov_noise(k) / 2;
             if (left-- <= 0) break;
             if (look++ % 16 == 0 && hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
             if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
@@ -2393,7 +2394,7 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
             if (k->r_norm < best / 2) {
                 best = k->r_norm;
                 best_step = step;
-            } else if (best < 1e-7 * k->b_norm && step - best_step > 200 + best_step) {
+            } else if (best < 1e-7 * k->b_norm && step - best_step > 50 + best_step) {
                 break;                           /* nothing gained for long, near where rounding may be the reason: look at x */
             }
         }
@@ -2401,7 +2402,7 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
         if (!hdi_finite(k->r_norm)) return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: its numbers are no longer finite");
         if (k->r_norm <= target) return HD_OK;
         if (left <= 0) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "the iteration did not reach the tolerance in max_iterations steps");
-        if (k->r_norm > before / 2 || k->r_norm <= hdi_krylov_noise(k)) return HD_WARN_ACCURACY;
+        if (k->r_norm > before / 2 || k->r_norm <= floor) return HD_WARN_ACCURACY;
         before = k->r_norm;
         k->broken = 0;
     }
