@@ -1,0 +1,874 @@
+"""Tests of the command-line tool, through its command line only.
+
+    python3 tests/test_cli.py PATH_TO_HEATDIFF [unittest options]
+
+Needs nothing but Python 3. Makes its meshes itself, in a temporary folder. Numbers are checked against a dense matrix
+exponential in plain Python on tiny meshes, and against what must hold on any mesh (conservation, symmetry, column order).
+"""
+import base64
+import json
+import math
+import os
+import random
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.etree.ElementTree as ElementTree
+import zlib
+
+TOOL = None
+POSIX = os.name == "posix"
+
+
+# ---- meshes ----
+
+def icosahedron():
+    g = (1 + 5 ** 0.5) / 2
+    v = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1),
+         (-g, 0, -1), (-g, 0, 1)]
+    f = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4),
+         (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    return [tuple(map(float, p)) for p in v], f
+
+
+def bumpy_patch(k):
+    """A (k+1) x (k+1) grid with a border, not flat and not regular."""
+    rnd = random.Random(4)
+    v = [(x + 0.2 * rnd.random(), y + 0.2 * rnd.random(), 0.7 * math.sin(0.9 * x) * math.cos(0.7 * y))
+         for y in range(k + 1) for x in range(k + 1)]
+    f = []
+    for y in range(k):
+        for x in range(k):
+            a = y * (k + 1) + x
+            f += [(a, a + 1, a + k + 2), (a, a + k + 2, a + k + 1)]
+    return v, f
+
+
+def torus(n, m):
+    v, f = [], []
+    for i in range(n):
+        for j in range(m):
+            a, b = 2 * math.pi * i / n, 2 * math.pi * j / m
+            v.append(((3 + math.cos(b)) * math.cos(a), (3 + math.cos(b)) * math.sin(a), math.sin(b)))
+            p, q = i * m + j, ((i + 1) % n) * m + j
+            r, s = i * m + (j + 1) % m, ((i + 1) % n) * m + (j + 1) % m
+            f += [(p, q, s), (p, s, r)]
+    return v, f
+
+
+def obj_text(v, f):
+    return "".join("v %.17g %.17g %.17g\n" % p for p in v) + "".join("f " + " ".join(str(i + 1) for i in t) + "\n" for t in f)
+
+
+def off_text(v, f):
+    return "OFF\n%d %d 0\n" % (len(v), len(f)) + "".join("%.17g %.17g %.17g\n" % p for p in v) + \
+        "".join("%d " % len(t) + " ".join(map(str, t)) + "\n" for t in f)
+
+
+# ---- dense reference, for tiny meshes ----
+
+def sub(a, b):
+    return tuple(x - y for x, y in zip(a, b))
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def norm_cross(a, b):
+    return math.sqrt(max(0.0, dot(a, a) * dot(b, b) - dot(a, b) ** 2))
+
+
+def cotan_and_fem(v, f):
+    n = len(v)
+    L = [[0.0] * n for _ in range(n)]
+    B = [[0.0] * n for _ in range(n)]
+    for t in f:
+        area = norm_cross(sub(v[t[1]], v[t[0]]), sub(v[t[2]], v[t[0]])) / 2
+        for c in range(3):
+            i, j, k = t[c], t[(c + 1) % 3], t[(c + 2) % 3]
+            a, b = sub(v[i], v[k]), sub(v[j], v[k])
+            w = dot(a, b) / norm_cross(a, b) / 2
+            for p, q, s in ((i, j, -w), (j, i, -w), (i, i, w), (j, j, w)):
+                L[p][q] += s
+            B[i][i] += area / 6
+            for p, q in ((i, j), (j, i)):
+                B[p][q] += area / 12
+    return L, B
+
+
+def matmul(a, b):
+    bt = list(zip(*b))
+    return [[dot(r, c) for c in bt] for r in a]
+
+
+def solve(a, b):
+    """a^-1 b for matrices, by Gauss-Jordan with pivots."""
+    n = len(a)
+    m = [list(a[i]) + list(b[i]) for i in range(n)]
+    for c in range(n):
+        p = max(range(c, n), key=lambda r: abs(m[r][c]))
+        m[c], m[p] = m[p], m[c]
+        m[c] = [x / m[c][c] for x in m[c]]
+        for r in range(n):
+            if r != c and m[r][c]:
+                s = m[r][c]
+                m[r] = [x - s * y for x, y in zip(m[r], m[c])]
+    return [row[n:] for row in m]
+
+
+def heat_matrix(L, B, t):
+    """exp(-t B^-1 L): Taylor series and repeated squaring."""
+    n = len(L)
+    a = [[-t * x for x in row] for row in solve(B, L)]
+    k = max(0, int(math.ceil(math.log2(max(1e-9, max(sum(map(abs, r)) for r in a))))) + 4)
+    a = [[x / 2 ** k for x in row] for row in a]
+    eye = [[float(i == j) for j in range(n)] for i in range(n)]
+    term = total = eye
+    for i in range(1, 15):
+        term = [[x / i for x in row] for row in matmul(term, a)]
+        total = [[x + y for x, y in zip(r, s)] for r, s in zip(total, term)]
+    for _ in range(k):
+        total = matmul(total, total)
+    return total
+
+
+# ---- readers of the outputs ----
+
+def numbers(text, separator=None):
+    return [[float(x) for x in line.split(separator)] for line in text.splitlines() if line.strip() and not line.startswith("#")]
+
+
+def read_npy(data):
+    assert data[:6] == b"\x93NUMPY", data[:6]
+    size = struct.unpack("<H", data[8:10])[0] if data[6] == 1 else struct.unpack("<I", data[8:12])[0]
+    start = 10 if data[6] == 1 else 12
+    header = eval(data[start:start + size].decode("latin-1"), {"__builtins__": {}}, {"False": False, "True": True})
+    assert header["descr"] == "<f8", header
+    shape = header["shape"]
+    rows, columns = shape[0], shape[1] if len(shape) > 1 else 1
+    v = struct.unpack("<%dd" % (rows * columns), data[start + size:])
+    if header["fortran_order"]:
+        return [[v[c * rows + r] for c in range(columns)] for r in range(rows)]
+    return [list(v[r * columns:(r + 1) * columns]) for r in range(rows)]
+
+
+def npy_bytes(rows, fortran=False, flat=False):
+    n, k = len(rows), len(rows[0])
+    values = [rows[r][c] for c in range(k) for r in range(n)] if fortran else [x for r in rows for x in r]
+    header = "{'descr': '<f8', 'fortran_order': %s, 'shape': (%s), }" % (fortran, "%d," % n if flat else "%d, %d" % (n, k))
+    header += " " * (-(len(header) + 11) % 64) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + struct.pack("<%dd" % len(values), *values)
+
+
+PLY_TYPES = {"char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "int16": "h", "ushort": "H", "uint16": "H", "int": "i",
+             "int32": "i", "uint": "I", "uint32": "I", "float": "f", "float32": "f", "double": "d", "float64": "d"}
+
+
+def read_ply(data):
+    """Returns the vertices as dicts and the faces as lists."""
+    head, _, body = data.partition(b"end_header\n")
+    lines = head.decode().splitlines()
+    assert lines[0] == "ply"
+    style = lines[1].split()[1]
+    elements = []
+    for line in lines[2:]:
+        w = line.split()
+        if w[0] == "element":
+            elements.append((w[1], int(w[2]), []))
+        elif w[0] == "property":
+            elements[-1][2].append(w[1:])
+    order = ">" if style == "binary_big_endian" else "<"
+    tokens, at, result = iter(body.split()) if style == "ascii" else None, 0, {}
+
+    def take(kind):
+        nonlocal at
+        if tokens:
+            return float(next(tokens))
+        x = struct.unpack_from(order + PLY_TYPES[kind], body, at)[0]
+        at += struct.calcsize(PLY_TYPES[kind])
+        return x
+    for name, count, properties in elements:
+        rows = []
+        for _ in range(count):
+            row = {}
+            for p in properties:
+                row[p[-1]] = [int(take(p[2])) for _ in range(int(take(p[1])))] if p[0] == "list" else take(p[0])
+            rows.append(row)
+        result[name] = rows
+    assert tokens or at == len(body), "bytes behind the end"
+    return result["vertex"], [next(iter(f.values())) for f in result.get("face", [])]
+
+
+def read_png(data):
+    """Checks every chunk, returns width, height and the set of distinct pixel byte groups (not unfiltered)."""
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    at, image, size, names = 8, b"", None, []
+    while at < len(data):
+        n, name = struct.unpack(">I4s", data[at:at + 8])
+        chunk = data[at + 8:at + 8 + n]
+        assert struct.unpack(">I", data[at + 8 + n:at + 12 + n])[0] == zlib.crc32(name + chunk) & 0xffffffff
+        names.append(name)
+        if name == b"IHDR":
+            size = struct.unpack(">IIBBBBB", chunk)
+        if name == b"IDAT":
+            image += chunk
+        at += 12 + n
+    assert names[-1] == b"IEND"
+    channels = {0: 1, 2: 3, 3: 1, 6: 4}[size[3]]
+    pixels = zlib.decompress(image)
+    assert len(pixels) == size[1] * (1 + size[0] * channels * size[2] // 8)
+    return size[0], size[1], len(set(pixels))
+
+
+def read_vtu(data):
+    """Returns the point-data arrays by name, and the number of points and cells. Knows ascii, base64 and raw appended."""
+    raw = None
+    cut = re.search(rb"<AppendedData[^>]*encoding=\"raw\"[^>]*>\s*_", data)
+    if cut:
+        raw = data[cut.end():]
+        data = data[:cut.start()] + b"</VTKFile>"
+    root = ElementTree.fromstring(data)
+    piece = root.find(".//Piece")
+    header = {"UInt32": "I", "UInt64": "Q"}[root.get("header_type", "UInt32")]
+    order = "<" if root.get("byte_order", "LittleEndian") == "LittleEndian" else ">"
+    kinds = {"Float64": "d", "Float32": "f", "Int32": "i", "Int64": "q", "UInt8": "B", "UInt32": "I"}
+
+    def values(array):
+        kind = kinds[array.get("type")]
+        if array.get("format") == "ascii":
+            return [float(x) for x in (array.text or "").split()]
+        block = raw[int(array.get("offset")):] if array.get("format") == "appended" else base64.b64decode(array.text.strip())
+        n = struct.unpack_from(order + header, block)[0]
+        skip = struct.calcsize(header)
+        return list(struct.unpack(order + "%d%s" % (n // struct.calcsize(kind), kind), block[skip:skip + n]))
+    points = values(piece.find("Points/DataArray"))
+    assert len(points) == 3 * int(piece.get("NumberOfPoints"))
+    connectivity = [values(a) for a in piece.findall("Cells/DataArray") if a.get("Name") == "connectivity"][0]
+    assert all(0 <= i < int(piece.get("NumberOfPoints")) for i in connectivity)
+    return ({a.get("Name"): values(a) for a in piece.findall("PointData/DataArray")}, int(piece.get("NumberOfPoints")),
+            int(piece.get("NumberOfCells")))
+
+
+# ---- running ----
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="heatdiff-test-")
+        cls.small = cls.file("small.obj", obj_text(*icosahedron()))
+        cls.patch = cls.file("patch.off", off_text(*bumpy_patch(9)))
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def file(cls, name, content):
+        path = os.path.join(cls.folder, name)
+        with open(path, "wb") as f:
+            f.write(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder, name)
+
+    @staticmethod
+    def run_tool(*args, stdin=b"", cwd=None, timeout=300):
+        return subprocess.run([TOOL] + [str(a) for a in args], input=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=cwd,
+                              timeout=timeout)
+
+    def good(self, *args, **more):
+        p = self.run_tool(*args, **more)
+        self.assertEqual(p.returncode, 0, (args, p.stderr))
+        return p
+
+    def bad(self, code, *args, **more):
+        """Runs what must fail with this code, and returns its one error line."""
+        p = self.run_tool(*args, **more)
+        text = p.stderr.decode(errors="replace")
+        self.assertEqual(p.returncode, code, (args, text))
+        self.assertTrue(text.startswith("heatdiff: error: ") and text.endswith("\n"), (args, text))
+        self.assertEqual(text.count("\n"), 1, (args, text))
+        return text
+
+    def field(self, *args, **more):
+        return numbers(self.good(*args, "--quiet", **more).stdout.decode())
+
+    def close(self, a, b, tol):
+        scale = max(max(map(abs, r)) for r in b)
+        self.assertEqual((len(a), len(a[0])), (len(b), len(b[0])))
+        worst = max(abs(x - y) for r, s in zip(a, b) for x, y in zip(r, s))
+        self.assertLessEqual(worst, tol * scale)
+
+
+def columns(rows, *which):
+    return [[r[c] for c in which] for r in rows]
+
+
+class Usage(Case):
+    def kernel(self, *more):
+        return self.bad(2, "kernel", self.small, *more)
+
+    def test_commands(self):
+        for args in ([], ["nosuch"], ["nosuch", self.small], ["Kernel", self.small], [""]):
+            text = self.bad(2, *args)
+            for name in ("info", "kernel", "diffuse", "render", "demo"):
+                self.assertIn(name, text)
+
+    def test_times(self):
+        for t in ("-1", "nan", "inf", "-inf", "abc", "", ",", "1,", ",1", "1,,2", "h2", "1h", "1h3", "1 h2", "0x10", "1e999", "1e999h2", "auto",
+                  "auto:", "auto:0", "auto:-3", "auto:1.5", "auto:1000000000000", " 1", "1 ", "1;2", "-0.5h2", "1h2h2", "1.2.3", "--1", "+-1"):
+            for form in (["--t=" + t], ["--t", t]):
+                self.assertIn("--t takes", self.kernel("--source", 0, *form))
+
+    def test_sources(self):
+        for s in ("-3", "1.5", "a", "", "1,,2", "1,", "0x1", "1e3", " 1", "1-2"):
+            for form in (["--source=" + s], ["--source", s]):
+                self.assertIn("--source takes", self.kernel("--t", 1, *form))
+
+    def test_values(self):
+        for option, value in (("laplacian", "nosuch"), ("laplacian", ""), ("degree", "0"), ("degree", "15"), ("degree", "7.5"), ("degree", "x"),
+                              ("poles", "best"), ("tol", "0"), ("tol", "-1"), ("tol", "1"), ("tol", "nan"), ("method", "magic"),
+                              ("solver", "cg2"), ("precond", "amg2"), ("kernel", "own"), ("threads", "0"), ("threads", "-1"), ("threads", "x"),
+                              ("max-iterations", "0"), ("memory-limit", "0"), ("memory-limit", "5X"), ("memory-limit", "-5"),
+                              ("isolines", "-1"), ("range", "1"), ("range", "2,1"), ("range", "1,nan"), ("view", "1"), ("view", "0,91"),
+                              ("size", "100"), ("size", "0x0"), ("size", "1000000x1000000"), ("size", "-100x100"), ("colormap", "nosuch"),
+                              ("column", "-1")):
+            text = self.kernel("--t", 1, "--source", 0, "--%s=%s" % (option, value))
+            self.assertIn("--%s takes" % option, text)
+            self.kernel("--t", 1, "--source", 0, "--" + option, value)
+
+    def test_names_options(self):
+        self.assertIn("--nosuch", self.kernel("--t", 1, "--source", 0, "--nosuch"))
+        self.assertIn("-x", self.kernel("--t", 1, "--source", 0, "-x"))
+        self.assertIn("--input", self.kernel("--t", 1, "--source", 0, "--input", "f.txt"))
+        self.assertIn("--quiet", self.kernel("--t", 1, "--source", 0, "--quiet=yes"))
+        for option in ("--t", "--source", "-o", "--laplacian"):
+            self.assertIn(option, self.bad(2, "kernel", self.small, option))
+
+    def test_missing(self):
+        self.assertIn("--source", self.kernel("--t", 1))
+        self.assertIn("--t", self.kernel("--source", 0))
+        self.assertIn("mesh", self.bad(2, "kernel", "--t", 1, "--source", 0))
+        self.assertIn("--input", self.bad(2, "diffuse", "--t", 1, self.small))
+        self.assertIn("--input", self.bad(2, "render", self.small, "-o", "x.png"))
+        self.assertIn("-o", self.bad(2, "render", self.small, "--input", "f.txt"))
+        self.bad(2, "info")
+
+    def test_too_many(self):
+        self.bad(2, "info", self.small, self.small)
+        self.bad(2, "demo", self.small)
+        self.assertIn("twice", self.kernel("--t", 1, "--t", 2, "--source", 0))
+        self.assertIn("twice", self.kernel("--t", 1, "--source", 2, "--source", 0))
+        self.bad(2, "diffuse", "-", "--input", "-", "--t", 1)
+
+    def test_degree_one_belongs_to_uniform(self):
+        self.assertIn("--degree", self.kernel("--t", 1, "--source", 0, "--degree", 1))
+        self.good("kernel", self.small, "--t", 1, "--source", 0, "--degree", 1, "--poles", "uniform")
+
+    def test_unknown_extension_lists_formats(self):
+        for name in ("x", "x.foo", "x.npy.gz", "png", ".npyx", "x."):
+            text = self.kernel("--t", 1, "--source", 0, "-o", self.path(name))
+            for e in (".txt", ".csv", ".npy", ".ply", ".obj", ".vtu", ".png"):
+                self.assertIn(e, text)
+        self.bad(2, "render", self.small, "--input", "f.txt", "-o", self.path("x.txt"))
+
+    def test_usage_comes_before_files(self):
+        self.bad(2, "kernel", self.path("not-there.obj"), "--t", "abc", "--source", 0)
+
+    def test_help_and_version(self):
+        for args in (["--help"], ["-h"]):
+            p = self.good(*args)
+            self.assertIn(b"kernel", p.stdout)
+            self.assertEqual(p.stderr, b"")
+        for c in ("info", "kernel", "diffuse", "render", "demo"):
+            for h in ("--help", "-h"):
+                self.assertIn(c.encode(), self.good(c, h).stdout)
+        self.assertRegex(self.good("--version").stdout.decode(), r"^heatdiff \d+\.\d+\.\d+\n$")
+
+    def test_both_forms_and_any_order(self):
+        a = self.field("kernel", self.small, "--source", 1, "--t", "2h2")
+        self.assertEqual(a, self.field("kernel", "--t=2h2", "--source=1", self.small))
+        self.assertEqual(a, numbers(self.good("kernel", "--t=2h2", "--source=1", "--quiet", "--", self.small).stdout.decode()))
+        self.assertEqual(a, self.field("kernel", "--t=+2h2", "--source", "+1", self.small))
+
+    def test_fuzz(self):
+        rnd = random.Random(7)
+        words = ["kernel", "info", "diffuse", "render", "--t", "--t=", "--t=1h2", "--t=auto:2", "--source", "--source=0", "--source=0,0", "--degree",
+                 "5", "-1", "nan", "--json", "--quiet", "-o", "-", "--", "---", "--=", "-=", "=", "--t==1", "fem", "--laplacian=cot", "--poles=kernel",
+                 "1,2", "%s%n", "%n", "\u00e9", "\n", "x" * 3000, "--" + "y" * 3000, "--source=" + "9" * 50, "--source=" + "1," * 200, "--size=64x64",
+                 "--range=0,1", "--isolines=3", "--tol=1e-3", "--threads=2", "--input", "--max-iterations=1", "--memory-limit=1", self.small,
+                 self.small, self.small]
+        for _ in range(250):
+            args = [rnd.choice(["kernel", "info", "diffuse", "render"])] + [rnd.choice(words) for _ in range(rnd.randrange(7))]
+            with self.subTest(args=args):
+                p = self.run_tool(*args, cwd=self.folder, stdin=b"0 1\n", timeout=60)
+                self.assertIn(p.returncode, (0, 1, 2), (args, p.stderr))
+                if p.returncode:
+                    self.assertEqual(p.stderr.count(b"heatdiff: error: "), 1, (args, p.stderr))
+                    self.assertEqual(p.stderr.count(b"\n"), 1, (args, p.stderr))
+
+
+class Failures(Case):
+    def kernel(self, content, name="bad.obj"):
+        out = self.path("out.txt")
+        path = content if os.path.sep in str(content) else self.file(name, content)
+        text = self.bad(1, "kernel", path, "--source", 0, "--t", "1h2", "-o", out)
+        self.assertFalse(os.path.exists(out))
+        return text
+
+    def test_meshes(self):
+        good = obj_text(*icosahedron())
+        self.assertIn("bad.obj:33", self.kernel(good + "f 1 2 999\n"))
+        self.assertIn("bad.obj:1", self.kernel(good.replace("v ", "v nan ", 1)))
+        self.assertIn("bad.obj:3", self.kernel("v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n"))
+        self.assertIn("bad.obj", self.kernel("# nothing here\n"))
+        self.assertIn("bad.obj", self.kernel(""))
+        self.assertIn("bad.obj", self.kernel(bytes(random.Random(1).randrange(256) for _ in range(4000))))
+        self.assertIn("bad.obj", self.kernel("v 0 0 0\nv 1 0 0\nv 0 1 0\n"))
+
+    def test_every_cut_of_a_mesh_is_handled(self):
+        good = off_text(*icosahedron()).encode()
+        for k in range(0, len(good), 37):
+            p = self.run_tool("info", self.file("cut.off", good[:k]), "--quiet")
+            self.assertIn(p.returncode, (0, 1), (k, p.stderr))
+
+    def test_files(self):
+        self.assertIn("not-there.obj", self.kernel(self.path("not-there.obj")))
+        self.kernel(self.folder)
+        self.bad(1, "kernel", self.small, "--source", 0, "--t", 1, "-o", self.path("no/such/folder/x.txt"))
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
+    def test_full_disk(self):
+        with open("/dev/full", "wb") as full:
+            p = subprocess.run([TOOL, "kernel", self.small, "--source", "0", "--t", "1", "--quiet"], stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual(p.returncode, 1)
+        self.assertEqual(p.stderr.count(b"heatdiff: error: "), 1)
+
+    def test_source_beyond_the_mesh(self):
+        for s in (12, 10 ** 7, 10 ** 18, 10 ** 30, "0,12"):
+            text = self.bad(1, "kernel", self.small, "--source", s, "--t", 1)
+            self.assertIn("12", text)
+            self.assertIn("vertices", text)
+
+    def test_fields(self):
+        def diffuse(content, name="f.txt"):
+            return self.bad(1, "diffuse", self.small, "--input", self.file(name, content), "--t", 1)
+        rows = ["%d 1" % i for i in range(12)]
+        self.assertRegex(diffuse("\n".join(rows[:11])), r"f\.txt.*11.*12")
+        self.assertRegex(diffuse("\n".join(rows + ["3 3"])), r"f\.txt.*13.*12")
+        self.assertIn("f.txt:3", diffuse("\n".join(rows[:2] + ["1 zwei"] + rows[3:])))
+        self.assertIn("f.txt:5", diffuse("\n".join(rows[:4] + ["1"] + rows[5:])))
+        self.assertIn("f.txt", diffuse("\n".join(rows[:4] + ["1 nan"] + rows[5:])))
+        self.assertIn("f.txt", diffuse(""))
+        self.assertIn("f.npy", diffuse(npy_bytes([[1.0]] * 11), "f.npy"))
+        self.assertIn("f.npy", diffuse(npy_bytes([[1.0]] * 12)[:-3], "f.npy"))
+        self.assertIn("f.npy", diffuse(npy_bytes([[1.0]] * 12).replace(b"<f8", b"<c8"), "f.npy"))
+        self.assertIn("f.npy", diffuse(npy_bytes([[1.0]] * 12)[:9], "f.npy"))
+        self.assertIn("no-field", self.bad(1, "diffuse", self.small, "--input", self.path("no-field"), "--t", 1))
+
+    def test_render_column(self):
+        f = self.file("c.txt", "1 2\n" * 12)
+        self.assertIn("2", self.bad(1, "render", self.small, "--input", f, "--column", 2, "-o", self.path("c.png")))
+        self.assertFalse(os.path.exists(self.path("c.png")))
+
+    def test_limits(self):
+        self.bad(1, "kernel", self.patch, "--source", 0, "--t", "10h2", "--memory-limit", 2000)
+        self.bad(1, "kernel", self.patch, "--source", 0, "--t", "1000h2", "--solver", "cocg", "--precond", "none", "--max-iterations", 2)
+
+    def test_existing_output_survives(self):
+        for name in ("keep.txt", "keep.png", "keep.vtu"):
+            keep = self.file(name, "precious")
+            before = sorted(os.listdir(self.folder))
+            self.bad(1, "kernel", self.patch, "--source", 0, "--t", "10h2", "--memory-limit", 2000, "-o", keep)
+            self.bad(1, "kernel", self.path("not-there.obj"), "--source", 0, "--t", "10h2", "-o", keep)
+            with open(keep) as f:
+                self.assertEqual(f.read(), "precious")
+            self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+
+class Numbers(Case):
+    def test_dense_exponential(self):
+        for mesh in (icosahedron(), bumpy_patch(3)):
+            path = self.file("dense.obj", obj_text(*mesh))
+            L, B = cotan_and_fem(*mesh)
+            eye = [[float(i == j) for j in range(len(L))] for i in range(len(L))]
+            for t in (0.05, 1.0, 30.0):
+                for kind, M in (("fem", B), ("cot", eye)):
+                    K = heat_matrix(L, M, t)
+                    self.close(self.field("kernel", path, "--laplacian", kind, "--source", "0,7", "--t", t), columns(K, 0, 7), 1e-7)
+                    f = [[float(i % 3), math.sin(i)] for i in range(len(L))]
+                    given = self.file("f.txt", "".join("%.17g %.17g\n" % tuple(r) for r in f))
+                    self.close(self.field("diffuse", path, "--laplacian", kind, "--input", given, "--t", t), matmul(K, f), 1e-7)
+
+    def test_symmetric_kernel(self):
+        s = self.field("kernel", self.patch, "--source", "3,40,77", "--t", "5h2", "--kernel", "symmetric")
+        for a, i in enumerate((3, 40, 77)):
+            for b, j in enumerate((3, 40, 77)):
+                self.assertAlmostEqual(s[i][b], s[j][a], delta=1e-7 * max(map(abs, s[i])))
+
+    def test_every_solver(self):
+        want = self.field("kernel", self.patch, "--source", 11, "--t", "8h2", "--tol", 1e-12)
+        for solver in ("cocg", "cocr", "minres", "lanczos"):
+            for precond in ("none", "jacobi", "ssor", "ildl", "mildl"):
+                self.close(self.field("kernel", self.patch, "--source", 11, "--t", "8h2", "--solver", solver, "--precond", precond), want, 1e-7)
+        for poles in ("uniform", "kernel"):
+            self.close(self.field("kernel", self.patch, "--source", 11, "--t", "8h2", "--poles", poles, "--method", "iterative"), want, 1e-7)
+
+    def test_time_zero(self):
+        for v in (0, 5):
+            self.assertEqual(self.field("kernel", self.small, "--source", v, "--t", 0), [[float(i == v)] for i in range(12)])
+        f = self.file("zero.txt", "".join("%.17g\n" % math.exp(i) for i in range(12)))
+        self.assertEqual(self.field("diffuse", self.small, "--input", f, "--t", "-0"), [[math.exp(i)] for i in range(12)])
+
+    def test_constant_stays(self):
+        f = self.file("one.txt", "1\n" * 100)
+        self.close(self.field("diffuse", self.patch, "--input", f, "--t", "1h2,100h2"), [[1.0, 1.0]] * 100, 1e-7)
+
+    def test_h2_is_the_mean_edge(self):
+        h = json.loads(self.good("info", self.small, "--json").stdout)["h"]
+        self.assertAlmostEqual(h, 2.0, places=12)
+        self.close(self.field("kernel", self.small, "--source", 0, "--t", "3h2"), self.field("kernel", self.small, "--source", 0, "--t", "12"), 1e-9)
+
+    def test_kernel_column_order(self):
+        got = self.field("kernel", self.patch, "--source", "8,90", "--t", "1h2,20h2,3h2")
+        k = 0
+        for s in (8, 90):
+            for t in ("1h2", "20h2", "3h2"):
+                self.close(columns(got, k), self.field("kernel", self.patch, "--source", s, "--t", t), 1e-7)
+                k += 1
+        self.assertEqual(len(got[0]), k)
+
+    def test_diffuse_column_order(self):
+        f = self.file("two.txt", "".join("%g %g\n" % (math.sin(i), i % 7) for i in range(100)))
+        parts = [self.file("one%d.txt" % q, "".join("%g\n" % (math.sin(i), i % 7)[q] for i in range(100))) for q in range(2)]
+        got, k = self.field("diffuse", self.patch, "--input", f, "--t", "2h2,9h2"), 0
+        for q in range(2):
+            for t in ("2h2", "9h2"):
+                self.close(columns(got, k), self.field("diffuse", self.patch, "--input", parts[q], "--t", t), 1e-7)
+                k += 1
+        self.assertEqual(len(got[0]), k)
+
+    def test_duplicate_sources(self):
+        got = self.field("kernel", self.patch, "--source", "8,8", "--t", "2h2")
+        self.assertEqual(columns(got, 0), columns(got, 1))
+
+    def test_auto_times(self):
+        p = self.good("kernel", self.patch, "--source", 0, "--t", "auto:5", "--json")
+        times = json.loads(p.stderr)["times"]
+        self.assertEqual(len(times), 5)
+        ratios = [b / a for a, b in zip(times, times[1:])]
+        self.assertGreater(ratios[0], 1.5)
+        self.assertLess(max(ratios) / min(ratios), 1 + 1e-9)
+        self.assertEqual(len(numbers(p.stdout.decode())[0]), 5)
+        self.good("kernel", self.patch, "--source", 0, "--t", "auto:1,2h2")
+
+    def test_unused_vertices_stay(self):
+        v, f = icosahedron()
+        path = self.file("dead.obj", obj_text([(9.0, 9.0, 9.0)] + v, [tuple(i + 1 for i in t) for t in f]))
+        got = self.field("kernel", path, "--source", "0,3", "--t", "4h2")
+        self.assertEqual([r[0] for r in got], [1.0] + [0.0] * 12)
+        self.assertEqual(got[0][1], 0.0)
+        self.assertEqual(json.loads(self.good("info", path, "--json").stdout)["inert"], 1)
+
+    def test_polygons_are_fans(self):
+        v = [(0.0, 0.0, 0.0), (2.0, 0.0, 0.1), (2.5, 1.5, 0.0), (1.0, 2.5, 0.3), (-0.5, 1.5, 0.0)]
+        fan = self.file("fan.obj", obj_text(v, [(0, 1, 2), (0, 2, 3), (0, 3, 4)]))
+        polygon = self.file("polygon.obj", obj_text(v, [(0, 1, 2, 3, 4)]))
+        self.assertEqual(self.field("kernel", fan, "--source", 1, "--t", "0.3"), self.field("kernel", polygon, "--source", 1, "--t", "0.3"))
+
+
+class Formats(Case):
+    def write(self, name, *more):
+        out = self.path(name)
+        p = self.good("kernel", self.patch, "--source", "8,90", "--t", "1h2,5h2", "-o", out, *more)
+        self.assertEqual(p.stdout, b"")
+        with open(out, "rb") as f:
+            data = f.read()
+        os.remove(out)
+        return data
+
+    def setUp(self):
+        self.want = self.field("kernel", self.patch, "--source", "8,90", "--t", "1h2,5h2")
+
+    def test_text(self):
+        self.assertEqual(numbers(self.write("k.txt").decode()), self.want)
+        self.assertEqual(numbers(self.write("k.csv").decode(), ","), self.want)
+        self.assertEqual(numbers(self.write("K.TXT").decode()), self.want)
+
+    def test_npy(self):
+        self.assertEqual(read_npy(self.write("k.npy")), self.want)
+
+    def test_ply(self):
+        vertices, faces = read_ply(self.write("k.ply"))
+        v, f = bumpy_patch(9)
+        self.assertEqual(faces, [list(t) for t in f])
+        for p, q in zip(vertices, v):
+            for x, y in zip((p["x"], p["y"], p["z"]), q):
+                self.assertAlmostEqual(x, y, places=5)
+            self.assertTrue(all(0 <= p[c] <= 255 for c in ("red", "green", "blue")))
+        extra = [k for k in vertices[0] if k not in ("x", "y", "z", "red", "green", "blue", "alpha", "nx", "ny", "nz")]
+        self.assertEqual(len(extra), 4)
+        self.close([[p[k] for k in extra] for p in vertices], self.want, 1e-6)
+
+    def test_obj(self):
+        lines = self.write("k.obj").decode().splitlines()
+        v = [[float(x) for x in line.split()[1:]] for line in lines if line.startswith("v ")]
+        self.assertEqual(len(v), 100)
+        self.assertTrue(all(len(p) == 6 and all(0 <= c <= 1 for c in p[3:]) for p in v))
+        self.assertEqual(sum(line.startswith("f ") for line in lines), 162)
+
+    def test_vtu(self):
+        arrays, n, cells = read_vtu(self.write("k.vtu"))
+        self.assertEqual((n, cells, len(arrays)), (100, 162, 4))
+        self.close([list(r) for r in zip(*arrays.values())], self.want, 1e-6)
+
+    def test_png(self):
+        for more in ([], ["--log"], ["--isolines", 8], ["--range", "0,0.5"], ["--view", "100,-40"], ["--column", 3], ["--title", "a <title> \u00e9"]):
+            w, h, distinct = read_png(self.write("k.png", "--size", "320x240", *more))
+            self.assertEqual((w, h), (320, 240))
+            self.assertGreater(distinct, 30)
+
+    def test_render(self):
+        f = self.file("r.txt", "".join("%g %g\n" % (math.sin(i), i) for i in range(100)))
+        out = self.path("r.png")
+        for more in ([], ["--column", 1, "--isolines", 10]):
+            p = self.good("render", self.patch, "--input", f, "-o", out, "--size", "200x200", *more)
+            self.assertEqual(p.stdout, b"")
+            with open(out, "rb") as g:
+                self.assertEqual(read_png(g.read())[:2], (200, 200))
+        constant = self.file("r1.npy", npy_bytes([[3.0]] * 100, flat=True))
+        self.good("render", self.patch, "--input", constant, "-o", out)
+
+    def test_outputs_can_be_read_again(self):
+        for e in ("ply", "obj", "npy", "txt", "csv"):
+            out = self.path("again." + e)
+            self.good("kernel", self.patch, "--source", 8, "--t", "5h2", "-o", out)
+            if e in ("ply", "obj"):
+                report = json.loads(self.good("info", out, "--json").stdout)
+                self.assertEqual((report["n"], report["faces"]), (100, 162))
+            else:
+                self.close(self.field("diffuse", self.patch, "--input", out, "--t", 0), columns(self.want, 1), 1e-15)
+
+    def test_field_forms(self):
+        rows = [[math.sin(i), float(i)] for i in range(12)]
+        want = self.field("diffuse", self.small, "--t", 1, "--input", self.file("a.txt", "".join("%.17g %.17g\n" % tuple(r) for r in rows)))
+        for name, content in (
+                ("b.txt", "# two columns\n\n" + "".join("\t%.17g ,  %.17g # row\r\n" % tuple(r) for r in rows)),
+                ("c.csv", "".join("%.17g,%.17g\n" % tuple(r) for r in rows).rstrip("\n")),
+                ("d.npy", npy_bytes(rows)), ("e.npy", npy_bytes(rows, fortran=True))):
+            self.assertEqual(self.field("diffuse", self.small, "--t", 1, "--input", self.file(name, content)), want, name)
+        flat = self.file("g.npy", npy_bytes(columns(rows, 0), flat=True))
+        self.close(self.field("diffuse", self.small, "--t", 1, "--input", flat), columns(want, 0), 1e-7)
+
+    def test_standard_input(self):
+        for path in (self.small, self.patch):
+            with open(path, "rb") as f:
+                data = f.read()
+            self.assertEqual(self.field("kernel", "-", "--source", 4, "--t", "3h2", stdin=data),
+                             self.field("kernel", path, "--source", 4, "--t", "3h2"))
+        self.assertIn("stdin", self.bad(1, "info", "-", stdin=b"v 1 2\n").replace("standard input", "stdin"))
+
+
+class Reports(Case):
+    KEYS = ("n", "faces", "components", "h", "area", "inert", "laplacian", "method", "solver", "precond", "poles", "degree", "times", "iterations",
+            "residual", "error_bound", "mass_drift", "threads", "peak_bytes", "seconds")
+
+    def test_kernel_json(self):
+        p = self.good("kernel", self.patch, "--source", "1,2", "--t", "2,40h2", "--json")
+        r = json.loads(p.stderr)
+        for k in self.KEYS:
+            self.assertIn(k, r)
+        for k in ("load", "assemble", "solve", "total"):
+            self.assertGreaterEqual(r["seconds"][k], 0)
+        self.assertEqual((r["n"], r["faces"], r["components"], r["inert"], r["sources"]), (100, 162, 1, 0, [1, 2]))
+        self.assertEqual((r["laplacian"], r["method"], r["command"]), ("fem", "iterative", "kernel"))
+        self.assertEqual(r["times"][0], 2)
+        self.assertAlmostEqual(r["times"][1], 40 * r["h"] ** 2)
+        self.assertLess(r["error_bound"], 1e-6)
+        self.assertLess(r["mass_drift"], 1e-6)
+        self.assertGreater(r["peak_bytes"], 1000)
+        self.assertEqual(len(numbers(p.stdout.decode())), 100)
+
+    def test_diffuse_json(self):
+        f = self.file("j.txt", "1\n" * 100)
+        r = json.loads(self.good("diffuse", self.patch, "--input", f, "--t", "2", "--json", "--poles", "uniform", "--degree", 7, "--solver",
+                                 "cocr", "--precond", "ssor").stderr)
+        self.assertEqual((r["poles"], r["degree"], r["solver"], r["precond"]), ("uniform", 7, "cocr", "ssor"))
+
+    def test_info(self):
+        r = json.loads(self.good("info", self.patch, "--json").stdout)
+        for k in ("n", "faces", "components", "h", "area", "inert", "boundary_loops"):
+            self.assertIn(k, r)
+        self.assertEqual((r["n"], r["faces"], r["boundary_loops"]), (100, 162, 1))
+        text = self.good("info", self.patch).stdout.decode()
+        self.assertIn("100", text)
+        self.assertIn("162", text)
+        closed = json.loads(self.good("info", self.small, "--json").stdout)
+        self.assertEqual(closed["boundary_loops"], 0)
+        self.assertAlmostEqual(closed["area"], 20 * math.sqrt(3))
+
+    def test_info_counts_defects(self):
+        v, f = icosahedron()
+        path = self.file("defects.obj", obj_text(v + [v[0]], f + [f[0], (1, 1, 2), (0, 12, 3)]))
+        r = json.loads(self.good("info", path, "--json").stdout)
+        self.assertEqual((r["faces"], r["inert"]), (23, 1))
+        self.assertEqual((r["repeated_faces"], r["repeated_corner_faces"], r["zero_area_faces"]), (1, 1, 1))
+
+    def test_info_of_nothing_with_area(self):
+        r = json.loads(self.good("info", self.file("points.xyz", "0 0 0\n1 0 0\n0 1 0\n"), "--json").stdout)
+        self.assertEqual((r["n"], r["faces"], r["inert"]), (3, 0, 3))
+
+    def test_strings_are_escaped(self):
+        odd = self.path("a \"b\" \\ \u00e9 \t.obj") if POSIX else self.path("a b.obj")
+        shutil.copy(self.small, odd)
+        r = json.loads(self.good("info", odd, "--json").stdout)
+        self.assertEqual(r["mesh"], odd)
+
+    def test_quiet_and_default(self):
+        p = self.good("kernel", self.small, "--source", 0, "--t", 1, "--quiet")
+        self.assertEqual(p.stderr, b"")
+        p = self.good("kernel", self.small, "--source", 0, "--t", 1)
+        self.assertTrue(1 <= p.stderr.count(b"\n") <= 8, p.stderr)
+        self.assertNotIn(b"\r", p.stderr)
+
+    @unittest.skipUnless(POSIX, "needs a terminal")
+    def test_progress_only_on_a_terminal(self):
+        import pty
+        mesh = self.file("bar.obj", obj_text(*torus(150, 80)))
+        seen = {}
+        for quiet in (False, True):
+            master, slave = pty.openpty()
+            p = subprocess.Popen([TOOL, "kernel", mesh, "--source", "0,1,2,3", "--t", "2000h2", "--solver", "cocg", "-o", self.path("bar.npy")] +
+                                 ["--quiet"] * quiet, stdout=subprocess.DEVNULL, stderr=slave)
+            os.close(slave)
+            text = b""
+            while True:
+                try:
+                    block = os.read(master, 4096)
+                except OSError:
+                    break
+                if not block:
+                    break
+                text += block
+            os.close(master)
+            self.assertEqual(p.wait(), 0)
+            seen[quiet] = text
+        self.assertIn(b"%", seen[False])
+        self.assertIn(b"\r", seen[False])
+        self.assertEqual(seen[True], b"")
+
+
+@unittest.skipUnless(POSIX, "needs signals")
+class Interrupts(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.big = cls.file("big.obj", obj_text(*torus(500, 300)))
+
+    def interrupt(self, seconds, *args):
+        before = sorted(os.listdir(self.folder))
+        p = subprocess.Popen([TOOL] + [str(a) for a in args], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        time.sleep(seconds)
+        self.assertIsNone(p.poll(), "ended before it could be interrupted: %s" % p.stderr)
+        start = time.time()
+        p.send_signal(signal.SIGINT)
+        text = p.communicate(timeout=60)[1]
+        self.assertEqual(p.returncode, 130, text)
+        self.assertNotIn(b"error", text)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+        return time.time() - start
+
+    def test_long_work(self):
+        keep = self.file("keep.npy", "precious")
+        slow = ["--t", "100000h2,200000h2,300000h2", "--solver", "cocg", "--precond", "jacobi", "--tol", "1e-12"]
+        for seconds in (0.05, 0.3, 1, 2.5):
+            for out in ("new.npy", "keep.npy"):
+                waited = self.interrupt(seconds, "kernel", self.big, "--source", ",".join(map(str, range(40))), *slow, "-o", self.path(out))
+                self.assertLess(waited, 10)
+        with open(keep) as f:
+            self.assertEqual(f.read(), "precious")
+
+    def test_while_writing(self):
+        """A picture of text is long to write: 150 000 rows of 60 columns."""
+        f = self.file("wide.npy", npy_bytes([[float(i)] * 60 for i in range(150000)]))
+        out = self.path("wide.txt")
+        for seconds in (0.6, 1.0, 1.5, 2.2):
+            before = sorted(os.listdir(self.folder))
+            p = subprocess.Popen([TOOL, "diffuse", self.big, "--input", f, "--t", "0", "-o", out], stderr=subprocess.PIPE,
+                                 preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+            time.sleep(seconds)
+            p.send_signal(signal.SIGINT)
+            text = p.communicate(timeout=120)[1]
+            if p.returncode == 0:                   # a fast machine: it was done already
+                os.remove(out)
+                continue
+            self.assertEqual(p.returncode, 130, text)
+            self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def test_waiting_for_standard_input(self):
+        p = subprocess.Popen([TOOL, "info", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        time.sleep(0.3)
+        p.send_signal(signal.SIGINT)
+        self.assertEqual(p.wait(timeout=20), 130)
+        for stream in (p.stdin, p.stdout, p.stderr):
+            stream.close()
+
+
+class Demo(Case):
+    def test_demo(self):
+        for folder in ("demo", "demo", "deeper"):
+            out = self.path(folder)
+            p = self.good("demo", "-o", out)
+            names = sorted(os.listdir(out))
+            self.assertTrue(any(n.endswith(".png") for n in names) and any(n.endswith(".ply") for n in names), names)
+            for n in names:
+                with open(os.path.join(out, n), "rb") as f:
+                    data = f.read()
+                if n.endswith(".png"):
+                    self.assertGreater(read_png(data)[2], 50, n)
+                elif n.endswith(".ply"):
+                    vertices, faces = read_ply(data)
+                    self.assertTrue(len(vertices) > 100 and len(faces) > 100)
+                    self.good("info", os.path.join(out, n))
+                else:
+                    self.fail("what is %s?" % n)
+                self.assertIn(n, p.stdout.decode())
+
+    def test_default_folder(self):
+        here = self.path("here")
+        os.mkdir(here)
+        self.good("demo", "--quiet", cwd=here)
+        self.assertEqual(os.listdir(here), ["heatdiff-demo"])
+
+    def test_json(self):
+        r = json.loads(self.good("demo", "-o", self.path("json"), "--json").stderr)
+        self.assertEqual((len(r["sources"]), len(r["times"])), (2, 4))
+        self.assertLess(r["mass_drift"], 1e-9)
+
+    def test_folder_is_a_file(self):
+        self.bad(1, "demo", "-o", self.small)
+
+
+def main():
+    global TOOL
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
+        sys.exit("usage: python3 test_cli.py PATH_TO_HEATDIFF [unittest options]")
+    TOOL = os.path.abspath(sys.argv.pop(1))
+    if not os.path.exists(TOOL):
+        sys.exit("%s is not there; build it with: cc -O2 tools/heatdiff.c -o heatdiff -lm" % TOOL)
+    unittest.main()
+
+
+if __name__ == "__main__":
+    main()

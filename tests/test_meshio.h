@@ -1,0 +1,465 @@
+/* test_meshio.h - the readers and writers of tools/meshio.h
+
+   The runner defines CHECK and CHECK_MSG and test_tmp_dir() before including this. Every file is made here. */
+
+#ifndef TEST_MESHIO_H
+#define TEST_MESHIO_H
+
+#include "../tools/meshio.h"
+
+/* ---- files ---- */
+
+/* The path of a file in the temporary folder; good until eight calls later. */
+static const char *tmio_path(const char *name)
+{
+    static char paths[8][1024];
+    static int next;
+    char *const path = paths[next++ & 7];
+    snprintf(path, sizeof paths[0], "%s/%s", test_tmp_dir(), name);
+    return path;
+}
+
+static void tmio_put(const char *path, const void *data, size_t size)
+{
+    FILE *const f = fopen(path, "wb");
+    CHECK_MSG(f && fwrite(data, 1, size, f) == size, "cannot make %s", path);
+    if (f) fclose(f);
+}
+
+/* Reads a small file; returns its size, or 0 when it is not there. buf gets a zero at the end. */
+static size_t tmio_get(const char *path, char *buf, size_t room)
+{
+    FILE *const f = fopen(path, "rb");
+    size_t n = 0;
+    if (f) { n = fread(buf, 1, room - 1, f); fclose(f); }
+    buf[n] = 0;
+    return n;
+}
+
+static int tmio_load_bytes(mio_mesh *m, mio_error *e, const char *name, const void *data, size_t size)
+{
+    const char *const path = tmio_path(name);
+    int status;
+    tmio_put(path, data, size);
+    e->text[0] = 0;
+    status = mio_load(m, path, NULL, e);
+    remove(path);
+    return status;
+}
+
+/* Loads a text that must be a good mesh of this format and size. */
+static mio_mesh tmio_good(const char *name, const char *text, const char *format, int32_t n, int32_t n_faces)
+{
+    mio_mesh m;
+    mio_error e;
+    const int status = tmio_load_bytes(&m, &e, name, text, strlen(text));
+    CHECK_MSG(status == 0, "%s: %s", text, e.text);
+    CHECK_MSG(status != 0 || strcmp(m.format, format) == 0, "%s: read as %s", text, m.format);
+    CHECK_MSG(m.n == n && m.n_faces == n_faces, "%s: %ld vertices, %ld faces", text, (long)m.n, (long)m.n_faces);
+    return m;
+}
+
+static void tmio_fine(const char *name, const char *text, const char *format, int32_t n, int32_t n_faces)
+{
+    mio_mesh m = tmio_good(name, text, format, n, n_faces);
+    mio_free(&m);
+}
+
+/* Does face f have these corners? */
+static int tmio_face_is(const mio_mesh *m, int32_t f, int32_t count, int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    const int32_t want[4] = {a, b, c, d};
+    int32_t k;
+    if (f >= m->n_faces || m->face_ptr[f + 1] - m->face_ptr[f] != count) return 0;
+    for (k = 0; k < count && k < 4; k++) if (m->face_idx[m->face_ptr[f] + k] != want[k]) return 0;
+    return 1;
+}
+
+static int tmio_vertex_is(const mio_mesh *m, int32_t v, double x, double y, double z)
+{
+    return v < m->n && m->xyz[3 * v] == x && m->xyz[3 * v + 1] == y && m->xyz[3 * v + 2] == z;
+}
+
+/* A text (or bytes) that must be refused, with a message that ends in `PATH/where` and contains what. */
+static void tmio_bad_bytes(const char *name, const void *data, size_t size, const char *where, const char *what)
+{
+    mio_mesh m;
+    mio_error e;
+    char begin[128];
+    const int status = tmio_load_bytes(&m, &e, name, data, size);
+    snprintf(begin, sizeof begin, "/%s: ", where);
+    CHECK_MSG(status == MIO_FAILED, "%s: accepted, expected %s %s", name, where, what);
+    CHECK_MSG(status != MIO_FAILED || (strstr(e.text, begin) && strstr(e.text, what)), "expected %s and '%s', got: %s", where, what, e.text);
+    CHECK(!strchr(e.text, '\n') && m.n == 0 && !m.xyz && !m.face_ptr && !m.face_idx);
+    mio_free(&m);
+}
+
+static void tmio_bad(const char *name, const char *text, const char *where, const char *what)
+{
+    tmio_bad_bytes(name, text, strlen(text), where, what);
+}
+
+/* ---- bytes for binary files ---- */
+
+typedef struct tmio_bytes { unsigned char b[4096]; size_t n; int big; } tmio_bytes;
+
+static void tmio_add(tmio_bytes *t, const void *data, size_t size)
+{
+    if (t->n + size > sizeof t->b) return;
+    memcpy(t->b + t->n, data, size);
+    t->n += size;
+}
+
+static void tmio_text(tmio_bytes *t, const char *text) { tmio_add(t, text, strlen(text)); }
+
+/* An integer of `size` bytes. */
+static void tmio_int(tmio_bytes *t, int64_t v, int size)
+{
+    int i;
+    for (i = 0; i < size; i++) {
+        const unsigned char c = (unsigned char)((uint64_t)v >> 8 * (t->big ? size - 1 - i : i) & 255);
+        tmio_add(t, &c, 1);
+    }
+}
+
+static void tmio_float(tmio_bytes *t, double x)
+{
+    const float y = (float)x;
+    uint32_t u;
+    memcpy(&u, &y, 4);
+    tmio_int(t, u, 4);
+}
+
+static void tmio_double(tmio_bytes *t, double x)
+{
+    uint64_t u;
+    memcpy(&u, &x, 8);
+    tmio_int(t, (int64_t)u, 8);
+}
+
+/* ---- numbers ---- */
+
+static void tmio_test_numbers(void)
+{
+    static const char *const good[] = {"0", "-0", "1", "+1", "1.", ".5", "-.5e1", "00012.50", "1e5", "1E+5", "1e-5", "0.1", "0.35444599999999998", "123456789012345678",
+        "9007199254740993", "9007199254740993e-3", "9007199254740993e5", "1.7976931348623157e308", "4.9e-324", "2.2250738585072011e-308", "1e-400", "0e999999999999",
+        "0.1000000000000000055511151231257827021181583404541015625", "9999999999999999999e22", "9999999999999999999e-22", "18446744073709551615", "8.5e-21",
+        "100000000000000000000000000000000", "0.000000000000000000000000000000000001", "6929495644600919.5", "3.1415926535897932384626433832795028841971"};
+    static const char *const bad[] = {"", "-", "+", ".", "e5", "-.e5", "1e", "1e+", "nan", "inf", "x1", "--1"};
+    uint64_t seed = 88172645463325252u;
+    size_t i;
+    int k;
+    char text[64];
+    double x;
+    for (i = 0; i < sizeof good / sizeof *good; i++) {
+        const double want = strtod(good[i], NULL);
+        const char *const end = mio_number(good[i], &x);
+        CHECK_MSG(end && !*end && memcmp(&x, &want, sizeof x) == 0, "%s: %.17g", good[i], x);
+    }
+    for (i = 0; i < sizeof bad / sizeof *bad; i++) CHECK_MSG(!mio_number(bad[i], &x), "'%s' is no number", bad[i]);
+    for (k = 0; k < 100000; k++) {              /* correct rounding, where the quick way is tried and near where it is not */
+        uint64_t m;
+        double want;
+        seed ^= seed << 13; seed ^= seed >> 7; seed ^= seed << 17;
+        m = seed >> seed % 50;
+        snprintf(text, sizeof text, "%llue%d", (unsigned long long)m, (int)(seed % 53) - 26);
+        want = strtod(text, NULL);
+        (void)mio_number(text, &x);
+        if (x != want) { CHECK_MSG(0, "%s: %.17g, not %.17g", text, x, want); break; }
+    }
+}
+
+/* ---- meshes as text ---- */
+
+static void tmio_test_obj(void)
+{
+    mio_mesh m = tmio_good("a.obj", "# c\nmtllib x.mtl\no thing\nv 0 0 0\nv 1 0 0 0.5\nv 1 1 0 0.1 0.2 0.3\nvt 0 0\nvn 0 0 1\nv 0 1 0 # end\n"
+                                    "g a b\nusemtl m\ns off\nf 1 2 3\nf 1/1 2/2 3/3 4/4\nf 1//1 3//1 4//1\nf 1/1/1 2/1/1 3/1/1\nf -4 -3 -2\nl 1 2\np 1\nwhat ever\n"
+                                    "f 1 2\nf 3\nf\n", "OBJ", 4, 5);
+    CHECK(tmio_vertex_is(&m, 2, 1, 1, 0) && tmio_face_is(&m, 0, 3, 0, 1, 2, 0) && tmio_face_is(&m, 1, 4, 0, 1, 2, 3));
+    CHECK(tmio_face_is(&m, 2, 3, 0, 2, 3, 0) && tmio_face_is(&m, 3, 3, 0, 1, 2, 0) && tmio_face_is(&m, 4, 3, 0, 1, 2, 0) && m.n_small_faces == 3);
+    mio_free(&m);
+    m = tmio_good("b.obj", "f 1 2 3\r\nv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf -1 -3 \\\r\n  -2\r\nv 1 \\\n2 3", "OBJ", 4, 2);      /* forward, joined */
+    CHECK(tmio_face_is(&m, 0, 3, 0, 1, 2, 0) && tmio_face_is(&m, 1, 3, 2, 0, 1, 0) && tmio_vertex_is(&m, 3, 1, 2, 3));
+    mio_free(&m);
+    tmio_fine("c.obj", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r", "OBJ", 3, 1);
+    tmio_fine("d.obj", "\t v\t0 0\t0  \n  v 1 0 0\nv 0 1 0\n f  1  2  3  ", "OBJ", 3, 1);
+    tmio_fine("e.obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 0\n", "OBJ", 2, 0);
+    tmio_fine("f.obj", "v 1e0 -1.5E-3 +2\nv .5 5. 0\nv 0 0 0#c\nf 1 2 3#c\n", "OBJ", 3, 1);
+
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 99999999\n", "x.obj:5", "99999999");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\nv 0 0\n", "x.obj:5", "3 coordinates");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\nf 1 2 5", "x.obj:4", "9999999999");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", "x.obj:4", "index 0");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 -4\n", "x.obj:5", "-4");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "x.obj:4", "3 vertices");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\nf 1 9\n", "x.obj:5", "9");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3x\n", "x.obj:4", "'3x'");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 1.5\n", "x.obj:4", "'1.5'");
+    tmio_bad("x.obj", "v 0 0 0\r\nv nan 0 0\r\n", "x.obj:2", "'nan' is not a finite");
+    tmio_bad("x.obj", "v 0 0 0\rv 0 -Infinity 0\r", "x.obj:2", "'-Infinity' is not a finite");
+    tmio_bad("x.obj", "v 0 0 1e999\n", "x.obj:1", "'1e999' is too large");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 \\\n 0\nv 0 \x01two\x80 0", "x.obj:4", "'?two?' is not a number");
+    tmio_bad("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", "x.obj:3", "this line has 2");
+    tmio_bad("x.obj", "v 0 0 0\nv", "x.obj:2", "this line has 0");
+    tmio_bad("x.obj", "v 0 0 0\nv 0 1 # 2\n", "x.obj:2", "this line has 2");
+    tmio_bad("x.obj", "v 0 0 0x10\n", "x.obj:1", "'0x10'");
+    tmio_bad("x.obj", "v 0 0 1234567890123456789012345678901234567890123456789x\n", "x.obj:1", "'1234567890123456789012345678901234567...'");
+    tmio_bad("x.obj", "# nothing here\n", "x.obj", "no vertices found");
+    tmio_bad("x.obj", "f 1 2 3\n", "x.obj", "no vertices found");
+    tmio_bad("x.obj", "", "x.obj", "no vertices found");
+    tmio_bad("x.dat", "", "x.dat", "no vertices found");
+    tmio_bad_bytes("x.obj", "v 0 0 \0 1\n", 11, "x.obj:1", "'?' is not a number");
+}
+
+static void tmio_test_off(void)
+{
+    const char *const cube = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+    mio_mesh m;
+    char text[512];
+    m = tmio_good("a.off", "OFF # c\n# c\n\n4 3 0\n0 0 0\n1 0 0 # c\n\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3 255 0 0\n2 0 1\n", "OFF", 4, 2);
+    CHECK(tmio_vertex_is(&m, 2, 1, 1, 0) && tmio_face_is(&m, 0, 3, 0, 1, 2, 0) && tmio_face_is(&m, 1, 4, 0, 1, 2, 3) && m.n_small_faces == 1);
+    mio_free(&m);
+    tmio_fine("b.off", "COFF 3 1 0\r\n0 0 0 255 0 0 255\r\n1 0 0 255 0 0 255\r\n0 1 0 255 0 0 255\r\n3 0 1 2 0.5 0.5 0.5", "OFF", 3, 1);
+    tmio_fine("c.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2", "OFF", 3, 1);
+    tmio_fine("d.off", "STCNOFF\n3 1\n0 0 0 0 0 1 9 9\n1 0 0 0 0 1 9 9\n0 1 0 0 0 1 9 9\n3 0 1 2", "OFF", 3, 1);
+    tmio_fine("e.off", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "OFF", 3, 1);                      /* no keyword */
+    tmio_fine("e", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "OFF", 3, 1);                          /* nor an extension */
+    tmio_fine("f.off", "OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2", "OFF", 3, 1);                        /* one line */
+    tmio_fine("g.off", "OFF\n3 1 0\n0 0\n0\n1 0 0 0 1 0\n3 0\n1 2\n", "OFF", 3, 1);                /* a stream */
+    tmio_fine("h.off", "OFF\n3\n1 0\n0 0\n0 7 7\n1 0 0 7 7\n0 1 0 7 7\n3 0\n1 2 7 7\n", "OFF", 3, 1);     /* spread, with colours */
+    tmio_fine("i.off", "off\r3 0 0\r0 0 0\r1 0 0\r2 0 0\r", "OFF", 3, 0);
+    tmio_fine("j.obj", "OFF\n1 0 0\n1 2 3\n", "OFF", 1, 0);                                        /* content before extension */
+
+    snprintf(text, sizeof text, "OFF\n4 1 0\n%s3 0 1 4\n", cube);
+    tmio_bad("x.off", text, "x.off:7", "4 is out of range");
+    snprintf(text, sizeof text, "OFF\n4 1 0\n%s3 0 1 -1\n", cube);
+    tmio_bad("x.off", text, "x.off:7", "-1 is out of range");
+    snprintf(text, sizeof text, "OFF\n4 2 0\n%s3 0 1 2\n", cube);
+    tmio_bad("x.off", text, "x.off:8", "before face 2 of 2");
+    snprintf(text, sizeof text, "OFF\n4 1 0\n%s3 0 1\n", cube);
+    tmio_bad("x.off", text, "x.off:7", "has only 2");
+    snprintf(text, sizeof text, "OFF\n4 1 0\n%s3 0 1 b\n", cube);
+    tmio_bad("x.off", text, "x.off:7", "'b'");
+    snprintf(text, sizeof text, "OFF\n4 1 0\n%s-3 0 1 2\n", cube);
+    tmio_bad("x.off", text, "x.off:7", "'-3'");
+    snprintf(text, sizeof text, "OFF\n4 1 0\n%s4000000000 0 1 2\n", cube);
+    tmio_bad("x.off", text, "x.off:7", "'4000000000'");
+    snprintf(text, sizeof text, "OFF\n6 1 0\n%s3 0 1 2\n", cube);
+    tmio_bad("x.off", text, "x.off:8", "before vertex 6 of 6");
+    tmio_bad("x.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "x.off:4", "this line has 2");
+    tmio_bad("x.off", "OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "x.off:4", "'inf'");
+    tmio_bad("x.off", "OFF\n3000000000 1 0\n0 0 0\n", "x.off:2", "3000000000 vertices are more");
+    tmio_bad("x.off", "OFF\n1 99999999999999999999 0\n0 0 0\n", "x.off:2", "faces");
+    tmio_bad("x.off", "OFF\n2000000000 2000000000 0\n0 0 0\n", "x.off:4", "before vertex 2 of 2000000000");
+    tmio_bad("x.off", "OFF\n-1 1 0\n0 0 0\n", "x.off:2", "'-1'");
+    tmio_bad("x.off", "OFF\nx\n", "x.off:2", "'x'");
+    tmio_bad("x.off", "OFF\n", "x.off:2", "number of vertices");
+    tmio_bad("x.off", "OFF\n0 0 0\n", "x.off", "no vertices found");
+    tmio_bad("x.off", "OFF BINARY\n3 1 0\n", "x.off:1", "binary");
+    tmio_bad("x.off", "nOFF\n3\n3 1 0\n", "x.off:1", "nOFF");
+}
+
+static void tmio_test_xyz(void)
+{
+    mio_mesh m = tmio_good("a.xyz", "# c\n// c\n0 0 0\n1,2,3\n1, 2 ,4 9 9\n\n 5\t6\t7 # c", "XYZ", 4, 0);
+    CHECK(tmio_vertex_is(&m, 1, 1, 2, 3) && tmio_vertex_is(&m, 3, 5, 6, 7) && m.face_ptr && m.face_ptr[0] == 0);
+    mio_free(&m);
+    tmio_fine("b.xyz", "2\n0 0 0\r\n1 0 0", "XYZ", 2, 0);
+    tmio_fine("c", "0 0 0\n1 0 0\n", "XYZ", 2, 0);
+    tmio_fine("d.xyz", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "XYZ", 5, 0);      /* would be OFF, but for its name */
+    tmio_fine("e.obj", "0.5 0 0\n1 0 0\n", "XYZ", 2, 0);
+    tmio_fine("f.txt", "4 0 0\n1 0 0\n1 1 0\n", "XYZ", 3, 0);
+    tmio_bad("x.xyz", "0 0 0\n1 0\n", "x.xyz:2", "this line has 2");
+    tmio_bad("x.xyz", "0 0 0\n\n1 0 a\n", "x.xyz:3", "'a' is not a number");
+    tmio_bad("x.xyz", "0 0 0\n1 0 NaN\n", "x.xyz:2", "'NaN' is not a finite");
+    tmio_bad("x.xyz", "5\n0 0 0\n1 0 0\n", "x.xyz:1", "5 points are announced, 2 found");
+    tmio_bad("x.xyz", "# c\n", "x.xyz", "no vertices found");
+    tmio_bad("x.xyz", "C 0 0 0\n", "x.xyz:1", "'C'");
+    tmio_bad("x.dat", "what is this\n", "x.dat", "OBJ, OFF, PLY, STL, XYZ");
+    tmio_bad("x.dat", "\x1f\x8b\x08", "x.dat", "gzip");
+}
+
+/* ---- PLY ---- */
+
+static void tmio_test_ply_ascii(void)
+{
+    const char *const head = "ply\nformat ascii 1.0\ncomment made by hand\nobj_info x\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    char text[1024];
+    mio_mesh m = tmio_good("a.ply", "ply\r\nformat ascii 1.0\r\nelement extra 2\r\nproperty list uchar float w\r\nproperty int k\r\n"
+                                    "element face 2\r\nproperty uchar red\r\nproperty list uint8 int32 vertex_index\r\nproperty list uchar float uv\r\n"
+                                    "element vertex 4\r\nproperty uchar red\r\nproperty float64 z\r\nproperty double y\r\nproperty float32 x\r\nend_header\r\n"
+                                    "2 0.5 nan 7\r\n0 7\r\n9 3 0 1 2 0\r\n9 4 0 1 2 3 2 0.1 0.2\r\n9 3 2 1\r\n9 0 0 1\r\n9 0 1 1\r\n9 0 1 0\r\n", "PLY ascii", 4, 2);
+    CHECK(tmio_vertex_is(&m, 0, 1, 2, 3) && tmio_face_is(&m, 0, 3, 0, 1, 2, 0) && tmio_face_is(&m, 1, 4, 0, 1, 2, 3));
+    mio_free(&m);
+    m = tmio_good("b.ply", "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 2\n"
+                           "property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 2\n8 0 1 2 3 -1 4 3 2\n4 0 1 -1 2\n", "PLY ascii", 5, 3);
+    CHECK(tmio_face_is(&m, 0, 3, 0, 1, 2, 0) && tmio_face_is(&m, 1, 3, 2, 1, 3, 0) && tmio_face_is(&m, 2, 3, 4, 3, 2, 0));
+    mio_free(&m);
+    snprintf(text, sizeof text, "%selement face 1\nproperty list uchar uint vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 3 0\n1 2", head);
+    tmio_fine("c.ply", text, "PLY ascii", 3, 1);                        /* a stream */
+    snprintf(text, sizeof text, "%send_header\n0 0 0\n1 0 0\n0 1 0\n", head);
+    tmio_fine("d", text, "PLY ascii", 3, 0);
+    tmio_fine("e.ply", "ply\rformat ascii 1.0\relement vertex 1\rproperty float x\rproperty float y\rproperty float z\rend_header\r1 2 3\r", "PLY ascii", 1, 0);
+
+    snprintf(text, sizeof text, "%selement face 1\nproperty list uchar uint vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", head);
+    tmio_bad("x.ply", text, "x.ply:15", "3 is out of range");
+    snprintf(text, sizeof text, "%selement face 1\nproperty list uchar uint vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n", head);
+    tmio_bad("x.ply", text, "x.ply:15", "too few numbers for face 0");
+    snprintf(text, sizeof text, "%selement face 1\nproperty list uchar uint vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", head);
+    tmio_bad("x.ply", text, "x.ply:15", "-3");
+    snprintf(text, sizeof text, "%selement face 1\nproperty list uchar uint vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n", head);
+    tmio_bad("x.ply", text, "x.ply:15", "1.5");
+    snprintf(text, sizeof text, "%selement face 1\nproperty list uchar uint vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n4000000000 0 1\n", head);
+    tmio_bad("x.ply", text, "x.ply:15", "4000000000");
+    snprintf(text, sizeof text, "%send_header\n0 0 0\n1 0 0 0\n0 1 0\n", head);
+    tmio_bad("x.ply", text, "x.ply:11", "more numbers");
+    snprintf(text, sizeof text, "%send_header\n0 0 0\n1 0\n0 1 0\n", head);
+    tmio_bad("x.ply", text, "x.ply:11", "too few numbers for vertex 1");
+    snprintf(text, sizeof text, "%send_header\n0 0 0\n1 0 0\n", head);
+    tmio_bad("x.ply", text, "x.ply:12", "ends inside vertex 2");
+    snprintf(text, sizeof text, "%send_header\n0 0 0\n1 nan 0\n0 1 0\n", head);
+    tmio_bad("x.ply", text, "x.ply:11", "'nan'");
+    snprintf(text, sizeof text, "%send_header\n0 0 0\n1 zero 0\n0 1 0\n", head);
+    tmio_bad("x.ply", text, "x.ply:11", "'zero'");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex 2000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n", "x.ply:9", "inside vertex 1");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex 3000000000\nproperty float x\n", "x.ply:3", "3000000000");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex -1\n", "x.ply:3", "'-1'");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n", "x.ply:3", "no property 'z'");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty flout x\n", "x.ply:4", "'flout'");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty\n", "x.ply:4", "missing");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex\n", "x.ply:3", "missing");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex 1\nelement vertex 1\n", "x.ply:4", "second");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nproperty float x\n", "x.ply:3", "before the first element");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty list float int vertex_indices\n", "x.ply:4", "integer");
+    tmio_bad("x.ply", "ply\nformat morse 1.0\n", "x.ply:2", "'morse'");
+    tmio_bad("x.ply", "ply\nfromat ascii 1.0\n", "x.ply:2", "'fromat'");
+    tmio_bad("x.ply", "ply\nelement vertex 0\nend_header\n", "x.ply:3", "which format");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nelement vertex 1\n", "x.ply:4", "inside the header");
+    tmio_bad("x.ply", "ply\nformat ascii 1.0\nend_header\n", "x.ply", "no vertices found");
+    tmio_bad("x.ply", "plx\n", "x.ply:1", "'ply'");
+    snprintf(text, sizeof text, "%selement face 1\nproperty uchar vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3\n", head);
+    tmio_bad("x.ply", text, "x.ply:9", "no list 'vertex_indices'");
+}
+
+/* Vertices of mixed types with a colour and a list between, faces with a flag before and a list behind. `plain`: the usual layout. */
+static void tmio_make_ply(tmio_bytes *t, int big, int plain)
+{
+    static const double xyz[4][3] = {{0.5, 0, -1}, {1, 0, 2}, {1, 1, 3}, {0, 1, -4}};
+    int v, k;
+    t->n = 0;
+    t->big = big;
+    tmio_text(t, big ? "ply\nformat binary_big_endian 1.0\n" : "ply\nformat binary_little_endian 1.0\n");
+    tmio_text(t, plain ? "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                       : "element vertex 4\nproperty uchar red\nproperty double x\nproperty list ushort short w\nproperty float y\nproperty short z\n"
+                         "element junk 2\nproperty list uint double q\nproperty char k\n"
+                         "element face 3\nproperty ushort flag\nproperty list int ushort vertex_indices\nproperty list uchar float uv\nend_header\n");
+    for (v = 0; v < 4; v++) {
+        if (plain) { for (k = 0; k < 3; k++) tmio_float(t, xyz[v][k]); continue; }
+        tmio_int(t, 200, 1); tmio_double(t, xyz[v][0]);
+        tmio_int(t, v, 2); for (k = 0; k < v; k++) tmio_int(t, -k, 2);
+        tmio_float(t, xyz[v][1]); tmio_int(t, (int64_t)xyz[v][2], 2);
+    }
+    if (!plain) { tmio_int(t, 1, 4); tmio_double(t, 3); tmio_int(t, -1, 1); tmio_int(t, 0, 4); tmio_int(t, -1, 1); }
+    for (k = 0; k < 2; k++) {
+        if (!plain) tmio_int(t, 77, 2);
+        tmio_int(t, 3 + k, plain ? 1 : 4);
+        for (v = 0; v < 3 + k; v++) tmio_int(t, v, plain ? 4 : 2);
+        if (!plain) { tmio_int(t, 1, 1); tmio_float(t, 0.5); }
+    }
+    if (!plain) { tmio_int(t, 77, 2); tmio_int(t, 2, 4); tmio_int(t, 0, 2); tmio_int(t, 1, 2); tmio_int(t, 0, 1); }
+}
+
+static void tmio_test_ply_binary(void)
+{
+    static tmio_bytes t;
+    mio_mesh m;
+    mio_error e;
+    int kind;
+    for (kind = 0; kind < 4; kind++) {
+        tmio_make_ply(&t, kind & 1, kind >> 1);
+        CHECK_MSG(tmio_load_bytes(&m, &e, kind & 1 ? "a.ply" : "a.off", t.b, t.n) == 0, "%s", e.text);
+        CHECK(m.n == 4 && m.n_faces == 2 && m.n_small_faces == (kind < 2) && m.format && strcmp(m.format, "PLY binary") == 0);
+        CHECK(tmio_vertex_is(&m, 0, 0.5, 0, -1) && tmio_vertex_is(&m, 3, 0, 1, -4));
+        CHECK(tmio_face_is(&m, 0, 3, 0, 1, 2, 0) && tmio_face_is(&m, 1, 4, 0, 1, 2, 3));
+        mio_free(&m);
+    }
+    tmio_make_ply(&t, 0, 1);
+    tmio_bad_bytes("x.ply", t.b, t.n - 1, "x.ply", "face 1: the file ends here");
+    tmio_bad_bytes("x.ply", t.b, t.n - 31, "x.ply", "2 of element face, but the file ends after 1");
+    tmio_bad_bytes("x.ply", t.b, t.n - 50, "x.ply", "4 of element vertex");
+    t.b[t.n - 4] = 4;                           /* the last corner */
+    tmio_bad_bytes("x.ply", t.b, t.n, "x.ply", "face 1: vertex index 4 is out of range");
+    t.b[t.n - 1] = 255;
+    tmio_bad_bytes("x.ply", t.b, t.n, "x.ply", "face 1: vertex index -16777212");
+    tmio_make_ply(&t, 0, 1);
+    t.b[t.n - 30 - 4] = 0xc0;                   /* the last coordinate */
+    t.b[t.n - 30 - 3] = 0x7f;
+    t.b[t.n - 30 - 1] = t.b[t.n - 30 - 2] = 0xff;
+    tmio_bad_bytes("x.ply", t.b, t.n, "x.ply", "vertex 3: z is");
+    tmio_make_ply(&t, 0, 0);
+    tmio_bad_bytes("x.ply", t.b, t.n - 1, "x.ply", "face 2: the file ends here");
+    t.n = 0;                                    /* lines that end with \r, and data that begin with \n */
+    t.big = 0;
+    tmio_text(&t, "ply\rformat binary_little_endian 1.0\relement vertex 1\rproperty char x\rproperty char y\rproperty char z\rend_header\r\n\r\n");
+    CHECK_MSG(tmio_load_bytes(&m, &e, "b.ply", t.b, t.n) == 0 && tmio_vertex_is(&m, 0, 10, 13, 10), "%s", e.text);
+    mio_free(&m);
+    t.n = 0;
+    tmio_text(&t, "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 1\r\nproperty char x\r\nproperty char y\r\nproperty char z\r\n"
+                  "element nothing 9000000000\r\nend_header\r\n\n\r\n");
+    CHECK_MSG(tmio_load_bytes(&m, &e, "c.ply", t.b, t.n) == 0 && tmio_vertex_is(&m, 0, 10, 13, 10), "%s", e.text);
+    mio_free(&m);
+}
+
+/* ---- STL ---- */
+
+static void tmio_make_stl(tmio_bytes *t, const char *head)
+{
+    static const int corner[2][3] = {{0, 1, 2}, {2, 1, 3}};
+    static const double xyz[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5}};
+    int f, c, k;
+    t->n = 0;
+    t->big = 0;
+    tmio_text(t, head);
+    while (t->n < 80) tmio_int(t, 0, 1);
+    tmio_int(t, 2, 4);
+    for (f = 0; f < 2; f++) {
+        for (k = 0; k < 3; k++) tmio_float(t, 0);
+        for (c = 0; c < 3; c++) for (k = 0; k < 3; k++) tmio_float(t, f && xyz[corner[f][c]][k] == 0 ? -0.0 : xyz[corner[f][c]][k]);
+        tmio_int(t, 0, 2);
+    }
+}
+
+static void tmio_test_stl(void)
+{
+    static tmio_bytes t;
+    mio_mesh m;
+    mio_error e;
+    int kind;
+    for (kind = 0; kind < 2; kind++) {
+        tmio_make_stl(&t, kind ? "solid facet, it says" : "");
+        CHECK_MSG(tmio_load_bytes(&m, &e, kind ? "a.stl" : "a", t.b, t.n) == 0, "%s", e.text);
+        CHECK(m.n == 4 && tmio_vertex_is(&m, 3, 1, 1, 0.5) && tmio_face_is(&m, 0, 3, 0, 1, 2, 0) && tmio_face_is(&m, 1, 3, 2, 1, 3, 0));
+        mio_free(&m);
+    }
+    tmio_bad_bytes("x.stl", t.b, t.n - 1, "x.stl", "the file ends in triangle 1");
+    tmio_make_stl(&t, "");
+    tmio_bad_bytes("x.stl", t.b, 60, "x.stl", "inside the header");
+    t.b[80] = t.b[81] = t.b[82] = t.b[83] = 255;
+    tmio_bad_bytes("x.stl", t.b, t.n, "x.stl", "4294967295 triangles");
+    tmio_make_stl(&t, "");
+    t.b[84 + 50 + 12 + 12 + 7] = 0x7f;          /* second face, second corner, y */
+    t.b[84 + 50 + 12 + 12 + 6] = 0x80;
+    tmio_bad_bytes("x.stl", t.b, t.n, "x.stl", "face 1: y of corner 1 is inf");
+
+    m = tmio_good("b.stl", "solid my facet\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1e0 0\n  endloop\n endfacet\nendsolid my facet\n"
+                           "SOLID\r\nFACET NORMAL nan nan nan OUTER LOOP VERTEX 0 1 0 VERTEX 1 -0 0 VERTEX 1 1 0 ENDLOOP ENDFACET\r\nENDSOLID\r\n", "STL ascii", 4, 2);
+    CHECK(tmio_face_is(&m, 0, 3, 0, 1, 2, 0) && tmio_face_is(&m, 1, 3, 2, 1, 3, 0));
+    mio_free(&m);
+    tmio_bad("x.stl", "solid\nendsolid\n", "x.stl", "no vertices found");
+    tmio_bad("x.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n", "x.stl:6", "'vertex'");
+    tmio_bad("x.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 inf\n", "x.stl:5", "'inf'");
+    tmio_bad("x.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n", "x.stl:7", "'endfacet'");
+    tmio_bad("x.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n", "x.stl:9", "endsolid");
+    tmio_bad("x.stl", "solid a\nfacet normal 0 0 1\nvertex 0 0 0\n", "x.stl:3", "'vertex'");
+}

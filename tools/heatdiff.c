@@ -1,0 +1,2112 @@
+/* heatdiff.c - heat diffusion kernels on meshes, from the command line
+
+   Build from the top folder:   cc -O2 tools/heatdiff.c -o heatdiff -lm
+   Use:                         heatdiff --help, heatdiff COMMAND --help, heatdiff demo
+
+   The file reads from bottom to top: what is used is defined above its use, and main is the last function. File formats
+   are in meshio.h, pictures in picture.h, the shape of the demo in shapes.h, all mathematics in heatdiff.h.
+
+   Rules of the whole tool: results go to the output, everything meant for people to standard error. Functions that can
+   fail return an exit code (0 is success) after they have printed the one error line, by fail() and nowhere else.
+
+   Licence: MIT or public domain, at your choice; see the end of heatdiff.h. */
+
+/* ==== platform ==== */
+
+#if !defined(_WIN32) && !defined(HEATDIFF_TOOL_PLAIN)
+#define TOOL_POSIX 1          /* signals, terminals, a fine clock; without it the tool is plain C99 */
+#ifndef _XOPEN_SOURCE
+#define _XOPEN_SOURCE 700
+#endif
+#endif
+
+#define HEATDIFF_IMPLEMENTATION
+#include "../heatdiff.h"
+#include "meshio.h"
+#include "picture.h"
+#include "shapes.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#ifdef TOOL_POSIX
+#include <sys/stat.h>
+#include <unistd.h>
+#elif defined(_WIN32)
+#include <direct.h>
+#include <io.h>
+#endif
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+enum { DONE = 0, FAILED = 1, USAGE = 2, INTERRUPTED = 130 };   /* exit codes */
+
+#if defined(__GNUC__)
+#define TOOL_PRINTF(f, a) __attribute__((format(printf, f, a)))
+#else
+#define TOOL_PRINTF(f, a)
+#endif
+
+/* Seconds on a clock that only runs forward, from an unknown start. */
+static double now(void)
+{
+#ifdef TOOL_POSIX
+    struct timespec ts;
+    if (clock_gettime(CLOCK_MONOTONIC, &ts) == 0) return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
+#endif
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+static int stderr_is_terminal(void)
+{
+#ifdef TOOL_POSIX
+    return isatty(STDERR_FILENO);
+#elif defined(_WIN32)
+    return _isatty(_fileno(stderr));
+#else
+    return 0;
+#endif
+}
+
+static int stdout_is_terminal(void)
+{
+#ifdef TOOL_POSIX
+    return isatty(STDOUT_FILENO);
+#elif defined(_WIN32)
+    return _isatty(_fileno(stdout));
+#else
+    return 0;
+#endif
+}
+
+static int make_folder(const char *path)
+{
+#ifdef TOOL_POSIX
+    return mkdir(path, 0777) == 0 || errno == EEXIST;
+#elif defined(_WIN32)
+    return _mkdir(path) == 0 || errno == EEXIST;
+#else
+    (void)path;          /* plain C cannot make folders; writing into it will tell whether it is there */
+    return 1;
+#endif
+}
+
+/* ==== progress bar ==== */
+
+enum { BAR_CELLS = 24, BAR_TEXT = 72 };
+
+static struct { int enabled, visible; double last; } bar;
+
+static void bar_hide(void)
+{
+    if (!bar.visible) return;
+    fprintf(stderr, "\r%*s\r", BAR_TEXT, "");
+    fflush(stderr);
+    bar.visible = 0;
+}
+
+/* Drawn at most ten times a second: a terminal is slower than the arithmetic. */
+static void bar_show(const char *stage, double done)
+{
+    char cells[BAR_CELLS + 1];
+    int full, i;
+    const double time = bar.enabled ? now() : 0.0;
+    if (!bar.enabled || time - bar.last < 0.1) return;
+    done = done >= 0 && done <= 1 ? done : 0;
+    full = (int)(done * BAR_CELLS);
+    for (i = 0; i < BAR_CELLS; i++) cells[i] = i < full ? '#' : '.';
+    cells[BAR_CELLS] = 0;
+    fprintf(stderr, "\r[%s] %3.0f%% %-38.38s", cells, 100 * done, stage ? stage : "");
+    fflush(stderr);
+    bar.visible = 1;
+    bar.last = time;
+}
+
+/* ==== the one place that reports errors ==== */
+
+/* Prints "heatdiff: error: ..." as exactly one line, whatever a file name may contain, and returns code. */
+TOOL_PRINTF(2, 3) static int fail(int code, const char *format, ...)
+{
+    char text[1500];
+    size_t i;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    for (i = 0; text[i]; i++)
+        if (iscntrl((unsigned char)text[i])) text[i] = '?';
+    bar_hide();
+    fprintf(stderr, "heatdiff: error: %s\n", text);
+    return code;
+}
+
+static int fail_memory(const char *what)
+{
+    return fail(FAILED, "out of memory for %s", what);
+}
+
+/* ==== Ctrl-C ==== */
+/* During computation Ctrl-C raises a flag that the library's progress callback sees, and the run ends in order. During
+ * loading and writing, and at the second Ctrl-C, there is nothing to wait for: the handler removes the unfinished file and
+ * leaves at once. */
+
+static struct {
+    volatile sig_atomic_t asked;     /* Ctrl-C came */
+    volatile sig_atomic_t patient;   /* computing: the flag will be seen */
+} interrupt;
+
+static void on_interrupt(int number)
+{
+    if (interrupt.patient && !interrupt.asked) {
+        interrupt.asked = 1;
+#ifndef TOOL_POSIX
+        signal(number, on_interrupt);
+#endif
+        return;
+    }
+    (void)number;
+    mio_remove_temporary();
+#ifdef TOOL_POSIX
+    if (bar.visible && write(STDERR_FILENO, "\n", 1) < 0) { /* nobody is left to be told */ }
+    _exit(INTERRUPTED);
+#else
+    _Exit(INTERRUPTED);
+#endif
+}
+
+static void catch_interrupts(void)
+{
+#ifdef TOOL_POSIX
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = on_interrupt;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+#else
+    signal(SIGINT, on_interrupt);
+#endif
+}
+
+/* Ends the computing part: from here on Ctrl-C acts at once. One that came just before counts too. */
+static int leave_computation(int code)
+{
+    interrupt.patient = 0;
+    return interrupt.asked ? INTERRUPTED : code;
+}
+
+static hd_progress on_progress(void *user, const char *stage, double done)
+{
+    (void)user;
+    if (interrupt.asked) return HD_PROGRESS_CANCEL;
+    bar_show(stage, done);
+    return HD_PROGRESS_CONTINUE;
+}
+
+/* What was printed on standard output has arrived, or the run failed. */
+static int close_stdout(void)
+{
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout)) return DONE;
+    return fail(FAILED, "standard output: cannot write: %s", errno ? strerror(errno) : "it is closed");
+}
+
+/* ==== threads ==== */
+/* Where threads need no extra link flag (or the flag is given), a pool of them runs the library's parallel loops, so that
+ * the plain build uses the whole machine. With OpenMP the library does it by itself; elsewhere all is serial. */
+
+#if defined(TOOL_POSIX) && !defined(_OPENMP)
+#if defined(_REENTRANT) || defined(__APPLE__) || (defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 34))
+#define TOOL_THREADS 1
+#include <pthread.h>
+#endif
+#endif
+
+#ifdef TOOL_THREADS
+
+enum { MAX_THREADS = 256 };
+
+typedef struct pool_seat { struct pool *pool; int32_t worker; } pool_seat;
+
+/* One loop at a time. Sleeping workers wake when round changes, and take tasks by the next index until there are none. */
+typedef struct pool {
+    pthread_mutex_t lock;
+    pthread_cond_t start, finish;
+    pthread_t thread[MAX_THREADS];
+    pool_seat seat[MAX_THREADS];
+    int n_threads, active, leave;    /* threads besides the caller; those still busy in this round */
+    uint64_t round;
+    int64_t n_tasks, next;
+    hd_task task;
+    void *arg;
+} pool;
+
+/* Takes tasks until none is left. Called and left with the lock held. */
+static void pool_work(pool *p, int32_t worker)
+{
+    while (p->next < p->n_tasks) {
+        const int64_t i = p->next++;
+        pthread_mutex_unlock(&p->lock);
+        p->task(p->arg, i, worker);
+        pthread_mutex_lock(&p->lock);
+    }
+}
+
+static void *pool_thread(void *arg)
+{
+    const pool_seat *seat = (const pool_seat *)arg;
+    pool *p = seat->pool;
+    uint64_t seen = 0;
+    pthread_mutex_lock(&p->lock);
+    for (;;) {
+        while (p->round == seen && !p->leave) pthread_cond_wait(&p->start, &p->lock);
+        if (p->leave) break;
+        seen = p->round;
+        pool_work(p, seat->worker);
+        if (--p->active == 0) pthread_cond_signal(&p->finish);
+    }
+    pthread_mutex_unlock(&p->lock);
+    return NULL;
+}
+
+static void pool_run(void *user, int64_t n_tasks, hd_task task, void *arg)
+{
+    pool *p = (pool *)user;
+    pthread_mutex_lock(&p->lock);
+    p->task = task;
+    p->arg = arg;
+    p->n_tasks = n_tasks;
+    p->next = 0;
+    p->active = p->n_threads;
+    p->round++;
+    pthread_cond_broadcast(&p->start);
+    pool_work(p, 0);
+    while (p->active > 0) pthread_cond_wait(&p->finish, &p->lock);
+    pthread_mutex_unlock(&p->lock);
+}
+
+/* Signals stay with the main thread. Fewer threads than wished, or none, is no error. */
+static void pool_begin(pool *p, int n_threads)
+{
+    sigset_t all, old;
+    memset(p, 0, sizeof *p);
+    pthread_mutex_init(&p->lock, NULL);
+    pthread_cond_init(&p->start, NULL);
+    pthread_cond_init(&p->finish, NULL);
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
+    for (; p->n_threads < n_threads - 1 && p->n_threads < MAX_THREADS; p->n_threads++) {
+        pool_seat *seat = &p->seat[p->n_threads];
+        seat->pool = p;
+        seat->worker = p->n_threads + 1;
+        if (pthread_create(&p->thread[p->n_threads], NULL, pool_thread, seat) != 0) break;
+    }
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+}
+
+static void pool_end(pool *p)
+{
+    int i;
+    pthread_mutex_lock(&p->lock);
+    p->leave = 1;
+    pthread_cond_broadcast(&p->start);
+    pthread_mutex_unlock(&p->lock);
+    for (i = 0; i < p->n_threads; i++) pthread_join(p->thread[i], NULL);
+    pthread_cond_destroy(&p->start);
+    pthread_cond_destroy(&p->finish);
+    pthread_mutex_destroy(&p->lock);
+}
+
+static int processors(void)
+{
+    const long n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n < 1 ? 1 : n > MAX_THREADS ? MAX_THREADS : (int)n;
+}
+
+#endif
+
+/* ==== words ==== */
+/* Names on the command line and in reports, one table for both directions. */
+
+typedef struct word { const char *name; int value; } word;
+
+static const word LAPLACIANS[] = {
+    { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT }, { NULL, 0 } };
+static const word POLES[] = { { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { NULL, 0 } };
+static const word METHODS[] = { { "auto", HD_METHOD_AUTO }, { "iterative", HD_METHOD_ITERATIVE }, { NULL, 0 } };
+static const word SOLVERS[] = {
+    { "cocg", HD_SOLVER_COCG }, { "cocr", HD_SOLVER_COCR }, { "minres", HD_SOLVER_MINRES }, { "lanczos", HD_SOLVER_LANCZOS },
+    { NULL, 0 } };
+static const word PRECONDS[] = {
+    { "none", HD_PRECOND_NONE }, { "jacobi", HD_PRECOND_JACOBI }, { "ssor", HD_PRECOND_SSOR }, { "ildl", HD_PRECOND_ILDL },
+    { "mildl", HD_PRECOND_MILDL }, { NULL, 0 } };
+static const word KERNELS[] = { { "operator", HD_KERNEL_OPERATOR }, { "symmetric", HD_KERNEL_SYMMETRIC }, { NULL, 0 } };
+
+static const word COLORMAPS[] = {
+    { "ember", PIC_MAP_EMBER }, { "lagoon", PIC_MAP_LAGOON }, { "diverging", PIC_MAP_DIVERGING }, { "grey", PIC_MAP_GREY }, { NULL, 0 } };
+
+static const word *find_word(const word *words, const char *name)
+{
+    for (; words->name; words++)
+        if (strcmp(words->name, name) == 0) return words;
+    return NULL;
+}
+
+static const char *word_of(const word *words, int value)
+{
+    for (; words->name; words++)
+        if (words->value == value) return words->name;
+    return "auto";
+}
+
+enum { FORMAT_PNG = 100 };           /* beside the formats of meshio.h */
+
+/* The format of an output by its name; MIO_UNKNOWN: none that there is. */
+static int output_format(const char *path)
+{
+    if (strcmp(path, "-") == 0) return MIO_TXT;
+    if (strncmp(path, "/dev/", 5) == 0 && !strchr(path, '.')) return MIO_TXT;       /* /dev/null, /dev/stdout */
+    return mio_has_extension(path, "png") ? FORMAT_PNG : mio_format_of(path);
+}
+
+/* ==== options ==== */
+
+enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16,
+       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE, CMD_PICTURE = CMD_HEAT | CMD_RENDER, CMD_ALL = 31 };
+
+typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_AUTO } time_unit;
+typedef struct time_spec { time_unit unit; double value; } time_spec;   /* value: the number, or for auto how many */
+
+typedef struct options {
+    unsigned command;
+    const char *mesh;
+    time_spec *times;                /* as written; absolute times are known once h is */
+    int n_times;
+    int64_t *sources;                /* 64 bits, so that ids beyond any mesh are told as what they are */
+    int n_sources;
+    const char *input, *output, *title;
+    int laplacian, poles, method, solver, precond, kernel;
+    long degree, max_iterations, threads;
+    double tol;
+    uint64_t memory_limit;
+    int json, quiet, help, version;
+    int colormap;                    /* pictures */
+    int log_scale, has_range, has_view, has_isolines;
+    long isolines, column, width, height;
+    double low, high, azimuth, elevation;
+} options;
+
+struct option_def;
+typedef int (*option_parser)(options *o, const struct option_def *def, const char *text);
+
+typedef struct option_def {
+    const char *name;
+    char letter;                     /* 0: none */
+    unsigned commands;               /* that take it */
+    int is_list;                     /* given twice is an error: which of the two lists was meant? */
+    option_parser parse;             /* returns 1, or 0 when text is not what the option takes */
+    size_t field;                    /* offset in options, for the general parsers */
+    const word *words;
+    long least, most;
+    const char *value;               /* its name in the help; NULL: a flag */
+    const char *takes;               /* "--t takes ..." */
+    const char *help;
+} option_def;
+
+/* ---- parsing of values: all of the text or nothing, no white space, no hexadecimal ---- */
+
+/* Reads a finite number, *end is behind it. */
+static int read_number(const char *text, double *value, const char **end)
+{
+    char *stop = NULL;
+    const char *p = text + (*text == '-' || *text == '+');
+    if (!isdigit((unsigned char)*p) && !(*p == '.' && isdigit((unsigned char)p[1]))) return 0;
+    if (p[0] == '0' && (p[1] == 'x' || p[1] == 'X')) return 0;
+    *value = strtod(text, &stop);
+    *end = stop;
+    return isfinite(*value);
+}
+
+static int read_integer(const char *text, int64_t *value, const char **end)
+{
+    char *stop = NULL;
+    const char *p = text + (*text == '-' || *text == '+');
+    if (!isdigit((unsigned char)*p)) return 0;
+    *value = strtoll(text, &stop, 10);   /* beyond 64 bits it returns the nearest it has, which is out of every range */
+    *end = stop;
+    return 1;
+}
+
+static int read_real(const char *text, double *value)
+{
+    const char *end;
+    return read_number(text, value, &end) && *end == 0;
+}
+
+/* Two finite numbers with a separator between. */
+static int read_pair(const char *text, char separator, double *a, double *b)
+{
+    const char *end;
+    return read_number(text, a, &end) && *end == separator && read_real(end + 1, b);
+}
+
+static void *field_of(options *o, const option_def *def) { return (char *)o + def->field; }
+
+static int parse_flag(options *o, const option_def *def, const char *text)
+{
+    (void)text;
+    *(int *)field_of(o, def) = 1;
+    return 1;
+}
+
+static int parse_text(options *o, const option_def *def, const char *text)
+{
+    *(const char **)field_of(o, def) = text;
+    return *text != 0;
+}
+
+static int parse_words(options *o, const option_def *def, const char *text)
+{
+    const word *w = find_word(def->words, text);
+    if (w) *(int *)field_of(o, def) = w->value;
+    return w != NULL;
+}
+
+static int parse_integer(options *o, const option_def *def, const char *text)
+{
+    int64_t v;
+    const char *end;
+    if (!read_integer(text, &v, &end) || *end || v < def->least || v > def->most) return 0;
+    *(long *)field_of(o, def) = (long)v;
+    return 1;
+}
+
+static int parse_isolines(options *o, const option_def *def, const char *text)
+{
+    o->has_isolines = 1;
+    return parse_integer(o, def, text);
+}
+
+static int parse_tol(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    return read_real(text, &o->tol) && o->tol > 0 && o->tol < 1;
+}
+
+static int parse_range(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    o->has_range = 1;
+    return read_pair(text, ',', &o->low, &o->high) && o->low < o->high;
+}
+
+static int parse_view(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    o->has_view = 1;
+    return read_pair(text, ',', &o->azimuth, &o->elevation) && fabs(o->azimuth) <= 3600 && fabs(o->elevation) <= 90;
+}
+
+static int parse_size(options *o, const option_def *def, const char *text)
+{
+    int64_t w, h;
+    const char *end;
+    if (!read_integer(text, &w, &end) || *end != 'x' || !read_integer(end + 1, &h, &end) || *end) return 0;
+    if (w < def->least || w > def->most || h < def->least || h > def->most) return 0;
+    o->width = (long)w;
+    o->height = (long)h;
+    return 1;
+}
+
+static int parse_bytes(options *o, const option_def *def, const char *text)
+{
+    double v;
+    const char *end, *suffix;
+    static const char SUFFIXES[] = "KMG";
+    (void)def;
+    if (!read_number(text, &v, &end) || v <= 0) return 0;
+    if (*end && (suffix = strchr(SUFFIXES, toupper((unsigned char)*end))) != NULL) {
+        v = ldexp(v, 10 * (int)(suffix - SUFFIXES + 1));
+        end++;
+    }
+    if (*end || v < 1 || v >= 9.2e18) return 0;
+    o->memory_limit = (uint64_t)v;
+    return 1;
+}
+
+/* How many entries a comma list has at most, to allocate it at once. */
+static size_t count_items(const char *text)
+{
+    size_t n = 1;
+    for (; *text; text++) n += *text == ',';
+    return n;
+}
+
+static int read_time(const char *text, time_spec *t, const char **end)
+{
+    int64_t count;
+    if (strncmp(text, "auto:", 5) == 0) {
+        t->unit = TIME_AUTO;
+        if (!read_integer(text + 5, &count, end) || count < 1 || count > 1000) return 0;
+        t->value = (double)count;
+        return 1;
+    }
+    t->unit = TIME_ABSOLUTE;
+    if (!read_number(text, &t->value, end) || t->value < 0) return 0;
+    if (strncmp(*end, "h2", 2) == 0) {
+        t->unit = TIME_H2;
+        *end += 2;
+    }
+    return 1;
+}
+
+static int parse_times(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    if (count_items(text) > 100000) return 0;
+    o->times = (time_spec *)calloc(count_items(text), sizeof *o->times);
+    if (!o->times) return 0;
+    for (;; text++) {
+        if (!read_time(text, &o->times[o->n_times++], &text)) return 0;
+        if (*text != ',') return *text == 0;
+    }
+}
+
+static int parse_sources(options *o, const option_def *def, const char *text)
+{
+    int64_t v;
+    (void)def;
+    if (count_items(text) > 10000000) return 0;
+    o->sources = (int64_t *)calloc(count_items(text), sizeof *o->sources);
+    if (!o->sources) return 0;
+    for (;; text++) {
+        if (!read_integer(text, &v, &text) || v < 0) return 0;
+        o->sources[o->n_sources++] = v;
+        if (*text != ',') return *text == 0;
+    }
+}
+
+/* ---- the table ---- */
+
+#define AT(field) offsetof(options, field)
+
+static const option_def OPTIONS[] = {
+    { "t", 0, CMD_HEAT, 1, parse_times, 0, NULL, 0, 0, "T[,T..]",
+      "times >= 0: numbers such as 0.01, multiples of h^2 such as 10h2, or auto:K for K of them",
+      "diffusion times: absolute (0.01), multiples of the squared\nmean edge length (10h2), or auto:K, K times that suit the area" },
+    { "source", 0, CMD_KERNEL, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
+      "vertices where the heat starts, counted from 0" },
+    { "input", 0, CMD_DIFFUSE | CMD_RENDER, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
+      "a field: a row per vertex, one or more columns, as text or .npy" },
+    { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME", "fem, voronoi-cot or cot",
+      "fem (default), voronoi-cot or cot" },
+    { "kernel", 0, CMD_KERNEL, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
+      "operator: columns of K_t (default); symmetric: of k_t = K_t B^-1" },
+    { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
+      "degree of the rational approximation, 1..14 (default: by the error)" },
+    { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform or kernel",
+      "uniform (default of diffuse) or kernel (default of kernel)" },
+    { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
+      "relative error that iterative methods aim at (1e-9)" },
+    { "method", 0, CMD_HEAT, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto or iterative", "auto (default) or iterative" },
+    { "solver", 0, CMD_HEAT, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME", "cocg, cocr, minres or lanczos",
+      "cocg, cocr, minres or lanczos (default: by the time)" },
+    { "precond", 0, CMD_HEAT, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME", "none, jacobi, ssor, ildl or mildl",
+      "none, jacobi, ssor, ildl or mildl" },
+    { "max-iterations", 0, CMD_HEAT, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N", "a number from 1",
+      "limit of the iterations per system" },
+    { "threads", 0, CMD_INFO | CMD_HEAT | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
+      "worker threads (default: all)" },
+    { "memory-limit", 0, CMD_INFO | CMD_HEAT | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
+      "most memory for the computation, also with K, M or G" },
+    { "output", 'o', CMD_HEAT, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
+      "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n- or nothing: standard output, as text" },
+    { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",
+      "the .png, or - for standard output" },
+    { "output", 'o', CMD_DEMO, 0, parse_text, AT(output), NULL, 0, 0, "FOLDER", "the name of a folder",
+      "where the files go (heatdiff-demo)" },
+    { "json", 0, CMD_ALL, 0, parse_flag, AT(json), NULL, 0, 0, NULL, "no value", "the report as one JSON object" },
+    { "quiet", 0, CMD_ALL, 0, parse_flag, AT(quiet), NULL, 0, 0, NULL, "no value", "no report, no progress bar" },
+    { "column", 0, CMD_PICTURE, 0, parse_integer, AT(column), NULL, 0, 2000000000, "K", "a column number from 0",
+      "column that colours .png, .ply and .obj, counted from 0" },
+    { "log", 0, CMD_PICTURE, 0, parse_flag, AT(log_scale), NULL, 0, 0, NULL, "no value", "colours by the logarithm" },
+    { "isolines", 0, CMD_PICTURE, 0, parse_isolines, AT(isolines), NULL, 0, 200, "N", "0..200",
+      "number of isolines, 0 for none (default: at round values)" },
+    { "range", 0, CMD_PICTURE, 0, parse_range, 0, NULL, 0, 0, "LO,HI", "two numbers LO,HI with LO below HI",
+      "values of the first and last colour (default: of the field)" },
+    { "view", 0, CMD_PICTURE, 0, parse_view, 0, NULL, 0, 0, "AZ,EL", "degrees AZ,EL, elevation within -90..90",
+      "direction of view in degrees: 0,0 looks at the front, 90,0 at\nthe right side (default: one that shows the warmest place)" },
+    { "colormap", 0, CMD_PICTURE | CMD_DEMO, 0, parse_words, AT(colormap), COLORMAPS, 0, 0, "NAME", "ember, lagoon, diverging or grey",
+      "ember (default), lagoon, diverging or grey" },
+    { "size", 0, CMD_PICTURE, 0, parse_size, 0, NULL, 64, 8192, "WxH", "WxH in pixels, each 64..8192", "size of the picture in pixels" },
+    { "title", 0, CMD_PICTURE, 0, parse_text, AT(title), NULL, 0, 0, "TEXT", "a text", "title of the picture" },
+    { "help", 'h', CMD_ALL, 0, parse_flag, AT(help), NULL, 0, 0, NULL, "no value", "this help" },
+    { "version", 0, CMD_ALL, 0, parse_flag, AT(version), NULL, 0, 0, NULL, "no value", "the version" },
+};
+enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
+
+/* ---- commands ---- */
+
+typedef struct command_def { const char *name; unsigned bit; const char *help, *usage; } command_def;
+
+static const command_def COMMANDS[] = {
+    { "info", CMD_INFO, "counts, area, edge length and defects of a mesh", "[OPTIONS] MESH" },
+    { "kernel", CMD_KERNEL, "columns of the heat kernel: heat from single vertices", "--source V[,V..] --t T[,T..] [OPTIONS] MESH" },
+    { "diffuse", CMD_DIFFUSE, "diffuses your own fields", "--input F --t T[,T..] [OPTIONS] MESH" },
+    { "render", CMD_RENDER, "a picture of a field on the mesh", "--input F -o PICTURE.png [OPTIONS] MESH" },
+    { "demo", CMD_DEMO, "all of it on a shape made in memory: start here", "[-o FOLDER] [OPTIONS]" },
+};
+enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
+
+static const command_def *find_command(const char *name)
+{
+    int i;
+    for (i = 0; i < N_COMMANDS; i++)
+        if (strcmp(COMMANDS[i].name, name) == 0) return &COMMANDS[i];
+    return NULL;
+}
+
+static const char *command_name(unsigned bit)
+{
+    int i;
+    for (i = 0; i < N_COMMANDS; i++)
+        if (COMMANDS[i].bit == bit) return COMMANDS[i].name;
+    return "";
+}
+
+/* "kernel, diffuse, render": the commands in mask. */
+static void list_commands(unsigned mask, char *text, size_t size)
+{
+    int i;
+    text[0] = 0;
+    for (i = 0; i < N_COMMANDS; i++)
+        if (COMMANDS[i].bit & mask)
+            snprintf(text + strlen(text), size - strlen(text), "%s%s", text[0] ? ", " : "", COMMANDS[i].name);
+}
+
+/* ---- reading the command line ---- */
+
+/* The definition of an argument that is an option, that of the command before those of others, and where its value begins
+ * behind '=' (NULL: none there). */
+static const option_def *find_option(const char *arg, unsigned command, const char **value)
+{
+    const option_def *other = NULL;
+    const int is_long = arg[1] == '-';
+    const char *name = arg + 1 + is_long, *equals = strchr(name, '=');
+    const size_t length = equals ? (size_t)(equals - name) : strlen(name);
+    int i;
+    *value = equals ? equals + 1 : NULL;
+    for (i = 0; i < N_OPTIONS; i++) {
+        const option_def *def = &OPTIONS[i];
+        const int same_name = strlen(def->name) == length && strncmp(def->name, name, length) == 0;
+        const int same = is_long ? same_name : length == 1 && def->letter == *name;
+        if (same && (def->commands & command)) return def;
+        if (same) other = def;
+    }
+    return other;
+}
+
+/* The option as users write it. */
+static const char *option_text(const option_def *def, char *text, size_t size)
+{
+    if (def->letter) snprintf(text, size, "-%c", def->letter);
+    else snprintf(text, size, "--%s", def->name);
+    return text;
+}
+
+static int take_option(options *o, uint64_t *seen, int argc, char **argv, int *i)
+{
+    const char *value, *arg = argv[*i];
+    const option_def *def = find_option(arg, o->command, &value);
+    char name[32], commands[80];
+    if (!def) return fail(USAGE, "%.80s is not an option; see heatdiff %s --help", arg, command_name(o->command));
+    option_text(def, name, sizeof name);
+    if (!(def->commands & o->command)) {
+        list_commands(def->commands, commands, sizeof commands);
+        return fail(USAGE, "%s is not an option of %s (but of %s)", name, command_name(o->command), commands);
+    }
+    if (!def->value && value) return fail(USAGE, "%s takes no value, but '%.80s' is given", name, value);
+    if (def->value && !value && ++*i >= argc) return fail(USAGE, "%s takes %s, but nothing follows it", name, def->takes);
+    if (def->value && !value) value = argv[*i];
+    if (def->is_list && (*seen >> (def - OPTIONS) & 1u))
+        return fail(USAGE, "%s is given twice; it takes %s", name, def->takes);
+    *seen |= (uint64_t)1 << (def - OPTIONS);
+    if (!def->parse(o, def, value)) return fail(USAGE, "%s takes %s, not '%.80s'", name, def->takes, value);
+    return DONE;
+}
+
+static int take_mesh(options *o, const char *arg)
+{
+    if (o->command == CMD_DEMO) return fail(USAGE, "demo makes its own mesh and takes none, but '%.200s' is given", arg);
+    if (!*arg) return fail(USAGE, "the mesh takes a file name or - (standard input), not ''");
+    if (o->mesh) return fail(USAGE, "one mesh at a time: '%.200s' and then '%.200s'", o->mesh, arg);
+    o->mesh = arg;
+    return DONE;
+}
+
+static int check_output(const options *o)
+{
+    if (o->command == CMD_RENDER) {
+        if (!o->output) return fail(USAGE, "render needs -o, which takes the file name of a .png (or - for standard output)");
+        if (strcmp(o->output, "-") == 0 || output_format(o->output) == FORMAT_PNG) return DONE;
+        return fail(USAGE, "-o takes a name that ends in .png here, not '%.200s'", o->output);
+    }
+    if (o->command == CMD_DEMO || !o->output || output_format(o->output) != MIO_UNKNOWN) return DONE;
+    return fail(USAGE, "-o takes a name that ends in .txt, .csv, .npy, .ply, .obj, .vtu or .png, not '%.200s'", o->output);
+}
+
+/* What single options cannot see: what is missing, what does not go together. */
+static int check_options(const options *o)
+{
+    const char *name = command_name(o->command);
+    if (!o->mesh && o->command != CMD_DEMO) return fail(USAGE, "%s needs a mesh: a file name or - (standard input)", name);
+    if (o->command == CMD_KERNEL && !o->sources) return fail(USAGE, "kernel needs --source, which takes vertex ids from 0, such as 0,17");
+    if ((o->command & (CMD_DIFFUSE | CMD_RENDER)) && !o->input)
+        return fail(USAGE, "%s needs --input, which takes the file of a field", name);
+    if ((o->command & CMD_HEAT) && !o->times)
+        return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
+    if (o->degree == 1 && (o->poles == HD_POLES_KERNEL || (o->poles == HD_POLES_DEFAULT && o->command == CMD_KERNEL)))
+        return fail(USAGE, "--degree takes 2..14 with --poles kernel, and 1..14 with --poles uniform");
+    if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
+        return fail(USAGE, "--input takes a file name here: the mesh comes from standard input already");
+    return check_output(o);
+}
+
+static int read_options(options *o, int argc, char **argv)
+{
+    int i, code, only_operands = 0;
+    uint64_t seen = 0;
+    for (i = 2; i < argc; i++) {
+        const char *arg = argv[i];
+        if (!only_operands && strcmp(arg, "--") == 0) only_operands = 1;
+        else {
+            if (!only_operands && arg[0] == '-' && arg[1]) code = take_option(o, &seen, argc, argv, &i);
+            else code = take_mesh(o, arg);
+            if (code) return code;
+        }
+    }
+    return DONE;
+}
+
+static void free_options(options *o)
+{
+    free(o->times);
+    free(o->sources);
+}
+
+/* ---- help ---- */
+
+static void print_version(void)
+{
+    printf("heatdiff %d.%d.%d\n", HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH);
+}
+
+static void print_help(void)
+{
+    int i;
+    printf("heatdiff - heat diffusion kernels on meshes\n\nUse:  heatdiff COMMAND [OPTIONS] MESH\n\nCommands\n");
+    for (i = 0; i < N_COMMANDS; i++) printf("  %-9s %s\n", COMMANDS[i].name, COMMANDS[i].help);
+    printf("\nOptions\n  heatdiff COMMAND --help lists those of a command; --version tells the version\n"
+           "\nExamples\n"
+           "  heatdiff demo\n"
+           "  heatdiff info bunny.obj\n"
+           "  heatdiff kernel --source 0 --t 100h2 bunny.obj -o heat.ply\n"
+           "  heatdiff kernel --source 0,500 --t auto:4 bunny.obj > columns.txt\n"
+           "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
+           "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
+           "\nMeshes: OBJ, OFF, PLY, STL; - reads standard input. Vertices are counted from 0.\n"
+           "Results: .txt .csv .npy .ply .obj .vtu .png by the extension of -o; without -o text on standard output.\n"
+           "Exit codes: 0 done, 1 input or computation failed, 2 the command line is wrong, 130 interrupted.\n");
+}
+
+static void print_option(const option_def *def)
+{
+    char left[40];
+    const char *line = def->help, *end;
+    int width;
+    snprintf(left, sizeof left, def->letter ? "-%c, --%s %s" : "%c   --%s %s", def->letter ? def->letter : ' ', def->name,
+             def->value ? def->value : "");
+    for (;; line = end + 1) {
+        end = strchr(line, '\n');
+        width = end ? (int)(end - line) : (int)strlen(line);
+        printf("  %-27s %.*s\n", line == def->help ? left : "", width, line);
+        if (!end) return;
+    }
+}
+
+static void print_command_help(const command_def *command)
+{
+    int i;
+    printf("heatdiff %s - %s\n\nUse:  heatdiff %s %s\n\nOptions\n", command->name, command->help, command->name, command->usage);
+    for (i = 0; i < N_OPTIONS; i++)
+        if (OPTIONS[i].commands & command->bit) print_option(&OPTIONS[i]);
+}
+
+/* ==== JSON ==== */
+
+typedef struct json { FILE *out; int first; } json;
+
+/* Bytes of the UTF-8 sequence that begins at p, 0 when it is none (RFC 3629). */
+static int utf8_length(const char *text)
+{
+    const unsigned char *p = (const unsigned char *)text;
+    const int n = p[0] < 0x80 ? 1 : p[0] < 0xc2 ? 0 : p[0] < 0xe0 ? 2 : p[0] < 0xf0 ? 3 : p[0] < 0xf5 ? 4 : 0;
+    int i;
+    for (i = 1; i < n; i++)
+        if ((p[i] & 0xc0) != 0x80) return 0;
+    if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xf0 && p[1] < 0x90)) return 0;    /* longer than needed */
+    if ((p[0] == 0xed && p[1] > 0x9f) || (p[0] == 0xf4 && p[1] > 0x8f)) return 0;    /* half a pair, beyond the last */
+    return n;
+}
+
+/* File names need not be UTF-8, JSON must be: strange bytes become the replacement character. */
+static void json_string(FILE *out, const char *text)
+{
+    fputc('"', out);
+    while (*text) {
+        const unsigned char c = (unsigned char)*text;
+        const int n = utf8_length(text);
+        if (n == 0) fprintf(out, "\\ufffd");
+        else if (c == '"' || c == '\\') fprintf(out, "\\%c", c);
+        else if (c < 0x20 || c == 0x7f) fprintf(out, "\\u%04x", (unsigned)c);
+        else fwrite(text, 1, (size_t)n, out);
+        text += n ? n : 1;
+    }
+    fputc('"', out);
+}
+
+static void json_key(json *j, const char *key)
+{
+    fprintf(j->out, "%s", j->first ? "" : ", ");
+    j->first = 0;
+    json_string(j->out, key);
+    fprintf(j->out, ": ");
+}
+
+/* JSON knows neither NaN nor infinity. */
+static void json_value(FILE *out, double v)
+{
+    if (isfinite(v)) fprintf(out, "%.17g", v);
+    else fprintf(out, "null");
+}
+
+static void json_open(json *j, FILE *out)
+{
+    j->out = out;
+    j->first = 1;
+    fputc('{', out);
+}
+
+static void json_close(json *j) { fputc('}', j->out); }
+
+static void json_number(json *j, const char *key, double v) { json_key(j, key); json_value(j->out, v); }
+
+static void json_integer(json *j, const char *key, int64_t v) { json_key(j, key); fprintf(j->out, "%lld", (long long)v); }
+
+static void json_text(json *j, const char *key, const char *text) { json_key(j, key); json_string(j->out, text); }
+
+static void json_numbers(json *j, const char *key, const double *v, int n)
+{
+    int i;
+    json_key(j, key);
+    fputc('[', j->out);
+    for (i = 0; i < n; i++) {
+        if (i) fprintf(j->out, ", ");
+        json_value(j->out, v[i]);
+    }
+    fputc(']', j->out);
+}
+
+static void json_integers(json *j, const char *key, const int64_t *v, int n)
+{
+    int i;
+    json_key(j, key);
+    fputc('[', j->out);
+    for (i = 0; i < n; i++) fprintf(j->out, "%s%lld", i ? ", " : "", (long long)v[i]);
+    fputc(']', j->out);
+}
+
+/* ==== what a run reports ==== */
+
+typedef struct seconds { double load, assemble, solve, write, total; } seconds;
+
+/* The reports of all times; per_time[k] is the one of time k. */
+typedef struct summary {
+    hd_report *per_time;
+    hd_report worst;                 /* largest errors, sums of iterations */
+    int n_times;
+    char solver[64], precond[64], poles[40];     /* all that were used: "lanczos, cocg" */
+} summary;
+
+/* Appends name to a list such as "lanczos, cocg" unless it is in it. */
+static void add_word(char *list, size_t size, const char *name)
+{
+    const size_t n = strlen(name);
+    const char *p;
+    for (p = strstr(list, name); p; p = strstr(p + n, name))     /* as a whole word: ildl is in mildl */
+        if ((p == list || p[-1] == ' ') && (p[n] == 0 || p[n] == ',')) return;
+    if (strlen(list) + n + 3 < size)
+        snprintf(list + strlen(list), size - strlen(list), "%s%s", list[0] ? ", " : "", name);
+}
+
+static void keep_larger(double *largest, double v)
+{
+    if (v > *largest || v != v) *largest = v;
+}
+
+/* Lanczos has none. */
+static const char *precond_name(const hd_report *r)
+{
+    return r->precond == HD_PRECOND_AUTO ? "none" : word_of(PRECONDS, (int)r->precond);
+}
+
+static const char *poles_name(const hd_report *r) { return r->poles == HD_POLES_DEFAULT ? "none" : word_of(POLES, (int)r->poles); }
+
+static void summary_add(summary *s, const hd_report *r)
+{
+    int p;
+    hd_report *w = &s->worst;
+    s->per_time[s->n_times++] = *r;
+    if (r->status > w->status) w->status = r->status;
+    w->method = r->method;
+    if (r->degree > w->degree) w->degree = r->degree;
+    if (r->n_poles > w->n_poles) w->n_poles = r->n_poles;
+    w->iterations += r->iterations;
+    for (p = 0; p < r->n_poles && p < HD_MAX_POLES; p++) w->pole_iterations[p] += r->pole_iterations[p];
+    keep_larger(&w->residual, r->residual);
+    keep_larger(&w->error_rational, r->error_rational);
+    keep_larger(&w->error_solver, r->error_solver);
+    keep_larger(&w->error_bound_b, r->error_bound_b);
+    keep_larger(&w->error_bound, r->error_bound);
+    keep_larger(&w->mass_drift, r->mass_drift);
+    if (r->iterations == 0 && r->n_poles == 0) return;           /* t = 0: nothing was solved */
+    add_word(s->solver, sizeof s->solver, word_of(SOLVERS, (int)r->solver));
+    add_word(s->precond, sizeof s->precond, precond_name(r));
+    add_word(s->poles, sizeof s->poles, poles_name(r));
+}
+
+static const char *or_none(const char *list) { return list[0] ? list : "none"; }
+
+/* ==== meshes and fields ==== */
+
+/* A mesh as the file has it, and its triangles: n, xyz and n_faces are those of file. */
+typedef struct mesh_data {
+    mio_mesh file;
+    int32_t n, n_faces, n_tri;
+    const double *xyz;
+    int32_t *tri;                    /* polygons as fans */
+    int32_t *face_of;                /* [n_tri] the face a triangle is of */
+} mesh_data;
+
+typedef struct field_data { double *values; int32_t columns; } field_data;
+
+static const char *display_name(const char *path) { return strcmp(path, "-") == 0 ? "<stdin>" : path; }
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static int fail_file(int status, const mio_error *e) { return status == MIO_STOPPED ? INTERRUPTED : fail(FAILED, "%s", e->text); }
+
+static void mesh_free(mesh_data *m)
+{
+    mio_free(&m->file);
+    free(m->tri);
+    free(m->face_of);
+    memset(m, 0, sizeof *m);
+}
+
+static int mesh_finish(mesh_data *m)
+{
+    mio_error e;
+    const int status = mio_triangulate(&m->file, &m->tri, &m->n_tri, &m->face_of, &e);
+    m->n = m->file.n;
+    m->n_faces = m->file.n_faces;
+    m->xyz = m->file.xyz;
+    return status < 0 ? fail_file(status, &e) : DONE;
+}
+
+static int mesh_load(mesh_data *m, const char *path)
+{
+    mio_error e;
+    const int status = mio_load(&m->file, path, NULL, &e);
+    return status < 0 ? fail_file(status, &e) : mesh_finish(m);
+}
+
+/* A mesh from a shape made in memory, which is emptied. */
+static int mesh_of_shape(mesh_data *m, shape *s)
+{
+    int32_t f;
+    m->file.face_ptr = (int64_t *)malloc(((size_t)s->n_tri + 1) * sizeof(int64_t));
+    if (!m->file.face_ptr) return fail_memory("the mesh");
+    for (f = 0; f <= s->n_tri; f++) m->file.face_ptr[f] = 3 * (int64_t)f;
+    m->file.n = s->n;
+    m->file.n_faces = s->n_tri;
+    m->file.xyz = s->xyz;
+    m->file.face_idx = s->tri;
+    m->file.format = "memory";
+    memset(s, 0, sizeof *s);
+    return mesh_finish(m);
+}
+
+static void field_free(field_data *field)
+{
+    free(field->values);
+    memset(field, 0, sizeof *field);
+}
+
+/* A field for a mesh of n vertices. */
+static int field_load(field_data *field, const char *path, const char *mesh_name, int32_t n)
+{
+    mio_error e;
+    int64_t rows = 0;
+    const int status = mio_load_table(&field->values, &rows, &field->columns, path, NULL, &e);
+    if (status < 0) return fail_file(status, &e);
+    if (rows != n)
+        return fail(FAILED, "%s: %lld rows, but %s has %ld vertices", display_name(path), (long long)rows, mesh_name, (long)n);
+    return DONE;
+}
+
+/* ==== a run: mesh, operator, times, values ==== */
+
+enum { NAME_SIZE = 48 };
+
+typedef struct run {
+    const options *o;
+    const char *mesh_name;           /* for people */
+    hd_context context;
+    mesh_data mesh;
+    hd_laplacian *lap;
+    double *times;                   /* resolved */
+    char (*time_names)[NAME_SIZE];   /* "10h2", "0.01" */
+    int n_times;
+    int32_t *sources;
+    int n_inputs;                    /* sources, or fields given */
+    double *values;                  /* column-major, mesh.n x n_columns; input q after time k is column q n_times + k */
+    int64_t n_columns;
+    char (*names)[NAME_SIZE];        /* of the columns, and pointers to them */
+    const char **name_list;
+    summary sum;
+    seconds sec;
+    double started;
+#ifdef TOOL_THREADS
+    pool threads;
+#endif
+} run;
+
+static void run_begin(run *r, const options *o)
+{
+    memset(r, 0, sizeof *r);
+    r->o = o;
+    r->started = now();
+    r->mesh_name = o->mesh ? display_name(o->mesh) : "demo";
+    r->context.byte_limit = o->memory_limit;
+    r->context.threads = (int32_t)o->threads;
+    r->context.progress = on_progress;
+    bar.enabled = !o->quiet && stderr_is_terminal();
+#ifdef TOOL_THREADS
+    pool_begin(&r->threads, o->threads ? (int)o->threads : processors());
+    if (r->threads.n_threads > 0) {
+        r->context.parallel_for = pool_run;
+        r->context.parallel_user = &r->threads;
+    }
+#endif
+}
+
+static void run_end(run *r)
+{
+    bar_hide();
+#ifdef TOOL_THREADS
+    pool_end(&r->threads);
+#endif
+    hd_laplacian_free(r->lap);
+    mesh_free(&r->mesh);
+    free(r->times);
+    free(r->time_names);
+    free(r->sources);
+    free(r->values);
+    free(r->names);
+    free(r->name_list);
+    free(r->sum.per_time);
+}
+
+static int threads_used(const run *r)
+{
+#ifdef _OPENMP
+    return r->context.threads > 0 ? (int)r->context.threads : omp_get_max_threads();
+#elif defined(TOOL_THREADS)
+    return r->threads.n_threads + 1;
+#else
+    (void)r;
+    return 1;
+#endif
+}
+
+/* n rows of doubles, with the size checked. */
+static double *new_columns(int64_t n, int64_t columns)
+{
+    if (columns > 0 && (uint64_t)n > SIZE_MAX / sizeof(double) / (uint64_t)columns) return NULL;
+    return (double *)malloc((size_t)(n * columns) * sizeof(double) + 1);
+}
+
+/* Turns the library's error into the tool's line, with the place in the user's file. */
+static int fail_library(const char *file, const hd_error *e)
+{
+    char place[120] = "";
+    if (e->status == HD_ERR_CANCELLED && interrupt.asked) return INTERRUPTED;
+    if (e->face >= 0) snprintf(place, sizeof place, " face %lld:", (long long)e->face);
+    else if (e->vertex >= 0) snprintf(place, sizeof place, " vertex %lld:", (long long)e->vertex);
+    else if (e->row >= 0 && e->column >= 0)
+        snprintf(place, sizeof place, " row %lld, column %lld:", (long long)e->row, (long long)e->column);
+    if (e->pole >= 0) snprintf(place + strlen(place), sizeof place - strlen(place), " pole %lld:", (long long)e->pole);
+    return fail(FAILED, "%s:%s %s", file, place, e->text[0] ? e->text : hd_status_text(e->status));
+}
+
+static int run_load(run *r)
+{
+    const double start = now();
+    const int code = mesh_load(&r->mesh, r->o->mesh);
+    r->sec.load = now() - start;
+    return code;
+}
+
+static hd_status run_laplacian(run *r, hd_error *err)
+{
+    hd_laplacian_opts opts;
+    const double start = now();
+    hd_status status;
+    memset(&opts, 0, sizeof opts);
+    opts.kind = (hd_laplacian_kind)r->o->laplacian;
+    opts.context = &r->context;
+    interrupt.patient = 1;
+    status = hd_laplacian_triangles(&r->lap, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, err);
+    interrupt.patient = 0;
+    r->sec.assemble = now() - start;
+    return status;
+}
+
+static int fail_laplacian(const run *r, hd_error *err)
+{
+    if (err->face >= 0 && r->mesh.face_of) err->face = r->mesh.face_of[err->face];
+    return fail_library(r->mesh_name, err);
+}
+
+static int run_assemble(run *r)
+{
+    hd_error err;
+    if (r->mesh.n_tri == 0)
+        return fail(FAILED, "%s: %ld vertices but no faces; heat needs a surface", r->mesh_name, (long)r->mesh.n);
+    if (run_laplacian(r, &err) < 0) return fail_laplacian(r, &err);
+    return interrupt.asked ? INTERRUPTED : DONE;
+}
+
+/* ---- times ---- */
+
+/* By Weyl's law eigenvalue number k of a surface is about 4 pi k / area. These two are where the 2nd and the 300th of them have
+ * faded to a ten-thousandth: what lies between shows the shape from large to small. The area is that of B, 1'B1. */
+static const double AUTO_SHORTEST = 0.0024, AUTO_LONGEST = 0.37;
+
+static double auto_time(const run *r, int i, int count)
+{
+    double area = 0;
+    int c;
+    for (c = 0; c < r->lap->n_components; c++) area += r->lap->component_mass[c];
+    return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST, count > 1 ? i / (double)(count - 1) : 0.5);
+}
+
+static int run_times(run *r)
+{
+    const options *o = r->o;
+    int i, k, total = 0;
+    for (i = 0; i < o->n_times; i++) total += o->times[i].unit == TIME_AUTO ? (int)o->times[i].value : 1;
+    r->times = (double *)malloc((size_t)total * sizeof *r->times);
+    r->time_names = (char (*)[NAME_SIZE])malloc((size_t)total * sizeof *r->time_names);
+    r->sum.per_time = (hd_report *)calloc((size_t)total, sizeof *r->sum.per_time);
+    if (!r->times || !r->time_names || !r->sum.per_time) return fail_memory("the times");
+    for (i = 0; i < o->n_times; i++) {
+        const time_spec s = o->times[i];
+        const int count = s.unit == TIME_AUTO ? (int)s.value : 1;
+        for (k = 0; k < count; k++, r->n_times++) {
+            double *t = &r->times[r->n_times];
+            *t = s.unit == TIME_AUTO ? auto_time(r, k, count) : s.unit == TIME_H2 ? s.value * r->lap->h * r->lap->h : s.value;
+            if (!isfinite(*t)) return fail(FAILED, "%s: the time %gh2 is too large for h = %g", r->mesh_name, s.value, r->lap->h);
+            if (s.unit == TIME_H2) snprintf(r->time_names[r->n_times], sizeof *r->time_names, "%.9gh2", s.value);
+            else snprintf(r->time_names[r->n_times], sizeof *r->time_names, s.unit == TIME_AUTO ? "%.4g" : "%.9g", *t);
+        }
+    }
+    return DONE;
+}
+
+/* "t = 10 h^2" for titles. */
+static void time_text(const char *name, char *text, size_t size)
+{
+    const size_t n = strlen(name);
+    if (n > 2 && strcmp(name + n - 2, "h2") == 0) snprintf(text, size, "t = %.*s h^2", (int)n - 2, name);
+    else snprintf(text, size, "t = %s", name);
+}
+
+/* ---- solving ---- */
+
+static int run_sources(run *r)
+{
+    const options *o = r->o;
+    int i;
+    r->n_inputs = o->n_sources;
+    r->sources = (int32_t *)malloc((size_t)o->n_sources * sizeof *r->sources);
+    if (!r->sources) return fail_memory("the sources");
+    for (i = 0; i < o->n_sources; i++) {
+        if (o->sources[i] >= r->mesh.n)
+            return fail(FAILED, "%s: --source %lld is beyond the mesh, which has %ld vertices, numbered from 0", r->mesh_name,
+                        (long long)o->sources[i], (long)r->mesh.n);
+        r->sources[i] = (int32_t)o->sources[i];
+    }
+    return DONE;
+}
+
+static int run_plan(run *r, hd_heat **heat)
+{
+    const options *o = r->o;
+    hd_heat_opts opts;
+    hd_error err;
+    memset(&opts, 0, sizeof opts);
+    opts.method = (hd_method)o->method;
+    opts.solver = (hd_solver)o->solver;
+    opts.precond = (hd_precond)o->precond;
+    opts.poles = (hd_pole_kind)o->poles;
+    opts.degree = (int32_t)o->degree;
+    opts.tol = o->tol;
+    opts.max_iterations = (int32_t)o->max_iterations;
+    opts.context = &r->context;
+    return hd_heat_create(heat, r->lap, &opts, &err) < 0 ? fail_library(r->mesh_name, &err) : DONE;
+}
+
+/* One time for all inputs. fields is n x n_inputs, or NULL: the kernel columns of the sources. */
+static int run_time(run *r, hd_heat *heat, const double *fields, const char *field_name, int k)
+{
+    const size_t n = (size_t)r->mesh.n, stride = n * (size_t)r->n_times;
+    double *out = r->values + (size_t)k * n;
+    hd_report report;
+    hd_status status;
+    if (fields) status = hd_heat_apply(heat, r->times[k], r->n_inputs, fields, n, out, stride, &report);
+    else status = hd_heat_columns(heat, r->times[k], (hd_kernel)r->o->kernel, r->n_inputs, r->sources, out, stride, &report);
+    if (status < 0) return fail_library(status == HD_ERR_NOT_FINITE ? field_name : r->mesh_name, &report.error);
+    summary_add(&r->sum, &report);
+    return DONE;
+}
+
+static int run_solve(run *r, const double *fields, const char *field_name)
+{
+    const double start = now();
+    hd_heat *heat = NULL;
+    int k, code;
+    r->n_columns = (int64_t)r->n_inputs * r->n_times;
+    if (r->n_columns > INT32_MAX / 2) return fail(FAILED, "%lld columns are too many", (long long)r->n_columns);
+    if (r->o->column >= r->n_columns)
+        return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column, (long long)r->n_columns);
+    r->values = new_columns(r->mesh.n, r->n_columns);
+    if (!r->values) return fail_memory("the result");
+    interrupt.patient = 1;
+    code = run_plan(r, &heat);
+    for (k = 0; k < r->n_times && !code; k++) code = run_time(r, heat, fields, field_name, k);
+    hd_heat_free(heat);
+    code = leave_computation(code);
+    bar_hide();
+    r->sec.solve = now() - start;
+    return code;
+}
+
+/* ---- report ---- */
+
+static void json_seconds(json *j, const run *r)
+{
+    json inner;
+    json_key(j, "seconds");
+    json_open(&inner, j->out);
+    json_number(&inner, "load", r->sec.load);
+    json_number(&inner, "assemble", r->sec.assemble);
+    json_number(&inner, "solve", r->sec.solve);
+    json_number(&inner, "write", r->sec.write);
+    json_number(&inner, "total", now() - r->started);
+    json_close(&inner);
+}
+
+static void json_begin(json *j, const run *r, FILE *out)
+{
+    char version[32];
+    snprintf(version, sizeof version, "%d.%d.%d", HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH);
+    json_open(j, out);
+    json_text(j, "command", command_name(r->o->command));
+    json_text(j, "version", version);
+    json_text(j, "mesh", r->mesh_name);
+    if (r->mesh.file.format) json_text(j, "format", r->mesh.file.format);
+    json_integer(j, "n", r->mesh.n);
+    json_integer(j, "faces", r->mesh.n_faces);
+}
+
+static void json_end(json *j, const run *r)
+{
+    json_integer(j, "threads", threads_used(r));
+    json_integer(j, "peak_bytes", (int64_t)r->context.bytes_peak);
+    json_seconds(j, r);
+    json_close(j);
+    fputc('\n', j->out);
+}
+
+static void json_laplacian(json *j, const hd_laplacian *lap)
+{
+    json_integer(j, "components", lap->n_components);
+    json_number(j, "h", lap->h);
+    json_number(j, "area", lap->area);
+    json_integer(j, "inert", lap->mesh.n_inert);
+    json_text(j, "laplacian", word_of(LAPLACIANS, (int)lap->kind));
+}
+
+static void json_time(FILE *out, double t, const hd_report *p)
+{
+    json j;
+    json_open(&j, out);
+    json_number(&j, "t", t);
+    json_text(&j, "solver", word_of(SOLVERS, (int)p->solver));
+    json_text(&j, "precond", precond_name(p));
+    json_text(&j, "poles", poles_name(p));
+    json_integer(&j, "degree", p->degree);
+    json_integer(&j, "iterations", p->iterations);
+    json_number(&j, "residual", p->residual);
+    json_number(&j, "error_bound", p->error_bound);
+    json_number(&j, "mass_drift", p->mass_drift);
+    json_text(&j, "status", hd_status_name(p->status));
+    json_close(&j);
+}
+
+static void json_heat(json *j, const run *r)
+{
+    const hd_report *w = &r->sum.worst;
+    int k;
+    json_text(j, "method", word_of(METHODS, (int)w->method));
+    json_text(j, "solver", or_none(r->sum.solver));
+    json_text(j, "precond", or_none(r->sum.precond));
+    json_text(j, "poles", or_none(r->sum.poles));
+    json_integer(j, "degree", w->degree);
+    json_text(j, "kernel", word_of(KERNELS, r->o->kernel));
+    if (r->sources) json_integers(j, "sources", r->o->sources, r->o->n_sources);
+    else json_text(j, "input", r->o->input);
+    json_numbers(j, "times", r->times, r->n_times);
+    json_integer(j, "iterations", w->iterations);
+    json_integers(j, "pole_iterations", w->pole_iterations, w->n_poles);
+    json_number(j, "residual", w->residual);
+    json_number(j, "error_rational", w->error_rational);
+    json_number(j, "error_solver", w->error_solver);
+    json_number(j, "error_bound_b", w->error_bound_b);
+    json_number(j, "error_bound", w->error_bound);
+    json_number(j, "mass_drift", w->mass_drift);
+    json_text(j, "status", hd_status_name(w->status));
+    json_key(j, "per_time");
+    fputc('[', j->out);
+    for (k = 0; k < r->sum.n_times; k++) {
+        if (k) fprintf(j->out, ", ");
+        json_time(j->out, r->times[k], &r->sum.per_time[k]);
+    }
+    fputc(']', j->out);
+}
+
+static const char *plural(int64_t n) { return n == 1 ? "" : "s"; }
+
+static void print_heat(const run *r)
+{
+    const hd_report *w = &r->sum.worst;
+    const hd_laplacian *lap = r->lap;
+    const char *unit = r->o->command == CMD_KERNEL ? "source" : "field";
+    fprintf(stderr, "%s: %ld vertices, %ld faces, %ld component%s, h = %.4g, area = %.4g", r->mesh_name, (long)r->mesh.n,
+            (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components), lap->h, lap->area);
+    if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
+    fprintf(stderr, "\n%s: %d %s%s, %d time%s, %s Laplacian\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
+            r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind));
+    fprintf(stderr, "%s: solver %s, preconditioner %s, poles %s, degree %ld, %lld iterations\n", word_of(METHODS, (int)w->method),
+            or_none(r->sum.solver), or_none(r->sum.precond), or_none(r->sum.poles), (long)w->degree, (long long)w->iterations);
+    fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n", w->error_bound,
+            w->error_bound_b, w->mass_drift);
+    if (w->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(w->status));
+    fprintf(stderr, "%.3g s: load %.3g, assemble %.3g, solve %.3g, write %.3g; %.1f MB, %d thread%s\n", now() - r->started,
+            r->sec.load, r->sec.assemble, r->sec.solve, r->sec.write, (double)r->context.bytes_peak / 1048576.0, threads_used(r),
+            plural(threads_used(r)));
+}
+
+static void report_heat(const run *r)
+{
+    json j;
+    if (r->o->json) {
+        json_begin(&j, r, stderr);
+        json_laplacian(&j, r->lap);
+        json_heat(&j, r);
+        json_end(&j, r);
+    } else if (!r->o->quiet) print_heat(r);
+}
+
+/* ==== pictures ==== */
+
+enum { PICTURE_WIDTH = 1200, PICTURE_HEIGHT = 900, LOG_DECADES = 6 };
+
+/* The taste of the command line as the renderer's options. */
+static pic_opts picture_opts(const options *o)
+{
+    pic_opts p;
+    memset(&p, 0, sizeof p);
+    p.width = o->width ? (int32_t)o->width : PICTURE_WIDTH;
+    p.height = o->height ? (int32_t)o->height : PICTURE_HEIGHT;
+    p.log_decades = o->log_scale ? LOG_DECADES : 0;
+    if (o->has_range) { p.lo = o->low; p.hi = o->high; }
+    p.isolines = o->has_isolines ? (o->isolines > 0 ? (int32_t)o->isolines : -1) : 0;
+    p.colormap = o->colormap;
+    p.view_given = o->has_view;
+    p.azimuth = o->azimuth;
+    p.elevation = o->elevation;
+    return p;
+}
+
+static pic_panel picture_panel(const mesh_data *mesh, const double *field)
+{
+    pic_panel p;
+    memset(&p, 0, sizeof p);
+    p.n = mesh->n;
+    p.n_tri = mesh->n_tri;
+    p.xyz = mesh->xyz;
+    p.tri = mesh->tri;
+    p.field = field;
+    return p;
+}
+
+/* Heat is never negative, computed heat can be, by rounding or a hair. Colours then begin at 0: else the isoline of 0 would run
+ * through the noise. */
+static void picture_from_zero(pic_opts *opts, const pic_panel *panel)
+{
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    int32_t i;
+    if (opts->lo < opts->hi || opts->log_decades > 0) return;
+    for (i = 0; i < panel->n; i++) {
+        if (panel->field[i] < low) low = panel->field[i];
+        if (panel->field[i] > high) high = panel->field[i];
+    }
+    if (low < 0 && -low < 1e-4 * high) {
+        opts->lo = 0;
+        opts->hi = high;
+    }
+}
+
+static int write_picture(const char *path, const pic_panel *panels, int n_panels, const pic_opts *opts)
+{
+    pic_image image;
+    mio_file *file = (mio_file *)malloc(sizeof *file);      /* its buffer is large for a stack */
+    mio_error e;
+    uint8_t *data = NULL;
+    size_t size = 0;
+    int status = file ? pic_render_grid(&image, panels, n_panels, opts) : PIC_ERR_MEMORY;
+    if (status == PIC_OK) {
+        status = pic_png_encode(&data, &size, image.rgb, image.width, image.height);
+        pic_image_free(&image);
+    }
+    if (status != PIC_OK) {
+        free(file);
+        return fail_memory("the picture");
+    }
+    if (mio_file_open(file, path, NULL, &e) == MIO_OK) mio_file_put(file, data, size);
+    status = mio_file_close(file);
+    free(file);
+    free(data);
+    return status < 0 ? fail_file(status, &e) : DONE;
+}
+
+/* ==== results ==== */
+
+/* Columns on the vertices of the run's mesh, as they are written. */
+typedef struct result {
+    int64_t n_columns;
+    const double *values;            /* column-major */
+    const char *const *names;        /* one word per column */
+    int64_t colour;                  /* the column that colours .ply, .obj and .png */
+} result;
+
+static const double *result_column(const run *r, const result *res, int64_t c) { return res->values + (size_t)c * (size_t)r->mesh.n; }
+
+/* Colours by the same scale as pictures. rgb: three bytes per vertex. */
+static uint8_t *result_colours(const run *r, const result *res)
+{
+    pic_panel panel = picture_panel(&r->mesh, result_column(r, res, res->colour));
+    const pic_opts opts = picture_opts(r->o);
+    pic_scale scale;
+    uint8_t *rgb = (uint8_t *)malloc((size_t)r->mesh.n * 3 + 1);
+    int32_t i;
+    if (!rgb) return NULL;
+    pic_scale_make(&scale, &panel, 0, 1, &opts);
+    for (i = 0; i < r->mesh.n; i++) pic_colormap(pic_scale_at(&scale, panel.field[i]), rgb + 3 * (size_t)i, opts.colormap);
+    return rgb;
+}
+
+static int write_table(const char *path, int kind, const run *r, const result *res)
+{
+    mio_output out;
+    mio_error e;
+    uint8_t *rgb = NULL;
+    int status;
+    memset(&out, 0, sizeof out);
+    if (kind == MIO_PLY || kind == MIO_OBJ) {
+        if ((rgb = result_colours(r, res)) == NULL) return fail_memory("the colours");
+        out.rgb = rgb;
+    }
+    out.rows = out.ld = r->mesh.n;
+    out.cols = (int32_t)res->n_columns;
+    out.values = res->values;
+    out.names = res->names;
+    status = mio_write(path, kind, &r->mesh.file, &out, &e);
+    free(rgb);
+    return status < 0 ? fail_file(status, &e) : DONE;
+}
+
+/* The picture of one column, with the words that the command has for it. */
+static int write_png(const char *path, const run *r, const result *res, const char *title, const int32_t *marker)
+{
+    pic_panel panel = picture_panel(&r->mesh, result_column(r, res, res->colour));
+    pic_opts opts = picture_opts(r->o);
+    char subtitle[300];
+    snprintf(subtitle, sizeof subtitle, "%.200s, %ld vertices", base_name(r->mesh_name), (long)r->mesh.n);
+    opts.title = r->o->title ? r->o->title : title;
+    opts.subtitle = subtitle;
+    picture_from_zero(&opts, &panel);
+    panel.markers = marker;
+    panel.n_markers = marker != NULL;
+    return write_picture(path, &panel, 1, &opts);
+}
+
+/* ---- of kernel and diffuse ---- */
+
+static int has_twice(const run *r)
+{
+    int i, k;
+    for (i = 0; i < r->n_times; i++)
+        for (k = 0; k < i; k++) if (strcmp(r->time_names[i], r->time_names[k]) == 0) return 1;
+    for (i = 0; r->sources && i < r->n_inputs; i++)
+        for (k = 0; k < i; k++) if (r->sources[i] == r->sources[k]) return 1;
+    return 0;
+}
+
+/* "v8_10h2" or "f0_10h2": the source or the field, then the time. With the same of them twice also the number of the column,
+ * because readers want names that differ. */
+static int heat_names(run *r)
+{
+    const int twice = has_twice(r);
+    int64_t c;
+    r->names = (char (*)[NAME_SIZE])malloc((size_t)r->n_columns * sizeof *r->names);
+    r->name_list = (const char **)malloc((size_t)r->n_columns * sizeof *r->name_list);
+    if (!r->names || !r->name_list) return fail_memory("the names of the columns");
+    for (c = 0; c < r->n_columns; c++) {
+        const int q = (int)(c / r->n_times);
+        char number[12] = "";
+        if (twice) snprintf(number, sizeof number, "_c%d", (int)(c % 1000000));
+        snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->sources ? 'v' : 'f', r->sources ? (long)r->sources[q] : (long)q,
+                 r->time_names[c % r->n_times], number);
+        r->name_list[c] = r->names[c];
+    }
+    return DONE;
+}
+
+static void heat_title(const run *r, int64_t c, char *title, size_t size)
+{
+    const int q = (int)(c / r->n_times);
+    char when[64];
+    time_text(r->time_names[c % r->n_times], when, sizeof when);
+    if (r->sources) snprintf(title, size, "Heat from vertex %ld, %s", (long)r->sources[q], when);
+    else snprintf(title, size, "Field %d diffused, %s", q, when);
+}
+
+static int write_heat(run *r)
+{
+    const double start = now();
+    const int kind = r->o->output ? output_format(r->o->output) : MIO_TXT;
+    const int32_t *marker = r->sources ? &r->sources[r->o->column / r->n_times] : NULL;
+    char title[120];
+    result res;
+    int code = heat_names(r);
+    if (code) return code;
+    memset(&res, 0, sizeof res);
+    res.n_columns = r->n_columns;
+    res.values = r->values;
+    res.names = r->name_list;
+    res.colour = r->o->column;
+    heat_title(r, res.colour, title, sizeof title);
+    bar_show("writing", 0);
+    if (kind == FORMAT_PNG) code = write_png(r->o->output, r, &res, title, marker);
+    else code = write_table(r->o->output, kind, r, &res);
+    bar_hide();
+    r->sec.write = now() - start;
+    return code;
+}
+
+/* ==== info ==== */
+
+static const double DEGREES = 57.29577951308232;
+
+static void bounding_box(const mesh_data *m, double low[3], double high[3])
+{
+    int32_t i;
+    int c;
+    for (c = 0; c < 3; c++) {
+        low[c] = HUGE_VAL;
+        high[c] = -HUGE_VAL;
+    }
+    for (i = 0; i < m->n; i++)
+        for (c = 0; c < 3; c++) {
+            const double x = m->xyz[3 * (size_t)i + (size_t)c];
+            if (x < low[c]) low[c] = x;
+            if (x > high[c]) high[c] = x;
+        }
+}
+
+static void info_json(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
+{
+    const hd_mesh_report *m = &lap->mesh;
+    const double meaningful[2] = { AUTO_SHORTEST * lap->area, AUTO_LONGEST * lap->area };
+    json j;
+    json_begin(&j, r, stdout);
+    json_laplacian(&j, lap);
+    json_integer(&j, "triangles", m->n_faces);
+    json_integer(&j, "triangles_used", m->n_faces_used);
+    json_integer(&j, "edges", m->n_edges);
+    json_integer(&j, "boundary_loops", m->n_boundary_loops);
+    json_integer(&j, "boundary_edges", m->n_boundary_edges);
+    json_integer(&j, "nonmanifold_edges", m->n_nonmanifold_edges);
+    json_integer(&j, "misoriented_edges", m->n_misoriented_edges);
+    json_integer(&j, "small_faces", r->mesh.file.n_small_faces);
+    json_integer(&j, "repeated_corner_faces", m->n_repeated_corner);
+    json_integer(&j, "zero_area_faces", m->n_zero_area);
+    json_integer(&j, "repeated_faces", m->n_repeated_face);
+    json_integer(&j, "negative_weights", m->n_negative_weights);
+    json_number(&j, "smallest_angle", m->smallest_angle * DEGREES);
+    json_numbers(&j, "box_low", low, 3);
+    json_numbers(&j, "box_high", high, 3);
+    json_numbers(&j, "meaningful_times", meaningful, 2);
+    json_end(&j, r);
+}
+
+static void print_count(const char *what, int64_t n, const char *note)
+{
+    if (n) printf("%-22s %lld%s%s%s\n", what, (long long)n, *note ? "  (" : "", note, *note ? ")" : "");
+}
+
+static void info_print(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
+{
+    const hd_mesh_report *m = &lap->mesh;
+    const double area_h2 = lap->area / (lap->h * lap->h);
+    printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "faces", (long)r->mesh.n_faces);
+    if (m->n_faces != r->mesh.n_faces) printf("%-22s %ld  (polygons are split as fans)\n", "triangles", (long)m->n_faces);
+    printf("%-22s %lld\n%-22s %ld\n%-22s %ld\n", "edges", (long long)m->n_edges, "components", (long)lap->n_components, "boundary loops",
+           (long)m->n_boundary_loops);
+    print_count("boundary edges", m->n_boundary_edges, "");
+    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1], high[2] - low[2],
+           low[0], low[1], low[2]);
+    printf("%-22s %.9g\n%-22s %.9g\n%-22s %.4g degrees\n", "area", lap->area, "mean edge length h", lap->h, "smallest angle",
+           m->smallest_angle * DEGREES);
+    print_count("vertices without area", m->n_inert, "no heat reaches them");
+    print_count("faces left out", r->mesh.file.n_small_faces, "fewer than three corners");
+    print_count("faces left out", m->n_repeated_corner, "a corner twice");
+    print_count("faces left out", m->n_zero_area, "area zero");
+    print_count("faces left out", m->n_repeated_face, "repeat an earlier one");
+    print_count("non-manifold edges", m->n_nonmanifold_edges, "three faces or more; their weights are summed");
+    print_count("misoriented edges", m->n_misoriented_edges, "their two faces disagree about the side");
+    print_count("negative weights", m->n_negative_weights, "obtuse angles; fine, but values below 0 can occur");
+    if (lap->area > 0)
+        printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
+               AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
+}
+
+/* Meshes on which nothing can be computed, point sets among them, are told about as well: with zeros for what they have not. */
+static int command_info(run *r)
+{
+    hd_laplacian none;
+    hd_error err;
+    double low[3], high[3];
+    int code = run_load(r);
+    if (code) return code;
+    memset(&none, 0, sizeof none);
+    none.kind = (hd_laplacian_kind)r->o->laplacian;
+    none.mesh.n_inert = r->mesh.n;
+    none.mesh.n_faces = r->mesh.n_tri;
+    if (r->mesh.n_tri > 0 && run_laplacian(r, &err) < 0 && err.status != HD_ERR_EMPTY) return fail_laplacian(r, &err);
+    if (interrupt.asked) return INTERRUPTED;
+    bar_hide();
+    bounding_box(&r->mesh, low, high);
+    if (r->o->json) info_json(r, r->lap ? r->lap : &none, low, high);
+    else if (!r->o->quiet) info_print(r, r->lap ? r->lap : &none, low, high);
+    return close_stdout();
+}
+
+/* ==== kernel, diffuse, render ==== */
+
+static int command_kernel(run *r)
+{
+    int code = run_load(r);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_times(r);
+    if (!code) code = run_sources(r);
+    if (!code) code = run_solve(r, NULL, "");
+    if (!code) code = write_heat(r);
+    if (!code) report_heat(r);
+    return code;
+}
+
+static int command_diffuse(run *r)
+{
+    field_data field;
+    int code;
+    memset(&field, 0, sizeof field);
+    code = run_load(r);
+    if (!code) code = field_load(&field, r->o->input, r->mesh_name, r->mesh.n);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_times(r);
+    r->n_inputs = field.columns;
+    if (!code) code = run_solve(r, field.values, r->o->input);
+    field_free(&field);
+    if (!code) code = write_heat(r);
+    if (!code) report_heat(r);
+    return code;
+}
+
+static void report_render(const run *r, const field_data *field)
+{
+    json j;
+    if (r->o->json) {
+        json_begin(&j, r, stderr);
+        json_text(&j, "input", r->o->input);
+        json_integer(&j, "columns", field->columns);
+        json_integer(&j, "column", r->o->column);
+        json_end(&j, r);
+    } else if (!r->o->quiet)
+        fprintf(stderr, "%s: %ld vertices, column %ld of %ld from %s, %.3g s\n", r->mesh_name, (long)r->mesh.n, r->o->column,
+                (long)field->columns, display_name(r->o->input), now() - r->started);
+}
+
+static int render_field(run *r, const field_data *field)
+{
+    char title[120];
+    result res;
+    memset(&res, 0, sizeof res);
+    res.n_columns = field->columns;
+    res.values = field->values;
+    res.colour = r->o->column;
+    if (res.colour >= res.n_columns)
+        return fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0", display_name(r->o->input), r->o->column,
+                    (long)res.n_columns);
+    if (strcmp(r->o->output, "-") == 0 && stdout_is_terminal())
+        return fail(USAGE, "-o - takes a pipe or a file: a picture is nothing for a terminal");
+    snprintf(title, sizeof title, "%.80s, column %ld", base_name(r->o->input), r->o->column);
+    return write_png(r->o->output, r, &res, title, NULL);
+}
+
+static int command_render(run *r)
+{
+    field_data field;
+    int code;
+    memset(&field, 0, sizeof field);
+    code = run_load(r);
+    if (!code) code = field_load(&field, r->o->input, r->mesh_name, r->mesh.n);
+    if (!code) code = render_field(r, &field);
+    if (!code) report_render(r, &field);
+    field_free(&field);
+    return code;
+}
+
+/* ==== demo ==== */
+
+enum { DEMO_SOURCES = 2 };
+static const char *const DEMO_NAMES[DEMO_SOURCES] = { "trunk", "tail" };
+static const char DEMO_TIMES[] = "10h2,100h2,500h2,2000h2";
+static const char DEMO_FOLDER[] = "heatdiff-demo";
+
+/* What the demo looks at apart from the columns: properties that anyone can check. */
+typedef struct demo_checks {
+    double mass_error;               /* |1'B K e_i - b_i| / b_i, the worst of all columns */
+    double there, back;              /* k_t from trunk to tail and from tail to trunk, at the longest time */
+    double least, largest;           /* values of the last column */
+} demo_checks;
+
+static int demo_mesh(run *r)
+{
+    shape s = shape_demo(0);
+    const int code = s.xyz ? mesh_of_shape(&r->mesh, &s) : fail_memory("the demo's shape");
+    shape_free(&s);
+    return code;
+}
+
+/* The ends of the longest axis. */
+static void demo_sources(const mesh_data *m, int64_t source[DEMO_SOURCES])
+{
+    double low[3], high[3];
+    int32_t i;
+    int c, axis = 0;
+    bounding_box(m, low, high);
+    for (c = 1; c < 3; c++)
+        if (high[c] - low[c] > high[axis] - low[axis]) axis = c;
+    for (i = 0; i < m->n; i++) {
+        if (m->xyz[3 * (size_t)i + (size_t)axis] == high[axis]) source[0] = i;
+        if (m->xyz[3 * (size_t)i + (size_t)axis] == low[axis]) source[1] = i;
+    }
+}
+
+static double demo_mass_error(const run *r)
+{
+    double worst = 0;
+    int q, k;
+    int32_t i;
+    for (q = 0; q < r->n_inputs; q++)
+        for (k = 0; k < r->n_times; k++) {
+            const double *u = r->values + (size_t)(q * r->n_times + k) * (size_t)r->mesh.n;
+            const double given = r->lap->mass[r->lap->row[r->sources[q]]];
+            double mass = 0;
+            for (i = 0; i < r->lap->n_active; i++) mass += r->lap->mass[i] * u[r->lap->vertex[i]];
+            keep_larger(&worst, fabs(mass - given) / given);
+        }
+    return worst;
+}
+
+static int demo_check(run *r, demo_checks *c)
+{
+    const int32_t from[2] = { r->sources[1], r->sources[0] }, to[2] = { r->sources[0], r->sources[1] };
+    const double *last = r->values + (size_t)(r->n_columns - 1) * (size_t)r->mesh.n;
+    double pair[2];
+    hd_heat *heat = NULL;
+    hd_report report;
+    int32_t i;
+    int code;
+    interrupt.patient = 1;
+    code = run_plan(r, &heat);
+    if (!code && hd_heat_entries(heat, r->times[r->n_times - 1], HD_KERNEL_SYMMETRIC, 2, from, to, pair, &report) < 0)
+        code = fail_library("demo", &report.error);
+    hd_heat_free(heat);
+    code = leave_computation(code);
+    if (code) return code;
+    c->mass_error = demo_mass_error(r);
+    c->there = pair[0];
+    c->back = pair[1];
+    c->least = c->largest = last[0];
+    for (i = 0; i < r->mesh.n; i++) {
+        if (last[i] < c->least) c->least = last[i];
+        if (last[i] > c->largest) c->largest = last[i];
+    }
+    return DONE;
+}
+
+/* ---- its files ---- */
+
+static const char *demo_folder(const run *r) { return r->o->output ? r->o->output : DEMO_FOLDER; }
+
+static int demo_path(const run *r, char *path, size_t size, const char *kind, const char *name, const char *extension)
+{
+    const int n = snprintf(path, size, "%s/%s%s%s", demo_folder(r), kind, name, extension);
+    bar_show("writing", 0);
+    return n >= 0 && (size_t)n < size ? DONE : fail(FAILED, "%.60s...: the name is too long", demo_folder(r));
+}
+
+static int demo_ply(const run *r, int q)
+{
+    const size_t first = (size_t)(q * r->n_times);
+    char path[2048];
+    const char *names[8];
+    result res;
+    int k, code = demo_path(r, path, sizeof path, "heat-", DEMO_NAMES[q], ".ply");
+    if (code) return code;
+    memset(&res, 0, sizeof res);
+    res.n_columns = r->n_times;
+    res.values = r->values + first * (size_t)r->mesh.n;
+    for (k = 0; k < r->n_times && k < 8; k++) names[k] = r->time_names[k];
+    res.names = names;
+    res.colour = r->n_times / 2;
+    return write_table(path, MIO_PLY, r, &res);
+}
+
+static int demo_grid(const run *r, int q)
+{
+    pic_panel panels[8];
+    char path[2048], captions[8][64], title[64];
+    pic_opts opts = picture_opts(r->o);
+    int k, code = demo_path(r, path, sizeof path, "heat-", DEMO_NAMES[q], ".png");
+    if (code) return code;
+    snprintf(title, sizeof title, "Heat that starts at the %s", DEMO_NAMES[q]);
+    for (k = 0; k < r->n_times && k < 8; k++) {
+        panels[k] = picture_panel(&r->mesh, r->values + (size_t)(q * r->n_times + k) * (size_t)r->mesh.n);
+        time_text(r->time_names[k], captions[k], sizeof captions[k]);
+        panels[k].caption = captions[k];
+        panels[k].markers = &r->sources[q];
+        panels[k].n_markers = 1;
+    }
+    opts.width = 1600;
+    opts.height = 1150;
+    opts.title = title;
+    opts.subtitle = "columns of the heat kernel K_t = exp(-t B^-1 L), logarithmic colours, one legend per time";
+    opts.own_scale = 1;
+    opts.log_decades = 4;
+    opts.isolines = 10;
+    return write_picture(path, panels, k, &opts);
+}
+
+static int demo_isolines(const run *r)
+{
+    const int k = r->n_times - 2;
+    pic_panel panel = picture_panel(&r->mesh, r->values + (size_t)k * (size_t)r->mesh.n);
+    pic_opts opts = picture_opts(r->o);
+    char path[2048], title[100], when[64];
+    int code = demo_path(r, path, sizeof path, "isolines", "", ".png");
+    if (code) return code;
+    time_text(r->time_names[k], when, sizeof when);
+    snprintf(title, sizeof title, "Lines of equal heat, %s", when);
+    panel.markers = &r->sources[0];
+    panel.n_markers = 1;
+    opts.title = title;
+    opts.subtitle = "colours and lines are logarithmic: from one line to the next the heat falls by the same factor";
+    opts.label = "K_t";
+    opts.width = 1600;
+    opts.height = 1200;
+    opts.log_decades = 8;
+    opts.isolines = 40;
+    return write_picture(path, &panel, 1, &opts);
+}
+
+static int demo_files(const run *r)
+{
+    const char *folder = demo_folder(r);
+    int q, code = DONE;
+    if (!make_folder(folder)) return fail(FAILED, "%s: cannot make this folder: %s", folder, strerror(errno));
+    for (q = 0; q < DEMO_SOURCES && !code; q++) {
+        code = demo_ply(r, q);
+        if (!code) code = demo_grid(r, q);
+    }
+    return code ? code : demo_isolines(r);
+}
+
+static void demo_print(const run *r, const demo_checks *c)
+{
+    const char *folder = demo_folder(r);
+    const hd_laplacian *lap = r->lap;
+    int q, k;
+    printf("A surface made in memory: %ld vertices, %ld triangles, area %.3f, mean edge h = %.4f.\n", (long)r->mesh.n, (long)r->mesh.n_tri,
+           lap->area, lap->h);
+    printf("Heat was put at two vertices, %s (%ld) and %s (%ld), and followed over", DEMO_NAMES[0], (long)r->sources[0],
+           DEMO_NAMES[1], (long)r->sources[1]);
+    for (k = 0; k < r->n_times; k++) printf("%s %s", k ? "," : "", r->time_names[k]);
+    printf(".\n\n");
+    printf("  error         at most %.1e of the largest value (a bound, computed with the answer)\n", r->sum.worst.error_bound);
+    printf("  conservation  the heat on the surface stays what it was, to %.1e\n", c->mass_error);
+    printf("  symmetry      trunk to tail %.9g, tail to trunk %.9g, difference %.1e of it\n", c->there, c->back,
+           fabs(c->there - c->back) / fabs(c->there));
+    printf("  time          %.2g s for %ld columns, %lld iterations, no eigenvectors; %.1f MB\n\n", r->sec.solve, (long)r->n_columns,
+           (long long)r->sum.worst.iterations, (double)r->context.bytes_peak / 1048576.0);
+    printf("Look at\n");
+    for (q = 0; q < DEMO_SOURCES; q++) printf("  %s/heat-%s.png  the four times side by side\n", folder, DEMO_NAMES[q]);
+    printf("  %s/isolines.png  one of them, large, with lines of equal heat\n", folder);
+    for (q = 0; q < DEMO_SOURCES; q++)
+        printf("  %s/heat-%s.ply  the mesh with all values, for MeshLab, Blender or ParaView\n", folder, DEMO_NAMES[q]);
+    printf("\nNext, on this mesh or one of your own\n");
+    printf("  heatdiff info %s/heat-trunk.ply\n", folder);
+    printf("  heatdiff kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", folder);
+    printf("  heatdiff kernel --source 0,100 --t auto:4 %s/heat-trunk.ply > columns.txt\n", folder);
+    printf("  heatdiff --help\n");
+}
+
+static int command_demo(run *r)
+{
+    options o = *r->o;               /* with times and sources of its own */
+    int64_t sources[DEMO_SOURCES] = { 0, 0 };
+    demo_checks checks;
+    int code = demo_mesh(r);
+    if (code) return code;
+    demo_sources(&r->mesh, sources);
+    o.sources = sources;
+    o.n_sources = DEMO_SOURCES;
+    o.log_scale = 1;                 /* of the colours in the PLY files */
+    if (!parse_times(&o, NULL, DEMO_TIMES)) return fail_memory("the times");
+    r->o = &o;
+    code = run_assemble(r);
+    if (!code) code = run_times(r);
+    if (!code) code = run_sources(r);
+    if (!code) code = run_solve(r, NULL, "");
+    if (!code) code = demo_check(r, &checks);
+    if (!code) code = demo_files(r);
+    bar_hide();
+    if (!code) {
+        if (!o.quiet) demo_print(r, &checks);
+        if (o.json) report_heat(r);
+        code = close_stdout();
+    }
+    free(o.times);
+    return code;
+}
+
+/* ==== main ==== */
+
+static int run_command(const options *o)
+{
+    run r;
+    int code = DONE;
+    run_begin(&r, o);
+    switch (o->command) {
+    case CMD_INFO: code = command_info(&r); break;
+    case CMD_KERNEL: code = command_kernel(&r); break;
+    case CMD_DIFFUSE: code = command_diffuse(&r); break;
+    case CMD_RENDER: code = command_render(&r); break;
+    case CMD_DEMO: code = command_demo(&r); break;
+    default: break;
+    }
+    run_end(&r);
+    return code;
+}
+
+static int fail_command(const char *name)
+{
+    char commands[80];
+    list_commands(CMD_ALL, commands, sizeof commands);
+    if (!name) return fail(USAGE, "a command is missing; there are %s (see heatdiff --help)", commands);
+    return fail(USAGE, "'%.80s' is not a command; there are %s", name, commands);
+}
+
+/* Help and version are answered wherever they stand, before anything is checked or read. */
+static int answer_questions(int argc, char **argv, const command_def *command)
+{
+    int i;
+    for (i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (strcmp(argv[i], "--version") == 0) { print_version(); return 1; }
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+            if (command) print_command_help(command);
+            else print_help();
+            return 1;
+        }
+        if (!command) return 0;
+    }
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    options o;
+    const command_def *command = argc > 1 ? find_command(argv[1]) : NULL;
+    int code;
+    catch_interrupts();
+    if (answer_questions(argc, argv, command)) return close_stdout();
+    if (!command) return fail_command(argc > 1 ? argv[1] : NULL);
+    memset(&o, 0, sizeof o);
+    o.command = command->bit;
+    code = read_options(&o, argc, argv);
+    if (!code) code = check_options(&o);
+    if (!code) code = run_command(&o);
+    free_options(&o);
+    if (code == INTERRUPTED) {
+        bar_hide();
+        fprintf(stderr, "heatdiff: interrupted\n");
+    }
+    return code;
+}
