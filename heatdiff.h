@@ -3759,7 +3759,7 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->solver = hdi_heat_choose(heat, t);
     h->rep->method = HD_METHOD_ITERATIVE;
     h->rep->solver = h->solver;
-    if (h->solver != HD_SOLVER_LANCZOS) h->rep->precond = heat->opts.precond;
+    h->rep->precond = h->solver == HD_SOLVER_LANCZOS ? HD_PRECOND_NONE : heat->opts.precond;
     h->lane = HDI_TAKE_ZERO(&h->s, hdi_lane, HDI_LANES);
     return h->e->status;
 }

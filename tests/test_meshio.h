@@ -386,7 +386,7 @@ static void tmio_test_ply_binary(void)
     }
     tmio_make_ply(&t, 0, 1);
     tmio_bad_bytes("x.ply", t.b, t.n - 1, "x.ply", "face 1: the file ends here");
-    tmio_bad_bytes("x.ply", t.b, t.n - 31, "x.ply", "2 of element face, but the file ends after 1");
+    tmio_bad_bytes("x.ply", t.b, t.n - 29, "x.ply", "2 of element face, but the file ends after 1");
     tmio_bad_bytes("x.ply", t.b, t.n - 50, "x.ply", "4 of element vertex");
     t.b[t.n - 4] = 4;                           /* the last corner */
     tmio_bad_bytes("x.ply", t.b, t.n, "x.ply", "face 1: vertex index 4 is out of range");
@@ -463,3 +463,543 @@ static void tmio_test_stl(void)
     tmio_bad("x.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n", "x.stl:9", "endsolid");
     tmio_bad("x.stl", "solid a\nfacet normal 0 0 1\nvertex 0 0 0\n", "x.stl:3", "'vertex'");
 }
+
+/* ---- tables ---- */
+
+/* Loads a table that must be good; the caller frees it. NULL otherwise. */
+static double *tmio_table(const char *name, const void *data, size_t size, int64_t rows, int32_t cols)
+{
+    const char *const path = tmio_path(name);
+    double *v;
+    int64_t r;
+    int32_t c;
+    mio_error e;
+    int status;
+    tmio_put(path, data, size);
+    e.text[0] = 0;
+    status = mio_load_table(&v, &r, &c, path, NULL, &e);
+    CHECK_MSG(status == 0 && r == rows && c == cols, "%s: %d, %lld x %ld %s", name, status, (long long)r, (long)c, e.text);
+    remove(path);
+    if (status == 0 && r == rows && c == cols) return v;
+    free(v);
+    return NULL;
+}
+
+static void tmio_bad_table(const char *name, const void *data, size_t size, const char *where, const char *what)
+{
+    const char *const path = tmio_path(name);
+    double *v;
+    int64_t r, *lines;
+    int32_t c;
+    mio_error e;
+    char begin[128];
+    int status;
+    tmio_put(path, data, size);
+    e.text[0] = 0;
+    status = mio_load_table_lines(&v, &r, &c, &lines, path, NULL, &e);
+    snprintf(begin, sizeof begin, "/%s: ", where);
+    CHECK_MSG(status == MIO_FAILED && !v && !lines && strstr(e.text, begin) && strstr(e.text, what), "expected %s and '%s', got: %s", where, what, e.text);
+    remove(path);
+}
+
+static void tmio_make_npy(tmio_bytes *t, const char *descr, const char *order, const char *shape, int version)
+{
+    char head[200];
+    int n;
+    t->n = 0;
+    t->big = 0;
+    n = snprintf(head, sizeof head, "{'descr': '%s', 'fortran_order': %s, 'shape': %s, }   \n", descr, order, shape);
+    tmio_text(t, "\x93NUMPY");
+    tmio_int(t, version, 1);
+    tmio_int(t, 0, 1);
+    tmio_int(t, n, version == 1 ? 2 : 4);
+    tmio_text(t, head);
+    t->big = descr[0] == '>';
+}
+
+static void tmio_test_table_text(void)
+{
+    const char *const text = "# c\n\n1 2.5\r\n\t3 ,  -4e1 # row\n 5,6\n";
+    double *v = tmio_table("a.txt", text, strlen(text), 3, 2);
+    int64_t r, *lines;
+    int32_t c;
+    mio_error e;
+    if (v) CHECK(v[0] == 1 && v[1] == 3 && v[2] == 5 && v[3] == 2.5 && v[4] == -40 && v[5] == 6);
+    free(v);
+    v = tmio_table("b.csv", "7", 1, 1, 1);
+    free(v);
+    tmio_put(tmio_path("c.txt"), text, strlen(text));
+    CHECK(mio_load_table_lines(&v, &r, &c, &lines, tmio_path("c.txt"), NULL, &e) == 0 && lines && lines[0] == 3 && lines[1] == 4 && lines[2] == 5);
+    free(v);
+    free(lines);
+    remove(tmio_path("c.txt"));
+    tmio_bad_table("x.txt", "1 2\n3\n", 6, "x.txt:2", "1 columns, but 2");
+    tmio_bad_table("x.txt", "1 2\n3 zwei\n", 11, "x.txt:2", "'zwei'");
+    tmio_bad_table("x.txt", "1 2\n3 nan\n", 10, "x.txt:2", "'nan'");
+    tmio_bad_table("x.txt", "1 2\n\n3 -inf\n", 12, "x.txt:3", "'-inf'");
+    tmio_bad_table("x.csv", "1,,2\n", 5, "x.csv:1", "comma");
+    tmio_bad_table("x.csv", "1,2,\n", 5, "x.csv:1", "comma");
+    tmio_bad_table("x.csv", "1,2\n,3\n", 7, "x.csv:2", "comma");
+    tmio_bad_table("x.csv", "1;2\n", 4, "x.csv:1", "';'");
+    tmio_bad_table("x.txt", "", 0, "x.txt", "no numbers");
+    tmio_bad_table("x.txt", "# c\n\n", 5, "x.txt", "no numbers");
+    CHECK(mio_load_table(&v, &r, &c, tmio_path("not-there.txt"), NULL, &e) == MIO_FAILED && strstr(e.text, "not-there.txt: cannot open"));
+}
+
+static void tmio_test_table_npy(void)
+{
+    static const char *const types[] = {"<f8", ">f8", "<f4", ">f4", "<i8", ">i4", "<i2", "|i1", "<u4"};
+    static tmio_bytes t;
+    double *v;
+    size_t i;
+    int k, r, c;
+    for (i = 0; i < sizeof types / sizeof *types; i++)
+        for (k = 0; k < 3; k++) {               /* C order, Fortran order, one dimension */
+            const int size = types[i][2] - '0';
+            tmio_make_npy(&t, types[i], k == 1 ? "True" : "False", k == 2 ? "(6,)" : "(3, 2)", k + 1);
+            for (r = 0; r < 6; r++) {
+                const int value = k == 0 ? (r % 2) * 3 + r / 2 : r;         /* in memory afterwards: 0 1 2 3 4 5 */
+                if (types[i][1] != 'f') tmio_int(&t, value, size);
+                else if (size == 8) tmio_double(&t, value);
+                else tmio_float(&t, value);
+            }
+            v = tmio_table("a.npy", t.b, t.n, k == 2 ? 6 : 3, k == 2 ? 1 : 2);
+            for (c = 0; v && c < 6; c++) CHECK_MSG(v[c] == c, "%s %d: value %d is %g", types[i], k, c, v[c]);
+            free(v);
+        }
+    tmio_make_npy(&t, "<i4", "False", "(1,)", 1);
+    tmio_int(&t, -5, 4);
+    v = tmio_table("b", t.b, t.n, 1, 1);
+    CHECK(v && v[0] == -5);
+    free(v);
+    tmio_make_npy(&t, "<f8", "False", "(2, 1)", 1);
+    tmio_double(&t, 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "2 x 1");
+    tmio_int(&t, INT64_C(0x7ff8000000000000), 8);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "row 1, column 0");
+    tmio_bad_table("x.npy", t.b, 9, "x.npy", "inside the header");
+    tmio_bad_table("x.npy", t.b, 30, "x.npy", "inside the header");
+    tmio_bad_table("x.npy", "1 2\n", 4, "x.npy", "not a .npy");
+    tmio_make_npy(&t, "<c8", "False", "(1,)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "type");
+    tmio_make_npy(&t, "<f8", "False", "(1, 1, 1)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "3 dimensions");
+    tmio_make_npy(&t, "<f8", "False", "()", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "0 dimensions");
+    tmio_make_npy(&t, "<f8", "False", "(0, 3)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "empty");
+    tmio_make_npy(&t, "<f8", "False", "(999999999999999, 999999999)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "announced");
+    tmio_make_npy(&t, "<f8", "Maybe", "(1,)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "order");
+    tmio_make_npy(&t, "<f8", "False", "(1,)", 9);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "version 9");
+}
+
+/* ---- writers ---- */
+
+/* A mesh of a triangle, a quad and a pentagon on six vertices, and a field of two columns on it. */
+typedef struct tmio_sample {
+    mio_mesh m;
+    double xyz[18], values[12];
+    int64_t ptr[4];
+    int32_t idx[12], id0[6], id1[6];
+    const int32_t *ids[2];
+    const char *names[2];
+    uint8_t rgb[18];
+    mio_output o;
+} tmio_sample;
+
+static void tmio_sample_make(tmio_sample *s)
+{
+    static const int32_t idx[12] = {0, 1, 2, 0, 2, 3, 4, 4, 3, 2, 1, 5};
+    int i;
+    memset(s, 0, sizeof *s);
+    for (i = 0; i < 18; i++) { s->xyz[i] = (i * 7 % 11) / 3.0 - 1; s->rgb[i] = (uint8_t)(i * 15); }
+    for (i = 0; i < 12; i++) { s->values[i] = i == 4 ? 0 : 1e-7 / (i + 1) - 0.1 * (i > 6); s->idx[i] = idx[i]; }
+    for (i = 0; i < 6; i++) { s->id0[i] = i; s->id1[i] = -100 * i; }
+    s->ptr[1] = 3; s->ptr[2] = 7; s->ptr[3] = 12;
+    s->m.n = 6;
+    s->m.xyz = s->xyz;
+    s->m.n_faces = 3;
+    s->m.face_ptr = s->ptr;
+    s->m.face_idx = s->idx;
+    s->ids[0] = s->id0;
+    s->ids[1] = s->id1;
+    s->names[0] = "t < 1 & \"two\"";
+    s->names[1] = "second";
+    s->o.rows = 6;
+    s->o.cols = 2;
+    s->o.values = s->values;
+    s->o.ld = 6;
+}
+
+/* Writes the sample and returns the whole output, which must fit. */
+static size_t tmio_written(const tmio_sample *s, const char *name, char *buf, size_t room)
+{
+    const char *const path = tmio_path(name);
+    mio_error e;
+    size_t n;
+    e.text[0] = 0;
+    CHECK_MSG(mio_write(path, mio_format_of(path), &s->m, &s->o, &e) == 0, "%s", e.text);
+    CHECK(!mio_temporary_set);
+    n = tmio_get(path, buf, room);
+    CHECK_MSG(n > 0 && n < room - 1, "%s: %lu bytes", name, (unsigned long)n);
+    remove(path);
+    return n;
+}
+
+static void tmio_test_write_tables(void)
+{
+    static tmio_sample s;
+    static char buf[4096];
+    int k, i;
+    tmio_sample_make(&s);
+    for (k = 0; k < 3; k++) {
+        static const char *const names[] = {"o.txt", "o.CSV", "o.npy"};
+        size_t n = tmio_written(&s, names[k], buf, sizeof buf);
+        double *v = tmio_table(names[k], buf, n, 6, 2);
+        CHECK(v && memcmp(v, s.values, sizeof s.values) == 0);
+        free(v);
+        if (k < 2) CHECK_MSG(strchr(buf, k ? ',' : ' ') && !strchr(buf, k ? ' ' : ','), "%s", buf);
+        s.o.n_ids = 2;
+        s.o.ids = s.ids;
+        s.o.comment = "1\n2";
+        n = tmio_written(&s, names[k], buf, sizeof buf);
+        v = tmio_table(names[k], buf, n, 6, 4);
+        for (i = 0; v && i < 6; i++) CHECK(v[i] == i && v[6 + i] == -100 * i && v[12 + i] == s.values[i] && v[18 + i] == s.values[6 + i]);
+        free(v);
+        if (k < 2) CHECK_MSG(strncmp(buf, "# 1 2\n0", 7) == 0, "%s", buf);
+        s.o.n_ids = 0;
+        s.o.comment = NULL;
+    }
+    CHECK(memcmp(buf, "\x93NUMPY\1\0\x76\0{'descr': '<f8', 'fortran_order': False, 'shape': (6, 4), } ", 70) == 0 && buf[127] == '\n');
+    CHECK(mio_format_of("a.txt") == MIO_TXT && mio_format_of("b/a.VTU") == MIO_VTU && mio_format_of("a.png") == MIO_UNKNOWN && mio_format_of("a.d/txt") == MIO_UNKNOWN);
+    CHECK(mio_has_extension("x.PnG", "png") && !mio_has_extension("png", "png") && !mio_has_extension("x.pngs", "png") && !mio_has_extension(NULL, "png"));
+}
+
+static int tmio_same_mesh(const mio_mesh *a, const mio_mesh *b)
+{
+    return a->n == b->n && a->n_faces == b->n_faces && memcmp(a->xyz, b->xyz, 3 * (size_t)a->n * sizeof *a->xyz) == 0 &&
+           (!a->n_faces || (memcmp(a->face_ptr, b->face_ptr, ((size_t)a->n_faces + 1) * sizeof *a->face_ptr) == 0 &&
+                            memcmp(a->face_idx, b->face_idx, (size_t)a->face_ptr[a->n_faces] * sizeof *a->face_idx) == 0));
+}
+
+static void tmio_test_write_meshes(void)
+{
+    static tmio_sample s;
+    static char buf[8192];
+    mio_mesh m;
+    mio_error e;
+    int k;
+    for (k = 0; k < 4; k++) {                   /* PLY and OBJ, with everything and with next to nothing */
+        const char *const name = k & 1 ? "o.obj" : "o.ply";
+        size_t n;
+        tmio_sample_make(&s);
+        if (k < 2) { s.o.rgb = s.rgb; s.o.names = s.names; }
+        else { s.m.n_faces = 0; s.o.rows = 0; s.o.cols = 0; }
+        n = tmio_written(&s, name, buf, sizeof buf);
+        CHECK_MSG(tmio_load_bytes(&m, &e, name, buf, n) == 0 && tmio_same_mesh(&m, &s.m), "%s", e.text);
+        mio_free(&m);
+        if (k == 0) CHECK(strstr(buf, "property uchar blue\nproperty double quality\nproperty double quality_1\nelement face 3\n") && strstr(buf, "comment quality_1: second\n"));
+        if (k == 1) CHECK(strncmp(buf, "v -1 1.3333333333333335 0 0 0.058824 0.11765\n", 45) == 0 && strstr(buf, "\nf 1 3 4 5\n"));
+        if (k == 2) CHECK(!strstr(buf, "element face") && !strstr(buf, "red"));
+    }
+    tmio_sample_make(&s);
+    s.o.rows = 5;
+    CHECK(mio_write_ply(tmio_path("o.ply"), &s.m, &s.o, &e) == MIO_FAILED && strstr(e.text, "5 rows") && mio_write_vtu(tmio_path("o.vtu"), NULL, &s.o, &e) == MIO_FAILED);
+    CHECK(mio_write("o.x", MIO_UNKNOWN, &s.m, &s.o, &e) == MIO_FAILED);
+}
+
+/* A polygon of 300 corners does not fit a length of one byte. */
+static void tmio_test_wide_ply(void)
+{
+    static double xyz[900];
+    static int32_t idx[300];
+    int64_t ptr[2] = {0, 300};
+    mio_mesh m, back;
+    mio_output o;
+    mio_error e;
+    int i;
+    memset(&m, 0, sizeof m);
+    memset(&o, 0, sizeof o);
+    for (i = 0; i < 300; i++) { idx[i] = i; xyz[3 * i] = i; }
+    m.n = 300; m.xyz = xyz; m.n_faces = 1; m.face_ptr = ptr; m.face_idx = idx;
+    CHECK(mio_write_ply(tmio_path("w.ply"), &m, &o, &e) == 0 && mio_load(&back, tmio_path("w.ply"), NULL, &e) == 0 && tmio_same_mesh(&m, &back));
+    mio_free(&back);
+    remove(tmio_path("w.ply"));
+}
+
+/* The 8 bytes of a little-endian integer. */
+static uint64_t tmio_u64(const char *p)
+{
+    uint64_t u = 0;
+    int i;
+    for (i = 7; i >= 0; i--) u = u << 8 | (unsigned char)p[i];
+    return u;
+}
+
+static void tmio_test_vtu(void)
+{
+    static tmio_sample s;
+    static char buf[8192];
+    size_t n;
+    int points;
+    for (points = 0; points < 2; points++) {
+        const uint64_t cells = points ? 6 : 3, corners = points ? 6 : 12;
+        const char *p, *at;
+        uint64_t sizes[7], i, k, x;
+        tmio_sample_make(&s);
+        if (points) s.m.n_faces = 0;
+        s.o.rgb = s.rgb;
+        s.o.names = s.names;
+        n = tmio_written(&s, "o.vtu", buf, sizeof buf);
+        CHECK(strstr(buf, "Scalars=\"t &lt; 1 &amp; &quot;two&quot;\"") && strstr(buf, points ? "NumberOfCells=\"6\"" : "NumberOfCells=\"3\""));
+        p = strstr(buf, "encoding=\"raw\">\n_");
+        CHECK(p != NULL);
+        if (!p) return;
+        p += 17;
+        sizes[0] = sizes[1] = 48; sizes[2] = 18; sizes[3] = 144; sizes[4] = 8 * corners; sizes[5] = 8 * cells; sizes[6] = cells;
+        for (i = 0, k = 0; i < 7; i++) {
+            char want[64];
+            snprintf(want, sizeof want, "offset=\"%llu\"", (unsigned long long)k);
+            CHECK_MSG(strstr(buf, want) && tmio_u64(p + k) == sizes[i], "array %d", (int)i);
+            k += 8 + sizes[i];
+        }
+        CHECK((size_t)(p - buf) + k + 28 == n && memcmp(p + k, "\n</AppendedData>\n</VTKFile>\n", 28) == 0);
+        at = p + 56 + 8;                        /* the second column */
+        for (i = 0; i < 6; i++) { memcpy(&x, &s.values[6 + i], 8); CHECK(tmio_u64(at + 8 * i) == x); }
+        at = p + k - cells;
+        CHECK(points ? at[0] == 1 && at[5] == 1 : at[0] == 5 && at[1] == 9 && at[2] == 7);
+    }
+}
+
+static int tmio_stop_now(void) { return 1; }
+
+/* Asked 20 times, then stops. */
+static int tmio_stop_count;
+static int tmio_stop_later(void) { return ++tmio_stop_count > 20; }
+
+static void tmio_test_failures(void)
+{
+    static tmio_sample s;
+    static double big[200000];
+    static const char *const names[] = {"o.txt", "o.csv", "o.npy", "o.ply", "o.obj", "o.vtu"};
+    char keep[64];
+    mio_mesh m;
+    mio_error e;
+    mio_file f;
+    FILE *full;
+    int k;
+    tmio_sample_make(&s);
+    for (k = 0; k < 6; k++) {
+        CHECK(mio_write(tmio_path("no/such/folder/o.txt"), MIO_TXT + k, &s.m, &s.o, &e) == MIO_FAILED && strstr(e.text, "o.txt: cannot write"));
+        tmio_put(tmio_path(names[k]), "precious", 8);
+        s.o.stop = tmio_stop_now;               /* what was there stays, and nothing is left beside it */
+        CHECK(mio_write(tmio_path(names[k]), MIO_TXT + k, &s.m, &s.o, &e) == MIO_STOPPED && !mio_temporary_set);
+        s.o.stop = NULL;
+        CHECK(mio_temporary_path[0] && !fopen(mio_temporary_path, "rb"));
+        CHECK(tmio_get(tmio_path(names[k]), keep, sizeof keep) == 8 && strcmp(keep, "precious") == 0);
+        CHECK(mio_write(tmio_path(names[k]), MIO_TXT + k, &s.m, &s.o, &e) == 0 && tmio_get(tmio_path(names[k]), keep, sizeof keep) > 8);
+        remove(tmio_path(names[k]));
+    }
+    CHECK(mio_file_open(&f, tmio_path("o.txt"), NULL, &e) == 0);
+    mio_file_put(&f, "12", 2);
+    CHECK(mio_temporary_set && f.temporary);
+    full = fopen(mio_temporary_path, "rb");     /* it exists, until a signal handler says so */
+    CHECK(full != NULL);
+    if (full) fclose(full);
+    mio_file_cancel(&f);
+    CHECK(!mio_temporary_set && !fopen(mio_temporary_path, "rb") && !fopen(tmio_path("o.txt"), "rb"));
+#if !defined(_WIN32)
+    CHECK(mio_file_open(&f, tmio_path("o.txt"), NULL, &e) == 0);
+    mio_remove_temporary();
+    CHECK(!mio_temporary_set && !fopen(mio_temporary_path, "rb"));
+    CHECK(mio_file_close(&f) == MIO_FAILED);
+    full = fopen("/dev/full", "wb");
+    if (full) {
+        fclose(full);
+        for (k = 0; k < 6; k++) CHECK(mio_write("/dev/full", MIO_TXT + k, &s.m, &s.o, &e) == MIO_FAILED && strstr(e.text, "/dev/full: cannot write: "));
+        s.o.rows = s.o.ld = 100000;             /* more than any buffer */
+        s.o.values = big;
+        CHECK(mio_write_npy("/dev/full", &s.o, &e) == MIO_FAILED);
+        CHECK(mio_write_text("/dev/null", &s.o, &e) == 0);
+        full = fopen("/dev/null", "wb");
+        CHECK(full != NULL && fputs("still a device", full) >= 0);
+        if (full) fclose(full);
+    }
+#endif
+    CHECK(mio_load(&m, tmio_path("not-there.obj"), NULL, &e) == MIO_FAILED && strstr(e.text, "not-there.obj: cannot open: ") && !m.xyz);
+    CHECK(mio_load(&m, test_tmp_dir(), NULL, &e) == MIO_FAILED);
+    tmio_put(tmio_path("s.obj"), "v 1 2 3\n", 8);
+    CHECK(mio_load(&m, tmio_path("s.obj"), tmio_stop_now, &e) == MIO_STOPPED && !m.xyz);
+    CHECK(mio_load(&m, tmio_path("s.obj"), NULL, NULL) == 0);
+    mio_free(&m);
+    mio_free(&m);
+    remove(tmio_path("s.obj"));
+    CHECK(mio_fail_at(&e, "a\nb", 7, "%d", 5) == MIO_FAILED && strcmp(e.text, "a?b:7: 5") == 0);
+}
+
+/* Loading something large stops on the way. */
+static void tmio_test_stop(void)
+{
+    static char text[1600000];
+    mio_mesh m;
+    mio_error e;
+    size_t i;
+    for (i = 0; i < 200000; i++) memcpy(text + 8 * i, "v 1 2 3\n", 8);
+    tmio_put(tmio_path("big.obj"), text, sizeof text);
+    tmio_stop_count = 18;
+    CHECK(mio_load(&m, tmio_path("big.obj"), tmio_stop_later, &e) == MIO_STOPPED && !m.xyz);
+    tmio_stop_count = -100;
+    CHECK(mio_load(&m, tmio_path("big.obj"), tmio_stop_later, &e) == 0 && m.n == 200000);
+    mio_free(&m);
+    remove(tmio_path("big.obj"));
+}
+
+static void tmio_test_triangulate(void)
+{
+    static const int32_t want[18] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 4, 3, 2, 4, 2, 1, 4, 1, 5}, face[6] = {0, 1, 1, 2, 2, 2};
+    static tmio_sample s;
+    int32_t *tri, *of, n;
+    mio_error e;
+    tmio_sample_make(&s);
+    CHECK(mio_triangulate(&s.m, &tri, &n, &of, &e) == 0 && n == 6 && memcmp(tri, want, sizeof want) == 0 && memcmp(of, face, sizeof face) == 0);
+    free(tri);
+    free(of);
+    s.m.n_faces = 0;
+    CHECK(mio_triangulate(&s.m, &tri, &n, NULL, &e) == 0 && n == 0 && tri);
+    free(tri);
+}
+
+/* ---- broken files ---- */
+
+/* Loads, and checks what holds for whatever the file was. Returns the status. */
+static int tmio_survive(const char *name, const void *data, size_t size, int table)
+{
+    const char *const path = tmio_path(name);
+    mio_mesh m;
+    mio_error e;
+    double *v;
+    int64_t r, i;
+    int32_t c;
+    int status;
+    tmio_put(path, data, size);
+    e.text[0] = 0;
+    if (table) {
+        status = mio_load_table(&v, &r, &c, path, NULL, &e);
+        for (i = 0; i < r * c && status == 0; i++) if (!mio_is_finite(v[i])) CHECK_MSG(0, "a number that is not finite");
+        free(v);
+    } else {
+        status = mio_load(&m, path, NULL, &e);
+        for (i = 0; status == 0 && i < 3 * (int64_t)m.n; i++) if (!mio_is_finite(m.xyz[i])) CHECK_MSG(0, "a coordinate that is not finite");
+        for (i = 0; status == 0 && i < m.face_ptr[m.n_faces]; i++) if (m.face_idx[i] < 0 || m.face_idx[i] >= m.n) CHECK_MSG(0, "an index out of range");
+        for (i = 0; status == 0 && i < m.n_faces; i++) if (m.face_ptr[i + 1] - m.face_ptr[i] < 3) CHECK_MSG(0, "a face of fewer than 3 corners");
+        CHECK(status != 0 || m.n > 0);
+        mio_free(&m);
+    }
+    remove(path);
+    if (status != 0 && (status != MIO_FAILED || !strstr(e.text, name) || strchr(e.text, '\n'))) CHECK_MSG(0, "%s: %d, '%s'", name, status, e.text);
+    return status;
+}
+
+/* Every beginning of a good file, and some thousand files with a few wrong bytes. `least`: no shorter beginning is good. */
+static void tmio_break(const char *name, const void *data, size_t size, size_t least, int table)
+{
+    static unsigned char buf[8192];
+    uint64_t seed = 0x9e3779b97f4a7c15u;
+    size_t k;
+    int i, n;
+    CHECK_MSG(tmio_survive(name, data, size, table) == 0, "%s: the whole file is refused", name);
+    for (k = 0; k < size; k++) if (tmio_survive(name, data, k, table) == 0 && k < least) CHECK_MSG(0, "%s: accepted after %lu bytes", name, (unsigned long)k);
+    for (i = 0; i < 400; i++) {
+        size_t length = size;
+        memcpy(buf, data, size);
+        for (n = 0; n <= i % 4; n++) {
+            size_t at;
+            seed ^= seed << 13; seed ^= seed >> 7; seed ^= seed << 17;
+            at = (size_t)(seed >> 8) % length;
+            switch (seed >> 60) {
+            case 0: case 1: buf[at] = (unsigned char)(buf[at] ^ 1u << (seed & 7)); break;
+            case 2: case 3: buf[at] = (unsigned char)(seed & 255); break;
+            case 4: buf[at] = 0; break;
+            case 5: buf[at] = 255; break;
+            case 6: buf[at] = '-'; break;
+            case 7: buf[at] = '\n'; break;
+            case 8: buf[at] = '9'; break;
+            case 9: memmove(buf + at, buf + at + 1, length - at - 1); if (length > 1) length--; break;
+            case 10: if (length < sizeof buf - 1) { memmove(buf + at + 1, buf + at, length - at); length++; } break;
+            default: buf[at] = buf[(size_t)(seed >> 20) % length]; break;
+            }
+        }
+        (void)tmio_survive(name, buf, length, table);
+    }
+}
+
+static void tmio_test_broken(void)
+{
+    static const char obj[] = "v 0 0 0\nv 1.5 0 -2e1\nv 0 1 0.123456789012345678\nf 1 2 3\nf -1/1 -2/2/2 -3//3 \\\n1\nl 1 2\n# end\n";
+    static const char off[] = "OFF # c\n4 2 0\n0 0 0\n1 0 0\n0 1 0 255 0 0\n1 1 1.25\n3 0 1 2\n4 0 1 3 2 0.5 0.5 0.5\n";
+    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty double y\nproperty float z\nelement face 1\n"
+                              "property list uchar int vertex_index\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+                              "0 0 0\n1 0 0\n0 1 0\n1 1 0.5\n4 0 1 3 2\n6 0 1 2 -1 3 2\n";
+    static const char stl[] = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+    static const char xyz[] = "3\n# c\n0 0 0\n1,2,3\n4 5 6 7 8 9\n";
+    static const char table[] = "# c\n1 2\n3,4\n-5e3\t6.25\n";
+    static tmio_bytes t;
+    static tmio_sample s;
+    static char buf[8192];
+    uint64_t seed = 12345;
+    size_t n, k;
+    int kind;
+    tmio_break("t.obj", obj, sizeof obj - 1, 7, 0);
+    tmio_break("t.off", off, sizeof off - 1, sizeof off - 20, 0);
+    tmio_break("t.ply", ply, sizeof ply - 1, sizeof ply - 2, 0);
+    tmio_break("t.stl", stl, sizeof stl - 1, sizeof stl - 4, 0);
+    tmio_break("t.xyz", xyz, sizeof xyz - 1, sizeof xyz - 11, 0);
+    tmio_break("t", off, sizeof off - 1, 0, 0);
+    tmio_break("t.txt", table, sizeof table - 1, 0, 1);
+    for (kind = 0; kind < 4; kind++) {
+        tmio_make_ply(&t, kind & 1, kind >> 1);
+        tmio_break("tb.ply", t.b, t.n, t.n, 0);
+    }
+    tmio_make_stl(&t, "solid");
+    tmio_break("tb.stl", t.b, t.n, t.n, 0);
+    tmio_make_npy(&t, "<f4", "True", "(2, 2)", 1);
+    for (k = 0; k < 4; k++) tmio_float(&t, (double)k);
+    tmio_break("t.npy", t.b, t.n, t.n, 1);
+    tmio_sample_make(&s);
+    n = tmio_written(&s, "o.ply", buf, sizeof buf);
+    tmio_break("o.ply", buf, n, n, 0);
+    for (kind = 0; kind < 200; kind++) {        /* bytes at random, under every name */
+        static const char *const names[] = {"r.obj", "r.off", "r.ply", "r.stl", "r.xyz", "r", "r.txt", "r.npy"};
+        for (k = 0; k < 600; k++) {
+            seed ^= seed << 13; seed ^= seed >> 7; seed ^= seed << 17;
+            buf[k] = (char)(unsigned char)(seed >> 24 & 255);
+        }
+        CHECK(tmio_survive(names[kind & 7], buf, 600, (kind & 7) > 5) == MIO_FAILED);
+    }
+}
+
+static void test_meshio(void)
+{
+    tmio_test_numbers();
+    tmio_test_obj();
+    tmio_test_off();
+    tmio_test_xyz();
+    tmio_test_ply_ascii();
+    tmio_test_ply_binary();
+    tmio_test_stl();
+    tmio_test_table_text();
+    tmio_test_table_npy();
+    tmio_test_write_tables();
+    tmio_test_write_meshes();
+    tmio_test_wide_ply();
+    tmio_test_vtu();
+    tmio_test_failures();
+    tmio_test_stop();
+    tmio_test_triangulate();
+    tmio_test_broken();
+}
+
+#endif

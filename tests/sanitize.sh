@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# The tests under sanitizers, with asserts and without; first, a planted error proves that the sanitizer is on.   Usage: sanitize.sh WORKFOLDER
+set -euo pipefail
+top=$(cd "$(dirname "$0")/.." && pwd)
+work=$1
+flags="-std=c99 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -I$top"
+printf '#include <stdlib.h>\nint main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; c = p[3]; free(p); return c; }\n' >"$work/planted.c"
+for cc in gcc clang; do
+  command -v $cc >/dev/null || continue
+  $cc $flags "$work/planted.c" -o "$work/planted"
+  if "$work/planted" >/dev/null 2>&1; then echo "$cc: the sanitizer is not on"; exit 1; fi
+done
+gcc $flags "$top/tests/runner.c" -o "$work/runner" -lm
+gcc $flags "$top/tests/internals.c" -o "$work/internals" -lm
+"$work/runner" --tmp "$work"
+"$work/internals"
