@@ -81,7 +81,8 @@ typedef struct mio_output {
 enum { MIO_UNKNOWN = 0, MIO_TXT, MIO_CSV, MIO_NPY, MIO_PLY, MIO_OBJ, MIO_VTU };
 
 /* A file being written, or standard output. Written beside its target under another name and renamed when complete, so that
-   the target is either as it was or whole. Devices (and what lies in /dev) are written as they are. */
+   the target is either as it was or whole. Devices (and what lies in /dev) are written as they are; a symbolic link is replaced
+   by the file. */
 typedef struct mio_file {
     FILE *stream;
     const char *path;           /* NULL: standard output */
@@ -634,7 +635,7 @@ static int mio_obj_face(mio_in *in, mio_build *b, int64_t limit, int64_t *larges
         if (v >= limit) return mio_fail(in, in->line, "vertex index %s is out of range (the file has %lld vertices)", mio_show(in, in->p, word), (long long)limit);
         if (v > *largest) *largest = v;
         if (mio_add_corner(in, b, v > INT32_MAX ? INT32_MAX : (int32_t)v) < 0) return MIO_FAILED;
-        in->p = mio_token_end(in, in->p);
+        in->p = q < in->end && *q == '/' ? mio_token_end(in, q) : q;       /* texture and normal are not looked at */
     }
     return mio_end_face(in, b);
 }
@@ -1280,11 +1281,12 @@ static size_t mio_table_place(const mio_table *t, const double *xyz, const doubl
     return i;
 }
 
-static int mio_table_grow(const mio_in *in, mio_table *t, const mio_build *b)
+/* Makes the table at least twice as large, and large enough for n vertices. */
+static int mio_table_grow(const mio_in *in, mio_table *t, const mio_build *b, size_t n)
 {
-    const size_t size = t->slot ? 2 * (t->mask + 1) : 1024;
+    size_t size = t->slot ? 2 * (t->mask + 1) : 1024, v;
     mio_table bigger;
-    size_t v;
+    while (size / 2 < n) size *= 2;
     bigger.mask = size - 1;
     bigger.slot = (int32_t *)calloc(size, sizeof *bigger.slot);
     if (!bigger.slot) return mio_no_memory(in);
@@ -1300,7 +1302,7 @@ static int mio_stl_corner(const mio_in *in, mio_build *b, mio_table *t, double x
     size_t i;
     int k;
     for (k = 0; k < 3; k++) if (x[k] == 0) x[k] = 0;        /* -0 is 0 */
-    if ((!t->slot || 2 * b->n > t->mask) && mio_table_grow(in, t, b) < 0) return MIO_FAILED;
+    if ((!t->slot || 2 * b->n > t->mask) && mio_table_grow(in, t, b, b->n) < 0) return MIO_FAILED;
     i = mio_table_place(t, b->xyz, x);
     if (!t->slot[i]) {
         if (mio_add_vertex(in, b, x) < 0) return MIO_FAILED;
@@ -1318,7 +1320,7 @@ static int mio_stl_binary(mio_in *in, mio_build *b, mio_table *t)
     n = mio_u32(p - 4, 0);
     if ((in->size - 84) / 50 < n)
         return mio_fail(in, 0, "%lu triangles are announced, but the file ends in triangle %lu", (unsigned long)n, (unsigned long)((in->size - 84) / 50));
-    if (mio_reserve_faces(in, b, n) < 0 || mio_reserve_corners(in, b, 3 * (size_t)n) < 0) return MIO_FAILED;
+    if (mio_reserve_faces(in, b, n) < 0 || mio_reserve_corners(in, b, 3 * (size_t)n) < 0 || mio_table_grow(in, t, b, n / 2) < 0) return MIO_FAILED;
     for (f = 0; f < n; f++, p += 50) {
         const int status = mio_tick(in);
         if (status != MIO_OK) return status;

@@ -1,0 +1,195 @@
+/* runner.c - the tests of heatdiff.h and of the tools' headers, in one program
+
+       cc -std=c99 tests/runner.c -I. -lm -o runner && ./runner
+
+   runner [FILTER...]   groups whose name contains one of the filters; none: all
+   runner --list        names of the groups
+   runner --tmp DIR     an existing directory for files that tests write; default: one made here and removed at the end
+
+   A failed check says file, line and what it saw, and the run goes on. Exit status 1 when any check failed. */
+
+#if defined(__GNUC__) || defined(__clang__)
+#pragma GCC diagnostic ignored "-Wunused-function"    /* headers of helpers: not all are used here */
+#endif
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <sys/stat.h>
+#include <sys/types.h>
+#ifdef _WIN32
+#include <direct.h>
+#include <io.h>
+#include <process.h>
+#else
+#include <dirent.h>
+#include <unistd.h>
+#endif
+
+#define HEATDIFF_IMPLEMENTATION
+#include "../heatdiff.h"
+
+/* ---- checks ---- */
+
+static int64_t test_passed, test_failed, test_failed_in_group;
+enum { TEST_MOST_MESSAGES = 40 };
+
+static void test_count(int ok) {
+    if (ok) test_passed++;
+    else {
+        test_failed++;
+        test_failed_in_group++;
+    }
+}
+
+#if defined(__GNUC__) || defined(__clang__)
+__attribute__((format(printf, 5, 6)))
+#endif
+static int test_check_msg(int ok, const char *file, int line, const char *what, const char *fmt, ...) {
+    va_list args;
+    test_count(ok);
+    if (ok || test_failed_in_group > TEST_MOST_MESSAGES) return ok;
+    printf("%s:%d: %s\n    ", file, line, what);
+    va_start(args, fmt);
+    vprintf(fmt, args);
+    va_end(args);
+    printf("\n");
+    if (test_failed_in_group == TEST_MOST_MESSAGES) printf("    (further failures of this group are counted only)\n");
+    fflush(stdout);
+    return ok;
+}
+
+static int test_check(int ok, const char *file, int line, const char *what) {
+    test_count(ok);
+    if (!ok && test_failed_in_group <= TEST_MOST_MESSAGES) printf("%s:%d: %s\n", file, line, what);
+    fflush(stdout);
+    return ok;
+}
+
+/* Both are expressions that say whether the check held. */
+#define CHECK(cond) test_check((cond) != 0, __FILE__, __LINE__, #cond)
+#define CHECK_MSG(cond, ...) test_check_msg((cond) != 0, __FILE__, __LINE__, #cond, __VA_ARGS__)
+
+/* ---- a directory for files ---- */
+
+static char test_tmp_path[512];
+static int test_tmp_made;
+
+static int test_make_dir(const char *path) {
+#ifdef _WIN32
+    return _mkdir(path) == 0;
+#else
+    return mkdir(path, 0700) == 0;
+#endif
+}
+
+static const char *test_tmp_dir(void) {
+    int i;
+#ifdef _WIN32
+    const int pid = _getpid();
+#else
+    const int pid = (int)getpid();
+#endif
+    for (i = 0; !test_tmp_path[0] && i < 100; i++) {
+        snprintf(test_tmp_path, sizeof test_tmp_path, "./heatdiff-test-tmp-%d-%d", pid, i);
+        test_tmp_made = test_make_dir(test_tmp_path);
+        if (!test_tmp_made) test_tmp_path[0] = 0;
+    }
+    if (!test_tmp_path[0]) {
+        fprintf(stderr, "runner: no directory for files can be made here; give one with --tmp\n");
+        exit(2);
+    }
+    return test_tmp_path;
+}
+
+/* What tests left behind goes with the directory, but only if it was made here. */
+static void test_tmp_remove(void) {
+#ifdef _WIN32
+    if (test_tmp_made) _rmdir(test_tmp_path);
+#else
+    DIR *dir = test_tmp_made ? opendir(test_tmp_path) : NULL;
+    struct dirent *entry;
+    char path[1024];
+    while (dir && (entry = readdir(dir)) != NULL) {
+        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
+        if (snprintf(path, sizeof path, "%s/%s", test_tmp_path, entry->d_name) < (int)sizeof path) remove(path);
+    }
+    if (dir) closedir(dir);
+    if (test_tmp_made) rmdir(test_tmp_path);
+#endif
+}
+
+/* ---- groups ---- */
+
+#include "dense.h"
+#include "../tools/shapes.h"
+#include "test_base.h"
+#include "test_sparse.h"
+#include "test_operators.h"
+#include "test_rational.h"
+#include "test_krylov.h"
+#include "test_heat.h"
+#include "test_robust.h"
+#include "test_picture.h"
+#include "test_meshio.h"
+
+typedef struct test_group { const char *name; void (*run)(void); } test_group;
+
+static const test_group test_groups[] = {
+    {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
+    {"krylov", test_krylov},     {"heat", test_heat},     {"robust", test_robust},       {"picture", test_picture},
+    {"meshio", test_meshio},
+};
+
+enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
+
+static void test_run(const test_group *group) {
+    const int64_t passed = test_passed, failed = test_failed;
+    const clock_t start = clock();
+    test_failed_in_group = 0;
+    group->run();
+    printf("%-12s %8lld passed %6lld failed %8.2f s\n", group->name, (long long)(test_passed - passed), (long long)(test_failed - failed),
+           (double)(clock() - start) / CLOCKS_PER_SEC);
+    fflush(stdout);
+}
+
+int main(int argc, char **argv) {
+    int i, k, filters = 0, ran = 0;
+    for (i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--list") == 0) {
+            for (k = 0; k < TEST_GROUPS; k++) printf("%s\n", test_groups[k].name);
+            return 0;
+        }
+        if (strcmp(argv[i], "--tmp") == 0 && i + 1 < argc) {
+            if (strlen(argv[i + 1]) >= sizeof test_tmp_path) {
+                fprintf(stderr, "runner: the name of the directory is too long\n");
+                return 2;
+            }
+            strcpy(test_tmp_path, argv[i + 1]);
+            argv[i] = argv[i + 1] = NULL;
+            i++;
+        } else if (argv[i][0] == '-') {
+            fprintf(stderr, "usage: runner [--list] [--tmp DIR] [FILTER...]\n");
+            return 2;
+        } else {
+            filters++;
+        }
+    }
+    for (k = 0; k < TEST_GROUPS; k++) {
+        int wanted = filters == 0;
+        for (i = 1; i < argc; i++) wanted |= argv[i] && strstr(test_groups[k].name, argv[i]) != NULL;
+        if (!wanted) continue;
+        test_run(test_groups + k);
+        ran++;
+    }
+    test_tmp_remove();
+    if (!ran) {
+        fprintf(stderr, "runner: no group has such a name\n");
+        return 2;
+    }
+    printf("%lld passed, %lld failed\n", (long long)test_passed, (long long)test_failed);
+    return test_failed > 0;
+}

@@ -1,0 +1,630 @@
+/* test_operators.h - the pair (L, B): by hand on single triangles, by its properties on meshes, and with bad input */
+
+#ifndef TEST_OPERATORS_H
+#define TEST_OPERATORS_H
+
+static const hd_laplacian_kind op_kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_COT};
+
+/* Where (i, j) stands in L, or -1. */
+static int64_t op_find(const hd_csr *a, int32_t i, int32_t j) {
+    int64_t p;
+    for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
+        if (a->col[p] == j) return p;
+    return -1;
+}
+
+/* L between two vertices of the caller; 0 where there is no entry. */
+static double op_l(const hd_laplacian *lap, int32_t u, int32_t v) {
+    const int64_t p = lap->row[u] < 0 || lap->row[v] < 0 ? -1 : op_find(&lap->L, lap->row[u], lap->row[v]);
+    return p < 0 ? 0 : lap->L.val[p];
+}
+
+static double op_b(const hd_laplacian *lap, int32_t u, int32_t v) {
+    const int64_t p = lap->row[u] < 0 || lap->row[v] < 0 ? -1 : op_find(&lap->L, lap->row[u], lap->row[v]);
+    if (p < 0) return 0;
+    if (lap->B) return lap->B[p];
+    return u == v ? lap->mass[lap->row[u]] : 0;
+}
+
+static hd_laplacian *op_make(const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_laplacian_kind kind) {
+    hd_laplacian_opts opts;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    memset(&opts, 0, sizeof opts);
+    opts.kind = kind;
+    CHECK_MSG(hd_laplacian_triangles(&lap, xyz, n, tri, m, &opts, &e) == HD_OK, "%s", e.text);
+    return lap;
+}
+
+/* Area by Heron's formula: not how the library does it. */
+static double op_area(const shape *s) {
+    double sum = 0;
+    int32_t f;
+    for (f = 0; f < s->n_tri; f++) {
+        const double *p[3];
+        double a, b, c, q;
+        int k;
+        for (k = 0; k < 3; k++) p[k] = s->xyz + 3 * (size_t)s->tri[3 * f + k];
+        a = shape_distance(p[0], p[1]);
+        b = shape_distance(p[1], p[2]);
+        c = shape_distance(p[2], p[0]);
+        q = (a + b + c) / 2;
+        sum += sqrt(fmax(0, q * (q - a) * (q - b) * (q - c)));
+    }
+    return sum;
+}
+
+/* ---- properties ---- */
+
+static void op_properties(const shape *s, hd_laplacian_kind kind, const char *what) {
+    hd_laplacian *lap = test_laplacian(s, kind);
+    const double area = op_area(s);
+    double b_sum = 0, mass_sum = 0, comp_sum = 0, worst_row = 0;
+    int64_t p, asymmetric = 0, no_diagonal = 0;
+    int32_t i;
+    hd_error e;
+    if (!lap) return;
+    CHECK_MSG(hd_csr_check(&lap->L, 1, NULL, &e) == HD_OK, "%s: %s", what, e.text);
+    CHECK(lap->kind == kind && lap->conserves == 1 && (kind == HD_LAPLACIAN_FEM) == (lap->B != NULL));
+    CHECK(lap->b_ratio == (kind == HD_LAPLACIAN_FEM ? 0.5 : 1));
+    CHECK(lap->B ? lap->b_diag != lap->mass : lap->b_diag == lap->mass);
+    for (i = 0; i < lap->n_active; i++) {
+        double sum = 0, size = 0, b = 0;
+        no_diagonal += op_find(&lap->L, i, i) < 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int64_t q = op_find(&lap->L, lap->L.col[p], i);
+            asymmetric += q < 0 || lap->L.val[p] != lap->L.val[q] || (lap->B && lap->B[p] != lap->B[q]);
+            sum += lap->L.val[p];
+            size += fabs(lap->L.val[p]);
+            b += lap->B ? lap->B[p] : 0;
+        }
+        worst_row = fmax(worst_row, fabs(sum) / size);
+        if (lap->B) CHECK_MSG(fabs(b - lap->mass[i]) <= 1e-14 * b && lap->b_diag[i] == lap->B[op_find(&lap->L, i, i)], "%s: row %d", what, i);
+        b_sum += lap->B ? b : lap->mass[i];
+        mass_sum += lap->mass[i];
+        CHECK(lap->mass[i] > 0 && lap->b_diag[i] > 0);
+    }
+    for (i = 0; i < lap->n_components; i++) comp_sum += lap->component_mass[i];
+    CHECK_MSG(asymmetric == 0, "%s: %lld entries differ from their mirror", what, (long long)asymmetric);
+    CHECK_MSG(no_diagonal == 0, "%s: diagonal missing", what);
+    CHECK_MSG(worst_row < 1e-15, "%s: row sum %g", what, worst_row);
+    CHECK_MSG(fabs(lap->area - area) <= 1e-12 * area, "%s: area %.17g not %.17g", what, lap->area, area);
+    CHECK_MSG(fabs(b_sum - (kind == HD_LAPLACIAN_COT ? lap->n_active : area)) <= 1e-12 * b_sum, "%s: sum of B %g", what, b_sum);
+    CHECK(fabs(mass_sum - b_sum) <= 1e-12 * b_sum && fabs(comp_sum - b_sum) <= 1e-12 * b_sum);
+    hd_laplacian_free(lap);
+}
+
+/* Positive semi-definite, with one zero eigenvalue per component; and B >= b_ratio diag(B). */
+static void op_spectrum(const shape *s, hd_laplacian_kind kind, int32_t components) {
+    hd_laplacian *lap = test_laplacian(s, kind);
+    const int32_t n = lap->n_active;
+    double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap), *D = DENSE_NEW(double, (int64_t)n * n), *one = DENSE_NEW(double, (int64_t)n * n), top;
+    int32_t i, zeros = 0, negative = 0;
+    double least = DBL_MAX;
+    dense_pair p, q;
+    for (i = 0; i < n; i++) {
+        one[(size_t)i * (size_t)n + (size_t)i] = 1;
+        D[(size_t)i * (size_t)n + (size_t)i] = B[(size_t)i * (size_t)n + (size_t)i];
+    }
+    CHECK(dense_pair_solve(&p, L, one, n));
+    top = dense_max_abs(p.lambda, n);
+    for (i = 0; i < n; i++) {
+        negative += p.lambda[i] < -1e-12 * top;
+        zeros += fabs(p.lambda[i]) < 1e-12 * top;
+    }
+    CHECK_MSG(negative == 0 && zeros == components, "%d negative and %d zero eigenvalues", negative, zeros);
+    CHECK(lap->n_components == components);
+    CHECK(dense_pair_solve(&q, B, D, n));
+    for (i = 0; i < n; i++) least = fmin(least, q.lambda[i]);
+    CHECK_MSG(least >= lap->b_ratio * (1 - 1e-12), "B >= %g diag(B), not %g", least, lap->b_ratio);
+    dense_pair_free(&p);
+    dense_pair_free(&q);
+    hd_laplacian_free(lap);
+}
+
+static void op_all_properties(void) {
+    const double far_away[3] = {5, 0, 0};
+    shape s[6];
+    int k, q;
+    s[0] = shape_icosphere(2);
+    s[1] = shape_bumpy(2, 4);
+    s[2] = shape_grid(11, 9, 0.4);
+    s[3] = shape_cylinder(12, 6, 1, 2);
+    s[4] = shape_torus(14, 9, 2, 0.7);
+    s[5] = shape_disjoint(s + 1, s + 2, far_away);
+    for (k = 0; k < 6; k++) {
+        for (q = 0; q < 3; q++) op_properties(s + k, op_kinds[q], "property");
+        op_spectrum(s + k, HD_LAPLACIAN_FEM, k == 5 ? 2 : 1);
+    }
+    for (k = 0; k < 6; k++) shape_free(s + k);
+}
+
+/* ---- by hand ---- */
+
+static void op_single_fem(void) {
+    /* right angle at 0, legs 3 and 4: cotangents 0, 3/4, 4/3; area 6 */
+    const double xyz[9] = {0, 0, 0, 3, 0, 0, 0, 4, 0};
+    const int32_t tri[3] = {0, 1, 2};
+    const double want[3][3] = {{2.0 / 3 + 3.0 / 8, -2.0 / 3, -3.0 / 8}, {-2.0 / 3, 2.0 / 3, 0}, {-3.0 / 8, 0, 3.0 / 8}};
+    hd_laplacian *lap = op_make(xyz, 3, tri, 1, HD_LAPLACIAN_FEM);
+    int i, j;
+    for (i = 0; i < 3; i++) {
+        for (j = 0; j < 3; j++) {
+            CHECK_MSG(fabs(op_l(lap, i, j) - want[i][j]) < 1e-15, "L(%d,%d) = %.17g", i, j, op_l(lap, i, j));
+            CHECK_MSG(fabs(op_b(lap, i, j) - (i == j ? 1 : 0.5)) < 1e-15, "B(%d,%d) = %.17g", i, j, op_b(lap, i, j));
+        }
+        CHECK(fabs(lap->mass[i] - 2) < 1e-15);
+    }
+    CHECK(fabs(lap->area - 6) < 1e-15 && fabs(lap->h - 4) < 1e-15);
+    CHECK(lap->mesh.n_edges == 3 && lap->mesh.n_boundary_edges == 3 && lap->mesh.n_boundary_loops == 1);
+    CHECK(fabs(lap->mesh.smallest_angle - atan2(3, 4)) < 1e-15);
+    CHECK(lap->mesh.n_faces == 1 && lap->mesh.n_faces_used == 1 && lap->mesh.n_inert == 0);
+    hd_laplacian_free(lap);
+}
+
+static void op_single_mixed(void) {
+    static const double xyz[4][9] = {
+        {0, 0, 0, 4, 0, 0, 1, 3, 0},             /* acute: cotangents 1/3, 1, 1/2 */
+        {0, 0, 0, 3, 0, 0, 0, 4, 0},             /* right */
+        {0, 0, 0, 4, 0, 0, -1, 1, 0},            /* obtuse at 0, area 2 */
+        {0, 0, 0, 2, 0, 0, 1, 1.7320508075688772, 0},
+    };
+    static const double want[4][3] = {{2.25, 1.75, 2}, {3, 1.5, 1.5}, {1, 0.5, 0.5}, {0.57735026918962573, 0.57735026918962573, 0.57735026918962573}};
+    int k, i, turn;
+    for (k = 0; k < 4; k++) {
+        for (turn = 0; turn < 6; turn++) {       /* the corners in any order */
+            const int32_t a = turn % 3, b = (a + (turn < 3 ? 1 : 2)) % 3, tri[3] = {a, b, 3 - a - b};
+            hd_laplacian *lap = op_make(xyz[k], 3, tri, 1, HD_LAPLACIAN_VORONOI_COT);
+            for (i = 0; i < 3; i++) CHECK_MSG(fabs(lap->mass[i] - want[k][i]) < 1e-14, "triangle %d, corner %d: %.17g", k, i, lap->mass[i]);
+            CHECK(lap->mesh.n_negative_weights == (k == 2));
+            hd_laplacian_free(lap);
+        }
+    }
+}
+
+/* Unit square cells with parallel diagonals: the five-point stencil, whatever the cell's size; half weights along the border. */
+static void op_grid_stencil(void) {
+    shape s = shape_grid(7, 6, 0);
+    const double h = 1.0 / 6;
+    int k;
+    int32_t i, j;
+    for (k = 0; k < 3; k++) {
+        hd_laplacian *lap = test_laplacian(&s, op_kinds[k]);
+        double worst = 0;
+        for (j = 0; j < 6; j++) {
+            for (i = 0; i < 7; i++) {
+                const int32_t v = j * 7 + i;
+                const double edge_x = i == 0 || i == 6 ? 0.5 : 1, edge_y = j == 0 || j == 5 ? 0.5 : 1;
+                if (i < 6) worst = fmax(worst, fabs(op_l(lap, v, v + 1) + edge_y));
+                if (j < 5) worst = fmax(worst, fabs(op_l(lap, v, v + 7) + edge_x));
+                if (i < 6 && j < 5) worst = fmax(worst, fabs(op_l(lap, v, v + 8)));
+                if (edge_x * edge_y == 1) worst = fmax(worst, fabs(op_l(lap, v, v) - 4));
+                if (k == 1) worst = fmax(worst, fabs(op_b(lap, v, v) / (h * h) - edge_x * edge_y));
+            }
+        }
+        CHECK_MSG(worst < 1e-13, "stencil off by %g", worst);
+        hd_laplacian_free(lap);
+    }
+    shape_free(&s);
+}
+
+/* ---- invariance ---- */
+
+static void op_rotate(double *p, double scale) {
+    const double c = 0.36, s = 0.93295230317524811, x = p[0], y, z;    /* c^2 + s^2 = 1, about two axes */
+    y = c * p[1] - s * p[2];
+    z = s * p[1] + c * p[2];
+    p[0] = scale * (c * x - s * y) + 0.7;
+    p[1] = scale * (s * x + c * y) - 1.2;
+    p[2] = scale * z + 0.3;
+}
+
+static void op_rigid(void) {
+    const double scales[3] = {1, 1e-3, 250};
+    shape s = shape_bumpy(2, 8), r;
+    int k, q;
+    int64_t p;
+    int32_t i;
+    for (k = 0; k < 3; k++) {
+        r = shape_bumpy(2, 8);
+        for (i = 0; i < r.n; i++) op_rotate(r.xyz + 3 * i, scales[k]);
+        for (q = 0; q < 3; q++) {
+            hd_laplacian *a = test_laplacian(&s, op_kinds[q]), *b = test_laplacian(&r, op_kinds[q]);
+            const double unit = q == 2 ? 1 : scales[k] * scales[k], tol = k == 1 ? 1e-9 : 1e-11;    /* the shift costs digits of small meshes */
+            double worst = 0;
+            CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0);
+            for (p = 0; p < a->L.nnz; p++) {
+                worst = fmax(worst, fabs(a->L.val[p] - b->L.val[p]));
+                if (a->B) worst = fmax(worst, fabs(a->B[p] * unit - b->B[p]) / (unit * a->area / a->n));
+            }
+            for (i = 0; i < a->n_active; i++) worst = fmax(worst, fabs(a->mass[i] * unit - b->mass[i]) / (a->mass[i] * unit));
+            worst = fmax(worst, fabs(a->h * scales[k] - b->h) / b->h);
+            CHECK_MSG(worst < tol, "kind %d, scale %g: off by %g", q, scales[k], worst);
+            hd_laplacian_free(a);
+            hd_laplacian_free(b);
+        }
+        shape_free(&r);
+    }
+    shape_free(&s);
+}
+
+/* The same shape with its vertices, faces and corners renumbered. to[new] = old. */
+static shape op_renumbered(const shape *s, uint64_t seed, int32_t *to) {
+    shape r = shape_make(s->n, s->n_tri);
+    int32_t *from = DENSE_NEW(int32_t, s->n), *order = DENSE_NEW(int32_t, s->n_tri), i;
+    dense_shuffle(to, s->n, &seed);
+    dense_shuffle(order, s->n_tri, &seed);
+    for (i = 0; i < s->n; i++) {
+        from[to[i]] = i;
+        memcpy(r.xyz + 3 * i, s->xyz + 3 * to[i], 3 * sizeof(double));
+    }
+    for (i = 0; i < s->n_tri; i++) {
+        const int32_t *v = s->tri + 3 * order[i];
+        const int turn = (int)(dense_random(&seed) % 3);
+        shape_put_triangle(&r, i, from[v[turn]], from[v[(turn + 1) % 3]], from[v[(turn + 2) % 3]]);
+    }
+    free(from);
+    free(order);
+    return r;
+}
+
+static void op_permutation(void) {
+    shape s = shape_grid(9, 8, 0.35), r;
+    int32_t *to = DENSE_NEW(int32_t, s.n), i;
+    int64_t p;
+    int q;
+    r = op_renumbered(&s, 77, to);
+    for (q = 0; q < 3; q++) {
+        hd_laplacian *a = test_laplacian(&s, op_kinds[q]), *b = test_laplacian(&r, op_kinds[q]);
+        double worst = fabs(a->h - b->h);
+        CHECK(a->L.nnz == b->L.nnz && a->mesh.n_edges == b->mesh.n_edges && a->mesh.n_boundary_edges == b->mesh.n_boundary_edges);
+        CHECK(a->mesh.n_boundary_loops == b->mesh.n_boundary_loops && a->mesh.n_misoriented_edges == b->mesh.n_misoriented_edges);
+        CHECK(a->mesh.n_negative_weights == b->mesh.n_negative_weights && a->mesh.smallest_angle > 0);
+        for (i = 0; i < b->n_active; i++) {
+            for (p = b->L.row_ptr[i]; p < b->L.row_ptr[i + 1]; p++) {
+                const int32_t u = to[i], v = to[b->L.col[p]];
+                worst = fmax(worst, fabs(b->L.val[p] - op_l(a, u, v)));
+                if (b->B) worst = fmax(worst, fabs(b->B[p] - op_b(a, u, v)));
+            }
+            worst = fmax(worst, fabs(b->mass[i] - a->mass[to[i]]));
+        }
+        CHECK_MSG(worst < 1e-13, "kind %d: off by %g", q, worst);
+        hd_laplacian_free(a);
+        hd_laplacian_free(b);
+    }
+    free(to);
+    shape_free(&s);
+    shape_free(&r);
+}
+
+/* ---- meshes that are not nice ---- */
+
+/* A good mesh with every kind of face that is left out mixed in; the pair stays that of the good mesh. */
+static void op_left_out(void) {
+    shape s = shape_grid(5, 4, 0), t;
+    int32_t i, n = s.n, m = 0;
+    int q;
+    t = shape_make(n + 5, s.n_tri + 8);
+    memcpy(t.xyz, s.xyz, 3 * (size_t)n * sizeof(double));
+    shape_put_vertex(&t, n, 9, 9, 9);                                        /* in no face */
+    shape_put_vertex(&t, n + 1, 0.5, 7, 0);                                  /* only in faces without area */
+    shape_put_vertex(&t, n + 2, 1.0, 7, 0);
+    shape_put_vertex(&t, n + 3, 2.5, 7, 0);
+    shape_put_vertex(&t, n + 4, 0.5, 7, 0);                                  /* in the same place as n + 1 */
+    shape_put_triangle(&t, m++, 3, 3, 7);                                    /* repeated corners */
+    shape_put_triangle(&t, m++, n + 1, n + 2, n + 3);                        /* collinear */
+    for (i = 0; i < s.n_tri; i++) shape_put_triangle(&t, m++, s.tri[3 * i], s.tri[3 * i + 1], s.tri[3 * i + 2]);
+    shape_put_triangle(&t, m++, s.tri[4], s.tri[5], s.tri[3]);               /* face 1, turned */
+    shape_put_triangle(&t, m++, s.tri[5], s.tri[4], s.tri[3]);               /* and over again, flipped */
+    shape_put_triangle(&t, m++, s.tri[0], s.tri[1], s.tri[2]);
+    shape_put_triangle(&t, m++, n + 1, n + 4, 6);                            /* two corners in one place */
+    shape_put_triangle(&t, m++, 2, 8, 8);
+    shape_put_triangle(&t, m++, 0, 1, 2);                                    /* along the border: collinear */
+    CHECK(m == t.n_tri);
+    for (q = 0; q < 3; q++) {
+        hd_laplacian *a = test_laplacian(&s, op_kinds[q]), *b = test_laplacian(&t, op_kinds[q]);
+        CHECK(b->n == n + 5 && b->n_active == n && b->mesh.n_inert == 5);
+        CHECK_MSG(b->mesh.n_repeated_corner == 2 && b->mesh.n_zero_area == 3 && b->mesh.n_repeated_face == 3, "%d %d %d",
+                  b->mesh.n_repeated_corner, b->mesh.n_zero_area, b->mesh.n_repeated_face);
+        CHECK(b->mesh.n_faces == m && b->mesh.n_faces_used == s.n_tri);
+        CHECK(b->row[n] == -1 && b->row[n + 1] == -1 && b->row[n + 4] == -1 && b->row[n - 1] == n - 1 && b->vertex[3] == 3);
+        CHECK(a->L.nnz == b->L.nnz && a->mesh.n_edges == b->mesh.n_edges && a->h == b->h);
+        CHECK(memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0);
+        CHECK(memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0);
+        CHECK(a->mesh.n_boundary_loops == b->mesh.n_boundary_loops && b->mesh.n_nonmanifold_edges == 0);
+        hd_laplacian_free(a);
+        hd_laplacian_free(b);
+    }
+    shape_free(&s);
+    shape_free(&t);
+}
+
+/* Vertices without mass in the middle of the numbering. */
+static void op_inert_rows(void) {
+    const double xyz[15] = {9, 9, 9, 0, 0, 0, 8, 8, 8, 3, 0, 0, 0, 4, 0};
+    const int32_t tri[3] = {1, 3, 4};
+    const int32_t rows[5] = {-1, 0, -1, 1, 2}, vertices[3] = {1, 3, 4};
+    double x[5] = {100, 1, 100, 2, 4}, y[5];
+    hd_laplacian *lap = op_make(xyz, 5, tri, 1, HD_LAPLACIAN_FEM);
+    CHECK(memcmp(lap->row, rows, sizeof rows) == 0 && memcmp(lap->vertex, vertices, sizeof vertices) == 0);
+    CHECK(hd_laplacian_apply(lap, 2, 3, x, y, NULL) == HD_OK);    /* L x = (-2/3 - 9/8, 2/3, 9/8), B x = (4, 4.5, 5.5) */
+    CHECK(y[0] == 0 && y[2] == 0);
+    CHECK(fabs(y[1] - (2 * (-2.0 / 3 - 9.0 / 8) + 12)) < 1e-14 && fabs(y[3] - (4.0 / 3 + 13.5)) < 1e-14 && fabs(y[4] - (9.0 / 4 + 16.5)) < 1e-14);
+    hd_laplacian_free(lap);
+}
+
+static void op_nonmanifold(void) {
+    /* three triangles on the edge (0, 1), opposite corners with cotangents 0, 0 and 1/4 */
+    const double xyz[15] = {0, 0, 0, 2, 0, 0, 1, 1, 0, 1, -1, 0, 1, 0, 2};
+    const int32_t tri[9] = {0, 1, 2, 1, 0, 3, 0, 1, 4};
+    hd_laplacian *lap = op_make(xyz, 5, tri, 3, HD_LAPLACIAN_FEM);
+    const double cot4 = 3.0 / 4;                 /* (-1,0,-2).(1,0,-2) = 3, cross = 4 */
+    CHECK_MSG(fabs(op_l(lap, 0, 1) + cot4 / 2) < 1e-14, "%.17g", op_l(lap, 0, 1));
+    CHECK(fabs(op_b(lap, 0, 1) - (1 + 1 + 2) / 12.0) < 1e-14);
+    CHECK(lap->mesh.n_nonmanifold_edges == 1 && lap->mesh.n_edges == 7 && lap->mesh.n_boundary_edges == 6);
+    CHECK(lap->n_components == 1);
+    hd_laplacian_free(lap);
+}
+
+static void op_borders(void) {
+    shape cylinder = shape_cylinder(9, 4, 1, 1), grid = shape_grid(4, 4, 0.2), ball = shape_icosphere(1);
+    hd_laplacian *lap = test_laplacian(&cylinder, HD_LAPLACIAN_FEM);
+    int32_t keep;
+    CHECK(lap->mesh.n_boundary_loops == 2 && lap->mesh.n_boundary_edges == 18 && lap->mesh.n_misoriented_edges == 0);
+    CHECK(lap->mesh.n_edges == (3 * 54 + 18) / 2);
+    hd_laplacian_free(lap);
+    lap = test_laplacian(&grid, HD_LAPLACIAN_FEM);
+    CHECK(lap->mesh.n_boundary_loops == 1 && lap->mesh.n_boundary_edges == 12);
+    hd_laplacian_free(lap);
+    lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
+    CHECK(lap->mesh.n_boundary_loops == 0 && lap->mesh.n_boundary_edges == 0 && lap->mesh.n_misoriented_edges == 0 && lap->mesh.n_edges == 120);
+    hd_laplacian_free(lap);
+    keep = ball.tri[0];
+    ball.tri[0] = ball.tri[1];
+    ball.tri[1] = keep;
+    lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
+    CHECK(lap->mesh.n_misoriented_edges == 3 && lap->mesh.n_boundary_edges == 0);
+    hd_laplacian_free(lap);
+    ball.n_tri--;                                /* a hole of one triangle */
+    lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
+    CHECK(lap->mesh.n_boundary_loops == 1 && lap->mesh.n_boundary_edges == 3);
+    hd_laplacian_free(lap);
+    shape_free(&cylinder);
+    shape_free(&grid);
+    shape_free(&ball);
+}
+
+/* One vertex with 100 000 faces: nothing may be quadratic in its degree. */
+static void op_star(void) {
+    enum { RIM = 100000 };
+    shape s = shape_make(RIM + 1, RIM);
+    const clock_t start = clock();
+    double seconds, *u = DENSE_NEW(double, RIM + 1), sum = 0, want = 0;
+    hd_heat_opts ho;
+    hd_heat *heat = NULL;
+    hd_report rep;
+    hd_laplacian *lap;
+    int32_t i;
+    int q;
+    for (i = 0; i < RIM; i++) {                  /* hub in the middle of the numbering */
+        const int32_t a = i + (i >= RIM / 2), j = (i + 1) % RIM, b = j + (j >= RIM / 2);
+        const double turn = 6.283185307179586 * i / RIM;
+        shape_put_vertex(&s, a, cos(turn), sin(turn), 0);
+        shape_put_triangle(&s, i, RIM / 2, a, b);
+    }
+    shape_put_vertex(&s, RIM / 2, 0, 0, 0);
+    for (q = 0; q < 3; q++) {
+        lap = test_laplacian(&s, op_kinds[q]);
+        CHECK(lap->mesh.n_edges == 2 * (int64_t)RIM && lap->mesh.n_boundary_loops == 1 && lap->mesh.n_repeated_face == 0);
+        CHECK(fabs(lap->area - 3.14159265358979) < 1e-8);
+        if (q < 2) hd_laplacian_free(lap);
+    }
+    memset(&ho, 0, sizeof ho);
+    ho.poles = HD_POLES_KERNEL;
+    ho.degree = 4;
+    ho.tol = 1e-4;
+    CHECK(hd_heat_create(&heat, lap, &ho, NULL) == HD_OK);
+    CHECK(hd_heat_column(heat, 1e-6, RIM / 2, u, &rep) >= 0);
+    for (i = 0; i <= RIM; i++) sum += u[i];
+    want = 1;                                    /* B = I: the heat of the column is that of its source */
+    CHECK_MSG(fabs(sum - want) < 1e-9, "star: %.17g", sum);
+    seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+    CHECK_MSG(seconds < 60, "star: %.1f s", seconds);    /* far above what it takes, far below a square of the degree */
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    free(u);
+    shape_free(&s);
+}
+
+static void op_errors(void) {
+    double xyz[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+    int32_t tri[6] = {0, 1, 2, 2, 1, 3};
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    tri[4] = 4;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_INDEX && e.face == 1 && e.value == 4 && e.vertex == -1);
+    tri[4] = -7;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_INDEX && e.face == 1 && e.value == -7);
+    tri[4] = 1;
+    xyz[10] = (double)NAN;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 3 && e.face == -1 && e.value != e.value);
+    xyz[10] = -(double)INFINITY;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 3 && e.value < 0);
+    xyz[10] = 1;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, -1, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_triangles(&lap, xyz, -1, tri, 2, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_triangles(&lap, NULL, 0, NULL, 0, NULL, &e) == HD_ERR_EMPTY);
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, NULL, 0, NULL, &e) == HD_ERR_EMPTY);
+    xyz[7] = 0;                                  /* only faces without area: 0 1 2 on a line, 2 1 3 with a corner less */
+    xyz[6] = 2;
+    tri[5] = 1;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_EMPTY);
+    xyz[6] = 1e200;
+    xyz[7] = 1e200;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_OK);      /* long, but its area is a double */
+    hd_laplacian_free(lap);
+    lap = NULL;
+    xyz[3] = -1e200;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && e.face == 0);
+    CHECK(lap == NULL);
+}
+
+/* Tiny and huge coordinates: a right answer or a clear error, never a wrong answer in silence. */
+static void op_extreme_scale(void) {
+    const double scales[6] = {1e-100, 1e-80, 1e-30, 1e30, 1e80, 1e100};
+    static const hd_solver solvers[4] = {HD_SOLVER_COCG, HD_SOLVER_COCR, HD_SOLVER_MINRES, HD_SOLVER_LANCZOS};
+    const double *want;
+    int k, q, v;
+    int32_t i;
+    for (q = 0; q < 2; q++) {
+        for (v = 0; v < 4; v++) {
+            double *u = NULL;
+            shape base = shape_icosphere(1);
+            double *first = DENSE_NEW(double, base.n);
+            for (k = -1; k < 6; k++) {
+                const double scale = k < 0 ? 1 : scales[k];
+                shape s = shape_icosphere(1);
+                hd_laplacian_opts lo;
+                hd_heat_opts ho;
+                hd_laplacian *lap = NULL;
+                hd_heat *heat = NULL;
+                hd_error e;
+                hd_report rep;
+                hd_status st;
+                memset(&lo, 0, sizeof lo);
+                memset(&ho, 0, sizeof ho);
+                lo.kind = op_kinds[q];
+                ho.solver = solvers[v];
+                u = DENSE_NEW(double, s.n);
+                for (i = 0; i < 3 * s.n; i++) s.xyz[i] *= scale;
+                st = hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, &e);
+                if (st == HD_OK) {
+                    CHECK(hd_heat_create(&heat, lap, &ho, &e) == HD_OK);
+                    st = hd_heat_column(heat, 0.1 * scale * scale, 3, k < 0 ? first : u, &rep);
+                    want = first;
+                    if (k >= 0 && st >= 0) {
+                        const double diff = dense_max_diff(u, want, s.n), limit = 1e-7 * dense_max_abs(want, s.n);
+                        CHECK_MSG(diff < limit || rep.error_bound > 1e-6, "scale %g, kind %d, solver %d: off by %g in silence (bound %g)", scale, q, v, diff, rep.error_bound);
+                    } else if (st < 0) {
+                        CHECK_MSG(k >= 0 && rep.error.text[0], "scale %g: %s", scale, hd_status_name(st));
+                    }
+                } else {
+                    CHECK_MSG(k >= 0 && e.text[0], "scale %g: %s", scale, hd_status_name(st));
+                }
+                hd_heat_free(heat);
+                hd_laplacian_free(lap);
+                free(u);
+                shape_free(&s);
+            }
+            free(first);
+            shape_free(&base);
+        }
+    }
+}
+
+/* ---- the caller's own matrices ---- */
+
+static void op_matrices_good(void) {
+    enum { N = 6 };
+    hd_csr L = test_path_csr(N, 0), B = test_diagonal_csr(N, NULL), full;
+    int32_t i[40] = {0, 1, 2, 3, 4, 5, 0, 1}, j[40] = {0, 1, 2, 3, 4, 5, 3, 4};
+    double v[40] = {4, 5, 6, 7, 8, 9, 1, -0.5};
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 2.5, NULL, &e) == HD_OK);
+    CHECK(lap->kind == HD_LAPLACIAN_MATRICES && lap->h == 2.5 && lap->n == N && lap->n_active == N && !lap->B && lap->conserves == 1);
+    CHECK(lap->area == N && lap->b_ratio == 1 && lap->n_components == 1 && lap->mesh.n_edges == 0);
+    hd_laplacian_free(lap);
+    full = test_symmetric_csr(N, 8, i, j, v);    /* another pattern than L's */
+    CHECK(hd_laplacian_matrices(&lap, &L, &full, 0, NULL, &e) == HD_OK);
+    CHECK(lap->B != NULL && lap->L.nnz == L.nnz + 4);
+    CHECK(op_b(lap, 0, 3) == 1 && op_b(lap, 3, 0) == 1 && op_b(lap, 4, 1) == -0.5 && op_b(lap, 0, 1) == 0 && op_b(lap, 5, 5) == 9);
+    CHECK(op_l(lap, 0, 3) == 0 && op_l(lap, 0, 1) == -1 && op_l(lap, 2, 2) == 2);
+    CHECK(lap->mass[0] == 5 && lap->mass[1] == 4.5 && lap->b_diag[1] == 5 && lap->area == 40);
+    CHECK(fabs(lap->b_ratio - 0.75) < 1e-15);
+    CHECK(hd_csr_check(&lap->L, 1, NULL, &e) == HD_OK);
+    hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    hd_csr_free(&full, NULL);
+}
+
+/* Rows of B without a non-zero carry no mass, whatever L says there; the rest is one component less connected. */
+static void op_matrices_inert(void) {
+    const double d[5] = {1, 2, 0, 3, 4};
+    hd_csr L = test_path_csr(5, 0), B = test_diagonal_csr(5, d);
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK);
+    CHECK(lap->n == 5 && lap->n_active == 4 && lap->row[2] == -1 && lap->row[3] == 2 && lap->vertex[2] == 3 && lap->mesh.n_inert == 1);
+    CHECK(lap->n_components == 2 && lap->conserves == 0);        /* rows 1 and 3 lost a neighbour */
+    CHECK(lap->area == 10);
+    hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+}
+
+static void op_matrices_bad(void) {
+    enum { N = 4 };
+    double d[N] = {1, 2, 3, 4};
+    hd_csr L = test_path_csr(N, 0), B = test_diagonal_csr(N, d), small = test_diagonal_csr(3, d), indefinite;
+    int32_t i[10] = {0, 1, 2, 3, 0}, j[10] = {0, 1, 2, 3, 1};
+    double v[10] = {1, 1, 1, 1, 2}, u[N], keep;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    hd_status st;
+    CHECK(hd_laplacian_matrices(&lap, &L, &small, 0, NULL, &e) == HD_ERR_ARGUMENT && e.row == N && e.column == 3);
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, -1, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, (double)NAN, NULL, &e) == HD_ERR_ARGUMENT);
+    keep = L.val[1];
+    L.val[1] = -1.5;                             /* (0, 1) but not (1, 0) */
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 1);
+    L.val[1] = (double)NAN;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 0 && e.column == 1);
+    L.val[1] = keep;
+    L.col[0] = 9;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_INDEX && e.row == 0 && e.column == 9);
+    L.col[0] = 0;
+    B.val[2] = -3;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_POSITIVE && e.row == 2 && e.value == -3);
+    memset(B.val, 0, N * sizeof *B.val);
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_EMPTY);
+    B.val[0] = B.val[1] = B.val[2] = B.val[3] = 1;
+    keep = B.val[0];
+    free(NULL);
+    indefinite = test_symmetric_csr(N, 5, i, j, v);    /* [1 2; 2 1] in the corner: diagonal positive, matrix not */
+    st = hd_laplacian_matrices(&lap, &L, &indefinite, 0, NULL, &e);
+    if (st >= 0) {                               /* where a solver meets it is soon enough */
+        hd_heat *heat = NULL;
+        CHECK(hd_heat_create(&heat, lap, NULL, &e) == HD_OK);
+        st = hd_heat_columns(heat, 1, HD_KERNEL_SYMMETRIC, 1, i, u, 0, NULL);
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+    }
+    CHECK_MSG(st == HD_ERR_NOT_POSITIVE, "indefinite B: %s", hd_status_name(st));
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    hd_csr_free(&small, NULL);
+    hd_csr_free(&indefinite, NULL);
+}
+
+static void test_operators(void) {
+    op_all_properties();
+    op_single_fem();
+    op_single_mixed();
+    op_grid_stencil();
+    op_rigid();
+    op_permutation();
+    op_left_out();
+    op_inert_rows();
+    op_nonmanifold();
+    op_borders();
+    op_star();
+    op_errors();
+    op_extreme_scale();
+    op_matrices_good();
+    op_matrices_inert();
+    op_matrices_bad();
+}
+
+#endif

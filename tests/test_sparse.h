@@ -1,0 +1,300 @@
+/* test_sparse.h - compressed rows: build, check, transpose, product, permute, apply, against dense matrices */
+
+#ifndef TEST_SPARSE_H
+#define TEST_SPARSE_H
+
+/* A matrix over arrays of the test's own. */
+static hd_csr sparse_view(int32_t rows, int32_t cols, int64_t nnz, int64_t *ptr, int32_t *col, double *val) {
+    hd_csr a;
+    a.n_rows = rows;
+    a.n_cols = cols;
+    a.nnz = nnz;
+    a.row_ptr = ptr;
+    a.col = col;
+    a.val = val;
+    return a;
+}
+
+/* About `count` random triplets, a fifth of them at a place that has one already; d [rows cols] is what they sum to. */
+static hd_csr sparse_random(int32_t rows, int32_t cols, int32_t count, uint64_t seed, double *d) {
+    int32_t *i = DENSE_NEW(int32_t, count), *j = DENSE_NEW(int32_t, count), k;
+    double *v = DENSE_NEW(double, count);
+    hd_csr a;
+    hd_error e;
+    memset(&a, 0, sizeof a);
+    memset(d, 0, (size_t)rows * (size_t)cols * sizeof *d);
+    for (k = 0; k < count; k++) {
+        const int again = k > 0 && dense_random(&seed) % 5 == 0;
+        const int32_t at = again ? (int32_t)(dense_random(&seed) % (uint64_t)k) : 0;
+        i[k] = again ? i[at] : (int32_t)(dense_random(&seed) % (uint64_t)rows);
+        j[k] = again ? j[at] : (int32_t)(dense_random(&seed) % (uint64_t)cols);
+        v[k] = dense_signed(&seed);
+        d[(size_t)i[k] * (size_t)cols + (size_t)j[k]] += v[k];
+    }
+    CHECK(hd_csr_from_triplets(&a, rows, cols, count, i, j, v, NULL, &e) == HD_OK);
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_OK);
+    free(i);
+    free(j);
+    free(v);
+    return a;
+}
+
+static void sparse_equals(const hd_csr *a, const double *d, double tol, const char *what) {
+    double *own = test_dense(a, NULL);
+    hd_error e;
+    const double diff = dense_max_diff(own, d, (int64_t)a->n_rows * a->n_cols);
+    CHECK_MSG(hd_csr_check(a, 0, NULL, &e) == HD_OK, "%s: %s", what, e.text);
+    CHECK_MSG(diff <= tol, "%s: off by %g", what, diff);
+    free(own);
+}
+
+static void sparse_triplets(void) {
+    const int32_t i[6] = {2, 0, 2, 2, 0, 2}, j[6] = {1, 3, 1, 0, 0, 1};
+    const double v[6] = {1e16, 4, 1, 5, 6, -1e16};
+    double d[20 * 13], nan_v[2] = {1, 0};
+    int32_t bad[2];
+    hd_csr a;
+    hd_error e;
+    CHECK(hd_csr_from_triplets(&a, 3, 4, 6, i, j, v, NULL, &e) == HD_OK);
+    CHECK(a.n_rows == 3 && a.n_cols == 4 && a.nnz == 4);
+    CHECK(a.row_ptr[0] == 0 && a.row_ptr[1] == 2 && a.row_ptr[2] == 2 && a.row_ptr[3] == 4);    /* row 1 is empty */
+    CHECK(a.col[0] == 0 && a.col[1] == 3 && a.col[2] == 0 && a.col[3] == 1);
+    CHECK(a.val[0] == 6 && a.val[1] == 4 && a.val[2] == 5);
+    CHECK_MSG(a.val[3] == (1e16 + 1) - 1e16, "duplicates are summed in the order given: %g", a.val[3]);
+    hd_csr_free(&a, NULL);
+    CHECK(!a.row_ptr && !a.col && !a.val && a.nnz == 0 && a.n_rows == 0);
+    CHECK(hd_csr_from_triplets(&a, 3, 4, 6, i, j, NULL, NULL, &e) == HD_OK);
+    CHECK(a.nnz == 4 && a.val == NULL && a.col[1] == 3);
+    hd_csr_free(&a, NULL);
+    CHECK(hd_csr_from_triplets(&a, 0, 0, 0, NULL, NULL, NULL, NULL, &e) == HD_OK);
+    CHECK(a.row_ptr && a.row_ptr[0] == 0 && a.nnz == 0);
+    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
+    hd_csr_free(&a, NULL);
+    CHECK(hd_csr_from_triplets(&a, 5, 2, 0, NULL, NULL, NULL, NULL, &e) == HD_OK);
+    CHECK(a.row_ptr[5] == 0);
+    hd_csr_free(&a, NULL);
+    bad[0] = 0;
+    CHECK(hd_csr_from_triplets(&a, 1, 1, 1, bad, bad, v, NULL, &e) == HD_OK);
+    CHECK(a.nnz == 1 && a.val[0] == 1e16);
+    hd_csr_free(&a, NULL);
+    a = sparse_random(20, 13, 150, 5, d);
+    sparse_equals(&a, d, 1e-15, "random triplets");
+    hd_csr_free(&a, NULL);
+    memset(&a, 0x5a, sizeof a);                  /* errors leave the output as it was */
+    bad[0] = 0;
+    bad[1] = 4;
+    CHECK(hd_csr_from_triplets(&a, 4, 4, 2, bad, i, v, NULL, &e) == HD_ERR_INDEX && e.row == 1 && e.value == 4);
+    bad[1] = -1;
+    CHECK(hd_csr_from_triplets(&a, 4, 4, 2, i, bad, v, NULL, &e) == HD_ERR_INDEX && e.row == 1 && e.value == -1);
+    nan_v[1] = (double)NAN;
+    CHECK(hd_csr_from_triplets(&a, 4, 4, 2, i, j, nan_v, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 1);
+    nan_v[1] = (double)INFINITY;
+    CHECK(hd_csr_from_triplets(&a, 4, 4, 2, i, j, nan_v, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 1);
+    CHECK(hd_csr_from_triplets(&a, -1, 4, 2, i, j, v, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_csr_from_triplets(&a, 4, -1, 2, i, j, v, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_csr_from_triplets(&a, 4, 4, -2, i, j, v, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_csr_from_triplets(&a, 4, 4, 2, NULL, j, v, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(a.n_rows == 0x5a5a5a5a);
+}
+
+/* Every way in which check can refuse, with its place. */
+static void sparse_check(void) {
+    int64_t ptr[4] = {0, 2, 3, 5};
+    int32_t col[5] = {0, 1, 1, 0, 2};
+    double val[5] = {1, 2, 3, 4, 5};
+    hd_csr a = sparse_view(3, 3, 5, ptr, col, val), b;
+    hd_error e;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_OK);
+    b = a;
+    b.n_rows = -1;
+    CHECK(hd_csr_check(&b, 0, NULL, &e) == HD_ERR_STRUCTURE);
+    b = a;
+    b.row_ptr = NULL;
+    CHECK(hd_csr_check(&b, 0, NULL, &e) == HD_ERR_STRUCTURE);
+    b = a;
+    b.col = NULL;
+    CHECK(hd_csr_check(&b, 0, NULL, &e) == HD_ERR_STRUCTURE);
+    ptr[0] = 1;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_STRUCTURE && e.row == 0);
+    ptr[0] = 0;
+    ptr[2] = 1;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_STRUCTURE && e.row == 1 && e.value == 1);
+    ptr[2] = 99;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_STRUCTURE && e.row == 1 && e.value == 99);
+    ptr[2] = 3;
+    ptr[3] = 4;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_STRUCTURE && e.row == 3 && e.value == 4);
+    ptr[3] = 5;
+    col[4] = 3;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_INDEX && e.row == 2 && e.column == 3);
+    col[4] = -1;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_INDEX && e.row == 2 && e.column == -1 && e.value == -1);
+    col[4] = 0;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_STRUCTURE && e.row == 2 && e.column == 0);     /* twice */
+    col[3] = 2;
+    col[4] = 1;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_STRUCTURE && e.row == 2 && e.column == 1);     /* descending */
+    col[3] = 0;
+    col[4] = 2;
+    val[2] = (double)NAN;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 1 && e.column == 1);
+    val[2] = -(double)INFINITY;
+    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 1 && e.column == 1);
+    val[2] = 3;
+    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 1);    /* (0,1) has no partner */
+    CHECK(e.value == 2);
+    b = sparse_view(1, 2, 0, ptr, col, val);
+    ptr[1] = 0;
+    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 1 && e.column == 2);    /* not square */
+}
+
+static void sparse_check_symmetric(void) {
+    int64_t ptr[4] = {0, 3, 5, 7}, lone[4] = {0, 2, 2, 3};
+    int32_t col[7] = {0, 1, 2, 0, 1, 0, 2}, lone_col[3] = {0, 2, 2};
+    double val[7] = {1, 2, 3, 2, 5, 3, 7}, lone_val[3] = {1, 0, 3};
+    hd_csr a = sparse_view(3, 3, 7, ptr, col, val), b = sparse_view(3, 3, 3, lone, lone_col, lone_val);
+    hd_error e;
+    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
+    val[5] = 3 * (1 + 1e-13);
+    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
+    val[5] = 3 * (1 + 1e-10);
+    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2);
+    val[5] = -3;
+    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2 && fabs(e.value) == 6);
+    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_OK);               /* an explicit zero needs no partner */
+    lone_val[1] = 1e-300;
+    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2);
+    a.val = NULL;                                                /* patterns */
+    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
+    b.val = NULL;
+    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC);
+}
+
+static void sparse_transpose(void) {
+    double *d = DENSE_NEW(double, 17 * 9), *t = DENSE_NEW(double, 17 * 9);
+    hd_csr a = sparse_random(17, 9, 60, 11, d), b, c;
+    hd_error e;
+    int32_t i, j;
+    for (i = 0; i < 17; i++)
+        for (j = 0; j < 9; j++) t[j * 17 + i] = d[i * 9 + j];
+    CHECK(hd_csr_transpose(&b, &a, NULL, &e) == HD_OK);
+    CHECK(b.n_rows == 9 && b.n_cols == 17 && b.nnz == a.nnz);
+    sparse_equals(&b, t, 0, "transpose");
+    CHECK(hd_csr_transpose(&c, &b, NULL, &e) == HD_OK);
+    sparse_equals(&c, d, 0, "transposed twice");
+    hd_csr_free(&b, NULL);
+    hd_csr_free(&c, NULL);
+    free(a.val);
+    hd_csr_free(&a, NULL);
+    free(d);
+    free(t);
+}
+
+static void sparse_product_of(int32_t n, int32_t k, int32_t m, int32_t count, uint64_t seed) {
+    double *x = DENSE_NEW(double, n * k), *y = DENSE_NEW(double, k * m), *z = DENSE_NEW(double, n * m);
+    hd_csr a = sparse_random(n, k, count, seed, x), b = sparse_random(k, m, count, seed + 1, y), c, pattern;
+    hd_error e;
+    double *keep;
+    int32_t i, j, q;
+    for (i = 0; i < n; i++)
+        for (j = 0; j < m; j++)
+            for (q = 0; q < k; q++) z[i * m + j] += x[i * k + q] * y[q * m + j];
+    CHECK(hd_csr_product(&c, &a, &b, NULL, &e) == HD_OK);
+    sparse_equals(&c, z, 1e-13, "product");
+    keep = a.val;
+    a.val = NULL;
+    CHECK(hd_csr_product(&pattern, &a, &b, NULL, &e) == HD_OK);
+    CHECK(!pattern.val && pattern.nnz == c.nnz && memcmp(pattern.col, c.col, (size_t)c.nnz * sizeof *c.col) == 0);
+    a.val = keep;
+    hd_csr_free(&c, NULL);
+    hd_csr_free(&pattern, NULL);
+    if (n != m || k != m) CHECK(hd_csr_product(&c, &b, &a, NULL, &e) == HD_ERR_ARGUMENT || n == m);
+    hd_csr_free(&a, NULL);
+    hd_csr_free(&b, NULL);
+    free(x);
+    free(y);
+    free(z);
+}
+
+static void sparse_permute(void) {
+    enum { N = 31 };
+    double *d = DENSE_NEW(double, N * N), *p = DENSE_NEW(double, N * N);
+    hd_csr a = sparse_random(N, N, 140, 23, d), b;
+    hd_error e;
+    uint64_t seed = 9;
+    int32_t perm[N], i, j;
+    dense_shuffle(perm, N, &seed);
+    for (i = 0; i < N; i++)
+        for (j = 0; j < N; j++) p[i * N + j] = d[perm[i] * N + perm[j]];
+    CHECK(hd_csr_permute(&b, &a, perm, NULL, &e) == HD_OK);
+    sparse_equals(&b, p, 0, "permute");
+    hd_csr_free(&b, NULL);
+    i = perm[7];
+    perm[7] = perm[3];
+    CHECK(hd_csr_permute(&b, &a, perm, NULL, &e) == HD_ERR_INDEX && e.row == 7 && e.value == perm[3]);
+    perm[7] = N;
+    CHECK(hd_csr_permute(&b, &a, perm, NULL, &e) == HD_ERR_INDEX && e.row == 7 && e.value == N);
+    perm[7] = -1;
+    CHECK(hd_csr_permute(&b, &a, perm, NULL, &e) == HD_ERR_INDEX && e.row == 7);
+    perm[7] = i;
+    a.n_cols = N + 1;
+    CHECK(hd_csr_permute(&b, &a, perm, NULL, &e) == HD_ERR_ARGUMENT && e.row == N && e.column == N + 1);
+    a.n_cols = N;
+    a.row_ptr[1] = -3;
+    CHECK(hd_csr_permute(&b, &a, perm, NULL, &e) == HD_ERR_STRUCTURE && e.row == 0);
+    hd_csr_free(&a, NULL);
+    free(d);
+    free(p);
+}
+
+/* Backwards and with other workers, as a user's threads might. */
+static void sparse_reverse_for(void *user, int64_t n_tasks, hd_task task, void *arg) {
+    int64_t i;
+    for (i = n_tasks; i-- > 0;) task(arg, i, (int32_t)(i % 3));
+    ++*(int64_t *)user;
+}
+
+static void sparse_apply(void) {
+    enum { N = 40000 };                          /* more than one block of rows */
+    double *d = DENSE_NEW(double, 20 * 13), *x = DENSE_NEW(double, N), *y = DENSE_NEW(double, N), *z = DENSE_NEW(double, N);
+    hd_csr a = sparse_random(20, 13, 90, 31, d);
+    hd_context ctx;
+    uint64_t seed = 1;
+    int64_t calls = 0;
+    int32_t i;
+    for (i = 0; i < N; i++) x[i] = dense_signed(&seed);
+    hd_csr_apply(&a, x, y, NULL);
+    for (i = 0; i < 20; i++) z[i] = dense_dot(d + i * 13, x, 13);
+    CHECK(dense_max_diff(y, z, 20) < 1e-14);
+    hd_csr_free(&a, NULL);
+    a = test_path_csr(N, 1);
+    memset(&ctx, 0, sizeof ctx);
+    ctx.parallel_for = sparse_reverse_for;
+    ctx.parallel_user = &calls;
+    hd_csr_apply(&a, x, y, NULL);
+    hd_csr_apply(&a, x, z, &ctx);
+    CHECK(calls == 1);
+    CHECK(memcmp(y, z, N * sizeof *y) == 0);
+    for (i = 0; i < N; i++) z[i] = 2 * x[i] - x[(i + 1) % N] - x[(i + N - 1) % N];
+    CHECK(dense_max_diff(y, z, N) < 1e-14);
+    hd_csr_free(&a, NULL);
+    free(d);
+    free(x);
+    free(y);
+    free(z);
+}
+
+static void test_sparse(void) {
+    sparse_triplets();
+    sparse_check();
+    sparse_check_symmetric();
+    sparse_transpose();
+    sparse_product_of(9, 14, 6, 40, 17);
+    sparse_product_of(30, 30, 30, 90, 18);
+    sparse_product_of(50, 40, 60, 900, 19);      /* rows long enough for heapsort */
+    sparse_product_of(1, 1, 1, 1, 20);
+    sparse_permute();
+    sparse_apply();
+}
+
+#endif
