@@ -39,8 +39,8 @@
    Contents
      declarations    [B] base  [C] options and reports  [D] functions
      implementation  [00] platform  [01] scalar  [02] error  [03] memory  [04] context  [05] arrays  [06] dense
-                     [07] sparse  [09] geometry  [10] operators  [14] precond  [15] krylov  [16] rational
-                     [17] shifted  [18] heat  [21] api  [22] closing
+                     [07] sparse  [09] geometry  [10] operators  [11] symbolic  [14] precond  [15] krylov
+                     [16] rational  [17] shifted  [18] heat  [21] api  [22] closing
      Rooms are numbered from the bottom up; each calls only those above it in the file.
 
    Options (macros)
@@ -2819,6 +2819,17 @@ static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, dou
     return hdi_scope_end(&s);
 }
 
+enum { HDI_LANCZOS_MAX = 4096 };
+
+/* The state of a Lanczos process in the B inner product. */
+typedef struct hdi_lanczos {
+    double *v, *c, *c_old;                /* [n] v_m, B v_m, B v_(m-1) */
+    double *alpha, *beta;                 /* [MAX + 1] T: diagonal, and beta[j] between j - 1 and j */
+    double *d, *e, *z0, *z1, *y;          /* [MAX + 1] */
+    hd_c64 *work;                         /* [2 MAX] */
+    int32_t m;
+} hdi_lanczos;
+
 /* One right-hand side under way. Arrays are [n] rows unless said otherwise. */
 typedef struct hdi_lane {
     double *f, *rhs, *u;         /* the field, B f, the answer */
@@ -2826,6 +2837,7 @@ typedef struct hdi_lane {
     double *target, *sums;       /* [n_components] heat per component, work */
     hd_c64 *b, *vectors;
     hdi_krylov k[HD_MAX_POLES];
+    hdi_lanczos lanczos;
     int32_t n_systems, skip;
     /* outcome, norms absolute */
     double f_norm, u_norm;
@@ -2841,6 +2853,8 @@ static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
     hdi_free(ctx, lane->target);
     hdi_free(ctx, lane->b);
     hdi_free(ctx, lane->vectors);
+    hdi_free(ctx, lane->lanczos.v);
+    hdi_free(ctx, lane->lanczos.alpha);
     memset(lane, 0, sizeof *lane);
 }
 
@@ -2857,6 +2871,25 @@ static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_conte
     lane->u = lane->rhs + n;
     lane->tmp = lane->u + n;
     lane->sums = lane->target + n_comp;
+    return HD_OK;
+}
+
+/* Room for Lanczos. */
+static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
+    const size_t n = HDI_CAST(size_t, lap->n_active), most = HDI_LANCZOS_MAX + 1;
+    hdi_lanczos *z = &lane->lanczos;
+    z->v = HDI_CAST(double *, hdi_alloc(ctx, 3 * n, sizeof(double), e));
+    if (z->v) z->alpha = HDI_CAST(double *, hdi_alloc(ctx, 11 * most, sizeof(double), e));
+    if (!z->alpha) return e->status;             /* the lane frees what it has */
+    z->c = z->v + n;
+    z->c_old = z->c + n;
+    z->beta = z->alpha + most;
+    z->d = z->beta + most;
+    z->e = z->d + most;
+    z->z0 = z->e + most;
+    z->z1 = z->z0 + most;
+    z->y = z->z1 + most;
+    z->work = HDI_CAST(hd_c64 *, HDI_CAST(void *, z->y + most));
     return HD_OK;
 }
 
@@ -3065,19 +3098,10 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
 }
 
 /* ---- Lanczos for the exponential ---- */
-
-enum { HDI_LANCZOS_CHUNK = 16, HDI_LANCZOS_CHUNKS = 256, HDI_LANCZOS_MAX = HDI_LANCZOS_CHUNK * HDI_LANCZOS_CHUNKS };
-
-typedef struct hdi_lanczos {
-    double *chunk[HDI_LANCZOS_CHUNKS];    /* basis vectors, B-orthonormal */
-    double *alpha, *beta;                 /* [MAX + 1] T: diagonal, and beta[j] between j - 1 and j */
-    double *d, *e, *z0, *z1, *y;          /* [MAX + 1] */
-    int32_t m;
-} hdi_lanczos;
-
-static double *hdi_lanczos_vector(const hdi_lanczos *z, int32_t j, int32_t n) {
-    return z->chunk[j / HDI_LANCZOS_CHUNK] + HDI_CAST(size_t, j % HDI_LANCZOS_CHUNK) * HDI_CAST(size_t, n);
-}
+/* The basis is not kept. A first sweep finds the coefficients, a second one makes the same vectors again, to the last bit, and adds them up: as
+ * much work as writing them to fresh memory and reading them back would be, with six vectors in place of hundreds.
+ * No reorthogonalisation: the few huge eigenvalues that slivers have come back as copies, which costs a third more steps (bunny, t = 100 h^2: 280
+ * where full reorthogonalisation takes 200) and no accuracy. Simon's partial reorthogonalisation saves those steps and takes 2.4 times as long. */
 
 /* t beta_(m+1) |e_m' phi_1(-t T) e_1|, phi_1(z) = (e^z - 1)/z: bounds the error of m steps from a vector of norm one. For the error is
  * beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds, the last factor has one sign for all s, and the first shrinks. */
@@ -3101,9 +3125,9 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
 }
 
 /* y = exp(-t T) e_1 through the best uniform set of degree 14: O(m) a pole, and as exact as rounding would leave an eigensolution. */
-static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set, hd_c64 *work) {
+static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set) {
     const int32_t m = z->m;
-    hd_c64 *d = work, *g = work + m;
+    hd_c64 *d = z->work, *g = z->work + m;
     int32_t i, p;
     for (i = 0; i < m; i++) z->y[i] = i == 0 ? set->a0 : 0;
     for (p = 0; p < set->n_poles; p++) {
@@ -3123,16 +3147,23 @@ static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational
     }
 }
 
-/* One step: from v_j (and B v_j, B v_(j-1) in c, c_old) the next basis vector, its beta in z, and B times it in c_old. mass [3 n] is for B.
- * Plain, without reorthogonalisation: the few huge eigenvalues that slivers have come back as copies, which costs a third more steps (bunny,
- * t = 100 h^2: 275, with full reorthogonalisation 200) and no accuracy. Simon's partial reorthogonalisation saves those steps and takes
- * 2.4 times as long; and with a threshold of sqrt(eps) its bound no longer holds. */
-static hd_status hdi_lanczos_step(const hd_laplacian *lap, const double *weight, hdi_lanczos *z, const double *c, double *c_old, double *w,
-                                  double *mass, hd_error *e) {
+/* A start: v of B norm one, c = B v. */
+static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
+    hdi_lanczos *z = &lane->lanczos;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        z->v[i] = lane->f[i] / f0_norm;
+        z->c[i] = lane->rhs[i] / f0_norm;
+        z->c_old[i] = 0;
+    }
+    z->beta[0] = 0;
+    z->m = 0;
+}
+
+/* One step: from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). work [4 n]. */
+static hd_status hdi_lanczos_step(const hd_laplacian *lap, const double *weight, hdi_lanczos *z, double *HDI_RESTRICT w, double *mass, hd_error *e) {
     const int32_t n = lap->n_active, j = z->m;
-    const double *v = hdi_lanczos_vector(z, j, n);
-    double *next = hdi_lanczos_vector(z, j + 1, n);
-    double alpha = 0, norm = 0, scale;
+    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0, norm = 0, scale;
     int32_t i;
     hdi_csr_apply_rows(&lap->L, v, w, 0, n);
     for (i = 0; i < n; i++) {
@@ -3141,32 +3172,26 @@ static hd_status hdi_lanczos_step(const hd_laplacian *lap, const double *weight,
     }
     if (lap->B) {
         hdi_axpy(-alpha, c, w, n);
-        if (hdi_mass_solve(lap, w, next, mass, e) < 0) return e->status;
-        norm = hdi_dot(w, next, n);
+        if (hdi_mass_solve(lap, w, v, mass, e) < 0) return e->status;
+        norm = hdi_dot(w, v, n);
     } else {                                     /* the same in one pass */
         for (i = 0; i < n; i++) {
             w[i] -= alpha * c[i];
-            next[i] = w[i] * weight[i];
-            norm += w[i] * next[i];
+            v[i] = w[i] * weight[i];
+            norm += w[i] * v[i];
         }
     }
     z->alpha[j] = alpha;
     z->beta[j + 1] = norm > 0 ? sqrt(norm) : 0;
     z->m = j + 1;
-    if (z->beta[j + 1] == 0) return HD_OK;
-    scale = 1 / z->beta[j + 1];
+    scale = norm > 0 ? 1 / z->beta[j + 1] : 0;
     for (i = 0; i < n; i++) {
-        next[i] *= scale;
+        v[i] *= scale;
         c_old[i] = w[i] * scale;
     }
+    z->c = c_old;
+    z->c_old = c;
     return HD_OK;
-}
-
-static hd_status hdi_lanczos_room(hdi_lanczos *z, int32_t j, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const int32_t at = j / HDI_LANCZOS_CHUNK;
-    if (z->chunk[at]) return HD_OK;
-    z->chunk[at] = HDI_CAST(double *, hdi_alloc(ctx, HDI_LANCZOS_CHUNK * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
-    return z->chunk[at] ? HD_OK : e->status;
 }
 
 /* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
@@ -3179,95 +3204,87 @@ static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, doubl
     return want < 1 ? 1 : want > most ? most : HDI_CAST(int32_t, want);
 }
 
-/* u += exp(-t B^-1 L) f0 for f0 without constants, of norm f0_norm; fixed_norm2 is what |u|_B^2 has besides. */
-static hd_status hdi_lanczos_run(hd_heat *heat, double t, double f0_norm, double fixed_norm2, hdi_lane *w, hdi_lanczos *z,
-                                 const hdi_watch *watch, hd_error *e) {
+/* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2 is what |u|_B^2 has besides. */
+static hd_status hdi_lanczos_first(const hd_heat *heat, double t, double f0_norm, double fixed_norm2, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = heat->lap;
-    const int32_t n = lap->n_active;
-    const int64_t most = heat->opts.max_iterations < HDI_LANCZOS_MAX - 1 ? heat->opts.max_iterations : HDI_LANCZOS_MAX - 1;
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    double *c = HDI_TAKE(&s, double, n), *c_old = HDI_TAKE_ZERO(&s, double, n), *keep, bound = 0, bound_before = 0, best = DBL_MAX, start = 0, y2;
-    hd_c64 *work = HDI_TAKE(&s, hd_c64, 2 * (HDI_LANCZOS_MAX + 1));
-    int32_t i, j, look = 1, looked = 0, best_m = 0;
+    const double tol = heat->opts.tol;
+    const int32_t most = heat->opts.max_iterations < HDI_LANCZOS_MAX ? heat->opts.max_iterations : HDI_LANCZOS_MAX;
+    hdi_lanczos *z = &lane->lanczos;
+    double bound = 0, bound_before = 0, best = DBL_MAX, start = 0;
+    int32_t look = 1, looked = 0, best_m = 0;
     hd_rational set;
-    if (e->status < 0 || hdi_rational_get(&set, HD_POLES_UNIFORM, 14, e) < 0) return hdi_scope_end(&s);
-    memcpy(c, w->rhs, HDI_CAST(size_t, n) * sizeof *c);
-    for (i = 0; i < n; i++) {
-        c[i] /= f0_norm;
-        hdi_lanczos_vector(z, 0, n)[i] = w->f[i] / f0_norm;
-    }
-    z->beta[0] = 0;
+    if (hdi_rational_get(&set, HD_POLES_UNIFORM, 14, e) < 0) return e->status;
+    lane->rational = f0_norm * set.max_error;    /* of the coefficients; the basis has no error of this kind */
+    hdi_lanczos_start(lane, lap->n_active, f0_norm);
     for (;;) {
-        if (hdi_lanczos_room(z, z->m + 1, lap, heat->ctx, e) < 0) return hdi_scope_end(&s);
-        if (hdi_lanczos_step(lap, heat->weight, z, c, c_old, w->tmp, w->tmp + n, e) < 0) return hdi_scope_end(&s);
-        keep = c_old;
-        c_old = c;
-        c = keep;
+        if (hdi_lanczos_step(lap, heat->weight, z, lane->tmp, lane->tmp + lap->n_active, e) < 0) return e->status;
         if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
-        if (hdi_lanczos_bound(z, t, &bound, e) < 0) return hdi_scope_end(&s);
-        hdi_lanczos_coefficients(z, t, &set, work);
-        y2 = hdi_dot(z->y, z->y, z->m);
-        w->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * y2);
-        w->solver = f0_norm * bound;
-        if (w->solver <= heat->opts.tol * w->u_norm || z->beta[z->m] == 0) break;
+        if (hdi_lanczos_bound(z, t, &bound, e) < 0) return e->status;
+        hdi_lanczos_coefficients(z, t, &set);
+        lane->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * hdi_dot(z->y, z->y, z->m));
+        lane->solver = f0_norm * bound;
+        if (lane->solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
         if (bound < best / 2) {
             best = bound;
             best_m = z->m;
         } else if (best < 1e-10 && z->m > best_m + 20 + z->m / 4) {
-            e->status = HD_WARN_ACCURACY;        /* what rounding leaves */
-            break;
+            return HD_WARN_ACCURACY;             /* what rounding leaves */
         }
         if (z->m >= most) {
             hdi_fail(e, HD_ERR_NOT_CONVERGED, "Lanczos did not reach the tolerance in its largest number of steps; use poles");
-            e->value = w->solver / w->u_norm;
-            return hdi_scope_end(&s);
+            e->value = lane->solver / lane->u_norm;
+            return e->status;
         }
-        if (start == 0) start = w->solver;
-        if (hdi_watch_look(watch, hdi_krylov_done(start, w->solver, heat->opts.tol * w->u_norm), e) < 0) return hdi_scope_end(&s);
-        look = z->m + hdi_lanczos_pace(z->m, looked, f0_norm * bound, f0_norm * bound_before, heat->opts.tol * w->u_norm);
+        if (start == 0) start = lane->solver;
+        if (hdi_watch_look(watch, 0.5 * hdi_krylov_done(start, lane->solver, tol * lane->u_norm), e) < 0) return e->status;
+        look = z->m + hdi_lanczos_pace(z->m, looked, lane->solver, f0_norm * bound_before, tol * lane->u_norm);
         looked = z->m;
         bound_before = bound;
     }
-    for (j = 0; j < z->m; j++) hdi_axpy(f0_norm * z->y[j], hdi_lanczos_vector(z, j, n), w->u, n);
-    w->rational = f0_norm * set.max_error;   /* of the coefficients; the basis has no error of this kind */
-    w->steps = z->m;
-    return hdi_scope_end(&s);
+}
+
+/* Second sweep: u += f0_norm sum y_j v_j. */
+static hd_status hdi_lanczos_second(const hd_heat *heat, double f0_norm, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
+    const hd_laplacian *lap = heat->lap;
+    const int32_t n = lap->n_active, m = lane->lanczos.m;
+    int32_t j;
+    hdi_lanczos_start(lane, n, f0_norm);
+    for (j = 0; j < m; j++) {
+        hdi_axpy(f0_norm * lane->lanczos.y[j], lane->lanczos.v, lane->u, n);
+        if (j % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * j / m, e) < 0) return e->status;
+        if (j + 1 < m && hdi_lanczos_step(lap, heat->weight, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0) return e->status;
+    }
+    lane->lanczos.m = m;
+    return HD_OK;
 }
 
 /* K_t f by Lanczos. The constants of each component need none of it. */
-static hd_status hdi_heat_lanczos(hd_heat *heat, double t, hdi_lane *w, const hdi_watch *watch, hd_error *e) {
+static hd_status hdi_heat_lanczos(const hd_heat *heat, double t, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = heat->lap;
     const int32_t n = lap->n_active;
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    hd_status status = HD_OK;
     double f0_norm, fixed = 0;
-    hdi_lanczos z;
     int32_t i;
-    memset(&z, 0, sizeof z);
-    z.alpha = HDI_TAKE(&s, double, 7 * (HDI_LANCZOS_MAX + 1));
-    if (!z.alpha || hdi_lanczos_room(&z, 0, lap, heat->ctx, e) < 0) return hdi_scope_end(&s);
-    z.beta = z.alpha + HDI_LANCZOS_MAX + 1;
-    z.d = z.beta + HDI_LANCZOS_MAX + 1;
-    z.e = z.d + HDI_LANCZOS_MAX + 1;
-    z.z0 = z.e + HDI_LANCZOS_MAX + 1;
-    z.z1 = z.z0 + HDI_LANCZOS_MAX + 1;
-    z.y = z.z1 + HDI_LANCZOS_MAX + 1;
-    memset(w->u, 0, HDI_CAST(size_t, n) * sizeof *w->u);
+    memset(lane->u, 0, HDI_CAST(size_t, n) * sizeof *lane->u);
     if (lap->conserves) {
         for (i = 0; i < lap->n_components; i++) {
-            w->sums[i] = -w->target[i] / lap->component_mass[i];
-            fixed += w->target[i] * w->target[i] / lap->component_mass[i];
+            lane->sums[i] = -lane->target[i] / lap->component_mass[i];
+            fixed += lane->target[i] * lane->target[i] / lap->component_mass[i];
         }
-        hdi_component_add(lap, w->sums, w->f);                     /* f0 = f - constants, rhs0 = B f0 */
-        for (i = 0; i < n; i++) w->rhs[i] += lap->mass[i] * w->sums[lap->component[i]];
-        for (i = 0; i < n; i++) w->u[i] = -w->sums[lap->component[i]];
+        hdi_component_add(lap, lane->sums, lane->f);               /* f0 = f - constants, rhs0 = B f0 */
+        for (i = 0; i < n; i++) lane->rhs[i] += lap->mass[i] * lane->sums[lap->component[i]];
+        for (i = 0; i < n; i++) lane->u[i] = -lane->sums[lap->component[i]];
     }
-    f0_norm = hdi_dot(w->f, w->rhs, n);
+    f0_norm = hdi_dot(lane->f, lane->rhs, n);
     f0_norm = f0_norm > 0 ? sqrt(f0_norm) : 0;
-    w->u_norm = sqrt(fixed);
-    if (f0_norm > DBL_EPSILON * w->f_norm) hdi_lanczos_run(heat, t, f0_norm, fixed, w, &z, watch, e);
-    for (i = 0; i < HDI_LANCZOS_CHUNKS; i++) hdi_free(heat->ctx, z.chunk[i]);
-    if (e->status >= 0) hdi_conserve(lap, w, 1);
-    return hdi_scope_end(&s);
+    lane->u_norm = sqrt(fixed);
+    if (f0_norm > DBL_EPSILON * lane->f_norm) {
+        status = hdi_lanczos_first(heat, t, f0_norm, fixed, lane, watch, e);
+        if (status >= 0 && hdi_lanczos_second(heat, f0_norm, lane, watch, e) < 0) return e->status;
+        lane->steps = lane->lanczos.m;
+    }
+    if (status >= 0) hdi_conserve(lap, lane, 1);
+    return status;
 }
 
 /* ---- through the poles ---- */
@@ -3938,14 +3955,16 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     return HD_OK;
 }
 
-/* Lanes, the pole set and its preconditioners. Lanczos takes memory as it goes, which only the calling thread may: one lane. */
+/* Lanes, the pole set and its preconditioners. */
 static hd_status hdi_heat_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     hd_rational set;
     int32_t i, q;
-    h->n_lanes = h->solver == HD_SOLVER_LANCZOS ? 1 : h->k < HDI_LANES ? h->k : HDI_LANES;
-    for (i = 0; i < h->n_lanes; i++)
+    h->n_lanes = h->k < HDI_LANES ? h->k : HDI_LANES;
+    for (i = 0; i < h->n_lanes; i++) {
         if (hdi_lane_make(h->lane + i, heat->lap, heat->ctx, h->e) < 0) return h->e->status;
+        if (h->solver == HD_SOLVER_LANCZOS && h->t > 0 && hdi_lane_lanczos(h->lane + i, heat->lap, heat->ctx, h->e) < 0) return h->e->status;
+    }
     if (h->t == 0 || h->solver == HD_SOLVER_LANCZOS) return HD_OK;
     h->degree = 8;
     for (q = 0; q < h->k && h->query == HDI_QUERY_FIELD; q++) {
