@@ -2187,6 +2187,7 @@ typedef struct hdi_krylov {
     hd_solver solver;
     const double *weight;                /* [n] 1/diag(B): the residual's norm */
     hd_c64 *sums;                        /* [n_components] */
+    hd_c64 *spare;                       /* [n] the best x so far, when a round may spoil it */
     hd_c64 *x, *r;                       /* [n] solution and residual */
     hd_c64 *v[HDI_KRYLOV_VECTORS - 2];   /* [n] each, as many as the solver needs */
     double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
@@ -2422,38 +2423,57 @@ static double hdi_krylov_done(double start, double now, double target) {
     return target > 0 ? log(start / now) / log(start / target) : 0;
 }
 
-/* Iterates until the residual norm, computed from x at the end, is at most target. Rounding may keep it above: then it stops where
- * another round no longer halves it or it is no more than rounding, with HD_WARN_ACCURACY. */
-static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations, const hdi_watch *watch, hd_error *e) {
-    const double start = k->r_norm;
-    double before = k->r_norm, best, floor = -1;
-    int64_t left = max_iterations, look = 0, step, best_step;
-    while (k->r_norm > target) {
-        best = k->r_norm;
-        best_step = 0;
-        for (step = 1; k->r_norm > hdi_max(target, floor) && !k->broken; step++) {
-            if (floor < 0 && k->r_norm < 1e-9 * k->b_norm) floor = hdi_krylov_noise(k) / 2;
-            if (left-- <= 0) break;
-            if (look++ % 16 == 0 && hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
-            if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
-            else if (k->solver == HD_SOLVER_COCR) hdi_cocr_step(k);
-            else hdi_minres_step(k);
-            if (!hdi_finite(k->r_norm)) k->broken = 1;
-            k->ready = 1;
-            k->iterations += !k->broken;
-            if (k->r_norm < best / 2) {
-                best = k->r_norm;
-                best_step = step;
-            } else if (best < 1e-7 * k->b_norm && step - best_step > 50 + best_step) {
-                break;                           /* nothing gained for long, near where rounding may be the reason: look at x */
-            }
+/* Iterates until the residual norm by the recurrence is at most target, or gains nothing more. Near rounding it ends at floor_share of what that may
+ * contribute: below, recurrences go astray. left: steps allowed, counted down. */
+static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start, int64_t *left, const hdi_watch *watch, hd_error *e) {
+    double best = k->r_norm, least = target;
+    int64_t step, best_step = 0;
+    int near_rounding = 0;
+    for (step = 1; k->r_norm > least && !k->broken && *left > 0; step++, --*left) {
+        if (!near_rounding && k->r_norm < 1e-9 * k->b_norm) {
+            near_rounding = 1;
+            least = hdi_max(target, floor_share * hdi_krylov_noise(k));
         }
+        if (step % 16 == 1 && hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
+        if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
+        else if (k->solver == HD_SOLVER_COCR) hdi_cocr_step(k);
+        else hdi_minres_step(k);
+        if (!hdi_finite(k->r_norm)) k->broken = 1;
+        k->ready = 1;
+        k->iterations += !k->broken;
+        if (k->r_norm < best / 2) {
+            best = k->r_norm;
+            best_step = step;
+        } else if (best < 1e-7 * k->b_norm && (step - best_step > 50 + best_step || k->r_norm > 1e3 * best)) {
+            break;
+        }
+    }
+    return HD_OK;
+}
+
+/* Solves until the residual norm, computed from x, is at most target. Rounding may keep it above: then it stops where another round no longer
+ * halves it, with the best x and HD_WARN_ACCURACY. */
+static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations, const hdi_watch *watch, hd_error *e) {
+    const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
+    const double start = k->r_norm;
+    double before = k->r_norm, floor_share = 0.5;
+    int64_t left = max_iterations;
+    while (k->r_norm > target) {
+        memcpy(k->spare, k->x, bytes);
+        if (hdi_krylov_round(k, target, floor_share, start, &left, watch, e) < 0) return e->status;
         hdi_krylov_residual(k, b);               /* the recurrence says done: believe x alone */
-        if (!hdi_finite(k->r_norm)) return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: its numbers are no longer finite");
         if (k->r_norm <= target) return HD_OK;
         if (left <= 0) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "the iteration did not reach the tolerance in max_iterations steps");
-        if (k->r_norm > before / 2 || k->r_norm <= floor) return HD_WARN_ACCURACY;
+        if (!(k->r_norm <= before / 2)) {
+            if (!(k->r_norm <= before)) {
+                memcpy(k->x, k->spare, bytes);
+                hdi_krylov_residual(k, b);
+            }
+            if (k->r_norm <= 1e-7 * k->b_norm) return HD_WARN_ACCURACY;
+            return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: no step brings the residual down");
+        }
         before = k->r_norm;
+        floor_share /= 4;
         k->broken = 0;
     }
     return HD_OK;
@@ -2903,7 +2923,7 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
         hdi_free(fam->ctx, lane->vectors);
         lane->vectors = NULL;
         lane->n_systems = 0;
-        lane->b = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, n + n_comp, sizeof(hd_c64), e));
+        lane->b = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, 2 * n + n_comp, sizeof(hd_c64), e));
         if (lane->b) lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count, n_vec * n * sizeof(hd_c64), e));
         if (!lane->vectors) return e->status;
         lane->n_systems = fam->set.n_poles;
@@ -2916,6 +2936,7 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
         k->r = v + n;
         for (j = 2; j < n_vec; j++) k->v[j - 2] = v + j * n;
         k->sums = lane->b + n;
+        k->spare = k->sums + n_comp;
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
