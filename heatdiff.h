@@ -2197,7 +2197,8 @@ typedef struct hdi_krylov {
     double beta, beta_old, c1, c2;
 } hdi_krylov;
 
-static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_COCG ? 4 : solver == HD_SOLVER_COCR ? 7 : 8; }
+/* Vectors of a system's own, x and r among them; one more after them is work within a step. */
+static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7; }
 
 static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
     hdi_precond_apply(&k->m, r, z);
@@ -2335,7 +2336,7 @@ static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
  * off-diagonals are real, and the QR factorisation of T by rotations [c s; -conj(s) c]. */
 static void hdi_minres_step(hdi_krylov *k) {
     const int32_t n = k->a.lap->n_active;
-    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *v = k->v[3], *d = k->v[4], *d_old = k->v[5];
+    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4], *v = k->v[5];
     hd_c64 alpha, eps, dbar, delta, gbar, gamma, phi, s;
     double beta, size, c;
     int32_t i;
@@ -2384,8 +2385,8 @@ static void hdi_minres_step(hdi_krylov *k) {
         d_old[i] = hdi_cdiv(u, gamma);
         k->x[i] = hdi_cadd(k->x[i], hdi_cmul(phi, d_old[i]));
     }
-    k->v[4] = d_old;
-    k->v[5] = d;
+    k->v[3] = d_old;
+    k->v[4] = d;
     phi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
     for (i = 0; i < n; i++) k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, w_old[i]));
     k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
@@ -2789,33 +2790,12 @@ static void hdi_family_free(hdi_family *fam) {
     fam->filled = 0;
 }
 
-typedef struct hdi_precond_job {
-    hdi_family *fam;
-    hd_c64 *work;                /* [2 n] a pole */
-} hdi_precond_job;
-
-static void hdi_precond_task(void *arg, int64_t index, int32_t worker) {
-    hdi_precond_job *job = HDI_CAST(hdi_precond_job *, arg);
-    const size_t n = HDI_CAST(size_t, job->fam->lap->n_active);
-    hd_c64 *work = job->work + 2 * n * HDI_CAST(size_t, index);
-    hdi_system a;
-    (void)worker;
-    a.lap = job->fam->lap;
-    a.t = job->fam->t;
-    a.theta = job->fam->set.theta[index];
-    if (job->fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);   /* real, positive definite */
-    hdi_precond_make(job->fam->m + index, &a, work, HDI_CAST(int64_t *, HDI_CAST(void *, work + n)));
-}
-
-/* Preconditioners for a set and a time; nothing to do when they are there. */
-static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t, hd_error *e) {
+/* Takes up a set and a time, with room for the preconditioners. hdi_family_fill is to follow when filled is 0. */
+static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double t, hd_error *e) {
     const size_t n = HDI_CAST(size_t, fam->lap->n_active), upper = HDI_CAST(size_t, fam->up->ptr[n]);
     const size_t size = fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
-    hdi_scope s = hdi_scope_begin(fam->ctx, e);
-    hdi_precond_job job;
     int32_t i;
     if (fam->filled && fam->t == t && memcmp(&fam->set, set, sizeof *set) == 0) return HD_OK;
-    if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
     fam->filled = 0;
     if (fam->n_values < set->n_poles) {
         hdi_family_free(fam);
@@ -2823,9 +2803,6 @@ static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, dou
         if (!fam->values) return e->status;
         fam->n_values = set->n_poles;
     }
-    job.fam = fam;
-    job.work = HDI_TAKE(&s, hd_c64, 2 * HDI_CAST(int64_t, n) * set->n_poles);
-    if (!job.work) return hdi_scope_end(&s);
     fam->set = *set;
     fam->t = t;
     for (i = 0; i < set->n_poles; i++) {
@@ -2834,10 +2811,42 @@ static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, dou
         fam->m[i].d_inv = size ? fam->values + HDI_CAST(size_t, i) * (size + 1) : NULL;
         fam->m[i].u = size > n ? fam->m[i].d_inv + n : NULL;
     }
-    hdi_parallel(fam->ctx, set->n_poles, hdi_precond_task, &job);
-    fam->filled = 1;
-    return hdi_scope_end(&s);
+    return HD_OK;
 }
+
+typedef struct hdi_fill_job {
+    hdi_family *fam;
+    hd_c64 *work;
+    size_t stride;               /* of work from pole to pole, at least 2 n */
+} hdi_fill_job;
+
+static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
+    hdi_fill_job *job = HDI_CAST(hdi_fill_job *, arg);
+    hd_c64 *work = job->work + job->stride * HDI_CAST(size_t, index);
+    hdi_system a;
+    (void)worker;
+    a.lap = job->fam->lap;
+    a.t = job->fam->t;
+    a.theta = job->fam->set.theta[index];
+    if (job->fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);   /* real, positive definite */
+    hdi_precond_make(job->fam->m + index, &a, work, HDI_CAST(int64_t *, HDI_CAST(void *, work + job->fam->lap->n_active)));
+}
+
+/* Makes the preconditioners, one parallel task each. */
+static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, size_t stride, hd_error *e) {
+    hdi_fill_job job;
+    if (fam->filled) return HD_OK;
+    if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
+    job.fam = fam;
+    job.work = work;
+    job.stride = stride;
+    hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, &job);
+    fam->filled = 1;
+    return HD_OK;
+}
+
+/* Right-hand sides at a time. */
+enum { HDI_LANES = 4 };
 
 enum { HDI_LANCZOS_MAX = 4096 };
 
@@ -2898,6 +2907,8 @@ static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_conte
 static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     const size_t n = HDI_CAST(size_t, lap->n_active), most = HDI_LANCZOS_MAX + 1;
     hdi_lanczos *z = &lane->lanczos;
+    if (z->alpha) return HD_OK;
+    hdi_free(ctx, z->v);
     z->v = HDI_CAST(double *, hdi_alloc(ctx, 3 * n, sizeof(double), e));
     if (z->v) z->alpha = HDI_CAST(double *, hdi_alloc(ctx, 11 * most, sizeof(double), e));
     if (!z->alpha) return e->status;             /* the lane frees what it has */
@@ -2913,6 +2924,11 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_co
     return HD_OK;
 }
 
+/* Complex numbers that a system has in a lane. */
+static size_t hdi_lane_stride(const hdi_family *fam) {
+    return HDI_CAST(size_t, hdi_krylov_vectors(fam->solver)) * HDI_CAST(size_t, fam->lap->n_active);
+}
+
 /* Room for the systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
     const size_t n = HDI_CAST(size_t, fam->lap->n_active), n_comp = HDI_CAST(size_t, fam->lap->n_components);
@@ -2923,7 +2939,7 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
         hdi_free(fam->ctx, lane->vectors);
         lane->vectors = NULL;
         lane->n_systems = 0;
-        lane->b = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, 2 * n + n_comp, sizeof(hd_c64), e));
+        lane->b = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, 3 * n + n_comp, sizeof(hd_c64), e));
         if (lane->b) lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count, n_vec * n * sizeof(hd_c64), e));
         if (!lane->vectors) return e->status;
         lane->n_systems = fam->set.n_poles;
@@ -2935,8 +2951,9 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
         k->x = v;
         k->r = v + n;
         for (j = 2; j < n_vec; j++) k->v[j - 2] = v + j * n;
-        k->sums = lane->b + n;
-        k->spare = k->sums + n_comp;
+        k->v[n_vec - 2] = lane->b + n;           /* a work vector that all systems share, as they run one after the other */
+        k->spare = lane->b + 2 * n;
+        k->sums = lane->b + 3 * n;
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
@@ -3106,6 +3123,7 @@ struct hd_heat {
     hdi_upper up;
     double *weight;              /* [n] 1/diag(B) */
     hdi_family fam;              /* of the last set and time */
+    hdi_lane lane[HDI_LANES];    /* work arrays, kept from call to call */
     double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
 };
 
@@ -3680,8 +3698,10 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
 
 HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hd_context *ctx;
+    int32_t i;
     if (!heat) return;
     ctx = heat->ctx;
+    for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, ctx);
     hdi_family_free(&heat->fam);
     hdi_upper_free(ctx, &heat->up);
     hdi_free(ctx, heat->weight);
@@ -3691,8 +3711,9 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
 
 /* One system with a plan made for it. */
 static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x, double tol, hd_solve_report *report,
-                                   hdi_lane *lane, hd_error *e) {
+                                   hd_error *e) {
     const hd_laplacian *lap = heat->lap;
+    hdi_lane *lane = heat->lane;
     hdi_krylov *k = lane->k;
     hdi_watch watch;
     hd_rational set;
@@ -3706,8 +3727,9 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     watch.stage = "solve";
     set.n_poles = 1;
     set.theta[0] = theta;
-    if (hdi_family_prepare(&heat->fam, &set, t, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
+    if (hdi_family_set(&heat->fam, &set, t, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
     if (hdi_lane_systems(lane, &heat->fam, e) < 0) return e->status;
+    if (hdi_family_fill(&heat->fam, lane->vectors, hdi_lane_stride(&heat->fam), e) < 0) return e->status;
     for (i = 0; i < lap->n_active; i++) lane->b[i] = rhs[lap->vertex[i]];
     b_norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
     memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
@@ -3737,7 +3759,6 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     hd_solve_opts o;
     hd_heat_opts plan;
     hd_heat *heat = NULL;
-    hdi_lane *lane;
     hdi_call c;
     memset(&o, 0, sizeof o);
     memset(&plan, 0, sizeof plan);
@@ -3750,13 +3771,7 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     plan.max_iterations = o.max_iterations;
     plan.context = o.context;
     if (hd_heat_create(&heat, lap, &plan, c.e) < 0) return c.e->status;
-    lane = HDI_CAST(hdi_lane *, hdi_alloc(heat->ctx, 1, sizeof *lane, c.e));
-    if (lane) {
-        memset(lane, 0, sizeof *lane);
-        hdi_shifted_solve(heat, t, theta, rhs, x, o.tol > 0 ? o.tol : 1e-10, report, lane, c.e);
-        hdi_lane_free(lane, heat->ctx);
-        hdi_free(heat->ctx, lane);
-    }
+    hdi_shifted_solve(heat, t, theta, rhs, x, o.tol > 0 ? o.tol : 1e-10, report, c.e);
     hd_heat_free(heat);
     return c.e->status;
 }
@@ -3773,8 +3788,6 @@ static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
 
 typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
 
-enum { HDI_LANES = 4 };
-
 /* A heat call under way: k items, each a field, a column, or the pairs that share a column; a few at a time, each in a lane. */
 typedef struct hdi_heat_call {
     hd_heat *heat;
@@ -3786,7 +3799,7 @@ typedef struct hdi_heat_call {
     hd_report own_report;
     hd_error *e;
     hdi_scope s;
-    hdi_lane *lane;              /* [HDI_LANES] */
+    hdi_lane *lane;              /* [HDI_LANES], the plan's */
     int32_t n_lanes, batch;      /* lanes that exist; first item in lane 0 */
     int32_t stop;
     const double *F;             /* fields */
@@ -3817,15 +3830,13 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->rep->method = HD_METHOD_ITERATIVE;
     h->rep->solver = h->solver;
     h->rep->precond = h->solver == HD_SOLVER_LANCZOS ? HD_PRECOND_NONE : heat->opts.precond;
-    h->lane = HDI_TAKE_ZERO(&h->s, hdi_lane, HDI_LANES);
-    return h->e->status;
+    h->lane = heat->lane;
+    return HD_OK;
 }
 
 static hd_status hdi_heat_end(hdi_heat_call *h) {
     const hd_status warned = h->rep->status;
     hd_status st = h->e->status;
-    int32_t i;
-    for (i = 0; h->lane && i < HDI_LANES; i++) hdi_lane_free(h->lane + i, h->heat->ctx);
     if (h->s.e) st = hdi_scope_end(&h->s);
     h->rep->status = st < 0 ? st : warned;
     return h->rep->status;
@@ -3994,13 +4005,13 @@ static hd_status hdi_heat_prepare(hdi_heat_call *h) {
         if (i > h->degree) h->degree = i;
     }
     if (h->query != HDI_QUERY_FIELD) h->degree = HDI_RAT_UNIFORM_MAX;
-    if (hdi_heat_set(h, &set) < 0 || hdi_family_prepare(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
+    if (hdi_heat_set(h, &set) < 0 || hdi_family_set(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
     h->rep->poles = set.kind;
     h->rep->degree = set.degree;
     h->rep->n_poles = set.n_poles;
     for (i = 0; i < h->n_lanes; i++)
         if (hdi_lane_systems(h->lane + i, &heat->fam, h->e) < 0) return h->e->status;
-    return HD_OK;
+    return hdi_family_fill(&heat->fam, h->lane->vectors, hdi_lane_stride(&heat->fam), h->e);
 }
 
 static hd_status hdi_heat_run(hdi_heat_call *h) {
