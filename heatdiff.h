@@ -1901,6 +1901,23 @@ static hd_laplacian *hdi_sym_renumber(const hd_laplacian *lap, const int32_t *pe
     return out;
 }
 
+/* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t B^-1 L) is the same with t multiplied
+ * alike, to the last bit, and squares of areas neither underflow nor overflow whatever the unit of length. */
+static double hdi_sym_scale(hd_laplacian *lap) {
+    double largest = 0, scale;
+    int32_t i;
+    int64_t p;
+    int exponent;
+    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
+    frexp(largest, &exponent);
+    scale = ldexp(1, -2 * (exponent / 2));       /* even: norms scale exactly too */
+    for (i = 0; i < lap->n_active; i++) lap->mass[i] *= scale;
+    for (i = 0; i < lap->n_active && lap->B; i++) lap->b_diag[i] *= scale;
+    for (p = 0; p < lap->L.nnz && lap->B; p++) lap->B[p] *= scale;
+    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] *= scale;
+    return scale;
+}
+
 /* The same pair in an order that iterations like. */
 static hd_laplacian *hdi_sym_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
@@ -2934,7 +2951,7 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
     const size_t n = HDI_CAST(size_t, fam->lap->n_active), n_comp = HDI_CAST(size_t, fam->lap->n_components);
     const size_t n_vec = HDI_CAST(size_t, hdi_krylov_vectors(fam->solver)), count = HDI_CAST(size_t, fam->set.n_poles);
     size_t i, j;
-    if (lane->n_systems < fam->set.n_poles) {
+    if (!lane->vectors || lane->n_systems < fam->set.n_poles) {
         hdi_free(fam->ctx, lane->b);
         hdi_free(fam->ctx, lane->vectors);
         lane->vectors = NULL;
@@ -3117,7 +3134,8 @@ static double hdi_resolvent_ratio(hd_c64 theta) {
 
 struct hd_heat {
     hd_context *ctx;
-    hd_laplacian *lap;           /* the caller's, renumbered */
+    hd_laplacian *lap;           /* the caller's, renumbered, B and with it t multiplied by scale */
+    double scale;
     hd_heat_opts opts;           /* resolved */
     hd_rational own_set;
     hdi_upper up;
@@ -3235,7 +3253,7 @@ static hd_status hdi_lanczos_step(const hd_laplacian *lap, const double *weight,
 
 /* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
 static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before, double target) {
-    const int32_t most = 1 + m / 16;
+    const int32_t most = m < 32 ? 1 : m / 16;
     double rate, want;
     if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
     rate = log(bound_before / bound) / (m - m_before);
@@ -3680,10 +3698,11 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     heat->opts.precond = heat->opts.precond ? heat->opts.precond : HD_PRECOND_MILDL;
     heat->opts.tol = heat->opts.tol > 0 ? heat->opts.tol : 1e-9;
     heat->opts.max_iterations = heat->opts.max_iterations ? heat->opts.max_iterations : 20000;
-    heat->lambda_max = hdi_lambda_bound(lap);
     hdi_keep(&s, heat);
     if (hdi_progress(c.ctx, "order", 0, c.e) >= 0) heat->lap = hdi_sym_ordered(lap, c.ctx, c.e);
+    if (heat->lap) heat->scale = hdi_sym_scale(heat->lap);
     if (heat->lap && hdi_upper_make(&heat->up, &heat->lap->L, c.ctx, c.e) >= 0) heat->weight = hdi_make_weight(heat->lap, c.ctx, c.e);
+    if (heat->weight) heat->lambda_max = hdi_lambda_bound(heat->lap);
     heat->fam.ctx = c.ctx;
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
@@ -3727,10 +3746,10 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     watch.stage = "solve";
     set.n_poles = 1;
     set.theta[0] = theta;
-    if (hdi_family_set(&heat->fam, &set, t, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
+    if (hdi_family_set(&heat->fam, &set, t * heat->scale, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
     if (hdi_lane_systems(lane, &heat->fam, e) < 0) return e->status;
     if (hdi_family_fill(&heat->fam, lane->vectors, hdi_lane_stride(&heat->fam), e) < 0) return e->status;
-    for (i = 0; i < lap->n_active; i++) lane->b[i] = rhs[lap->vertex[i]];
+    for (i = 0; i < lap->n_active; i++) lane->b[i] = hdi_cscale(heat->scale, rhs[lap->vertex[i]]);
     b_norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
     memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
     if (lap->conserves) {                        /* constants apart: b - B mean(b), and mean(b)/theta to the solution */
@@ -3826,7 +3845,9 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->s = hdi_scope_begin(heat->ctx, h->e);
     if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
     if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    h->solver = hdi_heat_choose(heat, t);
+    h->t = t * heat->scale;
+    if (!hdi_finite(h->t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is too large for these masses", -1, -1, t);
+    h->solver = hdi_heat_choose(heat, h->t);
     h->rep->method = HD_METHOD_ITERATIVE;
     h->rep->solver = h->solver;
     h->rep->precond = h->solver == HD_SOLVER_LANCZOS ? HD_PRECOND_NONE : heat->opts.precond;
@@ -3909,7 +3930,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
 /* What item q asked for, from the lane's answer. */
 static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->heat->lap;
-    const double *answer = h->t > 0 ? lane->u : lane->f;
+    const double *answer = h->t > 0 ? lane->u : lane->f, unit = h->query == HDI_QUERY_SYMMETRIC ? h->heat->scale : 1;   /* B^-1 */
     const int32_t source = h->query == HDI_QUERY_FIELD ? -1 : hdi_heat_source(h, q);
     double *u = h->U ? h->U + HDI_CAST(size_t, q) * h->ldu : NULL;
     int64_t p;
@@ -3918,7 +3939,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
         for (p = h->begin[q]; p < h->begin[q + 1]; p++) {
             const int32_t v = h->rows[h->order[p].id];
             const double own = h->query == HDI_QUERY_OPERATOR && v == source;
-            h->values[h->order[p].id] = lane->skip ? own : lap->row[v] < 0 ? 0 : answer[lap->row[v]];
+            h->values[h->order[p].id] = lane->skip ? own : lap->row[v] < 0 ? 0 : unit * answer[lap->row[v]];
         }
         return;
     }
@@ -3929,7 +3950,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
         memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
         if (lane->skip) u[source] = h->query == HDI_QUERY_OPERATOR;
     }
-    for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = answer[i];
+    for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = unit * answer[i];
 }
 
 /* The pole set of this call. */

@@ -125,6 +125,7 @@ static void test_tmp_remove(void) {
 /* ---- groups ---- */
 
 #include "dense.h"
+#include "test_meshio.h"
 #include "../tools/shapes.h"
 #include "test_base.h"
 #include "test_sparse.h"
@@ -134,7 +135,6 @@ static void test_tmp_remove(void) {
 #include "test_heat.h"
 #include "test_robust.h"
 #include "test_picture.h"
-#include "test_meshio.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
 

@@ -211,9 +211,8 @@ static void op_grid_stencil(void) {
 /* ---- invariance ---- */
 
 static void op_rotate(double *p, double scale) {
-    const double c = 0.36, s = 0.93295230317524811, x = p[0], y, z;    /* c^2 + s^2 = 1, about two axes */
-    y = c * p[1] - s * p[2];
-    z = s * p[1] + c * p[2];
+    const double c = 0.36, s = 0.93295230317524811, x = p[0];    /* c^2 + s^2 = 1, about two axes */
+    const double y = c * p[1] - s * p[2], z = s * p[1] + c * p[2];
     p[0] = scale * (c * x - s * y) + 0.7;
     p[1] = scale * (s * x + c * y) - 1.2;
     p[2] = scale * z + 0.3;
@@ -459,11 +458,11 @@ static void op_errors(void) {
     xyz[6] = 2;
     tri[5] = 1;
     CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_EMPTY);
-    xyz[6] = 1e200;
-    xyz[7] = 1e200;
+    xyz[6] = xyz[7] = 1e100;
     CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_OK);      /* long, but its area is a double */
     hd_laplacian_free(lap);
     lap = NULL;
+    xyz[6] = xyz[7] = 1e200;
     xyz[3] = -1e200;
     CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && e.face == 0);
     CHECK(lap == NULL);

@@ -1,0 +1,316 @@
+/* test_krylov.h - (t L + theta B) x = b by every solver and preconditioner, against dense LU */
+
+#ifndef TEST_KRYLOV_H
+#define TEST_KRYLOV_H
+
+static const hd_solver kry_solvers[3] = {HD_SOLVER_COCG, HD_SOLVER_COCR, HD_SOLVER_MINRES};
+static const hd_precond kry_preconds[5] = {HD_PRECOND_NONE, HD_PRECOND_JACOBI, HD_PRECOND_SSOR, HD_PRECOND_ILDL, HD_PRECOND_MILDL};
+
+/* Poles on both sides, some nearly imaginary, some far from the axis: a stray conjugate cannot hide. */
+static const hd_c64 kry_thetas[6] = {{2.4, 2.4}, {0.05, 11}, {-9.7, 15.8}, {1, -30}, {0.7, 0}, {5, 0}};
+
+/* The dense solution on vertices; inert ones get 0. */
+static void kry_dense(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x) {
+    const int32_t n = lap->n_active;
+    double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap);
+    dense_c64 *a = DENSE_NEW(dense_c64, (int64_t)n * n), *b = DENSE_NEW(dense_c64, n);
+    int32_t i;
+    for (i = 0; i < n * n; i++) a[i] = dense_c(t * L[i] + theta.re * B[i], theta.im * B[i]);
+    for (i = 0; i < n; i++) b[i] = dense_c(rhs[lap->vertex[i]].re, rhs[lap->vertex[i]].im);
+    CHECK(dense_complex_solve(a, b, n));
+    memset(x, 0, (size_t)lap->n * sizeof *x);
+    for (i = 0; i < n; i++) x[lap->vertex[i]] = test_c(b[i].re, b[i].im);
+    free(L);
+    free(B);
+    free(a);
+    free(b);
+}
+
+/* |x|_B of a vector on vertices. */
+static double kry_norm(const hd_laplacian *lap, const hd_c64 *x) {
+    double *re = DENSE_NEW(double, lap->n), *im = DENSE_NEW(double, lap->n), *y = DENSE_NEW(double, lap->n), s = 0;
+    int32_t i;
+    for (i = 0; i < lap->n; i++) {
+        re[i] = x[i].re;
+        im[i] = x[i].im;
+    }
+    CHECK(hd_laplacian_apply(lap, 0, 1, re, y, NULL) == HD_OK);
+    s += dense_dot(re, y, lap->n);
+    CHECK(hd_laplacian_apply(lap, 0, 1, im, y, NULL) == HD_OK);
+    s += dense_dot(im, y, lap->n);
+    free(re);
+    free(im);
+    free(y);
+    return s > 0 ? sqrt(s) : 0;
+}
+
+/* |b - A x| / |b| in the norm of diag(B)^-1, computed here. */
+static double kry_residual(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *b, const hd_c64 *x) {
+    double *part = DENSE_NEW(double, lap->n), *l = DENSE_NEW(double, lap->n), *m = DENSE_NEW(double, lap->n), up = 0, down = 0;
+    hd_c64 *r = DENSE_NEW(hd_c64, lap->n);
+    int32_t i, k;
+    for (i = 0; i < lap->n; i++) r[i] = b[i];
+    for (k = 0; k < 2; k++) {
+        for (i = 0; i < lap->n; i++) part[i] = k ? x[i].im : x[i].re;
+        CHECK(hd_laplacian_apply(lap, t, 0, part, l, NULL) == HD_OK && hd_laplacian_apply(lap, 0, 1, part, m, NULL) == HD_OK);
+        for (i = 0; i < lap->n; i++) {           /* part stands for part or i part */
+            r[i].re -= k ? -theta.im * m[i] : l[i] + theta.re * m[i];
+            r[i].im -= k ? l[i] + theta.re * m[i] : theta.im * m[i];
+        }
+    }
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t v = lap->vertex[i];
+        up += (r[v].re * r[v].re + r[v].im * r[v].im) / lap->b_diag[i];
+        down += (b[v].re * b[v].re + b[v].im * b[v].im) / lap->b_diag[i];
+    }
+    free(part);
+    free(l);
+    free(m);
+    free(r);
+    return sqrt(up / down);
+}
+
+static void kry_one(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, const hd_c64 *want, hd_solver solver, hd_precond precond,
+                    const char *what) {
+    hd_c64 *x = DENSE_NEW(hd_c64, lap->n);
+    hd_solve_opts o;
+    hd_solve_report rep;
+    hd_error e;
+    hd_status st;
+    int32_t i;
+    double off, size, slack = 0;
+    for (i = 0; i < lap->n_active; i++) slack = fmax(slack, lap->L.val[op_find(&lap->L, i, i)] / lap->b_diag[i]);
+    slack = 1e-12 + 4 * DBL_EPSILON * t * slack / hypot(theta.re, theta.im);    /* the oracle's own rounding */
+    memset(&o, 0, sizeof o);
+    o.solver = solver;
+    o.precond = precond;
+    o.tol = 1e-12;
+    memcpy(x, rhs, (size_t)lap->n * sizeof *x);
+    st = hd_shifted_solve(lap, t, theta, x, x, &o, &rep, &e);    /* in place */
+    if (!CHECK_MSG(st >= 0, "%s: solver %d precond %d theta %g%+gi t %g: %s", what, (int)solver, (int)precond, theta.re, theta.im, t, e.text)) {
+        free(x);
+        return;
+    }
+    for (i = 0; i < lap->n; i++)
+        if (lap->row[i] < 0) CHECK(x[i].re == 0 && x[i].im == 0);
+    size = kry_norm(lap, want);
+    CHECK_MSG(rep.residual <= 1e-12 || st == HD_WARN_ACCURACY, "%s: residual %g", what, rep.residual);
+    for (i = 0; i < lap->n; i++) {
+        x[i].re -= want[i].re;
+        x[i].im -= want[i].im;
+    }
+    off = kry_norm(lap, x);
+    CHECK_MSG(off <= 1e-9 * size, "%s: solver %d precond %d theta %g%+gi t %g: off by %g", what, (int)solver, (int)precond, theta.re, theta.im, t, off / size);
+    CHECK_MSG(off <= (rep.error_b + slack) * size, "%s: solver %d precond %d theta %g%+gi t %g: off by %g, bound %g", what, (int)solver, (int)precond,
+              theta.re, theta.im, t, off / size, rep.error_b);
+    free(x);
+}
+
+static void kry_random(const hd_laplacian *lap, uint64_t seed, hd_c64 *rhs) {
+    int32_t i;
+    for (i = 0; i < lap->n; i++) {
+        rhs[i].re = dense_signed(&seed);
+        rhs[i].im = 3 * dense_signed(&seed);
+    }
+}
+
+static void kry_all(const hd_laplacian *lap, double unit, const char *what) {
+    const double times[3] = {0.4 * unit, 25 * unit, 3000 * unit};
+    hd_c64 *rhs = DENSE_NEW(hd_c64, lap->n), *want = DENSE_NEW(hd_c64, lap->n);
+    int i, j, k, q;
+    for (i = 0; i < 3; i++) {
+        for (j = 0; j < 6; j++) {
+            kry_random(lap, (uint64_t)(1 + i + 10 * j), rhs);
+            kry_dense(lap, times[i], kry_thetas[j], rhs, want);
+            for (k = 0; k < 3; k++)
+                for (q = 0; q < 5; q++) kry_one(lap, times[i], kry_thetas[j], rhs, want, kry_solvers[k], kry_preconds[q], what);
+        }
+    }
+    free(rhs);
+    free(want);
+}
+
+/* A path with its ends held at zero: L 1 is not 0, nothing is conserved, no constants to deflate. */
+static hd_laplacian *kry_dirichlet(int32_t n) {
+    hd_csr L = test_path_csr(n, 0), B = test_path_csr(n, 1);
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    int64_t p;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        for (p = L.row_ptr[i]; p < L.row_ptr[i + 1]; p++)
+            if (L.col[p] == i) L.val[p] = 2;
+        for (p = B.row_ptr[i]; p < B.row_ptr[i + 1]; p++) B.val[p] = B.col[p] == i ? 4 + 0.1 * i : 1;    /* a full B, on a cycle */
+    }
+    CHECK_MSG(hd_laplacian_matrices(&lap, &L, &B, 1, NULL, &e) == HD_OK, "%s", e.text);
+    CHECK(lap && lap->conserves == 0);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    return lap;
+}
+
+static void kry_against_dense(void) {
+    const double offset[3] = {4, 0, 0};
+    shape ball = shape_bumpy(1, 5), grid = shape_grid(6, 5, 0.4), two = shape_disjoint(&ball, &grid, offset);
+    hd_laplacian *lap;
+    int32_t f;
+    int q;
+    for (q = 0; q < 3; q++) {
+        lap = test_laplacian(&ball, op_kinds[q]);
+        kry_all(lap, q == 2 ? 1 : lap->h * lap->h, q == 0 ? "fem" : q == 1 ? "voronoi" : "cot");
+        hd_laplacian_free(lap);
+    }
+    for (f = 0; f < two.n_tri; f++)              /* vertex 7 leaves all its faces: inert, in the midst of the others */
+        for (q = 0; q < 3; q++)
+            if (two.tri[3 * f + q] == 7) two.tri[3 * f + q] = two.tri[3 * f + (q + 1) % 3];
+    lap = test_laplacian(&two, HD_LAPLACIAN_FEM);
+    CHECK(lap->n_components == 2 && lap->row[7] == -1 && lap->n_active == lap->n - 1);
+    kry_all(lap, lap->h * lap->h, "two pieces");
+    hd_laplacian_free(lap);
+    lap = kry_dirichlet(33);
+    kry_all(lap, 1, "dirichlet");
+    hd_laplacian_free(lap);
+    shape_free(&ball);
+    shape_free(&grid);
+    shape_free(&two);
+}
+
+/* Smallest ones: a single vertex, and a single triangle. */
+static void kry_tiny(void) {
+    const double d = 2.5, xyz[9] = {0, 0, 0, 3, 0, 0, 0, 4, 0};
+    const int32_t tri[3] = {0, 1, 2};
+    hd_csr L = test_diagonal_csr(1, &d), B = test_diagonal_csr(1, &d);
+    hd_laplacian *lap = NULL;
+    hd_c64 rhs = {3, -4}, x;
+    int k, q;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, NULL) == HD_OK && lap->conserves == 0);
+    for (k = 0; k < 3; k++) {
+        for (q = 0; q < 5; q++) {
+            hd_solve_opts o;
+            memset(&o, 0, sizeof o);
+            o.solver = kry_solvers[k];
+            o.precond = kry_preconds[q];
+            CHECK(hd_shifted_solve(lap, 2, test_c(-1, 2), &rhs, &x, &o, NULL, NULL) >= 0);    /* 2.5 (1 + 2i) x = 3 - 4i */
+            CHECK_MSG(hypot(x.re + 0.4, x.im + 0.8) < 1e-9, "%g %+g i", x.re, x.im);
+        }
+    }
+    hd_laplacian_free(lap);
+    lap = op_make(xyz, 3, tri, 1, HD_LAPLACIAN_FEM);
+    kry_all(lap, 16, "one triangle");
+    hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+}
+
+/* t = 0: theta B x = b, and the zero right-hand side. */
+static void kry_special(void) {
+    shape s = shape_icosphere(1);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_c64 *rhs = DENSE_NEW(hd_c64, lap->n), *want = DENSE_NEW(hd_c64, lap->n), *x = DENSE_NEW(hd_c64, lap->n);
+    hd_solve_report rep;
+    int32_t i;
+    int k;
+    kry_random(lap, 6, rhs);
+    kry_dense(lap, 0, test_c(-3, 7), rhs, want);
+    for (k = 0; k < 3; k++) kry_one(lap, 0, test_c(-3, 7), rhs, want, kry_solvers[k], HD_PRECOND_AUTO, "t = 0");
+    memset(rhs, 0, (size_t)lap->n * sizeof *rhs);
+    memset(x, 0x7f, (size_t)lap->n * sizeof *x);
+    CHECK(hd_shifted_solve(lap, 1, test_c(1, 1), rhs, x, NULL, &rep, NULL) == HD_OK);
+    CHECK(rep.iterations == 0 && rep.residual == 0 && rep.error_b == 0);
+    for (i = 0; i < lap->n; i++) CHECK(x[i].re == 0 && x[i].im == 0);
+    for (i = 0; i < lap->n; i++) rhs[i] = test_c(lap->mass[i], 2 * lap->mass[i]);    /* B (1 + 2i): the solution is a constant */
+    CHECK(hd_shifted_solve(lap, 1, test_c(0, 2), rhs, x, NULL, &rep, NULL) >= 0);
+    for (i = 0; i < lap->n; i++) CHECK(hypot(x[i].re - 1, x[i].im + 0.5) < 1e-14);
+    free(rhs);
+    free(want);
+    free(x);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
+static void kry_not_converged(void) {
+    shape s = shape_bumpy(2, 1);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const double t = 1000 * lap->h * lap->h;
+    const hd_c64 theta = {0.1, 0.3};
+    hd_c64 *rhs = DENSE_NEW(hd_c64, lap->n), *x = DENSE_NEW(hd_c64, lap->n);
+    hd_solve_opts o;
+    hd_solve_report rep;
+    hd_error e;
+    int k;
+    kry_random(lap, 8, rhs);
+    for (k = 0; k < 3; k++) {
+        double own;
+        memset(&o, 0, sizeof o);
+        memset(&rep, 0, sizeof rep);
+        o.solver = kry_solvers[k];
+        o.precond = HD_PRECOND_JACOBI;
+        o.max_iterations = 3;
+        CHECK(hd_shifted_solve(lap, t, theta, rhs, x, &o, &rep, &e) == HD_ERR_NOT_CONVERGED && e.status == HD_ERR_NOT_CONVERGED);
+        CHECK_MSG(rep.iterations == 3, "%lld iterations", (long long)rep.iterations);
+        own = kry_residual(lap, t, theta, rhs, x);
+        CHECK_MSG(fabs(rep.residual - own) < 1e-10 * own && own > 1e-10, "residual %g, not %g", rep.residual, own);
+        o.max_iterations = 0;
+        CHECK(hd_shifted_solve(lap, t, theta, rhs, x, &o, &rep, &e) >= 0);
+        own = kry_residual(lap, t, theta, rhs, x);
+        CHECK_MSG(own <= 1.01e-10, "residual %g", own);
+    }
+    free(rhs);
+    free(x);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
+static void kry_errors(void) {
+    shape s = shape_icosphere(0);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_c64 rhs[12], x[12];
+    hd_solve_opts o;
+    hd_error e;
+    memset(rhs, 0, sizeof rhs);
+    memset(x, 0x33, sizeof x);
+    memset(&o, 0, sizeof o);
+#define KRY_BAD(t, re, im) CHECK(hd_shifted_solve(lap, t, test_c(re, im), rhs, x, &o, NULL, &e) == HD_ERR_ARGUMENT && e.status == HD_ERR_ARGUMENT)
+    KRY_BAD(-1, 1, 1);
+    KRY_BAD((double)NAN, 1, 1);
+    KRY_BAD((double)INFINITY, 1, 1);
+    KRY_BAD(1, 0, 0);
+    KRY_BAD(1, -2, 0);
+    KRY_BAD(1, (double)NAN, 1);
+    KRY_BAD(1, 1, (double)INFINITY);
+    o.solver = HD_SOLVER_LANCZOS;
+    KRY_BAD(1, 1, 1);
+    o.solver = HD_SOLVER_AUTO;
+    o.precond = (hd_precond)17;
+    KRY_BAD(1, 1, 1);
+    o.precond = HD_PRECOND_AUTO;
+    o.tol = 1;
+    KRY_BAD(1, 1, 1);
+    o.tol = -1e-9;
+    KRY_BAD(1, 1, 1);
+    o.tol = 0;
+    o.max_iterations = -1;
+    KRY_BAD(1, 1, 1);
+    o.max_iterations = 0;
+    o.begin_zero = 3;
+    KRY_BAD(1, 1, 1);
+    o.begin_zero = 0;
+    o.end_zero = -1;
+    KRY_BAD(1, 1, 1);
+#undef KRY_BAD
+    CHECK(hd_shifted_solve(NULL, 1, test_c(1, 1), rhs, x, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_shifted_solve(lap, 1, test_c(1, 1), NULL, x, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_shifted_solve(lap, 1, test_c(1, 1), rhs, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
+static void test_krylov(void) {
+    kry_against_dense();
+    kry_tiny();
+    kry_special();
+    kry_not_converged();
+    kry_errors();
+}
+
+#endif

@@ -1,0 +1,327 @@
+/* test_robust.h - memory that runs out at the k-th allocation, cancelling at the k-th progress call, and limits: for every k,
+ * until all goes well; each time the right status, nothing left behind, and outputs as they were */
+
+#ifndef TEST_ROBUST_H
+#define TEST_ROBUST_H
+
+/* ---- jobs: each does one thing in a given context, frees what it made, and returns the first error ---- */
+
+static hd_laplacian *const rob_mark_lap = (hd_laplacian *)&test_passed;    /* not a Laplacian: only compared */
+static hd_heat *const rob_mark_heat = (hd_heat *)&test_failed;
+
+typedef struct rob_job {
+    const char *what;
+    hd_status (*run)(hd_context *ctx, int variant);
+    int variant;
+} rob_job;
+
+static hd_status rob_laplacian_of(hd_context *ctx, hd_laplacian_kind kind, hd_laplacian **out) {
+    const double offset[3] = {3, 0, 0};
+    shape a = shape_icosphere(0), b = shape_grid(3, 3, 0.2), s = shape_disjoint(&a, &b, offset);
+    hd_laplacian_opts o;
+    hd_error e;
+    hd_status st;
+    memset(&o, 0, sizeof o);
+    o.kind = kind;
+    o.context = ctx;
+    *out = rob_mark_lap;
+    st = hd_laplacian_triangles(out, s.xyz, s.n, s.tri, s.n_tri, &o, &e);
+    CHECK(e.status == st && (st >= 0) == (*out != rob_mark_lap));
+    shape_free(&a);
+    shape_free(&b);
+    shape_free(&s);
+    return st;
+}
+
+static hd_status rob_triangles(hd_context *ctx, int variant) {
+    hd_laplacian *lap;
+    const hd_status st = rob_laplacian_of(ctx, op_kinds[variant], &lap);
+    if (st >= 0) hd_laplacian_free(lap);
+    return st;
+}
+
+/* 0: diagonal B; 1: full B that needs its smallest eigenvalue estimated. */
+static hd_status rob_matrices(hd_context *ctx, int variant) {
+    hd_csr L = test_path_csr(9, 0), B = variant ? test_path_csr(9, 1) : test_diagonal_csr(9, NULL);
+    hd_laplacian_opts o;
+    hd_laplacian *lap = rob_mark_lap;
+    hd_error e;
+    hd_status st;
+    int64_t p;
+    int32_t i;
+    for (i = 0; variant && i < 9; i++)
+        for (p = B.row_ptr[i]; p < B.row_ptr[i + 1]; p++) B.val[p] = B.col[p] == i ? 2.001 : 1;
+    memset(&o, 0, sizeof o);
+    o.context = ctx;
+    st = hd_laplacian_matrices(&lap, &L, &B, 0, &o, &e);
+    CHECK(e.status == st && (st >= 0) == (lap != rob_mark_lap));
+    if (st >= 0) hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    return st;
+}
+
+/* 0: create alone; then columns, fields and entries by each solver. */
+static hd_status rob_heat(hd_context *ctx, int variant) {
+    static const hd_solver solvers[4] = {HD_SOLVER_COCG, HD_SOLVER_COCR, HD_SOLVER_MINRES, HD_SOLVER_LANCZOS};
+    hd_laplacian *lap;
+    hd_heat *heat = rob_mark_heat;
+    hd_heat_opts o;
+    hd_report rep;
+    hd_error e;
+    const int32_t sources[6] = {0, 5, 13, 14, 2, 20};
+    double F[21 * 6], U[21 * 6];
+    hd_status st = rob_laplacian_of(ctx, variant & 1 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM, &lap);
+    const int task = variant / 8;
+    int32_t i;
+    if (st < 0) return st;
+    memset(&o, 0, sizeof o);
+    memset(&rep, 0, sizeof rep);
+    o.solver = solvers[variant / 2 % 4];
+    for (i = 0; i < 21 * 6; i++) F[i] = i % 5;
+    st = hd_heat_create(&heat, lap, &o, &e);
+    CHECK(e.status == st && (st >= 0) == (heat != rob_mark_heat));
+    if (st >= 0) {
+        const double t = lap->h * lap->h;
+        if (task == 0) st = hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 6, sources, U, 0, &rep);
+        if (task == 1) st = hd_heat_apply(heat, t, 6, F, 0, U, 0, &rep);
+        if (task == 2) st = hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, 6, sources, sources, U, &rep);
+        CHECK(rep.status == st && (st >= 0 || rep.error.status == st));
+        hd_heat_free(heat);
+    }
+    hd_laplacian_free(lap);
+    return st;
+}
+
+static hd_status rob_solve(hd_context *ctx, int variant) {
+    hd_laplacian *lap;
+    hd_c64 x[21];
+    hd_solve_opts o;
+    hd_error e;
+    hd_status st = rob_laplacian_of(ctx, HD_LAPLACIAN_FEM, &lap);
+    if (st < 0) return st;
+    memset(&o, 0, sizeof o);
+    memset(x, 0, sizeof x);
+    x[4] = test_c(1, -2);
+    o.solver = kry_solvers[variant];
+    st = hd_shifted_solve(lap, 0.5, test_c(-1, 3), x, x, &o, NULL, &e);
+    CHECK(e.status == st);
+    hd_laplacian_free(lap);
+    return st;
+}
+
+static hd_status rob_apply(hd_context *ctx, int variant) {
+    hd_laplacian *lap;
+    double x[21] = {1}, y[21];
+    hd_error e;
+    hd_status st = rob_laplacian_of(ctx, HD_LAPLACIAN_FEM, &lap);
+    if (st < 0) return st;
+    st = hd_laplacian_apply(lap, variant, 2, x, y, &e);
+    CHECK(e.status == st);
+    hd_laplacian_free(lap);
+    return st;
+}
+
+static hd_status rob_csr(hd_context *ctx, int variant) {
+    hd_csr a = test_path_csr(7, 1), out, before;
+    const int32_t perm[7] = {3, 1, 0, 6, 5, 2, 4};
+    hd_error e;
+    hd_status st = HD_OK;
+    memset(&out, 0x6b, sizeof out);
+    before = out;
+    if (variant == 0) st = hd_csr_from_triplets(&out, 7, 7, 7, perm, perm, a.val, ctx, &e);
+    if (variant == 1) st = hd_csr_transpose(&out, &a, ctx, &e);
+    if (variant == 2) st = hd_csr_product(&out, &a, &a, ctx, &e);
+    if (variant == 3) st = hd_csr_permute(&out, &a, perm, ctx, &e);
+    if (variant == 4) st = hd_csr_check(&a, 1, ctx, &e);
+    CHECK(e.status == st);
+    if (st < 0 || variant == 4) CHECK(memcmp(&out, &before, sizeof out) == 0);
+    else hd_csr_free(&out, ctx);
+    hd_csr_free(&a, NULL);
+    return st;
+}
+
+static const rob_job rob_jobs[] = {
+    {"triangles fem", rob_triangles, 0}, {"triangles voronoi", rob_triangles, 1}, {"triangles cot", rob_triangles, 2},
+    {"matrices", rob_matrices, 0},       {"matrices full", rob_matrices, 1},
+    {"columns cocg fem", rob_heat, 0},   {"columns cocg", rob_heat, 1},          {"columns cocr", rob_heat, 2},
+    {"columns minres", rob_heat, 4},     {"columns lanczos fem", rob_heat, 6},   {"columns lanczos", rob_heat, 7},
+    {"fields cocg fem", rob_heat, 8},    {"fields minres", rob_heat, 13},        {"fields lanczos", rob_heat, 15},
+    {"entries cocg", rob_heat, 16},      {"entries lanczos", rob_heat, 23},
+    {"solve cocg", rob_solve, 0},        {"solve cocr", rob_solve, 1},           {"solve minres", rob_solve, 2},
+    {"apply", rob_apply, 1},
+    {"triplets", rob_csr, 0},            {"transpose", rob_csr, 1},              {"product", rob_csr, 2},
+    {"permute", rob_csr, 3},             {"check", rob_csr, 4},
+};
+
+enum { ROB_JOBS = sizeof rob_jobs / sizeof *rob_jobs, ROB_MOST = 20000 };
+
+/* ---- memory ---- */
+
+static void rob_fail_each_allocation(const rob_job *job) {
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    hd_status st;
+    int64_t k;
+    for (k = 1; k < ROB_MOST; k++) {
+        ctx = test_memory_context(&m);
+        m.fail_at = k;
+        st = job->run(&ctx, job->variant);
+        if (m.live != 0 || ctx.bytes_in_use != 0 || m.wrong) {
+            test_memory_done(&m, &ctx, job->what);
+            return;
+        }
+        if (st >= 0) break;
+        if (!CHECK_MSG(st == HD_ERR_MEMORY, "%s: allocation %lld failed, but %s", job->what, (long long)k, hd_status_name(st))) return;
+    }
+    CHECK_MSG(k > 1 && k < ROB_MOST && m.calls < k, "%s: stopped at %lld", job->what, (long long)k);    /* all were tried */
+}
+
+/* Byte limits from nothing upwards. */
+static void rob_byte_limits(const rob_job *job) {
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    hd_status st = HD_ERR_MEMORY_LIMIT;
+    uint64_t limit, need;
+    CHECK(job->run(&ctx, job->variant) >= 0);
+    need = ctx.bytes_peak;
+    for (limit = 1; limit < need; limit += 1 + need / 60) {
+        ctx = test_memory_context(&m);
+        ctx.byte_limit = limit;
+        st = job->run(&ctx, job->variant);
+        if (!CHECK_MSG(st == HD_ERR_MEMORY_LIMIT && m.live == 0 && ctx.bytes_in_use == 0 && ctx.bytes_peak <= limit, "%s: limit %llu of %llu: %s", job->what,
+                       (unsigned long long)limit, (unsigned long long)need, hd_status_name(st))) return;
+    }
+    ctx = test_memory_context(&m);
+    ctx.byte_limit = need;                       /* exactly enough is enough */
+    CHECK_MSG(job->run(&ctx, job->variant) >= 0, "%s: limit of its own peak", job->what);
+    need = ctx.allocations;
+    for (limit = 1; limit <= need; limit++) {
+        ctx = test_memory_context(&m);
+        ctx.allocation_limit = limit;
+        st = job->run(&ctx, job->variant);
+        if (!CHECK_MSG(st == (limit == need ? HD_OK : HD_ERR_MEMORY_LIMIT) && m.live == 0 && ctx.allocations == limit, "%s: %llu of %llu allocations: %s", job->what,
+                       (unsigned long long)limit, (unsigned long long)need, hd_status_name(st))) return;
+    }
+}
+
+/* ---- cancelling ---- */
+
+typedef struct rob_progress { int64_t calls, stop_at; hd_progress answer; double last; int backwards; } rob_progress;
+
+static hd_progress rob_on_progress(void *user, const char *stage, double done) {
+    rob_progress *p = (rob_progress *)user;
+    CHECK(stage && stage[0] && done >= 0 && done <= 1);
+    return ++p->calls == p->stop_at ? p->answer : HD_PROGRESS_CONTINUE;
+}
+
+static void rob_stop_each_progress(const rob_job *job, hd_progress answer, hd_status want) {
+    test_memory m;
+    hd_context ctx;
+    rob_progress p;
+    hd_status st;
+    int64_t k;
+    for (k = 1; k < ROB_MOST; k++) {
+        ctx = test_memory_context(&m);
+        memset(&p, 0, sizeof p);
+        p.stop_at = k;
+        p.answer = answer;
+        ctx.progress = rob_on_progress;
+        ctx.progress_user = &p;
+        st = job->run(&ctx, job->variant);
+        if (m.live != 0 || ctx.bytes_in_use != 0) test_memory_done(&m, &ctx, job->what);
+        if (st >= 0) break;
+        if (!CHECK_MSG(st == want, "%s: progress call %lld: %s", job->what, (long long)k, hd_status_name(st))) return;
+    }
+    CHECK_MSG(k < ROB_MOST && p.calls < k, "%s: stopped at %lld", job->what, (long long)k);
+    CHECK_MSG(k > 1 || job->run == rob_csr || job->run == rob_matrices, "%s: progress is never called", job->what);
+}
+
+/* Cancelled among several lanes, also where other workers run: the caller is told of the cancelling, not of its consequences. */
+static void rob_cancel_lanes(void) {
+    shape s = shape_icosphere(1);
+    int64_t calls = 0, k;
+    const int32_t sources[4] = {1, 2, 3, 4};
+    double U[42 * 4];
+    for (k = 1; k < 200; k += 3) {
+        test_memory m;
+        hd_context ctx = test_memory_context(&m);
+        hd_laplacian_opts lo;
+        hd_laplacian *lap = NULL;
+        hd_heat *heat = NULL;
+        hd_report rep;
+        rob_progress p;
+        hd_status st;
+        memset(&lo, 0, sizeof lo);
+        memset(&p, 0, sizeof p);
+        lo.context = &ctx;
+        ctx.parallel_for = sparse_reverse_for;
+        ctx.parallel_user = &calls;
+        CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, NULL) == HD_OK);
+        CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+        p.stop_at = k;
+        p.answer = HD_PROGRESS_CANCEL;
+        ctx.progress = rob_on_progress;
+        ctx.progress_user = &p;
+        st = hd_heat_columns(heat, 2 * lap->h * lap->h, HD_KERNEL_OPERATOR, 4, sources, U, 0, &rep);
+        CHECK_MSG(st == (p.calls >= k ? HD_ERR_CANCELLED : HD_OK), "%s", hd_status_name(st));
+        if (st < 0) CHECK_MSG(strstr(rep.error.text, "progress") != NULL, "%s", rep.error.text);
+        ctx.progress = NULL;                     /* the plan is as good as before */
+        CHECK(hd_heat_columns(heat, 2 * lap->h * lap->h, HD_KERNEL_OPERATOR, 4, sources, U, 0, &rep) == HD_OK);
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+        test_memory_done(&m, &ctx, "cancelled lanes");
+        if (st >= 0) break;
+    }
+    CHECK(k > 1 && k < 200);
+    shape_free(&s);
+}
+
+/* A plan that ran out of memory in one call serves the next: in its first call, and in one that needs other preconditioners. */
+static void rob_plan_survives(void) {
+    shape s = shape_icosphere(0);
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    hd_laplacian_opts lo;
+    hd_laplacian *lap = NULL;
+    double want[12], u[12];
+    int64_t k;
+    int q;
+    memset(&lo, 0, sizeof lo);
+    lo.context = &ctx;
+    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, NULL) == HD_OK);
+    for (q = 0; q < 2; q++) {
+        for (k = 0; k < 100; k++) {
+            hd_heat *heat = heat_plan(lap, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
+            hd_status st = HD_OK;
+            if (q) CHECK(hd_heat_column(heat, 0.2, 2, u, NULL) >= 0);
+            m.fail_at = k ? m.calls + k : 0;
+            if (k) st = q ? hd_heat_column(heat, 0.7, 3, u, NULL) : hd_heat_apply(heat, 0.3, 1, want, 0, u, 0, NULL);
+            m.fail_at = 0;
+            CHECK(hd_heat_column(heat, 0.7, 2, k ? u : want, NULL) >= 0);
+            CHECK(k == 0 || memcmp(u, want, sizeof u) == 0);
+            hd_heat_free(heat);
+            if (k && st >= 0) break;
+            CHECK(k == 0 || st == HD_ERR_MEMORY);
+        }
+        CHECK(k < 100 && (q || k > 1));
+    }
+    hd_laplacian_free(lap);
+    test_memory_done(&m, &ctx, "plan");
+    shape_free(&s);
+}
+
+static void test_robust(void) {
+    int k;
+    for (k = 0; k < ROB_JOBS; k++) {
+        rob_fail_each_allocation(rob_jobs + k);
+        rob_byte_limits(rob_jobs + k);
+        rob_stop_each_progress(rob_jobs + k, HD_PROGRESS_CANCEL, HD_ERR_CANCELLED);
+        rob_stop_each_progress(rob_jobs + k, (hd_progress)1, HD_ERR_ARGUMENT);
+        rob_stop_each_progress(rob_jobs + k, (hd_progress)0, HD_ERR_ARGUMENT);
+    }
+    rob_cancel_lanes();
+    rob_plan_survives();
+}
+
+#endif
