@@ -312,7 +312,8 @@ typedef struct hd_report {
     int32_t n_poles;
     int64_t iterations;         /* total over systems and fields (Lanczos: steps) */
     int64_t pole_iterations[HD_MAX_POLES];  /* per pole, summed over the fields */
-    double residual;            /* largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1; computed, not recurred */
+    double residual;            /* largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1; computed, not recurred. 0 for Lanczos. With
+                                   HD_ERR_NOT_CONVERGED that of the system that failed (Lanczos: its bound of the relative error) */
     double error_rational;      /* bound of |exp's approximation error|_B / |answer|_B */
     double error_solver;        /* bound of the solvers' part, |.|_B / |answer|_B */
     double error_bound_b;       /* the two together */
@@ -3253,7 +3254,7 @@ static hd_status hdi_lanczos_step(const hd_laplacian *lap, const double *weight,
 
 /* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
 static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before, double target) {
-    const int32_t most = m < 32 ? 1 : m / 16;
+    const int32_t most = m < 64 ? 1 : m / 32;
     double rate, want;
     if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
     rate = log(bound_before / bound) / (m - m_before);
@@ -3993,6 +3994,7 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
         *h->e = lane->error;
         h->e->column = h->batch + i;
     }
+    if (h->e->status == HD_ERR_NOT_CONVERGED) h->rep->residual = h->e->value;   /* what was achieved */
     if (h->e->status < 0) return h->e->status;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->lane + i;
