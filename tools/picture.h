@@ -1976,8 +1976,8 @@ static void pic_ticks_log(pic_ticks *t, const pic_scale *sc)
     double k;
     int m;
     char text[32];
-    if (range < 1.5) {      /* hardly a power inside: 1, 2 and 5 times one */
-        for (k = floor(a); k <= a + range; k++) for (m = 1; m <= 5; m += m == 1 ? 1 : 3) {
+    if (range < 1.5) {      /* hardly a power inside: 1, 2 and 5 times one, or all multiples */
+        for (k = floor(a); k <= a + range; k++) for (m = 1; m <= 9; m += range < 0.8 || m == 1 ? 1 : m == 2 ? 3 : 9) {
             snprintf(text, sizeof text, "%d\xc2\xb7" "10^%d", m, (int)k);
             pic_tick_add(t, (k + log10(m) - a) / range, m == 1 ? strchr(text, '1') + 3 : text);
         }
