@@ -410,7 +410,8 @@ typedef struct hd_solve_report {
 } hd_solve_report;
 
 /* (t L + theta B) x = rhs, complex symmetric. rhs, x [n] on the vertices, may be the same array; 0 at vertices without mass.
- * theta not on (-inf, 0], t >= 0. The report is filled too when the status is HD_ERR_NOT_CONVERGED.
+ * theta not on (-inf, 0], t >= 0. The report is filled too when the status is HD_ERR_NOT_CONVERGED. Every call makes its own ordering and
+ * preconditioner.
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED. HD_WARN_ACCURACY. */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                         const hd_solve_opts *opts, hd_solve_report *report, hd_error *err);
@@ -419,14 +420,15 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive it. Decides and allocates what does not depend on t. */
+/* A plan for heat on lap, which must outlive it. Decides and allocates what does not depend on t: it holds the pair a second time, renumbered for
+ * the iterations, and keeps its work arrays and the last preconditioners from call to call. One thread at a time. */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 
 /* U = K_t F.
  * t      >= 0, unit length^2 (t = 0 copies F)
  * F, U   n x k doubles, column-major, columns ldf and ldu apart (0: n); U may be F
- * Cost   per field and pole one iterative solve, poles in parallel
+ * Cost   per field one iterative solve a pole, each started from those before it; up to four fields in parallel
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY,
  *        HD_ERR_CANCELLED; details in report->error. HD_WARN_ACCURACY.
  * Source Patane, Spagnuolo 2013, eqs. (8), (9); signs as in the opening. */
