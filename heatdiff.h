@@ -196,7 +196,7 @@ typedef struct hd_mesh_report {
     int32_t n_faces;                 /* given */
     int32_t n_faces_used;            /* assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    int32_t n_zero_area;             /* left out: cross product of two edges exactly zero (or too small for a double) */
+    int32_t n_zero_area;             /* left out: cross product of two edges exactly zero (or an area or cotangent that no double holds) */
     int32_t n_repeated_face;         /* left out: same three corners as an earlier face */
     int64_t n_edges;                 /* distinct edges of the faces used */
     int64_t n_boundary_edges;        /* with one face */
@@ -428,6 +428,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 /* U = K_t F.
  * t      >= 0, unit length^2 (t = 0 copies F)
  * F, U   n x k doubles, column-major, columns ldf and ldu apart (0: n); U may be F
+ *        With a degree by default, all fields of a call share the largest that one of them needs
  * Cost   per field one iterative solve a pole, each started from those before it; up to four fields in parallel
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY,
  *        HD_ERR_CANCELLED; details in report->error. HD_WARN_ACCURACY.
@@ -2739,8 +2740,8 @@ static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t d
     out->a0 = row[0];
     /* The table's errors are the exact optimum; its numbers, rounded to double, lose up to 7 % of that at degree 14, and the sum of
      * a dozen terms of size 1e4 some more. */
-    out->max_error = 1.1 * row[1] + 2e-15;
-    out->max_weighted_error = row[2] > 0 ? 1.1 * row[2] + 2e-15 : 0;
+    out->max_error = 1.1 * row[1] + 1e-14;
+    out->max_weighted_error = row[2] > 0 ? 1.1 * row[2] + 1e-14 : 0;
     for (i = 0; i < out->n_poles; i++) {
         out->theta[i] = hdi_c(row[3 + 4 * i], row[4 + 4 * i]);
         out->a[i] = hdi_c(row[5 + 4 * i], row[6 + 4 * i]);

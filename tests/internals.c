@@ -513,6 +513,140 @@ static void int_ildl_row_sums(void) {
     free(up.col);
 }
 
+/* The path with n vertices and B = tridiag(1, 4, 1), as a Laplacian. */
+static hd_laplacian *int_path(int32_t n) {
+    int32_t *i = DENSE_NEW(int32_t, 3 * n), *j = DENSE_NEW(int32_t, 3 * n), k;
+    double *l = DENSE_NEW(double, 3 * n), *b = DENSE_NEW(double, 3 * n);
+    hd_laplacian *lap = NULL;
+    hd_csr L, B;
+    hd_error e;
+    int64_t c = 0;
+    for (k = 0; k < n; k++) {
+        const int ends = (k == 0) + (k == n - 1);
+        i[c] = j[c] = k; l[c] = 2 - ends; b[c++] = 4;
+        if (k + 1 < n) { i[c] = k; j[c] = k + 1; l[c] = -1; b[c++] = 1; }
+        if (k > 0) { i[c] = k; j[c] = k - 1; l[c] = -1; b[c++] = 1; }
+    }
+    CHECK(hd_csr_from_triplets(&L, n, n, c, i, j, l, NULL, &e) == HD_OK && hd_csr_from_triplets(&B, n, n, c, i, j, b, NULL, &e) == HD_OK);
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    free(i);
+    free(j);
+    free(l);
+    free(b);
+    return lap;
+}
+
+/* On a path no elimination fills in, so both incomplete factors are exact; Jacobi and SSOR by their definitions. */
+static void int_precond_make(void) {
+    enum { N = 23 };
+    hd_laplacian *lap = int_path(N);
+    hd_context ctx;
+    hd_error e;
+    hdi_upper up;
+    hdi_system a;
+    hdi_precond m;
+    hd_c64 u[N], d[N], work[N], x[N], ax[N], back[N];
+    int64_t mark[N];
+    uint64_t seed = 7;
+    int32_t i;
+    int kind;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&m, 0, sizeof m);
+    CHECK(hdi_upper_make(&up, &lap->L, &ctx, &e) == HD_OK && up.ptr[N] == N - 1);
+    a.lap = lap;
+    a.t = 1.5;
+    a.theta = hdi_c(-0.2, 5);
+    m.up = &up;
+    for (i = 0; i < N; i++) x[i] = hdi_c(dense_signed(&seed), dense_signed(&seed));
+    hdi_system_apply(&a, x, ax);
+    for (kind = HD_PRECOND_JACOBI; kind <= HD_PRECOND_MILDL; kind++) {
+        double worst = 0;
+        m.kind = (hd_precond)kind;
+        m.u = kind == HD_PRECOND_JACOBI ? NULL : u;
+        m.d_inv = d;
+        hdi_precond_make(&m, &a, work, mark);
+        if (kind >= HD_PRECOND_ILDL) {
+            hdi_precond_apply(&m, ax, back);
+            for (i = 0; i < N; i++) worst = hdi_max(worst, hdi_cabs(hdi_csub(back[i], x[i])));
+        } else {
+            for (i = 0; i < N; i++) {
+                const int ends = (i == 0) + (i == N - 1);
+                const hd_c64 diag = hdi_c(1.5 * (2 - ends) - 0.2 * 4, 20), off = hdi_c(-1.5 - 0.2, 5);
+                worst = hdi_max(worst, hdi_cabs(hdi_csub(hdi_cmul(diag, d[i]), hdi_c(1, 0))));
+                if (m.u && i + 1 < N) worst = hdi_max(worst, hdi_cabs(hdi_csub(hdi_cmul(u[i], diag), off)));
+            }
+        }
+        CHECK_MSG(worst < 1e-13, "preconditioner %d: off by %g", kind, worst);
+    }
+    hdi_upper_free(&ctx, &up);
+    hd_laplacian_free(lap);
+}
+
+/* ---- [15] krylov: directions without constants ---- */
+
+static void int_deflation(void) {
+    enum { N = 30 };
+    hd_laplacian *lap = int_path(N);
+    hdi_krylov k;
+    hdi_upper up;
+    hd_context ctx;
+    hd_error e;
+    hd_c64 r[N], z[N], p[N], sums[1], mean = hdi_c(0, 0), dot, want = hdi_c(0, 0);
+    uint64_t seed = 2;
+    int32_t i;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&k, 0, sizeof k);
+    CHECK(hdi_upper_make(&up, &lap->L, &ctx, &e) == HD_OK);
+    k.a.lap = lap;
+    k.sums = sums;
+    k.m.up = &up;
+    k.m.kind = HD_PRECOND_NONE;
+    for (i = 0; i < N; i++) {
+        r[i] = hdi_c(1 + dense_signed(&seed), 2 + dense_signed(&seed));
+        p[i] = hdi_c(0, 0);
+        want = hdi_cadd(want, hdi_cmul(r[i], r[i]));
+    }
+    dot = hdi_krylov_precond_dot(&k, r, z);
+    CHECK(hdi_cabs(hdi_csub(dot, want)) < 1e-13 * hdi_cabs(want));
+    hdi_krylov_deflated_direction(&k, hdi_c(0, 0), z, p);
+    for (i = 0; i < N; i++) mean = hdi_cadd(mean, hdi_cscale(lap->mass[i], p[i]));
+    CHECK_MSG(hdi_cabs(mean) < 1e-12, "the direction's mean is %g", hdi_cabs(mean));
+    mean = hdi_c(0, 0);
+    hdi_deflate(lap, r, sums);
+    for (i = 0; i < N; i++) mean = hdi_cadd(mean, hdi_cscale(lap->mass[i], r[i]));
+    CHECK_MSG(hdi_cabs(mean) < 1e-12, "the mean left is %g", hdi_cabs(mean));
+    hdi_upper_free(&ctx, &up);
+    hd_laplacian_free(lap);
+}
+
+/* ---- [17] shifted: starts from other poles ---- */
+
+/* The last pole is solved first and the first one last, from a combination of all others, which saves it a third of its steps. */
+static void int_warm_start(void) {
+    shape s = shape_bumpy(3, 4);
+    hd_laplacian *lap = NULL;
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    hd_report rep;
+    double *u = DENSE_NEW(double, s.n);
+    memset(&o, 0, sizeof o);
+    o.solver = HD_SOLVER_COCG;
+    o.poles = HD_POLES_KERNEL;
+    o.degree = 10;
+    o.tol = 1e-10;
+    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
+    CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
+    CHECK(hd_heat_column(heat, 100 * lap->h * lap->h, 3, u, &rep) >= 0 && rep.n_poles == 5);
+    CHECK_MSG(rep.pole_iterations[0] * 5 <= rep.pole_iterations[4] * 4, "%d steps for the last pole, %d for the first", (int)rep.pole_iterations[4],
+              (int)rep.pole_iterations[0]);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(u);
+}
+
 /* ---- [16], [17]: bounds over the poles ---- */
 
 static void int_pole_bounds(void) {
@@ -613,6 +747,9 @@ int main(void) {
     int_cuthill_mckee();
     int_ildl_trees();
     int_ildl_row_sums();
+    int_precond_make();
+    int_deflation();
+    int_warm_start();
     int_pole_bounds();
     int_lanczos_bound();
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);

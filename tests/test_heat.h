@@ -280,46 +280,55 @@ static void heat_identities(void) {
     shape_free(&b);
 }
 
-/* Components exchange nothing, to the last bit; and each keeps its own heat. */
+/* Components exchange nothing, to the last bit; and each keeps its own heat. Their vertices are mixed in the numbering. */
+static void heat_components_by(hd_laplacian *lap, hd_solver solver, double t, const int32_t *to, int32_t n_ball, const char *what) {
+    hd_heat *heat = heat_plan(lap, solver, HD_POLES_DEFAULT, 0, 0);
+    double *u = DENSE_NEW(double, lap->n), *f = DENSE_NEW(double, lap->n), in[2] = {0, 0}, out[2] = {0, 0};
+    int32_t i, k, source, leaks;
+    for (k = 0; k < 2; k++) {                    /* a source in each */
+        for (source = 0; (to[source] >= n_ball) != k; source++) {}
+        CHECK(hd_heat_column(heat, t, source, u, NULL) >= 0);
+        for (i = 0, leaks = 0; i < lap->n; i++) leaks += (to[i] >= n_ball) != k && u[i] != 0;
+        CHECK_MSG(leaks == 0, "%s, %s: heat at %d vertices of another component", what, heat_solver_name(solver), (int)leaks);
+        CHECK(u[source] > 0);
+    }
+    for (i = 0; i < lap->n; i++) f[i] = to[i] < n_ball ? 1 + 0.5 * sin(i) : -2 + cos(i);
+    CHECK(hd_heat_apply(heat, t, 1, f, 0, u, 0, NULL) >= 0);
+    for (i = 0; i < lap->n; i++) {
+        in[to[i] >= n_ball] += lap->mass[i] * f[i];
+        out[to[i] >= n_ball] += lap->mass[i] * u[i];
+    }
+    CHECK_MSG(fabs(in[0] - out[0]) < 1e-12 * fabs(in[0]) && fabs(in[1] - out[1]) < 1e-12 * fabs(in[1]), "%s: a component's heat changed: %g, %g", what,
+              out[0] / in[0] - 1, out[1] / in[1] - 1);
+    free(u);
+    free(f);
+    hd_heat_free(heat);
+}
+
 static void heat_components(void) {
     const double offset[3] = {3, 0, 0};
     static const hd_solver solvers[4] = {HD_SOLVER_COCG, HD_SOLVER_COCR, HD_SOLVER_MINRES, HD_SOLVER_LANCZOS};
-    shape a = shape_icosphere(1), b = shape_grid(6, 6, 0.2), s = shape_disjoint(&a, &b, offset);
+    shape a = shape_icosphere(1), b = shape_grid(6, 6, 0.2), s = shape_disjoint(&a, &b, offset), mixed;
+    int32_t *to = DENSE_NEW(int32_t, s.n);
     int q, k, z;
+    mixed = op_renumbered(&s, 41, to);
     for (q = 0; q < 3; q++) {
-        hd_laplacian *lap = test_laplacian(&s, op_kinds[q]);
+        hd_laplacian *lap = test_laplacian(&mixed, op_kinds[q]);
         const double unit = q == 2 ? 1 : lap->h * lap->h;
-        double *u = DENSE_NEW(double, s.n), *f = DENSE_NEW(double, s.n);
-        int32_t i, leaks;
-        for (k = 0; k < 4; k++) {
-            hd_heat *heat = heat_plan(lap, solvers[k], HD_POLES_DEFAULT, 0, 0);
-            for (z = 0; z < 3; z++) {
-                const double t = pow(30, z) * unit;
-                double in[2] = {0, 0}, out[2] = {0, 0};
-                CHECK(hd_heat_column(heat, t, 10, u, NULL) >= 0);
-                for (i = a.n, leaks = 0; i < s.n; i++) leaks += u[i] != 0;
-                CHECK_MSG(leaks == 0, "%s, kind %d: heat at %d vertices of another component", heat_solver_name(solvers[k]), q, (int)leaks);
-                CHECK(hd_heat_column(heat, t, a.n + 4, u, NULL) >= 0);
-                for (i = 0, leaks = 0; i < a.n; i++) leaks += u[i] != 0;
-                CHECK_MSG(leaks == 0, "%s, kind %d: heat at %d vertices of another component", heat_solver_name(solvers[k]), q, (int)leaks);
-                for (i = 0; i < s.n; i++) f[i] = i < a.n ? 1 + 0.5 * sin(i) : -2 + cos(i);
-                CHECK(hd_heat_apply(heat, t, 1, f, 0, u, 0, NULL) >= 0);
-                for (i = 0; i < s.n; i++) {
-                    in[i >= a.n] += lap->mass[i] * f[i];
-                    out[i >= a.n] += lap->mass[i] * u[i];
-                }
-                CHECK_MSG(fabs(in[0] - out[0]) < 1e-12 * fabs(in[0]) && fabs(in[1] - out[1]) < 1e-12 * fabs(in[1]), "a component's heat changed: %g, %g",
-                          out[0] / in[0] - 1, out[1] / in[1] - 1);
-            }
-            hd_heat_free(heat);
-        }
-        free(u);
-        free(f);
+        heat_case c = heat_case_of(test_laplacian(&mixed, op_kinds[q]), "mixed components");
+        hd_heat *heat = heat_plan(c.lap, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
+        heat_against_dense(&c, heat, 20 * unit);
+        hd_heat_free(heat);
+        heat_case_free(&c);
+        for (k = 0; k < 4; k++)
+            for (z = 0; z < 3; z++) heat_components_by(lap, solvers[k], pow(30, z) * unit, to, a.n, q == 0 ? "fem" : q == 1 ? "voronoi" : "cot");
         hd_laplacian_free(lap);
     }
+    free(to);
     shape_free(&a);
     shape_free(&b);
     shape_free(&s);
+    shape_free(&mixed);
 }
 
 /* Vertices without mass are left alone. */

@@ -502,13 +502,13 @@ static void tmio_bad_table(const char *name, const void *data, size_t size, cons
     remove(path);
 }
 
-static void tmio_make_npy(tmio_bytes *t, const char *descr, const char *order, const char *shape, int version)
+static void tmio_make_npy(tmio_bytes *t, const char *descr, const char *order, const char *dims, int version)
 {
     char head[200];
     int n;
     t->n = 0;
     t->big = 0;
-    n = snprintf(head, sizeof head, "{'descr': '%s', 'fortran_order': %s, 'shape': %s, }   \n", descr, order, shape);
+    n = snprintf(head, sizeof head, "{'descr': '%s', 'fortran_order': %s, 'shape': %s, }   \n", descr, order, dims);
     tmio_text(t, "\x93NUMPY");
     tmio_int(t, version, 1);
     tmio_int(t, 0, 1);

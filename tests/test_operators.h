@@ -190,7 +190,8 @@ static void op_grid_stencil(void) {
     int32_t i, j;
     for (k = 0; k < 3; k++) {
         hd_laplacian *lap = test_laplacian(&s, op_kinds[k]);
-        double worst = 0;
+        double worst = fabs(lap->h - (71 + 30 * sqrt(2)) / 101 * h);    /* 36 + 35 sides, 30 diagonals */
+        CHECK(lap->mesh.n_edges == 101);
         for (j = 0; j < 6; j++) {
             for (i = 0; i < 7; i++) {
                 const int32_t v = j * 7 + i;

@@ -207,11 +207,12 @@ static void rob_byte_limits(const rob_job *job) {
 
 /* ---- cancelling ---- */
 
-typedef struct rob_progress { int64_t calls, stop_at; hd_progress answer; double last; int backwards; } rob_progress;
+typedef struct rob_progress { int64_t calls, stop_at, solving; hd_progress answer; } rob_progress;
 
 static hd_progress rob_on_progress(void *user, const char *stage, double done) {
     rob_progress *p = (rob_progress *)user;
     CHECK(stage && stage[0] && done >= 0 && done <= 1);
+    p->solving += strcmp(stage, "solve") == 0;
     return ++p->calls == p->stop_at ? p->answer : HD_PROGRESS_CONTINUE;
 }
 
@@ -234,6 +235,7 @@ static void rob_stop_each_progress(const rob_job *job, hd_progress answer, hd_st
         if (!CHECK_MSG(st == want, "%s: progress call %lld: %s", job->what, (long long)k, hd_status_name(st))) return;
     }
     CHECK_MSG(k < ROB_MOST && p.calls < k, "%s: stopped at %lld", job->what, (long long)k);
+    CHECK_MSG(p.solving > 0 || (job->run != rob_heat && job->run != rob_solve), "%s: progress is not called while solving", job->what);
     CHECK_MSG(k > 1 || job->run == rob_csr || job->run == rob_matrices, "%s: progress is never called", job->what);
 }
 

@@ -164,6 +164,10 @@ static void sparse_check_symmetric(void) {
     CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_OK);               /* an explicit zero needs no partner */
     lone_val[1] = 1e-300;
     CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2);
+    lone[1] = 1;                                                 /* below the diagonal only: (1, 0) */
+    lone_col[1] = 0;
+    lone_val[1] = 4;
+    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row + e.column == 1 && fabs(e.value) == 4);
     a.val = NULL;                                                /* patterns */
     CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
     b.val = NULL;

@@ -330,7 +330,7 @@ static void pic_deflate_block(pic_deflate *z, int last)
 {
     const int dynamic = z->n_tokens > 100;
     uint32_t i;
-    int bits, extra, sym;
+    int bits = 0, extra = 0, sym;
     z->lit_freq[256] = 1;
     if (dynamic) {
         z->dist_freq[0] += 1;       /* two codes at least: some inflaters are particular about a lone one */
