@@ -3407,7 +3407,7 @@ static hd_status hdi_heat_poles(const hdi_family *fam, double tol, hdi_lane *lan
     for (i = 0; i < fam->set.n_poles; i++)
         if (lane->k[i].b_norm > 0) lane->residual = hdi_max(lane->residual, lane->k[i].r_norm / lane->k[i].b_norm);
     lane->rational = hdi_rational_bound(fam, lane);
-    return status;
+    return lane->solver <= tol * (lane->u_norm - lane->solver) ? HD_OK : HD_WARN_ACCURACY;
 }
 
 /* Adds the numbers of one field to the report, where the worst stays. */
