@@ -1978,7 +1978,7 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
-/* Upper values and diagonal of A. */
+/* Upper values and diagonal of A; u may be NULL. */
 static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u, hd_c64 *d) {
     const hd_laplacian *lap = a->lap;
     int32_t i;
@@ -1991,7 +1991,7 @@ static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u
                 d[i] = hdi_c(l + a->theta.re * lap->b_diag[i], a->theta.im * lap->b_diag[i]);
                 continue;
             }
-            u[q++] = lap->B ? hdi_c(l + a->theta.re * lap->B[p], a->theta.im * lap->B[p]) : hdi_c(l, 0);
+            if (u) u[q++] = lap->B ? hdi_c(l + a->theta.re * lap->B[p], a->theta.im * lap->B[p]) : hdi_c(l, 0);
         }
     }
 }
@@ -2073,18 +2073,11 @@ static void hdi_precond_make(hdi_precond *m, const hdi_system *a, hd_c64 *work, 
     int32_t i;
     int64_t p;
     if (m->kind == HD_PRECOND_NONE) return;
-    if (m->kind == HD_PRECOND_JACOBI) {
-        for (p = 0, i = 0; i < n; i++) {
-            while (a->lap->L.col[p] < i || p < a->lap->L.row_ptr[i]) p++;
-            m->d_inv[i] = hdi_cdiv(hdi_c(1, 0), hdi_c(a->t * a->lap->L.val[p] + a->theta.re * a->lap->b_diag[i], a->theta.im * a->lap->b_diag[i]));
-        }
-        return;
-    }
     hdi_system_upper(a, m->up, m->u, m->d_inv);
     if (m->kind == HD_PRECOND_SSOR) {
         for (i = 0; i < n; i++)
             for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d_inv[i]);
-    } else {
+    } else if (m->kind != HD_PRECOND_JACOBI) {
         memcpy(work, m->d_inv, HDI_CAST(size_t, n) * sizeof *work);
         for (i = 0; i < n; i++) mark[i] = -1;
         hdi_ildl(m->up, m->u, m->d_inv, work, m->kind == HD_PRECOND_MILDL ? 0.97 : 0, mark);
@@ -2419,11 +2412,13 @@ static void hdi_minres_step(hdi_krylov *k) {
 
 /* From x = 0. b_norm: what the residual is reported against. */
 static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
-    memset(k->x, 0, HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x);
+    const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
+    memset(k->x, 0, bytes);
+    memcpy(k->r, b, bytes);
+    k->r_norm = sqrt(hdi_cnorm2w(b, k->weight, k->a.lap->n_active));
     k->b_norm = b_norm;
     k->iterations = 0;
-    k->broken = 0;
-    hdi_krylov_residual(k, b);
+    k->broken = k->ready = 0;
 }
 
 /* What a solver is told and tells while it runs. */
@@ -2990,6 +2985,9 @@ static double hdi_pole_error(const hdi_krylov *k) {
     return k->r_norm / (sqrt(k->a.lap->b_ratio) * hdi_pole_distance(k->a.theta));
 }
 
+/* What an error of x_p does to the answer at most. */
+static double hdi_pole_weight(const hdi_family *fam, int32_t p) { return hdi_rat_count(&fam->set, p) * hdi_cabs(fam->set.a[p]); }
+
 /* u = a0 f - sum a_i x_i, in the order of the poles. Returns the bound of the solvers' part in the B norm. */
 static double hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
@@ -3000,14 +2998,15 @@ static double hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
         const hd_c64 *HDI_RESTRICT x = lane->k[i].x;
         const double c = hdi_rat_count(&fam->set, i), are = c * fam->set.a[i].re, aim = c * fam->set.a[i].im;
         for (j = 0; j < n; j++) u[j] -= are * x[j].re - aim * x[j].im;
-        error += c * hdi_cabs(fam->set.a[i]) * hdi_pole_error(lane->k + i);
+        error += hdi_pole_weight(fam, i) * hdi_pole_error(lane->k + i);
     }
     return error;
 }
 
 enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
 
-/* Inner products of solution p with those of poles p to last, into gram[q][0] = x_q^* D x_p and gram[q][1] = x_q' D x_p, D = diag(B). */
+/* Inner products of solution p with those of poles p to last, into gram[q - p][0] = x_q^* D x_p and gram[q - p][1] = x_q' D x_p,
+ * D = diag(B). */
 static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n, hd_c64 gram[][2]) {
     const hd_c64 *HDI_RESTRICT y = lane->k[p].x;
     int32_t q, i;
@@ -3021,8 +3020,8 @@ static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, 
             ri += x[i].re * yi;
             ir += x[i].im * yr;
         }
-        gram[q][0] = hdi_c(rr + ii, ri - ir);
-        gram[q][1] = hdi_c(rr - ii, ri + ir);
+        gram[q - p][0] = hdi_c(rr + ii, ri - ir);
+        gram[q - p][1] = hdi_c(rr - ii, ri + ir);
     }
 }
 
@@ -3051,7 +3050,7 @@ static void hdi_warm_solve(hd_c64 h[][HDI_WARM_MAX], hd_c64 *c, int32_t m) {
 }
 
 /* Start of system p from the solutions of poles p + 1 to last, whose inner products are in gram. A point is a pole or its conjugate. */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last, hd_c64 gram[][HD_MAX_POLES][2]) {
+static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last, hd_c64 gram[][HDI_WARM_POLES + 1][2]) {
     const int32_t n = fam->lap->n_active;
     hd_c64 h[HDI_WARM_MAX][HDI_WARM_MAX], c[HDI_WARM_MAX], shift[HDI_WARM_MAX], sum = hdi_c(0, 0), *HDI_RESTRICT x = lane->k[p].x;
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
@@ -3064,7 +3063,7 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     }
     for (i = 0; i < m; i++) {
         for (j = 0; j <= i; j++) {
-            const hd_c64 *g = gram[pole[j]][pole[i]];   /* x_i^* D x_j and x_i' D x_j for the poles behind the points */
+            const hd_c64 *g = gram[pole[j]][pole[i] - pole[j]];   /* x_i^* D x_j and x_i' D x_j for the poles behind the points */
             hd_c64 v = conj[i] == conj[j] ? g[0] : g[1];
             if (conj[j]) v = hdi_cconj(v);
             h[i][j] = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), v);
@@ -3080,15 +3079,12 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     }
 }
 
-/* What an error of x_p does to the answer at most. */
-static double hdi_pole_weight(const hdi_family *fam, int32_t p) { return hdi_rat_count(&fam->set, p) * hdi_cabs(fam->set.a[p]); }
-
 /* Runs the systems until the bound of their part of the answer's error is at most aim: each may use up an equal share of what those before it
  * left over. From where they are, or fresh, each started from those before it; the last pole comes first, which measures best. */
 static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, double aim, const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
     const double b_norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, fam->lap->n_active));
-    hd_c64 gram[HD_MAX_POLES][HD_MAX_POLES][2];
+    hd_c64 gram[HD_MAX_POLES][HDI_WARM_POLES + 1][2];
     hdi_watch part = *watch;
     hd_status worst = HD_OK, status;
     double left = aim;
@@ -3115,7 +3111,7 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         }
         if (status > worst) worst = status;
         left -= weight * hdi_pole_error(k);
-        if (fresh) hdi_warm_products(lane, fam->lap->b_diag, p, last, fam->lap->n_active, gram[p]);
+        if (fresh && p > 0) hdi_warm_products(lane, fam->lap->b_diag, p, last, fam->lap->n_active, gram[p]);
     }
     return worst;
 }
@@ -3816,7 +3812,7 @@ typedef struct hdi_heat_call {
     hd_heat *heat;
     hdi_query query;
     double t;
-    int32_t k, degree;
+    int32_t k;
     hd_solver solver;
     hd_report *rep;
     hd_report own_report;
@@ -3887,14 +3883,14 @@ static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane)
     return r;
 }
 
-static hd_status hdi_load_field(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
-    const hd_laplacian *lap = h->heat->lap;
-    const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
-    int32_t v;
-    for (v = 0; v < lap->n; v++)
-        if (!hdi_finite(f[v])) return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v, q, f[v]);
-    hdi_gather(lap, f, lane->f);
-    hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+/* All fields, before anything is solved or written. */
+static hd_status hdi_fields_check(const hdi_heat_call *h) {
+    int32_t q, v;
+    for (q = 0; q < h->k; q++) {
+        const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
+        for (v = 0; v < h->heat->lap->n; v++)
+            if (!hdi_finite(f[v])) return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v, q, f[v]);
+    }
     return HD_OK;
 }
 
@@ -3912,7 +3908,8 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->rational = lane->solver = lane->residual = 0;
     lane->steps = 0;
     if (h->query == HDI_QUERY_FIELD) {
-        if (hdi_load_field(h, q, lane) < 0) return h->e->status;
+        hdi_gather(lap, h->F + HDI_CAST(size_t, q) * h->ldf, lane->f);
+        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
     } else {
         row = lap->row[hdi_heat_source(h, q)];
         lane->skip = row < 0;
@@ -3957,15 +3954,29 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = unit * answer[i];
 }
 
+/* The degree of a uniform set that serves all fields; columns, whose constants are known to be small, get the highest. */
+static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
+    int32_t q, r;
+    *degree = h->query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
+    for (q = 0; q < h->k && h->query == HDI_QUERY_FIELD; q++) {
+        if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
+        r = hdi_uniform_degree(h->heat->lap, h->lane);
+        if (r > *degree) *degree = r;
+    }
+    return HD_OK;
+}
+
 /* The pole set of this call. */
 static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
     const hd_pole_kind kind = o->poles ? o->poles : h->query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
+    int32_t degree = o->degree ? o->degree : 10;
     if (o->rational) {
         *set = *o->rational;
         return HD_OK;
     }
-    return hdi_rational_get(set, kind, o->degree ? o->degree : kind == HD_POLES_KERNEL ? 10 : h->degree, h->e);
+    if (!o->degree && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0) return h->e->status;
+    return hdi_rational_get(set, kind, degree, h->e);
 }
 
 static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
@@ -4017,20 +4028,13 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
 static hd_status hdi_heat_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     hd_rational set;
-    int32_t i, q;
+    int32_t i;
     h->n_lanes = h->k < HDI_LANES ? h->k : HDI_LANES;
     for (i = 0; i < h->n_lanes; i++) {
         if (hdi_lane_make(h->lane + i, heat->lap, heat->ctx, h->e) < 0) return h->e->status;
         if (h->solver == HD_SOLVER_LANCZOS && h->t > 0 && hdi_lane_lanczos(h->lane + i, heat->lap, heat->ctx, h->e) < 0) return h->e->status;
     }
     if (h->t == 0 || h->solver == HD_SOLVER_LANCZOS) return HD_OK;
-    h->degree = 8;
-    for (q = 0; q < h->k && h->query == HDI_QUERY_FIELD; q++) {
-        if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
-        i = hdi_uniform_degree(heat->lap, h->lane);
-        if (i > h->degree) h->degree = i;
-    }
-    if (h->query != HDI_QUERY_FIELD) h->degree = HDI_RAT_UNIFORM_MAX;
     if (hdi_heat_set(h, &set) < 0 || hdi_family_set(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
     h->rep->poles = set.kind;
     h->rep->degree = set.degree;
@@ -4072,6 +4076,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const d
     h.U = U;
     h.ldf = hdi_leading(&h, ldf);
     h.ldu = hdi_leading(&h, ldu);
+    if (h.e->status >= 0) (void)hdi_fields_check(&h);
     return hdi_heat_run(&h);
 }
 

@@ -809,7 +809,9 @@ static void heat_errors(void) {
     for (i = 0; i < 2; i++) {
         hd_heat *plan = i ? lanczos : heat;
         F[12 + 7] = i ? -(double)INFINITY : (double)NAN;
+        U[0] = 77;                               /* the bad value is in a later field: nothing may be written before it is seen */
         HEAT_BAD(hd_heat_apply(plan, 1, 3, F, 0, U, 0, &rep), HD_ERR_NOT_FINITE);
+        CHECK(U[0] == 77);
         CHECK(rep.error.row == 7 && rep.error.column == 1);
         HEAT_BAD(hd_heat_apply(plan, 0, 3, F, 0, U, 0, &rep), HD_ERR_NOT_FINITE);
         CHECK(rep.error.row == 7 && rep.error.column == 1);
@@ -853,6 +855,7 @@ static void heat_not_converged(void) {
         CHECK(hd_heat_column(heat, 500 * lap->h * lap->h, 3, u, &rep) == HD_ERR_NOT_CONVERGED);
         CHECK(rep.status == HD_ERR_NOT_CONVERGED && rep.error.status == HD_ERR_NOT_CONVERGED && rep.error.value > 1e-9 && rep.error.column == 0);
         CHECK((rep.error.pole >= 0) == (k < 3));
+        CHECK_MSG(rep.residual == rep.error.value, "achieved %g, reported %g", rep.error.value, rep.residual);
         hd_heat_free(heat);
     }
     free(u);
