@@ -51,6 +51,8 @@
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                beside the implementation: both or none; what contexts without an allocator use
      HEATDIFF_NO_OPENMP        beside the implementation: no OpenMP even when compiled with it
+     HEATDIFF_NO_SIMD          beside the implementation: plain C only, no kernels for AVX2 and AVX-512
+     HEATDIFF_NO_LARGE_PAGES   beside the implementation: no madvise for large pages on Linux
      No macro changes a public type or prototype.
 
    Limits
@@ -139,6 +141,15 @@ typedef struct hd_allocator {
 /* One task of a parallel loop. worker tells the thread: 0 is the one that called the library. */
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
+/* Instruction sets for the dense kernels, which are compiled in several versions (GCC and Clang on x86-64; elsewhere plain C serves all). Results agree to
+ * rounding between them, and to the last bit for any number of threads within one. */
+typedef enum hd_simd {
+    HD_SIMD_AUTO = 0,           /* the best that the processor has */
+    HD_SIMD_NONE,               /* plain C */
+    HD_SIMD_AVX2,               /* AVX2 with FMA, if the processor has it */
+    HD_SIMD_AVX512
+} hd_simd;
+
 /* The surroundings of a computation. All zeros are good defaults: malloc, no limits, no progress, and OpenMP's threads
  * when compiled with OpenMP (serial otherwise). The context belongs to the caller and must outlive every object made
  * with it; wherever a function takes a context, NULL means one of these defaults. */
@@ -158,6 +169,7 @@ typedef struct hd_context {
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
     int32_t threads;            /* for OpenMP: 0 all, 1 serial. Not looked at when parallel_for is given */
+    hd_simd simd;
 
     /* Filled by the library. */
     uint64_t bytes_in_use, bytes_peak, allocations;
@@ -224,6 +236,7 @@ typedef struct hd_laplacian {
     int32_t *vertex;            /* [n_active] row -> vertex */
     int32_t *row;               /* [n] vertex -> row, -1 without mass */
     int32_t *component;         /* [n_active] row -> component, numbered by their first vertex */
+    double *xyz;                /* [3 n_active] places of the rows; NULL for matrices */
     double *component_mass;     /* [n_components] sum of mass */
     double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem, 0 when not known */
     int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes) */
@@ -256,9 +269,19 @@ typedef struct hd_rational {
 } hd_rational;
 
 typedef enum hd_method {
-    HD_METHOD_AUTO = 0,
-    HD_METHOD_ITERATIVE         /* a Krylov method per pole, or Lanczos */
+    HD_METHOD_AUTO = 0,         /* the one that costs least by a model of its flops and bytes, within the context's byte limit */
+    HD_METHOD_ITERATIVE,        /* a Krylov method per pole, or Lanczos */
+    HD_METHOD_DIRECT,           /* all poles factorised in one sweep: many fields or columns at one time */
+    HD_METHOD_KRYLOV            /* shift-and-invert Lanczos: one real factor for one or few fields, and for many times */
 } hd_method;
+
+/* The order in which a factorisation eliminates rows. */
+typedef enum hd_ordering {
+    HD_ORDERING_AUTO = 0,           /* nested dissection for large meshes, else minimum degree */
+    HD_ORDERING_MINIMUM_DEGREE,     /* approximate minimum degree (Amestoy, Davis, Duff 1996) */
+    HD_ORDERING_NESTED_DISSECTION,  /* of the mesh in space, leaves by minimum degree; needs coordinates */
+    HD_ORDERING_OWN                 /* the caller's permutation */
+} hd_ordering;
 
 typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t where it costs less, else cocg */
@@ -291,6 +314,8 @@ typedef struct hd_heat_opts {
                                    and Lanczos is not used */
     double tol;                 /* solver's part of the error, |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
+    hd_ordering ordering;       /* for the methods that factorise */
+    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere; copied */
     hd_context *context;        /* default: that of the Laplacian */
     int32_t end_zero;
 } hd_heat_opts;
@@ -305,13 +330,18 @@ typedef struct hd_report {
     hd_status status;
     hd_error error;             /* filled when status < 0 */
     hd_method method;
-    hd_solver solver;
-    hd_precond precond;         /* HD_PRECOND_NONE for Lanczos */
+    const char *reason;         /* why this method, in a few words */
+    hd_solver solver;           /* HD_SOLVER_AUTO for direct, HD_SOLVER_LANCZOS for krylov */
+    hd_precond precond;         /* HD_PRECOND_NONE for Lanczos and direct */
     hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos, which has none */
     int32_t degree;             /* 0 for Lanczos */
     int32_t n_poles;
     int64_t iterations;         /* total over systems and fields (Lanczos: steps) */
     int64_t pole_iterations[HD_MAX_POLES];  /* per pole, summed over the fields */
+    hd_ordering ordering;       /* of the factorisation; HD_ORDERING_AUTO when there is none */
+    int64_t factor_nnz;         /* non-zeros of L, diagonal included; 0 without a factorisation */
+    double factor_flops;        /* real floating-point operations of all factorisations that the plan holds */
+    double growth;              /* largest |pivot| over largest |diagonal entry|, see hd_ldl_report */
     double residual;            /* largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1; computed, not recurred. 0 for Lanczos. With
                                    HD_ERR_NOT_CONVERGED that of the system that failed (Lanczos: its bound of the relative error) */
     double error_rational;      /* bound of |exp's approximation error|_B / |answer|_B */
@@ -416,6 +446,55 @@ typedef struct hd_solve_report {
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                         const hd_solve_opts *opts, hd_solve_report *report, hd_error *err);
 
+/* ---- direct solver ---- */
+
+/* The factorisation P A P' = L D L' of a symmetric matrix without pivoting, L unit lower triangular, D diagonal: for real matrices that are positive (or
+ * otherwise strongly) definite or quasi-definite, and for complex-symmetric ones (A = A', never conjugated) whose real part is definite after a rotation,
+ * such as t L + theta B. The analysis of a pattern serves any number of factorisations, which allocate nothing after the first of their kind. */
+typedef struct hd_ldl hd_ldl;
+
+typedef struct hd_ldl_opts {
+    int32_t begin_zero;
+    hd_ordering ordering;       /* default: nested dissection when coordinates are given and rows are many, else minimum degree */
+    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the row eliminated k-th */
+    const double *xyz;          /* [3 n] places of the rows; NULL: none */
+    hd_context *context;
+    int32_t end_zero;
+} hd_ldl_opts;
+
+typedef struct hd_ldl_report {
+    hd_ordering ordering;
+    int32_t n_supernodes;
+    int32_t n_matrices;         /* in the factor; 0: only analysed */
+    int64_t factor_nnz;         /* of L, diagonal included, without what is stored beyond */
+    int64_t stored;             /* entries of an array of factors */
+    double factor_flops;        /* of a real factorisation: the sum of the squares of L's column counts. Complex: four times that, a matrix */
+    double growth;              /* largest |pivot| / largest |diagonal entry of A|: the price of not pivoting; at most 3.8 for poles of degree <= 14 */
+    double smallest_pivot;      /* smallest |pivot| / largest |diagonal entry of A| */
+    int32_t n_negative;         /* real: pivots below zero, which is the number of negative eigenvalues */
+} hd_ldl_report;
+
+/* Ordering, elimination tree, supernodes. a: n x n, symmetric pattern, its val is not looked at; diagonal entries may be missing.
+ * Errors as hd_csr_check; HD_ERR_INDEX (row) when perm is not a permutation; HD_ERR_ARGUMENT. Cost nearly linear in the non-zeros of A and of the ordering. */
+HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts, hd_ldl_report *report, hd_error *err);
+
+/* Factors a real matrix. val [nnz] in the order of the pattern analysed; one of each pair (i,j), (j,i) is read.
+ * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot that cannot be divided by), HD_ERR_CANCELLED. */
+HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err);
+
+/* Factors k complex-symmetric matrices in one sweep, four at a time side by side: any k, but three and four cost the same. val [k nnz].
+ * Errors as above, with the matrix in pole. */
+HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *report, hd_error *err);
+
+/* A x = b for k real right-hand sides, columns ldb and ldx apart (0: n). x may be b. The first call of a kind allocates its work arrays. */
+HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x, size_t ldx, hd_error *err);
+
+/* A_q x_q = b_q for all matrices of the last complex factorisation: b_q = b + q ldb, x_q = x + q ldx (ldx 0: n; ldb 0: the same b for all). x may be b
+ * when ldb = ldx or 0. */
+HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx, hd_error *err);
+
+HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
+
 /* ---- heat ---- */
 
 typedef struct hd_heat hd_heat;
@@ -481,6 +560,16 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 #error "heatdiff.h: define both of HEATDIFF_MALLOC and HEATDIFF_FREE, or none"
 #endif
 
+#if defined(__linux__) && !defined(HEATDIFF_NO_LARGE_PAGES)
+#include <sys/mman.h>
+#ifdef MADV_HUGEPAGE
+#define HDI_LARGE_PAGES 1
+#endif
+#endif
+#ifndef HDI_LARGE_PAGES
+#define HDI_LARGE_PAGES 0
+#endif
+
 #ifndef HEATDIFF_ASSERT
 #include <assert.h>
 #define HEATDIFF_ASSERT(x) assert(x)
@@ -498,6 +587,22 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
 #define HDI_PREFETCH(p) ((void)0)
+#endif
+
+/* Instruction sets. A few kernels are compiled several times in this one file, with function-level targets, and chosen at run time, so that a plain
+ * cc -O2 uses what the processor has. Plain C serves everything else. */
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD)
+#include <immintrin.h>
+#define HDI_X86 1
+#define HDI_AVX2 __attribute__((target("avx2,fma")))
+#define HDI_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma")))
+#else
+#define HDI_X86 0
+#endif
+#if defined(__GNUC__) || defined(__clang__)
+#define HDI_INLINE inline __attribute__((always_inline))
+#else
+#define HDI_INLINE inline
 #endif
 
 #ifdef __cplusplus
@@ -599,6 +704,17 @@ static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
     return e->status;
 }
 
+/* Asks for large pages where the system has them to give: fresh memory costs a seventh of the time then, of which a factor needs a lot. */
+static void hdi_large_pages(char *raw, size_t total) {
+#if HDI_LARGE_PAGES
+    const size_t page = 4096, skip = (page - (size_t)raw % page) % page;
+    if (total >= (size_t)4 << 20) (void)madvise(raw + skip, (total - skip) & ~(page - 1), MADV_HUGEPAGE);
+#else
+    (void)raw;
+    (void)total;
+#endif
+}
+
 /* [count] elements of size bytes, not cleared. NULL with e filled when there are none to have; e must be clear before. */
 static void *hdi_alloc(hd_context *ctx, size_t count, size_t size, hd_error *e) {
     size_t total, offset;
@@ -611,6 +727,7 @@ static void *hdi_alloc(hd_context *ctx, size_t count, size_t size, hd_error *e) 
     if (hdi_alloc_check(ctx, total, e) < 0) return NULL;
     ctx->allocations++;
     raw = HDI_CAST(char *, ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total) : HEATDIFF_MALLOC(total));
+    if (raw && !ctx->allocator.alloc) hdi_large_pages(raw, total);
     if (!raw) {
         hdi_fail(e, HD_ERR_MEMORY, "out of memory");
         e->value = HDI_CAST(double, total);
@@ -641,7 +758,7 @@ typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
     int32_t n;
-    void *block[24];
+    void *block[32];
 } hdi_scope;
 
 static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
@@ -719,6 +836,21 @@ static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *a
     }
 #endif
     for (i = 0; i < n_tasks; i++) task(arg, i, 0);
+}
+
+/* Instruction sets of the kernels: 0 plain C, 1 AVX2 with FMA, 2 AVX-512. The best one that this processor and system can run. */
+static int hdi_simd_best(void) {
+#if HDI_X86
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) return 2;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return 1;
+#endif
+    return 0;
+}
+
+static int hdi_simd_level(const hd_context *ctx) {
+    const int best = hdi_simd_best(), asked = ctx->simd == HD_SIMD_NONE ? 0 : ctx->simd == HD_SIMD_AVX2 ? 1 : 2;
+    return asked < best ? asked : best;
 }
 
 /* ==== [05] arrays ====
@@ -808,7 +940,8 @@ static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
 }
 
 /* ==== [06] dense ====
- * Vectors. May call [01]. Sums run in four fixed strands: quick without -ffast-math, and the same on every run. */
+ * Vectors, and the dense parts of a sparse factorisation: fronts of real numbers, and of packs of four complex ones. May call [04]. Sums run in
+ * four fixed strands: quick without -ffast-math, and the same on every run. */
 
 static double hdi_dot(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y, int64_t n) {
     double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
@@ -910,6 +1043,1950 @@ static int hdi_tridiag_eigen(double *d, double *e, double *z0, double *z1, int32
         }
     }
     return 1;
+}
+
+/* ---- packed triangles ---- */
+
+/* Entries of a packed triangle. */
+static int64_t hdi_triangle(int64_t u) { return u * (u + 1) / 2; }
+
+/* ---- real fronts ---- */
+/* A front is the dense part of a sparse LDL' factorisation that belongs to one supernode: m rows, of which the first p are pivots, and u = m - p.
+ * Its panel P (column-major, m x p) becomes L, its update matrix U (u x u, lower triangle, packed by columns) becomes U - L21 D L21' and goes to
+ * the parent. This work is based on
+ *   I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric linear equations", ACM TOMS 9, 1983: fronts, packed updates;
+ *   K. Goto, R. van de Geijn, "Anatomy of high-performance matrix multiplication", ACM TOMS 34, 2008: blocks for registers and caches;
+ *   J. Dongarra, I. Duff, D. Sorensen, H. van der Vorst, "Numerical linear algebra for high-performance computers", 1998: left-looking LDL'.
+ * Ours: B = D L21' is copied into slices of nr columns, scaled on the way; A = L21 is read where it lies when the front is small.
+ *
+ * The kernels exist for three instruction sets, chosen at run time: 0 plain C (two lanes where the compiler has them), 1 AVX2, 2 AVX-512.
+ * Within one set every entry goes through the same operations in the same order however rows are shared out: results do not depend on threads.
+ *
+ * Slices: a matrix B with kc rows and n columns is stored as slices of nr columns, slice c at B + c kc nr, its entry (k,j) at [k nr + j]. Columns
+ * past the last are zero. KERNELS TRUST THEIR INPUT. No two arguments overlap unless said. */
+
+enum {
+    HDI_REAL_KC = 128,  /* columns of L taken at a time: 24 rows of them stay in a 48 KB cache */
+    HDI_REAL_NC = 512,  /* columns of U taken at a time: their slices (512 KB) stay in the second cache */
+    HDI_REAL_NB = 64,   /* pivots eliminated at a time in a large front, a multiple of nr */
+    HDI_REAL_MR = 24,   /* largest mr */
+    HDI_REAL_NR = 8     /* largest nr */
+};
+
+/* One instruction set. mr x nr is the register tile. L, A, P point at the entry (first row, first column) named; ld is the distance of columns. */
+typedef struct hdi_real_ops {
+    int32_t mr, nr;
+    /* slices B = (L diag(d))': L has n rows and kc columns. */
+    void (*pack)(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc);
+    /* A = rows of L copied, mr apart, zeros past the last: n <= mr rows, kc columns. */
+    void (*copy)(double *A, const double *L, int64_t ld, int32_t n, int32_t kc);
+    /* Pivots k..k+nc-1, nc <= nr, in their own rows and the n <= mr - nr rows that follow: a -= L B over the k columns before, B one slice; then
+     * LDL'. P at (k,0). d goes to the diagonal of P, 1/d to dinv[k..], and rows k.. of the slice B become D L' of the block. */
+    void (*block)(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv);
+    /* n <= mr rows below pivots k..k+nb-1, from column k1 <= k: L(:,c) = (a - L(:,k1..c-1) B(k1..c-1,c)) dinv(c), c ascending. P at (row,0);
+     * B slices of kb rows. */
+    void (*rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb, const double *dinv);
+    /* C -= A B: n <= mr rows, nb columns, ld apart, inner kc. Slices of kb rows. */
+    void (*gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb, int32_t kc);
+    /* U -= A B in rows i..i+n-1, n <= mr, columns j0..j1-1 as far as the triangle goes, j1 <= i + n. Slices begin at column j0. */
+    void (*update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda, const double *B, int32_t kc);
+    /* y += x */
+    void (*add)(double *y, const double *x, int64_t n);
+    /* b = L11^-1 b, y -= L b: nc <= 8 columns, L at (0,0) of L11; below it n1 rows whose y follows b, then n2 whose y is t.
+     * first: t is not read, t = -L b. */
+    void (*forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2, int first);
+    /* b = L11^-T (b - L' y), the same rows. */
+    void (*backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t, int64_t n2);
+    /* t = x[idx] */
+    void (*gather)(double *t, const double *x, const int32_t *idx, int64_t n);
+    /* For eight right-hand sides, rows of eight: y[i] -= L x, x[nc] -= L' y, y being y[idx[i]], or y[i] if idx is NULL. */
+    void (*gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc);
+    void (*dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc);
+    /* x = L^-1 x, x = L^-T x: unit lower L, nc <= 8. */
+    void (*lower8)(double *x, const double *L, int64_t ld, int32_t nc);
+    void (*upper8)(double *x, const double *L, int64_t ld, int32_t nc);
+} hdi_real_ops;
+
+/* ---- plain: tiles of 4 x 4 ---- */
+
+/* Two numbers; the low one alone at an odd end, so that every entry sees the same operations. */
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD)
+typedef double hdi_v2 __attribute__((vector_size(16)));
+typedef double hdi_v2_u __attribute__((vector_size(16), aligned(8), may_alias));
+static HDI_INLINE hdi_v2 hdi_v2_set(double a, double b) { const hdi_v2 v = {a, b}; return v; }
+static HDI_INLINE hdi_v2 hdi_v2_load2(const double *p) { return *HDI_CAST(const hdi_v2_u *, HDI_CAST(const void *, p)); }
+static HDI_INLINE void hdi_v2_store2(double *p, hdi_v2 v) { *HDI_CAST(hdi_v2_u *, HDI_CAST(void *, p)) = v; }
+static HDI_INLINE double hdi_v2_low(hdi_v2 v) { return v[0]; }
+static HDI_INLINE double hdi_v2_high(hdi_v2 v) { return v[1]; }
+static HDI_INLINE hdi_v2 hdi_v2_fma(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return a * b + c; }
+static HDI_INLINE hdi_v2 hdi_v2_sub(hdi_v2 a, hdi_v2 b) { return a - b; }
+static HDI_INLINE hdi_v2 hdi_v2_mul(hdi_v2 a, hdi_v2 b) { return a * b; }
+#else
+typedef struct hdi_v2 { double a, b; } hdi_v2;
+static HDI_INLINE hdi_v2 hdi_v2_set(double a, double b) { hdi_v2 v; v.a = a; v.b = b; return v; }
+static HDI_INLINE hdi_v2 hdi_v2_load2(const double *p) { return hdi_v2_set(p[0], p[1]); }
+static HDI_INLINE void hdi_v2_store2(double *p, hdi_v2 v) { p[0] = v.a; p[1] = v.b; }
+static HDI_INLINE double hdi_v2_low(hdi_v2 v) { return v.a; }
+static HDI_INLINE double hdi_v2_high(hdi_v2 v) { return v.b; }
+static HDI_INLINE hdi_v2 hdi_v2_fma(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_v2_set(a.a * b.a + c.a, a.b * b.b + c.b); }
+static HDI_INLINE hdi_v2 hdi_v2_sub(hdi_v2 a, hdi_v2 b) { return hdi_v2_set(a.a - b.a, a.b - b.b); }
+static HDI_INLINE hdi_v2 hdi_v2_mul(hdi_v2 a, hdi_v2 b) { return hdi_v2_set(a.a * b.a, a.b * b.b); }
+#endif
+static HDI_INLINE hdi_v2 hdi_v2_all(double a) { return hdi_v2_set(a, a); }
+static HDI_INLINE hdi_v2 hdi_v2_load(const double *p, int64_t n) { return n >= 2 ? hdi_v2_load2(p) : hdi_v2_set(p[0], 0); }
+static HDI_INLINE void hdi_v2_store(double *p, hdi_v2 v, int64_t n) {
+    if (n >= 2) hdi_v2_store2(p, v);
+    else *p = hdi_v2_low(v);
+}
+
+static void hdi_r128_pack(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc) {
+    int32_t k, j;
+    for (; n > 0; n -= 4, L += 4)
+        for (k = 0; k < kc; k++, B += 4)
+            if (n >= 4) {
+                const hdi_v2 s = hdi_v2_all(d[k]);
+                hdi_v2_store2(B, hdi_v2_mul(hdi_v2_load2(L + k * ld), s));
+                hdi_v2_store2(B + 2, hdi_v2_mul(hdi_v2_load2(L + k * ld + 2), s));
+            } else
+                for (j = 0; j < 4; j++) B[j] = j < n ? L[k * ld + j] * d[k] : 0.0;
+}
+
+static void hdi_r128_copy(double *A, const double *L, int64_t ld, int32_t n, int32_t kc) {
+    int32_t k, i;
+    for (k = 0; k < kc; k++, L += ld, A += 4)
+        for (i = 0; i < 4; i++) A[i] = i < n ? L[i] : 0.0;
+}
+
+/* x##j, y##j hold rows 0, 1 and 2, 3 of column j; n = 1, 2 or 4 rows, a constant where inlined. */
+#define HDI_R128_EACH(M) M(0) M(1) M(2) M(3)
+#define HDI_R128_ZERO(j) hdi_v2 x##j = hdi_v2_all(0), y##j = x##j;
+#define HDI_R128_FMA(j) {                                                                                                \
+        const hdi_v2 b = hdi_v2_all(B[j]);                                                                               \
+        x##j = hdi_v2_fma(a0, b, x##j);                                                                                  \
+        if (n > 2) y##j = hdi_v2_fma(a1, b, y##j);                                                                       \
+    }
+#define HDI_R128_PRODUCT                                                                                                 \
+    HDI_R128_EACH(HDI_R128_ZERO)                                                                                         \
+    for (k = 0; k < kc; k++, A += lda, B += 4) {                                                                         \
+        const hdi_v2 a0 = hdi_v2_load(A, n), a1 = n > 2 ? hdi_v2_load2(A + 2) : a0;                                      \
+        HDI_R128_EACH(HDI_R128_FMA)                                                                                      \
+        (void)a1;                                                                                                        \
+    }
+
+/* C(:,j) -= A B(:,j) for nc <= nr columns; column j + 1 lies step - j dec after column j. Entries with row < j + diag are left alone. */
+static HDI_INLINE void hdi_r128_tile(const int n, double *C, int64_t step, int64_t dec, int32_t diag, int32_t nc, const double *A, int64_t lda,
+                                     const double *B, int32_t kc) {
+    int32_t k;
+    HDI_R128_PRODUCT
+#define HDI_R128_SUB(j)                                                                                                  \
+    if (j < nc) {                                                                                                        \
+        if (diag + j <= 0) {                                                                                             \
+            hdi_v2_store(C, hdi_v2_sub(hdi_v2_load(C, n), x##j), n);                                                     \
+            if (n > 2) hdi_v2_store2(C + 2, hdi_v2_sub(hdi_v2_load2(C + 2), y##j));                                      \
+        } else {                                                                                                         \
+            if (n > 1 && diag + j <= 1) C[1] -= hdi_v2_high(x##j);                                                       \
+            if (n > 2 && diag + j <= 2) C[2] -= hdi_v2_low(y##j);                                                        \
+            if (n > 2 && diag + j <= 3) C[3] -= hdi_v2_high(y##j);                                                       \
+        }                                                                                                                \
+        C += step; step -= dec;                                                                                          \
+    }
+    HDI_R128_EACH(HDI_R128_SUB)
+#undef HDI_R128_SUB
+}
+
+static void hdi_r128_gemm(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb, int32_t kc) {
+    const int64_t slice = HDI_CAST(int64_t, kb) * 4;
+    for (; nb > 0; nb -= 4, C += 4 * ld, B += slice) {
+        const int32_t nc = nb < 4 ? nb : 4;
+        int32_t i = 0;
+        if (n == 4) hdi_r128_tile(4, C, ld, 0, -4, nc, A, lda, B, kc);
+        else {
+            if (n > 1) hdi_r128_tile(2, C, ld, 0, -4, nc, A, lda, B, kc), i = 2;
+            if (n > i) hdi_r128_tile(1, C + i, ld, 0, -4, nc, A + i, lda, B, kc);
+        }
+    }
+}
+
+static void hdi_r128_update(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda, const double *B,
+                            int32_t kc) {
+    int64_t j;
+    for (j = j0; j < j1; j += 4, B += HDI_CAST(int64_t, kc) * 4) {
+        const int64_t s = j - i;
+        const int32_t diag = s < -4 ? -4 : HDI_CAST(int32_t, s), nc = j1 - j < 4 ? HDI_CAST(int32_t, j1 - j) : 4;
+        double *C = U + (j * u - j * (j - 1) / 2 - j + i);
+        int32_t q = 0;
+        if (n == 4) hdi_r128_tile(4, C, u - j - 1, 1, diag, nc, A, lda, B, kc);
+        else {
+            if (n > 1) hdi_r128_tile(2, C, u - j - 1, 1, diag, nc, A, lda, B, kc), q = 2;
+            if (n > q) hdi_r128_tile(1, C + q, u - j - 1, 1, diag - q, nc, A + q, lda, B, kc);
+        }
+    }
+}
+
+#define HDI_R128_PAIRS(H, F) H(0) F(0, 1) F(0, 2) F(0, 3) H(1) F(1, 2) F(1, 3) H(2) F(2, 3) H(3)
+
+/* X = (C - A B) over kc columns, then X = X inv(D L') with the block's D L' in the rows of B that follow. */
+static HDI_INLINE void hdi_r128_solve(const int n, double *C, int64_t ld, int32_t nc, const double *A, const double *B, int32_t kc,
+                                      const double *dinv) {
+    const int64_t lda = ld;
+    int32_t k;
+    HDI_R128_PRODUCT
+#define HDI_R128_LOAD(j)                                                                                                 \
+    if (j < nc) {                                                                                                        \
+        x##j = hdi_v2_sub(hdi_v2_load(C + j * ld, n), x##j);                                                             \
+        if (n > 2) y##j = hdi_v2_sub(hdi_v2_load2(C + j * ld + 2), y##j);                                                \
+    }
+#define HDI_R128_SCALE(j) {                                                                                              \
+        const hdi_v2 b = hdi_v2_all(dinv[j]);                                                                            \
+        x##j = hdi_v2_mul(x##j, b);                                                                                      \
+        hdi_v2_store(C, x##j, n);                                                                                        \
+        if (n > 2) { y##j = hdi_v2_mul(y##j, b); hdi_v2_store2(C + 2, y##j); }                                           \
+        if (nc == j + 1) return;                                                                                         \
+        C += ld;                                                                                                         \
+    }
+#define HDI_R128_LATER(j, k) {                                                                                           \
+        const hdi_v2 b = hdi_v2_all(-B[4 * j + k]);                                                                      \
+        x##k = hdi_v2_fma(x##j, b, x##k);                                                                                \
+        if (n > 2) y##k = hdi_v2_fma(y##j, b, y##k);                                                                     \
+    }
+    HDI_R128_EACH(HDI_R128_LOAD)
+    HDI_R128_PAIRS(HDI_R128_SCALE, HDI_R128_LATER)
+#undef HDI_R128_LOAD
+#undef HDI_R128_SCALE
+#undef HDI_R128_LATER
+}
+
+static void hdi_r128_rows(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb, const double *dinv) {
+    const double *A = P + k1 * ld;
+    const int64_t slice = HDI_CAST(int64_t, kb) * 4;
+    double *C = P + k * ld;
+    B += k1 * 4;
+    dinv += k;
+    for (; nb > 0; nb -= 4, C += 4 * ld, B += slice, dinv += 4, k += 4) {
+        const int32_t nc = nb < 4 ? nb : 4;
+        int32_t i = 0;
+        if (n == 4) hdi_r128_solve(4, C, ld, nc, A, B, k - k1, dinv);
+        else {
+            if (n > 1) hdi_r128_solve(2, C, ld, nc, A, B, k - k1, dinv), i = 2;
+            if (n > i) hdi_r128_solve(1, C + i, ld, nc, A + i, B, k - k1, dinv);
+        }
+    }
+}
+
+static void hdi_r128_block(double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n, double *S, double *dinv) {
+    double *C = P + kc * ld, *T = S + kc * 4;
+    int32_t i, j, k;
+    (void)n;  /* mr = nr: no rows follow */
+    for (j = 0; j < nc; j++) {
+        double d, *c = C + j * ld;
+        for (i = j; i < nc; i++) {
+            double s = 0;
+            for (k = 0; k < kc; k++) s += P[i + k * ld] * S[4 * k + j];
+            s = c[i] - s;
+            for (k = 0; k < j; k++) s -= C[i + k * ld] * T[4 * k + j];
+            c[i] = s;
+        }
+        d = c[j];
+        dinv[kc + j] = 1 / d;
+        for (i = 0; i < 4; i++) T[4 * j + i] = i > j && i < nc ? c[i] : 0.0;
+        for (i = j + 1; i < nc; i++) c[i] *= dinv[kc + j];
+    }
+}
+
+static void hdi_r128_add(double *y, const double *x, int64_t n) {
+    for (; n >= 2; n -= 2, x += 2, y += 2) hdi_v2_store2(y, hdi_v2_sub(hdi_v2_load2(y), hdi_v2_sub(hdi_v2_all(0), hdi_v2_load2(x))));
+    if (n) *y += *x;
+}
+
+static void hdi_r128_gather(double *t, const double *x, const int32_t *idx, int64_t n) {
+    int64_t i;
+    for (i = 0; i < n; i++) t[i] = x[idx[i]];
+}
+
+/* y -= L b, b and y being the arguments; missing columns are the last one again, times zero. */
+#define HDI_R128_EIGHT(M) M(0) M(1) M(2) M(3) M(4) M(5) M(6) M(7)
+static void hdi_r128_sweep(double *y, const double *L, int64_t ld, int64_t n, const double *b, int32_t nc, int first) {
+    int64_t i;
+#define HDI_R128_COLUMN(j) const double *l##j = L + (j < nc ? j : nc - 1) * ld; const hdi_v2 v##j = hdi_v2_all(j < nc ? -b[j] : 0.0);
+#define HDI_R128_MUL(j, s) s = hdi_v2_fma(hdi_v2_load(l##j + i, n - i), v##j, s);
+    HDI_R128_EIGHT(HDI_R128_COLUMN)
+    for (i = 0; i < n; i += 2) {
+        hdi_v2 r = first ? hdi_v2_all(0) : hdi_v2_load(y + i, n - i), s = hdi_v2_all(0);
+        HDI_R128_MUL(0, r) HDI_R128_MUL(1, s) HDI_R128_MUL(2, r) HDI_R128_MUL(3, s)
+        if (nc > 4) { HDI_R128_MUL(4, r) HDI_R128_MUL(5, s) HDI_R128_MUL(6, r) HDI_R128_MUL(7, s) }
+        hdi_v2_store(y + i, hdi_v2_sub(r, hdi_v2_sub(hdi_v2_all(0), s)), n - i);
+    }
+#undef HDI_R128_COLUMN
+#undef HDI_R128_MUL
+}
+
+/* s += L' y */
+static void hdi_r128_dots(double *s, const double *L, int64_t ld, int64_t n, const double *y, int32_t nc) {
+    int64_t i;
+#define HDI_R128_COLUMN(j) const double *l##j = L + (j < nc ? j : nc - 1) * ld; hdi_v2 s##j = hdi_v2_all(0);
+#define HDI_R128_DOT(j) s##j = hdi_v2_fma(hdi_v2_load(l##j + i, n - i), v, s##j);
+#define HDI_R128_OUT(j) s[j] += hdi_v2_low(s##j) + hdi_v2_high(s##j);
+    HDI_R128_EIGHT(HDI_R128_COLUMN)
+    for (i = 0; i < n; i += 2) {
+        const hdi_v2 v = hdi_v2_load(y + i, n - i);
+        HDI_R128_DOT(0) HDI_R128_DOT(1) HDI_R128_DOT(2) HDI_R128_DOT(3)
+        if (nc > 4) { HDI_R128_DOT(4) HDI_R128_DOT(5) HDI_R128_DOT(6) HDI_R128_DOT(7) }
+    }
+    HDI_R128_EIGHT(HDI_R128_OUT)
+#undef HDI_R128_COLUMN
+#undef HDI_R128_DOT
+#undef HDI_R128_OUT
+}
+
+static void hdi_r128_forward(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2, int first) {
+    int32_t i, j;
+    for (j = 0; j < nc; j++)
+        for (i = j + 1; i < nc; i++) b[i] -= L[i + j * ld] * b[j];
+    hdi_r128_sweep(b + nc, L + nc, ld, n1, b, nc, 0);
+    hdi_r128_sweep(t, L + nc + n1, ld, n2, b, nc, first);
+}
+
+static void hdi_r128_backward(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t, int64_t n2) {
+    double s[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+    int32_t i, j;
+    hdi_r128_dots(s, L + nc, ld, n1, b + nc, nc);
+    hdi_r128_dots(s, L + nc + n1, ld, n2, t, nc);
+    for (j = 0; j < nc; j++) b[j] -= s[j];
+    for (i = nc - 1; i > 0; i--)
+        for (j = 0; j < i; j++) b[j] -= L[i + j * ld] * b[i];
+}
+
+#define HDI_R128_AT(i) (y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : (i)))
+
+/* Eight right-hand sides in four pairs, for two rows (or columns) at a time. */
+#define HDI_R128_SIDES(M) M(0) M(1) M(2) M(3)
+static void hdi_r128_gemv8(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc) {
+    int64_t i = 0;
+    int32_t k;
+#define HDI_R128_ZERO8(q) hdi_v2 s##q = hdi_v2_all(0), t##q = s##q;
+#define HDI_R128_MUL8(q) { const hdi_v2 v = hdi_v2_load2(x + 8 * k + 2 * q); s##q = hdi_v2_fma(v, a, s##q); if (two) t##q = hdi_v2_fma(v, c, t##q); }
+#define HDI_R128_OUT8(q)                                                                                                 \
+    hdi_v2_store2(u0 + 2 * q, hdi_v2_sub(hdi_v2_load2(u0 + 2 * q), s##q));                                               \
+    if (two) hdi_v2_store2(u1 + 2 * q, hdi_v2_sub(hdi_v2_load2(u1 + 2 * q), t##q));
+#define HDI_R128_ROWS8 {                                                                                                 \
+        double *u0 = HDI_R128_AT(i), *u1 = two ? HDI_R128_AT(i + 1) : u0;                                                \
+        const double *l = L + i;                                                                                         \
+        HDI_R128_SIDES(HDI_R128_ZERO8)                                                                                   \
+        for (k = 0; k < nc; k++, l += ld) {                                                                              \
+            const hdi_v2 a = hdi_v2_all(l[0]), c = two ? hdi_v2_all(l[1]) : a;                                           \
+            HDI_R128_SIDES(HDI_R128_MUL8)                                                                                \
+            (void)c;                                                                                                     \
+        }                                                                                                                \
+        HDI_R128_SIDES(HDI_R128_OUT8)                                                                                    \
+        (void)u1;                                                                                                        \
+    }
+    for (; i + 2 <= n; i += 2) { enum { two = 1 }; HDI_R128_ROWS8 }
+    if (i < n) { enum { two = 0 }; HDI_R128_ROWS8 }
+#undef HDI_R128_ZERO8
+#undef HDI_R128_MUL8
+#undef HDI_R128_OUT8
+#undef HDI_R128_ROWS8
+}
+
+static void hdi_r128_dots8(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc) {
+    int64_t i;
+#define HDI_R128_ZERO8(q) hdi_v2 s##q = hdi_v2_all(0), t##q = s##q;
+#define HDI_R128_MUL8(q) { const hdi_v2 w = hdi_v2_load2(v + 2 * q); s##q = hdi_v2_fma(w, a, s##q); t##q = hdi_v2_fma(w, c, t##q); }
+#define HDI_R128_OUT8(q)                                                                                                 \
+    hdi_v2_store2(x + 2 * q, hdi_v2_sub(hdi_v2_load2(x + 2 * q), s##q));                                                 \
+    if (nc > 1) hdi_v2_store2(x + 8 + 2 * q, hdi_v2_sub(hdi_v2_load2(x + 8 + 2 * q), t##q));
+    for (; nc > 0; nc -= 2, x += 16, L += 2 * ld) {
+        const double *l0 = L, *l1 = nc > 1 ? L + ld : L;
+        HDI_R128_SIDES(HDI_R128_ZERO8)
+        for (i = 0; i < n; i++) {
+            const double *v = HDI_R128_AT(i);
+            const hdi_v2 a = hdi_v2_all(l0[i]), c = hdi_v2_all(l1[i]);
+            HDI_R128_SIDES(HDI_R128_MUL8)
+        }
+        HDI_R128_SIDES(HDI_R128_OUT8)
+    }
+#undef HDI_R128_ZERO8
+#undef HDI_R128_MUL8
+#undef HDI_R128_OUT8
+}
+
+static void hdi_r128_lower8(double *x, const double *L, int64_t ld, int32_t nc) {
+    int32_t j;
+    for (j = 1; j < nc; j++) hdi_r128_gemv8(x + 8 * j, NULL, L + j, ld, 1, x, j);
+}
+
+static void hdi_r128_upper8(double *x, const double *L, int64_t ld, int32_t nc) {
+    int32_t j;
+    for (j = nc - 2; j >= 0; j--) hdi_r128_dots8(x + 8 * j, L + j + 1 + j * ld, ld, nc - 1 - j, x + 8 * (j + 1), NULL, 1);
+}
+#undef HDI_R128_EACH
+#undef HDI_R128_ZERO
+#undef HDI_R128_FMA
+#undef HDI_R128_PRODUCT
+#undef HDI_R128_PAIRS
+#undef HDI_R128_EIGHT
+#undef HDI_R128_AT
+#undef HDI_R128_SIDES
+
+#if HDI_X86
+/* ---- AVX2: tiles of 12 x 4 ---- */
+
+/* lanes lo..hi-1 */
+static HDI_AVX2 HDI_INLINE __m256i hdi_r256_mask(int64_t lo, int64_t hi) {
+    const __m256i lane = _mm256_set_epi64x(3, 2, 1, 0);
+    return _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(hi), lane), _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(lo - 1)));
+}
+/* n <= 0 loads and stores nothing, n >= 4 the whole register. */
+static HDI_AVX2 HDI_INLINE __m256d hdi_r256_load(const double *p, int64_t n) {
+    return n >= 4 ? _mm256_loadu_pd(p) : _mm256_maskload_pd(p, hdi_r256_mask(0, n));
+}
+/* Lanes lo..hi-1 by halves and singles: masked stores are slow on some processors. */
+static HDI_AVX2 HDI_INLINE void hdi_r256_store(double *p, __m256d v, int64_t lo, int64_t hi) {
+    if (lo <= 0 && hi >= 4) _mm256_storeu_pd(p, v);
+    else {
+        const __m128d a = _mm256_castpd256_pd128(v), b = _mm256_extractf128_pd(v, 1);
+        if (lo <= 0 && hi >= 2) _mm_storeu_pd(p, a);
+        else if (lo <= 0 && hi >= 1) _mm_storel_pd(p, a);
+        else if (lo <= 1 && hi >= 2) _mm_storeh_pd(p + 1, a);
+        if (lo <= 2 && hi >= 4) _mm_storeu_pd(p + 2, b);
+        else if (lo <= 2 && hi >= 3) _mm_storel_pd(p + 2, b);
+        else if (lo <= 3 && hi >= 4) _mm_storeh_pd(p + 3, b);
+    }
+}
+
+static HDI_AVX2 void hdi_r256_pack(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc) {
+    int32_t k;
+    for (; n > 0; n -= 4, L += 4) {
+        const double *l = L;
+        for (k = 0; k < kc; k++, l += ld, B += 4) _mm256_storeu_pd(B, _mm256_mul_pd(hdi_r256_load(l, n), _mm256_set1_pd(d[k])));
+    }
+}
+
+static HDI_AVX2 void hdi_r256_copy(double *A, const double *L, int64_t ld, int32_t n, int32_t kc) {
+    int32_t k;
+    for (k = 0; k < kc; k++, L += ld, A += 12) {
+        _mm256_storeu_pd(A, hdi_r256_load(L, n));
+        _mm256_storeu_pd(A + 4, hdi_r256_load(L + 4, n - 4));
+        _mm256_storeu_pd(A + 8, hdi_r256_load(L + 8, n - 8));
+    }
+}
+
+/* Registers x##j, y##j, w##j hold rows 0..3, 4..7, 8..11 of column j; nv of the three are in use (a constant where inlined). */
+#define HDI_R256_EACH(M) M(0) M(1) M(2) M(3)
+#define HDI_R256_ZERO(j) __m256d x##j = _mm256_setzero_pd(), y##j = _mm256_setzero_pd(), w##j = _mm256_setzero_pd();
+#define HDI_R256_UNUSED(j) (void)y##j; (void)w##j;
+#define HDI_R256_FMA(j) {                                                                                                \
+        const __m256d b = _mm256_set1_pd(B[j]);                                                                          \
+        x##j = _mm256_fmadd_pd(a0, b, x##j);                                                                             \
+        if (nv > 1) y##j = _mm256_fmadd_pd(a1, b, y##j);                                                                 \
+        if (nv > 2) w##j = _mm256_fmadd_pd(a2, b, w##j);                                                                 \
+    }
+#define HDI_R256_LOOP(LOAD)                                                                                              \
+    for (k = 0; k < kc; k++, A += lda, B += 4) {                                                                         \
+        const __m256d a0 = nv > 1 ? _mm256_loadu_pd(A) : LOAD(A);                                                        \
+        const __m256d a1 = nv > 2 ? _mm256_loadu_pd(A + 4) : nv > 1 ? LOAD(A + 4) : a0;                                  \
+        const __m256d a2 = nv > 2 ? LOAD(A + 8) : a0;                                                                    \
+        HDI_R256_EACH(HDI_R256_FMA)                                                                                      \
+        (void)a1; (void)a2;                                                                                              \
+    }
+#define HDI_R256_WHOLE(p) _mm256_loadu_pd(p)
+#define HDI_R256_TAIL(p) _mm256_maskload_pd(p, last)
+/* sum of the products, over kc columns of A; the last register of rows may be a part */
+#define HDI_R256_PRODUCT                                                                                                 \
+    HDI_R256_EACH(HDI_R256_ZERO)                                                                                         \
+    if (n == 4 * nv) HDI_R256_LOOP(HDI_R256_WHOLE)                                                                       \
+    else {                                                                                                               \
+        const __m256i last = hdi_r256_mask(0, n - 4 * (nv - 1));                                                         \
+        HDI_R256_LOOP(HDI_R256_TAIL)                                                                                     \
+    }
+
+/* As hdi_r128_tile, for n rows, 4 nv - 3 <= n <= 4 nv. */
+static HDI_AVX2 HDI_INLINE void hdi_r256_tile(const int nv, double *C, int64_t step, int64_t dec, int32_t n, int32_t diag, int32_t nc,
+                                              const double *A, int64_t lda, const double *B, int32_t kc) {
+    int32_t k;
+    HDI_R256_PRODUCT
+    if (n == 4 * nv && nc == 4 && diag <= -3) {
+#define HDI_R256_SUB(j)                                                                                                  \
+        _mm256_storeu_pd(C, _mm256_sub_pd(_mm256_loadu_pd(C), x##j));                                                    \
+        if (nv > 1) _mm256_storeu_pd(C + 4, _mm256_sub_pd(_mm256_loadu_pd(C + 4), y##j));                                \
+        if (nv > 2) _mm256_storeu_pd(C + 8, _mm256_sub_pd(_mm256_loadu_pd(C + 8), w##j));                                \
+        C += step; step -= dec;
+        HDI_R256_EACH(HDI_R256_SUB)
+#undef HDI_R256_SUB
+    } else {
+        double *c = C;
+        int64_t move = step;
+#define HDI_R256_BOTH(j, c, move, ACTION)                                                                                \
+        if (j < nc) {                                                                                                    \
+            ACTION(c, 0, x##j, diag + j)                                                                                 \
+            if (nv > 1) ACTION(c, 4, y##j, diag + j)                                                                     \
+            if (nv > 2) ACTION(c, 8, w##j, diag + j)                                                                     \
+            c += move; move -= dec;                                                                                      \
+        }
+#define HDI_R256_TAKE(c, q, v, lo)                                                                                       \
+        v = _mm256_sub_pd((lo) <= (q) && n >= (q) + 4 ? _mm256_loadu_pd(c + (q))                                         \
+                                                      : _mm256_maskload_pd(c + (q), hdi_r256_mask((lo) - (q), n - (q))), v);
+#define HDI_R256_GIVE(c, q, v, lo) hdi_r256_store(c + (q), v, (lo) - (q), n - (q));
+#define HDI_R256_LOAD(j) HDI_R256_BOTH(j, c, move, HDI_R256_TAKE)
+#define HDI_R256_STORE(j) HDI_R256_BOTH(j, C, step, HDI_R256_GIVE)
+        HDI_R256_EACH(HDI_R256_LOAD)
+        HDI_R256_EACH(HDI_R256_STORE)
+#undef HDI_R256_BOTH
+#undef HDI_R256_TAKE
+#undef HDI_R256_GIVE
+#undef HDI_R256_LOAD
+#undef HDI_R256_STORE
+    }
+    HDI_R256_EACH(HDI_R256_UNUSED)
+}
+
+static HDI_AVX2 void hdi_r256_gemm(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb,
+                                   int32_t kc) {
+    const int64_t slice = HDI_CAST(int64_t, kb) * 4;
+    for (; nb > 0; nb -= 4, C += 4 * ld, B += slice) {
+        const int32_t nc = nb < 4 ? nb : 4;
+        if (n > 8) hdi_r256_tile(3, C, ld, 0, n, -4, nc, A, lda, B, kc);
+        else if (n > 4) hdi_r256_tile(2, C, ld, 0, n, -4, nc, A, lda, B, kc);
+        else hdi_r256_tile(1, C, ld, 0, n, -4, nc, A, lda, B, kc);
+    }
+}
+
+static HDI_AVX2 void hdi_r256_update(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda,
+                                     const double *B, int32_t kc) {
+    int64_t j;
+    for (j = j0; j < j1; j += 4, B += HDI_CAST(int64_t, kc) * 4) {
+        const int64_t s = j - i;
+        const int32_t up = s >= 4 ? HDI_CAST(int32_t, s & ~HDI_CAST(int64_t, 3)) : 0;
+        const int32_t nr = n - up, diag = s < -4 ? -4 : HDI_CAST(int32_t, s - up), nc = j1 - j < 4 ? HDI_CAST(int32_t, j1 - j) : 4;
+        double *C = U + (j * u - j * (j - 1) / 2 - j + i + up);
+        if (nr > 8) hdi_r256_tile(3, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
+        else if (nr > 4) hdi_r256_tile(2, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
+        else hdi_r256_tile(1, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
+    }
+}
+
+#define HDI_R256_PAIRS(H, F) H(0) F(0, 1) F(0, 2) F(0, 3) H(1) F(1, 2) F(1, 3) H(2) F(2, 3) H(3)
+
+/* As hdi_r128_solve. */
+static HDI_AVX2 HDI_INLINE void hdi_r256_solve(const int nv, double *C, int64_t ld, int32_t n, int32_t nc, const double *A, const double *B,
+                                               int32_t kc, const double *dinv) {
+    const int64_t lda = ld;
+    int32_t k;
+    HDI_R256_PRODUCT
+#define HDI_R256_LOAD(j)                                                                                                 \
+    if (j < nc) {                                                                                                        \
+        const double *c = C + j * ld;                                                                                    \
+        x##j = _mm256_sub_pd(hdi_r256_load(c, nv > 1 ? 4 : n), x##j);                                                    \
+        if (nv > 1) y##j = _mm256_sub_pd(hdi_r256_load(c + 4, nv > 2 ? 4 : n - 4), y##j);                                \
+        if (nv > 2) w##j = _mm256_sub_pd(hdi_r256_load(c + 8, n - 8), w##j);                                             \
+    }
+#define HDI_R256_SCALE(j) {                                                                                              \
+        const __m256d b = _mm256_set1_pd(dinv[j]);                                                                       \
+        x##j = _mm256_mul_pd(x##j, b);                                                                                   \
+        hdi_r256_store(C, x##j, 0, nv > 1 ? 4 : n);                                                                      \
+        if (nv > 1) { y##j = _mm256_mul_pd(y##j, b); hdi_r256_store(C + 4, y##j, 0, nv > 2 ? 4 : n - 4); }               \
+        if (nv > 2) { w##j = _mm256_mul_pd(w##j, b); hdi_r256_store(C + 8, w##j, 0, n - 8); }                            \
+        if (nc == j + 1) return;                                                                                         \
+        C += ld;                                                                                                         \
+    }
+#define HDI_R256_LATER(j, k) {                                                                                           \
+        const __m256d b = _mm256_set1_pd(B[4 * j + k]);                                                                  \
+        x##k = _mm256_fnmadd_pd(x##j, b, x##k);                                                                          \
+        if (nv > 1) y##k = _mm256_fnmadd_pd(y##j, b, y##k);                                                              \
+        if (nv > 2) w##k = _mm256_fnmadd_pd(w##j, b, w##k);                                                              \
+    }
+    HDI_R256_EACH(HDI_R256_LOAD)
+    HDI_R256_PAIRS(HDI_R256_SCALE, HDI_R256_LATER)
+#undef HDI_R256_LOAD
+#undef HDI_R256_SCALE
+#undef HDI_R256_LATER
+    HDI_R256_EACH(HDI_R256_UNUSED)
+}
+
+static HDI_AVX2 void hdi_r256_rows(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb,
+                                   const double *dinv) {
+    const double *A = P + k1 * ld;
+    const int64_t slice = HDI_CAST(int64_t, kb) * 4;
+    double *C = P + k * ld;
+    B += k1 * 4;
+    dinv += k;
+    for (; nb > 0; nb -= 4, C += 4 * ld, B += slice, dinv += 4, k += 4) {
+        const int32_t nc = nb < 4 ? nb : 4;
+        if (n > 8) hdi_r256_solve(3, C, ld, n, nc, A, B, k - k1, dinv);
+        else if (n > 4) hdi_r256_solve(2, C, ld, n, nc, A, B, k - k1, dinv);
+        else hdi_r256_solve(1, C, ld, n, nc, A, B, k - k1, dinv);
+    }
+}
+
+/* The pivots in registers x, n more rows in y and w: for these the same operations as in hdi_r256_solve. */
+static HDI_AVX2 HDI_INLINE void hdi_r256_pivots(const int nv, double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n, double *S, double *dinv) {
+    const int32_t n1 = nv > 2 ? 4 : n, n2 = n - 4;
+    const double *row = P, *slice = S;
+    double *C = P + kc * ld, *T = S + kc * 4;
+    int32_t k;
+    HDI_R256_EACH(HDI_R256_ZERO)
+    for (k = 0; k < kc; k++, row += ld, slice += 4) {
+        const __m256d a0 = hdi_r256_load(row, nc), a1 = nv > 1 ? hdi_r256_load(row + nc, n1) : a0;
+        const __m256d a2 = nv > 2 ? hdi_r256_load(row + nc + 4, n2) : a0;
+        const double *B = slice;
+        HDI_R256_EACH(HDI_R256_FMA)
+        (void)a1; (void)a2;
+    }
+#define HDI_R256_LOAD(j)                                                                                                 \
+    if (j < nc) {                                                                                                        \
+        const double *c = C + j * ld;                                                                                    \
+        x##j = _mm256_sub_pd(hdi_r256_load(c, nc), x##j);                                                                \
+        if (nv > 1) y##j = _mm256_sub_pd(hdi_r256_load(c + nc, n1), y##j);                                               \
+        if (nv > 2) w##j = _mm256_sub_pd(hdi_r256_load(c + nc + 4, n2), w##j);                                           \
+    }
+#define HDI_R256_LANE(v, k) _mm256_permute4x64_pd(v, 0x55 * k)
+#define HDI_R256_PIVOT(j)                                                                                                \
+        const __m128d d##j = _mm256_castpd256_pd128(HDI_R256_LANE(x##j, j));                                             \
+        const __m128d q##j = _mm_div_sd(_mm_set_sd(1.0), d##j);                                                          \
+        const __m256d r##j = _mm256_broadcastsd_pd(q##j), l##j = _mm256_mul_pd(x##j, r##j);                              \
+        _mm256_storeu_pd(T + 4 * j, x##j);                                                                               \
+        _mm_store_sd(dinv + j, q##j);                                                                                    \
+        hdi_r256_store(C, l##j, j + 1, nc);                                                                              \
+        _mm_store_sd(C + j, d##j);                                                                                       \
+        if (nv > 1) { y##j = _mm256_mul_pd(y##j, r##j); hdi_r256_store(C + nc, y##j, 0, n1); }                           \
+        if (nv > 2) { w##j = _mm256_mul_pd(w##j, r##j); hdi_r256_store(C + nc + 4, w##j, 0, n2); }                       \
+        if (nc == j + 1) return;                                                                                         \
+        C += ld;
+#define HDI_R256_LATER(j, k) {                                                                                           \
+        const __m256d s = HDI_R256_LANE(x##j, k);                                                                        \
+        x##k = _mm256_fnmadd_pd(l##j, s, x##k);                                                                          \
+        if (nv > 1) y##k = _mm256_fnmadd_pd(y##j, s, y##k);                                                              \
+        if (nv > 2) w##k = _mm256_fnmadd_pd(w##j, s, w##k);                                                              \
+    }
+    dinv += kc;
+    HDI_R256_EACH(HDI_R256_LOAD)
+    HDI_R256_PAIRS(HDI_R256_PIVOT, HDI_R256_LATER)
+#undef HDI_R256_LOAD
+#undef HDI_R256_LANE
+#undef HDI_R256_PIVOT
+#undef HDI_R256_LATER
+    HDI_R256_EACH(HDI_R256_UNUSED)
+    (void)n1; (void)n2;
+}
+
+static HDI_AVX2 void hdi_r256_block(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv) {
+    if (n > 4) hdi_r256_pivots(3, P, ld, k, nc, n, B, dinv);
+    else if (n > 0) hdi_r256_pivots(2, P, ld, k, nc, n, B, dinv);
+    else hdi_r256_pivots(1, P, ld, k, nc, n, B, dinv);
+}
+
+static HDI_AVX2 void hdi_r256_add(double *y, const double *x, int64_t n) {
+    for (; n >= 4; n -= 4, x += 4, y += 4) _mm256_storeu_pd(y, _mm256_add_pd(_mm256_loadu_pd(y), _mm256_loadu_pd(x)));
+    for (; n > 0; n--) *y++ += *x++;
+}
+
+static HDI_AVX2 void hdi_r256_gather(double *t, const double *x, const int32_t *idx, int64_t n) {
+    for (; n >= 4; n -= 4, t += 4, idx += 4)
+        _mm256_storeu_pd(t, _mm256_i32gather_pd(x, _mm_loadu_si128(HDI_CAST(const __m128i *, HDI_CAST(const void *, idx))), 8));
+    for (; n > 0; n--) *t++ = x[*idx++];
+}
+
+#define HDI_R256_EIGHT(M) M(0) M(1) M(2) M(3) M(4) M(5) M(6) M(7)
+#define HDI_R256_LOWER(ROW)                                                                                              \
+    ROW(1, 0)                                                                                                            \
+    ROW(2, 0) ROW(2, 1)                                                                                                  \
+    ROW(3, 0) ROW(3, 1) ROW(3, 2)                                                                                        \
+    ROW(4, 0) ROW(4, 1) ROW(4, 2) ROW(4, 3)                                                                              \
+    ROW(5, 0) ROW(5, 1) ROW(5, 2) ROW(5, 3) ROW(5, 4)                                                                    \
+    ROW(6, 0) ROW(6, 1) ROW(6, 2) ROW(6, 3) ROW(6, 4) ROW(6, 5)                                                          \
+    ROW(7, 0) ROW(7, 1) ROW(7, 2) ROW(7, 3) ROW(7, 4) ROW(7, 5) ROW(7, 6)
+#define HDI_R256_UPPER(ROW)                                                                                              \
+    ROW(7, 6) ROW(7, 5) ROW(7, 4) ROW(7, 3) ROW(7, 2) ROW(7, 1) ROW(7, 0)                                                \
+    ROW(6, 5) ROW(6, 4) ROW(6, 3) ROW(6, 2) ROW(6, 1) ROW(6, 0)                                                          \
+    ROW(5, 4) ROW(5, 3) ROW(5, 2) ROW(5, 1) ROW(5, 0)                                                                    \
+    ROW(4, 3) ROW(4, 2) ROW(4, 1) ROW(4, 0)                                                                              \
+    ROW(3, 2) ROW(3, 1) ROW(3, 0)                                                                                        \
+    ROW(2, 1) ROW(2, 0)                                                                                                  \
+    ROW(1, 0)
+
+static HDI_AVX2 void hdi_r256_forward(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2, int first) {
+    int64_t i;
+#define HDI_R256_TAKE(j) double b##j = j < nc ? b[j] : 0.0;
+#define HDI_R256_ROW(k, j) if (k < nc) b##k = __builtin_fma(-L[k + j * ld], b##j, b##k);
+#define HDI_R256_COLUMN(j)                                                                                               \
+    const double *l##j = L + nc + (j < nc ? j : nc - 1) * ld;                                                            \
+    const __m256d v##j = _mm256_set1_pd(b##j);                                                                           \
+    if (j < nc) b[j] = b##j;
+#define HDI_R256_MUL(j, s) s = _mm256_fnmadd_pd(_mm256_loadu_pd(l##j + i), v##j, s);
+#define HDI_R256_END(j, s) s = __builtin_fma(-l##j[i], b##j, s);
+#define HDI_R256_NEXT(j) l##j += n1;
+#define HDI_R256_SWEEP(n, y, keep)                                                                                       \
+    for (i = 0; i + 4 <= n; i += 4) {                                                                                    \
+        __m256d r = keep ? _mm256_loadu_pd(y + i) : _mm256_setzero_pd(), s = _mm256_setzero_pd();                        \
+        HDI_R256_MUL(0, r) HDI_R256_MUL(1, s) HDI_R256_MUL(2, r) HDI_R256_MUL(3, s)                                      \
+        if (nc > 4) { HDI_R256_MUL(4, r) HDI_R256_MUL(5, s) HDI_R256_MUL(6, r) HDI_R256_MUL(7, s) }                      \
+        _mm256_storeu_pd(y + i, _mm256_add_pd(r, s));                                                                    \
+    }                                                                                                                    \
+    for (; i < n; i++) {                                                                                                 \
+        double r = keep ? y[i] : 0.0, s = 0;                                                                             \
+        HDI_R256_END(0, r) HDI_R256_END(1, s) HDI_R256_END(2, r) HDI_R256_END(3, s)                                      \
+        if (nc > 4) { HDI_R256_END(4, r) HDI_R256_END(5, s) HDI_R256_END(6, r) HDI_R256_END(7, s) }                      \
+        y[i] = r + s;                                                                                                    \
+    }
+    HDI_R256_EIGHT(HDI_R256_TAKE)
+    HDI_R256_LOWER(HDI_R256_ROW)
+    {
+        HDI_R256_EIGHT(HDI_R256_COLUMN)
+        b += nc;
+        HDI_R256_SWEEP(n1, b, 1)
+        HDI_R256_EIGHT(HDI_R256_NEXT)
+        if (first) { HDI_R256_SWEEP(n2, t, 0) }
+        else { HDI_R256_SWEEP(n2, t, 1) }
+    }
+#undef HDI_R256_TAKE
+#undef HDI_R256_ROW
+#undef HDI_R256_COLUMN
+#undef HDI_R256_MUL
+#undef HDI_R256_END
+#undef HDI_R256_NEXT
+#undef HDI_R256_SWEEP
+}
+
+static HDI_AVX2 HDI_INLINE __m256d hdi_r256_sums(__m256d a, __m256d b, __m256d c, __m256d d) {
+    const __m256d ab = _mm256_hadd_pd(a, b), cd = _mm256_hadd_pd(c, d);
+    return _mm256_add_pd(_mm256_permute2f128_pd(ab, cd, 0x20), _mm256_permute2f128_pd(ab, cd, 0x31));
+}
+
+static HDI_AVX2 void hdi_r256_backward(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t, int64_t n2) {
+    const double *y = b + nc;
+    double s[8];
+    int64_t i;
+#define HDI_R256_COLUMN(j) const double *l##j = L + nc + (j < nc ? j : nc - 1) * ld; __m256d s##j = _mm256_setzero_pd();
+#define HDI_R256_DOT(j) s##j = _mm256_fmadd_pd(_mm256_loadu_pd(l##j + i), v, s##j);
+#define HDI_R256_END(j) s##j = _mm256_fmadd_pd(_mm256_maskload_pd(l##j + i, h), v, s##j);
+#define HDI_R256_NEXT(j) l##j += n1;
+#define HDI_R256_SWEEP(n, y)                                                                                             \
+    for (i = 0; i + 4 <= n; i += 4) {                                                                                    \
+        const __m256d v = _mm256_loadu_pd(y + i);                                                                        \
+        HDI_R256_DOT(0) HDI_R256_DOT(1) HDI_R256_DOT(2) HDI_R256_DOT(3)                                                  \
+        if (nc > 4) { HDI_R256_DOT(4) HDI_R256_DOT(5) HDI_R256_DOT(6) HDI_R256_DOT(7) }                                  \
+    }                                                                                                                    \
+    if (i < n) {                                                                                                         \
+        const __m256i h = hdi_r256_mask(0, n - i);                                                                       \
+        const __m256d v = _mm256_maskload_pd(y + i, h);                                                                  \
+        HDI_R256_EIGHT(HDI_R256_END)                                                                                     \
+    }
+#define HDI_R256_TAKE(j) double b##j = j < nc ? b[j] - s[j] : 0.0;
+#define HDI_R256_ROW(k, j) if (k < nc) b##j = __builtin_fma(-L[k + j * ld], b##k, b##j);
+#define HDI_R256_GIVE(j) if (j < nc) b[j] = b##j;
+    HDI_R256_EIGHT(HDI_R256_COLUMN)
+    HDI_R256_SWEEP(n1, y)
+    HDI_R256_EIGHT(HDI_R256_NEXT)
+    HDI_R256_SWEEP(n2, t)
+    _mm256_storeu_pd(s, hdi_r256_sums(s0, s1, s2, s3));
+    _mm256_storeu_pd(s + 4, hdi_r256_sums(s4, s5, s6, s7));
+    HDI_R256_EIGHT(HDI_R256_TAKE)
+    HDI_R256_UPPER(HDI_R256_ROW)
+    HDI_R256_EIGHT(HDI_R256_GIVE)
+#undef HDI_R256_COLUMN
+#undef HDI_R256_DOT
+#undef HDI_R256_END
+#undef HDI_R256_NEXT
+#undef HDI_R256_SWEEP
+#undef HDI_R256_TAKE
+#undef HDI_R256_ROW
+#undef HDI_R256_GIVE
+}
+
+#define HDI_R256_AT(i) (y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : (i)))
+
+static HDI_AVX2 void hdi_r256_gemv8(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc) {
+    int64_t i = 0;
+    int32_t k;
+#define HDI_R256_ZERO8(j) __m256d x##j = _mm256_setzero_pd(), y##j = _mm256_setzero_pd();
+#define HDI_R256_MUL8(j) {                                                                                               \
+        const __m256d b = _mm256_set1_pd(l[j]);                                                                          \
+        x##j = _mm256_fmadd_pd(v0, b, x##j);                                                                             \
+        y##j = _mm256_fmadd_pd(v1, b, y##j);                                                                             \
+    }
+#define HDI_R256_OUT8(j) {                                                                                               \
+        double *q = HDI_R256_AT(i + j);                                                                                  \
+        _mm256_storeu_pd(q, _mm256_sub_pd(_mm256_loadu_pd(q), x##j));                                                    \
+        _mm256_storeu_pd(q + 4, _mm256_sub_pd(_mm256_loadu_pd(q + 4), y##j));                                            \
+    }
+    for (; i + 4 <= n; i += 4) {
+        const double *l = L + i;
+        HDI_R256_EACH(HDI_R256_ZERO8)
+        for (k = 0; k < nc; k++, l += ld) {
+            const __m256d v0 = _mm256_loadu_pd(x + 8 * k), v1 = _mm256_loadu_pd(x + 8 * k + 4);
+            HDI_PREFETCH(l + 32);
+            HDI_R256_EACH(HDI_R256_MUL8)
+        }
+        HDI_R256_EACH(HDI_R256_OUT8)
+    }
+    for (; i < n; i++) {
+        const double *l = L + i;
+        HDI_R256_ZERO8(0)
+        for (k = 0; k < nc; k++, l += ld) {
+            const __m256d v0 = _mm256_loadu_pd(x + 8 * k), v1 = _mm256_loadu_pd(x + 8 * k + 4);
+            HDI_R256_MUL8(0)
+        }
+        HDI_R256_OUT8(0)
+    }
+#undef HDI_R256_MUL8
+#undef HDI_R256_OUT8
+}
+
+static HDI_AVX2 void hdi_r256_dots8(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc) {
+    int64_t i;
+#define HDI_R256_COLUMN(j) const double *l##j = L + (j < nc ? j : nc - 1) * ld;
+#define HDI_R256_MUL8(j) {                                                                                               \
+        const __m256d b = _mm256_set1_pd(l##j[i]);                                                                       \
+        x##j = _mm256_fmadd_pd(v0, b, x##j);                                                                             \
+        y##j = _mm256_fmadd_pd(v1, b, y##j);                                                                             \
+    }
+#define HDI_R256_OUT8(j) if (j < nc) {                                                                                   \
+        double *q = x + 8 * j;                                                                                           \
+        _mm256_storeu_pd(q, _mm256_sub_pd(_mm256_loadu_pd(q), x##j));                                                    \
+        _mm256_storeu_pd(q + 4, _mm256_sub_pd(_mm256_loadu_pd(q + 4), y##j));                                            \
+    }
+    for (; nc > 0; nc -= 4, x += 32, L += 4 * ld) {  /* four columns at a time: sixteen registers */
+        HDI_R256_EACH(HDI_R256_COLUMN)
+        HDI_R256_EACH(HDI_R256_ZERO8)
+        for (i = 0; i < n; i++) {
+            const double *q = HDI_R256_AT(i);
+            const __m256d v0 = _mm256_loadu_pd(q), v1 = _mm256_loadu_pd(q + 4);
+            HDI_R256_EACH(HDI_R256_MUL8)
+        }
+        HDI_R256_EACH(HDI_R256_OUT8)
+    }
+#undef HDI_R256_COLUMN
+#undef HDI_R256_MUL8
+#undef HDI_R256_OUT8
+#undef HDI_R256_ZERO8
+}
+
+#define HDI_R256_IN8(j) __m256d x##j = j < nc ? _mm256_loadu_pd(x + 8 * j) : _mm256_setzero_pd();
+#define HDI_R256_OUT8(j) if (j < nc) _mm256_storeu_pd(x + 8 * j, x##j);
+
+static HDI_AVX2 void hdi_r256_lower8(double *x, const double *L, int64_t ld, int32_t nc) {
+    int half;
+#define HDI_R256_ROW(k, j) if (k < nc) x##k = _mm256_fnmadd_pd(x##j, _mm256_set1_pd(L[k + j * ld]), x##k);
+    for (half = 0; half < 2; half++, x += 4) {
+        HDI_R256_EIGHT(HDI_R256_IN8)
+        HDI_R256_LOWER(HDI_R256_ROW)
+        HDI_R256_EIGHT(HDI_R256_OUT8)
+    }
+#undef HDI_R256_ROW
+}
+
+static HDI_AVX2 void hdi_r256_upper8(double *x, const double *L, int64_t ld, int32_t nc) {
+    int half;
+#define HDI_R256_ROW(k, j) if (k < nc) x##j = _mm256_fnmadd_pd(x##k, _mm256_set1_pd(L[k + j * ld]), x##j);
+    for (half = 0; half < 2; half++, x += 4) {
+        HDI_R256_EIGHT(HDI_R256_IN8)
+        HDI_R256_UPPER(HDI_R256_ROW)
+        HDI_R256_EIGHT(HDI_R256_OUT8)
+    }
+#undef HDI_R256_ROW
+}
+#undef HDI_R256_IN8
+#undef HDI_R256_OUT8
+#undef HDI_R256_AT
+#undef HDI_R256_EIGHT
+#undef HDI_R256_LOWER
+#undef HDI_R256_UPPER
+#undef HDI_R256_EACH
+#undef HDI_R256_ZERO
+#undef HDI_R256_UNUSED
+#undef HDI_R256_FMA
+#undef HDI_R256_LOOP
+#undef HDI_R256_WHOLE
+#undef HDI_R256_TAIL
+#undef HDI_R256_PRODUCT
+#undef HDI_R256_PAIRS
+
+/* ---- AVX-512: tiles of 24 x 8 ---- */
+
+static HDI_AVX512 __mmask8 hdi_r512_mask(int64_t n) { return HDI_CAST(__mmask8, n >= 8 ? 0xff : (1u << n) - 1u); }
+
+static HDI_AVX512 void hdi_r512_pack(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc) {
+    int32_t k;
+    for (; n > 0; n -= 8, L += 8) {
+        const __mmask8 rows = hdi_r512_mask(n);
+        const double *l = L;
+        for (k = 0; k < kc; k++, l += ld, B += 8) _mm512_storeu_pd(B, _mm512_mul_pd(_mm512_maskz_loadu_pd(rows, l), _mm512_set1_pd(d[k])));
+    }
+}
+
+static HDI_AVX512 void hdi_r512_copy(double *A, const double *L, int64_t ld, int32_t n, int32_t kc) {
+    const __mmask8 m0 = hdi_r512_mask(n), m1 = hdi_r512_mask(n > 8 ? n - 8 : 0), m2 = hdi_r512_mask(n > 16 ? n - 16 : 0);
+    int32_t k;
+    for (k = 0; k < kc; k++, L += ld, A += 24) {
+        _mm512_storeu_pd(A, _mm512_maskz_loadu_pd(m0, L));
+        _mm512_storeu_pd(A + 8, _mm512_maskz_loadu_pd(m1, L + 8));
+        _mm512_storeu_pd(A + 16, _mm512_maskz_loadu_pd(m2, L + 16));
+    }
+}
+
+/* Registers x##j, y##j, w##j hold rows 0..7, 8..15, 16..23 of column j; nv of the three are in use (a constant where inlined). */
+#define HDI_R512_EACH(M) M(0) M(1) M(2) M(3) M(4) M(5) M(6) M(7)
+#define HDI_R512_ZERO(j) __m512d x##j = _mm512_setzero_pd(), y##j = _mm512_setzero_pd(), w##j = _mm512_setzero_pd();
+#define HDI_R512_FMA(j) {                                                                                                \
+        const __m512d b = _mm512_set1_pd(B[j]);                                                                          \
+        x##j = _mm512_fmadd_pd(a0, b, x##j);                                                                             \
+        if (nv > 1) y##j = _mm512_fmadd_pd(a1, b, y##j);                                                                 \
+        if (nv > 2) w##j = _mm512_fmadd_pd(a2, b, w##j);                                                                 \
+    }
+/* sum of the products, over kc columns of A; last masks the last register of rows */
+#define HDI_R512_PRODUCT                                                                                                 \
+    HDI_R512_EACH(HDI_R512_ZERO)                                                                                         \
+    for (k = 0; k < kc; k++, A += lda, B += 8) {                                                                         \
+        const __m512d a0 = nv > 1 ? _mm512_loadu_pd(A) : _mm512_maskz_loadu_pd(last, A);                                 \
+        const __m512d a1 = nv > 2 ? _mm512_loadu_pd(A + 8) : nv > 1 ? _mm512_maskz_loadu_pd(last, A + 8) : a0;           \
+        const __m512d a2 = nv > 2 ? _mm512_maskz_loadu_pd(last, A + 16) : a0;                                            \
+        HDI_R512_EACH(HDI_R512_FMA)                                                                                      \
+        (void)a1; (void)a2;                                                                                              \
+    }
+#define HDI_R512_UNUSED(j) (void)y##j; (void)w##j;
+
+/* As hdi_r128_tile, for n rows, 8 nv - 7 <= n <= 8 nv. */
+static HDI_AVX512 HDI_INLINE void hdi_r512_tile(const int nv, double *C, int64_t step, int64_t dec, int32_t n, int32_t diag, int32_t nc,
+                                                const double *A, int64_t lda, const double *B, int32_t kc) {
+    const __mmask8 last = hdi_r512_mask(n - 8 * (nv - 1));
+    int32_t k;
+    HDI_R512_PRODUCT
+    if (n == 8 * nv && nc == 8 && diag <= -7) {
+#define HDI_R512_SUB(j)                                                                                                  \
+        _mm512_storeu_pd(C, _mm512_sub_pd(_mm512_loadu_pd(C), x##j));                                                    \
+        if (nv > 1) _mm512_storeu_pd(C + 8, _mm512_sub_pd(_mm512_loadu_pd(C + 8), y##j));                                \
+        if (nv > 2) _mm512_storeu_pd(C + 16, _mm512_sub_pd(_mm512_loadu_pd(C + 16), w##j));                              \
+        C += step; step -= dec;
+        HDI_R512_EACH(HDI_R512_SUB)
+#undef HDI_R512_SUB
+    } else {
+        /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and wait for it. */
+        const uint32_t rows = (1u << n) - 1u;
+        double *c = C;
+        int64_t move = step;
+#define HDI_R512_PART(q) HDI_CAST(__mmask8, g >> (q) & 0xff)
+#define HDI_R512_BOTH(j, c, move, ACTION)                                                                                \
+        if (j < nc) {                                                                                                    \
+            const uint32_t g = diag + j > 0 ? rows & ~0u << (diag + j) : rows;                                           \
+            ACTION(c, 0, x##j)                                                                                           \
+            if (nv > 1) ACTION(c, 8, y##j)                                                                               \
+            if (nv > 2) ACTION(c, 16, w##j)                                                                              \
+            c += move; move -= dec;                                                                                      \
+        }
+#define HDI_R512_TAKE(c, q, v) v = _mm512_sub_pd(_mm512_maskz_loadu_pd(HDI_R512_PART(q), c + (q)), v);
+#define HDI_R512_GIVE(c, q, v) _mm512_mask_storeu_pd(c + (q), HDI_R512_PART(q), v);
+#define HDI_R512_LOAD(j) HDI_R512_BOTH(j, c, move, HDI_R512_TAKE)
+#define HDI_R512_STORE(j) HDI_R512_BOTH(j, C, step, HDI_R512_GIVE)
+        HDI_R512_EACH(HDI_R512_LOAD)
+        HDI_R512_EACH(HDI_R512_STORE)
+#undef HDI_R512_PART
+#undef HDI_R512_BOTH
+#undef HDI_R512_TAKE
+#undef HDI_R512_GIVE
+#undef HDI_R512_LOAD
+#undef HDI_R512_STORE
+    }
+    HDI_R512_EACH(HDI_R512_UNUSED)
+}
+
+static HDI_AVX512 void hdi_r512_gemm(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb,
+                                     int32_t kc) {
+    const int64_t slice = HDI_CAST(int64_t, kb) * 8;
+    for (; nb > 0; nb -= 8, C += 8 * ld, B += slice) {
+        const int32_t nc = nb < 8 ? nb : 8;
+        if (n > 16) hdi_r512_tile(3, C, ld, 0, n, -8, nc, A, lda, B, kc);
+        else if (n > 8) hdi_r512_tile(2, C, ld, 0, n, -8, nc, A, lda, B, kc);
+        else hdi_r512_tile(1, C, ld, 0, n, -8, nc, A, lda, B, kc);
+    }
+}
+
+static HDI_AVX512 void hdi_r512_update(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda,
+                                       const double *B, int32_t kc) {
+    int64_t j;
+    for (j = j0; j < j1; j += 8, B += HDI_CAST(int64_t, kc) * 8) {
+        const int64_t s = j - i;
+        const int32_t up = s >= 8 ? HDI_CAST(int32_t, s & ~HDI_CAST(int64_t, 7)) : 0;  /* registers wholly above the diagonal */
+        const int32_t nr = n - up, diag = s < -8 ? -8 : HDI_CAST(int32_t, s - up), nc = j1 - j < 8 ? HDI_CAST(int32_t, j1 - j) : 8;
+        double *C = U + (j * u - j * (j - 1) / 2 - j + i + up);
+        if (nr > 16) hdi_r512_tile(3, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
+        else if (nr > 8) hdi_r512_tile(2, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
+        else hdi_r512_tile(1, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
+    }
+}
+
+/* All pairs of a column j and a later one k, with what to do before the pairs of j. */
+#define HDI_R512_PAIRS(H, F)                                                                                             \
+    H(0) F(0, 1) F(0, 2) F(0, 3) F(0, 4) F(0, 5) F(0, 6) F(0, 7)                                                         \
+    H(1) F(1, 2) F(1, 3) F(1, 4) F(1, 5) F(1, 6) F(1, 7)                                                                 \
+    H(2) F(2, 3) F(2, 4) F(2, 5) F(2, 6) F(2, 7)                                                                         \
+    H(3) F(3, 4) F(3, 5) F(3, 6) F(3, 7)                                                                                 \
+    H(4) F(4, 5) F(4, 6) F(4, 7)                                                                                         \
+    H(5) F(5, 6) F(5, 7)                                                                                                 \
+    H(6) F(6, 7)                                                                                                         \
+    H(7)
+
+/* As hdi_r128_solve. */
+static HDI_AVX512 HDI_INLINE void hdi_r512_solve(const int nv, double *C, int64_t ld, int32_t n, int32_t nc, const double *A, const double *B,
+                                                 int32_t kc, const double *dinv) {
+    const __mmask8 last = hdi_r512_mask(n - 8 * (nv - 1));
+    const int64_t lda = ld;
+    int32_t k;
+    HDI_R512_PRODUCT
+#define HDI_R512_LOAD(j)                                                                                                 \
+    if (j < nc) {                                                                                                        \
+        const double *c = C + j * ld;                                                                                    \
+        x##j = _mm512_sub_pd(nv > 1 ? _mm512_loadu_pd(c) : _mm512_maskz_loadu_pd(last, c), x##j);                        \
+        if (nv > 1) y##j = _mm512_sub_pd(nv > 2 ? _mm512_loadu_pd(c + 8) : _mm512_maskz_loadu_pd(last, c + 8), y##j);    \
+        if (nv > 2) w##j = _mm512_sub_pd(_mm512_maskz_loadu_pd(last, c + 16), w##j);                                     \
+    }
+#define HDI_R512_SCALE(j) {                                                                                              \
+        const __m512d b = _mm512_set1_pd(dinv[j]);                                                                       \
+        x##j = _mm512_mul_pd(x##j, b);                                                                                   \
+        if (nv > 1) _mm512_storeu_pd(C, x##j); else _mm512_mask_storeu_pd(C, last, x##j);                                \
+        if (nv > 1) y##j = _mm512_mul_pd(y##j, b);                                                                       \
+        if (nv > 2) _mm512_storeu_pd(C + 8, y##j); else if (nv > 1) _mm512_mask_storeu_pd(C + 8, last, y##j);            \
+        if (nv > 2) w##j = _mm512_mul_pd(w##j, b);                                                                       \
+        if (nv > 2) _mm512_mask_storeu_pd(C + 16, last, w##j);                                                           \
+        if (nc == j + 1) return;                                                                                         \
+        C += ld;                                                                                                         \
+    }
+#define HDI_R512_LATER(j, k) {                                                                                           \
+        const __m512d b = _mm512_set1_pd(B[8 * j + k]);                                                                  \
+        x##k = _mm512_fnmadd_pd(x##j, b, x##k);                                                                          \
+        if (nv > 1) y##k = _mm512_fnmadd_pd(y##j, b, y##k);                                                              \
+        if (nv > 2) w##k = _mm512_fnmadd_pd(w##j, b, w##k);                                                              \
+    }
+    HDI_R512_EACH(HDI_R512_LOAD)
+    HDI_R512_PAIRS(HDI_R512_SCALE, HDI_R512_LATER)
+#undef HDI_R512_LOAD
+#undef HDI_R512_SCALE
+#undef HDI_R512_LATER
+    HDI_R512_EACH(HDI_R512_UNUSED)
+}
+
+static HDI_AVX512 void hdi_r512_rows(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb,
+                                     const double *dinv) {
+    const double *A = P + k1 * ld;
+    const int64_t slice = HDI_CAST(int64_t, kb) * 8;
+    double *C = P + k * ld;
+    B += k1 * 8;
+    dinv += k;
+    for (; nb > 0; nb -= 8, C += 8 * ld, B += slice, dinv += 8, k += 8) {
+        const int32_t nc = nb < 8 ? nb : 8;
+        if (n > 16) hdi_r512_solve(3, C, ld, n, nc, A, B, k - k1, dinv);
+        else if (n > 8) hdi_r512_solve(2, C, ld, n, nc, A, B, k - k1, dinv);
+        else hdi_r512_solve(1, C, ld, n, nc, A, B, k - k1, dinv);
+    }
+}
+
+/* As hdi_r256_pivots. */
+static HDI_AVX512 HDI_INLINE void hdi_r512_pivots(const int nv, double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n, double *S, double *dinv) {
+    const __mmask8 top = hdi_r512_mask(nc), last = nv > 1 ? hdi_r512_mask(n - 8 * (nv - 2)) : top;
+    const double *row = P, *slice = S;
+    double *C = P + kc * ld, *T = S + kc * 8;
+    int32_t k;
+    HDI_R512_EACH(HDI_R512_ZERO)
+    for (k = 0; k < kc; k++, row += ld, slice += 8) {
+        const __m512d a0 = _mm512_maskz_loadu_pd(top, row), a1 = nv > 1 ? _mm512_maskz_loadu_pd(nv > 2 ? 0xff : last, row + nc) : a0;
+        const __m512d a2 = nv > 2 ? _mm512_maskz_loadu_pd(last, row + nc + 8) : a0;
+        const double *B = slice;
+        HDI_R512_EACH(HDI_R512_FMA)
+        (void)a1; (void)a2;
+    }
+#define HDI_R512_LOAD(j)                                                                                                 \
+    if (j < nc) {                                                                                                        \
+        const double *c = C + j * ld;                                                                                    \
+        x##j = _mm512_sub_pd(_mm512_maskz_loadu_pd(top, c), x##j);                                                       \
+        if (nv > 1) y##j = _mm512_sub_pd(_mm512_maskz_loadu_pd(nv > 2 ? 0xff : last, c + nc), y##j);                     \
+        if (nv > 2) w##j = _mm512_sub_pd(_mm512_maskz_loadu_pd(last, c + nc + 8), w##j);                                 \
+    }
+#define HDI_R512_PIVOT(j)                                                                                                \
+        const __m128d d##j = _mm512_castpd512_pd128(_mm512_permutexvar_pd(_mm512_set1_epi64(j), x##j));                  \
+        const __m128d q##j = _mm_div_sd(_mm_set_sd(1.0), d##j);                                                          \
+        const __m512d r##j = _mm512_broadcastsd_pd(q##j), l##j = _mm512_mul_pd(x##j, r##j);                              \
+        _mm512_storeu_pd(T + 8 * j, x##j);                                                                               \
+        _mm_store_sd(dinv + j, q##j);                                                                                    \
+        _mm512_mask_storeu_pd(C, HDI_CAST(__mmask8, top & 0xfe << j), l##j);                                             \
+        _mm_store_sd(C + j, d##j);                                                                                       \
+        if (nv > 1) {                                                                                                    \
+            y##j = _mm512_mul_pd(y##j, r##j);                                                                            \
+            if (nv > 2) _mm512_storeu_pd(C + nc, y##j); else _mm512_mask_storeu_pd(C + nc, last, y##j);                  \
+        }                                                                                                                \
+        if (nv > 2) { w##j = _mm512_mul_pd(w##j, r##j); _mm512_mask_storeu_pd(C + nc + 8, last, w##j); }                 \
+        if (nc == j + 1) return;                                                                                         \
+        C += ld;
+#define HDI_R512_LATER(j, k) {                                                                                           \
+        const __m512d s = _mm512_permutexvar_pd(_mm512_set1_epi64(k), x##j);                                             \
+        x##k = _mm512_fnmadd_pd(l##j, s, x##k);                                                                          \
+        if (nv > 1) y##k = _mm512_fnmadd_pd(y##j, s, y##k);                                                              \
+        if (nv > 2) w##k = _mm512_fnmadd_pd(w##j, s, w##k);                                                              \
+    }
+    dinv += kc;
+    HDI_R512_EACH(HDI_R512_LOAD)
+    HDI_R512_PAIRS(HDI_R512_PIVOT, HDI_R512_LATER)
+#undef HDI_R512_LOAD
+#undef HDI_R512_PIVOT
+#undef HDI_R512_LATER
+    HDI_R512_EACH(HDI_R512_UNUSED)
+}
+
+static HDI_AVX512 void hdi_r512_block(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv) {
+    if (n > 8) hdi_r512_pivots(3, P, ld, k, nc, n, B, dinv);
+    else if (n > 0) hdi_r512_pivots(2, P, ld, k, nc, n, B, dinv);
+    else hdi_r512_pivots(1, P, ld, k, nc, n, B, dinv);
+}
+
+#define HDI_R512_AT(i) (y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : (i)))
+
+static HDI_AVX512 void hdi_r512_gemv8(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc) {
+    int64_t i = 0;
+    int32_t k;
+#define HDI_R512_ZERO8(j) __m512d s##j = _mm512_setzero_pd();
+#define HDI_R512_MUL8(j) s##j = _mm512_fmadd_pd(v, _mm512_set1_pd(l[j]), s##j);
+#define HDI_R512_OUT8(j) { double *q = HDI_R512_AT(i + j); _mm512_storeu_pd(q, _mm512_sub_pd(_mm512_loadu_pd(q), s##j)); }
+    for (; i + 8 <= n; i += 8) {
+        const double *l = L + i;
+        HDI_R512_EACH(HDI_R512_ZERO8)
+        for (k = 0; k < nc; k++, l += ld) {
+            const __m512d v = _mm512_loadu_pd(x + 8 * k);
+            HDI_PREFETCH(l + 32);
+            HDI_R512_EACH(HDI_R512_MUL8)
+        }
+        HDI_R512_EACH(HDI_R512_OUT8)
+    }
+    for (; i + 2 <= n; i += 2) {
+        const double *l = L + i;
+        HDI_R512_ZERO8(0) HDI_R512_ZERO8(1)
+        for (k = 0; k < nc; k++, l += ld) {
+            const __m512d v = _mm512_loadu_pd(x + 8 * k);
+            HDI_R512_MUL8(0) HDI_R512_MUL8(1)
+        }
+        HDI_R512_OUT8(0) HDI_R512_OUT8(1)
+    }
+    if (i < n) {
+        const double *l = L + i;
+        HDI_R512_ZERO8(0)
+        for (k = 0; k < nc; k++, l += ld) {
+            const __m512d v = _mm512_loadu_pd(x + 8 * k);
+            HDI_R512_MUL8(0)
+        }
+        HDI_R512_OUT8(0)
+    }
+#undef HDI_R512_MUL8
+#undef HDI_R512_OUT8
+}
+
+static HDI_AVX512 void hdi_r512_dots8(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc) {
+    int64_t i;
+#define HDI_R512_COLUMN(j) const double *l##j = L + (j < nc ? j : nc - 1) * ld;
+#define HDI_R512_MUL8(j) s##j = _mm512_fmadd_pd(v, _mm512_set1_pd(l##j[i]), s##j);
+#define HDI_R512_OUT8(j) if (j < nc) _mm512_storeu_pd(x + 8 * j, _mm512_sub_pd(_mm512_loadu_pd(x + 8 * j), s##j));
+    HDI_R512_EACH(HDI_R512_COLUMN)
+    HDI_R512_EACH(HDI_R512_ZERO8)
+    for (i = 0; i < n; i++) {
+        const __m512d v = _mm512_loadu_pd(HDI_R512_AT(i));
+        HDI_R512_MUL8(0) HDI_R512_MUL8(1) HDI_R512_MUL8(2) HDI_R512_MUL8(3)
+        if (nc > 4) { HDI_R512_MUL8(4) HDI_R512_MUL8(5) HDI_R512_MUL8(6) HDI_R512_MUL8(7) }
+    }
+    HDI_R512_EACH(HDI_R512_OUT8)
+#undef HDI_R512_COLUMN
+#undef HDI_R512_MUL8
+#undef HDI_R512_OUT8
+#undef HDI_R512_ZERO8
+}
+
+#define HDI_R512_IN8(j) __m512d x##j = j < nc ? _mm512_loadu_pd(x + 8 * j) : _mm512_setzero_pd();
+#define HDI_R512_OUT8(j) if (j < nc) _mm512_storeu_pd(x + 8 * j, x##j);
+
+static HDI_AVX512 void hdi_r512_lower8(double *x, const double *L, int64_t ld, int32_t nc) {
+#define HDI_R512_NONE(j)
+#define HDI_R512_LATER(j, k) if (k < nc) x##k = _mm512_fnmadd_pd(x##j, _mm512_set1_pd(L[k + j * ld]), x##k);
+    HDI_R512_EACH(HDI_R512_IN8)
+    HDI_R512_PAIRS(HDI_R512_NONE, HDI_R512_LATER)
+    HDI_R512_EACH(HDI_R512_OUT8)
+#undef HDI_R512_LATER
+}
+
+#define HDI_R512_UPPER(ROW)                                                                                              \
+    ROW(7, 6) ROW(7, 5) ROW(7, 4) ROW(7, 3) ROW(7, 2) ROW(7, 1) ROW(7, 0)                                                \
+    ROW(6, 5) ROW(6, 4) ROW(6, 3) ROW(6, 2) ROW(6, 1) ROW(6, 0)                                                          \
+    ROW(5, 4) ROW(5, 3) ROW(5, 2) ROW(5, 1) ROW(5, 0)                                                                    \
+    ROW(4, 3) ROW(4, 2) ROW(4, 1) ROW(4, 0)                                                                              \
+    ROW(3, 2) ROW(3, 1) ROW(3, 0)                                                                                        \
+    ROW(2, 1) ROW(2, 0)                                                                                                  \
+    ROW(1, 0)
+
+static HDI_AVX512 void hdi_r512_upper8(double *x, const double *L, int64_t ld, int32_t nc) {
+#define HDI_R512_ROW(k, j) if (k < nc) x##j = _mm512_fnmadd_pd(x##k, _mm512_set1_pd(L[k + j * ld]), x##j);
+    HDI_R512_EACH(HDI_R512_IN8)
+    HDI_R512_UPPER(HDI_R512_ROW)
+    HDI_R512_EACH(HDI_R512_OUT8)
+#undef HDI_R512_ROW
+}
+#undef HDI_R512_IN8
+#undef HDI_R512_OUT8
+#undef HDI_R512_NONE
+#undef HDI_R512_AT
+#undef HDI_R512_EACH
+#undef HDI_R512_ZERO
+#undef HDI_R512_FMA
+#undef HDI_R512_PRODUCT
+#undef HDI_R512_UNUSED
+#undef HDI_R512_PAIRS
+#undef HDI_R512_UPPER
+#endif /* HDI_X86 */
+
+/* ---- choice of the instruction set ---- */
+
+/* Never NULL: a level that was not compiled gives the plain kernels. */
+static const hdi_real_ops *hdi_real_ops_get(int level) {
+    static const hdi_real_ops plain = {4, 4, hdi_r128_pack, hdi_r128_copy, hdi_r128_block, hdi_r128_rows, hdi_r128_gemm, hdi_r128_update,
+        hdi_r128_add, hdi_r128_forward, hdi_r128_backward, hdi_r128_gather, hdi_r128_gemv8, hdi_r128_dots8, hdi_r128_lower8, hdi_r128_upper8};
+#if HDI_X86
+    static const hdi_real_ops avx2 = {12, 4, hdi_r256_pack, hdi_r256_copy, hdi_r256_block, hdi_r256_rows, hdi_r256_gemm, hdi_r256_update,
+        hdi_r256_add, hdi_r256_forward, hdi_r256_backward, hdi_r256_gather, hdi_r256_gemv8, hdi_r256_dots8, hdi_r256_lower8, hdi_r256_upper8};
+    /* One right-hand side is bound by memory, and runs are short: four lanes were measured as fast as eight, or faster. */
+    static const hdi_real_ops avx512 = {24, 8, hdi_r512_pack, hdi_r512_copy, hdi_r512_block, hdi_r512_rows, hdi_r512_gemm, hdi_r512_update,
+        hdi_r256_add, hdi_r256_forward, hdi_r256_backward, hdi_r256_gather, hdi_r512_gemv8, hdi_r512_dots8, hdi_r512_lower8, hdi_r512_upper8};
+    if (level >= 2) return &avx512;
+    if (level == 1) return &avx2;
+#endif
+    (void)level;
+    return &plain;
+}
+
+
+/* ---- factorisation ---- */
+
+typedef struct hdi_real_pivots {
+    double largest, smallest;  /* of |d|; begin with 0 and DBL_MAX */
+    int64_t negative;
+} hdi_real_pivots;
+
+/* Work, in doubles: of one thread in hdi_real_update and hdi_real_rows, and of S for fronts with up to p pivots. */
+enum { HDI_REAL_WORK = HDI_REAL_KC * (HDI_REAL_NC + HDI_REAL_MR + 1) };
+static int64_t hdi_real_s_size(int64_t p) {
+    const int64_t nb = HDI_REAL_NB;
+    return (p + HDI_REAL_NR) * (p < nb ? p + HDI_REAL_NR : nb);
+}
+
+/* Rows r0..r1-1 below pivots k0..k0+nb-1: L(r,K) = (P(r,K) - L(r,0..k0-1) S) inv(D L') for S as hdi_real_block left it; rows of S per slice: kb.
+ * work [HDI_REAL_WORK] is used only when k0 >= HDI_REAL_KC. */
+static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb, const double *S, int32_t kb, const double *dinv,
+                          int64_t r0, int64_t r1, double *work) {
+    const int32_t k1 = k0 - k0 % HDI_REAL_KC, mr = o->mr, nr = o->nr;
+    int64_t r;
+    int32_t j;
+    for (r = r0; r < r1; r += mr) {
+        const int32_t n = HDI_CAST(int32_t, r1 - r < mr ? r1 - r : mr);
+        for (j = 0; j < k1; j += HDI_REAL_KC) {
+            o->copy(work, P + r + j * m, m, n, HDI_REAL_KC);
+            o->gemm(P + r + k0 * m, m, n, nb, work, mr, S + HDI_CAST(int64_t, j) * nr, kb, HDI_REAL_KC);
+        }
+        o->rows(P + r, m, n, k1, k0, nb, S, kb, dinv);
+    }
+}
+
+/* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as hdi_real_rows, to the last bit, below K.
+ * nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m when k0 + nb <= HDI_REAL_KC.
+ * S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the diagonal of P. work [HDI_REAL_WORK].
+ * Returns -1, or the first pivot that is zero or not finite. */
+static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb, int64_t end, double *S, double *dinv,
+                              hdi_real_pivots *pivots, double *work) {
+    const int32_t nr = o->nr, kb = k0 + nb;
+    int32_t k, j;
+    for (k = k0; k < kb; k += nr, S += HDI_CAST(int64_t, kb) * nr) {
+        const int32_t nc = kb - k < nr ? kb - k : nr;
+        const int32_t n = HDI_CAST(int32_t, end - k - nc < o->mr - nr ? end - k - nc : o->mr - nr);
+        double *slice = S;
+        for (j = 0; j < k; j += HDI_REAL_KC) {
+            const int32_t kc = k - j < HDI_REAL_KC ? k - j : HDI_REAL_KC;
+            double d[HDI_REAL_KC];
+            int32_t q;
+            for (q = 0; q < kc; q++) d[q] = P[(j + q) * (m + 1)];
+            o->pack(slice, P + k + j * m, m, d, nc, kc);
+            slice += HDI_CAST(int64_t, kc) * nr;
+        }
+        o->block(P + k, m, k, nc, n, S, dinv);
+        for (j = k; j < k + nc; j++) {
+            const double d = P[j * (m + 1)], a = fabs(d);
+            if (!(a > 0 && a <= DBL_MAX)) return j;
+            if (a > pivots->largest) pivots->largest = a;
+            if (a < pivots->smallest) pivots->smallest = a;
+            pivots->negative += d < 0;
+        }
+        if (k + nc + n < end) hdi_real_rows(o, P, m, k, nc, S, kb, dinv, k + nc + n, end, work);
+    }
+    return -1;
+}
+
+/* Rows r0..r1-1 of U -= L21 D L21', columns as far as the diagonal. work [HDI_REAL_WORK]. */
+static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work, int64_t r0,
+                            int64_t r1) {
+    const int32_t mr = o->mr;
+    double *B = work, *copy = work + HDI_REAL_KC * HDI_REAL_NC, *d = copy + HDI_REAL_KC * HDI_REAL_MR;
+    int64_t g, i;
+    int32_t k, q;
+    for (g = 0; g < r1; g += HDI_REAL_NC) {
+        const int64_t g1 = r1 - g < HDI_REAL_NC ? r1 : g + HDI_REAL_NC;
+        for (k = 0; k < p; k += HDI_REAL_KC) {
+            const int32_t kc = p - k < HDI_REAL_KC ? p - k : HDI_REAL_KC;
+            for (q = 0; q < kc; q++) d[q] = P[(k + q) * (m + 1)];
+            o->pack(B, P + p + g + k * m, m, d, HDI_CAST(int32_t, g1 - g), kc);
+            for (i = r0 > g ? r0 : g; i < r1; i += mr) {
+                const int32_t n = HDI_CAST(int32_t, r1 - i < mr ? r1 - i : mr);
+                const int64_t j1 = i + n < g1 ? i + n : g1;
+                const double *A = P + p + i + k * m;
+                if (j1 - g > 96) {  /* many columns: the rows are worth a copy in one piece */
+                    o->copy(copy, A, m, n, kc);
+                    o->update(U, u, i, n, g, j1, copy, mr, B, kc);
+                } else o->update(U, u, i, n, g, j1, A, m, B, kc);
+            }
+        }
+    }
+}
+
+/* A whole front by one thread. S [hdi_real_s_size(p)], work [HDI_REAL_WORK]; U may be NULL when m = p. Returns as hdi_real_block. */
+static int64_t hdi_real_front(const hdi_real_ops *o, double *P, int64_t m, int32_t p, double *U, double *dinv, double *S, double *work,
+                              hdi_real_pivots *pivots) {
+    int32_t k, nb;
+    for (k = 0; k < p; k += nb) {
+        int64_t bad;
+        nb = p - k < HDI_REAL_NB ? p - k : HDI_CAST(int32_t, HDI_REAL_NB);
+        bad = hdi_real_block(o, P, m, k, nb, p <= HDI_REAL_NB ? m : k + nb, S, dinv, pivots, work);
+        if (bad >= 0) return bad;
+        if (k + nb < m && p > HDI_REAL_NB) hdi_real_rows(o, P, m, k, nb, S, k + nb, dinv, k + nb, m, work);
+    }
+    if (m > p) hdi_real_update(o, U, m - p, P, m, p, work, 0, m - p);
+    return -1;
+}
+
+/* The child's packed update, columns c0..c1-1, added to the parent's front: (i,j) goes to (rel[i], rel[j]), rel ascending. Different columns
+ * of one child never meet. */
+static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t p, double *U, const double *child, int64_t uc,
+                            const int32_t *rel, int64_t c0, int64_t c1) {
+    enum { n_runs = 64 };
+    const int64_t u = m - p;
+    int32_t run[n_runs + 1];  /* rows that go to consecutive places, from run[q] to run[q + 1] - 1 */
+    int64_t i, j;
+    int32_t n = 0, q, first = 0;
+    for (i = c0; i < uc; i++)
+        if (i == c0 || rel[i] != rel[i - 1] + 1) {
+            if (n == n_runs) break;
+            run[n++] = HDI_CAST(int32_t, i);
+        }
+    run[i < uc ? n - 1 : n] = HDI_CAST(int32_t, i);
+    for (j = c0; j < c1; j++) {
+        const int64_t at = rel[j];
+        const double *c = child + (j * uc - j * (j - 1) / 2 - j);
+        double *y = at < p ? P + at * m : U + ((at - p) * u - (at - p) * (at - p - 1) / 2 - at);
+        if (i == uc && uc - c0 >= 4 * n) {
+            while (first + 1 < n && run[first + 1] <= j) first++;
+            for (q = first; q < n; q++) {
+                const int64_t a = q == first ? j : run[q];
+                o->add(y + rel[a], c + a, run[q + 1] - a);
+            }
+        } else {
+            int64_t r;
+            for (r = j; r < uc; r++) y[rel[r]] += c[r];
+        }
+    }
+}
+
+/* ---- solves ---- */
+
+/* x1 = L11^-1 x1, x[idx] -= L21 x1. x1 = x + first pivot. t [m - p]. */
+static void hdi_real_forward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, double *x1, double *x, const int32_t *idx, double *t) {
+    const int64_t u = m - p;
+    int64_t i;
+    int32_t k;
+    for (k = 0; k < p; k += 8) {
+        const int32_t nc = p - k < 8 ? p - k : 8;
+        o->forward(x1 + k, P + k + k * m, m, nc, p - k - nc, t, u, k == 0);
+    }
+    for (i = 0; i < u; i++) x[idx[i]] += t[i];
+}
+
+/* x1 = L11^-T (dinv x1 - L21' x[idx]). t [m - p]. dinv may be NULL: ones. */
+static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, const double *dinv, double *x1, const double *x,
+                              const int32_t *idx, double *t) {
+    int32_t k;
+    o->gather(t, x, idx, m - p);
+    if (dinv)
+        for (k = 0; k < p; k++) x1[k] *= dinv[k];
+    for (k = (p - 1) & ~7; k >= 0; k -= 8) {
+        const int32_t nc = p - k < 8 ? p - k : 8;
+        o->backward(x1 + k, P + k + k * m, m, nc, p - k - nc, t, m - p);
+    }
+}
+
+/* The same for eight right-hand sides, x row-major [.][8]. */
+static void hdi_real_forward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, double *x1, double *x, const int32_t *idx) {
+    int32_t k;
+    for (k = 0; k < p; k += 8) {
+        const int32_t nc = p - k < 8 ? p - k : 8;
+        if (k) o->gemv8(x1 + 8 * k, NULL, P + k, m, nc, x1, k);
+        o->lower8(x1 + 8 * k, P + k + k * m, m, nc);
+    }
+    if (m > p) o->gemv8(x, idx, P + p, m, m - p, x1, p);
+}
+
+static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, const double *dinv, double *x1, const double *x,
+                               const int32_t *idx) {
+    int32_t k, j;
+    for (k = (p - 1) & ~7; k >= 0; k -= 8) {
+        const int32_t nc = p - k < 8 ? p - k : 8;
+        double *b = x1 + 8 * k;
+        if (dinv)
+            for (j = 0; j < 8 * nc; j++) b[j] *= dinv[k + j / 8];
+        if (m > p) o->dots8(b, P + p + k * m, m, m - p, x, idx, nc);
+        if (k + nc < p) o->dots8(b, P + k + nc + k * m, m, p - k - nc, b + 8 * nc, NULL, nc);
+        o->upper8(b, P + k + k * m, m, nc);
+    }
+}
+
+/* ---- packs: four complex numbers side by side ---- */
+/* An entry of a pack matrix is re[4], im[4]: the same entry for four poles. Every operation on entries is one on vectors without any shuffle. With
+ * AVX-512 an entry is one register: a b is a * (br, br) and a * (bi, bi), summed apart, and only the sums are brought together, re = p.lo - q.hi,
+ * im = p.hi + q.lo. */
+enum { HDI_PACK = 8, HDI_PACK_ROWS = 48, HDI_PACK_DEPTH = 64, HDI_PACK_BLOCK = 16 };
+
+/* C(i,j) = or -= sum_k A(i,k) B(j,k), k in [0,depth), for i in [i0,i1), j in [j0,j1), with lower only j <= i. A(i,k) stands at a + i a_row + k a_col, all
+ * strides in doubles; C(i,j) at c + i c_row + 8 j, or, packed, at c + 8 (i (i + 1)/2 + j). */
+typedef struct hdi_pack_job {
+    const double *a, *b;
+    double *c;
+    int64_t a_row, a_col, b_row, b_col, c_row;
+    int64_t depth, b_first;          /* b is row b_first of B */
+    int lower, packed, store;
+} hdi_pack_job;
+
+static HDI_INLINE double *hdi_pack_row(const hdi_pack_job *g, int64_t i) {
+    return g->c + (g->packed ? HDI_PACK * hdi_triangle(i) : i * g->c_row);
+}
+
+static void hdi_pack_multiply_c(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1) {
+    int64_t i, j, k;
+    int q;
+    for (i = i0; i < i1; i++) {
+        for (j = j0; j < j1 && (!g->lower || j <= i); j++) {
+            const double *a = g->a + i * g->a_row, *b = g->b + (j - g->b_first) * g->b_row;
+            double *c = hdi_pack_row(g, i) + HDI_PACK * j, re[4], im[4];
+            for (q = 0; q < 4; q++) re[q] = im[q] = 0;
+            for (k = 0; k < g->depth; k++, a += g->a_col, b += g->b_col) {
+                for (q = 0; q < 4; q++) {
+                    re[q] += a[q] * b[q] - a[q + 4] * b[q + 4];
+                    im[q] += a[q + 4] * b[q] + a[q] * b[q + 4];
+                }
+            }
+            for (q = 0; q < 4; q++) {
+                c[q] = g->store ? -re[q] : c[q] - re[q];
+                c[q + 4] = g->store ? -im[q] : c[q + 4] - im[q];
+            }
+        }
+    }
+}
+
+/* Rows [r0,r1) of a panel, columns [k0,k0+nb): l_ik = (a_ik - sum_{j in [k0,k)} l_ij s_kj) dinv_k, in place; s at s + (k - k0) s_row + 8 (j - k0). */
+typedef struct hdi_pack_rows {
+    double *panel;
+    int64_t row, first;          /* doubles from row to row; panel is row first */
+    const double *s, *dinv;
+    int64_t s_row;
+    int32_t nb;
+} hdi_pack_rows;
+
+static HDI_INLINE void hdi_pack_row_c(const hdi_pack_rows *g, double *x) {
+    int32_t k, j;
+    int q;
+    for (k = 0; k < g->nb; k++) {
+        const double *d = g->dinv + HDI_PACK * k, *s = g->s + k * g->s_row;
+        double re[4], im[4], *y = x + HDI_PACK * k;
+        for (q = 0; q < 4; q++) {
+            re[q] = y[q];
+            im[q] = y[q + 4];
+        }
+        for (j = 0; j < k; j++) {
+            for (q = 0; q < 4; q++) {
+                re[q] -= x[HDI_PACK * j + q] * s[HDI_PACK * j + q] - x[HDI_PACK * j + q + 4] * s[HDI_PACK * j + q + 4];
+                im[q] -= x[HDI_PACK * j + q + 4] * s[HDI_PACK * j + q] + x[HDI_PACK * j + q] * s[HDI_PACK * j + q + 4];
+            }
+        }
+        for (q = 0; q < 4; q++) {
+            y[q] = re[q] * d[q] - im[q] * d[q + 4];
+            y[q + 4] = re[q] * d[q + 4] + im[q] * d[q];
+        }
+    }
+}
+
+static void hdi_pack_solve_rows_c(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
+    int64_t i;
+    for (i = r0 - g->first; i < r1 - g->first; i++) hdi_pack_row_c(g, g->panel + i * g->row);
+}
+
+/* s = l d for an entry */
+static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double *HDI_RESTRICT d, double *HDI_RESTRICT s) {
+    int q;
+    for (q = 0; q < 4; q++) {
+        s[q] = l[q] * d[q] - l[q + 4] * d[q + 4];
+        s[q + 4] = l[q] * d[q + 4] + l[q + 4] * d[q];
+    }
+}
+
+/* S(i,k) = l_ik d_k for rows [r0,r1), columns [k0,k1) of a panel; S by rows of k1 - k0 entries, row 0 being r0. */
+static HDI_INLINE void hdi_pack_scale_body(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s) {
+    int64_t i, k;
+    for (i = r0; i < r1; i++)
+        for (k = k0; k < k1; k++, s += HDI_PACK) hdi_pack_times(panel + i * row + HDI_PACK * k, d + HDI_PACK * k, s);
+}
+
+/* to[rel_b] += from[b] for b in [b0,b1), entries; off is taken off rel. */
+static HDI_INLINE void hdi_pack_add_body(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
+    int64_t b;
+    int q;
+    for (b = b0; b < b1; b++) {
+        double *HDI_RESTRICT t = to + HDI_PACK * (rel[b] - off);
+        const double *HDI_RESTRICT f = from + HDI_PACK * b;
+        for (q = 0; q < HDI_PACK; q++) t[q] += f[q];
+    }
+}
+
+/* Sweeps of one right-hand side through u rows of a panel. Forward: t_i -= sum_k l_ik y_k. Backward: y_k -= sum_i l_ik x[row_i], row NULL: row_i = i. */
+static HDI_INLINE void hdi_pack_forward_body(const double *l, int64_t u, int64_t p, const double *y, double *x) {
+    int64_t i, k;
+    int q;
+    for (i = 0; i < u; i++) {
+        double *t = x + HDI_PACK * i, re[4], im[4];
+        for (q = 0; q < 4; q++) {
+            re[q] = t[q];
+            im[q] = t[q + 4];
+        }
+        for (k = 0; k < p; k++, l += HDI_PACK) {
+            for (q = 0; q < 4; q++) {
+                re[q] -= l[q] * y[HDI_PACK * k + q] - l[q + 4] * y[HDI_PACK * k + q + 4];
+                im[q] -= l[q + 4] * y[HDI_PACK * k + q] + l[q] * y[HDI_PACK * k + q + 4];
+            }
+        }
+        for (q = 0; q < 4; q++) {
+            t[q] = re[q];
+            t[q + 4] = im[q];
+        }
+    }
+}
+
+static HDI_INLINE void hdi_pack_backward_body(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
+    int64_t i, k;
+    int q;
+    for (i = 0; i < u; i++) {
+        const double *HDI_RESTRICT t = x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i);
+        for (k = 0; k < p; k++, l += HDI_PACK) {
+            double *HDI_RESTRICT z = y + HDI_PACK * k;
+            for (q = 0; q < 4; q++) {
+                z[q] -= l[q] * t[q] - l[q + 4] * t[q + 4];
+                z[q + 4] -= l[q + 4] * t[q] + l[q] * t[q + 4];
+            }
+        }
+    }
+}
+
+static void hdi_pack_scale_c(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s) {
+    hdi_pack_scale_body(panel, row, r0, r1, k0, k1, d, s);
+}
+static void hdi_pack_add_c(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
+    hdi_pack_add_body(to, from, rel, b0, b1, off);
+}
+static void hdi_pack_forward_c(const double *l, int64_t u, int64_t p, const double *y, double *t) {
+    hdi_pack_forward_body(l, u, p, y, t);
+}
+static void hdi_pack_backward_c(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
+    hdi_pack_backward_body(l, row, u, p, y, x);
+}
+
+#if HDI_X86
+/* ---- AVX-512: an entry is a register ---- */
+
+typedef __m512d hdi_v8;
+typedef __m256d hdi_v4;
+
+/* (x, x) of four doubles */
+static HDI_AVX512 HDI_INLINE hdi_v8 hdi_twice512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
+
+/* sum of products from its two halves: p - swap(q) below, p + swap(q) above */
+static HDI_AVX512 HDI_INLINE hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
+    const hdi_v8 t = _mm512_shuffle_f64x2(q, q, 0x4e);
+    return _mm512_mask_sub_pd(_mm512_add_pd(p, t), 0x0f, p, t);
+}
+
+static HDI_AVX512 HDI_INLINE void hdi_put512(double *c, hdi_v8 p, hdi_v8 q, int store) {
+    const hdi_v8 r = hdi_join512(p, q);
+    _mm512_storeu_pd(c, store ? _mm512_sub_pd(_mm512_setzero_pd(), r) : _mm512_sub_pd(_mm512_loadu_pd(c), r));
+}
+
+#define HDI_TILE_ROW(i)                                                                                                \
+    if (mr > i) {                                                                                                      \
+        const hdi_v8 x = _mm512_loadu_pd(a + i * g->a_row);                                                            \
+        p##i##0 = _mm512_fmadd_pd(x, r0, p##i##0);                                                                     \
+        q##i##0 = _mm512_fmadd_pd(x, m0, q##i##0);                                                                     \
+        if (nr > 1) p##i##1 = _mm512_fmadd_pd(x, r1, p##i##1);                                                         \
+        if (nr > 1) q##i##1 = _mm512_fmadd_pd(x, m1, q##i##1);                                                         \
+        if (nr > 2) p##i##2 = _mm512_fmadd_pd(x, r2, p##i##2);                                                         \
+        if (nr > 2) q##i##2 = _mm512_fmadd_pd(x, m2, q##i##2);                                                         \
+    }
+#define HDI_TILE_PUT(i)                                                                                                \
+    if (mr > i) {                                                                                                      \
+        double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * j0;                                                           \
+        const int64_t last = g->lower ? i0 + i - j0 : 2;                                                               \
+        if (last >= 0) hdi_put512(c, p##i##0, q##i##0, g->store);                                                      \
+        if (nr > 1 && last >= 1) hdi_put512(c + 8, p##i##1, q##i##1, g->store);                                        \
+        if (nr > 2 && last >= 2) hdi_put512(c + 16, p##i##2, q##i##2, g->store);                                       \
+    }
+
+/* A tile of mr x nr entries, mr <= 4, nr <= 3: 24 sums, 6 factors of B, one of A: all 32 registers. */
+static HDI_AVX512 HDI_INLINE void hdi_pack_tile512(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
+    const double *a = g->a + i0 * g->a_row, *b = g->b + (j0 - g->b_first) * g->b_row;
+    const hdi_v8 zero = _mm512_setzero_pd();
+    hdi_v8 p00 = zero, q00 = zero, p01 = zero, q01 = zero, p02 = zero, q02 = zero, p10 = zero, q10 = zero, p11 = zero, q11 = zero, p12 = zero, q12 = zero;
+    hdi_v8 p20 = zero, q20 = zero, p21 = zero, q21 = zero, p22 = zero, q22 = zero, p30 = zero, q30 = zero, p31 = zero, q31 = zero, p32 = zero, q32 = zero;
+    int64_t k;
+    for (k = g->depth; k > 0; k--, a += g->a_col, b += g->b_col) {
+        const hdi_v8 r0 = hdi_twice512(b), m0 = hdi_twice512(b + 4);
+        const hdi_v8 r1 = nr > 1 ? hdi_twice512(b + g->b_row) : zero, m1 = nr > 1 ? hdi_twice512(b + g->b_row + 4) : zero;
+        const hdi_v8 r2 = nr > 2 ? hdi_twice512(b + 2 * g->b_row) : zero, m2 = nr > 2 ? hdi_twice512(b + 2 * g->b_row + 4) : zero;
+        HDI_TILE_ROW(0)
+        HDI_TILE_ROW(1)
+        HDI_TILE_ROW(2)
+        HDI_TILE_ROW(3)
+    }
+    HDI_TILE_PUT(0)
+    HDI_TILE_PUT(1)
+    HDI_TILE_PUT(2)
+    HDI_TILE_PUT(3)
+}
+#undef HDI_TILE_ROW
+#undef HDI_TILE_PUT
+
+static HDI_AVX512 void hdi_pack_tile512_any(const hdi_pack_job *g, int mr, int nr, int64_t i0, int64_t j0) {
+    switch (4 * nr + mr) {
+        case 5: hdi_pack_tile512(g, 1, 1, i0, j0); break;
+        case 6: hdi_pack_tile512(g, 2, 1, i0, j0); break;
+        case 7: hdi_pack_tile512(g, 3, 1, i0, j0); break;
+        case 8: hdi_pack_tile512(g, 4, 1, i0, j0); break;
+        case 9: hdi_pack_tile512(g, 1, 2, i0, j0); break;
+        case 10: hdi_pack_tile512(g, 2, 2, i0, j0); break;
+        case 11: hdi_pack_tile512(g, 3, 2, i0, j0); break;
+        case 12: hdi_pack_tile512(g, 4, 2, i0, j0); break;
+        case 13: hdi_pack_tile512(g, 1, 3, i0, j0); break;
+        case 14: hdi_pack_tile512(g, 2, 3, i0, j0); break;
+        default: hdi_pack_tile512(g, 3, 3, i0, j0); break;
+    }
+}
+
+static HDI_AVX512 void hdi_pack_multiply_512(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1) {
+    int64_t ib, i, j;
+    for (ib = i0; ib < i1; ib += HDI_PACK_ROWS) {
+        const int64_t ie = ib + HDI_PACK_ROWS < i1 ? ib + HDI_PACK_ROWS : i1, je = g->lower && ie < j1 ? ie : j1;
+        for (j = j0; j < je; j += 3) {
+            const int nr = je - j < 3 ? HDI_CAST(int, je - j) : 3;
+            i = g->lower && j > ib ? j : ib;
+            if (nr == 3)
+                for (; i + 4 <= ie; i += 4) hdi_pack_tile512(g, 4, 3, i, j);
+            for (; i < ie; i += 4) hdi_pack_tile512_any(g, ie - i < 4 ? HDI_CAST(int, ie - i) : 4, nr, i, j);
+        }
+    }
+}
+
+#define HDI_SOLVE_INIT(i) hdi_v8 p##i = mr > i ? _mm512_loadu_pd(x + i * g->row + HDI_PACK * k) : zero, q##i = zero;
+#define HDI_SOLVE_ROW(i)                                                                                               \
+    if (mr > i) {                                                                                                      \
+        const hdi_v8 y = _mm512_loadu_pd(x + i * g->row + HDI_PACK * j);                                               \
+        p##i = _mm512_fnmadd_pd(y, r, p##i);                                                                           \
+        q##i = _mm512_fnmadd_pd(y, m, q##i);                                                                           \
+    }
+#define HDI_SOLVE_PUT(i)                                                                                               \
+    if (mr > i) {                                                                                                      \
+        const hdi_v8 y = hdi_join512(p##i, q##i);                                                                      \
+        _mm512_storeu_pd(x + i * g->row + HDI_PACK * k, hdi_join512(_mm512_mul_pd(y, dr), _mm512_mul_pd(y, dm)));      \
+    }
+
+/* mr rows at once, mr <= 6, for independent chains of multiply-adds. */
+static HDI_AVX512 HDI_INLINE void hdi_pack_solve_tile512(const hdi_pack_rows *g, const int mr, double *x) {
+    const hdi_v8 zero = _mm512_setzero_pd();
+    int32_t k, j;
+    for (k = 0; k < g->nb; k++) {
+        const double *s = g->s + k * g->s_row;
+        const hdi_v8 dr = hdi_twice512(g->dinv + HDI_PACK * k), dm = hdi_twice512(g->dinv + HDI_PACK * k + 4);
+        HDI_SOLVE_INIT(0)
+        HDI_SOLVE_INIT(1)
+        HDI_SOLVE_INIT(2)
+        HDI_SOLVE_INIT(3)
+        HDI_SOLVE_INIT(4)
+        HDI_SOLVE_INIT(5)
+        for (j = 0; j < k; j++, s += HDI_PACK) {
+            const hdi_v8 r = hdi_twice512(s), m = hdi_twice512(s + 4);
+            HDI_SOLVE_ROW(0)
+            HDI_SOLVE_ROW(1)
+            HDI_SOLVE_ROW(2)
+            HDI_SOLVE_ROW(3)
+            HDI_SOLVE_ROW(4)
+            HDI_SOLVE_ROW(5)
+        }
+        HDI_SOLVE_PUT(0)
+        HDI_SOLVE_PUT(1)
+        HDI_SOLVE_PUT(2)
+        HDI_SOLVE_PUT(3)
+        HDI_SOLVE_PUT(4)
+        HDI_SOLVE_PUT(5)
+    }
+}
+#undef HDI_SOLVE_INIT
+#undef HDI_SOLVE_ROW
+#undef HDI_SOLVE_PUT
+
+static HDI_AVX512 void hdi_pack_solve_rows_512(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
+    int64_t i;
+    r0 -= g->first;
+    r1 -= g->first;
+    for (i = r0; i + 6 <= r1; i += 6) hdi_pack_solve_tile512(g, 6, g->panel + i * g->row);
+    for (; i + 2 <= r1; i += 2) hdi_pack_solve_tile512(g, 2, g->panel + i * g->row);
+    for (; i < r1; i++) hdi_pack_solve_tile512(g, 1, g->panel + i * g->row);
+}
+
+static HDI_AVX512 void hdi_pack_scale_512(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s) {
+    int64_t i, k;
+    for (i = r0; i < r1; i++)
+        for (k = k0; k < k1; k++, s += HDI_PACK) {
+            const hdi_v8 l = _mm512_loadu_pd(panel + i * row + HDI_PACK * k);
+            _mm512_storeu_pd(s, hdi_join512(_mm512_mul_pd(l, hdi_twice512(d + HDI_PACK * k)), _mm512_mul_pd(l, hdi_twice512(d + HDI_PACK * k + 4))));
+        }
+}
+
+static HDI_AVX512 void hdi_pack_add_512(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
+    int64_t b;
+    for (b = b0; b < b1; b++) {
+        double *t = to + HDI_PACK * (rel[b] - off);
+        _mm512_storeu_pd(t, _mm512_add_pd(_mm512_loadu_pd(t), _mm512_loadu_pd(from + HDI_PACK * b)));
+    }
+}
+
+/* Four rows at once. */
+static HDI_AVX512 void hdi_pack_forward_512(const double *l, int64_t u, int64_t p, const double *y, double *t) {
+    const hdi_v8 zero = _mm512_setzero_pd();
+    int64_t i, k;
+    for (i = 0; i + 4 <= u; i += 4, l += 4 * HDI_PACK * p) {
+        hdi_v8 p0 = zero, p1 = zero, p2 = zero, p3 = zero, q0 = zero, q1 = zero, q2 = zero, q3 = zero;
+        for (k = 0; k < p; k++) {
+            const hdi_v8 r = hdi_twice512(y + HDI_PACK * k), m = hdi_twice512(y + HDI_PACK * k + 4);
+            const hdi_v8 l0 = _mm512_loadu_pd(l + HDI_PACK * k), l1 = _mm512_loadu_pd(l + HDI_PACK * (p + k));
+            const hdi_v8 l2 = _mm512_loadu_pd(l + HDI_PACK * (2 * p + k)), l3 = _mm512_loadu_pd(l + HDI_PACK * (3 * p + k));
+            p0 = _mm512_fmadd_pd(l0, r, p0);
+            q0 = _mm512_fmadd_pd(l0, m, q0);
+            p1 = _mm512_fmadd_pd(l1, r, p1);
+            q1 = _mm512_fmadd_pd(l1, m, q1);
+            p2 = _mm512_fmadd_pd(l2, r, p2);
+            q2 = _mm512_fmadd_pd(l2, m, q2);
+            p3 = _mm512_fmadd_pd(l3, r, p3);
+            q3 = _mm512_fmadd_pd(l3, m, q3);
+        }
+        hdi_put512(t + HDI_PACK * i, p0, q0, 0);
+        hdi_put512(t + HDI_PACK * (i + 1), p1, q1, 0);
+        hdi_put512(t + HDI_PACK * (i + 2), p2, q2, 0);
+        hdi_put512(t + HDI_PACK * (i + 3), p3, q3, 0);
+    }
+    for (; i < u; i++, l += HDI_PACK * p) {
+        hdi_v8 p0 = zero, q0 = zero;
+        for (k = 0; k < p; k++) {
+            const hdi_v8 l0 = _mm512_loadu_pd(l + HDI_PACK * k);
+            p0 = _mm512_fmadd_pd(l0, hdi_twice512(y + HDI_PACK * k), p0);
+            q0 = _mm512_fmadd_pd(l0, hdi_twice512(y + HDI_PACK * k + 4), q0);
+        }
+        hdi_put512(t + HDI_PACK * i, p0, q0, 0);
+    }
+}
+
+#define HDI_BACK(c)                                                                                                    \
+    if (kr > c) {                                                                                                      \
+        const hdi_v8 v = _mm512_loadu_pd(t + HDI_PACK * c);                                                            \
+        p##c = _mm512_fmadd_pd(v, r, p##c);                                                                            \
+        q##c = _mm512_fmadd_pd(v, m, q##c);                                                                            \
+    }
+static HDI_AVX512 HDI_INLINE void hdi_pack_back_tile512(const int kr, const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
+    const hdi_v8 zero = _mm512_setzero_pd();
+    hdi_v8 p0 = zero, p1 = zero, p2 = zero, p3 = zero, p4 = zero, p5 = zero, p6 = zero, p7 = zero;
+    hdi_v8 q0 = zero, q1 = zero, q2 = zero, q3 = zero, q4 = zero, q5 = zero, q6 = zero, q7 = zero;
+    const double *t = l;
+    int64_t i;
+    for (i = 0; i < u; i++, t += HDI_PACK * p) {
+        const double *z = x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i);
+        const hdi_v8 r = hdi_twice512(z), m = hdi_twice512(z + 4);
+        HDI_PREFETCH(t + 1024);
+        HDI_BACK(0)
+        HDI_BACK(1)
+        HDI_BACK(2)
+        HDI_BACK(3)
+        HDI_BACK(4)
+        HDI_BACK(5)
+        HDI_BACK(6)
+        HDI_BACK(7)
+    }
+    hdi_put512(y, p0, q0, 0);
+    if (kr > 1) hdi_put512(y + 8, p1, q1, 0);
+    if (kr > 2) hdi_put512(y + 16, p2, q2, 0);
+    if (kr > 3) hdi_put512(y + 24, p3, q3, 0);
+    if (kr > 4) hdi_put512(y + 32, p4, q4, 0);
+    if (kr > 5) hdi_put512(y + 40, p5, q5, 0);
+    if (kr > 6) hdi_put512(y + 48, p6, q6, 0);
+    if (kr > 7) hdi_put512(y + 56, p7, q7, 0);
+}
+#undef HDI_BACK
+
+/* Up to eight pivots at once. */
+static HDI_AVX512 void hdi_pack_backward_512(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
+    int64_t k;
+    for (k = 0; k + 8 <= p; k += 8) hdi_pack_back_tile512(8, l + HDI_PACK * k, row, u, p, y + HDI_PACK * k, x);
+    l += HDI_PACK * k;
+    y += HDI_PACK * k;
+    switch (p - k) {
+        case 1: hdi_pack_back_tile512(1, l, row, u, p, y, x); break;
+        case 2: hdi_pack_back_tile512(2, l, row, u, p, y, x); break;
+        case 3: hdi_pack_back_tile512(3, l, row, u, p, y, x); break;
+        case 4: hdi_pack_back_tile512(4, l, row, u, p, y, x); break;
+        case 5: hdi_pack_back_tile512(5, l, row, u, p, y, x); break;
+        case 6: hdi_pack_back_tile512(6, l, row, u, p, y, x); break;
+        case 7: hdi_pack_back_tile512(7, l, row, u, p, y, x); break;
+        default: break;
+    }
+}
+
+/* ---- AVX2: an entry is two registers ---- */
+
+#define HDI_TILE_TERM(i, j)                                                                                            \
+    p##i##j = _mm256_fmadd_pd(x##i, r##j, p##i##j);                                                                    \
+    q##i##j = _mm256_fmadd_pd(z##i, r##j, q##i##j);                                                                    \
+    p##i##j = _mm256_fnmadd_pd(z##i, m##j, p##i##j);                                                                   \
+    q##i##j = _mm256_fmadd_pd(x##i, m##j, q##i##j);
+#define HDI_TILE_PUT(i, j)                                                                                             \
+    if (mr > i && nr > j && (!g->lower || j0 + j <= i0 + i)) {                                                         \
+        double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * (j0 + j);                                                     \
+        _mm256_storeu_pd(c, _mm256_sub_pd(g->store ? zero : _mm256_loadu_pd(c), p##i##j));                             \
+        _mm256_storeu_pd(c + 4, _mm256_sub_pd(g->store ? zero : _mm256_loadu_pd(c + 4), q##i##j));                     \
+    }
+static HDI_AVX2 HDI_INLINE void hdi_pack_tile2(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
+    const double *a = g->a + i0 * g->a_row, *b = g->b + (j0 - g->b_first) * g->b_row;
+    const hdi_v4 zero = _mm256_setzero_pd();
+    hdi_v4 p00 = zero, q00 = zero, p01 = zero, q01 = zero, p10 = zero, q10 = zero, p11 = zero, q11 = zero;
+    int64_t k;
+    for (k = g->depth; k > 0; k--, a += g->a_col, b += g->b_col) {
+        const hdi_v4 x0 = _mm256_loadu_pd(a), z0 = _mm256_loadu_pd(a + 4), r0 = _mm256_loadu_pd(b), m0 = _mm256_loadu_pd(b + 4);
+        HDI_TILE_TERM(0, 0)
+        if (mr > 1) {
+            const hdi_v4 x1 = _mm256_loadu_pd(a + g->a_row), z1 = _mm256_loadu_pd(a + g->a_row + 4);
+            HDI_TILE_TERM(1, 0)
+            if (nr > 1) {
+                const hdi_v4 r1 = _mm256_loadu_pd(b + g->b_row), m1 = _mm256_loadu_pd(b + g->b_row + 4);
+                HDI_TILE_TERM(0, 1)
+                HDI_TILE_TERM(1, 1)
+            }
+        } else if (nr > 1) {
+            const hdi_v4 r1 = _mm256_loadu_pd(b + g->b_row), m1 = _mm256_loadu_pd(b + g->b_row + 4);
+            HDI_TILE_TERM(0, 1)
+        }
+    }
+    HDI_TILE_PUT(0, 0)
+    HDI_TILE_PUT(0, 1)
+    HDI_TILE_PUT(1, 0)
+    HDI_TILE_PUT(1, 1)
+}
+#undef HDI_TILE_TERM
+#undef HDI_TILE_PUT
+
+static HDI_AVX2 void hdi_pack_multiply_2(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1) {
+    int64_t ib, i, j;
+    for (ib = i0; ib < i1; ib += HDI_PACK_ROWS) {
+        const int64_t ie = ib + HDI_PACK_ROWS < i1 ? ib + HDI_PACK_ROWS : i1, je = g->lower && ie < j1 ? ie : j1;
+        for (j = j0; j < je; j += 2) {
+            i = g->lower && j > ib ? j : ib;
+            if (je - j >= 2) {
+                for (; i + 2 <= ie; i += 2) hdi_pack_tile2(g, 2, 2, i, j);
+                if (i < ie) hdi_pack_tile2(g, 1, 2, i, j);
+            } else {
+                for (; i + 2 <= ie; i += 2) hdi_pack_tile2(g, 2, 1, i, j);
+                if (i < ie) hdi_pack_tile2(g, 1, 1, i, j);
+            }
+        }
+    }
+}
+
+/* The same rows, two at a time: four chains of two each. */
+static HDI_AVX2 HDI_INLINE void hdi_pack_solve_tile2(const hdi_pack_rows *g, const int mr, double *x) {
+    double *x1 = x + (mr > 1 ? g->row : 0);
+    int32_t k, j;
+    for (k = 0; k < g->nb; k++) {
+        const double *s = g->s + k * g->s_row, *d = g->dinv + HDI_PACK * k;
+        const hdi_v4 dr = _mm256_loadu_pd(d), dm = _mm256_loadu_pd(d + 4);
+        hdi_v4 p0 = _mm256_loadu_pd(x + HDI_PACK * k), q0 = _mm256_loadu_pd(x + HDI_PACK * k + 4), p1 = _mm256_loadu_pd(x1 + HDI_PACK * k);
+        hdi_v4 q1 = _mm256_loadu_pd(x1 + HDI_PACK * k + 4);
+        for (j = 0; j < k; j++, s += HDI_PACK) {
+            const hdi_v4 r = _mm256_loadu_pd(s), m = _mm256_loadu_pd(s + 4), a = _mm256_loadu_pd(x + HDI_PACK * j), b = _mm256_loadu_pd(x + HDI_PACK * j + 4);
+            p0 = _mm256_fnmadd_pd(a, r, p0);
+            q0 = _mm256_fnmadd_pd(b, r, q0);
+            p0 = _mm256_fmadd_pd(b, m, p0);
+            q0 = _mm256_fnmadd_pd(a, m, q0);
+            if (mr > 1) {
+                const hdi_v4 c = _mm256_loadu_pd(x1 + HDI_PACK * j), e = _mm256_loadu_pd(x1 + HDI_PACK * j + 4);
+                p1 = _mm256_fnmadd_pd(c, r, p1);
+                q1 = _mm256_fnmadd_pd(e, r, q1);
+                p1 = _mm256_fmadd_pd(e, m, p1);
+                q1 = _mm256_fnmadd_pd(c, m, q1);
+            }
+        }
+        _mm256_storeu_pd(x + HDI_PACK * k, _mm256_fmsub_pd(p0, dr, _mm256_mul_pd(q0, dm)));
+        _mm256_storeu_pd(x + HDI_PACK * k + 4, _mm256_fmadd_pd(p0, dm, _mm256_mul_pd(q0, dr)));
+        if (mr > 1) _mm256_storeu_pd(x1 + HDI_PACK * k, _mm256_fmsub_pd(p1, dr, _mm256_mul_pd(q1, dm)));
+        if (mr > 1) _mm256_storeu_pd(x1 + HDI_PACK * k + 4, _mm256_fmadd_pd(p1, dm, _mm256_mul_pd(q1, dr)));
+    }
+}
+
+static HDI_AVX2 void hdi_pack_solve_rows_2(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
+    int64_t i;
+    r0 -= g->first;
+    r1 -= g->first;
+    for (i = r0; i + 2 <= r1; i += 2) hdi_pack_solve_tile2(g, 2, g->panel + i * g->row);
+    if (i < r1) hdi_pack_solve_tile2(g, 1, g->panel + i * g->row);
+}
+static HDI_AVX2 void hdi_pack_scale_2(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s) {
+    hdi_pack_scale_body(panel, row, r0, r1, k0, k1, d, s);
+}
+static HDI_AVX2 void hdi_pack_add_2(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
+    hdi_pack_add_body(to, from, rel, b0, b1, off);
+}
+static HDI_AVX2 void hdi_pack_forward_2(const double *l, int64_t u, int64_t p, const double *y, double *t) {
+    hdi_pack_forward_body(l, u, p, y, t);
+}
+static HDI_AVX2 void hdi_pack_backward_2(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
+    hdi_pack_backward_body(l, row, u, p, y, x);
+}
+#endif
+
+typedef struct hdi_pack_ops {
+    void (*multiply)(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1);
+    void (*solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1);
+    void (*scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s);
+    void (*add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off);
+    void (*forward)(const double *l, int64_t u, int64_t p, const double *y, double *t);
+    void (*backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x);
+} hdi_pack_ops;
+
+/* level 0: plain C, 1: AVX2, 2: AVX-512 */
+static const hdi_pack_ops *hdi_pack_ops_get(int level) {
+    static const hdi_pack_ops plain = {hdi_pack_multiply_c, hdi_pack_solve_rows_c, hdi_pack_scale_c, hdi_pack_add_c, hdi_pack_forward_c, hdi_pack_backward_c};
+#if HDI_X86
+    static const hdi_pack_ops avx2 = {hdi_pack_multiply_2, hdi_pack_solve_rows_2, hdi_pack_scale_2, hdi_pack_add_2, hdi_pack_forward_2, hdi_pack_backward_2};
+    static const hdi_pack_ops avx512 = {hdi_pack_multiply_512, hdi_pack_solve_rows_512, hdi_pack_scale_512, hdi_pack_add_512, hdi_pack_forward_512, hdi_pack_backward_512};
+    if (level > 1) return &avx512;
+    if (level == 1) return &avx2;
+#endif
+    (void)level;
+    return &plain;
 }
 
 /* ==== [07] sparse ====
@@ -1369,6 +3446,7 @@ static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     hdi_free(ctx, lap->vertex);
     hdi_free(ctx, lap->row);
     hdi_free(ctx, lap->component);
+    hdi_free(ctx, lap->xyz);
     hdi_free(ctx, lap->component_mass);
     hdi_free(ctx, lap);
 }
@@ -1590,6 +3668,9 @@ static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const i
     if (!vertex_mass) return hdi_scope_end(&s);
     for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_vertex_mass(&mesh, v, lap->kind);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0) return hdi_scope_end(&s);
+    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+    if (!lap->xyz) return hdi_scope_end(&s);
+    for (v = 0; v < lap->n_active; v++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, lap->vertex[v]), 3 * sizeof *xyz);
     mark = HDI_TAKE(&s, int32_t, lap->n_active);
     if (!mark || hdi_lap_pattern(lap, &mesh, mark, e) < 0) return hdi_scope_end(&s);
     if (lap->kind == HD_LAPLACIAN_FEM) {
@@ -1877,6 +3958,7 @@ static hd_laplacian *hdi_sym_renumber(const hd_laplacian *lap, const int32_t *pe
     memset(&out->L, 0, sizeof out->L);
     out->context = ctx;
     out->B = NULL;
+    out->xyz = NULL;                             /* an order has been found */
     out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
     out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
     out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
@@ -1930,6 +4012,2779 @@ static hd_laplacian *hdi_sym_ordered(const hd_laplacian *lap, hd_context *ctx, h
     if (perm && hdi_sym_cuthill_mckee(&lap->L, perm, ctx, e) >= 0) out = hdi_sym_renumber(lap, perm, ctx, e);
     hdi_scope_end(&s);
     return out;
+}
+
+/* ---- minimum degree ordering ---- */
+/* Eliminates, again and again, a vertex whose elimination joins fewest others. The graph that elimination leaves is never written down: an
+ * eliminated vertex becomes an element, the list of those it joined, and a variable keeps the elements it lies in and the neighbours that no
+ * element covers yet. Lists only shrink, so this fits into the room of A and one list more.
+ * This work is based on
+ *   P. Amestoy, T. Davis, I. Duff, An approximate minimum degree ordering algorithm, 1996 (the algorithm, and its letters: L_e, E_i, A_i)
+ *   A. George, J. Liu, The evolution of the minimum degree ordering algorithm, 1989 (supervariables, mass elimination)
+ *   F. Pellegrini, J. Roman, P. Amestoy, Hybridizing nested dissection and halo approximate minimum degree, 2000 (the halo)
+ * Of our own: all that is known of a vertex lies in one half of a cache line, and what is needed soon is fetched early, which is what counts from
+ * 1M vertices on; the hash table of twins is small; a halo needs no rows. (Renumbering breadth first before costs as much as it saves.)
+ * Ties: the vertex whose degree was found last goes first. */
+
+/* A variable, an element, or what became of them. */
+typedef struct hdi_amd_node {
+    int32_t at;                  /* its list begins at list[at]; of a vertex eliminated or merged with another one: that one */
+    int32_t len;                 /* length of the list: elements first, then variables */
+    int32_t elen;                /* how many are elements; HDI_AMD_PIVOT: this is an element itself */
+    int32_t weight;              /* vertices it stands for, 0: it is gone. Negative: on the list that is being worked on */
+    int32_t mark;                /* elements: |L_e \ L_me| + flag, 0 when absorbed; variables: seen when equal to flag */
+    int32_t degree;              /* bound of the weight of the neighbours; of an element the weight of its list */
+    int32_t next, prev;          /* of the same degree; later chain of the hash table, and hash. Of an element prev is its place in the order */
+} hdi_amd_node;
+
+enum { HDI_AMD_PIVOT = -1, HDI_AMD_BUCKETS = 1024 };
+
+typedef struct hdi_amd {
+    int32_t n, inner;            /* vertices, and those to be eliminated: 0..inner-1 */
+    int32_t left;                /* weight of what is not eliminated, the halo included */
+    int32_t done;                /* vertices in the order so far */
+    int32_t least;               /* no variable has a smaller degree */
+    int32_t flag, longest;       /* see mark; the heaviest element */
+    int32_t free, size;          /* list[free..size-1] is unused */
+    int32_t *head;               /* [n + 1] first variable of each degree, or -1 */
+    int32_t *bucket;             /* [HDI_AMD_BUCKETS] */
+    int32_t *list;
+    hdi_amd_node *v;             /* [n] */
+} hdi_amd;
+
+static void hdi_amd_link(hdi_amd *g, int32_t i, int32_t degree) {
+    const int32_t next = g->head[degree];
+    g->v[i].degree = degree;
+    g->v[i].next = next;
+    g->v[i].prev = -1;
+    if (next >= 0) g->v[next].prev = i;
+    g->head[degree] = i;
+    if (degree < g->least) g->least = degree;
+}
+
+static void hdi_amd_unlink(hdi_amd *g, int32_t i) {
+    const int32_t next = g->v[i].next, prev = g->v[i].prev;
+    if (next >= 0) g->v[next].prev = prev;
+    if (prev >= 0) g->v[prev].next = next;
+    else g->head[g->v[i].degree] = next;
+}
+
+/* Moves all lists together. Each marks its beginning with its owner, who keeps the entry that stood there. */
+static void hdi_amd_compact(hdi_amd *g) {
+    int32_t i, p, q = 0, end;
+    for (i = 0; i < g->n; i++) {
+        hdi_amd_node *v = g->v + i;
+        if (v->weight == 0 || v->len == 0 || (v->elen == HDI_AMD_PIVOT && v->mark == 0)) continue;
+        p = v->at;
+        v->at = g->list[p];
+        g->list[p] = -1 - i;
+    }
+    for (p = 0; p < g->free;) {
+        if (g->list[p] >= 0) {
+            p++;
+            continue;
+        }
+        i = -1 - g->list[p];
+        g->list[p] = g->v[i].at;
+        g->v[i].at = q;
+        for (end = p + g->v[i].len; p < end; p++) g->list[q++] = g->list[p];
+    }
+    g->free = q;
+}
+
+/* Variables of list[p..p+len-1] that are not in L_me yet are put to its end at list[q], which may be that same list; returns the new end.
+ * Their own lists are read next: they are fetched already. */
+static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, int32_t *weight) {
+    const int32_t end = p + len;
+    int32_t ahead;
+    for (ahead = p; ahead < end; ahead++) HDI_PREFETCH(g->v + g->list[ahead]);
+    for (; p < end; p++) {
+        const int32_t i = g->list[p], w = g->v[i].weight;
+        if (w <= 0) continue;
+        *weight += w;
+        g->v[i].weight = -w;
+        HDI_PREFETCH(g->list + g->v[i].at);
+        g->list[q++] = i;
+        if (i < g->inner) hdi_amd_unlink(g, i);
+    }
+    return q;
+}
+
+/* L_me = A_me and the L_e of all its elements e, without me. They are absorbed. A variable without elements becomes an element in place. */
+static void hdi_amd_element(hdi_amd *g, int32_t me) {
+    hdi_amd_node *v = g->v + me;
+    int32_t begin, end, p, weight = 0;
+    const int32_t elen = v->elen;
+    if (elen > 0 && v->degree > g->size - g->free) hdi_amd_compact(g);
+    HEATDIFF_ASSERT(elen == 0 || v->degree <= g->size - g->free);
+    begin = end = elen > 0 ? g->free : v->at;
+    v->weight = -v->weight;
+    for (p = v->at; p < v->at + elen; p++) {
+        hdi_amd_node *e = g->v + g->list[p];
+        end = hdi_amd_collect(g, e->at, e->len, end, &weight);
+        e->mark = 0;
+    }
+    end = hdi_amd_collect(g, v->at + elen, v->len - elen, end, &weight);
+    if (elen > 0) g->free = end;
+    v->at = begin;
+    v->len = end - begin;
+    v->elen = HDI_AMD_PIVOT;
+    v->degree = weight;
+}
+
+/* mark - flag = |L_e \ L_me| for all elements e that share a variable with L_me. */
+static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
+    hdi_amd_node *v = g->v;
+    const int32_t flag = g->flag, *list = g->list, *l = list + me->at, *const l_end = l + me->len;
+    for (; l < l_end; l++) {
+        const hdi_amd_node *i = v + *l;
+        const int32_t *e = list + i->at, *const e_end = e + i->elen, w = i->weight;   /* w is negative */
+        for (; e < e_end; e++) {
+            const int32_t mark = v[*e].mark;
+            if (mark >= flag) v[*e].mark = mark + w;
+            else if (mark != 0) v[*e].mark = v[*e].degree + flag + w;
+        }
+    }
+}
+
+/* A_i and E_i for the i of L_me: what me covers goes, so do elements inside L_me, me comes. Variables with no neighbours outside L_me are
+ * eliminated with me. The others get their degree without the share of L_me, and are put into the hash table. */
+static void hdi_amd_update(hdi_amd *g, int32_t me) {
+    hdi_amd_node *v = g->v, *pivot = v + me;
+    int32_t *list = g->list, *l = list + pivot->at, *const l_end = l + pivot->len;
+    const int32_t flag = g->flag;
+    for (; l < l_end; l++) {
+        hdi_amd_node *i = v + *l;
+        int32_t *const first = list + i->at, *from = first, *to = first, *end = first + i->elen, *vars, degree = 0;
+        uint32_t hash = 0;
+        for (; from < end; from++) {
+            const int32_t e = *from, outside = v[e].mark - flag;
+            if (outside > 0) {
+                degree += outside;
+                hash += HDI_CAST(uint32_t, e);
+                *to++ = e;
+            } else {
+                v[e].mark = 0;                   /* it lies in L_me (or was absorbed already) */
+            }
+        }
+        vars = to;
+        for (end = first + i->len; from < end; from++) {
+            const int32_t j = *from, w = v[j].weight;
+            if (w <= 0) continue;
+            degree += w;
+            hash += HDI_CAST(uint32_t, j);
+            *to++ = j;
+        }
+        if (to == first && *l < g->inner) {
+            pivot->degree += i->weight;
+            pivot->weight += i->weight;
+            i->weight = 0;
+            i->at = me;
+            continue;
+        }
+        *to = *vars;                             /* there is room: an element or me itself has gone */
+        *vars = *first;
+        *first = me;
+        i->elen = HDI_CAST(int32_t, vars - first) + 1;
+        i->len = HDI_CAST(int32_t, to - first) + 1;
+        if (degree < i->degree) i->degree = degree;
+        hash *= 0x9E3779B1u;
+        i->prev = HDI_CAST(int32_t, hash >> 1);
+        hash >>= 22;
+        i->next = g->bucket[hash];
+        g->bucket[hash] = *l;
+    }
+}
+
+/* Merges into i those of the chain behind it that have the same elements and variables: they will stay alike. */
+static void hdi_amd_twins(hdi_amd *g, int32_t i) {
+    hdi_amd_node *v = g->v, *a = v + i;
+    const int32_t *list = g->list;
+    int32_t last = i, j, p, stamped = 0;
+    for (j = a->next; j >= 0; j = v[j].next) {
+        hdi_amd_node *b = v + j;
+        int same = a->prev == b->prev && a->len == b->len && a->elen == b->elen && (i < g->inner) == (j < g->inner);
+        if (same && !stamped) {
+            for (p = 1; p < a->len; p++) v[list[a->at + p]].mark = g->flag;
+            stamped = 1;
+        }
+        for (p = 1; same && p < b->len; p++) same = v[list[b->at + p]].mark == g->flag;
+        if (same) {
+            a->weight += b->weight;
+            b->weight = 0;
+            b->at = i;
+            v[last].next = b->next;
+        } else {
+            last = j;
+        }
+    }
+    g->flag += stamped;
+}
+
+/* Twins all over L_me: they meet in the chains of the hash table, which is left empty. */
+static void hdi_amd_merge(hdi_amd *g, const hdi_amd_node *me) {
+    int32_t p, i, *head;
+    for (p = me->at; p < me->at + me->len; p++) {
+        i = g->list[p];
+        if (g->v[i].weight == 0) continue;
+        head = g->bucket + ((HDI_CAST(uint32_t, g->v[i].prev) << 1) >> 22);
+        i = *head;
+        *head = -1;
+        for (; i >= 0 && g->v[i].next >= 0; i = g->v[i].next) hdi_amd_twins(g, i);
+    }
+}
+
+/* Strikes from L_me what is gone; the others get their degrees. */
+static void hdi_amd_restore(hdi_amd *g, hdi_amd_node *me) {
+    int32_t p, q = me->at, end = me->at + me->len;
+    for (p = q; p < end; p++) {
+        const int32_t i = g->list[p], w = -g->v[i].weight;
+        int32_t degree;
+        if (w == 0) continue;
+        g->v[i].weight = w;
+        g->list[q++] = i;
+        if (i >= g->inner) continue;
+        degree = g->v[i].degree + me->degree - w;
+        hdi_amd_link(g, i, degree < g->left - w ? degree : g->left - w);
+    }
+    if (g->free == end) g->free = q;
+    me->len = q - me->at;
+    if (me->len == 0) me->mark = 0;
+}
+
+/* New marks must be above all old ones; once in a long while they begin anew. */
+static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
+    int32_t i;
+    if (g->flag < INT32_MAX - 2 * step - g->n) {
+        g->flag += step;
+        return;
+    }
+    for (i = 0; i < g->n; i++)
+        if (g->v[i].mark) g->v[i].mark = 1;
+    g->flag = 2;
+}
+
+/* Eliminates variables until the order holds as many as that. */
+static void hdi_amd_run(hdi_amd *g, int32_t until) {
+    while (g->done < until) {
+        hdi_amd_node *pivot;
+        int32_t me;
+        while (g->head[g->least] < 0) g->least++;
+        me = g->head[g->least];
+        pivot = g->v + me;
+        hdi_amd_unlink(g, me);
+        if (g->head[g->least] >= 0) HDI_PREFETCH(g->list + g->v[g->head[g->least]].at);    /* likely the next one */
+        hdi_amd_element(g, me);
+        hdi_amd_overlaps(g, pivot);
+        hdi_amd_update(g, me);
+        if (pivot->degree > g->longest) g->longest = pivot->degree;
+        hdi_amd_next_flag(g, g->longest + 1);
+        hdi_amd_merge(g, pivot);
+        pivot->weight = -pivot->weight;
+        pivot->prev = g->done;
+        g->done += pivot->weight;
+        g->left -= pivot->weight;
+        hdi_amd_restore(g, pivot);
+    }
+}
+
+/* Words of work space for n vertices and lists of nnz entries. The elbow room of n is needed, that of nnz / 5 saves time (as in the paper). */
+static int64_t hdi_amd_words(int64_t n, int64_t nnz) {
+    return HDI_CAST(int64_t, sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + nnz + nnz / 5 + n;
+}
+
+/* Lays out the work space of words. */
+static void hdi_amd_begin(hdi_amd *g, int32_t n, int32_t inner, int32_t *work, int64_t words) {
+    int32_t i;
+    g->n = g->left = g->least = n;
+    g->inner = inner;
+    g->done = g->free = g->longest = 0;
+    g->flag = 2;
+    g->v = HDI_CAST(hdi_amd_node *, HDI_CAST(void *, work));
+    g->head = HDI_CAST(int32_t *, HDI_CAST(void *, g->v + n));
+    g->bucket = g->head + n + 1;
+    g->list = g->bucket + HDI_AMD_BUCKETS;
+    g->size = HDI_CAST(int32_t, work + words - g->list);
+    for (i = 0; i <= n; i++) g->head[i] = -1;
+    for (i = 0; i < HDI_AMD_BUCKETS; i++) g->bucket[i] = -1;
+    for (i = 0; i < n; i++) {
+        g->v[i].at = g->v[i].len = g->v[i].elen = g->v[i].degree = 0;
+        g->v[i].weight = g->v[i].mark = 1;
+        g->v[i].next = g->v[i].prev = -1;
+    }
+}
+
+/* Rows longer than this would be in most lists, and are eliminated last whatever happens. */
+static int32_t hdi_amd_dense(int32_t n) {
+    const double d = 10 * sqrt(HDI_CAST(double, n));
+    return d < 16 ? 16 : HDI_CAST(int32_t, d);
+}
+
+/* Takes i out of the graph. */
+static void hdi_amd_drop(hdi_amd *g, int32_t i) {
+    g->v[i].weight = 0;
+    g->v[i].elen = HDI_AMD_PIVOT;
+    g->left--;
+}
+
+/* All lists are there: rows without neighbours come first in the order, those dropped as dense last, the others into the list of their degree.
+ * Returns how many the order holds without the dense ones. */
+static int32_t hdi_amd_start(hdi_amd *g) {
+    int32_t i, last = g->inner, count;
+    for (i = 0; i < g->inner; i++) last -= g->v[i].weight == 0;
+    count = last;
+    for (i = 0; i < g->inner; i++) {
+        if (g->v[i].weight == 0) {
+            g->v[i].prev = last++;
+        } else if (g->v[i].len == 0) {
+            hdi_amd_drop(g, i);
+            g->v[i].prev = g->done++;
+        } else {
+            hdi_amd_link(g, i, g->v[i].len);
+        }
+    }
+    return count;
+}
+
+/* perm [inner] from the pivots' places: those merged or eliminated with others follow them. */
+static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
+    hdi_amd_node *v = g->v;
+    int32_t i, j, root, up;
+    for (i = 0; i < g->inner; i++) {
+        for (root = i; v[root].elen != HDI_AMD_PIVOT; root = v[root].at) {}
+        for (j = i; j != root; j = up) {
+            up = v[j].at;
+            v[j].at = root;
+        }
+        perm[v[root].prev++] = i;
+    }
+}
+
+/* int32 words of work space for hdi_sym_minimum_degree_part; nnz = ptr[k]. */
+static int64_t hdi_sym_minimum_degree_work(int32_t k, int32_t h, int64_t nnz) {
+    return hdi_amd_words(HDI_CAST(int64_t, k) + h, h > 0 ? 2 * nnz : nnz);
+}
+
+/* Orders the vertices 0..k-1 of a small graph that also has a halo, vertices k..k+h-1, which count in degrees but are never eliminated.
+ * ptr, col   [k + 1], [ptr[k]] rows of the inner vertices with columns 0..k+h-1, those of inner vertices in both triangles; in any order, none twice
+ *            in a row, the diagonal may be there. The halo has no rows; edges inside it do not matter.
+ * perm       [k] perm[q] = vertex eliminated q-th
+ * work       [hdi_sym_minimum_degree_work(k, h, ptr[k])] below 2^31, best aligned to 64 bytes
+ * Allocates nothing and cannot fail. TRUSTS ITS INPUT. */
+static void hdi_sym_minimum_degree_part(int32_t k, int32_t h, const int32_t *ptr, const int32_t *col, int32_t *perm, int32_t *work) {
+    const int32_t n = k + h, dense = hdi_amd_dense(n);
+    int32_t i, p, q = 0;
+    hdi_amd g;
+    hdi_amd_begin(&g, n, k, work, hdi_sym_minimum_degree_work(k, h, ptr[k]));
+    for (i = 0; i < k; i++) {
+        if (ptr[i + 1] - ptr[i] > dense) hdi_amd_drop(&g, i);
+        for (p = ptr[i]; p < ptr[i + 1]; p++)
+            if (col[p] >= k) g.v[col[p]].len++;
+    }
+    for (i = k; i < n; i++) {                    /* room for the lists of the halo */
+        if (g.v[i].len > dense) hdi_amd_drop(&g, i);
+        g.v[i].at = q;
+        q += g.v[i].len;
+        g.v[i].len = 0;
+    }
+    for (i = 0; i < k; i++) {
+        g.v[i].at = q;
+        if (g.v[i].weight == 0) continue;
+        for (p = ptr[i]; p < ptr[i + 1]; p++) {
+            hdi_amd_node *j = g.v + col[p];
+            if (col[p] == i || j->weight == 0) continue;
+            g.list[q++] = col[p];
+            if (col[p] >= k) g.list[j->at + j->len++] = i;
+        }
+        g.v[i].len = q - g.v[i].at;
+    }
+    g.free = q;
+    hdi_amd_run(&g, hdi_amd_start(&g));
+    hdi_amd_number(&g, perm);
+}
+
+/* perm[q] = row of the symmetric pattern a (both triangles) that is eliminated q-th. */
+static hd_status hdi_sym_minimum_degree(const hd_csr *a, int32_t *perm, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    const int32_t n = a->n_rows, dense = hdi_amd_dense(n);
+    const int64_t words = hdi_amd_words(n, a->nnz);
+    int32_t i, q = 0, count, *work;
+    int64_t p;
+    hdi_amd g;
+    if (words - 9 * HDI_CAST(int64_t, n) > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
+    work = HDI_TAKE(&s, int32_t, words);
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_amd_begin(&g, n, n, work, words);
+    for (i = 0; i < n; i++)
+        if (a->row_ptr[i + 1] - a->row_ptr[i] > dense) hdi_amd_drop(&g, i);
+    for (i = 0; i < n; i++) {
+        g.v[i].at = q;
+        if (g.v[i].weight == 0) continue;
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
+            if (a->col[p] != i && g.v[a->col[p]].weight > 0) g.list[q++] = a->col[p];
+        g.v[i].len = q - g.v[i].at;
+    }
+    g.free = q;
+    count = hdi_amd_start(&g);
+    while (g.done < count && hdi_progress(ctx, "order", HDI_CAST(double, g.done) / count, e) >= 0)
+        hdi_amd_run(&g, count - g.done > 100000 ? g.done + 100000 : count);
+    if (e->status >= 0) hdi_amd_number(&g, perm);
+    return hdi_scope_end(&s);
+}
+
+/* ---- nested dissection ---- */
+/* An elimination order for matrices whose rows have a place in space: separators last. The rows are numbered along a space-filling curve, so that
+ * every part is a compact graph in cache. A part is halved on a coarse copy of it (clusters of neighbours, cut by a plane or by graph distance),
+ * the cut is moved by local exchanges from the coarsest copy to the finest, turned into a set of vertices and made small there; both halves are
+ * halved in turn. Small parts are ordered by minimum degree, the separators around them counted as neighbours.
+ * This work is based on:
+ *   A. George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10, 1973.
+ *   G. M. Morton, A computer oriented geodetic data base and a new technique in file sequencing, IBM, 1966.
+ *   B. Hendrickson, R. Leland, A multilevel algorithm for partitioning graphs, Supercomputing 1995.
+ *   C. M. Fiduccia, R. M. Mattheyses, A linear-time heuristic for improving network partitions, DAC 1982.
+ *   C. Ashcraft, J. W. H. Liu, Robust ordering of sparse matrices using multisection, SIAM J. Matrix Anal. Appl. 19, 1998.
+ */
+
+#ifndef HDI_ND_LEAF
+#define HDI_ND_LEAF 240
+#define HDI_ND_COARSE 100
+#endif
+enum {
+    HDI_ND_WORDS = 24,      /* work space: words for a vertex */
+    HDI_ND_EDGE_WORDS = 2,  /* and for an entry */
+    HDI_ND_LEVELS = 24,     /* most copies of a part */
+    HDI_ND_BUCKETS = 128,   /* gains that are told apart, for each side */
+    HDI_ND_FREE = -2147483647
+};
+
+/* A part, or a coarse copy of one. At the finest copy weights are 1 (ew and w are NULL), and negative entries of adj are rows outside of the
+ * part, already in a separator: ~row. */
+typedef struct hdi_nd_graph {
+    int32_t n;
+    int32_t *ptr, *adj;    /* neighbours of v: adj[ptr[v]..ptr[v + 1]), no diagonal */
+    int32_t *ew, *w;       /* weights of entries (edges of the part within) and of vertices (vertices of the part within) */
+    int32_t *id;           /* the row whose place stands for v */
+    int32_t *map;          /* vertex of the next coarser copy */
+    int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
+} hdi_nd_graph;
+
+typedef struct hdi_nd_part { int32_t first, n, edge, n_edges, buffer; } hdi_nd_part;
+
+/* Everything that the tasks share; each works in its part's slices only. */
+typedef struct hdi_nd {
+    int32_t n;
+    int32_t *ptr[2], *adj[2], *id[2];   /* graphs of the parts: those of odd depth in one buffer, of even depth in the other */
+    float *xyz;
+    int32_t *perm, *work;
+    hdi_nd_part *part;                  /* of the running parallel loop, part i halves into child[2 i], child[2 i + 1] */
+    hdi_nd_part *child;
+} hdi_nd;
+
+typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
+
+static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
+    int32_t *p = s->at;
+    HEATDIFF_ASSERT(words <= s->end - s->at);
+    s->at += words;
+    return p;
+}
+
+static int8_t *hdi_nd_take_bytes(hdi_nd_space *s, int64_t bytes) { return HDI_CAST(int8_t *, HDI_CAST(void *, hdi_nd_take(s, bytes / 4 + 1))); }
+
+/* ---- order along the curve ---- */
+
+/* The bits of x (10) two places apart. */
+static uint32_t hdi_nd_spread(uint32_t x) {
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+/* key[i] = place of row i on the Morton curve in a grid of 1024^3 cells; unit [3n] = the places scaled to [0, 1]. */
+static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit) {
+    double lo[3], hi[3], width = 0;
+    int32_t i, d;
+    for (d = 0; d < 3; d++) lo[d] = hi[d] = n ? 0.5 * xyz[d] : 0;   /* halves: a difference of two must not overflow */
+    for (i = 0; i < n; i++)
+        for (d = 0; d < 3; d++) {
+            lo[d] = hdi_min(lo[d], 0.5 * xyz[3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, d)]);
+            hi[d] = hdi_max(hi[d], 0.5 * xyz[3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, d)]);
+        }
+    for (d = 0; d < 3; d++) width = hdi_max(width, hi[d] - lo[d]);
+    if (!(width > 0)) width = 1;
+    for (i = 0; i < n; i++) {
+        key[i] = 0;
+        for (d = 0; d < 3; d++) {
+            const size_t q = 3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, d);
+            const double u = (0.5 * xyz[q] - lo[d]) / width;
+            unit[q] = HDI_CAST(float, u);
+            key[i] |= hdi_nd_spread(HDI_CAST(uint32_t, u * 1023)) << d;
+        }
+    }
+}
+
+/* order = the rows by ascending key: three passes of ten bits. spare [n], count [1024]. */
+static void hdi_nd_sort(const uint32_t *key, int32_t n, int32_t *order, int32_t *spare, int32_t *count) {
+    int32_t i, shift, *from = spare, *to = order;
+    for (i = 0; i < n; i++) from[i] = i;
+    for (shift = 0; shift < 30; shift += 10) {
+        int32_t sum = 0, *t;
+        memset(count, 0, 1024 * sizeof *count);
+        for (i = 0; i < n; i++) count[key[i] >> shift & 1023u]++;
+        for (i = 0; i < 1024; i++) {
+            const int32_t c = count[i];
+            count[i] = sum;
+            sum += c;
+        }
+        for (i = 0; i < n; i++) to[count[key[from[i]] >> shift & 1023u]++] = from[i];
+        t = from;
+        from = to;
+        to = t;
+    }
+}
+
+/* ---- coarse copies ---- */
+
+/* Clusters of neighbours: each vertex still free takes its free neighbours, to at most limit of weight. One that finds none joins a neighbour's
+ * cluster; without any, one left alone before. weight [n]. Returns their number. */
+static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *weight) {
+    int32_t v, p, n = 0, single = -1, *map = g->map;
+    for (v = 0; v < g->n; v++) map[v] = -1;
+    for (v = 0; v < g->n; v++) {
+        const int32_t wv = g->w ? g->w[v] : 1;
+        int32_t sum = wv, join = -1;
+        if (map[v] >= 0) continue;
+        map[v] = n;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p];
+            if (u < 0) continue;
+            if (map[u] < 0) {
+                const int32_t wu = g->w ? g->w[u] : 1;
+                if (sum + wu > limit) continue;
+                map[u] = n;
+                sum += wu;
+            } else if (join < 0 && map[u] != n && weight[map[u]] + wv <= limit + limit / 4) join = map[u];
+        }
+        if (sum == wv && join < 0 && single >= 0 && weight[single] + wv <= limit) join = single;
+        if (sum > wv || join < 0) {
+            if (sum == wv) single = n;
+            weight[n++] = sum;
+        } else {
+            map[v] = join;
+            weight[join] += wv;
+        }
+    }
+    return n;
+}
+
+/* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for space entries. member [g->n],
+ * start [c->n + 1], mark [c->n]. 0 if the room is too small. */
+static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space, int32_t *member, int32_t *start, int32_t *mark) {
+    const int32_t *map = g->map, *ew = g->ew;
+    int32_t v, i, p, z = 0, *adj = c->adj, *sum = c->ew;
+    memset(start, 0, HDI_CAST(size_t, c->n + 1) * sizeof *start);
+    for (v = 0; v < g->n; v++) start[g->map[v]]++;
+    for (i = 0, z = 0; i < c->n; i++) {
+        z += start[i];
+        start[i] = z;
+        mark[i] = -1;
+    }
+    start[c->n] = z;
+    for (v = g->n; v-- > 0;) member[--start[g->map[v]]] = v;
+    for (i = 0, z = 0; i < c->n; i++) {
+        int32_t m;
+        const int32_t row = z;
+        c->ptr[i] = z;
+        c->id[i] = g->id[member[start[i]]];
+        mark[i] = space - 1;                           /* where edges inside the cluster go, to be forgotten */
+        for (m = start[i]; m < start[i + 1]; m++) {
+            v = member[m];
+            if (g->ptr[v + 1] - g->ptr[v] >= space - z) return 0;
+            for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+                const int32_t u = g->adj[p], e = ew ? ew[p] : 1;
+                int32_t d, at, fresh;
+                if (u < 0) continue;
+                d = map[u];
+                at = mark[d];
+                fresh = at < row;                      /* no branches from here on: they would be unpredictable */
+                at = fresh ? z : at;
+                mark[d] = at;
+                adj[at] = d;
+                sum[at] = e + (fresh ? 0 : sum[at]);
+                z += fresh;
+            }
+        }
+        mark[i] = -1;
+    }
+    c->ptr[c->n] = z;
+    return 1;
+}
+
+/* The copies of level[0], coarser and coarser. Returns how many there are with level[0]. */
+static int32_t hdi_nd_coarsen(hdi_nd_graph *level, hdi_nd_space *s) {
+    int32_t l, room = level->ptr[level->n], *adj = hdi_nd_take(s, room), *ew = hdi_nd_take(s, room);
+    for (l = 0; l + 1 < HDI_ND_LEVELS && level[l].n > HDI_ND_COARSE; l++) {
+        hdi_nd_graph *g = level + l, *c = g + 1;
+        const int32_t mean = level->n / g->n, most = level->n / 24;
+        hdi_nd_space temp;
+        int32_t *weight, *member, *start, *mark;
+        g->map = hdi_nd_take(s, g->n);
+        weight = hdi_nd_take(s, g->n);
+        c->n = hdi_nd_cluster(g, 8 * mean < most ? 8 * mean : most, weight);
+        if (c->n > g->n - g->n / 3) break;
+        s->at = weight + c->n;
+        c->w = weight;
+        c->ptr = hdi_nd_take(s, c->n + 1);
+        c->id = hdi_nd_take(s, c->n);
+        c->side = hdi_nd_take_bytes(s, c->n);
+        c->adj = adj;
+        c->ew = ew;
+        temp = *s;
+        member = hdi_nd_take(&temp, g->n);
+        start = hdi_nd_take(&temp, c->n + 1);
+        mark = hdi_nd_take(&temp, c->n);
+        if (!hdi_nd_contract(g, c, room, member, start, mark)) break;
+        room -= c->ptr[c->n];
+        adj += c->ptr[c->n];
+        ew += c->ptr[c->n];
+    }
+    return l + 1;
+}
+
+/* ---- buckets ---- */
+
+/* Items by gain: doubly linked lists, one for each gain and side. prev of the first is -1 - bucket, of one in no list HDI_ND_FREE. */
+typedef struct hdi_nd_queue {
+    int32_t head[2 * HDI_ND_BUCKETS], top[2];
+    int32_t *next, *prev;
+} hdi_nd_queue;
+
+static void hdi_nd_queue_clear(hdi_nd_queue *q) {
+    memset(q->head, 0xff, sizeof q->head);
+    q->top[0] = q->top[1] = -1;
+}
+
+static void hdi_nd_queue_add(hdi_nd_queue *q, int32_t item, int32_t side, int32_t gain) {
+    const int32_t b = side * HDI_ND_BUCKETS + gain, h = q->head[b];
+    q->next[item] = h;
+    q->prev[item] = -1 - b;
+    if (h >= 0) q->prev[h] = item;
+    q->head[b] = item;
+    if (gain > q->top[side]) q->top[side] = gain;
+}
+
+static void hdi_nd_queue_remove(hdi_nd_queue *q, int32_t item) {
+    const int32_t next = q->next[item], prev = q->prev[item];
+    if (prev >= 0) q->next[prev] = next;
+    else q->head[-1 - prev] = next;
+    if (next >= 0) q->prev[next] = prev;
+    q->prev[item] = HDI_ND_FREE;
+}
+
+/* The item of largest gain on a side, or -1. */
+static int32_t hdi_nd_queue_best(hdi_nd_queue *q, int32_t side) {
+    const int32_t *head = q->head + side * HDI_ND_BUCKETS;
+    int32_t t = q->top[side];
+    while (t >= 0 && head[t] < 0) t--;
+    q->top[side] = t;
+    return t < 0 ? -1 : head[t];
+}
+
+/* ---- cutting edges ---- */
+
+/* What a cut costs: its size, and a little for halves that differ. */
+static double hdi_nd_cost(double cut, double a, double b) {
+    const double im = (a - b) / (a + b + 1e-30);
+    return (cut + 1) * (1 + 0.6 * im * im);
+}
+
+typedef struct hdi_nd_cut { double weight[2], cut, most; } hdi_nd_cut;
+
+typedef struct hdi_nd_mover {
+    const hdi_nd_graph *g;
+    hdi_nd_queue q;
+    int32_t *gain, *moved;    /* gain[v]: weight of the edges to the other side less of those to its own */
+    int8_t *locked;
+    int32_t shift;            /* gains of 2^shift are told apart */
+} hdi_nd_mover;
+
+static int32_t hdi_nd_bucket(const hdi_nd_mover *m, int32_t gain) {
+    const int32_t half = HDI_ND_BUCKETS / 2, b = half + (gain < 0 ? -(-gain >> m->shift) : gain >> m->shift);
+    return b < 0 ? 0 : b >= HDI_ND_BUCKETS ? HDI_ND_BUCKETS - 1 : b;
+}
+
+static hdi_nd_mover hdi_nd_mover_make(const hdi_nd_graph *g, hdi_nd_space *s) {
+    hdi_nd_mover m;
+    m.g = g;
+    m.shift = 0;
+    m.gain = hdi_nd_take(s, g->n);
+    m.q.next = hdi_nd_take(s, g->n);
+    m.q.prev = hdi_nd_take(s, g->n);
+    m.moved = hdi_nd_take(s, g->n);
+    m.locked = hdi_nd_take_bytes(s, g->n);
+    return m;
+}
+
+/* Gains of all vertices; those on the cut enter the queue. Sets the cut's weights. */
+static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
+    const hdi_nd_graph *g = m->g;
+    int32_t v, p, largest = 1;
+    double sum = 0;
+    cut->weight[0] = cut->weight[1] = 0;
+    hdi_nd_queue_clear(&m->q);
+    for (v = 0; v < g->n; v++) {
+        int32_t in = 0, out = 0;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
+            if (u < 0) continue;
+            out += e & -(g->side[u] ^ g->side[v]);
+            in += e;
+        }
+        in -= out;
+        m->gain[v] = out - in;
+        m->q.prev[v] = out ? HDI_ND_FREE + 1 : HDI_ND_FREE;   /* a mark: to be entered below */
+        if (out > in && out > largest) largest = out;
+        if (out && in > largest) largest = in;
+        sum += out;
+        cut->weight[g->side[v]] += g->w ? g->w[v] : 1;
+    }
+    cut->cut = 0.5 * sum;
+    m->shift = 0;
+    while (largest >> m->shift >= HDI_ND_BUCKETS / 2) m->shift++;
+    for (v = 0; v < g->n; v++)
+        if (m->q.prev[v] != HDI_ND_FREE) hdi_nd_queue_add(&m->q, v, g->side[v], hdi_nd_bucket(m, m->gain[v]));
+    memset(m->locked, 0, HDI_CAST(size_t, g->n));
+}
+
+/* v changes its side; its neighbours' gains follow. */
+static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
+    const hdi_nd_graph *g = m->g;
+    const int8_t to = HDI_CAST(int8_t, 1 - g->side[v]);
+    const int32_t wv = g->w ? g->w[v] : 1;
+    int32_t p;
+    g->side[v] = to;
+    cut->weight[to] += wv;
+    cut->weight[1 - to] -= wv;
+    cut->cut -= m->gain[v];
+    m->gain[v] = -m->gain[v];
+    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+        const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
+        if (u < 0) continue;
+        m->gain[u] += g->side[u] == to ? -2 * e : 2 * e;
+        if (m->locked[u]) continue;
+        if (m->q.prev[u] != HDI_ND_FREE) hdi_nd_queue_remove(&m->q, u);
+        hdi_nd_queue_add(&m->q, u, g->side[u], hdi_nd_bucket(m, m->gain[u]));
+    }
+}
+
+/* The vertex to move next: of largest gain, where the side it goes to stays below most or below the side it leaves. -1: none. */
+static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
+    int32_t s, best = -1, gain = 0;
+    for (s = 0; s < 2; s++) {
+        const int32_t v = hdi_nd_queue_best(&m->q, s);
+        double after;
+        if (v < 0) continue;
+        after = cut->weight[1 - s] + (m->g->w ? m->g->w[v] : 1);
+        if (after > cut->most && after >= cut->weight[s]) continue;
+        if (best >= 0 && (m->gain[v] < gain || (m->gain[v] == gain && cut->weight[1] <= cut->weight[0]))) continue;
+        best = v;
+        gain = m->gain[v];
+    }
+    return best;
+}
+
+/* Fiduccia-Mattheyses: moves the best vertex, even at a loss, each once in a pass; goes back to the best cut seen. */
+static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes) {
+    const int32_t patience = 20 + m->g->n / 20 < 200 ? 20 + m->g->n / 20 : 200;
+    while (passes-- > 0) {
+        double first, best;
+        int32_t n = 0, keep = 0, v;
+        hdi_nd_mover_start(m, cut);
+        first = best = hdi_nd_cost(cut->cut, cut->weight[0], cut->weight[1]);
+        if (hdi_max(cut->weight[0], cut->weight[1]) > cut->most) first = best = DBL_MAX;
+        while (n - keep < patience && (v = hdi_nd_mover_next(m, cut)) >= 0) {
+            double now;
+            hdi_nd_queue_remove(&m->q, v);
+            m->locked[v] = 1;
+            hdi_nd_mover_move(m, v, cut);
+            m->moved[n++] = v;
+            now = hdi_nd_cost(cut->cut, cut->weight[0], cut->weight[1]);
+            if (now < best && hdi_max(cut->weight[0], cut->weight[1]) <= cut->most) {
+                best = now;
+                keep = n;
+            }
+        }
+        while (n > keep) {
+            v = m->moved[--n];
+            m->locked[v] = 1;
+            hdi_nd_mover_move(m, v, cut);
+        }
+        if (!(best < first)) break;
+    }
+}
+
+/* ---- the first cut ---- */
+
+static const float *hdi_nd_place(const hdi_nd *nd, const hdi_nd_graph *g, int32_t v) { return nd->xyz + 3 * HDI_CAST(size_t, g->id[v]); }
+
+static double hdi_nd_distance2(const float *a, const float *b) {
+    const double x = HDI_CAST(double, a[0]) - HDI_CAST(double, b[0]), y = HDI_CAST(double, a[1]) - HDI_CAST(double, b[1]);
+    const double z = HDI_CAST(double, a[2]) - HDI_CAST(double, b[2]);
+    return x * x + y * y + z * z;
+}
+
+static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, const float *from) {
+    int32_t v, far_v = 0;
+    double most = -1;
+    for (v = 0; v < g->n; v++) {
+        const double d = hdi_nd_distance2(hdi_nd_place(nd, g, v), from);
+        if (d > most) {
+            most = d;
+            far_v = v;
+        }
+    }
+    return far_v;
+}
+
+/* dist = number of edges from start; g->n where none leads. Returns the vertex reached last. */
+static int32_t hdi_nd_steps(const hdi_nd_graph *g, int32_t start, int32_t *dist, int32_t *queue) {
+    int32_t v, p, head = 0, tail = 1;
+    for (v = 0; v < g->n; v++) dist[v] = g->n;
+    dist[start] = 0;
+    queue[0] = start;
+    while (head < tail) {
+        v = queue[head++];
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p];
+            if (u < 0 || dist[u] < g->n) continue;
+            dist[u] = dist[v] + 1;
+            queue[tail++] = u;
+        }
+    }
+    return queue[tail - 1];
+}
+
+/* A monotone map of doubles to integers. */
+static uint64_t hdi_nd_key(double x) {
+    uint64_t u;
+    memcpy(&u, &x, sizeof u);
+    return u >> 63 ? ~u : u | 0x8000000000000000u;
+}
+
+/* Values along which the vertices are swept, as keys to sort by: 0 the longest straight line, 1 graph distance, others fixed directions. 0 if all
+ * are equal. work [3 g->n]. */
+static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key, int32_t *work) {
+    static const signed char direction[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+    int32_t v, a, b, *da = work, *db = work + g->n, *queue = work + 2 * g->n;
+    int differ = 0;
+    double d[3] = {0, 0, 0};
+    if (kind == 1) {
+        a = hdi_nd_steps(g, hdi_nd_steps(g, 0, da, queue), da, queue);
+        b = hdi_nd_steps(g, a, db, queue);
+        hdi_nd_steps(g, b, da, queue);
+    } else if (kind == 0) {
+        const float *pa, *pb;
+        a = hdi_nd_farthest(nd, g, hdi_nd_place(nd, g, 0));
+        pa = hdi_nd_place(nd, g, a);
+        pb = hdi_nd_place(nd, g, hdi_nd_farthest(nd, g, pa));
+        for (v = 0; v < 3; v++) d[v] = HDI_CAST(double, pb[v]) - HDI_CAST(double, pa[v]);
+    } else for (v = 0; v < 3; v++) d[v] = direction[(kind - 2) % 9][v];
+    for (v = 0; v < g->n; v++) {
+        const float *x = hdi_nd_place(nd, g, v);
+        key[v].key = hdi_nd_key(kind == 1 ? HDI_CAST(double, da[v] - db[v])
+                                          : d[0] * HDI_CAST(double, x[0]) + d[1] * HDI_CAST(double, x[1]) + d[2] * HDI_CAST(double, x[2]));
+        key[v].id = v;
+        if (key[v].key != key[0].key) differ = 1;
+    }
+    return differ;
+}
+
+/* The sides that the best place in the order of key gives. */
+static double hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
+    double weight = 0, cut = 0, best = DBL_MAX;
+    int32_t i, p, keep = 0;
+    memset(g->side, 1, HDI_CAST(size_t, g->n));
+    for (i = 0; i < g->n; i++) {
+        const int32_t v = HDI_CAST(int32_t, key[i].id);
+        double now;
+        g->side[v] = 0;
+        weight += g->w ? g->w[v] : 1;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
+            if (u >= 0) cut += g->side[u] ? e : -e;
+        }
+        now = hdi_nd_cost(cut, weight, total - weight);
+        if (fabs(2 * weight - total) > 0.2 * total) now = 1e30 * (1 + fabs(2 * weight - total) / total);
+        if (now < best) {
+            best = now;
+            keep = i + 1;
+        }
+    }
+    for (i = keep; i < g->n; i++) g->side[key[i].id] = 1;
+    return best;
+}
+
+/* Cuts the coarsest copy: the best of several sweeps, each refined. */
+static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t total, hdi_nd_space s) {
+    const int32_t tries = total > 20000 ? 11 : total > 3000 ? 5 : 2;
+    int32_t t, any = 0, *work;
+    double best = DBL_MAX;
+    hdi_pair *key;
+    int8_t *side;
+    hdi_nd_mover m = hdi_nd_mover_make(g, &s);
+    hdi_nd_cut cut;
+    cut.most = 0.6 * total;
+    side = hdi_nd_take_bytes(&s, g->n);
+    work = hdi_nd_take(&s, 3 * HDI_CAST(int64_t, g->n));
+    if ((uintptr_t)s.at % sizeof(uint64_t)) hdi_nd_take(&s, 1);
+    key = HDI_CAST(hdi_pair *, HDI_CAST(void *, hdi_nd_take(&s, 4 * HDI_CAST(int64_t, g->n))));
+    for (t = 0; t < tries; t++) {
+        double cost;
+        if (!hdi_nd_sweep_keys(nd, g, t, key, work) && (any || t + 1 < tries)) continue;
+        any = 1;
+        hdi_sort_pairs(key, g->n);
+        cost = hdi_nd_sweep(g, key, total);
+        hdi_nd_refine_edges(&m, &cut, 3);
+        cost = hdi_nd_cost(cut.cut, cut.weight[0], cut.weight[1]);
+        if (cost >= best) continue;
+        best = cost;
+        memcpy(side, g->side, HDI_CAST(size_t, g->n));
+    }
+    memcpy(g->side, side, HDI_CAST(size_t, g->n));
+}
+
+/* ---- separators ---- */
+
+/* The separator of a part while it is being refined. Item 2 v + s of the queue: separator vertex v moves to side s, and its neighbours on the
+ * other side come into the separator; pulled[2 v + s] counts those. */
+typedef struct hdi_nd_separator {
+    const hdi_nd_graph *g;
+    hdi_nd_queue q;
+    int32_t *pulled;
+    int32_t *list, n_list;     /* vertices that are, or were, in the separator */
+    int32_t *undo, n_undo;     /* v and its state before, 4 v + state */
+    int8_t *locked;
+    int32_t size[3], most;
+} hdi_nd_separator;
+
+static int32_t hdi_nd_pulled_gain(int32_t pulled) { return pulled < HDI_ND_BUCKETS ? HDI_ND_BUCKETS - 1 - pulled : 0; }
+
+static void hdi_nd_separator_enter(hdi_nd_separator *x, int32_t v) {
+    const hdi_nd_graph *g = x->g;
+    int32_t p, n[3] = {0, 0, 0}, s;
+    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+        if (g->adj[p] >= 0) n[g->side[g->adj[p]]]++;
+    for (s = 0; s < 2; s++) {
+        x->pulled[2 * v + s] = n[1 - s];
+        if (x->locked[v]) x->q.prev[2 * v + s] = HDI_ND_FREE;
+        else hdi_nd_queue_add(&x->q, 2 * v + s, s, hdi_nd_pulled_gain(n[1 - s]));
+    }
+}
+
+static void hdi_nd_separator_change(hdi_nd_separator *x, int32_t item, int32_t by) {
+    x->pulled[item] += by;
+    if (x->q.prev[item] == HDI_ND_FREE) return;
+    hdi_nd_queue_remove(&x->q, item);
+    hdi_nd_queue_add(&x->q, item, item & 1, hdi_nd_pulled_gain(x->pulled[item]));
+}
+
+static void hdi_nd_separator_set(hdi_nd_separator *x, int32_t v, int8_t state) {
+    x->undo[x->n_undo++] = 4 * v + x->g->side[v];
+    x->size[x->g->side[v]]--;
+    x->size[state]++;
+    x->g->side[v] = state;
+}
+
+/* Separator vertex v goes to side s. */
+static void hdi_nd_separator_move(hdi_nd_separator *x, int32_t v, int8_t s) {
+    const hdi_nd_graph *g = x->g;
+    int32_t p, r;
+    x->locked[v] = 1;
+    hdi_nd_queue_remove(&x->q, 2 * v);
+    hdi_nd_queue_remove(&x->q, 2 * v + 1);
+    hdi_nd_separator_set(x, v, s);
+    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+        const int32_t u = g->adj[p];
+        if (u < 0 || g->side[u] == s) continue;
+        if (g->side[u] == 2) {
+            hdi_nd_separator_change(x, 2 * u + 1 - s, 1);
+            continue;
+        }
+        hdi_nd_separator_set(x, u, 2);
+        x->list[x->n_list++] = u;
+        for (r = g->ptr[u]; r < g->ptr[u + 1]; r++)
+            if (g->adj[r] >= 0 && g->side[g->adj[r]] == 2) hdi_nd_separator_change(x, 2 * g->adj[r] + s, -1);
+        hdi_nd_separator_enter(x, u);
+    }
+}
+
+/* The best item that keeps both sides below most, or makes the larger smaller; -1: none. */
+static int32_t hdi_nd_separator_next(hdi_nd_separator *x) {
+    int32_t s, best = -1, least = 0;
+    for (s = 0; s < 2; s++) {
+        const int32_t item = hdi_nd_queue_best(&x->q, s);
+        if (item < 0 || (x->size[s] + 1 > x->most && x->size[s] >= x->size[1 - s])) continue;
+        if (best >= 0 && (x->pulled[item] > least || (x->pulled[item] == least && x->size[1] >= x->size[0]))) continue;
+        best = item;
+        least = x->pulled[item];
+    }
+    return best;
+}
+
+/* Starts a pass: the list without those that left, each once, all in the queue. */
+static void hdi_nd_separator_start(hdi_nd_separator *x) {
+    int32_t i, n = 0;
+    memset(x->locked, 0, HDI_CAST(size_t, x->g->n));
+    hdi_nd_queue_clear(&x->q);
+    x->n_undo = 0;
+    for (i = 0; i < x->n_list; i++) {
+        const int32_t v = x->list[i];
+        if (x->g->side[v] != 2 || x->locked[v]) continue;
+        x->locked[v] = 1;
+        x->list[n++] = v;
+    }
+    x->n_list = n;
+    for (i = 0; i < n; i++) x->locked[x->list[i]] = 0;
+    for (i = 0; i < n; i++) hdi_nd_separator_enter(x, x->list[i]);
+}
+
+/* Fiduccia-Mattheyses for vertex separators. */
+static void hdi_nd_refine_separator(hdi_nd_separator *x, int32_t passes) {
+    const int32_t room = 2 * x->g->n;
+    while (passes-- > 0) {
+        double first, best;
+        int32_t keep = 0, bad = 0, item, patience;
+        hdi_nd_separator_start(x);
+        first = best = hdi_nd_cost(x->size[2], x->size[0], x->size[1]);
+        patience = 30 + x->size[2] / 4;
+        while (bad < patience && (item = hdi_nd_separator_next(x)) >= 0 && x->n_undo + x->pulled[item] + 1 < room &&
+               x->n_list + x->pulled[item] < room) {
+            double now;
+            hdi_nd_separator_move(x, item >> 1, HDI_CAST(int8_t, item & 1));
+            now = hdi_nd_cost(x->size[2], x->size[0], x->size[1]);
+            bad++;
+            if (now < best) {
+                best = now;
+                keep = x->n_undo;
+                bad = 0;
+            }
+        }
+        while (x->n_undo > keep) {
+            const int32_t v = x->undo[--x->n_undo] >> 2, state = x->undo[x->n_undo] & 3;
+            x->size[x->g->side[v]]--;
+            x->size[state]++;
+            x->g->side[v] = HDI_CAST(int8_t, state);
+        }
+        if (!(best < first)) break;
+    }
+}
+
+/* From sides to a separator: the vertices of one side that touch the other, of that side where they are fewer. near [coarse n]: only vertices of
+ * these clusters may touch; NULL: all may. */
+static void hdi_nd_separator_make(hdi_nd_separator *x, const int8_t *near_cut) {
+    const hdi_nd_graph *g = x->g;
+    int32_t v, p, s, i, n = 0, touch[2] = {0, 0};
+    x->size[0] = x->size[1] = x->size[2] = 0;
+    for (v = 0; v < g->n; v++) {
+        x->size[g->side[v]]++;
+        if (near_cut && !near_cut[g->map[v]]) continue;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+            if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) {
+                touch[g->side[v]]++;
+                x->list[n++] = v;
+                break;
+            }
+    }
+    s = touch[1] < touch[0];
+    for (x->n_list = 0, i = 0; i < n; i++) {
+        v = x->list[i];
+        if (g->side[v] != s) continue;
+        x->list[x->n_list++] = v;
+    }
+    for (i = 0; i < x->n_list; i++) g->side[x->list[i]] = 2;
+    x->size[s] -= x->n_list;
+    x->size[2] = x->n_list;
+}
+
+static hdi_nd_separator hdi_nd_separator_space(const hdi_nd_graph *g, hdi_nd_space *s) {
+    hdi_nd_separator x;
+    const int64_t n = g->n;
+    x.g = g;
+    x.q.next = hdi_nd_take(s, 2 * n);
+    x.q.prev = hdi_nd_take(s, 2 * n);
+    x.pulled = hdi_nd_take(s, 2 * n);
+    x.list = hdi_nd_take(s, 2 * n);
+    x.undo = hdi_nd_take(s, 2 * n);
+    x.locked = hdi_nd_take_bytes(s, n);
+    x.n_list = x.n_undo = 0;
+    x.size[0] = x.size[1] = x.size[2] = 0;
+    x.most = HDI_CAST(int32_t, 0.6 * HDI_CAST(double, n));
+    return x;
+}
+
+/* ---- parts ---- */
+
+/* Sides from the copy above, refined; near_cut [g->n] tells which touch the other side. */
+static void hdi_nd_near(const hdi_nd_graph *g, int8_t *near_cut) {
+    int32_t v, p;
+    for (v = 0; v < g->n; v++) {
+        near_cut[v] = 0;
+        for (p = g->ptr[v]; p < g->ptr[v + 1] && !near_cut[v]; p++) near_cut[v] = g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v];
+    }
+}
+
+/* Sets level[0].side to 0, 1 or 2. size [3] counts them. */
+static void hdi_nd_dissect(const hdi_nd *nd, hdi_nd_graph *level, hdi_nd_space s, int32_t *size) {
+    const int32_t n_levels = hdi_nd_coarsen(level, &s);
+    int32_t l, v;
+    int8_t *near_cut = NULL;
+    hdi_nd_separator x;
+    hdi_nd_first_cut(nd, level + n_levels - 1, level->n, s);
+    for (l = n_levels - 2; l >= 0; l--) {
+        hdi_nd_graph *g = level + l;
+        for (v = 0; v < g->n; v++) g->side[v] = g[1].side[g->map[v]];
+        if (l > 0) {
+            hdi_nd_space temp = s;
+            hdi_nd_mover m = hdi_nd_mover_make(g, &temp);
+            hdi_nd_cut cut;
+            cut.most = 0.6 * level->n;
+            hdi_nd_refine_edges(&m, &cut, 3);
+        }
+    }
+    if (n_levels > 1) {
+        near_cut = hdi_nd_take_bytes(&s, level[1].n);
+        hdi_nd_near(level + 1, near_cut);
+    }
+    x = hdi_nd_separator_space(level, &s);
+    hdi_nd_separator_make(&x, near_cut);
+    hdi_nd_refine_separator(&x, 4);
+    for (v = 0; v < 3; v++) size[v] = x.size[v];
+#ifdef ND_TRACE
+    if (level->n > ND_TRACE) printf("part %d levels %d coarsest %d: %d %d sep %d\n", level->n, n_levels, level[n_levels-1].n, size[0], size[1], size[2]);
+#endif
+}
+
+static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, const hdi_nd_part *p) {
+    hdi_nd_space s;
+    s.at = nd->work + HDI_CAST(size_t, HDI_ND_WORDS) * HDI_CAST(size_t, p->first) + HDI_CAST(size_t, HDI_ND_EDGE_WORDS) * HDI_CAST(size_t, p->edge);
+    s.end = s.at + HDI_CAST(size_t, HDI_ND_WORDS) * HDI_CAST(size_t, p->n) + HDI_CAST(size_t, HDI_ND_EDGE_WORDS) * HDI_CAST(size_t, p->n_edges);
+    return s;
+}
+
+static hdi_nd_graph hdi_nd_graph_of(const hdi_nd *nd, const hdi_nd_part *p) {
+    hdi_nd_graph g;
+    memset(&g, 0, sizeof g);
+    g.n = p->n;
+    g.ptr = nd->ptr[p->buffer] + 2 * HDI_CAST(size_t, p->first);   /* n + 1 words for every part, also where a separator is empty */
+    g.adj = nd->adj[p->buffer] + p->edge;
+    g.id = nd->id[p->buffer] + p->first;
+    return g;
+}
+
+/* child = one side of g, in its slices of the other buffer. at [g->n]: numbers within the sides, ~row in the separator. */
+static void hdi_nd_extract(const hdi_nd_graph *g, int8_t side, const int32_t *at, hdi_nd_graph *child) {
+    int32_t v, p, i = 0, z = 0;
+    for (v = 0; v < g->n; v++) {
+        if (g->side[v] != side) continue;
+        child->ptr[i] = z;
+        child->id[i++] = g->id[v];
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) child->adj[z++] = g->adj[p] < 0 ? g->adj[p] : at[g->adj[p]];
+    }
+    child->ptr[i] = z;
+}
+
+/* Halves a part: its separator is ordered, last in the part's range; child[2] are the rest. */
+static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child) {
+    hdi_nd_graph level[HDI_ND_LEVELS], half;
+    hdi_nd_space s = hdi_nd_space_of(nd, part);
+    int32_t v, size[3], *at = hdi_nd_take(&s, part->n), n[2] = {0, 0}, last = part->first + part->n;
+    level[0] = hdi_nd_graph_of(nd, part);
+    level[0].side = hdi_nd_take_bytes(&s, part->n);
+    hdi_nd_dissect(nd, level, s, size);
+    last -= size[2];
+    for (v = 0; v < part->n; v++) {
+        const int8_t t = level->side[v];
+        if (t < 2) {
+            at[v] = n[t]++;
+            continue;
+        }
+        nd->perm[last++] = level->id[v];
+        at[v] = ~level->id[v];
+    }
+    for (v = 0; v < 2; v++) {
+        child[v].first = v ? part->first + n[0] : part->first;
+        child[v].n = n[v];
+        child[v].edge = v ? child[0].edge + child[0].n_edges : part->edge;
+        child[v].buffer = 1 - part->buffer;
+        half = hdi_nd_graph_of(nd, child + v);
+        hdi_nd_extract(level, HDI_CAST(int8_t, v), at, &half);
+        child[v].n_edges = half.ptr[half.n];
+    }
+}
+
+/* Orders a small part by minimum degree, separators around it as halo. Its graph is changed in place: halo rows become numbers from n on. */
+static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part) {
+    const hdi_nd_graph g = hdi_nd_graph_of(nd, part);
+    hdi_nd_space s = hdi_nd_space_of(nd, part);
+    int32_t p, v, n_halo = 0, mask = 1, *table, *local = nd->perm + part->first;
+    if (!part->n) return;
+    for (p = 0, v = 0; p < part->n_edges; p++) v += g.adj[p] < 0;
+    while (mask < 2 * v) mask *= 2;
+    table = hdi_nd_take(&s, 2 * HDI_CAST(int64_t, mask));
+    for (p = 0; p < mask; p++) table[2 * p] = 0;
+    for (p = 0; p < part->n_edges; p++) {
+        const int32_t u = g.adj[p];
+        uint32_t h;
+        if (u >= 0) continue;
+        h = (HDI_CAST(uint32_t, ~u) * 2654435769u >> 7) & HDI_CAST(uint32_t, mask - 1);
+        while (table[2 * h] && table[2 * h] != u) h = (h + 1) & HDI_CAST(uint32_t, mask - 1);
+        if (!table[2 * h]) {
+            table[2 * h] = u;
+            table[2 * h + 1] = part->n + n_halo++;
+        }
+        g.adj[p] = table[2 * h + 1];
+    }
+    s.at = table;
+    hdi_sym_minimum_degree_part(part->n, n_halo, g.ptr, g.adj, local, s.at);
+    for (v = 0; v < part->n; v++) local[v] = g.id[local[v]];
+}
+
+static int hdi_nd_is_leaf(const hdi_nd_part *p) { return p->n <= HDI_ND_LEAF; }
+
+/* Orders a part with everything below it. */
+static void hdi_nd_subtree(void *arg, int64_t index, int32_t worker) {
+    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
+    hdi_nd_part stack[128];
+    int32_t n = 1;
+    (void)worker;
+    stack[0] = nd->part[index];
+    while (n > 0) {
+        const hdi_nd_part p = stack[--n];
+        if (hdi_nd_is_leaf(&p)) hdi_nd_leaf(nd, &p);
+        else {
+            hdi_nd_split(nd, &p, stack + n);
+            n += 2;
+        }
+    }
+}
+
+static void hdi_nd_split_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
+    (void)worker;
+    hdi_nd_split(nd, nd->part + index, nd->child + 2 * index);
+}
+
+static hd_status hdi_sym_nested_dissection(const hd_csr *a, const double *xyz, int32_t *perm, hd_context *ctx, hd_error *e) {
+    const int32_t n = a->n_rows;
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    hdi_nd nd;
+    int32_t *order = HDI_TAKE(&s, int32_t, n + 1), *inv, i, k, z = 0, d, many = 0;
+    uint32_t *key;
+    float *unit;
+    hdi_nd_part *list, *next;
+    memset(&nd, 0, sizeof nd);
+    if (a->nnz > 2147483647 / 2) {
+        hdi_fail(e, HD_ERR_TOO_LARGE, "the matrix is too large for nested dissection");
+        return hdi_scope_end(&s);
+    }
+    inv = HDI_TAKE(&s, int32_t, n + 1024);
+    key = HDI_TAKE(&s, uint32_t, n + 1);
+    unit = HDI_TAKE(&s, float, 3 * HDI_CAST(size_t, n) + 1);
+    nd.xyz = HDI_TAKE(&s, float, 3 * HDI_CAST(size_t, n) + 1);
+    for (i = 0; i < 2; i++) {
+        nd.ptr[i] = HDI_TAKE(&s, int32_t, 2 * HDI_CAST(size_t, n) + 2);
+        nd.adj[i] = HDI_TAKE(&s, int32_t, a->nnz + 1);
+        nd.id[i] = HDI_TAKE(&s, int32_t, n + 1);
+    }
+    nd.work = HDI_TAKE(&s, int32_t, HDI_ND_WORDS * HDI_CAST(size_t, n) + HDI_ND_EDGE_WORDS * HDI_CAST(size_t, a->nnz) + 64);
+    list = HDI_TAKE(&s, hdi_nd_part, 256);
+    next = HDI_TAKE(&s, hdi_nd_part, 256);
+    if (e->status < 0) return hdi_scope_end(&s);
+    if (!n) return hdi_scope_end(&s);
+    hdi_nd_keys(xyz, n, key, unit);
+    hdi_nd_sort(key, n, order, inv, inv + n);
+    { int32_t *t = order; order = inv; inv = t; }
+    memcpy(order, inv, 4 * (size_t)n);
+    for (k = 0; k < n; k++) inv[order[k]] = k;
+    for (k = 0; k < n; k++) {
+        int64_t p;
+        i = order[k];
+        for (d = 0; d < 3; d++) nd.xyz[3 * k + d] = unit[3 * i + d];
+        nd.ptr[0][k] = z;
+        nd.id[0][k] = k;
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) if (a->col[p] != i) nd.adj[0][z++] = inv[a->col[p]];
+    }
+    nd.ptr[0][n] = z;
+    nd.n = n;
+    nd.perm = perm;
+    list[0].first = 0; list[0].n = n; list[0].edge = 0; list[0].n_edges = z; list[0].buffer = 0;
+    nd.part = list;
+    many = 1;
+    while (many < 64 && many && n / many > 2000) {
+        int32_t j;
+        nd.child = next;
+        hdi_parallel(ctx, many, hdi_nd_split_task, &nd);
+        { hdi_nd_part *t = list; list = next; next = t; }
+        nd.part = list;
+        many *= 2;
+        (void)j;
+    }
+    hdi_parallel(ctx, many, hdi_nd_subtree, &nd);
+    for (k = 0; k < n; k++) perm[k] = order[perm[k]];
+    return hdi_scope_end(&s);
+}
+
+/* ---- analysis for a direct factorisation ---- */
+/* From an elimination order to supernodes, the rows of their fronts, and a plan of execution. Everything here is nearly linear in the
+ * non-zeros of A, the number of supernodes and the lengths of their row lists.
+ * This part is based on
+ *   J. Liu, The role of elimination trees in sparse factorization, 1990 (trees, postorders, the multifrontal stack)
+ *   J. Gilbert, E. Ng, B. Peyton, An efficient algorithm to compute row and column counts for sparse Cholesky factorization, 1994
+ *   C. Ashcraft, R. Grimes, The influence of relaxed supernode partitions on the multifrontal method, 1989
+ * A front is a dense lower triangle over the rows of a supernode: its p pivots, then u rows below. Its first p columns become columns of L
+ * (the panel, m = p + u rows), the rest is the update matrix for its parent. */
+enum { HDI_PANEL = 128 };
+
+typedef struct hdi_symbolic {
+    int32_t n, n_super;
+    int32_t *perm;               /* [n] elimination order: perm[k] = row of A */
+    int32_t *super;              /* [n_super + 1] first pivot of each supernode; supernodes are in postorder */
+    int32_t *parent;             /* [n_super] -1: root */
+    int64_t *row_ptr;            /* [n_super + 1] */
+    int32_t *row;                /* rows below the pivots, ascending, in elimination order */
+    int32_t *rel;                /* where each stands in the parent's front */
+    int64_t *panel, *panel_pack; /* [n_super + 1] where panels begin, in entries: real, packs */
+    int64_t *a_ptr;              /* [n_super + 1] */
+    int64_t *a_from;             /* entry of A (lower triangle in elimination order) ... */
+    int32_t *a_row, *a_col;      /* ... and its place in the front */
+    int32_t *super_of;           /* [n] supernode of a pivot */
+    int64_t *update, *vector;    /* [n_super] where update matrices, and vectors of u entries in solves, live in their work spaces, in entries */
+    int32_t *kid_ptr, *kid;      /* [n_super + 1], [n_super] children */
+    int32_t n_tasks;             /* subtrees that can be worked on at the same time: */
+    int32_t *task_begin, *task_end;  /* [n_tasks] supernodes */
+    int32_t *task_of;            /* [n_super] -1: top */
+    int32_t n_top;
+    int32_t *top;                /* [n_top] the others, children before parents */
+    int64_t work, vector_size;   /* entries of all that live at the same time */
+    int32_t largest_front, largest_update, largest_pivots, task_pivots;
+    int64_t nnz;                 /* of L without the zeros that amalgamation lets in */
+    int64_t stored;              /* entries of all panels of packs */
+    double flops;                /* of a real factorisation: sum of squared column counts */
+    double flops_done;           /* the same with the zeros that are computed on */
+    hd_ordering ordering;
+} hdi_symbolic;
+
+static void hdi_symbolic_free(hd_context *ctx, hdi_symbolic *s) {
+    hdi_free(ctx, s->perm);
+    hdi_free(ctx, s->super);
+    hdi_free(ctx, s->parent);
+    hdi_free(ctx, s->row_ptr);
+    hdi_free(ctx, s->row);
+    hdi_free(ctx, s->rel);
+    hdi_free(ctx, s->panel);
+    hdi_free(ctx, s->panel_pack);
+    hdi_free(ctx, s->a_ptr);
+    hdi_free(ctx, s->a_from);
+    hdi_free(ctx, s->a_row);
+    hdi_free(ctx, s->a_col);
+    hdi_free(ctx, s->super_of);
+    hdi_free(ctx, s->update);
+    hdi_free(ctx, s->vector);
+    hdi_free(ctx, s->kid_ptr);
+    hdi_free(ctx, s->kid);
+    hdi_free(ctx, s->task_begin);
+    hdi_free(ctx, s->task_end);
+    hdi_free(ctx, s->task_of);
+    hdi_free(ctx, s->top);
+    memset(s, 0, sizeof *s);
+}
+
+/* Lower triangle of P A P' by rows: columns below i of row i, in no order. inv [n] gets the inverse of perm. */
+static void hdi_sym_lower(const hd_csr *a, const int32_t *perm, int32_t *inv, int64_t *ptr, int32_t *col) {
+    int64_t p, q = 0;
+    int32_t i;
+    for (i = 0; i < a->n_rows; i++) inv[perm[i]] = i;
+    for (i = 0; i < a->n_rows; i++) {
+        ptr[i] = q;
+        for (p = a->row_ptr[perm[i]]; p < a->row_ptr[perm[i] + 1]; p++) {
+            const int32_t k = inv[a->col[p]];
+            if (k < i) col[q++] = k;
+        }
+    }
+    ptr[i] = q;
+}
+
+/* Elimination tree: parent[k] is the row of the first non-zero below the diagonal of column k of L. ancestor [n] shortens the walks. */
+static void hdi_sym_etree(int32_t n, const int64_t *ptr, const int32_t *col, int32_t *parent, int32_t *ancestor) {
+    int32_t i, k, next;
+    int64_t p;
+    for (i = 0; i < n; i++) {
+        parent[i] = ancestor[i] = -1;
+        for (p = ptr[i]; p < ptr[i + 1]; p++) {
+            for (k = col[p]; k != -1 && k != i; k = next) {
+                next = ancestor[k];
+                ancestor[k] = i;
+                if (next == -1) parent[k] = i;
+            }
+        }
+    }
+}
+
+/* post[k] = k-th node of a postorder of the forest, children in ascending order. head, next, stack [n]. */
+static void hdi_sym_postorder(int32_t n, const int32_t *parent, int32_t *post, int32_t *head, int32_t *next, int32_t *stack) {
+    int32_t i, k = 0, top;
+    hdi_fill_i32(head, n, -1);
+    for (i = n; i-- > 0;) {
+        if (parent[i] < 0) continue;
+        next[i] = head[parent[i]];
+        head[parent[i]] = i;
+    }
+    for (i = 0; i < n; i++) {
+        if (parent[i] >= 0) continue;
+        stack[0] = i;
+        for (top = 0; top >= 0;) {
+            const int32_t v = stack[top], child = head[v];
+            if (child < 0) {
+                post[k++] = v;
+                top--;
+            } else {
+                head[v] = next[child];
+                stack[++top] = child;
+            }
+        }
+    }
+}
+
+/* Column counts of L, diagonal included, for a postordered tree. Row i of L is a subtree of the tree, its leaves entries of A; a column's count is what
+ * the leaves add to it less what their least common ancestors take back. upper: the pattern by columns, i.e. for each k the rows i > k.
+ * first, last_leaf, last_seen, set [n]. */
+static void hdi_sym_counts(int32_t n, const int64_t *ptr, const int32_t *row, const int32_t *parent, int32_t *count, int32_t *first,
+                           int32_t *last_leaf, int32_t *last_seen, int32_t *set) {
+    int32_t j, q;
+    int64_t p;
+    for (j = 0; j < n; j++) {
+        first[j] = last_leaf[j] = last_seen[j] = -1;
+        set[j] = j;
+    }
+    for (j = 0; j < n; j++) {
+        count[j] = first[j] == -1;               /* a leaf of the tree */
+        for (q = j; q != -1 && first[q] == -1; q = parent[q]) first[q] = j;
+    }
+    for (j = 0; j < n; j++) {
+        if (parent[j] >= 0) count[parent[j]]--;
+        for (p = ptr[j]; p < ptr[j + 1]; p++) {
+            const int32_t i = row[p];
+            if (first[j] > last_seen[i]) {       /* j is a leaf of row subtree i */
+                count[j]++;
+                if (last_leaf[i] >= 0) {
+                    int32_t root = last_leaf[i], walk, up;
+                    while (root != set[root]) root = set[root];
+                    for (walk = last_leaf[i]; walk != root; walk = up) {
+                        up = set[walk];
+                        set[walk] = root;
+                    }
+                    count[root]--;
+                }
+                last_leaf[i] = j;
+            }
+            last_seen[i] = j;
+        }
+        if (parent[j] >= 0) set[j] = parent[j];
+    }
+    for (j = 0; j < n; j++)
+        if (parent[j] >= 0) count[parent[j]] += count[j];
+}
+
+/* ---- supernodes ---- */
+
+/* A supernode while they are merged. */
+typedef struct hdi_node {
+    int32_t parent, pivots, rows;    /* rows of the front, pivots included */
+    int32_t first, last;             /* list of columns, linked by next_col */
+    int64_t zeros;                   /* let in by merging */
+    int32_t merged;                  /* into its parent */
+} hdi_node;
+
+/* Entries of the trapezoid of p columns over m rows. */
+static int64_t hdi_trapezoid(int64_t m, int64_t p) { return m * p - p * (p - 1) / 2; }
+
+/* Merges the child into its parent when the zeros that this lets in are few, or the front is so small that its own overhead costs more. Tuned on
+ * meshes of 36K to 1M vertices for pole lanes and real factors alike. */
+static int hdi_sym_worth_merging(const hdi_node *child, const hdi_node *parent) {
+    const int64_t p = HDI_CAST(int64_t, child->pivots) + parent->pivots, m = HDI_CAST(int64_t, child->pivots) + parent->rows;
+    const int64_t all = hdi_trapezoid(m, p), zeros = child->zeros + parent->zeros + all - hdi_trapezoid(child->rows, child->pivots) - hdi_trapezoid(parent->rows, parent->pivots);
+    const double share = HDI_CAST(double, zeros) / HDI_CAST(double, all);
+    if (zeros == child->zeros + parent->zeros) return 1;
+    return p <= 4 || (p <= 8 && share < 0.4) || (p <= 16 && share < 0.1) || share < 0.03;
+}
+
+static void hdi_sym_merge(hdi_node *node, int32_t c, int32_t s, int32_t *next_col) {
+    hdi_node *child = node + c, *parent = node + s;
+    const int64_t before = hdi_trapezoid(child->rows, child->pivots) + hdi_trapezoid(parent->rows, parent->pivots);
+    parent->pivots += child->pivots;
+    parent->rows += child->pivots;
+    parent->zeros += child->zeros + hdi_trapezoid(parent->rows, parent->pivots) - before;
+    next_col[child->last] = parent->first;       /* the child's columns come first */
+    parent->first = child->first;
+    child->merged = 1;
+}
+
+/* Supernodes of a postordered tree: columns with the same structure, then relaxed. Returns their number; nodes are in postorder.
+ * of [n]: scratch. */
+static int32_t hdi_sym_supernodes(int32_t n, const int32_t *parent, const int32_t *count, hdi_node *node, int32_t *next_col, int32_t *of) {
+    int32_t j, k, s = -1;
+    for (j = 0; j < n; j++) {
+        next_col[j] = -1;
+        if (j > 0 && parent[j - 1] == j && count[j - 1] == count[j] + 1) {
+            node[s].pivots++;
+            next_col[j - 1] = j;
+            node[s].last = j;
+        } else {
+            s++;
+            node[s].pivots = 1;
+            node[s].rows = count[j];
+            node[s].first = node[s].last = j;
+            node[s].zeros = 0;
+            node[s].merged = 0;
+        }
+        of[j] = s;
+    }
+    for (k = 0; k <= s; k++) node[k].parent = parent[node[k].last] < 0 ? -1 : of[parent[node[k].last]];
+    return n > 0 ? s + 1 : 0;
+}
+
+/* Merges children into parents from the leaves up: of each node first the child with most rows below, which lets in fewest zeros, then the others. */
+static void hdi_sym_relax(hdi_node *node, int32_t n_nodes, int32_t *next_col, int32_t *head, int32_t *next) {
+    int32_t s, c;
+    hdi_fill_i32(head, n_nodes, -1);
+    for (s = n_nodes; s-- > 0;) {
+        if (node[s].parent < 0) continue;
+        next[s] = head[node[s].parent];
+        head[node[s].parent] = s;
+    }
+    for (s = 0; s < n_nodes; s++) {              /* children have gone through their own merges */
+        int32_t best = head[s];
+        for (c = head[s]; c >= 0; c = next[c])
+            if (node[c].rows - node[c].pivots > node[best].rows - node[best].pivots) best = c;
+        if (best >= 0 && hdi_sym_worth_merging(node + best, node + s)) hdi_sym_merge(node, best, s, next_col);
+        for (c = head[s]; c >= 0; c = next[c])
+            if (c != best && hdi_sym_worth_merging(node + c, node + s)) hdi_sym_merge(node, c, s, next_col);
+    }
+}
+
+/* Panels of packs come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what stands above the diagonal of a wide panel is
+ * not kept. Entries before block q of a panel of m rows and p columns: */
+static int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
+    const int64_t full = q * HDI_PANEL < p ? q : p / HDI_PANEL, rest = q * HDI_PANEL < p ? 0 : p % HDI_PANEL;
+    return HDI_PANEL * (full * m - HDI_PANEL * (full * (full - 1) / 2)) + rest * (m - HDI_PANEL * full);
+}
+
+/* A postorder of the merged nodes: of the children of a node, those come first whose subtrees need much more room while under way than they leave
+ * behind (Liu). order[k] = k-th node, parents in terms of nodes are made direct. Returns the number of nodes. work: as many pairs as nodes. */
+static int32_t hdi_sym_order_nodes(hdi_node *node, int32_t n_nodes, int32_t *order, int64_t *peak, int32_t *head, int32_t *next, int32_t *stack,
+                                   hdi_pair *work) {
+    int32_t s, c, k = 0, top;
+    hdi_fill_i32(head, n_nodes, -1);
+    for (s = n_nodes; s-- > 0;) {                /* parents are decided before their children */
+        const int32_t up = node[s].parent;
+        if (up >= 0 && node[up].merged) node[s].parent = node[up].parent;
+        if (node[s].merged || node[s].parent < 0) continue;
+        next[s] = head[node[s].parent];
+        head[node[s].parent] = s;
+    }
+    for (s = 0; s < n_nodes; s++) {
+        int64_t held = 0, most = 0, n_kids = 0, q;
+        if (node[s].merged) continue;
+        for (c = head[s]; c >= 0; c = next[c]) {
+            work[n_kids].key = HDI_CAST(uint64_t, peak[c] - hdi_triangle(node[c].rows - node[c].pivots));
+            work[n_kids++].id = c;
+        }
+        hdi_sort_pairs(work, n_kids);
+        head[s] = -1;
+        for (q = 0; q < n_kids; q++) {           /* ascending, put in front of each other: descending */
+            c = HDI_CAST(int32_t, work[q].id);
+            next[c] = head[s];
+            head[s] = c;
+        }
+        for (c = head[s]; c >= 0; c = next[c]) {
+            if (held + peak[c] > most) most = held + peak[c];
+            held += hdi_triangle(node[c].rows - node[c].pivots);
+        }
+        held += hdi_triangle(node[s].rows - node[s].pivots);
+        peak[s] = held > most ? held : most;
+    }
+    for (s = 0; s < n_nodes; s++) {
+        if (node[s].merged || node[s].parent >= 0) continue;
+        stack[0] = s;
+        for (top = 0; top >= 0;) {
+            const int32_t v = stack[top], child = head[v];
+            if (child < 0) {
+                order[k++] = v;
+                top--;
+            } else {
+                head[v] = next[child];
+                stack[++top] = child;
+            }
+        }
+    }
+    return k;
+}
+
+/* ---- the plan of execution ---- */
+
+/* ---- the plan of memory ---- */
+/* Sizes and lifetimes are known, so that places are given out beforehand: best fit in a list of gaps, ascending and coalesced; end is where the space beyond
+ * them begins. */
+typedef struct hdi_gaps {
+    int64_t *at, *size;
+    int32_t n, room;
+    int64_t end;
+} hdi_gaps;
+
+/* [at, at + size) is free from now on. */
+static void hdi_gaps_free(hdi_gaps *g, int64_t at, int64_t size) {
+    int32_t i, k;
+    if (size == 0) return;
+    for (i = g->n; i > 0 && g->at[i - 1] > at; i--) {}
+    if (i > 0 && g->at[i - 1] + g->size[i - 1] == at) {
+        g->size[--i] += size;
+    } else if (g->n < g->room) {
+        for (k = g->n++; k > i; k--) {
+            g->at[k] = g->at[k - 1];
+            g->size[k] = g->size[k - 1];
+        }
+        g->at[i] = at;
+        g->size[i] = size;
+    } else {
+        return;                                  /* a full list forgets: only a loss of space */
+    }
+    if (i + 1 < g->n && g->at[i] + g->size[i] == g->at[i + 1]) {
+        g->size[i] += g->size[i + 1];
+        for (k = i + 1; k + 1 < g->n; k++) {
+            g->at[k] = g->at[k + 1];
+            g->size[k] = g->size[k + 1];
+        }
+        g->n--;
+    }
+    if (g->at[g->n - 1] + g->size[g->n - 1] == g->end) g->end = g->at[--g->n];
+}
+
+static int64_t hdi_gaps_take(hdi_gaps *g, int64_t size) {
+    int32_t i, k, best = -1;
+    int64_t at = g->end;
+    for (i = 0; i < g->n; i++)
+        if (g->size[i] >= size && (best < 0 || g->size[i] < g->size[best])) best = i;
+    if (best < 0) {
+        g->end += size;
+        return at;
+    }
+    at = g->at[best];
+    g->at[best] += size;
+    g->size[best] -= size;
+    if (g->size[best]) return at;
+    for (k = best; k + 1 < g->n; k++) {
+        g->at[k] = g->at[k + 1];
+        g->size[k] = g->size[k + 1];
+    }
+    g->n--;
+    return at;
+}
+
+/* Places for a run of supernodes in the order in which they are worked on: list[begin..end), or these numbers themselves. With triangle, update matrices, else
+ * vectors of solves. Children that belong to the same run or to none under way (other NULL) give their places back. Returns how far it got. */
+static int64_t hdi_sym_place(const hdi_symbolic *s, hdi_gaps *g, const int32_t *list, int32_t begin, int32_t end, int triangle, int64_t *at) {
+    int64_t most = g->end;
+    int32_t q, k;
+    for (q = begin; q < end; q++) {
+        const int32_t v = list ? list[q] : q;
+        const int64_t u = s->row_ptr[v + 1] - s->row_ptr[v];
+        at[v] = hdi_gaps_take(g, triangle ? hdi_triangle(u) : u);
+        if (g->end > most) most = g->end;
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+            const int64_t below = s->row_ptr[s->kid[k] + 1] - s->row_ptr[s->kid[k]];
+            hdi_gaps_free(g, at[s->kid[k]], triangle ? hdi_triangle(below) : below);
+        }
+    }
+    return most;
+}
+
+/* The whole plan: a space of its own for every subtree, of which only what its roots leave behind stays; the top takes what it finds free.
+ * roots: as many pairs as supernodes. Returns the size of it all. */
+static int64_t hdi_sym_spaces(const hdi_symbolic *s, hdi_gaps *g, int triangle, int64_t *at, hdi_pair *roots) {
+    int64_t base = 0, from = 0, n_roots = 0, i;
+    int32_t k, v;
+    for (k = 0; k < s->n_tasks; k++) {
+        g->n = 0;
+        g->end = base;
+        base = hdi_sym_place(s, g, NULL, s->task_begin[k], s->task_end[k], triangle, at);
+    }
+    for (k = 0; k < s->n_top; k++) {
+        for (v = s->kid_ptr[s->top[k]]; v < s->kid_ptr[s->top[k] + 1]; v++) {
+            const int32_t c = s->kid[v];
+            const int64_t u = s->row_ptr[c + 1] - s->row_ptr[c];
+            if (s->task_of[c] < 0 || u == 0) continue;
+            roots[n_roots].key = HDI_CAST(uint64_t, at[c]);
+            roots[n_roots++].id = triangle ? hdi_triangle(u) : u;
+        }
+    }
+    hdi_sort_pairs(roots, n_roots);
+    g->n = 0;
+    g->end = base + 1;                           /* so that no gap touches it */
+    for (i = 0; i <= n_roots; i++) {
+        const int64_t to = i < n_roots ? HDI_CAST(int64_t, roots[i].key) : base;
+        hdi_gaps_free(g, from, to - from);
+        if (i < n_roots) from = to + roots[i].id;
+    }
+    return hdi_sym_place(s, g, s->top, 0, s->n_top, triangle, at);
+}
+
+/* Work of a front, in multiply-adds or so: the sum of its squared column lengths, and a little for its being there. */
+static double hdi_sym_front_work(double m, double p) {
+    const double u = m - p;
+    return p * u * u + u * p * p + p * p * p / 3 + 40 * m;
+}
+
+/* Cuts the forest into subtrees of at most a 48th of the work, which can go on at the same time, small neighbours together; the rest is the top, where the
+ * fronts are large enough to be shared. Then places the update matrices. */
+static hd_status hdi_sym_plan(hdi_symbolic *s, hdi_scope *scope) {
+    int32_t *task = s->task_of, v, k;
+    hdi_pair *roots = HDI_TAKE(scope, hdi_pair, s->n_super + 1);
+    hdi_gaps gaps;
+    double *sum = HDI_TAKE_ZERO(scope, double, s->n_super + 1), total = 0, open = 0, limit;
+    gaps.room = 1024;
+    gaps.at = HDI_TAKE(scope, int64_t, gaps.room);
+    gaps.size = HDI_TAKE(scope, int64_t, gaps.room);
+    if (scope->e->status < 0) return scope->e->status;
+    for (v = 0; v < s->n_super; v++) {
+        const double work = hdi_sym_front_work(HDI_CAST(double, s->super[v + 1] - s->super[v] + s->row_ptr[v + 1] - s->row_ptr[v]), s->super[v + 1] - s->super[v]);
+        sum[v] += work;
+        total += work;
+        if (s->parent[v] >= 0) sum[s->parent[v]] += sum[v];
+    }
+    limit = hdi_max(total / 48, 1e5);
+    for (v = s->n_super; v-- > 0;) {
+        const int32_t up = s->parent[v];
+        task[v] = sum[v] > limit ? -1 : up < 0 || task[up] == -1 ? v : task[up];   /* -1: top; else the subtree's root */
+    }
+    s->n_tasks = s->n_top = 0;
+    for (v = 0; v < s->n_super; v++) {
+        if (task[v] < 0) {
+            s->top[s->n_top++] = v;
+            open = HUGE_VAL;                     /* a top node in between ends a task, whose supernodes are consecutive */
+            continue;
+        }
+        if (v > 0 && task[v - 1] == task[v]) {
+            s->task_end[s->n_tasks - 1] = v + 1;
+            continue;
+        }
+        if (v > 0 && task[v - 1] >= 0 && open + sum[task[v]] <= limit) {
+            open += sum[task[v]];
+        } else {
+            s->task_begin[s->n_tasks++] = v;
+            open = sum[task[v]];
+        }
+        s->task_end[s->n_tasks - 1] = v + 1;
+    }
+    for (k = 0; k < s->n_tasks; k++) {
+        for (v = s->task_begin[k]; v < s->task_end[k]; v++) {
+            task[v] = k;
+            if (s->super[v + 1] - s->super[v] > s->task_pivots) s->task_pivots = s->super[v + 1] - s->super[v];
+        }
+    }
+    s->work = hdi_sym_spaces(s, &gaps, 1, s->update, roots);
+    s->vector_size = hdi_sym_spaces(s, &gaps, 0, s->vector, roots);
+    return HD_OK;
+}
+
+/* Children lists of the supernodes. */
+static void hdi_sym_kids(hdi_symbolic *s) {
+    int32_t v, sum = 0;
+    memset(s->kid_ptr, 0, (HDI_CAST(size_t, s->n_super) + 1) * sizeof *s->kid_ptr);
+    for (v = 0; v < s->n_super; v++)
+        if (s->parent[v] >= 0) s->kid_ptr[s->parent[v]]++;
+    for (v = 0; v < s->n_super; v++) {
+        const int32_t count = s->kid_ptr[v];
+        s->kid_ptr[v] = sum;
+        sum += count;
+    }
+    for (v = 0; v < s->n_super; v++)
+        if (s->parent[v] >= 0) s->kid[s->kid_ptr[s->parent[v]]++] = v;
+    for (v = s->n_super; v > 0; v--) s->kid_ptr[v] = s->kid_ptr[v - 1];
+    s->kid_ptr[0] = 0;
+}
+
+/* Rows below the pivots: row i of L is a subtree of the supernodes' tree, walked up from the entries of row i of A; i ascends, so do the lists.
+ * fill [n_super] 64 bit, mark [n_super]. */
+static void hdi_sym_rows(hdi_symbolic *s, const int64_t *lower_ptr, const int32_t *lower, int64_t *fill, int32_t *mark) {
+    int32_t i, v;
+    int64_t p;
+    for (v = 0; v < s->n_super; v++) {
+        fill[v] = s->row_ptr[v];
+        mark[v] = -1;
+    }
+    for (i = 0; i < s->n; i++)
+        for (p = lower_ptr[i]; p < lower_ptr[i + 1]; p++)
+            for (v = s->super_of[lower[p]]; v != s->super_of[i] && mark[v] != i; v = s->parent[v]) {
+                mark[v] = i;
+                s->row[fill[v]++] = i;
+            }
+    for (v = 0; v < s->n_super; v++) {           /* places in the parent's front: two ascending lists */
+        const int32_t up = s->parent[v];
+        int64_t q;
+        if (up < 0) continue;
+        q = s->row_ptr[up];
+        for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) {
+            if (s->row[p] < s->super[up + 1]) {
+                s->rel[p] = s->row[p] - s->super[up];
+                continue;
+            }
+            while (s->row[q] != s->row[p]) q++;
+            s->rel[p] = HDI_CAST(int32_t, q - s->row_ptr[up]) + s->super[up + 1] - s->super[up];
+        }
+    }
+}
+
+/* Where each entry of the lower triangle of P A P' goes. place [n]. */
+static void hdi_sym_entries(hdi_symbolic *s, const hd_csr *a, const int32_t *inv, int32_t *place) {
+    int32_t v, j;
+    int64_t p, q = 0;
+    for (v = 0; v < s->n_super; v++) {
+        const int32_t begin = s->super[v], end = s->super[v + 1];
+        s->a_ptr[v] = q;
+        for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) place[s->row[p]] = HDI_CAST(int32_t, p - s->row_ptr[v]) + end - begin;
+        for (j = begin; j < end; j++) {
+            place[j] = j - begin;
+            for (p = a->row_ptr[s->perm[j]]; p < a->row_ptr[s->perm[j] + 1]; p++) {
+                const int32_t i = inv[a->col[p]];
+                if (i < j) continue;
+                s->a_from[q] = p;
+                s->a_row[q] = i < end ? i - begin : place[i];
+                s->a_col[q++] = j - begin;
+            }
+        }
+    }
+    s->a_ptr[v] = q;
+}
+
+/* Elimination tree, postorder and column counts; perm becomes postordered. The arrays of counts' work are borrowed from w [7 n]. */
+static void hdi_sym_tree(const hd_csr *a, int32_t *perm, int32_t *parent, int32_t *count, int64_t *ptr, int32_t *col, int64_t *up_ptr, int32_t *up,
+                         int32_t *w) {
+    const int32_t n = a->n_rows;
+    int32_t *inv = w, *post = w + n, *old = w + 2 * HDI_CAST(int64_t, n), *tmp = w + 3 * HDI_CAST(int64_t, n), i;
+    int64_t p;
+    hdi_sym_lower(a, perm, inv, ptr, col);
+    hdi_sym_etree(n, ptr, col, parent, tmp);
+    hdi_sym_postorder(n, parent, post, tmp, tmp + n, tmp + 2 * HDI_CAST(int64_t, n));
+    memcpy(old, parent, HDI_CAST(size_t, n) * sizeof *old);
+    for (i = 0; i < n; i++) inv[post[i]] = i;    /* old place -> new place */
+    for (i = 0; i < n; i++) parent[i] = old[post[i]] < 0 ? -1 : inv[old[post[i]]];
+    memset(up_ptr, 0, (HDI_CAST(size_t, n) + 1) * sizeof *up_ptr);
+    for (p = 0; p < ptr[n]; p++) up_ptr[inv[col[p]]]++;
+    hdi_prefix_sum(up_ptr, n);
+    for (i = 0; i < n; i++)
+        for (p = ptr[post[i]]; p < ptr[post[i] + 1]; p++) up[up_ptr[inv[col[p]]]++] = i;
+    for (i = n; i > 0; i--) up_ptr[i] = up_ptr[i - 1];
+    up_ptr[0] = 0;
+    hdi_sym_counts(n, up_ptr, up, parent, count, tmp, tmp + n, tmp + 2 * HDI_CAST(int64_t, n), old);
+    for (i = 0; i < n; i++) old[i] = perm[post[i]];
+    memcpy(perm, old, HDI_CAST(size_t, n) * sizeof *perm);
+}
+
+/* Numbers the supernodes and their columns. perm comes in postordered, and leaves in elimination order. */
+static void hdi_sym_number(hdi_symbolic *s, const hdi_node *node, const int32_t *order, const int32_t *next_col, const int32_t *perm, int32_t *number) {
+    int32_t k, c, i = 0;
+    s->super[0] = 0;
+    s->row_ptr[0] = s->panel[0] = s->panel_pack[0] = 0;
+    for (k = 0; k < s->n_super; k++) number[order[k]] = k;
+    for (k = 0; k < s->n_super; k++) {
+        const hdi_node *v = node + order[k];
+        const int64_t m = v->rows, p = v->pivots;
+        for (c = v->first; c >= 0; c = next_col[c]) {
+            s->perm[i] = perm[c];
+            s->super_of[i++] = k;
+        }
+        s->super[k + 1] = i;
+        s->parent[k] = v->parent < 0 ? -1 : number[v->parent];
+        s->row_ptr[k + 1] = s->row_ptr[k] + m - p;
+        s->panel[k + 1] = s->panel[k] + m * p;
+        s->panel_pack[k + 1] = s->panel_pack[k] + hdi_panel_block(m, p, p / HDI_PANEL + 1);
+        if (m > s->largest_front) s->largest_front = v->rows;
+        if (p > s->largest_pivots) s->largest_pivots = v->pivots;
+        if (m - p > s->largest_update) s->largest_update = v->rows - v->pivots;
+        for (c = 0; c < p; c++) s->flops_done += HDI_CAST(double, m - c) * HDI_CAST(double, m - c);
+    }
+    s->stored = s->panel_pack[s->n_super];
+}
+
+/* The analysis of a symmetric pattern under the order perm, which is used up. */
+static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx, hd_error *e) {
+    hdi_scope w = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
+    const int32_t n = a->n_rows;
+    const size_t n1 = HDI_CAST(size_t, n) + 1, half = HDI_CAST(size_t, a->nnz);
+    int32_t *parent = HDI_TAKE(&w, int32_t, n1), *count = HDI_TAKE(&w, int32_t, n1), *lower = HDI_TAKE(&w, int32_t, half);
+    int32_t *upper = HDI_TAKE(&w, int32_t, half), *work = HDI_TAKE(&w, int32_t, 7 * n1), i, n_nodes;
+    int64_t *lower_ptr = HDI_TAKE(&w, int64_t, n1), *upper_ptr = HDI_TAKE(&w, int64_t, n1);
+    hdi_node *node = HDI_TAKE(&w, hdi_node, n1);
+    hdi_pair *pairs = HDI_TAKE(&w, hdi_pair, n1);
+    memset(s, 0, sizeof *s);
+    s->n = n;
+    if (e->status < 0) return hdi_scope_end(&w);
+    hdi_sym_tree(a, perm, parent, count, lower_ptr, lower, upper_ptr, upper, work);
+    if (hdi_progress(ctx, "analyse", 0.4, e) < 0) return hdi_scope_end(&w);
+    for (i = 0; i < n; i++) {
+        s->nnz += count[i];
+        s->flops += HDI_CAST(double, count[i]) * count[i];
+    }
+    n_nodes = hdi_sym_supernodes(n, parent, count, node, work, work + n1);     /* work: next_col */
+    hdi_sym_relax(node, n_nodes, work, work + n1, work + 2 * n1);
+    s->n_super = hdi_sym_order_nodes(node, n_nodes, work + n1, upper_ptr, work + 2 * n1, work + 3 * n1, work + 4 * n1, pairs);
+    s->perm = HDI_TAKE(&keep, int32_t, n1);
+    s->super_of = HDI_TAKE(&keep, int32_t, n1);
+    s->super = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->parent = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->row_ptr = HDI_TAKE(&keep, int64_t, s->n_super + 1);
+    s->panel_pack = HDI_TAKE(&keep, int64_t, s->n_super + 1);
+    s->panel = HDI_TAKE(&keep, int64_t, s->n_super + 1);
+    s->update = HDI_TAKE(&keep, int64_t, s->n_super + 1);
+    s->vector = HDI_TAKE(&keep, int64_t, s->n_super + 1);
+    s->a_ptr = HDI_TAKE(&keep, int64_t, s->n_super + 1);
+    s->kid_ptr = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->kid = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->task_begin = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->task_end = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->task_of = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->top = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    if (e->status >= 0) hdi_sym_number(s, node, work + n1, work, perm, work + 2 * n1);
+    s->row = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : s->row_ptr[s->n_super]);
+    s->rel = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : s->row_ptr[s->n_super]);
+    s->a_from = HDI_TAKE(&keep, int64_t, e->status < 0 ? 0 : lower_ptr[n] + n);
+    s->a_row = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : lower_ptr[n] + n);
+    s->a_col = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : lower_ptr[n] + n);
+    if (e->status >= 0 && hdi_progress(ctx, "analyse", 0.6, e) >= 0) {
+        hdi_sym_lower(a, s->perm, work, lower_ptr, lower);
+        hdi_sym_rows(s, lower_ptr, lower, upper_ptr, work + n1);
+        hdi_sym_entries(s, a, work, work + n1);
+        hdi_sym_kids(s);
+        hdi_sym_plan(s, &w);
+    }
+    hdi_scope_end(&w);
+    if (e->status < 0) {
+        hdi_scope_end(&keep);
+        memset(s, 0, sizeof *s);
+        return e->status;
+    }
+    keep.n = 0;                                  /* all of it is the caller's now */
+    return HD_OK;
+}
+
+/* ---- choice ---- */
+
+/* From so many rows on nested dissection pays for itself: it takes longer to find than minimum degree, and saves flops that grow faster than either. */
+enum { HDI_DISSECT_FROM = 60000 };
+
+/* An elimination order of a symmetric pattern, of the given kind or by size. xyz may be NULL; own with HD_ORDERING_OWN. chosen: the kind. */
+static hd_status hdi_sym_order(const hd_csr *a, const double *xyz, hd_ordering kind, const int32_t *own, int32_t *perm, int32_t *chosen, hd_context *ctx,
+                               hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    const int32_t n = a->n_rows;
+    char *seen;
+    int32_t i;
+    if (kind == HD_ORDERING_AUTO) kind = xyz && n >= HDI_DISSECT_FROM ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_MINIMUM_DEGREE;
+    *chosen = kind;
+    if (hdi_progress(ctx, "order", 0, e) < 0) return e->status;
+    if (kind == HD_ORDERING_MINIMUM_DEGREE) return hdi_sym_minimum_degree(a, perm, ctx, e);
+    if (kind == HD_ORDERING_NESTED_DISSECTION)
+        return xyz ? hdi_sym_nested_dissection(a, xyz, perm, ctx, e) : hdi_fail(e, HD_ERR_ARGUMENT, "ordering: nested dissection needs coordinates");
+    if (kind != HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: unknown kind");
+    if (!own && n > 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
+    seen = HDI_CAST(char *, hdi_take_zero(&s, HDI_CAST(size_t, n) + 1, 1));
+    for (i = 0; seen && i < n && !e->status; i++) {
+        if (own[i] < 0 || own[i] >= n || seen[own[i]]) hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, own[i]);
+        else seen[perm[i] = own[i]] = 1;
+    }
+    return hdi_scope_end(&s);
+}
+
+/* ==== [12] direct ====
+ * LDL' without pivoting on the supernodes of [11], multifrontal, for real matrices and for packs of four complex-symmetric ones (plain transpose, never
+ * conjugated), and the triangular solves. May call [11].
+ * This work is based on
+ *   I. Duff, J. Reid, The multifrontal solution of indefinite sparse symmetric linear equations, 1983
+ *   J. Liu, The multifrontal method for sparse matrix solution, 1992
+ *   N. Higham, Factorizing complex symmetric matrices with positive definite real and imaginary parts, 1998 (why no pivoting is needed for poles: rotated
+ *   by half the argument of theta, t L + theta B has a positive definite real part)
+ * Deviation from the textbook: a front never exists as one matrix. Its panel is assembled where L will stand; its update matrix starts as -L21 D L21'
+ * and the children's are added afterwards, so that it is neither cleared nor read before. */
+
+enum { HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 96 };
+
+/* Where values of A come from: real numbers, up to four complex matrices, or t L + theta B, by entries of the pattern that was analysed. */
+typedef struct hdi_values {
+    const double *real;
+    const hd_c64 *z[4];
+    const double *l, *b, *b_diag;    /* b NULL: B is diagonal, b_diag by rows */
+    double t;
+    hd_c64 theta[4];
+} hdi_values;
+
+/* What the pivots of a part of the tree looked like. */
+typedef struct hdi_pivots {
+    double largest, smallest;        /* absolute values, over all matrices */
+    int64_t negative;                /* real pivots below zero */
+    int32_t failed, lane;            /* pivot that cannot be divided by, -1 none; its matrix */
+    double value;
+} hdi_pivots;
+
+typedef struct hdi_factor {
+    const hdi_symbolic *sym;
+    hd_context *ctx;
+    int32_t width;                   /* doubles per entry: 1 real, 8 pack */
+    const hdi_pack_ops *pack;
+    const hdi_real_ops *real;
+    double *panel, *dinv;            /* [sym->stored], [n] entries */
+    double *work;                    /* [sym->work] entries: update matrices */
+    double *scratch;                 /* [n_tasks + 1][scratch_size], the last one larger: for the top */
+    double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
+    size_t scratch_size, chunk_size; /* doubles */
+    hdi_pivots *pivots;              /* [n_tasks + 1] */
+    hdi_pivots all;                  /* of the last factorisation */
+    double largest_entry;            /* |diagonal entry of A|, the largest */
+    int32_t ready;
+    /* a factorisation under way */
+    const hdi_values *values;
+    int32_t stop;
+    double share;
+    hd_error error;
+} hdi_factor;
+
+static int32_t hdi_front_pivots(const hdi_symbolic *s, int32_t v) { return s->super[v + 1] - s->super[v]; }
+static int64_t hdi_front_below(const hdi_symbolic *s, int32_t v) { return s->row_ptr[v + 1] - s->row_ptr[v]; }
+
+/* First place in the ascending rel[0..n) that is at least x. */
+static int64_t hdi_lower_bound(const int32_t *rel, int64_t n, int64_t x) {
+    int64_t lo = 0;
+    while (n > 0) {
+        const int64_t half = n / 2;
+        if (rel[lo + half] < x) {
+            lo += half + 1;
+            n -= half + 1;
+        } else {
+            n = half;
+        }
+    }
+    return lo;
+}
+
+static void hdi_pivots_clear(hdi_pivots *q) {
+    memset(q, 0, sizeof *q);
+    q->smallest = HUGE_VAL;
+    q->failed = -1;
+}
+
+static void hdi_pivots_note(hdi_pivots *q, double size) {
+    if (size > q->largest) q->largest = size;
+    if (size < q->smallest) q->smallest = size;
+}
+
+/* ---- packs ---- */
+
+/* One entry of A for four matrices. */
+static void hdi_pack_value(const hdi_values *a, int64_t from, int diagonal, int32_t row, double *to) {
+    int q;
+    if (a->l) {
+        const double l = a->t * a->l[from], b = a->b ? a->b[from] : diagonal ? a->b_diag[row] : 0;
+        for (q = 0; q < 4; q++) {
+            to[q] = l + a->theta[q].re * b;
+            to[q + 4] = a->theta[q].im * b;
+        }
+        return;
+    }
+    for (q = 0; q < 4; q++) {
+        to[q] = a->z[q][from].re;
+        to[q + 4] = a->z[q][from].im;
+    }
+}
+
+/* A block of columns of a panel of packs: columns [begin,begin+width), rows from begin on. at: its entry (0,0), were it there. */
+typedef struct hdi_pack_block { double *at; int64_t begin, width, row; } hdi_pack_block;
+
+static hdi_pack_block hdi_pack_block_of(double *panel, int64_t m, int64_t p, int64_t q) {
+    hdi_pack_block b;
+    b.begin = q * HDI_PANEL;
+    b.width = p - b.begin < HDI_PANEL ? p - b.begin : HDI_PANEL;
+    b.row = HDI_PACK * b.width;
+    b.at = panel + HDI_PACK * hdi_panel_block(m, p, q);
+    return b;
+}
+
+/* Entry (i,k) of the front, i at least the block's first row. */
+static double *hdi_pack_at(const hdi_pack_block *b, int64_t i, int64_t k) { return b->at + (i - b->begin) * b->row + HDI_PACK * (k - b->begin); }
+
+/* Rows [r0,r1) of the panel of front v: cleared, entries of A, children. */
+static void hdi_pack_assemble(const hdi_factor *f, int32_t v, int64_t r0, int64_t r1) {
+    const hdi_symbolic *s = f->sym;
+    const int64_t p = hdi_front_pivots(s, v), m = p + hdi_front_below(s, v);
+    double *panel = f->panel + HDI_PACK * s->panel_pack[v];
+    int64_t q, a, n, last;
+    int32_t k;
+    for (q = 0; q * HDI_PANEL < p; q++) {
+        const hdi_pack_block b = hdi_pack_block_of(panel, m, p, q);
+        const int64_t begin = r0 > b.begin ? r0 : b.begin;
+        if (begin < r1) memset(hdi_pack_at(&b, begin, b.begin), 0, HDI_CAST(size_t, (r1 - begin) * b.row) * sizeof *panel);
+    }
+    for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+        const int64_t i = s->a_row[n], j = s->a_col[n];
+        if (i >= r0 && i < r1) {
+            const hdi_pack_block b = hdi_pack_block_of(panel, m, p, j / HDI_PANEL);
+            hdi_pack_value(f->values, s->a_from[n], i == j, s->perm[s->super[v] + j], hdi_pack_at(&b, i, j));
+        }
+    }
+    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+        const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
+        const int64_t u = hdi_front_below(s, c), from = hdi_lower_bound(rel, u, r0), end = hdi_lower_bound(rel, u, r1);
+        const double *child = f->work + HDI_PACK * s->update[c];
+        int64_t b0 = 0, b1;
+        for (q = 0; q * HDI_PANEL < p && b0 < u; q++, b0 = b1) {   /* the child's columns that fall into block q */
+            const hdi_pack_block b = hdi_pack_block_of(panel, m, p, q);
+            b1 = hdi_lower_bound(rel, u, b.begin + b.width);
+            for (a = from > b0 ? from : b0; a < end; a++) {
+                last = a < b1 ? a + 1 : b1;
+                f->pack->add(hdi_pack_at(&b, rel[a], b.begin), child + HDI_PACK * hdi_triangle(a), rel, b0, last, b.begin);
+            }
+        }
+    }
+}
+
+/* Children's update matrices into rows [r0,r1) of that of front v. */
+static void hdi_pack_extend(const hdi_factor *f, int32_t v, int64_t r0, int64_t r1) {
+    const hdi_symbolic *s = f->sym;
+    const int64_t p = hdi_front_pivots(s, v);
+    double *update = f->work + HDI_PACK * s->update[v];
+    int64_t a;
+    int32_t k;
+    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+        const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
+        const int64_t u = hdi_front_below(s, c), inner = hdi_lower_bound(rel, u, p), end = hdi_lower_bound(rel, u, p + r1);
+        const double *from = f->work + HDI_PACK * s->update[c];
+        for (a = hdi_lower_bound(rel, u, p + r0); a < end; a++)
+            f->pack->add(update + HDI_PACK * hdi_triangle(rel[a] - p), from + HDI_PACK * hdi_triangle(a), rel, inner, a + 1, p);
+    }
+}
+
+/* The parts of one front, and room to work in. */
+typedef struct hdi_front {
+    double *panel, *update, *dinv;   /* where they stand; dinv of the first pivot */
+    double *d, *S;                   /* [p] pivots, [block of pivots][p] scaled rows of L: S_ik = l_ik d_k */
+    int64_t m, p, u, k0;
+    int32_t nb, first;               /* block of pivots [k0,k0+nb) under way; number of the first pivot */
+} hdi_front;
+
+/* Entries (i,k0..k0+nb) of rows [r0,r1): minus sum_{k < k0} l_ik s_jk, block by block of the columns before; S is by rows of k0 + nb entries. */
+static void hdi_pack_before(const hdi_factor *f, const hdi_front *w, int64_t r0, int64_t r1, int lower) {
+    const hdi_pack_block to = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
+    hdi_pack_job g;
+    int64_t q;
+    memset(&g, 0, sizeof g);
+    g.a_col = g.b_col = HDI_PACK;
+    g.b_row = HDI_PACK * (w->k0 + w->nb);
+    g.c = hdi_pack_at(&to, r0, w->k0);
+    g.c_row = to.row;
+    g.lower = lower;
+    for (q = 0; q * HDI_PANEL < w->k0; q++) {
+        const hdi_pack_block b = hdi_pack_block_of(w->panel, w->m, w->p, q);
+        g.a = hdi_pack_at(&b, r0, b.begin);
+        g.a_row = b.row;
+        g.b = w->S + HDI_PACK * b.begin;
+        g.depth = w->k0 - b.begin < b.width ? w->k0 - b.begin : b.width;
+        f->pack->multiply(&g, 0, r1 - r0, 0, w->nb);
+    }
+}
+
+static hdi_pack_rows hdi_pack_rows_of(const hdi_front *w) {
+    const hdi_pack_block b = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
+    hdi_pack_rows r;
+    r.panel = hdi_pack_at(&b, b.begin, w->k0);
+    r.row = b.row;
+    r.first = b.begin;
+    r.s = w->S + HDI_PACK * w->k0;
+    r.s_row = HDI_PACK * (w->k0 + w->nb);
+    r.dinv = w->dinv + HDI_PACK * w->k0;
+    r.nb = w->nb;
+    return r;
+}
+
+/* Pivots [k0,k0+nb): their rows of L and S, left-looking. 0 when one cannot be divided by. */
+static int hdi_pack_pivots(const hdi_factor *f, const hdi_front *w, hdi_pivots *note) {
+    const int64_t k0 = w->k0, s_row = HDI_PACK * (k0 + w->nb);
+    const hdi_pack_block own = hdi_pack_block_of(w->panel, w->m, w->p, k0 / HDI_PANEL);
+    hdi_pack_rows r = hdi_pack_rows_of(w);
+    int64_t q;
+    int32_t i, j;
+    int c;
+    for (q = 0; q * HDI_PANEL < k0; q++) {
+        const hdi_pack_block b = hdi_pack_block_of(w->panel, w->m, w->p, q);
+        const int64_t end = k0 - b.begin < b.width ? k0 - b.begin : b.width;
+        for (i = 0; i < w->nb; i++) {
+            const double *l = hdi_pack_at(&b, k0 + i, b.begin);
+            f->pack->scale(l, 0, 0, 1, 0, end, w->d + HDI_PACK * b.begin, w->S + i * s_row + HDI_PACK * b.begin);
+        }
+    }
+    hdi_pack_before(f, w, k0, k0 + w->nb, 1);
+    for (i = 0; i < w->nb; i++) {
+        double *x = hdi_pack_at(&own, k0 + i, k0), *d = w->d + HDI_PACK * (k0 + i), *s = w->S + i * s_row + HDI_PACK * k0, t[HDI_PACK];
+        r.nb = i;
+        if (i > 0) f->pack->solve_rows(&r, k0 + i, k0 + i + 1);
+        memcpy(d, x + HDI_PACK * i, HDI_PACK * sizeof *d);
+        for (j = 0; j < i; j++) {
+            hdi_pack_times(x + HDI_PACK * j, w->d + HDI_PACK * (k0 + j), s + HDI_PACK * j);
+            hdi_pack_times(x + HDI_PACK * j, s + HDI_PACK * j, t);
+            for (c = 0; c < HDI_PACK; c++) d[c] -= t[c];
+        }
+        for (c = 0; c < 4; c++) {
+            const hd_c64 one = hdi_cdiv(hdi_c(1, 0), hdi_c(d[c], d[c + 4]));
+            const double size = hdi_pythag(d[c], d[c + 4]);
+            if (!(size > 0) || !hdi_finite(size) || !hdi_cfinite(one)) {
+                note->failed = w->first + HDI_CAST(int32_t, k0) + i;
+                note->lane = c;
+                note->value = size;
+                return 0;
+            }
+            hdi_pivots_note(note, size);
+            w->dinv[HDI_PACK * (k0 + i) + c] = one.re;
+            w->dinv[HDI_PACK * (k0 + i) + c + 4] = one.im;
+        }
+    }
+    return 1;
+}
+
+/* Columns [k0,k0+nb) of L in rows [r0,r1) of the front. */
+static void hdi_pack_columns(const hdi_factor *f, const hdi_front *w, int64_t r0, int64_t r1) {
+    const hdi_pack_rows r = hdi_pack_rows_of(w);
+    hdi_pack_before(f, w, r0, r1, 0);
+    f->pack->solve_rows(&r, r0, r1);
+}
+
+/* Rows [r0,r1) of U = -L21 D L21'. S: room for HDI_FRONT_COLS rows of HDI_PACK_DEPTH entries. */
+static void hdi_pack_update(const hdi_factor *f, const hdi_front *w, double *S, int64_t r0, int64_t r1) {
+    hdi_pack_job g;
+    int64_t k, j;
+    memset(&g, 0, sizeof g);
+    g.c = w->update;
+    g.a_col = g.b_col = HDI_PACK;
+    g.lower = g.packed = 1;
+    for (k = 0; k < w->p; k += HDI_PACK_DEPTH) {
+        const hdi_pack_block b = hdi_pack_block_of(w->panel, w->m, w->p, k / HDI_PANEL);
+        g.depth = w->p - k < HDI_PACK_DEPTH ? w->p - k : HDI_PACK_DEPTH;
+        g.store = k == 0;
+        g.a = hdi_pack_at(&b, w->p, k);
+        g.a_row = b.row;
+        g.b = S;
+        g.b_row = HDI_PACK * g.depth;
+        for (j = 0; j < r1; j += HDI_FRONT_COLS) {
+            const int64_t end = j + HDI_FRONT_COLS < r1 ? j + HDI_FRONT_COLS : r1;
+            f->pack->scale(g.a, b.row, j, end, 0, g.depth, w->d + HDI_PACK * k, S);
+            g.b_first = j;
+            f->pack->multiply(&g, r0 > j ? r0 : j, r1, j, end);
+        }
+    }
+}
+
+/* ---- fronts ---- */
+
+/* Doubles of scratch for a front of so many pivots: of packs these, their block of scaled rows, and a block of columns of the update; of real ones the
+ * scaled rows, and the work of their kernels. */
+static size_t hdi_front_scratch(int32_t pivots, int32_t width) {
+    const size_t p = HDI_CAST(size_t, pivots), rows = p * HDI_PACK_BLOCK, cols = HDI_FRONT_COLS * HDI_PACK_DEPTH;
+    if (width == 1) return HDI_CAST(size_t, hdi_real_s_size(pivots)) + HDI_REAL_WORK + 64;
+    return HDI_PACK * (p + (rows > cols ? rows : cols)) + 64;
+}
+
+static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch) {
+    const hdi_symbolic *s = f->sym;
+    hdi_front w;
+    w.p = hdi_front_pivots(s, v);
+    w.u = hdi_front_below(s, v);
+    w.m = w.p + w.u;
+    w.panel = f->panel + f->width * (f->width == 1 ? s->panel[v] : s->panel_pack[v]);
+    w.update = f->work + f->width * s->update[v];
+    w.dinv = f->dinv + HDI_CAST(int64_t, f->width) * s->super[v];
+    w.d = scratch;                               /* real pivots stay on the diagonal */
+    w.S = f->width == 1 ? scratch : scratch + HDI_PACK * w.p;
+    w.k0 = 0;
+    w.nb = 0;
+    w.first = s->super[v];
+    return w;
+}
+
+/* Rows [r0,r1) of the update matrix of v, complete. */
+static void hdi_pack_update_rows(const hdi_factor *f, const hdi_front *w, int32_t v, double *S, int64_t r0, int64_t r1) {
+    if (r1 <= r0) return;
+    hdi_pack_update(f, w, S, r0, r1);
+    hdi_pack_extend(f, v, r0, r1);
+}
+
+static int hdi_pack_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
+    hdi_front w = hdi_front_open(f, v, scratch);
+    hdi_pack_assemble(f, v, 0, w.m);
+    for (; w.k0 < w.p; w.k0 += w.nb) {
+        w.nb = w.p - w.k0 < HDI_PACK_BLOCK ? HDI_CAST(int32_t, w.p - w.k0) : HDI_PACK_BLOCK;
+        if (!hdi_pack_pivots(f, &w, note)) return 0;
+        if (w.k0 + w.nb < w.m) hdi_pack_columns(f, &w, w.k0 + w.nb, w.m);
+    }
+    hdi_pack_update_rows(f, &w, v, w.S, 0, w.u);
+    return 1;
+}
+
+/* ---- real fronts ---- */
+
+/* Panel and update matrix of v: cleared, and the entries of A. */
+static void hdi_real_assemble(const hdi_factor *f, int32_t v, const hdi_front *w) {
+    const hdi_symbolic *s = f->sym;
+    const hdi_values *a = f->values;
+    int64_t q;
+    memset(w->panel, 0, HDI_CAST(size_t, w->m * w->p) * sizeof *w->panel);
+    memset(w->update, 0, HDI_CAST(size_t, hdi_triangle(w->u)) * sizeof *w->update);
+    for (q = s->a_ptr[v]; q < s->a_ptr[v + 1]; q++) {
+        const int64_t from = s->a_from[q], i = s->a_row[q], j = s->a_col[q];
+        double x;
+        if (a->l) x = a->t * a->l[from] + a->theta[0].re * (a->b ? a->b[from] : i == j ? a->b_diag[s->perm[s->super[v] + j]] : 0);
+        else x = a->real[from];
+        w->panel[i + j * w->m] = x;
+    }
+}
+
+/* Column [c0,c1) of the k-th child's update matrix into the front. */
+static void hdi_real_child(const hdi_factor *f, const hdi_front *w, int32_t c, int64_t c0, int64_t c1) {
+    const hdi_symbolic *s = f->sym;
+    hdi_real_extend(f->real, w->panel, w->m, HDI_CAST(int32_t, w->p), w->update, f->work + s->update[c], hdi_front_below(s, c), s->rel + s->row_ptr[c], c0, c1);
+}
+
+static int hdi_real_pivots_of(const hdi_factor *f, const hdi_front *w, int64_t end, hdi_pivots *note, double *work) {
+    hdi_real_pivots seen;
+    int64_t bad;
+    seen.largest = note->largest;
+    seen.smallest = hdi_min(note->smallest, DBL_MAX);
+    seen.negative = note->negative;
+    bad = hdi_real_block(f->real, w->panel, w->m, HDI_CAST(int32_t, w->k0), w->nb, end, w->S, w->dinv, &seen, work);
+    note->largest = seen.largest;
+    note->smallest = seen.smallest;
+    note->negative = seen.negative;
+    if (bad < 0) return 1;
+    note->failed = w->first + HDI_CAST(int32_t, bad);
+    note->value = w->panel[bad * (w->m + 1)];
+    return 0;
+}
+
+static int hdi_real_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
+    const hdi_symbolic *s = f->sym;
+    hdi_front w = hdi_front_open(f, v, scratch);
+    double *work = w.S + hdi_real_s_size(w.p);
+    int32_t k;
+    hdi_real_assemble(f, v, &w);
+    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) hdi_real_child(f, &w, s->kid[k], 0, hdi_front_below(s, s->kid[k]));
+    for (; w.k0 < w.p; w.k0 += w.nb) {
+        const int all = w.p <= HDI_REAL_NB;
+        w.nb = w.p - w.k0 < HDI_REAL_NB ? HDI_CAST(int32_t, w.p - w.k0) : HDI_CAST(int32_t, HDI_REAL_NB);
+        if (!hdi_real_pivots_of(f, &w, all ? w.m : w.k0 + w.nb, note, work)) return 0;
+        if (!all && w.k0 + w.nb < w.m)
+            hdi_real_rows(f->real, w.panel, w.m, HDI_CAST(int32_t, w.k0), w.nb, w.S, HDI_CAST(int32_t, w.k0) + w.nb, w.dinv, w.k0 + w.nb, w.m, work);
+    }
+    if (w.u > 0) hdi_real_update(f->real, w.update, w.u, w.panel, w.m, HDI_CAST(int32_t, w.p), work, 0, w.u);
+    return 1;
+}
+
+/* ---- the tree ---- */
+
+static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
+    return f->width == 1 ? hdi_real_factor(f, v, scratch, note) : hdi_pack_factor(f, v, scratch, note);
+}
+
+static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) { return f->scratch + f->scratch_size * HDI_CAST(size_t, i); }
+
+/* A subtree, by one thread. */
+static void hdi_factor_task(void *arg, int64_t index, int32_t worker) {
+    hdi_factor *f = HDI_CAST(hdi_factor *, arg);
+    const hdi_symbolic *s = f->sym;
+    hdi_pivots *note = f->pivots + index;
+    int32_t v;
+    if (HDI_LOAD(&f->stop)) return;
+    if (worker == 0 && hdi_progress(f->ctx, "factor", f->share * HDI_CAST(double, index) / s->n_tasks, &f->error) < 0) HDI_STORE(&f->stop, 1);
+    for (v = s->task_begin[index]; v < s->task_end[index] && !HDI_LOAD(&f->stop); v++)
+        if (!hdi_front_factor(f, v, hdi_factor_scratch(f, index), note)) HDI_STORE(&f->stop, 1);
+}
+
+/* A large front shared by all threads, in chunks of rows (or of a child's columns). */
+typedef enum hdi_share_stage { HDI_SHARE_ASSEMBLE, HDI_SHARE_COLUMNS, HDI_SHARE_UPDATE } hdi_share_stage;
+
+typedef struct hdi_share {
+    hdi_factor *f;
+    const hdi_front *w;
+    int32_t v, child, n_chunks;
+    hdi_share_stage stage;
+    int64_t begin, end;
+} hdi_share;
+
+static void hdi_share_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_share *h = HDI_CAST(const hdi_share *, arg);
+    const hdi_factor *f = h->f;
+    const hdi_front *w = h->w;
+    const int64_t chunk = h->n_chunks - 1 - index;       /* the last rows of a triangle are the longest */
+    const int64_t r0 = h->begin + chunk * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK < h->end ? r0 + HDI_FRONT_CHUNK : h->end;
+    double *work = f->chunk_scratch + f->chunk_size * HDI_CAST(size_t, chunk);
+    (void)worker;
+    if (f->width > 1) {
+        if (h->stage == HDI_SHARE_ASSEMBLE) hdi_pack_assemble(f, h->v, r0, r1);
+        else if (h->stage == HDI_SHARE_COLUMNS) hdi_pack_columns(f, w, r0, r1);
+        else hdi_pack_update_rows(f, w, h->v, work, r0, r1);
+        return;
+    }
+    if (h->stage == HDI_SHARE_ASSEMBLE) hdi_real_child(f, w, h->child, r0, r1);
+    else if (h->stage == HDI_SHARE_COLUMNS)
+        hdi_real_rows(f->real, w->panel, w->m, HDI_CAST(int32_t, w->k0), w->nb, w->S, HDI_CAST(int32_t, w->k0) + w->nb, w->dinv, r0, r1, work);
+    else hdi_real_update(f->real, w->update, w->u, w->panel, w->m, HDI_CAST(int32_t, w->p), work, r0, r1);
+}
+
+static void hdi_share_run(hdi_share *h, hdi_share_stage stage, int64_t begin, int64_t end) {
+    if (end <= begin) return;
+    h->stage = stage;
+    h->begin = begin;
+    h->end = end;
+    h->n_chunks = HDI_CAST(int32_t, (end - begin + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    hdi_parallel(h->f->ctx, h->n_chunks, hdi_share_task, h);
+}
+
+static int hdi_front_shared(hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
+    const hdi_symbolic *s = f->sym;
+    hdi_front w = hdi_front_open(f, v, scratch);
+    const int32_t most = f->width == 1 ? HDI_REAL_NB : HDI_PACK_BLOCK;
+    hdi_share h;
+    int32_t k;
+    h.f = f;
+    h.w = &w;
+    h.v = v;
+    if (f->width > 1) {
+        hdi_share_run(&h, HDI_SHARE_ASSEMBLE, 0, w.m);
+    } else {
+        hdi_real_assemble(f, v, &w);
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+            h.child = s->kid[k];
+            hdi_share_run(&h, HDI_SHARE_ASSEMBLE, 0, hdi_front_below(s, h.child));
+        }
+    }
+    for (; w.k0 < w.p; w.k0 += w.nb) {
+        w.nb = w.p - w.k0 < most ? HDI_CAST(int32_t, w.p - w.k0) : most;
+        if (!(f->width == 1 ? hdi_real_pivots_of(f, &w, w.k0 + w.nb, note, w.S + hdi_real_s_size(w.p)) : hdi_pack_pivots(f, &w, note))) return 0;
+        hdi_share_run(&h, HDI_SHARE_COLUMNS, w.k0 + w.nb, w.m);
+    }
+    hdi_share_run(&h, HDI_SHARE_UPDATE, 0, w.u);
+    return 1;
+}
+
+static void hdi_factor_free(hdi_factor *f) {
+    if (!f->ctx) return;
+    hdi_free(f->ctx, f->panel);
+    hdi_free(f->ctx, f->dinv);
+    hdi_free(f->ctx, f->work);
+    hdi_free(f->ctx, f->scratch);
+    hdi_free(f->ctx, f->chunk_scratch);
+    hdi_free(f->ctx, f->pivots);
+    memset(f, 0, sizeof *f);
+}
+
+/* Room for a factor of the given width; all that factoring and refactoring need. */
+static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    const size_t w = HDI_CAST(size_t, width);
+    const int32_t n_parts = sym->n_tasks > 0 ? sym->n_tasks : 1, n_chunks = sym->largest_front / HDI_FRONT_CHUNK + 1;
+    memset(f, 0, sizeof *f);
+    f->sym = sym;
+    f->width = width;
+    f->pack = hdi_pack_ops_get(hdi_simd_level(ctx));
+    f->real = hdi_real_ops_get(hdi_simd_level(ctx));
+    f->scratch_size = hdi_front_scratch(sym->task_pivots, width);
+    f->chunk_size = hdi_front_scratch(0, width);
+    f->panel = HDI_TAKE(&s, double, HDI_CAST(size_t, width == 1 ? sym->panel[sym->n_super] : sym->stored) * w);
+    f->dinv = HDI_TAKE(&s, double, HDI_CAST(size_t, sym->n) * w);
+    f->work = HDI_TAKE(&s, double, HDI_CAST(size_t, sym->work) * w);
+    f->scratch = HDI_TAKE(&s, double, hdi_front_scratch(sym->largest_pivots, width) + f->scratch_size * HDI_CAST(size_t, n_parts));
+    f->chunk_scratch = HDI_TAKE(&s, double, sym->n_top ? f->chunk_size * HDI_CAST(size_t, n_chunks) : 1);
+    f->pivots = HDI_TAKE(&s, hdi_pivots, n_parts + 1);
+    if (e->status < 0) {
+        memset(f, 0, sizeof *f);
+        return hdi_scope_end(&s);
+    }
+    s.n = 0;
+    f->ctx = ctx;
+    return HD_OK;
+}
+
+/* Collects what the parts saw; the failure of the lowest pivot is the one to tell. */
+static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e) {
+    int32_t i;
+    hdi_pivots_clear(&f->all);
+    for (i = 0; i < n_parts; i++) {
+        const hdi_pivots *q = f->pivots + i;
+        if (q->largest > f->all.largest) f->all.largest = q->largest;
+        if (q->smallest < f->all.smallest) f->all.smallest = q->smallest;
+        f->all.negative += q->negative;
+        if (q->failed < 0 || (f->all.failed >= 0 && f->all.failed < q->failed)) continue;
+        f->all.failed = q->failed;
+        f->all.lane = q->lane;
+        f->all.value = q->value;
+    }
+    if (f->error.status < 0) {
+        *e = f->error;
+        return e->status;
+    }
+    if (f->all.failed < 0) return HD_OK;
+    hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is zero or not finite", f->sym->perm[f->all.failed], -1, f->all.value);
+    if (f->width > 1) e->pole = f->all.lane;
+    return e->status;
+}
+
+/* All fronts: subtrees at the same time, then the top, whose fronts are shared. */
+static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
+    const hdi_symbolic *s = f->sym;
+    const int32_t n_parts = s->n_tasks + 1;
+    double *scratch = hdi_factor_scratch(f, s->n_tasks);
+    int32_t i;
+    f->ready = f->stop = 0;
+    f->values = values;
+    f->share = s->n_top > 0 ? 0.5 : 1;
+    hdi_error_clear(&f->error);
+    for (i = 0; i < n_parts; i++) hdi_pivots_clear(f->pivots + i);
+    hdi_parallel(f->ctx, s->n_tasks, hdi_factor_task, f);
+    for (i = 0; i < s->n_top && !f->stop; i++) {
+        const int32_t v = s->top[i];
+        const int64_t m = hdi_front_pivots(s, v) + hdi_front_below(s, v);
+        if (hdi_progress(f->ctx, "factor", 0.5 + 0.5 * i / s->n_top, &f->error) < 0) break;
+        if (!(m >= 2 * HDI_FRONT_CHUNK ? hdi_front_shared(f, v, scratch, f->pivots + s->n_tasks) : hdi_front_factor(f, v, scratch, f->pivots + s->n_tasks))) break;
+    }
+    f->values = NULL;
+    if (hdi_factor_collect(f, n_parts, e) < 0) return e->status;
+    f->ready = 1;
+    return HD_OK;
+}
+
+/* ---- solves ---- */
+/* x [n] entries in elimination order. Forward, a front hands its parent a vector, as it does update matrices, so that subtrees are independent both ways.
+ * Right-hand sides with few non-zeros touch few fronts: active [n_super] tells which (NULL: all), closed towards the roots. */
+typedef struct hdi_sweep {
+    const hdi_factor *f;
+    double *x, *vec;             /* [n][k], [vector_size][k] entries */
+    double *gather;              /* [largest_update][k] entries for each part, packs with k > 1 and real */
+    int64_t gather_size;         /* doubles */
+    int32_t k;                   /* right-hand sides side by side: packs any, real 1 or 8 */
+    int32_t backward;
+    const char *active;          /* forward */
+} hdi_sweep;
+
+/* The children's vectors: into the pivots' part of x, or into t. */
+static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double *t) {
+    const hdi_symbolic *s = z->f->sym;
+    const int64_t p = hdi_front_pivots(s, v), w = HDI_CAST(int64_t, z->f->width) * z->k;
+    int64_t i, q;
+    int32_t k;
+    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+        const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
+        const int64_t uc = hdi_front_below(s, c), inner = hdi_lower_bound(rel, uc, p), begin = y ? 0 : inner, end = y ? inner : uc;
+        const double *from = z->vec + w * s->vector[c];
+        if (z->active && !z->active[c]) continue;
+        for (i = begin; i < end; i++) {
+            double *HDI_RESTRICT to = y ? y + w * rel[i] : t + w * (rel[i] - p);
+            const double *HDI_RESTRICT f = from + w * i;
+            if (w == 1) *to += *f;
+            else for (q = 0; q < w; q += 8) {
+                int e;
+                for (e = 0; e < 8; e++) to[q + e] += f[q + e];
+            }
+        }
+    }
+}
+
+/* y = L11^-1 y, t -= L21 y */
+static void hdi_pack_forward_front(const hdi_sweep *z, int32_t v, double *y, double *t) {
+    const hdi_factor *f = z->f;
+    const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v), row = HDI_PACK * z->k;
+    double *panel = f->panel + HDI_PACK * f->sym->panel_pack[v];
+    hdi_pack_job g;
+    int64_t i, q;
+    memset(&g, 0, sizeof g);
+    g.a_col = HDI_PACK;
+    g.b_row = HDI_PACK;
+    g.b_col = g.c_row = row;
+    for (q = 0; q * HDI_PANEL < p; q++) {
+        const hdi_pack_block b = hdi_pack_block_of(panel, p + u, p, q);
+        double *l = b.at;
+        if (z->k == 1) {
+            double *w = y + HDI_PACK * b.begin;
+            for (i = 1; i < b.width; i++) f->pack->forward(l + i * b.row, 1, i, w, w + HDI_PACK * i);
+            f->pack->forward(l + b.width * b.row, p - b.begin - b.width, b.width, w, w + b.row);
+            f->pack->forward(l + (p - b.begin) * b.row, u, b.width, w, t);
+            continue;
+        }
+        g.a_row = b.row;
+        g.b = y + row * b.begin;
+        for (i = 1; i < b.width; i++) {
+            g.a = l + i * b.row;
+            g.c = y + row * (b.begin + i);
+            g.depth = i;
+            f->pack->multiply(&g, 0, 1, 0, z->k);
+        }
+        g.depth = b.width;
+        g.a = l + b.width * b.row;
+        g.c = y + row * (b.begin + b.width);
+        f->pack->multiply(&g, 0, p - b.begin - b.width, 0, z->k);
+        g.a = l + (p - b.begin) * b.row;
+        g.c = t;
+        f->pack->multiply(&g, 0, u, 0, z->k);
+    }
+}
+
+/* y = L11^-T (D^-1 y - L21' x[rows]) */
+static void hdi_pack_backward_front(const hdi_sweep *z, int32_t v, double *y, double *gather) {
+    const hdi_factor *f = z->f;
+    const hdi_symbolic *s = f->sym;
+    const int64_t p = hdi_front_pivots(s, v), u = hdi_front_below(s, v), row = HDI_PACK * z->k;
+    const int32_t *idx = s->row + s->row_ptr[v];
+    double *panel = f->panel + HDI_PACK * s->panel_pack[v], t[HDI_PACK];
+    const double *dinv = f->dinv + HDI_PACK * HDI_CAST(int64_t, s->super[v]);
+    hdi_pack_job g;
+    int64_t i, q;
+    for (i = 0; i < p * z->k; i++) {
+        memcpy(t, y + HDI_PACK * i, sizeof t);
+        hdi_pack_times(t, dinv + HDI_PACK * (i / z->k), y + HDI_PACK * i);
+    }
+    for (i = 0; i < u && z->k > 1; i++) memcpy(gather + i * row, z->x + row * idx[i], HDI_CAST(size_t, row) * sizeof *gather);
+    memset(&g, 0, sizeof g);
+    g.a_row = g.b_row = HDI_PACK;
+    g.b_col = g.c_row = row;
+    for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
+        const hdi_pack_block b = hdi_pack_block_of(panel, p + u, p, q);
+        double *l = b.at, *w = y + row * b.begin;
+        if (z->k == 1) {
+            f->pack->backward(l + (p - b.begin) * b.row, idx, u, b.width, w, z->x);
+            f->pack->backward(l + b.width * b.row, NULL, p - b.begin - b.width, b.width, w, w + b.row);
+            for (i = b.width - 1; i > 0; i--) f->pack->backward(l + i * b.row, NULL, 1, i, w, w + HDI_PACK * i);
+            continue;
+        }
+        g.a_col = b.row;
+        g.c = w;
+        g.a = l + (p - b.begin) * b.row;
+        g.b = gather;
+        g.depth = u;
+        f->pack->multiply(&g, 0, b.width, 0, z->k);
+        g.a = l + b.width * b.row;
+        g.b = w + row * b.width;
+        g.depth = p - b.begin - b.width;
+        f->pack->multiply(&g, 0, b.width, 0, z->k);
+        g.depth = 1;
+        for (i = b.width - 1; i > 0; i--) {
+            g.a = l + i * b.row;
+            g.b = w + row * i;
+            f->pack->multiply(&g, 0, i, 0, z->k);
+        }
+    }
+}
+
+static void hdi_real_forward_front(const hdi_sweep *z, int32_t v, double *y, double *t) {
+    const hdi_factor *f = z->f;
+    const int32_t p = hdi_front_pivots(f->sym, v);
+    const int64_t u = hdi_front_below(f->sym, v), m = p + u;
+    const double *panel = f->panel + f->sym->panel[v];
+    int32_t k, nc;
+    for (k = 0; k < p; k += 8) {
+        nc = p - k < 8 ? p - k : 8;
+        if (z->k == 1) {
+            f->real->forward(y + k, panel + k + k * m, m, nc, p - k - nc, t, u, k == 0);
+            continue;
+        }
+        if (k) f->real->gemv8(y + 8 * k, NULL, panel + k, m, nc, y, k);
+        f->real->lower8(y + 8 * k, panel + k + k * m, m, nc);
+    }
+    if (z->k == 1) return;
+    memset(t, 0, HDI_CAST(size_t, 8 * u) * sizeof *t);
+    if (u > 0) f->real->gemv8(t, NULL, panel + p, m, u, y, p);
+}
+
+static void hdi_real_backward_front(const hdi_sweep *z, int32_t v, double *y, double *gather) {
+    const hdi_factor *f = z->f;
+    const hdi_symbolic *s = f->sym;
+    const int32_t p = hdi_front_pivots(s, v), *idx = s->row + s->row_ptr[v];
+    const int64_t m = p + hdi_front_below(s, v);
+    if (z->k == 1) hdi_real_backward(f->real, f->panel + s->panel[v], m, p, f->dinv + s->super[v], y, z->x, idx, gather);
+    else hdi_real_backward8(f->real, f->panel + s->panel[v], m, p, f->dinv + s->super[v], y, z->x, idx);
+}
+
+static void hdi_sweep_front(const hdi_sweep *z, int32_t v, int64_t part) {
+    const hdi_factor *f = z->f;
+    const int64_t w = HDI_CAST(int64_t, f->width) * z->k, u = hdi_front_below(f->sym, v);
+    double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v], *gather = z->gather + z->gather_size * part;
+    if (z->backward) {
+        if (f->width == 1) hdi_real_backward_front(z, v, y, gather);
+        else hdi_pack_backward_front(z, v, y, gather);
+        return;
+    }
+    if (z->active && !z->active[v]) return;
+    hdi_sweep_children(z, v, y, NULL);
+    if (f->width == 1) {
+        hdi_real_forward_front(z, v, y, t);      /* sets t */
+    } else {
+        memset(t, 0, HDI_CAST(size_t, w * u) * sizeof *t);
+        hdi_pack_forward_front(z, v, y, t);
+    }
+    hdi_sweep_children(z, v, NULL, t);
+}
+
+static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_sweep *z = HDI_CAST(const hdi_sweep *, arg);
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t begin = s->task_begin[index], end = s->task_end[index];
+    int32_t v;
+    (void)worker;
+    if (z->backward)
+        for (v = end; v-- > begin;) hdi_sweep_front(z, v, index);
+    else
+        for (v = begin; v < end; v++) hdi_sweep_front(z, v, index);
+}
+
+/* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
+static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
+    const hdi_symbolic *s = z->f->sym;
+    int32_t i;
+    z->backward = 0;
+    if (ctx && !z->active) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
+    else for (i = 0; i < s->n_tasks; i++) hdi_sweep_task(z, i, 0);
+    for (i = 0; i < s->n_top; i++) hdi_sweep_front(z, s->top[i], s->n_tasks);
+    z->backward = 1;
+    for (i = s->n_top; i-- > 0;) hdi_sweep_front(z, s->top[i], s->n_tasks);
+    if (ctx) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
+    else for (i = s->n_tasks; i-- > 0;) hdi_sweep_task(z, i, 0);
+}
+
+/* Doubles that a sweep of k right-hand sides works with besides x: vec, and gather for each part under way at the same time. */
+static size_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k, int parallel) {
+    const size_t w = HDI_CAST(size_t, width) * HDI_CAST(size_t, k), parts = parallel ? HDI_CAST(size_t, s->n_tasks) + 1 : 1;
+    return w * (HDI_CAST(size_t, s->vector_size) + parts * HDI_CAST(size_t, s->largest_update)) + 16;
+}
+
+static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, double *work, int parallel) {
+    hdi_sweep z;
+    memset(&z, 0, sizeof z);
+    z.f = f;
+    z.x = x;
+    z.k = k;
+    z.vec = work;
+    z.gather = work + HDI_CAST(int64_t, f->width) * k * f->sym->vector_size;
+    z.gather_size = parallel ? HDI_CAST(int64_t, f->width) * k * f->sym->largest_update : 0;
+    return z;
+}
+
+/* Fronts that a right-hand side with a non-zero at pivot i touches: up the tree. */
+static void hdi_sweep_touch(const hdi_symbolic *s, int32_t i, char *active) {
+    int32_t v;
+    for (v = s->super_of[i]; v >= 0 && !active[v]; v = s->parent[v]) active[v] = 1;
 }
 
 /* ==== [14] precond ====
@@ -3645,6 +8500,254 @@ static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o,
     if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: unknown preconditioner");
     if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: tol is not in [0, 1)");
     if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: max_iterations is negative");
+    return HD_OK;
+}
+
+/* ---- direct solver ---- */
+
+struct hd_ldl {
+    hd_context *ctx, context;
+    hdi_symbolic sym;
+    int32_t n;
+    int64_t nnz, *row_ptr;       /* of the pattern: where values are not finite */
+    int32_t *col, *inv;          /* inv: row of A -> elimination order */
+    hdi_factor real, *pack;      /* pack [n_packs] */
+    int32_t n_packs, n_matrices; /* of the last factorisation; n_matrices 0: real or none */
+    double *x[2], *work[2];      /* sweeps: real, packs */
+};
+
+HEATDIFF_API void hd_ldl_free(hd_ldl *f) {
+    hd_context own, *ctx;
+    int32_t i;
+    if (!f) return;
+    own = f->context;
+    ctx = f->ctx == &f->context ? &own : f->ctx;
+    f->real.ctx = f->real.ctx ? ctx : NULL;
+    hdi_factor_free(&f->real);
+    for (i = 0; i < f->n_packs; i++) {
+        f->pack[i].ctx = f->pack[i].ctx ? ctx : NULL;
+        hdi_factor_free(f->pack + i);
+    }
+    hdi_free(ctx, f->pack);
+    for (i = 0; i < 2; i++) {
+        hdi_free(ctx, f->x[i]);
+        hdi_free(ctx, f->work[i]);
+    }
+    hdi_free(ctx, f->row_ptr);
+    hdi_free(ctx, f->col);
+    hdi_free(ctx, f->inv);
+    hdi_symbolic_free(ctx, &f->sym);
+    hdi_free(ctx, f);
+}
+
+static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *rep) {
+    if (!rep) return;
+    memset(rep, 0, sizeof *rep);
+    rep->ordering = f->sym.ordering;
+    rep->n_supernodes = f->sym.n_super;
+    rep->factor_nnz = f->sym.nnz;
+    rep->stored = of && of->width == 1 ? f->sym.panel[f->sym.n_super] : f->sym.stored;
+    rep->factor_flops = f->sym.flops;
+    if (!of) return;
+    rep->n_matrices = of->width == 1 ? 1 : f->n_matrices;
+    rep->growth = of->largest_entry > 0 ? of->all.largest / of->largest_entry : 0;
+    rep->smallest_pivot = of->largest_entry > 0 && of->all.smallest < HUGE_VAL ? of->all.smallest / of->largest_entry : 0;
+    rep->n_negative = HDI_CAST(int32_t, of->all.negative);
+}
+
+HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts, hd_ldl_report *report, hd_error *err) {
+    hd_ldl_opts o;
+    hdi_call c;
+    hdi_scope s;
+    hd_csr shape;
+    hd_ldl *f;
+    int32_t *perm, i;
+    memset(&o, 0, sizeof o);
+    if (opts) o = *opts;
+    if (hdi_enter(&c, o.context, err) < 0) return c.e->status;
+    if (!out || !a) return hdi_missing(c.e);
+    if (o.begin_zero || o.end_zero) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl options: not cleared before use");
+    shape = *a;
+    shape.val = NULL;
+    if (hdi_csr_check(&shape, 1, c.ctx, c.e) < 0) return c.e->status;
+    f = HDI_CAST(hd_ldl *, hdi_alloc(c.ctx, 1, sizeof *f, c.e));
+    if (!f) return c.e->status;
+    memset(f, 0, sizeof *f);
+    if (c.ctx == &c.context) {
+        f->context = c.context;
+        c.ctx = &f->context;
+    }
+    f->ctx = c.ctx;
+    f->n = a->n_rows;
+    f->nnz = a->nnz;
+    s = hdi_scope_begin(c.ctx, c.e);
+    perm = HDI_TAKE(&s, int32_t, f->n);
+    if (perm && hdi_sym_order(&shape, o.xyz, o.ordering, o.perm, perm, &i, c.ctx, c.e) >= 0 && hdi_symbolic_make(&f->sym, &shape, perm, c.ctx, c.e) >= 0) {
+        f->sym.ordering = HDI_CAST(hd_ordering, i);
+        f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, HDI_CAST(size_t, f->n) + 1, sizeof *f->row_ptr, c.ctx, c.e));
+        f->col = HDI_CAST(int32_t *, hdi_copy(a->col, HDI_CAST(size_t, f->nnz), sizeof *f->col, c.ctx, c.e));
+        if (c.e->status >= 0) f->inv = HDI_CAST(int32_t *, hdi_alloc(c.ctx, HDI_CAST(size_t, f->n), sizeof *f->inv, c.e));
+        for (i = 0; f->inv && i < f->n; i++) f->inv[f->sym.perm[i]] = i;
+    }
+    if (hdi_scope_end(&s) < 0) {
+        hd_ldl_free(f);
+        return c.e->status;
+    }
+    hdi_ldl_tell(f, NULL, report);
+    *out = f;
+    return HD_OK;
+}
+
+/* Finds the first value that is not finite, and the largest diagonal entry. stride: doubles per value. */
+static hd_status hdi_ldl_values(const hd_ldl *f, const double *val, int stride, double *largest, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < f->n; i++) {
+        for (p = f->row_ptr[i]; p < f->row_ptr[i + 1]; p++) {
+            const double re = val[stride * p], im = stride > 1 ? val[stride * p + 1] : 0;
+            if (!hdi_finite(re) || !hdi_finite(im))
+                return hdi_fail_row(e, HD_ERR_NOT_FINITE, "LDL': a value of the matrix is not finite", i, f->col[p], hdi_finite(re) ? im : re);
+            if (f->col[p] == i) *largest = hdi_max(*largest, hypot(re, im));
+        }
+    }
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
+    hdi_values v;
+    hdi_call c;
+    double largest = 0;
+    if (hdi_enter(&c, f ? f->ctx : NULL, err) < 0) return c.e->status;
+    if (!f || (f->nnz > 0 && !val)) return hdi_missing(c.e);
+    f->n_matrices = 0;
+    f->real.ready = 0;
+    if (hdi_ldl_values(f, val, 1, &largest, c.e) < 0) return c.e->status;
+    if (!f->real.ctx && hdi_factor_make(&f->real, &f->sym, 1, f->ctx, c.e) < 0) return c.e->status;
+    memset(&v, 0, sizeof v);
+    v.real = val;
+    f->real.largest_entry = largest;
+    if (hdi_factor_run(&f->real, &v, c.e) < 0) return c.e->status;
+    hdi_ldl_tell(f, &f->real, report);
+    return HD_OK;
+}
+
+/* Room for packs for k matrices. */
+static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
+    const int32_t want = (k + 3) / 4;
+    hdi_factor *pack;
+    int32_t i;
+    if (f->n_packs >= want) return HD_OK;
+    pack = HDI_CAST(hdi_factor *, hdi_alloc(f->ctx, HDI_CAST(size_t, want), sizeof *pack, e));
+    if (!pack) return e->status;
+    memset(pack, 0, HDI_CAST(size_t, want) * sizeof *pack);
+    for (i = 0; i < f->n_packs; i++) pack[i] = f->pack[i];
+    hdi_free(f->ctx, f->pack);
+    f->pack = pack;
+    for (; f->n_packs < want; f->n_packs++)
+        if (hdi_factor_make(f->pack + f->n_packs, &f->sym, HDI_PACK, f->ctx, e) < 0) return e->status;
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *report, hd_error *err) {
+    hd_ldl_report all, one;
+    hdi_call c;
+    int32_t i, q;
+    memset(&all, 0, sizeof all);
+    if (hdi_enter(&c, f ? f->ctx : NULL, err) < 0) return c.e->status;
+    if (!f || (f->nnz > 0 && !val)) return hdi_missing(c.e);
+    if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of matrices is not positive");
+    f->n_matrices = 0;
+    f->real.ready = 0;
+    if (hdi_ldl_packs(f, k, c.e) < 0) return c.e->status;
+    for (i = 0; 4 * i < k; i++) {
+        hdi_factor *pack = f->pack + i;
+        hdi_values v;
+        memset(&v, 0, sizeof v);
+        pack->largest_entry = 0;
+        for (q = 0; q < 4; q++) {                /* a matrix that is not there is the last one again */
+            v.z[q] = val + f->nnz * (4 * i + q < k ? 4 * i + q : k - 1);
+            if (4 * i + q < k && hdi_ldl_values(f, &v.z[q]->re, 2, &pack->largest_entry, c.e) < 0) {
+                c.e->pole = 4 * i + q;
+                return c.e->status;
+            }
+        }
+        if (hdi_factor_run(pack, &v, c.e) < 0) {
+            if (c.e->pole >= 0) c.e->pole += 4 * i;
+            return c.e->status;
+        }
+        hdi_ldl_tell(f, pack, &one);
+        if (i == 0) all = one;
+        all.growth = hdi_max(all.growth, one.growth);
+        all.smallest_pivot = hdi_min(all.smallest_pivot, one.smallest_pivot);
+    }
+    all.n_matrices = f->n_matrices = k;
+    if (report) *report = all;
+    return HD_OK;
+}
+
+/* Vectors and work of sweeps, kept. which: 0 real, 1 packs. */
+static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
+    const int32_t width = which ? HDI_PACK : 1, k = which ? 1 : 8;
+    if (f->x[which]) return HD_OK;
+    if (!f->work[which]) f->work[which] = HDI_CAST(double *, hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k, 1), sizeof(double), e));
+    if (f->work[which]) f->x[which] = HDI_CAST(double *, hdi_alloc(f->ctx, HDI_CAST(size_t, f->n) * HDI_CAST(size_t, width * k), sizeof(double), e));
+    return e->status;
+}
+
+HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x, size_t ldx, hd_error *err) {
+    hdi_call c;
+    hdi_sweep z;
+    int32_t i, q, r, n_cols;
+    if (hdi_enter(&c, f ? f->ctx : NULL, err) < 0) return c.e->status;
+    if (!f || (k > 0 && f->n > 0 && (!b || !x))) return hdi_missing(c.e);
+    if (!f->real.ready) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a real one");
+    if (k < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of right-hand sides is negative");
+    ldb = ldb ? ldb : HDI_CAST(size_t, f->n);
+    ldx = ldx ? ldx : HDI_CAST(size_t, f->n);
+    if (ldb < HDI_CAST(size_t, f->n) || ldx < HDI_CAST(size_t, f->n)) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: a leading dimension is smaller than n");
+    if (hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
+    for (q = 0; q < k; q += n_cols) {            /* eight at a time, or one by one */
+        const int32_t wide = k - q > 1 ? 8 : 1;
+        n_cols = k - q < wide ? k - q : wide;
+        for (i = 0; i < f->n; i++)
+            for (r = 0; r < wide; r++)
+                f->x[0][HDI_CAST(int64_t, wide) * i + r] = r < n_cols ? b[HDI_CAST(size_t, q + r) * ldb + HDI_CAST(size_t, f->sym.perm[i])] : 0;
+        z = hdi_sweep_open(&f->real, wide, f->x[0], f->work[0], 1);
+        hdi_sweep_run(&z, f->ctx);
+        for (i = 0; i < f->n; i++)
+            for (r = 0; r < n_cols; r++) x[HDI_CAST(size_t, q + r) * ldx + HDI_CAST(size_t, f->sym.perm[i])] = f->x[0][HDI_CAST(int64_t, wide) * i + r];
+    }
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx, hd_error *err) {
+    hdi_call c;
+    hdi_sweep z;
+    int32_t i, q, p;
+    if (hdi_enter(&c, f ? f->ctx : NULL, err) < 0) return c.e->status;
+    if (!f || (f->n > 0 && (!b || !x))) return hdi_missing(c.e);
+    if (f->n_matrices == 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a complex one");
+    ldx = ldx ? ldx : HDI_CAST(size_t, f->n);
+    if ((ldb && ldb < HDI_CAST(size_t, f->n)) || ldx < HDI_CAST(size_t, f->n)) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: a leading dimension is smaller than n");
+    if (b == x && ldb && ldb != ldx) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: x may be b only when both have the same leading dimension");
+    if (hdi_ldl_room(f, 1, c.e) < 0) return c.e->status;
+    for (p = (f->n_matrices - 1) / 4; p >= 0; p--) {   /* from the last: x may be the b of all */
+        const int32_t n_here = f->n_matrices - 4 * p < 4 ? f->n_matrices - 4 * p : 4;
+        for (i = 0; i < f->n; i++) {
+            double *to = f->x[1] + HDI_PACK * HDI_CAST(int64_t, i);
+            for (q = 0; q < 4; q++) {
+                const hd_c64 v = b[HDI_CAST(size_t, 4 * p + (q < n_here ? q : 0)) * ldb + HDI_CAST(size_t, f->sym.perm[i])];
+                to[q] = v.re;
+                to[q + 4] = v.im;
+            }
+        }
+        z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1], 1);
+        hdi_sweep_run(&z, f->ctx);
+        for (i = 0; i < f->n; i++) {
+            const double *from = f->x[1] + HDI_PACK * HDI_CAST(int64_t, i);
+            for (q = 0; q < n_here; q++) x[HDI_CAST(size_t, 4 * p + q) * ldx + HDI_CAST(size_t, f->sym.perm[i])] = hdi_c(from[q], from[q + 4]);
+        }
+    }
     return HD_OK;
 }
 
