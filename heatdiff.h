@@ -523,6 +523,12 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, double t, int32_t source, d
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, double t, hd_kernel kernel, int32_t k, const int32_t *sources, double *U, size_t ldu,
                                        hd_report *report);
 
+/* One field or one column at many times: U n x n_times, column q for t[q], in any order. f [n], or NULL: the column of source, as in hd_heat_columns.
+ * By the krylov method one factor and one basis serve all times within a decade or two, so that many cost little more than one; other
+ * methods take the times one by one. The report is the worst of all. */
+HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
+                                     hd_report *report);
+
 /* Single entries: values[q] = (i[q], j[q]) of K_t or k_t. One column per distinct j is solved, n doubles at a time. */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
                                        double *values, hd_report *report);
@@ -604,6 +610,7 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 #else
 #define HDI_INLINE inline
 #endif
+#define HDI_PACK_CLONE static HDI_INLINE   /* bodies that are compiled for several instruction sets */
 
 #ifdef __cplusplus
 #define HDI_CAST(type, x) static_cast<type>(x)
@@ -7716,8 +7723,8 @@ static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, size_t stride, h
     return HD_OK;
 }
 
-/* Right-hand sides at a time. */
-enum { HDI_LANES = 4 };
+/* Right-hand sides at a time: at most, by iterations, and in a batch through the factors of poles. */
+enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 6, HDI_BATCHES = 4 };
 
 enum { HDI_LANCZOS_MAX = 4096 };
 
@@ -7734,7 +7741,7 @@ typedef struct hdi_lanczos {
 typedef struct hdi_lane {
     double *f, *rhs, *u;         /* the field, B f, the answer */
     double *tmp;                 /* [4 n] */
-    double *target, *sums;       /* [n_components] heat per component, work */
+    double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
     hd_c64 *b, *vectors;
     hdi_krylov k[HD_MAX_POLES];
     hdi_lanczos lanczos;
@@ -7743,6 +7750,9 @@ typedef struct hdi_lane {
     double f_norm, u_norm;
     double rational, solver;     /* bounds in the B norm */
     double residual;
+    double b_norm;               /* of the right-hand side, in the norm of diag(B)^-1 */
+    double first_norm;           /* bound of |x|_B of one of the solutions, and its pole */
+    int32_t first_pole;
     int64_t steps;               /* of Lanczos */
     hd_status status;
     hd_error error;
@@ -7762,7 +7772,7 @@ static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_conte
     const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
     if (lane->f) return HD_OK;
     lane->f = HDI_CAST(double *, hdi_alloc(ctx, 7 * n, sizeof(double), e));
-    if (lane->f) lane->target = HDI_CAST(double *, hdi_alloc(ctx, 2 * n_comp, sizeof(double), e));
+    if (lane->f) lane->target = HDI_CAST(double *, hdi_alloc(ctx, 3 * n_comp, sizeof(double), e));
     if (!lane->target) {
         hdi_lane_free(lane, ctx);
         return e->status;
@@ -7771,6 +7781,7 @@ static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_conte
     lane->u = lane->rhs + n;
     lane->tmp = lane->u + n;
     lane->sums = lane->target + n_comp;
+    lane->spare_sums = lane->sums + n_comp;
     return HD_OK;
 }
 
@@ -7978,8 +7989,334 @@ static double hdi_resolvent_ratio(hd_c64 theta) {
     return hdi_max(inside, hdi_max(1, hdi_cabs(theta)));
 }
 
+/* ---- the same by factorisation ---- */
+
+/* Sums for the residuals of a pack: of L x and B x at row i, x [n] with stride doubles from row to row. */
+HDI_PACK_CLONE void hdi_pair_row_body(const hd_laplacian *lap, int32_t i, const double *x, int64_t stride, double *l, double *b) {
+    int64_t p;
+    int q;
+    for (q = 0; q < HDI_PACK; q++) l[q] = b[q] = 0;
+    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+        const double *v = x + stride * lap->L.col[p], lx = lap->L.val[p];
+        if (lap->B) {
+            const double bx = lap->B[p];
+            for (q = 0; q < HDI_PACK; q++) {
+                l[q] += lx * v[q];
+                b[q] += bx * v[q];
+            }
+        } else {
+            for (q = 0; q < HDI_PACK; q++) l[q] += lx * v[q];
+        }
+    }
+    if (!lap->B) for (q = 0; q < HDI_PACK; q++) b[q] = lap->mass[i] * x[stride * i + q];
+}
+
+/* norm2[q] = |rhs - (t L + theta_q B) x_q|^2 in the norm of weight = diag(B)^-1, for the four matrices of a pack. */
+HDI_PACK_CLONE void hdi_pack_residual_body(const hd_laplacian *lap, double t, const hd_c64 *theta, const double *rhs, const double *x, int64_t stride,
+                                           const double *weight, double *norm2) {
+    double l[HDI_PACK], b[HDI_PACK];
+    int32_t i;
+    int q;
+    for (q = 0; q < 4; q++) norm2[q] = 0;
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_pair_row_body(lap, i, x, stride, l, b);
+        for (q = 0; q < 4; q++) {
+            const double re = rhs[i] - t * l[q] - (theta[q].re * b[q] - theta[q].im * b[q + 4]);
+            const double im = -t * l[q + 4] - (theta[q].re * b[q + 4] + theta[q].im * b[q]);
+            norm2[q] += weight[i] * (re * re + im * im);
+        }
+    }
+}
+
+static void hdi_pack_residual(const hd_laplacian *lap, double t, const hd_c64 *theta, const double *rhs, const double *x, int64_t stride,
+                              const double *weight, double *norm2) {
+    hdi_pack_residual_body(lap, t, theta, rhs, x, stride, weight, norm2);
+}
+
+#if HDI_X86
+static HDI_AVX2 void hdi_pack_residual_2(const hd_laplacian *lap, double t, const hd_c64 *theta, const double *rhs, const double *x, int64_t stride,
+                                         const double *weight, double *norm2) {
+    hdi_pack_residual_body(lap, t, theta, rhs, x, stride, weight, norm2);
+}
+#endif
+
+/* What has been analysed and factorised for a plan: the pair in elimination order, the poles of a set at a time in packs (and a lone real pole in the real
+ * factor), or B + g L for shift-and-invert Lanczos. */
+typedef struct hdi_elim {
+    hd_context *ctx;
+    const hd_laplacian *source;  /* entries of its matrices are what the factors are made of */
+    hd_laplacian *lap;           /* the same in elimination order, scaled */
+    double scale;
+    double *weight;              /* [n] 1/diag(B) */
+    hdi_symbolic sym;
+    hdi_factor pack[HD_MAX_POLES / 4], real;
+    int32_t n_packs, filled;     /* packs that have room; 1: they hold set and t */
+    int32_t lone;                /* pole in the real factor, -1 none */
+    hd_rational set;
+    double t;
+    double shift;                /* the real factor is that of B + shift L; 0: of something else */
+} hdi_elim;
+
+static void hdi_elim_free(hdi_elim *m) {
+    int32_t i;
+    if (!m->ctx) return;
+    for (i = 0; i < m->n_packs; i++) hdi_factor_free(m->pack + i);
+    hdi_factor_free(&m->real);
+    hdi_symbolic_free(m->ctx, &m->sym);
+    hdi_free(m->ctx, m->weight);
+    hdi_laplacian_free(m->lap, m->ctx);
+    memset(m, 0, sizeof *m);
+}
+
+/* perm of the vertices -> perm of the rows */
+static hd_status hdi_elim_own(const hd_laplacian *lap, const int32_t *perm, int32_t *rows, hd_error *e) {
+    int32_t i, k = 0;
+    for (i = 0; i < lap->n; i++) {
+        if (perm[i] < 0 || perm[i] >= lap->n) return hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, perm[i]);
+        if (lap->row[perm[i]] < 0) continue;
+        if (k == lap->n_active) return hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, perm[i]);
+        rows[k++] = lap->row[perm[i]];
+    }
+    if (k < lap->n_active) return hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", -1, -1, k);
+    return HD_OK;
+}
+
+/* Ordering, analysis, and the pair renumbered by it. */
+static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, const int32_t *own, double scale, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), *rows = HDI_TAKE(&s, int32_t, lap->n_active), chosen = 0, i;
+    if (e->status < 0) return hdi_scope_end(&s);
+    memset(m, 0, sizeof *m);
+    m->ctx = ctx;
+    m->source = lap;
+    m->scale = scale;
+    if (ordering == HD_ORDERING_OWN && own) (void)hdi_elim_own(lap, own, rows, e);
+    if (e->status >= 0 && hdi_sym_order(&lap->L, lap->xyz, ordering, own ? rows : NULL, perm, &chosen, ctx, e) >= 0) {
+        if (hdi_progress(ctx, "analyse", 0, e) >= 0 && hdi_symbolic_make(&m->sym, &lap->L, perm, ctx, e) >= 0) {
+            m->sym.ordering = HDI_CAST(hd_ordering, chosen);
+            m->lap = hdi_sym_renumber(lap, m->sym.perm, ctx, e);
+        }
+    }
+    if (m->lap) {
+        (void)hdi_sym_scale(m->lap);
+        m->weight = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+        for (i = 0; m->weight && i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
+    }
+    if (e->status < 0) hdi_elim_free(m);
+    return hdi_scope_end(&s);
+}
+
+/* t L + theta B in terms of the source's entries; t comes scaled, as B does in lap. */
+static hdi_values hdi_elim_values(const hdi_elim *m, double t) {
+    hdi_values v;
+    memset(&v, 0, sizeof v);
+    v.l = m->source->L.val;
+    v.b = m->source->B;
+    v.b_diag = m->source->b_diag;
+    v.t = t;
+    return v;
+}
+
+/* Largest |diagonal entry| of t L + theta B. */
+static double hdi_elim_diagonal(const hd_laplacian *lap, double t, hd_c64 theta) {
+    double most = 0;
+    int64_t p;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            if (lap->L.col[p] == i) most = hdi_max(most, hypot(t * lap->L.val[p] + theta.re * lap->b_diag[i], theta.im * lap->b_diag[i]));
+    return most;
+}
+
+static hd_status hdi_elim_real(hdi_elim *m, double t, double theta, hd_error *e) {
+    hdi_values v = hdi_elim_values(m, t);
+    v.theta[0] = hdi_c(theta * m->scale, 0);
+    m->shift = 0;
+    if (!m->real.ctx && hdi_factor_make(&m->real, &m->sym, 1, m->ctx, e) < 0) return e->status;
+    m->real.largest_entry = hdi_elim_diagonal(m->lap, t, hdi_c(theta, 0));
+    return hdi_factor_run(&m->real, &v, e);
+}
+
+/* The factor of B + g L. */
+static hd_status hdi_elim_shift(hdi_elim *m, double g, hd_error *e) {
+    if (m->shift == g && m->real.ready) return HD_OK;
+    if (m->lone >= 0) m->filled = 0;
+    if (hdi_elim_real(m, g, 1, e) < 0) return e->status;
+    if (m->real.all.negative) return hdi_fail(e, HD_ERR_NOT_POSITIVE, "B + g L is not positive definite: a pivot is negative");
+    m->shift = g;
+    return HD_OK;
+}
+
+/* Packs a set needs; lone: the real pole that goes to the real factor because it would need a pack to itself. */
+static int32_t hdi_elim_packs(const hd_rational *set, int32_t *lone) {
+    *lone = set->n_poles % 4 == 1 && set->theta[0].im == 0 ? 0 : -1;
+    return (set->n_poles - (*lone + 1) + 3) / 4;
+}
+
+/* Pole in place q of pack i, or the last one again. */
+static int32_t hdi_elim_pole(const hdi_elim *m, int32_t i, int32_t q) {
+    const int32_t p = m->lone + 1 + 4 * i + q;
+    return p < m->set.n_poles ? p : m->set.n_poles - 1;
+}
+
+/* Factors of all poles of a set at a time. */
+static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
+    hdi_values v = hdi_elim_values(m, t);
+    int32_t i, q, n_packs;
+    if (m->filled && m->t == t && memcmp(&m->set, set, sizeof *set) == 0) return HD_OK;
+    m->filled = 0;
+    m->set = *set;
+    m->t = t;
+    n_packs = hdi_elim_packs(set, &m->lone);
+    for (; m->n_packs < n_packs; m->n_packs++)
+        if (hdi_factor_make(m->pack + m->n_packs, &m->sym, HDI_PACK, m->ctx, e) < 0) return e->status;
+    if (m->lone >= 0 && hdi_elim_real(m, t, set->theta[0].re, e) < 0) return e->status;
+    for (i = 0; i < n_packs; i++) {
+        double most = 0;
+        for (q = 0; q < 4; q++) {
+            const hd_c64 theta = set->theta[hdi_elim_pole(m, i, q)];
+            v.theta[q] = hdi_cscale(m->scale, theta);
+            most = hdi_max(most, hdi_elim_diagonal(m->lap, t, theta));
+        }
+        m->pack[i].largest_entry = most;
+        if (hdi_factor_run(m->pack + i, &v, e) < 0) {
+            if (e->pole >= 0) e->pole = hdi_elim_pole(m, i, HDI_CAST(int32_t, e->pole));
+            return e->status;
+        }
+    }
+    m->filled = 1;
+    return HD_OK;
+}
+
+/* A batch of right-hand sides, each in a lane, solved through all poles. */
+typedef struct hdi_batch {
+    double *x, *xr, *work;       /* [n][k] packs, [n] or [n][8] real, sweeps */
+    char *active;                /* [n_super] */
+} hdi_batch;
+
+/* Doubles of a batch's arrays. */
+static size_t hdi_batch_size(const hdi_elim *m, int32_t k, size_t *x, size_t *xr) {
+    const size_t n = HDI_CAST(size_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1), real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
+    *x = HDI_PACK * n * HDI_CAST(size_t, k);
+    *xr = n * (k > 1 ? 8 : 1);
+    return *x + *xr + (pack > real ? pack : real) + HDI_CAST(size_t, m->sym.n_super) / sizeof(double) + 8;
+}
+
+/* Residuals of a pack's systems for one lane into its bounds, and their part of the answer. */
+static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *lane, const double *x, int64_t stride) {
+    const hd_laplacian *lap = m->lap;
+    const int32_t n = lap->n_active, n_here = m->set.n_poles - (m->lone + 1 + 4 * i) < 4 ? m->set.n_poles - (m->lone + 1 + 4 * i) : 4;
+    double coef[HDI_PACK], norm2[4], *HDI_RESTRICT u = lane->u;
+    hd_c64 theta[4];
+    int32_t j;
+    int q;
+    for (q = 0; q < 4; q++) {
+        const int32_t p = hdi_elim_pole(m, i, q);
+        const double count = q < n_here ? hdi_rat_count(&m->set, p) : 0;
+        theta[q] = m->set.theta[p];
+        coef[q] = -count * m->set.a[p].re;
+        coef[q + 4] = count * m->set.a[p].im;
+    }
+#if HDI_X86
+    if (m->pack[i].pack != hdi_pack_ops_get(0)) hdi_pack_residual_2(lap, m->t, theta, lane->rhs, x, stride, m->weight, norm2);
+    else
+#endif
+    hdi_pack_residual(lap, m->t, theta, lane->rhs, x, stride, m->weight, norm2);
+    for (q = 0; q < n_here; q++) {
+        const int32_t p = hdi_elim_pole(m, i, q);
+        const double r = sqrt(norm2[q]);
+        if (lane->b_norm > 0) lane->residual = hdi_max(lane->residual, r / lane->b_norm);
+        lane->solver += hdi_rat_count(&m->set, p) * hdi_cabs(m->set.a[p]) * r / (sqrt(lap->b_ratio) * hdi_pole_distance(theta[q]));
+    }
+    for (j = 0; j < n; j++) {
+        const double *v = x + stride * j;
+        double s = 0, w = 0;
+        for (q = 0; q < 4; q++) {
+            s += coef[q] * v[q];
+            w += coef[q + 4] * v[q + 4];
+        }
+        u[j] += s + w;
+    }
+    if (i > 0) return;
+    for (j = 0; j < n; j++) {                    /* the first pole's solution, which measures the resolvent */
+        lane->tmp[j] = x[stride * j];
+        lane->tmp[n + j] = x[stride * j + 4];
+    }
+    lane->first_pole = hdi_elim_pole(m, 0, 0);
+    lane->first_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->tmp, lane->tmp + 2 * HDI_CAST(int64_t, n)) +
+                                       hdi_b_norm2(lap, lane->tmp + n, lane->tmp + 2 * HDI_CAST(int64_t, n))));
+    lane->first_norm += sqrt(norm2[0]) / (sqrt(lap->b_ratio) * hdi_pole_distance(theta[0]));
+}
+
+/* The lone real pole's part. */
+static void hdi_batch_real(const hdi_elim *m, hdi_lane *lane, const double *x, int64_t stride) {
+    const hd_laplacian *lap = m->lap;
+    const int32_t n = lap->n_active;
+    const double theta = m->set.theta[0].re, a = m->set.a[0].re;
+    double norm2 = 0, *HDI_RESTRICT w = lane->tmp, r;
+    int32_t j;
+    for (j = 0; j < n; j++) w[j] = x[stride * j];
+    hdi_pair_apply(lap, m->t, theta, w, w + n);
+    for (j = 0; j < n; j++) {
+        r = lane->rhs[j] - w[n + j];
+        norm2 += m->weight[j] * r * r;
+        lane->u[j] -= a * w[j];
+    }
+    r = sqrt(norm2);
+    if (lane->b_norm > 0) lane->residual = hdi_max(lane->residual, r / lane->b_norm);
+    lane->solver += fabs(a) * r / (sqrt(lap->b_ratio) * theta);
+    if (m->set.n_poles > 1) return;
+    lane->first_pole = 0;
+    lane->first_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, w, w + n))) + r / (sqrt(lap->b_ratio) * theta);
+}
+
+/* u = a0 f - sum a_i x_i for k lanes (those that are skipped cost, but do not count). ctx: threads for the sweeps; NULL within a task. */
+static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane, int32_t k, hd_context *ctx) {
+    const hdi_symbolic *s = &m->sym;
+    const int32_t n = s->n, n_packs = (m->set.n_poles - (m->lone + 1) + 3) / 4, wide = k > 1 ? 8 : 1;
+    int64_t j, touched = 0;
+    int32_t i, r;
+    hdi_sweep z;
+    memset(b->active, 0, HDI_CAST(size_t, s->n_super));
+    for (r = 0; r < k; r++) {
+        double norm2 = 0;
+        for (j = 0; j < n; j++) {
+            const double v = lane[r].skip ? 0 : lane[r].rhs[j];
+            if (!lane[r].skip) lane[r].u[j] = m->set.a0 * lane[r].f[j];
+            if (v == 0) continue;
+            norm2 += m->weight[j] * v * v;
+            if (touched++ < 64 * HDI_CAST(int64_t, k)) hdi_sweep_touch(s, HDI_CAST(int32_t, j), b->active);
+        }
+        lane[r].b_norm = sqrt(norm2);
+        lane[r].solver = lane[r].residual = 0;
+    }
+    if (m->lone >= 0) {
+        for (j = 0; j < n; j++)
+            for (r = 0; r < wide; r++) b->xr[wide * j + r] = r < k && !lane[r].skip ? lane[r].rhs[j] : 0;
+        z = hdi_sweep_open(&m->real, wide, b->xr, b->work, ctx != NULL);
+        z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
+        hdi_sweep_run(&z, ctx);
+        for (r = 0; r < k; r++)
+            if (!lane[r].skip) hdi_batch_real(m, lane + r, b->xr + r, wide);
+    }
+    for (i = 0; i < n_packs; i++) {
+        memset(b->x, 0, HDI_CAST(size_t, n) * HDI_CAST(size_t, k) * HDI_PACK * sizeof *b->x);
+        for (r = 0; r < k; r++) {
+            for (j = 0; j < n && !lane[r].skip; j++) {
+                double *to = b->x + HDI_PACK * (k * j + r);
+                to[0] = to[1] = to[2] = to[3] = lane[r].rhs[j];
+            }
+        }
+        z = hdi_sweep_open(m->pack + i, k, b->x, b->work, ctx != NULL);
+        z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
+        hdi_sweep_run(&z, ctx);
+        for (r = 0; r < k; r++)
+            if (!lane[r].skip) hdi_batch_pack(m, i, lane + r, b->x + HDI_PACK * r, HDI_PACK * HDI_CAST(int64_t, k));
+    }
+}
+
 /* ==== [18] heat ====
- * K_t f for one field: through the poles, or by Lanczos for the exponential; the stopping rule, conservation, and the bound of the error.
+ * K_t f for one field: through the poles, by shift-and-invert Lanczos, or by Lanczos for the exponential; the stopping rule, conservation, and the bound of the error.
  * May call [17].
  * This work is based on
  *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013, eqs. (8), (9)
@@ -7987,12 +8324,33 @@ static double hdi_resolvent_ratio(hd_c64 theta) {
  * Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver); the constants of each component are carried
  * exactly, so that uniform sets conserve heat too. */
 
+enum { HDI_SILAN_MAX = 160, HDI_SILAN_POINTS = 96, HDI_SILAN_WIDE = 8 };
+
+/* The process for 1 or 8 right-hand sides side by side; times share it. */
+typedef struct hdi_silan {
+    const hdi_elim *m;
+    int32_t k, wide, steps;      /* right-hand sides, 1 or 8, steps taken */
+    double *v[HDI_SILAN_MAX + 1];/* [n][wide] the basis */
+    double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
+    double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
+    double f_norm[HDI_SILAN_WIDE];
+    int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
+    double g;
+} hdi_silan;
+
 struct hd_heat {
     hd_context *ctx;
-    hd_laplacian *lap;           /* the caller's, renumbered, B and with it t multiplied by scale */
-    double scale;
-    hd_heat_opts opts;           /* resolved */
+    const hd_laplacian *source;  /* the caller's */
+    double scale;                /* what B, and with it t, is multiplied by in the two copies below, each made when it is first needed */
+    hd_heat_opts opts;           /* resolved, perm and rational copied */
+    int32_t *perm;
+    int32_t iterations_asked, poles_asked;
     hd_rational own_set;
+    hdi_elim elim;               /* to factorise */
+    hdi_silan *silan;
+    double *batch_room;          /* arrays of the batches */
+    size_t batch_doubles;
+    hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
     hdi_upper up;
     double *weight;              /* [n] 1/diag(B) */
     hdi_family fam;              /* of the last set and time */
@@ -8007,6 +8365,14 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
     hdi_component_sums(lap, lap->mass, lane->u, lane->sums);
     for (c = 0; c < lap->n_components; c++) lane->sums[c] = (c0 * lane->target[c] - lane->sums[c]) / lap->component_mass[c];
     hdi_component_add(lap, lane->sums, lane->u);
+}
+
+/* The same for c0 = 1, with the means in lane->sums kept. */
+static void hdi_conserve_sums(const hd_laplacian *lap, hdi_lane *lane) {
+    double *sums = lane->sums;
+    lane->sums = lane->spare_sums;
+    hdi_conserve(lap, lane, 1);
+    lane->sums = sums;
 }
 
 /* ---- Lanczos for the exponential ---- */
@@ -8216,12 +8582,11 @@ static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, doub
 
 /* Bound of |(exp - c)(-t B^-1 L) f|_B. A weighted set's error is relative to the resolvent (B + t L)^-1 B f, which a solution bounds; the
  * constants drop out of built-in sets. */
-static double hdi_rational_bound(const hdi_family *fam, const hdi_lane *lane) {
-    double bound = fam->set.max_error * lane->f_norm;
-    if (fam->set.max_weighted_error > 0 && fam->set.n_poles > 0) {
-        const double g = sqrt(hdi_b_norm2_complex(fam->lap, lane->k[0].x, lane->tmp)) + hdi_pole_error(lane->k);
-        const double resolvent = fam->lap->conserves && fam->set.kind == HD_POLES_OWN ? lane->f_norm : g;
-        bound = hdi_min(bound, fam->set.max_weighted_error * hdi_resolvent_ratio(fam->set.theta[0]) * resolvent);
+static double hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, const hdi_lane *lane) {
+    double bound = set->max_error * lane->f_norm;
+    if (set->max_weighted_error > 0 && set->n_poles > 0) {
+        const double resolvent = lap->conserves && set->kind == HD_POLES_OWN ? lane->f_norm : lane->first_norm;
+        bound = hdi_min(bound, set->max_weighted_error * hdi_resolvent_ratio(set->theta[lane->first_pole]) * resolvent);
     }
     return bound;
 }
@@ -8257,8 +8622,311 @@ static hd_status hdi_heat_poles(const hdi_family *fam, double tol, hdi_lane *lan
     }
     for (i = 0; i < fam->set.n_poles; i++)
         if (lane->k[i].b_norm > 0) lane->residual = hdi_max(lane->residual, lane->k[i].r_norm / lane->k[i].b_norm);
-    lane->rational = hdi_rational_bound(fam, lane);
+    lane->first_pole = 0;
+    lane->first_norm = fam->set.n_poles > 0 ? sqrt(hdi_b_norm2_complex(lap, lane->k[0].x, lane->tmp)) + hdi_pole_error(lane->k) : 0;
+    lane->rational = hdi_rational_bound(lap, &fam->set, lane);
     return lane->solver <= tol * (lane->u_norm - lane->solver) ? HD_OK : HD_WARN_ACCURACY;
+}
+
+/* What is left to do after the poles' factors have been applied: constants, norms, bounds. */
+static hd_status hdi_heat_direct(const hdi_elim *m, double tol, hdi_lane *lane) {
+    const hd_laplacian *lap = m->lap;
+    hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
+    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    lane->rational = hdi_rational_bound(lap, &m->set, lane);
+    return lane->solver <= tol * (lane->u_norm - lane->solver) ? HD_OK : HD_WARN_ACCURACY;
+}
+
+/* ---- shift-and-invert Lanczos ---- */
+/* Lanczos in the B inner product for S = (B + g L)^-1 B, whose large eigenvalues are those of the smooth modes: with S V = V T + beta v e_m',
+ * exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1 for every t around 10 g. One real factor and one basis serve all these times.
+ * This part is based on
+ *   I. Moret, P. Novati, RD-rational approximations of the matrix exponential, 2004
+ *   J. van den Eshof, M. Hochbruck, Preconditioning Lanczos approximations to the matrix exponential, 2006 */
+static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
+    int32_t i;
+    for (i = 0; i <= HDI_SILAN_MAX; i++) hdi_free(ctx, z->v[i]);
+    hdi_free(ctx, z->c);
+    hdi_free(ctx, z->work);
+    memset(z, 0, sizeof *z);
+}
+
+/* y = B x for wide right-hand sides side by side. */
+HDI_PACK_CLONE void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const double *HDI_RESTRICT x, double *HDI_RESTRICT y, int32_t begin, int32_t end) {
+    int32_t i, r;
+    int64_t p;
+    for (i = begin; i < end; i++) {
+        if (wide == 1) {
+            double s = 0;
+            for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++) s += lap->B[p] * x[lap->L.col[p]];
+            y[i] = lap->B ? s : lap->mass[i] * x[i];
+            continue;
+        }
+        for (r = 0; r < HDI_SILAN_WIDE; r++) y[HDI_SILAN_WIDE * HDI_CAST(int64_t, i) + r] = lap->B ? 0 : lap->mass[i] * x[HDI_SILAN_WIDE * HDI_CAST(int64_t, i) + r];
+        for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++) {
+            const double b = lap->B[p], *HDI_RESTRICT from = x + HDI_SILAN_WIDE * HDI_CAST(int64_t, lap->L.col[p]);
+            double *HDI_RESTRICT to = y + HDI_SILAN_WIDE * HDI_CAST(int64_t, i);
+            for (r = 0; r < HDI_SILAN_WIDE; r++) to[r] += b * from[r];
+        }
+    }
+}
+
+typedef struct hdi_mass_job { const hd_laplacian *lap; int32_t wide; const double *x; double *y; } hdi_mass_job;
+
+static void hdi_mass_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_mass_job *j = HDI_CAST(const hdi_mass_job *, arg);
+    const int64_t begin = index * HDI_ROWS_PER_TASK, end = begin + HDI_ROWS_PER_TASK;
+    (void)worker;
+    hdi_mass_rows_body(j->lap, j->wide, j->x, j->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end < j->lap->n_active ? end : j->lap->n_active));
+}
+
+static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *x, double *y, hd_context *ctx) {
+    hdi_mass_job j;
+    j.lap = lap;
+    j.wide = wide;
+    j.x = x;
+    j.y = y;
+    hdi_parallel(ctx, (HDI_CAST(int64_t, lap->n_active) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK, hdi_mass_task, &j);
+}
+
+/* out[r] = sum_i x_ir y_ir */
+static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y, int64_t n, int32_t wide, double *out) {
+    int64_t i;
+    int r;
+    if (wide == 1) {
+        out[0] = hdi_dot(x, y, n);
+        return;
+    }
+    for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] = 0;
+    for (i = 0; i < n; i++)
+        for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] += x[HDI_SILAN_WIDE * i + r] * y[HDI_SILAN_WIDE * i + r];
+}
+
+/* Starts from the lanes' f and rhs = B f without constants, which lanes keep apart in sums; |f|_B of what is left. */
+static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
+    const hd_laplacian *lap = z->m->lap;
+    const size_t n = HDI_CAST(size_t, lap->n_active), wide = HDI_CAST(size_t, z->wide);
+    int64_t i;
+    int32_t r;
+    if (!z->v[0]) z->v[0] = HDI_CAST(double *, hdi_alloc(ctx, n * wide, sizeof(double), e));
+    if (z->v[0] && !z->c) z->c = HDI_CAST(double *, hdi_alloc(ctx, 2 * n * wide, sizeof(double), e));
+    if (z->c && !z->work) z->work = HDI_CAST(double *, hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide, 1), sizeof(double), e));
+    if (e->status < 0) return e->status;
+    z->w = z->c + n * wide;
+    z->steps = 0;
+    for (r = 0; r < z->wide; r++) {
+        double norm;
+        z->done[r] = 0;
+        z->f_norm[r] = 0;
+        if (r < z->k && !lane[r].skip) {
+            for (i = 0; i < lap->n_components; i++) lane[r].sums[i] = lap->conserves ? lane[r].target[i] / lap->component_mass[i] : 0;
+            for (i = 0; i < lap->n_active; i++) {
+                const double mean = lane[r].sums[lap->component[i]];
+                z->v[0][z->wide * i + r] = lane[r].f[i] - mean;
+                z->c[z->wide * i + r] = lane[r].rhs[i] - lap->mass[i] * mean;
+            }
+        }
+        norm = 0;
+        for (i = 0; i < lap->n_active && r < z->k && !lane[r].skip; i++) norm += z->v[0][z->wide * i + r] * z->c[z->wide * i + r];
+        if (norm > 0 && sqrt(norm) > DBL_EPSILON * lane[r].f_norm) z->f_norm[r] = sqrt(norm);
+        else z->done[r] = -1;                    /* nothing there but constants */
+        for (i = 0; i < lap->n_active; i++) {
+            const int64_t at = z->wide * i + r;
+            z->v[0][at] = z->f_norm[r] > 0 ? z->v[0][at] / z->f_norm[r] : 0;
+            z->c[at] = z->f_norm[r] > 0 ? z->c[at] / z->f_norm[r] : 0;
+        }
+    }
+    return HD_OK;
+}
+
+/* One step for all. */
+static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
+    const hd_laplacian *lap = z->m->lap;
+    const int64_t n = lap->n_active, count = n * z->wide;
+    const int32_t j = z->steps, wide = z->wide;
+    const double *HDI_RESTRICT v = z->v[j], *HDI_RESTRICT v_old = j > 0 ? z->v[j - 1] : z->v[j];
+    double *HDI_RESTRICT w = z->w, norm[HDI_SILAN_WIDE], inv[HDI_SILAN_WIDE], *HDI_RESTRICT next;
+    hdi_sweep s;
+    int64_t i;
+    int32_t r;
+    if (!z->v[j + 1]) z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, count), sizeof(double), e));
+    if (!z->v[j + 1]) return e->status;
+    memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
+    s = hdi_sweep_open(&z->m->real, wide, w, z->work, 1);
+    hdi_sweep_run(&s, ctx);
+    hdi_wide_dots(w, z->c, n, wide, z->alpha[j]);
+    for (r = 0; r < wide; r++) inv[r] = j > 0 ? z->beta[j][r] : 0;
+    if (wide == 1)
+        for (i = 0; i < n; i++) w[i] -= z->alpha[j][0] * v[i] + inv[0] * v_old[i];
+    else
+        for (i = 0; i < n; i++)
+            for (r = 0; r < HDI_SILAN_WIDE; r++)
+                w[HDI_SILAN_WIDE * i + r] -= z->alpha[j][r] * v[HDI_SILAN_WIDE * i + r] + inv[r] * v_old[HDI_SILAN_WIDE * i + r];
+    hdi_mass_apply(lap, wide, w, z->c, ctx);
+    hdi_wide_dots(w, z->c, n, wide, norm);
+    for (r = 0; r < wide; r++) {
+        z->beta[j + 1][r] = norm[r] > 0 ? sqrt(norm[r]) : 0;
+        inv[r] = norm[r] > 0 ? 1 / z->beta[j + 1][r] : 0;
+    }
+    next = z->v[j + 1];
+    if (wide == 1) {
+        for (i = 0; i < n; i++) {
+            next[i] = w[i] * inv[0];
+            z->c[i] *= inv[0];
+        }
+    } else {
+        for (i = 0; i < n; i++) {
+            for (r = 0; r < HDI_SILAN_WIDE; r++) {
+                next[HDI_SILAN_WIDE * i + r] = w[HDI_SILAN_WIDE * i + r] * inv[r];
+                z->c[HDI_SILAN_WIDE * i + r] *= inv[r];
+            }
+        }
+    }
+    z->steps = j + 1;
+    return HD_OK;
+}
+
+/* Eigenvalues of T_m of right-hand side r, and rows p and q of its eigenvectors. */
+static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, int32_t q, double *d, double *x, double *y) {
+    double off[HDI_SILAN_MAX];
+    int32_t i;
+    for (i = 0; i < m; i++) {
+        d[i] = z->alpha[i][r];
+        off[i] = i + 1 < m ? z->beta[i + 1][r] : 0;
+        x[i] = i == p;
+        y[i] = i == q;
+    }
+    return hdi_tridiag_eigen(d, off, x, y, m);
+}
+
+/* exp(-s (1/mu - 1)/g): mu is an eigenvalue of T in (0, 1]; what rounding makes of tiny ones belongs to modes that are gone. */
+static double hdi_silan_decay(double mu, double s_over_g) { return mu > 1e-15 ? exp(-s_over_g * hdi_max(0, 1 / mu - 1)) : s_over_g > 0 ? 0 : 1; }
+
+/* (F(a) - F(b))/(a - b) for F(x) = exp(-tau (1/x - 1)), a and b in (0, 1]; fa, fb: F there. */
+static double hdi_silan_slope(double a, double fa, double b, double fb, double tau) {
+    const double d = a - b;
+    double x;
+    if (fabs(d) > 0.1 * a) return (fa - fb) / d;
+    if (!(b > 1e-15) || !(a > 1e-15)) return 0;
+    x = -tau * d / (a * b);                      /* log(F(b)/F(a)) */
+    return fabs(x) < 1e-8 ? fa * tau / (a * b) : -fa * expm1(x) / d;
+}
+
+/* The bound of the error for right-hand side r after m steps at time t, relative to |f|_B, and |u|_B relative to it too. The error is beta times
+ * sum_j x_j y_j F[mu_j, S] v_(m+1), with mu_j the eigenvalues of T, x and y the first and last rows of its eigenvectors, F[.,.] the divided difference;
+ * S has its eigenvalues in (0, 1], where the sum is a smooth function of them, so that its maximum on points that crowd at both ends is the bound. */
+static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, double t, double *bound, double *size, hd_error *e) {
+    double d[HDI_SILAN_MAX], x[HDI_SILAN_MAX], y[HDI_SILAN_MAX], f[HDI_SILAN_MAX], most = 0, norm = 0;
+    const double tau = t / z->g;
+    int32_t i, k;
+    if (!hdi_silan_eigen(z, r, m, 0, m - 1, d, x, y)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+    for (i = 0; i < m; i++) {
+        f[i] = hdi_silan_decay(d[i], tau);
+        norm += x[i] * f[i] * x[i] * f[i];
+        x[i] *= y[i];
+    }
+    *size = sqrt(norm);
+    for (k = 1; k <= HDI_SILAN_POINTS; k++) {
+        const double s = sin(1.5707963267948966 * k / HDI_SILAN_POINTS), at = s * s, fa = hdi_silan_decay(at, tau);
+        double sum = 0;
+        for (i = 0; i < m; i++) sum += x[i] * hdi_silan_slope(d[i], f[i], at, fa, tau);
+        most = hdi_max(most, fabs(sum));
+    }
+    *bound = 1.2 * z->beta[m][r] * most;         /* for what falls between the points */
+    return HD_OK;
+}
+
+/* Coefficients of the basis for right-hand side r after m steps at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1. */
+static hd_status hdi_silan_coefficients(const hdi_silan *z, int32_t r, int32_t m, double t, double *out, hd_error *e) {
+    double d[HDI_SILAN_MAX], x[HDI_SILAN_MAX], y[HDI_SILAN_MAX], first[HDI_SILAN_MAX];
+    int32_t i, k;
+    for (k = 0; k < m; k += 2) {                 /* two rows of the eigenvectors at a time: the same rotations */
+        double s0 = 0, s1 = 0;
+        if (k == 0) {
+            if (!hdi_silan_eigen(z, r, m, 0, 1 < m ? 1 : 0, d, x, y)) break;
+            for (i = 0; i < m; i++) first[i] = z->f_norm[r] * x[i] * hdi_silan_decay(d[i], t / z->g);
+        } else if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, d, x, y)) {
+            break;
+        }
+        for (i = 0; i < m; i++) {
+            s0 += x[i] * first[i];
+            s1 += y[i] * first[i];
+        }
+        out[k] = s0;
+        if (k + 1 < m) out[k + 1] = s1;
+    }
+    return k < m ? hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge") : HD_OK;
+}
+
+/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is |constants|_B^2. */
+static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, double tol, const double *fixed, hd_context *ctx, hd_error *e) {
+    double best[HDI_SILAN_WIDE];
+    int32_t r, q, left = 0, look = 4, best_m[HDI_SILAN_WIDE], most = HDI_SILAN_MAX - 1;
+    hd_status worst = HD_OK;
+    for (r = 0; r < z->k; r++) {
+        left += z->done[r] == 0;
+        best[r] = HUGE_VAL;
+        best_m[r] = 0;
+    }
+    while (left > 0) {
+        double miss_all = 1;
+        if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0 || hdi_silan_step(z, ctx, e) < 0) return e->status;
+        if (z->steps < look && z->steps < most) continue;
+        for (r = 0; r < z->k; r++) {
+            double miss = 0;
+            if (z->done[r]) continue;
+            for (q = 0; q < n_times && z->beta[z->steps][r] > 0; q++) {
+                double bound, size;
+                if (hdi_silan_bound(z, r, z->steps, t[q], &bound, &size, e) < 0) return e->status;
+                size = sqrt(size * size + fixed[r] / (z->f_norm[r] * z->f_norm[r]));
+                miss = hdi_max(miss, size > 0 ? bound / (tol * size) : HUGE_VAL);
+            }
+            if (miss < best[r] / 2) {
+                best[r] = miss;
+                best_m[r] = z->steps;
+            } else if (z->steps > best_m[r] + 12 || z->steps >= most) {
+                if (miss > 1 && best[r] * tol > 1e-6) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "shift-and-invert Lanczos did not reach the tolerance");
+                if (miss > 1) worst = HD_WARN_ACCURACY;
+                miss = 1;
+            }
+            if (miss <= 1) {
+                z->done[r] = z->steps;
+                left--;
+            }
+            miss_all = hdi_max(miss_all, miss);
+        }
+        /* a step gains a factor of two or so */
+        look = z->steps + (miss_all > 1 ? HDI_CAST(int32_t, hdi_min(8, 0.6 * log2(hdi_min(miss_all, 1e30)))) : 1);
+        if (look <= z->steps) look = z->steps + 1;
+    }
+    return worst;
+}
+
+/* The answer of right-hand side r at time t into its lane: constants and the basis' part. */
+static hd_status hdi_silan_answer(const hdi_silan *z, int32_t r, double t, hdi_lane *lane, hd_error *e) {
+    const hd_laplacian *lap = z->m->lap;
+    const int32_t m = z->done[r], n = lap->n_active;
+    double y[HDI_SILAN_MAX], bound = 0, size, *HDI_RESTRICT u = lane->u;
+    int64_t i, begin;
+    int32_t j;
+    for (i = 0; i < n; i++) u[i] = lane->sums[lap->component[i]];
+    lane->solver = lane->rational = lane->residual = 0;
+    lane->steps = m > 0 ? m : 0;
+    if (m > 0) {
+        if (hdi_silan_coefficients(z, r, m, t, y, e) < 0 || hdi_silan_bound(z, r, m, t, &bound, &size, e) < 0) return e->status;
+        for (begin = 0; begin < n; begin += 1024) {   /* rows in blocks that stay in cache */
+            const int64_t end = begin + 1024 < n ? begin + 1024 : n;
+            for (j = 0; j < m; j++) {
+                const double *HDI_RESTRICT v = z->v[j];
+                if (z->wide == 1) for (i = begin; i < end; i++) u[i] += y[j] * v[i];
+                else for (i = begin; i < end; i++) u[i] += y[j] * v[HDI_SILAN_WIDE * i + r];
+            }
+        }
+        lane->solver = bound * z->f_norm[r];
+    }
+    hdi_conserve_sums(lap, lane);
+    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    return HD_OK;
 }
 
 /* Adds the numbers of one field to the report, where the worst stays. */
@@ -8755,7 +9423,7 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "heat options: not cleared before use");
-    if (o->method < HD_METHOD_AUTO || o->method > HD_METHOD_ITERATIVE) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown method");
+    if (o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown method");
     if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown solver");
     if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown preconditioner");
     if (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: poles are uniform or kernel; own sets go into rational");
@@ -8764,6 +9432,12 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
         return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: kernel sets have degrees 2 to 14", -1, -1, o->degree);
     if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
     if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: max_iterations is negative");
+    if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown ordering");
+    if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
+    if (o->method == HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree))
+        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: the krylov method has no use for poles or a degree");
+    if ((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
+        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: solver and precond belong to the iterative method");
     if (o->rational && o->solver == HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: Lanczos has no use for a pole set");
     return o->rational ? hdi_rational_check(o->rational, e) : HD_OK;
 }
@@ -8781,41 +9455,50 @@ static double hdi_lambda_bound(const hd_laplacian *lap) {
     return most / lap->b_ratio;
 }
 
+/* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
+static double hdi_heat_scale(const hd_laplacian *lap) {
+    double largest = 0;
+    int32_t i;
+    int exponent;
+    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
+    frexp(largest, &exponent);
+    return ldexp(1, -2 * (exponent / 2));
+}
+
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err) {
     hdi_call c;
     hd_heat *heat;
-    hdi_scope s;
     if (hdi_enter(&c, opts && opts->context ? opts->context : lap ? lap->context : NULL, err) < 0) return c.e->status;
     if (!out || !lap) return hdi_missing(c.e);
     if (opts && hdi_heat_check(opts, c.e) < 0) return c.e->status;
-    s = hdi_scope_begin(c.ctx, c.e);
-    heat = HDI_TAKE_ZERO(&s, hd_heat, 1);
-    if (!heat) return hdi_scope_end(&s);
+    heat = HDI_CAST(hd_heat *, hdi_alloc(c.ctx, 1, sizeof *heat, c.e));
+    if (!heat) return c.e->status;
+    memset(heat, 0, sizeof *heat);
     heat->ctx = c.ctx;
+    heat->source = lap;
     if (opts) heat->opts = *opts;
     if (heat->opts.rational) {
         heat->own_set = *heat->opts.rational;
         heat->own_set.kind = HD_POLES_OWN;
         heat->opts.rational = &heat->own_set;
     }
+    heat->iterations_asked = heat->opts.solver || heat->opts.precond;
+    heat->poles_asked = heat->opts.rational || heat->opts.poles || heat->opts.degree;
     heat->opts.precond = heat->opts.precond ? heat->opts.precond : HD_PRECOND_MILDL;
     heat->opts.tol = heat->opts.tol > 0 ? heat->opts.tol : 1e-9;
     heat->opts.max_iterations = heat->opts.max_iterations ? heat->opts.max_iterations : 20000;
-    hdi_keep(&s, heat);
-    if (hdi_progress(c.ctx, "order", 0, c.e) >= 0) heat->lap = hdi_sym_ordered(lap, c.ctx, c.e);
-    if (heat->lap) heat->scale = hdi_sym_scale(heat->lap);
-    if (heat->lap && hdi_upper_make(&heat->up, &heat->lap->L, c.ctx, c.e) >= 0) heat->weight = hdi_make_weight(heat->lap, c.ctx, c.e);
-    if (heat->weight) heat->lambda_max = hdi_lambda_bound(heat->lap);
-    heat->fam.ctx = c.ctx;
-    heat->fam.lap = heat->lap;
-    heat->fam.up = &heat->up;
-    heat->fam.weight = heat->weight;
-    heat->fam.solver = heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES ? heat->opts.solver : HD_SOLVER_COCG;
-    heat->fam.precond = heat->opts.precond;
-    heat->fam.max_iterations = heat->opts.max_iterations;
-    if (heat->weight) *out = heat;
-    else hd_heat_free(heat);
-    return hdi_scope_end(&s);
+    heat->scale = hdi_heat_scale(lap);
+    heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
+    if (heat->opts.ordering == HD_ORDERING_OWN) {
+        heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(size_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
+        if (!heat->perm) {
+            hd_heat_free(heat);
+            return c.e->status;
+        }
+    }
+    heat->opts.perm = heat->perm;
+    *out = heat;
+    return HD_OK;
 }
 
 HEATDIFF_API void hd_heat_free(hd_heat *heat) {
@@ -8828,13 +9511,46 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_upper_free(ctx, &heat->up);
     hdi_free(ctx, heat->weight);
     hdi_laplacian_free(heat->lap, ctx);
+    hdi_elim_free(&heat->elim);
+    if (heat->silan) hdi_silan_free(heat->silan, ctx);
+    hdi_free(ctx, heat->silan);
+    hdi_free(ctx, heat->batch_room);
+    hdi_free(ctx, heat->perm);
     hdi_free(ctx, heat);
+}
+
+/* The copy of the pair to iterate on. */
+static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
+    if (heat->weight) return HD_OK;
+    hdi_error_clear(e);
+    if (!heat->lap) {
+        if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
+        heat->lap = hdi_sym_ordered(heat->source, heat->ctx, e);
+        if (!heat->lap) return e->status;
+        (void)hdi_sym_scale(heat->lap);
+    }
+    if (!heat->up.ptr && hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
+    heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
+    heat->fam.ctx = heat->ctx;
+    heat->fam.lap = heat->lap;
+    heat->fam.up = &heat->up;
+    heat->fam.weight = heat->weight;
+    heat->fam.solver = heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES ? heat->opts.solver : HD_SOLVER_COCG;
+    heat->fam.precond = heat->opts.precond;
+    heat->fam.max_iterations = heat->opts.max_iterations;
+    return e->status;
+}
+
+/* The copy of the pair in elimination order, analysed. */
+static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
+    if (heat->elim.ctx) return HD_OK;
+    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, heat->perm, heat->scale, heat->ctx, e);
 }
 
 /* One system with a plan made for it. */
 static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x, double tol, hd_solve_report *report,
                                    hd_error *e) {
-    const hd_laplacian *lap = heat->lap;
+    const hd_laplacian *lap;
     hdi_lane *lane = heat->lane;
     hdi_krylov *k = lane->k;
     hdi_watch watch;
@@ -8842,6 +9558,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     hd_status status;
     double b_norm;
     int32_t i, v;
+    if (hdi_heat_iterative(heat, e) < 0) return e->status;
+    lap = heat->lap;
     memset(&watch, 0, sizeof watch);
     memset(&set, 0, sizeof set);
     watch.ctx = heat->ctx;
@@ -8904,7 +9622,7 @@ static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
     const hd_heat_opts *o = &heat->opts;
     const double steps = 1.2 * sqrt(t * heat->lambda_max) + 10;
     if (o->solver) return o->solver;
-    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->lap->B) return HD_SOLVER_COCG;
+    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B) return HD_SOLVER_COCG;
     return steps <= 400 ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
@@ -8921,8 +9639,14 @@ typedef struct hdi_heat_call {
     hd_report own_report;
     hd_error *e;
     hdi_scope s;
+    hd_method method;
+    const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
+    const double *times;         /* [n_times] scaled, ascending, for one item at several times; else t alone */
+    int32_t n_times;
+    const int32_t *time_column;  /* where in U each goes */
     hdi_lane *lane;              /* [HDI_LANES], the plan's */
     int32_t n_lanes, batch;      /* lanes that exist; first item in lane 0 */
+    int32_t n_here, batch_width, n_batches;  /* direct: items under way, in batches of so many */
     int32_t stop;
     const double *F;             /* fields */
     double *U;                   /* answers, columns */
@@ -8950,11 +9674,110 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     h->t = t * heat->scale;
     if (!hdi_finite(h->t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is too large for these masses", -1, -1, t);
-    h->solver = hdi_heat_choose(heat, h->t);
-    h->rep->method = HD_METHOD_ITERATIVE;
-    h->rep->solver = h->solver;
-    h->rep->precond = h->solver == HD_SOLVER_LANCZOS ? HD_PRECOND_NONE : heat->opts.precond;
+    h->times = &h->t;
+    h->n_times = 1;
+    h->lap = heat->source;
     h->lane = heat->lane;
+    return HD_OK;
+}
+
+/* ---- choice of the method ---- */
+
+/* Seconds that methods would take at rates one core has been seen to reach, and the bytes they would hold. */
+typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov_bytes; } hdi_cost;
+
+/* Rates: flops of packs and of real fronts, bytes per second of sweeps, and seconds per non-zero of a step of Lanczos and of COCG, per row of an
+ * ordering with its analysis. Measured on meshes of 36K to 1M vertices. */
+#define HDI_RATE_PACK 55e9
+#define HDI_RATE_REAL 25e9
+#define HDI_RATE_SWEEP 15e9
+#define HDI_STEP_LANCZOS 1.6e-9
+#define HDI_STEP_COCG 4e-9
+#define HDI_ROW_ANALYSIS 0.8e-6
+
+/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops. */
+static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    const hd_heat_opts *o = &heat->opts;
+    const hdi_symbolic *s = heat->elim.ctx ? &heat->elim.sym : NULL;
+    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->k, hh = heat->source->h * heat->source->h * heat->scale;
+    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n, flops = s ? s->flops_done : 22 * n * sqrt(n), analysis = s ? 0 : HDI_ROW_ANALYSIS * n;
+    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n, real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n;
+    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5, packs = (poles + 2) / 4 > 0 ? (poles + 2) / 4 : 1;
+    const double span = h->times[h->n_times - 1] / h->times[0], windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
+    const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
+    double one;
+    hdi_cost c;
+    int32_t q;
+    c.iterative = 0.4e-6 * n;
+    for (q = 0; q < h->n_times; q++) {
+        const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
+        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) one = (1.2 * sqrt(t * heat->lambda_max) + 10) * (entries + 6 * n) * HDI_STEP_LANCZOS;
+        else one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) * (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
+        c.iterative += k * one;
+    }
+    c.krylov = analysis + windows * flops / HDI_RATE_REAL + k * windows * steps * (16 * nnz + 100 * n) / HDI_RATE_SWEEP + k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
+    c.direct = analysis + h->n_times * (packs * 16 * flops / HDI_RATE_PACK + k * packs * (64 * nnz + 400 * n) / (k > 1 ? 1.6 * HDI_RATE_SWEEP : 1.2 * HDI_RATE_SWEEP));
+    if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= packs * 16 * flops / HDI_RATE_PACK;
+    c.direct_bytes = 64 * packs * stored + 200 * n + 8 * real_stored;
+    c.krylov_bytes = 8 * real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
+    return c;
+}
+
+/* By the model, or as asked. The analysis is made only when iterating does not win against the least that a factorisation could cost. */
+static hd_status hdi_heat_pick(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    const hd_context *ctx = heat->ctx;
+    const double room = ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
+    hdi_cost c;
+    int no_direct, no_krylov;
+    h->method = heat->opts.method;
+    h->rep->reason = "asked for";
+    if (h->method == HD_METHOD_AUTO && heat->iterations_asked) {
+        h->method = HD_METHOD_ITERATIVE;
+        h->rep->reason = "a solver or preconditioner is asked for";
+    }
+    if (h->method != HD_METHOD_AUTO) return HD_OK;
+    c = hdi_heat_cost(h);
+    if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) && hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
+        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+        c = hdi_heat_cost(h);
+    }
+    no_direct = c.direct_bytes > room;
+    no_krylov = c.krylov_bytes > room || heat->poles_asked;
+    h->method = HD_METHOD_ITERATIVE;
+    h->rep->reason = no_direct && c.krylov_bytes > room ? "factors would not fit the byte limit" : "iterations cost less than a factorisation";
+    if (!no_krylov && c.krylov < c.iterative && (no_direct || c.krylov <= c.direct)) {
+        h->method = HD_METHOD_KRYLOV;
+        h->rep->reason = h->n_times > 1 ? "one real factor serves many times" : "few columns: one real factor costs less than those of the poles";
+    } else if (!no_direct && c.direct < c.iterative) {
+        h->method = HD_METHOD_DIRECT;
+        h->rep->reason = h->k > 1 ? "many columns: solves with the factors of the poles cost least" : "the factors of the poles cost least";
+    }
+    return HD_OK;
+}
+
+/* The method, its copy of the pair, and what of the report is known by now. */
+static hd_status hdi_heat_engine(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    if (h->t == 0) {                             /* nothing to solve */
+        h->method = heat->opts.method == HD_METHOD_AUTO ? HD_METHOD_ITERATIVE : heat->opts.method;
+        h->rep->reason = "t = 0";
+    } else if (hdi_heat_pick(h) < 0) {
+        return h->e->status;
+    } else if (h->method == HD_METHOD_ITERATIVE) {
+        if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
+        h->lap = heat->lap;
+    } else {
+        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+        h->lap = heat->elim.lap;
+        h->rep->ordering = heat->elim.sym.ordering;
+        h->rep->factor_nnz = heat->elim.sym.nnz;
+    }
+    h->rep->method = h->method;
+    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t) : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
+    h->rep->solver = h->solver;
+    h->rep->precond = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS ? heat->opts.precond : HD_PRECOND_NONE;
     return HD_OK;
 }
 
@@ -8975,13 +9798,13 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
 
 /* Degree of a uniform set: even ones, as an odd one costs as much as the next; the first whose error is 1e-9 of the least that the
  * answer can be, which is what its constants amount to. */
-static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane) {
+static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
     hd_rational set;
     hd_error e;
     double least = 0;
     int32_t c, r;
     for (c = 0; c < lap->n_components && lap->conserves; c++) least += lane->target[c] * lane->target[c] / lap->component_mass[c];
-    for (r = 8; r < HDI_RAT_UNIFORM_MAX; r += 2)
+    for (r = 8; r < HDI_RAT_UNIFORM_MAX; r = !direct ? r + 2 : r == 8 ? 9 : HDI_RAT_UNIFORM_MAX)
         if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= 1e-9 * sqrt(least)) break;
     return r;
 }
@@ -8991,7 +9814,7 @@ static hd_status hdi_fields_check(const hdi_heat_call *h) {
     int32_t q, v;
     for (q = 0; q < h->k; q++) {
         const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
-        for (v = 0; v < h->heat->lap->n; v++)
+        for (v = 0; v < h->heat->source->n; v++)
             if (!hdi_finite(f[v])) return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v, q, f[v]);
     }
     return HD_OK;
@@ -9003,7 +9826,7 @@ static int32_t hdi_heat_source(const hdi_heat_call *h, int32_t q) {
 
 /* Field and right-hand side of item q. A vertex without mass needs no solve: skip. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
-    const hd_laplacian *lap = h->heat->lap;
+    const hd_laplacian *lap = h->lap;
     const size_t bytes = HDI_CAST(size_t, lap->n_active) * sizeof(double);
     int32_t row;
     lane->skip = 0;
@@ -9031,12 +9854,12 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     return HD_OK;
 }
 
-/* What item q asked for, from the lane's answer. */
-static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
-    const hd_laplacian *lap = h->heat->lap;
-    const double *answer = h->t > 0 ? lane->u : lane->f, unit = h->query == HDI_QUERY_SYMMETRIC ? h->heat->scale : 1;   /* B^-1 */
+/* What item q asked for, from the lane's answer, into that column of U. */
+static void hdi_heat_store_at(const hdi_heat_call *h, int32_t q, int32_t column, const hdi_lane *lane) {
+    const hd_laplacian *lap = h->lap;
+    const double *answer = h->t > 0 ? lane->u : lane->f, unit = h->query == HDI_QUERY_SYMMETRIC && lap != h->heat->source ? h->heat->scale : 1;   /* B^-1 */
     const int32_t source = h->query == HDI_QUERY_FIELD ? -1 : hdi_heat_source(h, q);
-    double *u = h->U ? h->U + HDI_CAST(size_t, q) * h->ldu : NULL;
+    double *u = h->U ? h->U + HDI_CAST(size_t, column) * h->ldu : NULL;
     int64_t p;
     int32_t i;
     if (h->values) {
@@ -9057,13 +9880,15 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = unit * answer[i];
 }
 
+static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) { hdi_heat_store_at(h, q, q, lane); }
+
 /* The degree of a uniform set that serves all fields; columns, whose constants are known to be small, get the highest. */
 static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
     int32_t q, r;
     *degree = h->query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
     for (q = 0; q < h->k && h->query == HDI_QUERY_FIELD; q++) {
         if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
-        r = hdi_uniform_degree(h->heat->lap, h->lane);
+        r = hdi_uniform_degree(h->lap, h->lane, h->method == HD_METHOD_DIRECT);
         if (r > *degree) *degree = r;
     }
     return HD_OK;
@@ -9073,7 +9898,7 @@ static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
 static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
     const hd_pole_kind kind = o->poles ? o->poles : h->query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
-    int32_t degree = o->degree ? o->degree : 10;
+    int32_t degree = o->degree ? o->degree : h->method == HD_METHOD_DIRECT ? 9 : 10;   /* four pairs fill a pack, and a real pole costs little */
     if (o->rational) {
         *set = *o->rational;
         return HD_OK;
@@ -9104,6 +9929,7 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
 /* Report and errors of the lanes, in their order: the first failure that is not "another task failed" is the one to tell. */
 static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     const hd_rational *set = &h->heat->fam.set;
+    const int own = h->heat->opts.rational != NULL, poles = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS;
     int32_t i, p;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->lane + i;
@@ -9118,11 +9944,11 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
         if (lane->skip) continue;
         if (lane->status > h->rep->status) h->rep->status = lane->status;
         h->rep->iterations += lane->steps;
-        for (p = 0; h->solver != HD_SOLVER_LANCZOS && p < set->n_poles; p++) {
+        for (p = 0; poles && p < set->n_poles; p++) {
             h->rep->pole_iterations[p] += lane->k[p].iterations;
             h->rep->iterations += lane->k[p].iterations;
         }
-        hdi_heat_judge(h->heat->lap, lane, set->kind == HD_POLES_OWN && h->solver != HD_SOLVER_LANCZOS, h->rep);
+        hdi_heat_judge(h->lap, lane, own, h->rep);
     }
     return HD_OK;
 }
@@ -9132,10 +9958,10 @@ static hd_status hdi_heat_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     hd_rational set;
     int32_t i;
-    h->n_lanes = h->k < HDI_LANES ? h->k : HDI_LANES;
+    h->n_lanes = h->k < HDI_LANES_ITERATIVE ? h->k : HDI_LANES_ITERATIVE;
     for (i = 0; i < h->n_lanes; i++) {
-        if (hdi_lane_make(h->lane + i, heat->lap, heat->ctx, h->e) < 0) return h->e->status;
-        if (h->solver == HD_SOLVER_LANCZOS && h->t > 0 && hdi_lane_lanczos(h->lane + i, heat->lap, heat->ctx, h->e) < 0) return h->e->status;
+        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
+        if (h->solver == HD_SOLVER_LANCZOS && h->t > 0 && hdi_lane_lanczos(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
     }
     if (h->t == 0 || h->solver == HD_SOLVER_LANCZOS) return HD_OK;
     if (hdi_heat_set(h, &set) < 0 || hdi_family_set(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
@@ -9147,9 +9973,173 @@ static hd_status hdi_heat_prepare(hdi_heat_call *h) {
     return hdi_family_fill(&heat->fam, h->lane->vectors, hdi_lane_stride(&heat->fam), h->e);
 }
 
+/* ---- direct ---- */
+
+/* Arrays of a batch of k, from the plan's room. */
+static hdi_batch hdi_heat_batch(const hdi_heat_call *h, int32_t index, int32_t k) {
+    hdi_batch b;
+    size_t x, xr, size = hdi_batch_size(&h->heat->elim, k, &x, &xr);
+    b.x = h->heat->batch_room + size * HDI_CAST(size_t, index);
+    b.xr = b.x + x;
+    b.work = b.xr + xr;
+    b.active = HDI_CAST(char *, HDI_CAST(void *, b.x + size)) - h->heat->elim.sym.n_super - 8;
+    return b;
+}
+
+static void hdi_heat_batch_task(void *arg, int64_t index, int32_t worker) {
+    hdi_heat_call *h = HDI_CAST(hdi_heat_call *, arg);
+    const hdi_batch b = hdi_heat_batch(h, HDI_CAST(int32_t, index), h->batch_width);
+    hdi_lane *lane = h->lane + index * h->batch_width;
+    const int32_t left = h->n_here - HDI_CAST(int32_t, index) * h->batch_width, n = left < h->batch_width ? left : h->batch_width;
+    int32_t r;
+    (void)worker;
+    hdi_batch_run(&h->heat->elim, &b, lane, n, h->n_batches > 1 ? NULL : h->heat->ctx);
+    for (r = 0; r < n; r++)
+        if (!lane[r].skip) lane[r].status = hdi_heat_direct(&h->heat->elim, h->heat->opts.tol, lane + r);
+}
+
+/* Lanes, the pole set and its factors. */
+static hd_status hdi_direct_prepare(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    const size_t n = HDI_CAST(size_t, h->lap->n_active), most = 2 * HDI_CAST(size_t, heat->elim.sym.stored);
+    size_t x, xr, size;
+    hd_rational set;
+    int32_t i;
+    h->batch_width = h->k < HDI_LANES_BATCH ? h->k : HDI_LANES_BATCH;
+    size = hdi_batch_size(&heat->elim, h->batch_width, &x, &xr);
+    h->n_batches = (h->k + h->batch_width - 1) / h->batch_width;
+    if (h->n_batches > HDI_BATCHES) h->n_batches = HDI_BATCHES;   /* as many as take no more than a quarter of a pack */
+    while (h->n_batches > 1 && HDI_CAST(size_t, h->n_batches) * (size + 7 * n * HDI_CAST(size_t, h->batch_width)) > most) h->n_batches--;
+    h->n_lanes = h->n_batches * h->batch_width < h->k ? h->n_batches * h->batch_width : h->k;
+    for (i = 0; i < h->n_lanes; i++)
+        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
+    if (hdi_heat_set(h, &set) < 0) return h->e->status;
+    if (hdi_elim_poles(&heat->elim, &set, h->t, h->e) < 0) return h->e->status;
+    if (heat->batch_doubles < size * HDI_CAST(size_t, h->n_batches)) {
+        hdi_free(heat->ctx, heat->batch_room);
+        heat->batch_doubles = 0;
+        heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, size * HDI_CAST(size_t, h->n_batches), sizeof(double), h->e));
+        if (!heat->batch_room) return h->e->status;
+        heat->batch_doubles = size * HDI_CAST(size_t, h->n_batches);
+    }
+    h->rep->poles = set.kind;
+    h->rep->degree = set.degree;
+    h->rep->n_poles = set.n_poles;
+    for (i = 0; 4 * i < set.n_poles - (heat->elim.lone + 1); i++) {
+        const hdi_factor *f = heat->elim.pack + i;
+        h->rep->factor_flops += 16 * heat->elim.sym.flops;
+        h->rep->growth = hdi_max(h->rep->growth, f->all.largest / f->largest_entry);
+    }
+    if (heat->elim.lone >= 0) h->rep->factor_flops += heat->elim.sym.flops;
+    return HD_OK;
+}
+
+static hd_status hdi_direct_run(hdi_heat_call *h) {
+    int32_t i;
+    if (hdi_direct_prepare(h) < 0) return hdi_heat_end(h);
+    for (h->batch = 0; h->batch < h->k; h->batch += h->n_here) {
+        h->n_here = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
+        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
+        for (i = 0; i < h->n_here; i++)
+            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
+        hdi_parallel(h->heat->ctx, (h->n_here + h->batch_width - 1) / h->batch_width, hdi_heat_batch_task, h);
+        if (hdi_heat_collect(h, h->n_here) < 0) return hdi_heat_end(h);
+        for (i = 0; i < h->n_here; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
+    }
+    return hdi_heat_end(h);
+}
+
+/* ---- krylov ---- */
+
+/* A shift for times [from, to]; that of the factor at hand when it will do. */
+static double hdi_krylov_shift(const hdi_elim *m, double from, double to) {
+    const double best = sqrt(from) * sqrt(to) / 10, have = m->real.ready ? m->shift : 0;
+    return have > 0 && best <= 3 * have && have <= 3 * best && to / from < 10 ? have : best;
+}
+
+/* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its times. */
+static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
+    const double factor = s->flops_done / HDI_RATE_REAL, step = 16 * HDI_CAST(double, s->nnz) / HDI_RATE_SWEEP + 1e-8 * s->n;
+    double best = HUGE_VAL;
+    int32_t w, least = 1;
+    for (w = 1; w <= 16; w++) {
+        const double ratio = pow(span, 1.0 / w), steps = 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
+        const double cost = w * (factor + steps * step);
+        if (cost < best) {
+            best = cost;
+            least = w;
+        }
+    }
+    return least;
+}
+
+/* One basis for items batch to batch + n - 1 and the times [q0, q1). */
+static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
+    hd_heat *heat = h->heat;
+    hdi_silan *z = heat->silan;
+    double fixed[HDI_SILAN_WIDE];
+    hd_status status;
+    int32_t i, q;
+    int64_t c;
+    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(&heat->elim, h->times[q0], h->times[q1 - 1]), h->e) < 0) return h->e->status;
+    z->g = heat->elim.shift;
+    z->k = n;
+    if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
+    for (i = 0; i < n; i++)
+        for (fixed[i] = 0, c = 0; c < h->lap->n_components && h->lap->conserves && !h->lane[i].skip; c++)
+            fixed[i] += h->lane[i].target[c] * h->lane[i].target[c] / h->lap->component_mass[c];
+    status = hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+    if (status < 0) return status;
+    for (q = q0; q < q1; q++) {
+        for (i = 0; i < n; i++) {
+            hdi_lane *lane = h->lane + i;
+            lane->status = status;
+            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], lane, h->e) < 0) return h->e->status;
+        }
+        if (hdi_heat_collect(h, n) < 0) return h->e->status;
+        for (i = 0; i < n; i++) hdi_heat_store_at(h, h->batch + i, h->time_column ? h->time_column[q] : h->batch + i, h->lane + i);
+    }
+    return HD_OK;
+}
+
+static hd_status hdi_krylov_all(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    const double span = h->times[h->n_times - 1] / h->times[0];
+    const int32_t wide = h->k > 1 ? HDI_SILAN_WIDE : 1, n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
+    int32_t i, n, q0, q1, w;
+    if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
+    if (!heat->silan) {
+        heat->silan = HDI_CAST(hdi_silan *, hdi_alloc(heat->ctx, 1, sizeof *heat->silan, h->e));
+        if (!heat->silan) return hdi_heat_end(h);
+        memset(heat->silan, 0, sizeof *heat->silan);
+    }
+    heat->silan->wide = wide;
+    heat->silan->m = &heat->elim;
+    h->n_lanes = h->k < wide ? h->k : wide;
+    for (i = 0; i < h->n_lanes; i++)
+        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return hdi_heat_end(h);
+    for (h->batch = 0; h->batch < h->k; h->batch += n) {
+        n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
+        for (i = 0; i < n; i++)
+            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
+        for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+            const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
+            for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-9)); q1++) {}
+            if (hdi_krylov_window(h, n, q0, q1) < 0) return hdi_heat_end(h);
+        }
+    }
+    h->rep->factor_flops = heat->elim.sym.flops;
+    h->rep->growth = heat->elim.real.largest_entry > 0 ? heat->elim.real.all.largest / heat->elim.real.largest_entry : 0;
+    return hdi_heat_end(h);
+}
+
 static hd_status hdi_heat_run(hdi_heat_call *h) {
     int32_t i, n;
-    if (h->e->status < 0 || h->k == 0 || hdi_heat_prepare(h) < 0) return hdi_heat_end(h);
+    if (h->e->status < 0 || h->k == 0) return hdi_heat_end(h);
+    if (hdi_heat_engine(h) < 0) return hdi_heat_end(h);
+    if (h->t > 0 && h->method == HD_METHOD_DIRECT) return hdi_direct_run(h);
+    if (h->t > 0 && h->method == HD_METHOD_KRYLOV) return hdi_krylov_all(h);
+    if (hdi_heat_prepare(h) < 0) return hdi_heat_end(h);
     for (h->batch = 0; h->batch < h->k; h->batch += n) {
         n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
         for (i = 0; i < n; i++)
@@ -9165,7 +10155,7 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
 
 /* Sets a leading dimension's default and checks it. */
 static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
-    const size_t n = HDI_CAST(size_t, h->heat->lap->n);
+    const size_t n = HDI_CAST(size_t, h->heat->source->n);
     if (ld && ld < n) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
     return ld ? ld : n;
 }
@@ -9205,12 +10195,103 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, double t, hd_kernel kernel
     h.U = U;
     h.ldu = hdi_leading(&h, ldu);
     for (q = 0; q < k && !h.e->status; q++)
-        if (hdi_vertex_check(heat->lap, sources[q], h.e) < 0) h.e->column = q;
+        if (hdi_vertex_check(heat->source, sources[q], h.e) < 0) h.e->column = q;
     return hdi_heat_run(&h);
 }
 
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, double t, int32_t source, double *u, hd_report *report) {
     return hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 1, &source, u, 0, report);
+}
+
+/* The worse of two reports, counts added. */
+static void hdi_report_merge(hd_report *all, const hd_report *one) {
+    hd_report sum = *one;
+    int32_t p;
+    sum.status = all->status > sum.status ? all->status : sum.status;
+    sum.iterations += all->iterations;
+    for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
+    sum.degree = all->degree > sum.degree ? all->degree : sum.degree;
+    sum.n_poles = all->n_poles > sum.n_poles ? all->n_poles : sum.n_poles;
+    sum.growth = hdi_max(all->growth, sum.growth);
+    sum.residual = hdi_max(all->residual, sum.residual);
+    sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
+    sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
+    sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
+    sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
+    sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
+    *all = sum;
+}
+
+/* The times one by one. */
+static hd_status hdi_heat_each_time(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
+                                    hd_report *rep) {
+    hd_report all, one;
+    int32_t q;
+    memset(&all, 0, sizeof all);
+    for (q = 0; q < n_times; q++) {
+        double *u = U + HDI_CAST(size_t, q) * ldu;
+        const hd_status st = f ? hd_heat_apply(heat, t[q], 1, f, 0, u, 0, &one) : hd_heat_columns(heat, t[q], kernel, 1, &source, u, 0, &one);
+        if (st < 0) {
+            *rep = one;
+            rep->error.column = q;
+            return st;
+        }
+        if (q == 0) all = one;
+        else hdi_report_merge(&all, &one);
+    }
+    *rep = all;
+    return rep->status;
+}
+
+HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
+                                     hd_report *report) {
+    hdi_heat_call h;
+    hdi_pair *order;
+    double *sorted;
+    int32_t q, *column;
+    if (f) {
+        if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, 0, 1, report) < 0) return hdi_heat_end(&h);
+    } else if (hdi_kernel_begin(&h, heat, 0, kernel, 1, report) < 0) {
+        return hdi_heat_end(&h);
+    }
+    if (n_times < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of times is negative");
+    else if (n_times > 0 && (!t || !U)) hdi_missing(h.e);
+    h.F = f;
+    h.sources = &source;
+    h.U = U;
+    h.ldf = hdi_leading(&h, 0);
+    h.ldu = hdi_leading(&h, ldu);
+    if (h.e->status >= 0 && f) (void)hdi_fields_check(&h);
+    if (h.e->status >= 0 && !f) (void)hdi_vertex_check(heat->source, source, h.e);
+    for (q = 0; q < n_times && h.e->status >= 0; q++)
+        if (!(t[q] >= 0) || !hdi_finite(t[q] * heat->scale)) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
+    order = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, hdi_pair, n_times);
+    sorted = HDI_TAKE(&h.s, double, n_times);
+    column = HDI_TAKE(&h.s, int32_t, n_times);
+    if (h.e->status < 0 || n_times == 0) return hdi_heat_end(&h);
+    for (q = 0; q < n_times; q++) {              /* bits of doubles that are not negative are in their order */
+        const double v = t[q] + 0.0;
+        memcpy(&order[q].key, &v, sizeof v);
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, n_times);
+    for (q = 0; q < n_times; q++) {
+        column[q] = HDI_CAST(int32_t, order[q].id);
+        sorted[q] = t[column[q]] * heat->scale;
+    }
+    h.times = sorted;
+    h.n_times = n_times;
+    h.time_column = column;
+    h.t = sorted[n_times - 1];
+    if (n_times > 1 && sorted[0] > 0 && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV) return hdi_krylov_all(&h);
+    if (h.e->status >= 0) (void)hdi_heat_each_time(heat, n_times, t, kernel, source, f, U, h.ldu, h.rep);
+    {
+        const hd_status st = h.e->status < 0 ? h.e->status : h.rep->status;
+        const hd_error kept = *h.e;
+        hdi_scope_end(&h.s);
+        *h.e = kept;
+        return h.rep->status = st;
+    }
 }
 
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
@@ -9222,7 +10303,7 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
     if (n_pairs < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
     else if (n_pairs > 0 && (!i || !j || !values)) hdi_missing(h.e);
     for (q = 0; q < n_pairs && !h.e->status; q++)
-        if (hdi_vertex_check(heat->lap, i[q], h.e) < 0 || hdi_vertex_check(heat->lap, j[q], h.e) < 0) h.e->row = q;
+        if (hdi_vertex_check(heat->source, i[q], h.e) < 0 || hdi_vertex_check(heat->source, j[q], h.e) < 0) h.e->row = q;
     order = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, hdi_pair, n_pairs);
     begin = HDI_TAKE(&h.s, int64_t, n_pairs + 1);
     if (h.e->status < 0) return hdi_heat_end(&h);

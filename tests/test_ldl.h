@@ -552,7 +552,8 @@ static void ldl_all_orderings(const hd_csr *a, int32_t k, int dense, uint64_t se
         f = ldl_make(a, &o, what);
         if (!f) continue;
         ldl_try_complex(f, a, o.ordering, k, dense && (way + k) % 3 == 0, seed + 10, what);
-        ldl_try_real(f, a, o.ordering, 1 + (way + k) % 6, seed + 20, what);
+        ldl_try_real(f, a, o.ordering, 1, seed + 20, what);
+        ldl_try_real(f, a, o.ordering, 2 + (way + k) % 9, seed + 21, what);
         hd_ldl_free(f);
         CHECK(ctx.bytes_in_use == 0);
     }
@@ -605,6 +606,7 @@ static void ldl_all_dense(void) {
             f = ldl_make(&a, &o, "dense");
             if (!f) continue;
             ldl_try_complex(f, &a, o.ordering, 1 + (s + q) % 5, sizes[s] < 65, (uint64_t)s + 1, "dense");
+            ldl_try_real(f, &a, o.ordering, 1, (uint64_t)s + 2, "dense");
             ldl_try_real(f, &a, o.ordering, 5, (uint64_t)s + 2, "dense");
             hd_ldl_free(f);
         }
@@ -865,6 +867,9 @@ static void ldl_forms_complex(void) {
         }
         CHECK(hd_ldl_solve_complex(f, y, PAD, y, PAD, NULL) == HD_OK);
         for (q = 0; q < k; q++) CHECK_MSG(memcmp(y + PAD * q, x + PAD * q, N * sizeof *x) == 0, "common or copied: %d of %d", (int)q, (int)k);
+        memcpy(y, b, sizeof y);
+        CHECK(hd_ldl_solve_complex(f, y, 0, y, PAD, NULL) == HD_OK);
+        for (q = 0; q < k; q++) CHECK_MSG(memcmp(y + PAD * q, x + PAD * q, N * sizeof *x) == 0, "common, in place: %d of %d", (int)q, (int)k);
     }
     hd_ldl_free(f);
     hd_csr_free(&a, NULL);
@@ -939,6 +944,46 @@ static void ldl_forms_real(void) {
     hd_csr_free(&a, NULL);
     free(L);
     free(B);
+}
+
+/* Of (i, j) and (j, i) one is read, whichever: where they differ, the answer is that of a symmetric matrix with either value. */
+static void ldl_one_of_a_pair(void) {
+    enum { N = 30 };
+    hd_csr a = ldl_random_pattern(N, 5, 21);
+    double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
+    hd_c64 *val = DENSE_NEW(hd_c64, a.nnz), *other = DENSE_NEW(hd_c64, a.nnz), *keep = DENSE_NEW(hd_c64, a.nnz), b[N], x[N];
+    int32_t perm[N], i;
+    int64_t p;
+    int way;
+    uint64_t seed = 2;
+    ldl_pair(&a, 5, L, B);
+    ldl_shifted(&a, L, B, 1, 6, keep);
+    ldl_fill(b, N, 1);
+    for (way = 0; way < 4; way += 3) {
+        hd_ldl_opts o = ldl_opts_of(ldl_orderings[way], perm, NULL, NULL);
+        hd_ldl *f;
+        dense_shuffle(perm, N, &seed);
+        f = ldl_make(&a, &o, "one of a pair");
+        for (i = 1; f && i < N; i++) {
+            for (p = a.row_ptr[i]; p < a.row_ptr[i + 1] && a.col[p] < i; p++) {
+                double back;
+                memcpy(val, keep, (size_t)a.nnz * sizeof *val);
+                memcpy(other, keep, (size_t)a.nnz * sizeof *other);
+                val[p].re += 0.01 * fabs(keep[p].re);
+                other[p] = other[op_find(&a, a.col[p], i)] = val[p];
+                CHECK(hd_ldl_factor_complex(f, 1, val, NULL, NULL) == HD_OK && hd_ldl_solve_complex(f, b, 0, x, 0, NULL) == HD_OK);
+                back = fmin(ldl_backward(&a, keep, b, x), ldl_backward(&a, other, b, x));
+                CHECK_MSG(back <= 1e-14, "(%d, %d): backward error %g", (int)i, (int)a.col[p], back);
+            }
+        }
+        hd_ldl_free(f);
+    }
+    hd_csr_free(&a, NULL);
+    free(L);
+    free(B);
+    free(val);
+    free(other);
+    free(keep);
 }
 
 /* ---- again and again ---- */
@@ -1236,8 +1281,8 @@ static void ldl_threads(void) {
 /* ---- pivots that fail ---- */
 
 static void ldl_pivot_errors_of(hd_ordering ordering, int32_t n, uint64_t seed) {
-    const int32_t zero = ldl_below(&seed, n), k = 7, bad = 5;
-    int32_t *perm = DENSE_NEW(int32_t, n), i;
+    const int32_t zero = ldl_below(&seed, n), k = 7;
+    int32_t *perm = DENSE_NEW(int32_t, n), i, bad;
     double *L, *B, *xyz = DENSE_NEW(double, 3 * n);
     hd_c64 *val, *b = DENSE_NEW(hd_c64, n), *x = DENSE_NEW(hd_c64, (int64_t)n * k);
     hd_ldl_opts o = ldl_opts_of(ordering, perm, xyz, NULL);
@@ -1270,11 +1315,13 @@ static void ldl_pivot_errors_of(hd_ordering ordering, int32_t n, uint64_t seed) 
     L[diag] = 2;
     CHECK(hd_ldl_factor(f, L, &rep, &e) == HD_OK && hd_ldl_solve(f, 1, (const double *)b, 0, (double *)x, 0, &e) == HD_OK);
     CHECK(ldl_backward_real(&a, L, (const double *)b, (const double *)x) <= 1e-14);
-    val[bad * a.nnz + diag] = test_c(0, 0);
-    CHECK(hd_ldl_factor_complex(f, k, val, &rep, &e) == HD_ERR_BREAKDOWN && e.status == HD_ERR_BREAKDOWN);
-    CHECK_MSG(e.row == zero && e.pole == bad && e.value == 0, "row %d, pole %d instead of %d, %d", (int)e.row, (int)e.pole, (int)zero, (int)bad);
-    CHECK(hd_ldl_solve_complex(f, b, 0, x, 0, &e) == HD_ERR_ARGUMENT);
-    val[bad * a.nnz + diag] = test_c(0, -1e-3);
+    for (bad = 0; bad < k; bad++) {              /* in either sweep of four, and last of all */
+        val[bad * a.nnz + diag] = test_c(0, 0);
+        CHECK(hd_ldl_factor_complex(f, k, val, &rep, &e) == HD_ERR_BREAKDOWN && e.status == HD_ERR_BREAKDOWN);
+        CHECK_MSG(e.row == zero && e.pole == bad && e.value == 0, "row %d, pole %d instead of %d, %d", (int)e.row, (int)e.pole, (int)zero, (int)bad);
+        CHECK(hd_ldl_solve_complex(f, b, 0, x, 0, &e) == HD_ERR_ARGUMENT);
+        val[bad * a.nnz + diag] = test_c(0, -1e-3);
+    }
     CHECK(hd_ldl_factor_complex(f, k, val, &rep, &e) == HD_OK && hd_ldl_solve_complex(f, b, 0, x, 0, &e) == HD_OK);
     for (i = 0; i < k; i++) CHECK(ldl_backward(&a, val + i * a.nnz, b, x + (int64_t)i * n) <= 1e-14);
     hd_ldl_free(f);
@@ -1322,7 +1369,7 @@ static void ldl_not_finite(void) {
                 const hd_c64 keep = *at;
                 if ((i + q) % 2) at->re = wrong[q % 3];
                 else at->im = wrong[q % 3];
-                CHECK(hd_ldl_factor_complex(f, K, val, NULL, &e) == HD_ERR_NOT_FINITE && e.status == HD_ERR_NOT_FINITE);
+                CHECK(hd_ldl_factor_complex(f, K, val, NULL, &e) == HD_ERR_NOT_FINITE && e.status == HD_ERR_NOT_FINITE && e.pole == q);
                 CHECK_MSG(e.row == i && e.column == j, "(%d, %d), not (%d, %d)", (int)e.row, (int)e.column, (int)i, (int)j);
                 *at = keep;
             }
@@ -1651,8 +1698,17 @@ static void ldl_bad_calls(void) {
     LDL_BAD(hd_ldl_solve_complex(f, c, 0, z, N - 1, &e));
     CHECK(hd_ldl_solve_complex(f, c, N, z, N, NULL) == HD_OK);
     CHECK(ldl_backward(&a, val + 3 * N, c + N, z + N) <= 1e-15);
+    CHECK(hd_ldl_factor(f, a.val, NULL, &e) == HD_OK);
+    LDL_BAD(hd_ldl_solve_complex(f, c, 0, z, 0, &e));        /* the last factorisation counts */
+    a.val[0] = (double)NAN;
+    CHECK(hd_ldl_factor(f, a.val, NULL, &e) == HD_ERR_NOT_FINITE);
+    LDL_BAD(hd_ldl_solve(f, 1, b, 0, x, 0, &e));             /* also when it failed */
+    CHECK(hd_ldl_factor_complex(f, 2, val, NULL, &e) == HD_OK);
+    val[3 * N].im = (double)INFINITY;
+    CHECK(hd_ldl_factor_complex(f, 2, val, NULL, &e) == HD_ERR_NOT_FINITE && e.pole == 1);
+    LDL_BAD(hd_ldl_solve_complex(f, c, 0, z, 0, &e));
 #undef LDL_BAD
-    CHECK(hd_ldl_solve_complex(f, c, N - 1, z, 0, NULL) == HD_ERR_ARGUMENT);    /* no place for the error is fine */
+    CHECK(hd_ldl_solve_complex(NULL, c, 0, z, 0, NULL) == HD_ERR_ARGUMENT);    /* no place for the error is fine */
     hd_ldl_free(f);
     hd_csr_free(&a, NULL);
 }
@@ -1712,6 +1768,27 @@ static void ldl_mesh_of(const shape *s, hd_laplacian_kind kind, int flat, const 
     free(z);
 }
 
+/* Nested dissection of graphs with and without a use of it: every small size, and meshes whose leaves have many neighbours. */
+static void ldl_dissections(void) {
+    int32_t n, k;
+    for (n = 1; n < 420; n += n < 40 ? 1 : 29) {
+        for (k = 0; k < 3; k++) {
+            shape grid = shape_grid(2 + n / 9, 8, 0.3);
+            double *xyz = DENSE_NEW(double, 3 * n);
+            hd_csr a = k == 2 ? ldl_mesh_pattern(&grid) : k ? ldl_random_pattern(n, 9, (uint64_t)n) : ldl_shape(LDL_PIECES, n, 1, 1);
+            hd_ldl_opts o = ldl_opts_of(HD_ORDERING_NESTED_DISSECTION, NULL, k == 2 ? grid.xyz : xyz, NULL);
+            hd_ldl *f;
+            ldl_random_points(xyz, n, (uint64_t)n);
+            f = ldl_make(&a, &o, "dissection");
+            if (f) ldl_try_complex(f, &a, o.ordering, 1, 0, (uint64_t)(n + k), "dissection");
+            hd_ldl_free(f);
+            hd_csr_free(&a, NULL);
+            free(xyz);
+            shape_free(&grid);
+        }
+    }
+}
+
 static void ldl_meshes(void) {
     const double offset[3] = {4, 0, 0};
     shape grid = shape_grid(141, 141, 0.3), ball = shape_bumpy(3, 1), plate = shape_grid(20, 30, 0.2), two = shape_disjoint(&ball, &plate, offset);
@@ -1740,6 +1817,7 @@ static void test_ldl(void) {
     ldl_forms_complex();
     ldl_forms_real();
     ldl_companions();
+    ldl_one_of_a_pair();
     ldl_refactor();
     ldl_other_counts();
     ldl_threads();
@@ -1755,6 +1833,7 @@ static void test_ldl(void) {
     ldl_bad_patterns();
     ldl_bad_options();
     ldl_bad_calls();
+    ldl_dissections();
     ldl_meshes();
 }
 

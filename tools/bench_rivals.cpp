@@ -1,12 +1,12 @@
 /* bench_rivals.cpp - see bench_rivals.h.
 
-   What makes the rivals quick, as measured on two AVX-512 cores with Debian's SuiteSparse 5.12 and OpenBLAS 0.3.21:
-   - CHOLMOD's supernodal factorisation opens OpenMP regions of its own, of 4 threads whatever the caller wants, around loops of a few
-     microseconds. Kept from it (max_active_levels 0) it is 1.5 to 2 times quicker, on one thread and on two. We keep it.
-   - UMFPACK without iterative refinement: 4 times quicker solves, the same error.
-   - Many columns: blocks side by side on the threads, each with single-threaded BLAS, rather than a threaded BLAS in one block; and B renumbered
-     like the factor, so that nothing is permuted from step to step.
-   - Larger relaxed supernodes make the factor quicker by a tenth, the solves slower by as much: no gain over some twenty steps. Left alone. */
+   What makes the rivals quick, as measured on two AVX-512 cores with Debian's SuiteSparse 5.12 and OpenBLAS 0.3.21, 50000 to 1000000 vertices:
+   - CHOLMOD's supernodal factorisation opens OpenMP regions of 4 threads (CHOLMOD_OMP_NUM_THREADS when it was built), whatever
+     omp_set_num_threads says. Kept from that (max_active_levels 0) it is 1.4 to 2 times quicker, with BLAS on one thread and on two.
+   - UMFPACK without iterative refinement: solves 4 times quicker, and the error is that of the poles anyhow.
+   - Many columns: a threaded BLAS hardly helps a block of 32 solves, so blocks run side by side with single-threaded BLAS. B is renumbered like
+     the factor, so that nothing is permuted from step to step: a tenth off the solves.
+   - Larger relaxed supernodes: factor a sixth quicker, single solves a tenth slower, twenty steps together the same within 3 %. Left alone. */
 
 #include "bench_rivals.h"
 
@@ -96,12 +96,16 @@ public:
     Threads &operator=(const Threads &) = delete;
 
 private:
-    int levels = 1, old_blas = 1;
+#if defined(_OPENMP)
+    int levels = 1;
+#endif
+    int old_blas = 1;
 };
 
 /* work(k) for k = 0, 1, ... on the threads; nothing is begun after `seconds`. Returns how many were done, always the first ones. An exception in
  * work stops the loop and is thrown again on the calling thread. */
 template <class Work> int share(int n, int threads, double seconds, Work work) {
+    (void)threads;  /* without OpenMP */
     std::atomic<int> next(0), done(0);
     std::exception_ptr failure;
     const double start = now();
@@ -190,7 +194,10 @@ double relative_error(const double *u, const double *r, size_t n) {
 
 double Answers::error(int columns_run) const {
     double e = -1;
-    for (int c = 0; c < std::min(n_reference, columns_run); c++) e = std::max(e, relative_error(target + n * (size_t)c, reference + n * (size_t)c, n));
+    for (int c = 0; c < std::min(n_reference, columns_run); c++) {
+        const size_t at = n * (size_t)c;
+        e = std::max(e, relative_error(target + at, reference + at, n));
+    }
     return e;
 }
 
@@ -510,7 +517,7 @@ private:
 
 enum { MAX_STEPS = 150 };
 
-/* The fewest steps after which the column is within target of its reference. The error can rise again before it falls for good: the first time counts. */
+/* The fewest steps after which the column is within target of its reference. The error can rise again later: the first time counts. */
 int fewest_steps(const Job &job, const Factor &f, int column) {
     const Mass B(*job.pair);
     Solver solver(f);
@@ -680,7 +687,6 @@ struct StepTable {
     std::vector<double> g;
     std::vector<std::vector<int>> need;
     double factor = 1e30, step = 1e30;  /* seconds */
-    double order = 0;
 };
 
 /* A tenth of the rows and those around the source stand for all: the table is for choosing, what is chosen is checked on all rows. */
@@ -731,14 +737,12 @@ StepTable tabulate_steps(const Job &job, rival_ordering ordering) {
     const int n_shifts = 1 + (int)std::ceil(4 * std::log10(20 * t1 / t0));
     StepTable table;
     Factor f;
-    double start = now();
     f.assemble(*job.pair, t0);
     f.analyse(ordering);
-    table.order = now() - start;
     for (int c = 0; c < n_shifts; c++) {
         const double g = 0.03 * t0 * std::pow(10, 0.25 * c);  /* from 0.03 of the smallest time to 0.6 of the largest */
         f.assemble(*job.pair, g);
-        start = now();
+        const double start = now();
         f.factorise();
         table.factor = std::min(table.factor, now() - start);
         table.g.push_back(g);
@@ -1335,6 +1339,7 @@ __attribute__((target("avx2,fma"), noinline)) double multiply_add_256(int64_t ro
 
 double peak(int threads, double (*kernel)(int64_t, volatile double *)) {
     double best = 0;
+    (void)threads;
     for (int r = 0; r < 4; r++) {
         double flops = 0;
         const double t0 = now();
@@ -1352,6 +1357,7 @@ double peak(int threads, double (*kernel)(int64_t, volatile double *)) {
 double read_speed(int threads, const double *x, size_t n) {
     double best = 0;
     volatile double sink = 0;
+    (void)threads;
     for (int r = 0; r < 5; r++) {
         double s = 0;
         const double t0 = now();
