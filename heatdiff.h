@@ -469,7 +469,7 @@ typedef struct hd_ldl_report {
     int64_t factor_nnz;         /* of L, diagonal included, without what is stored beyond */
     int64_t stored;             /* entries of an array of factors */
     double factor_flops;        /* of a real factorisation: the sum of the squares of L's column counts. Complex: four times that, a matrix */
-    double growth;              /* largest |pivot| / largest |diagonal entry of A|: the price of not pivoting; at most 3.8 for poles of degree <= 14 */
+    double growth;              /* largest |pivot| / largest |diagonal entry of A|: the price of not pivoting; at most 3.8 for uniform sets, 4.2 for kernel sets */
     double smallest_pivot;      /* smallest |pivot| / largest |diagonal entry of A| */
     int32_t n_negative;         /* real: pivots below zero, which is the number of negative eigenvalues */
 } hd_ldl_report;
@@ -7991,52 +7991,121 @@ static double hdi_resolvent_ratio(hd_c64 theta) {
 
 /* ---- the same by factorisation ---- */
 
-/* Sums for the residuals of a pack: of L x and B x at row i, x [n] with stride doubles from row to row. */
-HDI_PACK_CLONE void hdi_pair_row_body(const hd_laplacian *lap, int32_t i, const double *x, int64_t stride, double *l, double *b) {
+/* What is told of the solutions of a pack's four systems for one right-hand side, in one pass over L and B. */
+typedef struct hdi_check {
+    const hd_laplacian *lap;
+    double t, theta[HDI_PACK];   /* re[4], im[4] */
+    double coef[HDI_PACK];       /* u += coef' x, by real and imaginary parts */
+    const double *weight, *rhs, *x;  /* 1/diag(B); x: its row i at x + i stride */
+    int64_t stride;
+    double *u, *bu;              /* the answer, and B times it */
+    double norm2[4], first2;     /* |rhs - A x|^2 in the norm of weight; |x|_B^2 of the first system */
+} hdi_check;
+
+static void hdi_check_c(hdi_check *const *c, int32_t k) {
+    const hd_laplacian *lap = c[0]->lap;
     int64_t p;
+    int32_t i, r;
     int q;
-    for (q = 0; q < HDI_PACK; q++) l[q] = b[q] = 0;
-    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-        const double *v = x + stride * lap->L.col[p], lx = lap->L.val[p];
-        if (lap->B) {
-            const double bx = lap->B[p];
+    for (r = 0; r < k; r++) {
+        hdi_check *h = c[r];
+        for (i = 0; i < lap->n_active; i++) {
+            const double *x = h->x + h->stride * i;
+            double l[HDI_PACK], b[HDI_PACK];
             for (q = 0; q < HDI_PACK; q++) {
-                l[q] += lx * v[q];
-                b[q] += bx * v[q];
+                l[q] = 0;
+                b[q] = lap->B ? 0 : lap->mass[i] * x[q];
             }
-        } else {
-            for (q = 0; q < HDI_PACK; q++) l[q] += lx * v[q];
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+                const double *v = h->x + h->stride * lap->L.col[p];
+                for (q = 0; q < HDI_PACK; q++) l[q] += lap->L.val[p] * v[q];
+                if (lap->B) for (q = 0; q < HDI_PACK; q++) b[q] += lap->B[p] * v[q];
+            }
+            for (q = 0; q < 4; q++) {
+                const double re = h->rhs[i] - h->t * l[q] - (h->theta[q] * b[q] - h->theta[q + 4] * b[q + 4]);
+                const double im = -h->t * l[q + 4] - (h->theta[q] * b[q + 4] + h->theta[q + 4] * b[q]);
+                h->norm2[q] += h->weight[i] * (re * re + im * im);
+            }
+            h->first2 += x[0] * b[0] + x[4] * b[4];
+            for (q = 0; q < HDI_PACK; q++) {
+                h->u[i] += h->coef[q] * x[q];
+                h->bu[i] += h->coef[q] * b[q];
+            }
         }
     }
-    if (!lap->B) for (q = 0; q < HDI_PACK; q++) b[q] = lap->mass[i] * x[stride * i + q];
-}
-
-/* norm2[q] = |rhs - (t L + theta_q B) x_q|^2 in the norm of weight = diag(B)^-1, for the four matrices of a pack. */
-HDI_PACK_CLONE void hdi_pack_residual_body(const hd_laplacian *lap, double t, const hd_c64 *theta, const double *rhs, const double *x, int64_t stride,
-                                           const double *weight, double *norm2) {
-    double l[HDI_PACK], b[HDI_PACK];
-    int32_t i;
-    int q;
-    for (q = 0; q < 4; q++) norm2[q] = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        hdi_pair_row_body(lap, i, x, stride, l, b);
-        for (q = 0; q < 4; q++) {
-            const double re = rhs[i] - t * l[q] - (theta[q].re * b[q] - theta[q].im * b[q + 4]);
-            const double im = -t * l[q + 4] - (theta[q].re * b[q + 4] + theta[q].im * b[q]);
-            norm2[q] += weight[i] * (re * re + im * im);
-        }
-    }
-}
-
-static void hdi_pack_residual(const hd_laplacian *lap, double t, const hd_c64 *theta, const double *rhs, const double *x, int64_t stride,
-                              const double *weight, double *norm2) {
-    hdi_pack_residual_body(lap, t, theta, rhs, x, stride, weight, norm2);
 }
 
 #if HDI_X86
-static HDI_AVX2 void hdi_pack_residual_2(const hd_laplacian *lap, double t, const hd_c64 *theta, const double *rhs, const double *x, int64_t stride,
-                                         const double *weight, double *norm2) {
-    hdi_pack_residual_body(lap, t, theta, rhs, x, stride, weight, norm2);
+#define HDI_CHECK_DECLARE(r) hdi_v8 l##r, b##r, n##r = zero, f##r = zero;
+#define HDI_CHECK_CLEAR(r) if (k > r) { l##r = zero; b##r = zero; if (!lap->B) b##r = _mm512_mul_pd(_mm512_set1_pd(lap->mass[i]), _mm512_loadu_pd(at + HDI_PACK * r)); }
+#define HDI_CHECK_ADD(r)                                                                                               \
+    if (k > r) {                                                                                                       \
+        const hdi_v8 v = _mm512_loadu_pd(from + HDI_PACK * r);                                                         \
+        l##r = _mm512_fmadd_pd(lx, v, l##r);                                                                           \
+        if (full) b##r = _mm512_fmadd_pd(bx, v, b##r);                                                                 \
+    }
+#define HDI_CHECK_ROW(r)                                                                                               \
+    if (k > r) {                                                                                                       \
+        const hdi_v8 v = _mm512_loadu_pd(at + HDI_PACK * r), coef = _mm512_loadu_pd(c[r]->coef);                       \
+        hdi_v8 res = _mm512_fnmadd_pd(t, l##r, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));                           \
+        res = _mm512_fnmadd_pd(tr, b##r, res);                                                                         \
+        res = _mm512_fnmadd_pd(ti, _mm512_shuffle_f64x2(b##r, b##r, 0x4e), res);                                       \
+        n##r = _mm512_fmadd_pd(_mm512_mul_pd(w, res), res, n##r);                                                      \
+        f##r = _mm512_fmadd_pd(v, b##r, f##r);                                                                         \
+        c[r]->u[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, v));                                                    \
+        c[r]->bu[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, b##r));                                                \
+    }
+#define HDI_CHECK_END(r)                                                                                               \
+    if (k > r) {                                                                                                       \
+        double s[HDI_PACK];                                                                                            \
+        _mm512_storeu_pd(s, n##r);                                                                                     \
+        for (q = 0; q < 4; q++) c[r]->norm2[q] += s[q] + s[q + 4];                                                     \
+        _mm512_storeu_pd(s, f##r);                                                                                     \
+        c[r]->first2 += s[0] + s[4];                                                                                   \
+    }
+#define HDI_CHECK_EACH(M) M(0) M(1) M(2) M(3) M(4) M(5)
+
+/* k right-hand sides, at most 6, whose rows of x stand side by side. */
+static HDI_AVX512 HDI_INLINE void hdi_check_512_of(hdi_check *const *c, const int k) {
+    const hd_laplacian *lap = c[0]->lap;
+    const hdi_v8 zero = _mm512_setzero_pd(), t = _mm512_set1_pd(c[0]->t), tr = hdi_twice512(c[0]->theta);
+    const hdi_v8 im = hdi_twice512(c[0]->theta + 4), ti = _mm512_mask_sub_pd(im, 0x0f, zero, im);
+    const double *x = c[0]->x;
+    const int64_t stride = c[0]->stride;
+    const int full = lap->B != NULL;
+    int64_t p;
+    int32_t i;
+    int q;
+    HDI_CHECK_EACH(HDI_CHECK_DECLARE)
+    for (i = 0; i < lap->n_active; i++) {
+        const double *at = x + stride * i;
+        const hdi_v8 w = _mm512_set1_pd(c[0]->weight[i]);
+        HDI_CHECK_EACH(HDI_CHECK_CLEAR)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const double *from = x + stride * lap->L.col[p];
+            const hdi_v8 lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
+            HDI_CHECK_EACH(HDI_CHECK_ADD)
+        }
+        HDI_CHECK_EACH(HDI_CHECK_ROW)
+    }
+    HDI_CHECK_EACH(HDI_CHECK_END)
+}
+#undef HDI_CHECK_DECLARE
+#undef HDI_CHECK_CLEAR
+#undef HDI_CHECK_ADD
+#undef HDI_CHECK_ROW
+#undef HDI_CHECK_END
+#undef HDI_CHECK_EACH
+
+static HDI_AVX512 void hdi_check_512(hdi_check *const *c, int32_t k) {
+    switch (k) {
+        case 1: hdi_check_512_of(c, 1); break;
+        case 2: hdi_check_512_of(c, 2); break;
+        case 3: hdi_check_512_of(c, 3); break;
+        case 4: hdi_check_512_of(c, 4); break;
+        case 5: hdi_check_512_of(c, 5); break;
+        default: hdi_check_512_of(c, 6); break;
+    }
 }
 #endif
 
@@ -8202,72 +8271,78 @@ static size_t hdi_batch_size(const hdi_elim *m, int32_t k, size_t *x, size_t *xr
     return *x + *xr + (pack > real ? pack : real) + HDI_CAST(size_t, m->sym.n_super) / sizeof(double) + 8;
 }
 
-/* Residuals of a pack's systems for one lane into its bounds, and their part of the answer. */
-static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *lane, const double *x, int64_t stride) {
-    const hd_laplacian *lap = m->lap;
-    const int32_t n = lap->n_active, n_here = m->set.n_poles - (m->lone + 1 + 4 * i) < 4 ? m->set.n_poles - (m->lone + 1 + 4 * i) : 4;
-    double coef[HDI_PACK], norm2[4], *HDI_RESTRICT u = lane->u;
-    hd_c64 theta[4];
-    int32_t j;
-    int q;
-    for (q = 0; q < 4; q++) {
-        const int32_t p = hdi_elim_pole(m, i, q);
-        const double count = q < n_here ? hdi_rat_count(&m->set, p) : 0;
-        theta[q] = m->set.theta[p];
-        coef[q] = -count * m->set.a[p].re;
-        coef[q + 4] = count * m->set.a[p].im;
+/* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has its solution at x + 8 at[q]. */
+static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const int32_t *at, int32_t k, const double *x, int64_t stride) {
+    const int32_t left = m->set.n_poles - (m->lone + 1 + 4 * i), n_here = left < 4 ? left : 4;
+    hdi_check c[HDI_LANES_BATCH], *list[HDI_LANES_BATCH];
+    int32_t r;
+    int q, together = k <= HDI_LANES_BATCH;
+    for (r = 0; r < k; r++) {
+        hdi_check *h = list[r] = c + r;
+        memset(h, 0, sizeof *h);
+        h->lap = m->lap;
+        h->t = m->t;
+        for (q = 0; q < 4; q++) {
+            const int32_t p = hdi_elim_pole(m, i, q);
+            const double count = q < n_here ? hdi_rat_count(&m->set, p) : 0;
+            h->theta[q] = m->set.theta[p].re;
+            h->theta[q + 4] = m->set.theta[p].im;
+            h->coef[q] = -count * m->set.a[p].re;
+            h->coef[q + 4] = count * m->set.a[p].im;
+        }
+        h->weight = m->weight;
+        h->rhs = lane[r]->rhs;
+        h->x = x + HDI_PACK * at[r];
+        h->stride = stride;
+        h->u = lane[r]->u;
+        h->bu = lane[r]->tmp;
+        together = together && at[r] == at[0] + r;
     }
 #if HDI_X86
-    if (m->pack[i].pack != hdi_pack_ops_get(0)) hdi_pack_residual_2(lap, m->t, theta, lane->rhs, x, stride, m->weight, norm2);
+    if (together && m->pack[i].pack == hdi_pack_ops_get(2)) hdi_check_512(list, k);
     else
 #endif
-    hdi_pack_residual(lap, m->t, theta, lane->rhs, x, stride, m->weight, norm2);
-    for (q = 0; q < n_here; q++) {
-        const int32_t p = hdi_elim_pole(m, i, q);
-        const double r = sqrt(norm2[q]);
-        if (lane->b_norm > 0) lane->residual = hdi_max(lane->residual, r / lane->b_norm);
-        lane->solver += hdi_rat_count(&m->set, p) * hdi_cabs(m->set.a[p]) * r / (sqrt(lap->b_ratio) * hdi_pole_distance(theta[q]));
-    }
-    for (j = 0; j < n; j++) {
-        const double *v = x + stride * j;
-        double s = 0, w = 0;
-        for (q = 0; q < 4; q++) {
-            s += coef[q] * v[q];
-            w += coef[q + 4] * v[q + 4];
+    hdi_check_c(list, k);
+    for (r = 0; r < k; r++) {
+        hdi_lane *to = lane[r];
+        for (q = 0; q < n_here; q++) {
+            const int32_t p = hdi_elim_pole(m, i, q);
+            const double res = sqrt(c[r].norm2[q]), error = res / (sqrt(m->lap->b_ratio) * hdi_pole_distance(m->set.theta[p]));
+            if (to->b_norm > 0) to->residual = hdi_max(to->residual, res / to->b_norm);
+            to->solver += hdi_rat_count(&m->set, p) * hdi_cabs(m->set.a[p]) * error;
+            if (i > 0 || q > 0) continue;
+            to->first_pole = p;                  /* measures the resolvent */
+            to->first_norm = sqrt(hdi_max(0, c[r].first2)) + error;
         }
-        u[j] += s + w;
     }
-    if (i > 0) return;
-    for (j = 0; j < n; j++) {                    /* the first pole's solution, which measures the resolvent */
-        lane->tmp[j] = x[stride * j];
-        lane->tmp[n + j] = x[stride * j + 4];
-    }
-    lane->first_pole = hdi_elim_pole(m, 0, 0);
-    lane->first_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->tmp, lane->tmp + 2 * HDI_CAST(int64_t, n)) +
-                                       hdi_b_norm2(lap, lane->tmp + n, lane->tmp + 2 * HDI_CAST(int64_t, n))));
-    lane->first_norm += sqrt(norm2[0]) / (sqrt(lap->b_ratio) * hdi_pole_distance(theta[0]));
 }
 
 /* The lone real pole's part. */
 static void hdi_batch_real(const hdi_elim *m, hdi_lane *lane, const double *x, int64_t stride) {
     const hd_laplacian *lap = m->lap;
-    const int32_t n = lap->n_active;
     const double theta = m->set.theta[0].re, a = m->set.a[0].re;
-    double norm2 = 0, *HDI_RESTRICT w = lane->tmp, r;
-    int32_t j;
-    for (j = 0; j < n; j++) w[j] = x[stride * j];
-    hdi_pair_apply(lap, m->t, theta, w, w + n);
-    for (j = 0; j < n; j++) {
-        r = lane->rhs[j] - w[n + j];
-        norm2 += m->weight[j] * r * r;
-        lane->u[j] -= a * w[j];
+    double norm2 = 0, first2 = 0, r;
+    int64_t p;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        double l = 0, b = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const double v = x[stride * lap->L.col[p]];
+            l += lap->L.val[p] * v;
+            if (lap->B) b += lap->B[p] * v;
+        }
+        if (!lap->B) b = lap->mass[i] * x[stride * i];
+        r = lane->rhs[i] - m->t * l - theta * b;
+        norm2 += m->weight[i] * r * r;
+        first2 += x[stride * i] * b;
+        lane->u[i] -= a * x[stride * i];
+        lane->tmp[i] -= a * b;
     }
     r = sqrt(norm2);
     if (lane->b_norm > 0) lane->residual = hdi_max(lane->residual, r / lane->b_norm);
     lane->solver += fabs(a) * r / (sqrt(lap->b_ratio) * theta);
-    if (m->set.n_poles > 1) return;
     lane->first_pole = 0;
-    lane->first_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, w, w + n))) + r / (sqrt(lap->b_ratio) * theta);
+    lane->first_norm = sqrt(hdi_max(0, first2)) + r / (sqrt(lap->b_ratio) * theta);
 }
 
 /* u = a0 f - sum a_i x_i for k lanes (those that are skipped cost, but do not count). ctx: threads for the sweeps; NULL within a task. */
@@ -8275,14 +8350,23 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     const hdi_symbolic *s = &m->sym;
     const int32_t n = s->n, n_packs = (m->set.n_poles - (m->lone + 1) + 3) / 4, wide = k > 1 ? 8 : 1;
     int64_t j, touched = 0;
-    int32_t i, r;
+    int32_t i, r, n_list = 0, at[HDI_LANES_BATCH];
+    hdi_lane *list[HDI_LANES_BATCH];
     hdi_sweep z;
+    for (r = 0; r < k; r++) {
+        if (lane[r].skip) continue;
+        list[n_list] = lane + r;
+        at[n_list++] = r;
+    }
     memset(b->active, 0, HDI_CAST(size_t, s->n_super));
     for (r = 0; r < k; r++) {
         double norm2 = 0;
         for (j = 0; j < n; j++) {
             const double v = lane[r].skip ? 0 : lane[r].rhs[j];
-            if (!lane[r].skip) lane[r].u[j] = m->set.a0 * lane[r].f[j];
+            if (!lane[r].skip) {
+                lane[r].u[j] = m->set.a0 * lane[r].f[j];
+                lane[r].tmp[j] = m->set.a0 * v;  /* B u, as far as it has got */
+            }
             if (v == 0) continue;
             norm2 += m->weight[j] * v * v;
             if (touched++ < 64 * HDI_CAST(int64_t, k)) hdi_sweep_touch(s, HDI_CAST(int32_t, j), b->active);
@@ -8310,8 +8394,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         z = hdi_sweep_open(m->pack + i, k, b->x, b->work, ctx != NULL);
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
-        for (r = 0; r < k; r++)
-            if (!lane[r].skip) hdi_batch_pack(m, i, lane + r, b->x + HDI_PACK * r, HDI_PACK * HDI_CAST(int64_t, k));
+        hdi_batch_pack(m, i, list, at, n_list, b->x, HDI_PACK * HDI_CAST(int64_t, k));
     }
 }
 
@@ -8631,8 +8714,10 @@ static hd_status hdi_heat_poles(const hdi_family *fam, double tol, hdi_lane *lan
 /* What is left to do after the poles' factors have been applied: constants, norms, bounds. */
 static hd_status hdi_heat_direct(const hdi_elim *m, double tol, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
+    int32_t i;
     hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
-    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    for (i = 0; i < lap->n_active && lap->conserves; i++) lane->tmp[i] += lap->mass[i] * lane->sums[lap->component[i]];   /* B u, what was added included */
+    lane->u_norm = sqrt(hdi_max(0, hdi_dot(lane->u, lane->tmp, lap->n_active)));
     lane->rational = hdi_rational_bound(lap, &m->set, lane);
     return lane->solver <= tol * (lane->u_norm - lane->solver) ? HD_OK : HD_WARN_ACCURACY;
 }
@@ -9843,8 +9928,10 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         memset(lane->f, 0, bytes);
         memset(lane->rhs, 0, bytes);
         if (h->query == HDI_QUERY_OPERATOR) {
+            int64_t p;
             lane->f[row] = 1;
-            hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+            for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++) lane->rhs[lap->L.col[p]] = lap->B[p];   /* B e_row */
+            if (!lap->B) lane->rhs[row] = lap->mass[row];
         } else {
             lane->rhs[row] = 1;
             if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
@@ -10001,14 +10088,14 @@ static void hdi_heat_batch_task(void *arg, int64_t index, int32_t worker) {
 /* Lanes, the pole set and its factors. */
 static hd_status hdi_direct_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const size_t n = HDI_CAST(size_t, h->lap->n_active), most = 2 * HDI_CAST(size_t, heat->elim.sym.stored);
+    const size_t n = HDI_CAST(size_t, h->lap->n_active), most = 4 * HDI_CAST(size_t, heat->elim.sym.stored);
     size_t x, xr, size;
     hd_rational set;
     int32_t i;
     h->batch_width = h->k < HDI_LANES_BATCH ? h->k : HDI_LANES_BATCH;
     size = hdi_batch_size(&heat->elim, h->batch_width, &x, &xr);
     h->n_batches = (h->k + h->batch_width - 1) / h->batch_width;
-    if (h->n_batches > HDI_BATCHES) h->n_batches = HDI_BATCHES;   /* as many as take no more than a quarter of a pack */
+    if (h->n_batches > HDI_BATCHES) h->n_batches = HDI_BATCHES;   /* as many as take no more than half of a pack */
     while (h->n_batches > 1 && HDI_CAST(size_t, h->n_batches) * (size + 7 * n * HDI_CAST(size_t, h->batch_width)) > most) h->n_batches--;
     h->n_lanes = h->n_batches * h->batch_width < h->k ? h->n_batches * h->batch_width : h->k;
     for (i = 0; i < h->n_lanes; i++)
