@@ -4441,27 +4441,34 @@ static hd_status hdi_sym_minimum_degree(const hd_csr *a, int32_t *perm, hd_conte
 
 /* ---- nested dissection ---- */
 /* An elimination order for matrices whose rows have a place in space: separators last. The rows are numbered along a space-filling curve, so that
- * every part is a compact graph in cache. A part is halved on a coarse copy of it (clusters of neighbours, cut by a plane or by graph distance),
- * the cut is moved by local exchanges from the coarsest copy to the finest, turned into a set of vertices and made small there; both halves are
- * halved in turn. Small parts are ordered by minimum degree, the separators around them counted as neighbours.
+ * every part is a compact graph in cache. A part is halved on its clusters, small groups of neighbours that are made once and handed down: swept
+ * along a line or by graph distance, then improved by exchanges on a few coarser copies. Around the cut that this gives, the smallest separator
+ * within a band is found exactly, by vertex-disjoint paths. Both halves are halved in turn. Small parts are ordered by minimum degree, the
+ * separators around them counted as neighbours.
  * This work is based on:
  *   A. George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10, 1973.
  *   G. M. Morton, A computer oriented geodetic data base and a new technique in file sequencing, IBM, 1966.
  *   B. Hendrickson, R. Leland, A multilevel algorithm for partitioning graphs, Supercomputing 1995.
  *   C. M. Fiduccia, R. M. Mattheyses, A linear-time heuristic for improving network partitions, DAC 1982.
- *   C. Ashcraft, J. W. H. Liu, Robust ordering of sparse matrices using multisection, SIAM J. Matrix Anal. Appl. 19, 1998.
- */
+ *   L. R. Ford, D. R. Fulkerson, Flows in networks, 1962 (and Menger's theorem).
+ *   C. Ashcraft, J. W. H. Liu, Applications of the Dulmage-Mendelsohn decomposition and network flow to graph bisection improvement,
+ *   SIAM J. Matrix Anal. Appl. 19, 1998: smallest separators in a band.
+ * The clusters that a separator cuts through live on in both halves, with the weights of edges that they had: these only guide the next cut. */
 
-#ifndef HDI_ND_LEAF
-#define HDI_ND_LEAF 240
-#define HDI_ND_COARSE 100
-#endif
 enum {
-    HDI_ND_WORDS = 24,      /* work space: words for a vertex */
-    HDI_ND_EDGE_WORDS = 2,  /* and for an entry */
+    HDI_ND_LEAF = 1500,     /* vertices of a part that minimum degree orders: 300 to 3000 make little difference to fill, fewer cost time */
+    HDI_ND_FRESH = 50,      /* clusters of a part that are too few to cut */
+    HDI_ND_COARSE = 100,    /* vertices of a coarsest copy, about */
+    HDI_ND_LAYERS = 5,      /* of the band, on each side of a cut: 3 cost a tenth more flops in the factor, 8 gain little */
+    HDI_ND_WORDS = 20,      /* work space: words for a vertex */
+    HDI_ND_SLACK = 1200,    /* and for a task */
     HDI_ND_LEVELS = 24,     /* most copies of a part */
     HDI_ND_BUCKETS = 128,   /* gains that are told apart, for each side */
-    HDI_ND_FREE = -2147483647
+    HDI_ND_TASKS = 64,      /* parts that are ordered in parallel */
+    HDI_ND_BLOCK = 8192,    /* rows that are read by a task */
+    HDI_ND_MIDDLE = 64,     /* the separator's layer in a band */
+    HDI_ND_NONE = -2147483647,
+    HDI_ND_DEAD = 2147483647
 };
 
 /* A part, or a coarse copy of one. At the finest copy weights are 1 (ew and w are NULL), and negative entries of adj are rows outside of the
@@ -4475,18 +4482,24 @@ typedef struct hdi_nd_graph {
     int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
 } hdi_nd_graph;
 
-typedef struct hdi_nd_part { int32_t first, n, edge, n_edges, buffer; } hdi_nd_part;
+/* Rows first..first + n - 1 of the order are to be found. clusters = 0: none are known. */
+typedef struct hdi_nd_part { int32_t first, n, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
-/* Everything that the tasks share; each works in its part's slices only. */
+/* The graphs of parts and of their clusters. Those of odd depth are in one of two buffers, of even depth in the other, each in its own slices. */
+typedef struct hdi_nd_buffer {
+    int32_t *ptr, *adj, *id, *map;   /* [2 n], [nnz], [n], [n]; ptr has n + 1 words for every part, also where a separator is empty */
+    int32_t *cptr, *cadj, *cew, *cid; /* [2 n], [nnz / 4], [nnz / 4], [n] */
+} hdi_nd_buffer;
+
+/* Everything that the tasks share. */
 typedef struct hdi_nd {
-    int32_t n;
-    int32_t *ptr[2], *adj[2], *id[2];   /* graphs of the parts: those of odd depth in one buffer, of even depth in the other */
+    hdi_nd_buffer buffer[2];
     float *xyz;
     int32_t *perm, *work;
-    hdi_nd_part *part;                  /* of the running parallel loop, part i halves into child[2 i], child[2 i + 1] */
-    hdi_nd_part *child;
+    hdi_nd_part *part, *child;       /* of the running loop: part i halves into child[2 i], child[2 i + 1] */
 } hdi_nd;
 
+/* Work space left to a task; taken from its front, given back by forgetting the copy that was taken from. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
@@ -4559,9 +4572,9 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
     int32_t v, p, n = 0, single = -1, *map = g->map;
     for (v = 0; v < g->n; v++) map[v] = -1;
     for (v = 0; v < g->n; v++) {
-        const int32_t wv = g->w ? g->w[v] : 1;
-        int32_t sum = wv, join = -1;
+        int32_t wv, sum, join = -1;
         if (map[v] >= 0) continue;
+        sum = wv = g->w ? g->w[v] : 1;
         map[v] = n;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
@@ -4585,7 +4598,7 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
     return n;
 }
 
-/* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for space entries. member [g->n],
+/* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for space > 0 entries. member [g->n],
  * start [c->n + 1], mark [c->n]. 0 if the room is too small. */
 static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space, int32_t *member, int32_t *start, int32_t *mark) {
     const int32_t *map = g->map, *ew = g->ew;
@@ -4605,6 +4618,7 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
         c->ptr[i] = z;
         c->id[i] = g->id[member[start[i]]];
         mark[i] = space - 1;                           /* where edges inside the cluster go, to be forgotten */
+        sum[space - 1] = 0;
         for (m = start[i]; m < start[i + 1]; m++) {
             v = member[m];
             if (g->ptr[v + 1] - g->ptr[v] >= space - z) return 0;
@@ -4628,40 +4642,40 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
     return 1;
 }
 
-/* The copies of level[0], coarser and coarser. Returns how many there are with level[0]. */
-static int32_t hdi_nd_coarsen(hdi_nd_graph *level, hdi_nd_space *s) {
-    int32_t l, room = level->ptr[level->n], *adj = hdi_nd_take(s, room), *ew = hdi_nd_take(s, room);
-    for (l = 0; l + 1 < HDI_ND_LEVELS && level[l].n > HDI_ND_COARSE; l++) {
-        hdi_nd_graph *g = level + l, *c = g + 1;
-        const int32_t mean = level->n / g->n, most = level->n / 24;
-        hdi_nd_space temp;
-        int32_t *weight, *member, *start, *mark;
-        g->map = hdi_nd_take(s, g->n);
-        weight = hdi_nd_take(s, g->n);
-        c->n = hdi_nd_cluster(g, 8 * mean < most ? 8 * mean : most, weight);
-        if (c->n > g->n - g->n / 3) break;
-        s->at = weight + c->n;
-        c->w = weight;
-        c->ptr = hdi_nd_take(s, c->n + 1);
-        c->id = hdi_nd_take(s, c->n);
-        c->side = hdi_nd_take_bytes(s, c->n);
-        c->adj = adj;
-        c->ew = ew;
-        temp = *s;
-        member = hdi_nd_take(&temp, g->n);
-        start = hdi_nd_take(&temp, c->n + 1);
-        mark = hdi_nd_take(&temp, c->n);
-        if (!hdi_nd_contract(g, c, room, member, start, mark)) break;
-        room -= c->ptr[c->n];
-        adj += c->ptr[c->n];
-        ew += c->ptr[c->n];
-    }
-    return l + 1;
+/* Where copies are made: the room for their entries. */
+typedef struct hdi_nd_room { int32_t *adj, *ew, n; } hdi_nd_room;
+
+/* Makes level[1], coarser than level[0]. total: weight of all vertices. 0 if there is no room or not much to win. */
+static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room, hdi_nd_space *s) {
+    hdi_nd_graph *g = level, *c = level + 1;
+    const int32_t mean = total / g->n, most = total / 24;   /* of weight in a cluster: that the coarsest copy can be halved */
+    hdi_nd_space temp;
+    int32_t *weight, *member, *start, *mark;
+    g->map = hdi_nd_take(s, g->n);
+    weight = hdi_nd_take(s, g->n);
+    c->n = hdi_nd_cluster(g, 8 * mean < most ? 8 * mean : most, weight);
+    if (c->n > g->n - g->n / 3) return 0;
+    s->at = weight + c->n;
+    c->w = weight;
+    c->ptr = hdi_nd_take(s, c->n + 1);
+    c->id = hdi_nd_take(s, c->n);
+    c->side = hdi_nd_take_bytes(s, c->n);
+    c->adj = room->adj;
+    c->ew = room->ew;
+    temp = *s;
+    member = hdi_nd_take(&temp, g->n);
+    start = hdi_nd_take(&temp, c->n + 1);
+    mark = hdi_nd_take(&temp, c->n);
+    if (!hdi_nd_contract(g, c, room->n, member, start, mark)) return 0;
+    room->n -= c->ptr[c->n];
+    room->adj += c->ptr[c->n];
+    room->ew += c->ptr[c->n];
+    return 1;
 }
 
 /* ---- buckets ---- */
 
-/* Items by gain: doubly linked lists, one for each gain and side. prev of the first is -1 - bucket, of one in no list HDI_ND_FREE. */
+/* Items by gain: doubly linked lists, one for each gain and side. prev of the first is -1 - bucket, of one in no list HDI_ND_NONE. */
 typedef struct hdi_nd_queue {
     int32_t head[2 * HDI_ND_BUCKETS], top[2];
     int32_t *next, *prev;
@@ -4686,7 +4700,7 @@ static void hdi_nd_queue_remove(hdi_nd_queue *q, int32_t item) {
     if (prev >= 0) q->next[prev] = next;
     else q->head[-1 - prev] = next;
     if (next >= 0) q->prev[next] = prev;
-    q->prev[item] = HDI_ND_FREE;
+    q->prev[item] = HDI_ND_NONE;
 }
 
 /* The item of largest gain on a side, or -1. */
@@ -4750,7 +4764,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
         }
         in -= out;
         m->gain[v] = out - in;
-        m->q.prev[v] = out ? HDI_ND_FREE + 1 : HDI_ND_FREE;   /* a mark: to be entered below */
+        m->q.prev[v] = out ? HDI_ND_NONE + 1 : HDI_ND_NONE;   /* a mark: to be entered below */
         if (out > in && out > largest) largest = out;
         if (out && in > largest) largest = in;
         sum += out;
@@ -4760,7 +4774,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     m->shift = 0;
     while (largest >> m->shift >= HDI_ND_BUCKETS / 2) m->shift++;
     for (v = 0; v < g->n; v++)
-        if (m->q.prev[v] != HDI_ND_FREE) hdi_nd_queue_add(&m->q, v, g->side[v], hdi_nd_bucket(m, m->gain[v]));
+        if (m->q.prev[v] != HDI_ND_NONE) hdi_nd_queue_add(&m->q, v, g->side[v], hdi_nd_bucket(m, m->gain[v]));
     memset(m->locked, 0, HDI_CAST(size_t, g->n));
 }
 
@@ -4780,7 +4794,7 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
         if (u < 0) continue;
         m->gain[u] += g->side[u] == to ? -2 * e : 2 * e;
         if (m->locked[u]) continue;
-        if (m->q.prev[u] != HDI_ND_FREE) hdi_nd_queue_remove(&m->q, u);
+        if (m->q.prev[u] != HDI_ND_NONE) hdi_nd_queue_remove(&m->q, u);
         hdi_nd_queue_add(&m->q, u, g->side[u], hdi_nd_bucket(m, m->gain[u]));
     }
 }
@@ -4933,15 +4947,16 @@ static double hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double to
 }
 
 /* Cuts the coarsest copy: the best of several sweeps, each refined. */
-static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t total, hdi_nd_space s) {
+static hdi_nd_cut hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t total, hdi_nd_space s) {
     const int32_t tries = total > 20000 ? 11 : total > 3000 ? 5 : 2;
     int32_t t, any = 0, *work;
     double best = DBL_MAX;
     hdi_pair *key;
     int8_t *side;
     hdi_nd_mover m = hdi_nd_mover_make(g, &s);
-    hdi_nd_cut cut;
+    hdi_nd_cut cut, kept;
     cut.most = 0.6 * total;
+    kept = cut;
     side = hdi_nd_take_bytes(&s, g->n);
     work = hdi_nd_take(&s, 3 * HDI_CAST(int64_t, g->n));
     if ((uintptr_t)s.at % sizeof(uint64_t)) hdi_nd_take(&s, 1);
@@ -4956,389 +4971,593 @@ static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t to
         cost = hdi_nd_cost(cut.cut, cut.weight[0], cut.weight[1]);
         if (cost >= best) continue;
         best = cost;
+        kept = cut;
         memcpy(side, g->side, HDI_CAST(size_t, g->n));
     }
     memcpy(g->side, side, HDI_CAST(size_t, g->n));
+    return kept;
 }
 
-/* ---- separators ---- */
+/* ---- smallest separator in a band ---- */
 
-/* The separator of a part while it is being refined. Item 2 v + s of the queue: separator vertex v moves to side s, and its neighbours on the
- * other side come into the separator; pulled[2 v + s] counts those. */
-typedef struct hdi_nd_separator {
+/* Vertex-disjoint paths through the band around a separator, from what lies beyond it on the side from to what lies beyond on the other. As many as
+ * there can be are as many as a separator must have (Menger). A path enters v at state 2 v and leaves it at 2 v + 1. */
+typedef struct hdi_nd_flow {
     const hdi_nd_graph *g;
-    hdi_nd_queue q;
-    int32_t *pulled;
-    int32_t *list, n_list;     /* vertices that are, or were, in the separator */
-    int32_t *undo, n_undo;     /* v and its state before, 4 v + state */
-    int8_t *locked;
-    int32_t size[3], most;
-} hdi_nd_separator;
+    int32_t *band, n_band;      /* its vertices, by distance from the separator */
+    int32_t *prev, *next;       /* on the path through v: HDI_ND_NONE without one, -1 at its ends */
+    int32_t *seen, stamp;       /* states reached: [2 v], [2 v + 1] = stamp */
+    int32_t *up, *log, n_log;   /* of a search: the state before each, all states seen */
+    int32_t *link, head[2 * HDI_ND_MIDDLE], top;   /* states still to go on from, a list for each layer; the layer farthest on */
+    int8_t *inside, from;       /* layer: 0 outside, else HDI_ND_MIDDLE plus the distance from the separator, minus on side from */
+} hdi_nd_flow;
 
-static int32_t hdi_nd_pulled_gain(int32_t pulled) { return pulled < HDI_ND_BUCKETS ? HDI_ND_BUCKETS - 1 - pulled : 0; }
-
-static void hdi_nd_separator_enter(hdi_nd_separator *x, int32_t v) {
-    const hdi_nd_graph *g = x->g;
-    int32_t p, n[3] = {0, 0, 0}, s;
-    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0) n[g->side[g->adj[p]]]++;
-    for (s = 0; s < 2; s++) {
-        x->pulled[2 * v + s] = n[1 - s];
-        if (x->locked[v]) x->q.prev[2 * v + s] = HDI_ND_FREE;
-        else hdi_nd_queue_add(&x->q, 2 * v + s, s, hdi_nd_pulled_gain(n[1 - s]));
+/* The band: the separator (band[0..n)) and what is near it, at most most vertices of each side and layers steps away. */
+static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
+    const hdi_nd_graph *g = f->g;
+    int32_t i, p, begin = 0, room[2];
+    room[0] = room[1] = most;
+    f->n_band = n;
+    memset(f->inside, 0, HDI_CAST(size_t, g->n));
+    for (i = 0; i < n; i++) f->inside[f->band[i]] = HDI_ND_MIDDLE;
+    while (layers-- > 0 && begin < f->n_band) {
+        const int32_t end = f->n_band;
+        for (; begin < end; begin++) {
+            const int32_t v = f->band[begin];
+            for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+                const int32_t u = g->adj[p];
+                if (u < 0 || f->inside[u] || room[g->side[u]] == 0) continue;
+                room[g->side[u]]--;
+                f->inside[u] = HDI_CAST(int8_t, f->inside[v] + (g->side[u] == f->from ? -1 : 1));
+                f->band[f->n_band++] = u;
+            }
+        }
     }
+    for (i = 0; i < f->n_band; i++) {
+        const int32_t v = f->band[i];
+        f->prev[v] = f->next[v] = HDI_ND_NONE;
+        f->seen[2 * v] = f->seen[2 * v + 1] = 0;
+    }
+    f->stamp = 0;
 }
 
-static void hdi_nd_separator_change(hdi_nd_separator *x, int32_t item, int32_t by) {
-    x->pulled[item] += by;
-    if (x->q.prev[item] == HDI_ND_FREE) return;
-    hdi_nd_queue_remove(&x->q, item);
-    hdi_nd_queue_add(&x->q, item, item & 1, hdi_nd_pulled_gain(x->pulled[item]));
+/* A path from state: changes the paths there are along it. */
+static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
+    int32_t up;
+    f->next[state >> 1] = -1;
+    for (; (up = f->up[state]) >= 0; state = up) {
+        const int32_t a = up >> 1, b = state >> 1;
+        if (!(up & 1)) continue;
+        if (a == b) f->prev[a] = f->next[a] = HDI_ND_NONE;
+        else {
+            f->next[a] = b;
+            f->prev[b] = a;
+        }
+    }
+    f->prev[state >> 1] = -1;
 }
 
-static void hdi_nd_separator_set(hdi_nd_separator *x, int32_t v, int8_t state) {
-    x->undo[x->n_undo++] = 4 * v + x->g->side[v];
-    x->size[x->g->side[v]]--;
-    x->size[state]++;
-    x->g->side[v] = state;
+/* State to comes after state from: among those of its layer. */
+static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
+    const int32_t layer = f->inside[to >> 1];
+    f->seen[to] = f->stamp;
+    f->up[to] = from;
+    f->link[to] = f->head[layer];
+    f->head[layer] = to;
+    f->log[f->n_log++] = to;
+    if (layer > f->top) f->top = layer;
 }
 
-/* Separator vertex v goes to side s. */
-static void hdi_nd_separator_move(hdi_nd_separator *x, int32_t v, int8_t s) {
-    const hdi_nd_graph *g = x->g;
-    int32_t p, r;
-    x->locked[v] = 1;
-    hdi_nd_queue_remove(&x->q, 2 * v);
-    hdi_nd_queue_remove(&x->q, 2 * v + 1);
-    hdi_nd_separator_set(x, v, s);
-    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-        const int32_t u = g->adj[p];
-        if (u < 0 || g->side[u] == s) continue;
-        if (g->side[u] == 2) {
-            hdi_nd_separator_change(x, 2 * u + 1 - s, 1);
+/* Searches from vertex v, always on from a state in the layer farthest on. 1: one path more. What a failed search has seen leads nowhere for good. */
+static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
+    const hdi_nd_graph *g = f->g;
+    int32_t p, i;
+    for (i = 0; i <= 2 * HDI_ND_LAYERS; i++) f->head[HDI_ND_MIDDLE - HDI_ND_LAYERS + i] = -1;
+    f->stamp++;
+    f->n_log = f->top = 0;
+    hdi_nd_flow_push(f, 2 * v, -1);
+    while (f->top >= HDI_ND_MIDDLE - HDI_ND_LAYERS) {
+        const int32_t state = f->head[f->top];
+        int32_t to = -1;
+        if (state < 0) {
+            f->top--;
             continue;
         }
-        hdi_nd_separator_set(x, u, 2);
-        x->list[x->n_list++] = u;
-        for (r = g->ptr[u]; r < g->ptr[u + 1]; r++)
-            if (g->adj[r] >= 0 && g->side[g->adj[r]] == 2) hdi_nd_separator_change(x, 2 * g->adj[r] + s, -1);
-        hdi_nd_separator_enter(x, u);
-    }
-}
-
-/* The best item that keeps both sides below most, or makes the larger smaller; -1: none. */
-static int32_t hdi_nd_separator_next(hdi_nd_separator *x) {
-    int32_t s, best = -1, least = 0;
-    for (s = 0; s < 2; s++) {
-        const int32_t item = hdi_nd_queue_best(&x->q, s);
-        if (item < 0 || (x->size[s] + 1 > x->most && x->size[s] >= x->size[1 - s])) continue;
-        if (best >= 0 && (x->pulled[item] > least || (x->pulled[item] == least && x->size[1] >= x->size[0]))) continue;
-        best = item;
-        least = x->pulled[item];
-    }
-    return best;
-}
-
-/* Starts a pass: the list without those that left, each once, all in the queue. */
-static void hdi_nd_separator_start(hdi_nd_separator *x) {
-    int32_t i, n = 0;
-    memset(x->locked, 0, HDI_CAST(size_t, x->g->n));
-    hdi_nd_queue_clear(&x->q);
-    x->n_undo = 0;
-    for (i = 0; i < x->n_list; i++) {
-        const int32_t v = x->list[i];
-        if (x->g->side[v] != 2 || x->locked[v]) continue;
-        x->locked[v] = 1;
-        x->list[n++] = v;
-    }
-    x->n_list = n;
-    for (i = 0; i < n; i++) x->locked[x->list[i]] = 0;
-    for (i = 0; i < n; i++) hdi_nd_separator_enter(x, x->list[i]);
-}
-
-/* Fiduccia-Mattheyses for vertex separators. */
-static void hdi_nd_refine_separator(hdi_nd_separator *x, int32_t passes) {
-    const int32_t room = 2 * x->g->n;
-    while (passes-- > 0) {
-        double first, best;
-        int32_t keep = 0, bad = 0, item, patience;
-        hdi_nd_separator_start(x);
-        first = best = hdi_nd_cost(x->size[2], x->size[0], x->size[1]);
-        patience = 30 + x->size[2] / 4;
-        while (bad < patience && (item = hdi_nd_separator_next(x)) >= 0 && x->n_undo + x->pulled[item] + 1 < room &&
-               x->n_list + x->pulled[item] < room) {
-            double now;
-            hdi_nd_separator_move(x, item >> 1, HDI_CAST(int8_t, item & 1));
-            now = hdi_nd_cost(x->size[2], x->size[0], x->size[1]);
-            bad++;
-            if (now < best) {
-                best = now;
-                keep = x->n_undo;
-                bad = 0;
+        f->head[f->top] = f->link[state];
+        v = state >> 1;
+        if (!(state & 1)) {             /* through v, or where a path is there already, back along it */
+            to = f->prev[v] == HDI_ND_NONE ? state + 1 : f->prev[v] < 0 ? -1 : 2 * f->prev[v] + 1;
+        } else {
+            for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+                const int32_t u = g->adj[p];
+                if (u < 0) continue;
+                if (f->inside[u]) {
+                    if (f->seen[2 * u] < f->stamp) hdi_nd_flow_push(f, 2 * u, state);
+                } else if (g->side[u] != f->from) {
+                    hdi_nd_flow_augment(f, state);
+                    return 1;
+                }
             }
+            if (f->prev[v] != HDI_ND_NONE) to = state - 1;
         }
-        while (x->n_undo > keep) {
-            const int32_t v = x->undo[--x->n_undo] >> 2, state = x->undo[x->n_undo] & 3;
-            x->size[x->g->side[v]]--;
-            x->size[state]++;
-            x->g->side[v] = HDI_CAST(int8_t, state);
-        }
-        if (!(best < first)) break;
+        if (to >= 0 && f->seen[to] < f->stamp) hdi_nd_flow_push(f, to, state);
     }
+    while (f->n_log > 0) f->seen[f->log[--f->n_log]] = HDI_ND_DEAD;
+    return 0;
 }
 
-/* From sides to a separator: the vertices of one side that touch the other, of that side where they are fewer. near [coarse n]: only vertices of
- * these clusters may touch; NULL: all may. */
-static void hdi_nd_separator_make(hdi_nd_separator *x, const int8_t *near_cut) {
-    const hdi_nd_graph *g = x->g;
-    int32_t v, p, s, i, n = 0, touch[2] = {0, 0};
-    x->size[0] = x->size[1] = x->size[2] = 0;
-    for (v = 0; v < g->n; v++) {
-        x->size[g->side[v]]++;
-        if (near_cut && !near_cut[g->map[v]]) continue;
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) {
-                touch[g->side[v]]++;
-                x->list[n++] = v;
-                break;
-            }
-    }
-    s = touch[1] < touch[0];
-    for (x->n_list = 0, i = 0; i < n; i++) {
-        v = x->list[i];
-        if (g->side[v] != s) continue;
-        x->list[x->n_list++] = v;
-    }
-    for (i = 0; i < x->n_list; i++) g->side[x->list[i]] = 2;
-    x->size[s] -= x->n_list;
-    x->size[2] = x->n_list;
+static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
+    const hdi_nd_graph *g = f->g;
+    int32_t p;
+    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+        if (g->adj[p] >= 0 && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
+    return 0;
 }
 
-static hdi_nd_separator hdi_nd_separator_space(const hdi_nd_graph *g, hdi_nd_space *s) {
-    hdi_nd_separator x;
-    const int64_t n = g->n;
-    x.g = g;
-    x.q.next = hdi_nd_take(s, 2 * n);
-    x.q.prev = hdi_nd_take(s, 2 * n);
-    x.pulled = hdi_nd_take(s, 2 * n);
-    x.list = hdi_nd_take(s, 2 * n);
-    x.undo = hdi_nd_take(s, 2 * n);
-    x.locked = hdi_nd_take_bytes(s, n);
-    x.n_list = x.n_undo = 0;
-    x.size[0] = x.size[1] = x.size[2] = 0;
-    x.most = HDI_CAST(int32_t, 0.6 * HDI_CAST(double, n));
-    return x;
+/* Sets the sides of the band around the separator band[0..n) so that the separator is the smallest inside of it; of several such, the one nearest
+ * to side from. */
+static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
+    int32_t i, k = 0, *start;
+    hdi_nd_flow_band(f, n, most, layers);
+    start = f->band + f->n_band;
+    for (i = 0; i < f->n_band; i++)
+        if (hdi_nd_flow_starts(f, f->band[i])) start[k++] = f->band[i];
+    for (i = 0; i < k; i++)
+        if (f->seen[2 * start[i]] != HDI_ND_DEAD && f->prev[start[i]] != -1) hdi_nd_flow_search(f, start[i]);
+    for (i = 0; i < k; i++) f->seen[2 * start[i]] = HDI_ND_DEAD;
+    f->stamp = HDI_ND_DEAD;
+    for (i = 0; i < f->n_band; i++) {
+        const int32_t v = f->band[i];
+        f->g->side[v] = f->seen[2 * v + 1] == f->stamp ? f->from : HDI_CAST(int8_t, f->seen[2 * v] == f->stamp ? 2 : 1 - f->from);
+    }
 }
 
 /* ---- parts ---- */
 
-/* Sides from the copy above, refined; near_cut [g->n] tells which touch the other side. */
+/* The cut of level[from] taken down to level[1], improved on each copy. */
+static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi_nd_space s) {
+    int32_t l, v;
+    for (l = from - 1; l > 0; l--) {
+        hdi_nd_graph *g = level + l;
+        hdi_nd_space temp = s;
+        hdi_nd_mover m = hdi_nd_mover_make(g, &temp);
+        hdi_nd_cut cut;
+        cut.most = 0.6 * total;
+        for (v = 0; v < g->n; v++) g->side[v] = g[1].side[g->map[v]];
+        hdi_nd_refine_edges(&m, &cut, 3);
+    }
+}
+
+/* level[1] = clusters of level[0], about a dozen vertices each: clusters of clusters. They replace those of the part, if they fit. */
+static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s) {
+    const hdi_nd_buffer *b = nd->buffer + part->buffer;
+    hdi_nd_graph temp[3];
+    hdi_nd_room room;
+    int32_t v, n = 0, *map = level->map;
+    temp[0] = *level;
+    room.n = part->n_edges;
+    room.adj = hdi_nd_take(&s, room.n);
+    room.ew = hdi_nd_take(&s, room.n);
+    while (n < 2 && (n == 0 || temp[n].n > 2 * HDI_ND_COARSE) && hdi_nd_coarser(temp + n, part->n, &room, &s)) n++;
+    level[1].n = 0;
+    if (n == 0 || temp[n].ptr[temp[n].n] > part->n_edges / 4 - 1) return;
+    for (v = 0; v < part->n; v++) map[v] = n == 1 ? temp[0].map[v] : temp[1].map[temp[0].map[v]];
+    level[1].n = temp[n].n;
+    level[1].ptr = b->cptr + 2 * HDI_CAST(size_t, part->first);
+    level[1].adj = b->cadj + part->edge / 4;
+    level[1].ew = b->cew + part->edge / 4;
+    level[1].id = b->cid + part->first;
+    memcpy(level[1].ptr, temp[n].ptr, HDI_CAST(size_t, temp[n].n + 1) * sizeof(int32_t));
+    memcpy(level[1].adj, temp[n].adj, HDI_CAST(size_t, temp[n].ptr[temp[n].n]) * sizeof(int32_t));
+    memcpy(level[1].ew, temp[n].ew, HDI_CAST(size_t, temp[n].ptr[temp[n].n]) * sizeof(int32_t));
+    memcpy(level[1].id, temp[n].id, HDI_CAST(size_t, temp[n].n) * sizeof(int32_t));
+}
+
+/* near_cut[v] = v touches the other side. */
 static void hdi_nd_near(const hdi_nd_graph *g, int8_t *near_cut) {
     int32_t v, p;
     for (v = 0; v < g->n; v++) {
-        near_cut[v] = 0;
-        for (p = g->ptr[v]; p < g->ptr[v + 1] && !near_cut[v]; p++) near_cut[v] = g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v];
+        int8_t other = 0;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) other = HDI_CAST(int8_t, other | (g->side[g->adj[p]] ^ g->side[v]));
+        near_cut[v] = other;
     }
 }
 
-/* Sets level[0].side to 0, 1 or 2. size [3] counts them. */
-static void hdi_nd_dissect(const hdi_nd *nd, hdi_nd_graph *level, hdi_nd_space s, int32_t *size) {
-    const int32_t n_levels = hdi_nd_coarsen(level, &s);
-    int32_t l, v;
+/* The sides of level[0]: cuts the coarsest copy and takes the cut down. Returns in list the vertices that touch the other side, of the side where
+ * they are fewer. */
+static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, int32_t *list, hdi_nd_space s) {
+    hdi_nd_room room;
+    hdi_nd_graph *g = level;
+    int32_t l, v, p, n = 0, kept = 0, touch[2] = {0, 0};
     int8_t *near_cut = NULL;
-    hdi_nd_separator x;
-    hdi_nd_first_cut(nd, level + n_levels - 1, level->n, s);
-    for (l = n_levels - 2; l >= 0; l--) {
-        hdi_nd_graph *g = level + l;
-        for (v = 0; v < g->n; v++) g->side[v] = g[1].side[g->map[v]];
-        if (l > 0) {
-            hdi_nd_space temp = s;
-            hdi_nd_mover m = hdi_nd_mover_make(g, &temp);
-            hdi_nd_cut cut;
-            cut.most = 0.6 * level->n;
-            hdi_nd_refine_edges(&m, &cut, 3);
-        }
+    l = level[1].n > 0;
+    if (l) {
+        level[1].w = hdi_nd_take(&s, level[1].n);
+        level[1].side = hdi_nd_take_bytes(&s, level[1].n);
+        memset(level[1].w, 0, HDI_CAST(size_t, level[1].n) * sizeof(int32_t));
+        for (v = 0; v < g->n; v++) level[1].w[g->map[v]]++;
     }
-    if (n_levels > 1) {
+    room.n = part->n_edges;
+    room.adj = hdi_nd_take(&s, room.n);
+    room.ew = hdi_nd_take(&s, room.n);
+    while (l + 1 < HDI_ND_LEVELS && level[l].n > HDI_ND_COARSE && hdi_nd_coarser(level + l, part->n, &room, &s)) l++;
+    hdi_nd_first_cut(nd, level + l, part->n, s);
+    hdi_nd_descend(level, l, part->n, s);
+    if (l > 0) {
         near_cut = hdi_nd_take_bytes(&s, level[1].n);
         hdi_nd_near(level + 1, near_cut);
+        for (v = 0; v < g->n; v++) g->side[v] = level[1].side[g->map[v]];
     }
-    x = hdi_nd_separator_space(level, &s);
-    hdi_nd_separator_make(&x, near_cut);
-    hdi_nd_refine_separator(&x, 4);
-    for (v = 0; v < 3; v++) size[v] = x.size[v];
-#ifdef ND_TRACE
-    if (level->n > ND_TRACE) printf("part %d levels %d coarsest %d: %d %d sep %d\n", level->n, n_levels, level[n_levels-1].n, size[0], size[1], size[2]);
-#endif
+    for (v = 0; v < g->n; v++) {
+        if (near_cut && !near_cut[g->map[v]]) continue;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+            if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) {
+                touch[g->side[v]]++;
+                list[n++] = v;
+                break;
+            }
+    }
+    for (p = 0; p < n; p++)
+        if (g->side[list[p]] == (touch[1] < touch[0])) list[kept++] = list[p];
+    return kept;
 }
 
-static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, const hdi_nd_part *p) {
+/* Weighs the sides of g. 0 if they differ too much, or the separator is most of it. */
+static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
+    int32_t v, count[3] = {0, 0, 0};
+    for (v = 0; v < g->n; v++) count[g->side[v]]++;
+    for (v = 0; v < 3; v++) size[v] = count[v];
+    return count[0] <= g->n - g->n / 5 && count[1] <= g->n - g->n / 5 && count[2] <= g->n / 2;
+}
+
+/* Sides by number, for graphs on which all else failed. */
+static void hdi_nd_halve(const hdi_nd_graph *g) {
+    int32_t v, p;
+    for (v = 0; v < g->n; v++) g->side[v] = v >= g->n / 2;
+    for (v = 0; v < g->n / 2; v++)
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+            if (g->adj[p] >= g->n / 2) g->side[v] = 2;
+}
+
+/* Sets level[0].side to 0, 1 or 2 and size [3]. 0 if the part has no good separator. */
+static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s, int32_t *size) {
+    hdi_nd_flow f;
+    hdi_nd_graph kept[2];
+    const int64_t n = part->n;
+    int32_t n_list;
+    f.g = level;
+    f.band = hdi_nd_take(&s, 2 * n);
+    if (level[1].n < HDI_ND_FRESH) hdi_nd_fresh(nd, part, level, s);
+    memcpy(kept, level, sizeof kept);
+    n_list = hdi_nd_cut_clusters(nd, part, level, f.band, s);
+    memcpy(level, kept, sizeof kept);   /* without what was in work space */
+    hdi_nd_measure(level, size);
+    f.prev = hdi_nd_take(&s, n);
+    f.next = hdi_nd_take(&s, n);
+    f.seen = hdi_nd_take(&s, 2 * n);
+    f.up = hdi_nd_take(&s, 2 * n);
+    f.link = hdi_nd_take(&s, 2 * n);
+    f.log = hdi_nd_take(&s, 2 * n);
+    f.inside = hdi_nd_take_bytes(&s, n);
+    f.from = size[1] > size[0];
+    hdi_nd_flow_run(&f, n_list, part->n / 12, HDI_ND_LAYERS);
+    if (hdi_nd_measure(level, size)) return 1;
+    hdi_nd_halve(level);
+    return hdi_nd_measure(level, size);
+}
+
+static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, const hdi_nd_part *p, int64_t index) {
     hdi_nd_space s;
-    s.at = nd->work + HDI_CAST(size_t, HDI_ND_WORDS) * HDI_CAST(size_t, p->first) + HDI_CAST(size_t, HDI_ND_EDGE_WORDS) * HDI_CAST(size_t, p->edge);
-    s.end = s.at + HDI_CAST(size_t, HDI_ND_WORDS) * HDI_CAST(size_t, p->n) + HDI_CAST(size_t, HDI_ND_EDGE_WORDS) * HDI_CAST(size_t, p->n_edges);
+    s.at = nd->work + HDI_CAST(size_t, HDI_ND_WORDS) * HDI_CAST(size_t, p->first) + 2 * HDI_CAST(size_t, p->edge) +
+           HDI_CAST(size_t, HDI_ND_SLACK) * HDI_CAST(size_t, index);
+    s.end = s.at + HDI_CAST(size_t, HDI_ND_WORDS) * HDI_CAST(size_t, p->n) + 2 * HDI_CAST(size_t, p->n_edges) + HDI_ND_SLACK;
     return s;
 }
 
-static hdi_nd_graph hdi_nd_graph_of(const hdi_nd *nd, const hdi_nd_part *p) {
-    hdi_nd_graph g;
-    memset(&g, 0, sizeof g);
-    g.n = p->n;
-    g.ptr = nd->ptr[p->buffer] + 2 * HDI_CAST(size_t, p->first);   /* n + 1 words for every part, also where a separator is empty */
-    g.adj = nd->adj[p->buffer] + p->edge;
-    g.id = nd->id[p->buffer] + p->first;
-    return g;
+/* level[0] = the part, level[1] = its clusters. */
+static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_graph *level) {
+    const hdi_nd_buffer *b = nd->buffer + p->buffer;
+    memset(level, 0, 2 * sizeof *level);
+    level->n = p->n;
+    level->ptr = b->ptr + 2 * HDI_CAST(size_t, p->first);
+    level->adj = b->adj + p->edge;
+    level->id = b->id + p->first;
+    level->map = b->map + p->first;
+    level[1].n = p->clusters;
+    level[1].ptr = b->cptr + 2 * HDI_CAST(size_t, p->first);
+    level[1].adj = b->cadj + p->edge / 4;
+    level[1].ew = b->cew + p->edge / 4;
+    level[1].id = b->cid + p->first;
 }
 
-/* child = one side of g, in its slices of the other buffer. at [g->n]: numbers within the sides, ~row in the separator. */
+/* The vertices of one side into the child's slices. at [level->n]: numbers within the sides, ~row in the separator. */
 static void hdi_nd_extract(const hdi_nd_graph *g, int8_t side, const int32_t *at, hdi_nd_graph *child) {
     int32_t v, p, i = 0, z = 0;
     for (v = 0; v < g->n; v++) {
         if (g->side[v] != side) continue;
         child->ptr[i] = z;
         child->id[i++] = g->id[v];
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) child->adj[z++] = g->adj[p] < 0 ? g->adj[p] : at[g->adj[p]];
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p];
+            child->adj[z++] = u < 0 ? u : at[u];
+        }
     }
     child->ptr[i] = z;
 }
 
-/* Halves a part: its separator is ordered, last in the part's range; child[2] are the rest. */
-static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child) {
-    hdi_nd_graph level[HDI_ND_LEVELS], half;
-    hdi_nd_space s = hdi_nd_space_of(nd, part);
-    int32_t v, size[3], *at = hdi_nd_take(&s, part->n), n[2] = {0, 0}, last = part->first + part->n;
-    level[0] = hdi_nd_graph_of(nd, part);
-    level[0].side = hdi_nd_take_bytes(&s, part->n);
-    hdi_nd_dissect(nd, level, s, size);
-    last -= size[2];
+/* The clusters of g[0], which are in g[1], that have vertices on one side into the child's slices, with room for space entries. Returns their number,
+ * 0 if the room is too small. */
+static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_nd_graph *child, int32_t space, hdi_nd_space s) {
+    const hdi_nd_graph *c = g + 1;
+    int32_t v, p, i = 0, n = 0, z = 0, *number = hdi_nd_take(&s, c->n), *list = hdi_nd_take(&s, c->n);
+    for (v = 0; v < c->n; v++) number[v] = -1;
+    for (v = 0; v < g->n; v++) {
+        const int32_t q = g->map[v];
+        if (g->side[v] != side) continue;
+        if (number[q] < 0) {
+            list[n] = q;
+            number[q] = n++;
+        }
+        child->map[i++] = number[q];
+    }
+    for (i = 0; i < n; i++) {
+        v = list[i];
+        child[1].ptr[i] = z;
+        child[1].id[i] = c->id[v];
+        if (c->ptr[v + 1] - c->ptr[v] > space - z) return 0;
+        for (p = c->ptr[v]; p < c->ptr[v + 1]; p++) {
+            child[1].adj[z] = number[c->adj[p]];
+            child[1].ew[z] = c->ew[p];
+            z += child[1].adj[z] >= 0;
+        }
+    }
+    child[1].ptr[n] = z;
+    return n;
+}
+
+/* Orders a part by minimum degree, separators around it as halo, if there is space for that. Its graph is changed in place: rows of the halo become
+ * numbers from n on. */
+static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
+    hdi_nd_graph g[2];
+    int32_t p, v, z = 0, n_halo = 0, outer = 0, mask = 1, *table, *local = nd->perm + part->first;
+    const int64_t words = s.end - s.at;
+    if (!part->n) return;
+    hdi_nd_graphs_of(nd, part, g);
+    for (p = 0; p < part->n_edges; p++) outer += g->adj[p] < 0;
+    while (mask < 2 * outer) mask *= 2;
+    table = s.at;
+    for (p = 0; p < 2 * mask && 2 * HDI_CAST(int64_t, mask) <= words; p++) table[p] = 0;
+    for (p = 0; p < part->n_edges && 2 * HDI_CAST(int64_t, mask) <= words; p++) {
+        const uint32_t u = HDI_CAST(uint32_t, g->adj[p]);
+        uint32_t h = (u * 2654435769u >> 7) & HDI_CAST(uint32_t, mask - 1);
+        if (g->adj[p] >= 0) continue;
+        while (table[2 * h] && table[2 * h] != g->adj[p]) h = (h + 1) & HDI_CAST(uint32_t, mask - 1);
+        if (!table[2 * h]) {
+            table[2 * h] = g->adj[p];
+            table[2 * h + 1] = part->n + n_halo++;
+        }
+        g->adj[p] = table[2 * h + 1];
+    }
+    if (n_halo < outer && n_halo == 0) n_halo = part->n_edges;   /* not numbered */
+    if (hdi_sym_minimum_degree_work(part->n, n_halo, part->n_edges) > words) {
+        for (v = 0, p = 0; v < part->n; v++) {                     /* without the halo */
+            for (; p < g->ptr[v + 1]; p++) {
+                g->adj[z] = g->adj[p];
+                z += g->adj[p] >= 0 && g->adj[p] < part->n;
+            }
+            g->ptr[v + 1] = z;
+        }
+        n_halo = 0;
+    }
+    if (hdi_sym_minimum_degree_work(part->n, n_halo, g->ptr[part->n]) <= words)
+        hdi_sym_minimum_degree_part(part->n, n_halo, g->ptr, g->adj, local, s.at);
+    else
+        for (v = 0; v < part->n; v++) local[v] = v;
+    for (v = 0; v < part->n; v++) local[v] = g->id[local[v]];
+}
+
+/* Halves a part: its separator is ordered, last in the part's range, child[2] are the rest. A small part is ordered whole, its children are empty. */
+static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child, hdi_nd_space s) {
+    hdi_nd_graph level[HDI_ND_LEVELS], half[2];
+    hdi_nd_space rest = s;
+    const int small = part->n <= HDI_ND_LEAF || part->n_edges == 0;
+    int32_t v, size[3], n[2] = {0, 0}, last, *at = hdi_nd_take(&rest, part->n);
+    memset(child, 0, 2 * sizeof *child);
+    hdi_nd_graphs_of(nd, part, level);
+    level->side = hdi_nd_take_bytes(&rest, part->n);
+    if (small || !hdi_nd_dissect(nd, part, level, rest, size)) {
+        hdi_nd_leaf(nd, part, s);
+        return;
+    }
+    last = part->first + part->n - size[2];
     for (v = 0; v < part->n; v++) {
         const int8_t t = level->side[v];
-        if (t < 2) {
-            at[v] = n[t]++;
-            continue;
+        if (t < 2) at[v] = n[t]++;
+        else {
+            nd->perm[last++] = level->id[v];
+            at[v] = ~level->id[v];
         }
-        nd->perm[last++] = level->id[v];
-        at[v] = ~level->id[v];
     }
     for (v = 0; v < 2; v++) {
         child[v].first = v ? part->first + n[0] : part->first;
         child[v].n = n[v];
-        child[v].edge = v ? child[0].edge + child[0].n_edges : part->edge;
+        child[v].edge = v ? part->edge + child->n_edges : part->edge;
         child[v].buffer = 1 - part->buffer;
-        half = hdi_nd_graph_of(nd, child + v);
-        hdi_nd_extract(level, HDI_CAST(int8_t, v), at, &half);
-        child[v].n_edges = half.ptr[half.n];
-    }
-}
-
-/* Orders a small part by minimum degree, separators around it as halo. Its graph is changed in place: halo rows become numbers from n on. */
-static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part) {
-    const hdi_nd_graph g = hdi_nd_graph_of(nd, part);
-    hdi_nd_space s = hdi_nd_space_of(nd, part);
-    int32_t p, v, n_halo = 0, mask = 1, *table, *local = nd->perm + part->first;
-    if (!part->n) return;
-    for (p = 0, v = 0; p < part->n_edges; p++) v += g.adj[p] < 0;
-    while (mask < 2 * v) mask *= 2;
-    table = hdi_nd_take(&s, 2 * HDI_CAST(int64_t, mask));
-    for (p = 0; p < mask; p++) table[2 * p] = 0;
-    for (p = 0; p < part->n_edges; p++) {
-        const int32_t u = g.adj[p];
-        uint32_t h;
-        if (u >= 0) continue;
-        h = (HDI_CAST(uint32_t, ~u) * 2654435769u >> 7) & HDI_CAST(uint32_t, mask - 1);
-        while (table[2 * h] && table[2 * h] != u) h = (h + 1) & HDI_CAST(uint32_t, mask - 1);
-        if (!table[2 * h]) {
-            table[2 * h] = u;
-            table[2 * h + 1] = part->n + n_halo++;
-        }
-        g.adj[p] = table[2 * h + 1];
-    }
-    s.at = table;
-    hdi_sym_minimum_degree_part(part->n, n_halo, g.ptr, g.adj, local, s.at);
-    for (v = 0; v < part->n; v++) local[v] = g.id[local[v]];
-}
-
-static int hdi_nd_is_leaf(const hdi_nd_part *p) { return p->n <= HDI_ND_LEAF; }
-
-/* Orders a part with everything below it. */
-static void hdi_nd_subtree(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
-    hdi_nd_part stack[128];
-    int32_t n = 1;
-    (void)worker;
-    stack[0] = nd->part[index];
-    while (n > 0) {
-        const hdi_nd_part p = stack[--n];
-        if (hdi_nd_is_leaf(&p)) hdi_nd_leaf(nd, &p);
-        else {
-            hdi_nd_split(nd, &p, stack + n);
-            n += 2;
-        }
+        hdi_nd_graphs_of(nd, child + v, half);
+        hdi_nd_extract(level, HDI_CAST(int8_t, v), at, half);
+        child[v].n_edges = half->ptr[n[v]];
+        if (n[v] > HDI_ND_LEAF && level[1].n > 0)
+            child[v].clusters = hdi_nd_extract_clusters(level, HDI_CAST(int8_t, v), half, child[v].n_edges / 4 - 1, rest);
     }
 }
 
 static void hdi_nd_split_task(void *arg, int64_t index, int32_t worker) {
     const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
     (void)worker;
-    hdi_nd_split(nd, nd->part + index, nd->child + 2 * index);
+    hdi_nd_split(nd, nd->part + index, nd->child + 2 * index, hdi_nd_space_of(nd, nd->part + index, index));
 }
 
-static hd_status hdi_sym_nested_dissection(const hd_csr *a, const double *xyz, int32_t *perm, hd_context *ctx, hd_error *e) {
-    const int32_t n = a->n_rows;
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_nd nd;
-    int32_t *order = HDI_TAKE(&s, int32_t, n + 1), *inv, i, k, z = 0, d, many = 0;
-    uint32_t *key;
-    float *unit;
-    hdi_nd_part *list, *next;
-    memset(&nd, 0, sizeof nd);
-    if (a->nnz > 2147483647 / 2) {
-        hdi_fail(e, HD_ERR_TOO_LARGE, "the matrix is too large for nested dissection");
-        return hdi_scope_end(&s);
+/* Orders a part and all below it. A child has at most 4/5 of its part's vertices, so the stack grows to less than 100. */
+static void hdi_nd_subtree_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
+    const hdi_nd_space s = hdi_nd_space_of(nd, nd->part + index, index);
+    hdi_nd_part stack[128];
+    int32_t n = 1;
+    (void)worker;
+    stack[0] = nd->part[index];
+    while (n > 0) {
+        const hdi_nd_part p = stack[--n];
+        if (!p.n) continue;
+        hdi_nd_split(nd, &p, stack + n, s);
+        n += 2;
     }
-    inv = HDI_TAKE(&s, int32_t, n + 1024);
-    key = HDI_TAKE(&s, uint32_t, n + 1);
-    unit = HDI_TAKE(&s, float, 3 * HDI_CAST(size_t, n) + 1);
-    nd.xyz = HDI_TAKE(&s, float, 3 * HDI_CAST(size_t, n) + 1);
-    for (i = 0; i < 2; i++) {
-        nd.ptr[i] = HDI_TAKE(&s, int32_t, 2 * HDI_CAST(size_t, n) + 2);
-        nd.adj[i] = HDI_TAKE(&s, int32_t, a->nnz + 1);
-        nd.id[i] = HDI_TAKE(&s, int32_t, n + 1);
+}
+
+/* order = rows along the curve, those with far too many entries last; inv = its inverse, -1 for these. Returns how many the others are. */
+static int32_t hdi_nd_number(const hd_csr *a, const uint32_t *key, int32_t *order, int32_t *inv, int32_t *count) {
+    const double dense = 10 * sqrt(HDI_CAST(double, a->n_rows)) + 16;
+    int32_t i, k = 0, last = a->n_rows;
+    hdi_nd_sort(key, a->n_rows, order, inv, count);
+    for (i = 0; i < a->n_rows; i++) {
+        const int32_t r = order[i];
+        if (HDI_CAST(double, a->row_ptr[r + 1] - a->row_ptr[r]) > dense) inv[--last] = r;
+        else order[k++] = r;
     }
-    nd.work = HDI_TAKE(&s, int32_t, HDI_ND_WORDS * HDI_CAST(size_t, n) + HDI_ND_EDGE_WORDS * HDI_CAST(size_t, a->nnz) + 64);
-    list = HDI_TAKE(&s, hdi_nd_part, 256);
-    next = HDI_TAKE(&s, hdi_nd_part, 256);
-    if (e->status < 0) return hdi_scope_end(&s);
-    if (!n) return hdi_scope_end(&s);
-    hdi_nd_keys(xyz, n, key, unit);
-    hdi_nd_sort(key, n, order, inv, inv + n);
-    { int32_t *t = order; order = inv; inv = t; }
-    memcpy(order, inv, 4 * (size_t)n);
-    for (k = 0; k < n; k++) inv[order[k]] = k;
+    for (i = k; i < a->n_rows; i++) order[i] = inv[i];
+    for (i = 0; i < a->n_rows; i++) inv[order[i]] = i < k ? i : -1;
+    return k;
+}
+
+/* Reads the matrix in the order of the curve: blocks of rows go to the second buffer, with gaps between them, and from there to the first. */
+typedef struct hdi_nd_load_job {
+    const hdi_nd *nd;
+    const hd_csr *a;
+    const int32_t *order, *inv;
+    const float *unit;
+    int32_t n, *from, *to;     /* of block i: its place in the second buffer; its place in the first, [n_blocks + 1] */
+} hdi_nd_load_job;
+
+static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_nd_load_job *job = HDI_CAST(const hdi_nd_load_job *, arg);
+    const int32_t first = HDI_CAST(int32_t, index) * HDI_ND_BLOCK, last = first + HDI_ND_BLOCK < job->n ? first + HDI_ND_BLOCK : job->n;
+    int32_t k, z = 0, *ptr = job->nd->buffer[0].ptr, *adj = job->nd->buffer[1].adj + job->from[index];
+    int64_t p;
+    (void)worker;
+    for (k = first; k < last; k++) {
+        const int32_t r = job->order[k];
+        if (k + 8 < last) HDI_PREFETCH(job->a->col + job->a->row_ptr[job->order[k + 8]]);
+        memcpy(job->nd->xyz + 3 * HDI_CAST(size_t, k), job->unit + 3 * HDI_CAST(size_t, r), 3 * sizeof(float));
+        ptr[k] = z;
+        job->nd->buffer[0].id[k] = k;
+        for (p = job->a->row_ptr[r]; p < job->a->row_ptr[r + 1]; p++) {
+            adj[z] = job->inv[job->a->col[p]];
+            z += job->a->col[p] != r && adj[z] >= 0;
+        }
+    }
+    job->to[index] = z;
+}
+
+static void hdi_nd_move_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_nd_load_job *job = HDI_CAST(const hdi_nd_load_job *, arg);
+    const int32_t first = HDI_CAST(int32_t, index) * HDI_ND_BLOCK, last = first + HDI_ND_BLOCK < job->n ? first + HDI_ND_BLOCK : job->n;
+    const int32_t to = job->to[index], count = job->to[index + 1] - to;
+    int32_t k, *ptr = job->nd->buffer[0].ptr;
+    (void)worker;
+    for (k = first; k < last; k++) ptr[k] += to;
+    memcpy(job->nd->buffer[0].adj + to, job->nd->buffer[1].adj + job->from[index], HDI_CAST(size_t, count) * sizeof(int32_t));
+}
+
+/* The whole matrix as a part, its n rows numbered by order. unit [3 a->n_rows]: places of the rows. work [2 blocks + 2]. */
+static hdi_nd_part hdi_nd_load(const hdi_nd *nd, const hd_csr *a, const int32_t *order, const int32_t *inv, int32_t n, const float *unit,
+                               int32_t *work, hd_context *ctx) {
+    const int32_t n_blocks = (n + HDI_ND_BLOCK - 1) / HDI_ND_BLOCK;
+    hdi_nd_load_job job;
+    hdi_nd_part part;
+    int32_t i, k, z = 0;
+    job.nd = nd;
+    job.a = a;
+    job.order = order;
+    job.inv = inv;
+    job.unit = unit;
+    job.n = n;
+    job.from = work;
+    job.to = work + n_blocks;
     for (k = 0; k < n; k++) {
-        int64_t p;
-        i = order[k];
-        for (d = 0; d < 3; d++) nd.xyz[3 * k + d] = unit[3 * i + d];
-        nd.ptr[0][k] = z;
-        nd.id[0][k] = k;
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) if (a->col[p] != i) nd.adj[0][z++] = inv[a->col[p]];
+        if (k % HDI_ND_BLOCK == 0) job.from[k / HDI_ND_BLOCK] = z;
+        z += HDI_CAST(int32_t, a->row_ptr[order[k] + 1] - a->row_ptr[order[k]]);
     }
-    nd.ptr[0][n] = z;
-    nd.n = n;
+    hdi_parallel(ctx, n_blocks, hdi_nd_load_task, &job);
+    for (i = 0, z = 0; i < n_blocks; i++) {
+        const int32_t count = job.to[i];
+        job.to[i] = z;
+        z += count;
+    }
+    job.to[n_blocks] = z;
+    hdi_parallel(ctx, n_blocks, hdi_nd_move_task, &job);
+    nd->buffer[0].ptr[n] = z;
+    memset(&part, 0, sizeof part);
+    part.n = n;
+    part.n_edges = z;
+    return part;
+}
+
+static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) {
+    const size_t n = HDI_CAST(size_t, a->n_rows) + 1, nnz = HDI_CAST(size_t, a->nnz) + 1;
+    int32_t *p = HDI_TAKE(s, int32_t, 7 * n + nnz + 2 * (nnz / 4 + 1));
+    if (!p) return;
+    b->ptr = p;
+    b->cptr = b->ptr + 2 * n;
+    b->id = b->cptr + 2 * n;
+    b->map = b->id + n;
+    b->cid = b->map + n;
+    b->adj = b->cid + n;
+    b->cadj = b->adj + nnz;
+    b->cew = b->cadj + nnz / 4 + 1;
+}
+
+/* Orders the part: halves in step, in parallel, until there are many; then each with all below it. */
+static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
+    int64_t n_parts = 1;
+    double done = 0.1;
+    for (; n_parts < HDI_ND_TASKS; n_parts *= 2, done += 0.05) {
+        hdi_nd_part *t = nd->part;
+        if (hdi_progress(ctx, "order", done, e) < 0) return;
+        hdi_parallel(ctx, n_parts, hdi_nd_split_task, nd);
+        nd->part = nd->child;
+        nd->child = t;
+    }
+    if (hdi_progress(ctx, "order", done, e) < 0) return;
+    hdi_parallel(ctx, n_parts, hdi_nd_subtree_task, nd);
+}
+
+/* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated k-th.
+ * xyz    [3 n] places of the rows, finite. They need not differ; but the less they tell who is whose neighbour, the slower this is
+ * Does not depend on the number of threads. Progress stage "order". Errors HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_CANCELLED. */
+static hd_status hdi_sym_nested_dissection(const hd_csr *a, const double *xyz, int32_t *perm, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    const size_t n = HDI_CAST(size_t, a->n_rows);
+    hdi_nd nd;
+    int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
+    int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
+    uint32_t *key = HDI_TAKE(&s, uint32_t, n + 1);
+    float *unit = HDI_TAKE(&s, float, 3 * n + 1);
+    if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4) hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
+    memset(&nd, 0, sizeof nd);
     nd.perm = perm;
-    list[0].first = 0; list[0].n = n; list[0].edge = 0; list[0].n_edges = z; list[0].buffer = 0;
-    nd.part = list;
-    many = 1;
-    while (many < 64 && many && n / many > 2000) {
-        int32_t j;
-        nd.child = next;
-        hdi_parallel(ctx, many, hdi_nd_split_task, &nd);
-        { hdi_nd_part *t = list; list = next; next = t; }
-        nd.part = list;
-        many *= 2;
-        (void)j;
-    }
-    hdi_parallel(ctx, many, hdi_nd_subtree, &nd);
-    for (k = 0; k < n; k++) perm[k] = order[perm[k]];
+    nd.xyz = HDI_TAKE(&s, float, 3 * n + 1);
+    nd.work = HDI_TAKE(&s, int32_t, HDI_ND_WORDS * n + 2 * HDI_CAST(size_t, a->nnz) + HDI_ND_SLACK * HDI_ND_TASKS);
+    nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
+    nd.child = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
+    hdi_nd_buffer_make(nd.buffer, a, &s);
+    hdi_nd_buffer_make(nd.buffer + 1, a, &s);
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_nd_keys(xyz, a->n_rows, key, unit);
+    k = hdi_nd_number(a, key, order, inv, count);
+    nd.part[0] = hdi_nd_load(&nd, a, order, inv, k, unit, count, ctx);
+    hdi_nd_run(&nd, ctx, e);
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i < k; i++) perm[i] = order[perm[i]];
+    for (i = k; i < a->n_rows; i++) perm[i] = order[i];
     return hdi_scope_end(&s);
 }
 
@@ -5361,6 +5580,7 @@ typedef struct hdi_symbolic {
     int64_t *row_ptr;            /* [n_super + 1] */
     int32_t *row;                /* rows below the pivots, ascending, in elimination order */
     int32_t *rel;                /* where each stands in the parent's front */
+    int32_t *inner;              /* [n_super] how many of them are pivots there */
     int64_t *panel, *panel_pack; /* [n_super + 1] where panels begin, in entries: real, packs */
     int64_t *a_ptr;              /* [n_super + 1] */
     int64_t *a_from;             /* entry of A (lower triangle in elimination order) ... */
@@ -5389,6 +5609,7 @@ static void hdi_symbolic_free(hd_context *ctx, hdi_symbolic *s) {
     hdi_free(ctx, s->row_ptr);
     hdi_free(ctx, s->row);
     hdi_free(ctx, s->rel);
+    hdi_free(ctx, s->inner);
     hdi_free(ctx, s->panel);
     hdi_free(ctx, s->panel_pack);
     hdi_free(ctx, s->a_ptr);
@@ -5523,7 +5744,7 @@ static int hdi_sym_worth_merging(const hdi_node *child, const hdi_node *parent) 
     const int64_t all = hdi_trapezoid(m, p), zeros = child->zeros + parent->zeros + all - hdi_trapezoid(child->rows, child->pivots) - hdi_trapezoid(parent->rows, parent->pivots);
     const double share = HDI_CAST(double, zeros) / HDI_CAST(double, all);
     if (zeros == child->zeros + parent->zeros) return 1;
-    return p <= 4 || (p <= 8 && share < 0.4) || (p <= 16 && share < 0.1) || share < 0.03;
+    return p <= 6 || (p <= 12 && share < 0.3) || (p <= 24 && share < 0.1) || share < 0.03;
 }
 
 static void hdi_sym_merge(hdi_node *node, int32_t c, int32_t s, int32_t *next_col) {
@@ -5839,10 +6060,12 @@ static void hdi_sym_rows(hdi_symbolic *s, const int64_t *lower_ptr, const int32_
     for (v = 0; v < s->n_super; v++) {           /* places in the parent's front: two ascending lists */
         const int32_t up = s->parent[v];
         int64_t q;
+        s->inner[v] = 0;
         if (up < 0) continue;
         q = s->row_ptr[up];
         for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) {
             if (s->row[p] < s->super[up + 1]) {
+                s->inner[v]++;
                 s->rel[p] = s->row[p] - s->super[up];
                 continue;
             }
@@ -5950,6 +6173,7 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
     s->super_of = HDI_TAKE(&keep, int32_t, n1);
     s->super = HDI_TAKE(&keep, int32_t, s->n_super + 1);
     s->parent = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->inner = HDI_TAKE(&keep, int32_t, s->n_super + 1);
     s->row_ptr = HDI_TAKE(&keep, int64_t, s->n_super + 1);
     s->panel_pack = HDI_TAKE(&keep, int64_t, s->n_super + 1);
     s->panel = HDI_TAKE(&keep, int64_t, s->n_super + 1);
@@ -5987,17 +6211,18 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 
 /* ---- choice ---- */
 
-/* From so many rows on nested dissection pays for itself: it takes longer to find than minimum degree, and saves flops that grow faster than either. */
-enum { HDI_DISSECT_FROM = 60000 };
+/* From so many rows on nested dissection pays for itself: it takes three times as long to find as minimum degree, and saves half of the flops. For the poles of a
+ * set that is soon, for one real factor and some solves late. */
+enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_REAL_FROM = 250000 };
 
-/* An elimination order of a symmetric pattern, of the given kind or by size. xyz may be NULL; own with HD_ORDERING_OWN. chosen: the kind. */
-static hd_status hdi_sym_order(const hd_csr *a, const double *xyz, hd_ordering kind, const int32_t *own, int32_t *perm, int32_t *chosen, hd_context *ctx,
+/* An elimination order of a symmetric pattern, of the given kind or by size (dissect_from). xyz may be NULL; own with HD_ORDERING_OWN. chosen: the kind. */
+static hd_status hdi_sym_order(const hd_csr *a, const double *xyz, hd_ordering kind, int32_t dissect_from, const int32_t *own, int32_t *perm, int32_t *chosen, hd_context *ctx,
                                hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
     char *seen;
     int32_t i;
-    if (kind == HD_ORDERING_AUTO) kind = xyz && n >= HDI_DISSECT_FROM ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_MINIMUM_DEGREE;
+    if (kind == HD_ORDERING_AUTO) kind = xyz && n >= dissect_from ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_MINIMUM_DEGREE;
     *chosen = kind;
     if (hdi_progress(ctx, "order", 0, e) < 0) return e->status;
     if (kind == HD_ORDERING_MINIMUM_DEGREE) return hdi_sym_minimum_degree(a, perm, ctx, e);
@@ -6172,7 +6397,7 @@ static void hdi_pack_extend(const hdi_factor *f, int32_t v, int64_t r0, int64_t 
     int32_t k;
     for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
         const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
-        const int64_t u = hdi_front_below(s, c), inner = hdi_lower_bound(rel, u, p), end = hdi_lower_bound(rel, u, p + r1);
+        const int64_t u = hdi_front_below(s, c), inner = s->inner[c], end = hdi_lower_bound(rel, u, p + r1);
         const double *from = f->work + HDI_PACK * s->update[c];
         for (a = hdi_lower_bound(rel, u, p + r0); a < end; a++)
             f->pack->add(update + HDI_PACK * hdi_triangle(rel[a] - p), from + HDI_PACK * hdi_triangle(a), rel, inner, a + 1, p);
@@ -6587,24 +6812,29 @@ typedef struct hdi_sweep {
     const char *active;          /* forward */
 } hdi_sweep;
 
-/* The children's vectors: into the pivots' part of x, or into t. */
+/* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
 static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_symbolic *s = z->f->sym;
     const int64_t p = hdi_front_pivots(s, v), w = HDI_CAST(int64_t, z->f->width) * z->k;
     int64_t i, q;
     int32_t k;
+    memset(t, 0, HDI_CAST(size_t, w * hdi_front_below(s, v)) * sizeof *t);
     for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
-        const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
-        const int64_t uc = hdi_front_below(s, c), inner = hdi_lower_bound(rel, uc, p), begin = y ? 0 : inner, end = y ? inner : uc;
-        const double *from = z->vec + w * s->vector[c];
+        const int32_t c = s->kid[k], *HDI_RESTRICT rel = s->rel + s->row_ptr[c];
+        const int64_t uc = hdi_front_below(s, c), inner = s->inner[c];
+        const double *HDI_RESTRICT from = z->vec + w * s->vector[c];
+        double *HDI_RESTRICT below = t - w * p;
         if (z->active && !z->active[c]) continue;
-        for (i = begin; i < end; i++) {
-            double *HDI_RESTRICT to = y ? y + w * rel[i] : t + w * (rel[i] - p);
-            const double *HDI_RESTRICT f = from + w * i;
-            if (w == 1) *to += *f;
-            else for (q = 0; q < w; q += 8) {
+        if (w == 1) {
+            for (i = 0; i < inner; i++) y[rel[i]] += from[i];
+            for (; i < uc; i++) below[rel[i]] += from[i];
+            continue;
+        }
+        for (i = 0; i < uc; i++) {
+            double *HDI_RESTRICT to = (i < inner ? y : below) + w * rel[i];
+            for (q = 0; q < w; q += 8) {
                 int e;
-                for (e = 0; e < 8; e++) to[q + e] += f[q + e];
+                for (e = 0; e < 8; e++) to[q + e] += from[w * i + q + e];
             }
         }
     }
@@ -6704,15 +6934,13 @@ static void hdi_real_forward_front(const hdi_sweep *z, int32_t v, double *y, dou
     for (k = 0; k < p; k += 8) {
         nc = p - k < 8 ? p - k : 8;
         if (z->k == 1) {
-            f->real->forward(y + k, panel + k + k * m, m, nc, p - k - nc, t, u, k == 0);
+            f->real->forward(y + k, panel + k + k * m, m, nc, p - k - nc, t, u, 0);
             continue;
         }
         if (k) f->real->gemv8(y + 8 * k, NULL, panel + k, m, nc, y, k);
         f->real->lower8(y + 8 * k, panel + k + k * m, m, nc);
     }
-    if (z->k == 1) return;
-    memset(t, 0, HDI_CAST(size_t, 8 * u) * sizeof *t);
-    if (u > 0) f->real->gemv8(t, NULL, panel + p, m, u, y, p);
+    if (z->k > 1 && u > 0) f->real->gemv8(t, NULL, panel + p, m, u, y, p);
 }
 
 static void hdi_real_backward_front(const hdi_sweep *z, int32_t v, double *y, double *gather) {
@@ -6726,7 +6954,7 @@ static void hdi_real_backward_front(const hdi_sweep *z, int32_t v, double *y, do
 
 static void hdi_sweep_front(const hdi_sweep *z, int32_t v, int64_t part) {
     const hdi_factor *f = z->f;
-    const int64_t w = HDI_CAST(int64_t, f->width) * z->k, u = hdi_front_below(f->sym, v);
+    const int64_t w = HDI_CAST(int64_t, f->width) * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v], *gather = z->gather + z->gather_size * part;
     if (z->backward) {
         if (f->width == 1) hdi_real_backward_front(z, v, y, gather);
@@ -6734,14 +6962,9 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v, int64_t part) {
         return;
     }
     if (z->active && !z->active[v]) return;
-    hdi_sweep_children(z, v, y, NULL);
-    if (f->width == 1) {
-        hdi_real_forward_front(z, v, y, t);      /* sets t */
-    } else {
-        memset(t, 0, HDI_CAST(size_t, w * u) * sizeof *t);
-        hdi_pack_forward_front(z, v, y, t);
-    }
-    hdi_sweep_children(z, v, NULL, t);
+    hdi_sweep_children(z, v, y, t);
+    if (f->width == 1) hdi_real_forward_front(z, v, y, t);
+    else hdi_pack_forward_front(z, v, y, t);
 }
 
 static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
@@ -8151,7 +8374,7 @@ static hd_status hdi_elim_own(const hd_laplacian *lap, const int32_t *perm, int3
 }
 
 /* Ordering, analysis, and the pair renumbered by it. */
-static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, const int32_t *own, double scale, hd_context *ctx, hd_error *e) {
+static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, int32_t dissect_from, const int32_t *own, double scale, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), *rows = HDI_TAKE(&s, int32_t, lap->n_active), chosen = 0, i;
     if (e->status < 0) return hdi_scope_end(&s);
@@ -8160,7 +8383,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     m->source = lap;
     m->scale = scale;
     if (ordering == HD_ORDERING_OWN && own) (void)hdi_elim_own(lap, own, rows, e);
-    if (e->status >= 0 && hdi_sym_order(&lap->L, lap->xyz, ordering, own ? rows : NULL, perm, &chosen, ctx, e) >= 0) {
+    if (e->status >= 0 && hdi_sym_order(&lap->L, lap->xyz, ordering, dissect_from, own ? rows : NULL, perm, &chosen, ctx, e) >= 0) {
         if (hdi_progress(ctx, "analyse", 0, e) >= 0 && hdi_symbolic_make(&m->sym, &lap->L, perm, ctx, e) >= 0) {
             m->sym.ordering = HDI_CAST(hd_ordering, chosen);
             m->lap = hdi_sym_renumber(lap, m->sym.perm, ctx, e);
@@ -8274,7 +8497,7 @@ static size_t hdi_batch_size(const hdi_elim *m, int32_t k, size_t *x, size_t *xr
 /* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has its solution at x + 8 at[q]. */
 static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const int32_t *at, int32_t k, const double *x, int64_t stride) {
     const int32_t left = m->set.n_poles - (m->lone + 1 + 4 * i), n_here = left < 4 ? left : 4;
-    hdi_check c[HDI_LANES_BATCH], *list[HDI_LANES_BATCH];
+    hdi_check c[HDI_LANES_BATCH], *list[HDI_LANES_BATCH] = {NULL};
     int32_t r;
     int q, together = k <= HDI_LANES_BATCH;
     for (r = 0; r < k; r++) {
@@ -9335,7 +9558,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     f->nnz = a->nnz;
     s = hdi_scope_begin(c.ctx, c.e);
     perm = HDI_TAKE(&s, int32_t, f->n);
-    if (perm && hdi_sym_order(&shape, o.xyz, o.ordering, o.perm, perm, &i, c.ctx, c.e) >= 0 && hdi_symbolic_make(&f->sym, &shape, perm, c.ctx, c.e) >= 0) {
+    if (perm && hdi_sym_order(&shape, o.xyz, o.ordering, HDI_DISSECT_FROM, o.perm, perm, &i, c.ctx, c.e) >= 0 && hdi_symbolic_make(&f->sym, &shape, perm, c.ctx, c.e) >= 0) {
         f->sym.ordering = HDI_CAST(hd_ordering, i);
         f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, HDI_CAST(size_t, f->n) + 1, sizeof *f->row_ptr, c.ctx, c.e));
         f->col = HDI_CAST(int32_t *, hdi_copy(a->col, HDI_CAST(size_t, f->nnz), sizeof *f->col, c.ctx, c.e));
@@ -9627,9 +9850,9 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
 }
 
 /* The copy of the pair in elimination order, analysed. */
-static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
+static hd_status hdi_heat_analysed(hd_heat *heat, int poles, hd_error *e) {
     if (heat->elim.ctx) return HD_OK;
-    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, heat->perm, heat->scale, heat->ctx, e);
+    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, poles ? HDI_DISSECT_FROM : HDI_DISSECT_REAL_FROM, heat->perm, heat->scale, heat->ctx, e);
 }
 
 /* One system with a plan made for it. */
@@ -9825,7 +10048,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     c = hdi_heat_cost(h);
     if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) && hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
-        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+        if (hdi_heat_analysed(heat, heat->poles_asked || c.direct < c.krylov, h->e) < 0) return h->e->status;
         c = hdi_heat_cost(h);
     }
     no_direct = c.direct_bytes > room;
@@ -9854,7 +10077,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
         h->lap = heat->lap;
     } else {
-        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+        if (hdi_heat_analysed(heat, h->method == HD_METHOD_DIRECT, h->e) < 0) return h->e->status;
         h->lap = heat->elim.lap;
         h->rep->ordering = heat->elim.sym.ordering;
         h->rep->factor_nnz = heat->elim.sym.nnz;

@@ -872,25 +872,19 @@ bool check_windows(const Job &job, std::vector<Window> &windows, double *U, riva
     return false;
 }
 
-void silan_times(const Job &job, double *U, rival_result *out) {
-    if (!job.reference || job.n_reference < job.n_times) throw std::runtime_error("a reference for every time is needed");
-    Answers answers(job, U, job.n_times);
-    double *u = answers.column(0, nullptr);
+/* The quickest of the splits into one, two and three windows. */
+std::vector<Window> best_windows(const Job &job, double *U, const rival_result &blank) {
+    const StepTable table = tabulate_steps(job, blank.ordering);
     std::vector<Window> best;
     double best_total = 1e30;
-    {
-        const Threads scope(1, job.threads);
-        out->ordering = best_ordering(job, 2, 60, 1);
-    }
-    const StepTable table = tabulate_steps(job, out->ordering);
-    for (int n_windows = 1; n_windows <= std::min(3, job.n_times); n_windows++) {
+    for (int n_windows = 1; n_windows <= std::min((int)RIVAL_MAX_WINDOWS, job.n_times); n_windows++) {
         double cost;
-        rival_result r = *out;
+        rival_result r = blank;
         std::vector<Window> windows = cheapest_split(table, 0, job.n_times, n_windows, job.threads >= n_windows, &cost);
-        if (cost >= 1e30 || !check_windows(job, windows, u, &r)) continue;
+        if (cost >= 1e30 || !check_windows(job, windows, U, &r)) continue;
         double total = r.total;
         for (int k = 0; k < 2; k++) {
-            run_windows(job, windows, u, &r);
+            run_windows(job, windows, U, &r);
             total = std::min(total, r.total);
         }
         if (total >= best_total) continue;
@@ -898,13 +892,29 @@ void silan_times(const Job &job, double *U, rival_result *out) {
         best = windows;
     }
     if (best.empty()) throw std::runtime_error("Lanczos did not reach the target error");
-    best_run(job, out, [&](rival_result *r) { run_windows(job, best, u, r); });
-    out->windows = (int32_t)best.size();
+    return best;
+}
+
+void silan_times(const Job &job, double *U, rival_result *out) {
+    if (!job.reference || job.n_reference < job.n_times) throw std::runtime_error("a reference for every time is needed");
+    Answers answers(job, U, job.n_times);
+    double *u = answers.column(0, nullptr);
+    std::vector<Window> windows;
+    {
+        const Threads scope(1, job.threads);
+        out->ordering = best_ordering(job, 2, 60, 1);
+    }
+    for (int k = 0; k < job.n_windows; k++) windows.push_back({job.window[k].first, job.window[k].last, job.window[k].g, job.window[k].steps, 0});
+    if (windows.empty()) windows = best_windows(job, u, *out);
+    best_run(job, out, [&](rival_result *r) { run_windows(job, windows, u, r); });
+    out->windows = (int32_t)windows.size();
     out->width = 1;
     out->columns_run = job.n_times;
     out->steps = 0;
     size_t used = 0;
-    for (const Window &w : best) {
+    for (size_t k = 0; k < windows.size(); k++) {
+        const Window &w = windows[k];
+        if (k < RIVAL_MAX_WINDOWS) out->window[k] = {w.first, w.last, w.steps, w.g};
         out->steps += w.steps;
         used += (size_t)snprintf(out->note + used, sizeof out->note - used, "%s%d times %.3g..%.3g: g = %.3g, %d steps", used ? "; " : "",
                                  w.last - w.first, job.times[w.first], job.times[w.last - 1], w.g, w.steps);
@@ -1149,10 +1159,20 @@ template <class K> void umfpack(const Job &job, const rival_poles &poles, double
         }
         family.first_column(job.sources[0], desks, answers.column(0, scratch[0]));
         const double t3 = now();
-        const int done = share(job.n_sources - 1, job.threads, job.seconds, [&](int c) {
-            const size_t id = (size_t)thread_id();
-            family.whole_column(job.sources[c + 1], *desks[id], answers.column(c + 1, scratch[id]));
-        });
+        int done = 0;
+        r->further = job.one_by_one && job.n_sources > 1 ? 1e30 : 0;
+        if (job.one_by_one) {
+            for (; done < job.n_sources - 1 && (done == 0 || job.seconds <= 0 || now() - t3 <= job.seconds); done++) {
+                const double start = now();
+                family.first_column(job.sources[done + 1], desks, answers.column(done + 1, scratch[0]));
+                r->further = std::min(r->further, now() - start);
+            }
+        } else {
+            done = share(job.n_sources - 1, job.threads, job.seconds, [&](int c) {
+                const size_t id = (size_t)thread_id();
+                family.whole_column(job.sources[c + 1], *desks[id], answers.column(c + 1, scratch[id]));
+            });
+        }
         const double t4 = now();
         r->analyse = t1 - t0;
         r->factor = t2 - t1;

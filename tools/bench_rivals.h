@@ -36,6 +36,10 @@ typedef struct rival_poles {
 
 typedef enum rival_ordering { RIVAL_ORDERING_BEST = 0, RIVAL_AMD, RIVAL_METIS } rival_ordering;
 
+/* Times [first, last) that share a factor of B + g L and a basis. */
+typedef struct rival_window { int32_t first, last, steps; double g; } rival_window;
+enum { RIVAL_MAX_WINDOWS = 3 };
+
 /* What to do, and how. Zeros are the defaults. */
 typedef struct rival_job {
     const rival_pair *pair;
@@ -48,6 +52,9 @@ typedef struct rival_job {
     double target;              /* error asked for, relative to each column's largest entry; default 1e-7 */
     double gamma;               /* Lanczos shift: factor of B + gamma t L; default 0.1 */
     int32_t steps;              /* Lanczos steps; 0: the fewest that reach target at the reference, found in an untimed run */
+    const rival_window *window; /* for rival_silan_times: windows that an earlier call found */
+    int32_t n_windows;          /* 0: found in untimed runs */
+    int32_t one_by_one;         /* rival_umfpack: 1: columns one after another, each on all threads; 0: shared among the threads */
     int32_t width;              /* columns in a block, at most; default 32, above 400000 rows 8 */
     rival_ordering ordering;    /* default: the better one in an untimed trial */
     int32_t threads;            /* default 1 */
@@ -62,11 +69,13 @@ typedef struct rival_result {
     double factor;
     double first;               /* the first column (or all times of it) */
     double columns;             /* all columns, the first among them */
+    double further;             /* one_by_one: the quickest column after the first */
     double total;               /* analyse + factor + first: one column from nothing */
     double total_columns;       /* analyse + factor + columns: all columns from nothing */
     int32_t columns_run;        /* fewer than asked for: columns is extrapolated from these */
     int32_t steps;              /* Lanczos steps; of all windows together */
-    int32_t windows;            /* factors by rival_silan_times */
+    int32_t windows;            /* factors by rival_silan_times, and what they were for */
+    rival_window window[RIVAL_MAX_WINDOWS];
     int32_t width;              /* columns in a block */
     rival_ordering ordering;
     double nnz;                 /* entries of L; UMFPACK and SparseLU: of L + U, one pole */
@@ -85,7 +94,7 @@ int rival_silan(const rival_job *job, double *U, rival_result *result);
 int rival_silan_block(const rival_job *job, double *U, rival_result *result);
 
 /* K_t e_source for many t. Times are split into 1, 2 or 3 windows with a factor and a basis each: shifts, windows and steps that are quickest at
- * the target error, found in untimed runs. Needs a reference for every time. */
+ * the target error, found in untimed runs unless they are given. Needs a reference for every time. */
 int rival_silan_times(const rival_job *job, double *U, rival_result *result);
 
 /* Columns of c(-t B^-1 L) by UMFPACK: one complex LU per pole, without iterative refinement. */

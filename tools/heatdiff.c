@@ -28,6 +28,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -102,7 +103,7 @@ static int make_folder(const char *path)
 
 enum { BAR_CELLS = 24, BAR_TEXT = 72 };
 
-static struct { int enabled, visible; double last; } bar;
+static struct { int enabled, visible; double last; char part[48]; } bar;    /* part: "time 2 of 5", what of the whole is under way */
 
 static void bar_hide(void)
 {
@@ -115,7 +116,7 @@ static void bar_hide(void)
 /* Drawn at most ten times a second: a terminal is slower than the arithmetic. */
 static void bar_show(const char *stage, double done)
 {
-    char cells[BAR_CELLS + 1];
+    char cells[BAR_CELLS + 1], text[80];
     int full, i;
     const double time = bar.enabled ? now() : 0.0;
     if (!bar.enabled || time - bar.last < 0.1) return;
@@ -123,10 +124,56 @@ static void bar_show(const char *stage, double done)
     full = (int)(done * BAR_CELLS);
     for (i = 0; i < BAR_CELLS; i++) cells[i] = i < full ? '#' : '.';
     cells[BAR_CELLS] = 0;
-    fprintf(stderr, "\r[%s] %3.0f%% %-38.38s", cells, 100 * done, stage ? stage : "");
+    snprintf(text, sizeof text, "%.38s%s%s", stage ? stage : "", bar.part[0] ? ", " : "", bar.part);
+    fprintf(stderr, "\r[%s] %3.0f%% %-38.38s", cells, 100 * done, text);
     fflush(stderr);
     bar.visible = 1;
     bar.last = time;
+}
+
+/* The bar is about part i of n from now on, counted from 0; nothing is said where there is only one. */
+static void bar_part(const char *what, int64_t i, int64_t n)
+{
+    if (n > 1) snprintf(bar.part, sizeof bar.part, "%.10s %ld of %ld", what, (long)i + 1, (long)n);
+    else bar.part[0] = 0;
+}
+
+/* ==== seconds of the stages ==== */
+/* The library has no clock, but its progress calls name the stage that begins. The time up to the next stage is that one's. */
+
+enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_SOLVE, N_STAGES };
+static const char *const STAGE_NAMES[N_STAGES] = { "order", "analyse", "factor", "precondition", "solve" };
+
+static struct { int running, stage; double since, spent[N_STAGES]; } stages;
+
+static void stages_book(void)
+{
+    const double time = now();
+    stages.spent[stages.stage] += time - stages.since;
+    stages.since = time;
+}
+
+static void stages_start(void)
+{
+    stages.stage = STAGE_SOLVE;
+    stages.since = now();
+    stages.running = 1;
+}
+
+static void stages_stop(void)
+{
+    stages_book();
+    stages.running = 0;
+}
+
+static void stages_enter(const char *name)
+{
+    int i;
+    if (!stages.running || strcmp(name, STAGE_NAMES[stages.stage]) == 0) return;
+    stages_book();
+    stages.stage = STAGE_SOLVE;
+    for (i = 0; i < N_STAGES; i++)
+        if (strcmp(name, STAGE_NAMES[i]) == 0) stages.stage = i;
 }
 
 /* ==== the one place that reports errors ==== */
@@ -204,6 +251,7 @@ static int leave_computation(int code)
 static hd_progress on_progress(void *user, const char *stage, double done)
 {
     (void)user;
+    stages_enter(stage);
     if (interrupt.asked) return HD_PROGRESS_CANCEL;
     bar_show(stage, done);
     return HD_PROGRESS_CONTINUE;
@@ -339,7 +387,13 @@ typedef struct word { const char *name; int value; } word;
 static const word LAPLACIANS[] = {
     { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT }, { NULL, 0 } };
 static const word POLES[] = { { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { NULL, 0 } };
-static const word METHODS[] = { { "auto", HD_METHOD_AUTO }, { "iterative", HD_METHOD_ITERATIVE }, { NULL, 0 } };
+static const word METHODS[] = {
+    { "auto", HD_METHOD_AUTO }, { "direct", HD_METHOD_DIRECT }, { "krylov", HD_METHOD_KRYLOV }, { "iterative", HD_METHOD_ITERATIVE },
+    { NULL, 0 } };
+static const word ORDERINGS[] = {
+    { "auto", HD_ORDERING_AUTO }, { "amd", HD_ORDERING_MINIMUM_DEGREE }, { "dissection", HD_ORDERING_NESTED_DISSECTION }, { NULL, 0 } };
+static const word SIMDS[] = {
+    { "auto", HD_SIMD_AUTO }, { "none", HD_SIMD_NONE }, { "avx2", HD_SIMD_AVX2 }, { "avx512", HD_SIMD_AVX512 }, { NULL, 0 } };
 static const word SOLVERS[] = {
     { "cocg", HD_SOLVER_COCG }, { "cocr", HD_SOLVER_COCR }, { "minres", HD_SOLVER_MINRES }, { "lanczos", HD_SOLVER_LANCZOS },
     { NULL, 0 } };
@@ -391,7 +445,7 @@ typedef struct options {
     int64_t *sources;                /* 64 bits, so that ids beyond any mesh are told as what they are */
     int n_sources;
     const char *input, *output, *title;
-    int laplacian, poles, method, solver, precond, kernel;
+    int laplacian, poles, method, ordering, simd, solver, precond, kernel;
     long degree, max_iterations, threads;
     double tol;
     uint64_t memory_limit;
@@ -609,20 +663,26 @@ static const option_def OPTIONS[] = {
     { "kernel", 0, CMD_KERNEL, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
       "operator: columns of K_t (default); symmetric: of k_t = K_t B^-1" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
-      "degree of the rational approximation, 1..14 (default: by the error)" },
+      "degree of the rational approximation, 1..14 (default: by the\nerror); not for krylov, which has none" },
     { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform or kernel",
       "uniform (default of diffuse) or kernel (default of kernel)" },
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
       "relative error that iterative methods aim at (1e-9)" },
-    { "method", 0, CMD_HEAT, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto or iterative", "auto (default) or iterative" },
+    { "method", 0, CMD_HEAT, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto, direct, krylov or iterative",
+      "direct: factors of all poles, for many sources or fields;\nkrylov: one factor for one source and for many times;\n"
+      "iterative: no factor; auto (default): what costs least" },
+    { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
+      "of direct and krylov: amd (minimum degree), dissection\n(nested, in space) or auto (default: by the size)" },
     { "solver", 0, CMD_HEAT, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME", "cocg, cocr, minres or lanczos",
-      "cocg, cocr, minres or lanczos (default: by the time)" },
+      "of iterative: cocg, cocr, minres or lanczos (default: by the\ntime)" },
     { "precond", 0, CMD_HEAT, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME", "none, jacobi, ssor, ildl or mildl",
-      "none, jacobi, ssor, ildl or mildl" },
+      "of iterative: none, jacobi, ssor, ildl or mildl (default)" },
     { "max-iterations", 0, CMD_HEAT, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N", "a number from 1",
-      "limit of the iterations per system" },
+      "of iterative: limit of the iterations per system" },
     { "threads", 0, CMD_INFO | CMD_HEAT | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
       "worker threads (default: all)" },
+    { "simd", 0, CMD_HEAT | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
+      "instruction set: none (plain C), avx2, avx512, as far as the\nprocessor has them, or auto (default: its best)" },
     { "memory-limit", 0, CMD_INFO | CMD_HEAT | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G" },
     { "output", 'o', CMD_HEAT, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
@@ -761,16 +821,33 @@ static int check_output(const options *o)
     return fail(USAGE, "-o takes a name that ends in .txt, .csv, .npy, .ply, .obj, .vtu or .png, not '%.200s'", o->output);
 }
 
+/* Which options belong to which method. */
+static int check_method(const options *o)
+{
+    const char *name = word_of(METHODS, o->method), *iterating = o->solver ? "--solver" : "--precond";
+    if (o->method == HD_METHOD_KRYLOV && (o->degree || o->poles))
+        return fail(USAGE, "%s takes --method auto, direct or iterative: krylov has no poles", o->degree ? "--degree" : "--poles");
+    if ((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
+        return fail(USAGE, "%s takes --method iterative or auto: %s does not iterate over systems", iterating, name);
+    if (o->ordering && o->method == HD_METHOD_ITERATIVE)
+        return fail(USAGE, "--ordering takes --method auto, direct or krylov: iterative factorises nothing");
+    if (o->ordering && (o->solver || o->precond))
+        return fail(USAGE, "--ordering takes no %s beside it: that asks for iterations, which factorise nothing", iterating);
+    return DONE;
+}
+
 /* What single options cannot see: what is missing, what does not go together. */
 static int check_options(const options *o)
 {
     const char *name = command_name(o->command);
+    int code;
     if (!o->mesh && o->command != CMD_DEMO) return fail(USAGE, "%s needs a mesh: a file name or - (standard input)", name);
     if (o->command == CMD_KERNEL && !o->sources) return fail(USAGE, "kernel needs --source, which takes vertex ids from 0, such as 0,17");
     if ((o->command & (CMD_DIFFUSE | CMD_RENDER)) && !o->input)
         return fail(USAGE, "%s needs --input, which takes the file of a field", name);
     if ((o->command & CMD_HEAT) && !o->times)
         return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
+    if ((code = check_method(o)) != DONE) return code;
     if (o->degree == 1 && (o->poles == HD_POLES_KERNEL || (o->poles == HD_POLES_DEFAULT && o->command == CMD_KERNEL)))
         return fail(USAGE, "--degree takes 2..14 with --poles kernel, and 1..14 with --poles uniform");
     if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
@@ -818,6 +895,7 @@ static void print_help(void)
            "  heatdiff info bunny.obj\n"
            "  heatdiff kernel --source 0 --t 100h2 bunny.obj -o heat.ply\n"
            "  heatdiff kernel --source 0,500 --t auto:4 bunny.obj > columns.txt\n"
+           "  heatdiff kernel --source 0 --t auto:100 --method krylov bunny.obj -o movie.npy\n"
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
            "\nMeshes: OBJ, OFF, PLY, STL; - reads standard input. Vertices are counted from 0.\n"
@@ -934,31 +1012,35 @@ static void json_integers(json *j, const char *key, const int64_t *v, int n)
 
 /* ==== what a run reports ==== */
 
-typedef struct seconds { double load, assemble, solve, write, total; } seconds;
+typedef struct seconds { double load, assemble, write, stage[N_STAGES]; } seconds;
 
-/* The reports of all times; per_time[k] is the one of time k. */
+/* Room for the words of a list such as "lanczos, cocg". */
+typedef struct word_list { char text[200]; } word_list;
+
+/* The reports of all calls together. */
 typedef struct summary {
-    hd_report *per_time;
-    hd_report worst;                 /* largest errors, sums of iterations */
-    int n_times;
-    char solver[64], precond[64], poles[40];     /* all that were used: "lanczos, cocg" */
+    hd_report *per_time;             /* [number of times] of each time the worst over its calls */
+    hd_report worst;                 /* largest errors, sums of iterations and flops */
+    word_list method, reason, solver, precond, poles, ordering;  /* all that were used */
 } summary;
 
-/* Appends name to a list such as "lanczos, cocg" unless it is in it. */
-static void add_word(char *list, size_t size, const char *name)
+/* Appends name unless it is in the list. */
+static void add_word(word_list *list, const char *separator, const char *name)
 {
-    const size_t n = strlen(name);
+    const size_t n = strlen(name), used = strlen(list->text);
     const char *p;
-    for (p = strstr(list, name); p; p = strstr(p + n, name))     /* as a whole word: ildl is in mildl */
-        if ((p == list || p[-1] == ' ') && (p[n] == 0 || p[n] == ',')) return;
-    if (strlen(list) + n + 3 < size)
-        snprintf(list + strlen(list), size - strlen(list), "%s%s", list[0] ? ", " : "", name);
+    for (p = strstr(list->text, name); p; p = strstr(p + n, name))     /* as a whole word: ildl is in mildl */
+        if ((p == list->text || p[-1] == ' ') && (p[n] == 0 || p[n] == separator[0])) return;
+    if (used + n + 3 < sizeof list->text) snprintf(list->text + used, sizeof list->text - used, "%s%s", used ? separator : "", name);
 }
 
 static void keep_larger(double *largest, double v)
 {
     if (v > *largest || v != v) *largest = v;
 }
+
+/* Neither direct nor times of 0 have one. */
+static const char *solver_name(const hd_report *r) { return r->solver == HD_SOLVER_AUTO ? "none" : word_of(SOLVERS, (int)r->solver); }
 
 /* Lanczos has none. */
 static const char *precond_name(const hd_report *r)
@@ -968,30 +1050,57 @@ static const char *precond_name(const hd_report *r)
 
 static const char *poles_name(const hd_report *r) { return r->poles == HD_POLES_DEFAULT ? "none" : word_of(POLES, (int)r->poles); }
 
-static void summary_add(summary *s, const hd_report *r)
+static const char *ordering_name(const hd_report *r)
 {
-    int p;
-    hd_report *w = &s->worst;
-    s->per_time[s->n_times++] = *r;
-    if (r->status > w->status) w->status = r->status;
-    w->method = r->method;
-    if (r->degree > w->degree) w->degree = r->degree;
-    if (r->n_poles > w->n_poles) w->n_poles = r->n_poles;
-    w->iterations += r->iterations;
-    for (p = 0; p < r->n_poles && p < HD_MAX_POLES; p++) w->pole_iterations[p] += r->pole_iterations[p];
-    keep_larger(&w->residual, r->residual);
-    keep_larger(&w->error_rational, r->error_rational);
-    keep_larger(&w->error_solver, r->error_solver);
-    keep_larger(&w->error_bound_b, r->error_bound_b);
-    keep_larger(&w->error_bound, r->error_bound);
-    keep_larger(&w->mass_drift, r->mass_drift);
-    if (r->iterations == 0 && r->n_poles == 0) return;           /* t = 0: nothing was solved */
-    add_word(s->solver, sizeof s->solver, word_of(SOLVERS, (int)r->solver));
-    add_word(s->precond, sizeof s->precond, precond_name(r));
-    add_word(s->poles, sizeof s->poles, poles_name(r));
+    return r->ordering == HD_ORDERING_AUTO ? "none" : word_of(ORDERINGS, (int)r->ordering);
 }
 
-static const char *or_none(const char *list) { return list[0] ? list : "none"; }
+/* The worse of two, counts added, names from the later one. */
+static void report_merge(hd_report *all, const hd_report *one)
+{
+    int p;
+    if (one->status > all->status) all->status = one->status;
+    all->method = one->method;
+    all->reason = one->reason;
+    all->solver = one->solver;
+    all->precond = one->precond;
+    all->poles = one->poles;
+    all->ordering = one->ordering;
+    if (one->degree > all->degree) all->degree = one->degree;
+    if (one->n_poles > all->n_poles) all->n_poles = one->n_poles;
+    all->iterations += one->iterations;
+    for (p = 0; p < one->n_poles && p < HD_MAX_POLES; p++) all->pole_iterations[p] += one->pole_iterations[p];
+    if (one->factor_nnz > all->factor_nnz) all->factor_nnz = one->factor_nnz;
+    all->factor_flops += one->factor_flops;
+    keep_larger(&all->growth, one->growth);
+    keep_larger(&all->residual, one->residual);
+    keep_larger(&all->error_rational, one->error_rational);
+    keep_larger(&all->error_solver, one->error_solver);
+    keep_larger(&all->error_bound_b, one->error_bound_b);
+    keep_larger(&all->error_bound, one->error_bound);
+    keep_larger(&all->mass_drift, one->mass_drift);
+}
+
+/* The report of one call, which was about the times index[0..n-1]. */
+static void summary_add(summary *s, const hd_report *r, const int *index, int n)
+{
+    int i;
+    for (i = 0; i < n; i++) report_merge(&s->per_time[index[i]], r);
+    report_merge(&s->worst, r);
+    if (r->iterations == 0 && r->n_poles == 0 && r->factor_nnz == 0) return;    /* t = 0: nothing was solved */
+    add_word(&s->method, ", ", word_of(METHODS, (int)r->method));
+    add_word(&s->solver, ", ", solver_name(r));
+    add_word(&s->precond, ", ", precond_name(r));
+    add_word(&s->poles, ", ", poles_name(r));
+    add_word(&s->ordering, ", ", ordering_name(r));
+    if (r->reason) add_word(&s->reason, "; ", r->reason);
+}
+
+static const char *or_none(const word_list *list) { return list->text[0] ? list->text : "none"; }
+
+/* What was chosen when there was nothing to solve: t = 0, or nothing that has mass. */
+static const char *method_text(const summary *s) { return s->method.text[0] ? s->method.text : word_of(METHODS, (int)s->worst.method); }
+static const char *reason_text(const summary *s) { return s->reason.text[0] ? s->reason.text : s->worst.reason ? s->worst.reason : ""; }
 
 /* ==== meshes and fields ==== */
 
@@ -1090,6 +1199,9 @@ typedef struct run {
     int n_times;
     int32_t *sources;
     int n_inputs;                    /* sources, or fields given */
+    const double *fields;            /* mesh.n x n_inputs, or NULL: the kernel columns of the sources */
+    const char *field_name;          /* for people */
+    hd_heat *heat;
     double *values;                  /* column-major, mesh.n x n_columns; input q after time k is column q n_times + k */
     int64_t n_columns;
     char (*names)[NAME_SIZE];        /* of the columns, and pointers to them */
@@ -1110,6 +1222,7 @@ static void run_begin(run *r, const options *o)
     r->mesh_name = o->mesh ? display_name(o->mesh) : "demo";
     r->context.byte_limit = o->memory_limit;
     r->context.threads = (int32_t)o->threads;
+    r->context.simd = (hd_simd)o->simd;
     r->context.progress = on_progress;
     bar.enabled = !o->quiet && stderr_is_terminal();
 #ifdef TOOL_THREADS
@@ -1127,6 +1240,7 @@ static void run_end(run *r)
 #ifdef TOOL_THREADS
     pool_end(&r->threads);
 #endif
+    hd_heat_free(r->heat);
     hd_laplacian_free(r->lap);
     mesh_free(&r->mesh);
     free(r->times);
@@ -1271,13 +1385,14 @@ static int run_sources(run *r)
     return DONE;
 }
 
-static int run_plan(run *r, hd_heat **heat)
+static int run_plan(run *r)
 {
     const options *o = r->o;
     hd_heat_opts opts;
     hd_error err;
     memset(&opts, 0, sizeof opts);
     opts.method = (hd_method)o->method;
+    opts.ordering = (hd_ordering)o->ordering;
     opts.solver = (hd_solver)o->solver;
     opts.precond = (hd_precond)o->precond;
     opts.poles = (hd_pole_kind)o->poles;
@@ -1285,28 +1400,143 @@ static int run_plan(run *r, hd_heat **heat)
     opts.tol = o->tol;
     opts.max_iterations = (int32_t)o->max_iterations;
     opts.context = &r->context;
-    return hd_heat_create(heat, r->lap, &opts, &err) < 0 ? fail_library(r->mesh_name, &err) : DONE;
+    return hd_heat_create(&r->heat, r->lap, &opts, &err) < 0 ? fail_library(r->mesh_name, &err) : DONE;
 }
 
-/* One time for all inputs. fields is n x n_inputs, or NULL: the kernel columns of the sources. */
-static int run_time(run *r, hd_heat *heat, const double *fields, const char *field_name, int k)
+static double *column_of(const run *r, int q, int k) { return r->values + ((size_t)q * (size_t)r->n_times + (size_t)k) * (size_t)r->mesh.n; }
+
+static int fail_solve(const run *r, hd_report *report, int q)
+{
+    if (report->error.row >= 0 && report->error.column >= 0) report->error.column += q;
+    return fail_library(report->status == HD_ERR_NOT_FINITE && r->fields ? r->field_name : r->mesh_name, &report->error);
+}
+
+/* Time k for the inputs from q on, together. */
+static int solve_time(run *r, int k, int q)
 {
     const size_t n = (size_t)r->mesh.n, stride = n * (size_t)r->n_times;
-    double *out = r->values + (size_t)k * n;
+    const int count = r->n_inputs - q;
     hd_report report;
     hd_status status;
-    if (fields) status = hd_heat_apply(heat, r->times[k], r->n_inputs, fields, n, out, stride, &report);
-    else status = hd_heat_columns(heat, r->times[k], (hd_kernel)r->o->kernel, r->n_inputs, r->sources, out, stride, &report);
-    if (status < 0) return fail_library(status == HD_ERR_NOT_FINITE ? field_name : r->mesh_name, &report.error);
-    summary_add(&r->sum, &report);
+    bar_part("time", k, r->n_times);
+    if (r->fields) status = hd_heat_apply(r->heat, r->times[k], count, r->fields + (size_t)q * n, n, column_of(r, q, k), stride, &report);
+    else status = hd_heat_columns(r->heat, r->times[k], (hd_kernel)r->o->kernel, count, r->sources + q, column_of(r, q, k), stride, &report);
+    if (status < 0) return fail_solve(r, &report, q);
+    summary_add(&r->sum, &report, &k, 1);
     return DONE;
 }
 
-static int run_solve(run *r, const double *fields, const char *field_name)
+/* Times that are solved together, in the order of the command line. */
+typedef struct time_group {
+    int n;
+    int *index;                      /* [n] numbers of the times */
+    double *t;                       /* [n] */
+    double *room;                    /* mesh.n x n when their columns do not follow one another in the result, else NULL */
+} time_group;
+
+/* All times of the group for input q. */
+static int solve_input(run *r, const time_group *g, int q, hd_report *report)
 {
-    const double start = now();
-    hd_heat *heat = NULL;
-    int k, code;
+    const size_t n = (size_t)r->mesh.n;
+    double *out = g->room ? g->room : column_of(r, q, g->index[0]);
+    const double *f = r->fields ? r->fields + (size_t)q * n : NULL;
+    hd_status status;
+    int i;
+    bar_part(r->fields ? "field" : "source", q, r->n_inputs);
+    status = hd_heat_times(r->heat, g->n, g->t, (hd_kernel)r->o->kernel, f ? 0 : r->sources[q], f, out, n, report);
+    if (status < 0) return fail_solve(r, report, q);
+    for (i = 0; g->room && i < g->n; i++) memcpy(column_of(r, q, g->index[i]), g->room + (size_t)i * n, n * sizeof *out);
+    if (q > 0 && report->method == HD_METHOD_KRYLOV) report->factor_flops = 0;   /* the factor of input 0 served again */
+    summary_add(&r->sum, report, g->index, g->n);
+    return DONE;
+}
+
+/* One input after the other, each at all times, is for the krylov method; all inputs together, one time after the other, for the others. Left
+ * to choose, few times with many inputs are not for krylov: about here the factors of the poles, one set a time, cost less (measured with
+ * meshes of 5K to 150K vertices). */
+static int time_by_time(const run *r, int n_times)
+{
+    const options *o = r->o;
+    if (o->method != HD_METHOD_AUTO) return o->method != HD_METHOD_KRYLOV;
+    if (o->solver || o->precond || o->degree || o->poles) return 1;
+    return n_times < 10 && r->n_inputs >= 2 * n_times * n_times;
+}
+
+/* Where the library is left to choose, its choice for the first input tells how to go on with the others. */
+static int solve_group(run *r, const time_group *g)
+{
+    int code = DONE, i, q = 0, by_time = g->n == 1 || g->t[0] == 0 || time_by_time(r, g->n);
+    hd_report report;
+    for (; q < r->n_inputs && !by_time && !code; q++) {
+        code = solve_input(r, g, q, &report);
+        by_time = report.method != HD_METHOD_KRYLOV;
+    }
+    for (i = 0; i < g->n && q < r->n_inputs && !code; i++) code = solve_time(r, g->index[i], q);
+    return code;
+}
+
+/* One group's factor and basis serve times up to this ratio. With one input the library divides them as it likes; with several, the groups come
+ * outermost, so that no factor is made twice. */
+static const double GROUP_RATIO = 1000;
+
+/* The smallest time above t, HUGE_VAL: none. */
+static double next_time(const run *r, double t)
+{
+    double least = HUGE_VAL;
+    int k;
+    for (k = 0; k < r->n_times; k++)
+        if (r->times[k] > t && r->times[k] < least) least = r->times[k];
+    return least;
+}
+
+/* Fills g with the times in [from, to]. */
+static int group_fill(const run *r, time_group *g, double from, double to)
+{
+    int k;
+    g->n = 0;
+    for (k = 0; k < r->n_times; k++)
+        if (r->times[k] >= from && r->times[k] <= to) {
+            g->index[g->n] = k;
+            g->t[g->n++] = r->times[k];
+        }
+    free(g->room);
+    g->room = NULL;
+    if (g->n == 0 || g->index[g->n - 1] - g->index[0] == g->n - 1) return DONE;
+    g->room = new_columns(r->mesh.n, g->n);
+    return g->room ? DONE : fail_memory("the result");
+}
+
+/* The times of 0, then groups of times upwards. */
+static int solve_groups(run *r, time_group *g)
+{
+    const double ratio = r->n_inputs > 1 ? GROUP_RATIO : HUGE_VAL;
+    double from = 0, to = 0;
+    int code = DONE;
+    for (; from <= DBL_MAX && !code; from = next_time(r, to), to = from * ratio) {
+        code = group_fill(r, g, from, to);
+        if (!code) code = solve_group(r, g);
+    }
+    return code;
+}
+
+static int solve_all(run *r)
+{
+    time_group g;
+    int code;
+    memset(&g, 0, sizeof g);
+    g.index = (int *)malloc((size_t)r->n_times * sizeof *g.index);
+    g.t = (double *)malloc((size_t)r->n_times * sizeof *g.t);
+    code = g.index && g.t ? solve_groups(r, &g) : fail_memory("the times");
+    free(g.index);
+    free(g.t);
+    free(g.room);
+    return code;
+}
+
+/* Leaves the plan in r->heat, for who has more to ask of it. */
+static int run_solve(run *r)
+{
+    int code;
     r->n_columns = (int64_t)r->n_inputs * r->n_times;
     if (r->n_columns > INT32_MAX / 2) return fail(FAILED, "%lld columns are too many", (long long)r->n_columns);
     if (r->o->column >= r->n_columns)
@@ -1314,12 +1544,14 @@ static int run_solve(run *r, const double *fields, const char *field_name)
     r->values = new_columns(r->mesh.n, r->n_columns);
     if (!r->values) return fail_memory("the result");
     interrupt.patient = 1;
-    code = run_plan(r, &heat);
-    for (k = 0; k < r->n_times && !code; k++) code = run_time(r, heat, fields, field_name, k);
-    hd_heat_free(heat);
+    stages_start();
+    code = run_plan(r);
+    if (!code) code = solve_all(r);
+    stages_stop();
+    memcpy(r->sec.stage, stages.spent, sizeof r->sec.stage);
     code = leave_computation(code);
+    bar_part("", 0, 0);
     bar_hide();
-    r->sec.solve = now() - start;
     return code;
 }
 
@@ -1328,11 +1560,12 @@ static int run_solve(run *r, const double *fields, const char *field_name)
 static void json_seconds(json *j, const run *r)
 {
     json inner;
+    int i;
     json_key(j, "seconds");
     json_open(&inner, j->out);
     json_number(&inner, "load", r->sec.load);
     json_number(&inner, "assemble", r->sec.assemble);
-    json_number(&inner, "solve", r->sec.solve);
+    for (i = 0; i < N_STAGES; i++) json_number(&inner, STAGE_NAMES[i], r->sec.stage[i]);
     json_number(&inner, "write", r->sec.write);
     json_number(&inner, "total", now() - r->started);
     json_close(&inner);
@@ -1369,16 +1602,28 @@ static void json_laplacian(json *j, const hd_laplacian *lap)
     json_text(j, "laplacian", word_of(LAPLACIANS, (int)lap->kind));
 }
 
+/* The fill, the work and the safety of the factorisations; zeros without any. */
+static void json_factor(json *j, const hd_report *p)
+{
+    json_integer(j, "factor_nnz", p->factor_nnz);
+    json_number(j, "factor_flops", p->factor_flops);
+    json_number(j, "growth", p->growth);
+}
+
 static void json_time(FILE *out, double t, const hd_report *p)
 {
     json j;
     json_open(&j, out);
     json_number(&j, "t", t);
-    json_text(&j, "solver", word_of(SOLVERS, (int)p->solver));
+    json_text(&j, "method", word_of(METHODS, (int)p->method));
+    json_text(&j, "reason", p->reason ? p->reason : "");
+    json_text(&j, "solver", solver_name(p));
     json_text(&j, "precond", precond_name(p));
     json_text(&j, "poles", poles_name(p));
     json_integer(&j, "degree", p->degree);
     json_integer(&j, "iterations", p->iterations);
+    json_text(&j, "ordering", ordering_name(p));
+    json_factor(&j, p);
     json_number(&j, "residual", p->residual);
     json_number(&j, "error_bound", p->error_bound);
     json_number(&j, "mass_drift", p->mass_drift);
@@ -1390,10 +1635,11 @@ static void json_heat(json *j, const run *r)
 {
     const hd_report *w = &r->sum.worst;
     int k;
-    json_text(j, "method", word_of(METHODS, (int)w->method));
-    json_text(j, "solver", or_none(r->sum.solver));
-    json_text(j, "precond", or_none(r->sum.precond));
-    json_text(j, "poles", or_none(r->sum.poles));
+    json_text(j, "method", method_text(&r->sum));
+    json_text(j, "reason", reason_text(&r->sum));
+    json_text(j, "solver", or_none(&r->sum.solver));
+    json_text(j, "precond", or_none(&r->sum.precond));
+    json_text(j, "poles", or_none(&r->sum.poles));
     json_integer(j, "degree", w->degree);
     json_text(j, "kernel", word_of(KERNELS, r->o->kernel));
     if (r->sources) json_integers(j, "sources", r->o->sources, r->o->n_sources);
@@ -1401,6 +1647,8 @@ static void json_heat(json *j, const run *r)
     json_numbers(j, "times", r->times, r->n_times);
     json_integer(j, "iterations", w->iterations);
     json_integers(j, "pole_iterations", w->pole_iterations, w->n_poles);
+    json_text(j, "ordering", or_none(&r->sum.ordering));
+    json_factor(j, w);
     json_number(j, "residual", w->residual);
     json_number(j, "error_rational", w->error_rational);
     json_number(j, "error_solver", w->error_solver);
@@ -1410,7 +1658,7 @@ static void json_heat(json *j, const run *r)
     json_text(j, "status", hd_status_name(w->status));
     json_key(j, "per_time");
     fputc('[', j->out);
-    for (k = 0; k < r->sum.n_times; k++) {
+    for (k = 0; k < r->n_times; k++) {
         if (k) fprintf(j->out, ", ");
         json_time(j->out, r->times[k], &r->sum.per_time[k]);
     }
@@ -1418,6 +1666,29 @@ static void json_heat(json *j, const run *r)
 }
 
 static const char *plural(int64_t n) { return n == 1 ? "" : "s"; }
+
+/* What the method did: fill and work of its factorisations, poles, iterations. */
+static void print_method(const run *r)
+{
+    const hd_report *w = &r->sum.worst;
+    const char *reason = reason_text(&r->sum);
+    fprintf(stderr, "method %s%s%s%s\n", method_text(&r->sum), *reason ? " (" : "", reason, *reason ? ")" : "");
+    if (w->factor_nnz > 0)
+        fprintf(stderr, "factors: %.3g non-zeros, %.3g a row; %.3g flops, growth %.3g, ordering %s\n", (double)w->factor_nnz,
+                (double)w->factor_nnz / r->lap->n_active, w->factor_flops, w->growth, or_none(&r->sum.ordering));
+    fprintf(stderr, "solver %s, preconditioner %s, poles %s, degree %ld, %lld iterations\n", or_none(&r->sum.solver),
+            or_none(&r->sum.precond), or_none(&r->sum.poles), (long)w->degree, (long long)w->iterations);
+}
+
+static void print_seconds(const run *r)
+{
+    int i;
+    fprintf(stderr, "%.3g s: load %.3g, assemble %.3g", now() - r->started, r->sec.load, r->sec.assemble);
+    for (i = 0; i < N_STAGES; i++)
+        if (r->sec.stage[i] > 0) fprintf(stderr, ", %s %.3g", STAGE_NAMES[i], r->sec.stage[i]);
+    fprintf(stderr, ", write %.3g; %.1f MB, %d thread%s\n", r->sec.write, (double)r->context.bytes_peak / 1048576.0, threads_used(r),
+            plural(threads_used(r)));
+}
 
 static void print_heat(const run *r)
 {
@@ -1429,14 +1700,11 @@ static void print_heat(const run *r)
     if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
     fprintf(stderr, "\n%s: %d %s%s, %d time%s, %s Laplacian\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
             r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind));
-    fprintf(stderr, "%s: solver %s, preconditioner %s, poles %s, degree %ld, %lld iterations\n", word_of(METHODS, (int)w->method),
-            or_none(r->sum.solver), or_none(r->sum.precond), or_none(r->sum.poles), (long)w->degree, (long long)w->iterations);
+    print_method(r);
     fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n", w->error_bound,
             w->error_bound_b, w->mass_drift);
     if (w->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(w->status));
-    fprintf(stderr, "%.3g s: load %.3g, assemble %.3g, solve %.3g, write %.3g; %.1f MB, %d thread%s\n", now() - r->started,
-            r->sec.load, r->sec.assemble, r->sec.solve, r->sec.write, (double)r->context.bytes_peak / 1048576.0, threads_used(r),
-            plural(threads_used(r)));
+    print_seconds(r);
 }
 
 static void report_heat(const run *r)
@@ -1633,6 +1901,8 @@ static int write_heat(run *r)
     char title[120];
     result res;
     int code = heat_names(r);
+    hd_heat_free(r->heat);           /* large, and not needed any more */
+    r->heat = NULL;
     if (code) return code;
     memset(&res, 0, sizeof res);
     res.n_columns = r->n_columns;
@@ -1755,7 +2025,7 @@ static int command_kernel(run *r)
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     if (!code) code = run_sources(r);
-    if (!code) code = run_solve(r, NULL, "");
+    if (!code) code = run_solve(r);
     if (!code) code = write_heat(r);
     if (!code) report_heat(r);
     return code;
@@ -1771,7 +2041,10 @@ static int command_diffuse(run *r)
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     r->n_inputs = field.columns;
-    if (!code) code = run_solve(r, field.values, r->o->input);
+    r->fields = field.values;
+    r->field_name = r->o->input;
+    if (!code) code = run_solve(r);
+    r->fields = NULL;
     field_free(&field);
     if (!code) code = write_heat(r);
     if (!code) report_heat(r);
@@ -1880,15 +2153,12 @@ static int demo_check(run *r, demo_checks *c)
     const int32_t from[2] = { r->sources[1], r->sources[0] }, to[2] = { r->sources[0], r->sources[1] };
     const double *last = r->values + (size_t)(r->n_columns - 1) * (size_t)r->mesh.n;
     double pair[2];
-    hd_heat *heat = NULL;
     hd_report report;
     int32_t i;
-    int code;
+    int code = DONE;
     interrupt.patient = 1;
-    code = run_plan(r, &heat);
-    if (!code && hd_heat_entries(heat, r->times[r->n_times - 1], HD_KERNEL_SYMMETRIC, 2, from, to, pair, &report) < 0)
+    if (hd_heat_entries(r->heat, r->times[r->n_times - 1], HD_KERNEL_SYMMETRIC, 2, from, to, pair, &report) < 0)
         code = fail_library("demo", &report.error);
-    hd_heat_free(heat);
     code = leave_computation(code);
     if (code) return code;
     c->mass_error = demo_mass_error(r);
@@ -1993,7 +2263,9 @@ static void demo_print(const run *r, const demo_checks *c)
 {
     const char *folder = demo_folder(r);
     const hd_laplacian *lap = r->lap;
+    double spent = 0;
     int q, k;
+    for (k = 0; k < N_STAGES; k++) spent += r->sec.stage[k];
     printf("A surface made in memory: %ld vertices, %ld triangles, area %.3f, mean edge h = %.4f.\n", (long)r->mesh.n, (long)r->mesh.n_tri,
            lap->area, lap->h);
     printf("Heat was put at two vertices, %s (%ld) and %s (%ld), and followed over", DEMO_NAMES[0], (long)r->sources[0],
@@ -2004,8 +2276,8 @@ static void demo_print(const run *r, const demo_checks *c)
     printf("  conservation  the heat on the surface stays what it was, to %.1e\n", c->mass_error);
     printf("  symmetry      trunk to tail %.9g, tail to trunk %.9g, difference %.1e of it\n", c->there, c->back,
            fabs(c->there - c->back) / fabs(c->there));
-    printf("  time          %.2g s for %ld columns, %lld iterations, no eigenvectors; %.1f MB\n\n", r->sec.solve, (long)r->n_columns,
-           (long long)r->sum.worst.iterations, (double)r->context.bytes_peak / 1048576.0);
+    printf("  time          %.2g s for %ld columns, method %s, no eigenvectors; %.1f MB\n\n", spent, (long)r->n_columns,
+           method_text(&r->sum), (double)r->context.bytes_peak / 1048576.0);
     printf("Look at\n");
     for (q = 0; q < DEMO_SOURCES; q++) printf("  %s/heat-%s.png  the four times side by side\n", folder, DEMO_NAMES[q]);
     printf("  %s/isolines.png  one of them, large, with lines of equal heat\n", folder);
@@ -2034,7 +2306,7 @@ static int command_demo(run *r)
     code = run_assemble(r);
     if (!code) code = run_times(r);
     if (!code) code = run_sources(r);
-    if (!code) code = run_solve(r, NULL, "");
+    if (!code) code = run_solve(r);
     if (!code) code = demo_check(r, &checks);
     if (!code) code = demo_files(r);
     bar_hide();
