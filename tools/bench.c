@@ -1,19 +1,55 @@
-/* bench.c - what the parts of heatdiff.h cost, beside what the machine could do.
+/* bench.c - heatdiff.h against what a user would otherwise take, and what its parts cost beside what the machine could do.
 
-   Build:  cc -O2 tools/bench.c -o bench -lm        Run:  ./bench [MESH ...]
+       bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--csv] [MESH ...]
+       bench parts [MESH ...]
 
-   Without a mesh it makes its own. Times are the shortest of several repetitions on one thread; ratios are taken in one run, as machines
-   drift. "floor" is the time to read (and write) each array once at the speed at which memcpy copies blocks of the same total size, so that small
-   matrices are held against the caches they fit in. */
+   Build:  cc -O2 -fopenmp tools/bench.c -o bench -lm       (without -fopenmp: one thread only)
+   With the rivals (see bench_rivals.h; CMake does this by itself where it finds them):
+       c++ -std=c++17 -O3 -march=native -DNDEBUG -fopenmp -I/usr/include/eigen3 -c tools/bench_rivals.cpp
+       cc -O2 -fopenmp -DHEATDIFF_BENCH_RIVALS tools/bench.c bench_rivals.o -o bench -lumfpack -lcholmod -lopenblas -lstdc++ -lm
+
+   Jobs, by default all:
+       one      one column, t = 100 h^2, from (L, B) to the answer
+       small    the same for t = h^2 and 10 h^2, with the masses fem and voronoi-cot
+       columns  100 columns, t = 100 h^2
+       further  one more column once everything is factorised
+       times    one column at 16 times from 10 to 10^4 h^2
+       stages   ordering, analysis, four complex factors and their solves, on one thread and on all
+       eigen    Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU. Slow: above 60000 rows only when asked for
+
+   How it is measured. Both sides begin with the same two matrices in memory and run on the same number of threads. After a warm-up they take turns, and
+   the best run of each counts; only freeing is left out. Whatever has a knob for accuracy is set, untimed, to the least work that reaches an error of 1e-7,
+   relative to the largest value of a column: tol on our side, the number of Lanczos steps on theirs. Errors are against the direct method with kernel poles
+   of degree 14, and for many times against a rival's Lanczos with full reorthogonalisation; the two are compared with each other on the way.
+   UMFPACK and SparseLU get the best uniform poles of degree 7: their error is what it is.
+
+   In the table: ms, the ratio rival's time / ours, errors; then ours GF/s of the factorisation, as a share of the machine's fused multiply-adds too, GB/s of
+   factors read in solves, non-zeros of L, bytes held at most, and these over 64 bytes a non-zero, which four complex factors need at least. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
+#include "bench_rivals.h"
 #include "meshio.h"
 #include "shapes.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
+
+#ifdef HEATDIFF_BENCH_RIVALS
+enum { HAVE_RIVALS = 1 };
+#else
+enum { HAVE_RIVALS = 0 };
+static int rival_absent(rival_result *r) { memset(r, 0, sizeof *r); return 0; }
+int rival_silan(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_silan_block(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_silan_times(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_umfpack(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)job; (void)p; (void)U; return rival_absent(r); }
+int rival_eigen_lu(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)job; (void)p; (void)U; return rival_absent(r); }
+int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_reference(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+void rival_machine(int32_t threads, rival_machine_result *r) { (void)threads; memset(r, 0, sizeof *r); r->simd = r->blas = ""; }
+#endif
 
 static double now(void) {
 #if defined(CLOCK_MONOTONIC)
@@ -24,6 +60,8 @@ static double now(void) {
     return (double)clock() / CLOCKS_PER_SEC;
 #endif
 }
+
+/* ==== parts ==== */
 
 /* Bytes per second that memcpy moves, reading and writing counted, over blocks of `bytes` altogether. */
 static double copy_speed(size_t bytes) {
@@ -85,7 +123,7 @@ static double time_precond(const hdi_precond *m, const hd_c64 *x, hd_c64 *y) {
     return best;
 }
 
-static void bench_products(hd_heat *heat, double t) {
+static void parts_products(hd_heat *heat, double t) {
     const hd_laplacian *lap = heat->lap;
     const size_t n = (size_t)lap->n_active;
     const double nnz = (double)lap->L.nnz, dn = (double)n;
@@ -102,11 +140,14 @@ static void bench_products(hd_heat *heat, double t) {
     bytes = (lap->B ? 20 : 12) * nnz + 8 * (dn + 1) + (lap->B ? 32 : 40) * dn;
     line("(t L + theta B) x, complex", time_system(&a, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y), bytes, copy_speed((size_t)bytes));
     bytes = 20 * (double)heat->up.ptr[n] + 8 * dn + 16 * dn + 32 * dn;
-    if (heat->fam.filled) line("modified ILDL(0) solve, complex", time_precond(heat->fam.m, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y), 2 * bytes, copy_speed((size_t)bytes));
+    if (heat->fam.filled) {
+        const double seconds = time_precond(heat->fam.m, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y);
+        line("modified ILDL(0) solve, complex", seconds, 2 * bytes, copy_speed((size_t)bytes));
+    }
     free(x);
 }
 
-static void bench_solvers(const hd_laplacian *lap) {
+static void parts_solvers(const hd_laplacian *lap) {
     static const hd_solver solvers[] = {HD_SOLVER_COCG, HD_SOLVER_LANCZOS};
     static const double taus[] = {1, 10, 100, 1000};
     double *u = (double *)malloc((size_t)lap->n * sizeof *u);
@@ -128,14 +169,14 @@ static void bench_solvers(const hd_laplacian *lap) {
                 printf("  column, t = %4g h^2, %-8s plan %7.1f ms, solve %8.1f ms, %5lld steps, %.3f ms a step\n", taus[k],
                        s == 0 ? "cocg" : "lanczos", 1e3 * (t1 - t0), 1e3 * (t2 - t1), (long long)rep.iterations, 1e3 * (t2 - t1) / (double)rep.iterations);
             }
-            if (s == 0 && k == 2) bench_products(heat, 100 * lap->h * lap->h);
+            if (s == 0 && k == 2) parts_products(heat, 100 * lap->h * lap->h);
             hd_heat_free(heat);
         }
     }
     free(u);
 }
 
-static void bench_mesh(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
+static void parts_mesh(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
     static const hd_laplacian_kind kinds[] = {HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_FEM};
     int k;
     for (k = 0; k < 2; k++) {
@@ -146,39 +187,1170 @@ static void bench_mesh(const char *name, const double *xyz, int32_t n, const int
         o.kind = kinds[k];
         if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, NULL) < 0) return;
         t1 = now();
-        printf("%s, %s: %d vertices, %lld non-zeros, assembled in %.1f ms\n", name, k ? "fem" : "voronoi-cot", (int)n, (long long)lap->L.nnz, 1e3 * (t1 - t0));
-        bench_solvers(lap);
+        printf("%s, %s: %d vertices, %lld non-zeros, assembled in %.1f ms\n", name, k ? "fem" : "voronoi-cot", (int)n, (long long)lap->L.nnz,
+               1e3 * (t1 - t0));
+        parts_solvers(lap);
         hd_laplacian_free(lap);
     }
 }
 
-static void bench_file(const char *path) {
+/* ==== the machine ==== */
+
+#if HDI_X86
+/* Independent sums: enough for the latency of the multiply-add, few enough for the registers. Flops. */
+HDI_AVX512 static double multiply_add_512(int64_t rounds, volatile double *sink) {
+    const __m512d m = _mm512_set1_pd(0.999999999), a = _mm512_set1_pd(1e-9);
+    __m512d s0 = a, s1 = a, s2 = a, s3 = a, s4 = a, s5 = a, s6 = a, s7 = a, s8 = a, s9 = a;
+    int64_t k;
+    for (k = 0; k < rounds; k++) {
+        s0 = _mm512_fmadd_pd(s0, m, a); s1 = _mm512_fmadd_pd(s1, m, a); s2 = _mm512_fmadd_pd(s2, m, a); s3 = _mm512_fmadd_pd(s3, m, a);
+        s4 = _mm512_fmadd_pd(s4, m, a); s5 = _mm512_fmadd_pd(s5, m, a); s6 = _mm512_fmadd_pd(s6, m, a); s7 = _mm512_fmadd_pd(s7, m, a);
+        s8 = _mm512_fmadd_pd(s8, m, a); s9 = _mm512_fmadd_pd(s9, m, a);
+    }
+    s0 = _mm512_add_pd(_mm512_add_pd(_mm512_add_pd(s0, s1), _mm512_add_pd(s2, s3)), _mm512_add_pd(_mm512_add_pd(s4, s5), _mm512_add_pd(s6, s7)));
+    *sink = _mm512_reduce_add_pd(_mm512_add_pd(s0, _mm512_add_pd(s8, s9)));
+    return 160.0 * (double)rounds;
+}
+
+HDI_AVX2 static double multiply_add_256(int64_t rounds, volatile double *sink) {
+    const __m256d m = _mm256_set1_pd(0.999999999), a = _mm256_set1_pd(1e-9);
+    __m256d s0 = a, s1 = a, s2 = a, s3 = a, s4 = a, s5 = a, s6 = a, s7 = a, s8 = a, s9 = a;
+    double out[4];
+    int64_t k;
+    for (k = 0; k < rounds; k++) {
+        s0 = _mm256_fmadd_pd(s0, m, a); s1 = _mm256_fmadd_pd(s1, m, a); s2 = _mm256_fmadd_pd(s2, m, a); s3 = _mm256_fmadd_pd(s3, m, a);
+        s4 = _mm256_fmadd_pd(s4, m, a); s5 = _mm256_fmadd_pd(s5, m, a); s6 = _mm256_fmadd_pd(s6, m, a); s7 = _mm256_fmadd_pd(s7, m, a);
+        s8 = _mm256_fmadd_pd(s8, m, a); s9 = _mm256_fmadd_pd(s9, m, a);
+    }
+    s0 = _mm256_add_pd(_mm256_add_pd(_mm256_add_pd(s0, s1), _mm256_add_pd(s2, s3)), _mm256_add_pd(_mm256_add_pd(s4, s5), _mm256_add_pd(s6, s7)));
+    _mm256_storeu_pd(out, _mm256_add_pd(s0, _mm256_add_pd(s8, s9)));
+    *sink = out[0];
+    return 80.0 * (double)rounds;
+}
+#endif
+
+/* Parallel work for measuring: multiply-adds, or a share of an array to sum. */
+typedef struct load_job { int simd; const double *x; int64_t share; double flops[256]; } load_job;
+
+static void load_task(void *arg, int64_t index, int32_t worker) {
+    load_job *j = (load_job *)arg;
+    volatile double sink = 0;
+    (void)worker;
+#if HDI_X86
+    if (j->simd) j->flops[index] = j->simd > 1 ? multiply_add_512(10000000, &sink) : multiply_add_256(10000000, &sink);
+#endif
+    if (!j->simd) sink = hdi_dot(j->x + index * j->share, j->x + index * j->share, j->share);
+    (void)sink;
+}
+
+/* Best of a few: flops (simd > 0) or bytes a second, in thousand millions. */
+static double load_speed(int threads, int simd, const double *x, int64_t n) {
+    hd_context ctx;
+    load_job j;
+    double best = 0;
+    int r, k;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&j, 0, sizeof j);
+    ctx.threads = threads;
+    j.simd = simd;
+    j.x = x;
+    j.share = n / threads;
+    for (r = 0; r < 5; r++) {
+        const double t0 = now();
+        double work = 8.0 * (double)(j.share * threads), seconds;
+        hdi_parallel(&ctx, threads, load_task, &j);
+        seconds = now() - t0;
+        for (k = 0; simd && k < threads; k++) work = (k ? work : 0) + j.flops[k];
+        if (work / seconds > best) best = work / seconds;
+    }
+    return 1e-9 * best;
+}
+
+/* ==== one of our runs ==== */
+
+enum { STAGE_OTHER, STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_SOLVE, STAGES };
+
+/* Stage times by the library's own progress reports. What follows the last one counts for its stage. */
+typedef struct watch { const char *name; int stage; double since, seconds[STAGES]; } watch;
+
+static void watch_turn(watch *w, int stage) {
+    const double t = now();
+    w->seconds[w->stage] += t - w->since;
+    w->since = t;
+    w->stage = stage;
+}
+
+static hd_progress watch_progress(void *user, const char *name, double done) {
+    static const char *const names[STAGES] = {"", "order", "analyse", "factor", "solve"};
+    watch *w = (watch *)user;
+    int k;
+    (void)done;
+    if (name == w->name) return HD_PROGRESS_CONTINUE;
+    w->name = name;
+    for (k = STAGES - 1; k > 0 && strcmp(name, names[k]); k--) {}
+    watch_turn(w, k);
+    return HD_PROGRESS_CONTINUE;
+}
+
+static void watch_start(watch *w) {
+    memset(w, 0, sizeof *w);
+    w->since = now();
+}
+
+typedef struct settings {
+    int jobs, csv, umfpack, columns, n_threads, asked;
+    int32_t threads[16];
+    double seconds;
+} settings;
+
+/* A pair under test. */
+typedef struct bench {
+    const settings *set;
+    const char *mesh, *mass;
+    const hd_laplacian *lap;
+    rival_pair pair;
+    double *own_B;
+    int32_t threads;
+    double hh, peak[2];          /* h^2; GF/s on one thread and on all */
+    rival_ordering ordering;     /* that suits shift-invert Lanczos best, once known */
+} bench;
+
+/* What to ask the library for: columns at times[0], or one at many times. */
+typedef struct ask {
+    hd_method method;
+    int32_t degree;              /* of kernel poles, 0: the library's choice */
+    double tol;                  /* 0: the library's */
+    int32_t n_times, n_columns;
+    const double *times;
+    const int32_t *vertices;
+} ask;
+
+typedef struct ours {
+    int fine;
+    double total, stage[STAGES], bytes, error;
+    hd_report report;
+} ours;
+
+/* A plan and what it reports to. */
+typedef struct plan { hd_context ctx; watch w; hd_heat *heat; } plan;
+
+static hd_status plan_open(plan *p, const bench *b, const ask *a) {
+    hd_heat_opts o;
+    memset(p, 0, sizeof *p);
+    memset(&o, 0, sizeof o);
+    p->ctx.threads = b->threads;
+    p->ctx.progress = watch_progress;
+    p->ctx.progress_user = &p->w;
+    o.context = &p->ctx;
+    o.method = a->method;
+    o.degree = a->degree;
+    o.poles = a->degree ? HD_POLES_KERNEL : HD_POLES_DEFAULT;
+    o.tol = a->tol;
+    watch_start(&p->w);
+    return hd_heat_create(&p->heat, b->lap, &o, NULL);
+}
+
+static void plan_close(plan *p) { hd_heat_free(p->heat); }
+
+/* Runs what is asked for on the plan; times since watch_start. */
+static void plan_run(plan *p, const ask *a, double *U, ours *out) {
+    hd_status st;
+    int k;
+    if (a->n_times > 1) st = hd_heat_times(p->heat, a->n_times, a->times, HD_KERNEL_OPERATOR, a->vertices[0], NULL, U, 0, &out->report);
+    else st = hd_heat_columns(p->heat, a->times[0], HD_KERNEL_OPERATOR, a->n_columns, a->vertices, U, 0, &out->report);
+    watch_turn(&p->w, STAGE_OTHER);
+    out->fine = st >= 0;
+    out->bytes = (double)p->ctx.bytes_peak;
+    for (out->total = 0, k = 0; k < STAGES; k++) out->total += out->stage[k] = p->w.seconds[k];
+    p->w.name = NULL;
+    if (st < 0) fprintf(stderr, "bench: %s: %s\n", hd_status_name(st), out->report.error.text);
+}
+
+/* From (L, B) to the answer. */
+static void run_cold(const bench *b, const ask *a, double *U, ours *out) {
+    plan p;
+    memset(out, 0, sizeof *out);
+    if (plan_open(&p, b, a) >= 0) plan_run(&p, a, U, out);
+    plan_close(&p);
+}
+
+/* Largest error of the first columns, relative to each column's largest value. U by vertices, R by rows. */
+static double error_of(const bench *b, const double *U, const double *R, int n) {
+    double worst = 0;
+    int32_t i;
+    int c;
+    for (c = 0; c < n; c++) {
+        const double *u = U + (size_t)c * (size_t)b->lap->n, *r = R + (size_t)c * (size_t)b->pair.n;
+        double e = 0, m = 0;
+        for (i = 0; i < b->pair.n; i++) {
+            const double d = fabs(u[b->lap->vertex[i]] - r[i]);
+            if (!(d <= e)) e = d;
+            if (fabs(r[i]) > m) m = fabs(r[i]);
+        }
+        if (!(e / m <= worst)) worst = e / m;
+    }
+    return worst;
+}
+
+/* Columns, or one column at all times, by rows in place: U [n x k] becomes R [rows x k]. */
+static void vertices_to_rows(const bench *b, double *U, int k) {
+    const size_t n = (size_t)b->lap->n, rows = (size_t)b->pair.n;
+    size_t c, i;
+    for (c = 0; c < (size_t)k; c++)
+        for (i = 0; i < rows; i++) U[c * rows + i] = U[c * n + (size_t)b->lap->vertex[i]];
+}
+
+static int many(const ask *a) { return a->n_times > 1 ? a->n_times : a->n_columns; }
+
+/* An array that has been written to: no page of it is fresh in what is timed. */
+static double *answers(const bench *b, int k) {
+    const size_t bytes = (size_t)b->lap->n * (size_t)k * sizeof(double);
+    double *u = (double *)malloc(bytes + 64);
+    if (u) memset(u, 1, bytes + 64);
+    else fprintf(stderr, "bench: out of memory\n");
+    return u;
+}
+
+static const double TARGET = 1e-7;
+
+/* References for the first k columns (or all times) of what is asked for, by rows; NULL when there are none. */
+static double *reference(const bench *b, const ask *a, int k) {
+    double *R = answers(b, k);
+    ask exact = *a;
+    ours run;
+    if (!R) return NULL;
+    if (HAVE_RIVALS && a->n_times > 1) {
+        rival_job job;
+        rival_result r;
+        const int32_t row = b->lap->row[a->vertices[0]];
+        memset(&job, 0, sizeof job);
+        job.pair = &b->pair;
+        job.n_times = a->n_times;
+        job.times = a->times;
+        job.n_sources = 1;
+        job.sources = &row;
+        job.threads = b->threads;
+        if (rival_reference(&job, R, &r)) return R;
+        fprintf(stderr, "bench: %s\n", r.note);
+    }
+    exact.method = HD_METHOD_DIRECT;
+    exact.degree = 14;
+    exact.tol = 0;
+    if (a->n_times == 1) exact.n_columns = k;
+    run_cold(b, &exact, R, &run);
+    if (run.fine) {
+        vertices_to_rows(b, R, k);
+        return R;
+    }
+    free(R);
+    return NULL;
+}
+
+/* The largest tol that reaches the target on a kept plan, then on a fresh one; untimed. 0 where tol has no say. */
+static double find_tol(const bench *b, const ask *a, const double *R, double *U) {
+    enum { GRID = 88 };          /* 10^(-1 - q/8) */
+    ask probe = *a;
+    ours run;
+    plan p;
+    int low = -1, high = GRID, tries;
+    if (!R || plan_open(&p, b, a) < 0) return 0;
+    memset(&run, 0, sizeof run);
+    plan_run(&p, a, U, &run);
+    if (!run.fine || run.report.method == HD_METHOD_DIRECT) {
+        plan_close(&p);
+        return 0;
+    }
+    while (high - low > 1) {     /* low misses the target, high is taken to reach it */
+        const int q = (low + high) / 2;
+        p.heat->opts.tol = pow(10, -1 - q / 8.0);
+        plan_run(&p, a, U, &run);
+        if (run.fine && error_of(b, U, R, many(a)) <= TARGET) high = q;
+        else low = q;
+    }
+    plan_close(&p);
+    for (tries = 0; tries < 8; tries++) {
+        probe.tol = pow(10, -1 - (high + tries) / 8.0);
+        run_cold(b, &probe, U, &run);
+        if (run.fine && error_of(b, U, R, many(a)) <= TARGET) break;
+    }
+    return probe.tol;
+}
+
+/* ==== the table ==== */
+
+typedef struct entry {
+    const char *job;
+    double tau;                  /* t / h^2; 0: none */
+    int32_t threads;
+    char ours[40], rival[40];
+    double seconds, rival_seconds, error, rival_error;   /* errors -1: none */
+    double gflops, gbytes, nnz, bytes, rival_nnz, rival_bytes;
+    int packs;                   /* 1: bytes are to be held against 64 a non-zero */
+} entry;
+
+static void row_clear(entry *r, const bench *b, const char *job, double tau) {
+    memset(r, 0, sizeof *r);
+    r->job = job;
+    r->tau = tau;
+    r->threads = b->threads;
+    r->error = r->rival_error = -1;
+}
+
+/* A number in so many places, or a dash where there is none. */
+static void cell(int width, const char *format, double x, int there) {
+    char text[32];
+    snprintf(text, sizeof text, format, x);
+    printf("%*s", width, there ? text : "-");
+}
+
+static double row_share(const entry *r, const bench *b) { return r->gflops / b->peak[r->threads > 1]; }
+
+static void row_csv(const entry *r, const bench *b) {
+    printf("%s,%s,%d,%s,%g,%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,%.4g,%.4g,%.4g,%.0f,%.0f,%.4g,%.0f,%.0f\n", b->mesh, b->mass, (int)b->pair.n, r->job,
+           r->tau, (int)r->threads, r->ours, r->seconds, r->rival, r->rival_seconds, r->rival_seconds > 0 ? r->rival_seconds / r->seconds : 0, r->error,
+           r->rival_error, r->gflops, b->peak[0] > 0 ? row_share(r, b) : 0, r->gbytes, r->nnz, r->bytes, r->packs && r->nnz > 0 ? r->bytes / (64 * r->nnz) : 0,
+           r->rival_nnz, r->rival_bytes);
+}
+
+static void row_print(const entry *r, const bench *b) {
+    if (b->set->csv) {
+        row_csv(r, b);
+    } else {
+        printf("%-18s", r->job);
+        cell(6, "%g", r->tau, r->tau > 0);
+        printf("%3d  %-22.22s", (int)r->threads, r->ours);
+        cell(10, "%.2f", 1e3 * r->seconds, r->seconds > 0);
+        printf("  %-22.22s", r->rival);
+        cell(10, "%.2f", 1e3 * r->rival_seconds, r->rival_seconds > 0);
+        cell(7, "%.2f", r->rival_seconds / r->seconds, r->rival_seconds > 0 && r->seconds > 0);
+        cell(9, "%.1e", r->error, r->error >= 0);
+        cell(9, "%.1e", r->rival_error, r->rival_error >= 0);
+        cell(8, "%.1f", r->gflops, r->gflops > 0);
+        cell(5, "%.0f%%", 100 * row_share(r, b), r->gflops > 0 && b->peak[0] > 0);
+        cell(6, "%.1f", r->gbytes, r->gbytes > 0);
+        cell(11, "%.0f", r->nnz, r->nnz > 0);
+        cell(8, "%.0f", 1e-6 * r->bytes, r->bytes > 0);
+        cell(6, "%.2f", r->bytes / (64 * r->nnz), r->packs && r->bytes > 0);
+        cell(11, "%.0f", r->rival_nnz, r->rival_nnz > 0);
+        cell(8, "%.0f", 1e-6 * r->rival_bytes, r->rival_bytes > 0);
+        printf("\n");
+    }
+    fflush(stdout);
+}
+
+static void table_head(const bench *b) {
+    if (b->set->csv) return;
+    printf("%-18s%6s%3s  %-22s%10s  %-22s%10s%7s%9s%9s%8s%5s%6s%11s%8s%6s%11s%8s\n", "job", "t/h2", "th", "ours", "ms", "rival", "ms", "ratio", "error", "rival's",
+           "GF/s", "peak", "GB/s", "nnz(L)", "MB", "/64B", "rival nnz", "MB");
+}
+
+static const char *ordering_name(hd_ordering o) {
+    return o == HD_ORDERING_MINIMUM_DEGREE ? " md" : o == HD_ORDERING_NESTED_DISSECTION ? " nd" : o == HD_ORDERING_OWN ? " own" : "";
+}
+
+static void describe_ours(char *to, size_t size, const ask *a, const ours *o) {
+    const hd_report *r = &o->report;
+    const char *asked = a->method == HD_METHOD_AUTO ? "auto: " : "", *order = ordering_name(r->ordering);
+    if (!o->fine) snprintf(to, size, "failed");
+    else if (r->method == HD_METHOD_DIRECT) snprintf(to, size, "%sdirect r=%d%s", asked, (int)r->degree, order);
+    else if (r->method == HD_METHOD_KRYLOV) snprintf(to, size, "%skrylov %lld%s", asked, (long long)r->iterations, order);
+    else snprintf(to, size, "%s%s %lld", asked, r->solver == HD_SOLVER_LANCZOS ? "lanczos" : "cocg", (long long)r->iterations);
+}
+
+/* Our part of a row. GB/s where it is plain what a solve reads: one column by shift-invert Lanczos sweeps twice over the factor a step. */
+static void row_ours(entry *r, const ask *a, const ours *o) {
+    const hd_report *rep = &o->report;
+    const double solve = o->stage[STAGE_SOLVE], factor = o->stage[STAGE_FACTOR];
+    describe_ours(r->ours, sizeof r->ours, a, o);
+    if (!o->fine) return;
+    r->seconds = o->total;
+    r->error = o->error;
+    r->nnz = (double)rep->factor_nnz;
+    r->bytes = o->bytes;
+    r->packs = rep->method == HD_METHOD_DIRECT;
+    if (factor > 0 && a->n_times == 1 && rep->method != HD_METHOD_ITERATIVE) r->gflops = 1e-9 * rep->factor_flops / factor;
+    if (solve > 0 && rep->method == HD_METHOD_KRYLOV && a->n_columns == 1 && a->n_times == 1) r->gbytes = 16e-9 * r->nnz * (double)rep->iterations / solve;
+}
+
+/* ==== contests ==== */
+
+typedef enum rival_kind { SILAN, SILAN_BLOCK, SILAN_TIMES, UMFPACK, EIGEN_LU } rival_kind;
+
+typedef struct opponent {
+    rival_kind kind;
+    rival_job job;
+    rival_window window[RIVAL_MAX_WINDOWS];
+    rival_result best;
+    int fine;
+} opponent;
+
+static int rival_run(const opponent *o, rival_result *r) {
+    hd_rational set;
+    rival_poles poles;
+    (void)hd_rational_get(&set, HD_POLES_UNIFORM, 7, NULL);
+    poles.n = set.n_poles;
+    poles.a0 = set.a0;
+    poles.theta = &set.theta[0].re;
+    poles.a = &set.a[0].re;
+    switch (o->kind) {
+        case SILAN: return rival_silan(&o->job, NULL, r);
+        case SILAN_BLOCK: return rival_silan_block(&o->job, NULL, r);
+        case SILAN_TIMES: return rival_silan_times(&o->job, NULL, r);
+        case UMFPACK: return rival_umfpack(&o->job, &poles, NULL, r);
+        default: return rival_eigen_lu(&o->job, &poles, NULL, r);
+    }
+}
+
+static double rival_seconds(const opponent *o, const rival_result *r) { return o->kind == SILAN_BLOCK || o->job.n_sources > 1 ? r->total_columns : r->total; }
+
+/* The same job for a rival. rows [columns]: the sources, which must stay. */
+static opponent opponent_make(const bench *b, rival_kind kind, const ask *a, const int32_t *rows, const double *R, int n_R) {
+    opponent o;
+    memset(&o, 0, sizeof o);
+    o.kind = kind;
+    o.job.pair = &b->pair;
+    o.job.n_times = a->n_times;
+    o.job.times = a->times;
+    o.job.n_sources = a->n_columns;
+    o.job.sources = rows;
+    o.job.reference = R;
+    o.job.n_reference = n_R;
+    o.job.target = TARGET;
+    o.job.threads = b->threads;
+    if (kind == SILAN) o.job.ordering = b->ordering;
+    if (b->pair.n > 400000) o.job.seconds = b->set->seconds;
+    return o;
+}
+
+/* The warm-up, in which a rival finds its best ordering, steps and windows; later runs are told. */
+static void opponent_warm(opponent *o) {
+    rival_result r;
+    o->fine = rival_run(o, &r);
+    o->best = r;
+    if (!o->fine) return;
+    o->job.ordering = r.ordering;
+    o->job.steps = o->kind == SILAN || o->kind == SILAN_BLOCK ? r.steps : 0;
+    if (o->kind != SILAN_TIMES) return;
+    memcpy(o->window, r.window, sizeof o->window);
+    o->job.window = o->window;
+    o->job.n_windows = r.windows;
+}
+
+static void opponent_turn(opponent *o, int first) {
+    rival_result r;
+    if (!o->fine || !rival_run(o, &r)) return;
+    if (first || rival_seconds(o, &r) < rival_seconds(o, &o->best)) o->best = r;
+}
+
+/* Threads of OpenMP and BLAS spin for a while after their last work: not in the other side's time. */
+static void rest(void) {
+#if defined(CLOCK_MONOTONIC)
+    struct timespec t = {0, 60000000};
+    nanosleep(&t, NULL);
+#endif
+}
+
+/* Five rounds, less when they take long, but two. */
+static int round_wanted(const bench *b, int round, double start) { return round < 2 || (round < 5 && now() - start < b->set->seconds); }
+
+/* In turns after a warm-up. The best of ours by total time; its error is that of the last run (all are the same). */
+static void contest(const bench *b, const ask *a, const double *R, int n_R, double *U, ours *best, opponent *o, int n_o) {
+    double start;
+    int k, round;
+    run_cold(b, a, U, best);
+    for (k = 0; k < n_o; k++) opponent_warm(o + k);
+    start = now();
+    for (round = 0; best->fine && round_wanted(b, round, start); round++) {
+        ours run;
+        rest();
+        run_cold(b, a, U, &run);
+        if (round == 0 || run.total < best->total) *best = run;
+        for (k = 0; k < n_o; k++) {
+            rest();
+            opponent_turn(o + k, round == 0);
+        }
+    }
+    best->error = best->fine && R ? error_of(b, U, R, n_R) : -1;
+}
+
+static void describe_rival(char *to, size_t size, const opponent *o) {
+    static const char *const names[] = {"SI-Lanczos", "SI-Lanczos block", "SI-Lanczos", "UMFPACK", "SparseLU"};
+    const rival_result *r = &o->best;
+    const char *order = o->kind == EIGEN_LU ? " colamd" : r->ordering == RIVAL_METIS ? " metis" : " amd";
+    if (!o->fine) snprintf(to, size, "%s: %.20s", names[o->kind], r->note);
+    else if (o->kind == UMFPACK || o->kind == EIGEN_LU) snprintf(to, size, "%s r=7%s", names[o->kind], order);
+    else snprintf(to, size, "%s %d%s", names[o->kind], (int)r->steps, order);
+}
+
+static void row_rival(entry *r, const opponent *o) {
+    describe_rival(r->rival, sizeof r->rival, o);
+    if (!o->fine) return;
+    r->rival_seconds = rival_seconds(o, &o->best);
+    r->rival_error = o->best.error;
+    r->rival_nnz = o->best.nnz;
+    r->rival_bytes = o->best.bytes;
+}
+
+static void contest_rows(const bench *b, const char *job, const ask *a, const ours *best, const opponent *o, int n_o) {
+    int k = 0;
+    do {
+        entry r;
+        row_clear(&r, b, job, a->n_times > 1 ? 0 : a->times[0] / b->hh);
+        row_ours(&r, a, best);
+        if (n_o > 0) row_rival(&r, o + k);
+        row_print(&r, b);
+    } while (++k < n_o);
+}
+
+/* The stages of the two best runs. */
+static void stage_rows(const bench *b, const ours *best, const opponent *o) {
+    static const char *const names[] = {"  order + analyse", "  factor", "  solve"};
+    const double mine[] = {best->stage[STAGE_OTHER] + best->stage[STAGE_ORDER] + best->stage[STAGE_ANALYSE], best->stage[STAGE_FACTOR], best->stage[STAGE_SOLVE]};
+    const double theirs[] = {o->best.analyse, o->best.factor, o->best.first};
+    int k;
+    for (k = 0; k < 3; k++) {
+        entry r;
+        row_clear(&r, b, names[k], 0);
+        r.seconds = mine[k];
+        if (o->fine) r.rival_seconds = theirs[k];
+        row_print(&r, b);
+    }
+}
+
+/* ==== jobs ==== */
+
+static ask ask_column(hd_method method, const double *t, const int32_t *vertex) {
+    ask a;
+    memset(&a, 0, sizeof a);
+    a.method = method;
+    a.n_times = a.n_columns = 1;
+    a.times = t;
+    a.vertices = vertex;
+    return a;
+}
+
+static int32_t middle(const bench *b) { return b->pair.n / 2; }
+
+/* One column against shift-invert Lanczos, with the ordering that suits it remembered. Returns the method. */
+static hd_method one_column(bench *b, const char *job, hd_method method, double tau, const double *R, double *U, int stages) {
+    const double t = tau * b->hh;
+    const int32_t row = middle(b), vertex = b->lap->vertex[row];
+    ask a = ask_column(method, &t, &vertex);
+    opponent o = opponent_make(b, SILAN, &a, &row, R, 1);
+    ours best;
+    a.tol = find_tol(b, &a, R, U);
+    contest(b, &a, R, 1, U, &best, &o, HAVE_RIVALS);
+    if (o.fine) b->ordering = o.best.ordering;
+    contest_rows(b, job, &a, &best, &o, HAVE_RIVALS);
+    if (stages && best.fine && best.report.method != HD_METHOD_ITERATIVE) stage_rows(b, &best, &o);
+    return best.report.method;
+}
+
+/* How far the two references are from each other. */
+static void compare_references(const bench *b, double t, const double *R) {
+    const int32_t row = middle(b);
+    double *S, e = 0, m = 0;
+    rival_job job;
+    rival_result r;
+    int32_t i;
+    if (!HAVE_RIVALS || !(S = answers(b, 1))) return;
+    memset(&job, 0, sizeof job);
+    job.pair = &b->pair;
+    job.n_times = job.n_sources = 1;
+    job.times = &t;
+    job.sources = &row;
+    job.threads = b->threads;
+    if (rival_reference(&job, S, &r)) {
+        for (i = 0; i < b->pair.n; i++) {
+            e = hdi_max(e, fabs(S[i] - R[i]));
+            m = hdi_max(m, fabs(R[i]));
+        }
+        printf("%sreferences: direct of degree 14 and reorthogonalised Lanczos differ by %.1e\n", b->set->csv ? "# " : "", e / m);
+    }
+    free(S);
+}
+
+static void job_one(bench *b) {
+    const double t = 100 * b->hh;
+    const int32_t vertex = b->lap->vertex[middle(b)];
+    const ask a = ask_column(HD_METHOD_AUTO, &t, &vertex);
+    double *R = reference(b, &a, 1), *U = answers(b, 1);
+    if (R && U) {
+        compare_references(b, t, R);
+        if (one_column(b, "one", HD_METHOD_AUTO, 100, R, U, 1) != HD_METHOD_KRYLOV) (void)one_column(b, "one", HD_METHOD_KRYLOV, 100, R, U, 1);
+    }
+    free(R);
+    free(U);
+}
+
+static void job_small(bench *b) {
+    static const double taus[] = {1, 10};
+    int k;
+    for (k = 0; k < 2; k++) {
+        const double t = taus[k] * b->hh;
+        const int32_t vertex = b->lap->vertex[middle(b)];
+        const ask a = ask_column(HD_METHOD_AUTO, &t, &vertex);
+        double *R = reference(b, &a, 1), *U = answers(b, 1);
+        if (R && U) (void)one_column(b, b->lap->B ? "small, fem" : "small, voronoi", HD_METHOD_AUTO, taus[k], R, U, 0);
+        free(R);
+        free(U);
+    }
+}
+
+/* Sources for many columns, all over the mesh: rows and vertices. */
+static int spread(const bench *b, int k, int32_t *rows, int32_t *vertices) {
+    int c;
+    if (k > b->pair.n) k = b->pair.n;
+    for (c = 0; c < k; c++) {
+        rows[c] = (int32_t)((int64_t)b->pair.n * (2 * c + 1) / (2 * k));
+        vertices[c] = b->lap->vertex[rows[c]];
+    }
+    return k;
+}
+
+enum { MOST_COLUMNS = 1000, REFERENCES = 8, FURTHER = 9, UMFPACK_ROWS = 300000, EIGEN_ROWS = 60000 };
+
+static int umfpack_fits(const bench *b) { return HAVE_RIVALS && (b->pair.n <= UMFPACK_ROWS || b->set->umfpack); }
+
+static void job_columns(bench *b) {
+    const double t = 100 * b->hh;
+    int32_t rows[MOST_COLUMNS], vertices[MOST_COLUMNS];
+    const int k = spread(b, b->set->columns, rows, vertices), n_R = k < REFERENCES ? k : REFERENCES;
+    ask a = ask_column(HD_METHOD_DIRECT, &t, vertices);
+    double *R, *U;
+    a.n_columns = k;
+    R = reference(b, &a, n_R);
+    U = answers(b, k);
+    if (R && U) {
+        const int n_o = umfpack_fits(b) ? 2 : HAVE_RIVALS;
+        opponent o[2];
+        ours best;
+        o[0] = opponent_make(b, SILAN_BLOCK, &a, rows, R, n_R);
+        o[1] = opponent_make(b, UMFPACK, &a, rows, R, n_R);
+        contest(b, &a, R, n_R, U, &best, o, n_o);
+        contest_rows(b, "columns", &a, &best, o, n_o);
+    }
+    free(R);
+    free(U);
+}
+
+/* The quickest of the columns, one by one, on a plan that has its factors. */
+static double further_columns(plan *p, ask a, double *U, ours *run) {
+    const int32_t *v = a.vertices;
+    double best = 1e30;
+    int c;
+    for (c = 0; c < FURTHER; c++) {
+        a.vertices = v + c;
+        watch_start(&p->w);
+        plan_run(p, &a, U + (size_t)c * (size_t)p->heat->source->n, run);
+        if (!run->fine) return 0;
+        if (c && run->total < best) best = run->total;
+    }
+    return best;
+}
+
+static void job_further(bench *b) {
+    const double t = 100 * b->hh;
+    int32_t rows[FURTHER], vertices[FURTHER];
+    const int k = spread(b, FURTHER, rows, vertices), n_o = umfpack_fits(b);
+    ask a = ask_column(HD_METHOD_DIRECT, &t, vertices), all = a;
+    double *R, *U = answers(b, k), best = 1e30, best_rival = 1e30, start;
+    int round;
+    all.n_columns = k;
+    R = k == FURTHER ? reference(b, &all, k) : NULL;
+    if (R && U) {
+        opponent o = opponent_make(b, UMFPACK, &all, rows, R, k);
+        plan p;
+        ours run;
+        entry r;
+        memset(&run, 0, sizeof run);
+        o.job.one_by_one = 1;
+        if (plan_open(&p, b, &a) >= 0) (void)further_columns(&p, a, U, &run);
+        if (n_o) opponent_warm(&o);
+        start = now();
+        for (round = 0; run.fine && round_wanted(b, round, start); round++) {
+            rest();
+            best = hdi_min(best, further_columns(&p, a, U, &run));
+            rest();
+            if (n_o) opponent_turn(&o, round == 0);
+            if (o.fine) best_rival = hdi_min(best_rival, o.best.further);
+        }
+        row_clear(&r, b, "further", 100);
+        row_ours(&r, &a, &run);
+        if (n_o) row_rival(&r, &o);
+        r.seconds = best;
+        r.error = run.fine ? error_of(b, U, R, k) : -1;
+        r.rival_seconds = o.fine ? best_rival : 0;
+        row_print(&r, b);
+        plan_close(&p);
+    }
+    free(R);
+    free(U);
+}
+
+static void job_times(bench *b) {
+    enum { TIMES = 16 };
+    double times[TIMES], *R, *U = answers(b, TIMES);
+    const int32_t row_of = middle(b), vertex = b->lap->vertex[row_of];
+    ask a = ask_column(HD_METHOD_AUTO, times, &vertex);
+    int k;
+    for (k = 0; k < TIMES; k++) times[k] = 10 * pow(1000, k / (TIMES - 1.0)) * b->hh;
+    a.n_times = TIMES;
+    R = reference(b, &a, TIMES);
+    if (R && U) {
+        opponent o = opponent_make(b, SILAN_TIMES, &a, &row_of, R, TIMES);
+        ours best;
+        a.tol = find_tol(b, &a, R, U);
+        contest(b, &a, R, TIMES, U, &best, &o, HAVE_RIVALS);
+        contest_rows(b, "times", &a, &best, &o, HAVE_RIVALS);
+        if (o.fine) printf("%s  rival's windows: %s\n", b->set->csv ? "# " : "", o.best.note);
+    }
+    free(R);
+    free(U);
+}
+
+/* ---- stages ---- */
+
+typedef struct stages {
+    double best[STAGES], total, further, field, batch, flops, nnz, bytes, error;
+} stages;
+
+/* One dense field, and 24 columns at a time, with the factors at hand. */
+static void stages_warm(plan *p, const ask *a, const double *F, double *U, stages *s) {
+    ask more = *a;
+    ours run;
+    double t0 = now();
+    hd_report rep;
+    memset(&run, 0, sizeof run);
+    watch_start(&p->w);
+    if (hd_heat_apply(p->heat, a->times[0], 1, F, 0, U, 0, &rep) >= 0) s->field = hdi_min(s->field, now() - t0);
+    watch_turn(&p->w, STAGE_OTHER);
+    if (p->w.seconds[STAGE_FACTOR] > 0) fprintf(stderr, "bench: a field made new factors\n");
+    p->w.name = NULL;
+    more.n_columns = 24;
+    watch_start(&p->w);
+    plan_run(p, &more, U, &run);
+    if (run.fine && run.stage[STAGE_FACTOR] == 0) s->batch = hdi_min(s->batch, run.total / more.n_columns);
+}
+
+/* Each stage's best of several cold runs. */
+static int stages_run(const bench *b, const ask *a, const double *F, const double *R, double *U, stages *s) {
+    double start = 0;
+    int round, k;
+    memset(s, 0, sizeof *s);
+    for (k = 0; k < STAGES; k++) s->best[k] = 1e30;
+    s->total = s->further = s->field = s->batch = 1e30;
+    for (round = -1; round < 0 || round_wanted(b, round, start); round++) {
+        plan p;
+        ours run;
+        memset(&run, 0, sizeof run);
+        if (round <= 0) start = now();
+        rest();
+        if (plan_open(&p, b, a) >= 0) plan_run(&p, a, U, &run);
+        if (run.fine && round >= 0) {
+            for (k = 0; k < STAGES; k++) s->best[k] = hdi_min(s->best[k], run.stage[k]);
+            s->total = hdi_min(s->total, run.total);
+            s->flops = run.report.factor_flops;
+            s->nnz = (double)run.report.factor_nnz;
+            s->bytes = run.bytes;
+            s->error = error_of(b, U, R, 1);
+            s->further = hdi_min(s->further, further_columns(&p, *a, U, &run));
+            stages_warm(&p, a, F, U, s);
+        }
+        plan_close(&p);
+        if (!run.fine) return 0;
+    }
+    return 1;
+}
+
+static void stages_row(const bench *b, const char *job, const char *what, double seconds, double gflops, double gbytes) {
+    entry r;
+    if (!(seconds > 0) || seconds >= 1e30) return;
+    row_clear(&r, b, job, 0);
+    snprintf(r.ours, sizeof r.ours, "%s", what);
+    r.seconds = seconds;
+    r.gflops = gflops;
+    r.gbytes = gbytes;
+    row_print(&r, b);
+}
+
+/* A dense field reads every non-zero of four complex factors twice. What a column reads going forward depends on where it is. */
+static void stages_print(const bench *b, const ask *a, const stages *s) {
+    entry r;
+    row_clear(&r, b, "stages", a->times[0] / b->hh);
+    snprintf(r.ours, sizeof r.ours, "direct r=%d, one column", (int)a->degree);
+    r.seconds = s->total;
+    r.error = s->error;
+    r.nnz = s->nnz;
+    r.bytes = s->bytes;
+    r.packs = 1;
+    row_print(&r, b);
+    stages_row(b, "  order", "", s->best[STAGE_OTHER] + s->best[STAGE_ORDER], 0, 0);
+    stages_row(b, "  analyse", "", s->best[STAGE_ANALYSE], 0, 0);
+    stages_row(b, "  factor", "four complex", s->best[STAGE_FACTOR], 1e-9 * s->flops / s->best[STAGE_FACTOR], 0);
+    stages_row(b, "  solve", "first column", s->best[STAGE_SOLVE], 0, 0);
+    stages_row(b, "  solve", "further column", s->further, 0, 0);
+    stages_row(b, "  solve", "dense field", s->field, 0, 128e-9 * s->nnz / s->field);
+    stages_row(b, "  solve", "one of 24 columns", s->batch, 0, 0);
+}
+
+static void job_stages(bench *b) {
+    const double t = 100 * b->hh;
+    int32_t rows[24], vertices[24], i;
+    const int k = spread(b, 24, rows, vertices), all = b->threads;
+    ask a = ask_column(HD_METHOD_DIRECT, &t, vertices);
+    double *R = reference(b, &a, 1), *U = answers(b, 24), *F = answers(b, 1);
+    stages s;
+    a.degree = 8;
+    for (i = 0; F && i < b->lap->n; i++) F[i] = 1 + i % 7;
+    if (R && U && F && k == 24) {
+        b->threads = 1;
+        if (stages_run(b, &a, F, R, U, &s)) stages_print(b, &a, &s);
+        b->threads = all;
+        if (all > 1 && stages_run(b, &a, F, R, U, &s)) stages_print(b, &a, &s);
+    }
+    free(R);
+    free(U);
+    free(F);
+}
+
+/* ---- Eigen ---- */
+
+typedef struct real_run { int fine; double analyse, factor, solve, bytes; hd_ldl_report report; } real_run;
+
+/* (B + g L) x = B e_row: our real factor. */
+static void real_solve(const bench *b, double g, int32_t row, double *x, real_run *out) {
+    const hd_csr *L = &b->lap->L;
+    double t0 = now(), t1, t2, *val = (double *)malloc((size_t)L->nnz * sizeof *val);
+    hd_ldl *f = NULL;
+    hd_ldl_opts o;
+    hd_context ctx;
+    int64_t p;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&o, 0, sizeof o);
+    memset(out, 0, sizeof *out);
+    ctx.threads = b->threads;
+    o.context = &ctx;
+    o.xyz = b->lap->xyz;
+    for (p = 0; val && p < L->nnz; p++) val[p] = b->pair.B[p] + g * L->val[p];
+    if (val && hd_ldl_analyse(&f, L, &o, NULL, NULL) >= 0) {
+        t1 = now();
+        out->fine = hd_ldl_factor(f, val, &out->report, NULL) >= 0;
+        t2 = now();
+        memset(x, 0, (size_t)b->pair.n * sizeof *x);
+        for (p = L->row_ptr[row]; p < L->row_ptr[row + 1]; p++) x[L->col[p]] = b->pair.B[p];
+        out->fine = out->fine && hd_ldl_solve(f, 1, x, 0, x, 0, NULL) >= 0;
+        out->solve = now() - t2;
+        out->factor = t2 - t1;
+        out->analyse = t1 - t0;
+        out->bytes = (double)ctx.bytes_peak + 8.0 * (double)L->nnz;
+    }
+    hd_ldl_free(f);
+    free(val);
+}
+
+static void real_best(real_run *best, const real_run *r, int first) {
+    if (first || r->analyse + r->factor + r->solve < best->analyse + best->factor + best->solve) *best = *r;
+}
+
+static void real_rows(const bench *b, const real_run *mine, const rival_result *theirs, double difference) {
+    static const char *const names[] = {"eigen", "  order + analyse", "  factor", "  solve"};
+    const double m[] = {mine->analyse + mine->factor + mine->solve, mine->analyse, mine->factor, mine->solve};
+    const double t[] = {theirs->total, theirs->analyse, theirs->factor, theirs->first};
+    int k;
+    for (k = 0; k < 4; k++) {
+        entry r;
+        row_clear(&r, b, names[k], 0);
+        r.seconds = m[k];
+        r.rival_seconds = t[k];
+        if (k == 0) {
+            snprintf(r.ours, sizeof r.ours, "real LDL'%s", ordering_name(mine->report.ordering));
+            snprintf(r.rival, sizeof r.rival, "SimplicialLDLT amd");
+            r.error = difference;
+            r.nnz = (double)mine->report.factor_nnz;
+            r.bytes = mine->bytes;
+            r.rival_nnz = theirs->nnz;
+            r.rival_bytes = theirs->bytes;
+        }
+        if (k == 2) r.gflops = 1e-9 * mine->report.factor_flops / m[k];
+        if (k == 3) r.gbytes = 16e-9 * (double)mine->report.factor_nnz / m[k];
+        row_print(&r, b);
+    }
+}
+
+/* Solving with B + 10 h^2 L; Eigen has one thread, so have we. The error is the difference between the two solutions. */
+static void eigen_real(bench *b) {
+    const double t = 100 * b->hh, g = 0.1 * t;
+    const int32_t row_of = middle(b), vertex = b->lap->vertex[row_of], all = b->threads;
+    const ask a = ask_column(HD_METHOD_KRYLOV, &t, &vertex);
+    double *x = answers(b, 1), *y = answers(b, 1), start, e = 0, m = 0;
+    opponent o = opponent_make(b, SILAN, &a, &row_of, NULL, 0);
+    real_run best, run;
+    rival_result theirs, r;
+    int32_t i;
+    int round;
+    b->threads = o.job.threads = 1;
+    if (x && y) {
+        real_solve(b, g, row_of, x, &best);
+        if (best.fine && rival_eigen_ldlt(&o.job, y, &theirs)) {
+            for (i = 0; i < b->pair.n; i++) {
+                e = hdi_max(e, fabs(x[i] - y[i]));
+                m = hdi_max(m, fabs(y[i]));
+            }
+            start = now();
+            for (round = 0; round_wanted(b, round, start); round++) {
+                real_solve(b, g, row_of, x, &run);
+                real_best(&best, &run, round == 0);
+                if (rival_eigen_ldlt(&o.job, NULL, &r) && (round == 0 || r.total < theirs.total)) theirs = r;
+            }
+            real_rows(b, &best, &theirs, e / m);
+        }
+    }
+    b->threads = all;
+    free(x);
+    free(y);
+}
+
+static void job_eigen(bench *b) {
+    const double t = 100 * b->hh;
+    const int32_t row_of = middle(b), vertex = b->lap->vertex[row_of];
+    ask a = ask_column(HD_METHOD_DIRECT, &t, &vertex);
+    double *R, *U;
+    if (!HAVE_RIVALS || (b->pair.n > EIGEN_ROWS && !b->set->asked)) return;
+    eigen_real(b);
+    R = reference(b, &a, 1);
+    U = answers(b, 1);
+    if (R && U) {
+        opponent o[2];
+        ours best;
+        o[0] = opponent_make(b, EIGEN_LU, &a, &row_of, R, 1);
+        o[1] = opponent_make(b, UMFPACK, &a, &row_of, R, 1);
+        contest(b, &a, R, 1, U, &best, o, umfpack_fits(b) ? 2 : 1);
+        contest_rows(b, "one, by poles", &a, &best, o, umfpack_fits(b) ? 2 : 1);
+    }
+    free(R);
+    free(U);
+}
+
+/* ==== meshes ==== */
+
+enum { JOB_ONE = 1, JOB_SMALL = 2, JOB_COLUMNS = 4, JOB_FURTHER = 8, JOB_TIMES = 16, JOB_STAGES = 32, JOB_EIGEN = 64, JOB_ALL = 127 };
+
+static void bench_open(bench *b, const settings *set, const char *mesh, const hd_laplacian *lap, int32_t threads, const double *peak) {
+    const hd_csr *L = &lap->L;
+    int32_t i;
+    int64_t p;
+    memset(b, 0, sizeof *b);
+    b->set = set;
+    b->mesh = mesh;
+    b->mass = lap->B ? "fem" : "voronoi-cot";
+    b->lap = lap;
+    b->threads = threads;
+    b->hh = lap->h * lap->h;
+    b->peak[0] = peak[0];
+    b->peak[1] = peak[1];
+    if (!lap->B) b->own_B = (double *)calloc((size_t)L->nnz, sizeof *b->own_B);
+    for (i = 0; b->own_B && i < lap->n_active; i++)
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
+            if (L->col[p] == i) b->own_B[p] = lap->mass[i];
+    b->pair.n = lap->n_active;
+    b->pair.ptr = L->row_ptr;
+    b->pair.col = L->col;
+    b->pair.L = L->val;
+    b->pair.B = lap->B ? lap->B : b->own_B;
+}
+
+static void bench_pair(const settings *set, const char *mesh, const hd_laplacian *lap, int32_t threads, const double *peak) {
+    bench b;
+    bench_open(&b, set, mesh, lap, threads, peak);
+    if (!set->csv) {
+        printf("\n%s, %s: %d rows, %lld non-zeros, %d thread%s\n", mesh, b.mass, (int)lap->n_active, (long long)lap->L.nnz, (int)threads, threads > 1 ? "s" : "");
+        table_head(&b);
+    }
+    if (b.pair.B && lap->B) {
+        if (set->jobs & JOB_ONE) job_one(&b);
+        if (set->jobs & JOB_SMALL) job_small(&b);
+        if (set->jobs & JOB_COLUMNS) job_columns(&b);
+        if (set->jobs & JOB_FURTHER) job_further(&b);
+        if (set->jobs & JOB_TIMES) job_times(&b);
+        if (set->jobs & JOB_STAGES) job_stages(&b);
+        if (set->jobs & JOB_EIGEN) job_eigen(&b);
+    } else if (b.pair.B) {
+        job_small(&b);
+    }
+    free(b.own_B);
+}
+
+static void bench_mesh(const settings *set, const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const double *peak) {
+    static const hd_laplacian_kind kinds[] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT};
+    int k, q;
+    for (k = 0; k < 2; k++) {
+        hd_laplacian *lap = NULL;
+        hd_laplacian_opts o;
+        hd_error e;
+        memset(&o, 0, sizeof o);
+        o.kind = kinds[k];
+        if (k == 1 && !(set->jobs & JOB_SMALL)) break;
+        if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, &e) < 0) {
+            fprintf(stderr, "bench: %s: %s\n", name, e.text);
+            return;
+        }
+        for (q = 0; q < set->n_threads; q++) bench_pair(set, name, lap, set->threads[q], peak + 2 * q);
+        hd_laplacian_free(lap);
+    }
+}
+
+/* A mesh from a file, for the parts (set NULL) or for the contests. */
+static int bench_file(const settings *set, const char *path, const double *peak) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     mio_mesh mesh;
     mio_error e;
     int32_t *tri = NULL, *face = NULL, n_tri = 0;
     double t0 = now();
     if (mio_load(&mesh, path, NULL, &e) < 0) {
         fprintf(stderr, "bench: %s\n", e.text);
-        return;
+        return 0;
     }
-    printf("%s: loaded in %.1f ms\n", path, 1e3 * (now() - t0));
-    if (mio_triangulate(&mesh, &tri, &n_tri, &face, &e) >= 0) bench_mesh(path, mesh.xyz, mesh.n, tri, n_tri);
+    if (!set) printf("%s: loaded in %.1f ms\n", path, 1e3 * (now() - t0));
+    if (mio_triangulate(&mesh, &tri, &n_tri, &face, &e) >= 0) {
+        if (set) bench_mesh(set, name, mesh.xyz, mesh.n, tri, n_tri, peak);
+        else parts_mesh(path, mesh.xyz, mesh.n, tri, n_tri);
+    }
     free(tri);
     free(face);
     mio_free(&mesh);
+    return 1;
+}
+
+static void bench_shape(const settings *set, const char *name, shape s, const double *peak) {
+    if (set) bench_mesh(set, name, s.xyz, s.n, s.tri, s.n_tri, peak);
+    else parts_mesh(name, s.xyz, s.n, s.tri, s.n_tri);
+    shape_free(&s);
+}
+
+/* ==== main ==== */
+
+static int usage(const char *what) {
+    if (what) fprintf(stderr, "bench: %s\n", what);
+    fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--csv] [MESH ...]\n"
+                    "       bench parts [MESH ...]\n"
+                    "  --threads 1,2   numbers of threads, one after another; default: all\n"
+                    "  --jobs LIST     of one,small,columns,further,times,stages,eigen; default: all\n"
+                    "  --columns K     columns of the job of that name, default 100\n"
+                    "  --seconds S     rounds of a contest begin within S seconds, at least two; default 10\n"
+                    "  --umfpack       UMFPACK also above 300000 rows\n"
+                    "  --csv           commas, all digits, seconds and bytes\n");
+    return 2;
+}
+
+/* 1,2,4 -> threads */
+static int parse_threads(settings *set, const char *s) {
+    char *end;
+    for (set->n_threads = 0; set->n_threads < 16; s = end + 1) {
+        const long k = strtol(s, &end, 10);
+        if (end == s || k < 1 || k > 256) return 0;
+        set->threads[set->n_threads++] = HDI_OPENMP ? (int32_t)k : 1;
+        if (!HDI_OPENMP && k > 1) fprintf(stderr, "bench: compiled without OpenMP: one thread, for the rivals too\n");
+        if (*end != ',') return *end == 0;
+    }
+    return 0;
+}
+
+static int parse_jobs(settings *set, const char *s) {
+    static const char *const names[] = {"one", "small", "columns", "further", "times", "stages", "eigen"};
+    for (set->jobs = 0; *s;) {
+        const size_t len = strcspn(s, ",");
+        int k;
+        for (k = 0; k < 7 && (strlen(names[k]) != len || strncmp(s, names[k], len)); k++) {}
+        if (k == 7) return 0;
+        set->jobs |= 1 << k;
+        s += len + (s[len] == ',');
+    }
+    set->asked = 1;
+    return set->jobs != 0;
+}
+
+/* Peaks for each number of threads, printed. */
+static void measure_machine(const settings *set, double *peak) {
+    const int64_t n = (int64_t)1 << 25;
+    const int simd = HDI_X86 ? hdi_simd_best() : 0;
+    const char *mark = set->csv ? "# " : "";
+    double *x = (double *)malloc((size_t)n * sizeof *x);
+    rival_machine_result m;
+    int64_t i;
+    int q;
+    for (i = 0; x && i < n; i++) x[i] = 1;
+    memset(&m, 0, sizeof m);
+    m.blas = "";
+    for (q = 0; q < set->n_threads; q++) {
+        double *p = peak + 2 * q, read[2];
+        p[0] = simd ? load_speed(1, simd, NULL, 0) : 0;
+        p[1] = simd ? load_speed(set->threads[q], simd, NULL, 0) : 0;
+        read[0] = x ? load_speed(1, 0, x, n) : 0;
+        read[1] = x ? load_speed(set->threads[q], 0, x, n) : 0;
+        if (HAVE_RIVALS) rival_machine(set->threads[q], &m);
+        p[0] = hdi_max(p[0], m.peak_1);
+        p[1] = hdi_max(p[1], m.peak_n);
+        read[0] = hdi_max(read[0], m.read_1);
+        read[1] = hdi_max(read[1], m.read_n);
+        printf("%smachine: %s, %.1f GF/s and %.1f GB/s read on 1 thread, %.1f and %.1f on %d%s%s\n", mark, simd > 1 ? "AVX-512" : simd ? "AVX2" : "plain C", p[0],
+               read[0], p[1], read[1], (int)set->threads[q], m.blas[0] ? "; OpenBLAS: " : "", m.blas);
+    }
+    free(x);
+}
+
+static int parse(settings *set, int argc, char **argv, int *first) {
+    int i;
+    for (i = 1; i < argc && argv[i][0] == '-'; i++) {
+        const char *s = argv[i], *next = i + 1 < argc ? argv[i + 1] : "";
+        if (!strcmp(s, "--csv")) set->csv = 1;
+        else if (!strcmp(s, "--umfpack")) set->umfpack = 1;
+        else if (!strcmp(s, "--threads") && parse_threads(set, next)) i++;
+        else if (!strcmp(s, "--jobs") && parse_jobs(set, next)) i++;
+        else if (!strcmp(s, "--columns") && (set->columns = atoi(next)) > 0 && set->columns <= MOST_COLUMNS) i++;
+        else if (!strcmp(s, "--seconds") && (set->seconds = atof(next)) > 0) i++;
+        else return 0;
+    }
+    *first = i;
+    return 1;
+}
+
+static int bench_parts(int argc, char **argv) {
+    int i, fine = 1;
+    printf("memcpy of 256 MB: %.1f GB/s, read and written counted\n", 1e-9 * copy_speed(256000000));
+    for (i = 2; i < argc; i++) fine &= bench_file(NULL, argv[i], NULL);
+    if (argc == 2) {
+        bench_shape(NULL, "torus", shape_torus(1000, 500, 1, 0.4), NULL);
+        bench_shape(NULL, "bumpy", shape_bumpy(7, 1), NULL);
+    }
+    return fine ? 0 : 1;
 }
 
 int main(int argc, char **argv) {
-    int i;
-    printf("memcpy of 256 MB: %.1f GB/s, read and written counted\n", 1e-9 * copy_speed(256000000));
-    for (i = 1; i < argc; i++) bench_file(argv[i]);
-    if (argc == 1) {
-        shape s = shape_torus(1000, 500, 1, 0.4);
-        bench_mesh("torus", s.xyz, s.n, s.tri, s.n_tri);
-        shape_free(&s);
-        s = shape_bumpy(7, 1);
-        bench_mesh("bumpy", s.xyz, s.n, s.tri, s.n_tri);
-        shape_free(&s);
+    settings set;
+    double peak[32];
+    int i, first, fine = 1;
+    if (argc > 1 && !strcmp(argv[1], "parts")) return bench_parts(argc, argv);
+    memset(&set, 0, sizeof set);
+    set.jobs = JOB_ALL;
+    set.columns = 100;
+    set.seconds = 10;
+    set.n_threads = 1;
+#if HDI_OPENMP
+    set.threads[0] = omp_get_max_threads();
+#else
+    set.threads[0] = 1;
+#endif
+    if (!parse(&set, argc, argv, &first)) return usage(argc > 1 && strcmp(argv[1], "--help") ? "an argument is not understood" : NULL);
+    if (!HAVE_RIVALS) printf("%sbuilt without rivals: times and errors of ours alone\n", set.csv ? "# " : "");
+    measure_machine(&set, peak);
+    if (set.csv)
+        printf("mesh,mass,rows,job,t_over_h2,threads,ours,seconds,rival,rival_seconds,ratio,error,rival_error,gflops,peak_share,gbytes,nnz,bytes,"
+               "bytes_per_64nnz,rival_nnz,rival_bytes\n");
+    for (i = first; i < argc; i++) fine &= bench_file(&set, argv[i], peak);
+    if (first == argc) {
+        bench_shape(&set, "torus", shape_torus(250, 200, 1, 0.4), peak);
+        bench_shape(&set, "bumpy", shape_bumpy(7, 1), peak);
     }
-    return 0;
+    return fine ? 0 : 1;
 }

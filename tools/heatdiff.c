@@ -1452,14 +1452,13 @@ static int solve_input(run *r, const time_group *g, int q, hd_report *report)
 }
 
 /* One input after the other, each at all times, is for the krylov method; all inputs together, one time after the other, for the others. Left
- * to choose, few times with many inputs are not for krylov: about here the factors of the poles, one set a time, cost less (measured with
- * meshes of 5K to 150K vertices). */
+ * to choose, the factors of the poles, made anew for each time, cost less from about as many inputs as times on (meshes of 12K, 35K and 150K
+ * vertices: from 2 to 5 inputs with 4 times, from 8 to 15 with 10), and never with many times. */
 static int time_by_time(const run *r, int n_times)
 {
     const options *o = r->o;
     if (o->method != HD_METHOD_AUTO) return o->method != HD_METHOD_KRYLOV;
-    if (o->solver || o->precond || o->degree || o->poles) return 1;
-    return n_times < 10 && r->n_inputs >= 2 * n_times * n_times;
+    return o->solver || o->precond || o->degree || o->poles || (n_times <= 16 && r->n_inputs >= n_times);
 }
 
 /* Where the library is left to choose, its choice for the first input tells how to go on with the others. */
