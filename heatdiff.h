@@ -7960,7 +7960,7 @@ static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, size_t stride, h
 }
 
 /* Right-hand sides at a time: at most, by iterations, and in a batch through the factors of poles. */
-enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 6, HDI_BATCHES = 4 };
+enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 8, HDI_BATCHES = 3, HDI_CHECK_MOST = 4 };
 
 enum { HDI_LANCZOS_MAX = 4096 };
 
@@ -8510,9 +8510,9 @@ static size_t hdi_batch_size(const hdi_elim *m, int32_t k, size_t *x, size_t *xr
 /* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has its solution at x + 8 at[q]. */
 static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const int32_t *at, int32_t k, const double *x, int64_t stride) {
     const int32_t left = m->set.n_poles - (m->lone + 1 + 4 * i), n_here = left < 4 ? left : 4;
-    hdi_check c[HDI_LANES_BATCH], *list[HDI_LANES_BATCH] = {NULL};
+    hdi_check c[HDI_CHECK_MOST], *list[HDI_CHECK_MOST] = {NULL};
     int32_t r;
-    int q, together = k <= HDI_LANES_BATCH;
+    int q, together = 1;
     for (r = 0; r < k; r++) {
         hdi_check *h = list[r] = c + r;
         memset(h, 0, sizeof *h);
@@ -8630,7 +8630,8 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         z = hdi_sweep_open(m->pack + i, k, b->x, b->work, ctx != NULL);
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
-        hdi_batch_pack(m, i, list, at, n_list, b->x, HDI_PACK * HDI_CAST(int64_t, k));
+        for (r = 0; r < n_list; r += HDI_CHECK_MOST)
+            hdi_batch_pack(m, i, list + r, at + r, n_list - r < HDI_CHECK_MOST ? n_list - r : HDI_CHECK_MOST, b->x, HDI_PACK * HDI_CAST(int64_t, k));
     }
 }
 
@@ -10324,14 +10325,14 @@ static void hdi_heat_batch_task(void *arg, int64_t index, int32_t worker) {
 /* Lanes, the pole set and its factors. */
 static hd_status hdi_direct_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const size_t n = HDI_CAST(size_t, h->lap->n_active), most = 4 * HDI_CAST(size_t, heat->elim.sym.stored);
+    const size_t n = HDI_CAST(size_t, h->lap->n_active), most = 8 * HDI_CAST(size_t, heat->elim.sym.stored);
     size_t x, xr, size;
     hd_rational set;
     int32_t i;
     h->batch_width = h->k < HDI_LANES_BATCH ? h->k : HDI_LANES_BATCH;
     size = hdi_batch_size(&heat->elim, h->batch_width, &x, &xr);
     h->n_batches = (h->k + h->batch_width - 1) / h->batch_width;
-    if (h->n_batches > HDI_BATCHES) h->n_batches = HDI_BATCHES;   /* as many as take no more than half of a pack */
+    if (h->n_batches > HDI_BATCHES) h->n_batches = HDI_BATCHES;   /* as many as take no more than a pack */
     while (h->n_batches > 1 && HDI_CAST(size_t, h->n_batches) * (size + 7 * n * HDI_CAST(size_t, h->batch_width)) > most) h->n_batches--;
     h->n_lanes = h->n_batches * h->batch_width < h->k ? h->n_batches * h->batch_width : h->k;
     for (i = 0; i < h->n_lanes; i++)
