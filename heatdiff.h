@@ -39,7 +39,7 @@
    Contents
      declarations    [B] base  [C] options and reports  [D] functions
      implementation  [00] platform  [01] scalar  [02] error  [03] memory  [04] context  [05] arrays  [06] dense
-                     [07] sparse  [09] geometry  [10] operators  [11] symbolic  [14] precond  [15] krylov
+                     [07] sparse  [09] geometry  [10] operators  [11] symbolic  [12] direct  [14] precond  [15] krylov
                      [16] rational  [17] shifted  [18] heat  [21] api  [22] closing
      Rooms are numbered from the bottom up; each calls only those above it in the file.
 
@@ -52,6 +52,8 @@
                                beside the implementation: both or none; what contexts without an allocator use
      HEATDIFF_NO_OPENMP        beside the implementation: no OpenMP even when compiled with it
      HEATDIFF_NO_SIMD          beside the implementation: plain C only, no kernels for AVX2 and AVX-512
+     HEATDIFF_USE_BLAS         beside the implementation: dgemm of a BLAS (32-bit integers) for the large fronts of real factors where only plain C
+                               kernels are to be had (it is twice as fast there; those for AVX2 and AVX-512 are faster than OpenBLAS)
      HEATDIFF_NO_LARGE_PAGES   beside the implementation: no madvise for large pages on Linux
      No macro changes a public type or prototype.
 
@@ -612,11 +614,21 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 #endif
 #define HDI_PACK_CLONE static HDI_INLINE   /* bodies that are compiled for several instruction sets */
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"   /* of GCC's own avx512fintrin.h, which means it */
+#endif
+
 #ifdef __cplusplus
 #define HDI_CAST(type, x) static_cast<type>(x)
 extern "C" {
 #else
 #define HDI_CAST(type, x) ((type)(x))
+#endif
+
+#ifdef HEATDIFF_USE_BLAS
+void dgemm_(const char *ta, const char *tb, const int *m, const int *n, const int *k, const double *alpha, const double *a, const int *lda,
+            const double *b, const int *ldb, const double *beta, double *c, const int *ldc);
 #endif
 
 /* ==== [01] scalar ====
@@ -654,6 +666,7 @@ static double hdi_pythag(double a, double b) {
 
 static double hdi_max(double a, double b) { return a > b ? a : b; }
 static double hdi_min(double a, double b) { return a < b ? a : b; }
+static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
 
 /* *out = a * b + c; 0 if that does not fit. */
 static int hdi_size(size_t a, size_t b, size_t c, size_t *out) {
@@ -2245,21 +2258,25 @@ static HDI_AVX512 void hdi_r512_upper8(double *x, const double *L, int64_t ld, i
 
 /* ---- choice of the instruction set ---- */
 
+static const hdi_real_ops *hdi_real_ops_plain(void) {
+    static const hdi_real_ops hdi_plain_ops = {4, 4, hdi_r128_pack, hdi_r128_copy, hdi_r128_block, hdi_r128_rows, hdi_r128_gemm, hdi_r128_update,
+        hdi_r128_add, hdi_r128_forward, hdi_r128_backward, hdi_r128_gather, hdi_r128_gemv8, hdi_r128_dots8, hdi_r128_lower8, hdi_r128_upper8};
+    return &hdi_plain_ops;
+}
+
 /* Never NULL: a level that was not compiled gives the plain kernels. */
 static const hdi_real_ops *hdi_real_ops_get(int level) {
-    static const hdi_real_ops plain = {4, 4, hdi_r128_pack, hdi_r128_copy, hdi_r128_block, hdi_r128_rows, hdi_r128_gemm, hdi_r128_update,
-        hdi_r128_add, hdi_r128_forward, hdi_r128_backward, hdi_r128_gather, hdi_r128_gemv8, hdi_r128_dots8, hdi_r128_lower8, hdi_r128_upper8};
 #if HDI_X86
-    static const hdi_real_ops avx2 = {12, 4, hdi_r256_pack, hdi_r256_copy, hdi_r256_block, hdi_r256_rows, hdi_r256_gemm, hdi_r256_update,
+    static const hdi_real_ops hdi_avx2_ops = {12, 4, hdi_r256_pack, hdi_r256_copy, hdi_r256_block, hdi_r256_rows, hdi_r256_gemm, hdi_r256_update,
         hdi_r256_add, hdi_r256_forward, hdi_r256_backward, hdi_r256_gather, hdi_r256_gemv8, hdi_r256_dots8, hdi_r256_lower8, hdi_r256_upper8};
     /* One right-hand side is bound by memory, and runs are short: four lanes were measured as fast as eight, or faster. */
-    static const hdi_real_ops avx512 = {24, 8, hdi_r512_pack, hdi_r512_copy, hdi_r512_block, hdi_r512_rows, hdi_r512_gemm, hdi_r512_update,
+    static const hdi_real_ops hdi_avx512_ops = {24, 8, hdi_r512_pack, hdi_r512_copy, hdi_r512_block, hdi_r512_rows, hdi_r512_gemm, hdi_r512_update,
         hdi_r256_add, hdi_r256_forward, hdi_r256_backward, hdi_r256_gather, hdi_r512_gemv8, hdi_r512_dots8, hdi_r512_lower8, hdi_r512_upper8};
-    if (level >= 2) return &avx512;
-    if (level == 1) return &avx2;
+    if (level >= 2) return &hdi_avx512_ops;
+    if (level == 1) return &hdi_avx2_ops;
 #endif
     (void)level;
-    return &plain;
+    return hdi_real_ops_plain();
 }
 
 
@@ -2327,6 +2344,37 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
     return -1;
 }
 
+#ifdef HEATDIFF_USE_BLAS
+/* hdi_real_update by the BLAS' dgemm, in blocks of 128 rows and 256 columns, for fronts that are worth the calls. Update of 1000 rows by 500 pivots on one core:
+ * plain C 22 GF/s, OpenBLAS 0.3.21 40 (58 when told to use AVX-512), our AVX2 kernels 62, AVX-512 115: so only plain C gives way to it. */
+enum { HDI_BLAS_LEAST = 128, HDI_BLAS_ROWS = 128, HDI_BLAS_COLS = 256 };
+
+static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work, int64_t r0, int64_t r1) {
+    double *S = work, *C = work + HDI_BLAS_COLS * HDI_REAL_KC;
+    const int ld = HDI_CAST(int, m), ld_s = HDI_BLAS_COLS, ld_c = HDI_BLAS_ROWS;
+    const double one = 1, zero = 0;
+    int64_t g, i, j, r;
+    int32_t k, q;
+    for (g = 0; g < r1; g += HDI_BLAS_COLS) {
+        const int cols = HDI_CAST(int, r1 - g < HDI_BLAS_COLS ? r1 - g : HDI_BLAS_COLS);
+        for (k = 0; k < p; k += HDI_REAL_KC) {
+            const int depth = p - k < HDI_REAL_KC ? p - k : HDI_REAL_KC;
+            for (q = 0; q < depth; q++)
+                for (j = 0; j < cols; j++) S[j + q * HDI_BLAS_COLS] = P[p + g + j + (k + q) * m] * P[(k + q) * (m + 1)];
+            for (r = r0 > g ? r0 : g; r < r1; r += HDI_BLAS_ROWS) {
+                const int rows = HDI_CAST(int, r1 - r < HDI_BLAS_ROWS ? r1 - r : HDI_BLAS_ROWS);
+                dgemm_("N", "T", &rows, &cols, &depth, &one, P + p + r + k * m, &ld, S, &ld_s, &zero, C, &ld_c);
+                for (j = 0; j < cols; j++) {
+                    const int64_t c = g + j;
+                    double *to = U + (c * u - c * (c - 1) / 2 - c);
+                    for (i = r > c ? r : c; i < r + rows; i++) to[i] -= C[i - r + j * HDI_BLAS_ROWS];
+                }
+            }
+        }
+    }
+}
+#endif
+
 /* Rows r0..r1-1 of U -= L21 D L21', columns as far as the diagonal. work [HDI_REAL_WORK]. */
 static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work, int64_t r0,
                             int64_t r1) {
@@ -2334,6 +2382,12 @@ static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const d
     double *B = work, *copy = work + HDI_REAL_KC * HDI_REAL_NC, *d = copy + HDI_REAL_KC * HDI_REAL_MR;
     int64_t g, i;
     int32_t k, q;
+#ifdef HEATDIFF_USE_BLAS
+    if (o == hdi_real_ops_plain() && u >= HDI_BLAS_LEAST && p >= HDI_BLAS_LEAST) {
+        hdi_blas_update(U, u, P, m, p, work, r0, r1);
+        return;
+    }
+#endif
     for (g = 0; g < r1; g += HDI_REAL_NC) {
         const int64_t g1 = r1 - g < HDI_REAL_NC ? r1 : g + HDI_REAL_NC;
         for (k = 0; k < p; k += HDI_REAL_KC) {
@@ -2351,21 +2405,6 @@ static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const d
             }
         }
     }
-}
-
-/* A whole front by one thread. S [hdi_real_s_size(p)], work [HDI_REAL_WORK]; U may be NULL when m = p. Returns as hdi_real_block. */
-static int64_t hdi_real_front(const hdi_real_ops *o, double *P, int64_t m, int32_t p, double *U, double *dinv, double *S, double *work,
-                              hdi_real_pivots *pivots) {
-    int32_t k, nb;
-    for (k = 0; k < p; k += nb) {
-        int64_t bad;
-        nb = p - k < HDI_REAL_NB ? p - k : HDI_CAST(int32_t, HDI_REAL_NB);
-        bad = hdi_real_block(o, P, m, k, nb, p <= HDI_REAL_NB ? m : k + nb, S, dinv, pivots, work);
-        if (bad >= 0) return bad;
-        if (k + nb < m && p > HDI_REAL_NB) hdi_real_rows(o, P, m, k, nb, S, k + nb, dinv, k + nb, m, work);
-    }
-    if (m > p) hdi_real_update(o, U, m - p, P, m, p, work, 0, m - p);
-    return -1;
 }
 
 /* The child's packed update, columns c0..c1-1, added to the parent's front: (i,j) goes to (rel[i], rel[j]), rel ascending. Different columns
@@ -2402,18 +2441,6 @@ static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t
 
 /* ---- solves ---- */
 
-/* x1 = L11^-1 x1, x[idx] -= L21 x1. x1 = x + first pivot. t [m - p]. */
-static void hdi_real_forward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, double *x1, double *x, const int32_t *idx, double *t) {
-    const int64_t u = m - p;
-    int64_t i;
-    int32_t k;
-    for (k = 0; k < p; k += 8) {
-        const int32_t nc = p - k < 8 ? p - k : 8;
-        o->forward(x1 + k, P + k + k * m, m, nc, p - k - nc, t, u, k == 0);
-    }
-    for (i = 0; i < u; i++) x[idx[i]] += t[i];
-}
-
 /* x1 = L11^-T (dinv x1 - L21' x[idx]). t [m - p]. dinv may be NULL: ones. */
 static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, const double *dinv, double *x1, const double *x,
                               const int32_t *idx, double *t) {
@@ -2428,16 +2455,6 @@ static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m,
 }
 
 /* The same for eight right-hand sides, x row-major [.][8]. */
-static void hdi_real_forward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, double *x1, double *x, const int32_t *idx) {
-    int32_t k;
-    for (k = 0; k < p; k += 8) {
-        const int32_t nc = p - k < 8 ? p - k : 8;
-        if (k) o->gemv8(x1 + 8 * k, NULL, P + k, m, nc, x1, k);
-        o->lower8(x1 + 8 * k, P + k + k * m, m, nc);
-    }
-    if (m > p) o->gemv8(x, idx, P + p, m, m - p, x1, p);
-}
-
 static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, const double *dinv, double *x1, const double *x,
                                const int32_t *idx) {
     int32_t k, j;
@@ -2985,15 +3002,15 @@ typedef struct hdi_pack_ops {
 
 /* level 0: plain C, 1: AVX2, 2: AVX-512 */
 static const hdi_pack_ops *hdi_pack_ops_get(int level) {
-    static const hdi_pack_ops plain = {hdi_pack_multiply_c, hdi_pack_solve_rows_c, hdi_pack_scale_c, hdi_pack_add_c, hdi_pack_forward_c, hdi_pack_backward_c};
+    static const hdi_pack_ops hdi_plain_ops = {hdi_pack_multiply_c, hdi_pack_solve_rows_c, hdi_pack_scale_c, hdi_pack_add_c, hdi_pack_forward_c, hdi_pack_backward_c};
 #if HDI_X86
-    static const hdi_pack_ops avx2 = {hdi_pack_multiply_2, hdi_pack_solve_rows_2, hdi_pack_scale_2, hdi_pack_add_2, hdi_pack_forward_2, hdi_pack_backward_2};
-    static const hdi_pack_ops avx512 = {hdi_pack_multiply_512, hdi_pack_solve_rows_512, hdi_pack_scale_512, hdi_pack_add_512, hdi_pack_forward_512, hdi_pack_backward_512};
-    if (level > 1) return &avx512;
-    if (level == 1) return &avx2;
+    static const hdi_pack_ops hdi_avx2_ops = {hdi_pack_multiply_2, hdi_pack_solve_rows_2, hdi_pack_scale_2, hdi_pack_add_2, hdi_pack_forward_2, hdi_pack_backward_2};
+    static const hdi_pack_ops hdi_avx512_ops = {hdi_pack_multiply_512, hdi_pack_solve_rows_512, hdi_pack_scale_512, hdi_pack_add_512, hdi_pack_forward_512, hdi_pack_backward_512};
+    if (level > 1) return &hdi_avx512_ops;
+    if (level == 1) return &hdi_avx2_ops;
 #endif
     (void)level;
-    return &plain;
+    return &hdi_plain_ops;
 }
 
 /* ==== [07] sparse ====
@@ -4896,7 +4913,7 @@ static uint64_t hdi_nd_key(double x) {
 /* Values along which the vertices are swept, as keys to sort by: 0 the longest straight line, 1 graph distance, others fixed directions. 0 if all
  * are equal. work [3 g->n]. */
 static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key, int32_t *work) {
-    static const signed char direction[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+    static const signed char hdi_nd_direction[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
     int32_t v, a, b, *da = work, *db = work + g->n, *queue = work + 2 * g->n;
     int differ = 0;
     double d[3] = {0, 0, 0};
@@ -4910,7 +4927,7 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
         pa = hdi_nd_place(nd, g, a);
         pb = hdi_nd_place(nd, g, hdi_nd_farthest(nd, g, pa));
         for (v = 0; v < 3; v++) d[v] = HDI_CAST(double, pb[v]) - HDI_CAST(double, pa[v]);
-    } else for (v = 0; v < 3; v++) d[v] = direction[(kind - 2) % 9][v];
+    } else for (v = 0; v < 3; v++) d[v] = hdi_nd_direction[(kind - 2) % 9][v];
     for (v = 0; v < g->n; v++) {
         const float *x = hdi_nd_place(nd, g, v);
         key[v].key = hdi_nd_key(kind == 1 ? HDI_CAST(double, da[v] - db[v])
@@ -6215,27 +6232,32 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
  * set that is soon, for one real factor and some solves late. */
 enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_REAL_FROM = 250000 };
 
+static hd_status hdi_sym_check(const int32_t *perm, int32_t n, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    char *seen = HDI_CAST(char *, hdi_take_zero(&s, HDI_CAST(size_t, n) + 1, 1));
+    int32_t i;
+    for (i = 0; seen && i < n && !e->status; i++) {
+        if (perm[i] < 0 || perm[i] >= n || seen[perm[i]]) hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, perm[i]);
+        else seen[perm[i]] = 1;
+    }
+    return hdi_scope_end(&s);
+}
+
 /* An elimination order of a symmetric pattern, of the given kind or by size (dissect_from). xyz may be NULL; own with HD_ORDERING_OWN. chosen: the kind. */
 static hd_status hdi_sym_order(const hd_csr *a, const double *xyz, hd_ordering kind, int32_t dissect_from, const int32_t *own, int32_t *perm, int32_t *chosen, hd_context *ctx,
                                hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
-    char *seen;
-    int32_t i;
+    hdi_error_clear(e);
     if (kind == HD_ORDERING_AUTO) kind = xyz && n >= dissect_from ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_MINIMUM_DEGREE;
-    *chosen = kind;
+    *chosen = HDI_CAST(int32_t, kind);
     if (hdi_progress(ctx, "order", 0, e) < 0) return e->status;
     if (kind == HD_ORDERING_MINIMUM_DEGREE) return hdi_sym_minimum_degree(a, perm, ctx, e);
     if (kind == HD_ORDERING_NESTED_DISSECTION)
         return xyz ? hdi_sym_nested_dissection(a, xyz, perm, ctx, e) : hdi_fail(e, HD_ERR_ARGUMENT, "ordering: nested dissection needs coordinates");
     if (kind != HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: unknown kind");
     if (!own && n > 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
-    seen = HDI_CAST(char *, hdi_take_zero(&s, HDI_CAST(size_t, n) + 1, 1));
-    for (i = 0; seen && i < n && !e->status; i++) {
-        if (own[i] < 0 || own[i] >= n || seen[own[i]]) hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, own[i]);
-        else seen[perm[i] = own[i]] = 1;
-    }
-    return hdi_scope_end(&s);
+    memcpy(perm, own, HDI_CAST(size_t, n) * sizeof *perm);
+    return hdi_sym_check(own, n, ctx, e);
 }
 
 /* ==== [12] direct ====
@@ -6344,7 +6366,7 @@ typedef struct hdi_pack_block { double *at; int64_t begin, width, row; } hdi_pac
 static hdi_pack_block hdi_pack_block_of(double *panel, int64_t m, int64_t p, int64_t q) {
     hdi_pack_block b;
     b.begin = q * HDI_PANEL;
-    b.width = p - b.begin < HDI_PANEL ? p - b.begin : HDI_PANEL;
+    b.width = hdi_least(p - b.begin, HDI_PANEL);
     b.row = HDI_PACK * b.width;
     b.at = panel + HDI_PACK * hdi_panel_block(m, p, q);
     return b;
@@ -6507,7 +6529,7 @@ static void hdi_pack_update(const hdi_factor *f, const hdi_front *w, double *S, 
     g.lower = g.packed = 1;
     for (k = 0; k < w->p; k += HDI_PACK_DEPTH) {
         const hdi_pack_block b = hdi_pack_block_of(w->panel, w->m, w->p, k / HDI_PANEL);
-        g.depth = w->p - k < HDI_PACK_DEPTH ? w->p - k : HDI_PACK_DEPTH;
+        g.depth = hdi_least(w->p - k, HDI_PACK_DEPTH);
         g.store = k == 0;
         g.a = hdi_pack_at(&b, w->p, k);
         g.a_row = b.row;
@@ -6560,7 +6582,7 @@ static int hdi_pack_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_
     hdi_front w = hdi_front_open(f, v, scratch);
     hdi_pack_assemble(f, v, 0, w.m);
     for (; w.k0 < w.p; w.k0 += w.nb) {
-        w.nb = w.p - w.k0 < HDI_PACK_BLOCK ? HDI_CAST(int32_t, w.p - w.k0) : HDI_PACK_BLOCK;
+        w.nb = HDI_CAST(int32_t, hdi_least(w.p - w.k0, HDI_PACK_BLOCK));
         if (!hdi_pack_pivots(f, &w, note)) return 0;
         if (w.k0 + w.nb < w.m) hdi_pack_columns(f, &w, w.k0 + w.nb, w.m);
     }
@@ -6617,7 +6639,7 @@ static int hdi_real_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_
     for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) hdi_real_child(f, &w, s->kid[k], 0, hdi_front_below(s, s->kid[k]));
     for (; w.k0 < w.p; w.k0 += w.nb) {
         const int all = w.p <= HDI_REAL_NB;
-        w.nb = w.p - w.k0 < HDI_REAL_NB ? HDI_CAST(int32_t, w.p - w.k0) : HDI_CAST(int32_t, HDI_REAL_NB);
+        w.nb = HDI_CAST(int32_t, hdi_least(w.p - w.k0, HDI_REAL_NB));
         if (!hdi_real_pivots_of(f, &w, all ? w.m : w.k0 + w.nb, note, work)) return 0;
         if (!all && w.k0 + w.nb < w.m)
             hdi_real_rows(f->real, w.panel, w.m, HDI_CAST(int32_t, w.k0), w.nb, w.S, HDI_CAST(int32_t, w.k0) + w.nb, w.dinv, w.k0 + w.nb, w.m, work);
@@ -6689,7 +6711,7 @@ static void hdi_share_run(hdi_share *h, hdi_share_stage stage, int64_t begin, in
 static int hdi_front_shared(hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
     const hdi_symbolic *s = f->sym;
     hdi_front w = hdi_front_open(f, v, scratch);
-    const int32_t most = f->width == 1 ? HDI_REAL_NB : HDI_PACK_BLOCK;
+    const int64_t most = f->width == 1 ? HDI_CAST(int64_t, HDI_REAL_NB) : HDI_CAST(int64_t, HDI_PACK_BLOCK);
     hdi_share h;
     int32_t k;
     h.f = f;
@@ -6705,7 +6727,7 @@ static int hdi_front_shared(hdi_factor *f, int32_t v, double *scratch, hdi_pivot
         }
     }
     for (; w.k0 < w.p; w.k0 += w.nb) {
-        w.nb = w.p - w.k0 < most ? HDI_CAST(int32_t, w.p - w.k0) : most;
+        w.nb = HDI_CAST(int32_t, hdi_least(w.p - w.k0, most));
         if (!(f->width == 1 ? hdi_real_pivots_of(f, &w, w.k0 + w.nb, note, w.S + hdi_real_s_size(w.p)) : hdi_pack_pivots(f, &w, note))) return 0;
         hdi_share_run(&h, HDI_SHARE_COLUMNS, w.k0 + w.nb, w.m);
     }
@@ -8374,16 +8396,10 @@ static void hdi_elim_free(hdi_elim *m) {
 }
 
 /* perm of the vertices -> perm of the rows */
-static hd_status hdi_elim_own(const hd_laplacian *lap, const int32_t *perm, int32_t *rows, hd_error *e) {
+static void hdi_elim_own(const hd_laplacian *lap, const int32_t *perm, int32_t *rows) {
     int32_t i, k = 0;
-    for (i = 0; i < lap->n; i++) {
-        if (perm[i] < 0 || perm[i] >= lap->n) return hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, perm[i]);
-        if (lap->row[perm[i]] < 0) continue;
-        if (k == lap->n_active) return hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, perm[i]);
-        rows[k++] = lap->row[perm[i]];
-    }
-    if (k < lap->n_active) return hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", -1, -1, k);
-    return HD_OK;
+    for (i = 0; i < lap->n; i++)
+        if (lap->row[perm[i]] >= 0) rows[k++] = lap->row[perm[i]];
 }
 
 /* Ordering, analysis, and the pair renumbered by it. */
@@ -8395,7 +8411,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     m->ctx = ctx;
     m->source = lap;
     m->scale = scale;
-    if (ordering == HD_ORDERING_OWN && own) (void)hdi_elim_own(lap, own, rows, e);
+    if (own) hdi_elim_own(lap, own, rows);
     if (e->status >= 0 && hdi_sym_order(&lap->L, lap->xyz, ordering, dissect_from, own ? rows : NULL, perm, &chosen, ctx, e) >= 0) {
         if (hdi_progress(ctx, "analyse", 0, e) >= 0 && hdi_symbolic_make(&m->sym, &lap->L, perm, ctx, e) >= 0) {
             m->sym.ordering = HDI_CAST(hd_ordering, chosen);
@@ -8664,7 +8680,7 @@ struct hd_heat {
     double scale;                /* what B, and with it t, is multiplied by in the two copies below, each made when it is first needed */
     hd_heat_opts opts;           /* resolved, perm and rational copied */
     int32_t *perm;
-    int32_t iterations_asked, poles_asked;
+    int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_silan *silan;
@@ -9131,7 +9147,8 @@ static double hdi_silan_slope(double a, double fa, double b, double fb, double t
     if (fabs(d) > 0.1 * a) return (fa - fb) / d;
     if (!(b > 1e-15) || !(a > 1e-15)) return 0;
     x = -tau * d / (a * b);                      /* log(F(b)/F(a)) */
-    return fabs(x) < 1e-8 ? fa * tau / (a * b) : -fa * expm1(x) / d;
+    if (fabs(x) < 1e-8) return fa * tau / (a * b);
+    return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
 }
 
 /* The bound of the error for right-hand side r after m steps at time t, relative to |f|_B, and |u|_B relative to it too. The error is beta times
@@ -9149,7 +9166,7 @@ static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, doubl
     }
     *size = sqrt(norm);
     for (k = 1; k <= HDI_SILAN_POINTS; k++) {
-        const double s = sin(1.5707963267948966 * k / HDI_SILAN_POINTS), at = s * s, fa = hdi_silan_decay(at, tau);
+        const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS)), at = s * s, fa = hdi_silan_decay(at, tau);
         double sum = 0;
         for (i = 0; i < m; i++) sum += x[i] * hdi_silan_slope(d[i], f[i], at, fa, tau);
         most = hdi_max(most, fabs(sum));
@@ -9182,7 +9199,7 @@ static hd_status hdi_silan_coefficients(const hdi_silan *z, int32_t r, int32_t m
 
 /* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is |constants|_B^2. */
 static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, double tol, const double *fixed, hd_context *ctx, hd_error *e) {
-    double best[HDI_SILAN_WIDE];
+    double best[HDI_SILAN_WIDE], reached[HDI_SILAN_WIDE];   /* reached: bound relative to f: of an answer that has died away no digit is to be had */
     int32_t r, q, left = 0, look = 4, best_m[HDI_SILAN_WIDE], most = HDI_SILAN_MAX - 1;
     hd_status worst = HD_OK;
     for (r = 0; r < z->k; r++) {
@@ -9195,19 +9212,21 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
         if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0 || hdi_silan_step(z, ctx, e) < 0) return e->status;
         if (z->steps < look && z->steps < most) continue;
         for (r = 0; r < z->k; r++) {
-            double miss = 0;
+            double miss = 0, worst_bound = 0;
             if (z->done[r]) continue;
             for (q = 0; q < n_times && z->beta[z->steps][r] > 0; q++) {
                 double bound, size;
                 if (hdi_silan_bound(z, r, z->steps, t[q], &bound, &size, e) < 0) return e->status;
                 size = sqrt(size * size + fixed[r] / (z->f_norm[r] * z->f_norm[r]));
-                miss = hdi_max(miss, size > 0 ? bound / (tol * size) : HUGE_VAL);
+                miss = hdi_max(miss, size > 0 ? bound / (tol * size) : bound > 0 ? HUGE_VAL : 0);
+                worst_bound = hdi_max(worst_bound, bound);
             }
+            reached[r] = worst_bound;
             if (miss < best[r] / 2) {
                 best[r] = miss;
                 best_m[r] = z->steps;
             } else if (z->steps > best_m[r] + 12 || z->steps >= most) {
-                if (miss > 1 && best[r] * tol > 1e-6) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "shift-and-invert Lanczos did not reach the tolerance");
+                if (miss > 1 && reached[r] > 1e-6) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "shift-and-invert Lanczos did not reach the tolerance");
                 if (miss > 1) worst = HD_WARN_ACCURACY;
                 miss = 1;
             }
@@ -9812,7 +9831,8 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     heat->scale = hdi_heat_scale(lap);
     heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
     if (heat->opts.ordering == HD_ORDERING_OWN) {
-        heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(size_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
+        if (hdi_sym_check(heat->opts.perm, lap->n, c.ctx, c.e) >= 0)
+            heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(size_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
         if (!heat->perm) {
             hd_heat_free(heat);
             return c.e->status;
@@ -10058,6 +10078,10 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     if (h->method == HD_METHOD_AUTO && heat->iterations_asked) {
         h->method = HD_METHOD_ITERATIVE;
         h->rep->reason = "a solver or preconditioner is asked for";
+    }
+    if (h->method == HD_METHOD_AUTO && heat->no_factors) {
+        h->method = HD_METHOD_ITERATIVE;
+        h->rep->reason = "factors did not fit into memory";
     }
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     c = hdi_heat_cost(h);
@@ -10358,19 +10382,27 @@ static hd_status hdi_direct_prepare(hdi_heat_call *h) {
     return HD_OK;
 }
 
+/* Takes the constants out of a dense right-hand side, for the digits of the rest; they are put back exactly in the end. That of a column stays sparse. */
+static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
+    int32_t i;
+    for (i = 0; i < lap->n_components; i++) lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
+    for (i = 0; i < lap->n_active && lap->conserves; i++) lane->rhs[i] -= lap->mass[i] * lane->sums[lap->component[i]];
+}
+
 static hd_status hdi_direct_run(hdi_heat_call *h) {
     int32_t i;
-    if (hdi_direct_prepare(h) < 0) return hdi_heat_end(h);
+    if (hdi_direct_prepare(h) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->k; h->batch += h->n_here) {
         h->n_here = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
-        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
+        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return h->e->status;
         for (i = 0; i < h->n_here; i++)
-            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
+            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
+        for (i = 0; i < h->n_here && h->query == HDI_QUERY_FIELD; i++) hdi_lane_deflate(h->lane + i, h->lap);
         hdi_parallel(h->heat->ctx, (h->n_here + h->batch_width - 1) / h->batch_width, hdi_heat_batch_task, h);
-        if (hdi_heat_collect(h, h->n_here) < 0) return hdi_heat_end(h);
+        if (hdi_heat_collect(h, h->n_here) < 0) return h->e->status;
         for (i = 0; i < h->n_here; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
     }
-    return hdi_heat_end(h);
+    return h->e->status;
 }
 
 /* ---- krylov ---- */
@@ -10434,36 +10466,55 @@ static hd_status hdi_krylov_all(hdi_heat_call *h) {
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
         heat->silan = HDI_CAST(hdi_silan *, hdi_alloc(heat->ctx, 1, sizeof *heat->silan, h->e));
-        if (!heat->silan) return hdi_heat_end(h);
+        if (!heat->silan) return h->e->status;
         memset(heat->silan, 0, sizeof *heat->silan);
     }
     heat->silan->wide = wide;
     heat->silan->m = &heat->elim;
     h->n_lanes = h->k < wide ? h->k : wide;
     for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return hdi_heat_end(h);
+        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->k; h->batch += n) {
         n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
         for (i = 0; i < n; i++)
-            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
+            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
         for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
             const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
             for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-9)); q1++) {}
-            if (hdi_krylov_window(h, n, q0, q1) < 0) return hdi_heat_end(h);
+            if (hdi_krylov_window(h, n, q0, q1) < 0) return h->e->status;
         }
     }
     h->rep->factor_flops = heat->elim.sym.flops;
     h->rep->growth = heat->elim.real.largest_entry > 0 ? heat->elim.real.all.largest / heat->elim.real.largest_entry : 0;
-    return hdi_heat_end(h);
+    return h->e->status;
+}
+
+/* Did a method that auto chose run out of memory? Then what was factorised goes, and iterations take its place. */
+static int hdi_heat_retreat(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    if (heat->opts.method != HD_METHOD_AUTO || (h->e->status != HD_ERR_MEMORY_LIMIT && h->e->status != HD_ERR_MEMORY) || heat->no_factors) return 0;
+    hdi_elim_free(&heat->elim);
+    if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
+    hdi_free(heat->ctx, heat->silan);
+    hdi_free(heat->ctx, heat->batch_room);
+    heat->silan = NULL;
+    heat->batch_room = NULL;
+    heat->batch_doubles = 0;
+    heat->no_factors = 1;
+    hdi_error_clear(h->e);
+    return 1;
+}
+
+static hd_status hdi_heat_factors(hdi_heat_call *h) {
+    if (hdi_heat_engine(h) < 0 || h->t == 0 || h->method == HD_METHOD_ITERATIVE) return h->e->status;
+    return h->method == HD_METHOD_DIRECT ? hdi_direct_run(h) : hdi_krylov_all(h);
 }
 
 static hd_status hdi_heat_run(hdi_heat_call *h) {
     int32_t i, n;
     if (h->e->status < 0 || h->k == 0) return hdi_heat_end(h);
-    if (hdi_heat_engine(h) < 0) return hdi_heat_end(h);
-    if (h->t > 0 && h->method == HD_METHOD_DIRECT) return hdi_direct_run(h);
-    if (h->t > 0 && h->method == HD_METHOD_KRYLOV) return hdi_krylov_all(h);
-    if (hdi_heat_prepare(h) < 0) return hdi_heat_end(h);
+    if (hdi_heat_factors(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_factors(h);
+    if (h->e->status < 0 || (h->t > 0 && h->method != HD_METHOD_ITERATIVE) || hdi_heat_prepare(h) < 0) return hdi_heat_end(h);
     for (h->batch = 0; h->batch < h->k; h->batch += n) {
         n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
         for (i = 0; i < n; i++)
@@ -10607,7 +10658,9 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
     h.n_times = n_times;
     h.time_column = column;
     h.t = sorted[n_times - 1];
-    if (n_times > 1 && sorted[0] > 0 && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV) return hdi_krylov_all(&h);
+    if (n_times > 1 && sorted[0] > 0 && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV && (hdi_krylov_all(&h) >= 0 || !hdi_heat_retreat(&h)))
+        return hdi_heat_end(&h);
+    if (h.e->status < 0) (void)hdi_heat_retreat(&h);
     if (h.e->status >= 0) (void)hdi_heat_each_time(heat, n_times, t, kernel, source, f, U, h.ldu, h.rep);
     {
         const hd_status st = h.e->status < 0 ? h.e->status : h.rep->status;
@@ -10650,6 +10703,10 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 
 #ifdef __cplusplus
 }
+#endif
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
 #endif
 
 #endif /* HEATDIFF_IMPLEMENTED */

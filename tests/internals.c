@@ -733,6 +733,821 @@ static void int_lanczos_bound(void) {
     dense_pair_free(&whole);
 }
 
+/* ---- [06] dense: kernels of packs ---- */
+
+static double int_off(const double *a, const double *b, int64_t n) {
+    return dense_max_diff(a, b, n) / (1 + dense_max_abs(b, n));
+}
+
+static void int_noise(double *x, int64_t n, uint64_t *seed) {
+    int64_t i;
+    for (i = 0; i < n; i++) x[i] = dense_signed(seed);
+}
+
+/* Products of all shapes about the tiles' sizes, whole, lower triangles, packed, stored or subtracted, columns from somewhere in the middle. */
+static void int_pack_multiply(const hdi_pack_ops *ops, int level) {
+    enum { ROWS = 53, COLS = 11, DEPTH = 9, SIZE = HDI_PACK * ROWS * (ROWS + 1) };
+    double *a = DENSE_NEW(double, SIZE), *b = DENSE_NEW(double, SIZE), *c = DENSE_NEW(double, SIZE), *d = DENSE_NEW(double, SIZE), *start = DENSE_NEW(double, SIZE);
+    uint64_t seed = 3;
+    int k;
+    int_noise(a, SIZE, &seed);
+    int_noise(b, SIZE, &seed);
+    int_noise(start, SIZE, &seed);
+    for (k = 0; k < 3000; k++) {
+        hdi_pack_job g;
+        int64_t i0, i1, j0, j1;
+        memset(&g, 0, sizeof g);
+        g.lower = (int)(dense_random(&seed) % 2);
+        g.packed = g.lower && dense_random(&seed) % 2;
+        g.store = (int)(dense_random(&seed) % 2);
+        g.depth = (int64_t)(dense_random(&seed) % DEPTH);
+        i1 = 1 + (int64_t)(dense_random(&seed) % (k % 10 ? 12 : ROWS));
+        i0 = (int64_t)(dense_random(&seed) % (uint64_t)i1);
+        j1 = 1 + (int64_t)(dense_random(&seed) % (g.lower ? (uint64_t)i1 : COLS));
+        j0 = (int64_t)(dense_random(&seed) % (uint64_t)j1);
+        g.b_first = j0 > 0 ? (int64_t)(dense_random(&seed) % (uint64_t)(j0 + 1)) : 0;
+        if (dense_random(&seed) % 2) { g.a_row = HDI_PACK * DEPTH; g.a_col = HDI_PACK; }
+        else { g.a_row = HDI_PACK; g.a_col = HDI_PACK * ROWS; }
+        if (dense_random(&seed) % 2) { g.b_row = HDI_PACK * DEPTH; g.b_col = HDI_PACK; }
+        else { g.b_row = HDI_PACK; g.b_col = HDI_PACK * ROWS; }
+        g.c_row = HDI_PACK * ROWS;
+        g.a = a;
+        g.b = b;
+        memcpy(c, start, SIZE * sizeof *c);
+        memcpy(d, start, SIZE * sizeof *d);
+        g.c = c;
+        ops->multiply(&g, i0, i1, j0, j1);
+        g.c = d;
+        hdi_pack_multiply_c(&g, i0, i1, j0, j1);
+        if (dense_max_diff(c, d, SIZE) > 1e-13) {
+            CHECK_MSG(0, "level %d: rows %d..%d, columns %d..%d, depth %d, lower %d, packed %d: off by %g", level, (int)i0, (int)i1, (int)j0, (int)j1, (int)g.depth,
+                      g.lower, g.packed, dense_max_diff(c, d, SIZE));
+            break;
+        }
+    }
+    CHECK(k == 3000);
+    free(a);
+    free(b);
+    free(c);
+    free(d);
+    free(start);
+}
+
+static void int_pack_others(const hdi_pack_ops *ops, int level) {
+    enum { ROWS = 23, COLS = 17, SIZE = HDI_PACK * ROWS * COLS };
+    static double a[SIZE], x[SIZE], y[SIZE], s[SIZE], d[SIZE], e[SIZE];
+    int32_t row[ROWS];
+    uint64_t seed = 7;
+    int32_t n, p, i;
+    int_noise(a, SIZE, &seed);
+    int_noise(s, SIZE, &seed);
+    int_noise(d, SIZE, &seed);
+    int_noise(e, SIZE, &seed);
+    for (i = 0; i < ROWS; i++) row[i] = i * 2 % ROWS;
+    for (n = 0; n <= 13; n++) {
+        for (p = 0; p <= COLS; p++) {
+            hdi_pack_rows g;
+            const int64_t most = SIZE;
+            memset(&g, 0, sizeof g);
+            g.row = HDI_PACK * COLS;
+            g.first = 3;
+            g.s = s;
+            g.s_row = HDI_PACK * COLS;
+            g.dinv = d;
+            g.nb = p < 16 ? p : 16;
+            memcpy(x, a, sizeof x);
+            memcpy(y, a, sizeof y);
+            g.panel = x;
+            ops->solve_rows(&g, 5, 5 + n);
+            g.panel = y;
+            hdi_pack_solve_rows_c(&g, 5, 5 + n);
+            CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: solve_rows %d x %d off by %g", level, (int)n, (int)p, int_off(x, y, most));
+            ops->scale(a, HDI_PACK * COLS, 2, 2 + n, p / 3, p, d, x);
+            hdi_pack_scale_c(a, HDI_PACK * COLS, 2, 2 + n, p / 3, p, d, y);
+            CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: scale %d x %d off by %g", level, (int)n, (int)p, int_off(x, y, most));
+            ops->add(x, a, row, p / 4, n, -1);
+            hdi_pack_add_c(y, a, row, p / 4, n, -1);
+            CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: add %d..%d off by %g", level, (int)(p / 4), (int)n, int_off(x, y, most));
+            ops->forward(a, n, p, e, x);
+            hdi_pack_forward_c(a, n, p, e, y);
+            CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: forward %d x %d off by %g", level, (int)n, (int)p, int_off(x, y, most));
+            ops->backward(a, NULL, n, p, x, e);
+            hdi_pack_backward_c(a, NULL, n, p, y, e);
+            ops->backward(a, row, n, p, x, e);
+            hdi_pack_backward_c(a, row, n, p, y, e);
+            CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: backward %d x %d off by %g", level, (int)n, (int)p, int_off(x, y, most));
+        }
+    }
+}
+
+static void int_pack_kernels(void) {
+    int level;
+    for (level = 0; level <= hdi_simd_best(); level++) {
+        int_pack_multiply(hdi_pack_ops_get(level), level);
+        int_pack_others(hdi_pack_ops_get(level), level);
+    }
+}
+
+/* ---- [11] symbolic: trees, counts, supernodes, places ---- */
+
+/* Symmetric patterns, diagonal included: a mesh, a random graph that falls apart, a path, a star, a full matrix, no edge at all. */
+static hd_csr int_pattern(int kind, uint64_t seed) {
+    const int32_t n = kind == 0 ? 0 : 40 + 7 * kind;
+    int32_t *i, *j, a, b, m = n;
+    int64_t c = 0;
+    hd_csr out;
+    hd_error e;
+    shape s;
+    memset(&s, 0, sizeof s);
+    if (kind == 0) {
+        s = shape_grid(13, 11, 0.3);
+        m = s.n;
+    }
+    i = DENSE_NEW(int32_t, kind ? n * n + n : 7 * s.n_tri + m);
+    j = DENSE_NEW(int32_t, kind ? n * n + n : 7 * s.n_tri + m);
+    for (a = 0; a < m; a++) {
+        i[c] = j[c] = a;
+        c++;
+    }
+    for (a = 0; a < 3 * s.n_tri; a++) {
+        i[c] = s.tri[a];
+        j[c++] = s.tri[a % 3 == 2 ? a - 2 : a + 1];
+        i[c] = s.tri[a % 3 == 2 ? a - 2 : a + 1];
+        j[c++] = s.tri[a];
+    }
+    for (a = 0; a < n; a++) {
+        for (b = 0; b < a; b++) {
+            const int join = kind == 1 ? dense_random(&seed) % (uint64_t)n < 2 : kind == 2 ? b == a - 1 : kind == 3 ? b == 0 : kind == 4;
+            if (!join) continue;
+            i[c] = a; j[c++] = b;
+            i[c] = b; j[c++] = a;
+        }
+    }
+    memset(&out, 0, sizeof out);
+    CHECK(hd_csr_from_triplets(&out, m, m, c, i, j, NULL, NULL, &e) == HD_OK);
+    free(i);
+    free(j);
+    shape_free(&s);
+    return out;
+}
+
+/* l [n n]: where L of P A P' has entries, diagonal included, by elimination. */
+static char *int_fill(const hd_csr *a, const int32_t *perm) {
+    const int32_t n = a->n_rows;
+    char *l = DENSE_NEW(char, (int64_t)n * n + 1);
+    int32_t *inv = DENSE_NEW(int32_t, n), i, j, k;
+    int64_t p;
+    for (i = 0; i < n; i++) inv[perm[i]] = i;
+    for (i = 0; i < n; i++) {
+        l[i * n + i] = 1;
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
+            if (inv[a->col[p]] < inv[i]) l[inv[i] * n + inv[a->col[p]]] = 1;
+    }
+    for (k = 0; k < n; k++)
+        for (i = k + 1; i < n; i++)
+            for (j = k + 1; l[i * n + k] && j <= i; j++)
+                if (l[j * n + k]) l[i * n + j] = 1;
+    free(inv);
+    return l;
+}
+
+/* Memory by entries: who has which; -1 nobody. */
+typedef struct int_space { int32_t *owner; int64_t size; } int_space;
+
+static void int_space_take(int_space *m, int64_t at, int64_t size, int32_t who, const char *what) {
+    int64_t p, clash = 0;
+    CHECK_MSG(at >= 0 && at + size <= m->size, "%s: [%lld,%lld) of %lld", what, (long long)at, (long long)(at + size), (long long)m->size);
+    for (p = at; p < at + size && p < m->size; p++) {
+        clash += m->owner[p] >= 0;
+        m->owner[p] = who;
+    }
+    CHECK_MSG(clash == 0, "%s: %lld entries of %d are another's", what, (long long)clash, (int)who);
+}
+
+static void int_space_free(int_space *m, int64_t at, int64_t size, int32_t who, const char *what) {
+    int64_t p, lost = 0;
+    for (p = at; p < at + size && p < m->size; p++) {
+        lost += m->owner[p] != who;
+        m->owner[p] = -1;
+    }
+    CHECK_MSG(lost == 0, "%s: %lld entries of %d were overwritten", what, (long long)lost, (int)who);
+}
+
+/* One step of the plan: v takes its place while its children hold theirs, then they let go. */
+static void int_place_front(const hdi_symbolic *s, int_space *m, int32_t v, int triangle, const int64_t *at, const char *what) {
+    const int64_t u = s->row_ptr[v + 1] - s->row_ptr[v];
+    int32_t k;
+    int_space_take(m, at[v], triangle ? hdi_triangle(u) : u, v, what);
+    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+        const int64_t below = s->row_ptr[s->kid[k] + 1] - s->row_ptr[s->kid[k]];
+        int_space_free(m, at[s->kid[k]], triangle ? hdi_triangle(below) : below, s->kid[k], what);
+    }
+}
+
+/* The tasks in turn, step by step, as if all ran at the same time; then the top. Nobody touches what another still needs. */
+static void int_places(const hdi_symbolic *s, int triangle, const int64_t *at, int64_t size, const char *what) {
+    int_space m;
+    int32_t *next = DENSE_NEW(int32_t, s->n_tasks), k, left = s->n_tasks;
+    int64_t p, held = 0;
+    m.size = size;
+    m.owner = DENSE_NEW(int32_t, size);
+    for (p = 0; p < size; p++) m.owner[p] = -1;
+    for (k = 0; k < s->n_tasks; k++) next[k] = s->task_begin[k];
+    while (left > 0) {
+        for (k = left = 0; k < s->n_tasks; k++) {
+            if (next[k] >= s->task_end[k]) continue;
+            int_place_front(s, &m, next[k]++, triangle, at, what);
+            left++;
+        }
+    }
+    for (k = 0; k < s->n_top; k++) int_place_front(s, &m, s->top[k], triangle, at, what);
+    for (p = 0; p < size; p++) held += m.owner[p] >= 0;
+    CHECK_MSG(held == 0, "%s: %lld entries are never let go", what, (long long)held);
+    free(next);
+    free(m.owner);
+}
+
+static void int_symbolic_one(const hd_csr *a, int32_t *perm, int dense, const char *what) {
+    const int32_t n = a->n_rows;
+    int32_t *seen = DENSE_NEW(int32_t, n + 1), v, k, i, j;
+    hdi_symbolic s;
+    hd_context ctx;
+    hd_error e;
+    int64_t p, nnz = 0, wrong = 0, entries = 0;
+    double flops = 0;
+    char *l;
+    memset(&ctx, 0, sizeof ctx);
+    hdi_error_clear(&e);
+    CHECK_MSG(hdi_symbolic_make(&s, a, perm, &ctx, &e) == HD_OK, "%s", e.text);
+    for (i = 0; i < n; i++) seen[s.perm[i]]++;
+    for (i = 0; i < n; i++) wrong += seen[i] != 1;
+    CHECK_MSG(wrong == 0, "%s: not a permutation", what);
+    CHECK(s.super[0] == 0 && s.super[s.n_super] == n);
+    memset(seen, 0, ((size_t)n + 1) * sizeof *seen);
+    for (v = 0; v < s.n_super; v++) {
+        CHECK_MSG(s.super[v] < s.super[v + 1], "%s: supernode %d is empty", what, (int)v);
+        for (i = s.super[v]; i < s.super[v + 1]; i++) CHECK(s.super_of[i] == v);
+        CHECK(s.parent[v] == -1 || (s.parent[v] > v && s.parent[v] < s.n_super));
+        CHECK_MSG((s.parent[v] == -1) == (s.row_ptr[v] == s.row_ptr[v + 1]), "%s: %d", what, (int)v);
+        for (p = s.row_ptr[v]; p < s.row_ptr[v + 1]; p++) {
+            const int32_t up = s.parent[v], width = s.super[up + 1] - s.super[up], at = s.rel[p];
+            CHECK(s.row[p] >= (p > s.row_ptr[v] ? s.row[p - 1] + 1 : s.super[v + 1]) && s.row[p] < n);
+            CHECK(at >= 0 && (at < width ? s.super[up] + at : s.row[s.row_ptr[up] + at - width]) == s.row[p]);    /* its row there is the same row */
+        }
+        for (k = s.kid_ptr[v]; k < s.kid_ptr[v + 1]; k++) {
+            CHECK(s.parent[s.kid[k]] == v);
+            seen[s.kid[k]]++;
+        }
+        for (p = s.a_ptr[v]; p < s.a_ptr[v + 1]; p++) {
+            const int32_t width = s.super[v + 1] - s.super[v], r = s.a_row[p], row = r < width ? s.super[v] + r : s.row[s.row_ptr[v] + r - width];
+            for (i = 0; a->row_ptr[i + 1] <= s.a_from[p]; i++) {}
+            CHECK(s.perm[s.super[v] + s.a_col[p]] == i && s.perm[row] == a->col[s.a_from[p]] && row >= s.super[v] + s.a_col[p]);
+            entries++;
+        }
+    }
+    CHECK_MSG(entries == (a->nnz + n) / 2, "%s: %lld entries of the lower triangle", what, (long long)entries);
+    for (v = 0; v < s.n_super; v++) CHECK(seen[v] == (s.parent[v] >= 0));
+    memset(seen, 0, ((size_t)n + 1) * sizeof *seen);     /* tasks and top share out the supernodes, parents outside of a task are in the top */
+    for (k = 0; k < s.n_tasks; k++) {
+        for (v = s.task_begin[k]; v < s.task_end[k]; v++) {
+            seen[v]++;
+            CHECK(s.task_of[v] == k && (s.parent[v] < 0 || s.task_of[s.parent[v]] == k || s.task_of[s.parent[v]] == -1));
+        }
+    }
+    for (k = 0; k < s.n_top; k++) {
+        seen[s.top[k]]++;
+        CHECK(s.task_of[s.top[k]] == -1 && (k == 0 || s.top[k] > s.top[k - 1]));
+    }
+    for (v = 0; v < s.n_super; v++) CHECK_MSG(seen[v] == 1, "%s: supernode %d is worked on %d times", what, (int)v, (int)seen[v]);
+    int_places(&s, 1, s.update, s.work, what);
+    int_places(&s, 0, s.vector, s.vector_size, what);
+    if (dense) {
+        l = int_fill(a, s.perm);
+        for (j = 0; j < n; j++) {
+            int64_t count = 0;
+            for (i = j; i < n; i++) {
+                int32_t inside = s.super_of[i] == s.super_of[j];
+                if (!l[i * n + j]) continue;
+                count++;
+                for (p = s.row_ptr[s.super_of[j]]; p < s.row_ptr[s.super_of[j] + 1]; p++) inside |= s.row[p] == i;
+                CHECK_MSG(inside, "%s: entry (%d,%d) of L has no place", what, (int)i, (int)j);
+            }
+            nnz += count;
+            flops += (double)count * (double)count;
+        }
+        CHECK_MSG(nnz == s.nnz && flops == s.flops && s.flops_done >= s.flops, "%s: %lld non-zeros and %g flops, not %lld and %g", what, (long long)s.nnz, s.flops,
+                  (long long)nnz, flops);
+        free(l);
+    }
+    hdi_symbolic_free(&ctx, &s);
+    CHECK(ctx.bytes_in_use == 0);
+    free(seen);
+}
+
+/* The tree and the counts of columns by their definitions. */
+static void int_tree_one(const hd_csr *a, const int32_t *order, const char *what) {
+    const int32_t n = a->n_rows, n1 = n + 1;
+    int32_t *perm = DENSE_NEW(int32_t, n1), *parent = DENSE_NEW(int32_t, n1), *count = DENSE_NEW(int32_t, n1), *low = DENSE_NEW(int32_t, a->nnz + 1);
+    int32_t *up = DENSE_NEW(int32_t, a->nnz + 1), *w = DENSE_NEW(int32_t, 7 * n1), *plain = DENSE_NEW(int32_t, n1), i, j, k;
+    int64_t *ptr = DENSE_NEW(int64_t, n1), *up_ptr = DENSE_NEW(int64_t, n1);
+    char *l = int_fill(a, order);
+    memcpy(perm, order, (size_t)n * sizeof *perm);
+    hdi_sym_lower(a, perm, w, ptr, low);
+    hdi_sym_etree(n, ptr, low, plain, w);
+    for (j = 0; j < n; j++) {
+        for (i = j + 1; i < n && !l[i * n + j]; i++) {}
+        CHECK_MSG(plain[j] == (i < n ? i : -1), "%s: parent of %d is %d", what, (int)j, (int)plain[j]);
+    }
+    free(l);
+    hdi_sym_tree(a, perm, parent, count, ptr, low, up_ptr, up, w);
+    l = int_fill(a, perm);
+    for (j = 0; j < n; j++) {
+        int32_t first = -1;
+        for (i = j, k = 0; i < n; i++) {
+            k += l[i * n + j];
+            if (i > j && l[i * n + j] && first < 0) first = i;
+        }
+        CHECK_MSG(count[j] == k, "%s: column %d has %d entries, not %d", what, (int)j, (int)k, (int)count[j]);
+        CHECK_MSG(parent[j] == first, "%s: postordered, the parent of %d is %d, not %d", what, (int)j, (int)first, (int)parent[j]);
+        CHECK(j == 0 || parent[j - 1] == -1 || parent[j - 1] >= j);
+    }
+    free(perm);
+    free(parent);
+    free(count);
+    free(low);
+    free(up);
+    free(w);
+    free(plain);
+    free(ptr);
+    free(up_ptr);
+    free(l);
+}
+
+static void int_symbolic(void) {
+    static const char *const names[6] = {"grid", "random", "path", "star", "full", "diagonal"};
+    hd_context ctx;
+    hd_error e;
+    uint64_t seed = 8;
+    int kind, q;
+    memset(&ctx, 0, sizeof ctx);
+    hdi_error_clear(&e);
+    for (kind = 0; kind < 6; kind++) {
+        hd_csr a = int_pattern(kind, 5);
+        int32_t *perm = DENSE_NEW(int32_t, a.n_rows);
+        for (q = 0; q < 3; q++) {
+            if (q == 0) CHECK(hdi_sym_minimum_degree(&a, perm, &ctx, &e) == HD_OK);
+            else dense_shuffle(perm, a.n_rows, &seed);
+            int_tree_one(&a, perm, names[kind]);
+            int_symbolic_one(&a, perm, 1, names[kind]);
+        }
+        hd_csr_free(&a, NULL);
+        free(perm);
+    }
+}
+
+/* Meshes with many tasks and a top. */
+static void int_symbolic_large(void) {
+    shape s = shape_bumpy(4, 3), g = shape_grid(70, 60, 0.3), both;
+    const double offset[3] = {3, 0, 0};
+    const shape *shapes[3];
+    hd_context ctx;
+    hd_error e;
+    int q, k;
+    both = shape_disjoint(&s, &g, offset);
+    shapes[0] = &s;
+    shapes[1] = &g;
+    shapes[2] = &both;
+    memset(&ctx, 0, sizeof ctx);
+    for (q = 0; q < 3; q++) {
+        hd_laplacian *lap = NULL;
+        int32_t *perm = DENSE_NEW(int32_t, shapes[q]->n);
+        CHECK(hd_laplacian_triangles(&lap, shapes[q]->xyz, shapes[q]->n, shapes[q]->tri, shapes[q]->n_tri, NULL, &e) == HD_OK);
+        for (k = 0; k < 2; k++) {
+            if (k) CHECK(hdi_sym_nested_dissection(&lap->L, lap->xyz, perm, &ctx, &e) == HD_OK);
+            else CHECK(hdi_sym_minimum_degree(&lap->L, perm, &ctx, &e) == HD_OK);
+            int_symbolic_one(&lap->L, perm, 0, q == 0 ? "ball" : q == 1 ? "grid" : "both");
+        }
+        free(perm);
+        hd_laplacian_free(lap);
+    }
+    shape_free(&s);
+    shape_free(&g);
+    shape_free(&both);
+}
+
+/* Random takes and frees, with a list that is long enough, and one that has to forget: places never overlap, and coalesce when all is free. */
+static void int_gaps(void) {
+    enum { MOST = 60, SIZE = 100000 };
+    int way, step, k;
+    for (way = 0; way < 2; way++) {
+        int64_t at[64], size[64], places[MOST], sizes[MOST];
+        uint64_t seed = 11;
+        int_space m;
+        hdi_gaps g;
+        memset(&g, 0, sizeof g);
+        g.at = at;
+        g.size = size;
+        g.room = way ? 3 : 64;
+        m.size = SIZE;
+        m.owner = DENSE_NEW(int32_t, SIZE);
+        memset(m.owner, 0xff, SIZE * sizeof *m.owner);
+        for (k = 0; k < MOST; k++) places[k] = -1;
+        for (step = 0; step < (way ? 1500 : 4000); step++) {
+            k = (int)(dense_random(&seed) % MOST);
+            if (places[k] < 0) {
+                sizes[k] = (int64_t)(dense_random(&seed) % (step % 3 ? 10 : 60));
+                places[k] = hdi_gaps_take(&g, sizes[k]);
+                int_space_take(&m, places[k], sizes[k], k, "gaps");
+            } else {
+                int_space_free(&m, places[k], sizes[k], k, "gaps");
+                hdi_gaps_free(&g, places[k], sizes[k]);
+                places[k] = -1;
+            }
+            for (k = 0; k < g.n; k++) {
+                CHECK(g.size[k] > 0 && g.at[k] + g.size[k] < (k + 1 < g.n ? g.at[k + 1] : g.end));    /* ascending, coalesced */
+                CHECK(m.owner[g.at[k]] == -1 && m.owner[g.at[k] + g.size[k] - 1] == -1);
+            }
+            CHECK(g.n <= g.room && g.end <= SIZE);
+            if (int_failed > 20) break;
+        }
+        for (k = 0; k < MOST; k++)
+            if (places[k] >= 0) hdi_gaps_free(&g, places[k], sizes[k]);
+        if (!way) CHECK_MSG(g.n == 0 && g.end == 0, "%d gaps, end %lld", (int)g.n, (long long)g.end);
+        free(m.owner);
+    }
+}
+
+/* ---- [12] direct: sweeps ---- */
+
+static hd_laplacian *int_mesh(int kind, hd_laplacian_kind form) {
+    shape s = kind == 0 ? shape_bumpy(2, 5) : kind == 1 ? shape_grid(14, 9, 0.3) : shape_bumpy(4, 5);
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts o;
+    hd_error e;
+    memset(&o, 0, sizeof o);
+    o.kind = form;
+    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_OK);
+    shape_free(&s);
+    return lap;
+}
+
+static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
+    memset(m, 0, sizeof *m);
+    hdi_error_clear(e);
+    return hdi_elim_make(m, lap, HD_ORDERING_AUTO, HDI_DISSECT_FROM, NULL, hdi_heat_scale(lap), ctx, e);
+}
+
+/* Right-hand sides side by side are solved as each by itself; fronts that are told to be out of it make no difference; and A x = b. */
+static void int_sweep_one(const hdi_elim *m, const hdi_factor *f, int32_t k, hd_context *ctx, const char *what) {
+    const hdi_symbolic *s = f == NULL ? NULL : f->sym;
+    const int64_t n = s->n, w = f->width;
+    double *x = DENSE_NEW(double, n * w * k), *one = DENSE_NEW(double, n * w), *again = DENSE_NEW(double, n * w * k), *b = DENSE_NEW(double, n * w * k);
+    double *work = DENSE_NEW(double, hdi_sweep_size(s, f->width, k, 1));
+    char *active = DENSE_NEW(char, s->n_super);
+    uint64_t seed = 17;
+    hdi_sweep z;
+    int64_t i;
+    int32_t r, q, sparse;
+    for (sparse = 0; sparse < 2; sparse++) {
+        memset(active, 0, (size_t)s->n_super);
+        for (i = 0; i < n * w * k; i++) b[i] = sparse && (i / (w * k)) % 61 != 7 ? 0 : dense_signed(&seed);
+        for (i = 0; i < n; i++)
+            if (!sparse || i % 61 == 7) hdi_sweep_touch(s, (int32_t)i, active);
+        memcpy(x, b, (size_t)(n * w * k) * sizeof *x);
+        for (i = 0; (size_t)i < hdi_sweep_size(s, f->width, k, 1); i++) work[i] = 1e300;
+        z = hdi_sweep_open(f, k, x, work, 1);
+        hdi_sweep_run(&z, ctx);
+        for (r = 0; r < k; r++) {
+            double worst = 0;
+            for (i = 0; i < n; i++)
+                for (q = 0; q < w; q++) one[w * i + q] = b[w * (k * i + r) + q];
+            z = hdi_sweep_open(f, 1, one, work, 0);
+            hdi_sweep_run(&z, NULL);
+            for (i = 0; i < n; i++)
+                for (q = 0; q < w; q++) worst = fmax(worst, fabs(one[w * i + q] - x[w * (k * i + r) + q]));
+            CHECK_MSG(worst <= 1e-12 * dense_max_abs(one, n * w), "%s: %d side by side, the %d. is off by %g", what, (int)k, (int)r, worst / dense_max_abs(one, n * w));
+        }
+        for (q = 0; q < 2; q++) {
+            memcpy(again, b, (size_t)(n * w * k) * sizeof *x);
+            for (i = 0; (size_t)i < hdi_sweep_size(s, f->width, k, q); i++) work[i] = 1e300;
+            z = hdi_sweep_open(f, k, again, work, q);
+            z.active = active;
+            hdi_sweep_run(&z, q ? ctx : NULL);
+            CHECK_MSG(dense_max_diff(again, x, n * w * k) == 0, "%s: %d side by side, by active fronts: off by %g", what, (int)k, dense_max_diff(again, x, n * w * k));
+        }
+        if (w == 1) continue;
+        for (r = 0; r < k; r++) {                /* A x = b for each of the four */
+            for (q = 0; q < 4; q++) {
+                double worst = 0, size = 0;
+                for (i = 0; i < n; i++) {
+                    const hd_laplacian *lap = m->lap;
+                    const int32_t pole = hdi_elim_pole(m, (int32_t)(f - m->pack), q);
+                    hd_c64 sum = hdi_c(-b[w * (k * i + r) + q], 0);
+                    int64_t p;
+                    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+                        const double *v = x + w * (k * (int64_t)lap->L.col[p] + r) + q, mass = lap->B ? lap->B[p] : lap->L.col[p] == i ? lap->mass[i] : 0;
+                        const hd_c64 a = hdi_cadd(hdi_c(m->t * lap->L.val[p], 0), hdi_cscale(mass, m->set.theta[pole]));
+                        sum = hdi_cadd(sum, hdi_cmul(a, hdi_c(v[0], v[4])));
+                        size = fmax(size, hdi_cabs(a) * hypot(v[0], v[4]));
+                    }
+                    sum.im -= b[w * (k * i + r) + q + 4];
+                    worst = fmax(worst, hdi_cabs(sum));
+                }
+                CHECK_MSG(worst <= 1e-13 * size, "%s: %d side by side, pole %d: residual %g", what, (int)k, (int)q, worst / size);
+            }
+        }
+    }
+    free(x);
+    free(one);
+    free(again);
+    free(b);
+    free(work);
+    free(active);
+}
+
+static void int_sweeps(void) {
+    static const hd_simd simds[3] = {HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512};
+    int kind, level;
+    for (kind = 0; kind < 3; kind++) {
+        for (level = 0; level <= hdi_simd_best(); level++) {
+            hd_laplacian *lap = int_mesh(kind, kind == 1 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+            hd_context ctx;
+            hd_error e;
+            hdi_elim m;
+            hd_rational set;
+            int32_t k;
+            memset(&ctx, 0, sizeof ctx);
+            ctx.simd = simds[level];
+            CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
+            CHECK(hdi_rational_get(&set, HD_POLES_UNIFORM, 9, &e) == HD_OK);
+            CHECK(hdi_elim_poles(&m, &set, 5 * lap->h * lap->h * m.scale, &e) == HD_OK);
+            CHECK(m.lone == 0 && m.n_packs == 1);
+            for (k = 1; k <= (kind == 2 ? 2 : 6); k++) int_sweep_one(&m, m.pack, k, &ctx, "packs");
+            int_sweep_one(&m, &m.real, 1, &ctx, "real");
+            int_sweep_one(&m, &m.real, 8, &ctx, "real");
+            hdi_elim_free(&m);
+            CHECK(ctx.bytes_in_use == 0);
+            hd_laplacian_free(lap);
+        }
+    }
+}
+
+/* ---- [17] shifted: checks of packs ---- */
+
+static void int_checks(void) {
+#if HDI_X86
+    int kind, r, q;
+    int32_t k;
+    for (kind = 0; kind < 4 && hdi_simd_best() == 2; kind++) {
+        hd_laplacian *lap = int_mesh(kind / 2, kind % 2 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const int32_t n = lap->n_active;
+        uint64_t seed = 9;
+        for (k = 1; k <= 6; k++) {
+            double *x = DENSE_NEW(double, HDI_PACK * 6 * n), *weight = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, 6 * n), *u = DENSE_NEW(double, 24 * n);
+            hdi_check a[6], b[6], *la[6], *lb[6];
+            int32_t i;
+            int_noise(x, HDI_PACK * 6 * n, &seed);
+            int_noise(rhs, 6 * n, &seed);
+            int_noise(u, 12 * n, &seed);
+            memcpy(u + 12 * n, u, (size_t)(12 * n) * sizeof *u);
+            for (i = 0; i < n; i++) weight[i] = 1 / lap->b_diag[i];
+            memset(a, 0, sizeof a);
+            for (r = 0; r < k; r++) {
+                a[r].lap = lap;
+                a[r].t = 0.7;
+                if (r == 0) int_noise(a[r].theta, HDI_PACK, &seed);
+                else memcpy(a[r].theta, a[0].theta, sizeof a[r].theta);
+                int_noise(a[r].coef, HDI_PACK, &seed);
+                a[r].weight = weight;
+                a[r].rhs = rhs + r * n;
+                a[r].x = x + HDI_PACK * r;
+                a[r].stride = HDI_PACK * 6;
+                b[r] = a[r];
+                a[r].u = u + r * n;
+                a[r].bu = u + (6 + r) * n;
+                b[r].u = u + (12 + r) * n;
+                b[r].bu = u + (18 + r) * n;
+                la[r] = a + r;
+                lb[r] = b + r;
+            }
+            hdi_check_c(la, k);
+            hdi_check_512(lb, k);
+            CHECK_MSG(int_off(u + 12 * n, u, 12 * n) < 1e-13, "%d checked together: answers off by %g", (int)k, int_off(u + 12 * n, u, 12 * n));
+            for (r = 0; r < k; r++) {
+                for (q = 0; q < 4; q++) CHECK_MSG(fabs(a[r].norm2[q] - b[r].norm2[q]) <= 1e-12 * a[r].norm2[q] && a[r].norm2[q] > 0, "%d checked together: residual %g, %g", (int)k,
+                                                  a[r].norm2[q], b[r].norm2[q]);
+                CHECK_MSG(fabs(a[r].first2 - b[r].first2) <= 1e-12 * fabs(a[r].first2), "%d checked together: norm %g, %g", (int)k, a[r].first2, b[r].first2);
+            }
+            free(x);
+            free(weight);
+            free(rhs);
+            free(u);
+        }
+        hd_laplacian_free(lap);
+    }
+#endif
+}
+
+/* What a check tells, by its definition, for one right-hand side. */
+static void int_check_plain(void) {
+    int kind, q;
+    for (kind = 0; kind < 2; kind++) {
+        hd_laplacian *lap = int_mesh(1, kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const int32_t n = lap->n_active;
+        double *x = DENSE_NEW(double, HDI_PACK * n), *weight = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, n), *u = DENSE_NEW(double, 2 * n);
+        double *part = DENSE_NEW(double, 2 * n), *l = DENSE_NEW(double, 2 * n), *b = DENSE_NEW(double, 2 * n), *want = DENSE_NEW(double, 2 * n), first = 0;
+        hdi_check c, *list = &c;
+        uint64_t seed = 4;
+        int32_t i;
+        int_noise(x, HDI_PACK * n, &seed);
+        int_noise(rhs, n, &seed);
+        memset(&c, 0, sizeof c);
+        for (i = 0; i < n; i++) weight[i] = 1 + 0.1 * (i % 7);
+        c.lap = lap;
+        c.t = 0.3;
+        int_noise(c.theta, HDI_PACK, &seed);
+        int_noise(c.coef, HDI_PACK, &seed);
+        c.weight = weight;
+        c.rhs = rhs;
+        c.x = x;
+        c.stride = HDI_PACK;
+        c.u = u;
+        c.bu = u + n;
+        hdi_check_c(&list, 1);
+        for (q = 0; q < 4; q++) {
+            double norm2 = 0;
+            for (i = 0; i < n; i++) {
+                part[i] = x[HDI_PACK * i + q];
+                part[n + i] = x[HDI_PACK * i + q + 4];
+            }
+            for (i = 0; i < 2; i++) {
+                hdi_pair_apply(lap, 1, 0, part + i * n, l + i * n);
+                hdi_pair_apply(lap, 0, 1, part + i * n, b + i * n);
+            }
+            for (i = 0; i < n; i++) {
+                const double re = rhs[i] - 0.3 * l[i] - c.theta[q] * b[i] + c.theta[q + 4] * b[n + i], im = -0.3 * l[n + i] - c.theta[q] * b[n + i] - c.theta[q + 4] * b[i];
+                norm2 += weight[i] * (re * re + im * im);
+                want[i] += c.coef[q] * part[i] + c.coef[q + 4] * part[n + i];
+                want[n + i] += c.coef[q] * b[i] + c.coef[q + 4] * b[n + i];
+                if (q == 0) first += part[i] * b[i] + part[n + i] * b[n + i];
+            }
+            CHECK_MSG(fabs(norm2 / c.norm2[q] - 1) < 1e-12, "residual %g, told %g", norm2, c.norm2[q]);
+        }
+        CHECK_MSG(fabs(first / c.first2 - 1) < 1e-12, "norm %g, told %g", first, c.first2);
+        CHECK_MSG(int_off(u, want, 2 * n) < 1e-13, "off by %g", int_off(u, want, 2 * n));
+        free(x);
+        free(weight);
+        free(rhs);
+        free(u);
+        free(part);
+        free(l);
+        free(b);
+        free(want);
+        hd_laplacian_free(lap);
+    }
+}
+
+/* ---- [18] shift-and-invert Lanczos ---- */
+
+/* (F(a) - F(b))/(a - b) of F(x) = exp(-tau (1/x - 1)) from the larger of the two, in long double. */
+static long double int_slope(double a, double b, double tau) {
+    const long double la = a, lb = b, d = la - lb, x = -(long double)tau * d / (la * lb);
+    if (d == 0) return expl(-tau * (1 / la - 1)) * tau / (la * la);
+    return x > 0 ? expl(-tau * (1 / lb - 1)) * expm1l(-x) / d : -expl(-tau * (1 / la - 1)) * expm1l(x) / d;
+}
+
+static void int_silan_slopes(void) {
+    static const double taus[7] = {0.01, 0.1, 1, 10, 30, 1000, 1e5};
+    uint64_t seed = 19;
+    double worst = 0, wa = 0, wb = 0, wt = 0;
+    int k, q;
+    for (k = 0; k < 20000; k++) {
+        const double a = pow(10, -6 * fabs(dense_signed(&seed))), near = pow(10, -17 * fabs(dense_signed(&seed)));
+        double b = k % 3 == 0 ? pow(10, -6 * fabs(dense_signed(&seed))) : a * (1 + (k % 2 ? near : -near));
+        if (k % 97 == 0) b = a;
+        if (!(b > 0) || b > 1) continue;
+        for (q = 0; q < 7; q++) {
+            const double fa = hdi_silan_decay(a, taus[q]), fb = hdi_silan_decay(b, taus[q]), got = hdi_silan_slope(a, fa, b, fb, taus[q]);
+            const double want = (double)int_slope(a, b, taus[q]), lost = fabs(a - b) > 0.05 * a ? 1e-14 * (fa + fb) / fabs(a - b) : 0;
+            const double off = fabs(got - want) <= lost + 1e-290 ? 0 : fabs(got - want) / fabs(want);
+            if (off <= worst) continue;
+            worst = off;
+            wa = a;
+            wb = b;
+            wt = taus[q];
+            if (!(off < HUGE_VAL)) break;
+        }
+        CHECK_MSG(hdi_finite(hdi_silan_slope(a, hdi_silan_decay(a, 50), b, hdi_silan_decay(b, 50), 50)), "a %.17g, b %.17g", a, b);
+    }
+    CHECK_MSG(worst < 1e-8, "a %.17g, b %.17g, tau %g: off by %g", wa, wb, wt, worst);
+    CHECK(hdi_silan_decay(1, 30) == 1 && hdi_silan_decay(1.0000001, 30) == 1 && hdi_silan_decay(0, 3) == 0 && hdi_silan_decay(-1e-17, 3) == 0);
+    CHECK(hdi_silan_decay(1e-20, 0) == 1 && fabs(hdi_silan_decay(0.5, 2) - exp(-2)) < 1e-16);
+    CHECK(hdi_silan_slope(1e-18, 0, 1e-18, 0, 3) == 0);
+}
+
+static hdi_lane *int_lanes(const hd_laplacian *lap, int32_t k, hd_context *ctx) {
+    hdi_lane *lane = DENSE_NEW(hdi_lane, k);
+    uint64_t seed = 21;
+    hd_error e;
+    int32_t r, i;
+    hdi_error_clear(&e);
+    for (r = 0; r < k; r++) {
+        CHECK(hdi_lane_make(lane + r, lap, ctx, &e) == HD_OK);
+        for (i = 0; i < lap->n_active; i++) lane[r].f[i] = r == 0 ? i == 11 : r == 1 ? 1 + sin(0.2 * i) : dense_signed(&seed);
+        hdi_pair_apply(lap, 0, 1, lane[r].f, lane[r].rhs);
+        hdi_heat_measure(lap, lane + r);
+    }
+    return lane;
+}
+
+/* After every number of steps the bound against the error of the answer, times from a third to three times the middle one, and far from it. */
+static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const char *what) {
+    static const double factors[5] = {0.03, 0.3, 1, 3, 30};
+    const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
+    double *u = DENSE_NEW(double, n), *want = DENSE_NEW(double, n), *L = DENSE_NEW(double, n * n), *B = DENSE_NEW(double, n * n), loosest = 0;
+    hdi_silan *z = DENSE_NEW(hdi_silan, 1);
+    hd_context ctx;
+    hd_error e;
+    hdi_elim m;
+    hdi_lane *lane;
+    dense_pair pair;
+    int32_t i, r, step, looked = 0;
+    int64_t p;
+    int q, decayed;
+    memset(&ctx, 0, sizeof ctx);
+    CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
+    t *= m.scale;
+    for (i = 0; i < n; i++) {
+        for (p = m.lap->L.row_ptr[i]; p < m.lap->L.row_ptr[i + 1]; p++) {
+            L[i * n + m.lap->L.col[p]] = m.lap->L.val[p];
+            if (m.lap->B) B[i * n + m.lap->L.col[p]] = m.lap->B[p];
+        }
+        if (!m.lap->B) B[i * n + i] = m.lap->mass[i];
+    }
+    CHECK(dense_pair_solve(&pair, L, B, n));
+    lane = int_lanes(m.lap, k, &ctx);
+    CHECK(hdi_elim_shift(&m, hdi_krylov_shift(&m, t, t), &e) == HD_OK && fabs(m.shift / t - 0.1) < 1e-12);
+    z->wide = wide;
+    z->m = &m;
+    z->k = k;
+    z->g = m.shift;
+    CHECK(hdi_silan_start(z, lane, &ctx, &e) == HD_OK);
+    for (step = 1; step <= 45 && step < n - 3; step++) {
+        CHECK(hdi_silan_step(z, &ctx, &e) == HD_OK && z->steps == step);
+        if (step > 12 && step % 4) continue;
+        for (r = 0; r < k; r++) {
+            for (q = 0; q < 5; q++) {
+                const double at = t * factors[q], eps = 1e-15 * fmin(at * dense_max_abs(pair.lambda, n), 1e3) + 3e-14;
+                double bound, size, error;
+                if (step > 1 && !(z->beta[step - 1][r] > 1e-13)) continue;
+                CHECK(hdi_silan_bound(z, r, step, at, &bound, &size, &e) == HD_OK);
+                z->done[r] = step;
+                CHECK(hdi_silan_answer(z, r, at, lane + r, &e) == HD_OK);
+                z->done[r] = 0;
+                dense_pair_heat(&pair, at, lane[r].rhs, want);
+                for (i = 0; i < n; i++) u[i] = lane[r].u[i] - want[i];
+                error = dense_pair_norm(&pair, u) / z->f_norm[r];
+                looked++;
+                CHECK_MSG(error <= bound + eps, "%s, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", what, (int)wide, (int)r, (int)step, factors[q], error, bound);
+                decayed = error <= 1e-12 + 10 * eps || size < 1e-3;    /* the bound allows for modes as slow as there can be, which there may not be */
+                if (!decayed) loosest = fmax(loosest, bound / error);
+                CHECK_MSG(decayed || bound <= 100 * error, "%s, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", what, (int)wide, (int)r,
+                          (int)step, factors[q], error, bound);
+                for (i = 0; i < n; i++) u[i] = want[i] - (m.lap->conserves ? lane[r].target[m.lap->component[i]] / m.lap->component_mass[m.lap->component[i]] : 0);
+                CHECK_MSG(fabs(size * z->f_norm[r] - dense_pair_norm(&pair, u)) <= 1.01 * (bound + eps) * z->f_norm[r], "%s: size %g, not %g", what, size,
+                          dense_pair_norm(&pair, u) / z->f_norm[r]);
+                CHECK(fabs(lane[r].solver - bound * z->f_norm[r]) <= 1e-12 * lane[r].solver);
+            }
+        }
+    }
+    CHECK_MSG(looked > 40, "%s: looked %d times only", what, (int)looked);
+    CHECK_MSG(loosest > 1, "%s: no bound above 1e-12", what);
+    hdi_silan_free(z, &ctx);
+    for (r = 0; r < k; r++) hdi_lane_free(lane + r, &ctx);
+    hdi_elim_free(&m);
+    CHECK(ctx.bytes_in_use == 0);
+    dense_pair_free(&pair);
+    hd_laplacian_free(lap);
+    free(lane);
+    free(z);
+    free(u);
+    free(want);
+}
+
+static void int_silan_bounds(void) {
+    int kind, q, w;
+    for (w = 1; w <= 8; w += 7) {
+        for (kind = 0; kind < 2; kind++) {
+            for (q = 0; q < 3; q++) {
+                hd_laplacian *lap = int_mesh(kind, kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+                int_silan_bound_of(lap, w, pow(20, q - 0.5) * lap->h * lap->h, kind ? "grid" : "ball");
+            }
+        }
+        int_silan_bound_of(int_path(60), w, 10, "path");
+        int_silan_bound_of(int_path(60), w, 1000, "path");
+    }
+}
+
 int main(void) {
     int_division();
     int_complex();
@@ -752,6 +1567,15 @@ int main(void) {
     int_warm_start();
     int_pole_bounds();
     int_lanczos_bound();
+    int_pack_kernels();
+    int_symbolic();
+    int_symbolic_large();
+    int_gaps();
+    int_sweeps();
+    int_checks();
+    int_check_plain();
+    int_silan_slopes();
+    int_silan_bounds();
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }

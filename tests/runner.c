@@ -142,8 +142,8 @@ typedef struct test_group { const char *name; void (*run)(void); } test_group;
 
 static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
-    {"ldl", test_ldl},           {"engines", test_engines},           {"krylov", test_krylov},     {"heat", test_heat},     {"robust", test_robust},       {"picture", test_picture},
-    {"meshio", test_meshio},
+    {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
+    {"picture", test_picture},   {"meshio", test_meshio},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };

@@ -645,6 +645,7 @@ class Methods(Case):
         cls.starts = (0, 24 * 16, 24 * 16 + 100)                    # a vertex of each component, which ascend
         cls.parts = cls.file("parts.obj", obj_text(v + [(1.0, 2.0, 3.0), v[7]], f + [(7, 8, n + 1)]))
         demo = cls.path("demo")
+        os.mkdir(demo)
         subprocess.run([TOOL, "demo", "--quiet", "-o", demo], check=True)
         cls.demo = os.path.join(demo, "heat-trunk.ply")
 

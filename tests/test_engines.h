@@ -269,6 +269,45 @@ static void eng_dense_cases(void) {
     shape_free(&inert);
 }
 
+/* Meshes that are too large for the oracle: the methods agree, iterations among them, within what they say. */
+static void eng_large(void) {
+    enum { K = 9 };
+    shape ball = shape_bumpy(4, 2), grid = shape_grid(60, 45, 0.3);
+    int q, k, z;
+    for (q = 0; q < 2; q++) {
+        const shape *s = q ? &grid : &ball;
+        hd_laplacian *lap = test_laplacian(s, op_kinds[q]);
+        const int32_t n = s->n;
+        const double t = 15 * lap->h * lap->h, times[3] = {t, 30 * t, 5 * t};
+        double *F = DENSE_NEW(double, K * n), *want = DENSE_NEW(double, K * n), *u = DENSE_NEW(double, K * n), *all = DENSE_NEW(double, 3 * n);
+        hd_heat *oracle = eng_plan(lap, HD_METHOD_ITERATIVE, HD_POLES_DEFAULT, 0);
+        hd_report rep, rep2;
+        int32_t i;
+        for (i = 0; i < K * n; i++) F[i] = sin(0.01 * i) + (i % n == 1100);
+        CHECK(hd_heat_apply(oracle, t, K, F, 0, want, 0, &rep2) >= 0);
+        for (k = 0; k < 2; k++) {
+            hd_heat *heat = eng_plan(lap, eng_methods[k], HD_POLES_DEFAULT, 0);
+            for (z = 1; z <= K; z += K - 1) {
+                double off;
+                if (!eng_ok(hd_heat_apply(heat, t, z, F, 0, u, 0, &rep), &rep, "large")) continue;
+                off = dense_max_diff(u, want, z * n) / dense_max_abs(want, n);
+                CHECK_MSG(off <= 1e-7 && off <= 2 * (rep.error_bound + rep2.error_bound), "%s, %d fields: off by %g", eng_name(eng_methods[k]), z, off);
+            }
+            CHECK(eng_ok(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, F, all, 0, &rep), &rep, "large"));
+            CHECK_MSG(dense_max_diff(all, want, n) <= 1e-7 * dense_max_abs(want, n), "%s, times: off by %g", eng_name(eng_methods[k]), dense_max_diff(all, want, n));
+            hd_heat_free(heat);
+        }
+        hd_heat_free(oracle);
+        hd_laplacian_free(lap);
+        free(F);
+        free(want);
+        free(u);
+        free(all);
+    }
+    shape_free(&ball);
+    shape_free(&grid);
+}
+
 /* ---- sets of poles ---- */
 
 /* All degrees of both kinds: packs that are full, and such with one, two, three poles or a lone real one left over. */
@@ -556,6 +595,35 @@ static void eng_reuse(void) {
     shape_free(&s);
 }
 
+/* A plan that goes from poles to shift-and-invert Lanczos and back, which share a factor: the same answers every time. */
+static void eng_switch(void) {
+    enum { K = 40, TIMES = 40 };
+    shape s = shape_bumpy(3, 7);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
+    hd_heat *heat = eng_create(lap, &o);
+    double *first = DENSE_NEW(double, (K + TIMES) * s.n), *u = DENSE_NEW(double, (K + TIMES) * s.n), times[TIMES];
+    int32_t sources[K], i;
+    int round;
+    for (i = 0; i < K; i++) sources[i] = i * 11;
+    for (i = 0; i < TIMES; i++) times[i] = (1 + i) * lap->h * lap->h;
+    for (round = 0; round < 3; round++) {
+        double *out = round ? u : first;
+        hd_report rep, rep2;
+        CHECK(eng_ok(hd_heat_columns(heat, times[TIMES - 1], HD_KERNEL_OPERATOR, K, sources, out, 0, &rep), &rep, "switch"));
+        CHECK(eng_ok(hd_heat_times(heat, TIMES, times, HD_KERNEL_OPERATOR, sources[5], NULL, out + K * s.n, 0, &rep2), &rep2, "switch"));
+        CHECK_MSG(rep.method == HD_METHOD_DIRECT && rep.n_poles % 4 == 1 && rep2.method == HD_METHOD_KRYLOV, "%s with %d poles, %s", eng_name(rep.method), (int)rep.n_poles,
+                  eng_name(rep2.method));
+        CHECK(dense_max_diff(out + 5 * s.n, out + (K + TIMES - 1) * s.n, s.n) <= (rep.error_bound + rep2.error_bound) * dense_max_abs(out + 5 * s.n, s.n));
+        if (round) CHECK_MSG(memcmp(first, u, (size_t)(K + TIMES) * (size_t)s.n * sizeof *u) == 0, "round %d: other answers", round);
+    }
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(first);
+    free(u);
+}
+
 /* ---- many times ---- */
 
 static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *times, int32_t n_times, const char *what) {
@@ -699,6 +767,12 @@ static int64_t eng_thread_run(const shape *s, hd_laplacian_kind kind, hd_heat_op
     return calls;
 }
 
+#ifdef _OPENMP
+enum { eng_openmp = 1 };
+#else
+enum { eng_openmp = 0 };             /* ways 0 to 3 are all the same */
+#endif
+
 static int eng_same_report(const hd_report *a, const hd_report *b) {
     return a->method == b->method && a->solver == b->solver && a->iterations == b->iterations && a->degree == b->degree && a->n_poles == b->n_poles &&
            a->residual == b->residual && a->error_bound == b->error_bound && a->error_bound_b == b->error_bound_b && a->growth == b->growth &&
@@ -719,7 +793,7 @@ static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts 
             CHECK_MSG(off <= 1e-12 * most, "%s: level %d is off by %g in column %lld", what, level, off / most, (long long)(part / s->n));
         }
         for (way = 1; way < LDL_WAYS; way++) {
-            if (way < 4 && level > 0) continue;  /* without OpenMP these are all the same */
+            if (way < 4 && (level > 0 || !eng_openmp)) continue;
             calls += eng_thread_run(s, kind, o, ldl_simds[level], way, other, rep2);
             CHECK_MSG(memcmp(first, other, (size_t)size * sizeof *first) == 0, "%s: way %d of threading gives other bits, level %d", what, way, level);
             for (k = 0; k < 5; k++) CHECK_MSG(eng_same_report(rep + k, rep2 + k), "%s: way %d of threading: another report, level %d", what, way, level);
@@ -1251,10 +1325,12 @@ static void eng_survives(void) {
 
 static void test_engines(void) {
     eng_dense_cases();
+    eng_large();
     eng_degrees();
     eng_own_sets();
     eng_counts();
     eng_reuse();
+    eng_switch();
     eng_times();
     eng_times_inert();
     eng_threads();

@@ -191,9 +191,10 @@ static void heat_defaults(void) {
             int32_t p;
             heat_against_dense(&c, heat, t);
             CHECK(hd_heat_column(heat, t, 100, u, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK);
-            CHECK_MSG(rep.error_bound_b < 1e-7 && rep.error_bound < 1e-6, "t %g: bounds %g, %g say little", t, rep.error_bound_b, rep.error_bound);
-            CHECK(rep.iterations > 0 && rep.method == HD_METHOD_ITERATIVE);
+            CHECK_MSG(rep.error_bound_b < 1e-7 && rep.error_bound < 1e-5, "t %g: bounds %g, %g say little", t, rep.error_bound_b, rep.error_bound);
+            CHECK(rep.reason != NULL && (rep.iterations > 0) == (rep.method != HD_METHOD_DIRECT));
             CHECK((rep.solver == HD_SOLVER_LANCZOS) == (rep.n_poles == 0));
+            if (rep.method != HD_METHOD_ITERATIVE) continue;
             for (p = 0; p < rep.n_poles; p++) sum += rep.pole_iterations[p];
             CHECK(rep.n_poles == 0 || sum == rep.iterations);
         }
@@ -353,7 +354,7 @@ static void heat_inert(void) {
         CHECK(hd_heat_column(other, t, 0, w, NULL) >= 0);
         for (i = 0; i < n; i++) CHECK(u[i] == (i == 0));                     /* its unit vector */
         CHECK(u[n] == 0 && u[n + 22] == 0);
-        for (i = 0; i < b.n; i++) CHECK(u[n + i + (i > 20) + 1] == w[i]);    /* the others do not notice */
+        for (i = 0; i < b.n; i++) CHECK(fabs(u[n + i + (i > 20) + 1] - w[i]) <= (k ? 0 : 1e-7) * w[0]);   /* the others do not notice */
         CHECK(hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 3, sources, u, 0, &rep) >= 0);
         for (i = 0; i < n; i++) CHECK(u[i] == 0);
         CHECK(u[n + 1] > 0 && u[n] == 0);

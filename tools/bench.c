@@ -1,6 +1,6 @@
 /* bench.c - heatdiff.h against what a user would otherwise take, and what its parts cost beside what the machine could do.
 
-       bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--csv] [MESH ...]
+       bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv] [MESH ...]
        bench parts [MESH ...]
 
    Build:  cc -O2 -fopenmp tools/bench.c -o bench -lm       (without -fopenmp: one thread only)
@@ -17,14 +17,17 @@
        stages   ordering, analysis, four complex factors and their solves, on one thread and on all
        eigen    Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU. Slow: above 60000 rows only when asked for
 
-   How it is measured. Both sides begin with the same two matrices in memory and run on the same number of threads. After a warm-up they take turns, and
-   the best run of each counts; only freeing is left out. Whatever has a knob for accuracy is set, untimed, to the least work that reaches an error of 1e-7,
-   relative to the largest value of a column: tol on our side, the number of Lanczos steps on theirs. Errors are against the direct method with kernel poles
-   of degree 14, and for many times against a rival's Lanczos with full reorthogonalisation; the two are compared with each other on the way.
-   UMFPACK and SparseLU get the best uniform poles of degree 7: their error is what it is.
+   How it is measured. Both sides begin with the same two matrices in memory and run on the same number of threads. After a warm-up they take
+   turns, and the best run of each counts; only freeing is left out. Whatever has a knob for accuracy is set, untimed, to the least work that reaches
+   an error of 1e-7, relative to the largest value of a column: tol on our side, the number of Lanczos steps on theirs. UMFPACK and SparseLU get the
+   best uniform poles of degree 7: their error is what it is. Errors are against the direct method with kernel poles of degree 14, and for many times
+   against a rival's Lanczos with full reorthogonalisation; the two are compared with each other on the way.
+   With the GNU library, memory that one run has freed stays in the process for the next: what a fresh page costs says more about the machine than
+   about either side, above all on virtual ones that hand back what is free for two seconds. --fresh leaves malloc as it is.
 
-   In the table: ms, the ratio rival's time / ours, errors; then ours GF/s of the factorisation, as a share of the machine's fused multiply-adds too, GB/s of
-   factors read in solves, non-zeros of L, bytes held at most, and these over 64 bytes a non-zero, which four complex factors need at least. */
+   In the table: ms, the ratio rival's time / ours, errors; then of ours GF/s of the factorisation and their share of the machine's fused
+   multiply-adds, GB/s of factors read in solves, non-zeros of L, bytes held at most, and these over 64 bytes a non-zero, the least that four complex
+   factors need; last the rival's non-zeros and bytes. Stages are what the library's progress callback names. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -35,6 +38,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #ifdef HEATDIFF_BENCH_RIVALS
 enum { HAVE_RIVALS = 1 };
@@ -44,8 +50,8 @@ static int rival_absent(rival_result *r) { memset(r, 0, sizeof *r); return 0; }
 int rival_silan(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 int rival_silan_block(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 int rival_silan_times(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
-int rival_umfpack(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)job; (void)p; (void)U; return rival_absent(r); }
-int rival_eigen_lu(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)job; (void)p; (void)U; return rival_absent(r); }
+int rival_umfpack(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)p; return rival_silan(job, U, r); }
+int rival_eigen_lu(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)p; return rival_silan(job, U, r); }
 int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 int rival_reference(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 void rival_machine(int32_t threads, rival_machine_result *r) { (void)threads; memset(r, 0, sizeof *r); r->simd = r->blas = ""; }
@@ -166,8 +172,8 @@ static void parts_solvers(const hd_laplacian *lap) {
             t1 = now();
             if (hd_heat_column(heat, taus[k] * lap->h * lap->h, lap->vertex[lap->n_active / 2], u, &rep) >= 0) {
                 t2 = now();
-                printf("  column, t = %4g h^2, %-8s plan %7.1f ms, solve %8.1f ms, %5lld steps, %.3f ms a step\n", taus[k],
-                       s == 0 ? "cocg" : "lanczos", 1e3 * (t1 - t0), 1e3 * (t2 - t1), (long long)rep.iterations, 1e3 * (t2 - t1) / (double)rep.iterations);
+                printf("  column, t = %4g h^2, %-8s plan %7.1f ms, solve %8.1f ms, %5lld steps, %.3f ms a step\n", taus[k], s == 0 ? "cocg" : "lanczos",
+                       1e3 * (t1 - t0), 1e3 * (t2 - t1), (long long)rep.iterations, 1e3 * (t2 - t1) / (double)rep.iterations);
             }
             if (s == 0 && k == 2) parts_products(heat, 100 * lap->h * lap->h);
             hd_heat_free(heat);
@@ -298,7 +304,7 @@ static void watch_start(watch *w) {
 }
 
 typedef struct settings {
-    int jobs, csv, umfpack, columns, n_threads, asked;
+    int jobs, csv, umfpack, fresh, columns, n_threads, asked;
     int32_t threads[16];
     double seconds;
 } settings;
@@ -506,10 +512,11 @@ static void cell(int width, const char *format, double x, int there) {
 static double row_share(const entry *r, const bench *b) { return r->gflops / b->peak[r->threads > 1]; }
 
 static void row_csv(const entry *r, const bench *b) {
-    printf("%s,%s,%d,%s,%g,%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,%.4g,%.4g,%.4g,%.0f,%.0f,%.4g,%.0f,%.0f\n", b->mesh, b->mass, (int)b->pair.n, r->job,
-           r->tau, (int)r->threads, r->ours, r->seconds, r->rival, r->rival_seconds, r->rival_seconds > 0 ? r->rival_seconds / r->seconds : 0, r->error,
-           r->rival_error, r->gflops, b->peak[0] > 0 ? row_share(r, b) : 0, r->gbytes, r->nnz, r->bytes, r->packs && r->nnz > 0 ? r->bytes / (64 * r->nnz) : 0,
-           r->rival_nnz, r->rival_bytes);
+    const double ratio = r->rival_seconds > 0 ? r->rival_seconds / r->seconds : 0, share = b->peak[0] > 0 ? row_share(r, b) : 0;
+    const double packs = r->packs && r->nnz > 0 ? r->bytes / (64 * r->nnz) : 0;
+    printf("%s,%s,%d,%s,%g,%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,", b->mesh, b->mass, (int)b->pair.n, r->job + strspn(r->job, " "), r->tau,
+           (int)r->threads, r->ours, r->seconds, r->rival, r->rival_seconds, ratio, r->error, r->rival_error);
+    printf("%.4g,%.4g,%.4g,%.0f,%.0f,%.4g,%.0f,%.0f\n", r->gflops, share, r->gbytes, r->nnz, r->bytes, packs, r->rival_nnz, r->rival_bytes);
 }
 
 static void row_print(const entry *r, const bench *b) {
@@ -540,8 +547,8 @@ static void row_print(const entry *r, const bench *b) {
 
 static void table_head(const bench *b) {
     if (b->set->csv) return;
-    printf("%-18s%6s%3s  %-22s%10s  %-22s%10s%7s%9s%9s%8s%5s%6s%11s%8s%6s%11s%8s\n", "job", "t/h2", "th", "ours", "ms", "rival", "ms", "ratio", "error", "rival's",
-           "GF/s", "peak", "GB/s", "nnz(L)", "MB", "/64B", "rival nnz", "MB");
+    printf("%-18s%6s%3s  %-22s%10s  %-22s%10s%7s%9s%9s", "job", "t/h2", "th", "ours", "ms", "rival", "ms", "ratio", "error", "rival's");
+    printf("%8s%5s%6s%11s%8s%6s%11s%8s\n", "GF/s", "peak", "GB/s", "nnz(L)", "MB", "/64B", "rival nnz", "MB");
 }
 
 static const char *ordering_name(hd_ordering o) {
@@ -551,10 +558,11 @@ static const char *ordering_name(hd_ordering o) {
 static void describe_ours(char *to, size_t size, const ask *a, const ours *o) {
     const hd_report *r = &o->report;
     const char *asked = a->method == HD_METHOD_AUTO ? "auto: " : "", *order = ordering_name(r->ordering);
+    const long long steps = (long long)r->iterations / a->n_times;   /* of many times: on average */
     if (!o->fine) snprintf(to, size, "failed");
     else if (r->method == HD_METHOD_DIRECT) snprintf(to, size, "%sdirect r=%d%s", asked, (int)r->degree, order);
-    else if (r->method == HD_METHOD_KRYLOV) snprintf(to, size, "%skrylov %lld%s", asked, (long long)r->iterations, order);
-    else snprintf(to, size, "%s%s %lld", asked, r->solver == HD_SOLVER_LANCZOS ? "lanczos" : "cocg", (long long)r->iterations);
+    else if (r->method == HD_METHOD_KRYLOV) snprintf(to, size, "%skrylov %lld%s", asked, steps, order);
+    else snprintf(to, size, "%s%s %lld", asked, r->solver == HD_SOLVER_LANCZOS ? "lanczos" : "cocg", steps);
 }
 
 /* Our part of a row. GB/s where it is plain what a solve reads: one column by shift-invert Lanczos sweeps twice over the factor a step. */
@@ -569,7 +577,8 @@ static void row_ours(entry *r, const ask *a, const ours *o) {
     r->bytes = o->bytes;
     r->packs = rep->method == HD_METHOD_DIRECT;
     if (factor > 0 && a->n_times == 1 && rep->method != HD_METHOD_ITERATIVE) r->gflops = 1e-9 * rep->factor_flops / factor;
-    if (solve > 0 && rep->method == HD_METHOD_KRYLOV && a->n_columns == 1 && a->n_times == 1) r->gbytes = 16e-9 * r->nnz * (double)rep->iterations / solve;
+    if (solve > 0 && rep->method == HD_METHOD_KRYLOV && a->n_columns == 1 && a->n_times == 1)
+        r->gbytes = 16e-9 * r->nnz * (double)rep->iterations / solve;
 }
 
 /* ==== contests ==== */
@@ -601,7 +610,7 @@ static int rival_run(const opponent *o, rival_result *r) {
     }
 }
 
-static double rival_seconds(const opponent *o, const rival_result *r) { return o->kind == SILAN_BLOCK || o->job.n_sources > 1 ? r->total_columns : r->total; }
+static double rival_seconds(const opponent *o, const rival_result *r) { return o->job.n_sources > 1 ? r->total_columns : r->total; }
 
 /* The same job for a rival. rows [columns]: the sources, which must stay. */
 static opponent opponent_make(const bench *b, rival_kind kind, const ask *a, const int32_t *rows, const double *R, int n_R) {
@@ -674,11 +683,12 @@ static void contest(const bench *b, const ask *a, const double *R, int n_R, doub
 }
 
 static void describe_rival(char *to, size_t size, const opponent *o) {
-    static const char *const names[] = {"SI-Lanczos", "SI-Lanczos block", "SI-Lanczos", "UMFPACK", "SparseLU"};
+    static const char *const names[] = {"SI-Lanczos", "SI-Lanczos", "SI-Lanczos", "UMFPACK", "SparseLU"};
     const rival_result *r = &o->best;
     const char *order = o->kind == EIGEN_LU ? " colamd" : r->ordering == RIVAL_METIS ? " metis" : " amd";
     if (!o->fine) snprintf(to, size, "%s: %.20s", names[o->kind], r->note);
     else if (o->kind == UMFPACK || o->kind == EIGEN_LU) snprintf(to, size, "%s r=7%s", names[o->kind], order);
+    else if (o->kind == SILAN_BLOCK) snprintf(to, size, "%s %d x%d%s", names[o->kind], (int)r->steps, (int)r->width, order);
     else snprintf(to, size, "%s %d%s", names[o->kind], (int)r->steps, order);
 }
 
@@ -705,7 +715,7 @@ static void contest_rows(const bench *b, const char *job, const ask *a, const ou
 /* The stages of the two best runs. */
 static void stage_rows(const bench *b, const ours *best, const opponent *o) {
     static const char *const names[] = {"  order + analyse", "  factor", "  solve"};
-    const double mine[] = {best->stage[STAGE_OTHER] + best->stage[STAGE_ORDER] + best->stage[STAGE_ANALYSE], best->stage[STAGE_FACTOR], best->stage[STAGE_SOLVE]};
+    const double *s = best->stage, mine[] = {s[STAGE_OTHER] + s[STAGE_ORDER] + s[STAGE_ANALYSE], s[STAGE_FACTOR], s[STAGE_SOLVE]};
     const double theirs[] = {o->best.analyse, o->best.factor, o->best.first};
     int k;
     for (k = 0; k < 3; k++) {
@@ -765,7 +775,7 @@ static void compare_references(const bench *b, double t, const double *R) {
             e = hdi_max(e, fabs(S[i] - R[i]));
             m = hdi_max(m, fabs(R[i]));
         }
-        printf("%sreferences: direct of degree 14 and reorthogonalised Lanczos differ by %.1e\n", b->set->csv ? "# " : "", e / m);
+        printf("%s  references: direct of degree 14 and reorthogonalised Lanczos differ by %.1e\n", b->set->csv ? "# " : "", e / m);
     }
     free(S);
 }
@@ -776,8 +786,8 @@ static void job_one(bench *b) {
     const ask a = ask_column(HD_METHOD_AUTO, &t, &vertex);
     double *R = reference(b, &a, 1), *U = answers(b, 1);
     if (R && U) {
-        compare_references(b, t, R);
         if (one_column(b, "one", HD_METHOD_AUTO, 100, R, U, 1) != HD_METHOD_KRYLOV) (void)one_column(b, "one", HD_METHOD_KRYLOV, 100, R, U, 1);
+        compare_references(b, t, R);
     }
     free(R);
     free(U);
@@ -1134,7 +1144,11 @@ static void job_eigen(bench *b) {
 
 /* ==== meshes ==== */
 
-enum { JOB_ONE = 1, JOB_SMALL = 2, JOB_COLUMNS = 4, JOB_FURTHER = 8, JOB_TIMES = 16, JOB_STAGES = 32, JOB_EIGEN = 64, JOB_ALL = 127 };
+enum { JOB_SMALL = 1, JOBS = 7 };   /* small has both masses */
+
+static const struct { const char *name; void (*run)(bench *); } jobs[JOBS] = {
+    {"one", job_one}, {"small", job_small}, {"columns", job_columns}, {"further", job_further}, {"times", job_times}, {"stages", job_stages},
+    {"eigen", job_eigen}};
 
 static void bench_open(bench *b, const settings *set, const char *mesh, const hd_laplacian *lap, int32_t threads, const double *peak) {
     const hd_csr *L = &lap->L;
@@ -1160,23 +1174,26 @@ static void bench_open(bench *b, const settings *set, const char *mesh, const hd
     b->pair.B = lap->B ? lap->B : b->own_B;
 }
 
+/* After a job on a large mesh: the next one has other sizes. */
+static void give_back(void) {
+#if defined(__GLIBC__)
+    (void)malloc_trim(0);
+#endif
+}
+
 static void bench_pair(const settings *set, const char *mesh, const hd_laplacian *lap, int32_t threads, const double *peak) {
     bench b;
+    int k;
     bench_open(&b, set, mesh, lap, threads, peak);
     if (!set->csv) {
-        printf("\n%s, %s: %d rows, %lld non-zeros, %d thread%s\n", mesh, b.mass, (int)lap->n_active, (long long)lap->L.nnz, (int)threads, threads > 1 ? "s" : "");
+        printf("\n%s, %s: %d rows, %lld non-zeros, %d thread%s\n", mesh, b.mass, (int)lap->n_active, (long long)lap->L.nnz, (int)threads,
+               threads > 1 ? "s" : "");
         table_head(&b);
     }
-    if (b.pair.B && lap->B) {
-        if (set->jobs & JOB_ONE) job_one(&b);
-        if (set->jobs & JOB_SMALL) job_small(&b);
-        if (set->jobs & JOB_COLUMNS) job_columns(&b);
-        if (set->jobs & JOB_FURTHER) job_further(&b);
-        if (set->jobs & JOB_TIMES) job_times(&b);
-        if (set->jobs & JOB_STAGES) job_stages(&b);
-        if (set->jobs & JOB_EIGEN) job_eigen(&b);
-    } else if (b.pair.B) {
-        job_small(&b);
+    for (k = 0; b.pair.B && k < JOBS; k++) {
+        if (!(set->jobs >> k & 1) || (k != JOB_SMALL && !lap->B)) continue;
+        jobs[k].run(&b);
+        if (lap->n_active > 400000) give_back();
     }
     free(b.own_B);
 }
@@ -1190,7 +1207,7 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
         hd_error e;
         memset(&o, 0, sizeof o);
         o.kind = kinds[k];
-        if (k == 1 && !(set->jobs & JOB_SMALL)) break;
+        if (k == 1 && !(set->jobs >> JOB_SMALL & 1)) break;
         if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, &e) < 0) {
             fprintf(stderr, "bench: %s: %s\n", name, e.text);
             return;
@@ -1232,13 +1249,14 @@ static void bench_shape(const settings *set, const char *name, shape s, const do
 
 static int usage(const char *what) {
     if (what) fprintf(stderr, "bench: %s\n", what);
-    fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--csv] [MESH ...]\n"
+    fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
                     "  --jobs LIST     of one,small,columns,further,times,stages,eigen; default: all\n"
                     "  --columns K     columns of the job of that name, default 100\n"
                     "  --seconds S     rounds of a contest begin within S seconds, at least two; default 10\n"
                     "  --umfpack       UMFPACK also above 300000 rows\n"
+                    "  --fresh         freed memory goes back to the system at once, as malloc likes it\n"
                     "  --csv           commas, all digits, seconds and bytes\n");
     return 2;
 }
@@ -1257,12 +1275,11 @@ static int parse_threads(settings *set, const char *s) {
 }
 
 static int parse_jobs(settings *set, const char *s) {
-    static const char *const names[] = {"one", "small", "columns", "further", "times", "stages", "eigen"};
     for (set->jobs = 0; *s;) {
         const size_t len = strcspn(s, ",");
         int k;
-        for (k = 0; k < 7 && (strlen(names[k]) != len || strncmp(s, names[k], len)); k++) {}
-        if (k == 7) return 0;
+        for (k = 0; k < JOBS && (strlen(jobs[k].name) != len || strncmp(s, jobs[k].name, len)); k++) {}
+        if (k == JOBS) return 0;
         set->jobs |= 1 << k;
         s += len + (s[len] == ',');
     }
@@ -1274,7 +1291,7 @@ static int parse_jobs(settings *set, const char *s) {
 static void measure_machine(const settings *set, double *peak) {
     const int64_t n = (int64_t)1 << 25;
     const int simd = HDI_X86 ? hdi_simd_best() : 0;
-    const char *mark = set->csv ? "# " : "";
+    const char *mark = set->csv ? "# " : "", *const simd_names[] = {"plain C", "AVX2", "AVX-512"};
     double *x = (double *)malloc((size_t)n * sizeof *x);
     rival_machine_result m;
     int64_t i;
@@ -1293,8 +1310,9 @@ static void measure_machine(const settings *set, double *peak) {
         p[1] = hdi_max(p[1], m.peak_n);
         read[0] = hdi_max(read[0], m.read_1);
         read[1] = hdi_max(read[1], m.read_n);
-        printf("%smachine: %s, %.1f GF/s and %.1f GB/s read on 1 thread, %.1f and %.1f on %d%s%s\n", mark, simd > 1 ? "AVX-512" : simd ? "AVX2" : "plain C", p[0],
-               read[0], p[1], read[1], (int)set->threads[q], m.blas[0] ? "; OpenBLAS: " : "", m.blas);
+        printf("%smachine: %s, %.1f GF/s and %.1f GB/s read on 1 thread, %.1f and %.1f on %d", mark, simd_names[simd], p[0], read[0], p[1], read[1],
+               (int)set->threads[q]);
+        printf("%s%s\n", m.blas[0] ? "; OpenBLAS: " : "", m.blas);
     }
     free(x);
 }
@@ -1305,6 +1323,7 @@ static int parse(settings *set, int argc, char **argv, int *first) {
         const char *s = argv[i], *next = i + 1 < argc ? argv[i + 1] : "";
         if (!strcmp(s, "--csv")) set->csv = 1;
         else if (!strcmp(s, "--umfpack")) set->umfpack = 1;
+        else if (!strcmp(s, "--fresh")) set->fresh = 1;
         else if (!strcmp(s, "--threads") && parse_threads(set, next)) i++;
         else if (!strcmp(s, "--jobs") && parse_jobs(set, next)) i++;
         else if (!strcmp(s, "--columns") && (set->columns = atoi(next)) > 0 && set->columns <= MOST_COLUMNS) i++;
@@ -1313,6 +1332,15 @@ static int parse(settings *set, int argc, char **argv, int *first) {
     }
     *first = i;
     return 1;
+}
+
+/* Freed memory stays in the process, in one heap for all threads. */
+static void keep_memory(void) {
+#if defined(__GLIBC__)
+    (void)mallopt(M_MMAP_MAX, 0);
+    (void)mallopt(M_TRIM_THRESHOLD, -1);
+    (void)mallopt(M_ARENA_MAX, 1);
+#endif
 }
 
 static int bench_parts(int argc, char **argv) {
@@ -1332,7 +1360,7 @@ int main(int argc, char **argv) {
     int i, first, fine = 1;
     if (argc > 1 && !strcmp(argv[1], "parts")) return bench_parts(argc, argv);
     memset(&set, 0, sizeof set);
-    set.jobs = JOB_ALL;
+    set.jobs = (1 << JOBS) - 1;
     set.columns = 100;
     set.seconds = 10;
     set.n_threads = 1;
@@ -1342,6 +1370,7 @@ int main(int argc, char **argv) {
     set.threads[0] = 1;
 #endif
     if (!parse(&set, argc, argv, &first)) return usage(argc > 1 && strcmp(argv[1], "--help") ? "an argument is not understood" : NULL);
+    if (!set.fresh) keep_memory();
     if (!HAVE_RIVALS) printf("%sbuilt without rivals: times and errors of ours alone\n", set.csv ? "# " : "");
     measure_machine(&set, peak);
     if (set.csv)

@@ -1513,7 +1513,7 @@ static int solve_groups(run *r, time_group *g)
     int code = DONE;
     for (; from <= DBL_MAX && !code; from = next_time(r, to), to = from * ratio) {
         code = group_fill(r, g, from, to);
-        if (!code) code = solve_group(r, g);
+        if (!code && g->n > 0) code = solve_group(r, g);
     }
     return code;
 }
