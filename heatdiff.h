@@ -10063,6 +10063,8 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= packs * 16 * flops / HDI_RATE_PACK;
     c.direct_bytes = 64 * packs * stored + 200 * n + 8 * real_stored;
     c.krylov_bytes = 8 * real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
+    if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
+    if (heat->silan) c.krylov_bytes = 0;
     return c;
 }
 
@@ -10081,7 +10083,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     }
     if (h->method == HD_METHOD_AUTO && heat->no_factors) {
         h->method = HD_METHOD_ITERATIVE;
-        h->rep->reason = "factors did not fit into memory";
+        h->rep->reason = "factors did not fit the byte limit";
     }
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     c = hdi_heat_cost(h);
@@ -10489,10 +10491,12 @@ static hd_status hdi_krylov_all(hdi_heat_call *h) {
     return h->e->status;
 }
 
-/* Did a method that auto chose run out of memory? Then what was factorised goes, and iterations take its place. */
+/* Did a method that auto chose run into the byte limit? Then what was factorised goes, and iterations take its place. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    if (heat->opts.method != HD_METHOD_AUTO || (h->e->status != HD_ERR_MEMORY_LIMIT && h->e->status != HD_ERR_MEMORY) || heat->no_factors) return 0;
+    int32_t i;
+    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || heat->no_factors) return 0;
+    for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
     hdi_elim_free(&heat->elim);
     if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
     hdi_free(heat->ctx, heat->silan);

@@ -747,7 +747,8 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
 /* Products of all shapes about the tiles' sizes, whole, lower triangles, packed, stored or subtracted, columns from somewhere in the middle. */
 static void int_pack_multiply(const hdi_pack_ops *ops, int level) {
     enum { ROWS = 53, COLS = 11, DEPTH = 9, SIZE = HDI_PACK * ROWS * (ROWS + 1) };
-    double *a = DENSE_NEW(double, SIZE), *b = DENSE_NEW(double, SIZE), *c = DENSE_NEW(double, SIZE), *d = DENSE_NEW(double, SIZE), *start = DENSE_NEW(double, SIZE);
+    double *a = DENSE_NEW(double, SIZE), *b = DENSE_NEW(double, SIZE), *c = DENSE_NEW(double, SIZE), *d = DENSE_NEW(double, SIZE),
+        *start = DENSE_NEW(double, SIZE);
     uint64_t seed = 3;
     int k;
     int_noise(a, SIZE, &seed);
@@ -780,7 +781,8 @@ static void int_pack_multiply(const hdi_pack_ops *ops, int level) {
         g.c = d;
         hdi_pack_multiply_c(&g, i0, i1, j0, j1);
         if (dense_max_diff(c, d, SIZE) > 1e-13) {
-            CHECK_MSG(0, "level %d: rows %d..%d, columns %d..%d, depth %d, lower %d, packed %d: off by %g", level, (int)i0, (int)i1, (int)j0, (int)j1, (int)g.depth,
+            CHECK_MSG(0, "level %d: rows %d..%d, columns %d..%d, depth %d, lower %d, packed %d: off by %g", level, (int)i0, (int)i1, (int)j0,
+                (int)j1, (int)g.depth,
                       g.lower, g.packed, dense_max_diff(c, d, SIZE));
             break;
         }
@@ -1035,7 +1037,8 @@ static void int_symbolic_one(const hd_csr *a, int32_t *perm, int dense, const ch
             nnz += count;
             flops += (double)count * (double)count;
         }
-        CHECK_MSG(nnz == s.nnz && flops == s.flops && s.flops_done >= s.flops, "%s: %lld non-zeros and %g flops, not %lld and %g", what, (long long)s.nnz, s.flops,
+        CHECK_MSG(nnz == s.nnz && flops == s.flops && s.flops_done >= s.flops, "%s: %lld non-zeros and %g flops, not %lld and %g", what,
+            (long long)s.nnz, s.flops,
                   (long long)nnz, flops);
         free(l);
     }
@@ -1201,7 +1204,8 @@ static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx,
 static void int_sweep_one(const hdi_elim *m, const hdi_factor *f, int32_t k, hd_context *ctx, const char *what) {
     const hdi_symbolic *s = f == NULL ? NULL : f->sym;
     const int64_t n = s->n, w = f->width;
-    double *x = DENSE_NEW(double, n * w * k), *one = DENSE_NEW(double, n * w), *again = DENSE_NEW(double, n * w * k), *b = DENSE_NEW(double, n * w * k);
+    double *x = DENSE_NEW(double, n * w * k), *one = DENSE_NEW(double, n * w), *again = DENSE_NEW(double, n * w * k), *b = DENSE_NEW(double,
+        n * w * k);
     double *work = DENSE_NEW(double, hdi_sweep_size(s, f->width, k, 1));
     char *active = DENSE_NEW(char, s->n_super);
     uint64_t seed = 17;
@@ -1225,7 +1229,8 @@ static void int_sweep_one(const hdi_elim *m, const hdi_factor *f, int32_t k, hd_
             hdi_sweep_run(&z, NULL);
             for (i = 0; i < n; i++)
                 for (q = 0; q < w; q++) worst = fmax(worst, fabs(one[w * i + q] - x[w * (k * i + r) + q]));
-            CHECK_MSG(worst <= 1e-12 * dense_max_abs(one, n * w), "%s: %d side by side, the %d. is off by %g", what, (int)k, (int)r, worst / dense_max_abs(one, n * w));
+            CHECK_MSG(worst <= 1e-12 * dense_max_abs(one, n * w), "%s: %d side by side, the %d. is off by %g", what, (int)k, (int)r,
+                worst / dense_max_abs(one, n * w));
         }
         for (q = 0; q < 2; q++) {
             memcpy(again, b, (size_t)(n * w * k) * sizeof *x);
@@ -1233,7 +1238,8 @@ static void int_sweep_one(const hdi_elim *m, const hdi_factor *f, int32_t k, hd_
             z = hdi_sweep_open(f, k, again, work, q);
             z.active = active;
             hdi_sweep_run(&z, q ? ctx : NULL);
-            CHECK_MSG(dense_max_diff(again, x, n * w * k) == 0, "%s: %d side by side, by active fronts: off by %g", what, (int)k, dense_max_diff(again, x, n * w * k));
+            CHECK_MSG(dense_max_diff(again, x, n * w * k) == 0, "%s: %d side by side, by active fronts: off by %g", what, (int)k,
+                dense_max_diff(again, x, n * w * k));
         }
         if (w == 1) continue;
         for (r = 0; r < k; r++) {                /* A x = b for each of the four */
@@ -1245,7 +1251,8 @@ static void int_sweep_one(const hdi_elim *m, const hdi_factor *f, int32_t k, hd_
                     hd_c64 sum = hdi_c(-b[w * (k * i + r) + q], 0);
                     int64_t p;
                     for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-                        const double *v = x + w * (k * (int64_t)lap->L.col[p] + r) + q, mass = lap->B ? lap->B[p] : lap->L.col[p] == i ? lap->mass[i] : 0;
+                        const double *v = x + w * (k * (int64_t)lap->L.col[p] + r) + q,
+                            mass = lap->B ? lap->B[p] : lap->L.col[p] == i ? lap->mass[i] : 0;
                         const hd_c64 a = hdi_cadd(hdi_c(m->t * lap->L.val[p], 0), hdi_cscale(mass, m->set.theta[pole]));
                         sum = hdi_cadd(sum, hdi_cmul(a, hdi_c(v[0], v[4])));
                         size = fmax(size, hdi_cabs(a) * hypot(v[0], v[4]));
@@ -1303,7 +1310,8 @@ static void int_checks(void) {
         const int32_t n = lap->n_active;
         uint64_t seed = 9;
         for (k = 1; k <= 6; k++) {
-            double *x = DENSE_NEW(double, HDI_PACK * 6 * n), *weight = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, 6 * n), *u = DENSE_NEW(double, 24 * n);
+            double *x = DENSE_NEW(double, HDI_PACK * 6 * n), *weight = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, 6 * n),
+                *u = DENSE_NEW(double, 24 * n);
             hdi_check a[6], b[6], *la[6], *lb[6];
             int32_t i;
             int_noise(x, HDI_PACK * 6 * n, &seed);
@@ -1334,9 +1342,11 @@ static void int_checks(void) {
             hdi_check_512(lb, k);
             CHECK_MSG(int_off(u + 12 * n, u, 12 * n) < 1e-13, "%d checked together: answers off by %g", (int)k, int_off(u + 12 * n, u, 12 * n));
             for (r = 0; r < k; r++) {
-                for (q = 0; q < 4; q++) CHECK_MSG(fabs(a[r].norm2[q] - b[r].norm2[q]) <= 1e-12 * a[r].norm2[q] && a[r].norm2[q] > 0, "%d checked together: residual %g, %g", (int)k,
+                for (q = 0; q < 4; q++) CHECK_MSG(fabs(a[r].norm2[q] - b[r].norm2[q]) <= 1e-12 * a[r].norm2[q] && a[r].norm2[q] > 0,
+                    "%d checked together: residual %g, %g", (int)k,
                                                   a[r].norm2[q], b[r].norm2[q]);
-                CHECK_MSG(fabs(a[r].first2 - b[r].first2) <= 1e-12 * fabs(a[r].first2), "%d checked together: norm %g, %g", (int)k, a[r].first2, b[r].first2);
+                CHECK_MSG(fabs(a[r].first2 - b[r].first2) <= 1e-12 * fabs(a[r].first2), "%d checked together: norm %g, %g", (int)k, a[r].first2,
+                    b[r].first2);
             }
             free(x);
             free(weight);
@@ -1355,7 +1365,8 @@ static void int_check_plain(void) {
         hd_laplacian *lap = int_mesh(1, kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
         const int32_t n = lap->n_active;
         double *x = DENSE_NEW(double, HDI_PACK * n), *weight = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, n), *u = DENSE_NEW(double, 2 * n);
-        double *part = DENSE_NEW(double, 2 * n), *l = DENSE_NEW(double, 2 * n), *b = DENSE_NEW(double, 2 * n), *want = DENSE_NEW(double, 2 * n), first = 0;
+        double *part = DENSE_NEW(double, 2 * n), *l = DENSE_NEW(double, 2 * n), *b = DENSE_NEW(double, 2 * n), *want = DENSE_NEW(double, 2 * n),
+            first = 0;
         hdi_check c, *list = &c;
         uint64_t seed = 4;
         int32_t i;
@@ -1385,7 +1396,8 @@ static void int_check_plain(void) {
                 hdi_pair_apply(lap, 0, 1, part + i * n, b + i * n);
             }
             for (i = 0; i < n; i++) {
-                const double re = rhs[i] - 0.3 * l[i] - c.theta[q] * b[i] + c.theta[q + 4] * b[n + i], im = -0.3 * l[n + i] - c.theta[q] * b[n + i] - c.theta[q + 4] * b[i];
+                const double re = rhs[i] - 0.3 * l[i] - c.theta[q] * b[i] + c.theta[q + 4] * b[n + i],
+                    im = -0.3 * l[n + i] - c.theta[q] * b[n + i] - c.theta[q + 4] * b[i];
                 norm2 += weight[i] * (re * re + im * im);
                 want[i] += c.coef[q] * part[i] + c.coef[q + 4] * part[n + i];
                 want[n + i] += c.coef[q] * b[i] + c.coef[q + 4] * b[n + i];
@@ -1508,13 +1520,17 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 for (i = 0; i < n; i++) u[i] = lane[r].u[i] - want[i];
                 error = dense_pair_norm(&pair, u) / z->f_norm[r];
                 looked++;
-                CHECK_MSG(error <= bound + eps, "%s, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", what, (int)wide, (int)r, (int)step, factors[q], error, bound);
-                decayed = error <= 1e-12 + 10 * eps || size < 1e-3;    /* the bound allows for modes as slow as there can be, which there may not be */
+                CHECK_MSG(error <= bound + eps, "%s, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", what, (int)wide, (int)r,
+                    (int)step, factors[q], error, bound);
+                decayed = error <= 1e-12 + 10 * eps || size < 1e-3;    /* the bound allows for modes as slow as there can be,
+                    which there may not be */
                 if (!decayed) loosest = fmax(loosest, bound / error);
-                CHECK_MSG(decayed || bound <= 100 * error, "%s, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", what, (int)wide, (int)r,
+                CHECK_MSG(decayed || bound <= 100 * error, "%s, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", what, (int)wide,
+                    (int)r,
                           (int)step, factors[q], error, bound);
                 for (i = 0; i < n; i++) u[i] = want[i] - (m.lap->conserves ? lane[r].target[m.lap->component[i]] / m.lap->component_mass[m.lap->component[i]] : 0);
-                CHECK_MSG(fabs(size * z->f_norm[r] - dense_pair_norm(&pair, u)) <= 1.01 * (bound + eps) * z->f_norm[r], "%s: size %g, not %g", what, size,
+                CHECK_MSG(fabs(size * z->f_norm[r] - dense_pair_norm(&pair, u)) <= 1.01 * (bound + eps) * z->f_norm[r], "%s: size %g, not %g",
+                    what, size,
                           dense_pair_norm(&pair, u) / z->f_norm[r]);
                 CHECK(fabs(lane[r].solver - bound * z->f_norm[r]) <= 1e-12 * lane[r].solver);
             }

@@ -103,10 +103,12 @@ static hd_laplacian *eng_leaking(int32_t nx, int32_t ny) {
 
 /* Is u within the bounds that the report gives, is the heat of every component what it was, and are the bounds worth something? rhs is B f on rows.
  * own: the answer is that of a filter, not of the exponential. alone: the report is about this answer and no other. */
-static void eng_judge(const heat_case *c, double t, const hd_rational *own, const double *rhs, const double *u, const hd_report *rep, int alone, const char *what) {
+static void eng_judge(const heat_case *c, double t, const hd_rational *own, const double *rhs, const double *u, const hd_report *rep, int alone,
+    const char *what) {
     const hd_laplacian *lap = c->lap;
     const int32_t n = lap->n_active;
-    double *g = DENSE_NEW(double, n), *want = DENSE_NEW(double, n), *diff = DENSE_NEW(double, n), *f = DENSE_NEW(double, n), *heat = DENSE_NEW(double, 3 * n);
+    double *g = DENSE_NEW(double, n), *want = DENSE_NEW(double, n), *diff = DENSE_NEW(double, n), *f = DENSE_NEW(double, n),
+        *heat = DENSE_NEW(double, 3 * n);
     double off_b, size_b, f_b, off, size = 0, slack, gain = 1;
     int32_t i;
     for (i = 0; i < n; i++) {
@@ -124,17 +126,22 @@ static void eng_judge(const heat_case *c, double t, const hd_rational *own, cons
     f_b = gain * dense_pair_norm(&c->pair, f);
     off = dense_max_abs(diff, n);
     slack = 3e-13 * f_b + 1e-15 * fmin(t * c->top, 1e4) * f_b;    /* of rounding, and of the oracle's eigenvalues */
-    if (rep->error_bound_b == HUGE_VAL) CHECK_MSG(off_b <= (alone ? 1e-8 : 1e-7) * f_b, "%s, %s, %s, t %g: no bound, and an error of %g", c->what, eng_name(rep->method), what, t, off_b / f_b);
-    else CHECK_MSG(off_b <= rep->error_bound_b * size_b + slack, "%s, %s, %s, t %g: error %g, bound %g (B norm)", c->what, eng_name(rep->method), what, t,
+    if (rep->error_bound_b == HUGE_VAL) CHECK_MSG(off_b <= (alone ? 1e-8 : 1e-7) * f_b, "%s, %s, %s, t %g: no bound, and an error of %g", c->what,
+        eng_name(rep->method), what, t, off_b / f_b);
+    else CHECK_MSG(off_b <= rep->error_bound_b * size_b + slack, "%s, %s, %s, t %g: error %g, bound %g (B norm)", c->what, eng_name(rep->method),
+        what, t,
               off_b / size_b, rep->error_bound_b);
-    CHECK_MSG(rep->error_bound == HUGE_VAL || off <= rep->error_bound * size + slack * 2 * sqrt(n / lap->area) + 1e-13 * size, "%s, %s, %s, t %g: error %g, bound %g (maximum)", c->what,
+    CHECK_MSG(rep->error_bound == HUGE_VAL || off <= rep->error_bound * size + slack * 2 * sqrt(n / lap->area) + 1e-13 * size,
+        "%s, %s, %s, t %g: error %g, bound %g (maximum)", c->what,
               eng_name(rep->method), what, t, off / size, rep->error_bound);
     CHECK(rep->error_bound_b >= rep->error_rational && rep->error_bound_b >= rep->error_solver);
     if (rep->error_bound_b < HUGE_VAL) {
         const double loose = rep->error_bound_b * size_b / (off_b + 1e-15 * f_b);
-        CHECK_MSG(!alone || loose <= 1e6, "%s, %s, %s, t %g: error %g, bound %g", c->what, eng_name(rep->method), what, t, off_b / size_b, rep->error_bound_b);
+        CHECK_MSG(!alone || loose <= 1e6, "%s, %s, %s, t %g: error %g, bound %g", c->what, eng_name(rep->method), what, t, off_b / size_b,
+            rep->error_bound_b);
     } else {
-        CHECK_MSG(!alone || size_b <= 1e-5 * f_b, "%s, %s, %s, t %g: no bound for an answer of size %g", c->what, eng_name(rep->method), what, t, size_b / f_b);
+        CHECK_MSG(!alone || size_b <= 1e-5 * f_b, "%s, %s, %s, t %g: no bound for an answer of size %g", c->what, eng_name(rep->method), what, t,
+            size_b / f_b);
     }
     if (lap->conserves) {
         const double c0 = own ? hd_rational_eval(own, 0) : 1;
@@ -145,7 +152,8 @@ static void eng_judge(const heat_case *c, double t, const hd_rational *own, cons
             sum[lap->component[i]] += fabs(c0 * rhs[i]) + lap->mass[i] * fabs(u[lap->vertex[i]]);
         }
         for (i = 0; i < lap->n_components; i++)
-            CHECK_MSG(fabs(heat[i] - out[i]) <= 1e-12 * sum[i], "%s, %s, %s, t %g: component %d had heat %g and has %g", c->what, eng_name(rep->method), what, t,
+            CHECK_MSG(fabs(heat[i] - out[i]) <= 1e-12 * sum[i], "%s, %s, %s, t %g: component %d had heat %g and has %g", c->what,
+                eng_name(rep->method), what, t,
                       (int)i, heat[i], out[i]);
         CHECK_MSG(rep->mass_drift <= 1e-12, "%s: mass drift %g", c->what, rep->mass_drift);
     }
@@ -160,12 +168,15 @@ static void eng_judge(const heat_case *c, double t, const hd_rational *own, cons
 static void eng_check_report(const hd_report *rep, hd_method method, const char *what) {
     const int factors = method == HD_METHOD_DIRECT || method == HD_METHOD_KRYLOV;
     CHECK_MSG(rep->method == method && rep->reason && rep->reason[0], "%s: method %s", what, eng_name(rep->method));
-    CHECK_MSG(factors == (rep->ordering != HD_ORDERING_AUTO) && factors == (rep->factor_nnz > 0) && factors == (rep->factor_flops > 0), "%s, %s: ordering %d, %lld, %g",
+    CHECK_MSG(factors == (rep->ordering != HD_ORDERING_AUTO) && factors == (rep->factor_nnz > 0) && factors == (rep->factor_flops > 0),
+        "%s, %s: ordering %d, %lld, %g",
               what, eng_name(method), (int)rep->ordering, (long long)rep->factor_nnz, rep->factor_flops);
     CHECK_MSG(rep->growth >= 0 && rep->growth < 5 && (factors || rep->growth == 0), "%s, %s: growth %g", what, eng_name(method), rep->growth);
-    if (method == HD_METHOD_DIRECT) CHECK(rep->solver == HD_SOLVER_AUTO && rep->precond == HD_PRECOND_NONE && rep->iterations == 0 && rep->poles != HD_POLES_DEFAULT);
+    if (method == HD_METHOD_DIRECT) CHECK(rep->solver == HD_SOLVER_AUTO && rep->precond == HD_PRECOND_NONE && rep->iterations == 0 &&
+        rep->poles != HD_POLES_DEFAULT);
     if (method == HD_METHOD_KRYLOV) {
-        CHECK(rep->solver == HD_SOLVER_LANCZOS && rep->precond == HD_PRECOND_NONE && rep->poles == HD_POLES_DEFAULT && rep->degree == 0 && rep->n_poles == 0);
+        CHECK(rep->solver == HD_SOLVER_LANCZOS && rep->precond == HD_PRECOND_NONE && rep->poles == HD_POLES_DEFAULT && rep->degree == 0 &&
+            rep->n_poles == 0);
         CHECK(rep->error_rational == 0 || rep->error_bound_b == HUGE_VAL);
     }
 }
@@ -249,8 +260,10 @@ static void eng_decades(hd_laplacian *lap, const char *what) {
 
 static void eng_dense_cases(void) {
     const double offset[3] = {4, 0, 0};
-    shape ball = shape_bumpy(2, 3), torus = shape_torus(14, 9, 2, 0.8), grid = shape_grid(11, 9, 0.35), small = shape_icosphere(1), tiny = shape_grid(3, 2, 0.1);
-    shape two = shape_disjoint(&small, &grid, offset), three = shape_disjoint(&two, &tiny, offset), soup = eng_soup(90, 200, 5), inert = eng_with_inert(&small);
+    shape ball = shape_bumpy(2, 3), torus = shape_torus(14, 9, 2, 0.8), grid = shape_grid(11, 9, 0.35), small = shape_icosphere(1),
+        tiny = shape_grid(3, 2, 0.1);
+    shape two = shape_disjoint(&small, &grid, offset), three = shape_disjoint(&two, &tiny, offset), soup = eng_soup(90, 200, 5),
+        inert = eng_with_inert(&small);
     const shape *const shapes[6] = {&ball, &torus, &grid, &three, &soup, &inert};
     static const char *const names[6] = {"ball", "torus", "grid", "disjoint", "soup", "inert"};
     int q, k;
@@ -291,10 +304,12 @@ static void eng_large(void) {
                 double off;
                 if (!eng_ok(hd_heat_apply(heat, t, z, F, 0, u, 0, &rep), &rep, "large")) continue;
                 off = dense_max_diff(u, want, z * n) / dense_max_abs(want, n);
-                CHECK_MSG(off <= 1e-7 && off <= 2 * (rep.error_bound + rep2.error_bound), "%s, %d fields: off by %g", eng_name(eng_methods[k]), z, off);
+                CHECK_MSG(off <= 1e-7 && off <= 2 * (rep.error_bound + rep2.error_bound), "%s, %d fields: off by %g", eng_name(eng_methods[k]), z,
+                    off);
             }
             CHECK(eng_ok(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, F, all, 0, &rep), &rep, "large"));
-            CHECK_MSG(dense_max_diff(all, want, n) <= 1e-7 * dense_max_abs(want, n), "%s, times: off by %g", eng_name(eng_methods[k]), dense_max_diff(all, want, n));
+            CHECK_MSG(dense_max_diff(all, want, n) <= 1e-7 * dense_max_abs(want, n), "%s, times: off by %g", eng_name(eng_methods[k]),
+                dense_max_diff(all, want, n));
             hd_heat_free(heat);
         }
         hd_heat_free(oracle);
@@ -349,7 +364,8 @@ static hd_rational eng_set(int32_t n, uint32_t real, double a0, uint64_t seed) {
     set.a0 = a0;
     for (i = 0; i < n; i++) {
         const int is_real = (int)(real >> i & 1);
-        set.theta[i] = test_c(is_real ? 0.5 + 3.5 * fabs(dense_signed(&seed)) + 0.3 * i : 6 * dense_signed(&seed), is_real ? 0 : 1 + 8 * fabs(dense_signed(&seed)));
+        set.theta[i] = test_c(is_real ? 0.5 + 3.5 * fabs(dense_signed(&seed)) + 0.3 * i : 6 * dense_signed(&seed),
+            is_real ? 0 : 1 + 8 * fabs(dense_signed(&seed)));
         set.a[i] = test_c(3 * dense_signed(&seed), is_real ? 0 : 3 * dense_signed(&seed));
         set.degree += is_real ? 1 : 2;
     }
@@ -357,7 +373,8 @@ static hd_rational eng_set(int32_t n, uint32_t real, double a0, uint64_t seed) {
 }
 
 static hd_rational eng_own_set(int which, const char **what) {
-    static const char *const names[ENG_SETS] = {"one real", "three real", "five real", "a real one and four", "a real one and eight", "four and a real one", "a real one and three",
+    static const char *const names[ENG_SETS] = {"one real", "three real", "five real", "a real one and four", "a real one and eight",
+        "four and a real one", "a real one and three",
                                                 "nine pairs", "two real and three", "no poles", "all 32", "a real one and twenty-eight"};
     *what = names[which];
     switch (which) {
@@ -450,7 +467,8 @@ static void eng_counts_of(const heat_case *c, hd_method method) {
         q = k - 1;
         CHECK(hd_heat_columns(heat, t, kernel, 1, sources + q, u, 0, NULL) >= 0);
         size = dense_max_abs(u, n);
-        CHECK_MSG(dense_max_diff(u, U + q * ld, n) <= (method == HD_METHOD_DIRECT ? 1e-12 : 1e-8) * size, "%s: the last of %d columns differs by %g from a call of its own",
+        CHECK_MSG(dense_max_diff(u, U + q * ld, n) <= (method == HD_METHOD_DIRECT ? 1e-12 : 1e-8) * size,
+            "%s: the last of %d columns differs by %g from a call of its own",
                   eng_name(method), (int)k, dense_max_diff(u, U + q * ld, n) / size);
         if (k % 5 > 1) continue;
         memcpy(U, F, (size_t)(MOST * ld) * sizeof *U);
@@ -463,7 +481,8 @@ static void eng_counts_of(const heat_case *c, hd_method method) {
         }
     }
     memset(&rep, 0x77, sizeof rep);
-    CHECK(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK && rep.iterations == 0);
+    CHECK(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK &&
+        rep.iterations == 0);
     CHECK(hd_heat_apply(heat, t, 0, NULL, 0, NULL, 0, &rep) == HD_OK && rep.status == HD_OK);
     CHECK(hd_heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 0, NULL, NULL, NULL, &rep) == HD_OK && rep.status == HD_OK);
     hd_heat_free(heat);
@@ -538,7 +557,8 @@ static hd_status eng_do(hd_heat *heat, const hd_laplacian *lap, const eng_call *
 
 /* One plan for calls of all sorts: what it remembers does not show. */
 static void eng_reuse_of(const hd_laplacian *lap, hd_heat_opts *o, const char *what) {
-    static const eng_call calls[16] = {{3, 1, 0}, {3, 1, 0}, {3, 7, 0}, {3, 1, 2}, {3, 1, 1}, {50, 1, 2}, {50, 13, 2}, {3, 5, 3}, {0, 2, 2}, {2, 1, 0}, {3, 2, 1}, {0, 2, 1},
+    static const eng_call calls[16] = {{3, 1, 0}, {3, 1, 0}, {3, 7, 0}, {3, 1, 2}, {3, 1, 1}, {50, 1, 2}, {50, 13, 2}, {3, 5, 3}, {0, 2, 2},
+        {2, 1, 0}, {3, 2, 1}, {0, 2, 1},
                                        {1e3, 1, 0}, {3, 1, 4}, {3, 1, 0}, {70, 25, 0}};
     const size_t size = (size_t)(25 * lap->n) * sizeof(double);
     double *u = DENSE_NEW(double, 25 * lap->n), *want = DENSE_NEW(double, 25 * lap->n);
@@ -560,9 +580,12 @@ static void eng_reuse_of(const hd_laplacian *lap, hd_heat_opts *o, const char *w
             fresh = eng_create(lap, o);
             if (eng_ok(eng_do(heat, lap, &call, u, &rep), &rep, what) && eng_ok(eng_do(fresh, lap, &call, want, &rep2), &rep2, what)) {
                 const double top = dense_max_abs(want, 25 * lap->n), off = dense_max_diff(u, want, 25 * lap->n);
-                if (rep.method == HD_METHOD_DIRECT && rep2.method == HD_METHOD_DIRECT) CHECK_MSG(off == 0, "%s: call %d: the plan answers otherwise, by %g", what, k, off / top);
-                else CHECK_MSG(off <= (rep.error_bound + rep2.error_bound + 1e-13) * top, "%s: call %d: the plan answers otherwise, by %g", what, k, off / top);
-                CHECK_MSG(o->method != HD_METHOD_DIRECT || (rep.error_bound == rep2.error_bound && rep.residual == rep2.residual && rep.growth == rep2.growth &&
+                if (rep.method == HD_METHOD_DIRECT && rep2.method == HD_METHOD_DIRECT) CHECK_MSG(off == 0,
+                    "%s: call %d: the plan answers otherwise, by %g", what, k, off / top);
+                else CHECK_MSG(off <= (rep.error_bound + rep2.error_bound + 1e-13) * top, "%s: call %d: the plan answers otherwise, by %g", what,
+                    k, off / top);
+                CHECK_MSG(o->method != HD_METHOD_DIRECT || (rep.error_bound == rep2.error_bound && rep.residual == rep2.residual &&
+                    rep.growth == rep2.growth &&
                           rep.factor_flops == rep2.factor_flops), "%s: call %d: another report", what, k);
             }
             hd_heat_free(fresh);
@@ -612,9 +635,11 @@ static void eng_switch(void) {
         hd_report rep, rep2;
         CHECK(eng_ok(hd_heat_columns(heat, times[TIMES - 1], HD_KERNEL_OPERATOR, K, sources, out, 0, &rep), &rep, "switch"));
         CHECK(eng_ok(hd_heat_times(heat, TIMES, times, HD_KERNEL_OPERATOR, sources[5], NULL, out + K * s.n, 0, &rep2), &rep2, "switch"));
-        CHECK_MSG(rep.method == HD_METHOD_DIRECT && rep.n_poles % 4 == 1 && rep2.method == HD_METHOD_KRYLOV, "%s with %d poles, %s", eng_name(rep.method), (int)rep.n_poles,
+        CHECK_MSG(rep.method == HD_METHOD_DIRECT && rep.n_poles % 4 == 1 && rep2.method == HD_METHOD_KRYLOV, "%s with %d poles, %s",
+            eng_name(rep.method), (int)rep.n_poles,
                   eng_name(rep2.method));
-        CHECK(dense_max_diff(out + 5 * s.n, out + (K + TIMES - 1) * s.n, s.n) <= (rep.error_bound + rep2.error_bound) * dense_max_abs(out + 5 * s.n, s.n));
+        CHECK(dense_max_diff(out + 5 * s.n, out + (K + TIMES - 1) * s.n, s.n) <=
+            (rep.error_bound + rep2.error_bound) * dense_max_abs(out + 5 * s.n, s.n));
         if (round) CHECK_MSG(memcmp(first, u, (size_t)(K + TIMES) * (size_t)s.n * sizeof *u) == 0, "round %d: other answers", round);
     }
     hd_heat_free(heat);
@@ -655,12 +680,14 @@ static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *time
             if (times[q] > 0) eng_judge(c, times[q], NULL, rhs, column, &rep, n_times == 1, what);
             if (k == 2) CHECK(eng_ok(hd_heat_apply(heat, times[q], 1, f, 0, u, 0, &one), &one, what));
             else CHECK(eng_ok(hd_heat_columns(heat, times[q], kernel, 1, &source, u, 0, &one), &one, what));
-            CHECK_MSG(dense_max_diff(u, column, n) <= (rep.error_bound + one.error_bound + 1e-13) * dense_max_abs(u, n), "%s: time %g: off by %g from a call of its own", what, times[q],
+            CHECK_MSG(dense_max_diff(u, column, n) <= (rep.error_bound + one.error_bound + 1e-13) * dense_max_abs(u, n),
+                "%s: time %g: off by %g from a call of its own", what, times[q],
                       dense_max_diff(u, column, n) / dense_max_abs(u, n));
             if (times[q] == 0) CHECK(memcmp(u, column, (size_t)n * sizeof *u) == 0);
             for (i = 0; i < n; i++) CHECK(lap->row[i] >= 0 || column[i] == (k == 2 ? f[i] : 0));
             for (i = n; i < ld; i++) CHECK(column[i] == 4321);
-            for (i = 0; i < q; i++) CHECK(times[i] != times[q] || memcmp(U + i * ld, column, (size_t)n * sizeof *U) == 0);    /* the same time twice */
+            /* the same time twice */
+            for (i = 0; i < q; i++) CHECK(times[i] != times[q] || memcmp(U + i * ld, column, (size_t)n * sizeof *U) == 0);
         }
         for (i = n_times * ld; i < (n_times + 1) * ld; i++) CHECK(U[i] == 4321);
     }
@@ -673,12 +700,14 @@ static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *time
 }
 
 static void eng_times(void) {
-    static const double unsorted[7] = {5, 0.5, 80, 5, 20, 0.5, 11}, with_zero[5] = {3, 0, 40, -0.0, 1}, single[1] = {7}, zeros[2] = {0, 0}, equal[3] = {4, 4, 4};
+    static const double unsorted[7] = {5, 0.5, 80, 5, 20, 0.5, 11}, with_zero[5] = {3, 0, 40, -0.0, 1}, single[1] = {7}, zeros[2] = {0, 0},
+        equal[3] = {4, 4, 4};
     static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
     shape ball = shape_icosphere(1), s = eng_with_inert(&ball);
     int q, k, z, i;
     for (q = 0; q < 3; q++) {
-        heat_case c = q < 2 ? heat_case_of(test_laplacian(&s, op_kinds[q]), q ? "times voronoi" : "times fem") : heat_case_of(eng_leaking(8, 7), "times leaking");
+        heat_case c = q < 2 ? heat_case_of(test_laplacian(&s, op_kinds[q]), q ? "times voronoi" : "times fem") : heat_case_of(eng_leaking(8, 7),
+            "times leaking");
         const double unit = q < 2 ? c.lap->h * c.lap->h : 0.02;
         double times[40];
         for (k = 0; k < 4; k++) {
@@ -795,8 +824,10 @@ static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts 
         for (way = 1; way < LDL_WAYS; way++) {
             if (way < 4 && (level > 0 || !eng_openmp)) continue;
             calls += eng_thread_run(s, kind, o, ldl_simds[level], way, other, rep2);
-            CHECK_MSG(memcmp(first, other, (size_t)size * sizeof *first) == 0, "%s: way %d of threading gives other bits, level %d", what, way, level);
-            for (k = 0; k < 5; k++) CHECK_MSG(eng_same_report(rep + k, rep2 + k), "%s: way %d of threading: another report, level %d", what, way, level);
+            CHECK_MSG(memcmp(first, other, (size_t)size * sizeof *first) == 0, "%s: way %d of threading gives other bits, level %d", what, way,
+                level);
+            for (k = 0; k < 5; k++) CHECK_MSG(eng_same_report(rep + k, rep2 + k), "%s: way %d of threading: another report, level %d", what, way,
+                level);
         }
     }
     CHECK_MSG(calls > 0, "%s: never in parallel", what);
@@ -857,7 +888,8 @@ static void eng_extreme_times(void) {
 /* ---- orders of elimination ---- */
 
 static void eng_orderings(void) {
-    static const hd_ordering kinds[5] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION, HD_ORDERING_OWN, HD_ORDERING_OWN};
+    static const hd_ordering kinds[5] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION, HD_ORDERING_OWN,
+        HD_ORDERING_OWN};
     shape ball = shape_bumpy(2, 8), s = eng_with_inert(&ball);
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const int32_t n = s.n, sources[4] = {1, 0, 77, 1};
@@ -874,6 +906,7 @@ static void eng_orderings(void) {
             hd_ldl *f = NULL;
             hd_report rep;
             hd_heat *heat;
+            double flops;
             dense_shuffle(perm, n, &seed);
             for (i = 0; q == 4 && i < n; i++) perm[i] = n - 1 - i;
             for (i = m = 0; i < n; i++)
@@ -883,12 +916,14 @@ static void eng_orderings(void) {
             heat = eng_create(lap, &o);
             for (i = 0; i < n; i++) perm[i] = -1;    /* it was copied */
             if (!eng_ok(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 4, sources, q ? u : first, 0, &rep), &rep, "ordering")) continue;
-            CHECK_MSG(q == 0 || dense_max_diff(u, first, 4 * n) <= (k ? 1e-8 : 1e-12), "%s: ordering %d differs by %g", eng_name(eng_methods[k]), q, dense_max_diff(u, first, 4 * n));
+            CHECK_MSG(q == 0 || dense_max_diff(u, first, 4 * n) <= (k ? 1e-8 : 1e-12), "%s: ordering %d differs by %g", eng_name(eng_methods[k]),
+                q, dense_max_diff(u, first, 4 * n));
             CHECK(rep.ordering == (q == 0 ? HD_ORDERING_MINIMUM_DEGREE : kinds[q]));
             CHECK(hd_ldl_analyse(&f, &lap->L, &lo, &want, NULL) == HD_OK);
-            CHECK_MSG(rep.factor_nnz == want.factor_nnz, "ordering %d: %lld non-zeros, not %lld", q, (long long)rep.factor_nnz, (long long)want.factor_nnz);
-            CHECK_MSG(fabs(rep.factor_flops - (k ? 1 : 16 * ((rep.n_poles + 2) / 4) + rep.n_poles % 4 % 2) * want.factor_flops) < 1e-6 * rep.factor_flops, "ordering %d, %d poles: %g flops, %g", q,
-                      (int)rep.n_poles, rep.factor_flops, want.factor_flops);
+            CHECK_MSG(rep.factor_nnz == want.factor_nnz, "ordering %d: %lld non-zeros, not %lld", q, (long long)rep.factor_nnz,
+                (long long)want.factor_nnz);
+            flops = (k ? 1 : 16 * ((rep.n_poles + 2) / 4) + rep.n_poles % 4 % 2) * want.factor_flops;
+            CHECK_MSG(fabs(rep.factor_flops - flops) < 1e-6 * flops, "ordering %d, %d poles: %g flops, not %g", q, (int)rep.n_poles, rep.factor_flops, flops);
             CHECK_MSG(rep.growth > 0.1 && rep.growth < (k ? 1.0000001 : 4.2), "growth %g", rep.growth);
             hd_ldl_free(f);
             hd_heat_free(heat);
@@ -1043,7 +1078,8 @@ static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
         heat = eng_create(lap, &o);
         if (eng_ok(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep), &rep, "limits")) {
             const double off = dense_max_diff(u, want, k * lap->n);
-            CHECK_MSG(off <= 1e-6 * dense_max_abs(want, k * lap->n), "limit %llu, %s: off by %g", (unsigned long long)limit, eng_name(rep.method), off);
+            CHECK_MSG(off <= 1e-6 * dense_max_abs(want, k * lap->n), "limit %llu, %s: off by %g", (unsigned long long)limit, eng_name(rep.method),
+                off);
             CHECK(rep.reason && ctx.bytes_peak <= limit);
             seen |= 1 << rep.method;
             CHECK(eng_ok(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep2), &rep2, "limits"));
@@ -1143,7 +1179,9 @@ static void eng_bad_calls(void) {
     for (k = 0; k < 4; k++) {
         hd_heat *heat = eng_plan(lap, methods[k], HD_POLES_DEFAULT, 0);
         for (i = 0; i < 36; i++) F[i] = i;
-#define ENG_BAD(call, st) CHECK_MSG((call) == (st) && rep.status == (st) && rep.error.status == (st) && rep.error.text[0], "%s: %s", eng_name(methods[k]), hd_status_name(rep.status))
+#define ENG_BAD(call, st)                                                                                              \
+    CHECK_MSG((call) == (st) && rep.status == (st) && rep.error.status == (st) && rep.error.text[0], "%s: %s", eng_name(methods[k]),   \
+              hd_status_name(rep.status))
         ENG_BAD(hd_heat_apply(heat, -1, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
         ENG_BAD(hd_heat_apply(heat, (double)NAN, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
         ENG_BAD(hd_heat_column(heat, (double)INFINITY, 1, U, &rep), HD_ERR_ARGUMENT);
@@ -1293,7 +1331,8 @@ static void eng_survives_one(const hd_laplacian *lap, hd_heat_opts o, int q, con
                 } else {
                     CHECK(eng_do(heat, lap, &call, u, NULL) >= 0);
                 }
-                CHECK_MSG(dense_max_diff(u, want + (size_t)z * size, (int64_t)(call.task == 4 ? 3 : call.k) * lap->n) <= (o.method == HD_METHOD_DIRECT ? 0 : 1e-7),
+                CHECK_MSG(dense_max_diff(u, want + (size_t)z * size, (int64_t)(call.task == 4 ? 3 : call.k) * lap->n) <=
+                    (o.method == HD_METHOD_DIRECT ? 0 : 1e-7),
                           "%s: call %d after failure %lld in call %d: other answers", what, z, (long long)k, at);
             }
             hd_heat_free(heat);
