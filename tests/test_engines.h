@@ -1270,6 +1270,23 @@ static hd_status eng_rob_job(hd_context *ctx, int variant) {
     return st > 0 ? HD_OK : st;
 }
 
+/* By itself the choice makes do with iterations when factors cannot be had: an answer, or the right error. */
+static void eng_fail_each_auto(const rob_job *job) {
+    int64_t k;
+    int done = 0;
+    for (k = 1; k < ROB_MOST && !done; k++) {
+        test_memory m;
+        hd_context ctx = test_memory_context(&m);
+        hd_status st;
+        m.fail_at = k;
+        st = job->run(&ctx, job->variant);
+        CHECK_MSG(st >= 0 || st == HD_ERR_MEMORY, "%s: allocation %lld failed, but %s", job->what, (long long)k, hd_status_name(st));
+        test_memory_done(&m, &ctx, job->what);
+        done = m.calls < k;
+    }
+    CHECK_MSG(done && k > 2, "%s: stopped at %lld", job->what, (long long)k);
+}
+
 static void eng_robust(void) {
     int way, task;
     for (way = 0; way < 8; way++) {
@@ -1280,7 +1297,8 @@ static void eng_robust(void) {
             job.what = what;
             job.run = eng_rob_job;
             job.variant = way + 8 * task;
-            rob_fail_each_allocation(&job);
+            if (way == 7) eng_fail_each_auto(&job);
+            else rob_fail_each_allocation(&job);
             if (way < 7) rob_byte_limits(&job);  /* by itself the choice depends on the limit */
             rob_stop_each_progress(&job, HD_PROGRESS_CANCEL, HD_ERR_CANCELLED);
             rob_stop_each_progress(&job, (hd_progress)1, HD_ERR_ARGUMENT);

@@ -1315,6 +1315,13 @@ static void measure_machine(const settings *set, double *peak) {
         printf("%s%s\n", m.blas[0] ? "; OpenBLAS: " : "", m.blas);
     }
     free(x);
+#if defined(__GLIBC__) && defined(__USE_MISC)
+    {
+        double load;
+        if (getloadavg(&load, 1) == 1 && load > 0.3)
+            printf("%sload average %.1f: others are at work, which shows in what follows, on many threads most of all\n", mark, load);
+    }
+#endif
 }
 
 static int parse(settings *set, int argc, char **argv, int *first) {
