@@ -174,6 +174,8 @@ static void eng_check_report(const hd_report *rep, hd_method method, const char 
     CHECK_MSG(rep->growth >= 0 && rep->growth < 5 && (factors || rep->growth == 0), "%s, %s: growth %g", what, eng_name(method), rep->growth);
     if (method == HD_METHOD_DIRECT) CHECK(rep->solver == HD_SOLVER_AUTO && rep->precond == HD_PRECOND_NONE && rep->iterations == 0 &&
         rep->poles != HD_POLES_DEFAULT);
+    if (method == HD_METHOD_DIRECT) CHECK_MSG((rep->residual > 0) == (rep->error_solver > 0), "%s: residual %g, bound %g", what, rep->residual,
+        rep->error_solver);
     if (method == HD_METHOD_KRYLOV) {
         CHECK(rep->solver == HD_SOLVER_LANCZOS && rep->precond == HD_PRECOND_NONE && rep->poles == HD_POLES_DEFAULT && rep->degree == 0 &&
             rep->n_poles == 0);
@@ -923,7 +925,8 @@ static void eng_orderings(void) {
             CHECK_MSG(rep.factor_nnz == want.factor_nnz, "ordering %d: %lld non-zeros, not %lld", q, (long long)rep.factor_nnz,
                 (long long)want.factor_nnz);
             flops = (k ? 1 : 16 * ((rep.n_poles + 2) / 4) + rep.n_poles % 4 % 2) * want.factor_flops;
-            CHECK_MSG(fabs(rep.factor_flops - flops) < 1e-6 * flops, "ordering %d, %d poles: %g flops, not %g", q, (int)rep.n_poles, rep.factor_flops, flops);
+            CHECK_MSG(fabs(rep.factor_flops - flops) < 1e-6 * flops, "ordering %d, %d poles: %g flops, not %g", q, (int)rep.n_poles,
+                rep.factor_flops, flops);
             CHECK_MSG(rep.growth > 0.1 && rep.growth < (k ? 1.0000001 : 4.2), "growth %g", rep.growth);
             hd_ldl_free(f);
             hd_heat_free(heat);
@@ -1323,11 +1326,12 @@ static void eng_survives_one(const hd_laplacian *lap, hd_heat_opts o, int q, con
     }
     for (at = 0; at < CALLS; at++) {             /* the call that fails */
         int64_t k;
-        hd_status st = HD_ERR_MEMORY;
-        for (k = 1; k < ROB_MOST && st < 0; k++) {
+        int reached = 1;
+        for (k = 1; k < ROB_MOST && reached; k++) {
             test_memory m;
             hd_context ctx = test_memory_context(&m);
             hd_heat *heat;
+            hd_status st;
             rob_progress p;
             memset(&p, 0, sizeof p);
             p.stop_at = k;
@@ -1342,9 +1346,10 @@ static void eng_survives_one(const hd_laplacian *lap, hd_heat_opts o, int q, con
                     if (q) ctx.progress = rob_on_progress;
                     else m.fail_at = m.calls + k;
                     st = eng_do(heat, lap, &call, u, NULL);
+                    reached = q ? p.calls >= k : m.calls >= m.fail_at;
                     ctx.progress = NULL;
                     m.fail_at = 0;
-                    CHECK_MSG(st >= 0 || st == (q ? HD_ERR_CANCELLED : HD_ERR_MEMORY), "%s: %s", what, hd_status_name(st));
+                    CHECK_MSG(st >= 0 ? !reached || !q : st == (q ? HD_ERR_CANCELLED : HD_ERR_MEMORY), "%s: %s", what, hd_status_name(st));
                     if (st < 0) CHECK(eng_do(heat, lap, &call, u, NULL) >= 0);
                 } else {
                     CHECK(eng_do(heat, lap, &call, u, NULL) >= 0);

@@ -172,8 +172,9 @@ static void parts_solvers(const hd_laplacian *lap) {
             t1 = now();
             if (hd_heat_column(heat, taus[k] * lap->h * lap->h, lap->vertex[lap->n_active / 2], u, &rep) >= 0) {
                 t2 = now();
-                printf("  column, t = %4g h^2, %-8s plan %7.1f ms, solve %8.1f ms, %5lld steps, %.3f ms a step\n", taus[k], s == 0 ? "cocg" : "lanczos",
-                       1e3 * (t1 - t0), 1e3 * (t2 - t1), (long long)rep.iterations, 1e3 * (t2 - t1) / (double)rep.iterations);
+                printf("  column, t = %4g h^2, %-8s plan %7.1f ms, solve %8.1f ms, %5lld steps, %.3f ms a step\n", taus[k],
+                       s == 0 ? "cocg" : "lanczos", 1e3 * (t1 - t0), 1e3 * (t2 - t1), (long long)rep.iterations,
+                       1e3 * (t2 - t1) / (double)rep.iterations);
             }
             if (s == 0 && k == 2) parts_products(heat, 100 * lap->h * lap->h);
             hd_heat_free(heat);
@@ -485,7 +486,7 @@ static double find_tol(const bench *b, const ask *a, const double *R, double *U)
 /* ==== the table ==== */
 
 typedef struct entry {
-    const char *job;
+    const char *job, *part;      /* part: a stage of the job, or NULL */
     double tau;                  /* t / h^2; 0: none */
     int32_t threads;
     char ours[40], rival[40];
@@ -494,9 +495,10 @@ typedef struct entry {
     int packs;                   /* 1: bytes are to be held against 64 a non-zero */
 } entry;
 
-static void row_clear(entry *r, const bench *b, const char *job, double tau) {
+static void row_clear(entry *r, const bench *b, const char *job, const char *part, double tau) {
     memset(r, 0, sizeof *r);
     r->job = job;
+    r->part = part;
     r->tau = tau;
     r->threads = b->threads;
     r->error = r->rival_error = -1;
@@ -514,8 +516,8 @@ static double row_share(const entry *r, const bench *b) { return r->gflops / b->
 static void row_csv(const entry *r, const bench *b) {
     const double ratio = r->rival_seconds > 0 ? r->rival_seconds / r->seconds : 0, share = b->peak[0] > 0 ? row_share(r, b) : 0;
     const double packs = r->packs && r->nnz > 0 ? r->bytes / (64 * r->nnz) : 0;
-    printf("%s,%s,%d,%s,%g,%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,", b->mesh, b->mass, (int)b->pair.n, r->job + strspn(r->job, " "), r->tau,
-           (int)r->threads, r->ours, r->seconds, r->rival, r->rival_seconds, ratio, r->error, r->rival_error);
+    printf("%s,%s,%d,\"%s%s%s\",%g,", b->mesh, b->mass, (int)b->pair.n, r->job, r->part ? ": " : "", r->part ? r->part : "", r->tau);
+    printf("%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,", (int)r->threads, r->ours, r->seconds, r->rival, r->rival_seconds, ratio, r->error, r->rival_error);
     printf("%.4g,%.4g,%.4g,%.0f,%.0f,%.4g,%.0f,%.0f\n", r->gflops, share, r->gbytes, r->nnz, r->bytes, packs, r->rival_nnz, r->rival_bytes);
 }
 
@@ -523,7 +525,7 @@ static void row_print(const entry *r, const bench *b) {
     if (b->set->csv) {
         row_csv(r, b);
     } else {
-        printf("%-18s", r->job);
+        printf("%s%-*s", r->part ? "  " : "", r->part ? 16 : 18, r->part ? r->part : r->job);
         cell(6, "%g", r->tau, r->tau > 0);
         printf("%3d  %-22.22s", (int)r->threads, r->ours);
         cell(10, "%.2f", 1e3 * r->seconds, r->seconds > 0);
@@ -659,8 +661,8 @@ static void rest(void) {
 #endif
 }
 
-/* Five rounds, less when they take long, but two. */
-static int round_wanted(const bench *b, int round, double start) { return round < 2 || (round < 5 && now() - start < b->set->seconds); }
+/* Seven rounds, less when they take long, but two. */
+static int round_wanted(const bench *b, int round, double start) { return round < 2 || (round < 7 && now() - start < b->set->seconds); }
 
 /* In turns after a warm-up. The best of ours by total time; its error is that of the last run (all are the same). */
 static void contest(const bench *b, const ask *a, const double *R, int n_R, double *U, ours *best, opponent *o, int n_o) {
@@ -705,7 +707,7 @@ static void contest_rows(const bench *b, const char *job, const ask *a, const ou
     int k = 0;
     do {
         entry r;
-        row_clear(&r, b, job, a->n_times > 1 ? 0 : a->times[0] / b->hh);
+        row_clear(&r, b, job, NULL, a->n_times > 1 ? 0 : a->times[0] / b->hh);
         row_ours(&r, a, best);
         if (n_o > 0) row_rival(&r, o + k);
         row_print(&r, b);
@@ -713,14 +715,14 @@ static void contest_rows(const bench *b, const char *job, const ask *a, const ou
 }
 
 /* The stages of the two best runs. */
-static void stage_rows(const bench *b, const ours *best, const opponent *o) {
-    static const char *const names[] = {"  order + analyse", "  factor", "  solve"};
+static void stage_rows(const bench *b, const char *job, const ours *best, const opponent *o) {
+    static const char *const names[] = {"order + analyse", "factor", "solve"};
     const double *s = best->stage, mine[] = {s[STAGE_OTHER] + s[STAGE_ORDER] + s[STAGE_ANALYSE], s[STAGE_FACTOR], s[STAGE_SOLVE]};
     const double theirs[] = {o->best.analyse, o->best.factor, o->best.first};
     int k;
     for (k = 0; k < 3; k++) {
         entry r;
-        row_clear(&r, b, names[k], 0);
+        row_clear(&r, b, job, names[k], 0);
         r.seconds = mine[k];
         if (o->fine) r.rival_seconds = theirs[k];
         row_print(&r, b);
@@ -752,7 +754,7 @@ static hd_method one_column(bench *b, const char *job, hd_method method, double 
     contest(b, &a, R, 1, U, &best, &o, HAVE_RIVALS);
     if (o.fine) b->ordering = o.best.ordering;
     contest_rows(b, job, &a, &best, &o, HAVE_RIVALS);
-    if (stages && best.fine && best.report.method != HD_METHOD_ITERATIVE) stage_rows(b, &best, &o);
+    if (stages && best.fine && best.report.method != HD_METHOD_ITERATIVE) stage_rows(b, job, &best, &o);
     return best.report.method;
 }
 
@@ -885,7 +887,7 @@ static void job_further(bench *b) {
             if (n_o) opponent_turn(&o, round == 0);
             if (o.fine) best_rival = hdi_min(best_rival, o.best.further);
         }
-        row_clear(&r, b, "further", 100);
+        row_clear(&r, b, "further", NULL, 100);
         row_ours(&r, &a, &run);
         if (n_o) row_rival(&r, &o);
         r.seconds = best;
@@ -973,10 +975,10 @@ static int stages_run(const bench *b, const ask *a, const double *F, const doubl
     return 1;
 }
 
-static void stages_row(const bench *b, const char *job, const char *what, double seconds, double gflops, double gbytes) {
+static void stages_row(const bench *b, const char *part, const char *what, double seconds, double gflops, double gbytes) {
     entry r;
     if (!(seconds > 0) || seconds >= 1e30) return;
-    row_clear(&r, b, job, 0);
+    row_clear(&r, b, "stages", part, 0);
     snprintf(r.ours, sizeof r.ours, "%s", what);
     r.seconds = seconds;
     r.gflops = gflops;
@@ -987,7 +989,7 @@ static void stages_row(const bench *b, const char *job, const char *what, double
 /* A dense field reads every non-zero of four complex factors twice. What a column reads going forward depends on where it is. */
 static void stages_print(const bench *b, const ask *a, const stages *s) {
     entry r;
-    row_clear(&r, b, "stages", a->times[0] / b->hh);
+    row_clear(&r, b, "stages", NULL, a->times[0] / b->hh);
     snprintf(r.ours, sizeof r.ours, "direct r=%d, one column", (int)a->degree);
     r.seconds = s->total;
     r.error = s->error;
@@ -995,13 +997,13 @@ static void stages_print(const bench *b, const ask *a, const stages *s) {
     r.bytes = s->bytes;
     r.packs = 1;
     row_print(&r, b);
-    stages_row(b, "  order", "", s->best[STAGE_OTHER] + s->best[STAGE_ORDER], 0, 0);
-    stages_row(b, "  analyse", "", s->best[STAGE_ANALYSE], 0, 0);
-    stages_row(b, "  factor", "four complex", s->best[STAGE_FACTOR], 1e-9 * s->flops / s->best[STAGE_FACTOR], 0);
-    stages_row(b, "  solve", "first column", s->best[STAGE_SOLVE], 0, 0);
-    stages_row(b, "  solve", "further column", s->further, 0, 0);
-    stages_row(b, "  solve", "dense field", s->field, 0, 128e-9 * s->nnz / s->field);
-    stages_row(b, "  solve", "one of 24 columns", s->batch, 0, 0);
+    stages_row(b, "order", "", s->best[STAGE_OTHER] + s->best[STAGE_ORDER], 0, 0);
+    stages_row(b, "analyse", "", s->best[STAGE_ANALYSE], 0, 0);
+    stages_row(b, "factor", "four complex", s->best[STAGE_FACTOR], 1e-9 * s->flops / s->best[STAGE_FACTOR], 0);
+    stages_row(b, "solve", "first column", s->best[STAGE_SOLVE], 0, 0);
+    stages_row(b, "solve", "further column", s->further, 0, 0);
+    stages_row(b, "solve", "dense field", s->field, 0, 128e-9 * s->nnz / s->field);
+    stages_row(b, "solve", "one of 24 columns", s->batch, 0, 0);
 }
 
 static void job_stages(bench *b) {
@@ -1064,13 +1066,13 @@ static void real_best(real_run *best, const real_run *r, int first) {
 }
 
 static void real_rows(const bench *b, const real_run *mine, const rival_result *theirs, double difference) {
-    static const char *const names[] = {"eigen", "  order + analyse", "  factor", "  solve"};
+    static const char *const names[] = {NULL, "order + analyse", "factor", "solve"};
     const double m[] = {mine->analyse + mine->factor + mine->solve, mine->analyse, mine->factor, mine->solve};
     const double t[] = {theirs->total, theirs->analyse, theirs->factor, theirs->first};
     int k;
     for (k = 0; k < 4; k++) {
         entry r;
-        row_clear(&r, b, names[k], 0);
+        row_clear(&r, b, "eigen", names[k], 0);
         r.seconds = m[k];
         r.rival_seconds = t[k];
         if (k == 0) {
