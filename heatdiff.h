@@ -311,7 +311,7 @@ typedef struct hd_heat_opts {
     hd_solver solver;
     hd_precond precond;
     hd_pole_kind poles;         /* default: kernel for columns and entries, uniform for fields */
-    int32_t degree;             /* default: chosen so that the rational error relative to the answer is below 1e-8 or so */
+    int32_t degree;             /* default: chosen so that the rational error relative to the answer is below 1e-8 or so (direct: 3e-8, degree 9) */
     const hd_rational *rational;/* a set of your own (any filter of the spectrum), copied; then poles and degree are not looked at
                                    and Lanczos is not used */
     double tol;                 /* solver's part of the error, |error|_B / |answer|_B; default 1e-9 */
@@ -501,8 +501,8 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive it. Decides and allocates what does not depend on t: it holds the pair a second time, renumbered for
- * the iterations, and keeps its work arrays and the last preconditioners from call to call. One thread at a time. */
+/* A plan for heat on lap, which must outlive it. What a method needs is made when it is first used, and kept from call to call: the pair renumbered for
+ * it, the analysis, factors or preconditioners of the last pole set and time, work arrays. One thread at a time. */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 
@@ -510,7 +510,8 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
  * t      >= 0, unit length^2 (t = 0 copies F)
  * F, U   n x k doubles, column-major, columns ldf and ldu apart (0: n); U may be F
  *        With a degree by default, all fields of a call share the largest that one of them needs
- * Cost   per field one iterative solve a pole, each started from those before it; up to four fields in parallel
+ * Cost   direct: a factorisation of all poles for every new t, then one sweep of the factors for eight fields at a time; krylov: one real factor, 15 to 30
+ *        real solves a field; iterative: a solve a pole, each started from those before it, up to four fields in parallel
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY,
  *        HD_ERR_CANCELLED; details in report->error. HD_WARN_ACCURACY.
  * Source Patane, Spagnuolo 2013, eqs. (8), (9); signs as in the opening. */
@@ -2287,15 +2288,24 @@ typedef struct hdi_real_pivots {
     int64_t negative;
 } hdi_real_pivots;
 
-/* Work, in doubles: of one thread in hdi_real_update and hdi_real_rows, and of S for fronts with up to p pivots. */
-enum { HDI_REAL_WORK = HDI_REAL_KC * (HDI_REAL_NC + HDI_REAL_MR + 1) };
+/* Columns of L, and of U padded to slices, that are taken at a time in fronts of at most p pivots and u rows below. */
+static int64_t hdi_real_depth(int64_t p) { return hdi_least(p, HDI_REAL_KC); }
+static int64_t hdi_real_span(int64_t u) { return hdi_least((u + HDI_REAL_NR - 1) / HDI_REAL_NR * HDI_REAL_NR, HDI_REAL_NC); }
+
+/* Work, in doubles: of one thread in hdi_real_update and hdi_real_rows for such fronts, and of S. */
+static int64_t hdi_real_work(int64_t u, int64_t p) {
+#ifdef HEATDIFF_USE_BLAS
+    if (u > 0 && p >= HDI_REAL_KC) return HDI_REAL_KC * (HDI_REAL_NC + HDI_REAL_MR + 1);
+#endif
+    return hdi_real_depth(p) * (hdi_real_span(u) + HDI_REAL_MR + 1);
+}
 static int64_t hdi_real_s_size(int64_t p) {
     const int64_t nb = HDI_REAL_NB;
     return (p + HDI_REAL_NR) * (p < nb ? p + HDI_REAL_NR : nb);
 }
 
 /* Rows r0..r1-1 below pivots k0..k0+nb-1: L(r,K) = (P(r,K) - L(r,0..k0-1) S) inv(D L') for S as hdi_real_block left it; rows of S per slice: kb.
- * work [HDI_REAL_WORK] is used only when k0 >= HDI_REAL_KC. */
+ * work [hdi_real_work(u, p)] is used only when k0 >= HDI_REAL_KC. */
 static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb, const double *S, int32_t kb, const double *dinv,
                           int64_t r0, int64_t r1, double *work) {
     const int32_t k1 = k0 - k0 % HDI_REAL_KC, mr = o->mr, nr = o->nr;
@@ -2313,7 +2323,7 @@ static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k
 
 /* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as hdi_real_rows, to the last bit, below K.
  * nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m when k0 + nb <= HDI_REAL_KC.
- * S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the diagonal of P. work [HDI_REAL_WORK].
+ * S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the diagonal of P. work [hdi_real_work(u, p)].
  * Returns -1, or the first pivot that is zero or not finite. */
 static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb, int64_t end, double *S, double *dinv,
                               hdi_real_pivots *pivots, double *work) {
@@ -2375,11 +2385,11 @@ static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, in
 }
 #endif
 
-/* Rows r0..r1-1 of U -= L21 D L21', columns as far as the diagonal. work [HDI_REAL_WORK]. */
+/* Rows r0..r1-1 of U -= L21 D L21', columns as far as the diagonal. work [hdi_real_work(u, p)]. */
 static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work, int64_t r0,
                             int64_t r1) {
     const int32_t mr = o->mr;
-    double *B = work, *copy = work + HDI_REAL_KC * HDI_REAL_NC, *d = copy + HDI_REAL_KC * HDI_REAL_MR;
+    double *B = work, *copy = work + hdi_real_depth(p) * hdi_real_span(u), *d = copy + hdi_real_depth(p) * HDI_REAL_MR;
     int64_t g, i;
     int32_t k, q;
 #ifdef HEATDIFF_USE_BLAS
@@ -5611,7 +5621,7 @@ typedef struct hdi_symbolic {
     int32_t n_top;
     int32_t *top;                /* [n_top] the others, children before parents */
     int64_t work, vector_size;   /* entries of all that live at the same time */
-    int32_t largest_front, largest_update, largest_pivots, task_pivots;
+    int32_t largest_front, largest_update, largest_pivots, task_pivots, task_update;
     int64_t nnz;                 /* of L without the zeros that amalgamation lets in */
     int64_t stored;              /* entries of all panels of packs */
     double flops;                /* of a real factorisation: sum of squared column counts */
@@ -6035,6 +6045,7 @@ static hd_status hdi_sym_plan(hdi_symbolic *s, hdi_scope *scope) {
         for (v = s->task_begin[k]; v < s->task_end[k]; v++) {
             task[v] = k;
             if (s->super[v + 1] - s->super[v] > s->task_pivots) s->task_pivots = s->super[v + 1] - s->super[v];
+            if (s->row_ptr[v + 1] - s->row_ptr[v] > s->task_update) s->task_update = HDI_CAST(int32_t, s->row_ptr[v + 1] - s->row_ptr[v]);
         }
     }
     s->work = hdi_sym_spaces(s, &gaps, 1, s->update, roots);
@@ -6546,11 +6557,12 @@ static void hdi_pack_update(const hdi_factor *f, const hdi_front *w, double *S, 
 
 /* ---- fronts ---- */
 
-/* Doubles of scratch for a front of so many pivots: of packs these, their block of scaled rows, and a block of columns of the update; of real ones the
- * scaled rows, and the work of their kernels. */
-static size_t hdi_front_scratch(int32_t pivots, int32_t width) {
-    const size_t p = HDI_CAST(size_t, pivots), rows = p * HDI_PACK_BLOCK, cols = HDI_FRONT_COLS * HDI_PACK_DEPTH;
-    if (width == 1) return HDI_CAST(size_t, hdi_real_s_size(pivots)) + HDI_REAL_WORK + 64;
+/* Doubles of scratch for fronts of at most so many pivots and rows below: of packs their pivots, their block of scaled rows, and a block of columns of the
+ * update; of real ones the scaled rows, and the work of their kernels. */
+static size_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
+    const size_t p = HDI_CAST(size_t, pivots), rows = p * HDI_PACK_BLOCK;
+    const size_t cols = HDI_CAST(size_t, hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH));
+    if (width == 1) return HDI_CAST(size_t, hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
     return HDI_PACK * (p + (rows > cols ? rows : cols)) + 64;
 }
 
@@ -6756,12 +6768,12 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     f->width = width;
     f->pack = hdi_pack_ops_get(hdi_simd_level(ctx));
     f->real = hdi_real_ops_get(hdi_simd_level(ctx));
-    f->scratch_size = hdi_front_scratch(sym->task_pivots, width);
-    f->chunk_size = hdi_front_scratch(0, width);
+    f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
+    f->chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
     f->panel = HDI_TAKE(&s, double, HDI_CAST(size_t, width == 1 ? sym->panel[sym->n_super] : sym->stored) * w);
     f->dinv = HDI_TAKE(&s, double, HDI_CAST(size_t, sym->n) * w);
     f->work = HDI_TAKE(&s, double, HDI_CAST(size_t, sym->work) * w);
-    f->scratch = HDI_TAKE(&s, double, hdi_front_scratch(sym->largest_pivots, width) + f->scratch_size * HDI_CAST(size_t, n_parts));
+    f->scratch = HDI_TAKE(&s, double, hdi_front_scratch(sym->largest_pivots, sym->largest_update, width) + f->scratch_size * HDI_CAST(size_t, n_parts));
     f->chunk_scratch = HDI_TAKE(&s, double, sym->n_top ? f->chunk_size * HDI_CAST(size_t, n_chunks) : 1);
     f->pivots = HDI_TAKE(&s, hdi_pivots, n_parts + 1);
     if (e->status < 0) {
@@ -10063,6 +10075,8 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= packs * 16 * flops / HDI_RATE_PACK;
     c.direct_bytes = 64 * packs * stored + 200 * n + 8 * real_stored;
     c.krylov_bytes = 8 * real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
+    c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
+    c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
     if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
     if (heat->silan) c.krylov_bytes = 0;
     return c;
@@ -10454,6 +10468,7 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
             lane->status = status;
             if (!lane->skip && hdi_silan_answer(z, i, h->times[q], lane, h->e) < 0) return h->e->status;
         }
+        for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
         if (hdi_heat_collect(h, n) < 0) return h->e->status;
         for (i = 0; i < n; i++) hdi_heat_store_at(h, h->batch + i, h->time_column ? h->time_column[q] : h->batch + i, h->lane + i);
     }
@@ -10463,7 +10478,7 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
 static hd_status hdi_krylov_all(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const double span = h->times[h->n_times - 1] / h->times[0];
-    const int32_t wide = h->k > 1 ? HDI_SILAN_WIDE : 1, n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
+    const int32_t wide = h->k > 3 ? HDI_SILAN_WIDE : 1, n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
     int32_t i, n, q0, q1, w;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
@@ -10495,7 +10510,8 @@ static hd_status hdi_krylov_all(hdi_heat_call *h) {
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t i;
-    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || heat->no_factors) return 0;
+    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || heat->no_factors || !heat->elim.ctx) return 0;
+    if (h->batch > 0 && h->query == HDI_QUERY_FIELD) return 0;   /* fields may have been overwritten by their answers */
     for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
     hdi_elim_free(&heat->elim);
     if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
@@ -10518,7 +10534,8 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     int32_t i, n;
     if (h->e->status < 0 || h->k == 0) return hdi_heat_end(h);
     if (hdi_heat_factors(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_factors(h);
-    if (h->e->status < 0 || (h->t > 0 && h->method != HD_METHOD_ITERATIVE) || hdi_heat_prepare(h) < 0) return hdi_heat_end(h);
+    if (h->e->status < 0 || (h->t > 0 && h->method != HD_METHOD_ITERATIVE)) return hdi_heat_end(h);
+    if (hdi_heat_prepare(h) < 0 && !(hdi_heat_retreat(h) && hdi_heat_engine(h) >= 0 && hdi_heat_prepare(h) >= 0)) return hdi_heat_end(h);
     for (h->batch = 0; h->batch < h->k; h->batch += n) {
         n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
         for (i = 0; i < n; i++)

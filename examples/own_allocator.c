@@ -54,7 +54,7 @@ static hd_status work(hd_context *ctx, const double *xyz, const int32_t *tri, do
 }
 
 int main(void) {
-    static unsigned char memory[8 << 20];
+    static unsigned char memory[32 << 20];
     static double xyz[3 * N], u[N];
     static int32_t tri[6 * (SIDE - 1) * (SIDE - 1)];
     arena a;
@@ -87,9 +87,9 @@ int main(void) {
            u[N / 2], (unsigned long long)ctx.bytes_peak, (unsigned long long)ctx.allocations, (unsigned long long)ctx.bytes_in_use);
     if (status < 0) return 1;
 
-    ctx.byte_limit = ctx.bytes_peak / 2;
+    ctx.byte_limit = ctx.bytes_peak / 16;
     status = work(&ctx, xyz, tri, u);
-    printf("with half of that: %s; still out: %llu\n", hd_status_text(status), (unsigned long long)ctx.bytes_in_use);
+    printf("with a sixteenth of that: %s; still out: %llu\n", hd_status_text(status), (unsigned long long)ctx.bytes_in_use);
     if (status != HD_ERR_MEMORY_LIMIT) return 1;
 
     ctx.byte_limit = 0;
