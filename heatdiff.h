@@ -8682,6 +8682,8 @@ typedef struct hdi_silan {
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
     double f_norm[HDI_SILAN_WIDE];
+    double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];   /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
+    int32_t vectors_of, vectors_m;
     int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
     double g;
 } hdi_silan;
@@ -9064,6 +9066,7 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     if (e->status < 0) return e->status;
     z->w = z->c + n * wide;
     z->steps = 0;
+    z->vectors_of = -1;
     for (r = 0; r < z->wide; r++) {
         double norm;
         z->done[r] = 0;
@@ -9187,26 +9190,29 @@ static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, doubl
     return HD_OK;
 }
 
-/* Coefficients of the basis for right-hand side r after m steps at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1. */
-static hd_status hdi_silan_coefficients(const hdi_silan *z, int32_t r, int32_t m, double t, double *out, hd_error *e) {
-    double d[HDI_SILAN_MAX], x[HDI_SILAN_MAX], y[HDI_SILAN_MAX], first[HDI_SILAN_MAX];
-    int32_t i, k;
-    for (k = 0; k < m; k += 2) {                 /* two rows of the eigenvectors at a time: the same rotations */
-        double s0 = 0, s1 = 0;
-        if (k == 0) {
-            if (!hdi_silan_eigen(z, r, m, 0, 1 < m ? 1 : 0, d, x, y)) break;
-            for (i = 0; i < m; i++) first[i] = z->f_norm[r] * x[i] * hdi_silan_decay(d[i], t / z->g);
-        } else if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, d, x, y)) {
-            break;
-        }
-        for (i = 0; i < m; i++) {
-            s0 += x[i] * first[i];
-            s1 += y[i] * first[i];
-        }
-        out[k] = s0;
-        if (k + 1 < m) out[k + 1] = s1;
+/* All rows of T's eigenvectors, two at a time through the same rotations; kept for the next time. */
+static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error *e) {
+    int32_t k;
+    if (z->vectors_of == r && z->vectors_m == m) return HD_OK;
+    z->vectors_of = -1;
+    for (k = 0; k < m; k += 2) {
+        double *x = z->vectors + HDI_CAST(int64_t, k) * m, spare[HDI_SILAN_MAX];
+        if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->mu, x, k + 1 < m ? x + m : spare))
+            return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
     }
-    return k < m ? hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge") : HD_OK;
+    z->vectors_of = r;
+    z->vectors_m = m;
+    return HD_OK;
+}
+
+/* Coefficients of the basis for right-hand side r after m steps at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1. */
+static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, int32_t m, double t, double *out, hd_error *e) {
+    double first[HDI_SILAN_MAX];
+    int32_t i;
+    if (hdi_silan_vectors(z, r, m, e) < 0) return e->status;
+    for (i = 0; i < m; i++) first[i] = z->f_norm[r] * z->vectors[i] * hdi_silan_decay(z->mu[i], t / z->g);
+    for (i = 0; i < m; i++) out[i] = hdi_dot(z->vectors + HDI_CAST(int64_t, i) * m, first, m);
+    return HD_OK;
 }
 
 /* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is |constants|_B^2. */
@@ -9226,9 +9232,10 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
         for (r = 0; r < z->k; r++) {
             double miss = 0, worst_bound = 0;
             if (z->done[r]) continue;
-            for (q = 0; q < n_times && z->beta[z->steps][r] > 0; q++) {
+            for (q = 0; q < n_times && z->beta[z->steps][r] > 0 && (q < 2 || miss <= 1); q++) {   /* last and first time first: the worst, as a rule */
+                const double at = t[q == 0 ? n_times - 1 : q - 1];
                 double bound, size;
-                if (hdi_silan_bound(z, r, z->steps, t[q], &bound, &size, e) < 0) return e->status;
+                if (hdi_silan_bound(z, r, z->steps, at, &bound, &size, e) < 0) return e->status;
                 size = sqrt(size * size + fixed[r] / (z->f_norm[r] * z->f_norm[r]));
                 miss = hdi_max(miss, size > 0 ? bound / (tol * size) : bound > 0 ? HUGE_VAL : 0);
                 worst_bound = hdi_max(worst_bound, bound);
@@ -9256,7 +9263,7 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
 }
 
 /* The answer of right-hand side r at time t into its lane: constants and the basis' part. */
-static hd_status hdi_silan_answer(const hdi_silan *z, int32_t r, double t, hdi_lane *lane, hd_error *e) {
+static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int32_t m = z->done[r], n = lap->n_active;
     double y[HDI_SILAN_MAX], bound = 0, size, *HDI_RESTRICT u = lane->u;

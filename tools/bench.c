@@ -517,7 +517,8 @@ static void row_csv(const entry *r, const bench *b) {
     const double ratio = r->rival_seconds > 0 ? r->rival_seconds / r->seconds : 0, share = b->peak[0] > 0 ? row_share(r, b) : 0;
     const double packs = r->packs && r->nnz > 0 ? r->bytes / (64 * r->nnz) : 0;
     printf("%s,%s,%d,\"%s%s%s\",%g,", b->mesh, b->mass, (int)b->pair.n, r->job, r->part ? ": " : "", r->part ? r->part : "", r->tau);
-    printf("%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,", (int)r->threads, r->ours, r->seconds, r->rival, r->rival_seconds, ratio, r->error, r->rival_error);
+    printf("%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,", (int)r->threads, r->ours, r->seconds, r->rival, r->rival_seconds, ratio, r->error,
+           r->rival_error);
     printf("%.4g,%.4g,%.4g,%.0f,%.0f,%.4g,%.0f,%.0f\n", r->gflops, share, r->gbytes, r->nnz, r->bytes, packs, r->rival_nnz, r->rival_bytes);
 }
 
