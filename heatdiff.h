@@ -9241,7 +9241,7 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
                 worst_bound = hdi_max(worst_bound, bound);
             }
             reached[r] = worst_bound;
-            if (miss < best[r] / 2) {
+            if (miss < best[r] / 2 && z->steps < most) {
                 best[r] = miss;
                 best_m[r] = z->steps;
             } else if (z->steps > best_m[r] + 12 || z->steps >= most) {
@@ -9282,7 +9282,7 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, hdi_lane *l
                 else for (i = begin; i < end; i++) u[i] += y[j] * v[HDI_SILAN_WIDE * i + r];
             }
         }
-        lane->solver = bound * z->f_norm[r];
+        lane->solver = bound * z->f_norm[r] + 4 * DBL_EPSILON * lane->f_norm;   /* and rounding */
     }
     hdi_conserve_sums(lap, lane);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
@@ -10064,7 +10064,8 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->k, hh = heat->source->h * heat->source->h * heat->scale;
     const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n, flops = s ? s->flops_done : 22 * n * sqrt(n), analysis = s ? 0 : HDI_ROW_ANALYSIS * n;
     const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n, real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n;
-    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5, packs = (poles + 2) / 4 > 0 ? (poles + 2) / 4 : 1;
+    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
+    const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4, packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0], windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
     const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
     double one;
@@ -10174,7 +10175,7 @@ static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane,
     int32_t c, r;
     for (c = 0; c < lap->n_components && lap->conserves; c++) least += lane->target[c] * lane->target[c] / lap->component_mass[c];
     for (r = 8; r < HDI_RAT_UNIFORM_MAX; r = !direct ? r + 2 : r == 8 ? 9 : HDI_RAT_UNIFORM_MAX)
-        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= 1e-9 * sqrt(least)) break;
+        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= (direct ? 2e-9 : 1e-9) * sqrt(least)) break;
     return r;
 }
 
@@ -10401,7 +10402,10 @@ static hd_status hdi_direct_prepare(hdi_heat_call *h) {
         h->rep->factor_flops += 16 * heat->elim.sym.flops;
         h->rep->growth = hdi_max(h->rep->growth, f->all.largest / f->largest_entry);
     }
-    if (heat->elim.lone >= 0) h->rep->factor_flops += heat->elim.sym.flops;
+    if (heat->elim.lone >= 0) {
+        h->rep->factor_flops += heat->elim.sym.flops;
+        h->rep->growth = hdi_max(h->rep->growth, heat->elim.real.all.largest / heat->elim.real.largest_entry);
+    }
     return HD_OK;
 }
 
@@ -10430,9 +10434,9 @@ static hd_status hdi_direct_run(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* A shift for times [from, to]; that of the factor at hand when it will do. */
-static double hdi_krylov_shift(const hdi_elim *m, double from, double to) {
-    const double best = sqrt(from) * sqrt(to) / 10, have = m->real.ready ? m->shift : 0;
+/* A shift for times [from, to]; that of the factor at hand when it will do. Not so large that B drowns beside g L. */
+static double hdi_krylov_shift(const hdi_elim *m, double from, double to, double lambda_max) {
+    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL), have = m->real.ready ? m->shift : 0;
     return have > 0 && best <= 3 * have && have <= 3 * best && to / from < 10 ? have : best;
 }
 
@@ -10460,7 +10464,7 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
     hd_status status;
     int32_t i, q;
     int64_t c;
-    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(&heat->elim, h->times[q0], h->times[q1 - 1]), h->e) < 0) return h->e->status;
+    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(&heat->elim, h->times[q0], h->times[q1 - 1], heat->lambda_max), h->e) < 0) return h->e->status;
     z->g = heat->elim.shift;
     z->k = n;
     if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
@@ -10474,6 +10478,7 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
             hdi_lane *lane = h->lane + i;
             lane->status = status;
             if (!lane->skip && hdi_silan_answer(z, i, h->times[q], lane, h->e) < 0) return h->e->status;
+            if (!lane->skip && lane->solver > heat->opts.tol * lane->u_norm) lane->status = HD_WARN_ACCURACY;
         }
         for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
         if (hdi_heat_collect(h, n) < 0) return h->e->status;
