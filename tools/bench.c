@@ -552,6 +552,7 @@ static void table_head(const bench *b) {
     if (b->set->csv) return;
     printf("%-18s%6s%3s  %-22s%10s  %-22s%10s%7s%9s%9s", "job", "t/h2", "th", "ours", "ms", "rival", "ms", "ratio", "error", "rival's");
     printf("%8s%5s%6s%11s%8s%6s%11s%8s\n", "GF/s", "peak", "GB/s", "nnz(L)", "MB", "/64B", "rival nnz", "MB");
+    fflush(stdout);
 }
 
 static const char *ordering_name(hd_ordering o) {
@@ -1386,6 +1387,7 @@ int main(int argc, char **argv) {
     if (set.csv)
         printf("mesh,mass,rows,job,t_over_h2,threads,ours,seconds,rival,rival_seconds,ratio,error,rival_error,gflops,peak_share,gbytes,nnz,bytes,"
                "bytes_per_64nnz,rival_nnz,rival_bytes\n");
+    fflush(stdout);
     for (i = first; i < argc; i++) fine &= bench_file(&set, argv[i], peak);
     if (first == argc) {
         bench_shape(&set, "torus", shape_torus(250, 200, 1, 0.4), peak);
