@@ -3980,10 +3980,47 @@ static void *hdi_copy(const void *from, size_t count, size_t size, hd_context *c
     return to;
 }
 
+/* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row
+ * ascending. */
+static hd_status hdi_sym_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
+    const int32_t n = lap->n_active;
+    const size_t n1 = HDI_CAST(size_t, n) + 1, nnz = HDI_CAST(size_t, lap->L.nnz);
+    hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
+    int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
+    int64_t *fill = HDI_TAKE(&s, int64_t, n1), p;
+    double *B = NULL;
+    hd_csr a = lap->L;
+    a.row_ptr = HDI_TAKE(&keep, int64_t, n1);
+    a.col = HDI_TAKE(&keep, int32_t, nnz);
+    a.val = HDI_TAKE(&keep, double, nnz);
+    if (lap->B) B = HDI_TAKE(&keep, double, nnz);
+    if (e->status < 0) {
+        hdi_scope_end(&s);
+        return hdi_scope_end(&keep);
+    }
+    a.row_ptr[0] = 0;
+    for (i = 0; i < n; i++) {
+        inv[perm[i]] = i;
+        fill[i] = a.row_ptr[i];
+        a.row_ptr[i + 1] = a.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
+    }
+    for (i = 0; i < n; i++) {
+        for (p = lap->L.row_ptr[perm[i]]; p < lap->L.row_ptr[perm[i] + 1]; p++) {
+            const int64_t q = fill[inv[lap->L.col[p]]]++;
+            a.col[q] = i;
+            a.val[q] = lap->L.val[p];
+            if (B) B[q] = lap->B[p];
+        }
+    }
+    out->L = a;
+    out->B = B;
+    keep.n = 0;                                  /* all of it is the caller's now */
+    return hdi_scope_end(&s);
+}
+
 /* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
 static hd_laplacian *hdi_sym_renumber(const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
     const size_t n = HDI_CAST(size_t, lap->n_active);
-    hd_csr b = lap->L, pb;
     hd_laplacian *out;
     int32_t i;
     hdi_error_clear(e);
@@ -3999,15 +4036,7 @@ static hd_laplacian *hdi_sym_renumber(const hd_laplacian *lap, const int32_t *pe
     out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(size_t, lap->n), sizeof(int32_t), ctx, e));
     out->component_mass = HDI_CAST(double *, hdi_copy(lap->component_mass, HDI_CAST(size_t, lap->n_components), sizeof(double), ctx, e));
     out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
-    if (e->status >= 0 && lap->B) {
-        b.val = lap->B;
-        if (hdi_csr_permute(&pb, &b, perm, ctx, e) >= 0) {
-            out->B = pb.val;
-            pb.val = NULL;
-            hdi_csr_free(ctx, &pb);
-        }
-    }
-    if (e->status < 0 || hdi_csr_permute(&out->L, &lap->L, perm, ctx, e) < 0) {
+    if (e->status < 0 || hdi_sym_permute(out, lap, perm, ctx, e) < 0) {
         hdi_laplacian_free(out, ctx);
         return NULL;
     }
@@ -6103,26 +6132,45 @@ static void hdi_sym_rows(hdi_symbolic *s, const int64_t *lower_ptr, const int32_
     }
 }
 
-/* Where each entry of the lower triangle of P A P' goes. place [n]. */
-static void hdi_sym_entries(hdi_symbolic *s, const hd_csr *a, const int32_t *inv, int32_t *place) {
+/* The lower triangle of P A P' by rows, as in hdi_sym_lower, and by columns with the entries' places in A, in one pass over A; the latter still in
+ * rows and columns of the whole matrix. inv [n] gets the inverse of the order. */
+static void hdi_sym_gather(hdi_symbolic *s, const hd_csr *a, int32_t *inv, int64_t *lower_ptr, int32_t *lower) {
+    int64_t p, q = 0, below = 0;
     int32_t v, j;
-    int64_t p, q = 0;
+    for (j = 0; j < s->n; j++) inv[s->perm[j]] = j;
     for (v = 0; v < s->n_super; v++) {
-        const int32_t begin = s->super[v], end = s->super[v + 1];
         s->a_ptr[v] = q;
-        for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) place[s->row[p]] = HDI_CAST(int32_t, p - s->row_ptr[v]) + end - begin;
-        for (j = begin; j < end; j++) {
-            place[j] = j - begin;
+        for (j = s->super[v]; j < s->super[v + 1]; j++) {
+            lower_ptr[j] = below;
             for (p = a->row_ptr[s->perm[j]]; p < a->row_ptr[s->perm[j] + 1]; p++) {
                 const int32_t i = inv[a->col[p]];
-                if (i < j) continue;
+                if (i < j) {
+                    lower[below++] = i;
+                    continue;
+                }
                 s->a_from[q] = p;
-                s->a_row[q] = i < end ? i - begin : place[i];
-                s->a_col[q++] = j - begin;
+                s->a_row[q] = i;
+                s->a_col[q++] = j;
             }
         }
     }
     s->a_ptr[v] = q;
+    lower_ptr[s->n] = below;
+}
+
+/* Rows and columns of the entries within the fronts. place [n]. */
+static void hdi_sym_entries(hdi_symbolic *s, int32_t *place) {
+    int32_t v;
+    int64_t p;
+    for (v = 0; v < s->n_super; v++) {
+        const int32_t begin = s->super[v], end = s->super[v + 1];
+        for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) place[s->row[p]] = HDI_CAST(int32_t, p - s->row_ptr[v]) + end - begin;
+        for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++) {
+            const int32_t i = s->a_row[p];
+            s->a_row[p] = i < end ? i - begin : place[i];
+            s->a_col[p] -= begin;
+        }
+    }
 }
 
 /* Elimination tree, postorder and column counts; perm becomes postordered. The arrays of counts' work are borrowed from w [7 n]. */
@@ -6221,9 +6269,9 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
     s->a_row = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : lower_ptr[n] + n);
     s->a_col = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : lower_ptr[n] + n);
     if (e->status >= 0 && hdi_progress(ctx, "analyse", 0.6, e) >= 0) {
-        hdi_sym_lower(a, s->perm, work, lower_ptr, lower);
+        hdi_sym_gather(s, a, work, lower_ptr, lower);
         hdi_sym_rows(s, lower_ptr, lower, upper_ptr, work + n1);
-        hdi_sym_entries(s, a, work, work + n1);
+        hdi_sym_entries(s, work + n1);
         hdi_sym_kids(s);
         hdi_sym_plan(s, &w);
     }
@@ -10047,9 +10095,10 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 /* Seconds that methods would take at rates one core has been seen to reach, and the bytes they would hold. */
 typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov_bytes; } hdi_cost;
 
-/* Rates: flops of packs and of real fronts, bytes per second of sweeps, and seconds per non-zero of a step of Lanczos and of COCG, per row of an
+/* Rates: flops of packs, with seconds per non-zero for what small fronts cost besides, and of real fronts, bytes per second of sweeps, and seconds per non-zero of a step of Lanczos and of COCG, per row of an
  * ordering with its analysis. Measured on meshes of 36K to 1M vertices. */
-#define HDI_RATE_PACK 55e9
+#define HDI_RATE_PACK 70e9
+#define HDI_ENTRY_PACK 12e-9
 #define HDI_RATE_REAL 25e9
 #define HDI_RATE_SWEEP 15e9
 #define HDI_STEP_LANCZOS 1.6e-9
@@ -10068,7 +10117,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4, packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0], windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
     const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
-    double one;
+    double one, factor;
     hdi_cost c;
     int32_t q;
     c.iterative = 0.4e-6 * n;
@@ -10079,8 +10128,9 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
         c.iterative += k * one;
     }
     c.krylov = analysis + windows * flops / HDI_RATE_REAL + k * windows * steps * (16 * nnz + 100 * n) / HDI_RATE_SWEEP + k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
-    c.direct = analysis + h->n_times * (packs * 16 * flops / HDI_RATE_PACK + k * packs * (64 * nnz + 400 * n) / (k > 1 ? 1.6 * HDI_RATE_SWEEP : 1.2 * HDI_RATE_SWEEP));
-    if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= packs * 16 * flops / HDI_RATE_PACK;
+    factor = packs * (16 * flops / HDI_RATE_PACK + HDI_ENTRY_PACK * nnz) + (poles % 4 == 1 ? flops / HDI_RATE_REAL : 0);
+    c.direct = analysis + h->n_times * (factor + k * packs * (64 * nnz + 400 * n) / (k > 1 ? 1.6 * HDI_RATE_SWEEP : 0.6 * HDI_RATE_SWEEP));
+    if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= factor;
     c.direct_bytes = 64 * packs * stored + 200 * n + 8 * real_stored;
     c.krylov_bytes = 8 * real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
