@@ -10095,13 +10095,15 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 /* Seconds that methods would take at rates one core has been seen to reach, and the bytes they would hold. */
 typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov_bytes; } hdi_cost;
 
-/* Rates: flops of packs, with seconds per non-zero for what small fronts cost besides, and of real fronts, bytes per second of sweeps, and seconds per non-zero of a step of Lanczos and of COCG, per row of an
- * ordering with its analysis. Measured on meshes of 36K to 1M vertices. */
+/* Rates: flops of packs, with seconds per non-zero for what small fronts cost besides, and of real fronts; bytes per second of sweeps; seconds per
+ * non-zero of a step of Lanczos (with what looks at its bound cost, per step squared) and of COCG; per row of an ordering with its analysis.
+ * Measured on meshes of 36K to 1M vertices. */
 #define HDI_RATE_PACK 70e9
 #define HDI_ENTRY_PACK 12e-9
 #define HDI_RATE_REAL 25e9
 #define HDI_RATE_SWEEP 15e9
 #define HDI_STEP_LANCZOS 1.6e-9
+#define HDI_LOOK_LANCZOS 0.4e-6
 #define HDI_STEP_COCG 4e-9
 #define HDI_ROW_ANALYSIS 0.8e-6
 
@@ -10123,8 +10125,12 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     c.iterative = 0.4e-6 * n;
     for (q = 0; q < h->n_times; q++) {
         const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
-        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) one = (1.2 * sqrt(t * heat->lambda_max) + 10) * (entries + 6 * n) * HDI_STEP_LANCZOS;
-        else one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) * (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
+        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) {
+            one = 1.2 * sqrt(t * heat->lambda_max) + 10;
+            one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
+        } else {
+            one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) * (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
+        }
         c.iterative += k * one;
     }
     c.krylov = analysis + windows * flops / HDI_RATE_REAL + k * windows * steps * (16 * nnz + 100 * n) / HDI_RATE_SWEEP + k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
