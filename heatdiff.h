@@ -7112,6 +7112,526 @@ static void hdi_sweep_touch(const hdi_symbolic *s, int32_t i, char *active) {
     for (v = s->super_of[i]; v >= 0 && !active[v]; v = s->parent[v]) active[v] = 1;
 }
 
+/* ==== [13] selinv ====
+ * Entries of the inverse on the pattern of the factor, from the root down. May call [12].
+ * This work is based on
+ *   K. Takahashi, J. Fagan, M. Chin, Formation of a sparse bus impedance matrix and its application to short circuit study, 1973
+ *   A. Erisman, W. Tinney, On computing certain elements of the inverse of a sparse matrix, 1975
+ *   L. Lin, C. Yang, J. Meza, J. Lu, L. Ying, W. E, SelInv - an algorithm for selected inversion of a sparse symmetric matrix, 2011 (by supernodes)
+ * With Z = A^-1 = L^-T D^-1 L^-1 and, for a block of pivots, M = L21 L11^-1:  Z21 = -Z22 M,  Z11 = L11^-T D^-1 L11^-1 - M' Z21. Plain transposes.
+ * The factor stays as it is. A front's Z22 stands where its update matrix stood: its life is that of the update matrix run backwards, so that the plan of
+ * memory serves both. What is new, the columns of the pivots, lives in a scratch panel until the children have taken their parts. */
+
+enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 16 };
+
+/* Inversion under way. Wanted of it are weighted sums over the numbers of an entry (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
+ * sets of weights, at the entries of A's lower triangle in the order of sym->a_from, or on the diagonal by pivots. They are added to what is there. */
+typedef struct hdi_inverse {
+    hdi_factor *f;
+    const double *coef;          /* [n_sets][width] */
+    int32_t n_sets, diagonal;
+    double *values;              /* [n_sets][entries or n] */
+    int64_t stride;              /* from set to set */
+    double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
+    size_t scratch_size, top_size, chunk_size;
+    int32_t stop;
+    double done;
+    hd_error error;
+} hdi_inverse;
+
+/* The parts of one front; a block of pivots [k0,k1) under way. */
+typedef struct hdi_inverse_front {
+    hdi_factor *f;
+    double *panel, *z, *update;  /* L; Z of the pivots' columns in the same layout; Z22, a packed triangle */
+    double *T, *S, *M, *slices, *buffer;
+    int64_t m, p, u, k0, k1;
+    int32_t v;
+} hdi_inverse_front;
+
+/* Doubles of a block of rows of Z that is gathered, and of all scratch of a front of at most so many rows and pivots and stored entries. */
+static size_t hdi_inverse_buffer(int32_t width) {
+    return width == 1 ? HDI_CAST(size_t, HDI_REAL_MR) * HDI_INV_DEPTH_REAL : HDI_CAST(size_t, HDI_PACK) * HDI_INV_ROWS * HDI_INV_DEPTH;
+}
+
+static size_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
+    const int64_t w = hdi_least(p, HDI_PANEL), slices = width == 1 ? (m + w) * (w + HDI_REAL_NR) : 0;
+    return HDI_CAST(size_t, width * (stored + 2 * w * w + m * w) + slices) + hdi_inverse_buffer(width) + 64;
+}
+
+static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
+    const hdi_symbolic *s = f->sym;
+    const int64_t *at = f->width == 1 ? s->panel : s->panel_pack;
+    hdi_inverse_front w;
+    int64_t most;
+    memset(&w, 0, sizeof w);
+    w.f = f;
+    w.v = v;
+    w.p = hdi_front_pivots(s, v);
+    w.u = hdi_front_below(s, v);
+    w.m = w.p + w.u;
+    w.panel = f->panel + f->width * at[v];
+    w.update = f->work + f->width * s->update[v];
+    most = hdi_least(w.p, HDI_PANEL);
+    w.z = scratch;
+    w.T = w.z + f->width * (at[v + 1] - at[v]);
+    w.S = w.T + f->width * most * most;
+    w.M = w.S + f->width * most * most;
+    w.slices = w.M + f->width * w.m * most;
+    w.buffer = w.slices + (f->width == 1 ? (w.m + most) * (most + HDI_REAL_NR) : 0);
+    return w;
+}
+
+/* ---- packs ---- */
+
+/* Entry (i,j) of Z, j <= i, and how many of its row follow in place. */
+static const double *hdi_pack_inverse_at(const hdi_inverse_front *w, int64_t i, int64_t j, int64_t *run) {
+    if (j < w->p) {
+        const hdi_pack_block b = hdi_pack_block_of(w->z, w->m, w->p, j / HDI_PANEL);
+        *run = b.begin + b.width - j;
+        return hdi_pack_at(&b, i, j);
+    }
+    *run = i - j + 1;
+    return w->update + HDI_PACK * (hdi_triangle(i - w->p) + j - w->p);
+}
+
+/* Rows [i0,i1), columns [j0,j1) of the symmetric Z, by rows. */
+static void hdi_pack_inverse_gather(const hdi_inverse_front *w, int64_t i0, int64_t i1, int64_t j0, int64_t j1, double *to) {
+    const int64_t row = HDI_PACK * (j1 - j0);
+    int64_t i, j, run, end;
+    for (i = i0; i < i1; i++) {
+        for (j = j0, end = hdi_least(i + 1, j1); j < end; j += run) {
+            const double *from = hdi_pack_inverse_at(w, i, j, &run);
+            run = hdi_least(run, end - j);
+            memcpy(to + (i - i0) * row + HDI_PACK * (j - j0), from, HDI_CAST(size_t, run) * HDI_PACK * sizeof *to);
+        }
+    }
+    for (j = j0 > i0 ? j0 : i0 + 1; j < j1; j++) {   /* above the diagonal: entry (j,i) */
+        double *column = to + HDI_PACK * (j - j0);
+        for (i = i0, end = hdi_least(i1, j); i < end; i += run) {
+            const double *from = hdi_pack_inverse_at(w, j, i, &run);
+            int64_t q;
+            run = hdi_least(run, end - i);
+            for (q = 0; q < run; q++) memcpy(column + (i + q - i0) * row, from + HDI_PACK * q, HDI_PACK * sizeof *to);
+        }
+    }
+}
+
+/* T = -L11^-1 and Z11 = L11^-T D^-1 L11^-1 of the block, by rows of w entries. */
+static void hdi_pack_inverse_pivots(const hdi_inverse_front *w) {
+    const hdi_pack_block l = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL), z = hdi_pack_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
+    const int64_t n = w->k1 - w->k0, row = HDI_PACK * n;
+    const double *dinv = w->f->dinv + HDI_PACK * (w->f->sym->super[w->v] + w->k0);
+    hdi_pack_job g;
+    int64_t i, k, i0;
+    int q;
+    memset(w->T, 0, HDI_CAST(size_t, n * row) * sizeof *w->T);
+    memset(&g, 0, sizeof g);
+    g.a_col = HDI_PACK;
+    g.b_row = HDI_PACK;
+    g.b_col = row;
+    for (i0 = 0; i0 < n; i0 += HDI_INV_PIVOTS) {
+        const int64_t i1 = hdi_least(i0 + HDI_INV_PIVOTS, n);
+        g.a = l.at + i0 * l.row;
+        g.a_row = l.row;
+        g.b = w->T;
+        g.c = w->T + i0 * row;
+        g.c_row = row;
+        g.depth = i0;
+        g.store = 1;
+        if (i0) w->f->pack->multiply(&g, 0, i1 - i0, 0, i0);
+        g.store = 0;
+        for (i = i0; i < i1; i++) {              /* rows of the block itself */
+            g.a = l.at + i * l.row + HDI_PACK * i0;
+            g.b = w->T + i0 * row;
+            g.c = w->T + i * row;
+            g.depth = i - i0;
+            if (i > i0) w->f->pack->multiply(&g, 0, 1, 0, i);
+            for (q = 0; q < 4; q++) g.c[HDI_PACK * i + q] = -1;
+        }
+    }
+    for (i = 0; i < n; i++) {                    /* S = -D^-1 T */
+        for (k = 0; k <= i; k++) hdi_pack_times(w->T + i * row + HDI_PACK * k, dinv + HDI_PACK * i, w->S + i * row + HDI_PACK * k);
+        for (k = 0; k < HDI_PACK * (i + 1); k++) w->S[i * row + k] = -w->S[i * row + k];
+        memset(w->S + i * row + HDI_PACK * (i + 1), 0, HDI_CAST(size_t, n - i - 1) * HDI_PACK * sizeof *w->S);
+    }
+    memset(&g, 0, sizeof g);
+    g.a_row = g.b_row = HDI_PACK;
+    g.a_col = g.b_col = row;
+    g.c = z.at;
+    g.c_row = z.row;
+    g.lower = 1;
+    for (i0 = 0; i0 < n; i0 += HDI_INV_PIVOTS) { /* (T' S)(i,k) begins at row i */
+        const int64_t i1 = hdi_least(i0 + HDI_INV_PIVOTS, n);
+        g.a = w->T + i0 * row;
+        g.b = w->S + i0 * row;
+        g.depth = n - i0;
+        g.store = 1;
+        w->f->pack->multiply(&g, i0, i1, 0, i1);
+    }
+}
+
+/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front. */
+static void hdi_pack_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
+    const hdi_pack_block l = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
+    const int64_t n = w->k1 - w->k0;
+    hdi_pack_job g;
+    memset(&g, 0, sizeof g);
+    g.a = hdi_pack_at(&l, r0, w->k0);
+    g.a_row = l.row;
+    g.a_col = HDI_PACK;
+    g.b = w->T;
+    g.b_row = HDI_PACK;
+    g.b_col = HDI_PACK * n;
+    g.c = w->M + (r0 - w->k1) * HDI_PACK * n;
+    g.c_row = HDI_PACK * n;
+    g.depth = n;
+    g.store = 1;
+    w->f->pack->multiply(&g, 0, r1 - r0, 0, n);
+}
+
+/* Rows [r0,r1) of Z21 = -Z22 M. */
+static void hdi_pack_inverse_below(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_pack_block z = hdi_pack_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
+    const int64_t n = w->k1 - w->k0;
+    hdi_pack_job g;
+    int64_t r, j;
+    memset(&g, 0, sizeof g);
+    g.a = buffer;
+    g.a_col = g.b_row = HDI_PACK;
+    g.b_col = HDI_PACK * n;
+    g.c_row = z.row;
+    for (r = r0; r < r1; r += HDI_INV_ROWS) {
+        const int64_t end = hdi_least(r + HDI_INV_ROWS, r1);
+        g.c = hdi_pack_at(&z, r, w->k0);
+        for (j = w->k1; j < w->m; j += HDI_INV_DEPTH) {
+            g.depth = hdi_least(w->m - j, HDI_INV_DEPTH);
+            g.a_row = HDI_PACK * g.depth;
+            g.b = w->M + (j - w->k1) * HDI_PACK * n;
+            g.store = j == w->k1;
+            hdi_pack_inverse_gather(w, r, end, j, j + g.depth, buffer);
+            w->f->pack->multiply(&g, 0, end - r, 0, n);
+        }
+    }
+}
+
+/* Rows [r0,r1) of Z11 -= M' Z21, counted from the block's first pivot. */
+static void hdi_pack_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
+    const hdi_pack_block z = hdi_pack_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
+    const int64_t n = w->k1 - w->k0;
+    hdi_pack_job g;
+    int64_t j;
+    memset(&g, 0, sizeof g);
+    g.a_row = g.b_row = HDI_PACK;
+    g.a_col = HDI_PACK * n;
+    g.b_col = z.row;
+    g.c = z.at;
+    g.c_row = z.row;
+    g.lower = 1;
+    for (j = w->k1; j < w->m; j += HDI_INV_DEPTH) {
+        g.depth = hdi_least(w->m - j, HDI_INV_DEPTH);
+        g.a = w->M + (j - w->k1) * HDI_PACK * n;
+        g.b = hdi_pack_at(&z, j, w->k0);
+        w->f->pack->multiply(&g, r0, r1, 0, r1);
+    }
+}
+
+/* Rows [r0,r1) of child c's Z22, out of the finished front. */
+static void hdi_pack_inverse_child(const hdi_inverse_front *w, int32_t c, int64_t r0, int64_t r1) {
+    const hdi_symbolic *s = w->f->sym;
+    const int32_t *rel = s->rel + s->row_ptr[c];
+    double *to = w->f->work + HDI_PACK * (s->update[c] + hdi_triangle(r0));
+    int64_t a, b, run;
+    for (a = r0; a < r1; a++) {
+        for (b = 0; b <= a;) {
+            const int64_t first = rel[b];
+            const double *from = hdi_pack_inverse_at(w, rel[a], first, &run);
+            for (; b <= a && rel[b] < first + run; b++, to += HDI_PACK) memcpy(to, from + HDI_PACK * (rel[b] - first), HDI_PACK * sizeof *to);
+        }
+    }
+}
+
+/* ---- real fronts ---- */
+
+static int64_t hdi_column_packed(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
+
+/* Entry (j,j) of Z; those below it in its column follow. */
+static const double *hdi_real_inverse_at(const hdi_inverse_front *w, int64_t j) {
+    return j < w->p ? w->z + j * (w->m + 1) : w->update + hdi_column_packed(w->u, j - w->p);
+}
+
+/* Rows [i0,i1), at most mr, columns [j0,j1) of the symmetric Z, by columns of mr, zeros past the last row. */
+static void hdi_real_inverse_gather(const hdi_inverse_front *w, int64_t i0, int64_t i1, int64_t j0, int64_t j1, double *to) {
+    const int64_t mr = w->f->real->mr;
+    int64_t i, j;
+    if (i1 - i0 < mr) memset(to, 0, HDI_CAST(size_t, mr * (j1 - j0)) * sizeof *to);
+    for (j = j0; j < j1 && j < i1; j++) {
+        const double *from = hdi_real_inverse_at(w, j) - j;
+        for (i = i0 > j ? i0 : j; i < i1; i++) to[(j - j0) * mr + i - i0] = from[i];
+    }
+    for (i = i0; i < i1; i++) {                  /* above the diagonal: entry (j,i) */
+        const double *from = hdi_real_inverse_at(w, i) - i;
+        for (j = j0 > i ? j0 : i + 1; j < j1; j++) to[(j - j0) * mr + i - i0] = from[j];
+    }
+}
+
+/* Slices of nr columns of X (column-major, rows x cols): entry (k,j) at [k nr + j] of its slice, zeros past the last column. */
+static void hdi_real_slices(double *to, int32_t nr, const double *x, int64_t ld, int64_t rows, int64_t cols) {
+    int64_t j, k;
+    for (j = 0; j < cols; j++) {
+        double *slice = to + j / nr * (rows * nr) + j % nr;
+        for (k = 0; k < rows; k++) slice[k * nr] = x[j * ld + k];
+    }
+    for (; j % nr; j++) {
+        double *slice = to + j / nr * (rows * nr) + j % nr;
+        for (k = 0; k < rows; k++) slice[k * nr] = 0;
+    }
+}
+
+static void hdi_real_clear(double *c, int64_t ld, int64_t rows, int64_t cols) {
+    int64_t j;
+    for (j = 0; j < cols; j++) memset(c + j * ld, 0, HDI_CAST(size_t, rows) * sizeof *c);
+}
+
+/* C -= X' Y for columns [i0,i1) of X; X and Y of `depth` rows, Y in slices of its n columns. */
+static void hdi_real_cross(const hdi_inverse_front *w, double *c, int64_t ld, const double *x, int64_t ldx, int64_t i0, int64_t i1, const double *slices, int64_t n,
+                           int64_t depth, double *buffer) {
+    const hdi_real_ops *o = w->f->real;
+    int64_t i, j;
+    for (i = i0; i < i1; i += o->mr) {
+        const int32_t rows = HDI_CAST(int32_t, hdi_least(i1 - i, o->mr));
+        for (j = 0; j < depth; j += HDI_INV_DEPTH_REAL) {
+            const int64_t here = hdi_least(depth - j, HDI_INV_DEPTH_REAL);
+            hdi_real_slices(buffer, o->mr, x + i * ldx + j, ldx, here, rows);
+            o->gemm(c + i, ld, rows, HDI_CAST(int32_t, n), buffer, o->mr, slices + j * o->nr, HDI_CAST(int32_t, depth), HDI_CAST(int32_t, here));
+        }
+    }
+}
+
+/* T = -L11^-1, column-major, in slices too, and Z11 = L11^-T D^-1 L11^-1. */
+static void hdi_real_inverse_pivots(const hdi_inverse_front *w) {
+    const int64_t n = w->k1 - w->k0;
+    const double *l = w->panel + w->k0 * (w->m + 1), *dinv = w->f->dinv + w->f->sym->super[w->v] + w->k0;
+    double *z = w->z + w->k0 * (w->m + 1);
+    int64_t i, j, k;
+    memset(w->T, 0, HDI_CAST(size_t, n * n) * sizeof *w->T);
+    for (k = 0; k < n; k++) {
+        double *HDI_RESTRICT t = w->T + k * n;
+        t[k] = -1;
+        for (j = k; j < n; j++) {
+            const double *HDI_RESTRICT c = l + j * w->m, x = t[j];
+            for (i = j + 1; i < n; i++) t[i] -= c[i] * x;
+        }
+        for (i = 0; i < n; i++) w->S[k * n + i] = -dinv[i] * t[i];
+    }
+    hdi_real_slices(w->slices, w->f->real->nr, w->S, n, n, n);
+    hdi_real_clear(z, w->m, n, n);
+    hdi_real_cross(w, z, w->m, w->T, n, 0, n, w->slices, n, n, w->buffer);
+    hdi_real_slices(w->slices, w->f->real->nr, w->T, n, n, n);
+}
+
+static void hdi_real_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_real_ops *o = w->f->real;
+    const int64_t n = w->k1 - w->k0, u = w->m - w->k1;
+    int64_t r;
+    hdi_real_clear(w->M + r0 - w->k1, u, r1 - r0, n);
+    for (r = r0; r < r1; r += o->mr) {
+        const int32_t rows = HDI_CAST(int32_t, hdi_least(r1 - r, o->mr));
+        o->copy(buffer, w->panel + r + w->k0 * w->m, w->m, rows, HDI_CAST(int32_t, n));
+        o->gemm(w->M + r - w->k1, u, rows, HDI_CAST(int32_t, n), buffer, o->mr, w->slices, HDI_CAST(int32_t, n), HDI_CAST(int32_t, n));
+    }
+}
+
+/* Rows [r0,r1) of Z21 = -Z22 M; slices are those of M. */
+static void hdi_real_inverse_below(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_real_ops *o = w->f->real;
+    const int64_t n = w->k1 - w->k0, u = w->m - w->k1;
+    int64_t r, j;
+    hdi_real_clear(w->z + r0 + w->k0 * w->m, w->m, r1 - r0, n);
+    for (r = r0; r < r1; r += o->mr) {
+        const int64_t end = hdi_least(r + o->mr, r1);
+        for (j = w->k1; j < w->m; j += HDI_INV_DEPTH_REAL) {
+            const int64_t last = hdi_least(j + HDI_INV_DEPTH_REAL, w->m);
+            hdi_real_inverse_gather(w, r, end, j, last, buffer);
+            o->gemm(w->z + r + w->k0 * w->m, w->m, HDI_CAST(int32_t, end - r), HDI_CAST(int32_t, n), buffer, o->mr, w->slices + (j - w->k1) * o->nr,
+                    HDI_CAST(int32_t, u), HDI_CAST(int32_t, last - j));
+        }
+    }
+}
+
+/* Columns [r0,r1) of child c's Z22. */
+static void hdi_real_inverse_child(const hdi_inverse_front *w, int32_t c, int64_t r0, int64_t r1) {
+    const hdi_symbolic *s = w->f->sym;
+    const int32_t *rel = s->rel + s->row_ptr[c];
+    const int64_t u = hdi_front_below(s, c);
+    double *to = w->f->work + s->update[c] + hdi_column_packed(u, r0);
+    int64_t a, b;
+    for (b = r0; b < r1; b++) {
+        const double *from = hdi_real_inverse_at(w, rel[b]) - rel[b];
+        for (a = b; a < u; a++) *to++ = from[rel[a]];
+    }
+}
+
+/* ---- fronts ---- */
+
+typedef enum hdi_inverse_stage { HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_CHILD } hdi_inverse_stage;
+
+/* One stage for rows [r0,r1). */
+static void hdi_inverse_part(const hdi_inverse_front *w, hdi_inverse_stage stage, int32_t child, int64_t r0, int64_t r1, double *buffer) {
+    const int real = w->f->width == 1;
+    const int64_t n = w->k1 - w->k0, u = w->m - w->k1;
+    switch (stage) {
+        case HDI_INVERSE_M:
+            if (real) hdi_real_inverse_m(w, r0, r1, buffer);
+            else hdi_pack_inverse_m(w, r0, r1);
+            break;
+        case HDI_INVERSE_BELOW:
+            if (real) hdi_real_inverse_below(w, r0, r1, buffer);
+            else hdi_pack_inverse_below(w, r0, r1, buffer);
+            break;
+        case HDI_INVERSE_CORNER:                 /* slices: Z21 */
+            if (real) hdi_real_cross(w, w->z + w->k0 * (w->m + 1), w->m, w->M, u, r0, r1, w->slices, n, u, buffer);
+            else hdi_pack_inverse_corner(w, r0, r1);
+            break;
+        default:
+            if (real) hdi_real_inverse_child(w, child, r0, r1);
+            else hdi_pack_inverse_child(w, child, r0, r1);
+    }
+}
+
+/* A stage of a large front, in chunks of rows shared by all threads. */
+typedef struct hdi_inverse_share {
+    const hdi_inverse *all;
+    const hdi_inverse_front *w;
+    hdi_inverse_stage stage;
+    int32_t child;
+    int64_t begin, end, chunk;
+} hdi_inverse_share;
+
+static void hdi_inverse_share_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_inverse_share *h = HDI_CAST(const hdi_inverse_share *, arg);
+    const int64_t r0 = h->begin + index * h->chunk, r1 = hdi_least(r0 + h->chunk, h->end);
+    (void)worker;
+    hdi_inverse_part(h->w, h->stage, h->child, r0, r1, h->all->chunk + h->all->chunk_size * HDI_CAST(size_t, index));
+}
+
+/* Rows [begin,end) of a stage: at once, or with z as chunks. */
+static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front *w, hdi_inverse_stage stage, int32_t child, int64_t begin, int64_t end) {
+    hdi_inverse_share h;
+    if (end <= begin) return;
+    if (!z) {
+        hdi_inverse_part(w, stage, child, begin, end, w->buffer);
+        return;
+    }
+    h.all = z;
+    h.w = w;
+    h.stage = stage;
+    h.child = child;
+    h.begin = begin;
+    h.end = end;
+    h.chunk = stage == HDI_INVERSE_CORNER ? HDI_REAL_MR : HDI_INV_CHUNK;
+    hdi_parallel(w->f->ctx, (end - begin + h.chunk - 1) / h.chunk, hdi_inverse_share_task, &h);
+}
+
+/* sum_c coef[c] z_c of entry (i,j) of the front, for every set, to place `at`. */
+static void hdi_inverse_put(const hdi_inverse *z, const hdi_inverse_front *w, int64_t i, int64_t j, int64_t at) {
+    const int32_t width = w->f->width;
+    int64_t run;
+    const double *from = width == 1 ? hdi_real_inverse_at(w, j) + (i - j) : hdi_pack_inverse_at(w, i, j, &run);
+    int32_t q, c;
+    for (q = 0; q < z->n_sets; q++) {
+        const double *coef = z->coef + q * width;
+        double sum = 0;
+        for (c = 0; c < width; c++) sum += coef[c] * from[c];
+        z->values[q * z->stride + at] += sum;
+    }
+}
+
+/* What is wanted of the front's columns. */
+static void hdi_inverse_emit(const hdi_inverse *z, const hdi_inverse_front *w) {
+    const hdi_symbolic *s = w->f->sym;
+    int64_t n;
+    if (z->diagonal)
+        for (n = 0; n < w->p; n++) hdi_inverse_put(z, w, n, n, s->super[w->v] + n);
+    else
+        for (n = s->a_ptr[w->v]; n < s->a_ptr[w->v + 1]; n++) hdi_inverse_put(z, w, s->a_row[n], s->a_col[n], n);
+}
+
+/* Z of front v, whose Z22 is there: its columns, what is wanted of them, and the children's Z22. shared: all threads, else this one. */
+static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scratch, int shared) {
+    const hdi_symbolic *s = z->f->sym;
+    const hdi_inverse *all = shared ? z : NULL;
+    const int real = z->f->width == 1;
+    hdi_inverse_front w = hdi_inverse_open(z->f, v, scratch);
+    int32_t k;
+    for (w.k0 = (w.p - 1) / HDI_PANEL * HDI_PANEL; w.k0 >= 0; w.k0 -= HDI_PANEL) {
+        w.k1 = hdi_least(w.k0 + HDI_PANEL, w.p);
+        if (real) hdi_real_inverse_pivots(&w);
+        else hdi_pack_inverse_pivots(&w);
+        if (w.k1 == w.m) continue;
+        hdi_inverse_stage_run(all, &w, HDI_INVERSE_M, 0, w.k1, w.m);
+        if (real) hdi_real_slices(w.slices, z->f->real->nr, w.M, w.m - w.k1, w.m - w.k1, w.k1 - w.k0);
+        hdi_inverse_stage_run(all, &w, HDI_INVERSE_BELOW, 0, w.k1, w.m);
+        if (real) hdi_real_slices(w.slices, z->f->real->nr, w.z + w.k1 + w.k0 * w.m, w.m, w.m - w.k1, w.k1 - w.k0);
+        hdi_inverse_stage_run(all, &w, HDI_INVERSE_CORNER, 0, 0, w.k1 - w.k0);
+    }
+    hdi_inverse_emit(z, &w);
+    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) hdi_inverse_stage_run(all, &w, HDI_INVERSE_CHILD, s->kid[k], 0, hdi_front_below(s, s->kid[k]));
+}
+
+static void hdi_inverse_task(void *arg, int64_t index, int32_t worker) {
+    hdi_inverse *z = HDI_CAST(hdi_inverse *, arg);
+    const hdi_symbolic *s = z->f->sym;
+    const int64_t i = s->n_tasks - 1 - index;
+    int32_t v;
+    if (HDI_LOAD(&z->stop)) return;
+    if (worker == 0 && hdi_progress(z->f->ctx, "invert", z->done + (1 - z->done) * HDI_CAST(double, index) / s->n_tasks, &z->error) < 0) HDI_STORE(&z->stop, 1);
+    for (v = s->task_end[i]; v-- > s->task_begin[i] && !HDI_LOAD(&z->stop);) hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * HDI_CAST(size_t, i), 0);
+}
+
+static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
+    hdi_free(ctx, z->scratch);
+    hdi_free(ctx, z->chunk);
+    z->scratch = z->chunk = NULL;
+}
+
+/* Room to invert factors of the given width. */
+static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hd_context *ctx, hd_error *e) {
+    const int64_t *at = width == 1 ? s->panel : s->panel_pack;
+    const int32_t n_chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_REAL_MR + 2;
+    int32_t v;
+    memset(z, 0, sizeof *z);
+    for (v = 0; v < s->n_super; v++) {
+        const int64_t p = hdi_front_pivots(s, v), m = p + hdi_front_below(s, v);
+        const size_t size = hdi_inverse_scratch(m, p, at[v + 1] - at[v], width);
+        if (size > z->top_size) z->top_size = size;
+        if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
+    }
+    z->chunk_size = hdi_inverse_buffer(width);
+    z->scratch = HDI_CAST(double *, hdi_alloc(ctx, z->scratch_size * HDI_CAST(size_t, s->n_tasks) + z->top_size, sizeof(double), e));
+    if (z->scratch) z->chunk = HDI_CAST(double *, hdi_alloc(ctx, s->n_top ? z->chunk_size * HDI_CAST(size_t, n_chunks) : 1, sizeof(double), e));
+    if (!z->chunk) hdi_inverse_free(z, ctx);
+    return e->status;
+}
+
+/* Inverts the factor; coef, n_sets, diagonal, values and stride are set. Uses the space of the factor's update matrices. */
+static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
+    const hdi_symbolic *s = f->sym;
+    int32_t i;
+    z->f = f;
+    z->stop = 0;
+    z->done = s->n_top > 0 ? 0.5 : 0;
+    hdi_error_clear(&z->error);
+    for (i = s->n_top; i-- > 0 && !z->stop;) {
+        const int32_t v = s->top[i];
+        const int64_t m = hdi_front_pivots(s, v) + hdi_front_below(s, v);
+        if (hdi_progress(f->ctx, "invert", 0.5 * (s->n_top - 1 - i) / s->n_top, &z->error) < 0) z->stop = 1;
+        else hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * HDI_CAST(size_t, s->n_tasks), m >= 2 * HDI_INV_CHUNK);
+    }
+    if (!z->stop) hdi_parallel(f->ctx, s->n_tasks, hdi_inverse_task, z);
+    if (z->error.status < 0) *e = z->error;
+    return e->status;
+}
+
 /* ==== [14] precond ====
  * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal: one application serves them all,
  * complex-symmetric and real. May call [10].
