@@ -251,7 +251,8 @@ typedef enum hd_pole_kind {
     HD_POLES_UNIFORM,           /* best uniform (r,r) approximations, r = 1..14: smallest max |exp - c| on (-inf, 0] */
     HD_POLES_KERNEL,            /* a0 = 0, c(0) = 1 exactly, smallest max (1 + |x|) |exp - c|, r = 2..14: the error is
                                    relative to the kernel's own size, and heat is conserved to rounding */
-    HD_POLES_OWN                /* the caller's */
+    HD_POLES_OWN,               /* the caller's */
+    HD_POLES_DIAGONAL           /* as kernel sets, with a weight that rises to five times (1 + |x|) far out: made for diagonals and distances */
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
@@ -327,6 +328,13 @@ typedef enum hd_kernel {
     HD_KERNEL_SYMMETRIC         /* k_t = K_t B^-1 */
 } hd_kernel;
 
+typedef enum hd_distance_kind {
+    HD_DISTANCE_CLASSICAL = 0,  /* d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006): intrinsic, what peers compute */
+    HD_DISTANCE_WEIGHTED,       /* d^2 = (e_i - e_j)' B K_2t (e_i - e_j): eq. (6) of the paper. Not intrinsic: tends to |b_i - b_j|/sqrt(area) for large t */
+    HD_DISTANCE_COMMUTE,        /* d^2 = sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance; no time */
+    HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010); no time */
+} hd_distance_kind;
+
 /* What happened, and how far off the answer can be. With several fields or columns, the worst of them. */
 typedef struct hd_report {
     hd_status status;
@@ -350,6 +358,9 @@ typedef struct hd_report {
     double error_solver;        /* bound of the solvers' part, |.|_B / |answer|_B */
     double error_bound_b;       /* the two together */
     double error_bound;         /* bound of the largest error at a vertex, relative to the largest |value| of the answer */
+    double error_relative;      /* diagonals and distances: bound of the largest error relative to the value itself; 0: not asked */
+    double smallest;            /* diagonals and distances: the smallest value that is not zero */
+    int64_t n_lost;             /* distances with less than a digit or so left, see hd_heat_distance */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|, 0 when the pair does not conserve heat or the filter is the caller's */
 } hd_report;
 
@@ -531,6 +542,39 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, double t, hd_kernel kernel
  * methods take the times one by one. The report is the worst of all. */
 HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
                                      hd_report *report);
+
+/* The diagonal of k_t (heat kernel signature, Sun et al. 2009; auto-diffusion function, Gebal et al. 2009) or of K_t at every vertex, exactly, by selected
+ * inversion: no spectrum, no column. D n x n_times, column q for t[q] > 0, columns ldd apart (0: n). A vertex without mass has 0 (K_t: 1).
+ * For a full B, k_t leaves a0 diag(B^-1) of a uniform set out, which is of the size of the set's error and counted in it.
+ * Cost   for every t the factors of all poles and about twice as much again
+ * Errors HD_ERR_ARGUMENT (also for the methods iterative and krylov), HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Report error_rational is a bound; error_solver, rounding, is measured at the vertex that suffers most. */
+HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
+
+/* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
+ * vertices). For a full B without a0 B^-1, as above. */
+HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
+
+/* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
+ * t      [n_times] > 0; not looked at by commute and biharmonic, which take n_times = 1
+ * Cost   a diagonal (at 2t, shared by all sources) and a column for each source. HD_DISTANCE_WEIGHTED with a full B: the same on the pattern of B^2, eight
+ *        to ten times as dear
+ * Vertices without mass have f = 0. Between components commute and biharmonic are infinite (HUGE_VAL).
+ * Report error_bound and error_relative for d itself; n_lost counts distances of less than a digit or so: at times so large that all has become
+ * equal, or next to the source at small ones. Never NaN. hd_heat_pairs loses nothing there. */
+HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D,
+                                        size_t ldd, hd_report *report);
+
+/* K_t(i[q],j[q]) and distances for listed pairs. K, d [n_pairs], each may be NULL; K is left alone by commute and biharmonic.
+ * From columns at t of the vertices that occur, d = |K_t B^-1 (e_i - e_j)|_B without subtraction; when these columns would take more than half a GiB, from
+ * entries and the diagonal at 2t, a column at a time: sort the pairs by i then. */
+HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d,
+                                     hd_report *report);
+
+/* Farthest points (Gonzalez 1985): each the farthest from those before it under the distance. vertex [count]: the first n_given are given; with none the
+ * first vertex with mass begins. distance [count] or NULL: to those before (0 for the first). Cost a diagonal, and a column for each point. */
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex, double *distance,
+                                      hd_report *report);
 
 /* Single entries: values[q] = (i[q], j[q]) of K_t or k_t. One column per distinct j is solved, n doubles at a time. */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
@@ -8242,8 +8286,8 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
  * Efficient solution of parabolic equations by Krylov approximation methods, 1992, whose order-14 table is wrong in its last digits. */
 
 /* poles.py: begin */
-/* Computed by tools/poles.py, which also checks these digits. For every set: a0, max |e|, max (1 + |x|)|e| (0 for
- * uniform sets, where it is infinite); then per pole Re theta, Im theta, Re a, Im a, the real pole first (odd r),
+/* Computed by tools/poles.py, which also checks these digits. For every set: a0, max |e|, max W|e| (0 for
+ * uniform sets, where it would be the same); then per pole Re theta, Im theta, Re a, Im a, the real pole first (odd r),
  * then one of each conjugate pair by ascending Im theta. */
 static const double hdi_rat_table[] = {
     /* uniform r = 1 */
@@ -8411,23 +8455,106 @@ static const double hdi_rat_table[] = {
     -0.98196506093423674, 10.467711454192054, -0.078142978167783206, 0.21550257610584828,
     -4.5075605895604021, 13.008767567859003, -0.0010383125651999775, -0.0086362070804686056,
     -9.7413256359447953, 15.840947521360885, 2.0671816855185641e-05, 6.5573823084788806e-05,
+    /* diagonal r = 2 */
+    0, 0.067537133737907679, 0.084246004368216873,
+    0.093165638432949657, 0.78606720760465709, 0.0084246004368216873, -0.39955314986781715,
+    /* diagonal r = 3 */
+    0, 0.008827961386663535, 0.010442809434321652,
+    0.82583993214481199, 0, -0.6708823891869552, 0,
+    -0.38137972156259914, 1.879992248278864, 0.33439691365004542, -0.11579931529770687,
+    /* diagonal r = 4 */
+    0, 0.0011772217643792788, 0.0013423623600534568,
+    0.95364093252912396, 0.99014596020921519, -0.14238645345641066, -0.8903168914974795,
+    -1.0137929984233569, 3.0436577814491423, 0.14252068969241599, 0.17704643017030255,
+    /* diagonal r = 5 */
+    0, 0.00015286872126302198, 0.00017020187449105295,
+    1.5305988264114367, 0, -1.5071962916274879, 0,
+    0.79496963375585472, 2.0648242488303703, 0.81999666196924936, -0.39763577394813476,
+    -1.7386371635751181, 4.2421940249737515, -0.066415536342954523, 0.10612573631193803,
+    /* diagonal r = 6 */
+    0, 1.9404126482242763e-05, 2.1243136355080079e-05,
+    1.7403291915150134, 1.0508777810170973, -0.46945354680866597, -1.9337112147649937,
+    0.46845091128664179, 3.1874731275997692, 0.53058373822256644, 0.53195920721973822,
+    -2.5242654997752321, 5.4646451895220576, -0.061128067100264978, -0.014778077847248062,
+    /* diagonal r = 7 */
+    0, 2.412596399658805e-06, 2.6085677357032684e-06,
+    2.2587108249348247, 0, -3.2523445692370117, 0,
+    1.7285599625302293, 2.1435592178425069, 1.8605988718308413, -1.1049045554843731,
+    0.02975382932653408, 4.3426481816353268, -0.23226156481092178, 0.48607958827629705,
+    -3.3534714915089023, 6.7059077028578731, -0.0021652832581871267, -0.029590579663120412,
+    /* diagonal r = 8 */
+    0, 2.9479288418651553e-07, 3.1570971228532059e-07,
+    2.5142509751129301, 1.0823272318226731, -1.1972697412305799, -4.1920853464776231,
+    1.5665766326190609, 3.2671178582916962, 1.5321217388024098, 1.3129169180216853,
+    -0.49031600390114177, 5.5221078207391807, -0.3473011302864667, -0.037278309794394476,
+    -4.2159324328825925, 7.962476104494943, 0.012449164285608104, -0.0048644027630989142,
+    /* diagonal r = 9 */
+    0, 3.5524614672975907e-08, 3.7759512940471612e-08,
+    3.0037632063722302, 0, -7.0120532960817847, 0,
+    2.5889719865228709, 2.1905146441527563, 4.1540003879217764, -2.7667114907450197,
+    1.2945586667253488, 4.4144394949515586, -0.60444229963006224, 1.5552295032232204,
+    -1.0729254816698168, 6.7203973595020807, -0.047105620203199583, -0.20446296144071352,
+    -5.1049774011321016, 9.2312447202954093, 0.0035741761764263497, 0.0045788157819185576,
+    /* diagonal r = 10 */
+    0, 4.2342178872084898e-09, 4.4732537833884187e-09,
+    3.2873924431636969, 1.1022552213870953, -2.8289920084429534, -9.1064874041311423,
+    2.5302908088373912, 3.3198444586612692, 3.9838641796477434, 3.0606974631135127,
+    0.93765342127352547, 5.5805918225656841, -1.2543801051059043, -0.037404810718164969,
+    -1.7055012565967682, 7.9336742051217808, 0.1009434281265153, -0.062378797736551063,
+    -6.0159168215796504, 10.509773539372675, -0.0014354937780756717, 0.0019882812866436638,
+    /* diagonal r = 11 */
+    0, 5.0021846689596646e-10, 5.2580978086542119e-10,
+    3.7589461970886253, 0, -15.148948949204554, 0,
+    3.4181443270160519, 2.2221329996842121, 9.2125981360945897, -6.5902805609642856,
+    2.3683553134810875, 4.4666139801276348, -1.4193485357460269, 4.3238105206994364,
+    0.5128455800316476, 6.7620649790154106, -0.26684733005187411, -0.83260767428322346,
+    -2.379100613238514, 9.1591928578650474, 0.049022113704178832, 0.040992343240600949,
+    -6.9452579838979789, 11.79627716879928, -0.00094990945117058828, -0.00034571181787770053,
+    /* diagonal r = 12 */
+    0, 5.8661050518504886e-11, 6.1403279086032692e-11,
+    4.0610869219941961, 1.116048086453026, -6.4724526450927371, -19.800986950452625,
+    3.4300936656689154, 3.3573104594890664, 9.8055149092097036, 6.9636278019653055,
+    2.1236663707526828, 5.6279851297529859, -3.777063165087494, 0.094270513988374965,
+    0.032242520993688462, 7.9562992640911672, 0.45627066834523922, -0.34492929621099749,
+    -3.0870878465596405, 10.394946906715006, -0.012301681054688813, 0.030667347038706546,
+    -7.8903128787456671, 13.089450497161112, 3.1913686116974329e-05, -0.00040712600366819992,
+    /* diagonal r = 13 */
+    0, 6.8365743495114318e-12, 7.1306418567934206e-12,
+    4.5202913913027034, 0, -32.783137527896145, 0,
+    4.2310263506800085, 2.2448762717592685, 20.347189887795118, -15.274130373091314,
+    3.3465717998601754, 4.5057579496393751, -3.1850618922459386, 11.17507781679377,
+    1.8108756340281571, 6.8017763374151308, -1.0492043791856276, -2.7209511380543314,
+    -0.49517616961888949, 9.1613738263301858, 0.29495176440813958, 0.19748383147240292,
+    -3.8243861741232053, 11.639423888576662, -0.016465925177306037, -0.0011879972207539352,
+    -8.8489656005868085, 14.388310285612475, 0.00015930835297385204, -3.0280580654715494e-05,
+    /* diagonal r = 14 */
+    0, 7.9251842589203527e-13, 8.2407404085801184e-13,
+    4.8355707150445477, 1.1261687721267875, -14.567599485838048, -43.080327612915774,
+    4.294404025993809, 3.3852827675703461, 23.360062602508137, 15.644916006216233,
+    3.1843260042494643, 5.6657810904450612, -10.340872607797349, 0.68524673717873286,
+    1.4408641893813143, 7.986286821448644, 1.6044788633921492, -1.3795300766921736,
+    -1.0625421595687834, 10.375806417114624, -0.054252691775587503, 0.20350620469919772,
+    -4.5870160409811707, 12.891449259479609, -0.0018442580277614033, -0.0077932972131342215,
+    -9.8195193949567514, 15.692091318644374, 2.7577538544225898e-05, 5.7130444708159529e-05,
 };
 /* poles.py: end */
 
-enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };
+enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };   /* diagonal sets too */
 
 static int32_t hdi_rat_size(int32_t degree) { return 3 + 4 * ((degree + 1) / 2); }
 
 static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
     const double *row = hdi_rat_table;
     int32_t r, i;
-    if (kind != HD_POLES_UNIFORM && kind != HD_POLES_KERNEL) return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform or kernel");
+    if (kind != HD_POLES_UNIFORM && kind != HD_POLES_KERNEL && kind != HD_POLES_DIAGONAL)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform, kernel or diagonal");
     if (kind == HD_POLES_UNIFORM && (degree < 1 || degree > HDI_RAT_UNIFORM_MAX))
         return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: uniform sets have degrees 1 to 14", -1, -1, degree);
-    if (kind == HD_POLES_KERNEL && (degree < HDI_RAT_KERNEL_MIN || degree > HDI_RAT_KERNEL_MAX))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel sets have degrees 2 to 14", -1, -1, degree);
+    if (kind != HD_POLES_UNIFORM && (degree < HDI_RAT_KERNEL_MIN || degree > HDI_RAT_KERNEL_MAX))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel and diagonal sets have degrees 2 to 14", -1, -1, degree);
     for (r = 1; r < (kind == HD_POLES_UNIFORM ? degree : HDI_RAT_UNIFORM_MAX + 1); r++) row += hdi_rat_size(r);
-    for (r = HDI_RAT_KERNEL_MIN; kind == HD_POLES_KERNEL && r < degree; r++) row += hdi_rat_size(r);
+    for (r = HDI_RAT_KERNEL_MIN; kind == HD_POLES_DIAGONAL && r <= HDI_RAT_KERNEL_MAX; r++) row += hdi_rat_size(r);
+    for (r = HDI_RAT_KERNEL_MIN; kind != HD_POLES_UNIFORM && r < degree; r++) row += hdi_rat_size(r);
     memset(out, 0, sizeof *out);
     out->kind = kind;
     out->degree = degree;
@@ -9263,6 +9390,7 @@ struct hd_heat {
     hd_heat_opts opts;           /* resolved, perm and rational copied */
     int32_t *perm;
     int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
+    int32_t exacting;            /* a tol below the default is asked for: sets of the highest degree */
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_silan *silan;
@@ -9274,6 +9402,8 @@ struct hd_heat {
     hdi_family fam;              /* of the last set and time */
     hdi_lane lane[HDI_LANES];    /* work arrays, kept from call to call */
     double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
+    struct hd_heat *wide;        /* the same pair on the pattern of B^2, and its plan */
+    hd_laplacian *wide_lap;
 };
 
 /* Sets the heat of each component to c0 times that of the right-hand side: the constants' part of c(-t B^-1 L) f, exactly. */
@@ -9857,6 +9987,53 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, hdi_lane *l
     return HD_OK;
 }
 
+/* ---- entries of the kernel without columns ---- */
+
+/* values [n_sets][stride] += sum over poles p of Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: on the diagonal by pivots, or at the entries of the
+ * lower triangle in the order of the analysis. The factors are there, and stay. */
+static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, int diagonal, double *values, int64_t stride, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(m->ctx, e);
+    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n_sets));
+    const int32_t n_poles = m->set.n_poles;
+    hdi_inverse z;
+    int32_t i, k, q;
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = -1; i < (n_poles - (m->lone + 1) + 3) / 4 && e->status >= 0; i++) {   /* -1: the lone real pole */
+        if (i < 0 && m->lone < 0) continue;
+        memset(coef, 0, HDI_PACK * HDI_CAST(size_t, n_sets) * sizeof *coef);
+        for (k = 0; k < n_sets; k++) {
+            if (i < 0) coef[k] = weight[HDI_CAST(int64_t, k) * n_poles].re;
+            for (q = 0; i >= 0 && q < 4 && m->lone + 1 + 4 * i + q < n_poles; q++) {
+                const hd_c64 w = weight[HDI_CAST(int64_t, k) * n_poles + m->lone + 1 + 4 * i + q];
+                coef[HDI_PACK * k + q] = w.re;
+                coef[HDI_PACK * k + q + 4] = -w.im;
+            }
+        }
+        if (i <= 0 && hdi_inverse_make(&z, &m->sym, i < 0 ? 1 : HDI_PACK, m->ctx, e) < 0) break;
+        z.coef = coef;
+        z.n_sets = n_sets;
+        z.diagonal = diagonal;
+        z.values = values;
+        z.stride = stride;
+        (void)hdi_inverse_run(&z, i < 0 ? &m->real : m->pack + i, e);
+        if (i < 0 || e->status < 0 || 4 * (i + 1) >= n_poles - (m->lone + 1)) hdi_inverse_free(&z, m->ctx);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor (1 + x)) for x >= 0. -1: none does. */
+static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
+    int32_t p, best = -1;
+    for (p = 0; p < set->n_poles; p++) {
+        const hd_c64 z = set->theta[p];
+        const double f = z.re > 0 ? hdi_max(1, z.re) + z.im * z.im / z.re : HUGE_VAL;
+        if (z.re <= 0 || (best >= 0 && f >= *factor)) continue;
+        best = p;
+        *factor = f;
+    }
+    return best;
+}
+
 /* Adds the numbers of one field to the report, where the worst stays. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, int own, hd_report *rep) {
     const double floor_b = lane->u_norm - lane->solver - lane->rational, total = lane->solver + lane->rational;
@@ -10354,10 +10531,10 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     if (o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown method");
     if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown solver");
     if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown preconditioner");
-    if (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: poles are uniform or kernel; own sets go into rational");
+    if (o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL)) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: poles are uniform, kernel or diagonal; own sets go into rational");
     if (o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the degree is not in 1..14", -1, -1, o->degree);
-    if (o->poles == HD_POLES_KERNEL && o->degree && o->degree < HDI_RAT_KERNEL_MIN)
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: kernel sets have degrees 2 to 14", -1, -1, o->degree);
+    if ((o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL) && o->degree && o->degree < HDI_RAT_KERNEL_MIN)
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: kernel and diagonal sets have degrees 2 to 14", -1, -1, o->degree);
     if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
     if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: max_iterations is negative");
     if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown ordering");
@@ -10413,6 +10590,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     heat->iterations_asked = heat->opts.solver || heat->opts.precond;
     heat->poles_asked = heat->opts.rational || heat->opts.poles || heat->opts.degree;
     heat->opts.precond = heat->opts.precond ? heat->opts.precond : HD_PRECOND_MILDL;
+    heat->exacting = heat->opts.tol > 0 && heat->opts.tol < 1e-9;
     heat->opts.tol = heat->opts.tol > 0 ? heat->opts.tol : 1e-9;
     heat->opts.max_iterations = heat->opts.max_iterations ? heat->opts.max_iterations : 20000;
     heat->scale = hdi_heat_scale(lap);
@@ -10435,6 +10613,14 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     int32_t i;
     if (!heat) return;
     ctx = heat->ctx;
+    hd_heat_free(heat->wide);
+    if (heat->wide_lap) {
+        hdi_free(ctx, heat->wide_lap->L.row_ptr);
+        hdi_free(ctx, heat->wide_lap->L.col);
+        hdi_free(ctx, heat->wide_lap->L.val);
+        hdi_free(ctx, heat->wide_lap->B);
+        hdi_free(ctx, heat->wide_lap);
+    }
     for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, ctx);
     hdi_family_free(&heat->fam);
     hdi_upper_free(ctx, &heat->up);
@@ -10564,6 +10750,8 @@ typedef struct hdi_heat_call {
     double t;
     int32_t k;
     hd_solver solver;
+    const hd_rational *set;      /* instead of what the plan would take */
+    int32_t diagonal, degree;    /* by default a set made for diagonals; its degree, 0: as ever */
     hd_report *rep;
     hd_report own_report;
     hd_error *e;
@@ -10845,13 +11033,13 @@ static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
 /* The pole set of this call. */
 static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
-    const hd_pole_kind kind = o->poles ? o->poles : h->query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
-    int32_t degree = o->degree ? o->degree : h->method == HD_METHOD_DIRECT ? 9 : 10;   /* four pairs fill a pack, and a real pole costs little */
-    if (o->rational) {
-        *set = *o->rational;
+    const hd_pole_kind kind = o->poles ? o->poles : h->query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
+    int32_t degree = o->degree ? o->degree : h->degree ? h->degree : h->heat->exacting ? HDI_RAT_KERNEL_MAX : h->method == HD_METHOD_DIRECT ? 9 : 10;   /* four pairs fill a pack, a real pole costs little */
+    if (h->set || o->rational) {
+        *set = h->set ? *h->set : *o->rational;
         return HD_OK;
     }
-    if (!o->degree && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0) return h->e->status;
+    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0) return h->e->status;
     return hdi_rational_get(set, kind, degree, h->e);
 }
 
@@ -11203,6 +11391,9 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
     sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
     sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
+    sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
+    sum.smallest = all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest) ? all->smallest : sum.smallest;
+    sum.n_lost += all->n_lost;
     *all = sum;
 }
 
@@ -11306,6 +11497,747 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
     h.rows = i;
     h.values = values;
     return hdi_heat_run(&h);
+}
+
+/* ---- diagonals ---- */
+
+static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t) {
+    int32_t q;
+    if (n_times < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of times is negative");
+    if (n_times > 0 && !t) return hdi_missing(h->e);
+    if (h->heat->opts.method == HD_METHOD_ITERATIVE || h->heat->opts.method == HD_METHOD_KRYLOV)
+        return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
+    for (q = 0; q < n_times; q++)
+        if (!(t[q] > 0) || !hdi_finite(t[q] * h->heat->scale)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+    return HD_OK;
+}
+
+/* What the report says of queries that have but one way. */
+static void hdi_direct_only(hdi_heat_call *h) {
+    h->method = h->rep->method = HD_METHOD_DIRECT;
+    h->diagonal = 1;
+    h->rep->reason = "selected inversion of the factors of the poles";
+    h->rep->ordering = h->heat->elim.sym.ordering;
+    h->rep->factor_nnz = h->heat->elim.sym.nnz;
+}
+
+
+/* A direct call within another: k columns at the (unscaled) time t through the factors that the plan holds or makes. */
+static hd_status hdi_direct_columns(hd_heat *heat, double t, hd_kernel kernel, const hd_rational *set, int32_t k, const int32_t *sources, double *U, size_t ldu, hd_report *rep) {
+    hdi_heat_call h;
+    if (hdi_heat_begin(&h, heat, kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR, t, k, rep) < 0) return hdi_heat_end(&h);
+    h.method = HD_METHOD_DIRECT;
+    h.diagonal = 1;
+    h.sources = sources;
+    h.set = set;
+    h.U = U;
+    h.ldu = ldu;
+    if (hdi_heat_analysed(heat, 1, h.e) >= 0) {
+        h.lap = heat->elim.lap;
+        (void)hdi_direct_run(&h);
+    }
+    return hdi_heat_end(&h);
+}
+
+/* Entries of k_t for one time, in elimination order and in the unit of the scaled pair. */
+typedef struct hdi_entries {
+    double *k, *g;               /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
+    int64_t size;
+    double weighted, uniform;    /* of the set: |error| <= weighted g, uniform diag(B^-1) */
+} hdi_entries;
+
+/* Factors for h->t, and from them k and g. diagonal: the diagonal by rows, else entries of the analysis. room [2 size]. */
+static hd_status hdi_entries_make(hdi_heat_call *h, int diagonal, double *room, int64_t size, hdi_entries *x) {
+    hdi_elim *m = &h->heat->elim;
+    hd_c64 weight[2 * HD_MAX_POLES];
+    double factor = 1;
+    int32_t p, best;
+    memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
+    memset(weight, 0, sizeof weight);
+    if (hdi_direct_prepare(h) < 0) return h->e->status;
+    best = hdi_resolvent_pole(&m->set, &factor);
+    for (p = 0; p < m->set.n_poles; p++) {
+        weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
+        weight[m->set.n_poles + p] = hdi_c(p == best ? factor : 0, 0);
+    }
+    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2, weight, diagonal, room, size, h->e) < 0) return h->e->status;
+    x->k = room;
+    x->g = room + size;
+    x->size = size;
+    x->weighted = best >= 0 && m->set.max_weighted_error > 0 ? m->set.max_weighted_error : HUGE_VAL;
+    x->uniform = m->set.max_error > 0 ? m->set.max_error : m->set.kind == HD_POLES_OWN ? 0 : HUGE_VAL;
+    if (m->set.kind == HD_POLES_OWN && x->uniform == 0) x->weighted = 0;   /* bounds hold for c itself */
+    return HD_OK;
+}
+
+/* Bound of the rational error of k_t(i,i), from g(i,i) and diag(B)(i). */
+static double hdi_entry_error(const hdi_entries *x, double g, double b, double b_ratio) {
+    const double uniform = b_ratio > 0 ? x->uniform / (b_ratio * b) : HUGE_VAL;
+    return x->weighted < HUGE_VAL ? hdi_min(x->weighted * g, uniform) : uniform;
+}
+
+/* Place of each of the analysis' entries: row and column in elimination order. */
+static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t *i, int32_t *j) {
+    const int32_t begin = s->super[v], end = s->super[v + 1];
+    *j = begin + s->a_col[n];
+    *i = s->a_row[n] < end - begin ? begin + s->a_row[n] : s->row[s->row_ptr[v] + s->a_row[n] - (end - begin)];
+}
+
+/* diag(k_t B), a0 included, for a full B: from the entries of k_t on the pattern of B. */
+static void hdi_operator_diagonal(const hdi_elim *m, const double *k, double *diag) {
+    const hdi_symbolic *s = &m->sym;
+    int32_t v, i, j;
+    int64_t n;
+    for (i = 0; i < s->n; i++) diag[i] = m->set.a0;
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
+            hdi_entry_place(s, v, n, &i, &j);
+            diag[i] += kb;
+            if (i != j) diag[j] += kb;
+        }
+    }
+}
+
+/* What the report says of values with errors of at most off. */
+static void hdi_report_values(hd_report *rep, const double *value, const double *off, int32_t n, double solver) {
+    double largest = 0, smallest = HUGE_VAL, most = 0, relative = 0;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        const double v = fabs(value[i]);
+        largest = hdi_max(largest, v);
+        if (v > 0) smallest = hdi_min(smallest, v);
+        most = hdi_max(most, off[i]);
+        if (v > 0) relative = hdi_max(relative, off[i] / v);
+    }
+    if (largest == 0) return;
+    rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
+    rep->error_rational = hdi_max(rep->error_rational, most / largest);
+    rep->error_solver = hdi_max(rep->error_solver, solver);
+    rep->error_bound = hdi_max(rep->error_bound, most / largest + solver);
+    rep->error_relative = hdi_max(rep->error_relative, relative + solver);
+}
+
+#define HDI_DIAGONAL_SURE 1.1e-6
+
+/* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. */
+static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out) {
+    hd_heat *heat = h->heat;
+    const hd_laplacian *lap;
+    const hdi_symbolic *s;
+    const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    double *room, *value, *off, unit, solver = 0;
+    hdi_entries x;
+    hd_rational set;
+    hd_report probe;
+    int64_t size, n;
+    int32_t i, v, worst = 0;
+    if (hdi_heat_analysed(heat, 1, h->e) < 0) return hdi_scope_end(&scope);
+    h->lap = lap = heat->elim.lap;
+    s = &heat->elim.sym;
+    size = full ? s->a_ptr[s->n_super] : s->n;
+    room = HDI_TAKE(&scope, double, 2 * size);
+    value = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, s->n));
+    if (h->e->status < 0 || hdi_entries_make(h, !full, room, size, &x) < 0) return hdi_scope_end(&scope);
+    off = value + s->n;
+    if (full) {
+        hdi_operator_diagonal(&heat->elim, x.k, value);
+        for (v = 0; v < s->n_super; v++)
+            for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+                const int32_t at = s->super[v] + s->a_col[n];
+                if (s->a_row[n] == s->a_col[n]) off[at] = hdi_min(x.weighted < HUGE_VAL ? x.weighted * sqrt(x.g[n] * lap->b_diag[at]) : HUGE_VAL, x.uniform / sqrt(lap->b_ratio));
+            }
+    } else {
+        const double a0 = heat->elim.set.a0;
+        if (lap->B) x.uniform += fabs(a0);       /* a0 diag(B^-1) is left out: a full B's inverse is not at hand, and a0 is of the size of the set's error */
+        for (i = 0; i < s->n; i++) {
+            const double b = kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
+            value[i] = b * (x.k[i] + (lap->B ? 0 : a0 / lap->mass[i]));
+            off[i] = b * hdi_entry_error(&x, x.g[i], lap->b_diag[i], lap->b_ratio);
+        }
+    }
+    for (i = 1; i < s->n; i++)
+        if (off[i] * value[worst] > off[worst] * value[i]) worst = i;
+    unit = kernel == HD_KERNEL_SYMMETRIC ? heat->scale : 1;
+    for (v = 0; v < lap->n; v++) out[v] = kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
+    for (i = 0; i < s->n; i++) out[lap->vertex[i]] = unit * value[i];
+    if (s->n > 0) {                              /* rounding: one entry by a solve */
+        double *u = HDI_TAKE(&scope, double, lap->n);
+        v = lap->vertex[worst];
+        set = heat->elim.set;
+        if (u && hdi_direct_columns(heat, h->t / heat->scale, kernel, &set, 1, &v, u, HDI_CAST(size_t, lap->n), &probe) < 0) *h->e = probe.error;
+        if (h->e->status < 0) return hdi_scope_end(&scope);
+        solver = out[v] != 0 ? fabs(u[v] - out[v]) / fabs(out[v]) + DBL_EPSILON : 0;
+        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
+    }
+    hdi_report_values(h->rep, value, off, s->n, solver);
+    return hdi_scope_end(&scope);
+}
+
+/* With the set's degree by default: where its bound shows vertices (of tiny cells among large ones, slivers) whose error relative to their own value may be
+ * above the promise, a second time with the highest degree. The error seen is a tenth of the bound or so on all meshes tried: 1e-7. */
+static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *out) {
+    const hd_report before = *h->rep;
+    const hd_heat *heat = h->heat;
+    hd_status st;
+    if (hdi_diagonal_once(h, kernel, out) < 0) return h->e->status;
+    if (heat->opts.degree || heat->opts.rational || heat->opts.poles || h->degree) return HD_OK;
+    if (h->rep->error_relative <= (kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1) * HDI_DIAGONAL_SURE) return HD_OK;   /* that bound is a loose one */
+    *h->rep = before;
+    h->degree = HDI_RAT_KERNEL_MAX;
+    st = hdi_diagonal_once(h, kernel, out);
+    h->degree = 0;
+    if (st != HD_ERR_MEMORY_LIMIT) return st;
+    *h->rep = before;                            /* no room for twice the factors: the first answer it is */
+    return hdi_diagonal_once(h, kernel, out);
+}
+
+HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report) {
+    hdi_heat_call h;
+    int32_t q;
+    if (hdi_kernel_begin(&h, heat, 1, kernel, 1, report) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t) >= 0 && n_times > 0 && !D) hdi_missing(h.e);
+    ldd = hdi_leading(&h, ldd);
+    hdi_direct_only(&h);
+    for (q = 0; q < n_times && h.e->status >= 0; q++) {
+        h.t = t[q] * heat->scale;
+        if (hdi_diagonal_sure(&h, kernel, D + HDI_CAST(size_t, q) * ldd) < 0) h.e->column = q;
+    }
+    return hdi_heat_end(&h);
+}
+
+/* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other is the same. */
+static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_csr *a = &m->source->L;
+    int32_t v, i, j;
+    int64_t n;
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            const int64_t p = s->a_from[n];
+            int64_t other;
+            hdi_entry_place(s, v, n, &i, &j);
+            val[p] = unit * k[n];
+            if (i == j) continue;
+            i = s->perm[i];                      /* a_from is entry (j,i): rows of A are walked from column j */
+            j = s->perm[j];
+            other = a->row_ptr[i] + hdi_lower_bound(a->col + a->row_ptr[i], a->row_ptr[i + 1] - a->row_ptr[i], j);
+            val[other] = unit * k[n];
+        }
+    }
+}
+
+HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report) {
+    hdi_heat_call h;
+    hdi_entries x;
+    double *room;
+    int64_t size;
+    if (hdi_kernel_begin(&h, heat, t, HD_KERNEL_SYMMETRIC, 1, report) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, 1, &t) >= 0 && !values) hdi_missing(h.e);
+    if (h.e->status < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) return hdi_heat_end(&h);
+    hdi_direct_only(&h);
+    size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
+    room = HDI_TAKE(&h.s, double, 2 * HDI_CAST(size_t, size));
+    if (room && hdi_entries_make(&h, 0, room, size, &x) >= 0) hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+    return hdi_heat_end(&h);
+}
+
+/* ---- filters of the spectrum: commute time and biharmonic ---- */
+
+/* The smallest eigenvalue of the (scaled) pair that is not a constant's, to a few per cent: inverse iteration with constants taken out. */
+static hd_status hdi_heat_gap(hd_heat *heat, double *lambda, hd_error *e) {
+    enum { STEPS = 12 };
+    hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    double *x, *bx, *work, *sums;
+    uint64_t seed = 88172645463325252u;
+    int32_t i, k;
+    if (hdi_heat_analysed(heat, 1, e) < 0 || hdi_elim_shift(m, 1e10 / heat->lambda_max, e) < 0) return hdi_scope_end(&s);
+    lap = m->lap;
+    x = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, lap->n_active));
+    work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1, 1));
+    sums = HDI_TAKE(&s, double, lap->n_components);
+    if (e->status < 0) return hdi_scope_end(&s);
+    bx = x + lap->n_active;
+    for (i = 0; i < lap->n_active; i++) {        /* xorshift (Marsaglia 2003) */
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        x[i] = HDI_CAST(double, seed >> 11) / 9007199254740992.0 - 0.5;
+    }
+    for (k = 0; k <= STEPS; k++) {
+        double norm;
+        if (lap->conserves) {
+            hdi_component_sums(lap, lap->mass, x, sums);
+            for (i = 0; i < lap->n_components; i++) sums[i] /= -lap->component_mass[i];
+            hdi_component_add(lap, sums, x);
+        }
+        hdi_pair_apply(lap, 0, 1, x, bx);
+        norm = hdi_dot(x, bx, lap->n_active);
+        if (!(norm > 0)) break;                  /* nothing but constants: no gap */
+        for (i = 0; i < lap->n_active; i++) x[i] /= sqrt(norm);
+        if (k == STEPS) {
+            hdi_pair_apply(lap, 1, 0, x, bx);
+            *lambda = hdi_dot(x, bx, lap->n_active);
+        } else {
+            hdi_sweep z;
+            for (i = 0; i < lap->n_active; i++) x[i] = bx[i] / sqrt(norm);
+            z = hdi_sweep_open(&m->real, 1, x, work, 1);
+            hdi_sweep_run(&z, heat->ctx);
+        }
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Poles on a circle of radius rho about zero, whose trapezoidal sum of Cauchy's integral gives 1/lambda or 1/lambda^2 for lambda >= gap, and zero for
+ * constants, with a relative error of (rho/gap)^8 or so. As a filter of x = -lambda; t = 1. */
+static hd_status hdi_filter_set(hd_heat *heat, hd_distance_kind kind, hd_rational *set, hd_error *e) {
+    const double step = 3.14159265358979323846 / 8;
+    double gap = 0, rho;
+    int32_t q;
+    memset(set, 0, sizeof *set);
+    if (hdi_heat_gap(heat, &gap, e) < 0) return e->status;
+    rho = gap > 0 ? gap / 40 : heat->lambda_max > 0 ? heat->lambda_max / 40 : 1;
+    set->kind = HD_POLES_OWN;
+    set->degree = 8;
+    set->n_poles = 4;
+    for (q = 0; q < 4; q++) {
+        const hd_c64 s = hdi_c(rho * cos((2 * q + 1) * step), rho * sin((2 * q + 1) * step));
+        set->theta[q] = s;
+        set->a[q] = kind == HD_DISTANCE_COMMUTE ? hdi_c(-0.125, 0) : hdi_cdiv(hdi_c(0.125, 0), s);
+    }
+    return HD_OK;
+}
+
+/* ---- distances ---- */
+
+/* The same pair on the pattern of B^2, where the inverse has all that B Z B needs on its diagonal; and a plan for it. */
+static hd_status hdi_heat_widen(hd_heat *heat, hd_error *e) {
+    const hd_laplacian *lap = heat->source;
+    const int32_t n = lap->n_active;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e), keep = hdi_scope_begin(heat->ctx, e);
+    int32_t *mark = HDI_TAKE(&s, int32_t, n), i;
+    hdi_pair *sort = HDI_TAKE(&s, hdi_pair, n);
+    hd_heat_opts o = heat->opts;
+    hd_laplacian *wide;
+    int64_t p, q, nnz = 0;
+    if (heat->wide) return hdi_scope_end(&s);
+    wide = HDI_TAKE(&keep, hd_laplacian, 1);
+    if (e->status >= 0) {
+        *wide = *lap;
+        wide->L.row_ptr = HDI_TAKE(&keep, int64_t, HDI_CAST(size_t, n) + 1);
+    }
+    for (i = 0; mark && i < n; i++) mark[i] = -1;
+    for (i = 0; e->status >= 0 && i < n; i++) {  /* neighbours of neighbours */
+        wide->L.row_ptr[i] = nnz;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            for (q = lap->L.row_ptr[lap->L.col[p]]; q < lap->L.row_ptr[lap->L.col[p] + 1]; q++)
+                if (mark[lap->L.col[q]] != i) {
+                    mark[lap->L.col[q]] = i;
+                    nnz++;
+                }
+        wide->L.row_ptr[i + 1] = nnz;
+    }
+    if (e->status >= 0) {
+        wide->L.nnz = nnz;
+        wide->L.col = HDI_TAKE(&keep, int32_t, nnz);
+        wide->L.val = HDI_TAKE(&keep, double, nnz);
+        wide->B = HDI_TAKE(&keep, double, nnz);
+    }
+    for (i = 0; mark && i < n; i++) mark[i] = -1;
+    for (i = 0, nnz = 0; e->status >= 0 && i < n; i++) {
+        const int64_t begin = nnz;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            for (q = lap->L.row_ptr[lap->L.col[p]]; q < lap->L.row_ptr[lap->L.col[p] + 1]; q++)
+                if (mark[lap->L.col[q]] != i) {
+                    mark[lap->L.col[q]] = i;
+                    wide->L.col[nnz++] = lap->L.col[q];
+                }
+        hdi_sort_indices(wide->L.col + begin, nnz - begin, sort);
+        for (p = begin, q = lap->L.row_ptr[i]; p < nnz; p++) {
+            const int own = q < lap->L.row_ptr[i + 1] && lap->L.col[q] == wide->L.col[p];
+            wide->L.val[p] = own ? lap->L.val[q] : 0;
+            wide->B[p] = own ? lap->B[q] : 0;
+            q += own;
+        }
+    }
+    o.ordering = heat->opts.ordering == HD_ORDERING_OWN ? HD_ORDERING_OWN : HD_ORDERING_AUTO;
+    o.context = heat->ctx;
+    o.method = HD_METHOD_AUTO;
+    o.solver = HD_SOLVER_AUTO;
+    o.precond = HD_PRECOND_AUTO;
+    if (e->status >= 0 && hd_heat_create(&heat->wide, wide, &o, e) >= 0) {
+        heat->wide_lap = wide;                   /* the plan's from now on */
+        keep.n = 0;
+    }
+    hdi_scope_end(&keep);
+    return hdi_scope_end(&s);
+}
+
+/* diag(B Z B), rows of the source; val: Z on the pattern of wide. work [n], zeros. */
+static void hdi_sandwich_diagonal(const hd_laplacian *lap, const hd_laplacian *wide, const double *val, double *diag, double *work) {
+    int32_t i;
+    int64_t p, q;
+    for (i = 0; i < lap->n_active; i++) {
+        double sum = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) work[lap->L.col[p]] = lap->B[p];
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t k = lap->L.col[p];
+            double row = 0;
+            for (q = wide->L.row_ptr[k]; q < wide->L.row_ptr[k + 1]; q++) row += val[q] * work[wide->L.col[q]];
+            sum += lap->B[p] * row;
+        }
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) work[lap->L.col[p]] = 0;
+        diag[i] = sum;
+    }
+}
+
+/* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) and the bound of its error by rows of the source. */
+typedef struct hdi_metric {
+    hd_heat *plan;
+    hd_distance_kind kind;
+    double t, column_unit;       /* of columns: unscaled time; factor for what the plan returns */
+    hd_rational set;             /* of the factors */
+    int filter;
+    double *diag, *off;
+} hdi_metric;
+
+static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, hdi_metric *x, hdi_scope *keep, hd_report *rep) {
+    const hd_laplacian *lap = heat->source;
+    const int full = kind == HD_DISTANCE_WEIGHTED && lap->B != NULL;
+    hd_error *e = keep->e;
+    hdi_scope scope;
+    hdi_heat_call h;
+    hdi_entries entries;
+    hdi_elim *m;
+    double *room, unit = heat->scale;
+    int64_t size;
+    int32_t i;
+    memset(x, 0, sizeof *x);
+    x->kind = kind;
+    x->plan = heat;
+    x->filter = kind == HD_DISTANCE_COMMUTE || kind == HD_DISTANCE_BIHARMONIC;
+    x->diag = HDI_TAKE(keep, double, 2 * HDI_CAST(size_t, lap->n_active) + 1);
+    if (!x->diag) return e->status;
+    x->off = x->diag + lap->n_active;
+    scope = hdi_scope_begin(heat->ctx, e);
+    if (full && hdi_heat_widen(heat, e) < 0) return e->status;
+    if (full) x->plan = heat->wide;
+    if (x->filter && hdi_filter_set(heat, kind, &x->set, e) < 0) return e->status;
+    x->t = x->filter ? 1 / heat->scale : 2 * t;
+    x->column_unit = kind == HD_DISTANCE_COMMUTE ? 1 / heat->scale : kind == HD_DISTANCE_BIHARMONIC ? 1 / (heat->scale * heat->scale) : 1;
+    if (x->filter) unit *= x->column_unit;
+    if (hdi_heat_begin(&h, x->plan, HDI_QUERY_SYMMETRIC, x->t, 1, rep) < 0 || hdi_heat_analysed(x->plan, 1, h.e) < 0) {
+        *e = *h.e;
+        return hdi_heat_end(&h);
+    }
+    h.method = HD_METHOD_DIRECT;
+    h.diagonal = 1;
+    h.degree = degree;
+    h.set = x->filter ? &x->set : NULL;
+    m = &x->plan->elim;
+    h.lap = m->lap;
+    size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
+    room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
+    if (room && hdi_entries_make(&h, !full, room, size, &entries) >= 0) {
+        if (full) {
+            double *val = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, m->source->L.nnz)), *g = val + m->source->L.nnz;
+            double *work = HDI_TAKE_ZERO(&scope, double, lap->n_active);
+            if (e->status >= 0) {
+                hdi_entries_spread(m, entries.k, unit, val);
+                hdi_entries_spread(m, entries.g, unit, g);
+                hdi_sandwich_diagonal(lap, m->source, val, x->diag, work);
+                hdi_sandwich_diagonal(lap, m->source, g, x->off, work);
+                for (i = 0; i < lap->n_active; i++) {
+                    x->diag[i] += m->set.a0 * lap->b_diag[i];
+                    x->off[i] = hdi_min(entries.weighted < HUGE_VAL ? entries.weighted * x->off[i] : HUGE_VAL, entries.uniform * lap->b_diag[i]);
+                }
+            }
+        } else {
+            if (lap->B) entries.uniform += fabs(m->set.a0);
+            for (i = 0; i < m->sym.n; i++) {
+                const int32_t r = m->sym.perm[i];
+                const double b = lap->b_diag[r], w = kind == HD_DISTANCE_WEIGHTED ? b * b : 1;
+                x->diag[r] = w * unit * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i]));
+                x->off[r] = w * unit * hdi_entry_error(&entries, entries.g[i], m->lap->b_diag[i], lap->b_ratio);
+            }
+        }
+    }
+    x->set = m->set;
+    if (h.e->status < 0 && e->status >= 0) *e = *h.e;
+    hdi_heat_end(&h);
+    return hdi_scope_end(&scope);
+}
+
+/* Column s of f into u [n], by vertices, as the metric's plan gives it; then in place what it is (a weighted one: B K_2t e_s). work [2 n_active]. */
+static void hdi_metric_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
+    int32_t i;
+    if (x->kind != HD_DISTANCE_WEIGHTED) {
+        for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : x->column_unit * u[i];
+        return;
+    }
+    hdi_gather(lap, u, work);
+    hdi_pair_apply(lap, 0, 1, work, work + lap->n_active);
+    for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : work[lap->n_active + lap->row[i]];
+}
+
+/* d from column s of f, in place. Between components the last two kinds are infinite. */
+static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s, double *u, hd_report *rep) {
+    const int32_t rs = lap->row[s];
+    const double fs = rs < 0 ? 0 : x->diag[rs], offs = rs < 0 ? 0 : x->off[rs];
+    const double solver = rs < 0 ? 0 : fabs(u[s] - fs) + 4 * DBL_EPSILON * fs;
+    double largest = 0, smallest = HUGE_VAL, most = 0, relative = 0;
+    int32_t v;
+    for (v = 0; v < lap->n; v++) {
+        const int32_t r = lap->row[v];
+        const double f = r < 0 ? 0 : x->diag[r], off = r < 0 ? 0 : x->off[r], d2 = fs - 2 * u[v] + f;
+        const double root = sqrt(hdi_max(off, 0)) + sqrt(hdi_max(offs, 0)), delta = root * root + 4 * solver + 4 * DBL_EPSILON * f;
+        double d, error;
+        if (v == s) {
+            u[v] = 0;
+            continue;
+        }
+        if (x->filter && (r < 0 || rs < 0 || lap->component[r] != lap->component[rs])) {
+            u[v] = HUGE_VAL;
+            continue;
+        }
+        d = d2 > 0 ? sqrt(d2) : 0;
+        u[v] = d;
+        if (delta == 0) continue;
+        error = d2 > delta ? delta / d : sqrt(2 * delta);
+        rep->n_lost += d2 < 10 * delta;
+        largest = hdi_max(largest, d);
+        if (d > 0) smallest = hdi_min(smallest, d);
+        most = hdi_max(most, error);
+        relative = hdi_max(relative, d > 0 ? error / d : HUGE_VAL);
+    }
+    if (largest == 0) return;
+    rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
+    rep->error_bound = hdi_max(rep->error_bound, most / largest);
+    rep->error_relative = hdi_max(rep->error_relative, relative);
+}
+
+static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, hd_error *e) {
+    int32_t q;
+    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC) return hdi_fail(e, HD_ERR_ARGUMENT, "distance: unknown kind");
+    if (n_times < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: the number of times is negative");
+    if (heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
+    if (kind >= HD_DISTANCE_COMMUTE) return HD_OK;
+    if (n_times > 0 && !t) return hdi_missing(e);
+    for (q = 0; q < n_times; q++)
+        if (!(t[q] > 0) || !hdi_finite(2 * t[q] * heat->scale)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+    return HD_OK;
+}
+
+#define HDI_DISTANCE_SURE 5e-6
+
+/* One time, all sources: columns step apart. degree 0: by default. */
+static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, int32_t k, const int32_t *sources, double *D, size_t step,
+                                   hd_report *rep, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    double *work = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, heat->source->n) + 1);
+    hd_report columns;
+    hdi_metric x;
+    int32_t r;
+    memset(rep, 0, sizeof *rep);
+    if (!work || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
+    if (hdi_direct_columns(x.plan, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, k, sources, D, step, &columns) < 0) *e = columns.error;
+    for (r = 0; r < k && e->status >= 0; r++) {
+        hdi_metric_column(heat->source, &x, D + HDI_CAST(size_t, r) * step, work);
+        hdi_metric_distance(heat->source, &x, sources[r], D + HDI_CAST(size_t, r) * step, rep);
+    }
+    rep->residual = hdi_max(rep->residual, columns.residual);
+    rep->method = HD_METHOD_DIRECT;
+    rep->reason = "selected inversion of the factors of the poles";
+    rep->ordering = x.plan->elim.sym.ordering;
+    rep->factor_nnz = x.plan->elim.sym.nnz;
+    return hdi_scope_end(&s);
+}
+
+HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd,
+                                        hd_report *report) {
+    hdi_heat_call h;
+    hd_report *rep, one;
+    int32_t q;
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, 1, k, report) < 0) return hdi_heat_end(&h);
+    rep = h.rep;
+    if (hdi_distance_check(heat, kind, n_times, t, h.e) >= 0 && k > 0 && n_times > 0 && (!sources || !D)) hdi_missing(h.e);
+    ldd = hdi_leading(&h, ldd);
+    for (q = 0; q < k && !h.e->status; q++)
+        if (hdi_vertex_check(heat->source, sources[q], h.e) < 0) h.e->column = q;
+    for (q = 0; q < n_times && k > 0 && h.e->status >= 0; q++) {
+        const size_t step = ldd * HDI_CAST(size_t, n_times);
+        double *first = D + HDI_CAST(size_t, q) * ldd;
+        const int settled = kind >= HD_DISTANCE_COMMUTE || heat->opts.degree || heat->opts.rational || heat->opts.poles;
+        (void)hdi_distance_once(heat, kind, t ? t[q] : 0, 0, k, sources, first, step, &one, h.e);
+        if (h.e->status >= 0 && !settled && one.error_bound > HDI_DISTANCE_SURE)   /* much has cancelled: the highest degree */
+            (void)hdi_distance_once(heat, kind, t[q], HDI_RAT_KERNEL_MAX, k, sources, first, step, &one, h.e);
+        if (h.e->status == HD_ERR_MEMORY_LIMIT && !settled && heat->elim.n_packs > 0) {
+            hdi_error_clear(h.e);
+            (void)hdi_distance_once(heat, kind, t[q], 0, k, sources, first, step, &one, h.e);
+        }
+        if (h.e->status < 0) h.e->column = q;
+        else if (q == 0) *rep = one;
+        else hdi_report_merge(rep, &one);
+    }
+    return hdi_heat_end(&h);
+}
+
+/* ---- pairs ---- */
+
+/* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. list [2 n_pairs], place [2 n_pairs]. Returns their number. */
+static int32_t hdi_pairs_vertices(int64_t n_pairs, const int32_t *i, const int32_t *j, hdi_pair *order, int32_t *list, int32_t *place) {
+    int32_t n = 0;
+    int64_t q;
+    for (q = 0; q < 2 * n_pairs; q++) {
+        order[q].key = HDI_CAST(uint64_t, q % 2 ? j[q / 2] : i[q / 2]);
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, 2 * n_pairs);
+    for (q = 0; q < 2 * n_pairs; q++) {
+        if (q == 0 || order[q].key != order[q - 1].key) list[n++] = HDI_CAST(int32_t, order[q].key);
+        place[order[q].id] = n - 1;
+    }
+    return n;
+}
+
+/* Kernel entries and distances of the pairs from columns at t: K_t(i,j) = (K_t e_j)_i, and |K_t B^-1 (e_i - e_j)|_B, which loses nothing. */
+static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind, const double *U, int64_t n_pairs, const int32_t *i, const int32_t *j, const int32_t *place,
+                                 double *K, double *d, double *work) {
+    const size_t n = HDI_CAST(size_t, lap->n);
+    const int32_t rows = lap->n_active;
+    int64_t q, p;
+    int32_t r;
+    for (q = 0; q < n_pairs; q++) {
+        const double *ui = U + n * HDI_CAST(size_t, place[2 * q]), *uj = U + n * HDI_CAST(size_t, place[2 * q + 1]);
+        if (K && kind == HD_DISTANCE_WEIGHTED) {
+            K[q] = uj[i[q]];
+        } else if (K) {                          /* symmetric columns: K_t(i,j) = (k_t(i,.) B)_j */
+            const int32_t row = lap->row[j[q]];
+            K[q] = row < 0 ? i[q] == j[q] : lap->B ? 0 : ui[j[q]] * lap->mass[row];
+            for (p = row < 0 ? 0 : lap->L.row_ptr[row]; row >= 0 && lap->B && p < lap->L.row_ptr[row + 1]; p++) K[q] += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
+        }
+        if (!d) continue;
+        for (r = 0; r < rows; r++) work[r] = ui[lap->vertex[r]] - uj[lap->vertex[r]];
+        d[q] = i[q] == j[q] ? 0 : sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + rows)));
+    }
+}
+
+/* One by one from entries and the diagonal, for more vertices than columns fit. */
+static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *rep) {
+    hd_report one;
+    hdi_scope s;
+    hdi_metric x;
+    double *f, *rows;
+    hd_error *e = &rep->error;
+    int64_t q;
+    if (K && kind < HD_DISTANCE_COMMUTE && hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, n_pairs, i, j, K, rep) < 0) return rep->status;
+    if (!d) return rep->status;
+    s = hdi_scope_begin(heat->ctx, e);
+    f = HDI_TAKE(&s, double, heat->source->n);
+    rows = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, heat->source->n) + 1);
+    memset(&one, 0, sizeof one);
+    if (!rows || hdi_metric_make(heat, kind, t, 0, &x, &s, &one) < 0) return rep->status = hdi_scope_end(&s);
+    for (q = 0; q < n_pairs && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
+        if (q == 0 || i[q] != i[q - 1]) {
+            hd_report column;
+            if (hdi_direct_columns(x.plan, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, 1, i + q, f, HDI_CAST(size_t, heat->source->n), &column) < 0) {
+                *e = column.error;
+                break;
+            }
+            hdi_metric_column(heat->source, &x, f, rows);
+            hdi_metric_distance(heat->source, &x, i[q], f, &one);
+        }
+        d[q] = f[j[q]];
+    }
+    hdi_report_merge(rep, &one);
+    return rep->status = hdi_scope_end(&s);
+}
+
+HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report) {
+    enum { MOST_DOUBLES = 1 << 26 };             /* of columns held at the same time */
+    hdi_heat_call h;
+    hdi_pair *order;
+    double *U = NULL, *work;
+    int32_t *list, *place, n_list = 0;
+    int64_t q;
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, kind >= HD_DISTANCE_COMMUTE ? 1 : t, 0, report) < 0) return hdi_heat_end(&h);
+    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC) hdi_fail(h.e, HD_ERR_ARGUMENT, "distance: unknown kind");
+    else if (n_pairs < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
+    else if (n_pairs > 0 && (!i || !j)) hdi_missing(h.e);
+    for (q = 0; q < n_pairs && !h.e->status; q++)
+        if (hdi_vertex_check(heat->source, i[q], h.e) < 0 || hdi_vertex_check(heat->source, j[q], h.e) < 0) h.e->row = q;
+    if (h.e->status < 0 || n_pairs == 0) return hdi_heat_end(&h);
+    order = HDI_TAKE(&h.s, hdi_pair, 2 * n_pairs);
+    list = HDI_TAKE(&h.s, int32_t, 2 * n_pairs);
+    place = HDI_TAKE(&h.s, int32_t, 2 * n_pairs);
+    work = HDI_TAKE(&h.s, double, 2 * HDI_CAST(size_t, heat->source->n) + 1);
+    if (h.e->status < 0) return hdi_heat_end(&h);
+    n_list = hdi_pairs_vertices(n_pairs, i, j, order, list, place);
+    if (kind >= HD_DISTANCE_COMMUTE || HDI_CAST(double, n_list) * heat->source->n > MOST_DOUBLES) {
+        const hd_status st = hdi_pairs_by_entries(heat, kind, t, n_pairs, i, j, K, d, h.rep);
+        const hd_error kept = *h.e;
+        hdi_scope_end(&h.s);
+        *h.e = kept;
+        return h.rep->status = st;
+    }
+    U = HDI_TAKE(&h.s, double, HDI_CAST(size_t, heat->source->n) * HDI_CAST(size_t, n_list));
+    if (U) {
+        hd_report columns;
+        if (hd_heat_columns(heat, t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, n_list, list, U, 0, &columns) >= 0)
+            hdi_pairs_of_columns(heat->source, kind, U, n_pairs, i, j, place, K, d, work);
+        *h.rep = columns;
+    }
+    return hdi_heat_end(&h);
+}
+
+/* ---- farthest points ---- */
+
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex, double *distance, hd_report *report) {
+    hdi_heat_call h;
+    hdi_metric x;
+    hd_report one;
+    double *nearest, *u, *work;
+    const hd_laplacian *lap = heat ? heat->source : NULL;
+    int32_t q, v;
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, kind >= HD_DISTANCE_COMMUTE ? 1 : t, 1, report) < 0) return hdi_heat_end(&h);
+    if (hdi_distance_check(heat, kind, 1, &t, h.e) >= 0 && (count < 1 || n_given < 0 || n_given > count || count > lap->n_active))
+        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, count);
+    if (h.e->status >= 0 && !vertex) hdi_missing(h.e);
+    for (q = 0; q < n_given && h.e->status >= 0; q++)
+        if (hdi_vertex_check(lap, vertex[q], h.e) < 0) h.e->column = q;
+    nearest = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, double, lap->n);
+    u = HDI_TAKE(&h.s, double, lap ? lap->n : 0);
+    work = HDI_TAKE(&h.s, double, lap ? 2 * HDI_CAST(size_t, lap->n) + 1 : 0);
+    memset(&one, 0, sizeof one);
+    if (h.e->status < 0 || hdi_metric_make(heat, kind, t, 0, &x, &h.s, &one) < 0) return hdi_heat_end(&h);
+    for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : HUGE_VAL;   /* without mass: never chosen */
+    for (q = 0; q < count && h.e->status >= 0; q++) {
+        hd_report column;
+        int32_t best = -1;
+        for (v = 0; v < lap->n && q >= n_given; v++)
+            if (best < 0 || nearest[v] > nearest[best]) best = v;
+        if (q >= n_given) vertex[q] = q == 0 ? lap->vertex[0] : best;
+        if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
+        if (q + 1 == count) break;
+        if (hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / count, h.e) < 0) break;
+        if (hdi_direct_columns(x.plan, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, 1, vertex + q, u, HDI_CAST(size_t, lap->n), &column) < 0) {
+            *h.e = column.error;
+            break;
+        }
+        hdi_metric_column(lap, &x, u, work);
+        hdi_metric_distance(lap, &x, vertex[q], u, &one);
+        for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : hdi_min(nearest[v], u[v]);
+    }
+    {
+        const hd_error kept = *h.e;
+        *h.rep = one;
+        *h.e = kept;
+    }
+    return hdi_heat_end(&h);
 }
 
 /* ==== [22] closing ==== */
