@@ -7666,7 +7666,7 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
 }
 
 /* ==== [16] rational ====
- * Pole sets: the constants, evaluation, lookup. May call [02].
+ * Pole sets: the constants, evaluation, lookup; sets for many times, and their weights by least squares. May call [06].
  * This work is based on
  *   W. Cody, G. Meinardus, R. Varga, Chebyshev rational approximations to e^-x in [0, inf), 1969
  *   A. Carpenter, A. Ruttan, R. Varga, Extended numerical computations on the "1/9" conjecture, 1984 (the errors, to many digits)
@@ -7905,6 +7905,412 @@ static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
 
 /* min |x - theta| over x <= 0, i.e. min |t lambda + theta|: how far A stays from singular, in the B geometry. */
 static double hdi_pole_distance(hd_c64 theta) { return theta.re >= 0 ? hdi_cabs(theta) : fabs(theta.im); }
+
+/* ---- shared sets ---- */
+/* Poles that serve all times t in [t0, lambda t0], with weights of their own for each: t0 L + theta_i B is factorised once. With tau = t/t0 and the eigenvalue
+ * of t0 B^-1 L called y = -x,
+ *     exp(-tau y) ~ c(x) = 2 Re sum_i a_i(tau)/(x - theta_i),   a0 = 0, c(0) = 1,   error measured as (1 + tau y)|e|,
+ * which is the measure of the kernel sets, for every tau. As a set for the time t itself, in hd_rational's terms, it reads tau theta_i, tau a_i.
+ * This work is based on
+ *   M. Lopez-Fernandez, C. Palencia, A. Schaedle, A spectral order method for inverting sectorial Laplace transforms, 2006: one contour for many times
+ *   G. Golub, V. Pereyra, The differentiation of pseudo-inverses and nonlinear least squares problems whose variables separate, 1973 (in the script)
+ *   C. Lawson, Contributions to the theory of linear least maximum approximation, 1961: least squares whose weights follow the error
+ *   H. Ehlich, K. Zeller, Schwankung von Polynomen zwischen Gitterpunkten, 1964: the bound between points
+ * Deviation: the poles are free, not on a hyperbola, which needs twice as many. The table is printed by tools/shared_poles.py (about 20 minutes), which
+ * also checks it. */
+
+/* shared_poles.py: begin */
+/* Computed by tools/shared_poles.py, which also checks it. For every set: the largest ratio of times, number of pairs, largest weighted error
+ * over all times (with rounding), largest sum 2 |a_i|/distance; then Re theta, Im theta of one of each pair, by ascending |theta|. Pairs ascend, and for each the
+ * ratio. */
+static const double hdi_shared_table[] = {
+    1.8, 8, 9.72e-11, 24.3,
+        2.50109297, 0.637058254, 2.17122959, 1.9179449, 1.49504902, 3.22060516, 0.436050967, 4.5644826,
+        -1.07297888, 5.97718894, -3.15771065, 7.50082094, -6.07844808, 9.20332631, -10.5021249, 11.2188529,
+    3.2, 8, 4.24e-09, 20,
+        1.32441677, 0.395660883, 1.101686, 1.19827716, 0.643733983, 2.03754677, -0.078695318, 2.94869249,
+        -1.12636701, 3.98942629, -2.64066158, 5.25101642, -4.94521348, 6.83154739, -8.76839225, 8.81974826,
+    5.6, 8, 5.87e-08, 18.4,
+        0.733524945, 0.245618174, 0.586586632, 0.749369194, 0.284720456, 1.29504979, -0.190295942, 1.92911923,
+        -0.890396896, 2.74598052, -1.99998364, 3.88597908, -3.91266907, 5.4267002, -7.36220023, 7.39950913,
+    10, 8, 4.5e-07, 15.7,
+        0.38933325, 0.147131123, 0.295244873, 0.453067749, 0.103637894, 0.799453759, -0.191288461, 1.240481,
+        -0.644255821, 1.90273983, -1.48095429, 2.93701838, -3.1068834, 4.41109813, -6.26071086, 6.32649569,
+    18, 8, 2.51e-06, 15.7,
+        0.214272192, 0.0871084771, 0.156889452, 0.270601827, 0.042367231, 0.487479442, -0.124726046, 0.798145365,
+        -0.406624133, 1.34498027, -1.0314075, 2.27947063, -2.41635335, 3.68404484, -5.35829886, 5.55491346,
+    32, 8, 8.99e-06, 15,
+        0.118042015, 0.0515884795, 0.0834045137, 0.161802265, 0.0173343816, 0.297422085, -0.0684957203, 0.52445475,
+        -0.254136191, 0.988519521, -0.746168995, 1.82612054, -1.95659371, 3.15503623, -4.67447313, 4.96927567,
+    5.6, 12, 9.32e-12, 124,
+        1.1156037, 0.244935271, 1.01633585, 0.740033436, 0.815110899, 1.25163143, 0.506399449, 1.79370278,
+        0.0813178661, 2.38531942, -0.474906106, 3.05499222, -1.19221576, 3.84895279, -2.14278852, 4.83216407,
+        -3.46555416, 6.06263479, -5.37145261, 7.56888175, -8.18037212, 9.3672187, -12.5825862, 11.5383919,
+    10, 12, 1.85e-10, 109,
+        0.606585192, 0.148983193, 0.54319089, 0.451972033, 0.415106696, 0.771028768, 0.220043205, 1.12005973,
+        -0.0459325315, 1.51967857, -0.389714287, 2.00894493, -0.84546104, 2.65611845, -1.51195213, 3.53553745,
+        -2.54295616, 4.69603533, -4.15435782, 6.15594187, -6.66529732, 7.9245182, -10.7595029, 10.0667408,
+    18, 12, 2.12e-09, 97.7,
+        0.328962352, 0.0880300632, 0.289601762, 0.268133723, 0.210193247, 0.461773649, 0.0913926425, 0.681916346,
+        -0.0636021013, 0.947559948, -0.260749437, 1.30987101, -0.549944731, 1.84805265, -1.03014202, 2.6216911,
+        -1.84840448, 3.67929769, -3.21733837, 5.05592273, -5.47230152, 6.76249101, -9.29215097, 8.84998249,
+    32, 12, 1.69e-08, 79.7,
+        0.177202298, 0.0519617469, 0.152750504, 0.159216606, 0.104541218, 0.277132154, 0.0341451571, 0.414794873,
+        -0.0538528238, 0.594104209, -0.167585098, 0.878697855, -0.360987965, 1.32667456, -0.720456336, 1.99136857,
+        -1.38193402, 2.9442927, -2.56106306, 4.2259948, -4.60787875, 5.86756232, -8.21967815, 7.8867613,
+    56, 12, 7.56e-08, 73.3,
+        0.0993568233, 0.0308234041, 0.0841852586, 0.0948445007, 0.0542988842, 0.166796695, 0.0131936378, 0.255529272,
+        -0.0278836613, 0.383826235, -0.0907624424, 0.600965888, -0.220519481, 0.970561357, -0.485486654, 1.53862809,
+        -1.01407985, 2.3837056, -2.0164049, 3.57541408, -3.86254354, 5.15030042, -7.26625035, 7.12979997,
+    100, 12, 3.43e-07, 59.4,
+        0.0530389084, 0.0179228913, 0.0439461227, 0.0554515394, 0.0263011935, 0.0988436724, 0.00718078393, 0.154108391,
+        -0.00978519934, 0.243091575, -0.0500451638, 0.409037963, -0.137848822, 0.699945077, -0.329748706, 1.18016961,
+        -0.748359617, 1.92880072, -1.61152021, 3.04158614, -3.30046912, 4.55775039, -6.53123522, 6.47410686,
+    180, 12, 1.06e-06, 50.7,
+        0.0285941084, 0.00994811629, 0.0229792954, 0.0309253101, 0.0121923203, 0.0558979263, 0.00111338944, 0.0899480106,
+        -0.00798721408, 0.159837539, -0.024220834, 0.288660417, -0.078465602, 0.524091584, -0.21781435, 0.931026694,
+        -0.545008886, 1.58819196, -1.26124874, 2.62464373, -2.77671099, 4.10970812, -5.83383351, 6.05346785,
+    320, 12, 2.78e-06, 47.7,
+        0.0157490918, 0.00582992582, 0.01260877, 0.0181504325, 0.00663251864, 0.03255651, 0.00210384752, 0.0568802507,
+        0.000720397382, 0.107742233, -0.00693788102, 0.20602894, -0.045822937, 0.391295126, -0.146709749, 0.734909428,
+        -0.407452202, 1.32080078, -1.02972846, 2.28928991, -2.43159676, 3.72062216, -5.39962473, 5.61568469,
+    560, 12, 6.58e-06, 52,
+        0.00923946347, 0.003264387, 0.00734281524, 0.0101701597, 0.00372483133, 0.0184677681, 0.00220149636, 0.0333054682,
+        -0.000345333209, 0.0670142119, -0.00742535811, 0.139153149, -0.0286477173, 0.283066178, -0.0997049815, 0.557471453,
+        -0.310134676, 1.05573276, -0.832613436, 1.91747976, -2.08683304, 3.25909057, -4.85860887, 5.06175102,
+    32, 16, 3.21e-11, 503,
+        0.239979628, 0.0522198928, 0.221428734, 0.158410161, 0.184227279, 0.270149529, 0.128377873, 0.392170289,
+        0.0549572499, 0.531264638, -0.0334503759, 0.697107668, -0.130641414, 0.917707036, -0.261849279, 1.23196742,
+        -0.460129267, 1.66670093, -0.762517255, 2.2591175, -1.24904709, 3.05467435, -2.01931755, 4.06497731,
+        -3.1911992, 5.31830923, -4.95947908, 6.83703917, -7.6349403, 8.63821936, -11.8967707, 10.7956955,
+    56, 16, 2.29e-10, 406,
+        0.132689893, 0.0311164192, 0.121172518, 0.0946524895, 0.0981824369, 0.16238504, 0.0642855232, 0.237904775,
+        0.0205363427, 0.326357792, -0.0246641236, 0.43994886, -0.0774865261, 0.607949214, -0.155812711, 0.853682685,
+        -0.277471115, 1.21687052, -0.505332599, 1.73563076, -0.897530204, 2.43074221, -1.52579436, 3.34032435,
+        -2.53020949, 4.51846715, -4.12002571, 5.98425334, -6.61447156, 7.74953009, -10.6969522, 9.87688976,
+    100, 16, 1.53e-09, 328,
+        0.071778581, 0.0180091365, 0.064929363, 0.0549345551, 0.0513668139, 0.0945655731, 0.030965224, 0.139572435,
+        0.00751997286, 0.195492225, -0.0134487186, 0.270963005, -0.038950508, 0.400952062, -0.0899222901, 0.593564172,
+        -0.180087998, 0.872801566, -0.329204345, 1.29660715, -0.626362178, 1.90358592, -1.13825508, 2.71607212,
+        -1.99040331, 3.8027171, -3.39889748, 5.19303039, -5.68772851, 6.90515034, -9.53616096, 8.99857641,
+    180, 16, 7.69e-09, 246,
+        0.0381243456, 0.010209765, 0.0339090032, 0.0312942265, 0.0257300952, 0.0545648443, 0.014680896, 0.0814622705,
+        0.00235050827, 0.114911654, -0.00506598999, 0.17229441, -0.021196038, 0.265867459, -0.0473718828, 0.407670916,
+        -0.100607427, 0.645861608, -0.224220676, 0.997425451, -0.456542014, 1.49956027, -0.861273913, 2.22504603,
+        -1.59739315, 3.23053883, -2.86791088, 4.54770837, -5.01194321, 6.20295728, -8.72850258, 8.23098972,
+    320, 16, 2.9e-08, 181,
+        0.0203114988, 0.00590460591, 0.0178692834, 0.0181319292, 0.0131840691, 0.0316447414, 0.00650703225, 0.047392023,
+        0.00126091059, 0.0706752786, -9.8406006e-05, 0.109242403, -0.00918694067, 0.179587901, -0.0311220956, 0.289568892,
+        -0.0599706248, 0.470198144, -0.144231372, 0.766676172, -0.323587206, 1.19458338, -0.648886269, 1.84644067,
+        -1.27875811, 2.77461629, -2.40644509, 4.03224615, -4.39133524, 5.66062872, -7.92821025, 7.68599907,
+    560, 16, 8.63e-08, 163,
+        0.0114104116, 0.00341569632, 0.00987515058, 0.0105649003, 0.0070643226, 0.0187725583, 0.00396773758, 0.0283609532,
+        0.00225025417, 0.0427136203, 0.00247325118, 0.072295592, -0.0025624665, 0.119407517, -0.00689143749, 0.205603102,
+        -0.03552388, 0.350904948, -0.0994080939, 0.580481578, -0.21344774, 0.945835538, -0.479956357, 1.52124037,
+        -1.00877089, 2.36899266, -2.01493635, 3.55591307, -3.85979096, 5.12473561, -7.26389966, 7.10217198,
+    1000, 16, 3.93e-07, 127,
+        0.00610948015, 0.00190882205, 0.00527701114, 0.00586321222, 0.00358734254, 0.0102249551, 0.00134657829, 0.0158754361,
+        0.000660637871, 0.0265106564, 0.00121056914, 0.044595923, -0.00121660452, 0.0814061348, -0.00580940122, 0.136675814,
+        -0.0202087683, 0.248160847, -0.0693408603, 0.432282039, -0.150992399, 0.731050942, -0.356949172, 1.22501382,
+        -0.79639811, 1.98928011, -1.67582746, 3.10569692, -3.38024638, 4.63510107, -6.64071793, 6.56484471,
+    1800, 16, 6.57e-07, 121,
+        0.00334705732, 0.00110379449, 0.00285503655, 0.00342660974, 0.00193915235, 0.00612930592, 0.00163520018, 0.00936933322,
+        0.0016429126, 0.0155404153, 0.0021950836, 0.0305202503, 0.00423779506, 0.0533655632, 0.00180774774, 0.103260991,
+        -0.00974171098, 0.187577233, -0.0239239293, 0.333761144, -0.100365632, 0.601309997, -0.26296855, 1.03784104,
+        -0.635159522, 1.74398167, -1.43168658, 2.80202834, -3.02023506, 4.27389596, -6.1245932, 6.18677233,
+    3200, 16, 1.44e-06, 164,
+        0.00199081633, 0.000616876591, 0.00172355324, 0.00190930985, 0.00123789351, 0.00335550898, 0.000821906952, 0.00513221322,
+        0.00115737426, 0.0100568883, 0.00334477326, 0.0192921244, 0.00268559902, 0.0360238118, 0.00469267928, 0.0727716605,
+        -0.00289536438, 0.140231882, -0.00548129996, 0.259653238, -0.0615915945, 0.479315385, -0.188682888, 0.869092893,
+        -0.49877093, 1.51552451, -1.20957331, 2.52664981, -2.70113936, 3.96752406, -5.72293958, 5.86983017,
+    5600, 16, 2.98e-06, 146,
+        0.00108163095, 0.000390557113, 0.000915966886, 0.00124682623, 0.000719505445, 0.00225836706, 0.00146137454, 0.00299521149,
+        0.00135727594, 0.00528274161, 0.00153963667, 0.0123112768, 0.00412742784, 0.025102761, 0.00185713922, 0.0515671917,
+        0.0052857741, 0.102252836, -0.0131326495, 0.205175157, -0.0423931485, 0.393906186, -0.145848388, 0.737707419,
+        -0.419778102, 1.32717872, -1.0579819, 2.28085398, -2.46924471, 3.686127, -5.43479744, 5.54810596,
+};
+/* shared_poles.py: end */
+
+enum {
+    HDI_SHARED_FEWEST = 4,       /* pairs: poles are factorised in packs of four */
+    HDI_SHARED_LAWSON = 3,       /* steps: they gain a third of the error, more gain nothing to speak of */
+    HDI_SHARED_MOST = 64         /* largest degree of a polynomial in the bound */
+};
+
+/* The fewest poles that hold the weighted error below target for all times within a factor lambda: 1, or 0 when none do (then split the times; out is as it was).
+ * For one time, lambda <= 1, that is a kernel set. Else weights are 0 until hdi_shared_fit fills them in, and the errors are what it is known to reach: recorded
+ * are the errors on dense times with what rounding can add, and a quarter more is proven for any time. */
+static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
+    const int32_t size = HDI_CAST(int32_t, sizeof hdi_shared_table / sizeof *hdi_shared_table);
+    hd_rational set;
+    hd_error e;
+    int32_t k, i, n;
+    for (k = 2 * HDI_SHARED_FEWEST; lambda <= 1 && k <= HDI_RAT_KERNEL_MAX; k += 2) {
+        if (hdi_rational_get(&set, HD_POLES_KERNEL, k, &e) < 0 || !(set.max_weighted_error <= target)) continue;
+        *out = set;
+        return 1;
+    }
+    for (k = 0; k < size; k += 4 + 2 * n) {
+        const double *row = hdi_shared_table + k, error = 1.25 * row[2];
+        n = HDI_CAST(int32_t, row[1]);
+        if (!(lambda <= row[0] && error <= target)) continue;
+        memset(out, 0, sizeof *out);
+        out->kind = HD_POLES_KERNEL;
+        out->degree = 2 * n;
+        out->n_poles = n;
+        out->max_error = out->max_weighted_error = error;
+        for (i = 0; i < n; i++) out->theta[i] = hdi_c(row[4 + 2 * i], row[5 + 2 * i]);
+        return 1;
+    }
+    return 0;
+}
+
+/* x with the smallest |A x - b|, by Householder reflections: A rows x cols of full rank, column-major, rows >= cols. x comes in b; A is overwritten. Without full
+ * rank x is finite, and no more. */
+static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) {
+    int64_t j, k;
+    for (k = 0; k < cols; k++) {
+        double *v = A + k * rows + k;
+        const int64_t m = rows - k;
+        const double norm = sqrt(hdi_dot(v, v, m)), head = v[0] > 0 ? -norm : norm;
+        if (norm == 0) continue;
+        v[0] -= head;                            /* I - v v'/(-head v0) takes the column to (head, 0, ..) */
+        for (j = k + 1; j < cols; j++) hdi_axpy(hdi_dot(v, v + (j - k) * rows, m) / (head * v[0]), v, v + (j - k) * rows, m);
+        hdi_axpy(hdi_dot(v, b + k, m) / (head * v[0]), v, b + k, m);
+        v[0] = head;
+    }
+    for (k = cols - 1; k >= 0; k--) {
+        b[k] = A[k * rows + k] != 0 ? b[k] / A[k * rows + k] : 0;
+        hdi_axpy(-b[k], A + k * rows, b, k);
+    }
+}
+
+/* (1 + tau y)(exp(-tau y) - c(-y)) at y = p/q, q = 0 being infinity. size receives the sum of the moduli of what is summed. */
+static double hdi_shared_error(const hd_rational *set, double tau, double p, double q, double *size) {
+    const double s = p < 745 / tau * q ? tau * p / q : 745, first = (1 + s) * exp(-s), top = q + tau * p;
+    double sum = first;
+    int32_t i;
+    *size = (1 + s) * first;                     /* s is off by half an ulp */
+    for (i = 0; i < set->n_poles; i++) {
+        const hd_c64 a = set->a[i], d = hdi_c(p + q * set->theta[i].re, q * set->theta[i].im);
+        const double inv = 1 / hdi_cabs2(d);
+        sum += 2 * top * (a.re * d.re + a.im * d.im) * inv;
+        *size += 2 * top * sqrt(hdi_cabs2(a) * inv);
+    }
+    return sum;
+}
+
+/* The fit: points y_k, k < points, and infinity as the last row. The unknowns are Re a, Im a, scaled and then reflected by I - v v' so that c(0) = 1 fixes the
+ * first of them. */
+typedef struct hdi_shared_work {
+    int32_t n, points;
+    int64_t rows;                /* points + 1 */
+    double *A, *b;               /* [rows 2n], [rows] weighted with 1 + tau y */
+    double *M, *x;               /* [(rows + 2n - 1) (2n - 1)], [rows + 2n - 1] of one step */
+    double *w, *e;               /* [rows] Lawson's weights; errors */
+    double *scale, *v, *best;    /* [2n] */
+    double first;                /* the unknown that is known */
+} hdi_shared_work;
+
+static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 96; }
+
+/* Doubles that hdi_shared_fit works in. */
+static size_t hdi_shared_room(int32_t n_poles) {
+    const size_t n = HDI_CAST(size_t, 2 * n_poles), rows = HDI_CAST(size_t, hdi_shared_points(n_poles)) + 1;
+    return rows * n + rows + (rows + n) * n + 2 * rows + 3 * n;
+}
+
+static hdi_shared_work hdi_shared_begin(int32_t n_poles, double *room) {
+    hdi_shared_work k;
+    const int32_t n = 2 * n_poles;
+    k.n = n_poles;
+    k.points = hdi_shared_points(n_poles);
+    k.rows = k.points + 1;
+    k.A = room;
+    k.b = k.A + k.rows * n;
+    k.M = k.b + k.rows;
+    k.x = k.M + (k.rows + n - 1) * (n - 1);
+    k.w = k.x + (k.rows + n - 1);
+    k.e = k.w + k.rows;
+    k.scale = k.e + k.rows;
+    k.v = k.scale + n;
+    k.best = k.v + n;
+    k.first = 0;
+    return k;
+}
+
+/* A, b: the weighted problem, columns scaled to a norm near 1. */
+static void hdi_shared_matrix(hdi_shared_work *k, const hd_rational *set, double tau) {
+    double least = HUGE_VAL, most = 0;
+    int64_t r;
+    int32_t i;
+    for (i = 0; i < k->n; i++) {
+        least = hdi_min(least, hdi_cabs(set->theta[i]));
+        most = hdi_max(most, hdi_cabs(set->theta[i]));
+    }
+    for (r = 0; r < k->rows; r++) {
+        const int last = r == k->points;
+        const double part = HDI_CAST(double, r) / (k->points - 1), q = last ? 0 : 1, p = last ? 1 : 0.02 * least * exp(part * log(750 * most / least));
+        k->b[r] = last ? 0 : (1 + tau * p) * exp(-tau * p);
+        for (i = 0; i < k->n; i++) {             /* -2 Re a/(p + theta q): x = -y */
+            const hd_c64 f = hdi_cdiv(hdi_c(-2 * (q + tau * p), 0), hdi_c(p + q * set->theta[i].re, q * set->theta[i].im));
+            k->A[i * k->rows + r] = f.re;
+            k->A[(k->n + i) * k->rows + r] = -f.im;
+        }
+    }
+    for (i = 0; i < k->n; i++) {                 /* both parts alike */
+        double *re = k->A + i * k->rows, *im = re + k->n * k->rows;
+        const double s = 1 / sqrt(hdi_dot(re, re, k->rows) + hdi_dot(im, im, k->rows));
+        for (r = 0; r < k->rows; r++) {
+            re[r] *= s;
+            im[r] *= s;
+        }
+        k->scale[i] = k->scale[k->n + i] = s;
+    }
+}
+
+/* A becomes A (I - v v'), after which c(0) = 1 says x_0 = first. */
+static void hdi_shared_condition(hdi_shared_work *k, const hd_rational *set) {
+    const int32_t n = 2 * k->n;
+    double norm, head;
+    int32_t i;
+    for (i = 0; i < k->n; i++) {
+        const hd_c64 f = hdi_cdiv(hdi_c(-2, 0), set->theta[i]);
+        k->v[i] = k->scale[i] * f.re;
+        k->v[k->n + i] = k->scale[i] * -f.im;
+    }
+    norm = sqrt(hdi_dot(k->v, k->v, n));
+    head = k->v[0] > 0 ? -norm : norm;
+    k->first = 1 / head;
+    k->v[0] -= head;
+    norm = sqrt(-head * k->v[0]);                /* |v|/sqrt(2) */
+    for (i = 0; i < n; i++) k->v[i] /= norm;
+    memset(k->e, 0, HDI_CAST(size_t, k->rows) * sizeof(double));
+    for (i = 0; i < n; i++) hdi_axpy(k->v[i], k->A + i * k->rows, k->e, k->rows);
+    for (i = 0; i < n; i++) hdi_axpy(-k->v[i], k->e, k->A + i * k->rows, k->rows);
+}
+
+/* One weighted least squares problem: x [2n], and the errors e at the points; returns the largest. A touch of damping, of the size of rounding, keeps weights
+ * small where the error does not care. */
+static double hdi_shared_step(hdi_shared_work *k) {
+    const int32_t n = 2 * k->n;
+    const int64_t ld = k->rows + n - 1;
+    double worst = 0;
+    int64_t r;
+    int32_t i;
+    memset(k->M, 0, HDI_CAST(size_t, ld) * HDI_CAST(size_t, n - 1) * sizeof(double));
+    memset(k->x, 0, HDI_CAST(size_t, ld) * sizeof(double));
+    for (i = 1; i < n; i++) {
+        double *m = k->M + (i - 1) * ld;
+        for (r = 0; r < k->rows; r++) m[r] = k->w[r] * k->A[i * k->rows + r];
+        m[k->rows + i - 1] = 2 * DBL_EPSILON;
+    }
+    for (r = 0; r < k->rows; r++) {
+        k->e[r] = k->b[r] - k->first * k->A[r];
+        k->x[r] = k->w[r] * k->e[r];
+    }
+    hdi_least_squares(k->M, ld, n - 1, k->x);
+    for (i = 1; i < n; i++) hdi_axpy(-k->x[i - 1], k->A + i * k->rows, k->e, k->rows);
+    for (r = 0; r < k->rows; r++) worst = hdi_max(worst, fabs(k->e[r]));
+    return worst;
+}
+
+/* The weights a of the last step: undo reflection and scaling. */
+static void hdi_shared_take(const hdi_shared_work *k, double *a) {
+    const int32_t n = 2 * k->n;
+    double dot;
+    int32_t i;
+    a[0] = k->first;
+    for (i = 1; i < n; i++) a[i] = k->x[i - 1];
+    dot = hdi_dot(k->v, a, n);
+    for (i = 0; i < n; i++) a[i] = k->scale[i] * (a[i] - dot * k->v[i]);
+}
+
+/* How far exp's part of the weighted error is from a polynomial of degree m on y in [c - w, c + w]: Bernstein's bound 2 M rho^-m/(rho - 1) on an ellipse, or
+ * what is left of it altogether. */
+static double hdi_shared_exp_rest(double tau, double c, double w, int32_t m) {
+    const double rho = hdi_min(hdi_max(2 * m / (tau * w), 1.3), 1e6), half = w * (rho + 1 / rho) / 2;
+    const double M = (1 + tau * (c + half)) * exp(-tau * (c - half));
+    return hdi_min(2 * M * pow(rho, -m) / (rho - 1), (1 + tau * (c - w)) * exp(-tau * (c - w)));
+}
+
+/* A bound of the weighted error on y in [lo, hi], or on [lo, inf) when hi is 0, that holds between points too.
+ * In u, y = c + w u (or 1/y = c + w u), a fraction (1 + tau y)/(y + theta) is a constant and g/(u - z), and the Chebyshev coefficients of 1/(u - z) are known:
+ * |b_j| = 2 rho^-j/|sqrt(z^2 - 1)|, rho + 1/rho = |z - 1| + |z + 1|. So the error is a polynomial of degree m and a rest that is bounded; m is taken so that the
+ * rest is small against goal. A polynomial of degree m is at most 1/cos(m pi/2n) times its largest value at n Chebyshev points (Ehlich, Zeller). Rounding of
+ * the evaluation is allowed for. */
+static double hdi_shared_panel(const hd_rational *set, double tau, double lo, double hi, double goal) {
+    const double pi = 3.141592653589793238, c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
+    double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, size, largest = 0;
+    int32_t i, j, m;
+    for (i = 0; i < set->n_poles; i++) {
+        const hd_c64 theta = set->theta[i], pole = hi > 0 ? hdi_c(-theta.re, -theta.im) : hdi_cdiv(hdi_c(-1, 0), theta);
+        const hd_c64 z = hdi_c((pole.re - c) / w, pole.im / w);
+        const double left = hypot(z.re + 1, z.im), right = hypot(z.re - 1, z.im), s = (left + right) / 2, rho = s + sqrt(hdi_max(s * s - 1, 0));
+        const double g = 2 * hdi_cabs(set->a[i]) * hypot(1 - tau * theta.re, tau * theta.im) / (w * (hi > 0 ? 1 : hdi_cabs2(theta)));
+        inv[i] = 1 / rho;
+        part[i] = 2 * g / (sqrt(left * right) * (rho - 1));
+    }
+    for (m = 8; m <= HDI_SHARED_MOST; m += 4) {
+        rest = hi > 0 ? hdi_shared_exp_rest(tau, c, w, m) : (1 + tau * lo) * exp(-tau * lo);
+        for (i = 0; i < set->n_poles; i++) rest += part[i] * pow(inv[i], m);
+        if (rest <= 0.02 * goal || m == HDI_SHARED_MOST) break;
+    }
+    for (j = 0; j < 4 * m; j++) {
+        const double u = c + w * cos(pi * (j + 0.5) / (4 * m)), e = hi > 0 ? hdi_shared_error(set, tau, u, 1, &size) : hdi_shared_error(set, tau, 1, u, &size);
+        most = hdi_max(most, fabs(e));
+        largest = hdi_max(largest, size);
+    }
+    return (most + rest + 4 * DBL_EPSILON * largest) / cos(pi / 8) + rest;
+}
+
+/* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length, away from the poles; the last is [lo, inf). */
+static void hdi_shared_bound(hd_rational *set, double tau, double goal) {
+    double least = HUGE_VAL, most = 0, lo = 0, hi;
+    int32_t i;
+    for (i = 0; i < set->n_poles; i++) {
+        least = hdi_min(least, hdi_cabs(set->theta[i]));
+        most = hdi_max(most, hdi_cabs(set->theta[i]));
+    }
+    set->max_error = set->max_weighted_error = 0;
+    for (hi = least / 8; hi > 0; lo = hi, hi = lo < 2 * most || tau * lo < 45 ? 2 * lo : 0) {
+        const double e = hdi_shared_panel(set, tau, lo, hi, goal);
+        set->max_weighted_error = hdi_max(set->max_weighted_error, e);
+        set->max_error = hdi_max(set->max_error, e / (1 + tau * lo));
+    }
+    hi = hdi_shared_panel(set, tau, lo, 0, goal);
+    set->max_weighted_error = hdi_max(set->max_weighted_error, hi);
+    set->max_error = hdi_max(set->max_error, hi / (1 + tau * lo));
+}
+
+/* The weights of a shared set for the time tau t0, tau > 0, and their errors: near the smallest largest (1 + tau y)|e|, by least squares and Lawson's steps. Both
+ * errors are bounds for all y >= 0, for any tau; small ones for tau in [1, lambda] of the pick. room: hdi_shared_room doubles. THE SET IS TRUSTED: pairs only,
+ * Im theta > 0. */
+static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
+    hdi_shared_work k = hdi_shared_begin(set->n_poles, room);
+    double lowest = HUGE_VAL;
+    int32_t step, i;
+    int64_t r;
+    hdi_shared_matrix(&k, set, tau);
+    hdi_shared_condition(&k, set);
+    for (r = 0; r < k.rows; r++) k.w[r] = 1;
+    for (step = 0; step <= HDI_SHARED_LAWSON; step++) {
+        const double worst = hdi_shared_step(&k);
+        double top = 0;
+        if (worst < lowest) {
+            lowest = worst;
+            hdi_shared_take(&k, k.best);
+        }
+        for (r = 0; r < k.rows; r++) {
+            k.w[r] *= sqrt(fabs(k.e[r]) / worst + 1e-3);
+            top = hdi_max(top, k.w[r]);
+        }
+        for (r = 0; r < k.rows; r++) k.w[r] /= top;
+    }
+    set->a0 = 0;
+    for (i = 0; i < k.n; i++) set->a[i] = hdi_c(k.best[i], k.best[k.n + i]);
+    hdi_shared_bound(set, tau, lowest);
+}
 
 /* ==== [17] shifted ====
  * The family t L + theta_i B over the poles of a set, for one right-hand side: solutions, their weighted sum, and what it can be off by.
