@@ -39,6 +39,17 @@ static double shared_amplification(const hd_rational *set) {
     return sum;
 }
 
+/* What the bound allows for rounding, from the same sum in a few places. */
+static double shared_noise(const hd_rational *set, double tau) {
+    double most = 0, size;
+    int32_t k;
+    for (k = 0; k < 200; k++) {
+        (void)hdi_shared_error(set, tau, 1e-2 * hdi_cabs(set->theta[0]) * pow(10, k * 0.04), 1, &size);
+        most = fmax(most, size);
+    }
+    return 4 * DBL_EPSILON * most;
+}
+
 /* The largest errors on dense y from far below to far above the poles, and at random ones; every one of them against the bounds. */
 static double shared_against_exp(const hd_rational *set, double tau, int32_t count, uint64_t *seed, double *plain) {
     const double low = 1e-4 * hdi_cabs(set->theta[0]), high = 1e5 * hdi_cabs(set->theta[set->n_poles - 1]);
@@ -69,18 +80,19 @@ static void shared_set(const double *row, uint64_t *seed) {
     for (k = 0; k < n; k++) set.theta[k] = hdi_c(row[4 + 2 * k], row[5 + 2 * k]);
     for (k = 0; k < 24; k++) {
         const double part = k < 2 ? k : shared_unit(seed), tau = k % 3 == 2 ? pow(lambda, 1 - 0.03 * part) : pow(lambda, part);
-        double worst, plain;
+        double worst, plain, noise;
         hdi_shared_fit(&set, tau, room);
+        noise = shared_noise(&set, tau);
         worst = shared_against_exp(&set, tau, 700, seed, &plain);
         most = fmax(most, worst);
         amplified = fmax(amplified, shared_amplification(&set));
         CHECK_MSG(set.max_weighted_error <= promised, "%g, %d pairs, tau %g: bound %g, promised %g", lambda, (int)n, tau, set.max_weighted_error, promised);
-        CHECK_MSG(set.max_weighted_error <= 1.25 * worst + 4e-12 && set.max_weighted_error <= 3 * worst, "tau %g: bound %g, error %g", tau, set.max_weighted_error, worst);
-        CHECK_MSG(set.max_error <= 4 * plain + 1e-12, "tau %g: bound %g of the plain error, %g seen", tau, set.max_error, plain);
+        CHECK_MSG(set.max_weighted_error <= 1.2 * (worst + noise), "tau %g: bound %g, error %g, rounding %g", tau, set.max_weighted_error, worst, noise);
+        CHECK_MSG(set.max_error <= 4 * (plain + noise), "tau %g: bound %g of the plain error, %g seen", tau, set.max_error, plain);
         CHECK_MSG(fabs(shared_error(&set, tau, 0)) <= 4 * DBL_EPSILON * shared_amplification(&set), "tau %g: c(0) - 1 = %g", tau, shared_error(&set, tau, 0));
         CHECK(set.a0 == 0);
     }
-    CHECK_MSG(most >= 0.55 * row[2], "%g, %d pairs: error %g, recorded %g", lambda, (int)n, most, row[2]);
+    CHECK_MSG(most >= 0.2 * row[2], "%g, %d pairs: error %g, recorded %g", lambda, (int)n, most, row[2]);
     CHECK_MSG(amplified <= 1.1 * row[3] && amplified >= 0.5 * row[3], "%g, %d pairs: amplification %g, recorded %g", lambda, (int)n, amplified, row[3]);
     shared_room_free(room, n);
 }
@@ -96,7 +108,7 @@ static void shared_table(void) {
         n = (int32_t)row[1];
         CHECK(n > 0 && n % 4 == 0 && n <= HD_MAX_POLES && k + 4 + 2 * n <= size);
         if (n <= 0 || k + 4 + 2 * n > size) return;
-        CHECK(row[0] > 1 && row[2] > 1e-13 && row[2] < 2e-5 && row[3] > 1 && row[3] < 2000);
+        CHECK(row[0] > 1 && row[2] > 1e-13 && row[2] < 2e-5 && row[3] > 1 && row[3] < 5000);
         CHECK(!last || last[1] < row[1] || (last[1] == row[1] && last[0] < row[0] && last[2] < row[2]));
         for (i = 0; i < n; i++) {
             CHECK(row[5 + 2 * i] > 0 && atan2(row[5 + 2 * i], row[4 + 2 * i]) < 2.56);
@@ -111,10 +123,10 @@ static void shared_table(void) {
 /* What the mathematics promises: pairs enough for an error, in the kernel measure, by the ratio of times; rounded up to packs of four. */
 static void shared_known(void) {
     static const double known[9][3] = {{10, 1e-6, 8}, {10, 1e-8, 12}, {10, 1e-10, 16}, {100, 1e-6, 12}, {100, 1e-8, 16}, {100, 1e-10, 20}, {1000, 1e-6, 16},
-                                       {1000, 1e-8, 20}, {1000, 1e-10, 28}};
+                                       {1000, 1e-8, 20}, {10000, 1e-6, 20}};
     hd_rational set;
     int32_t k;
-    for (k = 0; k < 8; k++) {
+    for (k = 0; k < 9; k++) {
         CHECK(hdi_shared_pick(&set, known[k][0], known[k][1]));
         CHECK_MSG(set.n_poles <= (int32_t)known[k][2], "%g to %g: %d pairs", known[k][0], known[k][1], (int)set.n_poles);
     }
@@ -191,7 +203,7 @@ static void shared_bounds(void) {
         if (k % 2) hdi_shared_bound(&set, tau, 1e-8);
         CHECK(hdi_finite(set.max_weighted_error) && hdi_finite(set.max_error));
         worst = shared_against_exp(&set, tau, 600, &seed, &plain);
-        if (k % 4 != 3) CHECK_MSG(set.max_weighted_error <= 1.3 * worst + 2e-12 * (1 + tau), "tau %g: bound %g, error %g", tau, set.max_weighted_error, worst);
+        if (k % 4 != 3) CHECK_MSG(set.max_weighted_error <= 1.2 * (worst + shared_noise(&set, tau)), "tau %g: bound %g, error %g", tau, set.max_weighted_error, worst);
         shared_room_free(room, set.n_poles);
     }
 }
@@ -218,6 +230,37 @@ static void shared_exp_rest(void) {
         CHECK_MSG(sum <= rest + 1e-12, "tau %g, %g +- %g, degree %d: rest %g, bound %g", tau, c, w, (int)m, sum, rest);
         CHECK_MSG(rest <= 300 * sum + 1e-11, "tau %g, %g +- %g, degree %d: rest %g, bound %g", tau, c, w, (int)m, sum, rest);
     }
+}
+
+/* The public function: poles that go with the time, weights for each, errors as asked for; and what it refuses. */
+static void shared_public(void) {
+    static const double t[5] = {0.3, 7, 0.02, 1.9, 0.3}, bad[3] = {1, 0, 2}, wide[2] = {1e-9, 1e9}, same[2] = {0.4, 0.4};
+    hd_rational out[5], kept;
+    hd_context ctx;
+    hd_error e;
+    uint64_t seed = 12;
+    int32_t q, i;
+    CHECK(hd_rational_shared(out, 5, t, 2e-7, NULL, &e) == HD_OK);
+    for (q = 0; q < 5; q++) {
+        double plain;
+        CHECK(out[q].n_poles == 16 && out[q].kind == HD_POLES_KERNEL && out[q].degree == 32 && out[q].max_weighted_error <= 2e-7);
+        CHECK(shared_against_exp(out + q, 1, 500, &seed, &plain) > 0);
+        for (i = 0; i < 16; i++) CHECK(hdi_cabs(hdi_csub(hdi_cscale(t[2] / t[q], out[q].theta[i]), out[2].theta[i])) < 1e-14 * hdi_cabs(out[2].theta[i]));
+        CHECK(fabs(hd_rational_eval(out + q, -2.5) - exp(-2.5)) <= out[q].max_weighted_error / 3.5);
+    }
+    CHECK(memcmp(out, out + 4, sizeof *out) == 0);
+    CHECK(hd_rational_shared(out, 2, same, 1e-6, NULL, &e) == HD_OK && out[1].degree == 8 && out[1].max_weighted_error <= 1e-6 && out[1].a[0].re != 0);
+    memset(&kept, 0x22, sizeof kept);
+    out[0] = kept;
+    CHECK(hd_rational_shared(out, 3, bad, 1e-6, NULL, &e) == HD_ERR_ARGUMENT && e.row == 1 && e.value == 0);
+    CHECK(hd_rational_shared(out, 2, wide, 1e-6, NULL, &e) == HD_ERR_ARGUMENT && e.value > 1e17 && e.row == -1);
+    CHECK(hd_rational_shared(out, 0, t, 1e-6, NULL, &e) == HD_ERR_ARGUMENT && hd_rational_shared(out, 5, t, 0, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_rational_shared(out, 5, t, (double)NAN, NULL, &e) == HD_ERR_ARGUMENT && hd_rational_shared(out, 5, NULL, 1e-6, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_rational_shared(NULL, 5, t, 1e-6, NULL, NULL) == HD_ERR_ARGUMENT);
+    memset(&ctx, 0, sizeof ctx);
+    ctx.byte_limit = 1000;
+    CHECK(hd_rational_shared(out, 5, t, 1e-7, &ctx, &e) == HD_ERR_MEMORY_LIMIT && ctx.bytes_in_use == 0);
+    CHECK(memcmp(out, &kept, sizeof kept) == 0);
 }
 
 static void shared_same_bits(void) {
@@ -345,6 +388,7 @@ static void test_shared(void) {
     shared_single();
     shared_bounds();
     shared_exp_rest();
+    shared_public();
     shared_same_bits();
     shared_least_squares();
     shared_heat();

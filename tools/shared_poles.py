@@ -12,7 +12,7 @@ the smallest
 This is the measure of the kernel sets of poles.py, which are the case Lambda = 1.
 
 Usage
-    shared_poles.py                      print the C table for heatdiff.h (about 20 minutes)
+    shared_poles.py                      print the C table for heatdiff.h (about 15 minutes)
     shared_poles.py --check [heatdiff.h] verify the table in the header (default: the one in the folder above this script):
                                          order, position of the poles, errors and amplifications as recorded (seconds)
     shared_poles.py --check --recompute  the same, and every set once more from nothing, to see that the table is as good
@@ -365,14 +365,14 @@ def rounded(theta):
 def finished(theta, lam):
     """A set as it will be printed, measured at many times."""
     theta = rounded(theta)
-    t = times_of(lam, 161)
+    t = times_of(lam, 401)
     error, amplification = measure(theta, t)
     return SharedSet(lam, len(theta), error + rounding(theta, t), amplification, theta)
 
 
 def worth_it(one):
-    """Small enough an error, and well above rounding."""
-    return one.error < LARGEST_ERROR and 4*rounding(one.theta, times_of(one.lam, 41)) < one.error
+    """Small enough an error, and no more than two thirds of it rounding: which is the worst case, and mostly a tenth of that."""
+    return one.error < LARGEST_ERROR and 1.5*rounding(one.theta, times_of(one.lam, 41)) < one.error
 
 
 # ---- the C table -------------------------------------------------------------------------------------------------------
@@ -423,7 +423,7 @@ def complaints_about(one):
     wrong = []
     if not (one.theta.imag > 0).all() or (np.diff(np.abs(one.theta)) < 0).any():
         wrong.append('poles out of order')
-    if not 0.8*one.error < error < 1.05*one.error:
+    if not 0.8*one.error < error < 1.08*one.error:
         wrong.append('error %.3g is not as recorded' % error)
     if not 0.8*one.amplification < amplification < 1.05*one.amplification:
         wrong.append('amplification %.3g is not as recorded' % amplification)
@@ -484,7 +484,7 @@ def main():
     default = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, 'heatdiff.h'))
     parser.add_argument('--check', nargs='?', const=default, metavar='heatdiff.h', help='verify the table in this header')
     parser.add_argument('--recompute', action='store_true', help='with --check: also compute all sets again and compare')
-    parser.add_argument('--hops', type=int, default=3, metavar='K', help='rounds of perturbations (default %(default)s)')
+    parser.add_argument('--hops', type=int, default=1, metavar='K', help='rounds of perturbations (default %(default)s)')
     parser.add_argument('--pairs', type=int, choices=sorted(RANGE), help='only sets of this many pairs')
     parser.add_argument('--lambda', type=float, dest='lam', metavar='LAMBDA', help='only sets of this ratio')
     arguments = parser.parse_args()
