@@ -552,7 +552,8 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
 /* The diagonal of k_t (heat kernel signature, Sun et al. 2009; auto-diffusion function, Gebal et al. 2009) or of K_t at every vertex, exactly, by selected
  * inversion: no spectrum, no column. D n x n_times, column q for t[q] > 0, columns ldd apart (0: n). A vertex without mass has 0 (K_t: 1).
  * For a full B, k_t leaves a0 diag(B^-1) of a uniform set out, which is of the size of the set's error and counted in it.
- * Cost   for every t the factors of all poles and about twice as much again
+ * Cost   for every t the factors of all poles and about twice as much again; many times, when neither poles nor a degree are asked for, share one set: 16 or
+ *        100 over three decades cost four or five times as much as one
  * Errors HD_ERR_ARGUMENT (also for the methods iterative and krylov), HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Report error_rational is a bound; error_solver, rounding, is measured at the vertex that suffers most. */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
@@ -10603,6 +10604,39 @@ static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weig
     return hdi_scope_end(&s);
 }
 
+enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
+
+/* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares of the relative error. 0: not to be had; for
+ * sets of few poles. work: columns [2 HDI_RESOLVENT_POLES + 1][HDI_RESOLVENT_POINTS]. */
+static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double *slack) {
+    double work[(2 * HDI_RESOLVENT_POLES + 1) * HDI_RESOLVENT_POINTS], *b = work + 2 * HDI_RESOLVENT_POLES * HDI_RESOLVENT_POINTS, worst = 0;
+    int32_t p, i, cols = 0;
+    if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
+    for (p = 0; p < set->n_poles; cols += set->theta[p].im != 0 ? 2 : 1, p++) {
+        for (i = 0; i < HDI_RESOLVENT_POINTS; i++) {
+            const double s = (i + 0.5) / HDI_RESOLVENT_POINTS, x = 2 * s / ((1 - s) * (1 - s));
+            const hd_c64 f = hdi_cdiv(hdi_c(1 + x, 0), hdi_c(x + set->theta[p].re, set->theta[p].im));
+            work[cols * HDI_RESOLVENT_POINTS + i] = f.re;
+            if (set->theta[p].im != 0) work[(cols + 1) * HDI_RESOLVENT_POINTS + i] = -f.im;
+            b[i] = 1;
+        }
+    }
+    hdi_least_squares(work, HDI_RESOLVENT_POINTS, cols, b);
+    for (p = 0, cols = 0; p < set->n_poles; p++) {
+        const int pair = set->theta[p].im != 0;
+        weight[p] = hdi_c(b[cols], pair ? b[cols + 1] : 0);
+        cols += pair ? 2 : 1;
+    }
+    for (i = 0; i <= 8 * HDI_RESOLVENT_POINTS; i++) {   /* the end is x = infinity */
+        const double s = i / (8.0 * HDI_RESOLVENT_POINTS), q = 0.5 * (1 - s) * (1 - s);   /* x = s/q */
+        double sum = 0;
+        for (p = 0; p < set->n_poles; p++) sum += hdi_cmul(weight[p], hdi_cdiv(hdi_c(q + s, 0), hdi_c(s + q * set->theta[p].re, q * set->theta[p].im))).re;
+        worst = hdi_max(worst, fabs(sum - 1));
+    }
+    *slack = 2 * worst;
+    return worst < 0.2;
+}
+
 /* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor (1 + x)) for x >= 0. -1: none does. */
 static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
     int32_t p, best = -1;
@@ -11985,6 +12019,29 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     *all = sum;
 }
 
+/* The times of a call, ascending and scaled, and the columns they belong to. h->t becomes the last. */
+static hd_status hdi_heat_sort_times(hdi_heat_call *h, int32_t n_times, const double *t) {
+    hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n_times);
+    double *sorted = HDI_TAKE(&h->s, double, n_times);
+    int32_t *column = HDI_TAKE(&h->s, int32_t, n_times), q;
+    if (h->e->status < 0) return h->e->status;
+    for (q = 0; q < n_times; q++) {              /* bits of doubles that are not negative are in their order */
+        const double v = t[q] + 0.0;
+        memcpy(&order[q].key, &v, sizeof v);
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, n_times);
+    for (q = 0; q < n_times; q++) {
+        column[q] = HDI_CAST(int32_t, order[q].id);
+        sorted[q] = t[column[q]] * h->heat->scale;
+    }
+    h->times = sorted;
+    h->n_times = n_times;
+    h->time_column = column;
+    h->t = sorted[n_times - 1];
+    return HD_OK;
+}
+
 /* The times one by one. */
 static hd_status hdi_heat_each_time(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
                                     hd_report *rep) {
@@ -12009,9 +12066,7 @@ static hd_status hdi_heat_each_time(hd_heat *heat, int32_t n_times, const double
 HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
                                      hd_report *report) {
     hdi_heat_call h;
-    hdi_pair *order;
-    double *sorted;
-    int32_t q, *column;
+    int32_t q;
     if (f) {
         if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, 0, 1, report) < 0) return hdi_heat_end(&h);
     } else if (hdi_kernel_begin(&h, heat, 0, kernel, 1, report) < 0) {
@@ -12028,25 +12083,8 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
     if (h.e->status >= 0 && !f) (void)hdi_vertex_check(heat->source, source, h.e);
     for (q = 0; q < n_times && h.e->status >= 0; q++)
         if (!(t[q] >= 0) || !hdi_finite(t[q] * heat->scale)) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
-    order = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, hdi_pair, n_times);
-    sorted = HDI_TAKE(&h.s, double, n_times);
-    column = HDI_TAKE(&h.s, int32_t, n_times);
-    if (h.e->status < 0 || n_times == 0) return hdi_heat_end(&h);
-    for (q = 0; q < n_times; q++) {              /* bits of doubles that are not negative are in their order */
-        const double v = t[q] + 0.0;
-        memcpy(&order[q].key, &v, sizeof v);
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, n_times);
-    for (q = 0; q < n_times; q++) {
-        column[q] = HDI_CAST(int32_t, order[q].id);
-        sorted[q] = t[column[q]] * heat->scale;
-    }
-    h.times = sorted;
-    h.n_times = n_times;
-    h.time_column = column;
-    h.t = sorted[n_times - 1];
-    if (n_times > 1 && sorted[0] > 0 && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV && (hdi_krylov_all(&h) >= 0 || !hdi_heat_retreat(&h)))
+    if (h.e->status < 0 || n_times == 0 || hdi_heat_sort_times(&h, n_times, t) < 0) return hdi_heat_end(&h);
+    if (n_times > 1 && h.times[0] > 0 && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV && (hdi_krylov_all(&h) >= 0 || !hdi_heat_retreat(&h)))
         return hdi_heat_end(&h);
     if (h.e->status < 0) (void)hdi_heat_retreat(&h);
     if (h.e->status >= 0) (void)hdi_heat_each_time(heat, n_times, t, kernel, source, f, U, h.ldu, h.rep);
@@ -12138,21 +12176,23 @@ typedef struct hdi_entries {
 static hd_status hdi_entries_make(hdi_heat_call *h, int diagonal, double *room, int64_t size, hdi_entries *x) {
     hdi_elim *m = &h->heat->elim;
     hd_c64 weight[2 * HD_MAX_POLES];
-    double factor = 1;
+    double factor = 1, slack = 0;
     int32_t p, best;
     memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
     memset(weight, 0, sizeof weight);
     if (hdi_direct_prepare(h) < 0) return h->e->status;
-    best = hdi_resolvent_pole(&m->set, &factor);
-    for (p = 0; p < m->set.n_poles; p++) {
-        weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
-        weight[m->set.n_poles + p] = hdi_c(p == best ? factor : 0, 0);
+    for (p = 0; p < m->set.n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
+    best = 0;
+    if (!hdi_resolvent_weights(&m->set, weight + m->set.n_poles, &slack)) {
+        slack = 0;
+        best = hdi_resolvent_pole(&m->set, &factor);
+        for (p = 0; p < m->set.n_poles; p++) weight[m->set.n_poles + p] = hdi_c(p == best ? factor : 0, 0);
     }
     if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2, weight, diagonal, room, size, h->e) < 0) return h->e->status;
     x->k = room;
     x->g = room + size;
     x->size = size;
-    x->weighted = best >= 0 && m->set.max_weighted_error > 0 ? m->set.max_weighted_error : HUGE_VAL;
+    x->weighted = best >= 0 && m->set.max_weighted_error > 0 ? (1 + slack) * m->set.max_weighted_error : HUGE_VAL;
     x->uniform = m->set.max_error > 0 ? m->set.max_error : m->set.kind == HD_POLES_OWN ? 0 : HUGE_VAL;
     if (m->set.kind == HD_POLES_OWN && x->uniform == 0) x->weighted = 0;   /* bounds hold for c itself */
     return HD_OK;
@@ -12206,7 +12246,7 @@ static void hdi_report_values(hd_report *rep, const double *value, const double 
     rep->error_relative = hdi_max(rep->error_relative, relative + solver);
 }
 
-#define HDI_DIAGONAL_SURE 1.1e-6
+#define HDI_DIAGONAL_SURE 5.3e-7
 
 /* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. */
 static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out) {
@@ -12264,7 +12304,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
 }
 
 /* With the set's degree by default: where its bound shows vertices (of tiny cells among large ones, slivers) whose error relative to their own value may be
- * above the promise, a second time with the highest degree. The error seen is a tenth of the bound or so on all meshes tried: 1e-7. */
+ * above the promise, a second time with the highest degree. The error seen is a fifth of the bound or so on all meshes tried: 1e-7. */
 static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *out) {
     const hd_report before = *h->rep;
     const hd_heat *heat = h->heat;
@@ -12281,13 +12321,109 @@ static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *o
     return hdi_diagonal_once(h, kernel, out);
 }
 
+#define HDI_SHARED_TOL 2.5e-8
+
+/* ---- diagonals at many times ---- */
+
+/* Packs that a shared set for a ratio of times takes; 0: there is none. */
+static int32_t hdi_shared_packs(double ratio) {
+    hd_rational set;
+    return hdi_shared_pick(&set, ratio * (1 + 1e-12), HDI_SHARED_TOL) ? (set.n_poles + 3) / 4 : 0;
+}
+
+/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how many packs those are. */
+static int32_t hdi_shared_windows(double ratio, int32_t most, int32_t *packs) {
+    int32_t w, best = 0;
+    for (w = 1; w <= most && w <= 64; w++) {
+        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w));
+        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
+        best = w;
+        *packs = w * each;
+    }
+    return best;
+}
+
+/* k_t(v,v) for the (scaled) times t[0..n_times), ascending, by one set of poles, into the columns that `column` names. */
+static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const double *t, const int32_t *column, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    hdi_elim *m = &heat->elim;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    const size_t n = HDI_CAST(size_t, m->sym.n), sets = 2 * HDI_CAST(size_t, n_times);
+    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
+    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
+    double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
+    int32_t q, p, i, worst = 0, v;
+    double most = 0;
+    hd_report probe;
+    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
+    h->t = t[0];
+    h->set = set;
+    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
+    for (q = 0; q < n_times; q++) {
+        double factor = 1, tau = t[q] / t[0];
+        const int32_t best = hdi_resolvent_pole(set + q, &factor);
+        for (p = 0; p < set->n_poles; p++) {     /* (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau */
+            weight[(2 * q) * set->n_poles + p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
+            weight[(2 * q + 1) * set->n_poles + p] = hdi_c(p == best ? factor / tau : 0, 0);
+        }
+    }
+    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, 1, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
+    for (q = 0; q < n_times; q++) {
+        const double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
+        double *out = D + HDI_CAST(size_t, column[q]) * ldd;
+        for (v = 0; v < m->lap->n; v++) out[v] = 0;
+        for (i = 0; i < m->sym.n; i++) {
+            off[i] = hdi_min(set[q].max_weighted_error * g[i], set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
+            out[m->lap->vertex[i]] = heat->scale * k[i];
+            if (k[i] > 0 && off[i] / k[i] > most) {
+                most = off[i] / k[i];
+                worst = i;
+            }
+        }
+        hdi_report_values(h->rep, k, off, m->sym.n, 0);
+    }
+    h->set = NULL;
+    if (n > 0) {                                 /* rounding: one entry by a solve with the same poles */
+        double *u = HDI_TAKE(&s, double, m->lap->n), there;
+        v = m->lap->vertex[worst];
+        if (u && hdi_direct_columns(heat, t[0] / heat->scale, HD_KERNEL_SYMMETRIC, set, 1, &v, u, HDI_CAST(size_t, m->lap->n), &probe) < 0) *h->e = probe.error;
+        if (h->e->status < 0) return hdi_scope_end(&s);
+        there = D[HDI_CAST(size_t, column[0]) * ldd + HDI_CAST(size_t, v)];
+        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
+        if (there != 0) h->rep->error_solver = hdi_max(h->rep->error_solver, fabs(u[v] - there) / fabs(there) + DBL_EPSILON);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* All times, in windows that share their poles. */
+static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
+    const double span = h->times[h->n_times - 1] / h->times[0];
+    int32_t w, q0, q1;
+    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+        const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
+        for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
+        if (hdi_diagonal_window(h, q1 - q0, h->times + q0, h->time_column + q0, D, ldd) < 0) break;
+    }
+    h->rep->error_bound = h->rep->error_rational + h->rep->error_solver;
+    return h->e->status;
+}
+
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report) {
     hdi_heat_call h;
     int32_t q;
     if (hdi_kernel_begin(&h, heat, 1, kernel, 1, report) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t) >= 0 && n_times > 0 && !D) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
-    hdi_direct_only(&h);
+    if (h.e->status >= 0 && hdi_heat_analysed(heat, 1, h.e) >= 0) hdi_direct_only(&h);
+    if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && h.e->status >= 0 && !heat->opts.degree && !heat->opts.rational && !heat->opts.poles && !heat->exacting) {
+        int32_t packs = 0, windows;
+        hdi_heat_sort_times(&h, n_times, t);
+        windows = h.e->status < 0 ? 0 : hdi_shared_windows(h.times[n_times - 1] / h.times[0], n_times, &packs);
+        if (windows > 0 && 8 * packs < 9 * n_times) {   /* a set of degree 9 is a pack and a real factor */
+            (void)hdi_diagonal_windows(&h, windows, D, ldd);
+            return hdi_heat_end(&h);
+        }
+    }
     for (q = 0; q < n_times && h.e->status >= 0; q++) {
         h.t = t[q] * heat->scale;
         if (hdi_diagonal_sure(&h, kernel, D + HDI_CAST(size_t, q) * ldd) < 0) h.e->column = q;
