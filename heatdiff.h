@@ -9774,7 +9774,10 @@ static int32_t hdi_elim_pole(const hdi_elim *m, int32_t i, int32_t q) {
 static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
     hdi_values v = hdi_elim_values(m, t);
     int32_t i, q, n_packs;
-    if (m->filled && m->t == t && memcmp(&m->set, set, sizeof *set) == 0) return HD_OK;
+    if (m->filled && m->t == t && m->set.n_poles == set->n_poles && memcmp(m->set.theta, set->theta, HDI_CAST(size_t, set->n_poles) * sizeof *set->theta) == 0) {
+        m->set = *set;                           /* weights cost nothing */
+        return HD_OK;
+    }
     m->filled = 0;
     m->set = *set;
     m->t = t;
@@ -12170,6 +12173,7 @@ typedef struct hdi_entries {
     double *k, *g;               /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
     int64_t size;
     double weighted, uniform;    /* of the set: |error| <= weighted g, uniform diag(B^-1) */
+    hd_rational resolvent;       /* the poles with weights for g */
 } hdi_entries;
 
 /* Factors for h->t, and from them k and g. diagonal: the diagonal by rows, else entries of the analysis. room [2 size]. */
@@ -12189,6 +12193,10 @@ static hd_status hdi_entries_make(hdi_heat_call *h, int diagonal, double *room, 
         for (p = 0; p < m->set.n_poles; p++) weight[m->set.n_poles + p] = hdi_c(p == best ? factor : 0, 0);
     }
     if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2, weight, diagonal, room, size, h->e) < 0) return h->e->status;
+    x->resolvent = m->set;
+    x->resolvent.kind = HD_POLES_OWN;
+    x->resolvent.a0 = x->resolvent.max_error = x->resolvent.max_weighted_error = 0;
+    for (p = 0; p < m->set.n_poles; p++) x->resolvent.a[p] = hdi_cscale(-1 / hdi_rat_count(&m->set, p), weight[m->set.n_poles + p]);
     x->k = room;
     x->g = room + size;
     x->size = size;
@@ -12626,6 +12634,8 @@ typedef struct hdi_metric {
     hd_rational set;             /* of the factors */
     int filter;
     double *diag, *off;
+    hd_rational resolvent;       /* weights for g, and the factor that makes it a bound; HUGE_VAL: it bounds nothing */
+    double weighted;
 } hdi_metric;
 
 static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, hdi_metric *x, hdi_scope *keep, hd_report *rep) {
@@ -12690,6 +12700,10 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
         }
     }
     x->set = m->set;
+    if (h.e->status >= 0) {
+        x->resolvent = entries.resolvent;
+        x->weighted = entries.weighted;
+    }
     if (h.e->status < 0 && e->status >= 0) *e = *h.e;
     hdi_heat_end(&h);
     return hdi_scope_end(&scope);
@@ -12707,8 +12721,9 @@ static void hdi_metric_column(const hd_laplacian *lap, const hdi_metric *x, doub
     for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : work[lap->n_active + lap->row[i]];
 }
 
-/* d from column s of f, in place. Between components the last two kinds are infinite. */
-static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s, double *u, hd_report *rep) {
+/* d from column s of f, in place. g: the same column of weighted times the resolvent, whose own d^2 bounds the error of this one; NULL: from the diagonals,
+ * which is less sharp near s. Between components the last two kinds are infinite. */
+static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s, double *u, const double *g, hd_report *rep) {
     const int32_t rs = lap->row[s];
     const double fs = rs < 0 ? 0 : x->diag[rs], offs = rs < 0 ? 0 : x->off[rs];
     const double solver = rs < 0 ? 0 : fabs(u[s] - fs) + 4 * DBL_EPSILON * fs;
@@ -12717,7 +12732,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
     for (v = 0; v < lap->n; v++) {
         const int32_t r = lap->row[v];
         const double f = r < 0 ? 0 : x->diag[r], off = r < 0 ? 0 : x->off[r], d2 = fs - 2 * u[v] + f;
-        const double root = sqrt(hdi_max(off, 0)) + sqrt(hdi_max(offs, 0)), delta = root * root + 4 * solver + 4 * DBL_EPSILON * f;
+        const double root = sqrt(hdi_max(off, 0)) + sqrt(hdi_max(offs, 0)), form = g ? hdi_min(hdi_max(0, offs + off - 2 * g[v]), root * root) : root * root;
+        const double delta = form + 4 * solver + 4 * DBL_EPSILON * f;
         double d, error;
         if (v == s) {
             u[v] = 0;
@@ -12762,16 +12778,25 @@ static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, 
 static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, int32_t k, const int32_t *sources, double *D, size_t step,
                                    hd_report *rep, hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    double *work = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, heat->source->n) + 1);
+    const size_t n = HDI_CAST(size_t, heat->source->n);
+    const hd_kernel kernel = kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
     hd_report columns;
     hdi_metric x;
-    int32_t r;
+    int32_t r, v;
     memset(rep, 0, sizeof *rep);
     if (!work || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
-    if (hdi_direct_columns(x.plan, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, k, sources, D, step, &columns) < 0) *e = columns.error;
+    if (hdi_direct_columns(x.plan, x.t, kernel, &x.set, k, sources, D, step, &columns) < 0) *e = columns.error;
+    if (e->status >= 0 && x.weighted > 0 && x.weighted < HUGE_VAL) g = HDI_TAKE(&s, double, n);
     for (r = 0; r < k && e->status >= 0; r++) {
-        hdi_metric_column(heat->source, &x, D + HDI_CAST(size_t, r) * step, work);
-        hdi_metric_distance(heat->source, &x, sources[r], D + HDI_CAST(size_t, r) * step, rep);
+        double *u = D + HDI_CAST(size_t, r) * step;
+        hd_report bound;
+        if (g && hdi_direct_columns(x.plan, x.t, kernel, &x.resolvent, 1, sources + r, g, n, &bound) < 0) *e = bound.error;
+        if (e->status < 0) break;
+        hdi_metric_column(heat->source, &x, u, work);
+        if (g) hdi_metric_column(heat->source, &x, g, work);
+        for (v = 0; g && v < heat->source->n; v++) g[v] *= x.weighted;
+        hdi_metric_distance(heat->source, &x, sources[r], u, g, rep);
     }
     rep->residual = hdi_max(rep->residual, columns.residual);
     rep->method = HD_METHOD_DIRECT;
@@ -12873,7 +12898,7 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, doub
                 break;
             }
             hdi_metric_column(heat->source, &x, f, rows);
-            hdi_metric_distance(heat->source, &x, i[q], f, &one);
+            hdi_metric_distance(heat->source, &x, i[q], f, NULL, &one);
         }
         d[q] = f[j[q]];
     }
@@ -12953,7 +12978,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
             break;
         }
         hdi_metric_column(lap, &x, u, work);
-        hdi_metric_distance(lap, &x, vertex[q], u, &one);
+        hdi_metric_distance(lap, &x, vertex[q], u, NULL, &one);
         for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : hdi_min(nearest[v], u[v]);
     }
     {
