@@ -9606,13 +9606,14 @@ static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *
 
 /* ---- passes over the faces ---- */
 
-/* What -grad |u| / |grad |u|| of a face adds to div X: g[1], g[2] at corners 1 and 2, minus their sum at corner 0. Without heat above least, or without any slope,
- * nothing. Returns the largest |u|, by which u is normalised before anything is squared. */
+/* What -grad |u| / |grad |u|| of a face adds to div X: g[1], g[2] at corners 1 and 2, minus their sum at corner 0. Without heat above least, or without a slope
+ * beyond rounding (where fronts of symmetric meshes meet, rounding would choose a side), nothing. Returns the largest |u|, by which u is normalised before
+ * anything is squared. */
 static HDI_INLINE double hdi_geo_flow(const hdi_geo_face *f, double u0, double u1, double u2, double least, double *g) {
     const double a0 = fabs(u0), a1 = fabs(u1), a2 = fabs(u2), m = hdi_max(hdi_max(a0, a1), a2), s = m >= least ? 1 / m : 0;
     const double d1 = (a1 - a0) * s, d2 = (a2 - a0) * s;
-    const double x = f->q * d1, y = f->l * d2 - f->p * d1;   /* along grad u */
-    const double norm2 = x * x + y * y, w = norm2 > 0 ? -1 / sqrt(norm2) : 0;
+    const double x = f->q * d1, y = f->l * d2 - f->p * d1;   /* grad u times the area */
+    const double norm2 = x * x + y * y, w = norm2 > 1e-26 * f->l * f->l ? -1 / sqrt(norm2) : 0;
     g[1] = (f->q * x - f->p * y) * w;
     g[2] = f->l * y * w;
     return m;
