@@ -9636,22 +9636,87 @@ static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRI
     return faint;
 }
 
-/* The same for eight columns side by side; faint by column. */
-static void hdi_geo_divergence8(const hd_geodesic *g, const double *HDI_RESTRICT u, const double *HDI_RESTRICT least, double *HDI_RESTRICT b, int64_t *faint) {
+/* The same for eight columns side by side. Returns the columns with faint faces as bits. */
+static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RESTRICT u, const double *HDI_RESTRICT least, double *HDI_RESTRICT b) {
     int32_t f, c;
-    memset(b, 0, HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof *b);
+    int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
         const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
         for (c = 0; c < HDI_GEO_WIDE; c++) {
             double d[3];
             const double m = hdi_geo_flow(a, u[i + c], u[j + c], u[k + c], least[c], d);
-            faint[c] += m < least[c] && m > 0;
+            faint |= (m < least[c] && m > 0) << c;
             b[i + c] -= d[1] + d[2];
             b[j + c] += d[1];
             b[k + c] += d[2];
         }
     }
+    return faint;
+}
+
+#if HDI_X86
+/* hdi_geo_flow, four or eight columns at a time. */
+static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *u, const double *least, double *b) {
+    const hdi_v4 zero = _mm256_setzero_pd(), one = _mm256_set1_pd(1), minus = _mm256_set1_pd(-1), sign = _mm256_set1_pd(-0.0);
+    int32_t f, c;
+    int faint = 0;
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        const hdi_v4 l = _mm256_set1_pd(a->l), p = _mm256_set1_pd(a->p), q = _mm256_set1_pd(a->q), flat = _mm256_set1_pd(1e-26 * a->l * a->l);
+        for (c = 0; c < HDI_GEO_WIDE; c += 4) {
+            const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c)), u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
+            const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c)), m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
+            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ), s = _mm256_and_pd(lit, _mm256_div_pd(one, m));
+            const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s), d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
+            const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1)), norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
+            const hdi_v4 w = _mm256_and_pd(_mm256_cmp_pd(norm2, flat, _CMP_GT_OQ), _mm256_div_pd(minus, _mm256_sqrt_pd(norm2)));
+            const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w), g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
+            faint |= (_mm256_movemask_pd(_mm256_cmp_pd(m, zero, _CMP_GT_OQ)) & ~_mm256_movemask_pd(lit)) << c;
+            _mm256_storeu_pd(b + i + c, _mm256_sub_pd(_mm256_loadu_pd(b + i + c), _mm256_add_pd(g1, g2)));
+            _mm256_storeu_pd(b + j + c, _mm256_add_pd(_mm256_loadu_pd(b + j + c), g1));
+            _mm256_storeu_pd(b + k + c, _mm256_add_pd(_mm256_loadu_pd(b + k + c), g2));
+        }
+    }
+    return faint;
+}
+
+static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double *u, const double *least, double *b) {
+    const hdi_v8 zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1), minus = _mm512_set1_pd(-1), sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
+    int32_t f;
+    int faint = 0;
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        const hdi_v8 l = _mm512_set1_pd(a->l), p = _mm512_set1_pd(a->p), q = _mm512_set1_pd(a->q);
+        const hdi_v8 u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i)), u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
+        const hdi_v8 u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k)), m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
+        const __mmask8 lit = _mm512_cmp_pd_mask(m, low, _CMP_GE_OQ);
+        const hdi_v8 s = _mm512_maskz_div_pd(lit, one, m);
+        const hdi_v8 d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s), d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
+        const hdi_v8 x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1)), norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
+        const __mmask8 slope = _mm512_cmp_pd_mask(norm2, _mm512_set1_pd(1e-26 * a->l * a->l), _CMP_GT_OQ);
+        const hdi_v8 w = _mm512_maskz_div_pd(slope, minus, _mm512_sqrt_pd(norm2));
+        const hdi_v8 g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w), g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
+        faint |= _mm512_cmp_pd_mask(m, zero, _CMP_GT_OQ) & ~lit;
+        _mm512_storeu_pd(b + i, _mm512_sub_pd(_mm512_loadu_pd(b + i), _mm512_add_pd(g1, g2)));
+        _mm512_storeu_pd(b + j, _mm512_add_pd(_mm512_loadu_pd(b + j), g1));
+        _mm512_storeu_pd(b + k, _mm512_add_pd(_mm512_loadu_pd(b + k), g2));
+    }
+    return faint;
+}
+#endif
+
+static int hdi_geo_divergence8(const hd_geodesic *g, const double *u, const double *least, double *b) {
+    const int level = hdi_simd_level(g->ctx);
+    memset(b, 0, HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof *b);
+#if HDI_X86
+    if (level >= 2) return hdi_geo_divergence8_512(g, u, least, b);
+    if (level == 1) return hdi_geo_divergence8_256(g, u, least, b);
+#endif
+    (void)level;
+    return hdi_geo_divergence8_plain(g, u, least, b);
 }
 
 /* r -= L x */
@@ -9919,8 +9984,8 @@ static void hdi_geo_column(const hd_geodesic *g, const double *wide, int32_t c, 
     for (i = 0; i < g->n_active; i++) x[i] = wide[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c];
 }
 
-/* phi of up to eight single sources to distances, the columns in d; those with a sign in skip apart. */
-static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, int32_t k, const int64_t *skip, double *d, size_t ldd) {
+/* phi of up to eight single sources to distances, the columns in d; those with a bit in skip need not be finite. */
+static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, int32_t k, int skip, double *d, size_t ldd) {
     double at[HDI_GEO_WIDE];
     int32_t component[HDI_GEO_WIDE], v, c, fine = 1;
     for (c = 0; c < k; c++) {
@@ -9935,35 +10000,39 @@ static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, 
             *to = HUGE_VAL;
             if (of != component[c]) continue;
             *to = g->h * fabs(g->wide_b[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c] - at[c]);
-            fine &= skip[c] || hdi_finite(*to);
+            fine &= skip >> c & 1 || hdi_finite(*to);
         }
     }
     for (c = 0; c < k; c++) d[HDI_CAST(size_t, c) * ldd + HDI_CAST(size_t, sources[c])] = 0;
     return fine;
 }
 
-/* Residuals of eight columns: first those of the heat equation with u, then, with u gone, those of phi. */
-static void hdi_geo_wide_residuals(hd_geodesic *g, const int32_t *sources, int32_t k, const int64_t *skip, double *heat, hd_geodesic_report *rep) {
+/* Residuals of the heat equation of eight columns; then, with u gone, those of phi. */
+static void hdi_geo_wide_heat(hd_geodesic *g, const int32_t *sources, int32_t k, double *heat) {
     int32_t c;
     for (c = 0; c < k; c++) {
-        if (skip && skip[c]) continue;
-        if (!skip) {
-            hdi_geo_column(g, g->wide_x, c, g->x);
-            heat[c] = hdi_geo_heat_residual(g, sources + c, 1, g->x, g->r);
-            continue;
-        }
+        hdi_geo_column(g, g->wide_x, c, g->x);
+        heat[c] = hdi_geo_heat_residual(g, sources + c, 1, g->x, g->r);
+    }
+}
+
+static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double *heat, hd_geodesic_report *rep) {
+    int32_t c;
+    for (c = 0; c < k; c++) {
+        if (skip >> c & 1) continue;
         hdi_geo_column(g, g->wide_x, c, g->r);   /* the right-hand side */
         hdi_geo_column(g, g->wide_b, c, g->x);
         hdi_geo_judge(rep, heat[c], hdi_geo_residual(g, g->x));
+        rep->n_stages = rep->n_stages > 1 ? rep->n_stages : 1;
     }
 }
 
 /* Distances to up to eight sources, each for itself, side by side. Columns whose heat fades out are done again alone. */
 static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, size_t ldd, hd_geodesic_report *rep, hd_error *e) {
     const size_t size = HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof(double);
-    int64_t faint[HDI_GEO_WIDE] = {0};
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, i;
+    int faint;
     if (hdi_geo_wide_room(g, e) < 0) return e->status;
     memset(g->wide_x, 0, size);
     memset(g->active, 0, HDI_CAST(size_t, g->sym.n_super));
@@ -9974,15 +10043,15 @@ static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k,
     }
     hdi_geo_sweep(g, &g->heat, HDI_GEO_WIDE, g->wide_x, g->active);
     for (c = 0; c < HDI_GEO_WIDE; c++) least[c] = c < k ? hdi_geo_least(g, sources + c, 1, g->wide_x + c, HDI_GEO_WIDE) : DBL_MIN;
-    hdi_geo_divergence8(g, g->wide_x, least, g->wide_b, faint);
-    if (rep) hdi_geo_wide_residuals(g, sources, k, NULL, heat, rep);
+    faint = hdi_geo_divergence8(g, g->wide_x, least, g->wide_b);
+    if (rep) hdi_geo_wide_heat(g, sources, k, heat);
     if (rep) memcpy(g->wide_x, g->wide_b, size);
     for (i = 0; i < g->n_components; i++) memset(g->wide_b + HDI_GEO_WIDE * HDI_CAST(int64_t, g->pin[i]), 0, HDI_GEO_WIDE * sizeof(double));
     hdi_geo_sweep(g, &g->poisson, HDI_GEO_WIDE, g->wide_b, NULL);
     if (!hdi_geo_wide_distances(g, sources, k, faint, d, ldd)) return hdi_geo_not_finite(e, -1);
-    if (rep) hdi_geo_wide_residuals(g, sources, k, faint, heat, rep);
+    if (rep) hdi_geo_wide_judge(g, k, faint, heat, rep);
     for (c = 0; c < k; c++)
-        if (faint[c] && hdi_geo_one(g, sources + c, 1, d + HDI_CAST(size_t, c) * ldd, rep, e) < 0) return e->status;
+        if (faint >> c & 1 && hdi_geo_one(g, sources + c, 1, d + HDI_CAST(size_t, c) * ldd, rep, e) < 0) return e->status;
     return HD_OK;
 }
 
