@@ -569,27 +569,30 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 
 typedef struct hd_geodesic hd_geodesic;
 
-/* A plan for distances along the surface of a triangle mesh by the heat method: assembly, one analysis, two real factorisations of the same pattern. The
- * mesh is not needed any more when it is made.
- * xyz, tri as in hd_laplacian_triangles, which also says what is left out. No face may be missing: holes are walked around
+/* A plan for distances along the surface of a triangle mesh by the heat method.
+ * xyz    [3 n] coordinates, finite; tri [3 n_tri] vertex ids in [0, n); neither is needed any more when the plan is made. Faces are left out as by
+ *        hd_laplacian_triangles. Holes are walked around
  * opts   NULL: t = h^2, barycentric masses
- * Errors as hd_laplacian_triangles; HD_ERR_ARGUMENT, HD_ERR_BREAKDOWN (vertex: a pivot that cannot be divided by), HD_ERR_MEMORY, HD_ERR_CANCELLED.
- * Source Crane, Weischedel, Wardetzky 2013, algorithm 1; deviations in room [19]. */
+ * Cost   assembly, one analysis, two real factorisations of one pattern. Of both together the plan keeps 16 bytes a non-zero of a factor, and some 200 a vertex
+ * Errors as hd_laplacian_triangles; HD_ERR_ARGUMENT, HD_ERR_BREAKDOWN (vertex: a pivot that cannot be divided by), HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1; deviations in room [19]. */
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const hd_geodesic_opts *opts,
                                           hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
-/* d [n]: distance of every vertex to the nearest of the sources, in the unit of xyz. Zero at the sources; HUGE_VAL where none can be reached: in
- * components without a source, and at vertices without mass. d = min over the sources s of the component of |phi - phi_s|, which is the distance but for the error of
- * the method: of the order of h, a few percent on coarse meshes; more where angles are bad, which makes for slopes, not for distances that are not numbers.
- * Cost   two solves with factors of n log n or so non-zeros, two passes over the faces. Nothing is allocated after the first call with so many sources.
- *        Where heat fades below 1e-200 of the source, some 400 edges away at t = h^2, a further solve for each 400 edges or so (report->n_stages).
- * One thread at a time for a plan. Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED, HD_ERR_BREAKDOWN
- * (rounding left no number). HD_WARN_ACCURACY, with a report only: residuals cost two more passes. */
+/* d [n]: distance of every vertex to the nearest of the sources, in the unit of xyz: min |phi - phi_s| over the sources s of its component. Zero at the sources;
+ * HUGE_VAL where no source can be reached, in components without one and at vertices without mass.
+ * The method's own error is of the order of h and more: a few percent on coarse meshes, about one on fine ones, most where fronts meet. It is not a metric: d
+ * from i to j and from j to i differ by so much, and what is near a source can be off by a good part of it.
+ * sources  [n_sources] at least one; twice counts once
+ * Cost     two solves and two passes over the faces; with a report two more passes. Where heat fades below 1e-200 of the source's, some 450 edges away at
+ *          t = h^2, a solve more for every so many edges (report->n_stages). Only a call with more sources than any before allocates
+ * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED, HD_ERR_BREAKDOWN (rounding left no number).
+ *          HD_WARN_ACCURACY, with a report only. One thread at a time for a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const int32_t *sources, int32_t n_sources, double *d, hd_geodesic_report *report);
 
-/* The same for k sources, each for itself: column q of D, n x k, columns ldd apart (0: n), is the distance to sources[q]. Eight at a time, which takes a
- * third or so of the time of eight calls. */
+/* The same for k sources, each for itself: column q of D, n x k, columns ldd apart (0: n), is the distance to sources[q]. Eight go side by side, in a third to
+ * a half of the time of eight calls. The first call with three or more makes room for that: some 200 bytes a vertex. */
 HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd, hd_geodesic_report *report);
 
 #ifdef __cplusplus
@@ -9374,6 +9377,7 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, int ow
  * Three steps: (B + t L) u = the indicator of the sources; X = -grad u / |grad u| on every face; L phi = div X, where phi is the distance but for a constant.
  * Deviations:
  *   L has one row taken out for each component, which is exact, instead of a small number added to its diagonal, which tilts phi on large meshes.
+ *   X follows |u|. Where cotangents are negative u can be so too, here and there far from the sources, and with its sign would point the wrong way.
  *   Heat far away is smaller than any double. What has faded is solved for again from where it still could be told (hdi_geo_further), so that
  *   distances do not end where u underflows.
  *   A face is kept as its triangle in the plane: corners (0,0), (2l,0), (2p,2q), and everything is written in l, p, q: no cotangents, no cancellation. */
