@@ -616,6 +616,28 @@ static void geo_triangle(void) {
     hd_geodesic_free(g);
 }
 
+/* Components of one right-angled triangle each, where L loses its rank without any rounding to help: a row is taken out in every one of them. */
+static void geo_triangles(void) {
+    enum { M = 5 };
+    double xyz[9 * M], d[3 * M];
+    int32_t tri[3 * M], sources[M], i;
+    hd_geodesic *g = NULL;
+    hd_geodesic_report rep;
+    memset(xyz, 0, sizeof xyz);
+    for (i = 0; i < M; i++) {
+        xyz[9 * i + 2] = xyz[9 * i + 5] = xyz[9 * i + 8] = i;
+        xyz[9 * i + 3] = xyz[9 * i + 7] = 1;
+        tri[3 * i] = 3 * i;
+        tri[3 * i + 1] = 3 * i + 1;
+        tri[3 * i + 2] = 3 * i + 2;
+        sources[i] = 3 * i;
+    }
+    CHECK(hd_geodesic_create(&g, xyz, 3 * M, tri, M, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, sources, M, d, &rep) == HD_OK && rep.n_components == M);
+    for (i = 0; i < M; i++) CHECK_MSG(d[3 * i] == 0 && fabs(d[3 * i + 1] - sqrt(0.5)) < 1e-14 && fabs(d[3 * i + 2] - sqrt(0.5)) < 1e-14, "%.17g %.17g", d[3 * i + 1], d[3 * i + 2]);
+    hd_geodesic_free(g);
+}
+
 /* ---- threads, instruction sets, failures ---- */
 
 static int64_t geo_thread_run(const shape *s, hd_simd simd, int way, double *out) {
@@ -741,6 +763,7 @@ static void test_geodesic(void) {
     geo_against_dense(geo_sheared(11, 11, 2.5), "obtuse");
     geo_against_dense(geo_two(), "two components");
     geo_triangle();
+    geo_triangles();
     geo_tube(4, 60, 1, 1);
     geo_tube(7, 60, 30, 1);
     geo_tube(3, 3000, 1, 7);
