@@ -573,7 +573,7 @@ typedef struct hd_geodesic hd_geodesic;
  * xyz    [3 n] coordinates, finite; tri [3 n_tri] vertex ids in [0, n); neither is needed any more when the plan is made. Faces are left out as by
  *        hd_laplacian_triangles. Holes are walked around
  * opts   NULL: t = h^2, barycentric masses
- * Cost   assembly, one analysis, two real factorisations of one pattern. Of both together the plan keeps 16 bytes a non-zero of a factor, and some 200 a vertex
+ * Cost   assembly, one analysis, two real factorisations of one pattern. The plan keeps both: 16 bytes a non-zero of L, and some 430 a vertex
  * Errors as hd_laplacian_triangles; HD_ERR_ARGUMENT, HD_ERR_BREAKDOWN (vertex: a pivot that cannot be divided by), HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1; deviations in room [19]. */
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const hd_geodesic_opts *opts,
@@ -591,8 +591,8 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
  *          HD_WARN_ACCURACY, with a report only. One thread at a time for a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const int32_t *sources, int32_t n_sources, double *d, hd_geodesic_report *report);
 
-/* The same for k sources, each for itself: column q of D, n x k, columns ldd apart (0: n), is the distance to sources[q]. Eight go side by side, in a third to
- * a half of the time of eight calls. The first call with three or more makes room for that: some 200 bytes a vertex. */
+/* The same for k sources, each for itself: column q of D, n x k, columns ldd apart (0: n), is the distance to sources[q]. Eight go side by side, in a third
+ * of the time of eight calls. The first call with three or more makes room for that: some 150 bytes a vertex. */
 HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd, hd_geodesic_report *report);
 
 #ifdef __cplusplus
