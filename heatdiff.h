@@ -9772,12 +9772,11 @@ static double hdi_geo_border(const hd_geodesic *g, const double *u, double *r) {
     return most;
 }
 
-/* Marks what u tells, of the rows beyond. Returns how many are left. */
+/* Marks what u tells, of the rows beyond. Returns how many are left; those of components without a source always are, and have no border. */
 static int32_t hdi_geo_tell(hd_geodesic *g, const double *u, double least) {
     int32_t i, left = 0;
     for (i = 0; i < g->n_active; i++) {
         if (g->mark[i] != HDI_GEO_BEYOND) g->mark[i] = HDI_GEO_EARLIER;
-        else if (!g->reached[g->component[i]]) g->mark[i] = HDI_GEO_EARLIER;
         else if (fabs(u[i]) >= least) g->mark[i] = HDI_GEO_NOW;
         else left++;
     }
@@ -9804,7 +9803,7 @@ static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, 
     hdi_sweep_run(&z, g->ctx);
 }
 
-/* Adds to b what lies beyond u >= least, stage by stage. u is in g->x. Should heat end for good (weights of zero), the rest has no direction. */
+/* Adds to b what lies beyond u >= least, stage by stage. u is in g->x. Where heat ends for good (no more of the component, weights of zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
     memset(g->mark, HDI_GEO_BEYOND, HDI_CAST(size_t, g->n_active));
     while (hdi_geo_tell(g, g->x, least) > 0) {
