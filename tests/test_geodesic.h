@@ -641,7 +641,7 @@ static void geo_triangles(void) {
 /* ---- threads, instruction sets, failures ---- */
 
 static int64_t geo_thread_run(const shape *s, hd_simd simd, int way, double *out) {
-    static const int32_t sources[11] = {1, 4, 100, 7, 300, 555, 20, 21, 22, 600, 2};
+    static const int32_t sources[11] = {1, 4, 2600, 7, 300, 5200, 20, 3900, 22, 600, 4500};     /* from 2562 on in a strip that needs stages */
     ldl_way *w = DENSE_NEW(ldl_way, 1);
     hd_geodesic *g;
     int64_t calls;
@@ -665,11 +665,12 @@ static void geo_threads(void) {
     const int64_t size = 12 * (int64_t)s.n;
     double *first = DENSE_NEW(double, size), *other = DENSE_NEW(double, size), *top = DENSE_NEW(double, size);
     int64_t calls = 0;
-    int level, way;
+    int level, way, i;
+    for (i = 3 * ball.n; i < 3 * s.n; i++) s.xyz[i] *= 60;               /* edges as long as the ball's */
     for (level = 0; level < 4; level++) {
         geo_thread_run(&s, ldl_simds[level], 0, first);
         if (level == 0) memcpy(top, first, (size_t)size * sizeof *top);
-        CHECK_MSG(geo_difference(first, top, size) < 1e-10, "level %d is off by %g", level, geo_difference(first, top, size));
+        CHECK_MSG(geo_difference(first, top, size) < 1e-8, "level %d is off by %g", level, geo_difference(first, top, size));
         for (way = 1; way < LDL_WAYS; way++) {
             if (way < 4 && (level > 0 || !eng_openmp)) continue;
             calls += geo_thread_run(&s, ldl_simds[level], way, other);
