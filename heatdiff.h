@@ -40,7 +40,7 @@
      declarations    [B] base  [C] options and reports  [D] functions
      implementation  [00] platform  [01] scalar  [02] error  [03] memory  [04] context  [05] arrays  [06] dense
                      [07] sparse  [09] geometry  [10] operators  [11] symbolic  [12] direct  [14] precond  [15] krylov
-                     [16] rational  [17] shifted  [18] heat  [21] api  [22] closing
+                     [16] rational  [17] shifted  [18] heat  [19] distance  [21] api  [22] closing
      Rooms are numbered from the bottom up; each calls only those above it in the file.
 
    Options (macros)
@@ -364,6 +364,35 @@ typedef struct hd_report {
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|, 0 when the pair does not conserve heat or the filter is the caller's */
 } hd_report;
 
+typedef enum hd_geodesic_mass {
+    HD_GEODESIC_MASS_BARYCENTRIC = 0,   /* a third of each face to each corner */
+    HD_GEODESIC_MASS_VORONOI            /* mixed Voronoi areas, as in HD_LAPLACIAN_VORONOI_COT */
+} hd_geodesic_mass;
+
+typedef struct hd_geodesic_opts {
+    int32_t begin_zero;
+    double t;                   /* how long heat flows, unit length^2; default h^2, h the mean edge length. Larger: smoother, less exact */
+    hd_geodesic_mass mass;      /* B, always diagonal: it says how fast heat fades, and has little influence */
+    hd_ordering ordering;       /* of both factorisations */
+    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere */
+    hd_context *context;
+    int32_t end_zero;
+} hd_geodesic_opts;
+
+/* Of a query; with several columns the worst of them. */
+typedef struct hd_geodesic_report {
+    hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
+    hd_error error;             /* filled when status < 0 */
+    double t, h;
+    int32_t n_components;
+    int32_t n_stages;           /* solves of the heat equation for a column: more than one where heat faded below 1e-200 */
+    hd_ordering ordering;
+    int64_t factor_nnz;         /* of each of the two factors, diagonal included */
+    double factor_flops;        /* of both */
+    double residual_heat;       /* |b - A x| / |b| of (L + B/t) u, and of L phi: how well the systems are solved, not how near the distance is */
+    double residual_distance;
+} hd_geodesic_report;
+
 /* ==== [D] functions ==== */
 /* Common to all: pointers to results come first. Functions return hd_status; on an error nothing is left allocated, *out is
  * left as it was, and the numbers in output arrays are unspecified. err and report may be NULL. */
@@ -586,6 +615,36 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 /* Single entries: values[q] = (i[q], j[q]) of K_t or k_t. One column per distinct j is solved, n doubles at a time. */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
                                        double *values, hd_report *report);
+
+/* ---- geodesic distance ---- */
+
+typedef struct hd_geodesic hd_geodesic;
+
+/* A plan for distances along the surface of a triangle mesh by the heat method.
+ * xyz    [3 n] coordinates, finite; tri [3 n_tri] vertex ids in [0, n); neither is needed any more when the plan is made. Faces are left out as by
+ *        hd_laplacian_triangles. Holes are walked around
+ * opts   NULL: t = h^2, barycentric masses
+ * Cost   assembly, one analysis, two real factorisations of one pattern. The plan keeps both: 16 bytes a non-zero of L, and some 430 a vertex
+ * Errors as hd_laplacian_triangles; HD_ERR_ARGUMENT, HD_ERR_BREAKDOWN (vertex: a pivot that cannot be divided by), HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1; deviations in room [19]. */
+HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const hd_geodesic_opts *opts,
+                                          hd_error *err);
+HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
+
+/* d [n]: distance of every vertex to the nearest of the sources, in the unit of xyz: min |phi - phi_s| over the sources s of its component. Zero at the sources;
+ * HUGE_VAL where no source can be reached, in components without one and at vertices without mass.
+ * The method's own error is of the order of h and more: a few percent on coarse meshes, about one on fine ones, most where fronts meet. It is not a metric: d
+ * from i to j and from j to i differ by so much, and what is near a source can be off by a good part of it.
+ * sources  [n_sources] at least one; twice counts once
+ * Cost     two solves and two passes over the faces; with a report two more passes. Where heat fades below 1e-200 of the source's, some 450 edges away at
+ *          t = h^2, a solve more for every so many edges (report->n_stages). Only a call with more sources than any before allocates
+ * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED, HD_ERR_BREAKDOWN (rounding left no number).
+ *          HD_WARN_ACCURACY, with a report only. One thread at a time for a plan. */
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const int32_t *sources, int32_t n_sources, double *d, hd_geodesic_report *report);
+
+/* The same for k sources, each for itself: column q of D, n x k, columns ldd apart (0: n), is the distance to sources[q]. Eight go side by side, in a third
+ * of the time of eight calls. The first call with three or more makes room for that: some 150 bytes a vertex. */
+HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd, hd_geodesic_report *report);
 
 #ifdef __cplusplus
 }
@@ -10675,6 +10734,694 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, int ow
     if (lap->conserves && !own && heat_abs > 0) rep->mass_drift = hdi_max(rep->mass_drift, fabs(heat - heat_in) / heat_abs);
 }
 
+/* ==== [19] distance ====
+ * Geodesic distance by the heat method on triangle meshes. May call [18].
+ * This work is based on
+ *   K. Crane, C. Weischedel, M. Wardetzky, Geodesics in heat: a new approach to computing distance based on heat flow, 2013
+ * Three steps: (B + t L) u = the indicator of the sources; X = -grad u / |grad u| on every face; L phi = div X, where phi is the distance but for a constant.
+ * Deviations:
+ *   L has one row taken out for each component, which is exact, instead of a small number added to its diagonal, which tilts phi on large meshes.
+ *   X follows |u|. Where cotangents are negative u can be so too, here and there far from the sources, and with its sign would point the wrong way.
+ *   Heat far away is smaller than any double. What has faded is solved for again from where it still could be told (hdi_geo_further), so that
+ *   distances do not end where u underflows.
+ *   A face is kept as its triangle in the plane: corners (0,0), (2l,0), (2p,2q), and everything is written in l, p, q: no cotangents, no cancellation. */
+
+typedef struct hdi_geo_face { double l, p, q; int32_t v[3], spare; } hdi_geo_face;   /* lengths in units of h; v in elimination order, the longest edge first */
+
+enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3 };
+
+struct hd_geodesic {
+    hd_context *ctx, context;
+    int32_t n, n_active, n_faces, n_components;
+    double h, t;
+    hdi_symbolic sym;
+    hdi_factor heat, poisson;    /* of L + B/t, and of L with the rows pin replaced by those of the identity */
+    hdi_geo_face *face;          /* [n_faces] in elimination order of their first corner to go */
+    double *mass;                /* [n_active] diagonal of B/t, from here on all in elimination order */
+    int32_t *row;                /* [n] vertex -> row, -1 without mass */
+    int32_t *component;          /* [n_active] */
+    int32_t *pin;                /* [n_components] the last row of each */
+    char *active;                /* [n_super] fronts that the sources touch */
+    char *reached;               /* [n_components] has a source */
+    char *mark;                  /* [n_active] sources; how far the heat could be told */
+    double *x, *b, *r, *work;    /* [n_active] each; sweeps */
+    double *wide_x, *wide_b, *wide_work;   /* the same for eight columns side by side, made when they are first needed */
+    int64_t *value_ptr;          /* [n_components + 1] */
+    double *value;               /* [value_size] of phi at the sources, by component, ascending */
+    hdi_pair *sorted;            /* [value_size] */
+    int32_t value_size;
+};
+
+/* ---- making ---- */
+
+static void hdi_geo_free(hd_geodesic *g) {
+    hd_context own, *ctx;
+    if (!g) return;
+    own = g->context;
+    ctx = g->ctx == &g->context ? &own : g->ctx;
+    g->heat.ctx = g->heat.ctx ? ctx : NULL;
+    g->poisson.ctx = g->poisson.ctx ? ctx : NULL;
+    hdi_factor_free(&g->heat);
+    hdi_factor_free(&g->poisson);
+    hdi_symbolic_free(ctx, &g->sym);
+    hdi_free(ctx, g->face);
+    hdi_free(ctx, g->mass);
+    hdi_free(ctx, g->row);
+    hdi_free(ctx, g->component);
+    hdi_free(ctx, g->pin);
+    hdi_free(ctx, g->active);
+    hdi_free(ctx, g->reached);
+    hdi_free(ctx, g->mark);
+    hdi_free(ctx, g->x);
+    hdi_free(ctx, g->b);
+    hdi_free(ctx, g->r);
+    hdi_free(ctx, g->work);
+    hdi_free(ctx, g->wide_x);
+    hdi_free(ctx, g->wide_b);
+    hdi_free(ctx, g->wide_work);
+    hdi_free(ctx, g->value_ptr);
+    hdi_free(ctx, g->value);
+    hdi_free(ctx, g->sorted);
+    hdi_free(ctx, g);
+}
+
+/* L, lumped masses, h and components of the mesh, as a Laplacian with diagonal B. */
+static hd_status hdi_geo_laplacian(hd_laplacian *lap, const hdi_mesh *mesh, hd_geodesic_mass kind, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *vertex_mass = HDI_TAKE(&s, double, lap->n);
+    int32_t *mark, i;
+    if (!vertex_mass) return hdi_scope_end(&s);
+    lap->kind = kind == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;   /* the row sums of fem are the lumped mass */
+    for (i = 0; i < lap->n; i++) vertex_mass[i] = hdi_vertex_mass(mesh, i, lap->kind);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);
+    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+    for (i = 0; lap->xyz && i < lap->n_active; i++)
+        memcpy(lap->xyz + 3 * HDI_CAST(int64_t, i), mesh->xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), 3 * sizeof(double));
+    mark = HDI_TAKE(&s, int32_t, lap->n_active);
+    if (!mark || hdi_lap_pattern(lap, mesh, mark, e) < 0 || hdi_lap_values(lap, mesh, mark, e) < 0) return hdi_scope_end(&s);
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* Face f in its plane, the longest edge on the axis: the height is then as small as it gets, and loses nothing. */
+static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h) {
+    const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
+    double edge[3][3], length[3];
+    hdi_geo_face out;
+    int i, q, k = 0;
+    for (q = 0; q < 3; q++) {                    /* edge q leaves corner q */
+        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[q]), edge[q]);
+        for (i = 0; i < 3; i++) edge[q][i] /= h;
+        length[q] = hdi_norm3(edge[q]);
+        if (length[q] > length[k]) k = q;
+    }
+    out.l = length[k] / 2;
+    out.p = -hdi_dot3(edge[k], edge[(k + 2) % 3]) / length[k] / 2;
+    out.q = mesh->area[f] / h / h / length[k];   /* half the height */
+    for (q = 0; q < 3; q++) out.v[q] = row[v[(k + q) % 3]];
+    out.spare = 0;
+    return out;
+}
+
+static int32_t hdi_geo_first(const int32_t *v, const int32_t *row) {
+    const int32_t a = row[v[0]], b = row[v[1]], c = row[v[2]], d = a < b ? a : b;
+    return c < d ? c : d;
+}
+
+/* The faces with an area, sorted by the first of their corners to be eliminated, so that passes over them run through the vectors once. */
+static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(g->ctx, e);
+    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, HDI_CAST(int64_t, g->n_active) + 1);
+    int32_t f;
+    g->face = HDI_CAST(hdi_geo_face *, at ? hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_faces), sizeof *g->face, e) : NULL);
+    if (!g->face) return hdi_scope_end(&s);
+    for (f = 0; f < mesh->m; f++)
+        if (mesh->area[f] > 0) at[hdi_geo_first(mesh->tri + 3 * HDI_CAST(int64_t, f), g->row)]++;
+    hdi_prefix_sum(at, g->n_active);
+    for (f = 0; f < mesh->m; f++)
+        if (mesh->area[f] > 0) g->face[at[hdi_geo_first(mesh->tri + 3 * HDI_CAST(int64_t, f), g->row)]++] = hdi_geo_frame(mesh, f, g->row, g->h);
+    return hdi_scope_end(&s);
+}
+
+/* What is per row, in elimination order. */
+static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
+    int32_t i, v;
+    g->mass = HDI_CAST(double *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_active), sizeof(double), e));
+    if (g->mass) g->row = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n), sizeof(int32_t), e));
+    if (g->row) g->component = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_active), sizeof(int32_t), e));
+    if (g->component) g->pin = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components), sizeof(int32_t), e));
+    if (e->status < 0) return e->status;
+    for (v = 0; v < g->n; v++) g->row[v] = -1;
+    for (i = 0; i < g->n_active; i++) {
+        const int32_t from = g->sym.perm[i];
+        g->row[lap->vertex[from]] = i;
+        g->component[i] = lap->component[from];
+        g->pin[g->component[i]] = i;
+        g->mass[i] = lap->mass[from] / g->t;
+        if (!hdi_finite(g->mass[i])) return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1, lap->vertex[from], g->t);
+    }
+    return HD_OK;
+}
+
+/* Factors the matrix val; what only factoring needs is given back. */
+static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacian *lap, const double *val, hd_error *e) {
+    hdi_values v;
+    memset(&v, 0, sizeof v);
+    v.real = val;
+    if (hdi_factor_make(f, &g->sym, 1, g->ctx, e) < 0) return e->status;
+    if (hdi_factor_run(f, &v, e) < 0) {
+        if (e->row >= 0) e->vertex = lap->vertex[e->row];
+        e->row = -1;
+        return e->status;
+    }
+    hdi_free(g->ctx, f->work);
+    hdi_free(g->ctx, f->scratch);
+    hdi_free(g->ctx, f->chunk_scratch);
+    f->work = f->scratch = f->chunk_scratch = NULL;
+    return HD_OK;
+}
+
+/* L + B/t, then L with the row and column of one vertex of each component replaced by those of the identity: phi is zero there. */
+static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(g->ctx, e);
+    double *val = HDI_TAKE(&s, double, lap->L.nnz);
+    int32_t i, k;
+    int64_t p;
+    if (!val) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) val[p] = lap->L.val[p] + (lap->L.col[p] == i ? lap->mass[i] / g->t : 0);
+    if (hdi_geo_factor(g, &g->heat, lap, val, e) < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t row = g->row[lap->vertex[i]], pin = g->pin[lap->component[i]];
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            k = g->row[lap->vertex[lap->L.col[p]]];
+            val[p] = row == pin || k == pin ? row == k : lap->L.val[p];
+        }
+    }
+    (void)hdi_geo_factor(g, &g->poisson, lap, val, e);
+    return hdi_scope_end(&s);
+}
+
+static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
+    const size_t n = HDI_CAST(size_t, g->n_active);
+    g->active = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->sym.n_super), 1, e));
+    if (g->active) g->reached = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components), 1, e));
+    if (g->reached) g->mark = HDI_CAST(char *, hdi_alloc(g->ctx, n, 1, e));
+    if (g->mark) g->value_ptr = HDI_CAST(int64_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components) + 1, sizeof(int64_t), e));
+    if (g->value_ptr) g->x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
+    if (g->x) g->b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
+    if (g->b) g->r = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
+    if (g->r) g->work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, 1, 1), sizeof(double), e));
+    return e->status;
+}
+
+/* Ordering, analysis and both factors. */
+static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const hd_geodesic_opts *o, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(g->ctx, e);
+    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), *own = HDI_TAKE(&s, int32_t, lap->n_active), chosen = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    if (o->ordering == HD_ORDERING_OWN) hdi_elim_own(lap, o->perm, own);
+    if (hdi_sym_order(&lap->L, lap->xyz, o->ordering, HDI_DISSECT_FROM, own, perm, &chosen, g->ctx, e) < 0) return hdi_scope_end(&s);
+    if (hdi_progress(g->ctx, "analyse", 0, e) >= 0) (void)hdi_symbolic_make(&g->sym, &lap->L, perm, g->ctx, e);
+    g->sym.ordering = HDI_CAST(hd_ordering, chosen);
+    return hdi_scope_end(&s);
+}
+
+static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *tri, int32_t m, const hd_geodesic_opts *o, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(g->ctx, e);
+    hd_laplacian *lap = HDI_CAST(hd_laplacian *, hdi_alloc(g->ctx, 1, sizeof *lap, e));
+    hdi_mesh mesh;
+    if (!lap) return hdi_scope_end(&s);
+    memset(lap, 0, sizeof *lap);
+    lap->n = g->n;
+    lap->context = g->ctx;
+    if (hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_mesh_make(&mesh, xyz, g->n, tri, m, &lap->mesh, &s) >= 0 &&
+        hdi_geo_laplacian(lap, &mesh, o->mass, e) >= 0) {
+        g->n_active = lap->n_active;
+        g->n_components = lap->n_components;
+        g->n_faces = lap->mesh.n_faces_used;
+        g->h = lap->h;
+        g->t = o->t > 0 ? o->t : lap->h * lap->h;
+        if (!hdi_finite(g->t) || !(g->t > 0)) hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: the square of the mean edge length is no number to compute with", -1, -1, lap->h);
+    }
+    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 && hdi_geo_faces(g, &mesh, e) >= 0) {
+        hdi_scope_end(&s);                       /* the mesh is not needed any more */
+        if (hdi_geo_factors(g, lap, e) >= 0) (void)hdi_geo_room(g, e);
+    }
+    hdi_laplacian_free(lap, g->ctx);
+    return hdi_scope_end(&s);
+}
+
+/* ---- passes over the faces ---- */
+
+/* What -grad |u| / |grad |u|| of a face adds to div X: g[1], g[2] at corners 1 and 2, minus their sum at corner 0. Without heat above least, or without a slope
+ * beyond rounding (where fronts of symmetric meshes meet, rounding would choose a side), nothing. Returns the largest |u|, by which u is normalised before
+ * anything is squared. */
+static HDI_INLINE double hdi_geo_flow(const hdi_geo_face *f, double u0, double u1, double u2, double least, double *g) {
+    const double a0 = fabs(u0), a1 = fabs(u1), a2 = fabs(u2), m = hdi_max(hdi_max(a0, a1), a2), s = m >= least ? 1 / m : 0;
+    const double d1 = (a1 - a0) * s, d2 = (a2 - a0) * s;
+    const double x = f->q * d1, y = f->l * d2 - f->p * d1;   /* grad u times the area */
+    const double norm2 = x * x + y * y, w = norm2 > 1e-26 * f->l * f->l ? -1 / sqrt(norm2) : 0;
+    g[1] = (f->q * x - f->p * y) * w;
+    g[2] = f->l * y * w;
+    return m;
+}
+
+/* b = div X, integrated against the hat functions: the right-hand side of L phi = b. Returns how many faces have some heat, but less than least. */
+static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRICT u, double least, double *HDI_RESTRICT b) {
+    int64_t faint = 0;
+    int32_t f;
+    memset(b, 0, HDI_CAST(size_t, g->n_active) * sizeof *b);
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        double d[3];
+        const double m = hdi_geo_flow(a, u[a->v[0]], u[a->v[1]], u[a->v[2]], least, d);
+        faint += m < least && m > 0;
+        b[a->v[0]] -= d[1] + d[2];
+        b[a->v[1]] += d[1];
+        b[a->v[2]] += d[2];
+    }
+    return faint;
+}
+
+/* The same for eight columns side by side. Returns the columns with faint faces as bits. */
+static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RESTRICT u, const double *HDI_RESTRICT least, double *HDI_RESTRICT b) {
+    int32_t f, c;
+    int faint = 0;
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        for (c = 0; c < HDI_GEO_WIDE; c++) {
+            double d[3];
+            const double m = hdi_geo_flow(a, u[i + c], u[j + c], u[k + c], least[c], d);
+            faint |= (m < least[c] && m > 0) << c;
+            b[i + c] -= d[1] + d[2];
+            b[j + c] += d[1];
+            b[k + c] += d[2];
+        }
+    }
+    return faint;
+}
+
+#if HDI_X86
+/* hdi_geo_flow, four or eight columns at a time. */
+static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *u, const double *least, double *b) {
+    const hdi_v4 zero = _mm256_setzero_pd(), one = _mm256_set1_pd(1), minus = _mm256_set1_pd(-1), sign = _mm256_set1_pd(-0.0);
+    int32_t f, c;
+    int faint = 0;
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        const hdi_v4 l = _mm256_set1_pd(a->l), p = _mm256_set1_pd(a->p), q = _mm256_set1_pd(a->q), flat = _mm256_set1_pd(1e-26 * a->l * a->l);
+        for (c = 0; c < HDI_GEO_WIDE; c += 4) {
+            const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c)), u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
+            const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c)), m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
+            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ), s = _mm256_and_pd(lit, _mm256_div_pd(one, m));
+            const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s), d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
+            const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1)), norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
+            const hdi_v4 w = _mm256_and_pd(_mm256_cmp_pd(norm2, flat, _CMP_GT_OQ), _mm256_div_pd(minus, _mm256_sqrt_pd(norm2)));
+            const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w), g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
+            faint |= (_mm256_movemask_pd(_mm256_cmp_pd(m, zero, _CMP_GT_OQ)) & ~_mm256_movemask_pd(lit)) << c;
+            _mm256_storeu_pd(b + i + c, _mm256_sub_pd(_mm256_loadu_pd(b + i + c), _mm256_add_pd(g1, g2)));
+            _mm256_storeu_pd(b + j + c, _mm256_add_pd(_mm256_loadu_pd(b + j + c), g1));
+            _mm256_storeu_pd(b + k + c, _mm256_add_pd(_mm256_loadu_pd(b + k + c), g2));
+        }
+    }
+    return faint;
+}
+
+static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double *u, const double *least, double *b) {
+    const hdi_v8 zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1), minus = _mm512_set1_pd(-1), sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
+    int32_t f;
+    int faint = 0;
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        const hdi_v8 l = _mm512_set1_pd(a->l), p = _mm512_set1_pd(a->p), q = _mm512_set1_pd(a->q);
+        const hdi_v8 u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i)), u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
+        const hdi_v8 u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k)), m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
+        const __mmask8 lit = _mm512_cmp_pd_mask(m, low, _CMP_GE_OQ);
+        const hdi_v8 s = _mm512_maskz_div_pd(lit, one, m);
+        const hdi_v8 d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s), d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
+        const hdi_v8 x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1)), norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
+        const __mmask8 slope = _mm512_cmp_pd_mask(norm2, _mm512_set1_pd(1e-26 * a->l * a->l), _CMP_GT_OQ);
+        const hdi_v8 w = _mm512_maskz_div_pd(slope, minus, _mm512_sqrt_pd(norm2));
+        const hdi_v8 g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w), g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
+        faint |= _mm512_cmp_pd_mask(m, zero, _CMP_GT_OQ) & ~lit;
+        _mm512_storeu_pd(b + i, _mm512_sub_pd(_mm512_loadu_pd(b + i), _mm512_add_pd(g1, g2)));
+        _mm512_storeu_pd(b + j, _mm512_add_pd(_mm512_loadu_pd(b + j), g1));
+        _mm512_storeu_pd(b + k, _mm512_add_pd(_mm512_loadu_pd(b + k), g2));
+    }
+    return faint;
+}
+#endif
+
+static int hdi_geo_divergence8(const hd_geodesic *g, const double *u, const double *least, double *b) {
+    const int level = hdi_simd_level(g->ctx);
+    memset(b, 0, HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof *b);
+#if HDI_X86
+    if (level >= 2) return hdi_geo_divergence8_512(g, u, least, b);
+    if (level == 1) return hdi_geo_divergence8_256(g, u, least, b);
+#endif
+    (void)level;
+    return hdi_geo_divergence8_plain(g, u, least, b);
+}
+
+/* r -= L x */
+static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x, double *HDI_RESTRICT r) {
+    int32_t f;
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        const double d1 = x[a->v[1]] - x[a->v[0]], d2 = x[a->v[2]] - x[a->v[0]];
+        const double gx = d1 / (2 * a->l), gy = (d2 - a->p / a->l * d1) / (2 * a->q);    /* grad x */
+        const double g1 = a->q * gx - a->p * gy, g2 = a->l * gy;
+        r[a->v[0]] += g1 + g2;
+        r[a->v[1]] -= g1;
+        r[a->v[2]] -= g2;
+    }
+}
+
+/* ---- heat beyond what a double can hold ---- */
+/* u falls by about a factor of e over a distance of sqrt(t), and at t = h^2 it is gone after some 700 edges. Let S be where it could be told, and u' = u
+ * beyond S, 0 on it. Then A u' = f, A = L + B/t, is zero but for the rows along the border of S, and there it is known: f_i = sum over j beyond of A_ij u_j for i in
+ * S, f_j = -sum over i in S of A_ij u_i beyond. Solved with f scaled to one, the same u goes on, as far again as before. Only directions are wanted,
+ * so that the scale is of no interest. A face belongs to the first stage that tells one of its corners. */
+
+static const double hdi_geo_faint = 1e-200;      /* of the largest u: below, doubles are soon at their end */
+enum { HDI_GEO_BEYOND = 0, HDI_GEO_EARLIER = 1, HDI_GEO_NOW = 2 };
+
+/* f along the border, into r. Returns the largest. */
+static double hdi_geo_border(const hd_geodesic *g, const double *u, double *r) {
+    double most = 0;
+    int32_t f, i;
+    int q;
+    memset(r, 0, HDI_CAST(size_t, g->n_active) * sizeof *r);
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        const char m0 = g->mark[a->v[0]], m1 = g->mark[a->v[1]], m2 = g->mark[a->v[2]];
+        double weight[3];                        /* of L, of the edge opposite to a corner: -cot/2 */
+        if ((m0 && m1 && m2) || (!m0 && !m1 && !m2)) continue;
+        weight[0] = -a->p / a->q / 2;
+        weight[1] = -(a->l - a->p) / a->q / 2;
+        weight[2] = -(a->q / a->l - a->p / a->l * ((a->l - a->p) / a->q)) / 2;
+        for (q = 0; q < 3; q++) {
+            const int32_t j = a->v[(q + 1) % 3], k = a->v[(q + 2) % 3];
+            const int32_t in = g->mark[j] ? j : k, out = g->mark[j] ? k : j;
+            if (g->mark[in] != HDI_GEO_NOW || g->mark[out] != HDI_GEO_BEYOND) continue;
+            r[in] += weight[q] * u[out];
+            r[out] -= weight[q] * u[in];
+        }
+    }
+    for (i = 0; i < g->n_active; i++) most = hdi_max(most, fabs(r[i]));
+    return most;
+}
+
+/* Marks what u tells, of the rows beyond. Returns how many are left; those of components without a source always are, and have no border. */
+static int32_t hdi_geo_tell(hd_geodesic *g, const double *u, double least) {
+    int32_t i, left = 0;
+    for (i = 0; i < g->n_active; i++) {
+        if (g->mark[i] != HDI_GEO_BEYOND) g->mark[i] = HDI_GEO_EARLIER;
+        else if (fabs(u[i]) >= least) g->mark[i] = HDI_GEO_NOW;
+        else left++;
+    }
+    return left;
+}
+
+/* div X of the faces of which nothing was told before this stage. */
+static void hdi_geo_divergence_beyond(const hd_geodesic *g, const double *u, double least, double *b) {
+    int32_t f;
+    for (f = 0; f < g->n_faces; f++) {
+        const hdi_geo_face *a = g->face + f;
+        double d[3];
+        if (g->mark[a->v[0]] || g->mark[a->v[1]] || g->mark[a->v[2]]) continue;
+        (void)hdi_geo_flow(a, u[a->v[0]], u[a->v[1]], u[a->v[2]], least, d);
+        b[a->v[0]] -= d[1] + d[2];
+        b[a->v[1]] += d[1];
+        b[a->v[2]] += d[2];
+    }
+}
+
+static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, double *x, const char *active) {
+    hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work, 1);
+    z.active = active;
+    hdi_sweep_run(&z, g->ctx);
+}
+
+/* Adds to b what lies beyond u >= least, stage by stage. u is in g->x. Where heat ends for good (no more of the component, weights of zero), the rest has no direction. */
+static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
+    memset(g->mark, HDI_GEO_BEYOND, HDI_CAST(size_t, g->n_active));
+    while (hdi_geo_tell(g, g->x, least) > 0) {
+        const double scale = hdi_geo_border(g, g->x, g->r);
+        double most = 0, *swap = g->x;
+        int32_t i;
+        if (!(scale > DBL_MIN)) return HD_OK;
+        if (hdi_progress(g->ctx, "solve", 0.5, e) < 0) return e->status;
+        for (i = 0; i < g->n_active; i++) g->r[i] /= scale;
+        g->x = g->r;
+        g->r = swap;
+        hdi_geo_sweep(g, &g->heat, 1, g->x, NULL);
+        ++*n_stages;
+        for (i = 0; i < g->n_active; i++)
+            if (g->mark[i] == HDI_GEO_BEYOND) most = hdi_max(most, fabs(g->x[i]));
+        least = most * hdi_geo_faint;
+        if (!(least > DBL_MIN)) return HD_OK;
+        hdi_geo_divergence_beyond(g, g->x, least, g->b);
+    }
+    return HD_OK;
+}
+
+/* ---- queries ---- */
+
+/* Indicator of the sources into x, with the fronts that it touches. Sources twice count once. */
+static void hdi_geo_start(hd_geodesic *g, const int32_t *sources, int32_t k) {
+    int32_t q;
+    memset(g->x, 0, HDI_CAST(size_t, g->n_active) * sizeof *g->x);
+    memset(g->active, 0, HDI_CAST(size_t, g->sym.n_super));
+    memset(g->reached, 0, HDI_CAST(size_t, g->n_components));
+    for (q = 0; q < k; q++) {
+        const int32_t i = g->row[sources[q]];
+        if (i < 0) continue;
+        g->x[i] = 1;
+        g->reached[g->component[i]] = 1;
+        hdi_sweep_touch(&g->sym, i, g->active);
+    }
+}
+
+/* What u has to have to be told from nothing: relative to what the sources have. */
+static double hdi_geo_least(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u, int64_t stride) {
+    double most = 0;
+    int32_t q;
+    for (q = 0; q < k; q++)
+        if (g->row[sources[q]] >= 0) most = hdi_max(most, fabs(u[stride * g->row[sources[q]]]));
+    return hdi_max(most * hdi_geo_faint, DBL_MIN);
+}
+
+/* |r| / |b| of the heat equation, r = b - A u, b the indicator of the sources; work r [n_active]. */
+static double hdi_geo_heat_residual(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u, double *r) {
+    double b2 = 0, r2 = 0;
+    int32_t i, q;
+    memset(r, 0, HDI_CAST(size_t, g->n_active) * sizeof *r);
+    for (q = 0; q < k; q++)
+        if (g->row[sources[q]] >= 0) r[g->row[sources[q]]] = 1;
+    for (i = 0; i < g->n_active; i++) {
+        b2 += r[i] * r[i];
+        r[i] -= g->mass[i] * u[i];
+    }
+    hdi_geo_subtract(g, u, r);
+    for (i = 0; i < g->n_active; i++) r2 += r[i] * r[i];
+    return b2 > 0 ? sqrt(r2 / b2) : 0;
+}
+
+/* |b - L phi| / |b|; b in g->r, which is used up. */
+static double hdi_geo_residual(const hd_geodesic *g, const double *phi) {
+    double b2 = 0, r2 = 0;
+    int32_t i;
+    for (i = 0; i < g->n_active; i++) b2 += g->r[i] * g->r[i];
+    hdi_geo_subtract(g, phi, g->r);
+    for (i = 0; i < g->n_active; i++) r2 += g->r[i] * g->r[i];
+    return b2 > 0 ? sqrt(r2 / b2) : 0;
+}
+
+/* Room for phi at k sources. */
+static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t k, hd_error *e) {
+    const size_t most = HDI_CAST(size_t, k < g->n_active ? k : g->n_active);
+    if (HDI_CAST(size_t, g->value_size) >= most) return HD_OK;
+    hdi_free(g->ctx, g->value);
+    hdi_free(g->ctx, g->sorted);
+    g->value_size = 0;
+    g->sorted = NULL;
+    g->value = HDI_CAST(double *, hdi_alloc(g->ctx, most, sizeof(double), e));
+    if (g->value) g->sorted = HDI_CAST(hdi_pair *, hdi_alloc(g->ctx, most, sizeof(hdi_pair), e));
+    if (g->sorted) g->value_size = HDI_CAST(int32_t, most);
+    return e->status;
+}
+
+/* phi at the sources, ascending within each component. */
+static void hdi_geo_values(hd_geodesic *g, const int32_t *sources, int32_t k, const double *phi) {
+    int32_t q, n = 0;
+    memset(g->mark, 0, HDI_CAST(size_t, g->n_active));
+    memset(g->value_ptr, 0, (HDI_CAST(size_t, g->n_components) + 1) * sizeof *g->value_ptr);
+    for (q = 0; q < k; q++) {
+        const int32_t i = g->row[sources[q]];
+        uint64_t bits;
+        if (i < 0 || g->mark[i]) continue;
+        g->mark[i] = 1;
+        memcpy(&bits, phi + i, sizeof bits);
+        g->sorted[n].key = bits >> 63 ? ~bits : bits | HDI_CAST(uint64_t, 1) << 63;   /* in the order of the doubles */
+        g->sorted[n++].id = i;
+        g->value_ptr[g->component[i]]++;
+    }
+    hdi_sort_pairs(g->sorted, n);
+    hdi_prefix_sum(g->value_ptr, g->n_components);
+    for (q = 0; q < n; q++) g->value[g->value_ptr[g->component[g->sorted[q].id]]++] = phi[g->sorted[q].id];
+    for (q = g->n_components; q > 0; q--) g->value_ptr[q] = g->value_ptr[q - 1];
+    g->value_ptr[0] = 0;
+}
+
+/* Smallest |phi - value| over the ascending values. */
+static double hdi_geo_nearest(const double *value, int64_t n, double phi) {
+    int64_t lo = 0, hi = n;
+    while (lo < hi) {
+        const int64_t mid = lo + (hi - lo) / 2;
+        if (value[mid] < phi) lo = mid + 1;
+        else hi = mid;
+    }
+    if (lo == 0) return value[0] - phi;
+    return lo < n ? hdi_min(value[lo] - phi, phi - value[lo - 1]) : phi - value[n - 1];
+}
+
+/* phi to distances: zero at the sources, infinite where none is. Returns whether all is finite that should be. */
+static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d) {
+    int fine = 1;
+    int32_t v;
+    for (v = 0; v < g->n; v++) {
+        const int32_t i = g->row[v], c = i < 0 ? -1 : g->component[i];
+        d[v] = HUGE_VAL;
+        if (i < 0 || !g->reached[c]) continue;
+        d[v] = g->h * hdi_geo_nearest(g->value + g->value_ptr[c], g->value_ptr[c + 1] - g->value_ptr[c], phi[i]);
+        fine &= hdi_finite(d[v]);
+    }
+    return fine;
+}
+
+static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance) {
+    rep->residual_heat = hdi_max(rep->residual_heat, heat);
+    rep->residual_distance = hdi_max(rep->residual_distance, distance);
+    if (!(heat <= 1e-6) || !(distance <= 1e-6)) rep->status = HD_WARN_ACCURACY;
+}
+
+static hd_status hdi_geo_not_finite(hd_error *e, int32_t column) {
+    hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding has eaten the answer: the mesh has faces that are too thin");
+    e->column = column;
+    return e->status;
+}
+
+/* Distance to the set of sources. */
+static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, hd_geodesic_report *rep, hd_error *e) {
+    double least, heat = 0;
+    int32_t i, n_stages = 1;
+    if (hdi_geo_values_room(g, k, e) < 0) return e->status;
+    hdi_geo_start(g, sources, k);
+    hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
+    if (rep) heat = hdi_geo_heat_residual(g, sources, k, g->x, g->r);
+    least = hdi_geo_least(g, sources, k, g->x, 1);
+    if (hdi_geo_divergence(g, g->x, least, g->b) && hdi_geo_further(g, least, &n_stages, e) < 0) return e->status;
+    if (rep) memcpy(g->r, g->b, HDI_CAST(size_t, g->n_active) * sizeof *g->r);
+    for (i = 0; i < g->n_components; i++) g->b[g->pin[i]] = 0;
+    hdi_geo_sweep(g, &g->poisson, 1, g->b, NULL);
+    hdi_geo_values(g, sources, k, g->b);
+    if (!hdi_geo_distances(g, g->b, d)) return hdi_geo_not_finite(e, -1);
+    for (i = 0; i < k; i++) d[sources[i]] = 0;   /* those without mass too */
+    if (!rep) return HD_OK;
+    rep->n_stages = rep->n_stages > n_stages ? rep->n_stages : n_stages;
+    hdi_geo_judge(rep, heat, hdi_geo_residual(g, g->b));
+    return HD_OK;
+}
+
+static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
+    const size_t n = HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active);
+    if (!g->wide_x) g->wide_x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
+    if (g->wide_x && !g->wide_b) g->wide_b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
+    if (g->wide_b && !g->wide_work) g->wide_work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1), sizeof(double), e));
+    return e->status;
+}
+
+static void hdi_geo_column(const hd_geodesic *g, const double *wide, int32_t c, double *x) {
+    int32_t i;
+    for (i = 0; i < g->n_active; i++) x[i] = wide[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c];
+}
+
+/* phi of up to eight single sources to distances, the columns in d; those with a bit in skip need not be finite. */
+static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, int32_t k, int skip, double *d, size_t ldd) {
+    double at[HDI_GEO_WIDE];
+    int32_t component[HDI_GEO_WIDE], v, c, fine = 1;
+    for (c = 0; c < k; c++) {
+        const int32_t i = g->row[sources[c]];
+        component[c] = i < 0 ? -1 : g->component[i];
+        at[c] = i < 0 ? 0 : g->wide_b[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c];
+    }
+    for (v = 0; v < g->n; v++) {
+        const int32_t i = g->row[v], of = i < 0 ? -2 : g->component[i];
+        for (c = 0; c < k; c++) {
+            double *to = d + HDI_CAST(size_t, c) * ldd + v;
+            *to = HUGE_VAL;
+            if (of != component[c]) continue;
+            *to = g->h * fabs(g->wide_b[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c] - at[c]);
+            fine &= skip >> c & 1 || hdi_finite(*to);
+        }
+    }
+    for (c = 0; c < k; c++) d[HDI_CAST(size_t, c) * ldd + HDI_CAST(size_t, sources[c])] = 0;
+    return fine;
+}
+
+/* Residuals of the heat equation of eight columns; then, with u gone, those of phi. */
+static void hdi_geo_wide_heat(hd_geodesic *g, const int32_t *sources, int32_t k, double *heat) {
+    int32_t c;
+    for (c = 0; c < k; c++) {
+        hdi_geo_column(g, g->wide_x, c, g->x);
+        heat[c] = hdi_geo_heat_residual(g, sources + c, 1, g->x, g->r);
+    }
+}
+
+static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double *heat, hd_geodesic_report *rep) {
+    int32_t c;
+    for (c = 0; c < k; c++) {
+        if (skip >> c & 1) continue;
+        hdi_geo_column(g, g->wide_x, c, g->r);   /* the right-hand side */
+        hdi_geo_column(g, g->wide_b, c, g->x);
+        hdi_geo_judge(rep, heat[c], hdi_geo_residual(g, g->x));
+        rep->n_stages = rep->n_stages > 1 ? rep->n_stages : 1;
+    }
+}
+
+/* Distances to up to eight sources, each for itself, side by side. Columns whose heat fades out are done again alone. */
+static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, size_t ldd, hd_geodesic_report *rep, hd_error *e) {
+    const size_t size = HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof(double);
+    double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
+    int32_t c, i;
+    int faint;
+    if (hdi_geo_wide_room(g, e) < 0) return e->status;
+    memset(g->wide_x, 0, size);
+    memset(g->active, 0, HDI_CAST(size_t, g->sym.n_super));
+    for (c = 0; c < k; c++) {
+        if (g->row[sources[c]] < 0) continue;
+        g->wide_x[HDI_GEO_WIDE * HDI_CAST(int64_t, g->row[sources[c]]) + c] = 1;
+        hdi_sweep_touch(&g->sym, g->row[sources[c]], g->active);
+    }
+    hdi_geo_sweep(g, &g->heat, HDI_GEO_WIDE, g->wide_x, g->active);
+    for (c = 0; c < HDI_GEO_WIDE; c++) least[c] = c < k ? hdi_geo_least(g, sources + c, 1, g->wide_x + c, HDI_GEO_WIDE) : DBL_MIN;
+    faint = hdi_geo_divergence8(g, g->wide_x, least, g->wide_b);
+    if (rep) hdi_geo_wide_heat(g, sources, k, heat);
+    if (rep) memcpy(g->wide_x, g->wide_b, size);
+    for (i = 0; i < g->n_components; i++) memset(g->wide_b + HDI_GEO_WIDE * HDI_CAST(int64_t, g->pin[i]), 0, HDI_GEO_WIDE * sizeof(double));
+    hdi_geo_sweep(g, &g->poisson, HDI_GEO_WIDE, g->wide_b, NULL);
+    if (!hdi_geo_wide_distances(g, sources, k, faint, d, ldd)) return hdi_geo_not_finite(e, -1);
+    if (rep) hdi_geo_wide_judge(g, k, faint, heat, rep);
+    for (c = 0; c < k; c++)
+        if (faint >> c & 1 && hdi_geo_one(g, sources + c, 1, d + HDI_CAST(size_t, c) * ldd, rep, e) < 0) return e->status;
+    return HD_OK;
+}
+
 /* ==== [21] api ====
  * Argument checks, defaults, lifetimes; the bodies of the public functions. May call everything. */
 
@@ -12987,6 +13734,110 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         *h.e = kept;
     }
     return hdi_heat_end(&h);
+
+/* ---- geodesic distance ---- */
+
+static hd_status hdi_geo_check(const hd_geodesic_opts *o, hd_error *e) {
+    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic options: not cleared before use");
+    if (!(o->t >= 0) || !hdi_finite(o->t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
+    if (o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown mass");
+    if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown ordering");
+    if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const hd_geodesic_opts *opts,
+                                          hd_error *err) {
+    hd_geodesic_opts o;
+    hd_geodesic *g;
+    hdi_call c;
+    memset(&o, 0, sizeof o);
+    if (opts) o = *opts;
+    if (hdi_enter(&c, o.context, err) < 0) return c.e->status;
+    if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_missing(c.e);
+    if (n < 0 || n_tri < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: a size is negative");
+    if (hdi_geo_check(&o, c.e) < 0) return c.e->status;
+    if (o.ordering == HD_ORDERING_OWN && hdi_sym_check(o.perm, n, c.ctx, c.e) < 0) return c.e->status;
+    g = HDI_CAST(hd_geodesic *, hdi_alloc(c.ctx, 1, sizeof *g, c.e));
+    if (!g) return c.e->status;
+    memset(g, 0, sizeof *g);
+    if (c.ctx == &c.context) {
+        g->context = c.context;
+        c.ctx = &g->context;
+    }
+    g->ctx = c.ctx;
+    g->n = n;
+    if (hdi_geo_make(g, xyz, tri, n_tri, &o, c.e) < 0) {
+        hdi_geo_free(g);
+        return c.e->status;
+    }
+    *out = g;
+    return HD_OK;
+}
+
+HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { hdi_geo_free(g); }
+
+static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
+    if (!rep) return;
+    rep->t = g->t;
+    rep->h = g->h;
+    rep->n_components = g->n_components;
+    rep->ordering = g->sym.ordering;
+    rep->factor_nnz = g->sym.nnz;
+    rep->factor_flops = 2 * g->sym.flops;
+}
+
+static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
+    if (rep && e->status < 0) {
+        rep->status = e->status;
+        rep->error = *e;
+    }
+    return rep ? rep->status : e->status;
+}
+
+/* Checks the arguments of a query; the report is filled with what is known of the plan. */
+static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d, hd_geodesic_report *rep, hdi_call *c) {
+    int32_t q;
+    if (rep) {
+        memset(rep, 0, sizeof *rep);
+        hdi_error_clear(&rep->error);
+    }
+    if (hdi_enter(c, g ? g->ctx : NULL, NULL) < 0) return c->e->status;
+    if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
+    hdi_geo_tell_plan(g, rep);
+    for (q = 0; q < k; q++) {
+        if (sources[q] >= 0 && sources[q] < g->n) continue;
+        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q], g->n);
+        c->e->column = q;
+        return c->e->status;
+    }
+    return hdi_progress(g->ctx, "solve", 0, c->e);
+}
+
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const int32_t *sources, int32_t n_sources, double *d, hd_geodesic_report *report) {
+    hdi_call c;
+    if (hdi_geo_begin(g, sources, n_sources, d, report, &c) < 0) return hdi_geo_end(report, c.e);
+    if (n_sources < 1) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: there is no source");
+    else (void)hdi_geo_one(g, sources, n_sources, d, report, c.e);
+    return hdi_geo_end(report, c.e);
+}
+
+HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd, hd_geodesic_report *report) {
+    hdi_call c;
+    int32_t q, n_cols;
+    if (hdi_geo_begin(g, sources, k, D, report, &c) < 0) return hdi_geo_end(report, c.e);
+    ldd = ldd ? ldd : HDI_CAST(size_t, g->n);
+    if (k < 0) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the number of sources is negative");
+    else if (ldd < HDI_CAST(size_t, g->n)) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the leading dimension is smaller than n");
+    for (q = 0; q < k && c.e->status >= 0; q += n_cols) {
+        const int32_t wide = k - q >= HDI_GEO_WIDE_FROM;
+        double *to = D + HDI_CAST(size_t, q) * ldd;
+        n_cols = !wide ? 1 : k - q < HDI_GEO_WIDE ? k - q : HDI_GEO_WIDE;
+        if (hdi_progress(g->ctx, "solve", HDI_CAST(double, q) / k, c.e) < 0) break;
+        if (wide) (void)hdi_geo_wide(g, sources + q, n_cols, to, ldd, report, c.e);
+        else (void)hdi_geo_one(g, sources + q, 1, to, report, c.e);
+    }
+    return hdi_geo_end(report, c.e);
 }
 
 /* ==== [22] closing ==== */

@@ -141,10 +141,10 @@ static void bar_part(const char *what, int64_t i, int64_t n)
 /* ==== seconds of the stages ==== */
 /* The library has no clock, but its progress calls name the stage that begins. The time up to the next stage is that one's. */
 
-enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_SOLVE, N_STAGES };
-static const char *const STAGE_NAMES[N_STAGES] = { "order", "analyse", "factor", "precondition", "solve" };
+enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_SOLVE, N_STAGES, STAGE_ASSEMBLE = N_STAGES, N_NAMES };
+static const char *const STAGE_NAMES[N_NAMES] = { "order", "analyse", "factor", "precondition", "solve", "assemble" };  /* the last is told apart */
 
-static struct { int running, stage; double since, spent[N_STAGES]; } stages;
+static struct { int running, stage; double since, spent[N_NAMES]; } stages;
 
 static void stages_book(void)
 {
@@ -172,7 +172,7 @@ static void stages_enter(const char *name)
     if (!stages.running || strcmp(name, STAGE_NAMES[stages.stage]) == 0) return;
     stages_book();
     stages.stage = STAGE_SOLVE;
-    for (i = 0; i < N_STAGES; i++)
+    for (i = 0; i < N_NAMES; i++)
         if (strcmp(name, STAGE_NAMES[i]) == 0) stages.stage = i;
 }
 
@@ -431,8 +431,8 @@ static int output_format(const char *path)
 
 /* ==== options ==== */
 
-enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16,
-       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE, CMD_PICTURE = CMD_HEAT | CMD_RENDER, CMD_ALL = 31 };
+enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32,
+       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE, CMD_FIELDS = CMD_HEAT | CMD_GEODESIC, CMD_PICTURE = CMD_FIELDS | CMD_RENDER, CMD_ALL = 63 };
 
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_AUTO } time_unit;
 typedef struct time_spec { time_unit unit; double value; } time_spec;   /* value: the number, or for auto how many */
@@ -654,6 +654,10 @@ static const option_def OPTIONS[] = {
     { "t", 0, CMD_HEAT, 1, parse_times, 0, NULL, 0, 0, "T[,T..]",
       "times >= 0: numbers such as 0.01, multiples of h^2 such as 10h2, or auto:K for K of them",
       "diffusion times: absolute (0.01), multiples of the squared\nmean edge length (10h2), or auto:K, K times that suit the area" },
+    { "t", 0, CMD_GEODESIC, 1, parse_times, 0, NULL, 0, 0, "T", "one time > 0: a number such as 0.01, or a multiple of h^2 such as 4h2",
+      "how long heat flows, absolute or in h2 (default: 1h2); longer\nmakes distances smoother and less exact" },
+    { "source", 0, CMD_GEODESIC, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
+      "vertices to measure from, counted from 0; a column for each" },
     { "source", 0, CMD_KERNEL, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
       "vertices where the heat starts, counted from 0" },
     { "input", 0, CMD_DIFFUSE | CMD_RENDER, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
@@ -671,6 +675,8 @@ static const option_def OPTIONS[] = {
     { "method", 0, CMD_HEAT, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto, direct, krylov or iterative",
       "direct: factors of all poles, for many sources or fields;\nkrylov: one factor for one source and for many times;\n"
       "iterative: no factor; auto (default): what costs least" },
+    { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
+      "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
     { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
       "of direct and krylov: amd (minimum degree), dissection\n(nested, in space) or auto (default: by the size)" },
     { "solver", 0, CMD_HEAT, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME", "cocg, cocr, minres or lanczos",
@@ -679,13 +685,13 @@ static const option_def OPTIONS[] = {
       "of iterative: none, jacobi, ssor, ildl or mildl (default)" },
     { "max-iterations", 0, CMD_HEAT, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N", "a number from 1",
       "of iterative: limit of the iterations per system" },
-    { "threads", 0, CMD_INFO | CMD_HEAT | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
+    { "threads", 0, CMD_INFO | CMD_FIELDS | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
       "worker threads (default: all)" },
-    { "simd", 0, CMD_HEAT | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
+    { "simd", 0, CMD_FIELDS | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
       "instruction set: none (plain C), avx2, avx512, as far as the\nprocessor has them, or auto (default: its best)" },
-    { "memory-limit", 0, CMD_INFO | CMD_HEAT | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
+    { "memory-limit", 0, CMD_INFO | CMD_FIELDS | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G" },
-    { "output", 'o', CMD_HEAT, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
+    { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n- or nothing: standard output, as text" },
     { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",
       "the .png, or - for standard output" },
@@ -719,6 +725,7 @@ static const command_def COMMANDS[] = {
     { "info", CMD_INFO, "counts, area, edge length and defects of a mesh", "[OPTIONS] MESH" },
     { "kernel", CMD_KERNEL, "columns of the heat kernel: heat from single vertices", "--source V[,V..] --t T[,T..] [OPTIONS] MESH" },
     { "diffuse", CMD_DIFFUSE, "diffuses your own fields", "--input F --t T[,T..] [OPTIONS] MESH" },
+    { "geodesic", CMD_GEODESIC, "distances along the surface, by the heat method", "--source V[,V..] [--t T] [OPTIONS] MESH" },
     { "render", CMD_RENDER, "a picture of a field on the mesh", "--input F -o PICTURE.png [OPTIONS] MESH" },
     { "demo", CMD_DEMO, "all of it on a shape made in memory: start here", "[-o FOLDER] [OPTIONS]" },
 };
@@ -836,6 +843,15 @@ static int check_method(const options *o)
     return DONE;
 }
 
+/* One time, and not zero: heat must have flowed to show the way. */
+static int check_geodesic(const options *o)
+{
+    if (!o->sources) return fail(USAGE, "geodesic needs --source, which takes vertex ids from 0, such as 0,17");
+    if (o->times && (o->n_times != 1 || !(o->times[0].value > 0) || (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
+        return fail(USAGE, "--t takes one time above 0 here, such as 4h2");
+    return DONE;
+}
+
 /* What single options cannot see: what is missing, what does not go together. */
 static int check_options(const options *o)
 {
@@ -847,6 +863,7 @@ static int check_options(const options *o)
         return fail(USAGE, "%s needs --input, which takes the file of a field", name);
     if ((o->command & CMD_HEAT) && !o->times)
         return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
+    if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
     if ((code = check_method(o)) != DONE) return code;
     if (o->degree == 1 && (o->poles == HD_POLES_KERNEL || (o->poles == HD_POLES_DEFAULT && o->command == CMD_KERNEL)))
         return fail(USAGE, "--degree takes 2..14 with --poles kernel, and 1..14 with --poles uniform");
@@ -896,6 +913,7 @@ static void print_help(void)
            "  heatdiff kernel --source 0 --t 100h2 bunny.obj -o heat.ply\n"
            "  heatdiff kernel --source 0,500 --t auto:4 bunny.obj > columns.txt\n"
            "  heatdiff kernel --source 0 --t auto:100 --method krylov bunny.obj -o movie.npy\n"
+           "  heatdiff geodesic --source 0 bunny.obj -o distance.png\n"
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
            "\nMeshes: OBJ, OFF, PLY, STL; - reads standard input. Vertices are counted from 0.\n"
@@ -1202,6 +1220,8 @@ typedef struct run {
     const double *fields;            /* mesh.n x n_inputs, or NULL: the kernel columns of the sources */
     const char *field_name;          /* for people */
     hd_heat *heat;
+    hd_geodesic *geodesic;
+    hd_geodesic_report geodesic_report;
     double *values;                  /* column-major, mesh.n x n_columns; input q after time k is column q n_times + k */
     int64_t n_columns;
     char (*names)[NAME_SIZE];        /* of the columns, and pointers to them */
@@ -1241,6 +1261,7 @@ static void run_end(run *r)
     pool_end(&r->threads);
 #endif
     hd_heat_free(r->heat);
+    hd_geodesic_free(r->geodesic);
     hd_laplacian_free(r->lap);
     mesh_free(&r->mesh);
     free(r->times);
@@ -1338,15 +1359,18 @@ static double auto_time(const run *r, int i, int count)
 
 static int run_times(run *r)
 {
+    static const time_spec usual = { TIME_H2, 1 };       /* of geodesic, when --t is not given */
     const options *o = r->o;
+    const int n_given = o->times ? o->n_times : 1;
+    const time_spec *given = o->times ? o->times : &usual;
     int i, k, total = 0;
-    for (i = 0; i < o->n_times; i++) total += o->times[i].unit == TIME_AUTO ? (int)o->times[i].value : 1;
+    for (i = 0; i < n_given; i++) total += given[i].unit == TIME_AUTO ? (int)given[i].value : 1;
     r->times = (double *)malloc((size_t)total * sizeof *r->times);
     r->time_names = (char (*)[NAME_SIZE])malloc((size_t)total * sizeof *r->time_names);
     r->sum.per_time = (hd_report *)calloc((size_t)total, sizeof *r->sum.per_time);
     if (!r->times || !r->time_names || !r->sum.per_time) return fail_memory("the times");
-    for (i = 0; i < o->n_times; i++) {
-        const time_spec s = o->times[i];
+    for (i = 0; i < n_given; i++) {
+        const time_spec s = given[i];
         const int count = s.unit == TIME_AUTO ? (int)s.value : 1;
         for (k = 0; k < count; k++, r->n_times++) {
             double *t = &r->times[r->n_times];
@@ -1533,20 +1557,44 @@ static int solve_all(run *r)
 }
 
 /* Leaves the plan in r->heat, for who has more to ask of it. */
-static int run_solve(run *r)
+/* Room for the result, and whether it has the column that is to be shown. */
+static int run_columns(run *r)
 {
-    int code;
     r->n_columns = (int64_t)r->n_inputs * r->n_times;
     if (r->n_columns > INT32_MAX / 2) return fail(FAILED, "%lld columns are too many", (long long)r->n_columns);
     if (r->o->column >= r->n_columns)
         return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column, (long long)r->n_columns);
     r->values = new_columns(r->mesh.n, r->n_columns);
-    if (!r->values) return fail_memory("the result");
+    return r->values ? DONE : fail_memory("the result");
+}
+
+/* Distances from all sources, a column each. */
+static int solve_geodesic(run *r)
+{
+    hd_geodesic_opts opts;
+    hd_error err;
+    memset(&opts, 0, sizeof opts);
+    opts.t = r->times[0];
+    opts.ordering = (hd_ordering)r->o->ordering;
+    opts.context = &r->context;
+    if (hd_geodesic_create(&r->geodesic, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, &err) < 0) return fail_laplacian(r, &err);
+    if (hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report) >= 0) return DONE;
+    return fail_library(r->mesh_name, &r->geodesic_report.error);
+}
+
+static int run_solve(run *r)
+{
+    int code = run_columns(r);
+    if (code) return code;
     interrupt.patient = 1;
     stages_start();
-    code = run_plan(r);
-    if (!code) code = solve_all(r);
+    if (r->o->command == CMD_GEODESIC) code = solve_geodesic(r);
+    else {
+        code = run_plan(r);
+        if (!code) code = solve_all(r);
+    }
     stages_stop();
+    r->sec.assemble += stages.spent[STAGE_ASSEMBLE];
     memcpy(r->sec.stage, stages.spent, sizeof r->sec.stage);
     code = leave_computation(code);
     bar_part("", 0, 0);
@@ -1689,15 +1737,22 @@ static void print_seconds(const run *r)
             plural(threads_used(r)));
 }
 
+static void print_surface(const run *r)
+{
+    const hd_laplacian *lap = r->lap;
+    fprintf(stderr, "%s: %ld vertices, %ld faces, %ld component%s, h = %.4g, area = %.4g", r->mesh_name, (long)r->mesh.n,
+            (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components), lap->h, lap->area);
+    if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
+    fprintf(stderr, "\n");
+}
+
 static void print_heat(const run *r)
 {
     const hd_report *w = &r->sum.worst;
     const hd_laplacian *lap = r->lap;
     const char *unit = r->o->command == CMD_KERNEL ? "source" : "field";
-    fprintf(stderr, "%s: %ld vertices, %ld faces, %ld component%s, h = %.4g, area = %.4g", r->mesh_name, (long)r->mesh.n,
-            (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components), lap->h, lap->area);
-    if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
-    fprintf(stderr, "\n%s: %d %s%s, %d time%s, %s Laplacian\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
+    print_surface(r);
+    fprintf(stderr, "%s: %d %s%s, %d time%s, %s Laplacian\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
             r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind));
     print_method(r);
     fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n", w->error_bound,
@@ -1715,6 +1770,58 @@ static void report_heat(const run *r)
         json_heat(&j, r);
         json_end(&j, r);
     } else if (!r->o->quiet) print_heat(r);
+}
+
+/* ---- of geodesic ---- */
+
+/* Distances that are infinite, in all columns. */
+static int64_t count_unreached(const run *r)
+{
+    int64_t i, count = 0;
+    for (i = 0; i < r->n_columns * r->mesh.n; i++) count += !isfinite(r->values[i]);
+    return count;
+}
+
+static void json_geodesic(json *j, const run *r)
+{
+    const hd_geodesic_report *g = &r->geodesic_report;
+    json_text(j, "method", "direct");
+    json_integers(j, "sources", r->o->sources, r->o->n_sources);
+    json_numbers(j, "times", r->times, r->n_times);
+    json_text(j, "ordering", word_of(ORDERINGS, (int)g->ordering));
+    json_integer(j, "factor_nnz", g->factor_nnz);
+    json_number(j, "factor_flops", g->factor_flops);
+    json_number(j, "residual", g->residual_heat > g->residual_distance ? g->residual_heat : g->residual_distance);
+    json_number(j, "residual_heat", g->residual_heat);
+    json_number(j, "residual_distance", g->residual_distance);
+    json_integer(j, "stages", g->n_stages);
+    json_integer(j, "unreached", count_unreached(r));
+    json_text(j, "status", hd_status_name(g->status));
+}
+
+static void print_geodesic(const run *r)
+{
+    const hd_geodesic_report *g = &r->geodesic_report;
+    const int64_t unreached = count_unreached(r);
+    print_surface(r);
+    fprintf(stderr, "geodesic: %d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t, g->t / (g->h * g->h));
+    fprintf(stderr, "two factors: %.3g non-zeros each; %.3g flops, ordering %s\n", (double)g->factor_nnz, g->factor_flops,
+            word_of(ORDERINGS, (int)g->ordering));
+    fprintf(stderr, "residuals %.1e and %.1e, heat followed in %ld stage%s\n", g->residual_heat, g->residual_distance, (long)g->n_stages, plural(g->n_stages));
+    if (unreached) fprintf(stderr, "note: %lld distance%s infinite: nothing leads there\n", (long long)unreached, unreached == 1 ? " is" : "s are");
+    if (g->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(g->status));
+    print_seconds(r);
+}
+
+static void report_geodesic(const run *r)
+{
+    json j;
+    if (r->o->json) {
+        json_begin(&j, r, stderr);
+        json_laplacian(&j, r->lap);
+        json_geodesic(&j, r);
+        json_end(&j, r);
+    } else if (!r->o->quiet) print_geodesic(r);
 }
 
 /* ==== pictures ==== */
@@ -1888,7 +1995,8 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
     const int q = (int)(c / r->n_times);
     char when[64];
     time_text(r->time_names[c % r->n_times], when, sizeof when);
-    if (r->sources) snprintf(title, size, "Heat from vertex %ld, %s", (long)r->sources[q], when);
+    if (r->o->command == CMD_GEODESIC) snprintf(title, size, "Geodesic distance from vertex %ld, %s", (long)r->sources[q], when);
+    else if (r->sources) snprintf(title, size, "Heat from vertex %ld, %s", (long)r->sources[q], when);
     else snprintf(title, size, "Field %d diffused, %s", q, when);
 }
 
@@ -1902,6 +2010,8 @@ static int write_heat(run *r)
     int code = heat_names(r);
     hd_heat_free(r->heat);           /* large, and not needed any more */
     r->heat = NULL;
+    hd_geodesic_free(r->geodesic);
+    r->geodesic = NULL;
     if (code) return code;
     memset(&res, 0, sizeof res);
     res.n_columns = r->n_columns;
@@ -2027,6 +2137,18 @@ static int command_kernel(run *r)
     if (!code) code = run_solve(r);
     if (!code) code = write_heat(r);
     if (!code) report_heat(r);
+    return code;
+}
+
+static int command_geodesic(run *r)
+{
+    int code = run_load(r);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_times(r);
+    if (!code) code = run_sources(r);
+    if (!code) code = run_solve(r);
+    if (!code) code = write_heat(r);
+    if (!code) report_geodesic(r);
     return code;
 }
 
@@ -2329,6 +2451,7 @@ static int run_command(const options *o)
     case CMD_INFO: code = command_info(&r); break;
     case CMD_KERNEL: code = command_kernel(&r); break;
     case CMD_DIFFUSE: code = command_diffuse(&r); break;
+    case CMD_GEODESIC: code = command_geodesic(&r); break;
     case CMD_RENDER: code = command_render(&r); break;
     case CMD_DEMO: code = command_demo(&r); break;
     default: break;
