@@ -7232,7 +7232,7 @@ static void hdi_sweep_touch(const hdi_symbolic *s, int32_t i, char *active) {
  * The factor stays as it is. A front's Z22 stands where its update matrix stood: its life is that of the update matrix run backwards, so that the plan of
  * memory serves both. What is new, the columns of the pivots, lives in a scratch panel until the children have taken their parts. */
 
-enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 16 };
+enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 24 };
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
  * sets of weights, at the entries of A's lower triangle in the order of sym->a_from, or on the diagonal by pivots. They are added to what is there. */
@@ -7380,23 +7380,24 @@ static void hdi_pack_inverse_pivots(const hdi_inverse_front *w) {
     }
 }
 
-/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front. */
+/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front; some columns at a time, as T is triangular. */
 static void hdi_pack_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
     const hdi_pack_block l = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
     const int64_t n = w->k1 - w->k0;
     hdi_pack_job g;
+    int64_t k;
     memset(&g, 0, sizeof g);
-    g.a = hdi_pack_at(&l, r0, w->k0);
     g.a_row = l.row;
-    g.a_col = HDI_PACK;
-    g.b = w->T;
-    g.b_row = HDI_PACK;
-    g.b_col = HDI_PACK * n;
-    g.c = w->M + (r0 - w->k1) * HDI_PACK * n;
-    g.c_row = HDI_PACK * n;
-    g.depth = n;
+    g.a_col = g.b_row = HDI_PACK;
+    g.b_col = g.c_row = HDI_PACK * n;
     g.store = 1;
-    w->f->pack->multiply(&g, 0, r1 - r0, 0, n);
+    for (k = 0; k < n; k += HDI_INV_PIVOTS) {
+        g.a = hdi_pack_at(&l, r0, w->k0 + k);
+        g.b = w->T + HDI_PACK * (k * n + k);
+        g.c = w->M + HDI_PACK * ((r0 - w->k1) * n + k);
+        g.depth = n - k;
+        w->f->pack->multiply(&g, 0, r1 - r0, 0, hdi_least(n - k, HDI_INV_PIVOTS));
+    }
 }
 
 /* Rows [r0,r1) of Z21 = -Z22 M. */
@@ -12355,6 +12356,11 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
             if (!lap->B) lane->rhs[row] = lap->mass[row];
         } else {
             lane->rhs[row] = 1;
+            if (h->method == HD_METHOD_DIRECT && h->heat->elim.set.a0 == 0 && lap->b_ratio > 0) {   /* B^-1 e is not needed, only a bound of its norm */
+                hdi_component_sums(lap, NULL, lane->rhs, lane->target);
+                lane->f_norm = 1 / sqrt(lap->b_ratio * lap->b_diag[row]);
+                return HD_OK;
+            }
             if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
         }
     }
