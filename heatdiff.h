@@ -506,6 +506,16 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
  * when ldb = ldx or 0. */
 HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx, hd_error *err);
 
+/* Entries of A^-1 by selected inversion, A the matrix of the last real factorisation, which stays.
+ * values [nnz], on the pattern analysed and in its order, both of each pair; diag [n], diagonal entries missing in the pattern included. Each may be NULL.
+ * Cost about twice the factorisation's flops (twice that for both, where diagonal entries are missing); work arrays live for the call.
+ * Errors HD_ERR_ARGUMENT (the last factorisation was not a real one, or failed), HD_ERR_MEMORY, HD_ERR_CANCELLED.
+ * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975. */
+HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, hd_error *err);
+
+/* The same for all k matrices of the last complex factorisation (A^-1 is complex symmetric as A is): values [k nnz], diag [k n]. */
+HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag, hd_error *err);
+
 HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 
 /* ---- heat ---- */
@@ -10520,6 +10530,81 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
             const double *from = f->x[1] + HDI_PACK * HDI_CAST(int64_t, i);
             for (q = 0; q < n_here; q++) x[HDI_CAST(size_t, 4 * p + q) * ldx + HDI_CAST(size_t, f->sym.perm[i])] = hdi_c(from[q], from[q + 4]);
         }
+    }
+    return HD_OK;
+}
+
+/* The analysis' entries x to their places in the pattern and to those across the diagonal, `stride` doubles from one place to the next. Diagonal ones to
+ * diag, unless NULL. val may be NULL. Returns how many there are on the diagonal. */
+static int32_t hdi_ldl_spread(const hd_ldl *f, const double *x, double *val, double *diag, int stride) {
+    const hdi_symbolic *s = &f->sym;
+    int32_t v, found = 0;
+    int64_t q;
+    for (v = 0; v < s->n_super; v++) {
+        for (q = s->a_ptr[v]; q < s->a_ptr[v + 1]; q++) {
+            const int64_t p = s->a_from[q];
+            const int32_t i = s->perm[s->super[v] + s->a_col[q]], j = f->col[p];   /* entry p is (i,j): rows of A are walked from the column's pivot */
+            if (val) val[stride * p] = x[q];
+            if (i == j) found++;
+            if (i == j && diag) diag[HDI_CAST(int64_t, stride) * i] = x[q];
+            if (i != j && val) val[stride * (f->row_ptr[j] + hdi_lower_bound(f->col + f->row_ptr[j], f->row_ptr[j + 1] - f->row_ptr[j], i))] = x[q];
+        }
+    }
+    return found;
+}
+
+/* One factor, real or of up to four matrices: part c of matrix q goes to values + stride (q nnz) + c, and so for diag. */
+static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, double *values, double *diag, hd_error *e) {
+    const int32_t stride = of->width == 1 ? 1 : 2, n_sets = stride * n_matrices;
+    const int64_t entries = f->sym.a_ptr[f->sym.n_super], size = values ? entries : f->n;
+    hdi_scope s = hdi_scope_begin(f->ctx, e);
+    double coef[HDI_PACK * HDI_PACK], *x = HDI_TAKE(&s, double, HDI_CAST(size_t, n_sets) * HDI_CAST(size_t, size > f->n ? size : f->n));
+    int32_t q, i, found = 0;
+    hdi_inverse z;
+    memset(coef, 0, sizeof coef);
+    for (q = 0; q < n_sets; q++) coef[q * of->width + q / stride + q % stride * 4] = 1;   /* numbers of a pack: four real parts, four imaginary ones */
+    if (e->status < 0 || hdi_inverse_make(&z, &f->sym, of->width, f->ctx, e) < 0) return hdi_scope_end(&s);
+    z.coef = coef;
+    z.n_sets = n_sets;
+    z.values = x;
+    if (values) {
+        memset(x, 0, HDI_CAST(size_t, n_sets) * HDI_CAST(size_t, entries) * sizeof *x);
+        z.stride = entries;
+        (void)hdi_inverse_run(&z, of, e);
+        for (q = 0; q < n_sets && e->status >= 0; q++)
+            found = hdi_ldl_spread(f, x + q * entries, values + stride * (q / stride * f->nnz) + q % stride,
+                                   diag ? diag + stride * HDI_CAST(int64_t, q / stride) * f->n + q % stride : NULL, stride);
+    }
+    if (diag && e->status >= 0 && (!values || found < f->n)) {
+        memset(x, 0, HDI_CAST(size_t, n_sets) * HDI_CAST(size_t, f->n) * sizeof *x);
+        z.diagonal = 1;
+        z.stride = f->n;
+        (void)hdi_inverse_run(&z, of, e);
+        for (q = 0; q < n_sets && e->status >= 0; q++)
+            for (i = 0; i < f->n; i++)
+                diag[stride * (HDI_CAST(int64_t, q / stride) * f->n + f->sym.perm[i]) + q % stride] = x[HDI_CAST(int64_t, q) * f->n + i];
+    }
+    hdi_inverse_free(&z, f->ctx);
+    return hdi_scope_end(&s);
+}
+
+HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, f ? f->ctx : NULL, err) < 0) return c.e->status;
+    if (!f) return hdi_missing(c.e);
+    if (!f->real.ready) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a real one");
+    return values || diag ? hdi_ldl_invert(f, &f->real, 1, values, diag, c.e) : HD_OK;
+}
+
+HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag, hd_error *err) {
+    hdi_call c;
+    int32_t p;
+    if (hdi_enter(&c, f ? f->ctx : NULL, err) < 0) return c.e->status;
+    if (!f) return hdi_missing(c.e);
+    if (f->n_matrices == 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a complex one");
+    for (p = 0; 4 * p < f->n_matrices && (values || diag); p++) {
+        const int32_t n_here = f->n_matrices - 4 * p < 4 ? f->n_matrices - 4 * p : 4;
+        if (hdi_ldl_invert(f, f->pack + p, n_here, values ? &values[4 * p * f->nnz].re : NULL, diag ? &diag[HDI_CAST(int64_t, 4) * p * f->n].re : NULL, c.e) < 0) return c.e->status;
     }
     return HD_OK;
 }
