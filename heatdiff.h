@@ -562,7 +562,7 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
 
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
- * vertices). For a full B without a0 B^-1, as above. */
+ * vertices). For a full B without a0 B^-1, as above. The report's bound is that of the rational error. */
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
@@ -577,7 +577,7 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
 
 /* K_t(i[q],j[q]) and distances for listed pairs. K, d [n_pairs], each may be NULL; K is left alone by commute and biharmonic.
  * From columns at t of the vertices that occur, d = |K_t B^-1 (e_i - e_j)|_B without subtraction; when these columns would take more than half a GiB, from
- * entries and the diagonal at 2t, a column at a time: sort the pairs by i then. */
+ * entries and the diagonal at 2t, a column at a time: sort the pairs by i then. Commute and biharmonic always so; they need the direct method. */
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d,
                                      hd_report *report);
 
@@ -11746,7 +11746,10 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         if (off[i] * value[worst] > off[worst] * value[i]) worst = i;
     unit = kernel == HD_KERNEL_SYMMETRIC ? heat->scale : 1;
     for (v = 0; v < lap->n; v++) out[v] = kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
-    for (i = 0; i < s->n; i++) out[lap->vertex[i]] = unit * value[i];
+    for (i = 0; i < s->n; i++) {
+        off[i] *= unit;                          /* the report is in the caller's unit */
+        out[lap->vertex[i]] = value[i] *= unit;
+    }
     if (s->n > 0) {                              /* rounding: one entry by a solve */
         double *u = HDI_TAKE(&scope, double, lap->n);
         v = lap->vertex[worst];
@@ -11813,6 +11816,26 @@ static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, 
     }
 }
 
+/* Adds a0 B^-1 where B is diagonal, and bounds the rational error: that of an entry (i,j) is at most the larger of those of (i,i) and (j,j). */
+static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_laplacian *lap = m->lap;
+    double largest = 0, most = 0;
+    int32_t v, i;
+    int64_t n;
+    if (lap->B) x->uniform += fabs(m->set.a0);
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            if (s->a_row[n] != s->a_col[n]) continue;
+            i = s->super[v] + s->a_col[n];
+            if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
+            largest = hdi_max(largest, fabs(x->k[n]));
+            most = hdi_max(most, hdi_entry_error(x, x->g[n], lap->b_diag[i], lap->b_ratio));
+        }
+    }
+    if (largest > 0) rep->error_rational = rep->error_bound = most / largest;
+}
+
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report) {
     hdi_heat_call h;
     hdi_entries x;
@@ -11824,7 +11847,10 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd
     hdi_direct_only(&h);
     size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
     room = HDI_TAKE(&h.s, double, 2 * HDI_CAST(size_t, size));
-    if (room && hdi_entries_make(&h, 0, room, size, &x) >= 0) hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+    if (room && hdi_entries_make(&h, 0, room, size, &x) >= 0) {
+        hdi_edges_judge(&heat->elim, &x, h.rep);
+        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+    }
     return hdi_heat_end(&h);
 }
 
@@ -12098,9 +12124,9 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
         most = hdi_max(most, error);
         relative = hdi_max(relative, d > 0 ? error / d : HUGE_VAL);
     }
-    if (largest == 0) return;
-    rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
-    rep->error_bound = hdi_max(rep->error_bound, most / largest);
+    if (most == 0) return;
+    if (largest > 0) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
+    rep->error_bound = hdi_max(rep->error_bound, largest > 0 ? most / largest : HUGE_VAL);   /* nothing is left of any */
     rep->error_relative = hdi_max(rep->error_relative, relative);
 }
 
@@ -12238,7 +12264,7 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, doub
         }
         d[q] = f[j[q]];
     }
-    hdi_report_merge(rep, &one);
+    if (e->status >= 0) hdi_report_merge(rep, &one);
     return rep->status = hdi_scope_end(&s);
 }
 
@@ -12250,8 +12276,9 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
     int32_t *list, *place, n_list = 0;
     int64_t q;
     if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, kind >= HD_DISTANCE_COMMUTE ? 1 : t, 0, report) < 0) return hdi_heat_end(&h);
-    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC) hdi_fail(h.e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    else if (n_pairs < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
+    if (kind < HD_DISTANCE_CLASSICAL || kind >= HD_DISTANCE_COMMUTE) (void)hdi_distance_check(heat, kind, 0, NULL, h.e);
+    if (h.e->status < 0) return hdi_heat_end(&h);
+    if (n_pairs < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
     else if (n_pairs > 0 && (!i || !j)) hdi_missing(h.e);
     for (q = 0; q < n_pairs && !h.e->status; q++)
         if (hdi_vertex_check(heat->source, i[q], h.e) < 0 || hdi_vertex_check(heat->source, j[q], h.e) < 0) h.e->row = q;
@@ -12299,12 +12326,12 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
     work = HDI_TAKE(&h.s, double, lap ? 2 * HDI_CAST(size_t, lap->n) + 1 : 0);
     memset(&one, 0, sizeof one);
     if (h.e->status < 0 || hdi_metric_make(heat, kind, t, 0, &x, &h.s, &one) < 0) return hdi_heat_end(&h);
-    for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : HUGE_VAL;   /* without mass: never chosen */
+    for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
     for (q = 0; q < count && h.e->status >= 0; q++) {
         hd_report column;
         int32_t best = -1;
         for (v = 0; v < lap->n && q >= n_given; v++)
-            if (best < 0 || nearest[v] > nearest[best]) best = v;
+            if (lap->row[v] >= 0 && (best < 0 || nearest[v] > nearest[best])) best = v;   /* without mass: never chosen */
         if (q >= n_given) vertex[q] = q == 0 ? lap->vertex[0] : best;
         if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
         if (q + 1 == count) break;
@@ -12315,7 +12342,8 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         }
         hdi_metric_column(lap, &x, u, work);
         hdi_metric_distance(lap, &x, vertex[q], u, &one);
-        for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : hdi_min(nearest[v], u[v]);
+        for (v = 0; v < lap->n; v++) nearest[v] = hdi_min(nearest[v], u[v]);
+        nearest[vertex[q]] = -1;                 /* not again, even when no distance is left */
     }
     {
         const hd_error kept = *h.e;
