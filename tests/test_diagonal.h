@@ -968,6 +968,183 @@ static void diag_pairs(void) {
     shape_free(&odd);
 }
 
+/* ---- sets, pairs of matrices, orderings, threads ---- */
+
+/* Sets made for diagonals: c(0) = 1, and the error under their weight as promised. */
+static void diag_sets(void) {
+    hd_rational set;
+    hd_error e;
+    int32_t r, k;
+    for (r = 2; r <= 14; r++) {
+        double weighted = 0, plain = 0;
+        CHECK(hd_rational_get(&set, HD_POLES_DIAGONAL, r, &e) == HD_OK && set.kind == HD_POLES_DIAGONAL && set.degree == r && set.n_poles == (r + 1) / 2 && set.a0 == 0);
+        CHECK_MSG(fabs(hd_rational_eval(&set, 0) - 1) < 2e-15 * pow(1.5, r), "degree %d: c(0) - 1 = %g", (int)r, hd_rational_eval(&set, 0) - 1);
+        for (k = 0; k <= 10000; k++) {
+            const double x = pow(10, -6 + k * 1e-3), error = fabs(exp(-x) - hd_rational_eval(&set, -x));
+            plain = fmax(plain, error);
+            if (x < 1e4) weighted = fmax(weighted, (1 + x) * (1 + 4 * x / (x + 1000)) * error);
+        }
+        CHECK_MSG(plain <= set.max_error + 1e-14 * pow(1.43, r) && plain >= 0.85 * set.max_error - 2e-15, "degree %d: error %g, promised %g", (int)r, plain, set.max_error);
+        CHECK_MSG(weighted <= set.max_weighted_error + 1e-13 * pow(1.43, r) && weighted >= 0.85 * set.max_weighted_error - 2e-15, "degree %d: weighted error %g, promised %g", (int)r,
+                  weighted, set.max_weighted_error);
+    }
+    CHECK(hd_rational_get(&set, HD_POLES_DIAGONAL, 1, &e) == HD_ERR_ARGUMENT && hd_rational_get(&set, HD_POLES_DIAGONAL, 15, &e) == HD_ERR_ARGUMENT);
+}
+
+/* A filter of the caller's: its own diagonal, without an error of approximation; a0 too where B is diagonal. */
+static void diag_own_sets(void) {
+    shape s = shape_grid(9, 7, 0.3);
+    int q, which;
+    for (q = 0; q < 3; q++) {
+        for (which = 0; which < 2; which++) {
+            heat_case c = heat_case_of(test_laplacian(&s, op_kinds[q]), "own");
+            const int32_t n = c.lap->n_active;
+            hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
+            hd_rational set;
+            hd_heat *heat;
+            hd_report rep;
+            const double t = q == 2 ? 2 : 2 * c.lap->h * c.lap->h;
+            double *g = DENSE_NEW(double, n), *D = DENSE_NEW(double, n), *K;
+            double off = 0, size = 0;
+            int32_t i;
+            memset(&set, 0, sizeof set);
+            set.n_poles = set.degree = 1;        /* backward Euler, with a bit of the identity */
+            set.theta[0].re = 1;
+            set.a[0].re = -1;
+            set.a0 = which && q ? 0.25 : 0;
+            o.rational = &set;
+            heat = eng_create(c.lap, &o);
+            for (i = 0; i < n; i++) g[i] = set.a0 + 1 / (1 + t * c.pair.lambda[i]);
+            K = diag_matrix(&c, g);
+            CHECK_MSG(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_OK && rep.n_poles == 1, "%s", rep.error.text);
+            for (i = 0; i < n; i++) {
+                off = fmax(off, fabs(D[c.lap->vertex[i]] - K[(size_t)i * (size_t)n + (size_t)i]));
+                size = fmax(size, D[i]);
+            }
+            CHECK_MSG(off <= 1e-12 * size && rep.error_bound <= 1e-10, "own set, kind %d: off by %g, bound %g", q, off / size, rep.error_bound);
+            hd_heat_free(heat);
+            heat_case_free(&c);
+            free(g);
+            free(D);
+            free(K);
+        }
+    }
+    shape_free(&s);
+}
+
+/* A full B of the caller's, of which nothing is known, and an L that leaks. */
+static void diag_own_matrices(void) {
+    shape s = shape_grid(8, 7, 0.2);
+    hd_laplacian *mesh = test_laplacian(&s, HD_LAPLACIAN_FEM), *lap = NULL;
+    hd_csr B = mesh->L, L = mesh->L;
+    heat_case c;
+    int64_t p;
+    int32_t i;
+    B.val = mesh->B;
+    for (i = 0; i < L.n_rows; i += 9)
+        for (p = L.row_ptr[i]; p < L.row_ptr[i + 1]; p++)
+            if (L.col[p] == i) L.val[p] += 0.05;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, mesh->h, NULL, NULL) == HD_OK && lap->B && !lap->conserves);
+    diag_case(lap, "own matrices", 300, 1);
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, mesh->h, NULL, NULL) == HD_OK);
+    c = heat_case_of(lap, "own matrices");
+    diag_distances_of(&c, HD_POLES_DEFAULT, 0, 20, 1e-6, "default");
+    heat_case_free(&c);
+    hd_laplacian_free(mesh);
+    shape_free(&s);
+}
+
+/* The elimination order makes no difference, whoever gives it; also on the pattern of B^2. Threads make none at all. */
+static void diag_orders(void) {
+    shape b = shape_bumpy(2, 9), s = eng_with_inert(&b);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    int32_t *perm = DENSE_NEW(int32_t, s.n), source = 6, i;
+    const double t = 3 * lap->h * lap->h;
+    double *first = DENSE_NEW(double, 5 * s.n), *D = DENSE_NEW(double, 5 * s.n);
+    uint64_t seed = 3;
+    int q, kind;
+    dense_shuffle(perm, s.n, &seed);
+    for (q = 0; q < 4; q++) {
+        hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
+        hd_heat *heat;
+        hd_report rep;
+        o.ordering = ldl_orderings[q];
+        o.perm = perm;
+        heat = eng_create(lap, &o);
+        if (q == 3) memset(perm, 0, (size_t)s.n * sizeof *perm);    /* it was copied */
+        for (kind = 0; kind < 4; kind++) CHECK_MSG(hd_heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D + kind * s.n, 0, &rep) >= 0, "%s", rep.error.text);
+        CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D + 4 * s.n, 0, &rep) >= 0);
+        if (q == 0) memcpy(first, D, 5 * (size_t)s.n * sizeof *D);
+        for (i = 0; i < 5 * s.n; i++) CHECK_MSG(D[i] == first[i] || fabs(D[i] - first[i]) <= 1e-8 * fabs(first[i]), "ordering %d: %.12g, not %.12g", q, D[i], first[i]);
+        hd_heat_free(heat);
+    }
+    hd_laplacian_free(lap);
+    free(perm);
+    free(first);
+    free(D);
+    shape_free(&b);
+    shape_free(&s);
+}
+
+static void diag_threads(void) {
+    shape s = shape_bumpy(4, 1);
+    const int32_t sources[3] = {7, 2000, 300};
+    double *first = DENSE_NEW(double, 8 * (int64_t)s.n), *D = DENSE_NEW(double, 8 * (int64_t)s.n);
+    int way;
+    for (way = 0; way < LDL_WAYS; way++) {
+        ldl_way *w = DENSE_NEW(ldl_way, 1);
+        hd_laplacian_opts lo;
+        hd_laplacian *lap = NULL;
+        hd_heat *heat;
+        int32_t sample[5];
+        ldl_way_begin(w, way, HD_SIMD_AUTO);
+        memset(&lo, 0, sizeof lo);
+        lo.context = &w->ctx;
+        lo.kind = HD_LAPLACIAN_VORONOI_COT;
+        CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, NULL) == HD_OK);
+        heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
+        {
+            const double t = 30 * lap->h * lap->h;
+            CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) >= 0);
+            CHECK(hd_heat_distance(heat, HD_DISTANCE_WEIGHTED, 1, &t, 3, sources, D + s.n, 0, NULL) >= 0);
+            CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, 3, sources, D + 4 * s.n, 0, NULL) >= 0);
+            CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 5, 0, sample, D + 7 * s.n, NULL) >= 0);
+        }
+        if (way == 0) memcpy(first, D, 8 * (size_t)s.n * sizeof *D);
+        CHECK_MSG(memcmp(first, D, 8 * (size_t)s.n * sizeof *D) == 0, "way %d of threading gives other bits", way);
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+        ldl_way_end(w, way);
+        free(w);
+    }
+    free(first);
+    free(D);
+    shape_free(&s);
+}
+
+/* Where all distances are lost the farthest points are still different ones; given ones may be without mass. */
+static void diag_samples_lost(void) {
+    shape b = shape_icosphere(1), s = eng_with_inert(&b);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
+    hd_heat *heat = diag_plan(lap, HD_POLES_DEFAULT, 0);
+    int32_t v[42] = {0}, q, k;
+    double d[42];
+    CHECK(lap->row[0] < 0);
+    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, 1e6, 42, 0, v, d, NULL) >= 0);
+    for (q = 0; q < 42; q++) {
+        CHECK(lap->row[v[q]] >= 0 && d[q] >= 0);
+        for (k = 0; k < q; k++) CHECK_MSG(v[k] != v[q], "points %d and %d are both %d", (int)k, (int)q, (int)v[q]);
+    }
+    v[0] = 0;
+    v[1] = 5;                                    /* both without mass, f = 0: at no distance of each other */
+    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, 0.1, 4, 2, v, d, NULL) >= 0);
+    CHECK(lap->row[5] < 0 && d[1] == 0 && d[2] > 0 && d[3] > 0 && lap->row[v[2]] >= 0 && lap->row[v[3]] >= 0);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&b);
+    shape_free(&s);
+}
+
 /* ---- what is refused, and what goes wrong on the way ---- */
 
 static void diag_refused(void) {
@@ -1177,6 +1354,12 @@ static void test_diagonal(void) {
     diag_refused();
     diag_robust();
     diag_limits_by_default();
+    diag_sets();
+    diag_own_sets();
+    diag_own_matrices();
+    diag_orders();
+    diag_threads();
+    diag_samples_lost();
 }
 
 #endif
