@@ -11636,6 +11636,8 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     if (hdi_heat_analysed(heat, 1, h->e) < 0) return hdi_scope_end(&scope);
     h->lap = lap = heat->elim.lap;
     s = &heat->elim.sym;
+    h->rep->ordering = s->ordering;
+    h->rep->factor_nnz = s->nnz;
     size = full ? s->a_ptr[s->n_super] : s->n;
     room = HDI_TAKE(&scope, double, 2 * size);
     value = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, s->n));
@@ -11966,6 +11968,10 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
         }
     }
     x->set = m->set;
+    rep->method = HD_METHOD_DIRECT;
+    rep->reason = "selected inversion of the factors of the poles";
+    rep->ordering = m->sym.ordering;
+    rep->factor_nnz = m->sym.nnz;
     if (h.e->status < 0 && e->status >= 0) *e = *h.e;
     hdi_heat_end(&h);
     return hdi_scope_end(&scope);
