@@ -12237,6 +12237,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         hdi_metric_column(lap, &x, u, work);
         hdi_metric_distance(lap, &x, vertex[q], u, &one);
         for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : hdi_min(nearest[v], u[v]);
+        nearest[vertex[q]] = -1;                 /* not again, even where all distances are zero */
     }
     {
         const hd_error kept = *h.e;

@@ -1479,6 +1479,13 @@ static int run_sources(run *r)
     return DONE;
 }
 
+/* Sampling compares distances that can be much smaller than what they are the difference of, and takes many columns from one set of factors:
+ * the highest degree costs it little. Distances to all vertices take it where they see the need. */
+static int32_t plan_degree(const options *o)
+{
+    return o->command == CMD_SAMPLE && !is_timeless(o) && !o->degree && !o->poles ? 14 : (int32_t)o->degree;
+}
+
 static int run_plan(run *r)
 {
     const options *o = r->o;
@@ -1490,7 +1497,7 @@ static int run_plan(run *r)
     opts.solver = (hd_solver)o->solver;
     opts.precond = (hd_precond)o->precond;
     opts.poles = (hd_pole_kind)o->poles;
-    opts.degree = (int32_t)o->degree;
+    opts.degree = plan_degree(o);
     opts.tol = o->tol;
     opts.max_iterations = (int32_t)o->max_iterations;
     opts.context = &r->context;
@@ -2544,6 +2551,61 @@ static int demo_isolines(const run *r)
     return write_picture(path, &panel, 1, &opts);
 }
 
+enum { DEMO_DISTANCE, DEMO_SIGNATURE, DEMO_FIELDS };
+static const char *const DEMO_FIELD_NAMES[DEMO_FIELDS] = { "distance", "signature" };
+static const char *const DEMO_FIELD_TITLES[DEMO_FIELDS] = { "Diffusion distance from the trunk", "Heat kernel signature" };
+
+/* The distance from the first source to all vertices and the signature of all, at a middle time. fields: two columns. */
+static int demo_inverse(const run *r, double *fields)
+{
+    const double *t = &r->times[r->n_times / 2];
+    hd_report report;
+    interrupt.patient = 1;
+    if (hd_heat_distance(r->heat, HD_DISTANCE_CLASSICAL, 1, t, 1, r->sources, fields, 0, &report) < 0 ||
+        hd_heat_diagonal(r->heat, 1, t, HD_KERNEL_SYMMETRIC, fields + r->mesh.n, 0, &report) < 0)
+        return leave_computation(fail_library("demo", &report.error));
+    return leave_computation(DONE);
+}
+
+static int demo_field(const run *r, int f, const double *values)
+{
+    pic_panel panel = picture_panel(&r->mesh, values);
+    pic_opts opts = picture_opts(r->o);
+    char path[2048], subtitle[100];
+    int code = demo_path(r, path, sizeof path, DEMO_FIELD_NAMES[f], "", ".png");
+    if (code) return code;
+    time_text(r->time_names[r->n_times / 2], subtitle, sizeof subtitle);
+    opts.title = DEMO_FIELD_TITLES[f];
+    opts.subtitle = subtitle;
+    opts.width = 1600;
+    opts.height = 1200;
+    opts.log_decades = 0;
+    opts.isolines = 24;
+    panel.markers = r->sources;
+    panel.n_markers = f == DEMO_DISTANCE;
+    return write_picture(path, &panel, 1, &opts);
+}
+
+/* Two pictures, and a mesh with both. */
+static int demo_fields(const run *r)
+{
+    double *values = new_columns(r->mesh.n, DEMO_FIELDS);
+    char path[2048];
+    result res;
+    int f, code = values ? demo_inverse(r, values) : fail_memory("the demo's fields");
+    for (f = 0; f < DEMO_FIELDS && !code; f++) code = demo_field(r, f, values + (size_t)f * (size_t)r->mesh.n);
+    if (!code) code = demo_path(r, path, sizeof path, "distance-signature", "", ".ply");
+    if (!code) {
+        memset(&res, 0, sizeof res);
+        res.n_columns = DEMO_FIELDS;
+        res.values = values;
+        res.names = DEMO_FIELD_NAMES;
+        code = write_table(path, MIO_PLY, r, &res);
+    }
+    free(values);
+    return code;
+}
+
 static int demo_files(const run *r)
 {
     const char *folder = demo_folder(r);
@@ -2578,12 +2640,17 @@ static void demo_print(const run *r, const demo_checks *c)
     printf("Look at\n");
     for (q = 0; q < DEMO_SOURCES; q++) printf("  %s/heat-%s.png  the four times side by side\n", folder, DEMO_NAMES[q]);
     printf("  %s/isolines.png  one of them, large, with lines of equal heat\n", folder);
+    printf("  %s/distance.png  the diffusion distance from the trunk to every vertex, exactly\n", folder);
+    printf("  %s/signature.png  the heat kernel signature: what the surface looks like from each vertex\n", folder);
+    printf("  %s/distance-signature.ply  the mesh with both\n", folder);
     for (q = 0; q < DEMO_SOURCES; q++)
         printf("  %s/heat-%s.ply  the mesh with all values, for MeshLab, Blender or ParaView\n", folder, DEMO_NAMES[q]);
     printf("\nNext, on this mesh or one of your own\n");
     printf("  heatdiff info %s/heat-trunk.ply\n", folder);
     printf("  heatdiff kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", folder);
     printf("  heatdiff kernel --source 0,100 --t auto:4 %s/heat-trunk.ply > columns.txt\n", folder);
+    printf("  heatdiff distance --source 0 --t 500h2 %s/heat-trunk.ply -o distance.ply\n", folder);
+    printf("  heatdiff sample --count 10 --t 500h2 %s/heat-trunk.ply\n", folder);
     printf("  heatdiff --help\n");
 }
 
@@ -2606,6 +2673,8 @@ static int command_demo(run *r)
     if (!code) code = run_solve(r);
     if (!code) code = demo_check(r, &checks);
     if (!code) code = demo_files(r);
+    o.log_scale = 0;                 /* distances are not spread over decades */
+    if (!code) code = demo_fields(r);
     bar_hide();
     if (!code) {
         if (!o.quiet) demo_print(r, &checks);
