@@ -12019,9 +12019,9 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
         most = hdi_max(most, error);
         relative = hdi_max(relative, d > 0 ? error / d : HUGE_VAL);
     }
-    if (largest == 0) return;
-    rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
-    rep->error_bound = hdi_max(rep->error_bound, most / largest);
+    if (most == 0) return;
+    if (largest > 0) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
+    rep->error_bound = hdi_max(rep->error_bound, largest > 0 ? most / largest : HUGE_VAL);   /* zeros, all of them lost */
     rep->error_relative = hdi_max(rep->error_relative, relative);
 }
 

@@ -1893,7 +1893,7 @@ static void print_query(const run *r)
 static void print_errors(const run *r)
 {
     const hd_report *w = &r->sum.worst;
-    if (w->error_relative > 0) {
+    if (w->error_relative > 0 || w->n_lost > 0) {
         fprintf(stderr, "error at most %.1e of the largest value, %.1e of each; the smallest is %.4g\n", w->error_bound, w->error_relative, w->smallest);
         if (w->n_lost)
             fprintf(stderr, "note: %lld distances are error for the most part, far smaller than what they are the difference of; pairs finds them\n",
