@@ -5,6 +5,7 @@
 Needs nothing but Python 3. Makes its meshes itself, in a temporary folder. Numbers are checked against a dense matrix
 exponential in plain Python on tiny meshes, and against what must hold on any mesh (conservation, symmetry, column order).
 """
+import atexit
 import base64
 import json
 import math
@@ -645,10 +646,7 @@ class Methods(Case):
         cls.dead = (5, 200, 24 * 16 + 44, n, n + 1)
         cls.starts = (0, 24 * 16, 24 * 16 + 100)                    # a vertex of each component, which ascend
         cls.parts = cls.file("parts.obj", obj_text(v + [(1.0, 2.0, 3.0), v[7]], f + [(7, 8, n + 1)]))
-        demo = cls.path("demo")
-        os.mkdir(demo)
-        subprocess.run([TOOL, "demo", "--quiet", "-o", demo], check=True)
-        cls.demo = os.path.join(demo, "heat-trunk.ply")
+        cls.demo = os.path.join(Demo.run_once()[0], "heat-trunk.ply")
 
     def npy(self, *args):
         out = self.path("methods.npy")
@@ -733,7 +731,7 @@ class Methods(Case):
                 for t in ("100h2", "1h2,40h2"):
                     run = ["kernel", mesh, "--source", sources, "--t", t, "--method", method]
                     want = self.npy(*run, "--threads", 1)
-                    for threads in (2, 2, 5):
+                    for threads in (2, 5):
                         self.assertEqual(self.npy(*run, "--threads", threads), want, (mesh, method, t, threads))
 
     # ---- many times ----
@@ -860,8 +858,11 @@ class Methods(Case):
     def test_memory_limit(self):
         """Auto takes what fits, and says why; what is asked for and does not fit is an error."""
         run = ["kernel", self.large, "--source", ",".join(str(9 * i) for i in range(12)), "--t", "60h2"]
+        def written():                           # by the last report
+            with open(self.path("report.npy"), "rb") as f:
+                return read_npy(f.read())
         peak = {m: self.report(*run, "--method", m)["peak_bytes"] for m in METHODS}
-        want = read_npy(self.npy(*run))
+        want = written()
         self.assertGreater(peak["direct"], 1.3 * peak["krylov"])
         self.assertGreater(peak["krylov"], 1.3 * peak["iterative"])
         reasons = {}
@@ -870,7 +871,7 @@ class Methods(Case):
                 r = self.report(*run, "--memory-limit", int(limit))
                 self.assertLessEqual(r["peak_bytes"], limit)
                 reasons[limit] = (r["method"], r["reason"])
-                self.same(read_npy(self.npy(*run, "--memory-limit", int(limit))), want)
+                self.same(written(), want)
                 if limit < peak["krylov"]:
                     self.assertEqual(r["method"], "iterative")
                     self.assertIn("limit", r["reason"])
@@ -1434,7 +1435,7 @@ class Interrupts(Case):
     def test_long_work(self):
         keep = self.file("keep.npy", "precious")
         slow = ["--t", "100000h2,200000h2,300000h2", "--solver", "cocg", "--precond", "jacobi", "--tol", "1e-12"]
-        for seconds in (0.05, 0.3, 1, 2.5):
+        for seconds in (0.05, 0.3, 1.5):
             for out in ("new.npy", "keep.npy"):
                 waited = self.interrupt(seconds, "kernel", self.big, "--source", ",".join(map(str, range(40))), *slow, "-o", self.path(out))
                 self.assertLess(waited, 10)
@@ -1445,7 +1446,7 @@ class Interrupts(Case):
         sources = ",".join(map(str, range(40)))
         for method, t in (("direct", "auto:20"), ("krylov", "1h2,10000h2,100000000h2"), ("auto", "auto:20")):
             run = ["kernel", self.big, "--source", sources, "--t", t, "--method", method]
-            for seconds in (0.25, 0.4, 0.55, 0.7, 1, 1.5):
+            for seconds in (0.25, 0.5, 0.9):
                 self.assertLess(self.interrupt(seconds, *run, "-o", self.path("new.npy")), 10)
 
     def test_while_inverting(self):
@@ -1481,33 +1482,46 @@ class Interrupts(Case):
 
 
 class Demo(Case):
-    def test_demo(self):
-        for folder in ("demo", "demo", "deeper"):
-            out = self.path(folder)
-            p = self.good("demo", "-o", out)
-            names = sorted(os.listdir(out))
-            self.assertTrue(any(n.endswith(".png") for n in names) and any(n.endswith(".ply") for n in names), names)
-            for n in names:
-                with open(os.path.join(out, n), "rb") as f:
-                    data = f.read()
-                if n.endswith(".png"):
-                    self.assertGreater(read_png(data)[2], 50, n)
-                elif n.endswith(".ply"):
-                    vertices, faces = read_ply(data)
-                    self.assertTrue(len(vertices) > 100 and len(faces) > 100)
-                    self.good("info", os.path.join(out, n))
-                else:
-                    self.fail("what is %s?" % n)
-                self.assertIn(n, p.stdout.decode())
+    once = None
 
-    def test_default_folder(self):
+    @classmethod
+    def run_once(cls):
+        """The demo's folder and what it printed. Drawing its pictures takes a while, so all tests look at the same."""
+        if Demo.once is None:
+            folder = tempfile.mkdtemp(prefix="heatdiff-test-demo-")
+            atexit.register(shutil.rmtree, folder)
+            out = os.path.join(folder, "demo")
+            Demo.once = out, subprocess.run([TOOL, "demo", "--json", "-o", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        return Demo.once
+
+    def test_demo(self):
+        out, p = self.run_once()
+        self.assertEqual(p.returncode, 0, p.stderr)
+        names = sorted(os.listdir(out))
+        for word in ("heat-trunk.png", "heat-trunk.ply", "isolines.png", "distance.png", "signature.png"):
+            self.assertIn(word, names)
+        for n in names:
+            with open(os.path.join(out, n), "rb") as f:
+                data = f.read()
+            if n.endswith(".png"):
+                self.assertGreater(read_png(data)[2], 50, n)
+            elif n.endswith(".ply"):
+                vertices, faces = read_ply(data)
+                self.assertTrue(len(vertices) > 100 and len(faces) > 100)
+                self.good("info", os.path.join(out, n))
+            else:
+                self.fail("what is %s?" % n)
+            self.assertIn(n, p.stdout.decode())
+
+    def test_default_folder_is_there_already(self):
         here = self.path("here")
-        os.mkdir(here)
+        os.makedirs(os.path.join(here, "heatdiff-demo"))
         self.good("demo", "--quiet", cwd=here)
         self.assertEqual(os.listdir(here), ["heatdiff-demo"])
+        self.assertEqual(sorted(os.listdir(os.path.join(here, "heatdiff-demo"))), sorted(os.listdir(self.run_once()[0])))
 
     def test_json(self):
-        r = json.loads(self.good("demo", "-o", self.path("json"), "--json").stderr)
+        r = json.loads(self.run_once()[1].stderr)
         self.assertEqual((len(r["sources"]), len(r["times"])), (2, 4))
         self.assertLess(r["mass_drift"], 1e-9)
 
