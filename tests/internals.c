@@ -1646,6 +1646,8 @@ static void int_silan_bounds(void) {
     }
 }
 
+#include "test_shared.h"
+
 int main(void) {
     int_division();
     int_complex();
@@ -1675,6 +1677,7 @@ int main(void) {
     int_silan_slopes();
     int_silan_bounds();
     int_batches();
+    test_shared();
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }

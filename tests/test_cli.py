@@ -25,7 +25,7 @@ import zlib
 
 TOOL = None
 POSIX = os.name == "posix"
-COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "sample", "render", "demo")
+COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "sample", "geodesic", "render", "demo")
 
 
 # ---- meshes ----
@@ -1040,10 +1040,10 @@ class Distances(Case):
         self.assertEqual([r[0] for r in got][3], 0)
         got = self.field("hks", self.torus, "--t", ",".join(times))
         for c, t in enumerate(times):
-            self.close(columns(got, c), self.field("hks", self.torus, "--t", t), 1e-7)
+            self.close(columns(got, c), self.field("hks", self.torus, "--t", t), 2e-7)         # together they may share other poles
         r = self.report("hks", self.torus, "--t", "auto:3,2h2")
         self.assertEqual((len(r["times"]), len(r["per_time"])), (4, 4))
-        self.assertEqual(self.field("hks", self.torus, "--t", "%.17g" % r["times"][1]), columns(self.field("hks", self.torus, "--t", "auto:3"), 1))
+        self.close(self.field("hks", self.torus, "--t", "%.17g" % r["times"][1]), columns(self.field("hks", self.torus, "--t", "auto:3"), 1), 2e-7)
 
     def test_poles_degrees_and_laplacians(self):
         for command, more in (("hks", []), ("distance", ["--source", 5])):
@@ -1053,7 +1053,7 @@ class Distances(Case):
                 self.assertEqual(self.report(*run)["poles"], "diagonal")
                 for poles, degree in (("diagonal", 12), ("kernel", 12), ("uniform", 14)):
                     chosen = ["--poles", poles, "--degree", degree, "--method", "direct"]
-                    self.close(self.field(*run, *chosen), want, 1e-7)
+                    self.close(self.field(*run, *chosen), want, 1e-7 if command == "hks" else 1e-6)
                     r = self.report(*run, *chosen)
                     self.assertEqual((r["poles"], r["degree"], r["method"]), (poles, degree, "direct"))
 
@@ -1479,6 +1479,101 @@ class Interrupts(Case):
         self.assertEqual(p.wait(timeout=20), 130)
         for stream in (p.stdin, p.stdout, p.stderr):
             stream.close()
+
+
+def geodesic_dense(mesh, source, t):
+    """The heat method with lumped masses, on a mesh in one piece: directions by cross products, the last vertex held at zero."""
+    v, f = mesh
+    n = len(v)
+    L, B = cotan_and_fem(v, f)
+    u = solve([[t * L[i][j] + (sum(B[i]) if i == j else 0.0) for j in range(n)] for i in range(n)], [[float(i == source)] for i in range(n)])
+    b = [[0.0] for _ in range(n)]
+
+    def cross(p, q):
+        return p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]
+
+    for c in f:
+        edge = [sub(v[c[(k + 2) % 3]], v[c[(k + 1) % 3]]) for k in range(3)]
+        normal = cross(edge[0], edge[1])
+        turned = [cross(normal, e) for e in edge]
+        x = [-sum(abs(u[c[k]][0]) * turned[k][i] for k in range(3)) for i in range(3)]
+        size = math.sqrt(dot(x, x))
+        twice = math.sqrt(dot(normal, normal))
+        for k in range(3):                      # the hat function of corner k rises along turned[k]
+            b[c[k]][0] += dot(x, turned[k]) / size / twice / 2 if size > 0 else 0
+    for i in range(n):
+        L[i][n - 1] = L[n - 1][i] = float(i == n - 1)
+    b[n - 1][0] = 0.0
+    phi = [row[0] for row in solve(L, b)]
+    return [[abs(p - phi[source])] for p in phi]
+
+
+class Geodesic(Case):
+    def test_dense(self):
+        for mesh in (icosahedron(), bumpy_patch(4)):
+            path = self.file("geo.obj", obj_text(*mesh))
+            h = json.loads(self.good("info", path, "--json").stdout)["h"]
+            for t, tau in ((None, 1), ("1h2", 1), ("5h2", 5), ("%.17g" % (0.3 * h * h), 0.3)):
+                for source in (0, 7):
+                    args = [] if t is None else ["--t", t]
+                    self.close(self.field("geodesic", path, "--source", source, *args), geodesic_dense(mesh, source, tau * h * h), 1e-9)
+
+    def test_columns(self):
+        sources = [3, 40, 77, 3, 99, 0, 12, 13, 14, 15, 50]
+        got = self.field("geodesic", self.patch, "--source", ",".join(map(str, sources)))
+        for k, v in enumerate(sources):
+            self.assertEqual(got[v][k], 0)
+            self.close(columns(got, k), self.field("geodesic", self.patch, "--source", v), 1e-12)
+            self.assertTrue(all(r[k] >= 0 for r in got))
+
+    def test_out_of_reach(self):
+        mesh = apart(bumpy_patch(4), with_holes(bumpy_patch(4), 0))
+        path = self.file("apart.obj", obj_text(*mesh))
+        got = self.field("geodesic", path, "--source", "3,25,40")
+        for i, r in enumerate(got):
+            self.assertEqual([math.isinf(x) for x in r], [i >= 25, i != 25, i <= 25], i)
+        self.assertEqual(got[25][1], 0)
+        r = json.loads(self.good("geodesic", path, "--source", "3,25,40", "--json", "-o", self.path("apart.png")).stderr)
+        self.assertEqual(r["unreached"], 25 + 49 + 26)
+        for name in ("apart.ply", "apart.vtu", "apart.npy", "apart.csv", "apart.obj"):
+            self.good("geodesic", path, "--source", "3,40", "-o", self.path("out-" + name))
+        with open(self.path("apart.png"), "rb") as f:
+            self.assertGreater(read_png(f.read())[2], 50)
+
+    def test_long(self):
+        """Farther than any double can tell heat from none."""
+        n = 1500
+        path = self.file("strip.off", off_text([(x, y, 0.0) for y in (0.0, 1.0) for x in map(float, range(n))],
+                                               [t for x in range(n - 1) for t in ((x, x + 1, n + x), (x + 1, n + x + 1, n + x))]))
+        p = self.good("geodesic", path, "--source", 0, "--json")
+        got = numbers(p.stdout.decode())
+        self.assertGreater(json.loads(p.stderr)["stages"], 1)
+        self.assertLess(abs(got[n - 1][0] - n), 0.02 * n)
+        self.assertTrue(all(0.9 < got[x + 1][0] - got[x][0] < 1.1 for x in range(5, n - 5)))
+
+    def test_report(self):
+        r = json.loads(self.good("geodesic", self.patch, "--source", "1,2", "--json").stderr)
+        for k in ("n", "faces", "components", "h", "area", "inert", "laplacian", "method", "times", "ordering", "factor_nnz", "factor_flops", "residual", "threads",
+                  "peak_bytes", "seconds", "status"):
+            self.assertIn(k, r)
+        self.assertEqual((r["command"], r["n"], r["sources"], r["stages"], r["unreached"], r["status"]), ("geodesic", 100, [1, 2], 1, 0, "HD_OK"))
+        self.assertAlmostEqual(r["times"][0], r["h"] ** 2)
+        self.assertLess(r["residual"], 1e-12)
+        for k in ("load", "assemble", "order", "analyse", "factor", "solve", "total"):
+            self.assertGreaterEqual(r["seconds"][k], 0)
+        text = self.good("geodesic", self.patch, "--source", 1, "--ordering", "dissection").stderr.decode()
+        self.assertIn("dissection", text)
+        self.assertIn("residuals", text)
+
+    def test_usage(self):
+        self.assertIn("--source", self.bad(2, "geodesic", self.small))
+        for t in ("0", "1,2", "auto:2", "-1", "0h2"):
+            self.assertIn("--t takes", self.bad(2, "geodesic", self.small, "--source", 0, "--t", t))
+        for option in ("--degree=3", "--method=direct", "--kernel=symmetric", "--input=x"):
+            self.assertIn(option.split("=")[0], self.bad(2, "geodesic", self.small, "--source", 0, option))
+        self.assertIn("--source 12", self.bad(1, "geodesic", self.small, "--source", "0,12"))
+        self.assertIn("limit", self.bad(1, "geodesic", self.patch, "--source", 0, "--memory-limit", "20K"))
+        self.assertEqual(self.field("geodesic", self.patch, "--source", 5, "--threads", 1), self.field("geodesic", self.patch, "--source", 5, "--threads", 2))
 
 
 class Demo(Case):

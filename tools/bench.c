@@ -15,6 +15,8 @@
        further  one more column once everything is factorised
        times    one column at 16 times from 10 to 10^4 h^2
        stages   ordering, analysis, four complex factors and their solves, on one thread and on all
+       geodesic distances by the heat method from one source and from further ones, each alone and eight at a time; CGAL's runs on one thread. Errors: largest
+                difference from CGAL's with its shift of 1e-8 turned down to 1e-14, relative to the largest distance
        eigen    Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU. Slow: above 60000 rows only when asked for
 
    How it is measured. Both sides begin with the same two matrices in memory and run on the same number of threads. After a warm-up they take
@@ -54,6 +56,10 @@ int rival_umfpack(const rival_job *job, const rival_poles *p, double *U, rival_r
 int rival_eigen_lu(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)p; return rival_silan(job, U, r); }
 int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 int rival_reference(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_geodesic(const rival_mesh *mesh, double shift, int32_t k, const int32_t *s, double *D, rival_result *r) {
+    (void)mesh; (void)shift; (void)k; (void)s; (void)D;
+    return rival_absent(r);
+}
 void rival_machine(int32_t threads, rival_machine_result *r) { (void)threads; memset(r, 0, sizeof *r); r->simd = r->blas = ""; }
 #endif
 
@@ -315,6 +321,7 @@ typedef struct bench {
     const settings *set;
     const char *mesh, *mass;
     const hd_laplacian *lap;
+    const rival_mesh *surface;
     rival_pair pair;
     double *own_B;
     int32_t threads;
@@ -1146,15 +1153,118 @@ static void job_eigen(bench *b) {
     free(U);
 }
 
+/* ---- geodesic ---- */
+
+enum { GEO_SOURCES = 9 };            /* the first, and as many as go side by side */
+
+typedef struct geo_run { int fine; double total, further, batch, bytes, nnz; } geo_run;
+
+/* From the mesh to the first distances, the best of further ones, and those eight at a time, each its share. D [n x GEO_SOURCES]. */
+static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run *r) {
+    const size_t n = (size_t)b->surface->n;
+    hd_geodesic_opts o;
+    hd_geodesic_report rep;
+    hd_geodesic *g = NULL;
+    hd_context ctx;
+    double t0 = now();
+    int q;
+    memset(&o, 0, sizeof o);
+    memset(&ctx, 0, sizeof ctx);
+    memset(r, 0, sizeof *r);
+    ctx.threads = b->threads;
+    o.context = &ctx;
+    r->fine = hd_geodesic_create(&g, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o, NULL) >= 0 &&
+              hd_geodesic_distance(g, sources, 1, D, NULL) >= 0;
+    r->total = now() - t0;
+    for (q = 1; q < GEO_SOURCES && r->fine; q++) {
+        t0 = now();
+        r->fine = hd_geodesic_distance(g, sources + q, 1, D + (size_t)q * n, NULL) >= 0;
+        if (q == 1 || now() - t0 < r->further) r->further = now() - t0;
+    }
+    for (q = 0; q < 2 && r->fine; q++) {
+        t0 = now();
+        r->fine = hd_geodesic_distances(g, GEO_SOURCES - 1, sources + 1, D + n, 0, NULL) >= 0;
+        r->batch = (now() - t0) / (GEO_SOURCES - 1);
+    }
+    if (r->fine) r->fine = hd_geodesic_distance(g, sources, 1, D, &rep) >= 0;
+    r->nnz = r->fine ? (double)rep.factor_nnz : 0;
+    r->bytes = (double)ctx.bytes_peak;
+    hd_geodesic_free(g);
+}
+
+static void geo_best(geo_run *best, const geo_run *r) {
+    best->total = hdi_min(best->total, r->total);
+    best->further = hdi_min(best->further, r->further);
+    best->batch = hdi_min(best->batch, r->batch);
+}
+
+static double geo_error(const double *D, const double *R, size_t size) {
+    double worst = 0, most = 0;
+    size_t i;
+    for (i = 0; i < size; i++) {
+        if (!(R[i] <= DBL_MAX) || !(D[i] <= DBL_MAX)) continue;     /* other components: CGAL has numbers there */
+        worst = hdi_max(worst, fabs(D[i] - R[i]));
+        most = hdi_max(most, D[i]);
+    }
+    return most > 0 ? worst / most : -1;
+}
+
+static void geo_row(const bench *b, const char *part, const char *what, double seconds, double rival, const geo_run *mine, const rival_result *theirs, int there,
+                    double error, double rival_error) {
+    entry r;
+    row_clear(&r, b, "geodesic", part, 1);
+    snprintf(r.ours, sizeof r.ours, "%s", what);
+    snprintf(r.rival, sizeof r.rival, there ? "CGAL Heat_method_3" : "CGAL: %.28s", theirs->note);
+    if (!HAVE_RIVALS) r.rival[0] = 0;
+    r.seconds = seconds;
+    r.rival_seconds = there ? rival : 0;
+    r.nnz = mine->nnz;
+    r.bytes = part ? 0 : mine->bytes;
+    r.error = error;
+    r.rival_error = rival_error;
+    row_print(&r, b);
+}
+
+static void job_geodesic(bench *b) {
+    const size_t n = (size_t)b->surface->n, size = GEO_SOURCES * n;
+    double *D = (double *)malloc(3 * size * sizeof *D), *E = D + size, *R = E + size, error = -1, rival_error = -1, start;
+    int32_t rows[GEO_SOURCES], sources[GEO_SOURCES];
+    rival_result theirs, r;
+    geo_run mine, run;
+    int round, there;
+    if (D && spread(b, GEO_SOURCES, rows, sources) == GEO_SOURCES) {
+        geo_ours(b, sources, D, &mine);
+        there = rival_geodesic(b->surface, 0, GEO_SOURCES, sources, E, &theirs);
+        if (there && rival_geodesic(b->surface, 1e-14, GEO_SOURCES, sources, R, &r)) {
+            error = geo_error(D, R, size);
+            rival_error = geo_error(E, R, size);
+        }
+        start = now();
+        for (round = 0; mine.fine && round_wanted(b, round, start); round++) {
+            rest();
+            geo_ours(b, sources, D, &run);
+            if (run.fine) geo_best(&mine, &run);
+            rest();
+            if (!there || !rival_geodesic(b->surface, 0, GEO_SOURCES, sources, NULL, &r)) continue;
+            theirs.total = hdi_min(theirs.total, r.total);
+            theirs.further = hdi_min(theirs.further, r.further);
+        }
+        geo_row(b, NULL, "first source", mine.total, theirs.total, &mine, &theirs, there, error, rival_error);
+        geo_row(b, "further", "one more", mine.further, theirs.further, &mine, &theirs, there, -1, -1);
+        geo_row(b, "further", "of eight at a time", mine.batch, theirs.further, &mine, &theirs, there, -1, -1);
+    }
+    free(D);
+}
+
 /* ==== meshes ==== */
 
-enum { JOB_SMALL = 1, JOBS = 7 };   /* small has both masses */
+enum { JOB_SMALL = 1, JOBS = 8 };   /* small has both masses */
 
 static const struct { const char *name; void (*run)(bench *); } jobs[JOBS] = {
     {"one", job_one}, {"small", job_small}, {"columns", job_columns}, {"further", job_further}, {"times", job_times}, {"stages", job_stages},
-    {"eigen", job_eigen}};
+    {"geodesic", job_geodesic}, {"eigen", job_eigen}};
 
-static void bench_open(bench *b, const settings *set, const char *mesh, const hd_laplacian *lap, int32_t threads, const double *peak) {
+static void bench_open(bench *b, const settings *set, const char *mesh, const rival_mesh *surface, const hd_laplacian *lap, int32_t threads, const double *peak) {
     const hd_csr *L = &lap->L;
     int32_t i;
     int64_t p;
@@ -1162,6 +1272,7 @@ static void bench_open(bench *b, const settings *set, const char *mesh, const hd
     b->set = set;
     b->mesh = mesh;
     b->mass = lap->B ? "fem" : "voronoi-cot";
+    b->surface = surface;
     b->lap = lap;
     b->threads = threads;
     b->hh = lap->h * lap->h;
@@ -1185,10 +1296,10 @@ static void give_back(void) {
 #endif
 }
 
-static void bench_pair(const settings *set, const char *mesh, const hd_laplacian *lap, int32_t threads, const double *peak) {
+static void bench_pair(const settings *set, const char *mesh, const rival_mesh *surface, const hd_laplacian *lap, int32_t threads, const double *peak) {
     bench b;
     int k;
-    bench_open(&b, set, mesh, lap, threads, peak);
+    bench_open(&b, set, mesh, surface, lap, threads, peak);
     if (!set->csv) {
         printf("\n%s, %s: %d rows, %lld non-zeros, %d thread%s\n", mesh, b.mass, (int)lap->n_active, (long long)lap->L.nnz, (int)threads,
                threads > 1 ? "s" : "");
@@ -1204,7 +1315,12 @@ static void bench_pair(const settings *set, const char *mesh, const hd_laplacian
 
 static void bench_mesh(const settings *set, const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const double *peak) {
     static const hd_laplacian_kind kinds[] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT};
+    rival_mesh surface;
     int k, q;
+    surface.n = n;
+    surface.n_tri = n_tri;
+    surface.xyz = xyz;
+    surface.tri = tri;
     for (k = 0; k < 2; k++) {
         hd_laplacian *lap = NULL;
         hd_laplacian_opts o;
@@ -1216,7 +1332,7 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
             fprintf(stderr, "bench: %s: %s\n", name, e.text);
             return;
         }
-        for (q = 0; q < set->n_threads; q++) bench_pair(set, name, lap, set->threads[q], peak + 2 * q);
+        for (q = 0; q < set->n_threads; q++) bench_pair(set, name, &surface, lap, set->threads[q], peak + 2 * q);
         hd_laplacian_free(lap);
     }
 }
@@ -1256,7 +1372,7 @@ static int usage(const char *what) {
     fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
-                    "  --jobs LIST     of one,small,columns,further,times,stages,eigen; default: all\n"
+                    "  --jobs LIST     of one,small,columns,further,times,stages,geodesic,eigen; default: all\n"
                     "  --columns K     columns of the job of that name, default 100\n"
                     "  --seconds S     rounds of a contest begin within S seconds, at least two; default 10\n"
                     "  --umfpack       UMFPACK also above 300000 rows\n"

@@ -43,6 +43,13 @@
 #include <suitesparse/umfpack.h>
 #endif
 
+#if defined(HEATDIFF_BENCH_CGAL)
+#define CGAL_EIGEN3_ENABLED 1
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/Heat_method_3/Surface_mesh_geodesic_distances_3.h>
+#endif
+
 /* Weak: with another BLAS they are simply not there. */
 #if defined(__GNUC__)
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
@@ -1401,6 +1408,46 @@ void check_job(const rival_job *job, bool one_source, bool one_time) {
 }
 
 /* No exception leaves this file. */
+/* ==== geodesic distance ==== */
+
+#if defined(HEATDIFF_BENCH_CGAL)
+typedef CGAL::Simple_cartesian<double> Kernel;
+typedef CGAL::Surface_mesh<Kernel::Point_3> SurfaceMesh;
+typedef SurfaceMesh::Vertex_index VertexIndex;
+typedef CGAL::Eigen_sparse_matrix<double> CgalMatrix;
+typedef CGAL::Eigen_solver_traits<Eigen::SimplicialLDLT<CgalMatrix::EigenType>> CgalSolver;
+
+/* CGAL makes L definite by adding 1e-8 to its diagonal for every corner of a face, which tilts the distances on large meshes. This matrix adds something else,
+ * so that the methods can be compared without. */
+double cgal_shift = 1e-8;
+struct ShiftedMatrix : CgalMatrix {
+    using CgalMatrix::CgalMatrix;
+    ShiftedMatrix(const CgalMatrix &m) : CgalMatrix(m) {}
+    void add_coef(std::size_t i, std::size_t j, double v) { CgalMatrix::add_coef(i, j, v == 1e-8 ? cgal_shift : v); }
+};
+struct ShiftedSolver : CgalSolver { typedef ShiftedMatrix Matrix; };
+
+typedef CGAL::Heat_method_3::Surface_mesh_geodesic_distances_3<SurfaceMesh, CGAL::Heat_method_3::Direct> CgalHeat;
+typedef CGAL::Heat_method_3::Surface_mesh_geodesic_distances_3<SurfaceMesh, CGAL::Heat_method_3::Direct, CGAL::Default, ShiftedSolver> CgalShifted;
+
+template <class Heat> void geodesic(const SurfaceMesh &mesh, SurfaceMesh::Property_map<VertexIndex, double> d, int32_t k, const int32_t *sources, double *D, rival_result *r) {
+    const double start = now();
+    Heat heat(mesh);
+    r->analyse = now() - start;
+    for (int32_t q = 0; q < k; q++) {
+        const double t0 = now();
+        heat.clear_sources();
+        heat.add_source(VertexIndex((std::uint32_t)sources[q]));
+        heat.estimate_geodesic_distances(d);
+        const double seconds = now() - t0;
+        if (q == 0) r->first = seconds;
+        else if (q == 1 || seconds < r->further) r->further = seconds;
+        for (size_t i = 0; D && i < mesh.number_of_vertices(); i++) D[(size_t)q * mesh.number_of_vertices() + i] = d[VertexIndex((std::uint32_t)i)];
+    }
+    r->total = r->analyse + r->first;
+}
+#endif
+
 template <class Work> int guarded(rival_result *result, Work work) {
     rival_result r;
     int fine = 0;
@@ -1468,6 +1515,27 @@ int rival_reference(const rival_job *job, double *U, rival_result *result) {
     return guarded(result, [&](rival_result *r) {
         check_job(job, job->n_times > 1, false);
         reference(Job(*job), U, r);
+    });
+}
+
+int rival_geodesic(const rival_mesh *mesh, double shift, int32_t n_sources, const int32_t *sources, double *D, rival_result *result) {
+    return guarded(result, [&](rival_result *r) {
+#if defined(HEATDIFF_BENCH_CGAL)
+        SurfaceMesh m;
+        for (int32_t i = 0; i < mesh->n; i++) m.add_vertex(Kernel::Point_3(mesh->xyz[3 * (size_t)i], mesh->xyz[3 * (size_t)i + 1], mesh->xyz[3 * (size_t)i + 2]));
+        for (size_t f = 0; f < (size_t)mesh->n_tri; f++) {
+            const int32_t *v = mesh->tri + 3 * f;
+            if (m.add_face(VertexIndex((std::uint32_t)v[0]), VertexIndex((std::uint32_t)v[1]), VertexIndex((std::uint32_t)v[2])) == SurfaceMesh::null_face())
+                throw std::runtime_error("not manifold");
+        }
+        auto d = m.add_property_map<VertexIndex, double>("v:distance", 0).first;
+        cgal_shift = shift;
+        if (shift > 0) geodesic<CgalShifted>(m, d, n_sources, sources, D, r);
+        else geodesic<CgalHeat>(m, d, n_sources, sources, D, r);
+#else
+        (void)mesh, (void)shift, (void)n_sources, (void)sources, (void)D, (void)r;
+        throw std::runtime_error("built without it");
+#endif
     });
 }
 

@@ -1,11 +1,13 @@
 /* bench_rivals.h - what a user would otherwise take for the jobs of heatdiff.h, for the benchmark to hold it against.
 
    Rivals: shift-invert Lanczos for exp on one supernodal factor of CHOLMOD, the poles of a rational approximation by UMFPACK and by Eigen's
-   SparseLU, Eigen's SimplicialLDLT. Each at its best as far as we could find it: the notes in bench_rivals.cpp say what was tried.
+   SparseLU, Eigen's SimplicialLDLT; CGAL's heat method for geodesic distances. Each at its best as far as we could find it: the notes in bench_rivals.cpp say
+   what was tried.
 
    Build bench_rivals.cpp as C++17 with optimisation for this machine, which Eigen needs to be fast:
        c++ -std=c++17 -O3 -march=native -DNDEBUG -fopenmp -I/usr/include/eigen3 -c tools/bench_rivals.cpp
-   and link with  -lumfpack -lcholmod -lopenblas -fopenmp.  Another BLAS works too; then see to its number of threads yourself.
+   and link with  -lumfpack -lcholmod -lopenblas -fopenmp.  Another BLAS works too; then see to its number of threads yourself. With -DHEATDIFF_BENCH_CGAL
+   CGAL takes part, whose headers are all that it needs.
 
    Everything is timed from the two matrices to the answer: nothing is left out but the freeing of memory. */
 
@@ -109,6 +111,14 @@ int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *result);
 /* Columns to measure others against: shift-invert Lanczos with full reorthogonalisation until nothing changes any more. For one source and all times
  * (n_sources == 1), or for one time and all sources. U [n x (times or sources)]. result->error: the last change. */
 int rival_reference(const rival_job *job, double *U, rival_result *result);
+
+typedef struct rival_mesh { int32_t n, n_tri; const double *xyz; const int32_t *tri; } rival_mesh;
+
+/* Geodesic distances by CGAL's Heat_method_3, Direct (no intrinsic Delaunay triangulation), from each source for itself: t = h^2, lumped barycentric masses. On one
+ * thread. shift: what is added to the diagonal of L for every corner of a face; 0: what CGAL adds, 1e-8. D [n x n_sources] or NULL. result: total is that of
+ * the plan and the first source, analyse that of the plan (CGAL solves for some source in it), first and further as above. Making CGAL's mesh is not timed.
+ * 0 with a note when built without CGAL, or when the mesh is none for it (not manifold). */
+int rival_geodesic(const rival_mesh *mesh, double shift, int32_t n_sources, const int32_t *sources, double *D, rival_result *result);
 
 typedef struct rival_machine_result {
     double peak_1, peak_n;      /* fused multiply-add, 1e9 flops a second, on 1 and on n threads; 0: no AVX2 or not an x86 */

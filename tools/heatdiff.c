@@ -141,10 +141,10 @@ static void bar_part(const char *what, int64_t i, int64_t n)
 /* ==== seconds of the stages ==== */
 /* The library has no clock, but its progress calls name the stage that begins. The time up to the next stage is that one's. */
 
-enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_INVERT, STAGE_SOLVE, N_STAGES };
-static const char *const STAGE_NAMES[N_STAGES] = { "order", "analyse", "factor", "precondition", "invert", "solve" };
+enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_INVERT, STAGE_SOLVE, N_STAGES, STAGE_ASSEMBLE = N_STAGES, N_NAMES };
+static const char *const STAGE_NAMES[N_NAMES] = { "order", "analyse", "factor", "precondition", "invert", "solve", "assemble" };  /* the last is told apart */
 
-static struct { int running, stage; double since, spent[N_STAGES]; } stages;
+static struct { int running, stage; double since, spent[N_NAMES]; } stages;
 
 static void stages_book(void)
 {
@@ -172,7 +172,7 @@ static void stages_enter(const char *name)
     if (!stages.running || strcmp(name, STAGE_NAMES[stages.stage]) == 0) return;
     stages_book();
     stages.stage = STAGE_SOLVE;
-    for (i = 0; i < N_STAGES; i++)
+    for (i = 0; i < N_NAMES; i++)
         if (strcmp(name, STAGE_NAMES[i]) == 0) stages.stage = i;
 }
 
@@ -435,10 +435,11 @@ static int output_format(const char *path)
 
 /* ==== options ==== */
 
-enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_HKS = 32, CMD_DISTANCE = 64, CMD_PAIRS = 128,
-       CMD_SAMPLE = 256, CMD_ALL = 511,
-       CMD_FIELDS = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE,      /* results have a row per vertex */
-       CMD_TABLES = CMD_PAIRS | CMD_SAMPLE, CMD_HEAT = CMD_FIELDS | CMD_TABLES,
+enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32, CMD_HKS = 64, CMD_DISTANCE = 128,
+       CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_ALL = 1023,
+       CMD_TABLES = CMD_PAIRS | CMD_SAMPLE,
+       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE | CMD_TABLES, CMD_SOLVES = CMD_HEAT | CMD_GEODESIC,
+       CMD_FIELDS = CMD_SOLVES & ~CMD_TABLES,                               /* results have a row per vertex */
        CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
        CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE,                   /* by selected inversion, which only the direct method has */
        CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER };
@@ -663,6 +664,10 @@ static const option_def OPTIONS[] = {
     { "t", 0, CMD_HEAT, 1, parse_times, 0, NULL, 0, 0, "T[,T..]",
       "times >= 0: numbers such as 0.01, multiples of h^2 such as 10h2, or auto:K for K of them",
       "diffusion times: absolute (0.01), multiples of the squared\nmean edge length (10h2), or auto:K, K times that suit the area" },
+    { "t", 0, CMD_GEODESIC, 1, parse_times, 0, NULL, 0, 0, "T", "one time > 0: a number such as 0.01, or a multiple of h^2 such as 4h2",
+      "how long heat flows, absolute or in h2 (default: 1h2); longer\nmakes distances smoother and less exact" },
+    { "source", 0, CMD_GEODESIC, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
+      "vertices to measure from, counted from 0; a column for each" },
     { "source", 0, CMD_KERNEL, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
       "vertices where the heat starts, counted from 0" },
     { "source", 0, CMD_DISTANCE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
@@ -693,6 +698,8 @@ static const option_def OPTIONS[] = {
     { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto, direct, krylov or iterative",
       "direct: factors of all poles, for many sources or fields;\nkrylov: one factor for one source and for many times;\n"
       "iterative: no factor; auto (default): what costs least" },
+    { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
+      "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
     { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
       "of direct and krylov: amd (minimum degree), dissection\n(nested, in space) or auto (default: by the size)" },
     { "solver", 0, CMD_ANYHOW, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME", "cocg, cocr, minres or lanczos",
@@ -701,11 +708,11 @@ static const option_def OPTIONS[] = {
       "of iterative: none, jacobi, ssor, ildl or mildl (default)" },
     { "max-iterations", 0, CMD_ANYHOW, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N", "a number from 1",
       "of iterative: limit of the iterations per system" },
-    { "threads", 0, CMD_INFO | CMD_HEAT | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
+    { "threads", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
       "worker threads (default: all)" },
-    { "simd", 0, CMD_HEAT | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
+    { "simd", 0, CMD_SOLVES | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
       "instruction set: none (plain C), avx2, avx512, as far as the\nprocessor has them, or auto (default: its best)" },
-    { "memory-limit", 0, CMD_INFO | CMD_HEAT | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
+    { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
@@ -743,6 +750,7 @@ static const command_def COMMANDS[] = {
     { "info", CMD_INFO, "counts, area, edge length and defects of a mesh", "[OPTIONS] MESH" },
     { "kernel", CMD_KERNEL, "columns of the heat kernel: heat from single vertices", "--source V[,V..] --t T[,T..] [OPTIONS] MESH" },
     { "diffuse", CMD_DIFFUSE, "diffuses your own fields", "--input F --t T[,T..] [OPTIONS] MESH" },
+    { "geodesic", CMD_GEODESIC, "distances along the surface, by the heat method", "--source V[,V..] [--t T] [OPTIONS] MESH" },
     { "distance", CMD_DISTANCE, "diffusion distances from single vertices to all", "--source V[,V..] --t T[,T..] [OPTIONS] MESH" },
     { "pairs", CMD_PAIRS, "kernel and diffusion distance of pairs of vertices", "--input P --t T[,T..] [OPTIONS] MESH" },
     { "hks", CMD_HKS, "heat kernel signature of every vertex", "--t T[,T..] [OPTIONS] MESH" },
@@ -913,6 +921,15 @@ static int check_sample(const options *o)
     return DONE;
 }
 
+/* One time, and not zero: heat must have flowed to show the way. */
+static int check_geodesic(const options *o)
+{
+    if (!o->sources) return fail(USAGE, "geodesic needs --source, which takes vertex ids from 0, such as 0,17");
+    if (o->times && (o->n_times != 1 || !(o->times[0].value > 0) || (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
+        return fail(USAGE, "--t takes one time above 0 here, such as 4h2");
+    return DONE;
+}
+
 /* What single options cannot see: what is missing, what does not go together. */
 static int check_options(const options *o)
 {
@@ -924,6 +941,7 @@ static int check_options(const options *o)
     if ((o->command & (CMD_DIFFUSE | CMD_RENDER | CMD_PAIRS)) && !o->input)
         return fail(USAGE, "%s needs --input, which takes the file of %s", name, o->command == CMD_PAIRS ? "vertex pairs" : "a field");
     if (o->command == CMD_SAMPLE && (code = check_sample(o)) != DONE) return code;
+    if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
     if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE || (code = check_method(o)) != DONE) return code;
     if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
         return fail(USAGE, "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
@@ -975,6 +993,7 @@ static void print_help(void)
            "  heatdiff kernel --source 0 --t auto:100 --method krylov bunny.obj -o movie.npy\n"
            "  heatdiff distance --source 0 --t 100h2 bunny.obj -o distance.png\n"
            "  heatdiff hks --t auto:16 bunny.obj -o signature.npy\n"
+           "  heatdiff geodesic --source 0 bunny.obj -o geodesic.png\n"
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
            "\nMeshes: OBJ, OFF, PLY, STL; - reads standard input. Vertices are counted from 0.\n"
@@ -1288,6 +1307,8 @@ typedef struct run {
     const double *fields;            /* mesh.n x n_inputs, or NULL: the kernel columns of the sources */
     const char *field_name;          /* for people */
     hd_heat *heat;
+    hd_geodesic *geodesic;
+    hd_geodesic_report geodesic_report;
     int32_t *pairs;                  /* pairs: [2 rows], first the i, then the j */
     int64_t rows;                    /* of the result: the vertices, the pairs or the points */
     double *values;                  /* column-major, rows x n_columns; input q after time k is column q n_times + k */
@@ -1329,6 +1350,7 @@ static void run_end(run *r)
     pool_end(&r->threads);
 #endif
     hd_heat_free(r->heat);
+    hd_geodesic_free(r->geodesic);
     hd_laplacian_free(r->lap);
     mesh_free(&r->mesh);
     free(r->times);
@@ -1427,10 +1449,12 @@ static double auto_time(const run *r, int i, int count)
 
 static int run_times(run *r)
 {
+    static const time_spec usual = { TIME_H2, 1 };       /* of geodesic, when --t is not given */
     const options *o = r->o;
+    const int n_given = o->times ? o->n_times : 1;
+    const time_spec *given = o->times ? o->times : &usual;
     int i, k, total = 0;
-    for (i = 0; i < o->n_times; i++) total += o->times[i].unit == TIME_AUTO ? (int)o->times[i].value : 1;
-    if (is_timeless(o)) total = 1;
+    for (i = 0; i < n_given; i++) total += given[i].unit == TIME_AUTO ? (int)given[i].value : 1;
     r->times = (double *)malloc((size_t)total * sizeof *r->times);
     r->time_names = (char (*)[NAME_SIZE])malloc((size_t)total * sizeof *r->time_names);
     r->sum.per_time = (hd_report *)calloc((size_t)total, sizeof *r->sum.per_time);
@@ -1438,9 +1462,10 @@ static int run_times(run *r)
     if (is_timeless(o)) {                /* a time in name only */
         r->times[0] = 0;
         snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s", word_of(DEFINITIONS, o->definition));
+        return DONE;
     }
-    for (i = 0; i < o->n_times; i++) {
-        const time_spec s = o->times[i];
+    for (i = 0; i < n_given; i++) {
+        const time_spec s = given[i];
         const int count = s.unit == TIME_AUTO ? (int)s.value : 1;
         for (k = 0; k < count; k++, r->n_times++) {
             double *t = &r->times[r->n_times];
@@ -1641,15 +1666,23 @@ static int solved_time(run *r, int k, hd_status status, hd_report *report)
     return DONE;
 }
 
-/* The signature, or distances from all sources, at time k. */
-static int solve_inverse(run *r, int k)
+/* All times together, which may share factors. */
+static int solve_signature(run *r)
 {
-    const options *o = r->o;
-    const size_t stride = (size_t)r->rows * (size_t)r->n_times;
     hd_report report;
-    hd_status status;
-    if (o->command == CMD_HKS) status = hd_heat_diagonal(r->heat, 1, r->times + k, (hd_kernel)o->kernel, column_of(r, 0, k), stride, &report);
-    else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, 1, r->times + k, r->n_inputs, r->sources, column_of(r, 0, k), stride, &report);
+    int k;
+    if (hd_heat_diagonal(r->heat, r->n_times, r->times, (hd_kernel)r->o->kernel, r->values, 0, &report) < 0) return fail_solve(r, &report, 0);
+    for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
+    summary_add(&r->sum, &report, NULL, 0);
+    return DONE;
+}
+
+/* From all sources, at time k. */
+static int solve_distance(run *r, int k)
+{
+    hd_report report;
+    const hd_status status = hd_heat_distance(r->heat, (hd_distance_kind)r->o->definition, 1, r->times + k, r->n_inputs, r->sources, column_of(r, 0, k),
+                                              (size_t)r->rows * (size_t)r->n_times, &report);
     return solved_time(r, k, status, &report);
 }
 
@@ -1681,10 +1714,11 @@ static int solve_command(run *r)
     const unsigned command = r->o->command;
     int code = DONE, k;
     if (command == CMD_SAMPLE) return solve_sample(r);
-    if (!(command & (CMD_HKS | CMD_DISTANCE | CMD_PAIRS))) return solve_all(r);
+    if (command == CMD_HKS) return solve_signature(r);
+    if (!(command & (CMD_DISTANCE | CMD_PAIRS))) return solve_all(r);
     for (k = 0; k < r->n_times && !code; k++) {
         bar_part("time", k, r->n_times);
-        code = command == CMD_PAIRS ? solve_pairs(r, k) : solve_inverse(r, k);
+        code = command == CMD_PAIRS ? solve_pairs(r, k) : solve_distance(r, k);
     }
     return code;
 }
@@ -1699,21 +1733,45 @@ static void run_shape(run *r)
     if (o->command == CMD_PAIRS && !is_timeless(o)) r->n_columns *= 2;
 }
 
-/* Leaves the plan in r->heat, for who has more to ask of it. */
-static int run_solve(run *r)
+/* Room for the result, and whether it has the column that is to be shown. */
+static int run_columns(run *r)
 {
-    int code;
     run_shape(r);
     if (r->n_columns > INT32_MAX / 2) return fail(FAILED, "%lld columns are too many", (long long)r->n_columns);
     if (r->o->column >= r->n_columns)
         return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column, (long long)r->n_columns);
     r->values = new_columns(r->rows, r->n_columns);
-    if (!r->values) return fail_memory("the result");
+    return r->values ? DONE : fail_memory("the result");
+}
+
+/* Distances from all sources, a column each. */
+static int solve_geodesic(run *r)
+{
+    hd_geodesic_opts opts;
+    hd_error err;
+    memset(&opts, 0, sizeof opts);
+    opts.t = r->times[0];
+    opts.ordering = (hd_ordering)r->o->ordering;
+    opts.context = &r->context;
+    if (hd_geodesic_create(&r->geodesic, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, &err) < 0) return fail_laplacian(r, &err);
+    if (hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report) >= 0) return DONE;
+    return fail_library(r->mesh_name, &r->geodesic_report.error);
+}
+
+/* Leaves the plan in r->heat, for who has more to ask of it. */
+static int run_solve(run *r)
+{
+    int code = run_columns(r);
+    if (code) return code;
     interrupt.patient = 1;
     stages_start();
-    code = run_plan(r);
-    if (!code) code = solve_command(r);
+    if (r->o->command == CMD_GEODESIC) code = solve_geodesic(r);
+    else {
+        code = run_plan(r);
+        if (!code) code = solve_command(r);
+    }
     stages_stop();
+    r->sec.assemble += stages.spent[STAGE_ASSEMBLE];
     memcpy(r->sec.stage, stages.spent, sizeof r->sec.stage);
     code = leave_computation(code);
     bar_part("", 0, 0);
@@ -1877,6 +1935,15 @@ static void print_seconds(const run *r)
             plural(threads_used(r)));
 }
 
+static void print_surface(const run *r)
+{
+    const hd_laplacian *lap = r->lap;
+    fprintf(stderr, "%s: %ld vertices, %ld faces, %ld component%s, h = %.4g, area = %.4g", r->mesh_name, (long)r->mesh.n,
+            (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components), lap->h, lap->area);
+    if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
+    fprintf(stderr, "\n");
+}
+
 /* "distance: 1 source, 2 times, classical, fem Laplacian" */
 static void print_query(const run *r)
 {
@@ -1905,11 +1972,7 @@ static void print_errors(const run *r)
 
 static void print_heat(const run *r)
 {
-    const hd_laplacian *lap = r->lap;
-    fprintf(stderr, "%s: %ld vertices, %ld faces, %ld component%s, h = %.4g, area = %.4g", r->mesh_name, (long)r->mesh.n,
-            (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components), lap->h, lap->area);
-    if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
-    fprintf(stderr, "\n");
+    print_surface(r);
     print_query(r);
     print_method(r);
     print_errors(r);
@@ -1925,6 +1988,58 @@ static void report_heat(const run *r)
         json_heat(&j, r);
         json_end(&j, r);
     } else if (!r->o->quiet) print_heat(r);
+}
+
+/* ---- of geodesic ---- */
+
+/* Distances that are infinite, in all columns. */
+static int64_t count_unreached(const run *r)
+{
+    int64_t i, count = 0;
+    for (i = 0; i < r->n_columns * r->mesh.n; i++) count += !isfinite(r->values[i]);
+    return count;
+}
+
+static void json_geodesic(json *j, const run *r)
+{
+    const hd_geodesic_report *g = &r->geodesic_report;
+    json_text(j, "method", "direct");
+    json_integers(j, "sources", r->o->sources, r->o->n_sources);
+    json_numbers(j, "times", r->times, r->n_times);
+    json_text(j, "ordering", word_of(ORDERINGS, (int)g->ordering));
+    json_integer(j, "factor_nnz", g->factor_nnz);
+    json_number(j, "factor_flops", g->factor_flops);
+    json_number(j, "residual", g->residual_heat > g->residual_distance ? g->residual_heat : g->residual_distance);
+    json_number(j, "residual_heat", g->residual_heat);
+    json_number(j, "residual_distance", g->residual_distance);
+    json_integer(j, "stages", g->n_stages);
+    json_integer(j, "unreached", count_unreached(r));
+    json_text(j, "status", hd_status_name(g->status));
+}
+
+static void print_geodesic(const run *r)
+{
+    const hd_geodesic_report *g = &r->geodesic_report;
+    const int64_t unreached = count_unreached(r);
+    print_surface(r);
+    fprintf(stderr, "geodesic: %d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t, g->t / (g->h * g->h));
+    fprintf(stderr, "two factors: %.3g non-zeros each; %.3g flops, ordering %s\n", (double)g->factor_nnz, g->factor_flops,
+            word_of(ORDERINGS, (int)g->ordering));
+    fprintf(stderr, "residuals %.1e and %.1e, heat followed in %ld stage%s\n", g->residual_heat, g->residual_distance, (long)g->n_stages, plural(g->n_stages));
+    if (unreached) fprintf(stderr, "note: %lld distance%s infinite: nothing leads there\n", (long long)unreached, unreached == 1 ? " is" : "s are");
+    if (g->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(g->status));
+    print_seconds(r);
+}
+
+static void report_geodesic(const run *r)
+{
+    json j;
+    if (r->o->json) {
+        json_begin(&j, r, stderr);
+        json_laplacian(&j, r->lap);
+        json_geodesic(&j, r);
+        json_end(&j, r);
+    } else if (!r->o->quiet) print_geodesic(r);
 }
 
 /* ==== pictures ==== */
@@ -2102,6 +2217,7 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
     if (is_timeless(r->o)) snprintf(when, sizeof when, "%s", r->time_names[0]);
     if (r->o->command == CMD_HKS) snprintf(title, size, "Heat kernel signature, %s", when);
     else if (r->o->command == CMD_DISTANCE) snprintf(title, size, "Diffusion distance from vertex %ld, %s", (long)r->sources[q], when);
+    else if (r->o->command == CMD_GEODESIC) snprintf(title, size, "Geodesic distance from vertex %ld, %s", (long)r->sources[q], when);
     else if (r->sources) snprintf(title, size, "Heat from vertex %ld, %s", (long)r->sources[q], when);
     else snprintf(title, size, "Field %d diffused, %s", q, when);
 }
@@ -2116,6 +2232,8 @@ static int write_heat(run *r)
     int code = heat_names(r);
     hd_heat_free(r->heat);           /* large, and not needed any more */
     r->heat = NULL;
+    hd_geodesic_free(r->geodesic);
+    r->geodesic = NULL;
     if (code) return code;
     memset(&res, 0, sizeof res);
     res.n_columns = r->n_columns;
@@ -2332,6 +2450,18 @@ static int command_sample(run *r)
     if (!code) code = run_solve(r);
     if (!code) code = write_ids(r);
     if (!code) report_heat(r);
+    return code;
+}
+
+static int command_geodesic(run *r)
+{
+    int code = run_load(r);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_times(r);
+    if (!code) code = run_sources(r);
+    if (!code) code = run_solve(r);
+    if (!code) code = write_heat(r);
+    if (!code) report_geodesic(r);
     return code;
 }
 
@@ -2698,6 +2828,7 @@ static int run_command(const options *o)
     case CMD_PAIRS: code = command_pairs(&r); break;
     case CMD_SAMPLE: code = command_sample(&r); break;
     case CMD_DIFFUSE: code = command_diffuse(&r); break;
+    case CMD_GEODESIC: code = command_geodesic(&r); break;
     case CMD_RENDER: code = command_render(&r); break;
     case CMD_DEMO: code = command_demo(&r); break;
     default: break;
