@@ -13474,6 +13474,10 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
         }
     }
     x->set = m->set;
+    rep->method = HD_METHOD_DIRECT;
+    rep->reason = "selected inversion of the factors of the poles";
+    rep->ordering = m->sym.ordering;
+    rep->factor_nnz = m->sym.nnz;
     if (h.e->status >= 0) {
         x->resolvent = entries.resolvent;
         x->weighted = entries.weighted;
@@ -13527,9 +13531,9 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
         most = hdi_max(most, error);
         relative = hdi_max(relative, d > 0 ? error / d : HUGE_VAL);
     }
-    if (largest == 0) return;
-    rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
-    rep->error_bound = hdi_max(rep->error_bound, most / largest);
+    if (most == 0) return;
+    if (largest > 0) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
+    rep->error_bound = hdi_max(rep->error_bound, largest > 0 ? most / largest : HUGE_VAL);   /* nothing is left of any */
     rep->error_relative = hdi_max(rep->error_relative, relative);
 }
 
@@ -13837,12 +13841,12 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
     work = HDI_TAKE(&h.s, double, lap ? 2 * HDI_CAST(size_t, lap->n) + 1 : 0);
     memset(&one, 0, sizeof one);
     if (h.e->status < 0 || hdi_metric_make(heat, kind, t, 0, &x, &h.s, &one) < 0) return hdi_heat_end(&h);
-    for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : HUGE_VAL;   /* without mass: never chosen */
+    for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
     for (q = 0; q < count && h.e->status >= 0; q++) {
         hd_report column;
         int32_t best = -1;
         for (v = 0; v < lap->n && q >= n_given; v++)
-            if (best < 0 || nearest[v] > nearest[best]) best = v;
+            if (lap->row[v] >= 0 && (best < 0 || nearest[v] > nearest[best])) best = v;   /* without mass: never chosen */
         if (q >= n_given) vertex[q] = q == 0 ? lap->vertex[0] : best;
         if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
         if (q + 1 == count) break;
@@ -13853,7 +13857,8 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         }
         hdi_metric_column(lap, &x, u, work);
         hdi_metric_distance(lap, &x, vertex[q], u, NULL, &one);
-        for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : hdi_min(nearest[v], u[v]);
+        for (v = 0; v < lap->n; v++) nearest[v] = hdi_min(nearest[v], u[v]);
+        nearest[vertex[q]] = -1;                 /* not again, even when no distance is left */
     }
     {
         const hd_error kept = *h.e;
