@@ -7639,7 +7639,8 @@ static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front 
     h.child = child;
     h.begin = begin;
     h.end = end;
-    h.chunk = stage == HDI_INVERSE_CORNER ? HDI_REAL_MR : HDI_INV_CHUNK;
+    h.chunk = HDI_INV_CHUNK;
+    if (stage == HDI_INVERSE_CORNER) h.chunk = HDI_REAL_MR;
     hdi_parallel(w->f->ctx, (end - begin + h.chunk - 1) / h.chunk, hdi_inverse_share_task, &h);
 }
 
