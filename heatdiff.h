@@ -13590,6 +13590,10 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
         }
     }
     x->set = m->set;
+    rep->method = HD_METHOD_DIRECT;
+    rep->reason = "selected inversion of the factors of the poles";
+    rep->ordering = m->sym.ordering;
+    rep->factor_nnz = m->sym.nnz;
     if (h.e->status >= 0) {
         x->resolvent = entries.resolvent;
         x->weighted = entries.weighted;
