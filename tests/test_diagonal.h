@@ -749,7 +749,7 @@ static void diag_distances(void) {
     }
     {
         heat_case c = heat_case_of(eng_leaking(8, 7), "leaking");
-        diag_distances_of(&c, HD_POLES_DEFAULT, 0, 2, 5e-6, "default");   /* what is promised: the bound is kept below that */
+        diag_distances_of(&c, HD_POLES_DEFAULT, 0, 2, 2.5e-6, "default");   /* what is promised: the bound is kept below that */
         heat_case_free(&c);
     }
     shape_free(&ball);

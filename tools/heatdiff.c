@@ -1504,13 +1504,6 @@ static int run_sources(run *r)
     return DONE;
 }
 
-/* Sampling compares distances that can be much smaller than what they are the difference of, and takes many columns from one set of factors:
- * the highest degree costs it little. Distances to all vertices take it where they see the need. */
-static int32_t plan_degree(const options *o)
-{
-    return o->command == CMD_SAMPLE && !is_timeless(o) && !o->degree && !o->poles ? 14 : (int32_t)o->degree;
-}
-
 static int run_plan(run *r)
 {
     const options *o = r->o;
@@ -1522,7 +1515,7 @@ static int run_plan(run *r)
     opts.solver = (hd_solver)o->solver;
     opts.precond = (hd_precond)o->precond;
     opts.poles = (hd_pole_kind)o->poles;
-    opts.degree = plan_degree(o);
+    opts.degree = (int32_t)o->degree;
     opts.tol = o->tol;
     opts.max_iterations = (int32_t)o->max_iterations;
     opts.context = &r->context;
