@@ -12782,8 +12782,8 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
         n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
         for (i = 0; i < n; i++)
             if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
-        if (h->t > 0) {
-            if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);   /* other threads may take all tasks */
+        if (h->t > 0) {                          /* told here too: the calling thread may find all lanes taken */
+            if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
             hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
             if (hdi_heat_collect(h, n) < 0) return hdi_heat_end(h);
         }
