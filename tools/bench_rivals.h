@@ -1,11 +1,13 @@
 /* bench_rivals.h - what a user would otherwise take for the jobs of heatdiff.h, for the benchmark to hold it against.
 
    Rivals: shift-invert Lanczos for exp on one supernodal factor of CHOLMOD, the poles of a rational approximation by UMFPACK and by Eigen's
-   SparseLU, Eigen's SimplicialLDLT, and the smallest eigenpairs by ARPACK for diagonals. Each at its best as far as we could find it: the notes in bench_rivals.cpp say what was tried.
+   SparseLU, Eigen's SimplicialLDLT, and for diagonals the smallest eigenpairs by ARPACK. Each at its best as far as we could find it: the notes in
+   bench_rivals.cpp say what was tried.
 
    Build bench_rivals.cpp as C++17 with optimisation for this machine, which Eigen needs to be fast:
        c++ -std=c++17 -O3 -march=native -DNDEBUG -fopenmp -I/usr/include/eigen3 -c tools/bench_rivals.cpp
-   and link with  -lumfpack -lcholmod -lopenblas -fopenmp.  With -DHEATDIFF_BENCH_ARPACK and -larpack also the eigenpairs. Another BLAS works too; then see to its number of threads yourself.
+   and link with  -lumfpack -lcholmod -lopenblas -fopenmp; with -DHEATDIFF_BENCH_ARPACK here and -larpack there the eigenpairs come along. Another BLAS
+   works too; then see to its number of threads yourself.
 
    Everything is timed from the two matrices to the answer: nothing is left out but the freeing of memory. */
 
