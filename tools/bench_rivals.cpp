@@ -1120,7 +1120,7 @@ void eigenpairs(const Job &job, double *U, rival_result *out) {
     out->error = -1;
 }
 #else
-void eigenpairs(const Job &, double *, rival_result *) { throw std::runtime_error("built without ARPACK"); }
+void eigenpairs(const Job &, double *, rival_result *) { throw std::runtime_error("not built in"); }
 #endif
 
 /* ==== UMFPACK ==== */
