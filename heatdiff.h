@@ -3644,9 +3644,9 @@ static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark
         }
         mark[poly->idx[c]] = f;
     }
-    twice = hdi_poly_area(poly, f, normal);
+    twice = end - begin < 3 ? 0 : hdi_poly_area(poly, f, normal);
     if (!hdi_finite(twice)) return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f, poly->idx[begin], twice);
-    if (twice / (8 * HDI_CAST(double, end - begin)) < DBL_MIN || !hdi_poly_gradients(poly, f, twice / 2)) {
+    if (twice == 0 || twice / (8 * HDI_CAST(double, end - begin)) < DBL_MIN || !hdi_poly_gradients(poly, f, twice / 2)) {
         rep->n_zero_area++;
         return HD_OK;
     }
