@@ -3551,6 +3551,7 @@ static double hdi_poly_area(const hdi_poly *poly, int32_t f, double *twice) {
         sum += hdi_norm3(cross);
     }
     length = hdi_norm3(twice);
+    if (!hdi_finite(sum)) return sum;
     return length <= 4 * DBL_EPSILON * HDI_CAST(double, end - begin - 2) * sum ? 0 : length;
 }
 

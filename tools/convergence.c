@@ -158,6 +158,20 @@ static shape_poly surface(int torus, faces kind, int level, int shaken) {
     return s;
 }
 
+/* The vertices nearest to places that are the same for all meshes. */
+static void sources_on(const shape_poly *s, int torus, int32_t *source) {
+    uint64_t seed = 9;
+    int32_t i;
+    int q, c;
+    for (q = 0; q < SOURCES; q++) {
+        double p[3];
+        for (c = 0; c < 3; c++) p[c] = (torus && c != 1 ? R + r : 1) * dense_signed(&seed);
+        onto(torus, p);
+        for (i = source[q] = 0; i < s->n; i++)
+            if (shape_distance(s->xyz + 3 * i, p) < shape_distance(s->xyz + 3 * source[q], p)) source[q] = i;
+    }
+}
+
 /* ---- the discrete surfaces ---- */
 
 /* X <- Ritz vectors of L, B on the space of the n x BLOCK columns of Y, by ascending Ritz value. */
@@ -233,7 +247,7 @@ static void errors(const shape_poly *s, int torus, hd_laplacian_kind kind, doubl
     memset(&ho, 0, sizeof ho);
     lo.kind = kind;
     ho.degree = 14;
-    for (i = 0; i < SOURCES; i++) source[i] = (int32_t)((2 * i + 1) * (int64_t)s->n / (2 * SOURCES));
+    sources_on(s, torus, source);
     if (hd_laplacian_polygons(&lap, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &lo, &e) < 0) stop("laplacian", &e);
     if (hd_heat_create(&heat, lap, &ho, &e) < 0) stop("heat", &e);
     if (hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, SOURCES, source, u, 0, &report) < 0) stop("heat", &report.error);
