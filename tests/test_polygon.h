@@ -591,6 +591,28 @@ static void poly_slivers(void) {
     }
 }
 
+/* A face too long for the squares of its gradients, left out like one without area; and a deep notch, whose tip bends outwards. */
+static void poly_long_and_notched(void) {
+    static const double notch[21] = {0, 0, 0, 4, 0, 0, 4, 4, 0, 2.2, 4, 0, 2, 0.5, 0, 1.8, 4, 0, 0, 4, 0};
+    static const int32_t corner[7] = {0, 1, 2, 3, 4, 5, 6};
+    shape_poly s = shape_poly_make(11, 2, 11);
+    hd_laplacian *lap;
+    int32_t i;
+    memcpy(s.xyz, notch, sizeof notch);
+    for (i = 7; i < 11; i++) {
+        s.xyz[3 * i] = i == 8 || i == 9 ? 1e160 : 0;
+        s.xyz[3 * i + 1] = i > 8 ? 1e-160 : 0;
+        s.xyz[3 * i + 2] = 0;
+    }
+    shape_put_face(&s, 7, corner);
+    shape_put_quad(&s, 7, 8, 9, 10);
+    lap = poly_make(&s, 0);
+    CHECK(lap->mesh.n_zero_area == 1 && lap->mesh.n_inert == 4 && lap->mesh.n_faces_used == 1);
+    CHECK_MSG(fabs(lap->mesh.smallest_angle - 1.5707963267948966) < 1e-15, "%.17g", lap->mesh.smallest_angle);
+    hd_laplacian_free(lap);
+    shape_poly_free(&s);
+}
+
 /* ---- memory and cancelling ---- */
 
 static hd_status poly_job(hd_context *ctx, int variant) {
@@ -707,6 +729,7 @@ static void test_polygon(void) {
     poly_edges();
     poly_errors();
     poly_slivers();
+    poly_long_and_notched();
     poly_robust();
     poly_heat();
     poly_sphere();
