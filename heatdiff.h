@@ -192,15 +192,19 @@ typedef struct hd_csr {
  * they tell a cleared struct from a forgotten one. */
 
 typedef enum hd_laplacian_kind {
-    HD_LAPLACIAN_FEM = 0,       /* cotangent L, linear finite-element B: area/6 on the diagonal, area/12 off it, per triangle */
+    HD_LAPLACIAN_DEFAULT = 0,   /* fem for triangles, polygon for polygons; hd_laplacian.kind tells which it was */
+    HD_LAPLACIAN_FEM,           /* cotangent L, linear finite-element B: area/6 on the diagonal, area/12 off it, per triangle */
     HD_LAPLACIAN_VORONOI_COT,   /* cotangent L, B diagonal: mixed Voronoi areas (Meyer, Desbrun, Schroeder, Barr 2003) */
     HD_LAPLACIAN_COT,           /* cotangent L, B = I (Pinkall, Polthier 1993) */
-    HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
+    HD_LAPLACIAN_MATRICES,      /* the caller's own two matrices */
+    HD_LAPLACIAN_POLYGON        /* faces of any number of corners, planar or not, and B diagonal: area/k to each corner (Alexa, Wardetzky 2011) */
 } hd_laplacian_kind;
 
 typedef struct hd_laplacian_opts {
     int32_t begin_zero;
-    hd_laplacian_kind kind;     /* default fem; not looked at by hd_laplacian_matrices */
+    hd_laplacian_kind kind;     /* not looked at by hd_laplacian_matrices */
+    double lambda;              /* of polygon: weight of the part that tells apart what the gradients of a face cannot; default 1, at most 1e100.
+                                   Larger values stiffen faces of four corners and more, triangles do not feel it */
     hd_context *context;
     int32_t end_zero;
 } hd_laplacian_opts;
@@ -210,16 +214,18 @@ typedef struct hd_mesh_report {
     int32_t n_faces;                 /* given */
     int32_t n_faces_used;            /* assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    int32_t n_zero_area;             /* left out: cross product of two edges exactly zero (or an area or cotangent that no double holds) */
-    int32_t n_repeated_face;         /* left out: same three corners as an earlier face */
+    int32_t n_zero_area;             /* left out: cross product of two edges exactly zero (or an area or cotangent that no double holds). polygon:
+                                        vector area zero (with more than three corners, up to the rounding of its sum), fewer than three corners */
+    int32_t n_repeated_face;         /* left out: same corners as an earlier face (polygon: in the same cyclic order, either way round) */
     int64_t n_edges;                 /* distinct edges of the faces used */
     int64_t n_boundary_edges;        /* with one face */
     int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed, nothing special */
     int64_t n_misoriented_edges;     /* with two faces that run along it in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass */
-    int64_t n_negative_weights;      /* edges whose cotangent weight is negative: legitimate, but no maximum principle */
-    double smallest_angle;           /* over the faces used, in radians */
+    int64_t n_negative_weights;      /* edges whose cotangent weight is negative: legitimate, but no maximum principle. polygon: pairs of vertices, edges
+                                        or diagonals, whose entry of L is positive; nearly every face of four corners and more has some */
+    double smallest_angle;           /* over the faces used, in radians (polygon: of the corners that bend inwards) */
 } hd_mesh_report;
 
 /* A discrete surface: the pair (L, B) on one pattern. Read it freely, change nothing; made and freed by the library.
@@ -440,6 +446,21 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
  * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY. Cost O(n + n_tri). */
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err);
+
+/* The Laplacian of a mesh of polygons: any number of corners, planar or not, convex or not, triangles among them.
+ * xyz    [3 n] coordinates, finite
+ * face_ptr [n_faces + 1] from 0, not descending: the corners of face f are face_idx[face_ptr[f]] .. face_idx[face_ptr[f + 1] - 1]
+ * face_idx [face_ptr[n_faces]] vertex ids in [0, n)
+ * opts   kind, lambda, context; NULL: polygon with lambda 1. With fem, voronoi-cot or cot every face is split as a fan from its first corner, and
+ *        all is as hd_laplacian_triangles has it of those triangles (counts in mesh are of triangles then; the face in errors is the polygon)
+ * On triangles polygon has L of the cotangents, whatever lambda. lap->h is the mean length of the polygons' own edges; the pattern of L holds the
+ * diagonals of the faces too. What is left out is told at hd_mesh_report.
+ * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_NOT_FINITE (vertex or face), HD_ERR_TOO_LARGE,
+ * HD_ERR_EMPTY, HD_ERR_ARGUMENT.
+ * Cost a face of k corners: k^2 entries of the matrix at most, and as much time; the work arrays are linear in k.
+ * Source Alexa, Wardetzky 2011, the face matrices M_f with their combinatorial part; written out, with the differences, in room [10]. */
+HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
+                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices on any graph, copied.
  * L      n x n, symmetric positive semi-definite. Rows need not sum to zero (then heat is not conserved)
@@ -3574,12 +3595,331 @@ static hd_status hdi_mesh_make(hdi_mesh *mesh, const double *xyz, int32_t n, con
     return HD_OK;
 }
 
+/* ---- polygons ---- */
+
+/* Faces with any number of corners. What the operator needs of a face is kept per corner. */
+typedef struct hdi_poly {
+    const double *xyz;
+    const int64_t *ptr;
+    const int32_t *idx;
+    int32_t n, m;
+    double lambda;
+    double *area;        /* [m] length of the vector area; 0: the face is left out */
+    double *g;           /* [3 corners] (corner before - corner after) / (2 sqrt(area)) */
+    double *w;           /* [2 corners] see hdi_poly_frame; of triangles not set */
+    int32_t *face;       /* [corners] the face of a corner */
+    int64_t *corner_ptr; /* [n + 1] corners at each vertex, as indices into idx, faces ascending */
+    int32_t *corner;     /* [corners]; corners of faces left out are not listed */
+} hdi_poly;
+
+static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr, const int32_t *idx, int32_t m, hd_error *e) {
+    int64_t c;
+    int32_t f;
+    if (hdi_mesh_check(xyz, n, NULL, 0, e) < 0) return e->status;
+    if (m > 0 && ptr[0] != 0) return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, HDI_CAST(double, ptr[0]));
+    for (f = 0; f < m; f++)
+        if (ptr[f + 1] < ptr[f]) return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, HDI_CAST(double, ptr[f + 1]));
+    if (m > 0 && ptr[m] > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (m > 0 && ptr[m] > 0 && !idx) return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
+    for (f = 0; f < m; f++)
+        for (c = ptr[f]; c < ptr[f + 1]; c++)
+            if (idx[c] < 0 || idx[c] >= n) return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1, idx[c]);
+    return HD_OK;
+}
+
+static const double *hdi_poly_at(const hdi_poly *poly, int64_t corner) { return poly->xyz + 3 * HDI_CAST(int64_t, poly->idx[corner]); }
+
+/* The corners of the same face before and after c. */
+static int64_t hdi_poly_before(const hdi_poly *poly, int64_t c) {
+    const int32_t f = poly->face[c];
+    return c > poly->ptr[f] ? c - 1 : poly->ptr[f + 1] - 1;
+}
+
+static int64_t hdi_poly_after(const hdi_poly *poly, int64_t c) {
+    const int32_t f = poly->face[c];
+    return c + 1 < poly->ptr[f + 1] ? c + 1 : poly->ptr[f];
+}
+
+/* The edge from corner c to the next. */
+static void hdi_poly_edge(const hdi_poly *poly, int64_t c, double *edge) {
+    hdi_sub3(hdi_poly_at(poly, hdi_poly_after(poly, c)), hdi_poly_at(poly, c), edge);
+}
+
+/* Twice the vector area of face f, as a fan from its first corner. Returns its length, or 0 when nothing but the rounding of the sum is left of
+ * it, as in a bow tie. A triangle is one cross product of two edges: 0 only if that is exactly zero. */
+static double hdi_poly_area(const hdi_poly *poly, int32_t f, double *twice) {
+    const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
+    double spoke[3], edge[3], cross[3], length, sum = 0;
+    int64_t c;
+    int q;
+    twice[0] = twice[1] = twice[2] = 0;
+    for (c = begin + 1; c + 1 < end; c++) {
+        hdi_sub3(hdi_poly_at(poly, c), hdi_poly_at(poly, begin), spoke);
+        hdi_poly_edge(poly, c, edge);
+        hdi_cross3(spoke, edge, cross);
+        for (q = 0; q < 3; q++) twice[q] += cross[q];
+        sum += hdi_norm3(cross);
+    }
+    length = hdi_norm3(twice);
+    if (!hdi_finite(sum)) return sum;
+    return length <= 4 * DBL_EPSILON * HDI_CAST(double, end - begin - 2) * sum ? 0 : length;
+}
+
+/* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the longest edge as projected into it. Returns its length. */
+static double hdi_poly_axes(const hdi_poly *poly, int32_t f, const double *normal, double frame[2][3]) {
+    double longest = 0, edge[3], length, along;
+    int64_t c;
+    int q;
+    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
+        hdi_poly_edge(poly, c, edge);
+        along = hdi_dot3(edge, normal);
+        for (q = 0; q < 3; q++) edge[q] -= along * normal[q];
+        length = hdi_norm3(edge);
+        if (!(length > longest)) continue;
+        longest = length;
+        for (q = 0; q < 3; q++) frame[0][q] = edge[q] / length;
+    }
+    if (longest > 0) hdi_cross3(normal, frame[0], frame[1]);
+    return longest;
+}
+
+/* The projector on the kernel of the transposed projected edges is I - Q Q', Q [k x 2] an orthonormal basis of their range: Gram and Schmidt,
+ * orthogonalised twice. What is kept are the rows of w = D'Q, D the difference along the edges. 0 when the face has no plane. */
+static int hdi_poly_frame(const hdi_poly *poly, int32_t f, const double *normal) {
+    const int64_t begin = poly->ptr[f], k = poly->ptr[f + 1] - begin;
+    double *q = poly->w + 2 * begin, frame[2][3], edge[3], dot, norm, last[2];
+    const double longest = hdi_poly_axes(poly, f, normal, frame);
+    int64_t p;
+    int turn;
+    if (!(longest > 0)) return 0;
+    for (p = 0, norm = 0; p < k; p++) {
+        hdi_poly_edge(poly, begin + p, edge);
+        q[2 * p] = hdi_dot3(edge, frame[0]) / longest;
+        q[2 * p + 1] = hdi_dot3(edge, frame[1]) / longest;
+        norm += q[2 * p] * q[2 * p];
+    }
+    for (p = 0, norm = sqrt(norm); p < k; p++) q[2 * p] /= norm;
+    for (turn = 0; turn < 2; turn++) {
+        for (p = 0, dot = 0; p < k; p++) dot += q[2 * p] * q[2 * p + 1];
+        for (p = 0; p < k; p++) q[2 * p + 1] -= dot * q[2 * p];
+    }
+    for (p = 0, norm = 0; p < k; p++) norm += q[2 * p + 1] * q[2 * p + 1];
+    norm = sqrt(norm);
+    for (p = 0; p < k; p++) q[2 * p + 1] = norm > 1e-12 ? q[2 * p + 1] / norm : 0;   /* narrower than that: its direction is rounding */
+    last[0] = q[2 * k - 2];
+    last[1] = q[2 * k - 1];
+    for (p = k - 1; p >= 0; p--) {
+        q[2 * p] = (p > 0 ? q[2 * p - 2] : last[0]) - q[2 * p];
+        q[2 * p + 1] = (p > 0 ? q[2 * p - 1] : last[1]) - q[2 * p + 1];
+    }
+    return 1;
+}
+
+/* Smallest angle at the corners of f that bend inwards, at most pi. */
+static double hdi_poly_angle(const hdi_poly *poly, int32_t f, const double *normal) {
+    double least = 4, in[3], out[3], cross[3];
+    int64_t c;
+    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
+        hdi_poly_edge(poly, hdi_poly_before(poly, c), in);
+        hdi_poly_edge(poly, c, out);
+        hdi_cross3(in, out, cross);
+        if (hdi_dot3(cross, normal) >= 0) least = hdi_min(least, atan2(hdi_norm3(cross), -hdi_dot3(in, out)));
+    }
+    return least;
+}
+
+/* g of face f; 0 when a square of it is not finite. */
+static int hdi_poly_gradients(const hdi_poly *poly, int32_t f, double area) {
+    int64_t c;
+    int q, good = 1;
+    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
+        double *g = poly->g + 3 * c;
+        hdi_sub3(hdi_poly_at(poly, hdi_poly_before(poly, c)), hdi_poly_at(poly, hdi_poly_after(poly, c)), g);
+        for (q = 0; q < 3; q++) g[q] /= 2 * sqrt(area);
+        good &= hdi_finite(hdi_dot3(g, g));
+    }
+    return good;
+}
+
+/* Everything about face f. mark [n] holds the last face that saw a vertex. */
+static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark, hd_mesh_report *rep, hd_error *e) {
+    const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
+    double normal[3], twice;
+    int64_t c;
+    int q;
+    poly->area[f] = 0;
+    for (c = begin; c < end; c++) {
+        if (mark[poly->idx[c]] == f) {
+            rep->n_repeated_corner++;
+            return HD_OK;
+        }
+        mark[poly->idx[c]] = f;
+    }
+    twice = end - begin < 3 ? 0 : hdi_poly_area(poly, f, normal);
+    if (!hdi_finite(twice)) return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f, poly->idx[begin], twice);
+    if (twice == 0 || twice / (8 * HDI_CAST(double, end - begin)) < DBL_MIN || !hdi_poly_gradients(poly, f, twice / 2)) {
+        rep->n_zero_area++;
+        return HD_OK;
+    }
+    for (q = 0; q < 3; q++) normal[q] /= twice;
+    if (end - begin > 3 && !hdi_poly_frame(poly, f, normal)) {
+        rep->n_zero_area++;
+        return HD_OK;
+    }
+    poly->area[f] = twice / 2;
+    rep->smallest_angle = hdi_min(rep->smallest_angle, hdi_poly_angle(poly, f, normal));
+    return HD_OK;
+}
+
+/* Corner lists of all vertices, over the faces that have an area. */
+static void hdi_poly_corners(hdi_poly *poly) {
+    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
+    int64_t c;
+    int32_t i;
+    memset(poly->corner_ptr, 0, (HDI_CAST(size_t, poly->n) + 1) * sizeof *poly->corner_ptr);
+    for (c = 0; c < n_corners; c++)
+        if (poly->area[poly->face[c]] > 0) poly->corner_ptr[poly->idx[c]]++;
+    hdi_prefix_sum(poly->corner_ptr, poly->n);
+    for (c = 0; c < n_corners; c++)
+        if (poly->area[poly->face[c]] > 0) poly->corner[poly->corner_ptr[poly->idx[c]]++] = HDI_CAST(int32_t, c);
+    for (i = poly->n; i > 0; i--) poly->corner_ptr[i] = poly->corner_ptr[i - 1];
+    poly->corner_ptr[0] = 0;
+}
+
+/* From a face's smallest corner towards the smaller of its neighbours: the way in which faces with the same corners in the same cyclic order are
+ * all read alike. One step from c, which is *forward or not. */
+static int64_t hdi_poly_step(const hdi_poly *poly, int64_t c, int forward) { return forward ? hdi_poly_after(poly, c) : hdi_poly_before(poly, c); }
+
+static int hdi_poly_way(const hdi_poly *poly, int64_t c) { return poly->idx[hdi_poly_after(poly, c)] < poly->idx[hdi_poly_before(poly, c)]; }
+
+/* A number for the corners of the face in the order from its smallest corner c (the hash of Fowler, Noll and Vo, a vertex at a time). */
+static uint64_t hdi_poly_key(const hdi_poly *poly, int64_t c) {
+    const int forward = hdi_poly_way(poly, c);
+    uint64_t key = 14695981039346656037u;
+    int64_t at = c;
+    do {
+        key = (key ^ HDI_CAST(uint64_t, poly->idx[at])) * 1099511628211u;
+        at = hdi_poly_step(poly, at, forward);
+    } while (at != c);
+    return key;
+}
+
+static int hdi_poly_same(const hdi_poly *poly, int64_t c, int64_t d) {
+    const int forward_c = hdi_poly_way(poly, c), forward_d = hdi_poly_way(poly, d);
+    int64_t a = c, b = d;
+    do {
+        if (poly->idx[a] != poly->idx[b]) return 0;
+        a = hdi_poly_step(poly, a, forward_c);
+        b = hdi_poly_step(poly, b, forward_d);
+    } while (a != c && b != d);
+    return a == c && b == d;
+}
+
+/* Gives faces that repeat an earlier one area 0: around each vertex, the faces in which it is the smallest corner are sorted by their keys.
+ * least [m] the smallest corner of each face; work as in hdi_mesh_repeats. */
+static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_mesh_report *rep) {
+    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
+    int64_t c, p, n, first;
+    int32_t i;
+    hdi_fill_i32(least, poly->m, -1);
+    for (c = 0; c < n_corners; c++) {
+        int32_t *best = least + poly->face[c];
+        if (*best < 0 || poly->idx[c] < poly->idx[*best]) *best = HDI_CAST(int32_t, c);
+    }
+    for (i = 0; i < poly->n; i++) {
+        n = 0;
+        for (p = poly->corner_ptr[i]; p < poly->corner_ptr[i + 1]; p++) {
+            c = poly->corner[p];
+            if (least[poly->face[c]] != c) continue;
+            work[n].key = hdi_poly_key(poly, c);
+            work[n++].id = c;
+        }
+        hdi_sort_pairs(work, n);
+        for (p = 1, first = 0; p < n; p++) {
+            if (work[p].key != work[first].key) first = p;
+            else if (hdi_poly_same(poly, work[p].id, work[first].id)) {
+                poly->area[poly->face[work[p].id]] = 0;
+                rep->n_repeated_face++;
+            }
+        }
+    }
+}
+
+/* The most corners at a vertex, at least 1. */
+static int64_t hdi_poly_busiest(const hdi_poly *poly) {
+    int64_t most = 1;
+    int32_t i;
+    for (i = 0; i < poly->n; i++)
+        if (poly->corner_ptr[i + 1] - poly->corner_ptr[i] > most) most = poly->corner_ptr[i + 1] - poly->corner_ptr[i];
+    return most;
+}
+
+/* As hdi_mesh_make. The input must have passed hdi_poly_check. */
+static hd_status hdi_poly_make(hdi_poly *poly, hd_mesh_report *rep, hdi_scope *s) {
+    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
+    const int32_t m = poly->m;
+    int32_t *mark, f;
+    hdi_pair *work;
+    int64_t c;
+    rep->n_faces = m;
+    rep->smallest_angle = m > 0 ? 4 : 0;
+    poly->area = HDI_TAKE(s, double, m);
+    poly->g = HDI_TAKE(s, double, 3 * n_corners);
+    poly->w = HDI_TAKE(s, double, 2 * n_corners);
+    poly->face = HDI_TAKE(s, int32_t, n_corners);
+    poly->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, poly->n) + 1);
+    poly->corner = HDI_TAKE(s, int32_t, n_corners);
+    mark = HDI_TAKE(s, int32_t, poly->n > m ? poly->n : m);
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0; f < m; f++)
+        for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) poly->face[c] = f;
+    hdi_fill_i32(mark, poly->n, -1);
+    for (f = 0; f < m; f++)
+        if (hdi_poly_measure(poly, f, mark, rep, s->e) < 0) return s->e->status;
+    hdi_poly_corners(poly);
+    work = HDI_TAKE(s, hdi_pair, hdi_poly_busiest(poly));
+    if (!work) return s->e->status;
+    hdi_poly_repeats(poly, mark, work, rep);
+    if (rep->n_repeated_face) hdi_poly_corners(poly);
+    for (f = 0; f < m; f++) rep->n_faces_used += poly->area[f] > 0;
+    if (!rep->n_faces_used) rep->smallest_angle = 0;
+    return HD_OK;
+}
+
+/* Fans from the first corner of each face, into tri; NULL: counted only. Returns the number of triangles. */
+static int64_t hdi_poly_fans(const int64_t *ptr, const int32_t *idx, int32_t m, int32_t *tri) {
+    int64_t t = 0, c;
+    int32_t f;
+    for (f = 0; f < m; f++) {
+        for (c = ptr[f] + 1; c + 1 < ptr[f + 1]; c++, t++) {
+            if (!tri) continue;
+            tri[3 * t] = idx[ptr[f]];
+            tri[3 * t + 1] = idx[c];
+            tri[3 * t + 2] = idx[c + 1];
+        }
+    }
+    return t;
+}
+
+/* The face that triangle t is of. */
+static int32_t hdi_poly_face_of(const int64_t *ptr, int32_t m, int64_t t) {
+    int32_t f;
+    for (f = 0; f < m; f++) {
+        const int64_t k = ptr[f + 1] - ptr[f] - 2;
+        if (k > t) return f;
+        if (k > 0) t -= k;
+    }
+    return -1;
+}
+
 /* ==== [10] operators ====
  * The pair (L, B) on one pattern. May call [09] and [07].
  * This work is based on
  *   U. Pinkall, K. Polthier, Computing discrete minimal surfaces and their conjugates, 1993 (cotangent weights)
  *   M. Meyer, M. Desbrun, P. Schroeder, A. Barr, Discrete differential-geometry operators for triangulated 2-manifolds, 2003 (mixed areas)
- * Deviation: the paper cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas go negative on obtuse triangles. */
+ *   M. Alexa, M. Wardetzky, Discrete Laplacians on general polygonal meshes, 2011 (polygons)
+ * Deviations: the paper cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas go negative on obtuse triangles. Those of
+ * polygons are listed there. */
 
 static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     if (!lap) return;
@@ -3752,8 +4092,9 @@ static void hdi_edge_counts(const hd_laplacian *lap, const hdi_mesh *mesh, int32
     }
 }
 
-/* Statistics of the edges of row i, and the union of boundary edges in parent [n_active]. Returns the sum of the edges' lengths. */
-static double hdi_edge_report(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, const int32_t *count, const int32_t *turn, int32_t *parent) {
+/* Statistics of the edges of row i, and the union of boundary edges in parent [n_active]. Returns the sum of the edges' lengths. An entry of L with
+ * a count of no faces is a diagonal of polygons. */
+static double hdi_edge_report(hd_laplacian *lap, const double *xyz, int32_t i, const int32_t *count, const int32_t *turn, int32_t *parent) {
     const int64_t begin = lap->L.row_ptr[i];
     hd_mesh_report *rep = &lap->mesh;
     double sum = 0, edge[3];
@@ -3761,12 +4102,13 @@ static double hdi_edge_report(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i
     for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
         const int32_t j = lap->L.col[p], faces = count[p - begin];
         if (j <= i) continue;
-        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, lap->vertex[j]), mesh->xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), edge);
+        rep->n_negative_weights += lap->L.val[p] > 0;
+        if (faces == 0) continue;
+        hdi_sub3(xyz + 3 * HDI_CAST(int64_t, lap->vertex[j]), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), edge);
         sum += hdi_norm3(edge);
         rep->n_edges++;
         rep->n_nonmanifold_edges += faces > 2;
         rep->n_misoriented_edges += faces == 2 && turn[p - begin] != 0;
-        rep->n_negative_weights += lap->L.val[p] > 0;
         if (faces != 1) continue;
         rep->n_boundary_edges++;
         hdi_unite(parent, i, j);
@@ -3774,32 +4116,54 @@ static double hdi_edge_report(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i
     return sum;
 }
 
+/* Counts the sets of hdi_edge_report: a loop is a root with another vertex in its set. seen [n_active] is overwritten. */
+static void hdi_boundary_loops(hd_laplacian *lap, int32_t *parent, int64_t *seen) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) seen[i] = 0;
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t root = hdi_find(parent, i);
+        if (root == i || seen[root]) continue;
+        seen[root] = 1;
+        lap->mesh.n_boundary_loops++;
+    }
+}
+
+/* The entries of the longest row, at least 1. */
+static int64_t hdi_widest_row(const hd_csr *a) {
+    int64_t widest = 1;
+    int32_t i;
+    for (i = 0; i < a->n_rows; i++)
+        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
+    return widest;
+}
+
 /* Values of L and B, edge statistics and h. */
 static hd_status hdi_lap_values(hd_laplacian *lap, const hdi_mesh *mesh, int32_t *parent, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active), widest = 1;
-    int32_t *count, *turn, i;
+    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
+    const int64_t widest = hdi_widest_row(&lap->L);
+    int32_t *count = HDI_TAKE(&s, int32_t, widest), *turn = HDI_TAKE(&s, int32_t, widest), i;
     double length = 0;
-    for (i = 0; i < lap->n_active; i++)
-        if (lap->L.row_ptr[i + 1] - lap->L.row_ptr[i] > widest) widest = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
-    count = HDI_TAKE(&s, int32_t, widest);
-    turn = HDI_TAKE(&s, int32_t, widest);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) parent[i] = i;
     for (i = 0; i < lap->n_active; i++) {
         hdi_lap_row_values(lap, mesh, i, place);
         hdi_edge_counts(lap, mesh, i, place, count, turn);
-        length += hdi_edge_report(lap, mesh, i, count, turn, parent);
+        length += hdi_edge_report(lap, mesh->xyz, i, count, turn, parent);
         if (lap->B) lap->b_diag[i] = lap->B[place[i]];
     }
     lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
-    for (i = 0; i < lap->n_active; i++) {   /* a loop is a root with another vertex in its set */
-        const int32_t root = hdi_find(parent, i);
-        if (root == i || place[root] == -1) continue;
-        place[root] = -1;
-        lap->mesh.n_boundary_loops++;
-    }
+    hdi_boundary_loops(lap, parent, place);
     return hdi_scope_end(&s);
+}
+
+/* Copies the places of the rows. */
+static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    int32_t i;
+    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+    if (!lap->xyz) return e->status;
+    for (i = 0; i < lap->n_active; i++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), 3 * sizeof *xyz);
+    return HD_OK;
 }
 
 static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, hd_error *e) {
@@ -3812,9 +4176,7 @@ static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const i
     if (!vertex_mass) return hdi_scope_end(&s);
     for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_vertex_mass(&mesh, v, lap->kind);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0) return hdi_scope_end(&s);
-    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
-    if (!lap->xyz) return hdi_scope_end(&s);
-    for (v = 0; v < lap->n_active; v++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, lap->vertex[v]), 3 * sizeof *xyz);
+    if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
     mark = HDI_TAKE(&s, int32_t, lap->n_active);
     if (!mark || hdi_lap_pattern(lap, &mesh, mark, e) < 0) return hdi_scope_end(&s);
     if (lap->kind == HD_LAPLACIAN_FEM) {
@@ -3828,6 +4190,151 @@ static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const i
     lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;   /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->conserves = 1;
     hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- polygons ----
+ * Of a face with k corners X [k x 3], edges E, middles of edges B_f, the difference D along the edges and the vector area of length |f|,
+ *     L_f = D'(B_f B_f'/|f| + lambda C C') D,        C an orthonormal basis of the kernel of the transposed edges projected along the vector area.
+ * Deviations from Alexa and Wardetzky, all of form: D'B_f is half the differences of next but one corners, g sqrt(|f|) here, which knows no origin;
+ * C C' = I - Q Q' with Q two columns, so that L_f = g g' + lambda (D'D - w w') costs a few products an entry, no k x k block is ever made,
+ * and faces of hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one number for all faces.
+ * On triangles the second part is zero, and is not computed. */
+
+/* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The same to the last bit for (d, c). */
+static double hdi_poly_entry(const hdi_poly *poly, int64_t c, int64_t d, int64_t k, int beside) {
+    const double *u = poly->w + 2 * c, *v = poly->w + 2 * d, first = hdi_dot3(poly->g + 3 * c, poly->g + 3 * d);
+    return k == 3 ? first : first - poly->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
+}
+
+/* As hdi_ring. */
+static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int32_t v, int32_t *mark, int32_t *col) {
+    const int32_t i = lap->row[v];
+    int64_t p, d, n = 1;
+    mark[i] = i;
+    col[0] = i;
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int32_t f = poly->face[poly->corner[p]];
+        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
+            const int32_t j = lap->row[poly->idx[d]];
+            if (mark[j] == i) continue;
+            mark[j] = i;
+            col[n++] = j;
+        }
+    }
+    return n;
+}
+
+/* As hdi_lap_pattern; col [n_active], work [n_active] serve rows of any length. */
+static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32_t *mark, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, lap->n_active);
+    int64_t nnz = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_i32(mark, lap->n_active, -1);
+    for (i = 0; i < lap->n_active; i++) nnz += hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
+    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    if (e->status < 0) {
+        memset(&lap->L, 0, sizeof lap->L);
+        return hdi_scope_end(&s);
+    }
+    hdi_fill_i32(mark, lap->n_active, -1);
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t begin = lap->L.row_ptr[i], n = hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
+        hdi_sort_indices(col, n, work);
+        memcpy(lap->L.col + begin, col, HDI_CAST(size_t, n) * sizeof *col);
+        lap->L.row_ptr[i + 1] = begin + n;
+    }
+    lap->L = hdi_csr_keep(&s, lap->L);
+    return hdi_scope_end(&s);
+}
+
+/* Values of row i, its edges counted as in hdi_edge_counts. As in hdi_lap_row_values, both rows of a pair add in the order of the faces. */
+static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i, int64_t *place, int32_t *count, int32_t *turn) {
+    const int32_t v = lap->vertex[i];
+    const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
+    double *L = lap->L.val + begin, sum = 0;
+    int64_t p, d;
+    for (p = 0; p < n; p++) {
+        place[lap->L.col[begin + p]] = p;
+        L[p] = 0;
+        count[p] = turn[p] = 0;
+    }
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int64_t c = poly->corner[p], before = hdi_poly_before(poly, c), after = hdi_poly_after(poly, c);
+        const int32_t f = poly->face[c];
+        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
+            const int64_t at = place[lap->row[poly->idx[d]]];
+            const int beside = d == before || d == after;
+            if (d == c) continue;
+            L[at] += hdi_poly_entry(poly, c, d, poly->ptr[f + 1] - poly->ptr[f], beside);
+            count[at] += beside;
+            turn[at] += (d == after) - (d == before);
+        }
+    }
+    for (p = 0; p < n; p++)
+        if (lap->L.col[begin + p] != i) sum += L[p];
+    L[place[i]] = -sum;
+}
+
+static hd_status hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, int32_t *parent, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
+    const int64_t widest = hdi_widest_row(&lap->L);
+    int32_t *count = HDI_TAKE(&s, int32_t, widest), *turn = HDI_TAKE(&s, int32_t, widest), i;
+    double length = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) parent[i] = i;
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_poly_row(lap, poly, i, place, count, turn);
+        length += hdi_edge_report(lap, poly->xyz, i, count, turn, parent);
+    }
+    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
+    hdi_boundary_loops(lap, parent, place);
+    return hdi_scope_end(&s);
+}
+
+/* Area of each face to its corners in equal parts. */
+static double hdi_poly_mass(const hdi_poly *poly, int32_t v) {
+    double sum = 0;
+    int64_t p;
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int32_t f = poly->face[poly->corner[p]];
+        sum += poly->area[f] / HDI_CAST(double, poly->ptr[f + 1] - poly->ptr[f]);
+    }
+    return sum;
+}
+
+/* poly: xyz, ptr, idx, n, m and lambda set, the input checked. */
+static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *vertex_mass;
+    int32_t *mark, v, f;
+    if (hdi_poly_make(poly, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
+    vertex_mass = HDI_TAKE(&s, double, lap->n);
+    if (!vertex_mass) return hdi_scope_end(&s);
+    for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_poly_mass(poly, v);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_places(lap, poly->xyz, e) < 0) return hdi_scope_end(&s);
+    mark = HDI_TAKE(&s, int32_t, lap->n_active);
+    if (!mark || hdi_poly_pattern(lap, poly, mark, e) < 0) return hdi_scope_end(&s);
+    if (hdi_poly_values(lap, poly, mark, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
+    for (f = 0; f < poly->m; f++) lap->area += poly->area[f];
+    lap->b_ratio = 1;
+    lap->conserves = 1;
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* The faces split as fans, for the operators of triangles. */
+static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int64_t m = hdi_poly_fans(poly->ptr, poly->idx, poly->m, NULL);
+    int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
+    if (!tri) return hdi_scope_end(&s);
+    hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
+    if (hdi_lap_triangles(lap, poly->xyz, tri, HDI_CAST(int32_t, m), e) < 0 && e->face >= 0) e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
     return hdi_scope_end(&s);
 }
 
@@ -11552,7 +12059,7 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
 
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err) {
-    const hd_laplacian_kind kind = opts ? opts->kind : HD_LAPLACIAN_FEM;
+    const hd_laplacian_kind kind = opts && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : HD_LAPLACIAN_FEM;
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
     if (!lap) return c.e->status;
@@ -11562,6 +12069,32 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: the kind is fem, voronoi-cot or cot"));
     if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, c.e));
+}
+
+HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
+                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
+    const hd_laplacian_kind kind = opts && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : HD_LAPLACIAN_POLYGON;
+    const int splits = kind == HD_LAPLACIAN_FEM || kind == HD_LAPLACIAN_VORONOI_COT || kind == HD_LAPLACIAN_COT;
+    hdi_poly poly;
+    hdi_call c;
+    hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
+    if (!lap) return c.e->status;
+    memset(&poly, 0, sizeof poly);
+    poly.xyz = xyz;
+    poly.ptr = face_ptr;
+    poly.idx = face_idx;
+    poly.n = n;
+    poly.m = n_faces;
+    poly.lambda = opts && opts->lambda != 0 ? opts->lambda : 1;
+    if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (n_faces < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
+    if (!splits && kind != HD_LAPLACIAN_POLYGON)
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot"));
+    if (!(poly.lambda > 0 && poly.lambda <= 1e100))
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: lambda is not between 0 and 1e100"));
+    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
+        return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, c.e) : hdi_lap_polygons(lap, &poly, c.e));
 }
 
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,

@@ -624,7 +624,63 @@ class Numbers(Case):
         v = [(0.0, 0.0, 0.0), (2.0, 0.0, 0.1), (2.5, 1.5, 0.0), (1.0, 2.5, 0.3), (-0.5, 1.5, 0.0)]
         fan = self.file("fan.obj", obj_text(v, [(0, 1, 2), (0, 2, 3), (0, 3, 4)]))
         polygon = self.file("polygon.obj", obj_text(v, [(0, 1, 2, 3, 4)]))
-        self.assertEqual(self.field("kernel", fan, "--source", 1, "--t", "0.3"), self.field("kernel", polygon, "--source", 1, "--t", "0.3"))
+        for kind in ("fem", "voronoi-cot", "cot"):
+            args = ("--source", 1, "--t", "0.3", "--laplacian", kind)
+            self.assertEqual(self.field("kernel", fan, *args), self.field("kernel", polygon, *args))
+
+
+class Polygons(Case):
+    """Faces that are no triangles."""
+    SQUARE = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)]
+
+    def square(self):
+        return self.file("square.obj", obj_text(self.SQUARE, [(0, 1, 2, 3)]))
+
+    def test_square_in_closed_form(self):
+        """B^-1 L of the unit square has the eigenvalues 0, 4, 4 and 16 lambda."""
+        for args, weight in (([], 1), (["--laplacian", "polygon", "--lambda", "0.5"], 0.5), (["--lambda=2"], 2)):
+            t, got = 0.07, self.field("kernel", self.square(), "--source", 0, "--t", 0.07, *args)
+            a, b = math.exp(-4 * t) / 2, math.exp(-16 * weight * t) / 4
+            self.close(got, [[0.25 + a + b], [0.25 - b], [0.25 - a + b], [0.25 - b]], 1e-7)
+
+    def test_default_is_by_the_faces(self):
+        v, f = icosahedron()
+        mixed = self.file("mixed.obj", obj_text(v + [(0, 0, 3), (1, 0, 3), (1, 1, 3), (0, 1, 3)], f + [(12, 13, 14, 15)]))
+        for path, kind in ((self.square(), "polygon"), (mixed, "polygon"), (self.file("ball.obj", obj_text(v, f)), "fem")):
+            self.assertEqual(json.loads(self.good("info", path, "--json").stdout)["laplacian"], kind)
+            self.assertEqual(json.loads(self.good("kernel", path, "--source", 0, "--t", 1, "--json").stderr)["laplacian"], kind)
+
+    def test_polygon_on_triangles_is_cotangent(self):
+        """L is that of the triangles whatever lambda, B the thirds of their areas: on an icosahedron the mixed areas."""
+        path = self.file("ico.obj", obj_text(*icosahedron()))
+        want = self.field("kernel", path, "--source", 3, "--t", "2h2", "--laplacian", "voronoi-cot")
+        for weight in (0.1, 1, 10):
+            self.close(self.field("kernel", path, "--source", 3, "--t", "2h2", "--laplacian", "polygon", "--lambda", weight), want, 1e-7)
+
+    def test_h_and_counts(self):
+        r = json.loads(self.good("info", self.square(), "--json").stdout)
+        self.assertEqual((r["h"], r["area"], r["edges"], r["faces"], r["faces_used"], r["triangles"], r["boundary_loops"]), (1, 1, 4, 1, 1, 2, 1))
+        r = json.loads(self.good("info", self.square(), "--json", "--laplacian", "fem").stdout)
+        self.assertEqual((r["edges"], r["triangles_used"], r["laplacian"]), (5, 2, "fem"))
+        self.assertIn("polygon", self.good("info", self.square()).stdout.decode())
+
+    def test_defects(self):
+        v = self.SQUARE + [(3.0, 0.0, 0.0), (4.0, 0.0, 0.0), (5.0, 0.0, 0.0), (6.0, 0.0, 0.0)]
+        path = self.file("defects.obj", obj_text(v, [(0, 1, 2, 3), (2, 1, 0, 3), (4, 5, 6, 7), (0, 1, 1, 4)]))
+        r = json.loads(self.good("info", path, "--json").stdout)
+        self.assertEqual((r["repeated_faces"], r["repeated_corner_faces"], r["zero_area_faces"], r["inert"], r["faces_used"]), (1, 1, 1, 4, 1))
+        self.assertEqual(self.field("kernel", path, "--source", 5, "--t", 1), [[1.0 if i == 5 else 0.0] for i in range(8)])
+
+    def test_every_output(self):
+        for name in ("k.npy", "k.csv", "k.ply", "k.obj", "k.vtu", "k.png"):
+            self.good("kernel", self.square(), "--source", 0, "--t", "1h2", "-o", self.path(name))
+        f = self.file("f.txt", "1\n2\n3\n4\n")
+        self.close(self.field("diffuse", self.square(), "--input", f, "--t", 100), [[2.5]] * 4, 1e-7)
+
+    def test_lambda_is_checked(self):
+        for value in ("0", "-1", "x", "nan", "1e200", ""):
+            self.assertIn("--lambda", self.bad(2, "info", self.square(), "--lambda", value))
+        self.assertIn("--lambda", self.bad(2, "info", self.square(), "--lambda", "1", "--laplacian", "fem"))
 
 
 METHODS = ("direct", "krylov", "auto", "iterative")

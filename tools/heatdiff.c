@@ -385,7 +385,8 @@ static int processors(void)
 typedef struct word { const char *name; int value; } word;
 
 static const word LAPLACIANS[] = {
-    { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT }, { NULL, 0 } };
+    { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT },
+    { "polygon", HD_LAPLACIAN_POLYGON }, { NULL, 0 } };
 static const word POLES[] = { { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { NULL, 0 } };
 static const word METHODS[] = {
     { "auto", HD_METHOD_AUTO }, { "direct", HD_METHOD_DIRECT }, { "krylov", HD_METHOD_KRYLOV }, { "iterative", HD_METHOD_ITERATIVE },
@@ -447,7 +448,7 @@ typedef struct options {
     const char *input, *output, *title;
     int laplacian, poles, method, ordering, simd, solver, precond, kernel;
     long degree, max_iterations, threads;
-    double tol;
+    double tol, lambda;
     uint64_t memory_limit;
     int json, quiet, help, version;
     int colormap;                    /* pictures */
@@ -551,6 +552,12 @@ static int parse_tol(options *o, const option_def *def, const char *text)
 {
     (void)def;
     return read_real(text, &o->tol) && o->tol > 0 && o->tol < 1;
+}
+
+static int parse_lambda(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    return read_real(text, &o->lambda) && o->lambda > 0 && o->lambda <= 1e100;
 }
 
 static int parse_range(options *o, const option_def *def, const char *text)
@@ -662,8 +669,11 @@ static const option_def OPTIONS[] = {
       "vertices where the heat starts, counted from 0" },
     { "input", 0, CMD_DIFFUSE | CMD_RENDER, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
       "a field: a row per vertex, one or more columns, as text or .npy" },
-    { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME", "fem, voronoi-cot or cot",
-      "fem (default), voronoi-cot or cot" },
+    { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
+      "fem, voronoi-cot, cot or polygon",
+      "fem (default of triangles), voronoi-cot, cot: other faces are\nsplit; polygon (default of meshes with other faces)" },
+    { "lambda", 0, CMD_INFO | CMD_HEAT, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
+      "of polygon: weight of its stabilising part (1)" },
     { "kernel", 0, CMD_KERNEL, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
       "operator: columns of K_t (default); symmetric: of k_t = K_t B^-1" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
@@ -864,6 +874,8 @@ static int check_options(const options *o)
     if ((o->command & CMD_HEAT) && !o->times)
         return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
     if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
+    if (o->lambda > 0 && o->laplacian != HD_LAPLACIAN_DEFAULT && o->laplacian != HD_LAPLACIAN_POLYGON)
+        return fail(USAGE, "--lambda takes --laplacian polygon: %s has no such part", word_of(LAPLACIANS, o->laplacian));
     if ((code = check_method(o)) != DONE) return code;
     if (o->degree == 1 && (o->poles == HD_POLES_KERNEL || (o->poles == HD_POLES_DEFAULT && o->command == CMD_KERNEL)))
         return fail(USAGE, "--degree takes 2..14 with --poles kernel, and 1..14 with --poles uniform");
@@ -1313,16 +1325,26 @@ static int run_load(run *r)
     return code;
 }
 
+/* That of the command line; without one polygon for meshes with other faces than triangles. */
+static hd_laplacian_kind laplacian_kind(const run *r)
+{
+    if (r->o->laplacian != HD_LAPLACIAN_DEFAULT) return (hd_laplacian_kind)r->o->laplacian;
+    return r->mesh.n_tri != r->mesh.n_faces ? HD_LAPLACIAN_POLYGON : HD_LAPLACIAN_FEM;    /* no face of the file has fewer than three corners */
+}
+
 static hd_status run_laplacian(run *r, hd_error *err)
 {
+    const mesh_data *m = &r->mesh;
     hd_laplacian_opts opts;
     const double start = now();
     hd_status status;
     memset(&opts, 0, sizeof opts);
-    opts.kind = (hd_laplacian_kind)r->o->laplacian;
+    opts.kind = laplacian_kind(r);
+    opts.lambda = r->o->lambda;
     opts.context = &r->context;
     interrupt.patient = 1;
-    status = hd_laplacian_triangles(&r->lap, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, err);
+    status = opts.kind == HD_LAPLACIAN_POLYGON ? hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces, &opts, err)
+                                               : hd_laplacian_triangles(&r->lap, m->xyz, m->n, m->tri, m->n_tri, &opts, err);
     interrupt.patient = 0;
     r->sec.assemble = now() - start;
     return status;
@@ -1330,7 +1352,7 @@ static hd_status run_laplacian(run *r, hd_error *err)
 
 static int fail_laplacian(const run *r, hd_error *err)
 {
-    if (err->face >= 0 && r->mesh.face_of) err->face = r->mesh.face_of[err->face];
+    if (err->face >= 0 && r->mesh.face_of && laplacian_kind(r) != HD_LAPLACIAN_POLYGON) err->face = r->mesh.face_of[err->face];
     return fail_library(r->mesh_name, err);
 }
 
@@ -2054,8 +2076,9 @@ static void info_json(const run *r, const hd_laplacian *lap, const double low[3]
     json j;
     json_begin(&j, r, stdout);
     json_laplacian(&j, lap);
-    json_integer(&j, "triangles", m->n_faces);
-    json_integer(&j, "triangles_used", m->n_faces_used);
+    if (lap->kind == HD_LAPLACIAN_POLYGON) json_integer(&j, "faces_used", m->n_faces_used);
+    json_integer(&j, "triangles", r->mesh.n_tri);
+    if (lap->kind != HD_LAPLACIAN_POLYGON) json_integer(&j, "triangles_used", m->n_faces_used);
     json_integer(&j, "edges", m->n_edges);
     json_integer(&j, "boundary_loops", m->n_boundary_loops);
     json_integer(&j, "boundary_edges", m->n_boundary_edges);
@@ -2083,6 +2106,7 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     const hd_mesh_report *m = &lap->mesh;
     const double area_h2 = lap->area / (lap->h * lap->h);
     printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    printf("%-22s %s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind));
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "faces", (long)r->mesh.n_faces);
     if (m->n_faces != r->mesh.n_faces) printf("%-22s %ld  (polygons are split as fans)\n", "triangles", (long)m->n_faces);
     printf("%-22s %lld\n%-22s %ld\n%-22s %ld\n", "edges", (long long)m->n_edges, "components", (long)lap->n_components, "boundary loops",
@@ -2099,7 +2123,8 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     print_count("faces left out", m->n_repeated_face, "repeat an earlier one");
     print_count("non-manifold edges", m->n_nonmanifold_edges, "three faces or more; their weights are summed");
     print_count("misoriented edges", m->n_misoriented_edges, "their two faces disagree about the side");
-    print_count("negative weights", m->n_negative_weights, "obtuse angles; fine, but values below 0 can occur");
+    print_count("negative weights", m->n_negative_weights, lap->kind == HD_LAPLACIAN_POLYGON ?
+                "edges and diagonals of faces; fine, but values below 0 can occur" : "obtuse angles; fine, but values below 0 can occur");
     if (lap->area > 0)
         printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
                AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
@@ -2114,9 +2139,9 @@ static int command_info(run *r)
     int code = run_load(r);
     if (code) return code;
     memset(&none, 0, sizeof none);
-    none.kind = (hd_laplacian_kind)r->o->laplacian;
+    none.kind = laplacian_kind(r);
     none.mesh.n_inert = r->mesh.n;
-    none.mesh.n_faces = r->mesh.n_tri;
+    none.mesh.n_faces = none.kind == HD_LAPLACIAN_POLYGON ? r->mesh.n_faces : r->mesh.n_tri;
     if (r->mesh.n_tri > 0 && run_laplacian(r, &err) < 0 && err.status != HD_ERR_EMPTY) return fail_laplacian(r, &err);
     if (interrupt.asked) return INTERRUPTED;
     bar_hide();
