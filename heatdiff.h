@@ -14267,6 +14267,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         *h.e = kept;
     }
     return hdi_heat_end(&h);
+}
 
 /* ---- geodesic distance ---- */
 
