@@ -424,9 +424,12 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
 /* The Laplacian of points on a surface, given without faces.
  * xyz    [3 n] coordinates, finite
  * opts   kind voronoi-exp (default) or exp, bandwidth, weight_cut, neighbours, context
- * The bandwidth s trades the error of smoothing, which grows like s, for that of sampling, which grows as s falls. By default it is half
- * the area that a point has on average, that is the mean of pi r_k^2/k with r_k the distance of the k-th neighbour (values beyond nine medians
- * count as those). Weights reach as far as 8.6 sqrt(s), six times the typical distance: a row has about 115 non-zeros.
+ * The bandwidth s trades the error of smoothing, which grows like s, for that of sampling, which falls like 1/s^2. By default it is m (m/h^2)/4, within
+ * 0.3 m and 1 m, where m, the area that a point has, is the mean of pi r_k^2/k with r_k the distance of the k-th neighbour (values beyond nine
+ * medians count as those): 0.36 m for blue noise, 1 m for points independent of each other. Weights reach as far as 8.6 sqrt(s), and a row has
+ * about 230 s/m non-zeros, 80 and 230 for these two; a weight_cut of 1e-4 halves that and changes the operator by 0.1 %.
+ * With s a multiple of m the error does not vanish as points become denser, it levels at 1 to 3 %: for more, let s/m grow, as theory asks for
+ * (Belkin, Niyogi 2008; Singer 2006).
  * Points in one place share its cell; points without area are inert for voronoi-exp; those that no other point reaches are components of their
  * own. Cells at a border end at the hull of the neighbours. All is counted in lap->points.
  * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY (fewer than two places, or all on a line). Cost O(n log n + nnz). Source Liu,
@@ -4426,7 +4429,6 @@ enum {
     HDI_MOST_NEIGHBOURS = 128,
     HDI_CELLS_PER_TASK = 256
 };
-static const double hdi_bandwidth_factor = 0.5;   /* of the area that a point has; against what: see hdi_cloud_bandwidth */
 
 /* A set of different places, with the k nearest of each (the first is the place itself). */
 typedef struct hdi_cloud {
@@ -4729,15 +4731,18 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
     return hdi_scope_end(&own);
 }
 
-/* Bandwidth from the sampling: hdi_bandwidth_factor times the area for each point, which is the mean of pi r_k^2 / k over the points, r_k the distance
- * of the k-th neighbour; none counts more than nine times the median, so that outliers do not matter. */
-static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
-    double median, sum = 0;
+/* Bandwidth from the sampling: a multiple of m, the area that a point has, which is the mean of pi r_k^2 / k over the points, r_k the distance of the
+ * k-th neighbour; none counts more than nine times the median, so that outliers do not matter. The multiple is that which balances the two errors
+ * on spheres and tori: smoothing takes lambda s/2 off an eigenvalue lambda, sampling about 0.02 (m/s)^2 of all of them with points independent of
+ * each other, where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence s = m (m/h^2)/4, between 0.3 and 1 m. */
+static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double h, double *work) {
+    double median, mean = 0;
     int32_t i;
     memcpy(work, cloud->spacing2, HDI_CAST(size_t, cloud->n) * sizeof *work);
     median = hdi_kth(work, cloud->n, cloud->n / 2);
-    for (i = 0; i < cloud->n; i++) sum += hdi_min(cloud->spacing2[i], 9 * median);
-    return hdi_bandwidth_factor * sum / cloud->n;
+    for (i = 0; i < cloud->n; i++) mean += hdi_min(cloud->spacing2[i], 9 * median);
+    mean /= cloud->n;
+    return hdi_max(0.3, hdi_min(1, 0.25 * mean / (h * h))) * mean;
 }
 
 typedef struct hdi_weights {
@@ -4829,7 +4834,7 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     cloud.xyz = places;
     cloud.k = HDI_CAST(int32_t, hdi_least(cloud.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
     if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
-    if (!(rep->bandwidth > 0)) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
+    if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, lap->h, work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
     hdi_cloud_masses(&cloud, lap, place, first, work);
     if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);
