@@ -4419,10 +4419,9 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
 /* This work is based on
  *   M. Belkin, P. Niyogi, Towards a theoretical foundation for Laplacian-based manifold methods, 2008 (exponential weights, `exp`)
  *   Y. Liu, B. Prabhakaran, X. Guo, Point-based manifold harmonics, 2012 (the same with Voronoi areas: symmetric L and diagonal B, `voronoi-exp`)
- * Deviations: the exponential is cut where it is small, by distance, so that the pattern is symmetric. A cell is bounded by the bisectors of the points
- * themselves where they meet the tangent plane, not by those of their projections: the same up to (spacing / curvature radius)^2, with half its
- * error on a sphere, and points of another sheet nearby do not cut. At a border cells end at the convex hull of the neighbours. The two papers leave
- * coincident points, borders and the bandwidth to the reader. */
+ * Deviations: the exponential is cut where it is small, by distance, so that the pattern is symmetric. Neighbours that stand off the tangent plane by
+ * more than 45 degrees count with their height instead of their projection, so that points of another sheet two spacings away do not cut a cell. At a
+ * border cells end at the convex hull of the neighbours. The papers leave coincident points, borders and the bandwidth to the reader. */
 
 enum {
     HDI_CELL_SIDES = 12,       /* of the polygon that a cell is cut from */
@@ -4434,6 +4433,7 @@ enum {
 typedef struct hdi_cloud {
     int32_t n, k;
     const double *xyz;
+    const int32_t *first;      /* [n] the point that a place is named by */
     int32_t *nbr;             /* [k n] */
     double *d2;                /* [k n] */
     double *spacing2;          /* [n] area for each point nearby, by the disc to the last neighbour */
@@ -4485,7 +4485,8 @@ static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
     }
 }
 
-/* Two orthonormal directions along the neighbours of place i: principal components, those nearer count more. reach: distance of the last one. */
+/* Two orthonormal directions along the neighbours of place i: principal components, where near ones count much
+ * more, as far ones may belong to another sheet. reach: distance of the last one. */
 static void hdi_cell_frame(const hdi_cloud *cloud, int32_t i, double reach, double frame[2][3]) {
     const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
     const double *p = cloud->xyz + 3 * HDI_CAST(int64_t, i);
@@ -4494,7 +4495,7 @@ static void hdi_cell_frame(const hdi_cloud *cloud, int32_t i, double reach, doub
     int r, c;
     memset(cov, 0, sizeof cov);
     for (k = 0; k < cloud->k; k++) {
-        const double weight = 1.1 - cloud->d2[at + k] / (reach * reach);
+        const double near2 = 1.05 - cloud->d2[at + k] / (reach * reach), weight = near2 * near2 * near2 * near2 * near2 * near2;
         hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, d);
         sum += weight;
         for (r = 0; r < 3; r++) {
@@ -4621,12 +4622,14 @@ static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
     hdi_polygon_start(&g, radius);
     outer2 = 1.2 * radius * radius;
     for (k = 0; k < cloud->k; k++) {
-        const double l2 = cloud->d2[at + k] * unit * unit;
+        const double l2 = cloud->d2[at + k] * unit * unit;   /* and q2 the square in the plane */
+        double q2;
         hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, d);
         x[k][0] = hdi_dot3(frame[0], d) * unit;
         x[k][1] = hdi_dot3(frame[1], d) * unit;
-        if (k == 0 || l2 > 4 * outer2) continue;   /* no bisector is nearer than half the distance */
-        if (!hdi_polygon_clip(&g, x[k][0], x[k][1], l2 / 2)) continue;
+        q2 = x[k][0] * x[k][0] + x[k][1] * x[k][1];
+        if (k == 0 || l2 > 8 * outer2) continue;   /* max(q2, l2 - q2) is at least l2/2: the bisector is beyond all corners */
+        if (!hdi_polygon_clip(&g, x[k][0], x[k][1], hdi_max(q2, l2 - q2) / 2)) continue;
         for (v = 0, outer2 = 0; v < g.n; v++) outer2 = hdi_max(outer2, g.x[v][0] * g.x[v][0] + g.x[v][1] * g.x[v][1]);
     }
     cloud->border[i] = HDI_CAST(int8_t, hdi_polygon_clip_hull(&g, x, cloud->k) || outer2 >= radius * radius);
@@ -4720,7 +4723,7 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
     for (i = 0; i < n; i++) {
         const double *d2 = cloud->d2 + i * k;
         if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
-            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two points are too close together: the square of their distance is no normal number", -1, i, d2[1]);
+            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two points are too close together: the square of their distance is no normal number", -1, cloud->first[i], d2[1]);
             return hdi_scope_end(&own);
         }
         sum += sqrt(d2[1]);
@@ -4732,16 +4735,20 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
 }
 
 /* Bandwidth from the sampling: a multiple of m, the area that a point has, which is the mean of pi r_k^2 / k over the points, r_k the distance of the
- * k-th neighbour; none counts more than nine times the median, so that outliers do not matter. The multiple is that which balances the two errors
- * on spheres and tori: smoothing takes lambda s/2 off an eigenvalue lambda, sampling about 0.02 (m/s)^2 of all of them with points independent of
+ * k-th neighbour, and of h, the mean distance of the nearest one; no square counts more than nine medians of the former, so that outliers do not
+ * matter. The multiple is that which balances the two errors on spheres and tori: smoothing takes lambda s/2 off an eigenvalue lambda, sampling about 0.02 (m/s)^2 of all of them with points independent of
  * each other, where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence s = m (m/h^2)/4, between 0.3 and 1 m. */
-static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double h, double *work) {
-    double median, mean = 0;
+static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
+    double median, mean = 0, h = 0;
     int32_t i;
     memcpy(work, cloud->spacing2, HDI_CAST(size_t, cloud->n) * sizeof *work);
     median = hdi_kth(work, cloud->n, cloud->n / 2);
-    for (i = 0; i < cloud->n; i++) mean += hdi_min(cloud->spacing2[i], 9 * median);
+    for (i = 0; i < cloud->n; i++) {
+        mean += hdi_min(cloud->spacing2[i], 9 * median);
+        h += sqrt(hdi_min(cloud->d2[HDI_CAST(int64_t, i) * cloud->k + 1], 9 * median));
+    }
     mean /= cloud->n;
+    h /= cloud->n;
     return hdi_max(0.3, hdi_min(1, 0.25 * mean / (h * h))) * mean;
 }
 
@@ -4832,9 +4839,10 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     if (e->status < 0) return hdi_scope_end(&s);
     for (v = 0; v < cloud.n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
     cloud.xyz = places;
+    cloud.first = first;
     cloud.k = HDI_CAST(int32_t, hdi_least(cloud.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
     if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
-    if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, lap->h, work);
+    if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
     hdi_cloud_masses(&cloud, lap, place, first, work);
     if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);

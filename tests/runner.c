@@ -133,6 +133,7 @@ static void test_tmp_remove(void) {
 #include "test_rational.h"
 #include "test_krylov.h"
 #include "test_heat.h"
+#include "test_points.h"
 #include "test_robust.h"
 #include "test_ldl.h"
 #include "test_engines.h"
@@ -142,7 +143,7 @@ typedef struct test_group { const char *name; void (*run)(void); } test_group;
 
 static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
-    {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
+    {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"points", test_points},       {"robust", test_robust},
     {"picture", test_picture},   {"meshio", test_meshio},
 };
 

@@ -1022,7 +1022,7 @@ class Reports(Case):
         self.assertEqual((r["repeated_faces"], r["repeated_corner_faces"], r["zero_area_faces"]), (1, 1, 1))
 
     def test_info_of_nothing_with_area(self):
-        r = json.loads(self.good("info", self.file("points.xyz", "0 0 0\n1 0 0\n0 1 0\n"), "--json").stdout)
+        r = json.loads(self.good("info", self.file("points.xyz", "0 0 0\n1 0 0\n2 0 0\n"), "--json").stdout)
         self.assertEqual((r["n"], r["faces"], r["inert"]), (3, 0, 3))
 
     def test_strings_are_escaped(self):
