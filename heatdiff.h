@@ -10454,7 +10454,8 @@ HEATDIFF_API hd_status hd_neighbours_nearest(int32_t *index, double *distance2, 
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: k is not positive");
     if (m > 0 && !index) return hdi_missing(c.e);
     s = hdi_scope_begin(c.ctx, c.e);
-    if (hdi_tree_make(&tree, xyz, n, &s) >= 0) (void)hdi_nearest(&tree, xyz, query, m, k, index, distance2, c.ctx, c.e);
+    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
+        (void)hdi_nearest(&tree, xyz, query, m, k, index, distance2, c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
@@ -10467,7 +10468,8 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     if (!out) return hdi_missing(c.e);
     if (!(radius >= 0)) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
     s = hdi_scope_begin(c.ctx, c.e);
-    if (hdi_tree_make(&tree, xyz, n, &s) >= 0) (void)hdi_within(out, &tree, xyz, query, m, radius * radius, c.ctx, c.e);
+    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
+        (void)hdi_within(out, &tree, xyz, query, m, radius * radius, c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 

@@ -1413,6 +1413,7 @@ static double auto_time(const run *r, int i, int count)
     double area = 0;
     int c;
     for (c = 0; c < r->lap->n_components; c++) area += r->lap->component_mass[c];
+    if (r->lap->kind == HD_LAPLACIAN_EXP) area = r->lap->area * r->lap->area;   /* B^-1 L tends to Laplacian/area */
     return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST, count > 1 ? i / (double)(count - 1) : 0.5);
 }
 
@@ -1940,7 +1941,7 @@ static int write_png(const char *path, const run *r, const result *res, const ch
     pic_panel panel = picture_panel(&r->mesh, result_column(r, res, res->colour));
     pic_opts opts = picture_opts(r->o);
     char subtitle[300];
-    snprintf(subtitle, sizeof subtitle, "%.200s, %ld vertices", base_name(r->mesh_name), (long)r->mesh.n);
+    snprintf(subtitle, sizeof subtitle, "%.200s, %ld %s", base_name(r->mesh_name), (long)r->mesh.n, r->mesh.n_tri ? "vertices" : "points");
     opts.title = r->o->title ? r->o->title : title;
     opts.subtitle = subtitle;
     picture_from_zero(&opts, &panel);
@@ -2038,7 +2039,8 @@ static void bounding_box(const mesh_data *m, double low[3], double high[3])
 static void info_json(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_mesh_report *m = &lap->mesh;
-    const double meaningful[2] = { AUTO_SHORTEST * lap->area, AUTO_LONGEST * lap->area };
+    const double unit = lap->kind == HD_LAPLACIAN_EXP ? lap->area * lap->area : lap->area;
+    const double meaningful[2] = { AUTO_SHORTEST * unit, AUTO_LONGEST * unit };
     json j;
     json_begin(&j, r, stdout);
     json_laplacian(&j, lap);
@@ -2069,7 +2071,10 @@ static void print_count(const char *what, int64_t n, const char *note)
 static void info_times(const hd_laplacian *lap)
 {
     const double area_h2 = lap->area / (lap->h * lap->h);
-    if (lap->area > 0)
+    if (lap->kind == HD_LAPLACIAN_EXP)
+        printf("%-22s %.3g to %.3g; --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area * lap->area,
+               AUTO_LONGEST * lap->area * lap->area);
+    else if (lap->area > 0)
         printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
                AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
 }
@@ -2092,7 +2097,7 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
     print_count("isolated points", p->n_isolated, "no other one within reach");
     print_count("points without area", p->n_no_area, "their neighbours lie on a line");
     print_count("border points", p->n_border, "at an edge of the surface or a gap");
-    if (lap->kind != HD_LAPLACIAN_EXP) info_times(lap);
+    info_times(lap);
 }
 
 static void info_print(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
