@@ -3522,7 +3522,7 @@ static int64_t hdi_found_sort(hdi_found *f) {
     int64_t end[HDI_BUCKETS + 1], i, from = 0, b;
     double most = 0, scale;
     for (i = 0; i < f->m; i++) most = hdi_max(most, f->d[i]);
-    scale = most > 1e-290 ? (HDI_BUCKETS - 0.001) / most : 0;
+    scale = most > 1e-290 ? HDI_CAST(double, HDI_BUCKETS) * 0.9999 / most : 0;
     memset(end, 0, sizeof end);
     for (i = 0; i < f->m; i++) end[HDI_CAST(int32_t, f->d[i] * scale)]++;
     hdi_prefix_sum(end, HDI_BUCKETS);
@@ -4558,7 +4558,7 @@ static double hdi_polygon_area(const hdi_polygon *g) {
 
 /* A regular polygon around the circle of this radius. */
 static void hdi_polygon_start(hdi_polygon *g, double radius) {
-    const double step = 6.283185307179586 / HDI_CELL_SIDES, r = radius / cos(step / 2);
+    const double step = 6.283185307179586 / HDI_CAST(double, HDI_CELL_SIDES), r = radius / cos(step / 2);
     int32_t i;
     g->n = HDI_CELL_SIDES;
     for (i = 0; i < g->n; i++) {
