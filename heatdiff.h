@@ -4,7 +4,7 @@
 
    A surface is a pair of sparse matrices (L, B): L the stiffness matrix, symmetric positive semi-definite, B the mass
    matrix, symmetric positive definite. Heat f diffuses as K_t f, with the heat kernel matrix K_t = exp(-t B^-1 L).
-   This file builds (L, B) from a mesh and applies K_t through a rational approximation of the exponential,
+   This file builds (L, B) from a mesh or from points and applies K_t through a rational approximation of the exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
@@ -4439,6 +4439,7 @@ typedef struct hdi_cloud {
     double *spacing2;          /* [n] area for each point nearby, by the disc to the last neighbour */
     double *area;              /* [n] of the cells */
     int8_t *border;            /* [n] 1: the cell ends where the neighbours do */
+    double start[HDI_CELL_SIDES][2];   /* a regular polygon around the unit circle */
 } hdi_cloud;
 
 /* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix a, which is overwritten: Jacobi's rotations. */
@@ -4556,17 +4557,6 @@ static double hdi_polygon_area(const hdi_polygon *g) {
     return sum / 2;
 }
 
-/* A regular polygon around the circle of this radius. */
-static void hdi_polygon_start(hdi_polygon *g, double radius) {
-    const double step = 6.283185307179586 / HDI_CAST(double, HDI_CELL_SIDES), r = radius / cos(step / 2);
-    int32_t i;
-    g->n = HDI_CELL_SIDES;
-    for (i = 0; i < g->n; i++) {
-        g->x[i][0] = r * cos(step * i);
-        g->x[i][1] = r * sin(step * i);
-    }
-}
-
 static double hdi_turn(const double *a, const double *b, const double *c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -4619,7 +4609,11 @@ static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
     int32_t k, v;
     hdi_cell_frame(cloud, i, reach, frame);
     radius = 2 * sqrt(hdi_cell_spacing2(cloud, i)) * unit;   /* random points leave a circle so large empty once in 3e5 times */
-    hdi_polygon_start(&g, radius);
+    g.n = HDI_CELL_SIDES;
+    for (v = 0; v < g.n; v++) {
+        g.x[v][0] = radius * cloud->start[v][0];
+        g.x[v][1] = radius * cloud->start[v][1];
+    }
     outer2 = 1.2 * radius * radius;
     for (k = 0; k < cloud->k; k++) {
         const double l2 = cloud->d2[at + k] * unit * unit;   /* and q2 the square in the plane */
@@ -4730,6 +4724,11 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
         cloud->spacing2[i] = 3.141592653589793 * d2[k - 1] / HDI_CAST(double, k - 1);
     }
     lap->h = sum / HDI_CAST(double, n);
+    for (i = 0; i < HDI_CELL_SIDES; i++) {
+        const double step = 6.283185307179586 / HDI_CAST(double, HDI_CELL_SIDES), r = 1 / cos(step / 2);
+        cloud->start[i][0] = r * cos(step * i);
+        cloud->start[i][1] = r * sin(step * i);
+    }
     if (hdi_progress(s->ctx, "assemble", 0.2, s->e) >= 0) hdi_parallel(s->ctx, (n + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
     return hdi_scope_end(&own);
 }
