@@ -4,7 +4,7 @@
 
    A surface is a pair of sparse matrices (L, B): L the stiffness matrix, symmetric positive semi-definite, B the mass
    matrix, symmetric positive definite. Heat f diffuses as K_t f, with the heat kernel matrix K_t = exp(-t B^-1 L).
-   This file builds (L, B) from a mesh and applies K_t through a rational approximation of the exponential,
+   This file builds (L, B) from a mesh or from points and applies K_t through a rational approximation of the exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
@@ -39,8 +39,8 @@
    Contents
      declarations    [B] base  [C] options and reports  [D] functions
      implementation  [00] platform  [01] scalar  [02] error  [03] memory  [04] context  [05] arrays  [06] dense
-                     [07] sparse  [09] geometry  [10] operators  [11] symbolic  [12] direct  [14] precond  [15] krylov
-                     [16] rational  [17] shifted  [18] heat  [19] distance  [21] api  [22] closing
+                     [07] sparse  [08] spatial  [09] geometry  [10] operators  [11] symbolic  [12] direct  [13] selinv  [14] precond
+                     [15] krylov  [16] rational  [17] shifted  [18] heat  [19] distance  [21] api  [22] closing
      Rooms are numbered from the bottom up; each calls only those above it in the file.
 
    Options (macros)
@@ -192,20 +192,27 @@ typedef struct hd_csr {
  * they tell a cleared struct from a forgotten one. */
 
 typedef enum hd_laplacian_kind {
-    HD_LAPLACIAN_DEFAULT = 0,   /* fem for triangles, polygon for polygons; hd_laplacian.kind tells which it was */
+    HD_LAPLACIAN_DEFAULT = 0,   /* fem for triangles, polygon for polygons, voronoi-exp for points; hd_laplacian.kind tells which it was */
     HD_LAPLACIAN_FEM,           /* cotangent L, linear finite-element B: area/6 on the diagonal, area/12 off it, per triangle */
     HD_LAPLACIAN_VORONOI_COT,   /* cotangent L, B diagonal: mixed Voronoi areas (Meyer, Desbrun, Schroeder, Barr 2003) */
     HD_LAPLACIAN_COT,           /* cotangent L, B = I (Pinkall, Polthier 1993) */
-    HD_LAPLACIAN_MATRICES,      /* the caller's own two matrices */
-    HD_LAPLACIAN_POLYGON        /* faces of any number of corners, planar or not, and B diagonal: area/k to each corner (Alexa, Wardetzky 2011) */
+    HD_LAPLACIAN_POLYGON,       /* faces of any number of corners, planar or not, and B diagonal: area/k to each corner (Alexa, Wardetzky 2011) */
+    HD_LAPLACIAN_VORONOI_EXP,   /* points: L_ij = -v_i v_j exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2), B = diag(v), v_i areas of Voronoi cells in the
+                                   tangent planes, s the bandwidth (Liu, Prabhakaran, Guo 2012) */
+    HD_LAPLACIAN_EXP,           /* points: L_ij = -exp(-|p_i - p_j|^2 / 4s) / (4 pi n s^2), B = I (Belkin, Niyogi 2008). For samples spread
+                                   evenly B^-1 L tends to Laplacian/area, so that t is an area times a squared length */
+    HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
 } hd_laplacian_kind;
 
 typedef struct hd_laplacian_opts {
     int32_t begin_zero;
     hd_laplacian_kind kind;     /* not looked at by hd_laplacian_matrices */
-    double lambda;              /* of polygon: weight of the part that tells apart what the gradients of a face cannot; default 1, at most 1e100.
-                                   Larger values stiffen faces of four corners and more, triangles do not feel it */
     hd_context *context;
+    double lambda;              /* polygon: weight of the part that tells apart what the gradients of a face cannot; default 1, at most 1e100.
+                                   Larger values stiffen faces of four corners and more, triangles do not feel it */
+    double bandwidth;           /* points: s of the exponential weights, a squared length; default: from the sampling, see hd_laplacian_points */
+    double weight_cut;          /* points: exponentials below this are left out, in (0, 1); default 1e-8 */
+    int32_t neighbours;         /* points: how many of the nearest ones say where the tangent plane and the cell is, 6..128; default 30 */
     int32_t end_zero;
 } hd_laplacian_opts;
 
@@ -228,6 +235,18 @@ typedef struct hd_mesh_report {
     double smallest_angle;           /* over the faces used, in radians (polygon: of the corners that bend inwards) */
 } hd_mesh_report;
 
+/* What was found in a point set, and chosen for it. Nothing here is an error. */
+typedef struct hd_point_report {
+    double bandwidth;                /* s of the exponential weights */
+    double weight_cut, cut_radius;   /* exponentials below weight_cut are left out: those of points farther apart than cut_radius */
+    int32_t neighbours;              /* for tangent planes and cells */
+    int32_t n_coincident;            /* points in the place of an earlier one; points in one place share its cell in equal parts */
+    int32_t n_isolated;              /* points without any other one within cut_radius: components of their own */
+    int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
+    int32_t n_border;                /* places whose cell ends where the neighbours do: at a border or beside a gap */
+    int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
+} hd_point_report;
+
 /* A discrete surface: the pair (L, B) on one pattern. Read it freely, change nothing; made and freed by the library.
  * Rows are the vertices that have mass, in the caller's order. */
 typedef struct hd_laplacian {
@@ -235,8 +254,8 @@ typedef struct hd_laplacian {
     int32_t n_active;           /* rows: vertices with mass */
     int32_t n_components;       /* connected components of the rows */
     hd_laplacian_kind kind;
-    double h;                   /* mean length of the distinct edges; 0 for matrices */
-    double area;                /* of the faces used; 1'B1 for matrices */
+    double h;                   /* mean length of the distinct edges; points: mean distance of a place to the nearest other one; 0 for matrices */
+    double area;                /* of the faces used; of the cells of points, whatever B; 1'B1 for matrices */
     hd_csr L;                   /* n_active x n_active, values of L, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B is diagonal, B = diag(mass) */
     double *mass;               /* [n_active] b = B 1, the vertices' masses */
@@ -248,7 +267,8 @@ typedef struct hd_laplacian {
     double *component_mass;     /* [n_components] sum of mass */
     double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem, 0 when not known */
     int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes) */
-    hd_mesh_report mesh;        /* zeros for matrices but n_inert */
+    hd_mesh_report mesh;        /* zeros for matrices and points but n_inert */
+    hd_point_report points;     /* zeros for meshes and matrices */
     hd_context *context;
 } hd_laplacian;
 
@@ -461,6 +481,20 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
  * Source Alexa, Wardetzky 2011, the face matrices M_f with their combinatorial part; written out, with the differences, in room [10]. */
 HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
                                              int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err);
+/* The Laplacian of points on a surface, given without faces.
+ * xyz    [3 n] coordinates, finite
+ * opts   kind voronoi-exp (default) or exp, bandwidth, weight_cut, neighbours, context
+ * The bandwidth s trades the error of smoothing, which grows like s, for that of sampling, which falls like 1/s^2. By default it is m (m/h^2)/4, within
+ * 0.3 m and 1 m, where m, the area that a point has, is the mean of pi r_k^2/k with r_k the distance of the k-th neighbour (values beyond nine
+ * medians count as those): 0.36 m for blue noise, 1 m for points independent of each other. Weights reach as far as 8.6 sqrt(s), and a row has
+ * about 230 s/m non-zeros, 80 and 230 for these two; a weight_cut of 1e-4 halves that and changes the operator by 0.1 %.
+ * With s a multiple of m the error does not vanish as points become denser, it levels at 1 to 3 %: for more, let s/m grow, as theory asks for
+ * (Belkin, Niyogi 2008; Singer 2006).
+ * Points in one place share its cell; points without area are inert for voronoi-exp; those that no other point reaches are components of their
+ * own. Cells at a border end at the hull of the neighbours. All is counted in lap->points.
+ * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY (fewer than two places, or all on a line). Cost O(n log n + nnz). Source Liu,
+ * Prabhakaran, Guo 2012; Belkin, Niyogi 2008; what differs from them is told in room [10]. */
+HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices on any graph, copied.
  * L      n x n, symmetric positive semi-definite. Rows need not sum to zero (then heat is not conserved)
@@ -475,6 +509,22 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y, hd_error *err);
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
+
+/* ---- neighbours of points ---- */
+
+/* The k nearest points of every query.
+ * index      [k m] by queries: ids of points, the nearest first, equally far ones by id; a point of the set finds itself too. -1 beyond n
+ * distance2  [k m] their squared distances, infinite beyond n; NULL: not wanted
+ * xyz        [3 n] the points, finite
+ * query      [3 m] where to look from; NULL: from all the points, m = n
+ * Exact. Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex; the row for a query). Cost O((n + k m) log n). Source Friedman, Bentley, Finkel 1977. */
+HEATDIFF_API hd_status hd_neighbours_nearest(int32_t *index, double *distance2, const double *xyz, int32_t n, const double *query, int32_t m, int32_t k,
+                                             hd_context *ctx, hd_error *err);
+
+/* All points within a radius of every query: row i of out, m x n, lists the points at a distance d with d^2 <= radius^2 by id, its values are d^2.
+ * Arguments, errors as above; free out with hd_csr_free and the same ctx. */
+HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query, int32_t m, double radius, hd_context *ctx,
+                                            hd_error *err);
 
 /* ---- rational approximations ---- */
 
@@ -3434,6 +3484,460 @@ static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_contex
     hdi_parallel(ctx, (HDI_CAST(int64_t, a->n_rows) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK, hdi_apply_task, &job);
 }
 
+/* ==== [08] spatial ====
+ * A k-d tree over points in space: the k nearest, and all within a radius. Exact. May call [07].
+ * This work is based on
+ *   J. Friedman, J. Bentley, R. Finkel, An algorithm for finding best matches in logarithmic expected time, 1977 (medians, buckets)
+ * Deviations: every leaf holds HDI_LEAF points (the last one is padded), so that nodes need no pointers, and distances to a leaf's points are one
+ * loop of fixed length, which compilers vectorise; nodes have boxes that fit tightly, as a surface fills little of its cells; candidates are only
+ * gathered, and sorted at the end by buckets, as squared distances on a surface are spread evenly; and a query takes its first bound from the one
+ * before it, its neighbour in the order of the leaves: no k-th neighbour is farther than the other's k-th neighbour by way of the other. */
+
+enum {
+    HDI_LEAF = 16,             /* of 4, 8, 16, 32 the quickest for the 30 nearest on surfaces */
+    HDI_TREE_STACK = 40,       /* halves of 2^31 points are fewer */
+    HDI_BUCKETS = 64,
+    HDI_SEARCH_TASKS = 64      /* as many sets of work arrays */
+};
+
+typedef struct hdi_cell {
+    double lo[3], hi[3];       /* box of its points */
+    int32_t first, count;      /* its leaves */
+} hdi_cell;
+
+/* Nodes in preorder: the left child follows its parent, the right one comes after the left one's 2 count - 1 nodes. */
+typedef struct hdi_tree {
+    int32_t n, n_leaves;
+    hdi_cell *node;            /* [2 n_leaves - 1] */
+    double *x;                 /* [3 HDI_LEAF n_leaves] leaf by leaf: all x, all y, all z */
+    int32_t *id;               /* [HDI_LEAF n_leaves] of the caller */
+} hdi_tree;
+
+typedef struct hdi_point { double x[3]; int32_t id; } hdi_point;
+
+/* Puts the point that is k-th along axis in its place, smaller ones before it, larger ones behind (Hoare 1961). Pivots are medians of three
+ * places drawn by a fixed generator: linear whatever the order of the file, also for equal points. */
+static void hdi_select_point(hdi_point *a, int64_t n, int64_t k, int axis) {
+    int64_t lo = 0, hi = n - 1;
+    uint64_t seed = 12345;
+    while (lo < hi) {
+        double p[3], pivot;
+        int64_t i = lo, j = hi;
+        int q;
+        for (q = 0; q < 3; q++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            p[q] = a[lo + HDI_CAST(int64_t, (seed >> 33) % HDI_CAST(uint64_t, hi - lo + 1))].x[axis];
+        }
+        pivot = hdi_max(hdi_min(p[0], p[1]), hdi_min(hdi_max(p[0], p[1]), p[2]));
+        while (i <= j) {
+            while (a[i].x[axis] < pivot) i++;
+            while (a[j].x[axis] > pivot) j--;
+            if (i <= j) {
+                const hdi_point swap = a[i];
+                a[i++] = a[j];
+                a[j--] = swap;
+            }
+        }
+        if (k <= j) hi = j;
+        else if (k >= i) lo = i;
+        else return;
+    }
+}
+
+/* Box of the node's points; returns its longest axis. */
+static int hdi_cell_box(hdi_cell *node, const hdi_point *a, int64_t n) {
+    int64_t i;
+    int c, axis = 0;
+    for (c = 0; c < 3; c++) node->lo[c] = node->hi[c] = n > 0 ? a[0].x[c] : 0;
+    for (i = 1; i < n; i++) {
+        for (c = 0; c < 3; c++) {
+            node->lo[c] = hdi_min(node->lo[c], a[i].x[c]);
+            node->hi[c] = hdi_max(node->hi[c], a[i].x[c]);
+        }
+    }
+    for (c = 1; c < 3; c++)
+        if (node->hi[c] - node->lo[c] > node->hi[axis] - node->lo[axis]) axis = c;
+    return axis;
+}
+
+static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
+    int32_t v;
+    t->node[0].first = 0;
+    t->node[0].count = t->n_leaves;
+    for (v = 0; v < 2 * t->n_leaves - 1; v++) {   /* parents come first */
+        hdi_cell *node = t->node + v;
+        const int64_t begin = HDI_CAST(int64_t, node->first) * HDI_LEAF, end = hdi_least(t->n, begin + HDI_CAST(int64_t, node->count) * HDI_LEAF);
+        const int axis = hdi_cell_box(node, a + begin, end - begin);
+        const int32_t left = node->count / 2;
+        if (!left) continue;
+        hdi_select_point(a + begin, end - begin, HDI_CAST(int64_t, left) * HDI_LEAF, axis);
+        node[1].first = node->first;
+        node[1].count = left;
+        node[2 * left].first = node->first + left;
+        node[2 * left].count = node->count - left;
+    }
+}
+
+/* Finite points and queries, whose squared distances are finite too. */
+static hd_status hdi_points_check(const double *xyz, int32_t n, const double *query, int32_t m, hd_error *e) {
+    double lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, size = 0;
+    int64_t i;
+    int pass, c;
+    for (pass = 0; pass < 2; pass++) {
+        const double *x = pass ? query : xyz;
+        for (i = 0; i < 3 * HDI_CAST(int64_t, pass ? m : n) && x; i++) {
+            if (!hdi_finite(x[i]) && pass) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite", i / 3, i % 3, x[i]);
+            if (!hdi_finite(x[i])) {
+                hdi_fail(e, HD_ERR_NOT_FINITE, "a coordinate is not finite");
+                e->vertex = i / 3;
+                e->value = x[i];
+                return e->status;
+            }
+            lo[i % 3] = hdi_min(lo[i % 3], x[i]);
+            hi[i % 3] = hdi_max(hi[i % 3], x[i]);
+        }
+    }
+    for (c = 0; c < 3; c++) size = hdi_max(size, hi[c] - lo[c]);
+    if (!(size < 1e150)) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "points: squared distances are not finite", -1, -1, size);
+    return HD_OK;
+}
+
+/* The tree of finite points, in s. id of point i: i. Cost O(n log n). */
+static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_scope *s) {
+    const int64_t n_leaves = n > 0 ? (HDI_CAST(int64_t, n) + HDI_LEAF - 1) / HDI_LEAF : 1;   /* none: one leaf that is all padding */
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_point *a = HDI_TAKE(&own, hdi_point, n);
+    int64_t i;
+    int c;
+    t->n = n;
+    t->n_leaves = HDI_CAST(int32_t, n_leaves);
+    t->node = HDI_TAKE(s, hdi_cell, 2 * n_leaves - 1);
+    t->x = HDI_TAKE(s, double, 3 * HDI_LEAF * n_leaves);
+    t->id = HDI_TAKE(s, int32_t, HDI_LEAF * n_leaves);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) {
+        for (c = 0; c < 3; c++) a[i].x[c] = xyz[3 * i + c];
+        a[i].id = HDI_CAST(int32_t, i);
+    }
+    hdi_tree_split(t, a);
+    for (i = 0; i < HDI_LEAF * n_leaves; i++) {
+        double *x = t->x + 3 * HDI_LEAF * (i / HDI_LEAF) + i % HDI_LEAF;
+        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[i].x[c] : HUGE_VAL;   /* infinitely far: in no result */
+        t->id[i] = i < n ? a[i].id : -1;
+    }
+    return hdi_scope_end(&own);
+}
+
+/* What a search has found so far: candidates no farther than bound. */
+typedef struct hdi_found {
+    double bound, prune;       /* squared; boxes farther than prune are left out. It is a little larger, whatever a compiler fuses */
+    int32_t k;                 /* > 0: the k nearest are wanted; 0: all, and HDI_COUNT: only how many */
+    int64_t m, room;           /* candidates; when there are more than room, something is done about it */
+    int64_t counted;
+    double *d;                 /* [room + HDI_LEAF] squared distances */
+    int32_t *id;               /* [room + HDI_LEAF] */
+    hdi_pair *sorted;          /* [room + HDI_LEAF] */
+} hdi_found;
+
+enum { HDI_COUNT = -1 };
+
+static void hdi_found_bound(hdi_found *f, double bound) {
+    f->bound = hdi_min(bound, DBL_MAX);
+    f->prune = f->bound * (1 + 8 * DBL_EPSILON);
+}
+
+/* The min(k, m) smallest pairs (distance, id) into f->sorted, ascending; returns how many. */
+static int64_t hdi_found_sort(hdi_found *f) {
+    const int64_t want = hdi_least(f->k, f->m);
+    int64_t end[HDI_BUCKETS + 1], i, from = 0, b;
+    double most = 0, scale;
+    for (i = 0; i < f->m; i++) most = hdi_max(most, f->d[i]);
+    scale = most > 1e-290 ? HDI_CAST(double, HDI_BUCKETS) * 0.9999 / most : 0;
+    memset(end, 0, sizeof end);
+    for (i = 0; i < f->m; i++) end[HDI_CAST(int32_t, f->d[i] * scale)]++;
+    hdi_prefix_sum(end, HDI_BUCKETS);
+    for (i = 0; i < f->m; i++) {
+        hdi_pair *to = f->sorted + end[HDI_CAST(int32_t, f->d[i] * scale)]++;
+        memcpy(&to->key, f->d + i, sizeof to->key);   /* the bits of doubles that are not negative are in order */
+        to->id = f->id[i];
+    }
+    for (b = 0; b < HDI_BUCKETS && from < want; b++) {
+        hdi_sort_pairs(f->sorted + from, end[b] - from);
+        from = end[b];
+    }
+    return want;
+}
+
+/* Too many candidates: keeps the k nearest, whose last is the new bound. */
+static void hdi_found_shrink(hdi_found *f) {
+    int64_t i;
+    if (f->k == HDI_COUNT) {
+        f->counted += f->m;
+        f->m = 0;
+        return;
+    }
+    f->m = hdi_found_sort(f);
+    for (i = 0; i < f->m; i++) {
+        memcpy(f->d + i, &f->sorted[i].key, sizeof *f->d);
+        f->id[i] = HDI_CAST(int32_t, f->sorted[i].id);
+    }
+    hdi_found_bound(f, f->d[f->m - 1]);
+}
+
+static void hdi_scan_leaf(const hdi_tree *t, int32_t leaf, const double *q, hdi_found *f) {
+    const double *HDI_RESTRICT x = t->x + 3 * HDI_LEAF * HDI_CAST(int64_t, leaf), q0 = q[0], q1 = q[1], q2 = q[2], bound = f->bound;
+    const int32_t *HDI_RESTRICT id = t->id + HDI_LEAF * HDI_CAST(int64_t, leaf);
+    double *HDI_RESTRICT d = f->d + f->m, r[HDI_LEAF];
+    int32_t *HDI_RESTRICT found = f->id + f->m;
+    int64_t m = 0;
+    int i;
+    for (i = 0; i < HDI_LEAF; i++) {
+        const double a = x[i] - q0, b = x[HDI_LEAF + i] - q1, c = x[2 * HDI_LEAF + i] - q2;
+        r[i] = a * a + b * b + c * c;
+    }
+    for (i = 0; i < HDI_LEAF; i++) {   /* without a branch: half of them would be guessed wrong */
+        d[m] = r[i];
+        found[m] = id[i];
+        m += r[i] <= bound;
+    }
+    f->m += m;
+    if (f->m > f->room) hdi_found_shrink(f);
+}
+
+static double hdi_box_distance(const hdi_cell *v, const double *q) {
+    const double a = hdi_max(hdi_max(v->lo[0] - q[0], q[0] - v->hi[0]), 0);
+    const double b = hdi_max(hdi_max(v->lo[1] - q[1], q[1] - v->hi[1]), 0);
+    const double c = hdi_max(hdi_max(v->lo[2] - q[2], q[2] - v->hi[2]), 0);
+    return a * a + b * b + c * c;
+}
+
+/* Everything no farther than f->bound, which shrinks when the k nearest are wanted: nearer halves first. */
+static void hdi_search(const hdi_tree *t, const double *q, hdi_found *f) {
+    struct { int32_t node; double d; } stack[HDI_TREE_STACK];
+    int32_t v = 0;
+    int top = 0;
+    f->m = 0;
+    for (;;) {
+        const hdi_cell *node = t->node + v;
+        while (node->count > 1) {
+            const int32_t l = v + 1, r = v + 2 * (node->count / 2);
+            const double dl = hdi_box_distance(t->node + l, q), dr = hdi_box_distance(t->node + r, q);
+            const int left = dl <= dr;
+            const double d_far = left ? dr : dl;
+            stack[top].node = left ? r : l;
+            stack[top].d = d_far;
+            top += d_far <= f->prune;
+            v = left ? l : r;
+            node = t->node + v;
+            if (!((left ? dl : dr) <= f->prune)) break;
+        }
+        if (node->count == 1) hdi_scan_leaf(t, node->first, q, f);
+        do {
+            if (!top) return;
+            top--;
+        } while (!(stack[top].d <= f->prune));
+        v = stack[top].node;
+    }
+}
+
+/* Many queries, in blocks that do not depend on the threads; a task has work arrays of its own. */
+typedef struct hdi_search_job {
+    const hdi_tree *t;
+    const double *query;       /* [3 n_queries] */
+    const int32_t *order;      /* [n_queries] queries in an order that keeps near ones together; NULL: as they come */
+    int64_t n_queries, per_task;
+    int32_t k, *index;         /* k nearest: [k n_queries] */
+    double *distance2;         /* NULL: not wanted */
+    double radius2;            /* all within a radius: counts first, then columns and distances */
+    hd_csr *out;
+    hdi_found *found;          /* [tasks] */
+} hdi_search_job;
+
+static int64_t hdi_search_tasks(hdi_search_job *job, int64_t room) {
+    const int64_t blocks = (job->n_queries + 255) / 256, fit = 1 + ((int64_t)64 << 20) / (28 * (room + HDI_LEAF));
+    const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
+    job->per_task = tasks ? (job->n_queries + tasks - 1) / tasks : 0;
+    return tasks;
+}
+
+/* Work arrays for candidates of every task. */
+static void hdi_search_take(hdi_search_job *job, int64_t tasks, int64_t room, hdi_scope *s) {
+    const int64_t size = room + HDI_LEAF;
+    double *d = HDI_TAKE(s, double, tasks * size);
+    hdi_pair *sorted = HDI_TAKE(s, hdi_pair, tasks * size);
+    int32_t *id = HDI_TAKE(s, int32_t, tasks * size);
+    int64_t i;
+    job->found = HDI_TAKE_ZERO(s, hdi_found, tasks);
+    if (s->e->status < 0) return;
+    for (i = 0; i < tasks; i++) {
+        job->found[i].room = room;
+        job->found[i].d = d + i * size;
+        job->found[i].id = id + i * size;
+        job->found[i].sorted = sorted + i * size;
+    }
+}
+
+static double hdi_distance2(const double *a, const double *b) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+static void hdi_nearest_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
+    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
+    hdi_found *f = job->found + index;
+    const double *before = NULL;
+    double reach = 0;                            /* distance of its k-th neighbour */
+    int64_t i, p;
+    (void)worker;
+    f->k = job->k;
+    for (i = begin; i < end; i++) {
+        const int64_t v = job->order ? job->order[i] : i, k = job->k;
+        const double *q = job->query + 3 * v;
+        const double limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
+        int64_t m;
+        hdi_found_bound(f, before ? limit * limit * (1 + 16 * DBL_EPSILON) : DBL_MAX);
+        hdi_search(job->t, q, f);
+        m = hdi_found_sort(f);
+        for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? HDI_CAST(int32_t, f->sorted[p].id) : -1;
+        for (p = 0; job->distance2 && p < k; p++) {
+            if (p < m) memcpy(job->distance2 + v * k + p, &f->sorted[p].key, sizeof(double));
+            else job->distance2[v * k + p] = HUGE_VAL;
+        }
+        before = m == k ? q : NULL;
+        if (!before) continue;
+        memcpy(&reach, &f->sorted[k - 1].key, sizeof reach);
+        reach = sqrt(reach);
+    }
+}
+
+/* index [k n_queries] and distance2 (or NULL) by queries: neighbours ascend by distance, equally far ones by id; -1 where there are no more.
+ * queries NULL: the points xyz of the tree. */
+static hd_status hdi_nearest(const hdi_tree *t, const double *xyz, const double *query, int64_t n_queries, int32_t k, int32_t *index,
+                             double *distance2, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    const int64_t room = 2 * HDI_CAST(int64_t, k) + 32;
+    hdi_search_job job;
+    int64_t tasks;
+    memset(&job, 0, sizeof job);
+    job.t = t;
+    job.query = query ? query : xyz;
+    job.order = query ? NULL : t->id;
+    job.n_queries = n_queries;
+    job.k = k;
+    job.index = index;
+    job.distance2 = distance2;
+    tasks = hdi_search_tasks(&job, room);
+    hdi_search_take(&job, tasks, room, &s);
+    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_nearest_task, &job);
+    return hdi_scope_end(&s);
+}
+
+/* Sorts keys; work [n]. Runs of eight by insertion, then merged. */
+static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
+    uint64_t *from = a, *to = work;
+    int64_t i, j, run;
+    for (i = 1; i < n; i++) {
+        const uint64_t x = a[i];
+        for (j = i; j & 7 && x < a[j - 1]; j--) a[j] = a[j - 1];
+        a[j] = x;
+    }
+    for (run = 8; run < n; run *= 2) {
+        uint64_t *swap = from;
+        for (i = 0; i < n; i += 2 * run) {
+            const int64_t middle = hdi_least(i + run, n), end = hdi_least(i + 2 * run, n);
+            int64_t p = i, q = middle, out = i;
+            while (p < middle && q < end) {
+                const int second = from[q] < from[p];
+                to[out++] = second ? from[q] : from[p];
+                q += second;
+                p += !second;
+            }
+            while (p < middle) to[out++] = from[p++];
+            while (q < end) to[out++] = from[q++];
+        }
+        from = to;
+        to = swap;
+    }
+    if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
+}
+
+static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
+    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
+    hdi_found *f = job->found + index;
+    int64_t i;
+    (void)worker;
+    f->k = HDI_COUNT;
+    for (i = begin; i < end; i++) {
+        const int64_t v = job->order ? job->order[i] : i;
+        f->counted = 0;
+        hdi_found_bound(f, job->radius2);
+        hdi_search(job->t, job->query + 3 * v, f);
+        job->out->row_ptr[v] = f->counted + f->m;
+    }
+}
+
+/* One row: columns ascending. What was gathered is sorted by id with its place as a payload. */
+static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
+    uint64_t *key = HDI_CAST(uint64_t *, HDI_CAST(void *, f->sorted)), *work = key + f->m;   /* room for twice as many */
+    int64_t p;
+    for (p = 0; p < f->m; p++) key[p] = HDI_CAST(uint64_t, f->id[p]) << 32 | HDI_CAST(uint64_t, p);
+    hdi_sort_keys(key, f->m, work);
+    for (p = 0; p < f->m; p++) {
+        col[p] = HDI_CAST(int32_t, key[p] >> 32);
+        if (val) val[p] = f->d[key[p] & 0xffffffffu];
+    }
+}
+
+static void hdi_within_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
+    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
+    hdi_found *f = job->found + index;
+    hd_csr *out = job->out;
+    int64_t i;
+    (void)worker;
+    f->k = 0;
+    for (i = begin; i < end; i++) {
+        const int64_t v = job->order ? job->order[i] : i;
+        hdi_found_bound(f, job->radius2);
+        hdi_search(job->t, job->query + 3 * v, f);
+        hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
+    }
+}
+
+/* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values are these. Counted in a first pass, written
+ * in a second one. Other arguments as in hdi_nearest. */
+static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, const double *query, int32_t n_queries, double radius2, hd_context *ctx,
+                            hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
+    hdi_search_job job;
+    hd_csr a;
+    int64_t tasks, widest = 0, i;
+    memset(&job, 0, sizeof job);
+    a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
+    job.t = t;
+    job.query = query ? query : xyz;
+    job.order = query ? NULL : t->id;
+    job.n_queries = n_queries;
+    job.radius2 = radius2;
+    job.out = &a;
+    tasks = hdi_search_tasks(&job, 256);
+    hdi_search_take(&job, tasks, 256, &passes);
+    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_count_task, &job);
+    if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
+    for (i = 0; i < n_queries; i++) widest = a.row_ptr[i] > widest ? a.row_ptr[i] : widest;
+    a.nnz = hdi_prefix_sum(a.row_ptr, n_queries);
+    a.col = HDI_TAKE(&s, int32_t, a.nnz);
+    a.val = HDI_TAKE(&s, double, a.nnz);
+    tasks = hdi_search_tasks(&job, widest);
+    hdi_search_take(&job, tasks, widest, &passes);
+    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_within_task, &job);
+    if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
+    *out = hdi_csr_keep(&s, a);
+    return hdi_scope_end(&s);
+}
+
 /* ==== [09] geometry ====
  * Triangles: checks, corner cotangents, which faces are left out, and who meets at a vertex. May call [05]. */
 
@@ -4523,6 +5027,444 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
         double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active));
         if (!work || hdi_pair_ratio(lap, work, e) < 0) return hdi_scope_end(&s);
     }
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- point sets ---- */
+/* This work is based on
+ *   M. Belkin, P. Niyogi, Towards a theoretical foundation for Laplacian-based manifold methods, 2008 (exponential weights, `exp`)
+ *   Y. Liu, B. Prabhakaran, X. Guo, Point-based manifold harmonics, 2012 (the same with Voronoi areas: symmetric L and diagonal B, `voronoi-exp`)
+ * Deviations: the exponential is cut where it is small, by distance, so that the pattern is symmetric. Neighbours that stand off the tangent plane by
+ * more than 45 degrees count with their height instead of their projection, so that points of another sheet two spacings away do not cut a cell. At a
+ * border cells end at the convex hull of the neighbours. The papers leave coincident points, borders and the bandwidth to the reader. */
+
+enum {
+    HDI_CELL_SIDES = 12,       /* of the polygon that a cell is cut from */
+    HDI_MOST_NEIGHBOURS = 128,
+    HDI_CELLS_PER_TASK = 256
+};
+
+/* A set of different places, with the k nearest of each (the first is the place itself). */
+typedef struct hdi_cloud {
+    int32_t n, k;
+    const double *xyz;
+    const int32_t *first;      /* [n] the point that a place is named by */
+    int32_t *nbr;             /* [k n] */
+    double *d2;                /* [k n] */
+    double *spacing2;          /* [n] area for each point nearby, by the disc to the last neighbour */
+    double *area;              /* [n] of the cells */
+    int8_t *border;            /* [n] 1: the cell ends where the neighbours do */
+    double start[HDI_CELL_SIDES][2];   /* a regular polygon around the unit circle */
+} hdi_cloud;
+
+/* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix a, which is overwritten: Jacobi's rotations. */
+static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
+    int sweep, p, q, i, c;
+    for (p = 0; p < 3; p++)
+        for (q = 0; q < 3; q++) v[p][q] = p == q;
+    for (sweep = 0; sweep < 30; sweep++) {
+        const double off = fabs(a[0][1]) + fabs(a[0][2]) + fabs(a[1][2]);
+        if (off <= DBL_MIN || off <= 1e-17 * (fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]))) break;
+        for (i = 0; i < 3; i++) {
+            double theta, t, co, si;
+            p = i == 2;
+            q = i == 0 ? 1 : 2;
+            if (a[p][q] == 0) continue;
+            theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+            t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
+            co = 1 / sqrt(t * t + 1);
+            si = t * co;
+            for (c = 0; c < 3; c++) {
+                const double x = a[p][c], y = a[q][c];
+                a[p][c] = co * x - si * y;
+                a[q][c] = si * x + co * y;
+            }
+            for (c = 0; c < 3; c++) {
+                const double x = a[c][p], y = a[c][q], vx = v[p][c], vy = v[q][c];
+                a[c][p] = co * x - si * y;
+                a[c][q] = si * x + co * y;
+                v[p][c] = co * vx - si * vy;
+                v[q][c] = si * vx + co * vy;
+            }
+        }
+    }
+    for (i = 0; i < 3; i++) w[i] = a[i][i];
+    for (p = 0; p < 2; p++) {                    /* three values in order */
+        for (q = 0; q < 2 - p; q++) {
+            if (w[q] <= w[q + 1]) continue;
+            for (c = 0; c < 4; c++) {
+                double *x = c < 3 ? &v[q][c] : w + q, *y = c < 3 ? &v[q + 1][c] : w + q + 1, swap = *x;
+                *x = *y;
+                *y = swap;
+            }
+        }
+    }
+}
+
+/* Two orthonormal directions along the neighbours of place i: principal components, where near ones count much
+ * more, as far ones may belong to another sheet. reach: distance of the last one. */
+static void hdi_cell_frame(const hdi_cloud *cloud, int32_t i, double reach, double frame[2][3]) {
+    const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
+    const double *p = cloud->xyz + 3 * HDI_CAST(int64_t, i);
+    double sum = 0, mean[3] = {0, 0, 0}, cov[3][3], w[3], v[3][3], d[3];
+    int32_t k;
+    int r, c;
+    memset(cov, 0, sizeof cov);
+    for (k = 0; k < cloud->k; k++) {
+        const double near2 = 1.05 - cloud->d2[at + k] / (reach * reach), weight = near2 * near2 * near2 * near2 * near2 * near2;
+        hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, d);
+        sum += weight;
+        for (r = 0; r < 3; r++) {
+            d[r] /= reach;
+            mean[r] += weight * d[r];
+        }
+        for (r = 0; r < 3; r++)
+            for (c = 0; c < 3; c++) cov[r][c] += weight * d[r] * d[c];
+    }
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) cov[r][c] -= mean[r] * mean[c] / sum;
+    hdi_eigen3(cov, w, v);
+    memcpy(frame, v[1], 3 * sizeof(double));
+    memcpy(frame[1], v[2], 3 * sizeof(double));
+}
+
+typedef struct hdi_polygon {
+    int32_t n;
+    double x[HDI_CELL_SIDES + 2 * HDI_MOST_NEIGHBOURS + 4][2];
+} hdi_polygon;
+
+/* Keeps what lies in a x <= b; says whether anything was cut off. */
+static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
+    hdi_polygon cut;
+    double last, here;
+    int32_t i;
+    int any = 0;
+    for (i = 0; i < g->n && !any; i++) any = a0 * g->x[i][0] + a1 * g->x[i][1] > b;
+    if (!any) return 0;
+    cut.n = 0;
+    last = a0 * g->x[g->n - 1][0] + a1 * g->x[g->n - 1][1] - b;
+    for (i = 0; i < g->n; i++) {
+        const double *from = g->x[i ? i - 1 : g->n - 1], *to = g->x[i];
+        here = a0 * to[0] + a1 * to[1] - b;
+        if ((last <= 0) != (here <= 0)) {        /* one of both is not zero */
+            const double s = last / (last - here);
+            cut.x[cut.n][0] = from[0] + s * (to[0] - from[0]);
+            cut.x[cut.n++][1] = from[1] + s * (to[1] - from[1]);
+        }
+        if (here <= 0) {
+            cut.x[cut.n][0] = to[0];
+            cut.x[cut.n++][1] = to[1];
+        }
+        last = here;
+    }
+    g->n = cut.n;
+    memcpy(g->x, cut.x, HDI_CAST(size_t, cut.n) * sizeof *g->x);
+    return 1;
+}
+
+static double hdi_polygon_area(const hdi_polygon *g) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < g->n; i++) {
+        const double *a = g->x[i], *b = g->x[i + 1 < g->n ? i + 1 : 0];
+        sum += a[0] * b[1] - a[1] * b[0];
+    }
+    return sum / 2;
+}
+
+static double hdi_turn(const double *a, const double *b, const double *c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Clips g to the convex hull of the n points x, which are sorted here (Andrew 1979); says whether that cut anything. */
+static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
+    double hull[2 * HDI_MOST_NEIGHBOURS + 4][2];
+    int32_t i, j, m = 0, base = 0;
+    int pass, cut = 0;
+    for (i = 1; i < n; i++) {
+        const double a = x[i][0], b = x[i][1];
+        for (j = i; j > 0 && (a < x[j - 1][0] || (a == x[j - 1][0] && b < x[j - 1][1])); j--) memcpy(x[j], x[j - 1], sizeof *x);
+        x[j][0] = a;
+        x[j][1] = b;
+    }
+    for (pass = 0; pass < 2; pass++) {           /* the lower half from left to right, the upper one back */
+        for (i = 0; i < n; i++) {
+            const double *p = x[pass ? n - 1 - i : i];
+            while (m >= base + 2 && hdi_turn(hull[m - 2], hull[m - 1], p) <= 0) m--;
+            memcpy(hull[m++], p, sizeof *hull);
+        }
+        base = --m;                              /* the last one begins the other half */
+    }
+    for (i = 0; i < m && g->n; i++) {
+        const double *a = hull[i], *b = hull[i + 1 < m ? i + 1 : 0], e0 = b[0] - a[0], e1 = b[1] - a[1];
+        cut |= hdi_polygon_clip(g, e1, -e0, e1 * a[0] - e0 * a[1]);
+    }
+    return cut;
+}
+
+/* The middle one of the spacings around place i: an outlier has those of the surface. */
+static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
+    double s[HDI_MOST_NEIGHBOURS + 1];
+    const int32_t *nbr = cloud->nbr + HDI_CAST(int64_t, i) * cloud->k;
+    int32_t j, k;
+    for (k = 0; k < cloud->k; k++) {
+        const double x = cloud->spacing2[nbr[k]];
+        for (j = k; j > 0 && x < s[j - 1]; j--) s[j] = s[j - 1];
+        s[j] = x;
+    }
+    return s[cloud->k / 2];
+}
+
+/* Area of the cell of place i in its tangent plane; 0 where neighbours lie on a line. Lengths are in units of the distance of the last neighbour. */
+static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
+    const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
+    const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = cloud->xyz + 3 * HDI_CAST(int64_t, i);
+    double frame[2][3], x[HDI_MOST_NEIGHBOURS + 1][2], d[3], radius, outer2, area;
+    hdi_polygon g;
+    int32_t k, v;
+    hdi_cell_frame(cloud, i, reach, frame);
+    radius = 2 * sqrt(hdi_cell_spacing2(cloud, i)) * unit;   /* random points leave a circle so large empty once in 3e5 times */
+    g.n = HDI_CELL_SIDES;
+    for (v = 0; v < g.n; v++) {
+        g.x[v][0] = radius * cloud->start[v][0];
+        g.x[v][1] = radius * cloud->start[v][1];
+    }
+    outer2 = 1.2 * radius * radius;
+    for (k = 0; k < cloud->k; k++) {
+        const double l2 = cloud->d2[at + k] * unit * unit;   /* and q2 the square in the plane */
+        double q2;
+        hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, d);
+        x[k][0] = hdi_dot3(frame[0], d) * unit;
+        x[k][1] = hdi_dot3(frame[1], d) * unit;
+        q2 = x[k][0] * x[k][0] + x[k][1] * x[k][1];
+        if (k == 0 || l2 > 8 * outer2) continue;   /* max(q2, l2 - q2) is at least l2/2: the bisector is beyond all corners */
+        if (!hdi_polygon_clip(&g, x[k][0], x[k][1], hdi_max(q2, l2 - q2) / 2)) continue;
+        for (v = 0, outer2 = 0; v < g.n; v++) outer2 = hdi_max(outer2, g.x[v][0] * g.x[v][0] + g.x[v][1] * g.x[v][1]);
+    }
+    cloud->border[i] = HDI_CAST(int8_t, hdi_polygon_clip_hull(&g, x, cloud->k) || outer2 >= radius * radius);
+    area = hdi_polygon_area(&g);
+    cloud->area[i] = area > 1e-12 * radius * radius ? area * reach * reach : 0;
+}
+
+static void hdi_cell_task(void *arg, int64_t index, int32_t worker) {
+    hdi_cloud *cloud = HDI_CAST(hdi_cloud *, arg);
+    const int64_t end = hdi_least(cloud->n, (index + 1) * HDI_CELLS_PER_TASK);
+    int64_t i;
+    (void)worker;
+    for (i = index * HDI_CELLS_PER_TASK; i < end; i++) hdi_cell_area(cloud, HDI_CAST(int32_t, i));
+}
+
+/* The number-k smallest of a, which is rearranged. */
+static double hdi_kth(double *a, int64_t n, int64_t k) {
+    int64_t lo = 0, hi = n - 1;
+    while (lo < hi) {
+        const double pivot = hdi_max(hdi_min(a[lo], a[hi]), hdi_min(hdi_max(a[lo], a[hi]), a[lo + (hi - lo) / 2]));
+        int64_t i = lo, j = hi;
+        while (i <= j) {
+            while (a[i] < pivot) i++;
+            while (a[j] > pivot) j--;
+            if (i <= j) {
+                const double swap = a[i];
+                a[i++] = a[j];
+                a[j--] = swap;
+            }
+        }
+        if (k <= j) hi = j;
+        else if (k >= i) lo = i;
+        else break;
+    }
+    return a[k];
+}
+
+static uint64_t hdi_place_hash(const double *p) {
+    uint64_t h = 0, bits;
+    int c;
+    for (c = 0; c < 3; c++) {
+        const double x = p[c] + 0.0;             /* -0 is 0 */
+        memcpy(&bits, &x, sizeof bits);
+        h = (h ^ bits) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 29;
+    }
+    return h;
+}
+
+/* place[v]: number of the place where point v is, places numbered by their first point, first[q]: that point. Returns how many. */
+static int32_t hdi_places(const double *xyz, int32_t n, int32_t *place, int32_t *first, hdi_scope *s) {
+    const int64_t slots = 2 * HDI_CAST(int64_t, n) + 1;
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *table = HDI_TAKE(&own, int32_t, slots), v, count = 0;
+    if (!table) {
+        hdi_scope_end(&own);
+        return 0;
+    }
+    hdi_fill_i32(table, slots, -1);
+    for (v = 0; v < n; v++) {
+        const double *p = xyz + 3 * HDI_CAST(int64_t, v);
+        int64_t at = HDI_CAST(int64_t, hdi_place_hash(p) % HDI_CAST(uint64_t, slots));
+        for (; table[at] >= 0; at = at + 1 < slots ? at + 1 : 0) {
+            const double *q = xyz + 3 * HDI_CAST(int64_t, first[table[at]]);
+            if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) break;
+        }
+        if (table[at] < 0) {
+            first[count] = v;
+            table[at] = count++;
+        }
+        place[v] = table[at];
+    }
+    hdi_scope_end(&own);
+    return count;
+}
+
+/* Neighbours, spacings, h and cells of the places. */
+static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scope *s) {
+    hdi_tree tree;
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    double sum = 0;
+    int32_t i;
+    const int64_t n = cloud->n, k = cloud->k;
+    cloud->spacing2 = HDI_TAKE(s, double, n);
+    cloud->area = HDI_TAKE(s, double, n);
+    cloud->border = HDI_TAKE(s, int8_t, n);
+    cloud->nbr = HDI_TAKE(s, int32_t, k * n);
+    cloud->d2 = HDI_TAKE(s, double, k * n);
+    if (s->e->status < 0 || hdi_tree_make(&tree, cloud->xyz, cloud->n, &own) < 0) return hdi_scope_end(&own);
+    if (hdi_nearest(&tree, cloud->xyz, NULL, n, cloud->k, cloud->nbr, cloud->d2, s->ctx, s->e) < 0) return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) {
+        const double *d2 = cloud->d2 + i * k;
+        if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
+            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two points are too close together: the square of their distance is no normal number", -1, cloud->first[i], d2[1]);
+            return hdi_scope_end(&own);
+        }
+        sum += sqrt(d2[1]);
+        cloud->spacing2[i] = 3.141592653589793 * d2[k - 1] / HDI_CAST(double, k - 1);
+    }
+    lap->h = sum / HDI_CAST(double, n);
+    for (i = 0; i < HDI_CELL_SIDES; i++) {
+        const double step = 6.283185307179586 / HDI_CAST(double, HDI_CELL_SIDES), r = 1 / cos(step / 2);
+        cloud->start[i][0] = r * cos(step * i);
+        cloud->start[i][1] = r * sin(step * i);
+    }
+    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) >= 0) hdi_parallel(s->ctx, (n + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
+    return hdi_scope_end(&own);
+}
+
+/* Bandwidth from the sampling: a multiple of m, the area that a point has, which is the mean of pi r_k^2 / k over the points, r_k the distance of the
+ * k-th neighbour, and of h, the mean distance of the nearest one; no square counts more than nine medians of the former, so that outliers do not
+ * matter. The multiple is that which balances the two errors on spheres and tori: smoothing takes lambda s/2 off an eigenvalue lambda, sampling about 0.02 (m/s)^2 of all of them with points independent of
+ * each other, where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence s = m (m/h^2)/4, between 0.3 and 1 m. */
+static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
+    double median, mean = 0, h = 0;
+    int32_t i;
+    memcpy(work, cloud->spacing2, HDI_CAST(size_t, cloud->n) * sizeof *work);
+    median = hdi_kth(work, cloud->n, cloud->n / 2);
+    for (i = 0; i < cloud->n; i++) {
+        mean += hdi_min(cloud->spacing2[i], 9 * median);
+        h += sqrt(hdi_min(cloud->d2[HDI_CAST(int64_t, i) * cloud->k + 1], 9 * median));
+    }
+    mean /= cloud->n;
+    h /= cloud->n;
+    return hdi_max(0.3, hdi_min(1, 0.25 * mean / (h * h))) * mean;
+}
+
+typedef struct hdi_weights {
+    hd_laplacian *lap;
+    double bandwidth, scale;   /* exp: of all weights */
+} hdi_weights;
+
+/* Squared distances of some rows become entries of L. Products commute, so that L is symmetric to the last bit. */
+static void hdi_weights_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_weights *job = HDI_CAST(const hdi_weights *, arg);
+    hd_laplacian *lap = job->lap;
+    const int32_t begin = HDI_CAST(int32_t, index * HDI_CELLS_PER_TASK);
+    const int32_t end = HDI_CAST(int32_t, hdi_least(lap->n_active, (index + 1) * HDI_CELLS_PER_TASK));
+    const double quarter = -0.25 / job->bandwidth;
+    const int voronoi = lap->kind == HD_LAPLACIAN_VORONOI_EXP;
+    int32_t i;
+    (void)worker;
+    for (i = begin; i < end; i++) {
+        double sum = 0, *diagonal = NULL;
+        int64_t p;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t j = lap->L.col[p];
+            double *value = lap->L.val + p;
+            if (j == i) {
+                diagonal = value;
+                continue;
+            }
+            *value = -exp(*value * quarter) * (voronoi ? (lap->mass[i] / job->bandwidth) * (lap->mass[j] / job->bandwidth) * 0.07957747154594767 : job->scale);
+            sum += *value;
+        }
+        *diagonal = -sum;
+    }
+}
+
+/* The pattern by a radius search over the rows, then the values in its place. */
+static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_point_report *rep = &lap->points;
+    hdi_weights job;
+    hdi_tree tree;
+    int32_t i;
+    if (hdi_tree_make(&tree, lap->xyz, lap->n_active, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_within(&lap->L, &tree, lap->xyz, NULL, lap->n_active, cut2, lap->context, e) < 0) return hdi_scope_end(&s);
+    if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
+    job.lap = lap;
+    job.bandwidth = rep->bandwidth;
+    job.scale = 0.07957747154594767 / job.bandwidth / job.bandwidth / lap->n_active;
+    hdi_parallel(lap->context, (HDI_CAST(int64_t, lap->n_active) + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_weights_task, &job);
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
+        rep->n_isolated += count == 1;
+        if (!hdi_finite(lap->L.val[lap->L.row_ptr[i]])) {
+            hdi_fail_face(e, HD_ERR_NOT_FINITE, "points: a weight is not finite; the bandwidth is too small for these lengths", -1, lap->vertex[i], rep->bandwidth);
+            break;
+        }
+        rep->most_in_row = count > rep->most_in_row ? HDI_CAST(int32_t, count) : rep->most_in_row;
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Masses of the points: equal shares of their place's cell, or 1; and what there is to report about them. */
+static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const int32_t *place, int32_t *copies, double *mass) {
+    hd_point_report *rep = &lap->points;
+    int32_t i;
+    for (i = 0; i < cloud->n; i++) copies[i] = 0;
+    for (i = 0; i < lap->n; i++) copies[place[i]]++;
+    for (i = 0; i < lap->n; i++) mass[i] = lap->kind == HD_LAPLACIAN_EXP ? 1 : cloud->area[place[i]] / copies[place[i]];
+    for (i = 0; i < cloud->n; i++) {
+        lap->area += cloud->area[i];
+        rep->n_border += cloud->border[i];
+        rep->n_no_area += cloud->area[i] > 0 ? 0 : copies[i];
+    }
+    rep->n_coincident = lap->n - cloud->n;
+}
+
+static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_point_report *rep = &lap->points;
+    int32_t *place = HDI_TAKE(&s, int32_t, lap->n), *first = HDI_TAKE(&s, int32_t, lap->n), v;
+    double *work = HDI_TAKE(&s, double, lap->n), *places;
+    hdi_cloud cloud;
+    memset(&cloud, 0, sizeof cloud);
+    if (e->status < 0 || hdi_points_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
+    cloud.n = hdi_places(xyz, lap->n, place, first, &s);
+    if (e->status >= 0 && cloud.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
+    places = HDI_TAKE(&s, double, 3 * HDI_CAST(int64_t, cloud.n));
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (v = 0; v < cloud.n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
+    cloud.xyz = places;
+    cloud.first = first;
+    cloud.k = HDI_CAST(int32_t, hdi_least(cloud.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
+    if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
+    rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
+    hdi_cloud_masses(&cloud, lap, place, first, work);
+    if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
+    if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
+    lap->b_ratio = 1;
+    lap->conserves = 1;
     hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
 }
@@ -12109,6 +13051,66 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
         return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
     lap->h = h;
     return hdi_lap_done(out, lap, hdi_lap_matrices(lap, L, B, c.e));
+}
+
+/* Options of point sets, resolved, into lap->points. */
+static hd_status hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
+    hd_point_report *rep = &lap->points;
+    rep->bandwidth = opts ? opts->bandwidth : 0;
+    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : 1e-8;
+    rep->neighbours = opts && opts->neighbours ? opts->neighbours : 30;
+    if (lap->kind == HD_LAPLACIAN_DEFAULT) lap->kind = HD_LAPLACIAN_VORONOI_EXP;
+    if (lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the kind is voronoi-exp or exp");
+    if (!(rep->bandwidth >= 0) || !hdi_finite(rep->bandwidth)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
+    if (!(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
+    if (rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: neighbours lies in 6..128");
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err) {
+    hdi_call c;
+    hd_laplacian *lap = hdi_lap_new(opts, n, opts ? opts->kind : HD_LAPLACIAN_VORONOI_EXP, err, &c);
+    if (!lap) return c.e->status;
+    if (!out || (n > 0 && !xyz)) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (hdi_point_opts(lap, opts, c.e) < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, hdi_lap_points(lap, xyz, c.e));
+}
+
+/* Points, queries and sizes; *m becomes the number of queries. */
+static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m, hd_error *e) {
+    if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
+    if (!query) *m = n;
+    if (n > 0 && !xyz) return hdi_missing(e);
+    return hdi_points_check(xyz, n, query, *m, e);
+}
+
+HEATDIFF_API hd_status hd_neighbours_nearest(int32_t *index, double *distance2, const double *xyz, int32_t n, const double *query, int32_t m, int32_t k,
+                                             hd_context *ctx, hd_error *err) {
+    hdi_call c;
+    hdi_scope s;
+    hdi_tree tree;
+    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
+    if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: k is not positive");
+    if (m > 0 && !index) return hdi_missing(c.e);
+    s = hdi_scope_begin(c.ctx, c.e);
+    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
+        (void)hdi_nearest(&tree, xyz, query, m, k, index, distance2, c.ctx, c.e);
+    return hdi_scope_end(&s);
+}
+
+HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query, int32_t m, double radius, hd_context *ctx,
+                                            hd_error *err) {
+    hdi_call c;
+    hdi_scope s;
+    hdi_tree tree;
+    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
+    if (!out) return hdi_missing(c.e);
+    if (!(radius >= 0)) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
+    s = hdi_scope_begin(c.ctx, c.e);
+    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
+        (void)hdi_within(out, &tree, xyz, query, m, radius * radius, c.ctx, c.e);
+    return hdi_scope_end(&s);
 }
 
 static void hdi_gather(const hd_laplacian *lap, const double *on_vertices, double *on_rows) {

@@ -1647,8 +1647,94 @@ static void int_silan_bounds(void) {
 }
 
 #include "test_shared.h"
+/* ---- [08] spatial, [10] points ---- */
+
+static void int_sort_keys(void) {
+    uint64_t a[300], b[300], work[300], seed = 5;
+    int32_t n, i, j, bad = 0;
+    for (n = 0; n < 300; n++) {
+        for (i = 0; i < n; i++) a[i] = b[i] = n % 3 == 0 ? dense_random(&seed) : n % 3 == 1 ? dense_random(&seed) % 9 : (uint64_t)(n - i);
+        hdi_sort_keys(a, n, work);
+        for (i = 1; i < n; i++) {                /* the same by insertion */
+            const uint64_t x = b[i];
+            for (j = i; j > 0 && x < b[j - 1]; j--) b[j] = b[j - 1];
+            b[j] = x;
+        }
+        bad += memcmp(a, b, (size_t)n * sizeof *a) != 0;
+    }
+    CHECK_MSG(bad == 0, "%d lists out of order", (int)bad);
+}
+
+static void int_kth(void) {
+    double a[100], b[100];
+    uint64_t seed = 6;
+    int32_t n, k, i, bad = 0;
+    for (n = 1; n < 100; n += 7) {
+        for (k = 0; k < n; k++) {
+            int32_t below = 0, equal = 0;
+            for (i = 0; i < n; i++) a[i] = b[i] = k % 2 ? (double)(dense_random(&seed) % 5) : dense_signed(&seed);
+            (void)hdi_kth(a, n, k);
+            for (i = 0; i < n; i++) {
+                below += b[i] < a[k];
+                equal += b[i] == a[k];
+            }
+            bad += !(below <= k && k < below + equal);
+        }
+    }
+    CHECK_MSG(bad == 0, "%d times another one than the k-th", (int)bad);
+}
+
+/* A = V'WV with orthonormal rows V, also with equal and with zero eigenvalues. */
+static void int_eigen3(void) {
+    uint64_t seed = 7;
+    int round, i, j, c;
+    for (round = 0; round < 200; round++) {
+        double a[3][3], keep[3][3], w[3], v[3][3], worst = 0, top = 1e-300;
+        for (i = 0; i < 3; i++)
+            for (j = 0; j <= i; j++) a[i][j] = a[j][i] = round % 5 == 0 && i != j ? 0 : pow(10, round % 7 - 3) * dense_signed(&seed);
+        for (i = 0; i < 3 && round % 4 == 1; i++)   /* rank one */
+            for (j = 0; j < 3; j++) a[i][j] = (i + 1.0) * (j + 1.0);
+        for (i = 0; i < 3 && round % 4 == 2; i++)   /* a multiple of the identity */
+            for (j = 0; j < 3; j++) a[i][j] = i == j ? 2 : 0;
+        memcpy(keep, a, sizeof a);
+        hdi_eigen3(a, w, v);
+        CHECK(w[0] <= w[1] && w[1] <= w[2]);
+        for (i = 0; i < 3; i++) {
+            for (j = 0; j < 3; j++) {
+                double sum = 0, dot = 0;
+                for (c = 0; c < 3; c++) {
+                    sum += w[c] * v[c][i] * v[c][j];
+                    dot += v[i][c] * v[j][c];
+                }
+                worst = fmax(worst, fabs(sum - keep[i][j]));
+                top = fmax(top, fabs(keep[i][j]));
+                CHECK_MSG(fabs(dot - (i == j)) < 1e-14, "round %d: vectors %d and %d: %g", round, i, j, dot);
+            }
+        }
+        CHECK_MSG(worst < 4e-15 * top, "round %d: off by %g", round, worst / top);
+    }
+}
+
+/* A square cut by half-planes, and by a hull. */
+static void int_polygon(void) {
+    static const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    double x[6][2] = {{0, 0}, {0.5, 0}, {0, 0.5}, {0.1, 0.1}, {0.25, 0.25}, {0, 0}}, line[3][2] = {{0, 0}, {1, 1}, {0.5, 0.5}};
+    hdi_polygon g;
+    g.n = 4;
+    memcpy(g.x, square, sizeof square);
+    CHECK(!hdi_polygon_clip(&g, 1, 1, 2) && g.n == 4 && hdi_polygon_area(&g) == 4);
+    CHECK(hdi_polygon_clip(&g, 1, 1, 1) && g.n == 5 && fabs(hdi_polygon_area(&g) - 3.5) < 1e-15);
+    CHECK(hdi_polygon_clip(&g, -1, 0, 0) && fabs(hdi_polygon_area(&g) - 1.5) < 1e-15);
+    CHECK(hdi_polygon_clip_hull(&g, x, 6) && fabs(hdi_polygon_area(&g) - 0.125) < 1e-15);
+    CHECK(hdi_polygon_clip_hull(&g, line, 3) && fabs(hdi_polygon_area(&g)) < 1e-15);
+    CHECK(!hdi_polygon_clip(&g, 1, 0, 5));
+}
 
 int main(void) {
+    int_sort_keys();
+    int_kth();
+    int_eigen3();
+    int_polygon();
     int_division();
     int_complex();
     int_sizes();

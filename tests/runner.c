@@ -133,6 +133,7 @@ static void test_tmp_remove(void) {
 #include "test_rational.h"
 #include "test_krylov.h"
 #include "test_heat.h"
+#include "test_points.h"
 #include "test_robust.h"
 #include "test_polygon.h"
 #include "test_ldl.h"
@@ -145,7 +146,7 @@ typedef struct test_group { const char *name; void (*run)(void); } test_group;
 static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
     {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
-    {"polygon", test_polygon},   {"geodesic", test_geodesic}, {"picture", test_picture}, {"meshio", test_meshio},
+    {"points", test_points},     {"polygon", test_polygon},   {"geodesic", test_geodesic}, {"picture", test_picture}, {"meshio", test_meshio},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };

@@ -474,7 +474,7 @@ class Failures(Case):
         self.assertIn("bad.obj", self.kernel("# nothing here\n"))
         self.assertIn("bad.obj", self.kernel(""))
         self.assertIn("bad.obj", self.kernel(bytes(random.Random(1).randrange(256) for _ in range(4000))))
-        self.assertIn("bad.obj", self.kernel("v 0 0 0\nv 1 0 0\nv 0 1 0\n"))
+        self.assertIn("bad.obj", self.kernel("v 0 0 0\nv 1 0 0\nv 2 0 0\n"))        # points on a line: no area
 
     def test_every_cut_of_a_mesh_is_handled(self):
         good = off_text(*icosahedron()).encode()
@@ -1078,7 +1078,7 @@ class Reports(Case):
         self.assertEqual((r["repeated_faces"], r["repeated_corner_faces"], r["zero_area_faces"]), (1, 1, 1))
 
     def test_info_of_nothing_with_area(self):
-        r = json.loads(self.good("info", self.file("points.xyz", "0 0 0\n1 0 0\n0 1 0\n"), "--json").stdout)
+        r = json.loads(self.good("info", self.file("points.xyz", "0 0 0\n1 0 0\n2 0 0\n"), "--json").stdout)
         self.assertEqual((r["n"], r["faces"], r["inert"]), (3, 0, 3))
 
     def test_strings_are_escaped(self):
@@ -1330,6 +1330,86 @@ class Demo(Case):
 
     def test_folder_is_a_file(self):
         self.bad(1, "demo", "-o", self.small)
+
+
+class Points(Case):
+    """Files without faces."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        n = 300
+        cls.v = [(math.sqrt(1 - z * z) * math.cos(2.4 * i), math.sqrt(1 - z * z) * math.sin(2.4 * i), z)
+                 for i, z in ((i, (2 * i + 1) / n - 1) for i in range(n))]
+        cls.xyz = cls.file("cloud.xyz", "".join("%.17g %.17g %.17g 7 8 9\n" % p for p in cls.v))
+
+    def report(self, *args):
+        return json.loads(self.good("info", *args, "--json").stdout)
+
+    def test_formats_agree(self):
+        rows = "".join("%.17g %.17g %.17g\n" % p for p in self.v)
+        ply = "ply\nformat ascii 1.0\nelement vertex 300\nproperty double x\nproperty double y\nproperty double z\nend_header\n" + rows
+        want = self.field("kernel", self.xyz, "--source", 5, "--t", "0.1,20h2")
+        for path in (self.file("c.ply", ply), self.file("c.obj", "".join("v " + r + "\n" for r in rows.splitlines())),
+                     self.file("c.off", "OFF\n300 0 0\n" + rows)):
+            self.assertEqual(self.field("kernel", path, "--source", 5, "--t", "0.1,20h2"), want)
+        self.assertTrue(all(x > 0 for x in columns(want, 0)[5]))
+
+    def test_info(self):
+        r = self.report(self.xyz)
+        self.assertEqual((r["n"], r["faces"], r["components"], r["inert"], r["laplacian"]), (300, 0, 1, 0, "voronoi-exp"))
+        self.assertEqual((r["coincident"], r["isolated"], r["without_area"], r["neighbours"], r["weight_cut"]), (0, 0, 0, 30, 1e-8))
+        self.assertAlmostEqual(r["area"] / (4 * math.pi), 1, delta=0.05)
+        h = sum(min(math.dist(p, q) for q in self.v if q is not p) for p in self.v) / 300
+        self.assertAlmostEqual(r["h"] / h, 1, delta=1e-13)
+        self.assertAlmostEqual(r["cut_radius"], math.sqrt(4 * r["bandwidth"] * math.log(1e8)), delta=1e-12)
+        text = self.good("info", self.xyz).stdout.decode()
+        for word in ("points", "bandwidth", "area of the cells", "from the sampling"):
+            self.assertIn(word, text)
+
+    def test_bandwidth(self):
+        h = self.report(self.xyz)["h"]
+        r = self.report(self.xyz, "--bandwidth", "0.4h2", "--laplacian", "exp")
+        self.assertAlmostEqual(r["bandwidth"] / (0.4 * h * h), 1, delta=1e-13)
+        self.assertEqual(self.report(self.xyz, "--bandwidth", "0.004")["bandwidth"], 0.004)
+        twice = self.file("twice.xyz", "".join("%.17g %.17g %.17g\n" % p for p in self.v + self.v[:20]))
+        r = self.report(twice, "--bandwidth", "2h2")
+        self.assertAlmostEqual(r["bandwidth"] / (2 * h * h), 1, delta=1e-13)
+        self.assertEqual((r["coincident"], r["n"]), (20, 320))
+        for text in ("0", "-1", "abc", "auto:3", "1,2", "", "1h", "nan"):
+            self.assertIn("--bandwidth takes", self.bad(2, "info", self.xyz, "--bandwidth=" + text))
+        self.assertIn("bandwidth", self.bad(1, "info", self.small, "--bandwidth", "1"))
+
+    def test_laplacians(self):
+        for kind in ("fem", "cot", "voronoi-cot"):
+            self.assertIn(kind, self.bad(1, "kernel", self.xyz, "--source", 0, "--t", 1, "--laplacian", kind))
+        u = self.field("kernel", self.xyz, "--source", "0,9", "--t", 1, "--laplacian", "exp")
+        for c in range(2):                      # B = I: columns sum to one, and K_t is symmetric
+            self.assertAlmostEqual(sum(r[c] for r in u), 1, delta=1e-9)
+        self.assertAlmostEqual(u[9][0], u[0][1], delta=1e-9)
+        r = self.report(self.patch, "--laplacian", "voronoi-exp")       # a mesh's vertices as points
+        self.assertEqual((r["n"], r["laplacian"], r["triangles_used"]), (100, "voronoi-exp", 0))
+        text = self.good("kernel", self.xyz, "--source", 0, "--t", "auto:2", "-o", self.path("x.txt")).stderr.decode()
+        self.assertIn("bandwidth", text)
+        self.good("kernel", self.xyz, "--source", 0, "--t", "auto:2", "--laplacian", "exp", "-o", self.path("x.txt"))
+
+    def test_outputs(self):
+        for name in ("p.ply", "p.vtu", "p.obj", "p.npy", "p.csv", "p.png"):
+            self.good("kernel", self.xyz, "--source", 3, "--t", 0.1, "-o", self.path(name), "--quiet")
+            self.assertGreater(os.path.getsize(self.path(name)), 300)
+        again = self.report(self.path("p.ply"))
+        self.assertEqual((again["n"], again["faces"]), (300, 0))
+        data = self.file("f.txt", "".join("%g\n" % p[2] for p in self.v))
+        self.good("render", self.xyz, "--input", data, "-o", self.path("r.png"))
+        out = self.field("diffuse", self.xyz, "--input", data, "--t", "0.1")
+        ratio = [a[0] / p[2] for a, p in zip(out, self.v) if abs(p[2]) > 0.3]
+        self.assertTrue(all(abs(q / math.exp(-0.2) - 1) < 0.05 for q in ratio), (min(ratio), max(ratio)))     # z has eigenvalue 2
+
+    def test_nothing_to_compute_on(self):
+        line = self.file("line.xyz", "0 0 0\n1 0 0\n2 0 0\n")
+        self.assertEqual(self.report(line)["inert"], 3)
+        self.bad(1, "kernel", line, "--source", 0, "--t", 1)
+        self.bad(1, "kernel", self.file("one.xyz", "0 0 0\n0 0 0\n"), "--source", 0, "--t", 1)
 
 
 def main():

@@ -386,7 +386,7 @@ typedef struct word { const char *name; int value; } word;
 
 static const word LAPLACIANS[] = {
     { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT },
-    { "polygon", HD_LAPLACIAN_POLYGON }, { NULL, 0 } };
+    { "polygon", HD_LAPLACIAN_POLYGON }, { "voronoi-exp", HD_LAPLACIAN_VORONOI_EXP }, { "exp", HD_LAPLACIAN_EXP }, { NULL, 0 } };
 static const word POLES[] = { { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { NULL, 0 } };
 static const word METHODS[] = {
     { "auto", HD_METHOD_AUTO }, { "direct", HD_METHOD_DIRECT }, { "krylov", HD_METHOD_KRYLOV }, { "iterative", HD_METHOD_ITERATIVE },
@@ -446,6 +446,8 @@ typedef struct options {
     int64_t *sources;                /* 64 bits, so that ids beyond any mesh are told as what they are */
     int n_sources;
     const char *input, *output, *title;
+    int has_bandwidth;
+    time_spec bandwidth;             /* absolute or h2 */
     int laplacian, poles, method, ordering, simd, solver, precond, kernel;
     long degree, max_iterations, threads;
     double tol, lambda;
@@ -639,6 +641,14 @@ static int parse_times(options *o, const option_def *def, const char *text)
     }
 }
 
+static int parse_bandwidth(options *o, const option_def *def, const char *text)
+{
+    const char *end;
+    (void)def;
+    o->has_bandwidth = 1;
+    return read_time(text, &o->bandwidth, &end) && *end == 0 && o->bandwidth.unit != TIME_AUTO && o->bandwidth.value > 0;
+}
+
 static int parse_sources(options *o, const option_def *def, const char *text)
 {
     int64_t v;
@@ -670,10 +680,14 @@ static const option_def OPTIONS[] = {
     { "input", 0, CMD_DIFFUSE | CMD_RENDER, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
       "a field: a row per vertex, one or more columns, as text or .npy" },
     { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
-      "fem, voronoi-cot, cot or polygon",
-      "fem (default of triangles), voronoi-cot, cot: other faces are\nsplit; polygon (default of meshes with other faces)" },
+      "fem, voronoi-cot, cot, polygon, voronoi-exp or exp",
+      "fem (default of triangles), voronoi-cot, cot: other faces are\nsplit; polygon (default of meshes with other faces); of points:\n"
+      "voronoi-exp (default) or exp, which take the vertices of a mesh\nas points" },
     { "lambda", 0, CMD_INFO | CMD_HEAT, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
       "of polygon: weight of its stabilising part (1)" },
+    { "bandwidth", 0, CMD_INFO | CMD_HEAT, 0, parse_bandwidth, 0, NULL, 0, 0, "S", "a positive number such as 0.001, or a multiple of h^2 such as 2h2",
+      "of points: time parameter of the exponential weights, absolute\nor in multiples of the squared mean distance of nearest\n"
+      "neighbours (2h2); default: from the sampling" },
     { "kernel", 0, CMD_KERNEL, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
       "operator: columns of K_t (default); symmetric: of k_t = K_t B^-1" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
@@ -1325,11 +1339,53 @@ static int run_load(run *r)
     return code;
 }
 
-/* That of the command line; without one polygon for meshes with other faces than triangles. */
+/* That of the command line; without one by the faces: none, other ones than triangles, triangles. */
 static hd_laplacian_kind laplacian_kind(const run *r)
 {
     if (r->o->laplacian != HD_LAPLACIAN_DEFAULT) return (hd_laplacian_kind)r->o->laplacian;
+    if (r->mesh.n_tri == 0) return HD_LAPLACIAN_VORONOI_EXP;
     return r->mesh.n_tri != r->mesh.n_faces ? HD_LAPLACIAN_POLYGON : HD_LAPLACIAN_FEM;    /* no face of the file has fewer than three corners */
+}
+
+static int is_points(const run *r)
+{
+    const hd_laplacian_kind kind = laplacian_kind(r);
+    return kind == HD_LAPLACIAN_VORONOI_EXP || kind == HD_LAPLACIAN_EXP;
+}
+
+/* h of points, which the library knows only when all is done: the mean distance of different points to the nearest other one. */
+static hd_status point_spacing(run *r, double *h, hd_error *err)
+{
+    const int32_t n = r->mesh.n, k = n < 16 ? n : 16;
+    int32_t *near_ids = (int32_t *)malloc((size_t)n * (size_t)k * sizeof *near_ids + 1), i, j, count = 0;
+    double *d2 = new_columns(n, k);
+    hd_status status = HD_ERR_MEMORY;
+    *h = 0;
+    memset(err, 0, sizeof *err);
+    err->face = err->vertex = err->row = err->column = err->pole = -1;
+    err->status = status;
+    if (near_ids && d2) status = hd_neighbours_nearest(near_ids, d2, r->mesh.xyz, n, NULL, n, k, &r->context, err);
+    for (i = 0; status >= 0 && i < n; i++) {
+        const double *d = d2 + (size_t)i * (size_t)k;
+        if (d[0] == 0 && near_ids[(size_t)i * (size_t)k] != i) continue;        /* in the place of an earlier one */
+        for (j = 0; j < k && d[j] == 0; j++) { }
+        if (j == k) continue;
+        *h += sqrt(d[j]);
+        count++;
+    }
+    if (count) *h /= count;
+    free(near_ids);
+    free(d2);
+    return status;
+}
+
+static hd_status run_points(run *r, hd_laplacian_opts *opts, hd_error *err)
+{
+    const time_spec s = r->o->bandwidth;
+    double h = 1;
+    if (s.unit == TIME_H2 && point_spacing(r, &h, err) < 0) return err->status;
+    opts->bandwidth = s.value * h * h;
+    return hd_laplacian_points(&r->lap, r->mesh.xyz, r->mesh.n, opts, err);
 }
 
 static hd_status run_laplacian(run *r, hd_error *err)
@@ -1343,8 +1399,9 @@ static hd_status run_laplacian(run *r, hd_error *err)
     opts.lambda = r->o->lambda;
     opts.context = &r->context;
     interrupt.patient = 1;
-    status = opts.kind == HD_LAPLACIAN_POLYGON ? hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces, &opts, err)
-                                               : hd_laplacian_triangles(&r->lap, m->xyz, m->n, m->tri, m->n_tri, &opts, err);
+    if (is_points(r)) status = run_points(r, &opts, err);
+    else if (opts.kind == HD_LAPLACIAN_POLYGON) status = hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces, &opts, err);
+    else status = hd_laplacian_triangles(&r->lap, m->xyz, m->n, m->tri, m->n_tri, &opts, err);
     interrupt.patient = 0;
     r->sec.assemble = now() - start;
     return status;
@@ -1356,11 +1413,23 @@ static int fail_laplacian(const run *r, hd_error *err)
     return fail_library(r->mesh_name, err);
 }
 
+/* Do the options fit what the file has? */
+static int check_laplacian(const run *r)
+{
+    if (r->mesh.n_tri == 0 && !is_points(r))
+        return fail(FAILED, "%s: --laplacian %s needs faces, and there are none; points take voronoi-exp or exp", r->mesh_name,
+                    word_of(LAPLACIANS, r->o->laplacian));
+    if (r->o->has_bandwidth && !is_points(r))
+        return fail(FAILED, "%s: --bandwidth is for points (--laplacian voronoi-exp or exp), and this file has faces", r->mesh_name);
+    if (r->o->lambda > 0 && is_points(r)) return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
+    return DONE;
+}
+
 static int run_assemble(run *r)
 {
     hd_error err;
-    if (r->mesh.n_tri == 0)
-        return fail(FAILED, "%s: %ld vertices but no faces; heat needs a surface", r->mesh_name, (long)r->mesh.n);
+    const int code = check_laplacian(r);
+    if (code) return code;
     if (run_laplacian(r, &err) < 0) return fail_laplacian(r, &err);
     return interrupt.asked ? INTERRUPTED : DONE;
 }
@@ -1376,6 +1445,7 @@ static double auto_time(const run *r, int i, int count)
     double area = 0;
     int c;
     for (c = 0; c < r->lap->n_components; c++) area += r->lap->component_mass[c];
+    if (r->lap->kind == HD_LAPLACIAN_EXP) area = r->lap->area * r->lap->area;   /* B^-1 L tends to Laplacian/area */
     return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST, count > 1 ? i / (double)(count - 1) : 0.5);
 }
 
@@ -1662,6 +1732,19 @@ static void json_end(json *j, const run *r)
     fputc('\n', j->out);
 }
 
+static void json_points(json *j, const hd_point_report *p)
+{
+    json_number(j, "bandwidth", p->bandwidth);
+    json_number(j, "weight_cut", p->weight_cut);
+    json_number(j, "cut_radius", p->cut_radius);
+    json_integer(j, "neighbours", p->neighbours);
+    json_integer(j, "coincident", p->n_coincident);
+    json_integer(j, "isolated", p->n_isolated);
+    json_integer(j, "without_area", p->n_no_area);
+    json_integer(j, "border_points", p->n_border);
+    json_integer(j, "most_in_row", p->most_in_row);
+}
+
 static void json_laplacian(json *j, const hd_laplacian *lap)
 {
     json_integer(j, "components", lap->n_components);
@@ -1669,6 +1752,7 @@ static void json_laplacian(json *j, const hd_laplacian *lap)
     json_number(j, "area", lap->area);
     json_integer(j, "inert", lap->mesh.n_inert);
     json_text(j, "laplacian", word_of(LAPLACIANS, (int)lap->kind));
+    if (lap->points.neighbours) json_points(j, &lap->points);
 }
 
 /* The fill, the work and the safety of the factorisations; zeros without any. */
@@ -1776,6 +1860,10 @@ static void print_heat(const run *r)
     print_surface(r);
     fprintf(stderr, "%s: %d %s%s, %d time%s, %s Laplacian\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
             r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind));
+    if (lap->points.neighbours)
+        fprintf(stderr, "bandwidth %.4g (%.3gh2%s), weights up to a distance of %.4g, %.3g a row\n", lap->points.bandwidth,
+                lap->points.bandwidth / (lap->h * lap->h), r->o->has_bandwidth ? "" : ", from the sampling", lap->points.cut_radius,
+                (double)lap->L.nnz / lap->n_active);
     print_method(r);
     fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n", w->error_bound,
             w->error_bound_b, w->mass_drift);
@@ -1971,7 +2059,7 @@ static int write_png(const char *path, const run *r, const result *res, const ch
     pic_panel panel = picture_panel(&r->mesh, result_column(r, res, res->colour));
     pic_opts opts = picture_opts(r->o);
     char subtitle[300];
-    snprintf(subtitle, sizeof subtitle, "%.200s, %ld vertices", base_name(r->mesh_name), (long)r->mesh.n);
+    snprintf(subtitle, sizeof subtitle, "%.200s, %ld %s", base_name(r->mesh_name), (long)r->mesh.n, r->mesh.n_tri ? "vertices" : "points");
     opts.title = r->o->title ? r->o->title : title;
     opts.subtitle = subtitle;
     picture_from_zero(&opts, &panel);
@@ -2072,7 +2160,8 @@ static void bounding_box(const mesh_data *m, double low[3], double high[3])
 static void info_json(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_mesh_report *m = &lap->mesh;
-    const double meaningful[2] = { AUTO_SHORTEST * lap->area, AUTO_LONGEST * lap->area };
+    const double unit = lap->kind == HD_LAPLACIAN_EXP ? lap->area * lap->area : lap->area;
+    const double meaningful[2] = { AUTO_SHORTEST * unit, AUTO_LONGEST * unit };
     json j;
     json_begin(&j, r, stdout);
     json_laplacian(&j, lap);
@@ -2101,10 +2190,41 @@ static void print_count(const char *what, int64_t n, const char *note)
     if (n) printf("%-22s %lld%s%s%s\n", what, (long long)n, *note ? "  (" : "", note, *note ? ")" : "");
 }
 
+static void info_times(const hd_laplacian *lap)
+{
+    const double area_h2 = lap->area / (lap->h * lap->h);
+    if (lap->kind == HD_LAPLACIAN_EXP)
+        printf("%-22s %.3g to %.3g; --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area * lap->area,
+               AUTO_LONGEST * lap->area * lap->area);
+    else if (lap->area > 0)
+        printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
+               AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
+}
+
+static void info_points(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
+{
+    const hd_point_report *p = &lap->points;
+    printf("%-22s %s (%s)\n", "points", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    printf("%-22s %ld\n%-22s %ld\n", "points", (long)r->mesh.n, "components", (long)lap->n_components);
+    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1], high[2] - low[2],
+           low[0], low[1], low[2]);
+    printf("%-22s %.9g\n%-22s %.9g  (mean distance to the nearest point)\n", "area of the cells", lap->area, "spacing h", lap->h);
+    if (lap->n_active > 0) {
+        printf("%-22s %.9g  (%.4gh2%s)\n", "bandwidth", p->bandwidth, p->bandwidth / (lap->h * lap->h),
+               r->o->has_bandwidth ? "" : ", from the sampling");
+        printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld\n", "weights reach", p->cut_radius, p->weight_cut,
+               (double)lap->L.nnz / lap->n_active, (long)p->most_in_row);
+    }
+    print_count("coincident points", p->n_coincident, "in the place of an earlier one; they share its cell");
+    print_count("isolated points", p->n_isolated, "no other one within reach");
+    print_count("points without area", p->n_no_area, "their neighbours lie on a line");
+    print_count("border points", p->n_border, "at an edge of the surface or a gap");
+    info_times(lap);
+}
+
 static void info_print(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_mesh_report *m = &lap->mesh;
-    const double area_h2 = lap->area / (lap->h * lap->h);
     printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
     printf("%-22s %s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind));
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "faces", (long)r->mesh.n_faces);
@@ -2125,29 +2245,28 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     print_count("misoriented edges", m->n_misoriented_edges, "their two faces disagree about the side");
     print_count("negative weights", m->n_negative_weights, lap->kind == HD_LAPLACIAN_POLYGON ?
                 "edges and diagonals of faces; fine, but values below 0 can occur" : "obtuse angles; fine, but values below 0 can occur");
-    if (lap->area > 0)
-        printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
-               AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
+    info_times(lap);
 }
 
-/* Meshes on which nothing can be computed, point sets among them, are told about as well: with zeros for what they have not. */
+/* Meshes and point sets on which nothing can be computed are told about as well: with zeros for what they have not. */
 static int command_info(run *r)
 {
     hd_laplacian none;
     hd_error err;
     double low[3], high[3];
     int code = run_load(r);
+    if (!code) code = check_laplacian(r);
     if (code) return code;
     memset(&none, 0, sizeof none);
     none.kind = laplacian_kind(r);
     none.mesh.n_inert = r->mesh.n;
     none.mesh.n_faces = none.kind == HD_LAPLACIAN_POLYGON ? r->mesh.n_faces : r->mesh.n_tri;
-    if (r->mesh.n_tri > 0 && run_laplacian(r, &err) < 0 && err.status != HD_ERR_EMPTY) return fail_laplacian(r, &err);
+    if (run_laplacian(r, &err) < 0 && err.status != HD_ERR_EMPTY) return fail_laplacian(r, &err);
     if (interrupt.asked) return INTERRUPTED;
     bar_hide();
     bounding_box(&r->mesh, low, high);
     if (r->o->json) info_json(r, r->lap ? r->lap : &none, low, high);
-    else if (!r->o->quiet) info_print(r, r->lap ? r->lap : &none, low, high);
+    else if (!r->o->quiet) (is_points(r) ? info_points : info_print)(r, r->lap ? r->lap : &none, low, high);
     return close_stdout();
 }
 

@@ -274,6 +274,82 @@ static shape shape_disjoint(const shape *a, const shape *b, const double offset[
     return s;
 }
 
+/* ---- points on surfaces, without triangles ---- */
+
+/* One random point of a surface, spread evenly. */
+typedef void (*shape_sampler)(uint64_t *seed, double p[3]);
+
+/* Unit sphere, area 4 pi (Archimedes: height and longitude are uniform). */
+static void shape_on_sphere(uint64_t *seed, double p[3])
+{
+    const double z = shape_signed(seed), a = 6.283185307179586 * shape_uniform(seed), r = sqrt(1 - z * z);
+    p[0] = r * cos(a); p[1] = r * sin(a); p[2] = z;
+}
+
+/* Torus around the z axis with radii 2 and 1, area 8 pi^2: the outside is met more often. */
+static void shape_on_torus(uint64_t *seed, double p[3])
+{
+    const double a = 6.283185307179586 * shape_uniform(seed);
+    double b, q;
+    do {
+        b = 6.283185307179586 * shape_uniform(seed);
+        q = 2 + cos(b);
+    } while (3 * shape_uniform(seed) > q);
+    p[0] = q * cos(a); p[1] = q * sin(a); p[2] = sin(b);
+}
+
+/* Unit square in the plane z = 0, a surface with a border. */
+static void shape_on_square(uint64_t *seed, double p[3])
+{
+    p[0] = shape_uniform(seed); p[1] = shape_uniform(seed); p[2] = 0;
+}
+
+static size_t shape_dart_slot(const int64_t c[3], size_t slots)
+{
+    return (size_t)(((uint64_t)c[0] * 0x9e3779b97f4a7c15u ^ (uint64_t)c[1] * 0xbf58476d1ce4e5b9u ^ (uint64_t)c[2] * 0x94d049bb133111ebu) % slots);
+}
+
+/* Is no point of s within r of p? Points lie in a hash table of cells of size r: head of the chain, next in the chain. */
+static int shape_dart_free(const shape *s, const double p[3], double r, const int32_t *head, const int32_t *next, size_t slots)
+{
+    int64_t c[3];
+    int k, q;
+    for (k = 0; k < 27; k++) {
+        int32_t i;
+        for (q = 0; q < 3; q++) c[q] = (int64_t)floor(p[q] / r) + (q == 0 ? k % 3 : q == 1 ? k / 3 % 3 : k / 9) - 1;
+        for (i = head[shape_dart_slot(c, slots)]; i >= 0; i = next[i])
+            if (shape_distance(s->xyz + 3 * (size_t)i, p) < r) return 0;
+    }
+    return 1;
+}
+
+/* n points of a surface of this area; n_tri = 0. blue = 0: independent of each other. blue = 1: blue noise, none closer to another than 0.75 of
+ * the typical distance sqrt(area / n) (dart throwing, Cook 1986; a surface is full at 0.84). */
+static shape shape_points(int32_t n, shape_sampler sampler, double area, int blue, uint64_t seed)
+{
+    shape s = shape_make(n, 0);
+    const size_t slots = 2 * (size_t)(n > 0 ? n : 0) + 1;
+    const double r = 0.75 * sqrt(area / (n > 0 ? n : 1));
+    int32_t *head = (int32_t *)shape_alloc((int64_t)slots, sizeof *head), *next = (int32_t *)shape_alloc(n, sizeof *next), i;
+    size_t k;
+    if (!s.xyz || !head || !next) shape_free(&s);
+    for (k = 0; k < slots && s.xyz; k++) head[k] = -1;
+    for (i = 0; i < s.n; i++) {
+        double *p = s.xyz + 3 * (size_t)i;
+        int64_t c[3];
+        do sampler(&seed, p);
+        while (blue && !shape_dart_free(&s, p, r, head, next, slots));
+        if (!blue) continue;
+        for (k = 0; k < 3; k++) c[k] = (int64_t)floor(p[k] / r);
+        k = shape_dart_slot(c, slots);
+        next[i] = head[k];
+        head[k] = i;
+    }
+    free(head);
+    free(next);
+    return s;
+}
+
 /* ==== [3] the demo's animal ==== */
 /* A small elephant that walks: cones with round ends and two flat ears, melted together. The trunk is curled back to the
  * forehead and the tail to the back, so that the surface has two handles (genus 2). It looks along +x, up is +y. */
