@@ -3761,21 +3761,20 @@ static void hdi_mollify(hdi_intrinsic *t, double delta, hd_mesh_report *rep) {
     rep->mollify_epsilon = add * t->unit;
 }
 
-/* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of their size. Those of cocircular corners sum
- * to a few 1e-16 of it. */
-#define HDI_DELAUNAY_TOL 1e-12
+/* Four times the sum of the cotangents of a triangle; also what their rounding errors are relative to. */
+static double hdi_harmonic(double a, double b, double c, double area) { return (a * a + b * b + c * c) / area; }
+
+/* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of all cotangents of its two faces. */
+#define HDI_DELAUNAY_TOL 1e-14
 
 static int hdi_not_delaunay(const hdi_intrinsic *t, int32_t a) {
-    const int32_t b = t->twin[a];
-    double x, y;
-    if (b < 0 || a / 3 == b / 3 || !(t->area[a / 3] > 0) || !(t->area[b / 3] > 0)) return 0;   /* a face glued to itself is Delaunay there: equal sides */
-    x = hdi_side_cot(t, a);
-    y = hdi_side_cot(t, b);
-    return x + y < -HDI_DELAUNAY_TOL * (fabs(x) + fabs(y));
+    const int32_t b = t->twin[a], f = a / 3, g = b / 3;
+    const double *p = t->len + 3 * HDI_CAST(int64_t, f), *q = t->len + 3 * HDI_CAST(int64_t, b < 0 ? 0 : g);
+    double sum;
+    if (b < 0 || f == g || !(t->area[f] > 0) || !(t->area[g] > 0)) return 0;   /* where a face is glued to itself the two sides are equal: Delaunay */
+    sum = hdi_side_cot(t, a) + hdi_side_cot(t, b);
+    return sum < 0 && sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) + hdi_harmonic(q[0], q[1], q[2], t->area[g]));
 }
-
-/* Four times the sum of the cotangents of a triangle. */
-static double hdi_harmonic(double a, double b, double c, double area) { return (a * a + b * b + c * c) / area; }
 
 /* Flips the edge of side a, from i to j: side a comes to run from l to k, corners that were opposite to it. Returns 0 if it is fine as it is. The outer
  * sides move with it, a2 to a1, b1 to a2, b2 to b1, a1 to b2:
@@ -4356,11 +4355,35 @@ static int hdi_star_left(const hdi_star_point *a, const hdi_star_point *b, const
     return hdi_det2(b->x - a->x, c->y - b->y, b->y - a->y, c->x - b->x) > 0;
 }
 
+#define HDI_STAR_SAME 1e-6   /* directions within this angle are the same one; opposite ones likewise */
+
+/* p, n by angle: of those in the same direction only the nearest, which has the longest dual, stays. Returns how many are left. */
+static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
+    const double turn = 6.283185307179586;
+    int32_t i, m = 0;
+    for (i = 0; i < n; i++) {
+        const hdi_star_point x = p[i];
+        if (m > 0 && x.angle - p[m - 1].angle < HDI_STAR_SAME) {
+            if (x.x * x.x + x.y * x.y > p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y) p[m - 1] = x;
+        } else {
+            p[m++] = x;
+        }
+    }
+    if (m > 1 && p[0].angle + turn - p[m - 1].angle < HDI_STAR_SAME) {       /* the last is in the direction of the first */
+        if (p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y > p[0].x * p[0].x + p[0].y * p[0].y) {
+            p[0] = p[m - 1];
+            p[0].angle -= turn;
+        }
+        m--;
+    }
+    return m;
+}
+
 /* The star of the origin in the Delaunay triangulation of it and p[0..n), which are duals: the neighbour q stands at 2 q / |q|^2, so that the line
  * between the nearer and the farther half plane is its polar. The neighbours that bound the Voronoi cell are then the corners of the convex hull, found
  * by walking around it (Graham 1972). Where neighbours are a half turn apart the cell is open. Leaves them in p by angle; returns their number. */
 static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
-    const double half = 3.141592653589793, open_gap = half * (1 - 1e-6);
+    const double half = 3.141592653589793, open_gap = half - HDI_STAR_SAME;
     hdi_star_point hull[HDI_STAR_MOST + 2], origin;
     int32_t i, j, first = 0, top = 0;
     double far_away = -1;
@@ -4369,6 +4392,7 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
         for (j = i; j > 0 && hdi_star_less(&x, p + j - 1); j--) p[j] = p[j - 1];
         p[j] = x;
     }
+    n = hdi_star_directions(p, n);
     *closed = 1;
     for (i = 0; i < n; i++) {                    /* begin behind a gap of a half turn, else at the nearest neighbour, which is a corner */
         const double r = p[i].x * p[i].x + p[i].y * p[i].y, gap = i ? p[i].angle - p[i - 1].angle : p[0].angle - p[n - 1].angle + 2 * half;
