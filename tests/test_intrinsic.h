@@ -539,6 +539,28 @@ static void tri_invariance(void) {
     }
 }
 
+/* Powers of two change no digit, and neither very small nor very large coordinates do harm. */
+static void tri_units(void) {
+    static const double angle[3] = {0.5, 2, 4.4}, exponents[4] = {-330, -3, 40, 330};
+    int k, mode;
+    for (k = 0; k < 4; k++) {
+        for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
+            shape s = tri_book(3, angle, 4, 0.3, 3);
+            hd_laplacian *a = tri_make(&s, HD_LAPLACIAN_FEM, mode), *b;
+            const double scale = ldexp(1, (int)exponents[k]);
+            int32_t i;
+            for (i = 0; i < 3 * s.n; i++) s.xyz[i] *= scale;
+            b = tri_make(&s, HD_LAPLACIAN_FEM, mode);
+            if (!a || !b) continue;
+            CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 && b->h == a->h * scale);
+            for (i = 0; i < a->n_active; i++) CHECK(b->mass[i] == a->mass[i] * scale * scale);
+            hd_laplacian_free(a);
+            hd_laplacian_free(b);
+            shape_free(&s);
+        }
+    }
+}
+
 /* ---- meshes that are not nice ---- */
 
 /* Faces that are left out change nothing. */
@@ -994,6 +1016,7 @@ static void test_intrinsic(void) {
     tri_b_ratio();
     tri_moebius();
     tri_invariance();
+    tri_units();
     tri_left_out();
     tri_slivers();
     tri_mollify_amount();

@@ -449,6 +449,7 @@ typedef struct options {
     long degree, max_iterations, threads;
     double tol;
     uint64_t memory_limit;
+    int intrinsic_delaunay, tufted;
     int json, quiet, help, version;
     int colormap;                    /* pictures */
     int log_scale, has_range, has_view, has_isolines;
@@ -660,6 +661,10 @@ static const option_def OPTIONS[] = {
       "a field: a row per vertex, one or more columns, as text or .npy" },
     { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME", "fem, voronoi-cot or cot",
       "fem (default), voronoi-cot or cot" },
+    { "intrinsic-delaunay", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL, "no value",
+      "L and B of the surface's own Delaunay triangulation: for bad\ntriangles; with voronoi-cot heat is then never negative" },
+    { "tufted", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
+      "the same for any triangles, also with borders and where\nthree and more faces meet" },
     { "kernel", 0, CMD_KERNEL, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
       "operator: columns of K_t (default); symmetric: of k_t = K_t B^-1" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
@@ -1300,6 +1305,8 @@ static hd_status run_laplacian(run *r, hd_error *err)
     memset(&opts, 0, sizeof opts);
     opts.kind = (hd_laplacian_kind)r->o->laplacian;
     opts.context = &r->context;
+    opts.intrinsic_delaunay = r->o->intrinsic_delaunay;
+    opts.tufted = r->o->tufted;
     interrupt.patient = 1;
     status = hd_laplacian_triangles(&r->lap, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, err);
     interrupt.patient = 0;
@@ -1592,6 +1599,22 @@ static void json_end(json *j, const run *r)
     fputc('\n', j->out);
 }
 
+static const double DEGREES = 57.29577951308232;
+
+/* What --intrinsic-delaunay or --tufted did; nothing without them. */
+static void json_intrinsic(json *j, const run *r, const hd_mesh_report *m)
+{
+    if (!r->o->intrinsic_delaunay && !r->o->tufted) return;
+    json_text(j, "intrinsic", r->o->tufted ? "tufted" : "delaunay");
+    json_integer(j, "sheets", m->n_sheets);
+    json_integer(j, "flips", m->n_flips);
+    json_integer(j, "not_delaunay_edges", m->n_not_delaunay);
+    json_integer(j, "self_edges", m->n_self_edges);
+    json_integer(j, "mollified_faces", m->n_mollified);
+    json_number(j, "mollify_epsilon", m->mollify_epsilon);
+    json_number(j, "smallest_intrinsic_angle", m->smallest_intrinsic_angle * DEGREES);
+}
+
 static void json_laplacian(json *j, const hd_laplacian *lap)
 {
     json_integer(j, "components", lap->n_components);
@@ -1697,8 +1720,12 @@ static void print_heat(const run *r)
     fprintf(stderr, "%s: %ld vertices, %ld faces, %ld component%s, h = %.4g, area = %.4g", r->mesh_name, (long)r->mesh.n,
             (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components), lap->h, lap->area);
     if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
-    fprintf(stderr, "\n%s: %d %s%s, %d time%s, %s Laplacian\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
-            r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind));
+    fprintf(stderr, "\n%s: %d %s%s, %d time%s, %s Laplacian%s\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
+            r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind),
+            r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+    if (lap->mesh.n_sheets)
+        fprintf(stderr, "%lld edges flipped on %ld sheet%s, all lengthened by %.2g, %lld negative weights left\n", (long long)lap->mesh.n_flips,
+                (long)lap->mesh.n_sheets, plural(lap->mesh.n_sheets), lap->mesh.mollify_epsilon, (long long)lap->mesh.n_negative_weights);
     print_method(r);
     fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n", w->error_bound,
             w->error_bound_b, w->mass_drift);
@@ -1712,6 +1739,7 @@ static void report_heat(const run *r)
     if (r->o->json) {
         json_begin(&j, r, stderr);
         json_laplacian(&j, r->lap);
+        json_intrinsic(&j, r, &r->lap->mesh);
         json_heat(&j, r);
         json_end(&j, r);
     } else if (!r->o->quiet) print_heat(r);
@@ -1919,8 +1947,6 @@ static int write_heat(run *r)
 
 /* ==== info ==== */
 
-static const double DEGREES = 57.29577951308232;
-
 static void bounding_box(const mesh_data *m, double low[3], double high[3])
 {
     int32_t i;
@@ -1957,6 +1983,7 @@ static void info_json(const run *r, const hd_laplacian *lap, const double low[3]
     json_integer(&j, "repeated_faces", m->n_repeated_face);
     json_integer(&j, "negative_weights", m->n_negative_weights);
     json_number(&j, "smallest_angle", m->smallest_angle * DEGREES);
+    json_intrinsic(&j, r, m);
     json_numbers(&j, "box_low", low, 3);
     json_numbers(&j, "box_high", high, 3);
     json_numbers(&j, "meaningful_times", meaningful, 2);
@@ -1989,7 +2016,15 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     print_count("faces left out", m->n_repeated_face, "repeat an earlier one");
     print_count("non-manifold edges", m->n_nonmanifold_edges, "three faces or more; their weights are summed");
     print_count("misoriented edges", m->n_misoriented_edges, "their two faces disagree about the side");
-    print_count("negative weights", m->n_negative_weights, "obtuse angles; fine, but values below 0 can occur");
+    print_count("negative weights", m->n_negative_weights, m->n_sheets ? "border edges opposite to obtuse angles" : "obtuse angles; fine, but values below 0 can occur");
+    if (m->n_sheets) {
+        printf("%-22s %ld%s\n%-22s %lld\n", "sheets", (long)m->n_sheets, m->n_sheets > 1 ? "  (the surface is covered twice)" : "", "edges flipped",
+               (long long)m->n_flips);
+        print_count("faces mollified", m->n_mollified, "all edges were lengthened a little");
+        print_count("self-edges", m->n_self_edges, "from a vertex to itself, without weight");
+        print_count("edges not Delaunay", m->n_not_delaunay, "rounding kept them");
+        printf("%-22s %.4g degrees\n", "smallest angle now", m->smallest_intrinsic_angle * DEGREES);
+    }
     if (lap->area > 0)
         printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
                AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
