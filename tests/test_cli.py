@@ -638,7 +638,7 @@ class Intrinsic(Case):
     def setUpClass(cls):
         super().setUpClass()
         v, f = torus(16, 8)
-        turn = {i * 8 + j: i * 8 + (j + 3 * i) % 8 for i in range(16) for j in range(8)}
+        turn = {i * 8 + j: i * 8 + (j + 2 * i) % 8 for i in range(16) for j in range(8)}
         cls.good_torus = cls.file("torus.obj", obj_text(v, f))
         cls.askew = cls.file("askew.obj", obj_text(v, [tuple(turn[i] for i in t) for t in f]))
         cls.book = cls.file("book.obj", obj_text([(0, 0, 0), (0, 0, 1), (3, 0, .5), (-1, 2, .5), (-1, -2, .4)], [(0, 1, 2), (0, 1, 3), (0, 1, 4)]))
@@ -647,7 +647,7 @@ class Intrinsic(Case):
         def least(*more):
             rows = self.field("kernel", self.askew, "--laplacian", "voronoi-cot", "--source", "0,37", "--t", "0.3h2,2h2", *more)
             return min(min(r) for r in rows)
-        self.assertLess(least(), -1e-3)
+        self.assertLess(least(), -1e-4)
         self.assertGreater(least("--intrinsic-delaunay"), -1e-6)
         self.assertGreater(least("--tufted"), -1e-6)
 
