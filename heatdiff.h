@@ -3887,6 +3887,7 @@ static hd_status hdi_intrinsic_mesh(hdi_mesh *mesh, hdi_intrinsic *t, int32_t n,
         rep->smallest_intrinsic_angle = hdi_min(rep->smallest_intrinsic_angle, atan2(1, hdi_max(cot[0], hdi_max(cot[1], cot[2]))));
         for (q = 0; q < 3; q++) cot[q] *= weight;
         t->area[f] *= weight * t->unit * t->unit;
+        if (t->area[f] / 12 < DBL_MIN) t->area[f] = 0;
     }
     hdi_mesh_corners(mesh);
     return HD_OK;
@@ -3947,7 +3948,7 @@ static double hdi_mixed_area(const hdi_mesh *mesh, int32_t c) {
         hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[3 * f + (q + k) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, a), edge);
         sum += hdi_dot3(edge, edge) * cot[(q + 3 - k) % 3];
     }
-    return sum / 8;
+    return hdi_max(area / 4, hdi_min(sum / 8, area / 2));   /* as it must be without an obtuse angle; where cotangents round or underflow to 0 it might not */
 }
 
 static double hdi_vertex_mass(const hdi_mesh *mesh, int32_t v, hd_laplacian_kind kind) {
@@ -4179,7 +4180,7 @@ static double hdi_intrinsic_mixed_area(const hdi_intrinsic *t, const hdi_mesh *m
     const int32_t next = hdi_side_next(c), prev = hdi_side_prev(c);
     const double *cot = mesh->cot, area = mesh->area[c / 3], b = t->len[c] * t->unit, d = t->len[prev] * t->unit;
     if (cot[c] < 0 || cot[next] < 0 || cot[prev] < 0) return cot[c] < 0 ? area / 2 : area / 4;
-    return (b * b * cot[prev] + d * d * cot[next]) / 8;
+    return hdi_max(area / 4, hdi_min((b * b * cot[prev] + d * d * cot[next]) / 8, area / 2));
 }
 
 static void hdi_intrinsic_masses(const hdi_intrinsic *t, const hdi_mesh *mesh, hd_laplacian_kind kind, double *mass) {

@@ -623,6 +623,26 @@ static void tri_slivers(void) {
     }
 }
 
+/* The Voronoi area at the tip of a needle, where the cotangents that it is made of underflow: still a quarter of the triangle. */
+static void tri_needle_mass(void) {
+    const double xyz[15] = {0, 0, 0, 0, 1e-200, 0, 1, 0, 0, -1, 0, 0, -1, 1, 0};
+    const int32_t tri[9] = {0, 1, 2, 0, 3, 4, 1, 4, 3};
+    shape s = shape_make(5, 3);
+    int mode;
+    memcpy(s.xyz, xyz, sizeof xyz);
+    memcpy(s.tri, tri, sizeof tri);
+    for (mode = TRI_PLAIN; mode <= TRI_TUFTED; mode++) {
+        hd_laplacian *lap = NULL;
+        hd_error e;
+        CHECK_MSG(tri_try(&lap, &s, HD_LAPLACIAN_VORONOI_COT, mode, -1, NULL, &e) == HD_OK, "%s", e.text);
+        if (!lap) continue;
+        CHECK(mode != TRI_PLAIN || (lap->n_active == 5 && fabs(lap->mass[2] / 1.25e-201 - 1) < 1e-12));
+        CHECK(fabs(tri_sum(lap->mass, lap->n_active) - lap->area) < 1e-12);
+        hd_laplacian_free(lap);
+    }
+    shape_free(&s);
+}
+
 /* delta is what it says: a cap of height 0 in lengths has nothing to spare, so delta h is added to all sides. */
 static void tri_mollify_amount(void) {
     const double xyz[12] = {-1, 0, 0, 1, 0, 0, 0, 1e-10, 0, 0, -1, 0};
@@ -1019,6 +1039,7 @@ static void test_intrinsic(void) {
     tri_units();
     tri_left_out();
     tri_slivers();
+    tri_needle_mass();
     tri_mollify_amount();
     tri_maximum_principle();
     tri_points_plane();
