@@ -413,7 +413,7 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
  * vertices without mass become inert. Non-manifold edges and several components are fine.
  * With opts->intrinsic_delaunay or opts->tufted L and B are those of an intrinsic Delaunay triangulation of the same surface (Bobenko, Springborn 2007;
  * Sharp, Crane 2020) on the same vertices: no off-diagonal entry of L is positive (see there for boundaries), so that with voronoi-cot or cot heat obeys
- * the maximum principle. Entries that only rounding made positive, below 1e-12 of both diagonal entries, are set to zero.
+ * the maximum principle. Entries that only rounding made positive, below 1e-13 of the cotangents of the faces at the edge, are set to zero.
  * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY. Cost O(n + n_tri + flips). */
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err);
@@ -4194,26 +4194,37 @@ static void hdi_intrinsic_masses(const hdi_intrinsic *t, const hdi_mesh *mesh, h
     }
 }
 
-/* Off-diagonal entries of L above zero, which Delaunay edges can only have by rounding, become zero when they are below 1e-12 of both diagonal entries
- * of their rows and columns, and the diagonal follows; what is larger stays and is counted. diag [n_active]. */
-static void hdi_lap_signs(hd_laplacian *lap, double *diag) {
+/* All cotangents of the faces that rows i and j share, as often as they share them: what the rounding error of L(i,j) is relative to. */
+static double hdi_shared_cotangents(const hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, int32_t j) {
+    const int32_t v = lap->vertex[i], w = lap->vertex[j];
+    double sum = 0;
+    int64_t p;
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], n = (mesh->tri[hdi_side_next(c)] == w) + (mesh->tri[hdi_side_prev(c)] == w);
+        const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, c / 3);
+        sum += n * (fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]));
+    }
+    return sum;
+}
+
+/* Off-diagonal entries of L above zero, which Delaunay edges can only have by rounding, become zero when they are below 1e-13 of the cotangents of the
+ * faces they are made of, and the diagonal follows; what is larger (edges of the boundary) stays and is counted. */
+static void hdi_lap_signs(hd_laplacian *lap, const hdi_mesh *mesh) {
     double *L = lap->L.val;
     int32_t i;
     int64_t p;
-    for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            if (lap->L.col[p] == i) diag[i] = L[p];
     for (i = 0; i < lap->n_active; i++) {
         int64_t at = 0;
         double sum = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const int32_t j = lap->L.col[p];
-            if (j == i) at = p;
-            else {
-                if (L[p] > 0 && L[p] <= 1e-12 * hdi_min(diag[i], diag[j])) L[p] = 0;
-                lap->mesh.n_negative_weights += j > i && L[p] > 0;
-                sum += L[p];
+            if (j == i) {
+                at = p;
+                continue;
             }
+            if (L[p] > 0 && L[p] <= 1e-13 * hdi_shared_cotangents(lap, mesh, i < j ? i : j, i < j ? j : i)) L[p] = 0;
+            lap->mesh.n_negative_weights += j > i && L[p] > 0;
+            sum += L[p];
         }
         L[at] = -sum;
     }
@@ -4223,14 +4234,13 @@ static void hdi_lap_signs(hd_laplacian *lap, double *diag) {
 static hd_status hdi_lap_intrinsic_values(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
-    double *diag = HDI_TAKE(&s, double, lap->n_active);
     int32_t i;
-    if (e->status < 0) return hdi_scope_end(&s);
+    if (!place) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) {
         hdi_lap_row_values(lap, mesh, i, place);
         if (lap->B) lap->b_diag[i] = lap->B[place[i]];
     }
-    hdi_lap_signs(lap, diag);
+    hdi_lap_signs(lap, mesh);
     return hdi_scope_end(&s);
 }
 
