@@ -4418,7 +4418,7 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
         hull[top++] = x;
     }
     top -= 1 + !*closed;
-    memcpy(p, hull + !*closed, HDI_CAST(size_t, top) * sizeof *p);
+    for (i = 0; i < top; i++) p[i] = hull[i + !*closed];
     return top;
 }
 

@@ -1679,15 +1679,16 @@ static void int_intrinsic_state(const hdi_intrinsic *t, double *angle, int32_t n
 static void int_flips(void) {
     hd_context ctx;
     hd_error e;
-    int k, close;
+    int k, close, loops = 0;
     memset(&ctx, 0, sizeof ctx);
     for (k = 0; k < 4; k++) {
         for (close = 0; close < 2; close++) {
             shape s = k == 0 ? shape_bumpy(3, 4) : k == 1 ? shape_grid(20, 17, 0.42) : k == 2 ? shape_torus(14, 9, 2, 0.7) : shape_grid(9, 9, 0.4);
             hdi_scope scope = hdi_scope_begin(&ctx, &e);
             hd_mesh_report rep;
-            hdi_mesh mesh;
+            hdi_mesh mesh, flat;
             hdi_intrinsic t;
+            int open = 0;
             double *before = DENSE_NEW(double, s.n), *after = DENSE_NEW(double, s.n), area_before, area_after, worst = 0;
             int32_t i;
             memset(&rep, 0, sizeof rep);
@@ -1704,14 +1705,18 @@ static void int_flips(void) {
             for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(before[i] - after[i]));
             CHECK_MSG(worst < 1e-9, "shape %d: an angle around a vertex changed by %g", k, worst);
             CHECK_MSG(fabs(area_after / area_before - 1) < 1e-12, "shape %d: area %g not %g", k, area_after, area_before);
-            for (i = 0; i < t.n_sides; i++) CHECK(t.twin[i] >= 0 || !close);
+            for (i = 0; i < t.n_sides; i++) open += t.twin[i] < 0;
+            CHECK_MSG(open == (close ? 0 : t.n_sheets * (int)rep.n_boundary_edges), "shape %d: %d open sides", k, open);
+            CHECK(hdi_intrinsic_mesh(&flat, &t, s.n, 1, &rep, &scope) == HD_OK);
+            for (i = 0; i < t.n_sides; i += 3) CHECK(flat.tri[i] != flat.tri[i + 2] || flat.tri[i] == flat.tri[i + 1]);
+            loops += (int)rep.n_self_edges;
             hdi_scope_end(&scope);
             free(before);
             free(after);
             shape_free(&s);
         }
     }
-    CHECK(ctx.bytes_in_use == 0);
+    CHECK(ctx.bytes_in_use == 0 && loops > 10);
 }
 
 /* Faces around an edge come by their angle, from the first one's, against the turn of the hand if the smaller vertex is below. */
