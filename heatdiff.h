@@ -243,7 +243,7 @@ typedef struct hd_laplacian {
     int32_t n_active;           /* rows: vertices with mass */
     int32_t n_components;       /* connected components of the rows */
     hd_laplacian_kind kind;
-    double h;                   /* mean length of the distinct edges of the faces given, before any flip; of point sets mean distance to the nearest; 0 for matrices */
+    double h;                   /* mean length of the distinct edges, before any flip; of points, mean distance to the nearest; 0 for matrices */
     double area;                /* of the faces used, before any flip; 1'B1 for matrices */
     hd_csr L;                   /* n_active x n_active, values of L, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B is diagonal, B = diag(mass) */

@@ -1700,7 +1700,8 @@ static void int_flips(void) {
             CHECK(t.n_sheets == (k == 0 || k == 2 || (k == 1 && !close) ? 1 : 2) && (k < 3 || rep.n_nonmanifold_edges > 5));
             hdi_mollify(&t, 1e-5, &rep);
             int_intrinsic_state(&t, before, s.n, &area_before);
-            CHECK_MSG(hdi_flip_all(&t, &rep, &ctx, &e) == HD_OK && rep.n_flips > 20 && rep.n_not_delaunay == 0, "shape %d: %d flips, %d edges left", k, (int)rep.n_flips, (int)rep.n_not_delaunay);
+            CHECK_MSG(hdi_flip_all(&t, &rep, &ctx, &e) == HD_OK && rep.n_flips > 20 && rep.n_not_delaunay == 0,
+                      "shape %d: %d flips, %d edges left", k, (int)rep.n_flips, (int)rep.n_not_delaunay);
             int_intrinsic_state(&t, after, s.n, &area_after);
             for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(before[i] - after[i]));
             CHECK_MSG(worst < 1e-9, "shape %d: an angle around a vertex changed by %g", k, worst);
@@ -1798,7 +1799,8 @@ static void int_jacobi3(void) {
     for (round = 0; round < 50; round++) {
         double a[3][3], b[3][3], v[3][3], worst = 0;
         for (p = 0; p < 3; p++)
-            for (q = 0; q <= p; q++) a[p][q] = a[q][p] = round % 5 == 0 && p != q ? 0 : round % 5 == 1 ? 1 : shape_signed(&seed) * (round % 5 == 2 && p + q ? 1e-9 : 1);
+            for (q = 0; q <= p; q++)
+                a[p][q] = a[q][p] = round % 5 == 0 && p != q ? 0 : round % 5 == 1 ? 1 : shape_signed(&seed) * (round % 5 == 2 && p + q ? 1e-9 : 1);
         memcpy(b, a, sizeof a);
         hdi_jacobi3(b, v);
         for (p = 0; p < 3; p++)

@@ -2016,7 +2016,8 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     print_count("faces left out", m->n_repeated_face, "repeat an earlier one");
     print_count("non-manifold edges", m->n_nonmanifold_edges, "three faces or more; their weights are summed");
     print_count("misoriented edges", m->n_misoriented_edges, "their two faces disagree about the side");
-    print_count("negative weights", m->n_negative_weights, m->n_sheets ? "border edges opposite to obtuse angles" : "obtuse angles; fine, but values below 0 can occur");
+    print_count("negative weights", m->n_negative_weights,
+                m->n_sheets ? "border edges opposite to obtuse angles" : "obtuse angles; fine, but values below 0 can occur");
     if (m->n_sheets) {
         printf("%-22s %ld%s\n%-22s %lld\n", "sheets", (long)m->n_sheets, m->n_sheets > 1 ? "  (the surface is covered twice)" : "", "edges flipped",
                (long long)m->n_flips);
