@@ -212,7 +212,12 @@ typedef struct hd_laplacian_opts {
                                    Larger values stiffen faces of four corners and more, triangles do not feel it */
     double bandwidth;           /* points: s of the exponential weights, a squared length; default: from the sampling, see hd_laplacian_points */
     double weight_cut;          /* points: exponentials below this are left out, in (0, 1); default 1e-8 */
-    int32_t neighbours;         /* points: how many of the nearest ones say where the tangent plane and the cell is, 6..128; default 30 */
+    int32_t intrinsic_delaunay; /* triangles: 1: they are flipped, along the surface, until they are Delaunay: no cotangent weight is negative then but on
+                                   boundary edges opposite to an obtuse angle. Surfaces that are not manifold or have one side only are covered twice */
+    int32_t tufted;             /* triangles: 1: the same on the tufted cover, where the boundary is glued to the other sheet: no weight is negative on any mesh */
+    double mollify;             /* with these two: edges are lengthened by one small number, so that every triangle satisfies the triangle inequality with
+                                   mollify times the mean edge length to spare; default 1e-5, negative: not at all */
+    int32_t neighbours;         /* points: how many of the nearest ones say where the tangent plane and the cell or star is, 6..128; default 30 */
     int32_t end_zero;
 } hd_laplacian_opts;
 
@@ -233,6 +238,15 @@ typedef struct hd_mesh_report {
     int64_t n_negative_weights;      /* edges whose cotangent weight is negative: legitimate, but no maximum principle. polygon: pairs of vertices, edges
                                         or diagonals, whose entry of L is positive; nearly every face of four corners and more has some */
     double smallest_angle;           /* over the faces used, in radians (polygon: of the corners that bend inwards) */
+
+    /* Of intrinsic_delaunay and tufted, zeros without. Everything above but n_negative_weights tells of the faces as they were given. */
+    int32_t n_sheets;                /* 1; 2: the surface was covered twice, to be manifold and of one orientation, or to close its boundary */
+    int32_t n_mollified;             /* faces that called for mollification */
+    double mollify_epsilon;          /* added to every edge's length */
+    int64_t n_flips;                 /* on all sheets */
+    int64_t n_not_delaunay;          /* edges that rounding kept from being flipped */
+    int64_t n_self_edges;            /* edges that have come to join a vertex to itself; they carry no weight */
+    double smallest_intrinsic_angle; /* after the flips, in radians */
 } hd_mesh_report;
 
 /* What was found in a point set, and chosen for it. Nothing here is an error. */
@@ -254,8 +268,9 @@ typedef struct hd_laplacian {
     int32_t n_active;           /* rows: vertices with mass */
     int32_t n_components;       /* connected components of the rows */
     hd_laplacian_kind kind;
-    double h;                   /* mean length of the distinct edges; points: mean distance of a place to the nearest other one; 0 for matrices */
-    double area;                /* of the faces used; of the cells of points, whatever B; 1'B1 for matrices */
+    double h;                   /* mean length of the distinct edges, before any flip; points: mean distance of a place to the nearest other one; 0 for
+                                   matrices */
+    double area;                /* of the faces used, before any flip; of the cells or stars of points, whatever B; 1'B1 for matrices */
     hd_csr L;                   /* n_active x n_active, values of L, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B is diagonal, B = diag(mass) */
     double *mass;               /* [n_active] b = B 1, the vertices' masses */
@@ -265,10 +280,10 @@ typedef struct hd_laplacian {
     int32_t *component;         /* [n_active] row -> component, numbered by their first vertex */
     double *xyz;                /* [3 n_active] places of the rows; NULL for matrices */
     double *component_mass;     /* [n_components] sum of mass */
-    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem, 0 when not known */
+    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem (0.42 with edges from a vertex to itself), 0 when not known */
     int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes) */
-    hd_mesh_report mesh;        /* zeros for matrices and points but n_inert */
-    hd_point_report points;     /* zeros for meshes and matrices */
+    hd_mesh_report mesh;        /* zeros for matrices but n_inert; of points too, but when tufted: then of the stars' triangles */
+    hd_point_report points;     /* zeros for meshes and matrices; tufted: neighbours and n_coincident, where neighbours were searched */
     hd_context *context;
 } hd_laplacian;
 
@@ -463,7 +478,10 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
  * opts   kind of Laplacian, context; NULL: fem
  * Faces of zero area, with a repeated corner, or with the corners of an earlier face are left out and counted in out->mesh;
  * vertices without mass become inert. Non-manifold edges and several components are fine.
- * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY. Cost O(n + n_tri). */
+ * With opts->intrinsic_delaunay or opts->tufted L and B are those of an intrinsic Delaunay triangulation of the same surface (Bobenko, Springborn 2007;
+ * Sharp, Crane 2020) on the same vertices: no off-diagonal entry of L is positive (see there for boundaries), so that with voronoi-cot or cot heat obeys
+ * the maximum principle. Entries that only rounding made positive, below 1e-13 of the cotangents of the faces at the edge, are set to zero.
+ * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY. Cost O(n + n_tri + flips). */
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err);
 
@@ -472,7 +490,8 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
  * face_ptr [n_faces + 1] from 0, not descending: the corners of face f are face_idx[face_ptr[f]] .. face_idx[face_ptr[f + 1] - 1]
  * face_idx [face_ptr[n_faces]] vertex ids in [0, n)
  * opts   kind, lambda, context; NULL: polygon with lambda 1. With fem, voronoi-cot or cot every face is split as a fan from its first corner, and
- *        all is as hd_laplacian_triangles has it of those triangles (counts in mesh are of triangles then; the face in errors is the polygon)
+ *        all is as hd_laplacian_triangles has it of those triangles (counts in mesh are of triangles then; the face in errors is the polygon).
+ *        intrinsic_delaunay and tufted are of triangles: with them the default is fem, and polygon is an error
  * On triangles polygon has L of the cotangents, whatever lambda. lap->h is the mean length of the polygons' own edges; the pattern of L holds the
  * diagonals of the faces too. What is left out is told at hd_mesh_report.
  * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_NOT_FINITE (vertex or face), HD_ERR_TOO_LARGE,
@@ -481,6 +500,7 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
  * Source Alexa, Wardetzky 2011, the face matrices M_f with their combinatorial part; written out, with the differences, in room [10]. */
 HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
                                              int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err);
+
 /* The Laplacian of points on a surface, given without faces.
  * xyz    [3 n] coordinates, finite
  * opts   kind voronoi-exp (default) or exp, bandwidth, weight_cut, neighbours, context
@@ -495,6 +515,19 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
  * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY (fewer than two places, or all on a line). Cost O(n log n + nnz). Source Liu,
  * Prabhakaran, Guo 2012; Belkin, Niyogi 2008; what differs from them is told in room [10]. */
 HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err);
+
+/* The tufted Laplacian of a point set on a surface (Sharp, Crane 2020, section 5.7): cotangent weights, none of them negative, six or seven in a row.
+ * xyz      [3 n] coordinates, finite
+ * nbr_ptr  [n + 1] offsets into nbr; nbr_ptr[0] = 0. NULL, and nbr NULL: the opts->neighbours nearest points of each are searched; points in the place
+ *          of an earlier one become inert then
+ * nbr      ids of the neighbours of each point, in any order, at most 256 of a point; about 30 nearest ones suit. The point itself, points in its
+ *          place and ids that come twice do no harm
+ * opts     kind of masses (fem, voronoi-cot, cot), neighbours, mollify, context; NULL: fem. Always tufted
+ * The Delaunay star of each point among its neighbours is found in their tangent plane; all stars together are a soup of triangles that counts a third.
+ * lap->mesh tells of that soup. Points in no star become inert. Cost O(n log n + n_neighbours + flips).
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row: the point), HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY. */
+HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+                                                  const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices on any graph, copied.
  * L      n x n, symmetric positive semi-definite. Rows need not sum to zero (then heat is not conserved)
@@ -4416,6 +4449,429 @@ static int32_t hdi_poly_face_of(const int64_t *ptr, int32_t m, int64_t t) {
     return -1;
 }
 
+/* ---- intrinsic triangulations ----
+ * Triangles that are known by the lengths of their sides and by which side is glued to which: what flips of edges need, and all that the operators
+ * need. An edge may join a vertex to itself, two vertices may share several edges, a triangle may be glued to itself.
+ * This work is based on
+ *   A. Bobenko, B. Springborn, A discrete Laplace-Beltrami operator for simplicial surfaces, 2007 (intrinsic Delaunay, non-negative weights)
+ *   M. Fisher, B. Springborn, P. Schroeder, A. Bobenko, An algorithm for the construction of intrinsic Delaunay triangulations, 2007 (flips)
+ *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (mollification, the tufted cover)
+ *   W. Kahan, Miscalculating area and angles of a needle-like triangle, 2014 (areas from lengths)
+ * Deviations: sheets around an edge of three faces or more follow each other by their angle in space, and copies of a face lie in layers (the paper takes
+ * any order); an orientable manifold without boundary is its own cover, half of it is not stored; flips must also lower the sum of the six cotangents,
+ * which in exact arithmetic they always do (Rippa 1990), so that rounding cannot make them run in circles. Zero-area faces are left out before.
+ * Lengths are in units of the mean edge length: nothing overflows, and results do not depend on the unit of the coordinates. */
+
+typedef struct hdi_intrinsic {
+    int32_t n_sides;    /* three per face */
+    int32_t n_sheets;   /* how often the surface is covered */
+    double unit;        /* mean edge length of the input */
+    int32_t *vert;      /* [n_sides] where side s begins; it runs to where the next side of its face begins */
+    int32_t *twin;      /* [n_sides] the side glued to it, which runs the other way; -1: boundary */
+    double *len;        /* [n_sides] length / unit, the same on both sides of an edge */
+    double *area;       /* [n_sides / 3] area / unit^2; 0: these lengths make no triangle, the face contributes nothing */
+} hdi_intrinsic;
+
+static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
+static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
+
+/* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none. */
+static double hdi_length_area(double a, double b, double c) {
+    double t;
+    if (a < b) { t = a; a = b; b = t; }
+    if (b < c) { t = b; b = c; c = t; }
+    if (a < b) { t = a; a = b; b = t; }
+    t = c - (a - b);
+    return t > 0 ? 0.25 * sqrt((a + (b + c)) * t * (c + (a - b)) * (a + (b - c))) : 0;
+}
+
+static void hdi_intrinsic_area(hdi_intrinsic *t, int32_t f) {
+    const double *len = t->len + 3 * HDI_CAST(int64_t, f);
+    t->area[f] = hdi_length_area(len[0], len[1], len[2]);
+}
+
+/* Cotangent of the angle opposite to side s, of a face with area. */
+static double hdi_side_cot(const hdi_intrinsic *t, int32_t s) {
+    const double a = t->len[s], b = t->len[hdi_side_next(s)], c = t->len[hdi_side_prev(s)];
+    return (b * b + c * c - a * a) / (4 * t->area[s / 3]);
+}
+
+/* Sides from v to later vertices (of faces with area), sorted by the other vertex, then by side: edges are runs of the same key. */
+static int64_t hdi_sides_at(const hdi_mesh *mesh, int32_t v, hdi_pair *list) {
+    int64_t p, n = 0;
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], before = hdi_side_prev(c), to = mesh->tri[hdi_side_next(c)], from = mesh->tri[before];
+        if (to > v) {
+            list[n].key = HDI_CAST(uint64_t, to);
+            list[n++].id = c;
+        }
+        if (from > v) {
+            list[n].key = HDI_CAST(uint64_t, from);
+            list[n++].id = before;
+        }
+    }
+    hdi_sort_pairs(list, n);
+    return n;
+}
+
+static double hdi_side_length(const hdi_mesh *mesh, int32_t s) {
+    double edge[3];
+    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_next(s)]), mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[s]), edge);
+    return hdi_norm3(edge);
+}
+
+/* Edges of the mesh: the same figures as those of hdi_edge_report, the sum of lengths, and mate [3 m], the other side of edges with two faces (-1
+ * elsewhere). parent [n] unites boundary edges. list: twice as many pairs as the busiest vertex has corners. */
+static double hdi_mesh_mates(const hdi_mesh *mesh, int32_t *mate, int32_t *parent, hdi_pair *list, hd_mesh_report *rep) {
+    double length = 0;
+    int64_t p, q, n;
+    int32_t v;
+    for (p = 0; p < 3 * HDI_CAST(int64_t, mesh->m); p++) mate[p] = -1;
+    for (v = 0; v < mesh->n; v++) parent[v] = v;
+    for (v = 0; v < mesh->n; v++) {
+        n = hdi_sides_at(mesh, v, list);
+        for (p = 0; p < n; p = q) {
+            const int32_t s = HDI_CAST(int32_t, list[p].id);
+            for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
+            length += hdi_side_length(mesh, s);
+            rep->n_edges++;
+            rep->n_nonmanifold_edges += q - p > 2;
+            rep->n_boundary_edges += q - p == 1;
+            if (q - p == 1) hdi_unite(parent, v, HDI_CAST(int32_t, list[p].key));
+            if (q - p != 2) continue;
+            mate[s] = HDI_CAST(int32_t, list[p + 1].id);
+            mate[mate[s]] = s;
+            rep->n_misoriented_edges += mesh->tri[s] == mesh->tri[mate[s]];
+        }
+    }
+    for (v = 0; v < mesh->n; v++) parent[v] = hdi_find(parent, v);
+    for (v = 0; v < mesh->n; v++) {              /* a loop is a root with another vertex in its set */
+        const int32_t root = parent[v];
+        if (root == v || parent[root] != root) continue;
+        parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
+        rep->n_boundary_loops++;
+    }
+    return length;
+}
+
+/* turned[f] = 1 for faces that have to be turned over so that all mates run opposite ways; 0 if the surface has only one side. queue [m]. */
+static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed char *turned, int32_t *queue) {
+    int32_t start, head, tail, q;
+    memset(turned, -1, HDI_CAST(size_t, mesh->m));
+    for (start = 0; start < mesh->m; start++) {
+        if (turned[start] >= 0 || !(mesh->area[start] > 0)) continue;
+        turned[start] = 0;
+        queue[0] = start;
+        for (head = 0, tail = 1; head < tail; head++) {
+            for (q = 0; q < 3; q++) {
+                const int32_t s = 3 * queue[head] + q, t = mate[s], f = t / 3;
+                int want;
+                if (t < 0) continue;
+                want = turned[queue[head]] ^ (mesh->tri[s] == mesh->tri[t]);
+                if (turned[f] >= 0 && turned[f] != want) return 0;
+                if (turned[f] >= 0) continue;
+                turned[f] = HDI_CAST(signed char, want);
+                queue[tail++] = f;
+            }
+        }
+    }
+    return 1;
+}
+
+/* Copies of a face (in soups only: meshes have none left) by the number of earlier ones, into copy [m]. list as for hdi_mesh_mates. */
+static void hdi_face_copies(const hdi_mesh *mesh, int32_t *copy, hdi_pair *list) {
+    int32_t v;
+    int64_t p, n;
+    for (v = 0; v < mesh->n; v++) {
+        n = 0;
+        for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+            const int32_t c = mesh->corner[p], a = mesh->tri[hdi_side_next(c)], b = mesh->tri[hdi_side_prev(c)], lo = a < b ? a : b, hi = a < b ? b : a;
+            if (lo < v) continue;
+            list[n].key = HDI_CAST(uint64_t, lo) << 32 | HDI_CAST(uint64_t, hi);
+            list[n++].id = c / 3;
+        }
+        hdi_sort_pairs(list, n);
+        for (p = 0; p < n; p++) copy[list[p].id] = p > 0 && list[p].key == list[p - 1].key ? copy[list[p - 1].id] + 1 : 0;
+    }
+}
+
+static void hdi_unit3(const double *from, const double *to, double *out) {
+    double norm;
+    int k;
+    hdi_sub3(to, from, out);
+    norm = hdi_norm3(out);
+    for (k = 0; k < 3; k++) out[k] /= norm;
+}
+
+/* Faces around an edge, its n sides in list: sorted by layer of copies, then by angle in space from the first side's face, counterclockwise as seen
+ * against the direction from the smaller vertex to the larger one. */
+static void hdi_sort_around(const hdi_mesh *mesh, const int32_t *copy, int32_t lo, int32_t hi, hdi_pair *list, int64_t n) {
+    const double *p = mesh->xyz + 3 * HDI_CAST(int64_t, lo), turn = 6.283185307179586;
+    double axis[3], first[3], up[3], u[3];
+    int64_t k;
+    hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, hi), axis);
+    hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[0].id))]), first);
+    hdi_cross3(axis, first, up);
+    hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
+    for (k = 0; k < n; k++) {
+        const int32_t s = HDI_CAST(int32_t, list[k].id);
+        double angle;
+        hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(s)]), u);
+        angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
+        if (angle < 0) angle += turn;
+        list[k].key = HDI_CAST(uint64_t, copy ? copy[s / 3] : 0) << 44 | HDI_CAST(uint64_t, hdi_min(angle / turn, 1) * 8796093022208.0);
+    }
+    hdi_sort_pairs(list, n);
+}
+
+/* Side s of the mesh on a sheet: place[face] is the number of the face there; the back runs through the face the other way round. */
+static int32_t hdi_sheet_side(const int32_t *place, int32_t s, int back) { return 3 * place[s / 3] + (back ? 2 - s % 3 : s % 3); }
+
+static void hdi_glue(hdi_intrinsic *t, int32_t a, int32_t b) {
+    t->twin[a] = b;
+    t->twin[b] = a;
+}
+
+/* The cover of two sheets: front of face f at place front[f], its back at back[f]. Around each edge the side of a face that looks counterclockwise is
+ * glued to the side of the next face that looks back at it; so a single face at the boundary, front to back, if it is not to stay open. */
+static void hdi_glue_cover(hdi_intrinsic *t, const hdi_mesh *mesh, const int32_t *front, const int32_t *back, const int32_t *copy, int close, hdi_pair *list) {
+    int64_t p, q, k, n;
+    int32_t v;
+    for (v = 0; v < mesh->n; v++) {
+        n = hdi_sides_at(mesh, v, list);
+        for (p = 0; p < n; p = q) {
+            const int32_t other = HDI_CAST(int32_t, list[p].key);
+            for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
+            if (q - p == 1 && !close) continue;
+            if (q - p > 2) hdi_sort_around(mesh, copy, v, other, list + p, q - p);
+            for (k = p; k < q; k++) {            /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
+                const int32_t a = HDI_CAST(int32_t, list[k].id), b = HDI_CAST(int32_t, list[k + 1 < q ? k + 1 : p].id);
+                const int back_a = mesh->tri[a] != v, back_b = mesh->tri[b] == v;
+                hdi_glue(t, hdi_sheet_side(back_a ? back : front, a, back_a), hdi_sheet_side(back_b ? back : front, b, back_b));
+            }
+        }
+    }
+}
+
+/* The faces with area at their places, their lengths and vertices. */
+static void hdi_put_face(hdi_intrinsic *t, const hdi_mesh *mesh, int32_t f, const int32_t *place, int back) {
+    int32_t q;
+    for (q = 0; q < 3; q++) {
+        const int32_t s = 3 * f + q, at = hdi_sheet_side(place, s, back);
+        t->vert[at] = mesh->tri[back ? hdi_side_next(s) : s];
+        t->len[at] = hdi_side_length(mesh, s) / t->unit;
+        t->twin[at] = -1;
+    }
+}
+
+/* The intrinsic triangulation of a mesh, in s: of itself where all its faces can be turned to one side, else of its two-sheeted cover. With close the
+ * boundary is glued to the other sheet (the tufted cover), so that no boundary is left. */
+static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int soup, int close, hd_mesh_report *rep, hdi_scope *s) {
+    const int64_t n_sides = 3 * HDI_CAST(int64_t, mesh->m);
+    int32_t *mate = HDI_TAKE(s, int32_t, n_sides), *front = HDI_TAKE(s, int32_t, mesh->m + 1), *back = HDI_TAKE(s, int32_t, mesh->m + 1);
+    int32_t *parent = HDI_TAKE(s, int32_t, mesh->n), f, q, used = 0;
+    signed char *turned = HDI_TAKE(s, signed char, mesh->m);
+    hdi_pair *list = HDI_TAKE(s, hdi_pair, 2 * hdi_most_corners(mesh));
+    int single;
+    memset(t, 0, sizeof *t);
+    if (s->e->status < 0) return s->e->status;
+    t->unit = hdi_mesh_mates(mesh, mate, parent, list, rep) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
+    single = rep->n_nonmanifold_edges == 0 && !(close && rep->n_boundary_edges) && hdi_mesh_orient(mesh, mate, turned, back);
+    t->n_sheets = single ? 1 : 2;
+    for (f = 0; f < mesh->m; f++) front[f] = mesh->area[f] > 0 ? used++ : 0;
+    for (f = 0; f < mesh->m; f++) back[f] = front[f] + used;
+    if (!single && used > INT32_MAX / 6) return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
+    t->n_sides = 3 * used * t->n_sheets;
+    t->vert = HDI_TAKE(s, int32_t, t->n_sides);
+    t->twin = HDI_TAKE(s, int32_t, t->n_sides);
+    t->len = HDI_TAKE(s, double, t->n_sides);
+    t->area = HDI_TAKE(s, double, t->n_sides / 3);
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0; f < mesh->m; f++) {
+        if (!(mesh->area[f] > 0)) continue;
+        hdi_put_face(t, mesh, f, front, single && turned[f]);
+        if (!single) hdi_put_face(t, mesh, f, back, 1);
+        for (q = 3 * f; single && q < 3 * f + 3; q++)
+            if (mate[q] >= 0 && mate[q] < q) hdi_glue(t, hdi_sheet_side(front, q, turned[f]), hdi_sheet_side(front, mate[q], turned[mate[q] / 3]));
+    }
+    if (single) return HD_OK;
+    if (soup) hdi_face_copies(mesh, mate, list); /* the mates have done their work */
+    hdi_glue_cover(t, mesh, front, back, soup ? mate : NULL, close, list);
+    return HD_OK;
+}
+
+/* Mollification (Sharp, Crane 2020, section 4.5): the smallest length that, added to all sides, makes every triangle satisfy the triangle inequality
+ * with delta to spare. delta < 0: nothing is added. */
+static void hdi_mollify(hdi_intrinsic *t, double delta, hd_mesh_report *rep) {
+    double add = 0;
+    int32_t s, k, short_faces = 0;
+    for (s = 0; s < t->n_sides && delta >= 0; s += 3) {
+        double spare = t->len[s] + t->len[s + 1] - t->len[s + 2];
+        for (k = 0; k < 2; k++) spare = hdi_min(spare, t->len[s + 2] + t->len[s + k] - t->len[s + 1 - k]);
+        short_faces += spare < delta;
+        add = hdi_max(add, delta - spare);
+    }
+    for (s = 0; s < t->n_sides; s++) t->len[s] += add;
+    for (s = 0; s < t->n_sides / 3; s++) hdi_intrinsic_area(t, s);
+    rep->n_mollified = short_faces / t->n_sheets;
+    rep->mollify_epsilon = add * t->unit;
+}
+
+/* Four times the sum of the cotangents of a triangle; also what their rounding errors are relative to. */
+static double hdi_harmonic(double a, double b, double c, double area) { return (a * a + b * b + c * c) / area; }
+
+/* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of all cotangents of its two faces. */
+#define HDI_DELAUNAY_TOL 1e-14
+
+static int hdi_not_delaunay(const hdi_intrinsic *t, int32_t a) {
+    const int32_t b = t->twin[a], f = a / 3, g = b / 3;
+    const double *p = t->len + 3 * HDI_CAST(int64_t, f), *q = t->len + 3 * HDI_CAST(int64_t, b < 0 ? 0 : g);
+    double sum;
+    if (b < 0 || f == g || !(t->area[f] > 0) || !(t->area[g] > 0)) return 0;   /* where a face is glued to itself the two sides are equal: Delaunay */
+    sum = hdi_side_cot(t, a) + hdi_side_cot(t, b);
+    return sum < 0 && sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) + hdi_harmonic(q[0], q[1], q[2], t->area[g]));
+}
+
+/* Flips the edge of side a, from i to j: side a comes to run from l to k, corners that were opposite to it. Returns 0 if it is fine as it is. The outer
+ * sides move with it, a2 to a1, b1 to a2, b2 to b1, a1 to b2:
+ *   before  a = ij, a1 = jk, a2 = ki    b = ji, b1 = il, b2 = lj        after  a = lk, a1 = ki, a2 = il    b = kl, b1 = lj, b2 = jk */
+static int hdi_flip(hdi_intrinsic *t, int32_t a) {
+    const int32_t b = t->twin[a], a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = b < 0 ? 0 : hdi_side_next(b), b2 = b < 0 ? 0 : hdi_side_prev(b);
+    int32_t from[4], to[4], twin[4], vert[4], k, q;
+    double len[4], x, y, d, area_f, area_g, before;
+    if (!hdi_not_delaunay(t, a)) return 0;
+    from[0] = to[1] = a2;
+    from[1] = to[2] = b1;
+    from[2] = to[3] = b2;
+    from[3] = to[0] = a1;
+    for (k = 0; k < 4; k++) {
+        len[k] = t->len[from[k]];
+        vert[k] = t->vert[from[k]];
+        twin[k] = t->twin[from[k]];
+        for (q = 0; q < 4; q++) {
+            if (twin[k] != from[q]) continue;    /* outer sides that are glued to each other */
+            twin[k] = to[q];
+            break;
+        }
+    }
+    /* The two triangles laid out in the plane, the edge along x: k and l are d apart. */
+    x = ((len[0] - len[3]) * (len[0] + len[3]) + (len[2] - len[1]) * (len[2] + len[1])) / (2 * t->len[a]);
+    y = 2 * (t->area[a / 3] + t->area[b / 3]) / t->len[a];
+    d = sqrt(x * x + y * y);
+    area_f = hdi_length_area(d, len[0], len[1]);
+    area_g = hdi_length_area(d, len[2], len[3]);
+    before = hdi_harmonic(t->len[a], len[0], len[3], t->area[a / 3]) + hdi_harmonic(t->len[a], len[1], len[2], t->area[b / 3]);
+    if (!(area_f > 0 && area_g > 0 && hdi_harmonic(d, len[0], len[1], area_f) + hdi_harmonic(d, len[2], len[3], area_g) < before)) return 0;
+    t->vert[a] = vert[2];                        /* l, where b2 begins */
+    t->vert[b] = vert[0];                        /* k, where a2 begins */
+    t->len[a] = t->len[b] = d;
+    for (k = 0; k < 4; k++) {
+        t->len[to[k]] = len[k];
+        t->vert[to[k]] = vert[k];
+        t->twin[to[k]] = twin[k];
+        if (twin[k] >= 0) t->twin[twin[k]] = to[k];
+    }
+    t->area[a / 3] = area_f;
+    t->area[b / 3] = area_g;
+    return 1;
+}
+
+/* Flips until every edge is Delaunay: edges by their first side, after each flip the four around it, last come first served. The order depends on
+ * nothing but the mesh. Stops after 64 flips per side, which no mesh has ever come near to; what is left is counted. */
+static hd_status hdi_flip_all(hdi_intrinsic *t, hd_mesh_report *rep, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    int32_t *stack = HDI_TAKE(&s, int32_t, t->n_sides), seed, depth = 0, k;
+    signed char *waits = HDI_TAKE_ZERO(&s, signed char, t->n_sides);
+    const int64_t most = 64 * HDI_CAST(int64_t, t->n_sides);
+    int64_t work = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (seed = 0; seed < t->n_sides; seed++) {
+        if (t->twin[seed] < seed) continue;      /* boundary, or done as its other side: who moves is put on the stack */
+        stack[depth++] = seed;
+        waits[seed] = 1;
+        while (depth > 0) {
+            const int32_t a = stack[--depth];
+            waits[a] = 0;
+            if (!(++work & 0xfffff) && hdi_progress(ctx, "flip edges", HDI_CAST(double, seed) / t->n_sides, e) < 0) return hdi_scope_end(&s);
+            if (rep->n_flips >= most || !hdi_flip(t, a)) continue;
+            rep->n_flips++;
+            for (k = 0; k < 4; k++) {
+                const int32_t b = t->twin[a], out = k == 0 ? hdi_side_prev(b) : k == 1 ? hdi_side_next(b) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a);
+                if (t->twin[out] < 0 || waits[out]) continue;
+                stack[depth++] = out;
+                waits[out] = 1;
+            }
+        }
+    }
+    for (seed = 0; seed < t->n_sides; seed++) {
+        rep->n_not_delaunay += t->twin[seed] > seed && hdi_not_delaunay(t, seed);
+        rep->n_self_edges += t->twin[seed] > seed && t->vert[seed] == t->vert[hdi_side_next(seed)];
+    }
+    return hdi_scope_end(&s);
+}
+
+/* The intrinsic triangles as a mesh for the operators, with areas and cotangents times weight; no coordinates. Corners of the same vertex come first
+ * in their face: then sums come in the same order in both rows of an edge. */
+static hd_status hdi_intrinsic_mesh(hdi_mesh *mesh, hdi_intrinsic *t, int32_t n, double weight, hd_mesh_report *rep, hdi_scope *s) {
+    int32_t f, q;
+    memset(mesh, 0, sizeof *mesh);
+    mesh->tri = t->vert;
+    mesh->n = n;
+    mesh->m = t->n_sides / 3;
+    mesh->area = t->area;
+    mesh->cot = HDI_TAKE_ZERO(s, double, t->n_sides);
+    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
+    mesh->corner = HDI_TAKE(s, int32_t, t->n_sides);
+    if (s->e->status < 0) return s->e->status;
+    rep->smallest_intrinsic_angle = mesh->m > 0 ? 4 : 0;
+    for (f = 0; f < mesh->m; f++) {
+        int32_t *v = t->vert + 3 * HDI_CAST(int64_t, f);
+        double *len = t->len + 3 * HDI_CAST(int64_t, f), *cot = mesh->cot + 3 * HDI_CAST(int64_t, f), last = len[2];
+        if (v[0] == v[2] && v[0] != v[1]) {      /* turned by one corner */
+            v[2] = v[1];
+            v[1] = v[0];
+            len[2] = len[1];
+            len[1] = len[0];
+            len[0] = last;
+        }
+        if (!(t->area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) {                /* the angle at corner q is opposite to the side that begins at the next */
+            cot[q] = hdi_side_cot(t, 3 * f + (q + 1) % 3);
+            if (!hdi_finite(cot[q])) t->area[f] = 0;
+        }
+        if (!(t->area[f] > 0)) continue;
+        rep->smallest_intrinsic_angle = hdi_min(rep->smallest_intrinsic_angle, atan2(1, hdi_max(cot[0], hdi_max(cot[1], cot[2]))));
+        for (q = 0; q < 3; q++) cot[q] *= weight;
+        t->area[f] *= weight * t->unit * t->unit;
+        if (t->area[f] / 12 < DBL_MIN) t->area[f] = 0;
+    }
+    hdi_mesh_corners(mesh);
+    return HD_OK;
+}
+
+/* Triangles as they are, copies included: what the stars of points make. The arrays live in s. */
+static hd_status hdi_soup_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep, hdi_scope *s) {
+    int32_t f;
+    memset(mesh, 0, sizeof *mesh);
+    mesh->xyz = xyz;
+    mesh->tri = tri;
+    mesh->n = n;
+    mesh->m = m;
+    mesh->cot = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, m));
+    mesh->area = HDI_TAKE(s, double, m);
+    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
+    mesh->corner = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m));
+    if (s->e->status < 0) return s->e->status;
+    rep->n_faces = m;
+    rep->smallest_angle = m > 0 ? 4 : 0;
+    for (f = 0; f < m; f++) {
+        if (hdi_face_measure(mesh, f, rep, s->e) < 0) return s->e->status;
+        rep->n_faces_used += mesh->area[f] > 0;
+    }
+    hdi_mesh_corners(mesh);
+    return HD_OK;
+}
+
 /* ==== [10] operators ====
  * The pair (L, B) on one pattern. May call [09] and [07].
  * This work is based on
@@ -4450,7 +4906,7 @@ static double hdi_mixed_area(const hdi_mesh *mesh, int32_t c) {
         hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[3 * f + (q + k) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, a), edge);
         sum += hdi_dot3(edge, edge) * cot[(q + 3 - k) % 3];
     }
-    return sum / 8;
+    return hdi_max(area / 4, hdi_min(sum / 8, area / 2));   /* as it must be without an obtuse angle; where cotangents round or underflow to 0 it might not */
 }
 
 static double hdi_vertex_mass(const hdi_mesh *mesh, int32_t v, hd_laplacian_kind kind) {
@@ -4831,14 +5287,142 @@ static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, hd_error *e
     return hdi_scope_end(&s);
 }
 
+/* ---- intrinsic triangulations: Delaunay and tufted ---- */
+
+/* The mixed area of hdi_mixed_area, from lengths. mesh is t as a mesh. */
+static double hdi_intrinsic_mixed_area(const hdi_intrinsic *t, const hdi_mesh *mesh, int32_t c) {
+    const int32_t next = hdi_side_next(c), prev = hdi_side_prev(c);
+    const double *cot = mesh->cot, area = mesh->area[c / 3], b = t->len[c] * t->unit, d = t->len[prev] * t->unit;
+    if (cot[c] < 0 || cot[next] < 0 || cot[prev] < 0) return cot[c] < 0 ? area / 2 : area / 4;
+    return hdi_max(area / 4, hdi_min((b * b * cot[prev] + d * d * cot[next]) / 8, area / 2));
+}
+
+static void hdi_intrinsic_masses(const hdi_intrinsic *t, const hdi_mesh *mesh, hd_laplacian_kind kind, double *mass) {
+    int32_t v;
+    int64_t p;
+    for (v = 0; v < mesh->n; v++) {
+        double sum = 0;
+        for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++)
+            sum += kind == HD_LAPLACIAN_VORONOI_COT ? hdi_intrinsic_mixed_area(t, mesh, mesh->corner[p]) : mesh->area[mesh->corner[p] / 3] / 3;
+        mass[v] = kind == HD_LAPLACIAN_COT ? sum > 0 : sum;
+    }
+}
+
+/* All cotangents of the faces that rows i and j share, as often as they share them: what the rounding error of L(i,j) is relative to. */
+static double hdi_shared_cotangents(const hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, int32_t j) {
+    const int32_t v = lap->vertex[i], w = lap->vertex[j];
+    double sum = 0;
+    int64_t p;
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], n = (mesh->tri[hdi_side_next(c)] == w) + (mesh->tri[hdi_side_prev(c)] == w);
+        const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, c / 3);
+        sum += n * (fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]));
+    }
+    return sum;
+}
+
+/* Off-diagonal entries of L above zero, which Delaunay edges can only have by rounding, become zero when they are below 1e-13 of the cotangents of the
+ * faces they are made of, and the diagonal follows; what is larger (edges of the boundary) stays and is counted. */
+static void hdi_lap_signs(hd_laplacian *lap, const hdi_mesh *mesh) {
+    double *L = lap->L.val;
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        int64_t at = 0;
+        double sum = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t j = lap->L.col[p];
+            if (j == i) {
+                at = p;
+                continue;
+            }
+            if (L[p] > 0 && L[p] <= 1e-13 * hdi_shared_cotangents(lap, mesh, i < j ? i : j, i < j ? j : i)) L[p] = 0;
+            lap->mesh.n_negative_weights += j > i && L[p] > 0;
+            sum += L[p];
+        }
+        L[at] = -sum;
+    }
+}
+
+/* Values of L and B on the pattern. mesh: intrinsic triangles, without coordinates. */
+static hd_status hdi_lap_intrinsic_values(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
+    int32_t i;
+    if (!place) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_lap_row_values(lap, mesh, i, place);
+        if (lap->B) lap->b_diag[i] = lap->B[place[i]];
+    }
+    hdi_lap_signs(lap, mesh);
+    return hdi_scope_end(&s);
+}
+
+/* What the intrinsic Laplacians are asked for. */
+typedef struct hdi_intrinsic_task {
+    int soup;           /* triangles are the stars of points: copies stay, each counts a third */
+    int close;          /* tufted: the boundary is glued to the other sheet */
+    double delta;       /* of mollification, relative to the mean edge length; negative: none */
+} hdi_intrinsic_task;
+
+/* (L, B) of the intrinsic Delaunay triangulation of mesh, or of its cover: each sheet counts half. */
+static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_intrinsic_task *task, hdi_scope *s) {
+    hd_error *e = s->e;
+    hd_context *ctx = lap->context;
+    hdi_intrinsic t;
+    hdi_mesh flat;
+    double *vertex_mass, weight;
+    int32_t *mark, f;
+    if (hdi_intrinsic_make(&t, mesh, task->soup, task->close, &lap->mesh, s) < 0) return e->status;
+    hdi_mollify(&t, task->delta, &lap->mesh);
+    if (hdi_progress(ctx, "flip edges", 0, e) < 0 || hdi_flip_all(&t, &lap->mesh, ctx, e) < 0) return e->status;
+    weight = (task->soup ? 1.0 / 3 : 1.0) / t.n_sheets;
+    if (hdi_intrinsic_mesh(&flat, &t, lap->n, weight, &lap->mesh, s) < 0) return e->status;
+    vertex_mass = HDI_TAKE(s, double, lap->n);
+    if (!vertex_mass) return e->status;
+    hdi_intrinsic_masses(&t, &flat, lap->kind, vertex_mass);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(ctx, "assemble", 0.5, e) < 0) return e->status;
+    if (hdi_lap_places(lap, mesh->xyz, e) < 0) return e->status;
+    mark = HDI_TAKE(s, int32_t, lap->n_active);
+    if (!mark || hdi_lap_pattern(lap, &flat, mark, e) < 0) return e->status;
+    if (lap->kind == HD_LAPLACIAN_FEM) {
+        lap->B = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->L.nnz), sizeof(double), e));
+        if (!lap->B) return e->status;
+        lap->b_diag = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+        if (!lap->b_diag) return e->status;
+    }
+    if (hdi_lap_intrinsic_values(lap, &flat, e) < 0 || hdi_progress(ctx, "assemble", 0.8, e) < 0) return e->status;
+    for (f = 0; f < mesh->m; f++) lap->area += mesh->area[f] * (task->soup ? 1.0 / 3 : 1.0);
+    lap->h = t.unit;
+    lap->mesh.n_sheets = t.n_sheets;
+    lap->b_ratio = lap->kind != HD_LAPLACIAN_FEM ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;    /* element of corners v, v, w: 1/2, 1/6; 1/6, 1/6 */
+    lap->conserves = 1;
+    return hdi_lap_components(lap, e);
+}
+
+static hd_status hdi_lap_triangles_intrinsic(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task,
+                                             hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hdi_mesh mesh;
+    if (hdi_mesh_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
+    if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    else hdi_lap_intrinsic(lap, &mesh, task, &s);
+    return hdi_scope_end(&s);
+}
+
+/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
+static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task, hd_error *e) {
+    return task ? hdi_lap_triangles_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, e);
+}
+
 /* The faces split as fans, for the operators of triangles. */
-static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly, hd_error *e) {
+static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly, const hdi_intrinsic_task *task, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int64_t m = hdi_poly_fans(poly->ptr, poly->idx, poly->m, NULL);
     int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
     if (!tri) return hdi_scope_end(&s);
     hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
-    if (hdi_lap_triangles(lap, poly->xyz, tri, HDI_CAST(int32_t, m), e) < 0 && e->face >= 0) e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
+    if (hdi_lap_faces(lap, poly->xyz, tri, HDI_CAST(int32_t, m), task, e) < 0 && e->face >= 0) e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
     return hdi_scope_end(&s);
 }
 
@@ -5102,31 +5686,28 @@ static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
     }
 }
 
-/* Two orthonormal directions along the neighbours of place i: principal components, where near ones count much
- * more, as far ones may belong to another sheet. reach: distance of the last one. */
-static void hdi_cell_frame(const hdi_cloud *cloud, int32_t i, double reach, double frame[2][3]) {
-    const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
-    const double *p = cloud->xyz + 3 * HDI_CAST(int64_t, i);
-    double sum = 0, mean[3] = {0, 0, 0}, cov[3][3], w[3], v[3][3], d[3];
+/* The plane through a point and its n neighbours, rel [3 n] seen from it: two orthonormal axes, by principal components of the point and them, where
+ * near ones count much more, as far ones may belong to another sheet. */
+static void hdi_tangent_plane(const double *rel, int32_t n, double axis[2][3]) {
+    const double own = 1.05 * 1.05 * 1.05 * 1.05 * 1.05 * 1.05;
+    double sum = own, reach2 = 0, mean[3] = {0, 0, 0}, cov[3][3], w[3], v[3][3];
     int32_t k;
     int r, c;
     memset(cov, 0, sizeof cov);
-    for (k = 0; k < cloud->k; k++) {
-        const double near2 = 1.05 - cloud->d2[at + k] / (reach * reach), weight = near2 * near2 * near2 * near2 * near2 * near2;
-        hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, d);
+    for (k = 0; k < n; k++) reach2 = hdi_max(reach2, hdi_dot3(rel + 3 * k, rel + 3 * k));
+    for (k = 0; k < n; k++) {
+        const double *d = rel + 3 * k, near2 = 1.05 - hdi_dot3(d, d) / reach2, weight = near2 * near2 * near2 * near2 * near2 * near2;
         sum += weight;
         for (r = 0; r < 3; r++) {
-            d[r] /= reach;
             mean[r] += weight * d[r];
-        }
-        for (r = 0; r < 3; r++)
             for (c = 0; c < 3; c++) cov[r][c] += weight * d[r] * d[c];
+        }
     }
     for (r = 0; r < 3; r++)
         for (c = 0; c < 3; c++) cov[r][c] -= mean[r] * mean[c] / sum;
     hdi_eigen3(cov, w, v);
-    memcpy(frame, v[1], 3 * sizeof(double));
-    memcpy(frame[1], v[2], 3 * sizeof(double));
+    memcpy(axis, v[1], 3 * sizeof(double));
+    memcpy(axis[1], v[2], 3 * sizeof(double));
 }
 
 typedef struct hdi_polygon {
@@ -5220,10 +5801,14 @@ static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
 static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
     const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
     const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = cloud->xyz + 3 * HDI_CAST(int64_t, i);
-    double frame[2][3], x[HDI_MOST_NEIGHBOURS + 1][2], d[3], radius, outer2, area;
+    double frame[2][3], x[HDI_MOST_NEIGHBOURS + 1][2], rel[3 * (HDI_MOST_NEIGHBOURS + 1)], radius, outer2, area;
     hdi_polygon g;
     int32_t k, v;
-    hdi_cell_frame(cloud, i, reach, frame);
+    for (k = 0; k < cloud->k; k++) {
+        hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, rel + 3 * k);
+        for (v = 0; v < 3; v++) rel[3 * k + v] *= unit;
+    }
+    hdi_tangent_plane(rel + 3, cloud->k - 1, frame);   /* the first one is the place itself */
     radius = 2 * sqrt(hdi_cell_spacing2(cloud, i)) * unit;   /* random points leave a circle so large empty once in 3e5 times */
     g.n = HDI_CELL_SIDES;
     for (v = 0; v < g.n; v++) {
@@ -5234,9 +5819,8 @@ static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
     for (k = 0; k < cloud->k; k++) {
         const double l2 = cloud->d2[at + k] * unit * unit;   /* and q2 the square in the plane */
         double q2;
-        hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, d);
-        x[k][0] = hdi_dot3(frame[0], d) * unit;
-        x[k][1] = hdi_dot3(frame[1], d) * unit;
+        x[k][0] = hdi_dot3(frame[0], rel + 3 * k);
+        x[k][1] = hdi_dot3(frame[1], rel + 3 * k);
         q2 = x[k][0] * x[k][0] + x[k][1] * x[k][1];
         if (k == 0 || l2 > 8 * outer2) continue;   /* max(q2, l2 - q2) is at least l2/2: the bisector is beyond all corners */
         if (!hdi_polygon_clip(&g, x[k][0], x[k][1], hdi_max(q2, l2 - q2) / 2)) continue;
@@ -5466,6 +6050,255 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     lap->b_ratio = 1;
     lap->conserves = 1;
     hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- point sets: the tufted Laplacian of the points' stars ---- */
+
+enum { HDI_STAR_MOST = 256, HDI_STAR_POINTS = 1024 };   /* neighbours of a point that its star can be made of; points per task */
+
+/* A number in [0, 1) for each point: which of four cocircular points are joined must be the same in the stars of all four, on a grid for instance. */
+static double hdi_point_chance(int32_t i) {
+    uint64_t x = (HDI_CAST(uint64_t, i) + 1) * 0x9e3779b97f4a7c15u;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x ^= x >> 27;
+    return HDI_CAST(double, x >> 11) / 9007199254740992.0;
+}
+
+typedef struct hdi_star_point { double x, y, angle; int32_t id; } hdi_star_point;
+
+static int hdi_star_less(const hdi_star_point *a, const hdi_star_point *b) { return a->angle != b->angle ? a->angle < b->angle : a->id < b->id; }
+
+/* c is to the left of the line from a to b. */
+static int hdi_star_left(const hdi_star_point *a, const hdi_star_point *b, const hdi_star_point *c) {
+    return hdi_det2(b->x - a->x, c->y - b->y, b->y - a->y, c->x - b->x) > 0;
+}
+
+#define HDI_STAR_SAME 1e-6   /* directions within this angle are the same one; opposite ones likewise */
+
+/* p, n by angle: of those in the same direction only the nearest, which has the longest dual, stays. Returns how many are left. */
+static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
+    const double turn = 6.283185307179586;
+    int32_t i, m = 0;
+    for (i = 0; i < n; i++) {
+        const hdi_star_point x = p[i];
+        if (m > 0 && x.angle - p[m - 1].angle < HDI_STAR_SAME) {
+            if (x.x * x.x + x.y * x.y > p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y) p[m - 1] = x;
+        } else {
+            p[m++] = x;
+        }
+    }
+    if (m > 1 && p[0].angle + turn - p[m - 1].angle < HDI_STAR_SAME) {       /* the last is in the direction of the first */
+        if (p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y > p[0].x * p[0].x + p[0].y * p[0].y) {
+            p[0] = p[m - 1];
+            p[0].angle -= turn;
+        }
+        m--;
+    }
+    return m;
+}
+
+/* The star of the origin in the Delaunay triangulation of it and p[0..n), which are duals: the neighbour q stands at 2 q / |q|^2, so that the line
+ * between the nearer and the farther half plane is its polar. The neighbours that bound the Voronoi cell are then the corners of the convex hull, found
+ * by walking around it (Graham 1972). Where neighbours are a half turn apart the cell is open. Leaves them in p by angle; returns their number. */
+static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
+    const double half = 3.141592653589793, open_gap = half - HDI_STAR_SAME;
+    hdi_star_point hull[HDI_STAR_MOST + 2], origin;
+    int32_t i, j, first = 0, top = 0;
+    double far_away = -1;
+    for (i = 1; i < n; i++) {
+        const hdi_star_point x = p[i];
+        for (j = i; j > 0 && hdi_star_less(&x, p + j - 1); j--) p[j] = p[j - 1];
+        p[j] = x;
+    }
+    n = hdi_star_directions(p, n);
+    *closed = 1;
+    for (i = 0; i < n; i++) {                    /* begin behind a gap of a half turn, else at the nearest neighbour, which is a corner */
+        const double r = p[i].x * p[i].x + p[i].y * p[i].y, gap = i ? p[i].angle - p[i - 1].angle : p[0].angle - p[n - 1].angle + 2 * half;
+        if (gap >= open_gap) *closed = 0;
+        if (gap >= open_gap || (*closed && r > far_away)) first = i;
+        far_away = hdi_max(far_away, r);
+    }
+    memset(&origin, 0, sizeof origin);
+    for (i = 0; i < n + 1 + !*closed; i++) {     /* once around: from the nearest to itself, or from the origin, a corner now, to itself */
+        const hdi_star_point x = *closed ? p[(first + i) % n] : i == 0 || i == n + 1 ? origin : p[(first + i - 1) % n];
+        while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, &x)) top--;
+        hull[top++] = x;
+    }
+    top -= 1 + !*closed;
+    for (i = 0; i < top; i++) p[i] = hull[i + !*closed];
+    return top;
+}
+
+typedef struct hdi_star_job {
+    const double *xyz;
+    int32_t n;
+    const int64_t *ptr;
+    const int32_t *nbr;
+    double *nearest;    /* [n] distance to the nearest neighbour in another place; 0: none */
+    int32_t *star;      /* [ptr[n]] star of point i from ptr[i] on, counterclockwise in its plane */
+    int32_t *size;      /* [n] corners of the star; negative: it is open between the last and the first */
+} hdi_star_job;
+
+static void hdi_star_unit_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
+    const int64_t end = hdi_least((index + 1) * HDI_STAR_POINTS, job->n);
+    int64_t i, p;
+    (void)worker;
+    for (i = index * HDI_STAR_POINTS; i < end; i++) {
+        double least = 0, d[3];
+        for (p = job->ptr[i]; p < job->ptr[i + 1]; p++) {
+            double r;
+            hdi_sub3(job->xyz + 3 * HDI_CAST(int64_t, job->nbr[p]), job->xyz + 3 * i, d);
+            r = hdi_norm3(d);
+            if (r > 0 && (least == 0 || r < least)) least = r;
+        }
+        job->nearest[i] = least;
+    }
+}
+
+/* The star of point i. Lengths are in units of its nearest neighbour's distance. */
+static void hdi_point_star(const hdi_star_job *job, int32_t i) {
+    const double unit = job->nearest[i];
+    double rel[3 * HDI_STAR_MOST], axis[2][3];
+    hdi_star_point p[HDI_STAR_MOST];
+    int32_t n = 0, m = 0, k, id[HDI_STAR_MOST];
+    int closed;
+    int64_t q;
+    job->size[i] = 0;
+    for (q = job->ptr[i]; q < job->ptr[i + 1] && unit > 0; q++) {
+        double *d = rel + 3 * n;
+        hdi_sub3(job->xyz + 3 * HDI_CAST(int64_t, job->nbr[q]), job->xyz + 3 * HDI_CAST(int64_t, i), d);
+        for (k = 0; k < 3; k++) d[k] /= unit;
+        id[n] = job->nbr[q];
+        n += hdi_dot3(d, d) > 0;                 /* the point itself and others in its place do not count */
+    }
+    if (n < 2) return;
+    hdi_tangent_plane(rel, n, axis);
+    for (k = 0; k < n; k++) {
+        const double x = hdi_dot3(axis[0], rel + 3 * k), y = hdi_dot3(axis[1], rel + 3 * k), r2 = x * x + y * y, w = job->nearest[id[k]] / unit;
+        double power;
+        if (!(r2 > 1e-12 * hdi_dot3(rel + 3 * k, rel + 3 * k))) continue;      /* straight above */
+        power = r2 + 1e-9 * hdi_min(1, r2) * hdi_point_chance(i) - 1e-9 * hdi_min(w * w, r2) * hdi_point_chance(id[k]);
+        p[m].x = 2 * x / power;
+        p[m].y = 2 * y / power;
+        p[m].angle = atan2(y, x);
+        p[m++].id = id[k];
+    }
+    if (m < 2) return;
+    m = hdi_star_hull(p, m, &closed);
+    for (k = 0; k < m; k++) job->star[job->ptr[i] + k] = p[k].id;
+    job->size[i] = closed ? m : -m;
+}
+
+static void hdi_star_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
+    const int64_t end = hdi_least((index + 1) * HDI_STAR_POINTS, job->n);
+    int64_t i;
+    (void)worker;
+    for (i = index * HDI_STAR_POINTS; i < end; i++) hdi_point_star(job, HDI_CAST(int32_t, i));
+}
+
+static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    if (ptr[0] != 0) return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets do not begin with 0", 0, -1, HDI_CAST(double, ptr[0]));
+    for (i = 0; i < n; i++) {
+        if (ptr[i + 1] < ptr[i]) return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets descend", i, -1, HDI_CAST(double, ptr[i + 1]));
+        if (ptr[i + 1] - ptr[i] > HDI_STAR_MOST)
+            return hdi_fail_row(e, HD_ERR_TOO_LARGE, "neighbours: a point has more than 256", i, -1, HDI_CAST(double, ptr[i + 1] - ptr[i]));
+        for (p = ptr[i]; p < ptr[i + 1]; p++)
+            if (nbr[p] < 0 || nbr[p] >= n) return hdi_fail_row(e, HD_ERR_INDEX, "neighbours: an id is out of range", i, -1, nbr[p]);
+    }
+    return HD_OK;
+}
+
+/* Neighbours for points that come without: the nearest other places, named by the first point there; the list of a later one is empty. */
+static hd_status hdi_star_search(hdi_star_job *job, hd_point_report *rep, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *place = HDI_TAKE(&own, int32_t, job->n), *first = HDI_TAKE(&own, int32_t, job->n), *nbr, n, k, v;
+    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, job->n) + 1), q;
+    double *places;
+    hdi_tree tree;
+    if (s->e->status < 0 || hdi_points_check(job->xyz, job->n, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    n = hdi_places(job->xyz, job->n, place, first, &own);
+    k = HDI_CAST(int32_t, hdi_least(n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    rep->n_coincident = job->n - n;
+    places = HDI_TAKE(&own, double, 3 * HDI_CAST(int64_t, n));
+    nbr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, k) * n);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (v = 0; v < n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), job->xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
+    if (hdi_tree_make(&tree, places, n, &own) < 0 || hdi_nearest(&tree, places, NULL, n, k, nbr, NULL, s->ctx, s->e) < 0) return hdi_scope_end(&own);
+    for (q = 0; q < HDI_CAST(int64_t, k) * n; q++) nbr[q] = first[nbr[q]];
+    for (v = 0, ptr[0] = 0; v < job->n; v++) ptr[v + 1] = ptr[v] + (first[place[v]] == v ? k : 0);
+    job->ptr = ptr;
+    job->nbr = nbr;
+    return hdi_scope_end(&own);
+}
+
+/* All triangles of all stars, a third each in the end: tri in s, counted in *m. Fills lap->h-to-be in *spacing, the mean distance to the nearest. */
+static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, double *spacing, hdi_scope *s) {
+    const int64_t n_tasks = (HDI_CAST(int64_t, job->n) + HDI_STAR_POINTS - 1) / HDI_STAR_POINTS;
+    int32_t *tri, i, k, n_near = 0;
+    int64_t count = 0;
+    job->nearest = HDI_TAKE(s, double, job->n);
+    job->star = HDI_TAKE(s, int32_t, job->ptr[job->n]);
+    job->size = HDI_TAKE(s, int32_t, job->n);
+    if (s->e->status < 0) return NULL;
+    hdi_parallel(s->ctx, n_tasks, hdi_star_unit_task, job);
+    hdi_parallel(s->ctx, n_tasks, hdi_star_task, job);
+    *spacing = 0;
+    for (i = 0; i < job->n; i++) {
+        count += job->size[i] < 0 ? -job->size[i] - 1 : job->size[i];
+        n_near += job->nearest[i] > 0;
+        *spacing += job->nearest[i];
+    }
+    *spacing /= n_near > 0 ? n_near : 1;
+    if (3 * count > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 corners of triangles in the points' stars");
+    tri = HDI_TAKE(s, int32_t, 3 * count);
+    if (!tri) return NULL;
+    *m = HDI_CAST(int32_t, count);
+    count = 0;
+    for (i = 0; i < job->n; i++) {
+        const int32_t *star = job->star + job->ptr[i], size = job->size[i] < 0 ? -job->size[i] : job->size[i], last = size - (job->size[i] < 0);
+        for (k = 0; k < last; k++) {
+            tri[count++] = i;
+            tri[count++] = star[k];
+            tri[count++] = star[(k + 1) % size];
+        }
+    }
+    return tri;
+}
+
+/* The tufted Laplacian of a point set (Sharp, Crane 2020, section 5.7): every point's star in the Delaunay triangulation of its neighbourhood, in the
+ * tangent plane by principal components, goes into one soup with the weight 1/3, since where neighbours agree each triangle comes three times.
+ * Deviation: cocircular points, which every grid is full of, are told apart by heights of at most 1e-9, else the stars would not agree. */
+static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr, const int32_t *nbr, double delta, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hdi_intrinsic_task task;
+    hdi_star_job job;
+    hdi_mesh mesh;
+    double spacing = 0;
+    int32_t *tri, m = 0;
+    memset(&job, 0, sizeof job);
+    task.soup = task.close = 1;
+    task.delta = delta;
+    job.xyz = xyz;
+    job.n = lap->n;
+    job.ptr = nbr_ptr;
+    job.nbr = nbr;
+    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
+    if ((nbr_ptr ? hdi_star_check(nbr_ptr, nbr, lap->n, e) : hdi_star_search(&job, &lap->points, &s)) < 0) return hdi_scope_end(&s);
+    tri = hdi_stars(&job, &m, &spacing, &s);
+    if (!tri || hdi_progress(lap->context, "assemble", 0.2, e) < 0) return hdi_scope_end(&s);
+    if (hdi_soup_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) {
+        if (e->face >= 0) e->vertex = tri[3 * e->face];      /* the caller knows no faces */
+        e->face = -1;
+        return hdi_scope_end(&s);
+    }
+    if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
+    else hdi_lap_intrinsic(lap, &mesh, &task, &s);
+    lap->h = spacing;
     return hdi_scope_end(&s);
 }
 
@@ -12999,24 +13832,45 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
     return status;
 }
 
+static hd_laplacian_kind hdi_lap_kind(const hd_laplacian_opts *opts, hd_laplacian_kind otherwise) {
+    return opts && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : otherwise;
+}
+
+static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
+    return kind == HD_LAPLACIAN_FEM || kind == HD_LAPLACIAN_VORONOI_COT || kind == HD_LAPLACIAN_COT;
+}
+
+/* What is asked for of triangles besides their kind, checked. Returns whether that is an intrinsic triangulation. */
+static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
+    task->soup = 0;
+    task->close = opts && opts->tufted;
+    task->delta = opts && opts->mollify != 0 ? opts->mollify : 1e-5;
+    if (!(task->delta <= 1)) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
+    return opts && (opts->intrinsic_delaunay || opts->tufted);
+}
+
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err) {
-    const hd_laplacian_kind kind = opts && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : HD_LAPLACIAN_FEM;
+    hdi_intrinsic_task task;
     hdi_call c;
-    hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
+    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
+    int intrinsic;
     if (!lap) return c.e->status;
     if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_lap_done(out, lap, hdi_missing(c.e));
     if (n_tri < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
-    if (kind != HD_LAPLACIAN_FEM && kind != HD_LAPLACIAN_VORONOI_COT && kind != HD_LAPLACIAN_COT)
+    if (!hdi_kind_of_triangles(lap->kind))
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: the kind is fem, voronoi-cot or cot"));
-    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, c.e));
+    intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
+    if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, hdi_lap_faces(lap, xyz, tri, n_tri, intrinsic ? &task : NULL, c.e));
 }
 
 HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
                                              int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
-    const hd_laplacian_kind kind = opts && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : HD_LAPLACIAN_POLYGON;
-    const int splits = kind == HD_LAPLACIAN_FEM || kind == HD_LAPLACIAN_VORONOI_COT || kind == HD_LAPLACIAN_COT;
+    const int flips = opts && (opts->intrinsic_delaunay || opts->tufted);
+    const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
+    const int splits = hdi_kind_of_triangles(kind);
+    hdi_intrinsic_task task;
     hdi_poly poly;
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
@@ -13034,9 +13888,11 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot"));
     if (!(poly.lambda > 0 && poly.lambda <= 1e100))
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: lambda is not between 0 and 1e100"));
-    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
+    if (hdi_intrinsic_opts(opts, &task, c.e) && !splits)
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot"));
+    if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, c.e) : hdi_lap_polygons(lap, &poly, c.e));
+    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e) : hdi_lap_polygons(lap, &poly, c.e));
 }
 
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
@@ -13053,28 +13909,48 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     return hdi_lap_done(out, lap, hdi_lap_matrices(lap, L, B, c.e));
 }
 
+static hd_status hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
+    rep->neighbours = opts && opts->neighbours ? opts->neighbours : 30;
+    if (rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: neighbours lies in 6..128");
+    return HD_OK;
+}
+
 /* Options of point sets, resolved, into lap->points. */
 static hd_status hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
     hd_point_report *rep = &lap->points;
     rep->bandwidth = opts ? opts->bandwidth : 0;
     rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : 1e-8;
-    rep->neighbours = opts && opts->neighbours ? opts->neighbours : 30;
-    if (lap->kind == HD_LAPLACIAN_DEFAULT) lap->kind = HD_LAPLACIAN_VORONOI_EXP;
     if (lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the kind is voronoi-exp or exp");
+        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the kind is voronoi-exp or exp (hd_laplacian_tufted_points has fem, voronoi-cot and cot)");
+    if (opts && (opts->intrinsic_delaunay || opts->tufted))
+        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: exponential weights know no triangles; hd_laplacian_tufted_points makes some");
     if (!(rep->bandwidth >= 0) || !hdi_finite(rep->bandwidth)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
     if (!(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
-    if (rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: neighbours lies in 6..128");
-    return HD_OK;
+    return hdi_point_neighbours(rep, opts, e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err) {
     hdi_call c;
-    hd_laplacian *lap = hdi_lap_new(opts, n, opts ? opts->kind : HD_LAPLACIAN_VORONOI_EXP, err, &c);
+    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_VORONOI_EXP), err, &c);
     if (!lap) return c.e->status;
     if (!out || (n > 0 && !xyz)) return hdi_lap_done(out, lap, hdi_missing(c.e));
     if (hdi_point_opts(lap, opts, c.e) < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_done(out, lap, hdi_lap_points(lap, xyz, c.e));
+}
+
+HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+                                                  const hd_laplacian_opts *opts, hd_error *err) {
+    hdi_intrinsic_task task;
+    hdi_call c;
+    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
+    if (!lap) return c.e->status;
+    if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (!hdi_kind_of_triangles(lap->kind))
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "tufted laplacian of points: the kind is fem, voronoi-cot or cot"));
+    (void)hdi_intrinsic_opts(opts, &task, c.e);
+    if (c.e->status < 0 || (!nbr_ptr && hdi_point_neighbours(&lap->points, opts, c.e) < 0)) return hdi_lap_done(out, lap, c.e->status);
+    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e));
 }
 
 /* Points, queries and sizes; *m becomes the number of queries. */

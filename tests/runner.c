@@ -130,6 +130,7 @@ static void test_tmp_remove(void) {
 #include "test_base.h"
 #include "test_sparse.h"
 #include "test_operators.h"
+#include "test_intrinsic.h"
 #include "test_rational.h"
 #include "test_krylov.h"
 #include "test_heat.h"
@@ -145,6 +146,7 @@ typedef struct test_group { const char *name; void (*run)(void); } test_group;
 
 static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
+    {"intrinsic", test_intrinsic},
     {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
     {"points", test_points},     {"polygon", test_polygon},   {"geodesic", test_geodesic}, {"picture", test_picture}, {"meshio", test_meshio},
 };

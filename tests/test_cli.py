@@ -687,6 +687,54 @@ METHODS = ("direct", "krylov", "auto", "iterative")
 KINDS = ("fem", "voronoi-cot")
 
 
+class Intrinsic(Case):
+    """A torus whose vertices are joined askew, so that its triangles are slivers; and three leaves on one spine."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        v, f = torus(16, 8)
+        turn = {i * 8 + j: i * 8 + (j + 2 * i) % 8 for i in range(16) for j in range(8)}
+        cls.good_torus = cls.file("torus.obj", obj_text(v, f))
+        cls.askew = cls.file("askew.obj", obj_text(v, [tuple(turn[i] for i in t) for t in f]))
+        cls.book = cls.file("book.obj", obj_text([(0, 0, 0), (0, 0, 1), (3, 0, .5), (-1, 2, .5), (-1, -2, .4)], [(0, 1, 2), (0, 1, 3), (0, 1, 4)]))
+
+    def test_heat_is_not_negative(self):
+        def least(*more):
+            rows = self.field("kernel", self.askew, "--laplacian", "voronoi-cot", "--source", "0,37", "--t", "0.3h2,2h2", *more)
+            return min(min(r) for r in rows)
+        self.assertLess(least(), -1e-4)
+        self.assertGreater(least("--intrinsic-delaunay"), -1e-6)
+        self.assertGreater(least("--tufted"), -1e-6)
+
+    def test_report(self):
+        plain = json.loads(self.good("info", self.askew, "--json").stdout)
+        r = json.loads(self.good("info", self.askew, "--json", "--intrinsic-delaunay").stdout)
+        self.assertNotIn("intrinsic", plain)
+        self.assertEqual((r["intrinsic"], r["sheets"], r["negative_weights"], r["not_delaunay_edges"]), ("delaunay", 1, 0, 0))
+        self.assertGreater(r["flips"], 50)
+        self.assertGreater(plain["negative_weights"], 50)
+        self.assertAlmostEqual(r["h"], plain["h"], 12)
+        self.assertAlmostEqual(r["area"], plain["area"], 9)
+        self.assertEqual(r["smallest_angle"], plain["smallest_angle"])
+        self.assertGreater(r["smallest_intrinsic_angle"], r["smallest_angle"])
+        r = json.loads(self.good("kernel", self.book, "--tufted", "--source", 0, "--t", "0.1", "--json", "-o", self.path("b.txt")).stderr)
+        self.assertEqual((r["intrinsic"], r["sheets"]), ("tufted", 2))
+        self.assertLess(r["mass_drift"], 1e-9)
+
+    def test_text(self):
+        text = self.good("info", self.book, "--tufted").stdout.decode()
+        self.assertRegex(text, "sheets +2")
+        self.assertRegex(text, "edges flipped")
+        self.assertNotIn("edges flipped", self.good("info", self.book).stdout.decode())
+        text = self.good("kernel", self.askew, "--intrinsic-delaunay", "--source", 0, "--t", 1, "-o", self.path("a.txt")).stderr.decode()
+        self.assertIn("intrinsic Delaunay", text)
+
+    def test_no_value(self):
+        self.bad(2, "info", "--tufted=1", self.book)
+        self.bad(2, "render", "--tufted", self.book)
+
+
 class Methods(Case):
     """Every method computes the same, on whatever mesh."""
     @classmethod

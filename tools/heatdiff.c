@@ -452,6 +452,7 @@ typedef struct options {
     long degree, max_iterations, threads;
     double tol, lambda;
     uint64_t memory_limit;
+    int intrinsic_delaunay, tufted;
     int json, quiet, help, version;
     int colormap;                    /* pictures */
     int log_scale, has_range, has_view, has_isolines;
@@ -683,6 +684,10 @@ static const option_def OPTIONS[] = {
       "fem, voronoi-cot, cot, polygon, voronoi-exp or exp",
       "fem (default of triangles), voronoi-cot, cot: other faces are\nsplit; polygon (default of meshes with other faces); of points:\n"
       "voronoi-exp (default) or exp, which take the vertices of a mesh\nas points" },
+    { "intrinsic-delaunay", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL, "no value",
+      "L and B of the surface's own Delaunay triangulation: for bad\ntriangles; with voronoi-cot heat is then never negative" },
+    { "tufted", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
+      "the same for any triangles, also with borders and where\nthree and more faces meet; of points, with triangles made\nfrom their neighbours" },
     { "lambda", 0, CMD_INFO | CMD_HEAT, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
       "of polygon: weight of its stabilising part (1)" },
     { "bandwidth", 0, CMD_INFO | CMD_HEAT, 0, parse_bandwidth, 0, NULL, 0, 0, "S", "a positive number such as 0.001, or a multiple of h^2 such as 2h2",
@@ -877,6 +882,18 @@ static int check_geodesic(const options *o)
 }
 
 /* What single options cannot see: what is missing, what does not go together. */
+/* Triangulations go with the Laplacians of triangles. */
+static int check_intrinsic(const options *o)
+{
+    const char *name = o->tufted ? "tufted" : "intrinsic-delaunay";
+    if (!o->tufted && !o->intrinsic_delaunay) return DONE;
+    if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP || o->laplacian == HD_LAPLACIAN_EXP)
+        return fail(USAGE, "--%s takes --laplacian fem, voronoi-cot or cot: %s has no triangles", name, word_of(LAPLACIANS, o->laplacian));
+    if (o->lambda > 0) return fail(USAGE, "--%s is of triangles, --lambda of polygons", name);
+    if (o->has_bandwidth) return fail(USAGE, "--%s is of triangles, --bandwidth of exponential weights", name);
+    return DONE;
+}
+
 static int check_options(const options *o)
 {
     const char *name = command_name(o->command);
@@ -890,6 +907,7 @@ static int check_options(const options *o)
     if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
     if (o->lambda > 0 && o->laplacian != HD_LAPLACIAN_DEFAULT && o->laplacian != HD_LAPLACIAN_POLYGON)
         return fail(USAGE, "--lambda takes --laplacian polygon: %s has no such part", word_of(LAPLACIANS, o->laplacian));
+    if ((code = check_intrinsic(o)) != DONE) return code;
     if ((code = check_method(o)) != DONE) return code;
     if (o->degree == 1 && (o->poles == HD_POLES_KERNEL || (o->poles == HD_POLES_DEFAULT && o->command == CMD_KERNEL)))
         return fail(USAGE, "--degree takes 2..14 with --poles kernel, and 1..14 with --poles uniform");
@@ -1339,19 +1357,22 @@ static int run_load(run *r)
     return code;
 }
 
-/* That of the command line; without one by the faces: none, other ones than triangles, triangles. */
+/* That of the command line; without one by what it asks of triangles, and by the faces: none, other ones than triangles, triangles. */
 static hd_laplacian_kind laplacian_kind(const run *r)
 {
     if (r->o->laplacian != HD_LAPLACIAN_DEFAULT) return (hd_laplacian_kind)r->o->laplacian;
+    if (r->o->intrinsic_delaunay || r->o->tufted) return HD_LAPLACIAN_FEM;
     if (r->mesh.n_tri == 0) return HD_LAPLACIAN_VORONOI_EXP;
     return r->mesh.n_tri != r->mesh.n_faces ? HD_LAPLACIAN_POLYGON : HD_LAPLACIAN_FEM;    /* no face of the file has fewer than three corners */
 }
 
-static int is_points(const run *r)
+static int has_exponentials(const run *r)
 {
     const hd_laplacian_kind kind = laplacian_kind(r);
     return kind == HD_LAPLACIAN_VORONOI_EXP || kind == HD_LAPLACIAN_EXP;
 }
+
+static int is_points(const run *r) { return r->mesh.n_tri == 0 || has_exponentials(r); }
 
 /* h of points, which the library knows only when all is done: the mean distance of different points to the nearest other one. */
 static hd_status point_spacing(run *r, double *h, hd_error *err)
@@ -1383,6 +1404,7 @@ static hd_status run_points(run *r, hd_laplacian_opts *opts, hd_error *err)
 {
     const time_spec s = r->o->bandwidth;
     double h = 1;
+    if (opts->tufted) return hd_laplacian_tufted_points(&r->lap, r->mesh.xyz, r->mesh.n, NULL, NULL, opts, err);
     if (s.unit == TIME_H2 && point_spacing(r, &h, err) < 0) return err->status;
     opts->bandwidth = s.value * h * h;
     return hd_laplacian_points(&r->lap, r->mesh.xyz, r->mesh.n, opts, err);
@@ -1398,6 +1420,8 @@ static hd_status run_laplacian(run *r, hd_error *err)
     opts.kind = laplacian_kind(r);
     opts.lambda = r->o->lambda;
     opts.context = &r->context;
+    opts.intrinsic_delaunay = r->o->intrinsic_delaunay;
+    opts.tufted = r->o->tufted;
     interrupt.patient = 1;
     if (is_points(r)) status = run_points(r, &opts, err);
     else if (opts.kind == HD_LAPLACIAN_POLYGON) status = hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces, &opts, err);
@@ -1416,10 +1440,12 @@ static int fail_laplacian(const run *r, hd_error *err)
 /* Do the options fit what the file has? */
 static int check_laplacian(const run *r)
 {
-    if (r->mesh.n_tri == 0 && !is_points(r))
-        return fail(FAILED, "%s: --laplacian %s needs faces, and there are none; points take voronoi-exp or exp", r->mesh_name,
-                    word_of(LAPLACIANS, r->o->laplacian));
-    if (r->o->has_bandwidth && !is_points(r))
+    if (r->mesh.n_tri == 0 && r->o->intrinsic_delaunay && !r->o->tufted)
+        return fail(FAILED, "%s: --intrinsic-delaunay needs faces, and there are none; points take --tufted", r->mesh_name);
+    if (r->mesh.n_tri == 0 && !has_exponentials(r) && !r->o->tufted)
+        return fail(FAILED, "%s: --laplacian %s needs faces, and there are none; points take voronoi-exp or exp, or --tufted with fem, voronoi-cot or cot",
+                    r->mesh_name, word_of(LAPLACIANS, r->o->laplacian));
+    if (r->o->has_bandwidth && !has_exponentials(r))
         return fail(FAILED, "%s: --bandwidth is for points (--laplacian voronoi-exp or exp), and this file has faces", r->mesh_name);
     if (r->o->lambda > 0 && is_points(r)) return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
     return DONE;
@@ -1734,15 +1760,32 @@ static void json_end(json *j, const run *r)
 
 static void json_points(json *j, const hd_point_report *p)
 {
+    json_integer(j, "neighbours", p->neighbours);
+    json_integer(j, "coincident", p->n_coincident);
+    if (!(p->bandwidth > 0)) return;             /* the rest is of exponential weights */
     json_number(j, "bandwidth", p->bandwidth);
     json_number(j, "weight_cut", p->weight_cut);
     json_number(j, "cut_radius", p->cut_radius);
-    json_integer(j, "neighbours", p->neighbours);
-    json_integer(j, "coincident", p->n_coincident);
     json_integer(j, "isolated", p->n_isolated);
     json_integer(j, "without_area", p->n_no_area);
     json_integer(j, "border_points", p->n_border);
     json_integer(j, "most_in_row", p->most_in_row);
+}
+
+static const double DEGREES = 57.29577951308232;
+
+/* What --intrinsic-delaunay or --tufted did; nothing without them. */
+static void json_intrinsic(json *j, const run *r, const hd_mesh_report *m)
+{
+    if (!r->o->intrinsic_delaunay && !r->o->tufted) return;
+    json_text(j, "intrinsic", r->o->tufted ? "tufted" : "delaunay");
+    json_integer(j, "sheets", m->n_sheets);
+    json_integer(j, "flips", m->n_flips);
+    json_integer(j, "not_delaunay_edges", m->n_not_delaunay);
+    json_integer(j, "self_edges", m->n_self_edges);
+    json_integer(j, "mollified_faces", m->n_mollified);
+    json_number(j, "mollify_epsilon", m->mollify_epsilon);
+    json_number(j, "smallest_intrinsic_angle", m->smallest_intrinsic_angle * DEGREES);
 }
 
 static void json_laplacian(json *j, const hd_laplacian *lap)
@@ -1858,9 +1901,13 @@ static void print_heat(const run *r)
     const hd_laplacian *lap = r->lap;
     const char *unit = r->o->command == CMD_KERNEL ? "source" : "field";
     print_surface(r);
-    fprintf(stderr, "%s: %d %s%s, %d time%s, %s Laplacian\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
-            r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind));
-    if (lap->points.neighbours)
+    fprintf(stderr, "%s: %d %s%s, %d time%s, %s Laplacian%s\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
+            r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind),
+            r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+    if (lap->mesh.n_sheets)
+        fprintf(stderr, "%lld edges flipped on %ld sheet%s, all lengthened by %.2g, %lld negative weights left\n", (long long)lap->mesh.n_flips,
+                (long)lap->mesh.n_sheets, plural(lap->mesh.n_sheets), lap->mesh.mollify_epsilon, (long long)lap->mesh.n_negative_weights);
+    if (lap->points.bandwidth > 0)
         fprintf(stderr, "bandwidth %.4g (%.3gh2%s), weights up to a distance of %.4g, %.3g a row\n", lap->points.bandwidth,
                 lap->points.bandwidth / (lap->h * lap->h), r->o->has_bandwidth ? "" : ", from the sampling", lap->points.cut_radius,
                 (double)lap->L.nnz / lap->n_active);
@@ -1877,6 +1924,7 @@ static void report_heat(const run *r)
     if (r->o->json) {
         json_begin(&j, r, stderr);
         json_laplacian(&j, r->lap);
+        json_intrinsic(&j, r, &r->lap->mesh);
         json_heat(&j, r);
         json_end(&j, r);
     } else if (!r->o->quiet) print_heat(r);
@@ -2139,8 +2187,6 @@ static int write_heat(run *r)
 
 /* ==== info ==== */
 
-static const double DEGREES = 57.29577951308232;
-
 static void bounding_box(const mesh_data *m, double low[3], double high[3])
 {
     int32_t i;
@@ -2179,6 +2225,7 @@ static void info_json(const run *r, const hd_laplacian *lap, const double low[3]
     json_integer(&j, "repeated_faces", m->n_repeated_face);
     json_integer(&j, "negative_weights", m->n_negative_weights);
     json_number(&j, "smallest_angle", m->smallest_angle * DEGREES);
+    json_intrinsic(&j, r, m);
     json_numbers(&j, "box_low", low, 3);
     json_numbers(&j, "box_high", high, 3);
     json_numbers(&j, "meaningful_times", meaningful, 2);
@@ -2201,6 +2248,17 @@ static void info_times(const hd_laplacian *lap)
                AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
 }
 
+static void info_intrinsic(const hd_mesh_report *m)
+{
+    if (!m->n_sheets) return;
+    printf("%-22s %ld%s\n%-22s %lld\n", "sheets", (long)m->n_sheets, m->n_sheets > 1 ? "  (the surface is covered twice)" : "", "edges flipped",
+           (long long)m->n_flips);
+    print_count("faces mollified", m->n_mollified, "all edges were lengthened a little");
+    print_count("self-edges", m->n_self_edges, "from a vertex to itself, without weight");
+    print_count("edges not Delaunay", m->n_not_delaunay, "rounding kept them");
+    printf("%-22s %.4g degrees\n", "smallest angle now", m->smallest_intrinsic_angle * DEGREES);
+}
+
 static void info_points(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_point_report *p = &lap->points;
@@ -2208,17 +2266,19 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
     printf("%-22s %ld\n%-22s %ld\n", "points", (long)r->mesh.n, "components", (long)lap->n_components);
     printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1], high[2] - low[2],
            low[0], low[1], low[2]);
-    printf("%-22s %.9g\n%-22s %.9g  (mean distance to the nearest point)\n", "area of the cells", lap->area, "spacing h", lap->h);
-    if (lap->n_active > 0) {
+    printf("%-22s %.9g\n%-22s %.9g  (mean distance to the nearest point)\n", r->o->tufted ? "area of the stars" : "area of the cells", lap->area, "spacing h", lap->h);
+    if (p->bandwidth > 0 && lap->n_active > 0) {
         printf("%-22s %.9g  (%.4gh2%s)\n", "bandwidth", p->bandwidth, p->bandwidth / (lap->h * lap->h),
                r->o->has_bandwidth ? "" : ", from the sampling");
         printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld\n", "weights reach", p->cut_radius, p->weight_cut,
                (double)lap->L.nnz / lap->n_active, (long)p->most_in_row);
     }
-    print_count("coincident points", p->n_coincident, "in the place of an earlier one; they share its cell");
+    print_count("coincident points", p->n_coincident, r->o->tufted ? "in the place of an earlier one, left out" : "in the place of an earlier one; they share its cell");
     print_count("isolated points", p->n_isolated, "no other one within reach");
     print_count("points without area", p->n_no_area, "their neighbours lie on a line");
     print_count("border points", p->n_border, "at an edge of the surface or a gap");
+    if (r->o->tufted) print_count("points in no star", lap->mesh.n_inert, "without area");
+    info_intrinsic(&lap->mesh);
     info_times(lap);
 }
 
@@ -2243,8 +2303,10 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     print_count("faces left out", m->n_repeated_face, "repeat an earlier one");
     print_count("non-manifold edges", m->n_nonmanifold_edges, "three faces or more; their weights are summed");
     print_count("misoriented edges", m->n_misoriented_edges, "their two faces disagree about the side");
-    print_count("negative weights", m->n_negative_weights, lap->kind == HD_LAPLACIAN_POLYGON ?
-                "edges and diagonals of faces; fine, but values below 0 can occur" : "obtuse angles; fine, but values below 0 can occur");
+    print_count("negative weights", m->n_negative_weights, m->n_sheets ? "border edges opposite to obtuse angles" :
+                lap->kind == HD_LAPLACIAN_POLYGON ? "edges and diagonals of faces; fine, but values below 0 can occur" :
+                "obtuse angles; fine, but values below 0 can occur");
+    info_intrinsic(m);
     info_times(lap);
 }
 
