@@ -9514,7 +9514,7 @@ static void hdi_sweep_touch(const hdi_symbolic *s, int32_t i, char *active) {
  * The factor stays as it is. A front's Z22 stands where its update matrix stood: its life is that of the update matrix run backwards, so that the plan of
  * memory serves both. What is new, the columns of the pivots, lives in a scratch panel until the children have taken their parts. */
 
-enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 16 };
+enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 24 };
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
  * sets of weights, at the entries of A's lower triangle in the order of sym->a_from, or on the diagonal by pivots. They are added to what is there. */
@@ -9662,23 +9662,24 @@ static void hdi_pack_inverse_pivots(const hdi_inverse_front *w) {
     }
 }
 
-/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front. */
+/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front; some columns at a time, as T is triangular. */
 static void hdi_pack_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
     const hdi_pack_block l = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
     const int64_t n = w->k1 - w->k0;
     hdi_pack_job g;
+    int64_t k;
     memset(&g, 0, sizeof g);
-    g.a = hdi_pack_at(&l, r0, w->k0);
     g.a_row = l.row;
-    g.a_col = HDI_PACK;
-    g.b = w->T;
-    g.b_row = HDI_PACK;
-    g.b_col = HDI_PACK * n;
-    g.c = w->M + (r0 - w->k1) * HDI_PACK * n;
-    g.c_row = HDI_PACK * n;
-    g.depth = n;
+    g.a_col = g.b_row = HDI_PACK;
+    g.b_col = g.c_row = HDI_PACK * n;
     g.store = 1;
-    w->f->pack->multiply(&g, 0, r1 - r0, 0, n);
+    for (k = 0; k < n; k += HDI_INV_PIVOTS) {
+        g.a = hdi_pack_at(&l, r0, w->k0 + k);
+        g.b = w->T + HDI_PACK * (k * n + k);
+        g.c = w->M + HDI_PACK * ((r0 - w->k1) * n + k);
+        g.depth = n - k;
+        w->f->pack->multiply(&g, 0, r1 - r0, 0, hdi_least(n - k, HDI_INV_PIVOTS));
+    }
 }
 
 /* Rows [r0,r1) of Z21 = -Z22 M. */
@@ -14766,6 +14767,11 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
             if (!lap->B) lane->rhs[row] = lap->mass[row];
         } else {
             lane->rhs[row] = 1;
+            if (h->method == HD_METHOD_DIRECT && h->heat->elim.set.a0 == 0 && lap->b_ratio > 0) {   /* B^-1 e is not needed, only a bound of its norm */
+                hdi_component_sums(lap, NULL, lane->rhs, lane->target);
+                lane->f_norm = 1 / sqrt(lap->b_ratio * lap->b_diag[row]);
+                return HD_OK;
+            }
             if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
         }
     }
@@ -15858,6 +15864,10 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
         }
     }
     x->set = m->set;
+    rep->method = HD_METHOD_DIRECT;
+    rep->reason = "selected inversion of the factors of the poles";
+    rep->ordering = m->sym.ordering;
+    rep->factor_nnz = m->sym.nnz;
     if (h.e->status >= 0) {
         x->resolvent = entries.resolvent;
         x->weighted = entries.weighted;
@@ -15911,9 +15921,9 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
         most = hdi_max(most, error);
         relative = hdi_max(relative, d > 0 ? error / d : HUGE_VAL);
     }
-    if (largest == 0) return;
-    rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
-    rep->error_bound = hdi_max(rep->error_bound, most / largest);
+    if (most == 0) return;
+    if (largest > 0) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
+    rep->error_bound = hdi_max(rep->error_bound, largest > 0 ? most / largest : HUGE_VAL);   /* nothing is left of any */
     rep->error_relative = hdi_max(rep->error_relative, relative);
 }
 
@@ -16121,12 +16131,12 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
     work = HDI_TAKE(&h.s, double, lap ? 2 * HDI_CAST(size_t, lap->n) + 1 : 0);
     memset(&one, 0, sizeof one);
     if (h.e->status < 0 || hdi_metric_make(heat, kind, t, 0, &x, &h.s, &one) < 0) return hdi_heat_end(&h);
-    for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : HUGE_VAL;   /* without mass: never chosen */
+    for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
     for (q = 0; q < count && h.e->status >= 0; q++) {
         hd_report column;
         int32_t best = -1;
         for (v = 0; v < lap->n && q >= n_given; v++)
-            if (best < 0 || nearest[v] > nearest[best]) best = v;
+            if (lap->row[v] >= 0 && (best < 0 || nearest[v] > nearest[best])) best = v;   /* without mass: never chosen */
         if (q >= n_given) vertex[q] = q == 0 ? lap->vertex[0] : best;
         if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
         if (q + 1 == count) break;
@@ -16137,7 +16147,8 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         }
         hdi_metric_column(lap, &x, u, work);
         hdi_metric_distance(lap, &x, vertex[q], u, NULL, &one);
-        for (v = 0; v < lap->n; v++) nearest[v] = lap->row[v] < 0 ? -1 : hdi_min(nearest[v], u[v]);
+        for (v = 0; v < lap->n; v++) nearest[v] = hdi_min(nearest[v], u[v]);
+        nearest[vertex[q]] = -1;                 /* not again, even when no distance is left */
     }
     {
         const hd_error kept = *h.e;

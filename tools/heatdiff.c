@@ -141,8 +141,8 @@ static void bar_part(const char *what, int64_t i, int64_t n)
 /* ==== seconds of the stages ==== */
 /* The library has no clock, but its progress calls name the stage that begins. The time up to the next stage is that one's. */
 
-enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_SOLVE, N_STAGES, STAGE_ASSEMBLE = N_STAGES, N_NAMES };
-static const char *const STAGE_NAMES[N_NAMES] = { "order", "analyse", "factor", "precondition", "solve", "assemble" };  /* the last is told apart */
+enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_INVERT, STAGE_SOLVE, N_STAGES, STAGE_ASSEMBLE = N_STAGES, N_NAMES };
+static const char *const STAGE_NAMES[N_NAMES] = { "order", "analyse", "factor", "precondition", "invert", "solve", "assemble" };  /* the last is told apart */
 
 static struct { int running, stage; double since, spent[N_NAMES]; } stages;
 
@@ -387,7 +387,8 @@ typedef struct word { const char *name; int value; } word;
 static const word LAPLACIANS[] = {
     { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT },
     { "polygon", HD_LAPLACIAN_POLYGON }, { "voronoi-exp", HD_LAPLACIAN_VORONOI_EXP }, { "exp", HD_LAPLACIAN_EXP }, { NULL, 0 } };
-static const word POLES[] = { { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { NULL, 0 } };
+static const word POLES[] = {
+    { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { "diagonal", HD_POLES_DIAGONAL }, { NULL, 0 } };
 static const word METHODS[] = {
     { "auto", HD_METHOD_AUTO }, { "direct", HD_METHOD_DIRECT }, { "krylov", HD_METHOD_KRYLOV }, { "iterative", HD_METHOD_ITERATIVE },
     { NULL, 0 } };
@@ -401,6 +402,9 @@ static const word SOLVERS[] = {
 static const word PRECONDS[] = {
     { "none", HD_PRECOND_NONE }, { "jacobi", HD_PRECOND_JACOBI }, { "ssor", HD_PRECOND_SSOR }, { "ildl", HD_PRECOND_ILDL },
     { "mildl", HD_PRECOND_MILDL }, { NULL, 0 } };
+static const word DEFINITIONS[] = {
+    { "classical", HD_DISTANCE_CLASSICAL }, { "weighted", HD_DISTANCE_WEIGHTED }, { "commute", HD_DISTANCE_COMMUTE },
+    { "biharmonic", HD_DISTANCE_BIHARMONIC }, { NULL, 0 } };
 static const word KERNELS[] = { { "operator", HD_KERNEL_OPERATOR }, { "symmetric", HD_KERNEL_SYMMETRIC }, { NULL, 0 } };
 
 static const word COLORMAPS[] = {
@@ -432,8 +436,14 @@ static int output_format(const char *path)
 
 /* ==== options ==== */
 
-enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32,
-       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE, CMD_FIELDS = CMD_HEAT | CMD_GEODESIC, CMD_PICTURE = CMD_FIELDS | CMD_RENDER, CMD_ALL = 63 };
+enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32, CMD_HKS = 64, CMD_DISTANCE = 128,
+       CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_ALL = 1023,
+       CMD_TABLES = CMD_PAIRS | CMD_SAMPLE,
+       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE | CMD_TABLES, CMD_SOLVES = CMD_HEAT | CMD_GEODESIC,
+       CMD_FIELDS = CMD_SOLVES & ~CMD_TABLES,                               /* results have a row per vertex */
+       CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
+       CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE,                   /* by selected inversion, which only the direct method has */
+       CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER };
 
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_AUTO } time_unit;
 typedef struct time_spec { time_unit unit; double value; } time_spec;   /* value: the number, or for auto how many */
@@ -448,8 +458,8 @@ typedef struct options {
     const char *input, *output, *title;
     int has_bandwidth;
     time_spec bandwidth;             /* absolute or h2 */
-    int laplacian, poles, method, ordering, simd, solver, precond, kernel;
-    long degree, max_iterations, threads;
+    int laplacian, poles, method, ordering, simd, solver, precond, kernel, definition;
+    long degree, max_iterations, threads, count;
     double tol, lambda;
     uint64_t memory_limit;
     int intrinsic_delaunay, tufted;
@@ -678,8 +688,17 @@ static const option_def OPTIONS[] = {
       "vertices to measure from, counted from 0; a column for each" },
     { "source", 0, CMD_KERNEL, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
       "vertices where the heat starts, counted from 0" },
+    { "source", 0, CMD_DISTANCE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
+      "vertices from which distances are measured, counted from 0" },
+    { "source", 0, CMD_SAMPLE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
+      "vertices to begin with (default: the first that has mass)" },
+    { "count", 0, CMD_SAMPLE, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
+      "how many vertices, those of --source included" },
     { "input", 0, CMD_DIFFUSE | CMD_RENDER, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
       "a field: a row per vertex, one or more columns, as text or .npy" },
+    { "input", 0, CMD_PAIRS, 0, parse_text, AT(input), NULL, 0, 0, "P", "a file name", "pairs of vertices: two ids a line, as text or .npy" },
+    { "definition", 0, CMD_METRIC, 0, parse_words, AT(definition), DEFINITIONS, 0, 0, "NAME", "classical, weighted, commute or biharmonic",
+      "classical (default): d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j);\nweighted: d^2 = (e_i - e_j)' B K_2t (e_i - e_j); commute and\nbiharmonic: without --t" },
     { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
       "fem, voronoi-cot, cot, polygon, voronoi-exp or exp",
       "fem (default of triangles), voronoi-cot, cot: other faces are\nsplit; polygon (default of meshes with other faces); of points:\n"
@@ -693,33 +712,39 @@ static const option_def OPTIONS[] = {
     { "bandwidth", 0, CMD_INFO | CMD_HEAT, 0, parse_bandwidth, 0, NULL, 0, 0, "S", "a positive number such as 0.001, or a multiple of h^2 such as 2h2",
       "of points: time parameter of the exponential weights, absolute\nor in multiples of the squared mean distance of nearest\n"
       "neighbours (2h2); default: from the sampling" },
-    { "kernel", 0, CMD_KERNEL, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
-      "operator: columns of K_t (default); symmetric: of k_t = K_t B^-1" },
+    { "kernel", 0, CMD_KERNEL | CMD_PAIRS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
+      "operator: K_t (default); symmetric: k_t = K_t B^-1" },
+    { "kernel", 0, CMD_HKS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
+      "symmetric: k_t(x,x) (default); operator: the diagonal of K_t" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
       "degree of the rational approximation, 1..14 (default: by the\nerror); not for krylov, which has none" },
-    { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform or kernel",
-      "uniform (default of diffuse) or kernel (default of kernel)" },
+    { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform, kernel or diagonal",
+      "uniform (default of diffuse), kernel (of kernel and pairs) or\ndiagonal (of hks, distance and sample)" },
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
       "relative error that iterative methods aim at (1e-9)" },
-    { "method", 0, CMD_HEAT, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto, direct, krylov or iterative",
+    { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto, direct, krylov or iterative",
+      "auto or direct, which are the same here" },
+    { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto, direct, krylov or iterative",
       "direct: factors of all poles, for many sources or fields;\nkrylov: one factor for one source and for many times;\n"
       "iterative: no factor; auto (default): what costs least" },
     { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
       "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
     { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
       "of direct and krylov: amd (minimum degree), dissection\n(nested, in space) or auto (default: by the size)" },
-    { "solver", 0, CMD_HEAT, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME", "cocg, cocr, minres or lanczos",
+    { "solver", 0, CMD_ANYHOW, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME", "cocg, cocr, minres or lanczos",
       "of iterative: cocg, cocr, minres or lanczos (default: by the\ntime)" },
-    { "precond", 0, CMD_HEAT, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME", "none, jacobi, ssor, ildl or mildl",
+    { "precond", 0, CMD_ANYHOW, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME", "none, jacobi, ssor, ildl or mildl",
       "of iterative: none, jacobi, ssor, ildl or mildl (default)" },
-    { "max-iterations", 0, CMD_HEAT, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N", "a number from 1",
+    { "max-iterations", 0, CMD_ANYHOW, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N", "a number from 1",
       "of iterative: limit of the iterations per system" },
-    { "threads", 0, CMD_INFO | CMD_FIELDS | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
+    { "threads", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
       "worker threads (default: all)" },
-    { "simd", 0, CMD_FIELDS | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
+    { "simd", 0, CMD_SOLVES | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
       "instruction set: none (plain C), avx2, avx512, as far as the\nprocessor has them, or auto (default: its best)" },
-    { "memory-limit", 0, CMD_INFO | CMD_FIELDS | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
+    { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G" },
+    { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
+      "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n- or nothing: standard output, as text" },
     { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",
@@ -755,6 +780,10 @@ static const command_def COMMANDS[] = {
     { "kernel", CMD_KERNEL, "columns of the heat kernel: heat from single vertices", "--source V[,V..] --t T[,T..] [OPTIONS] MESH" },
     { "diffuse", CMD_DIFFUSE, "diffuses your own fields", "--input F --t T[,T..] [OPTIONS] MESH" },
     { "geodesic", CMD_GEODESIC, "distances along the surface, by the heat method", "--source V[,V..] [--t T] [OPTIONS] MESH" },
+    { "distance", CMD_DISTANCE, "diffusion distances from single vertices to all", "--source V[,V..] --t T[,T..] [OPTIONS] MESH" },
+    { "pairs", CMD_PAIRS, "kernel and diffusion distance of pairs of vertices", "--input P --t T[,T..] [OPTIONS] MESH" },
+    { "hks", CMD_HKS, "heat kernel signature of every vertex", "--t T[,T..] [OPTIONS] MESH" },
+    { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH" },
     { "render", CMD_RENDER, "a picture of a field on the mesh", "--input F -o PICTURE.png [OPTIONS] MESH" },
     { "demo", CMD_DEMO, "all of it on a shape made in memory: start here", "[-o FOLDER] [OPTIONS]" },
 };
@@ -820,7 +849,7 @@ static int take_option(options *o, uint64_t *seen, int argc, char **argv, int *i
 {
     const char *value, *arg = argv[*i];
     const option_def *def = find_option(arg, o->command, &value);
-    char name[32], commands[80];
+    char name[32], commands[120];
     if (!def) return fail(USAGE, "%.80s is not an option; see heatdiff %s --help", arg, command_name(o->command));
     option_text(def, name, sizeof name);
     if (!(def->commands & o->command)) {
@@ -853,7 +882,13 @@ static int check_output(const options *o)
         if (strcmp(o->output, "-") == 0 || output_format(o->output) == FORMAT_PNG) return DONE;
         return fail(USAGE, "-o takes a name that ends in .png here, not '%.200s'", o->output);
     }
-    if (o->command == CMD_DEMO || !o->output || output_format(o->output) != MIO_UNKNOWN) return DONE;
+    if (o->command == CMD_DEMO || !o->output) return DONE;
+    if (o->command & CMD_TABLES) {
+        const int kind = output_format(o->output);
+        if (kind == MIO_TXT || kind == MIO_CSV || kind == MIO_NPY) return DONE;
+        return fail(USAGE, "-o takes a name that ends in .txt, .csv or .npy here, not '%.200s'", o->output);
+    }
+    if (output_format(o->output) != MIO_UNKNOWN) return DONE;
     return fail(USAGE, "-o takes a name that ends in .txt, .csv, .npy, .ply, .obj, .vtu or .png, not '%.200s'", o->output);
 }
 
@@ -861,6 +896,8 @@ static int check_output(const options *o)
 static int check_method(const options *o)
 {
     const char *name = word_of(METHODS, o->method), *iterating = o->solver ? "--solver" : "--precond";
+    if ((o->command & CMD_INVERTS) && o->method != HD_METHOD_AUTO && o->method != HD_METHOD_DIRECT)
+        return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors", name, command_name(o->command));
     if (o->method == HD_METHOD_KRYLOV && (o->degree || o->poles))
         return fail(USAGE, "%s takes --method auto, direct or iterative: krylov has no poles", o->degree ? "--degree" : "--poles");
     if ((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
@@ -869,6 +906,47 @@ static int check_method(const options *o)
         return fail(USAGE, "--ordering takes --method auto, direct or krylov: iterative factorises nothing");
     if (o->ordering && (o->solver || o->precond))
         return fail(USAGE, "--ordering takes no %s beside it: that asks for iterations, which factorise nothing", iterating);
+    return DONE;
+}
+
+/* Distances without a time. */
+static int is_timeless(const options *o) { return o->definition == HD_DISTANCE_COMMUTE || o->definition == HD_DISTANCE_BIHARMONIC; }
+
+static int check_times(const options *o)
+{
+    const char *name = command_name(o->command);
+    int i;
+    if (is_timeless(o)) {
+        if (o->times) return fail(USAGE, "--t takes --definition classical or weighted: %s has no time", word_of(DEFINITIONS, o->definition));
+        return DONE;
+    }
+    if ((o->command & CMD_HEAT) && !o->times)
+        return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
+    for (i = 0; i < o->n_times && (o->command & (CMD_HKS | CMD_METRIC)); i++)
+        if (o->times[i].value == 0) return fail(USAGE, "--t takes times > 0 for %s", name);
+    if (o->command == CMD_SAMPLE && (o->n_times > 1 || (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
+        return fail(USAGE, "--t takes a single time for sample");
+    return DONE;
+}
+
+/* Filters of the spectrum that are not the exponential bring their own poles, and are evaluated on factors. */
+static int check_definition(const options *o)
+{
+    const char *name = word_of(DEFINITIONS, o->definition);
+    if (!is_timeless(o)) return DONE;
+    if (o->degree || o->poles)
+        return fail(USAGE, "%s takes --definition classical or weighted: %s has poles of its own", o->degree ? "--degree" : "--poles", name);
+    if (o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_ITERATIVE)
+        return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors", word_of(METHODS, o->method), name);
+    if (o->solver || o->precond)
+        return fail(USAGE, "%s takes --definition classical or weighted: %s does not iterate", o->solver ? "--solver" : "--precond", name);
+    return DONE;
+}
+
+static int check_sample(const options *o)
+{
+    if (!o->count) return fail(USAGE, "sample needs --count, which takes a number from 1");
+    if (o->n_sources > o->count) return fail(USAGE, "--source takes at most --count vertices, which is %ld, not %d", o->count, o->n_sources);
     return DONE;
 }
 
@@ -899,18 +977,18 @@ static int check_options(const options *o)
     const char *name = command_name(o->command);
     int code;
     if (!o->mesh && o->command != CMD_DEMO) return fail(USAGE, "%s needs a mesh: a file name or - (standard input)", name);
-    if (o->command == CMD_KERNEL && !o->sources) return fail(USAGE, "kernel needs --source, which takes vertex ids from 0, such as 0,17");
-    if ((o->command & (CMD_DIFFUSE | CMD_RENDER)) && !o->input)
-        return fail(USAGE, "%s needs --input, which takes the file of a field", name);
-    if ((o->command & CMD_HEAT) && !o->times)
-        return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
+    if ((o->command & (CMD_KERNEL | CMD_DISTANCE)) && !o->sources)
+        return fail(USAGE, "%s needs --source, which takes vertex ids from 0, such as 0,17", name);
+    if ((o->command & (CMD_DIFFUSE | CMD_RENDER | CMD_PAIRS)) && !o->input)
+        return fail(USAGE, "%s needs --input, which takes the file of %s", name, o->command == CMD_PAIRS ? "vertex pairs" : "a field");
+    if (o->command == CMD_SAMPLE && (code = check_sample(o)) != DONE) return code;
     if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
     if (o->lambda > 0 && o->laplacian != HD_LAPLACIAN_DEFAULT && o->laplacian != HD_LAPLACIAN_POLYGON)
         return fail(USAGE, "--lambda takes --laplacian polygon: %s has no such part", word_of(LAPLACIANS, o->laplacian));
     if ((code = check_intrinsic(o)) != DONE) return code;
-    if ((code = check_method(o)) != DONE) return code;
-    if (o->degree == 1 && (o->poles == HD_POLES_KERNEL || (o->poles == HD_POLES_DEFAULT && o->command == CMD_KERNEL)))
-        return fail(USAGE, "--degree takes 2..14 with --poles kernel, and 1..14 with --poles uniform");
+    if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE || (code = check_method(o)) != DONE) return code;
+    if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
+        return fail(USAGE, "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
     if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
         return fail(USAGE, "--input takes a file name here: the mesh comes from standard input already");
     return check_output(o);
@@ -957,7 +1035,9 @@ static void print_help(void)
            "  heatdiff kernel --source 0 --t 100h2 bunny.obj -o heat.ply\n"
            "  heatdiff kernel --source 0,500 --t auto:4 bunny.obj > columns.txt\n"
            "  heatdiff kernel --source 0 --t auto:100 --method krylov bunny.obj -o movie.npy\n"
-           "  heatdiff geodesic --source 0 bunny.obj -o distance.png\n"
+           "  heatdiff distance --source 0 --t 100h2 bunny.obj -o distance.png\n"
+           "  heatdiff hks --t auto:16 bunny.obj -o signature.npy\n"
+           "  heatdiff geodesic --source 0 bunny.obj -o geodesic.png\n"
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
            "\nMeshes: OBJ, OFF, PLY, STL; - reads standard input. Vertices are counted from 0.\n"
@@ -1110,7 +1190,11 @@ static const char *precond_name(const hd_report *r)
     return r->precond == HD_PRECOND_AUTO ? "none" : word_of(PRECONDS, (int)r->precond);
 }
 
-static const char *poles_name(const hd_report *r) { return r->poles == HD_POLES_DEFAULT ? "none" : word_of(POLES, (int)r->poles); }
+/* Commute and biharmonic distances integrate over a circle. */
+static const char *poles_name(const hd_report *r)
+{
+    return r->poles == HD_POLES_DEFAULT ? "none" : r->poles == HD_POLES_OWN ? "circle" : word_of(POLES, (int)r->poles);
+}
 
 static const char *ordering_name(const hd_report *r)
 {
@@ -1141,6 +1225,9 @@ static void report_merge(hd_report *all, const hd_report *one)
     keep_larger(&all->error_bound_b, one->error_bound_b);
     keep_larger(&all->error_bound, one->error_bound);
     keep_larger(&all->mass_drift, one->mass_drift);
+    keep_larger(&all->error_relative, one->error_relative);
+    if (one->smallest > 0 && !(all->smallest > 0 && all->smallest < one->smallest)) all->smallest = one->smallest;
+    all->n_lost += one->n_lost;
 }
 
 /* The report of one call, which was about the times index[0..n-1]. */
@@ -1266,7 +1353,9 @@ typedef struct run {
     hd_heat *heat;
     hd_geodesic *geodesic;
     hd_geodesic_report geodesic_report;
-    double *values;                  /* column-major, mesh.n x n_columns; input q after time k is column q n_times + k */
+    int32_t *pairs;                  /* pairs: [2 rows], first the i, then the j */
+    int64_t rows;                    /* of the result: the vertices, the pairs or the points */
+    double *values;                  /* column-major, rows x n_columns; input q after time k is column q n_times + k */
     int64_t n_columns;
     char (*names)[NAME_SIZE];        /* of the columns, and pointers to them */
     const char **name_list;
@@ -1311,6 +1400,7 @@ static void run_end(run *r)
     free(r->times);
     free(r->time_names);
     free(r->sources);
+    free(r->pairs);
     free(r->values);
     free(r->names);
     free(r->name_list);
@@ -1487,6 +1577,11 @@ static int run_times(run *r)
     r->time_names = (char (*)[NAME_SIZE])malloc((size_t)total * sizeof *r->time_names);
     r->sum.per_time = (hd_report *)calloc((size_t)total, sizeof *r->sum.per_time);
     if (!r->times || !r->time_names || !r->sum.per_time) return fail_memory("the times");
+    if (is_timeless(o)) {                /* a time in name only */
+        r->times[0] = 0;
+        snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s", word_of(DEFINITIONS, o->definition));
+        return DONE;
+    }
     for (i = 0; i < n_given; i++) {
         const time_spec s = given[i];
         const int count = s.unit == TIME_AUTO ? (int)s.value : 1;
@@ -1516,7 +1611,7 @@ static int run_sources(run *r)
     const options *o = r->o;
     int i;
     r->n_inputs = o->n_sources;
-    r->sources = (int32_t *)malloc((size_t)o->n_sources * sizeof *r->sources);
+    r->sources = (int32_t *)malloc((size_t)(o->command == CMD_SAMPLE ? o->count : o->n_sources) * sizeof *r->sources);
     if (!r->sources) return fail_memory("the sources");
     for (i = 0; i < o->n_sources; i++) {
         if (o->sources[i] >= r->mesh.n)
@@ -1525,6 +1620,13 @@ static int run_sources(run *r)
         r->sources[i] = (int32_t)o->sources[i];
     }
     return DONE;
+}
+
+/* Sampling compares distances that can be much smaller than what they are the difference of, and takes many columns from one set of factors:
+ * the highest degree costs it little. Distances to all vertices take it where they see the need. */
+static int32_t plan_degree(const options *o)
+{
+    return o->command == CMD_SAMPLE && !is_timeless(o) && !o->degree && !o->poles ? 14 : (int32_t)o->degree;
 }
 
 static int run_plan(run *r)
@@ -1538,14 +1640,14 @@ static int run_plan(run *r)
     opts.solver = (hd_solver)o->solver;
     opts.precond = (hd_precond)o->precond;
     opts.poles = (hd_pole_kind)o->poles;
-    opts.degree = (int32_t)o->degree;
+    opts.degree = plan_degree(o);
     opts.tol = o->tol;
     opts.max_iterations = (int32_t)o->max_iterations;
     opts.context = &r->context;
     return hd_heat_create(&r->heat, r->lap, &opts, &err) < 0 ? fail_library(r->mesh_name, &err) : DONE;
 }
 
-static double *column_of(const run *r, int q, int k) { return r->values + ((size_t)q * (size_t)r->n_times + (size_t)k) * (size_t)r->mesh.n; }
+static double *column_of(const run *r, int q, int k) { return r->values + ((size_t)q * (size_t)r->n_times + (size_t)k) * (size_t)r->rows; }
 
 static int fail_solve(const run *r, hd_report *report, int q)
 {
@@ -1674,15 +1776,89 @@ static int solve_all(run *r)
     return code;
 }
 
-/* Leaves the plan in r->heat, for who has more to ask of it. */
+/* What one call for time k returned, which is all that is known of that time. */
+static int solved_time(run *r, int k, hd_status status, hd_report *report)
+{
+    if (status < 0) return fail_solve(r, report, 0);
+    summary_add(&r->sum, report, &k, 1);
+    return DONE;
+}
+
+/* All times together, which may share factors. */
+static int solve_signature(run *r)
+{
+    hd_report report;
+    int k;
+    if (hd_heat_diagonal(r->heat, r->n_times, r->times, (hd_kernel)r->o->kernel, r->values, 0, &report) < 0) return fail_solve(r, &report, 0);
+    for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
+    summary_add(&r->sum, &report, NULL, 0);
+    return DONE;
+}
+
+/* From all sources, at time k. */
+static int solve_distance(run *r, int k)
+{
+    hd_report report;
+    const hd_status status = hd_heat_distance(r->heat, (hd_distance_kind)r->o->definition, 1, r->times + k, r->n_inputs, r->sources, column_of(r, 0, k),
+                                              (size_t)r->rows * (size_t)r->n_times, &report);
+    return solved_time(r, k, status, &report);
+}
+
+/* Kernel and distance of the pairs at time k, in two columns; without a time the distance alone. */
+static int solve_pairs(run *r, int k)
+{
+    const options *o = r->o;
+    const hd_distance_kind kind = (hd_distance_kind)o->definition;
+    const int32_t *i = r->pairs, *j = i + r->rows;
+    const int timeless = is_timeless(o), symmetric = o->kernel == HD_KERNEL_SYMMETRIC;
+    double *K = timeless ? NULL : column_of(r, 0, 2 * k), *d = timeless ? r->values : K + r->rows;
+    hd_report report;
+    int code = solved_time(r, k, hd_heat_pairs(r->heat, kind, r->times[k], r->rows, i, j, symmetric ? NULL : K, d, &report), &report);
+    if (code || timeless || !symmetric) return code;
+    return solved_time(r, k, hd_heat_entries(r->heat, r->times[k], HD_KERNEL_SYMMETRIC, r->rows, i, j, K, &report), &report);
+}
+
+static int solve_sample(run *r)
+{
+    const options *o = r->o;
+    hd_report report;
+    const hd_status status = hd_heat_sample(r->heat, (hd_distance_kind)o->definition, r->times[0], (int32_t)o->count, (int32_t)r->n_inputs, r->sources,
+                                            r->values, &report);
+    return solved_time(r, 0, status, &report);
+}
+
+static int solve_command(run *r)
+{
+    const unsigned command = r->o->command;
+    int code = DONE, k;
+    if (command == CMD_SAMPLE) return solve_sample(r);
+    if (command == CMD_HKS) return solve_signature(r);
+    if (!(command & (CMD_DISTANCE | CMD_PAIRS))) return solve_all(r);
+    for (k = 0; k < r->n_times && !code; k++) {
+        bar_part("time", k, r->n_times);
+        code = command == CMD_PAIRS ? solve_pairs(r, k) : solve_distance(r, k);
+    }
+    return code;
+}
+
+/* Rows and columns of the result. */
+static void run_shape(run *r)
+{
+    const options *o = r->o;
+    if (o->command == CMD_SAMPLE) r->rows = o->count;
+    else if (o->command != CMD_PAIRS) r->rows = r->mesh.n;
+    r->n_columns = o->command == CMD_SAMPLE ? 1 : (int64_t)(o->command & (CMD_HKS | CMD_PAIRS) ? 1 : r->n_inputs) * r->n_times;
+    if (o->command == CMD_PAIRS && !is_timeless(o)) r->n_columns *= 2;
+}
+
 /* Room for the result, and whether it has the column that is to be shown. */
 static int run_columns(run *r)
 {
-    r->n_columns = (int64_t)r->n_inputs * r->n_times;
+    run_shape(r);
     if (r->n_columns > INT32_MAX / 2) return fail(FAILED, "%lld columns are too many", (long long)r->n_columns);
     if (r->o->column >= r->n_columns)
         return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column, (long long)r->n_columns);
-    r->values = new_columns(r->mesh.n, r->n_columns);
+    r->values = new_columns(r->rows, r->n_columns);
     return r->values ? DONE : fail_memory("the result");
 }
 
@@ -1700,6 +1876,7 @@ static int solve_geodesic(run *r)
     return fail_library(r->mesh_name, &r->geodesic_report.error);
 }
 
+/* Leaves the plan in r->heat, for who has more to ask of it. */
 static int run_solve(run *r)
 {
     int code = run_columns(r);
@@ -1709,7 +1886,7 @@ static int run_solve(run *r)
     if (r->o->command == CMD_GEODESIC) code = solve_geodesic(r);
     else {
         code = run_plan(r);
-        if (!code) code = solve_all(r);
+        if (!code) code = solve_command(r);
     }
     stages_stop();
     r->sec.assemble += stages.spent[STAGE_ASSEMBLE];
@@ -1806,6 +1983,15 @@ static void json_factor(json *j, const hd_report *p)
     json_number(j, "growth", p->growth);
 }
 
+/* Of diagonals and distances. */
+static void json_values(json *j, const hd_report *p)
+{
+    json_number(j, "error_relative", p->error_relative);
+    json_number(j, "smallest", p->smallest);
+    json_integer(j, "lost", p->n_lost);
+}
+
+/* A time of NaN: the distance has none, and null is written. */
 static void json_time(FILE *out, double t, const hd_report *p)
 {
     json j;
@@ -1823,8 +2009,22 @@ static void json_time(FILE *out, double t, const hd_report *p)
     json_number(&j, "residual", p->residual);
     json_number(&j, "error_bound", p->error_bound);
     json_number(&j, "mass_drift", p->mass_drift);
+    json_values(&j, p);
     json_text(&j, "status", hd_status_name(p->status));
     json_close(&j);
+}
+
+/* What the command asked for. */
+static void json_query(json *j, const run *r)
+{
+    const options *o = r->o;
+    if (o->command != CMD_DISTANCE && o->command != CMD_SAMPLE) json_text(j, "kernel", word_of(KERNELS, o->kernel));
+    if (o->command & CMD_METRIC) json_text(j, "definition", word_of(DEFINITIONS, o->definition));
+    if (r->sources) json_integers(j, "sources", o->sources, o->n_sources);
+    else if (o->input) json_text(j, "input", o->input);
+    if (o->command == CMD_PAIRS) json_integer(j, "pairs", r->rows);
+    if (o->command == CMD_SAMPLE) json_integer(j, "count", r->rows);
+    json_numbers(j, "times", r->times, is_timeless(o) ? 0 : r->n_times);
 }
 
 static void json_heat(json *j, const run *r)
@@ -1837,10 +2037,7 @@ static void json_heat(json *j, const run *r)
     json_text(j, "precond", or_none(&r->sum.precond));
     json_text(j, "poles", or_none(&r->sum.poles));
     json_integer(j, "degree", w->degree);
-    json_text(j, "kernel", word_of(KERNELS, r->o->kernel));
-    if (r->sources) json_integers(j, "sources", r->o->sources, r->o->n_sources);
-    else json_text(j, "input", r->o->input);
-    json_numbers(j, "times", r->times, r->n_times);
+    json_query(j, r);
     json_integer(j, "iterations", w->iterations);
     json_integers(j, "pole_iterations", w->pole_iterations, w->n_poles);
     json_text(j, "ordering", or_none(&r->sum.ordering));
@@ -1851,12 +2048,13 @@ static void json_heat(json *j, const run *r)
     json_number(j, "error_bound_b", w->error_bound_b);
     json_number(j, "error_bound", w->error_bound);
     json_number(j, "mass_drift", w->mass_drift);
+    json_values(j, w);
     json_text(j, "status", hd_status_name(w->status));
     json_key(j, "per_time");
     fputc('[', j->out);
     for (k = 0; k < r->n_times; k++) {
         if (k) fprintf(j->out, ", ");
-        json_time(j->out, r->times[k], &r->sum.per_time[k]);
+        json_time(j->out, is_timeless(r->o) ? (double)NAN : r->times[k], &r->sum.per_time[k]);
     }
     fputc(']', j->out);
 }
@@ -1895,15 +2093,22 @@ static void print_surface(const run *r)
     fprintf(stderr, "\n");
 }
 
-static void print_heat(const run *r)
+/* "distance: 1 source, 2 times, classical, fem Laplacian" */
+static void print_query(const run *r)
 {
-    const hd_report *w = &r->sum.worst;
+    const options *o = r->o;
+    fprintf(stderr, "%s: ", command_name(o->command));
+    if (o->command & CMD_TABLES) fprintf(stderr, "%lld %s%s, ", (long long)r->rows, o->command == CMD_PAIRS ? "pair" : "point", plural(r->rows));
+    else if (o->command != CMD_HKS) fprintf(stderr, "%d %s%s, ", r->n_inputs, r->sources ? "source" : "field", plural(r->n_inputs));
+    if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
+    if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
+    fprintf(stderr, "%s Laplacian%s\n", word_of(LAPLACIANS, (int)r->lap->kind), o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+}
+
+/* What the operator made of triangles or points. */
+static void print_laplacian(const run *r)
+{
     const hd_laplacian *lap = r->lap;
-    const char *unit = r->o->command == CMD_KERNEL ? "source" : "field";
-    print_surface(r);
-    fprintf(stderr, "%s: %d %s%s, %d time%s, %s Laplacian%s\n", command_name(r->o->command), r->n_inputs, unit, plural(r->n_inputs),
-            r->n_times, plural(r->n_times), word_of(LAPLACIANS, (int)lap->kind),
-            r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
     if (lap->mesh.n_sheets)
         fprintf(stderr, "%lld edges flipped on %ld sheet%s, all lengthened by %.2g, %lld negative weights left\n", (long long)lap->mesh.n_flips,
                 (long)lap->mesh.n_sheets, plural(lap->mesh.n_sheets), lap->mesh.mollify_epsilon, (long long)lap->mesh.n_negative_weights);
@@ -1911,10 +2116,29 @@ static void print_heat(const run *r)
         fprintf(stderr, "bandwidth %.4g (%.3gh2%s), weights up to a distance of %.4g, %.3g a row\n", lap->points.bandwidth,
                 lap->points.bandwidth / (lap->h * lap->h), r->o->has_bandwidth ? "" : ", from the sampling", lap->points.cut_radius,
                 (double)lap->L.nnz / lap->n_active);
-    print_method(r);
-    fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n", w->error_bound,
-            w->error_bound_b, w->mass_drift);
+}
+
+/* Distances are told about by the size of what the error is of, columns by the heat they keep. */
+static void print_errors(const run *r)
+{
+    const hd_report *w = &r->sum.worst;
+    if (w->error_relative > 0 || w->n_lost > 0) {
+        fprintf(stderr, "error at most %.1e of the largest value, %.1e of each; the smallest is %.4g\n", w->error_bound, w->error_relative, w->smallest);
+        if (w->n_lost)
+            fprintf(stderr, "note: %lld distances are error for the most part, far smaller than what they are the difference of; pairs finds them\n",
+                    (long long)w->n_lost);
+    } else fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n", w->error_bound, w->error_bound_b,
+                   w->mass_drift);
     if (w->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(w->status));
+}
+
+static void print_heat(const run *r)
+{
+    print_surface(r);
+    print_query(r);
+    print_laplacian(r);
+    print_method(r);
+    print_errors(r);
     print_seconds(r);
 }
 
@@ -2116,7 +2340,7 @@ static int write_png(const char *path, const run *r, const result *res, const ch
     return write_picture(path, &panel, 1, &opts);
 }
 
-/* ---- of kernel and diffuse ---- */
+/* ---- of kernel, diffuse, distance and hks ---- */
 
 static int has_twice(const run *r)
 {
@@ -2128,7 +2352,7 @@ static int has_twice(const run *r)
     return 0;
 }
 
-/* "v8_10h2" or "f0_10h2": the source or the field, then the time. With the same of them twice also the number of the column,
+/* "v8_10h2", "f0_10h2" or "hks_10h2": the source or the field, then the time. With the same of them twice also the number of the column,
  * because readers want names that differ. */
 static int heat_names(run *r)
 {
@@ -2141,8 +2365,9 @@ static int heat_names(run *r)
         const int q = (int)(c / r->n_times);
         char number[12] = "";
         if (twice) snprintf(number, sizeof number, "_c%d", (int)(c % 1000000));
-        snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->sources ? 'v' : 'f', r->sources ? (long)r->sources[q] : (long)q,
-                 r->time_names[c % r->n_times], number);
+        if (r->o->command == CMD_HKS) snprintf(r->names[c], NAME_SIZE, "hks_%.14s%s", r->time_names[c], number);
+        else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->sources ? 'v' : 'f', r->sources ? (long)r->sources[q] : (long)q,
+                      r->time_names[c % r->n_times], number);
         r->name_list[c] = r->names[c];
     }
     return DONE;
@@ -2153,7 +2378,10 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
     const int q = (int)(c / r->n_times);
     char when[64];
     time_text(r->time_names[c % r->n_times], when, sizeof when);
-    if (r->o->command == CMD_GEODESIC) snprintf(title, size, "Geodesic distance from vertex %ld, %s", (long)r->sources[q], when);
+    if (is_timeless(r->o)) snprintf(when, sizeof when, "%s", r->time_names[0]);
+    if (r->o->command == CMD_HKS) snprintf(title, size, "Heat kernel signature, %s", when);
+    else if (r->o->command == CMD_DISTANCE) snprintf(title, size, "Diffusion distance from vertex %ld, %s", (long)r->sources[q], when);
+    else if (r->o->command == CMD_GEODESIC) snprintf(title, size, "Geodesic distance from vertex %ld, %s", (long)r->sources[q], when);
     else if (r->sources) snprintf(title, size, "Heat from vertex %ld, %s", (long)r->sources[q], when);
     else snprintf(title, size, "Field %d diffused, %s", q, when);
 }
@@ -2183,6 +2411,33 @@ static int write_heat(run *r)
     bar_hide();
     r->sec.write = now() - start;
     return code;
+}
+
+/* ---- of pairs and sample ---- */
+
+/* The ids in front of each row, then the numbers. */
+static int write_ids(run *r)
+{
+    const double start = now();
+    const int32_t *ids[2];
+    mio_output out;
+    mio_error e;
+    int status;
+    hd_heat_free(r->heat);
+    r->heat = NULL;
+    memset(&out, 0, sizeof out);
+    ids[0] = r->o->command == CMD_PAIRS ? r->pairs : r->sources;
+    ids[1] = r->pairs ? r->pairs + r->rows : NULL;
+    out.ids = ids;
+    out.n_ids = r->o->command == CMD_PAIRS ? 2 : 1;
+    out.rows = out.ld = r->rows;
+    out.cols = (int32_t)r->n_columns;
+    out.values = r->values;
+    bar_show("writing", 0);
+    status = mio_write(r->o->output, r->o->output ? output_format(r->o->output) : MIO_TXT, NULL, &out, &e);
+    bar_hide();
+    r->sec.write = now() - start;
+    return status < 0 ? fail_file(status, &e) : DONE;
 }
 
 /* ==== info ==== */
@@ -2332,16 +2587,80 @@ static int command_info(run *r)
     return close_stdout();
 }
 
-/* ==== kernel, diffuse, render ==== */
+/* ==== kernel, diffuse, distance, hks, pairs, sample, render ==== */
 
-static int command_kernel(run *r)
+/* Fields on the mesh that begin at vertices, or at all of them. */
+static int command_columns(run *r)
 {
     int code = run_load(r);
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
-    if (!code) code = run_sources(r);
+    if (!code && r->o->command != CMD_HKS) code = run_sources(r);
     if (!code) code = run_solve(r);
     if (!code) code = write_heat(r);
+    if (!code) report_heat(r);
+    return code;
+}
+
+/* The two ids of a row into r->pairs. */
+static int take_pair(run *r, const double *values, int64_t row, const int64_t *lines)
+{
+    const char *file = r->o->input;
+    mio_error e;
+    int c;
+    for (c = 0; c < 2; c++) {
+        const double id = values[c * r->rows + row];
+        if (id >= 0 && id < r->mesh.n && id == floor(id)) {
+            r->pairs[c * r->rows + row] = (int32_t)id;
+            continue;
+        }
+        if (!lines) return fail(FAILED, "%s: row %lld: %.15g is not a vertex of %s, which has %ld, numbered from 0", display_name(file), (long long)row, id,
+                                r->mesh_name, (long)r->mesh.n);
+        mio_fail_at(&e, display_name(file), lines[row], "%.15g is not a vertex of %s, which has %ld, numbered from 0", id, r->mesh_name, (long)r->mesh.n);
+        return fail(FAILED, "%s", e.text);
+    }
+    return DONE;
+}
+
+static int run_pairs(run *r)
+{
+    mio_error e;
+    double *values = NULL;
+    int64_t *lines = NULL, row;
+    int32_t columns = 0;
+    const int status = mio_load_table_lines(&values, &r->rows, &columns, &lines, r->o->input, NULL, &e);
+    int code = status < 0 ? fail_file(status, &e) : DONE;
+    if (!code && columns != 2) code = fail(FAILED, "%s: %ld columns; a pair has two ids", display_name(r->o->input), (long)columns);
+    if (!code && r->rows > INT32_MAX) code = fail(FAILED, "%s: %lld pairs are too many", display_name(r->o->input), (long long)r->rows);
+    if (!code && (r->pairs = (int32_t *)malloc((size_t)r->rows * 2 * sizeof *r->pairs)) == NULL) code = fail_memory("the pairs");
+    for (row = 0; !code && row < r->rows; row++) code = take_pair(r, values, row, lines);
+    free(values);
+    free(lines);
+    return code;
+}
+
+static int command_pairs(run *r)
+{
+    int code = run_load(r);
+    if (!code) code = run_pairs(r);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_times(r);
+    if (!code) code = run_solve(r);
+    if (!code) code = write_ids(r);
+    if (!code) report_heat(r);
+    return code;
+}
+
+static int command_sample(run *r)
+{
+    int code = run_load(r);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_times(r);
+    if (!code && r->o->count > r->lap->n_active)
+        code = fail(FAILED, "%s: --count %ld is beyond the mesh, which has %ld vertices with mass", r->mesh_name, r->o->count, (long)r->lap->n_active);
+    if (!code) code = run_sources(r);
+    if (!code) code = run_solve(r);
+    if (!code) code = write_ids(r);
     if (!code) report_heat(r);
     return code;
 }
@@ -2574,6 +2893,61 @@ static int demo_isolines(const run *r)
     return write_picture(path, &panel, 1, &opts);
 }
 
+enum { DEMO_DISTANCE, DEMO_SIGNATURE, DEMO_FIELDS };
+static const char *const DEMO_FIELD_NAMES[DEMO_FIELDS] = { "distance", "signature" };
+static const char *const DEMO_FIELD_TITLES[DEMO_FIELDS] = { "Diffusion distance from the trunk", "Heat kernel signature" };
+
+/* The distance from the first source to all vertices and the signature of all, at a middle time. fields: two columns. */
+static int demo_inverse(const run *r, double *fields)
+{
+    const double *t = &r->times[r->n_times / 2];
+    hd_report report;
+    interrupt.patient = 1;
+    if (hd_heat_distance(r->heat, HD_DISTANCE_CLASSICAL, 1, t, 1, r->sources, fields, 0, &report) < 0 ||
+        hd_heat_diagonal(r->heat, 1, t, HD_KERNEL_SYMMETRIC, fields + r->mesh.n, 0, &report) < 0)
+        return leave_computation(fail_library("demo", &report.error));
+    return leave_computation(DONE);
+}
+
+static int demo_field(const run *r, int f, const double *values)
+{
+    pic_panel panel = picture_panel(&r->mesh, values);
+    pic_opts opts = picture_opts(r->o);
+    char path[2048], subtitle[100];
+    int code = demo_path(r, path, sizeof path, DEMO_FIELD_NAMES[f], "", ".png");
+    if (code) return code;
+    time_text(r->time_names[r->n_times / 2], subtitle, sizeof subtitle);
+    opts.title = DEMO_FIELD_TITLES[f];
+    opts.subtitle = subtitle;
+    opts.width = 1600;
+    opts.height = 1200;
+    opts.log_decades = 0;
+    opts.isolines = 24;
+    panel.markers = r->sources;
+    panel.n_markers = f == DEMO_DISTANCE;
+    return write_picture(path, &panel, 1, &opts);
+}
+
+/* Two pictures, and a mesh with both. */
+static int demo_fields(const run *r)
+{
+    double *values = new_columns(r->mesh.n, DEMO_FIELDS);
+    char path[2048];
+    result res;
+    int f, code = values ? demo_inverse(r, values) : fail_memory("the demo's fields");
+    for (f = 0; f < DEMO_FIELDS && !code; f++) code = demo_field(r, f, values + (size_t)f * (size_t)r->mesh.n);
+    if (!code) code = demo_path(r, path, sizeof path, "distance-signature", "", ".ply");
+    if (!code) {
+        memset(&res, 0, sizeof res);
+        res.n_columns = DEMO_FIELDS;
+        res.values = values;
+        res.names = DEMO_FIELD_NAMES;
+        code = write_table(path, MIO_PLY, r, &res);
+    }
+    free(values);
+    return code;
+}
+
 static int demo_files(const run *r)
 {
     const char *folder = demo_folder(r);
@@ -2608,12 +2982,17 @@ static void demo_print(const run *r, const demo_checks *c)
     printf("Look at\n");
     for (q = 0; q < DEMO_SOURCES; q++) printf("  %s/heat-%s.png  the four times side by side\n", folder, DEMO_NAMES[q]);
     printf("  %s/isolines.png  one of them, large, with lines of equal heat\n", folder);
+    printf("  %s/distance.png  the diffusion distance from the trunk to every vertex, exactly\n", folder);
+    printf("  %s/signature.png  the heat kernel signature: what the surface looks like from each vertex\n", folder);
+    printf("  %s/distance-signature.ply  the mesh with both\n", folder);
     for (q = 0; q < DEMO_SOURCES; q++)
         printf("  %s/heat-%s.ply  the mesh with all values, for MeshLab, Blender or ParaView\n", folder, DEMO_NAMES[q]);
     printf("\nNext, on this mesh or one of your own\n");
     printf("  heatdiff info %s/heat-trunk.ply\n", folder);
     printf("  heatdiff kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", folder);
     printf("  heatdiff kernel --source 0,100 --t auto:4 %s/heat-trunk.ply > columns.txt\n", folder);
+    printf("  heatdiff distance --source 0 --t 500h2 %s/heat-trunk.ply -o distance.ply\n", folder);
+    printf("  heatdiff sample --count 10 --t 500h2 %s/heat-trunk.ply\n", folder);
     printf("  heatdiff --help\n");
 }
 
@@ -2636,6 +3015,8 @@ static int command_demo(run *r)
     if (!code) code = run_solve(r);
     if (!code) code = demo_check(r, &checks);
     if (!code) code = demo_files(r);
+    o.log_scale = 0;                 /* distances are not spread over decades */
+    if (!code) code = demo_fields(r);
     bar_hide();
     if (!code) {
         if (!o.quiet) demo_print(r, &checks);
@@ -2655,7 +3036,9 @@ static int run_command(const options *o)
     run_begin(&r, o);
     switch (o->command) {
     case CMD_INFO: code = command_info(&r); break;
-    case CMD_KERNEL: code = command_kernel(&r); break;
+    case CMD_KERNEL: case CMD_DISTANCE: case CMD_HKS: code = command_columns(&r); break;
+    case CMD_PAIRS: code = command_pairs(&r); break;
+    case CMD_SAMPLE: code = command_sample(&r); break;
     case CMD_DIFFUSE: code = command_diffuse(&r); break;
     case CMD_GEODESIC: code = command_geodesic(&r); break;
     case CMD_RENDER: code = command_render(&r); break;
@@ -2668,7 +3051,7 @@ static int run_command(const options *o)
 
 static int fail_command(const char *name)
 {
-    char commands[80];
+    char commands[120];
     list_commands(CMD_ALL, commands, sizeof commands);
     if (!name) return fail(USAGE, "a command is missing; there are %s (see heatdiff --help)", commands);
     return fail(USAGE, "'%.80s' is not a command; there are %s", name, commands);
@@ -2700,6 +3083,7 @@ int main(int argc, char **argv)
     if (!command) return fail_command(argc > 1 ? argv[1] : NULL);
     memset(&o, 0, sizeof o);
     o.command = command->bit;
+    o.kernel = o.command == CMD_HKS ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
     code = read_options(&o, argc, argv);
     if (!code) code = check_options(&o);
     if (!code) code = run_command(&o);
