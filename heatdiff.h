@@ -15493,26 +15493,54 @@ static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *o
     return hdi_diagonal_once(h, kernel, out);
 }
 
+/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
 #define HDI_SHARED_TOL 2.5e-8
+#define HDI_SHARED_DISTANCE_TOL 2e-10
 
 /* ---- diagonals at many times ---- */
 
+/* After packs that did not fit the byte limit: those that are there go, and the call begins anew. */
+static void hdi_heat_forget(hdi_heat_call *h) {
+    hdi_elim *m = &h->heat->elim;
+    hd_report *rep = h->rep;
+    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
+    m->filled = 0;
+    hdi_error_clear(h->e);
+    memset(rep, 0, sizeof *rep);
+    hdi_direct_only(h);
+    h->set = NULL;
+}
+
 /* Packs that a shared set for a ratio of times takes; 0: there is none. */
-static int32_t hdi_shared_packs(double ratio) {
+static int32_t hdi_shared_packs(double ratio, double tol) {
     hd_rational set;
-    return hdi_shared_pick(&set, ratio * (1 + 1e-12), HDI_SHARED_TOL) ? (set.n_poles + 3) / 4 : 0;
+    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
 }
 
 /* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how many packs those are. */
-static int32_t hdi_shared_windows(double ratio, int32_t most, int32_t *packs) {
+static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
     int32_t w, best = 0;
     for (w = 1; w <= most && w <= 64; w++) {
-        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w));
+        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
         if (each == 0 || (best > 0 && w * each >= *packs)) continue;
         best = w;
         *packs = w * each;
     }
     return best;
+}
+
+/* Weights of k and of a bound of g for every time in turn, for poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
+static void hdi_shared_weights(const hd_rational *set, int32_t n_times, const double *t, hd_c64 *weight) {
+    int32_t q, p;
+    for (q = 0; q < n_times; q++) {
+        double factor = 1, tau = t[q] / t[0];
+        const int32_t best = hdi_resolvent_pole(set + q, &factor);
+        hd_c64 *k = weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
+        for (p = 0; p < set->n_poles; p++) {
+            k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
+            g[p] = hdi_c(p == best ? factor / tau : 0, 0);
+        }
+    }
 }
 
 /* k_t(v,v) for the (scaled) times t[0..n_times), ascending, by one set of poles, into the columns that `column` names. */
@@ -15524,21 +15552,14 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
     hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
     double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
-    int32_t q, p, i, worst = 0, v;
+    int32_t q, i, worst = 0, v;
     double most = 0;
     hd_report probe;
     if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
     h->t = t[0];
     h->set = set;
     if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < n_times; q++) {
-        double factor = 1, tau = t[q] / t[0];
-        const int32_t best = hdi_resolvent_pole(set + q, &factor);
-        for (p = 0; p < set->n_poles; p++) {     /* (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau */
-            weight[(2 * q) * set->n_poles + p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
-            weight[(2 * q + 1) * set->n_poles + p] = hdi_c(p == best ? factor / tau : 0, 0);
-        }
-    }
+    hdi_shared_weights(set, n_times, t, weight);
     if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, 1, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
     for (q = 0; q < n_times; q++) {
         const double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
@@ -15590,10 +15611,10 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const do
     if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && h.e->status >= 0 && !heat->opts.degree && !heat->opts.rational && !heat->opts.poles && !heat->exacting) {
         int32_t packs = 0, windows;
         hdi_heat_sort_times(&h, n_times, t);
-        windows = h.e->status < 0 ? 0 : hdi_shared_windows(h.times[n_times - 1] / h.times[0], n_times, &packs);
+        windows = h.e->status < 0 ? 0 : hdi_shared_windows(h.times[n_times - 1] / h.times[0], HDI_SHARED_TOL, n_times, &packs);
         if (windows > 0 && 8 * packs < 9 * n_times) {   /* a set of degree 9 is a pack and a real factor */
-            (void)hdi_diagonal_windows(&h, windows, D, ldd);
-            return hdi_heat_end(&h);
+            if (hdi_diagonal_windows(&h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return hdi_heat_end(&h);
+            hdi_heat_forget(&h);                 /* one by one takes less */
         }
     }
     for (q = 0; q < n_times && h.e->status >= 0; q++) {
@@ -15974,6 +15995,104 @@ static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double 
     return hdi_scope_end(&s);
 }
 
+/* out [n_sets][n] += the weighted sums of column `row` of the inverses, rows in elimination order: pairs only. x [8 n], work as a sweep's, active [n_super]. */
+static void hdi_shared_column(const hdi_elim *m, int32_t row, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active) {
+    const int32_t n = m->sym.n, n_poles = m->set.n_poles;
+    int32_t i, k, q, j;
+    memset(active, 0, HDI_CAST(size_t, m->sym.n_super));
+    hdi_sweep_touch(&m->sym, row, active);
+    for (i = 0; 4 * i < n_poles; i++) {
+        hdi_sweep z;
+        memset(x, 0, HDI_CAST(size_t, n) * HDI_PACK * sizeof *x);
+        for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
+        z = hdi_sweep_open(m->pack + i, 1, x, work, 1);
+        z.active = active;
+        hdi_sweep_run(&z, m->ctx);
+        for (k = 0; k < n_sets; k++) {
+            const hd_c64 *w = weight + HDI_CAST(int64_t, k) * n_poles + 4 * i;
+            double *HDI_RESTRICT to = out + HDI_CAST(int64_t, k) * n, c[HDI_PACK];
+            for (q = 0; q < 4; q++) {
+                c[q] = 4 * i + q < n_poles ? w[q].re : 0;
+                c[q + 4] = 4 * i + q < n_poles ? -w[q].im : 0;
+            }
+            for (j = 0; j < n; j++)
+                for (q = 0; q < HDI_PACK; q++) to[j] += c[q] * x[HDI_PACK * HDI_CAST(int64_t, j) + q];
+        }
+    }
+}
+
+/* Distances of the first two kinds (weighted ones with a diagonal B) at the (scaled, ascending) times h->times[q0..q1) of the kernel by one set of poles. */
+static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, int32_t q0, int32_t q1, int32_t k, const int32_t *sources, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = heat->source;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    const int32_t n_times = q1 - q0, n = m->sym.n;
+    const size_t size = 2 * HDI_CAST(size_t, n_times) * HDI_CAST(size_t, n);
+    const double *t = h->times + q0, unit = kind == HD_DISTANCE_WEIGHTED ? 1 / heat->scale : heat->scale;
+    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
+    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(size_t, n_times) * HD_MAX_POLES);
+    double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n));
+    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n);
+    char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
+    hdi_metric metric;
+    int32_t q, r, i;
+    memset(&metric, 0, sizeof metric);
+    metric.kind = kind;
+    metric.diag = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n) + 1);
+    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_DISTANCE_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
+    metric.off = metric.diag + n;
+    h->t = t[0];
+    h->set = set;
+    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
+    hdi_shared_weights(set, n_times, t, weight);
+    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, 1, room, n, h->e) < 0) return hdi_scope_end(&s);
+    for (r = 0; r < k; r++) {
+        const int32_t row = m->lap->row[sources[r]];
+        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
+        memset(column, 0, size * sizeof *column);
+        if (row >= 0) hdi_shared_column(m, row, 2 * n_times, weight, column, x, work, active);
+        for (q = 0; q < n_times; q++) {
+            const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
+            double *u = D + (HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) + HDI_CAST(size_t, h->time_column[q0 + q])) * ldd;
+            memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
+            memset(g, 0, HDI_CAST(size_t, lap->n) * sizeof *g);
+            for (i = 0; i < n; i++) {
+                const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
+                const double b = kind == HD_DISTANCE_WEIGHTED ? m->lap->mass[i] : 1, bs = kind == HD_DISTANCE_WEIGHTED && row >= 0 ? m->lap->mass[row] : 1;
+                metric.diag[at] = unit * b * b * f[i];
+                metric.off[at] = unit * b * b * set[q].max_weighted_error * f[n + i];
+                u[v] = unit * b * bs * c[i];
+                g[v] = unit * b * bs * set[q].max_weighted_error * c[n + i];
+            }
+            hdi_metric_distance(lap, &metric, sources[r], u, g, h->rep);
+        }
+    }
+    return hdi_scope_end(&s);
+}
+
+/* All times through shared poles, when that is cheaper than one by one. 0: it is not, or not possible. */
+static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    const hd_heat_opts *o = &heat->opts;
+    int32_t packs = 0, windows, w, q0, q1;
+    double span, *twice;
+    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || (kind == HD_DISTANCE_WEIGHTED && heat->source->B) || o->degree || o->rational || o->poles) return 0;
+    twice = HDI_TAKE(&h->s, double, n_times);
+    for (q0 = 0; twice && q0 < n_times; q0++) twice[q0] = 2 * t[q0];
+    if (!twice || hdi_heat_sort_times(h, n_times, twice) < 0 || hdi_heat_analysed(heat, 1, h->e) < 0) return 0;
+    span = h->times[n_times - 1] / h->times[0];
+    windows = hdi_shared_windows(span, HDI_SHARED_DISTANCE_TOL, n_times, &packs);
+    if (windows == 0 || packs > n_times) return 0;
+    hdi_direct_only(h);
+    for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
+        const double end = h->times[0] * pow(span, (w + 1.0) / windows);
+        for (q1 = q0 + 1; q1 < n_times && (w + 1 >= windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
+        if (hdi_distance_window(h, kind, q0, q1, k, sources, D, ldd) < 0) break;
+    }
+    return 1;
+}
+
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd,
                                         hd_report *report) {
     hdi_heat_call h;
@@ -15985,6 +16104,8 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
     ldd = hdi_leading(&h, ldd);
     for (q = 0; q < k && !h.e->status; q++)
         if (hdi_vertex_check(heat->source, sources[q], h.e) < 0) h.e->column = q;
+    if (h.e->status >= 0 && hdi_distance_windows(&h, kind, n_times, t, k, sources, D, ldd) && h.e->status != HD_ERR_MEMORY_LIMIT) return hdi_heat_end(&h);
+    if (h.e->status == HD_ERR_MEMORY_LIMIT && n_times > 1) hdi_heat_forget(&h);   /* one by one takes less */
     for (q = 0; q < n_times && k > 0 && h.e->status >= 0; q++) {
         const size_t step = ldd * HDI_CAST(size_t, n_times);
         double *first = D + HDI_CAST(size_t, q) * ldd;
