@@ -1647,6 +1647,169 @@ static void int_silan_bounds(void) {
 }
 
 #include "test_shared.h"
+/* ---- [13] selinv, and what [18] and [21] make of it ---- */
+
+/* Sums of entries of the inverses of all poles, a lone real one and one pack or two packs, with weights of three sets: against dense solutions. */
+static void int_invert_of(int kind, hd_laplacian_kind form, int level, int32_t degree) {
+    static const hd_simd simds[3] = {HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512};
+    enum { SETS = 3, PICKED = 5 };
+    hd_laplacian *lap = int_mesh(kind, form);
+    const int32_t n = lap->n_active;
+    hd_context ctx;
+    hd_error e;
+    hdi_elim m;
+    hd_rational set;
+    hd_c64 weight[SETS * HD_MAX_POLES];
+    uint64_t seed = 31;
+    double *diag, *entries, *want, size = 0, off = 0;
+    int64_t count, q;
+    int32_t p, k, c, i, v;
+    memset(&ctx, 0, sizeof ctx);
+    ctx.simd = simds[level];
+    CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK && hdi_rational_get(&set, HD_POLES_DIAGONAL, degree, &e) == HD_OK);
+    CHECK(hdi_elim_poles(&m, &set, 5 * lap->h * lap->h * m.scale, &e) == HD_OK);
+    CHECK(degree == 9 ? m.lone == 0 && m.n_packs == 1 : m.lone < 0 && m.n_packs == 2);
+    for (k = 0; k < SETS * set.n_poles; k++) {
+        weight[k].re = dense_signed(&seed);
+        weight[k].im = dense_signed(&seed);
+    }
+    count = m.sym.a_ptr[m.sym.n_super];
+    diag = DENSE_NEW(double, SETS * n);
+    entries = DENSE_NEW(double, SETS * count);
+    want = DENSE_NEW(double, SETS * PICKED * n);
+    diag[0] = 100;                               /* sums are added to what is there */
+    CHECK(hdi_elim_invert(&m, SETS, weight, 1, diag, n, &e) == HD_OK && hdi_elim_invert(&m, SETS, weight, 0, entries, count, &e) == HD_OK);
+    diag[0] -= 100;
+    for (p = 0; p < set.n_poles; p++) {
+        for (c = 0; c < PICKED; c++) {
+            dense_c64 *a = DENSE_NEW(dense_c64, (int64_t)n * n), *b = DENSE_NEW(dense_c64, n);
+            const int32_t column = c * 29 % n;
+            for (i = 0; i < n; i++)
+                for (q = m.lap->L.row_ptr[i]; q < m.lap->L.row_ptr[i + 1]; q++) {
+                    const double mass = m.lap->B ? m.lap->B[q] : m.lap->L.col[q] == i ? m.lap->mass[i] : 0;
+                    a[(size_t)i * (size_t)n + (size_t)m.lap->L.col[q]] = dense_c(m.t * m.lap->L.val[q] + set.theta[p].re * mass, set.theta[p].im * mass);
+                }
+            b[column] = dense_c(1, 0);
+            CHECK(dense_complex_solve(a, b, n));
+            for (k = 0; k < SETS; k++)
+                for (i = 0; i < n; i++) {
+                    const hd_c64 w = weight[k * set.n_poles + p];
+                    want[(k * PICKED + c) * n + i] += w.re * b[i].re - (set.theta[p].im == 0 ? 0 : w.im * b[i].im);
+                }
+            free(a);
+            free(b);
+        }
+    }
+    size = dense_max_abs(want, SETS * PICKED * n);
+    for (k = 0; k < SETS; k++) {
+        for (c = 0; c < PICKED; c++) {
+            const int32_t column = c * 29 % n;
+            off = fmax(off, fabs(diag[k * n + column] - want[(k * PICKED + c) * n + column]));
+        }
+        for (v = 0; v < m.sym.n_super; v++)
+            for (q = m.sym.a_ptr[v]; q < m.sym.a_ptr[v + 1]; q++) {
+                int32_t row, column;
+                hdi_entry_place(&m.sym, v, q, &row, &column);
+                CHECK(column <= row);
+                for (c = 0; c < PICKED; c++)
+                    if (c * 29 % n == column) off = fmax(off, fabs(entries[k * count + q] - want[(k * PICKED + c) * n + row]));
+                if (row == column) off = fmax(off, fabs(entries[k * count + q] - diag[k * n + row]));
+            }
+    }
+    CHECK_MSG(off <= 1e-12 * size, "mesh %d, level %d: sums of entries are off by %g", kind, level, off / size);
+    hdi_elim_free(&m);
+    CHECK(ctx.bytes_in_use == 0);
+    hd_laplacian_free(lap);
+    free(diag);
+    free(entries);
+    free(want);
+}
+
+static void int_invert(void) {
+    int level;
+    for (level = 0; level <= hdi_simd_best(); level++) {
+        int_invert_of(1, HD_LAPLACIAN_FEM, level, 9);
+        int_invert_of(1, HD_LAPLACIAN_VORONOI_COT, level, 13);
+    }
+}
+
+/* factor Re 1/(x + theta) >= 1/(1 + x), which bounds of diagonals rest on, for the pole that all sets choose. */
+static void int_resolvent_pole(void) {
+    static const hd_pole_kind kinds[3] = {HD_POLES_UNIFORM, HD_POLES_KERNEL, HD_POLES_DIAGONAL};
+    int q;
+    int32_t r, k;
+    for (q = 0; q < 3; q++) {
+        for (r = 2; r <= 14; r++) {
+            hd_rational set;
+            hd_error e;
+            double factor = 1;
+            int32_t best;
+            CHECK(hdi_rational_get(&set, kinds[q], r, &e) == HD_OK);
+            best = hdi_resolvent_pole(&set, &factor);
+            CHECK_MSG(best >= 0 && best < set.n_poles && factor < 10, "set %d, degree %d: pole %d, factor %g", q, (int)r, (int)best, factor);
+            for (k = -1; k < 600 && best >= 0; k++) {
+                const double x = k < 0 ? 0 : pow(10, -4 + 0.02 * k);
+                const hd_c64 z = hdi_cdiv(hdi_c(1, 0), hdi_c(x + set.theta[best].re, set.theta[best].im));
+                CHECK_MSG(factor * z.re * (1 + x) >= 1 - 1e-12, "set %d, degree %d, x %g: %g", q, (int)r, x, factor * z.re * (1 + x));
+            }
+        }
+    }
+}
+
+static hd_progress int_stop_at(void *user, const char *stage, double done) {
+    (void)stage;
+    (void)done;
+    return --*(int64_t *)user == 0 ? HD_PROGRESS_CANCEL : HD_PROGRESS_CONTINUE;
+}
+
+/* The way of hd_heat_pairs for more vertices than columns fit: the same numbers as by columns, and as the dense. */
+static void int_pairs_by_entries(void) {
+    enum { PAIRS = 60 };
+    int kind, form, q, way;
+    for (form = 0; form < 2; form++) {
+        hd_laplacian *lap = int_mesh(0, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        hd_heat *heat = NULL;
+        int32_t i[PAIRS], j[PAIRS];
+        double K[PAIRS], d[PAIRS], one_K[PAIRS], one_d[PAIRS];
+        const double t = 3 * lap->h * lap->h;
+        uint64_t seed = 4;
+        CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+        for (kind = 0; kind < 4; kind++) {
+            double size = 0, size_K = 0;
+            hd_report rep;
+            memset(&rep, 0, sizeof rep);
+            for (q = 0; q < PAIRS; q++) {
+                i[q] = q % 3 ? i[q - 1] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
+                j[q] = q % 11 == 5 ? i[q] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
+            }
+            CHECK(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, K, d, NULL) >= 0);
+            CHECK(hdi_pairs_by_entries(heat, (hd_distance_kind)kind, t, PAIRS, i, j, one_K, one_d, &rep) >= 0 && rep.error.status == HD_OK && rep.status >= 0);
+            for (q = 0; q < PAIRS; q++) {
+                size = fmax(size, d[q]);
+                size_K = fmax(size_K, kind < 2 ? fabs(K[q]) : 0);
+            }
+            for (q = 0; q < PAIRS; q++) {
+                CHECK_MSG(fabs(d[q] - one_d[q]) <= 1e-6 * size && (i[q] != j[q] || one_d[q] == 0), "kind %d: %.12g by columns, %.12g by entries", kind, d[q], one_d[q]);
+                if (kind < 2) CHECK_MSG(fabs(K[q] - one_K[q]) <= 1e-7 * size_K, "kind %d: entry %.12g by columns, %.12g by entries", kind, K[q], one_K[q]);
+            }
+            CHECK_MSG(kind > 1 || (rep.error_bound > 0 && rep.error_bound < 1e-3), "kind %d: bound %g", kind, rep.error_bound);
+            for (way = 0; way < 3; way++) {      /* stopped early, in the middle, and not at all */
+                int64_t left = way == 0 ? 1 : way == 1 ? 9 : 100000;
+                const int64_t all = left;
+                hd_context *ctx = lap->context;
+                ctx->progress = int_stop_at;
+                ctx->progress_user = &left;
+                memset(&rep, 0, sizeof rep);
+                CHECK((hdi_pairs_by_entries(heat, (hd_distance_kind)kind, t, PAIRS, i, j, NULL, one_d, &rep) == HD_ERR_CANCELLED) == (left <= 0));
+                CHECK(left < all && rep.status == rep.error.status);
+                ctx->progress = NULL;
+            }
+        }
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+    }
+}
+
 /* ---- [09] intrinsic triangulations ---- */
 
 /* The area of a needle with sides 1, 1 and x, and of triangles of integer sides. */
@@ -1915,6 +2078,9 @@ int main(void) {
     int_silan_bounds();
     int_batches();
     test_shared();
+    int_invert();
+    int_resolvent_pole();
+    int_pairs_by_entries();
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }

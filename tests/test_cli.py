@@ -1142,6 +1142,17 @@ class Distances(Case):
         for c, (s, t) in enumerate((s, t) for s in sources for t in times):
             self.close(columns(got, c), one[s, t], 1e-7)
         self.assertEqual([r[0] for r in got][3], 0)
+        times = ("9h2", "1h2", "3h2", "20h2", "2h2", "14h2", "1.5h2", "5h2", "7h2", "4h2", "12h2", "17h2")       # so many share their poles
+        for definition in ("classical", "weighted"):
+            run = ("distance", self.torus, "--source", "3,700,3", "--definition", definition, "--laplacian", "voronoi-cot")
+            got, r = self.field(*run, "--t", ",".join(times)), self.report(*run, "--t", ",".join(times))
+            self.assertEqual((len(got[0]), len(r["per_time"])), (36, 12))
+            self.assertGreater(r["degree"], 14)                     # no set for a single time has more
+            for k in (0, 3, 10):
+                one = self.field(*run, "--t", times[k])
+                for q in range(3):
+                    self.close(columns(got, 12 * q + k), columns(one, q), 1e-6)
+        times = ("30h2", "2h2", "9h2")
         got = self.field("hks", self.torus, "--t", ",".join(times))
         for c, t in enumerate(times):
             self.close(columns(got, c), self.field("hks", self.torus, "--t", t), 2e-7)         # together they may share other poles

@@ -118,54 +118,6 @@ static void all_heat(const heat_case *c, hd_method method) {
 
 /* ---- what selected inversion answers ---- */
 
-/* X diag(g) X' [n n] on rows. */
-static double *all_matrix(const heat_case *c, const double *g) {
-    const int32_t n = c->lap->n_active;
-    double *K = DENSE_NEW(double, (int64_t)n * n);
-    int32_t i, j, k;
-    for (k = 0; k < n; k++)
-        for (i = 0; i < n; i++)
-            for (j = 0; j < n; j++) K[(size_t)i * (size_t)n + (size_t)j] += g[k] * c->pair.x[(size_t)k * (size_t)n + (size_t)i] * c->pair.x[(size_t)k * (size_t)n + (size_t)j];
-    return K;
-}
-
-static double *all_kernel(const heat_case *c, double t) {
-    double *g = DENSE_NEW(double, c->lap->n_active), *K;
-    int32_t k;
-    for (k = 0; k < c->lap->n_active; k++) g[k] = exp(-t * c->pair.lambda[k]);
-    K = all_matrix(c, g);
-    free(g);
-    return K;
-}
-
-/* A B [n n], both symmetric. */
-static double *all_product(const double *a, const double *b, int32_t n) {
-    double *out = DENSE_NEW(double, (int64_t)n * n);
-    int32_t i;
-    for (i = 0; i < n; i++) dense_apply(b, a + (size_t)i * (size_t)n, out + (size_t)i * (size_t)n, n);
-    return out;
-}
-
-/* H with d(i,j)^2 = H_ii - 2 H_ij + H_jj. */
-static double *all_gram(const heat_case *c, hd_distance_kind kind, double t) {
-    const int32_t n = c->lap->n_active;
-    double *g = DENSE_NEW(double, n), *H, *HB, *BHB;
-    int32_t k;
-    for (k = 0; k < n; k++) {
-        const double l = c->pair.lambda[k];
-        g[k] = kind <= HD_DISTANCE_WEIGHTED ? exp(-2 * t * l) : l > 0 ? (kind == HD_DISTANCE_COMMUTE ? 1 / l : 1 / (l * l)) : 0;
-    }
-    H = all_matrix(c, g);
-    free(g);
-    if (kind != HD_DISTANCE_WEIGHTED) return H;
-    HB = all_product(H, c->pair.B, n);           /* B H B = (B (H B)), and B times columns is B times the rows of the transpose */
-    dense_transpose(HB, n);
-    BHB = all_product(HB, c->pair.B, n);
-    free(H);
-    free(HB);
-    return BHB;
-}
-
 static double all_at(const double *H, const hd_laplacian *lap, int32_t v, int32_t w) {
     const int32_t i = lap->row[v], j = lap->row[w];
     return i < 0 || j < 0 ? 0 : H[(size_t)i * (size_t)lap->n_active + (size_t)j];
@@ -179,10 +131,7 @@ static double all_distance(const double *H, const hd_laplacian *lap, hd_distance
     return sqrt(fmax(0, all_at(H, lap, v, v) - 2 * all_at(H, lap, v, w) + all_at(H, lap, w, w)));
 }
 
-/* Of the oracle, relative to the entries of H: eigenvalues are off by an epsilon of the largest. */
-static double all_slack(const heat_case *c, hd_distance_kind kind, double t) {
-    return kind >= HD_DISTANCE_COMMUTE ? 1e-11 : 1e-12 + 2e-15 * fmin(t * c->top, 1e8);
-}
+static double all_slack(const heat_case *c, hd_distance_kind kind, double t) { return kind >= HD_DISTANCE_COMMUTE ? 1e-11 : diag_slack(c, t); }
 
 /* How far d is off, beyond what the oracle may be: a difference of numbers of this size. */
 static double all_off(double d, double want, double size) {
@@ -200,8 +149,8 @@ static double all_largest(const double *H, int32_t n) {
 static void all_diagonal(const heat_case *c, hd_heat *heat, double t) {
     const hd_laplacian *lap = c->lap;
     const int32_t n = lap->n_active;
-    double *K = all_kernel(c, t), *KB = all_product(K, c->pair.B, n), *D = DENSE_NEW(double, lap->n), *E = DENSE_NEW(double, lap->L.nnz), off, size;
-    const double slack = all_slack(c, HD_DISTANCE_CLASSICAL, t);
+    double *K = diag_kernel(c, t), *KB = diag_product(K, c->pair.B, n), *D = DENSE_NEW(double, lap->n), *E = DENSE_NEW(double, lap->L.nnz), off, size;
+    const double slack = diag_slack(c, t);
     hd_report rep;
     int64_t p;
     int32_t v;
@@ -232,7 +181,7 @@ static void all_diagonal(const heat_case *c, hd_heat *heat, double t) {
 static void all_distances(const heat_case *c, hd_heat *heat, hd_distance_kind kind, double t) {
     const hd_laplacian *lap = c->lap;
     const int32_t n = lap->n, sources[3] = {lap->vertex[0], lap->vertex[lap->n_active - 1], lap->row[n - 1] < 0 ? n - 1 : n / 2};
-    double *H = all_gram(c, kind, t), *D = DENSE_NEW(double, 3 * n);
+    double *H = diag_gram(c, kind, t), *D = DENSE_NEW(double, 3 * n);
     const double noise = all_slack(c, kind, t) * all_largest(H, lap->n_active);
     hd_report rep;
     int32_t v;
@@ -257,7 +206,7 @@ static void all_distances(const heat_case *c, hd_heat *heat, hd_distance_kind ki
 static void all_pairs(const heat_case *c, hd_heat *heat, hd_distance_kind kind, double t) {
     enum { PAIRS = 24 };
     const hd_laplacian *lap = c->lap;
-    double *H = all_gram(c, kind, t), *K = all_kernel(c, t), *KB = all_product(K, c->pair.B, lap->n_active), k[PAIRS], d[PAIRS], off = 0, off_k = 0, size = 0, size_k = 0;
+    double *H = diag_gram(c, kind, t), *K = diag_kernel(c, t), *KB = diag_product(K, c->pair.B, lap->n_active), k[PAIRS], d[PAIRS], off = 0, off_k = 0, size = 0, size_k = 0;
     const double noise = all_slack(c, kind, t) * all_largest(H, lap->n_active);
     int32_t i[PAIRS], j[PAIRS], q;
     uint64_t seed = 9;
@@ -278,7 +227,7 @@ static void all_pairs(const heat_case *c, hd_heat *heat, hd_distance_kind kind, 
         size_k = fmax(size_k, fabs(want_k));
     }
     CHECK_MSG(off <= 1e-6 * size, "%s, pairs %d, t %g: d is off by %g", c->what, (int)kind, t, off / size);
-    CHECK_MSG(off_k <= (1e-6 + all_slack(c, HD_DISTANCE_CLASSICAL, t)) * size_k, "%s, pairs %d, t %g: K is off by %g", c->what, (int)kind, t, off_k / size_k);
+    CHECK_MSG(off_k <= (1e-6 + diag_slack(c, t)) * size_k, "%s, pairs %d, t %g: K is off by %g", c->what, (int)kind, t, off_k / size_k);
     free(H);
     free(K);
     free(KB);
@@ -288,7 +237,7 @@ static void all_pairs(const heat_case *c, hd_heat *heat, hd_distance_kind kind, 
 static void all_samples(const heat_case *c, hd_heat *heat, hd_distance_kind kind, double t) {
     enum { COUNT = 7 };
     const hd_laplacian *lap = c->lap;
-    double *H = all_gram(c, kind, t), distance[COUNT], size = sqrt(2 * all_largest(H, lap->n_active));
+    double *H = diag_gram(c, kind, t), distance[COUNT], size = sqrt(2 * all_largest(H, lap->n_active));
     int32_t vertex[COUNT], q, p, v;
     hd_report rep;
     vertex[0] = lap->vertex[1];

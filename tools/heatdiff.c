@@ -1622,13 +1622,6 @@ static int run_sources(run *r)
     return DONE;
 }
 
-/* Sampling compares distances that can be much smaller than what they are the difference of, and takes many columns from one set of factors:
- * the highest degree costs it little. Distances to all vertices take it where they see the need. */
-static int32_t plan_degree(const options *o)
-{
-    return o->command == CMD_SAMPLE && !is_timeless(o) && !o->degree && !o->poles ? 14 : (int32_t)o->degree;
-}
-
 static int run_plan(run *r)
 {
     const options *o = r->o;
@@ -1640,7 +1633,7 @@ static int run_plan(run *r)
     opts.solver = (hd_solver)o->solver;
     opts.precond = (hd_precond)o->precond;
     opts.poles = (hd_pole_kind)o->poles;
-    opts.degree = plan_degree(o);
+    opts.degree = (int32_t)o->degree;
     opts.tol = o->tol;
     opts.max_iterations = (int32_t)o->max_iterations;
     opts.context = &r->context;
@@ -1784,24 +1777,20 @@ static int solved_time(run *r, int k, hd_status status, hd_report *report)
     return DONE;
 }
 
-/* All times together, which may share factors. */
-static int solve_signature(run *r)
+/* The signature, or distances from all sources: all times together, because many share their factors and cost little more than one. What the
+ * call returned is all that is known of any of them. */
+static int solve_inverse(run *r)
 {
+    const options *o = r->o;
     hd_report report;
+    hd_status status;
     int k;
-    if (hd_heat_diagonal(r->heat, r->n_times, r->times, (hd_kernel)r->o->kernel, r->values, 0, &report) < 0) return fail_solve(r, &report, 0);
+    if (o->command == CMD_HKS) status = hd_heat_diagonal(r->heat, r->n_times, r->times, (hd_kernel)o->kernel, r->values, 0, &report);
+    else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->sources, r->values, 0, &report);
+    if (status < 0) return fail_solve(r, &report, 0);
     for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
     summary_add(&r->sum, &report, NULL, 0);
     return DONE;
-}
-
-/* From all sources, at time k. */
-static int solve_distance(run *r, int k)
-{
-    hd_report report;
-    const hd_status status = hd_heat_distance(r->heat, (hd_distance_kind)r->o->definition, 1, r->times + k, r->n_inputs, r->sources, column_of(r, 0, k),
-                                              (size_t)r->rows * (size_t)r->n_times, &report);
-    return solved_time(r, k, status, &report);
 }
 
 /* Kernel and distance of the pairs at time k, in two columns; without a time the distance alone. */
@@ -1832,11 +1821,11 @@ static int solve_command(run *r)
     const unsigned command = r->o->command;
     int code = DONE, k;
     if (command == CMD_SAMPLE) return solve_sample(r);
-    if (command == CMD_HKS) return solve_signature(r);
-    if (!(command & (CMD_DISTANCE | CMD_PAIRS))) return solve_all(r);
+    if (command & CMD_INVERTS) return solve_inverse(r);
+    if (command != CMD_PAIRS) return solve_all(r);
     for (k = 0; k < r->n_times && !code; k++) {
         bar_part("time", k, r->n_times);
-        code = command == CMD_PAIRS ? solve_pairs(r, k) : solve_distance(r, k);
+        code = solve_pairs(r, k);
     }
     return code;
 }
