@@ -702,7 +702,8 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
 
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
- * vertices). For a full B without a0 B^-1, as above. The report's bound is that of the rational error. */
+ * vertices). For a full B without a0 B^-1, as above. The report's bound is that of the rational error; by default the highest degree takes over where it
+ * is above 5e-7 of the largest value. */
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
@@ -15759,21 +15760,43 @@ static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
     if (largest > 0) rep->error_rational = rep->error_bound = most / largest;
 }
 
+/* With the set's degree, into values. */
+static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
+    hd_heat *heat = h->heat;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    const int64_t size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
+    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
+    hdi_entries x;
+    if (room && hdi_entries_make(h, 0, room, size, &x) >= 0) {
+        hdi_edges_judge(&heat->elim, &x, h->rep);
+        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+    }
+    return hdi_scope_end(&scope);
+}
+
+/* As hdi_diagonal_sure, by the error relative to the largest value. */
+static hd_status hdi_edges_sure(hdi_heat_call *h, double *values) {
+    const hd_report before = *h->rep;
+    const hd_heat *heat = h->heat;
+    hd_status st;
+    if (hdi_edges_once(h, values) < 0) return h->e->status;
+    if (heat->opts.degree || heat->opts.rational || heat->opts.poles || h->rep->error_bound <= HDI_DIAGONAL_SURE) return HD_OK;
+    *h->rep = before;
+    h->degree = HDI_RAT_KERNEL_MAX;
+    st = hdi_edges_once(h, values);
+    h->degree = 0;
+    if (st != HD_ERR_MEMORY_LIMIT) return st;
+    *h->rep = before;                            /* no room for twice the factors: the first answer it is */
+    return hdi_edges_once(h, values);
+}
+
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report) {
     hdi_heat_call h;
-    hdi_entries x;
-    double *room;
-    int64_t size;
     if (hdi_kernel_begin(&h, heat, t, HD_KERNEL_SYMMETRIC, 1, report) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, 1, &t) >= 0 && !values) hdi_missing(h.e);
     if (h.e->status < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) return hdi_heat_end(&h);
     hdi_direct_only(&h);
-    size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
-    room = HDI_TAKE(&h.s, double, 2 * HDI_CAST(size_t, size));
-    if (room && hdi_entries_make(&h, 0, room, size, &x) >= 0) {
-        hdi_edges_judge(&heat->elim, &x, h.rep);
-        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
-    }
+    (void)hdi_edges_sure(&h, values);
     return hdi_heat_end(&h);
 }
 
