@@ -516,7 +516,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
  * Prabhakaran, Guo 2012; Belkin, Niyogi 2008; what differs from them is told in room [10]. */
 HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err);
 
-/* The tufted Laplacian of a point set on a surface (Sharp, Crane 2020, section 5.7): cotangent weights, none of them negative, six or seven in a row.
+/* The tufted Laplacian of a point set on a surface (Sharp, Crane 2020, section 5.7): cotangent weights, none of them negative, 7 to 13 in a row.
  * xyz      [3 n] coordinates, finite
  * nbr_ptr  [n + 1] offsets into nbr; nbr_ptr[0] = 0. NULL, and nbr NULL: the opts->neighbours nearest points of each are searched; points in the place
  *          of an earlier one become inert then

@@ -679,6 +679,12 @@ class Polygons(Case):
         f = self.file("f.txt", "1\n2\n3\n4\n")
         self.close(self.field("diffuse", self.square(), "--input", f, "--t", 100), [[2.5]] * 4, 1e-7)
 
+    def test_triangulations_split_polygons(self):
+        for option, word in (("--tufted", "tufted"), ("--intrinsic-delaunay", "delaunay")):
+            r = json.loads(self.good("info", self.square(), option, "--json").stdout)
+            self.assertEqual((r["laplacian"], r["intrinsic"], r["triangles_used"]), ("fem", word, 2))
+            self.assertIn(option, self.bad(2, "info", self.square(), option, "--laplacian", "polygon"))
+
     def test_lambda_is_checked(self):
         for value in ("0", "-1", "x", "nan", "1e200", ""):
             self.assertIn("--lambda", self.bad(2, "info", self.square(), "--lambda", value))
@@ -1811,6 +1817,48 @@ class Points(Case):
         out = self.field("diffuse", self.xyz, "--input", data, "--t", "0.1")
         ratio = [a[0] / p[2] for a, p in zip(out, self.v) if abs(p[2]) > 0.3]
         self.assertTrue(all(abs(q / math.exp(-0.2) - 1) < 0.05 for q in ratio), (min(ratio), max(ratio)))     # z has eigenvalue 2
+
+    def test_tufted(self):
+        """Triangles made of the points' neighbours; those in the place of an earlier one are left out."""
+        twice = self.file("twice.xyz", "".join("%.17g %.17g %.17g\n" % p for p in self.v + self.v[:3]))
+        data = self.file("g.txt", "".join("%g\n" % p[2] for p in self.v))
+        for kind in ((), ("--laplacian", "voronoi-cot"), ("--laplacian", "cot")):
+            r = self.report(twice, "--tufted", *kind)
+            self.assertEqual((r["laplacian"], r["intrinsic"], r["coincident"], r["inert"], r["sheets"], r["negative_weights"]),
+                             (kind[-1] if kind else "fem", "tufted", 3, 3, 2, 0))
+            self.assertAlmostEqual(r["area"] / (4 * math.pi), 1, delta=0.05)
+            self.assertNotIn("bandwidth", r)
+        for kind in ("fem", "voronoi-cot"):
+            out = self.field("diffuse", self.xyz, "--tufted", "--laplacian", kind, "--input", data, "--t", "0.1")
+            ratio = [a[0] / p[2] for a, p in zip(out, self.v) if abs(p[2]) > 0.3]
+            self.assertTrue(all(abs(q / math.exp(-0.2) - 1) < 0.05 for q in ratio), (kind, min(ratio), max(ratio)))
+        self.assertRegex(self.good("info", self.xyz, "--tufted").stdout.decode(), "edges flipped")
+        self.assertIn("--tufted", self.bad(1, "info", self.xyz, "--intrinsic-delaunay"))
+        for more in (("--laplacian", "exp"), ("--laplacian", "voronoi-exp"), ("--laplacian", "polygon"), ("--bandwidth", 1), ("--lambda", 1)):
+            self.assertIn("--tufted", self.bad(2, "info", self.xyz, "--tufted", *more))
+        self.assertIn("--lambda", self.bad(1, "info", self.xyz, "--lambda", 1))
+        self.assertIn("faces", self.bad(1, "geodesic", self.xyz, "--source", 0))
+
+    def test_every_question(self):
+        """Signature, distances, pairs and samples agree with the kernel on every kind of point Laplacian, and on polygons."""
+        square = [(float(i % 5), i // 5 + 0.1 * (i % 2), 0.0) for i in range(25)]
+        quads = self.file("quads.obj", obj_text(square, [(i, i + 1, i + 6, i + 5) for i in range(19) if i % 5 < 4]))
+        xyz = self.file("few.xyz", "".join("%.17g %.17g %.17g\n" % p for p in self.v[::6]))
+        for path, args in ((quads, ()), (quads, ("--tufted",)), (xyz, ()), (xyz, ("--laplacian", "exp")), (xyz, ("--tufted", "--laplacian", "voronoi-cot"))):
+            n, t, twice = (25, "0.4", "0.8") if path == quads else (50, "2", "4") if "exp" in args else (50, "0.1", "0.2")
+            every = ",".join(map(str, range(n)))
+            k = self.field("kernel", path, *args, "--kernel", "symmetric", "--source", every, "--t", twice)
+            want = [math.sqrt(k[0][0] - 2 * k[i][0] + k[i][i]) if i else 0 for i in range(n)]
+            self.close(self.field("hks", path, *args, "--t", twice), [[k[i][i]] for i in range(n)], 1e-6)
+            self.close(self.field("distance", path, *args, "--source", 0, "--t", t), [[x] for x in want], 1e-6)
+            pairs = self.file("p.txt", "".join("0 %d\n" % i for i in range(n)))
+            self.close(columns(self.field("pairs", path, *args, "--input", pairs, "--t", t), 3), [[x] for x in want], 1e-6)
+            found = self.field("sample", path, *args, "--source", 0, "--count", 2, "--t", t)
+            self.assertAlmostEqual(found[1][1] / max(want), 1, delta=1e-6)
+            self.assertAlmostEqual(want[int(found[1][0])] / max(want), 1, delta=1e-6)
+            for kind in ("commute", "biharmonic", "weighted"):
+                d = self.field("distance", path, *args, "--source", 0, "--definition", kind, *(("--t", t) if kind == "weighted" else ()))
+                self.assertTrue(d[0] == [0] and all(x[0] > 0 for x in d[1:]) if kind != "weighted" else d[0] == [0])
 
     def test_nothing_to_compute_on(self):
         line = self.file("line.xyz", "0 0 0\n1 0 0\n2 0 0\n")

@@ -285,9 +285,128 @@ static void all_refusals(const heat_case *c, hd_method method) {
     free(D);
 }
 
+/* ---- doors between the operators ---- */
+
+static int all_same(const hd_laplacian *a, const hd_laplacian *b) {
+    return a->n_active == b->n_active && a->L.nnz == b->L.nnz && a->h == b->h && memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0 &&
+           memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 && memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0 &&
+           memcmp(a->vertex, b->vertex, (size_t)a->n_active * sizeof *a->vertex) == 0 && memcmp(&a->mesh, &b->mesh, sizeof a->mesh) == 0;
+}
+
+/* The neighbours that are searched are those one would have given, and points in the place of an earlier one have none. */
+static void all_neighbours(void) {
+    enum { N = 200, K = 12 };
+    shape s = shape_points(N, shape_on_torus, 78.95683520871486, 1, 8);
+    int32_t *nbr = DENSE_NEW(int32_t, N * (K + 1));
+    int64_t *ptr = DENSE_NEW(int64_t, N + 2);
+    double *twice = DENSE_NEW(double, 3 * N + 3);
+    hd_laplacian *found = NULL, *given = NULL, *more = NULL;
+    hd_laplacian_opts o;
+    hd_error e;
+    int32_t i;
+    memset(&o, 0, sizeof o);
+    o.neighbours = K;
+    CHECK(hd_neighbours_nearest(nbr, NULL, s.xyz, N, NULL, N, K + 1, NULL, &e) == HD_OK);
+    for (i = 0; i <= N; i++) ptr[i] = (int64_t)i * (K + 1);
+    CHECK_MSG(hd_laplacian_tufted_points(&found, s.xyz, N, NULL, NULL, &o, &e) == HD_OK, "%s", e.text);
+    CHECK(hd_laplacian_tufted_points(&given, s.xyz, N, ptr, nbr, &o, &e) == HD_OK);
+    CHECK(all_same(found, given) && found->points.neighbours == K && found->points.n_coincident == 0 && found->n_active == N);
+    memcpy(twice, s.xyz, 3 * N * sizeof(double));
+    memcpy(twice + 3 * N, s.xyz + 3 * 5, 3 * sizeof(double));
+    CHECK(hd_laplacian_tufted_points(&more, twice, N + 1, NULL, NULL, &o, &e) == HD_OK);
+    CHECK(more->points.n_coincident == 1 && more->mesh.n_inert == 1 && more->row[N] == -1 && more->area == found->area);
+    CHECK(memcmp(more->L.val, found->L.val, (size_t)found->L.nnz * sizeof(double)) == 0 && more->L.nnz == found->L.nnz);
+    hd_laplacian_free(found);
+    hd_laplacian_free(given);
+    hd_laplacian_free(more);
+    shape_free(&s);
+    free(nbr);
+    free(ptr);
+    free(twice);
+}
+
+/* Polygons split for an intrinsic triangulation are the triangles of their fans. */
+static void all_fans(void) {
+    shape_poly s = shape_quad_torus(9, 7, 2, 0.9);
+    int32_t *tri = DENSE_NEW(int32_t, 6 * s.n_faces), f;
+    hd_laplacian *fans = NULL, *triangles = NULL;
+    hd_laplacian_opts o;
+    hd_error e;
+    uint64_t seed = 21;
+    int way;
+    for (f = 0; f < 3 * s.n; f++) s.xyz[f] += 0.2 * dense_signed(&seed);
+    for (f = 0; f < s.n_faces; f++) {
+        const int32_t *v = s.face_idx + s.face_ptr[f];
+        tri[6 * f] = tri[6 * f + 3] = v[0];
+        tri[6 * f + 1] = v[1];
+        tri[6 * f + 2] = tri[6 * f + 4] = v[2];
+        tri[6 * f + 5] = v[3];
+    }
+    for (way = 0; way < 2; way++) {
+        memset(&o, 0, sizeof o);
+        o.tufted = way;
+        o.intrinsic_delaunay = !way;
+        CHECK(hd_laplacian_polygons(&fans, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, &o, &e) == HD_OK && fans->kind == HD_LAPLACIAN_FEM && fans->mesh.n_flips > 0);
+        CHECK(hd_laplacian_triangles(&triangles, s.xyz, s.n, tri, 2 * s.n_faces, &o, &e) == HD_OK && all_same(fans, triangles));
+        o.kind = HD_LAPLACIAN_POLYGON;
+        CHECK(hd_laplacian_polygons(&fans, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, &o, &e) == HD_ERR_ARGUMENT);
+        hd_laplacian_free(fans);
+        hd_laplacian_free(triangles);
+    }
+    o.kind = HD_LAPLACIAN_DEFAULT;
+    o.mollify = 2;
+    CHECK(hd_laplacian_polygons(&fans, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, &o, &e) == HD_ERR_ARGUMENT);
+    shape_poly_free(&s);
+    free(tri);
+}
+
+/* What each door does not take. */
+static void all_kinds(void) {
+    shape s = shape_icosphere(1);
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts o;
+    hd_error e;
+    int k;
+    for (k = HD_LAPLACIAN_DEFAULT; k <= HD_LAPLACIAN_MATRICES + 1; k++) {
+        const int triangles = k >= HD_LAPLACIAN_FEM && k <= HD_LAPLACIAN_COT, exponential = k == HD_LAPLACIAN_VORONOI_EXP || k == HD_LAPLACIAN_EXP;
+        memset(&o, 0, sizeof o);
+        o.kind = (hd_laplacian_kind)k;
+        CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == (k == 0 || triangles ? HD_OK : HD_ERR_ARGUMENT));
+        if (e.status == HD_OK) {
+            CHECK((int)lap->kind == (k ? k : HD_LAPLACIAN_FEM));
+            hd_laplacian_free(lap);
+        }
+        CHECK(hd_laplacian_points(&lap, s.xyz, s.n, &o, &e) == (k == 0 || exponential ? HD_OK : HD_ERR_ARGUMENT));
+        if (e.status == HD_OK) {
+            CHECK((int)lap->kind == (k ? k : HD_LAPLACIAN_VORONOI_EXP));
+            hd_laplacian_free(lap);
+        }
+        CHECK(hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, &o, &e) == (k == 0 || triangles ? HD_OK : HD_ERR_ARGUMENT));
+        if (e.status == HD_OK) {
+            CHECK((int)lap->kind == (k ? k : HD_LAPLACIAN_FEM));
+            hd_laplacian_free(lap);
+        }
+        o.tufted = 1;
+        CHECK(hd_laplacian_points(&lap, s.xyz, s.n, &o, &e) == HD_ERR_ARGUMENT);
+    }
+    memset(&o, 0, sizeof o);
+    o.neighbours = 5;
+    CHECK(hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT);
+    o.neighbours = 0;
+    o.mollify = 2;
+    CHECK(hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_tufted_points(&lap, s.xyz, 0, NULL, NULL, NULL, &e) == HD_ERR_EMPTY && hd_laplacian_tufted_points(&lap, s.xyz, 2, NULL, NULL, NULL, &e) == HD_ERR_EMPTY);
+    s.xyz[7] = HUGE_VAL;
+    CHECK(hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 2);
+    shape_free(&s);
+}
+
 static void test_operators_all(void) {
     static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
     int k, m;
+    all_neighbours();
+    all_fans();
+    all_kinds();
     for (k = 0; k < ALL_OPERATORS; k++) {
         heat_case c = heat_case_of(all_laplacian(k), all_names[k]);
         for (m = 0; m < 4; m++) {

@@ -630,7 +630,13 @@ static hd_status pts_robust(hd_context *ctx, int variant) {
         CHECK((st >= 0) == (lap != (hd_laplacian *)&test_passed));
         if (st >= 0) hd_laplacian_free(lap);
     } else if (variant == 2) st = hd_neighbours_nearest(id, d2, s.xyz, 60, NULL, 0, 4, ctx, &e);
-    else {
+    else if (variant == 4) {
+        st = hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, NULL, &e);
+        hd_laplacian_free(st >= 0 ? lap : NULL);
+        o.kind = HD_LAPLACIAN_DEFAULT;
+        if (st >= 0) st = hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, &o, &e);
+        if (st >= 0) hd_laplacian_free(lap);
+    } else {
         st = hd_neighbours_radius(&a, s.xyz, 60, NULL, 0, 0.5, ctx, &e);
         if (st >= 0) hd_csr_free(&a, ctx);
     }

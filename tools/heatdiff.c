@@ -1856,6 +1856,7 @@ static int solve_geodesic(run *r)
 {
     hd_geodesic_opts opts;
     hd_error err;
+    if (r->mesh.n_tri == 0) return fail(FAILED, "%s: geodesic needs faces, and there are none", r->mesh_name);
     memset(&opts, 0, sizeof opts);
     opts.t = r->times[0];
     opts.ordering = (hd_ordering)r->o->ordering;
@@ -2492,6 +2493,11 @@ static void info_times(const hd_laplacian *lap)
                AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
 }
 
+static void info_laplacian(const run *r, const hd_laplacian *lap)
+{
+    printf("%-22s %s%s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind), r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+}
+
 static void info_intrinsic(const hd_mesh_report *m)
 {
     if (!m->n_sheets) return;
@@ -2507,7 +2513,8 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
 {
     const hd_point_report *p = &lap->points;
     printf("%-22s %s (%s)\n", "points", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
-    printf("%-22s %ld\n%-22s %ld\n", "points", (long)r->mesh.n, "components", (long)lap->n_components);
+    info_laplacian(r, lap);
+    printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "components", (long)lap->n_components);
     printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1], high[2] - low[2],
            low[0], low[1], low[2]);
     printf("%-22s %.9g\n%-22s %.9g  (mean distance to the nearest point)\n", r->o->tufted ? "area of the stars" : "area of the cells", lap->area, "spacing h", lap->h);
@@ -2530,7 +2537,7 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
 {
     const hd_mesh_report *m = &lap->mesh;
     printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
-    printf("%-22s %s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind));
+    info_laplacian(r, lap);
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "faces", (long)r->mesh.n_faces);
     if (m->n_faces != r->mesh.n_faces) printf("%-22s %ld  (polygons are split as fans)\n", "triangles", (long)m->n_faces);
     printf("%-22s %lld\n%-22s %ld\n%-22s %ld\n", "edges", (long long)m->n_edges, "components", (long)lap->n_components, "boundary loops",
