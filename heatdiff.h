@@ -12084,23 +12084,28 @@ static hdi_values hdi_elim_values(const hdi_elim *m, double t) {
     return v;
 }
 
-/* Largest |diagonal entry| of t L + theta B. */
-static double hdi_elim_diagonal(const hd_laplacian *lap, double t, hd_c64 theta) {
+/* Largest |diagonal entry| of t L + theta_q B, over k of them. */
+static double hdi_elim_diagonal(const hd_laplacian *lap, double t, const hd_c64 *theta, int32_t k) {
     double most = 0;
     int64_t p;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++)
+    int32_t i, q;
+    for (i = 0; i < lap->n_active; i++) {
+        const double b = lap->b_diag[i];
+        double l = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            if (lap->L.col[p] == i) most = hdi_max(most, hypot(t * lap->L.val[p] + theta.re * lap->b_diag[i], theta.im * lap->b_diag[i]));
-    return most;
+            if (lap->L.col[p] == i) l = t * lap->L.val[p];
+        for (q = 0; q < k; q++) most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
+    }
+    return sqrt(most);
 }
 
 static hd_status hdi_elim_real(hdi_elim *m, double t, double theta, hd_error *e) {
+    const hd_c64 real = hdi_c(theta, 0);
     hdi_values v = hdi_elim_values(m, t);
-    v.theta[0] = hdi_c(theta * m->scale, 0);
+    v.theta[0] = hdi_cscale(m->scale, real);
     m->shift = 0;
     if (!m->real.ctx && hdi_factor_make(&m->real, &m->sym, 1, m->ctx, e) < 0) return e->status;
-    m->real.largest_entry = hdi_elim_diagonal(m->lap, t, hdi_c(theta, 0));
+    m->real.largest_entry = hdi_elim_diagonal(m->lap, t, &real, 1);
     return hdi_factor_run(&m->real, &v, e);
 }
 
@@ -12142,13 +12147,12 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
         if (hdi_factor_make(m->pack + m->n_packs, &m->sym, HDI_PACK, m->ctx, e) < 0) return e->status;
     if (m->lone >= 0 && hdi_elim_real(m, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < n_packs; i++) {
-        double most = 0;
+        hd_c64 theta[4];
         for (q = 0; q < 4; q++) {
-            const hd_c64 theta = set->theta[hdi_elim_pole(m, i, q)];
-            v.theta[q] = hdi_cscale(m->scale, theta);
-            most = hdi_max(most, hdi_elim_diagonal(m->lap, t, theta));
+            theta[q] = set->theta[hdi_elim_pole(m, i, q)];
+            v.theta[q] = hdi_cscale(m->scale, theta[q]);
         }
-        m->pack[i].largest_entry = most;
+        m->pack[i].largest_entry = hdi_elim_diagonal(m->lap, t, theta, 4);
         if (hdi_factor_run(m->pack + i, &v, e) < 0) {
             if (e->pole >= 0) e->pole = hdi_elim_pole(m, i, HDI_CAST(int32_t, e->pole));
             return e->status;
@@ -15194,8 +15198,8 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
         n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
         for (i = 0; i < n; i++)
             if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
-        if (h->t > 0) {
-            if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);   /* other threads may take all tasks */
+        if (h->t > 0) {                          /* told here too: the calling thread may find all lanes taken */
+            if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
             hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
             if (hdi_heat_collect(h, n) < 0) return hdi_heat_end(h);
         }

@@ -314,7 +314,7 @@ static void diag_inverse_threads(void) {
     diag_inverse_threads_of(&a, ball.xyz, 5, "mesh");
     hd_csr_free(&a, NULL);
     shape_free(&ball);
-    a = ldl_shape(LDL_DENSE, 300, 1, 1);
+    a = ldl_shape(LDL_DENSE, 420, 1, 1);
     diag_inverse_threads_of(&a, NULL, 2, "dense");
     hd_csr_free(&a, NULL);
     ldl_clique(&g, 0, 220);                      /* many small fronts below one that is shared */
@@ -844,6 +844,7 @@ static void diag_pairs_of(const heat_case *c) {
         i[q] = ldl_below(&seed, lap->n);
         j[q] = q % 10 == 3 ? i[q] : ldl_below(&seed, lap->n);
     }
+    i[0] = j[0] = 0;                             /* without mass in some cases */
     for (kind = 0; kind < 4; kind++) {
         double *H = diag_gram(c, (hd_distance_kind)kind, t), size = 0, size_k = dense_max_abs(KB, (int64_t)n * n);
         for (q = 0; q < PAIRS; q++) k[q] = d[q] = -5;
@@ -1005,7 +1006,7 @@ static void diag_own_sets(void) {
             hd_heat *heat;
             hd_report rep;
             const double t = q == 2 ? 2 : 2 * c.lap->h * c.lap->h;
-            double *g = DENSE_NEW(double, n), *D = DENSE_NEW(double, n), *K;
+            double *g = DENSE_NEW(double, n), *D = DENSE_NEW(double, n), *K, *KB;
             double off = 0, size = 0;
             int32_t i;
             memset(&set, 0, sizeof set);
@@ -1023,6 +1024,17 @@ static void diag_own_sets(void) {
                 size = fmax(size, D[i]);
             }
             CHECK_MSG(off <= 1e-12 * size && rep.error_bound <= 1e-10, "own set, kind %d: off by %g, bound %g", q, off / size, rep.error_bound);
+            hd_heat_free(heat);
+            set.a0 = 0.25;                       /* on the diagonal of the operator for any B */
+            heat = eng_create(c.lap, &o);
+            for (i = 0; i < n; i++) g[i] = 0.25 + 1 / (1 + t * c.pair.lambda[i]);
+            free(K);
+            K = diag_matrix(&c, g);
+            KB = diag_product(K, c.pair.B, n);
+            CHECK_MSG(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D, 0, &rep) == HD_OK, "%s", rep.error.text);
+            for (i = 0; i < n; i++) CHECK_MSG(fabs(D[c.lap->vertex[i]] - KB[(size_t)i * (size_t)n + (size_t)i]) <= 1e-12, "own set, kind %d: operator %.15g, not %.15g", q,
+                                              D[c.lap->vertex[i]], KB[(size_t)i * (size_t)n + (size_t)i]);
+            free(KB);
             hd_heat_free(heat);
             heat_case_free(&c);
             free(g);

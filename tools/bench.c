@@ -7,6 +7,7 @@
    With the rivals (see bench_rivals.h; CMake does this by itself where it finds them):
        c++ -std=c++17 -O3 -march=native -DNDEBUG -fopenmp -I/usr/include/eigen3 -c tools/bench_rivals.cpp
        cc -O2 -fopenmp -DHEATDIFF_BENCH_RIVALS tools/bench.c bench_rivals.o -o bench -lumfpack -lcholmod -lopenblas -lstdc++ -lm
+   and for the eigenpairs of the job signature -DHEATDIFF_BENCH_ARPACK in the first, -larpack in the second.
 
    Jobs, by default all:
        one      one column, t = 100 h^2, from (L, B) to the answer
@@ -17,13 +18,19 @@
        stages   ordering, analysis, four complex factors and their solves, on one thread and on all
        geodesic distances by the heat method from one source and from further ones, each alone and eight at a time; CGAL's runs on one thread. Errors: largest
                 difference from CGAL's with its shift of 1e-8 turned down to 1e-14, relative to the largest distance
+       signature
+                heat kernel signature of every vertex, t = 10 h^2 and 100 h^2, from (L, B) to the answer, against the smallest 300 eigenpairs by ARPACK; its stages
+                at 100 h^2 (inversion beside the rival's Lanczos; the check of rounding is a column); what it is of four complex factors; 16 and 100 times from 10
+                to 10^4 h^2 and classical distances from one vertex to all at 100 h^2 as multiples of it. The rival above 60000 rows only when asked for
        eigen    Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU. Slow: above 60000 rows only when asked for
 
    How it is measured. Both sides begin with the same two matrices in memory and run on the same number of threads. After a warm-up they take
    turns, and the best run of each counts; only freeing is left out. Whatever has a knob for accuracy is set, untimed, to the least work that reaches
    an error of 1e-7, relative to the largest value of a column: tol on our side, the number of Lanczos steps on theirs. UMFPACK and SparseLU get the
    best uniform poles of degree 7: their error is what it is. Errors are against the direct method with kernel poles of degree 14, and for many times
-   against a rival's Lanczos with full reorthogonalisation; the two are compared with each other on the way.
+   against a rival's Lanczos with full reorthogonalisation; the two are compared with each other on the way. Those of signatures are the largest over the
+   vertices relative to the vertex's own value, at 10, 100 and 10^4 h^2; the 300 eigenpairs leave out what they leave out. A rival that takes more than ten
+   seconds for signatures runs once.
    With the GNU library, memory that one run has freed stays in the process for the next: what a fresh page costs says more about the machine than
    about either side, above all on virtual ones that hand back what is free for two seconds. --fresh leaves malloc as it is.
 
@@ -55,6 +62,7 @@ int rival_silan_times(const rival_job *job, double *U, rival_result *r) { (void)
 int rival_umfpack(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)p; return rival_silan(job, U, r); }
 int rival_eigen_lu(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)p; return rival_silan(job, U, r); }
 int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_eigenpairs(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 int rival_reference(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 int rival_geodesic(const rival_mesh *mesh, double shift, int32_t k, const int32_t *s, double *D, rival_result *r) {
     (void)mesh; (void)shift; (void)k; (void)s; (void)D;
@@ -281,7 +289,7 @@ static double load_speed(int threads, int simd, const double *x, int64_t n) {
 
 /* ==== one of our runs ==== */
 
-enum { STAGE_OTHER, STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_SOLVE, STAGES };
+enum { STAGE_OTHER, STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_INVERT, STAGE_SOLVE, STAGES };
 
 /* Stage times by the library's own progress reports. What follows the last one counts for its stage. */
 typedef struct watch { const char *name; int stage; double since, seconds[STAGES]; } watch;
@@ -294,7 +302,7 @@ static void watch_turn(watch *w, int stage) {
 }
 
 static hd_progress watch_progress(void *user, const char *name, double done) {
-    static const char *const names[STAGES] = {"", "order", "analyse", "factor", "solve"};
+    static const char *const names[STAGES] = {"", "order", "analyse", "factor", "invert", "solve"};
     watch *w = (watch *)user;
     int k;
     (void)done;
@@ -329,8 +337,11 @@ typedef struct bench {
     rival_ordering ordering;     /* that suits shift-invert Lanczos best, once known */
 } bench;
 
-/* What to ask the library for: columns at times[0], or one at many times. */
+/* What to ask the library for: columns at times[0], or one at many times; the diagonal of k_t at all times; distances from the first vertex at times[0]. */
+typedef enum query { COLUMNS, DIAGONAL, DISTANCES } query;
+
 typedef struct ask {
+    query what;
     hd_method method;
     int32_t degree;              /* of kernel poles, 0: the library's choice */
     double tol;                  /* 0: the library's */
@@ -366,12 +377,17 @@ static hd_status plan_open(plan *p, const bench *b, const ask *a) {
 
 static void plan_close(plan *p) { hd_heat_free(p->heat); }
 
+static hd_status plan_call(hd_heat *heat, const ask *a, double *U, hd_report *r) {
+    if (a->what == DIAGONAL) return hd_heat_diagonal(heat, a->n_times, a->times, HD_KERNEL_SYMMETRIC, U, 0, r);
+    if (a->what == DISTANCES) return hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, a->times, 1, a->vertices, U, 0, r);
+    if (a->n_times > 1) return hd_heat_times(heat, a->n_times, a->times, HD_KERNEL_OPERATOR, a->vertices[0], NULL, U, 0, r);
+    return hd_heat_columns(heat, a->times[0], HD_KERNEL_OPERATOR, a->n_columns, a->vertices, U, 0, r);
+}
+
 /* Runs what is asked for on the plan; times since watch_start. */
 static void plan_run(plan *p, const ask *a, double *U, ours *out) {
-    hd_status st;
+    const hd_status st = plan_call(p->heat, a, U, &out->report);
     int k;
-    if (a->n_times > 1) st = hd_heat_times(p->heat, a->n_times, a->times, HD_KERNEL_OPERATOR, a->vertices[0], NULL, U, 0, &out->report);
-    else st = hd_heat_columns(p->heat, a->times[0], HD_KERNEL_OPERATOR, a->n_columns, a->vertices, U, 0, &out->report);
     watch_turn(&p->w, STAGE_OTHER);
     out->fine = st >= 0;
     out->bytes = (double)p->ctx.bytes_peak;
@@ -1035,6 +1051,238 @@ static void job_stages(bench *b) {
     free(F);
 }
 
+/* ---- signature ---- */
+
+enum { SIG_10, SIG_100, SIG_POLES, SIG_16, SIG_MANY, SIG_DISTANCE, SIG_ASKS, SIG_TAUS = 3, SIG_CHECKS = 3, SIG_TIMES = 100, SIG_PAIRS = 300 };
+
+static const double SIG_TAU[SIG_TAUS] = {10, 100, 10000};
+
+typedef struct signature {
+    ask ask[SIG_ASKS];
+    ours best[SIG_ASKS];
+    double tau[SIG_TAUS], t16[16], many[SIG_TIMES], *R[SIG_TAUS], *distance, rival_error[2];
+    int32_t vertex;
+    rival_job job;
+    rival_result theirs;
+    int there;
+} signature;
+
+static void signature_open(signature *s, const bench *b) {
+    int k;
+    memset(s, 0, sizeof *s);
+    for (k = 0; k < SIG_TAUS; k++) s->tau[k] = SIG_TAU[k] * b->hh;
+    for (k = 0; k < 16; k++) s->t16[k] = 10 * pow(1000, k / 15.0) * b->hh;
+    for (k = 0; k < SIG_TIMES; k++) s->many[k] = 10 * pow(1000, k / (SIG_TIMES - 1.0)) * b->hh;
+    s->vertex = b->lap->vertex[middle(b)];
+    for (k = 0; k < SIG_ASKS; k++) {
+        s->ask[k] = ask_column(HD_METHOD_DIRECT, s->tau + 1, &s->vertex);
+        s->ask[k].what = k == SIG_POLES ? COLUMNS : k == SIG_DISTANCE ? DISTANCES : DIAGONAL;
+    }
+    s->ask[SIG_10].times = s->tau;
+    s->ask[SIG_POLES].degree = 8;
+    s->ask[SIG_16].times = s->t16;
+    s->ask[SIG_16].n_times = 16;
+    s->ask[SIG_MANY].times = s->many;
+    s->ask[SIG_MANY].n_times = SIG_TIMES;
+    s->job.pair = &b->pair;
+    s->job.times = s->tau;
+    s->job.n_times = 2;
+    s->job.n_eigen = SIG_PAIRS;
+    s->job.threads = b->threads;
+}
+
+static void signature_close(signature *s) {
+    int k;
+    for (k = 0; k < SIG_TAUS; k++) free(s->R[k]);
+    free(s->distance);
+}
+
+/* Diagonals and distances of degree 14. */
+static int signature_references(signature *s, const bench *b) {
+    int k, fine = 1;
+    for (k = 0; k < SIG_TAUS; k++) {
+        ask a = s->ask[SIG_10];
+        a.times = s->tau + k;
+        s->R[k] = reference(b, &a, 1);
+        fine = fine && s->R[k];
+    }
+    s->distance = reference(b, s->ask + SIG_DISTANCE, 1);
+    return fine && s->distance;
+}
+
+/* Those diagonals at a few vertices against columns of k_t by reorthogonalised Lanczos. */
+static void signature_check(const signature *s, const bench *b) {
+    int32_t rows[SIG_CHECKS], vertices[SIG_CHECKS];
+    const int n = spread(b, SIG_CHECKS, rows, vertices);
+    double *S, e[SIG_TAUS] = {0, 0, 0};
+    rival_job job;
+    rival_result r;
+    int k, c, fine = 1;
+    if (!HAVE_RIVALS || !(S = answers(b, SIG_CHECKS))) return;
+    memset(&job, 0, sizeof job);
+    job.pair = &b->pair;
+    job.n_times = job.symmetric = 1;
+    job.n_sources = n;
+    job.sources = rows;
+    job.threads = b->threads;
+    for (k = 0; k < SIG_TAUS && fine; k++) {
+        job.times = s->tau + k;
+        fine = rival_reference(&job, S, &r);
+        for (c = 0; c < n && fine; c++) {
+            const double exact = S[(size_t)c * (size_t)b->pair.n + (size_t)rows[c]];
+            e[k] = hdi_max(e[k], fabs(s->R[k][rows[c]] - exact) / exact);
+        }
+    }
+    if (fine)
+        printf("%s  references: diagonals of degree 14 and reorthogonalised Lanczos at %d vertices differ by %.1e, %.1e, %.1e at t = 10, 100, 10^4 h^2\n",
+               b->set->csv ? "# " : "", n, e[0], e[1], e[2]);
+    else fprintf(stderr, "bench: %s\n", r.note);
+    free(S);
+}
+
+/* Largest |u - r| / r over the rows. */
+static double diagonal_error(const bench *b, const double *u, const double *r) {
+    double worst = 0;
+    int32_t i;
+    for (i = 0; i < b->pair.n; i++) {
+        const double e = fabs(u[i] - r[i]) / r[i];
+        if (!(e <= worst)) worst = e;
+    }
+    return worst;
+}
+
+/* Error of our answers to ask k, which get renumbered on the way: for many times at those of the references. */
+static double signature_error(const signature *s, const bench *b, int k, double *U) {
+    const size_t rows = (size_t)b->pair.n, n_times = (size_t)s->ask[k].n_times;
+    if (k == SIG_DISTANCE) return error_of(b, U, s->distance, 1);
+    if (k == SIG_POLES) return -1;
+    vertices_to_rows(b, U, s->ask[k].n_times);
+    if (n_times == 1) return diagonal_error(b, U, s->R[k == SIG_100]);
+    return hdi_max(diagonal_error(b, U, s->R[0]),
+                   hdi_max(diagonal_error(b, U + (n_times - 1) / 3 * rows, s->R[1]), diagonal_error(b, U + (n_times - 1) * rows, s->R[2])));
+}
+
+/* The best of ours, of the four poles by their factors alone. */
+static void signature_ours(signature *s, const bench *b, int k, double *U, int first) {
+    ours run, *best = s->best + k;
+    rest();
+    run_cold(b, s->ask + k, U, &run);
+    run.error = first && run.fine ? signature_error(s, b, k, U) : best->error;
+    if (first || (run.fine && (k == SIG_POLES ? run.stage[STAGE_FACTOR] < best->stage[STAGE_FACTOR] : run.total < best->total))) *best = run;
+}
+
+static void signature_rival(signature *s, const bench *b, double *U, int first) {
+    rival_result r;
+    rest();
+    if (first) {
+        s->there = rival_eigenpairs(&s->job, U, &s->theirs);
+        s->job.ordering = s->theirs.ordering;
+        s->rival_error[0] = s->there ? diagonal_error(b, U, s->R[0]) : -1;
+        s->rival_error[1] = s->there ? diagonal_error(b, U + b->pair.n, s->R[1]) : -1;
+    } else if (s->there && s->theirs.total < 10 && rival_eigenpairs(&s->job, NULL, &r) && r.total < s->theirs.total) {
+        s->theirs = r;
+    }
+}
+
+static void signature_contest(signature *s, const bench *b, double *U, int rival) {
+    int k, round, fine = 1;
+    double start;
+    for (k = 0; k < SIG_ASKS; k++) {
+        signature_ours(s, b, k, U, 1);
+        fine = fine && s->best[k].fine;
+    }
+    if (rival) signature_rival(s, b, U, 1);
+    start = now();
+    for (round = 0; fine && round_wanted(b, round, start); round++) {
+        for (k = 0; k < SIG_ASKS; k++) signature_ours(s, b, k, U, 0);
+        if (rival) signature_rival(s, b, U, 0);
+    }
+}
+
+/* One time, k = 0 or 1, beside the rival's. */
+static void signature_row(const signature *s, const bench *b, int k, int rival) {
+    const rival_result *t = &s->theirs;
+    entry r;
+    row_clear(&r, b, "signature", NULL, SIG_TAU[k]);
+    row_ours(&r, s->ask + k, s->best + k);
+    r.packs = 0;
+    if (rival && s->there) {
+        snprintf(r.rival, sizeof r.rival, "ARPACK %d pairs %s", (int)t->width, t->ordering == RIVAL_METIS ? "metis" : "amd");
+        r.rival_seconds = t->total;
+        r.rival_error = s->rival_error[k];
+        r.rival_nnz = t->nnz;
+        r.rival_bytes = t->bytes;
+    } else if (rival) {
+        snprintf(r.rival, sizeof r.rival, "ARPACK: %.30s", t->note);
+    }
+    row_print(&r, b);
+}
+
+static void signature_stage(const bench *b, const char *part, double seconds, double rival, double gflops) {
+    entry r;
+    row_clear(&r, b, "signature", part, 0);
+    r.seconds = seconds;
+    r.rival_seconds = rival;
+    r.gflops = gflops;
+    row_print(&r, b);
+}
+
+/* Answer k as a multiple of a signature, which is wanted to be `goal` at most. */
+static void signature_multiple(const signature *s, const bench *b, int k, const char *part, const char *goal) {
+    const ours *o = s->best + k;
+    entry r;
+    if (!o->fine) return;
+    row_clear(&r, b, "signature", part, 0);
+    snprintf(r.ours, sizeof r.ours, "%.2f x a signature", o->total / s->best[SIG_100].total);
+    snprintf(r.rival, sizeof r.rival, "goal: %s x", goal);
+    r.seconds = o->total;
+    r.error = o->error;
+    row_print(&r, b);
+}
+
+/* Four complex factors, of which a signature is wanted to take `goal` times as long at most. */
+static void signature_poles(const signature *s, const bench *b, const char *goal) {
+    const ours *o = s->best + SIG_POLES;
+    entry r;
+    row_clear(&r, b, "signature", "four poles", 0);
+    r.seconds = o->stage[STAGE_FACTOR];
+    r.gflops = 1e-9 * o->report.factor_flops / r.seconds;
+    snprintf(r.ours, sizeof r.ours, "1/%.2f of a signature", s->best[SIG_100].total / r.seconds);
+    snprintf(r.rival, sizeof r.rival, "goal: 1/%s", goal);
+    row_print(&r, b);
+}
+
+static void signature_print(const signature *s, const bench *b, int rival) {
+    const ours *one = s->best + SIG_100;
+    const rival_result *t = &s->theirs;
+    signature_row(s, b, 0, rival);
+    signature_row(s, b, 1, rival);
+    if (!one->fine || !s->best[SIG_POLES].fine) return;
+    signature_stage(b, "order + analyse", one->stage[STAGE_OTHER] + one->stage[STAGE_ORDER] + one->stage[STAGE_ANALYSE], t->analyse, 0);
+    signature_stage(b, "factor", one->stage[STAGE_FACTOR], t->factor, 1e-9 * one->report.factor_flops / one->stage[STAGE_FACTOR]);
+    signature_stage(b, "invert", one->stage[STAGE_INVERT], t->first - t->further, 0);
+    signature_stage(b, "check", one->stage[STAGE_SOLVE], 0, 0);
+    if (t->further > 0) signature_stage(b, "sum of squares", 0, t->further, 0);
+    signature_poles(s, b, "4");
+    signature_multiple(s, b, SIG_16, "16 times", "6");
+    signature_multiple(s, b, SIG_MANY, "100 times", "8");
+    signature_multiple(s, b, SIG_DISTANCE, "distances", "1.2");
+}
+
+static void job_signature(bench *b) {
+    const int rival = HAVE_RIVALS && (b->pair.n <= EIGEN_ROWS || b->set->asked);
+    double *U = answers(b, SIG_TIMES);
+    signature s;
+    signature_open(&s, b);
+    if (U && signature_references(&s, b)) {
+        signature_contest(&s, b, U, rival);
+        signature_print(&s, b, rival);
+        signature_check(&s, b);
+    }
+    signature_close(&s);
+    free(U);
+}
+
 /* ---- Eigen ---- */
 
 typedef struct real_run { int fine; double analyse, factor, solve, bytes; hd_ldl_report report; } real_run;
@@ -1258,11 +1506,11 @@ static void job_geodesic(bench *b) {
 
 /* ==== meshes ==== */
 
-enum { JOB_SMALL = 1, JOBS = 8 };   /* small has both masses */
+enum { JOB_SMALL = 1, JOBS = 9 };   /* small has both masses */
 
 static const struct { const char *name; void (*run)(bench *); } jobs[JOBS] = {
     {"one", job_one}, {"small", job_small}, {"columns", job_columns}, {"further", job_further}, {"times", job_times}, {"stages", job_stages},
-    {"geodesic", job_geodesic}, {"eigen", job_eigen}};
+    {"geodesic", job_geodesic}, {"signature", job_signature}, {"eigen", job_eigen}};
 
 static void bench_open(bench *b, const settings *set, const char *mesh, const rival_mesh *surface, const hd_laplacian *lap, int32_t threads, const double *peak) {
     const hd_csr *L = &lap->L;
@@ -1372,7 +1620,7 @@ static int usage(const char *what) {
     fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
-                    "  --jobs LIST     of one,small,columns,further,times,stages,geodesic,eigen; default: all\n"
+                    "  --jobs LIST     of one,small,columns,further,times,stages,geodesic,signature,eigen; default: all\n"
                     "  --columns K     columns of the job of that name, default 100\n"
                     "  --seconds S     rounds of a contest begin within S seconds, at least two; default 10\n"
                     "  --umfpack       UMFPACK also above 300000 rows\n"

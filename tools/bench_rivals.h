@@ -1,13 +1,13 @@
 /* bench_rivals.h - what a user would otherwise take for the jobs of heatdiff.h, for the benchmark to hold it against.
 
    Rivals: shift-invert Lanczos for exp on one supernodal factor of CHOLMOD, the poles of a rational approximation by UMFPACK and by Eigen's
-   SparseLU, Eigen's SimplicialLDLT; CGAL's heat method for geodesic distances. Each at its best as far as we could find it: the notes in bench_rivals.cpp say
-   what was tried.
+   SparseLU, Eigen's SimplicialLDLT; for diagonals the smallest eigenpairs by ARPACK; CGAL's heat method for geodesic distances. Each at its best as far as
+   we could find it: the notes in bench_rivals.cpp say what was tried.
 
    Build bench_rivals.cpp as C++17 with optimisation for this machine, which Eigen needs to be fast:
        c++ -std=c++17 -O3 -march=native -DNDEBUG -fopenmp -I/usr/include/eigen3 -c tools/bench_rivals.cpp
-   and link with  -lumfpack -lcholmod -lopenblas -fopenmp.  Another BLAS works too; then see to its number of threads yourself. With -DHEATDIFF_BENCH_CGAL
-   CGAL takes part, whose headers are all that it needs.
+   and link with  -lumfpack -lcholmod -lopenblas -fopenmp; with -DHEATDIFF_BENCH_ARPACK here and -larpack there the eigenpairs come along, with
+   -DHEATDIFF_BENCH_CGAL CGAL, whose headers are all that it needs. Another BLAS works too; then see to its number of threads yourself.
 
    Everything is timed from the two matrices to the answer: nothing is left out but the freeing of memory. */
 
@@ -63,6 +63,8 @@ typedef struct rival_job {
     int32_t warm_runs, runs;    /* untimed, and timed of which the quickest counts; default 0 and 1 */
     double seconds;             /* no column is begun after so many seconds of solving, the rest is extrapolated; 0: no limit */
     int32_t n_keep;             /* answers wanted of the columns (or times); default all */
+    int32_t symmetric;          /* for rival_reference: 1: columns of k_t = K_t inv(B) */
+    int32_t n_eigen;            /* for rival_eigenpairs: how many; default 300 */
 } rival_job;
 
 /* Seconds and what they bought. All of one run, the quickest. 0: does not apply or not known. */
@@ -107,6 +109,10 @@ int rival_eigen_lu(const rival_job *job, const rival_poles *poles, double *U, ri
 
 /* Eigen's SimplicialLDLT of B + gamma t L: analyse, factor, and one solve as first. No heat: U receives the solution for B e_source. */
 int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *result);
+
+/* k_t(i,i) at every row i and all times from the smallest eigenpairs: ARPACK's Lanczos with implicit restarts on one CHOLMOD factor, then sums of squares.
+ * No sources. U [n x n_times]. first: the eigenpairs and one time, further: one more time, steps: solves, width: eigenpairs. */
+int rival_eigenpairs(const rival_job *job, double *U, rival_result *result);
 
 /* Columns to measure others against: shift-invert Lanczos with full reorthogonalisation until nothing changes any more. For one source and all times
  * (n_sources == 1), or for one time and all sources. U [n x (times or sources)]. result->error: the last change. */
