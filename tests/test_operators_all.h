@@ -311,10 +311,10 @@ static void all_neighbours(void) {
     CHECK_MSG(hd_laplacian_tufted_points(&found, s.xyz, N, NULL, NULL, &o, &e) == HD_OK, "%s", e.text);
     CHECK(hd_laplacian_tufted_points(&given, s.xyz, N, ptr, nbr, &o, &e) == HD_OK);
     CHECK(all_same(found, given) && found->points.neighbours == K && found->points.n_coincident == 0 && found->n_active == N);
-    memcpy(twice, s.xyz, 3 * N * sizeof(double));
-    memcpy(twice + 3 * N, s.xyz + 3 * 5, 3 * sizeof(double));
+    memcpy(twice, s.xyz, 3 * 6 * sizeof(double));            /* the sixth once more behind itself */
+    memcpy(twice + 3 * 6, s.xyz + 3 * 5, 3 * (N - 5) * sizeof(double));
     CHECK(hd_laplacian_tufted_points(&more, twice, N + 1, NULL, NULL, &o, &e) == HD_OK);
-    CHECK(more->points.n_coincident == 1 && more->mesh.n_inert == 1 && more->row[N] == -1 && more->area == found->area);
+    CHECK(more->points.n_coincident == 1 && more->mesh.n_inert == 1 && more->row[5] == 5 && more->row[6] == -1 && more->area == found->area);
     CHECK(memcmp(more->L.val, found->L.val, (size_t)found->L.nnz * sizeof(double)) == 0 && more->L.nnz == found->L.nnz);
     hd_laplacian_free(found);
     hd_laplacian_free(given);
