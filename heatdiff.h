@@ -4886,13 +4886,15 @@ static hd_status hdi_soup_make(hdi_mesh *mesh, const double *xyz, int32_t n, con
 }
 
 /* ==== [10] operators ====
- * The pair (L, B) on one pattern. May call [09] and [07].
+ * The pair (L, B) on one pattern. May call [09], [08] and [07].
  * This work is based on
  *   U. Pinkall, K. Polthier, Computing discrete minimal surfaces and their conjugates, 1993 (cotangent weights)
  *   M. Meyer, M. Desbrun, P. Schroeder, A. Barr, Discrete differential-geometry operators for triangulated 2-manifolds, 2003 (mixed areas)
  *   M. Alexa, M. Wardetzky, Discrete Laplacians on general polygonal meshes, 2011 (polygons)
+ *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (tufted points; the cover itself is in [09])
+ * and, of point sets, on what is named there.
  * Deviations: the paper cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas go negative on obtuse triangles. Those of
- * polygons are listed there. */
+ * polygons and point sets are listed there. */
 
 static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     if (!lap) return;
@@ -5948,8 +5950,9 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
 
 /* Bandwidth from the sampling: a multiple of m, the area that a point has, which is the mean of pi r_k^2 / k over the points, r_k the distance of the
  * k-th neighbour, and of h, the mean distance of the nearest one; no square counts more than nine medians of the former, so that outliers do not
- * matter. The multiple is that which balances the two errors on spheres and tori: smoothing takes lambda s/2 off an eigenvalue lambda, sampling about 0.02 (m/s)^2 of all of them with points independent of
- * each other, where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence s = m (m/h^2)/4, between 0.3 and 1 m. */
+ * matter. The multiple is that which balances the two errors on spheres and tori: smoothing takes lambda s/2 off an eigenvalue lambda, sampling about
+ * 0.02 (m/s)^2 of all of them with points independent of each other, where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence
+ * s = m (m/h^2)/4, between 0.3 and 1 m. */
 static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
     double median, mean = 0, h = 0;
     int32_t i;
