@@ -4,7 +4,7 @@
 
    A surface is a pair of sparse matrices (L, B): L the stiffness matrix, symmetric positive semi-definite, B the mass
    matrix, symmetric positive definite. Heat f diffuses as K_t f, with the heat kernel matrix K_t = exp(-t B^-1 L).
-   This file builds (L, B) from a mesh and applies K_t through a rational approximation of the exponential,
+   This file builds (L, B) from a mesh or from points and applies K_t through a rational approximation of the exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
@@ -39,8 +39,8 @@
    Contents
      declarations    [B] base  [C] options and reports  [D] functions
      implementation  [00] platform  [01] scalar  [02] error  [03] memory  [04] context  [05] arrays  [06] dense
-                     [07] sparse  [09] geometry  [10] operators  [11] symbolic  [12] direct  [14] precond  [15] krylov
-                     [16] rational  [17] shifted  [18] heat  [19] distance  [21] api  [22] closing
+                     [07] sparse  [08] spatial  [09] geometry  [10] operators  [11] symbolic  [12] direct  [13] selinv  [14] precond
+                     [15] krylov  [16] rational  [17] shifted  [18] heat  [19] distance  [21] api  [22] closing
      Rooms are numbered from the bottom up; each calls only those above it in the file.
 
    Options (macros)
@@ -192,16 +192,32 @@ typedef struct hd_csr {
  * they tell a cleared struct from a forgotten one. */
 
 typedef enum hd_laplacian_kind {
-    HD_LAPLACIAN_FEM = 0,       /* cotangent L, linear finite-element B: area/6 on the diagonal, area/12 off it, per triangle */
+    HD_LAPLACIAN_DEFAULT = 0,   /* fem for triangles, polygon for polygons, voronoi-exp for points; hd_laplacian.kind tells which it was */
+    HD_LAPLACIAN_FEM,           /* cotangent L, linear finite-element B: area/6 on the diagonal, area/12 off it, per triangle */
     HD_LAPLACIAN_VORONOI_COT,   /* cotangent L, B diagonal: mixed Voronoi areas (Meyer, Desbrun, Schroeder, Barr 2003) */
     HD_LAPLACIAN_COT,           /* cotangent L, B = I (Pinkall, Polthier 1993) */
+    HD_LAPLACIAN_POLYGON,       /* faces of any number of corners, planar or not, and B diagonal: area/k to each corner (Alexa, Wardetzky 2011) */
+    HD_LAPLACIAN_VORONOI_EXP,   /* points: L_ij = -v_i v_j exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2), B = diag(v), v_i areas of Voronoi cells in the
+                                   tangent planes, s the bandwidth (Liu, Prabhakaran, Guo 2012) */
+    HD_LAPLACIAN_EXP,           /* points: L_ij = -exp(-|p_i - p_j|^2 / 4s) / (4 pi n s^2), B = I (Belkin, Niyogi 2008). For samples spread
+                                   evenly B^-1 L tends to Laplacian/area, so that t is an area times a squared length */
     HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
 } hd_laplacian_kind;
 
 typedef struct hd_laplacian_opts {
     int32_t begin_zero;
-    hd_laplacian_kind kind;     /* default fem; not looked at by hd_laplacian_matrices */
+    hd_laplacian_kind kind;     /* not looked at by hd_laplacian_matrices */
     hd_context *context;
+    double lambda;              /* polygon: weight of the part that tells apart what the gradients of a face cannot; default 1, at most 1e100.
+                                   Larger values stiffen faces of four corners and more, triangles do not feel it */
+    double bandwidth;           /* points: s of the exponential weights, a squared length; default: from the sampling, see hd_laplacian_points */
+    double weight_cut;          /* points: exponentials below this are left out, in (0, 1); default 1e-8 */
+    int32_t intrinsic_delaunay; /* triangles: 1: they are flipped, along the surface, until they are Delaunay: no cotangent weight is negative then but on
+                                   boundary edges opposite to an obtuse angle. Surfaces that are not manifold or have one side only are covered twice */
+    int32_t tufted;             /* triangles: 1: the same on the tufted cover, where the boundary is glued to the other sheet: no weight is negative on any mesh */
+    double mollify;             /* with these two: edges are lengthened by one small number, so that every triangle satisfies the triangle inequality with
+                                   mollify times the mean edge length to spare; default 1e-5, negative: not at all */
+    int32_t neighbours;         /* points: how many of the nearest ones say where the tangent plane and the cell or star is, 6..128; default 30 */
     int32_t end_zero;
 } hd_laplacian_opts;
 
@@ -210,17 +226,40 @@ typedef struct hd_mesh_report {
     int32_t n_faces;                 /* given */
     int32_t n_faces_used;            /* assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    int32_t n_zero_area;             /* left out: cross product of two edges exactly zero (or an area or cotangent that no double holds) */
-    int32_t n_repeated_face;         /* left out: same three corners as an earlier face */
+    int32_t n_zero_area;             /* left out: cross product of two edges exactly zero (or an area or cotangent that no double holds). polygon:
+                                        vector area zero (with more than three corners, up to the rounding of its sum), fewer than three corners */
+    int32_t n_repeated_face;         /* left out: same corners as an earlier face (polygon: in the same cyclic order, either way round) */
     int64_t n_edges;                 /* distinct edges of the faces used */
     int64_t n_boundary_edges;        /* with one face */
     int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed, nothing special */
     int64_t n_misoriented_edges;     /* with two faces that run along it in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass */
-    int64_t n_negative_weights;      /* edges whose cotangent weight is negative: legitimate, but no maximum principle */
-    double smallest_angle;           /* over the faces used, in radians */
+    int64_t n_negative_weights;      /* edges whose cotangent weight is negative: legitimate, but no maximum principle. polygon: pairs of vertices, edges
+                                        or diagonals, whose entry of L is positive; nearly every face of four corners and more has some */
+    double smallest_angle;           /* over the faces used, in radians (polygon: of the corners that bend inwards) */
+
+    /* Of intrinsic_delaunay and tufted, zeros without. Everything above but n_negative_weights tells of the faces as they were given. */
+    int32_t n_sheets;                /* 1; 2: the surface was covered twice, to be manifold and of one orientation, or to close its boundary */
+    int32_t n_mollified;             /* faces that called for mollification */
+    double mollify_epsilon;          /* added to every edge's length */
+    int64_t n_flips;                 /* on all sheets */
+    int64_t n_not_delaunay;          /* edges that rounding kept from being flipped */
+    int64_t n_self_edges;            /* edges that have come to join a vertex to itself; they carry no weight */
+    double smallest_intrinsic_angle; /* after the flips, in radians */
 } hd_mesh_report;
+
+/* What was found in a point set, and chosen for it. Nothing here is an error. */
+typedef struct hd_point_report {
+    double bandwidth;                /* s of the exponential weights */
+    double weight_cut, cut_radius;   /* exponentials below weight_cut are left out: those of points farther apart than cut_radius */
+    int32_t neighbours;              /* for tangent planes and cells */
+    int32_t n_coincident;            /* points in the place of an earlier one; points in one place share its cell in equal parts */
+    int32_t n_isolated;              /* points without any other one within cut_radius: components of their own */
+    int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
+    int32_t n_border;                /* places whose cell ends where the neighbours do: at a border or beside a gap */
+    int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
+} hd_point_report;
 
 /* A discrete surface: the pair (L, B) on one pattern. Read it freely, change nothing; made and freed by the library.
  * Rows are the vertices that have mass, in the caller's order. */
@@ -229,8 +268,9 @@ typedef struct hd_laplacian {
     int32_t n_active;           /* rows: vertices with mass */
     int32_t n_components;       /* connected components of the rows */
     hd_laplacian_kind kind;
-    double h;                   /* mean length of the distinct edges; 0 for matrices */
-    double area;                /* of the faces used; 1'B1 for matrices */
+    double h;                   /* mean length of the distinct edges, before any flip; points: mean distance of a place to the nearest other one; 0 for
+                                   matrices */
+    double area;                /* of the faces used, before any flip; of the cells or stars of points, whatever B; 1'B1 for matrices */
     hd_csr L;                   /* n_active x n_active, values of L, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B is diagonal, B = diag(mass) */
     double *mass;               /* [n_active] b = B 1, the vertices' masses */
@@ -240,9 +280,10 @@ typedef struct hd_laplacian {
     int32_t *component;         /* [n_active] row -> component, numbered by their first vertex */
     double *xyz;                /* [3 n_active] places of the rows; NULL for matrices */
     double *component_mass;     /* [n_components] sum of mass */
-    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem, 0 when not known */
+    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem (0.42 with edges from a vertex to itself), 0 when not known */
     int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes) */
-    hd_mesh_report mesh;        /* zeros for matrices but n_inert */
+    hd_mesh_report mesh;        /* zeros for matrices but n_inert; of points too, but when tufted: then of the stars' triangles */
+    hd_point_report points;     /* zeros for meshes and matrices; tufted: neighbours and n_coincident, where neighbours were searched */
     hd_context *context;
 } hd_laplacian;
 
@@ -437,9 +478,56 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
  * opts   kind of Laplacian, context; NULL: fem
  * Faces of zero area, with a repeated corner, or with the corners of an earlier face are left out and counted in out->mesh;
  * vertices without mass become inert. Non-manifold edges and several components are fine.
- * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY. Cost O(n + n_tri). */
+ * With opts->intrinsic_delaunay or opts->tufted L and B are those of an intrinsic Delaunay triangulation of the same surface (Bobenko, Springborn 2007;
+ * Sharp, Crane 2020) on the same vertices: no off-diagonal entry of L is positive (see there for boundaries), so that with voronoi-cot or cot heat obeys
+ * the maximum principle. Entries that only rounding made positive, below 1e-13 of the cotangents of the faces at the edge, are set to zero.
+ * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY. Cost O(n + n_tri + flips). */
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err);
+
+/* The Laplacian of a mesh of polygons: any number of corners, planar or not, convex or not, triangles among them.
+ * xyz    [3 n] coordinates, finite
+ * face_ptr [n_faces + 1] from 0, not descending: the corners of face f are face_idx[face_ptr[f]] .. face_idx[face_ptr[f + 1] - 1]
+ * face_idx [face_ptr[n_faces]] vertex ids in [0, n)
+ * opts   kind, lambda, context; NULL: polygon with lambda 1. With fem, voronoi-cot or cot every face is split as a fan from its first corner, and
+ *        all is as hd_laplacian_triangles has it of those triangles (counts in mesh are of triangles then; the face in errors is the polygon).
+ *        intrinsic_delaunay and tufted are of triangles: with them the default is fem, and polygon is an error
+ * On triangles polygon has L of the cotangents, whatever lambda. lap->h is the mean length of the polygons' own edges; the pattern of L holds the
+ * diagonals of the faces too. What is left out is told at hd_mesh_report.
+ * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_NOT_FINITE (vertex or face), HD_ERR_TOO_LARGE,
+ * HD_ERR_EMPTY, HD_ERR_ARGUMENT.
+ * Cost a face of k corners: k^2 entries of the matrix at most, and as much time; the work arrays are linear in k.
+ * Source Alexa, Wardetzky 2011, the face matrices M_f with their combinatorial part; written out, with the differences, in room [10]. */
+HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
+                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err);
+
+/* The Laplacian of points on a surface, given without faces.
+ * xyz    [3 n] coordinates, finite
+ * opts   kind voronoi-exp (default) or exp, bandwidth, weight_cut, neighbours, context
+ * The bandwidth s trades the error of smoothing, which grows like s, for that of sampling, which falls like 1/s^2. By default it is m (m/h^2)/4, within
+ * 0.3 m and 1 m, where m, the area that a point has, is the mean of pi r_k^2/k with r_k the distance of the k-th neighbour (values beyond nine
+ * medians count as those): 0.36 m for blue noise, 1 m for points independent of each other. Weights reach as far as 8.6 sqrt(s), and a row has
+ * about 230 s/m non-zeros, 80 and 230 for these two; a weight_cut of 1e-4 halves that and changes the operator by 0.1 %.
+ * With s a multiple of m the error does not vanish as points become denser, it levels at 1 to 3 %: for more, let s/m grow, as theory asks for
+ * (Belkin, Niyogi 2008; Singer 2006).
+ * Points in one place share its cell; points without area are inert for voronoi-exp; those that no other point reaches are components of their
+ * own. Cells at a border end at the hull of the neighbours. All is counted in lap->points.
+ * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY (fewer than two places, or all on a line). Cost O(n log n + nnz). Source Liu,
+ * Prabhakaran, Guo 2012; Belkin, Niyogi 2008; what differs from them is told in room [10]. */
+HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err);
+
+/* The tufted Laplacian of a point set on a surface (Sharp, Crane 2020, section 5.7): cotangent weights, none of them negative, 7 to 13 in a row.
+ * xyz      [3 n] coordinates, finite
+ * nbr_ptr  [n + 1] offsets into nbr; nbr_ptr[0] = 0. NULL, and nbr NULL: the opts->neighbours nearest points of each are searched; points in the place
+ *          of an earlier one become inert then
+ * nbr      ids of the neighbours of each point, in any order, at most 256 of a point; about 30 nearest ones suit. The point itself, points in its
+ *          place and ids that come twice do no harm
+ * opts     kind of masses (fem, voronoi-cot, cot), neighbours, mollify, context; NULL: fem. Always tufted
+ * The Delaunay star of each point among its neighbours is found in their tangent plane; all stars together are a soup of triangles that counts a third.
+ * lap->mesh tells of that soup. Points in no star become inert. Cost O(n log n + n_neighbours + flips).
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row: the point), HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY. */
+HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+                                                  const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices on any graph, copied.
  * L      n x n, symmetric positive semi-definite. Rows need not sum to zero (then heat is not conserved)
@@ -454,6 +542,22 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y, hd_error *err);
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
+
+/* ---- neighbours of points ---- */
+
+/* The k nearest points of every query.
+ * index      [k m] by queries: ids of points, the nearest first, equally far ones by id; a point of the set finds itself too. -1 beyond n
+ * distance2  [k m] their squared distances, infinite beyond n; NULL: not wanted
+ * xyz        [3 n] the points, finite
+ * query      [3 m] where to look from; NULL: from all the points, m = n
+ * Exact. Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex; the row for a query). Cost O((n + k m) log n). Source Friedman, Bentley, Finkel 1977. */
+HEATDIFF_API hd_status hd_neighbours_nearest(int32_t *index, double *distance2, const double *xyz, int32_t n, const double *query, int32_t m, int32_t k,
+                                             hd_context *ctx, hd_error *err);
+
+/* All points within a radius of every query: row i of out, m x n, lists the points at a distance d with d^2 <= radius^2 by id, its values are d^2.
+ * Arguments, errors as above; free out with hd_csr_free and the same ctx. */
+HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query, int32_t m, double radius, hd_context *ctx,
+                                            hd_error *err);
 
 /* ---- rational approximations ---- */
 
@@ -598,7 +702,8 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
 
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
- * vertices). For a full B without a0 B^-1, as above. The report's bound is that of the rational error. */
+ * vertices). For a full B without a0 B^-1, as above. The report's bound is that of the rational error; by default the highest degree takes over where it
+ * is above 5e-7 of the largest value. */
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
@@ -3425,6 +3530,460 @@ static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_contex
     hdi_parallel(ctx, (HDI_CAST(int64_t, a->n_rows) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK, hdi_apply_task, &job);
 }
 
+/* ==== [08] spatial ====
+ * A k-d tree over points in space: the k nearest, and all within a radius. Exact. May call [07].
+ * This work is based on
+ *   J. Friedman, J. Bentley, R. Finkel, An algorithm for finding best matches in logarithmic expected time, 1977 (medians, buckets)
+ * Deviations: every leaf holds HDI_LEAF points (the last one is padded), so that nodes need no pointers, and distances to a leaf's points are one
+ * loop of fixed length, which compilers vectorise; nodes have boxes that fit tightly, as a surface fills little of its cells; candidates are only
+ * gathered, and sorted at the end by buckets, as squared distances on a surface are spread evenly; and a query takes its first bound from the one
+ * before it, its neighbour in the order of the leaves: no k-th neighbour is farther than the other's k-th neighbour by way of the other. */
+
+enum {
+    HDI_LEAF = 16,             /* of 4, 8, 16, 32 the quickest for the 30 nearest on surfaces */
+    HDI_TREE_STACK = 40,       /* halves of 2^31 points are fewer */
+    HDI_BUCKETS = 64,
+    HDI_SEARCH_TASKS = 64      /* as many sets of work arrays */
+};
+
+typedef struct hdi_cell {
+    double lo[3], hi[3];       /* box of its points */
+    int32_t first, count;      /* its leaves */
+} hdi_cell;
+
+/* Nodes in preorder: the left child follows its parent, the right one comes after the left one's 2 count - 1 nodes. */
+typedef struct hdi_tree {
+    int32_t n, n_leaves;
+    hdi_cell *node;            /* [2 n_leaves - 1] */
+    double *x;                 /* [3 HDI_LEAF n_leaves] leaf by leaf: all x, all y, all z */
+    int32_t *id;               /* [HDI_LEAF n_leaves] of the caller */
+} hdi_tree;
+
+typedef struct hdi_point { double x[3]; int32_t id; } hdi_point;
+
+/* Puts the point that is k-th along axis in its place, smaller ones before it, larger ones behind (Hoare 1961). Pivots are medians of three
+ * places drawn by a fixed generator: linear whatever the order of the file, also for equal points. */
+static void hdi_select_point(hdi_point *a, int64_t n, int64_t k, int axis) {
+    int64_t lo = 0, hi = n - 1;
+    uint64_t seed = 12345;
+    while (lo < hi) {
+        double p[3], pivot;
+        int64_t i = lo, j = hi;
+        int q;
+        for (q = 0; q < 3; q++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            p[q] = a[lo + HDI_CAST(int64_t, (seed >> 33) % HDI_CAST(uint64_t, hi - lo + 1))].x[axis];
+        }
+        pivot = hdi_max(hdi_min(p[0], p[1]), hdi_min(hdi_max(p[0], p[1]), p[2]));
+        while (i <= j) {
+            while (a[i].x[axis] < pivot) i++;
+            while (a[j].x[axis] > pivot) j--;
+            if (i <= j) {
+                const hdi_point swap = a[i];
+                a[i++] = a[j];
+                a[j--] = swap;
+            }
+        }
+        if (k <= j) hi = j;
+        else if (k >= i) lo = i;
+        else return;
+    }
+}
+
+/* Box of the node's points; returns its longest axis. */
+static int hdi_cell_box(hdi_cell *node, const hdi_point *a, int64_t n) {
+    int64_t i;
+    int c, axis = 0;
+    for (c = 0; c < 3; c++) node->lo[c] = node->hi[c] = n > 0 ? a[0].x[c] : 0;
+    for (i = 1; i < n; i++) {
+        for (c = 0; c < 3; c++) {
+            node->lo[c] = hdi_min(node->lo[c], a[i].x[c]);
+            node->hi[c] = hdi_max(node->hi[c], a[i].x[c]);
+        }
+    }
+    for (c = 1; c < 3; c++)
+        if (node->hi[c] - node->lo[c] > node->hi[axis] - node->lo[axis]) axis = c;
+    return axis;
+}
+
+static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
+    int32_t v;
+    t->node[0].first = 0;
+    t->node[0].count = t->n_leaves;
+    for (v = 0; v < 2 * t->n_leaves - 1; v++) {   /* parents come first */
+        hdi_cell *node = t->node + v;
+        const int64_t begin = HDI_CAST(int64_t, node->first) * HDI_LEAF, end = hdi_least(t->n, begin + HDI_CAST(int64_t, node->count) * HDI_LEAF);
+        const int axis = hdi_cell_box(node, a + begin, end - begin);
+        const int32_t left = node->count / 2;
+        if (!left) continue;
+        hdi_select_point(a + begin, end - begin, HDI_CAST(int64_t, left) * HDI_LEAF, axis);
+        node[1].first = node->first;
+        node[1].count = left;
+        node[2 * left].first = node->first + left;
+        node[2 * left].count = node->count - left;
+    }
+}
+
+/* Finite points and queries, whose squared distances are finite too. */
+static hd_status hdi_points_check(const double *xyz, int32_t n, const double *query, int32_t m, hd_error *e) {
+    double lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, size = 0;
+    int64_t i;
+    int pass, c;
+    for (pass = 0; pass < 2; pass++) {
+        const double *x = pass ? query : xyz;
+        for (i = 0; i < 3 * HDI_CAST(int64_t, pass ? m : n) && x; i++) {
+            if (!hdi_finite(x[i]) && pass) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite", i / 3, i % 3, x[i]);
+            if (!hdi_finite(x[i])) {
+                hdi_fail(e, HD_ERR_NOT_FINITE, "a coordinate is not finite");
+                e->vertex = i / 3;
+                e->value = x[i];
+                return e->status;
+            }
+            lo[i % 3] = hdi_min(lo[i % 3], x[i]);
+            hi[i % 3] = hdi_max(hi[i % 3], x[i]);
+        }
+    }
+    for (c = 0; c < 3; c++) size = hdi_max(size, hi[c] - lo[c]);
+    if (!(size < 1e150)) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "points: squared distances are not finite", -1, -1, size);
+    return HD_OK;
+}
+
+/* The tree of finite points, in s. id of point i: i. Cost O(n log n). */
+static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_scope *s) {
+    const int64_t n_leaves = n > 0 ? (HDI_CAST(int64_t, n) + HDI_LEAF - 1) / HDI_LEAF : 1;   /* none: one leaf that is all padding */
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_point *a = HDI_TAKE(&own, hdi_point, n);
+    int64_t i;
+    int c;
+    t->n = n;
+    t->n_leaves = HDI_CAST(int32_t, n_leaves);
+    t->node = HDI_TAKE(s, hdi_cell, 2 * n_leaves - 1);
+    t->x = HDI_TAKE(s, double, 3 * HDI_LEAF * n_leaves);
+    t->id = HDI_TAKE(s, int32_t, HDI_LEAF * n_leaves);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) {
+        for (c = 0; c < 3; c++) a[i].x[c] = xyz[3 * i + c];
+        a[i].id = HDI_CAST(int32_t, i);
+    }
+    hdi_tree_split(t, a);
+    for (i = 0; i < HDI_LEAF * n_leaves; i++) {
+        double *x = t->x + 3 * HDI_LEAF * (i / HDI_LEAF) + i % HDI_LEAF;
+        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[i].x[c] : HUGE_VAL;   /* infinitely far: in no result */
+        t->id[i] = i < n ? a[i].id : -1;
+    }
+    return hdi_scope_end(&own);
+}
+
+/* What a search has found so far: candidates no farther than bound. */
+typedef struct hdi_found {
+    double bound, prune;       /* squared; boxes farther than prune are left out. It is a little larger, whatever a compiler fuses */
+    int32_t k;                 /* > 0: the k nearest are wanted; 0: all, and HDI_COUNT: only how many */
+    int64_t m, room;           /* candidates; when there are more than room, something is done about it */
+    int64_t counted;
+    double *d;                 /* [room + HDI_LEAF] squared distances */
+    int32_t *id;               /* [room + HDI_LEAF] */
+    hdi_pair *sorted;          /* [room + HDI_LEAF] */
+} hdi_found;
+
+enum { HDI_COUNT = -1 };
+
+static void hdi_found_bound(hdi_found *f, double bound) {
+    f->bound = hdi_min(bound, DBL_MAX);
+    f->prune = f->bound * (1 + 8 * DBL_EPSILON);
+}
+
+/* The min(k, m) smallest pairs (distance, id) into f->sorted, ascending; returns how many. */
+static int64_t hdi_found_sort(hdi_found *f) {
+    const int64_t want = hdi_least(f->k, f->m);
+    int64_t end[HDI_BUCKETS + 1], i, from = 0, b;
+    double most = 0, scale;
+    for (i = 0; i < f->m; i++) most = hdi_max(most, f->d[i]);
+    scale = most > 1e-290 ? HDI_CAST(double, HDI_BUCKETS) * 0.9999 / most : 0;
+    memset(end, 0, sizeof end);
+    for (i = 0; i < f->m; i++) end[HDI_CAST(int32_t, f->d[i] * scale)]++;
+    hdi_prefix_sum(end, HDI_BUCKETS);
+    for (i = 0; i < f->m; i++) {
+        hdi_pair *to = f->sorted + end[HDI_CAST(int32_t, f->d[i] * scale)]++;
+        memcpy(&to->key, f->d + i, sizeof to->key);   /* the bits of doubles that are not negative are in order */
+        to->id = f->id[i];
+    }
+    for (b = 0; b < HDI_BUCKETS && from < want; b++) {
+        hdi_sort_pairs(f->sorted + from, end[b] - from);
+        from = end[b];
+    }
+    return want;
+}
+
+/* Too many candidates: keeps the k nearest, whose last is the new bound. */
+static void hdi_found_shrink(hdi_found *f) {
+    int64_t i;
+    if (f->k == HDI_COUNT) {
+        f->counted += f->m;
+        f->m = 0;
+        return;
+    }
+    f->m = hdi_found_sort(f);
+    for (i = 0; i < f->m; i++) {
+        memcpy(f->d + i, &f->sorted[i].key, sizeof *f->d);
+        f->id[i] = HDI_CAST(int32_t, f->sorted[i].id);
+    }
+    hdi_found_bound(f, f->d[f->m - 1]);
+}
+
+static void hdi_scan_leaf(const hdi_tree *t, int32_t leaf, const double *q, hdi_found *f) {
+    const double *HDI_RESTRICT x = t->x + 3 * HDI_LEAF * HDI_CAST(int64_t, leaf), q0 = q[0], q1 = q[1], q2 = q[2], bound = f->bound;
+    const int32_t *HDI_RESTRICT id = t->id + HDI_LEAF * HDI_CAST(int64_t, leaf);
+    double *HDI_RESTRICT d = f->d + f->m, r[HDI_LEAF];
+    int32_t *HDI_RESTRICT found = f->id + f->m;
+    int64_t m = 0;
+    int i;
+    for (i = 0; i < HDI_LEAF; i++) {
+        const double a = x[i] - q0, b = x[HDI_LEAF + i] - q1, c = x[2 * HDI_LEAF + i] - q2;
+        r[i] = a * a + b * b + c * c;
+    }
+    for (i = 0; i < HDI_LEAF; i++) {   /* without a branch: half of them would be guessed wrong */
+        d[m] = r[i];
+        found[m] = id[i];
+        m += r[i] <= bound;
+    }
+    f->m += m;
+    if (f->m > f->room) hdi_found_shrink(f);
+}
+
+static double hdi_box_distance(const hdi_cell *v, const double *q) {
+    const double a = hdi_max(hdi_max(v->lo[0] - q[0], q[0] - v->hi[0]), 0);
+    const double b = hdi_max(hdi_max(v->lo[1] - q[1], q[1] - v->hi[1]), 0);
+    const double c = hdi_max(hdi_max(v->lo[2] - q[2], q[2] - v->hi[2]), 0);
+    return a * a + b * b + c * c;
+}
+
+/* Everything no farther than f->bound, which shrinks when the k nearest are wanted: nearer halves first. */
+static void hdi_search(const hdi_tree *t, const double *q, hdi_found *f) {
+    struct { int32_t node; double d; } stack[HDI_TREE_STACK];
+    int32_t v = 0;
+    int top = 0;
+    f->m = 0;
+    for (;;) {
+        const hdi_cell *node = t->node + v;
+        while (node->count > 1) {
+            const int32_t l = v + 1, r = v + 2 * (node->count / 2);
+            const double dl = hdi_box_distance(t->node + l, q), dr = hdi_box_distance(t->node + r, q);
+            const int left = dl <= dr;
+            const double d_far = left ? dr : dl;
+            stack[top].node = left ? r : l;
+            stack[top].d = d_far;
+            top += d_far <= f->prune;
+            v = left ? l : r;
+            node = t->node + v;
+            if (!((left ? dl : dr) <= f->prune)) break;
+        }
+        if (node->count == 1) hdi_scan_leaf(t, node->first, q, f);
+        do {
+            if (!top) return;
+            top--;
+        } while (!(stack[top].d <= f->prune));
+        v = stack[top].node;
+    }
+}
+
+/* Many queries, in blocks that do not depend on the threads; a task has work arrays of its own. */
+typedef struct hdi_search_job {
+    const hdi_tree *t;
+    const double *query;       /* [3 n_queries] */
+    const int32_t *order;      /* [n_queries] queries in an order that keeps near ones together; NULL: as they come */
+    int64_t n_queries, per_task;
+    int32_t k, *index;         /* k nearest: [k n_queries] */
+    double *distance2;         /* NULL: not wanted */
+    double radius2;            /* all within a radius: counts first, then columns and distances */
+    hd_csr *out;
+    hdi_found *found;          /* [tasks] */
+} hdi_search_job;
+
+static int64_t hdi_search_tasks(hdi_search_job *job, int64_t room) {
+    const int64_t blocks = (job->n_queries + 255) / 256, fit = 1 + ((int64_t)64 << 20) / (28 * (room + HDI_LEAF));
+    const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
+    job->per_task = tasks ? (job->n_queries + tasks - 1) / tasks : 0;
+    return tasks;
+}
+
+/* Work arrays for candidates of every task. */
+static void hdi_search_take(hdi_search_job *job, int64_t tasks, int64_t room, hdi_scope *s) {
+    const int64_t size = room + HDI_LEAF;
+    double *d = HDI_TAKE(s, double, tasks * size);
+    hdi_pair *sorted = HDI_TAKE(s, hdi_pair, tasks * size);
+    int32_t *id = HDI_TAKE(s, int32_t, tasks * size);
+    int64_t i;
+    job->found = HDI_TAKE_ZERO(s, hdi_found, tasks);
+    if (s->e->status < 0) return;
+    for (i = 0; i < tasks; i++) {
+        job->found[i].room = room;
+        job->found[i].d = d + i * size;
+        job->found[i].id = id + i * size;
+        job->found[i].sorted = sorted + i * size;
+    }
+}
+
+static double hdi_distance2(const double *a, const double *b) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+static void hdi_nearest_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
+    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
+    hdi_found *f = job->found + index;
+    const double *before = NULL;
+    double reach = 0;                            /* distance of its k-th neighbour */
+    int64_t i, p;
+    (void)worker;
+    f->k = job->k;
+    for (i = begin; i < end; i++) {
+        const int64_t v = job->order ? job->order[i] : i, k = job->k;
+        const double *q = job->query + 3 * v;
+        const double limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
+        int64_t m;
+        hdi_found_bound(f, before ? limit * limit * (1 + 16 * DBL_EPSILON) : DBL_MAX);
+        hdi_search(job->t, q, f);
+        m = hdi_found_sort(f);
+        for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? HDI_CAST(int32_t, f->sorted[p].id) : -1;
+        for (p = 0; job->distance2 && p < k; p++) {
+            if (p < m) memcpy(job->distance2 + v * k + p, &f->sorted[p].key, sizeof(double));
+            else job->distance2[v * k + p] = HUGE_VAL;
+        }
+        before = m == k ? q : NULL;
+        if (!before) continue;
+        memcpy(&reach, &f->sorted[k - 1].key, sizeof reach);
+        reach = sqrt(reach);
+    }
+}
+
+/* index [k n_queries] and distance2 (or NULL) by queries: neighbours ascend by distance, equally far ones by id; -1 where there are no more.
+ * queries NULL: the points xyz of the tree. */
+static hd_status hdi_nearest(const hdi_tree *t, const double *xyz, const double *query, int64_t n_queries, int32_t k, int32_t *index,
+                             double *distance2, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    const int64_t room = 2 * HDI_CAST(int64_t, k) + 32;
+    hdi_search_job job;
+    int64_t tasks;
+    memset(&job, 0, sizeof job);
+    job.t = t;
+    job.query = query ? query : xyz;
+    job.order = query ? NULL : t->id;
+    job.n_queries = n_queries;
+    job.k = k;
+    job.index = index;
+    job.distance2 = distance2;
+    tasks = hdi_search_tasks(&job, room);
+    hdi_search_take(&job, tasks, room, &s);
+    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_nearest_task, &job);
+    return hdi_scope_end(&s);
+}
+
+/* Sorts keys; work [n]. Runs of eight by insertion, then merged. */
+static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
+    uint64_t *from = a, *to = work;
+    int64_t i, j, run;
+    for (i = 1; i < n; i++) {
+        const uint64_t x = a[i];
+        for (j = i; j & 7 && x < a[j - 1]; j--) a[j] = a[j - 1];
+        a[j] = x;
+    }
+    for (run = 8; run < n; run *= 2) {
+        uint64_t *swap = from;
+        for (i = 0; i < n; i += 2 * run) {
+            const int64_t middle = hdi_least(i + run, n), end = hdi_least(i + 2 * run, n);
+            int64_t p = i, q = middle, out = i;
+            while (p < middle && q < end) {
+                const int second = from[q] < from[p];
+                to[out++] = second ? from[q] : from[p];
+                q += second;
+                p += !second;
+            }
+            while (p < middle) to[out++] = from[p++];
+            while (q < end) to[out++] = from[q++];
+        }
+        from = to;
+        to = swap;
+    }
+    if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
+}
+
+static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
+    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
+    hdi_found *f = job->found + index;
+    int64_t i;
+    (void)worker;
+    f->k = HDI_COUNT;
+    for (i = begin; i < end; i++) {
+        const int64_t v = job->order ? job->order[i] : i;
+        f->counted = 0;
+        hdi_found_bound(f, job->radius2);
+        hdi_search(job->t, job->query + 3 * v, f);
+        job->out->row_ptr[v] = f->counted + f->m;
+    }
+}
+
+/* One row: columns ascending. What was gathered is sorted by id with its place as a payload. */
+static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
+    uint64_t *key = HDI_CAST(uint64_t *, HDI_CAST(void *, f->sorted)), *work = key + f->m;   /* room for twice as many */
+    int64_t p;
+    for (p = 0; p < f->m; p++) key[p] = HDI_CAST(uint64_t, f->id[p]) << 32 | HDI_CAST(uint64_t, p);
+    hdi_sort_keys(key, f->m, work);
+    for (p = 0; p < f->m; p++) {
+        col[p] = HDI_CAST(int32_t, key[p] >> 32);
+        if (val) val[p] = f->d[key[p] & 0xffffffffu];
+    }
+}
+
+static void hdi_within_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
+    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
+    hdi_found *f = job->found + index;
+    hd_csr *out = job->out;
+    int64_t i;
+    (void)worker;
+    f->k = 0;
+    for (i = begin; i < end; i++) {
+        const int64_t v = job->order ? job->order[i] : i;
+        hdi_found_bound(f, job->radius2);
+        hdi_search(job->t, job->query + 3 * v, f);
+        hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
+    }
+}
+
+/* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values are these. Counted in a first pass, written
+ * in a second one. Other arguments as in hdi_nearest. */
+static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, const double *query, int32_t n_queries, double radius2, hd_context *ctx,
+                            hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
+    hdi_search_job job;
+    hd_csr a;
+    int64_t tasks, widest = 0, i;
+    memset(&job, 0, sizeof job);
+    a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
+    job.t = t;
+    job.query = query ? query : xyz;
+    job.order = query ? NULL : t->id;
+    job.n_queries = n_queries;
+    job.radius2 = radius2;
+    job.out = &a;
+    tasks = hdi_search_tasks(&job, 256);
+    hdi_search_take(&job, tasks, 256, &passes);
+    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_count_task, &job);
+    if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
+    for (i = 0; i < n_queries; i++) widest = a.row_ptr[i] > widest ? a.row_ptr[i] : widest;
+    a.nnz = hdi_prefix_sum(a.row_ptr, n_queries);
+    a.col = HDI_TAKE(&s, int32_t, a.nnz);
+    a.val = HDI_TAKE(&s, double, a.nnz);
+    tasks = hdi_search_tasks(&job, widest);
+    hdi_search_take(&job, tasks, widest, &passes);
+    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_within_task, &job);
+    if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
+    *out = hdi_csr_keep(&s, a);
+    return hdi_scope_end(&s);
+}
+
 /* ==== [09] geometry ====
  * Triangles: checks, corner cotangents, which faces are left out, and who meets at a vertex. May call [05]. */
 
@@ -3586,12 +4145,756 @@ static hd_status hdi_mesh_make(hdi_mesh *mesh, const double *xyz, int32_t n, con
     return HD_OK;
 }
 
+/* ---- polygons ---- */
+
+/* Faces with any number of corners. What the operator needs of a face is kept per corner. */
+typedef struct hdi_poly {
+    const double *xyz;
+    const int64_t *ptr;
+    const int32_t *idx;
+    int32_t n, m;
+    double lambda;
+    double *area;        /* [m] length of the vector area; 0: the face is left out */
+    double *g;           /* [3 corners] (corner before - corner after) / (2 sqrt(area)) */
+    double *w;           /* [2 corners] see hdi_poly_frame; of triangles not set */
+    int32_t *face;       /* [corners] the face of a corner */
+    int64_t *corner_ptr; /* [n + 1] corners at each vertex, as indices into idx, faces ascending */
+    int32_t *corner;     /* [corners]; corners of faces left out are not listed */
+} hdi_poly;
+
+static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr, const int32_t *idx, int32_t m, hd_error *e) {
+    int64_t c;
+    int32_t f;
+    if (hdi_mesh_check(xyz, n, NULL, 0, e) < 0) return e->status;
+    if (m > 0 && ptr[0] != 0) return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, HDI_CAST(double, ptr[0]));
+    for (f = 0; f < m; f++)
+        if (ptr[f + 1] < ptr[f]) return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, HDI_CAST(double, ptr[f + 1]));
+    if (m > 0 && ptr[m] > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (m > 0 && ptr[m] > 0 && !idx) return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
+    for (f = 0; f < m; f++)
+        for (c = ptr[f]; c < ptr[f + 1]; c++)
+            if (idx[c] < 0 || idx[c] >= n) return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1, idx[c]);
+    return HD_OK;
+}
+
+static const double *hdi_poly_at(const hdi_poly *poly, int64_t corner) { return poly->xyz + 3 * HDI_CAST(int64_t, poly->idx[corner]); }
+
+/* The corners of the same face before and after c. */
+static int64_t hdi_poly_before(const hdi_poly *poly, int64_t c) {
+    const int32_t f = poly->face[c];
+    return c > poly->ptr[f] ? c - 1 : poly->ptr[f + 1] - 1;
+}
+
+static int64_t hdi_poly_after(const hdi_poly *poly, int64_t c) {
+    const int32_t f = poly->face[c];
+    return c + 1 < poly->ptr[f + 1] ? c + 1 : poly->ptr[f];
+}
+
+/* The edge from corner c to the next. */
+static void hdi_poly_edge(const hdi_poly *poly, int64_t c, double *edge) {
+    hdi_sub3(hdi_poly_at(poly, hdi_poly_after(poly, c)), hdi_poly_at(poly, c), edge);
+}
+
+/* Twice the vector area of face f, as a fan from its first corner. Returns its length, or 0 when nothing but the rounding of the sum is left of
+ * it, as in a bow tie. A triangle is one cross product of two edges: 0 only if that is exactly zero. */
+static double hdi_poly_area(const hdi_poly *poly, int32_t f, double *twice) {
+    const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
+    double spoke[3], edge[3], cross[3], length, sum = 0;
+    int64_t c;
+    int q;
+    twice[0] = twice[1] = twice[2] = 0;
+    for (c = begin + 1; c + 1 < end; c++) {
+        hdi_sub3(hdi_poly_at(poly, c), hdi_poly_at(poly, begin), spoke);
+        hdi_poly_edge(poly, c, edge);
+        hdi_cross3(spoke, edge, cross);
+        for (q = 0; q < 3; q++) twice[q] += cross[q];
+        sum += hdi_norm3(cross);
+    }
+    length = hdi_norm3(twice);
+    if (!hdi_finite(sum)) return sum;
+    return length <= 4 * DBL_EPSILON * HDI_CAST(double, end - begin - 2) * sum ? 0 : length;
+}
+
+/* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the longest edge as projected into it. Returns its length. */
+static double hdi_poly_axes(const hdi_poly *poly, int32_t f, const double *normal, double frame[2][3]) {
+    double longest = 0, edge[3], length, along;
+    int64_t c;
+    int q;
+    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
+        hdi_poly_edge(poly, c, edge);
+        along = hdi_dot3(edge, normal);
+        for (q = 0; q < 3; q++) edge[q] -= along * normal[q];
+        length = hdi_norm3(edge);
+        if (!(length > longest)) continue;
+        longest = length;
+        for (q = 0; q < 3; q++) frame[0][q] = edge[q] / length;
+    }
+    if (longest > 0) hdi_cross3(normal, frame[0], frame[1]);
+    return longest;
+}
+
+/* The projector on the kernel of the transposed projected edges is I - Q Q', Q [k x 2] an orthonormal basis of their range: Gram and Schmidt,
+ * orthogonalised twice. What is kept are the rows of w = D'Q, D the difference along the edges. 0 when the face has no plane. */
+static int hdi_poly_frame(const hdi_poly *poly, int32_t f, const double *normal) {
+    const int64_t begin = poly->ptr[f], k = poly->ptr[f + 1] - begin;
+    double *q = poly->w + 2 * begin, frame[2][3], edge[3], dot, norm, last[2];
+    const double longest = hdi_poly_axes(poly, f, normal, frame);
+    int64_t p;
+    int turn;
+    if (!(longest > 0)) return 0;
+    for (p = 0, norm = 0; p < k; p++) {
+        hdi_poly_edge(poly, begin + p, edge);
+        q[2 * p] = hdi_dot3(edge, frame[0]) / longest;
+        q[2 * p + 1] = hdi_dot3(edge, frame[1]) / longest;
+        norm += q[2 * p] * q[2 * p];
+    }
+    for (p = 0, norm = sqrt(norm); p < k; p++) q[2 * p] /= norm;
+    for (turn = 0; turn < 2; turn++) {
+        for (p = 0, dot = 0; p < k; p++) dot += q[2 * p] * q[2 * p + 1];
+        for (p = 0; p < k; p++) q[2 * p + 1] -= dot * q[2 * p];
+    }
+    for (p = 0, norm = 0; p < k; p++) norm += q[2 * p + 1] * q[2 * p + 1];
+    norm = sqrt(norm);
+    for (p = 0; p < k; p++) q[2 * p + 1] = norm > 1e-12 ? q[2 * p + 1] / norm : 0;   /* narrower than that: its direction is rounding */
+    last[0] = q[2 * k - 2];
+    last[1] = q[2 * k - 1];
+    for (p = k - 1; p >= 0; p--) {
+        q[2 * p] = (p > 0 ? q[2 * p - 2] : last[0]) - q[2 * p];
+        q[2 * p + 1] = (p > 0 ? q[2 * p - 1] : last[1]) - q[2 * p + 1];
+    }
+    return 1;
+}
+
+/* Smallest angle at the corners of f that bend inwards, at most pi. */
+static double hdi_poly_angle(const hdi_poly *poly, int32_t f, const double *normal) {
+    double least = 4, in[3], out[3], cross[3];
+    int64_t c;
+    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
+        hdi_poly_edge(poly, hdi_poly_before(poly, c), in);
+        hdi_poly_edge(poly, c, out);
+        hdi_cross3(in, out, cross);
+        if (hdi_dot3(cross, normal) >= 0) least = hdi_min(least, atan2(hdi_norm3(cross), -hdi_dot3(in, out)));
+    }
+    return least;
+}
+
+/* g of face f; 0 when a square of it is not finite. */
+static int hdi_poly_gradients(const hdi_poly *poly, int32_t f, double area) {
+    int64_t c;
+    int q, good = 1;
+    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
+        double *g = poly->g + 3 * c;
+        hdi_sub3(hdi_poly_at(poly, hdi_poly_before(poly, c)), hdi_poly_at(poly, hdi_poly_after(poly, c)), g);
+        for (q = 0; q < 3; q++) g[q] /= 2 * sqrt(area);
+        good &= hdi_finite(hdi_dot3(g, g));
+    }
+    return good;
+}
+
+/* Everything about face f. mark [n] holds the last face that saw a vertex. */
+static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark, hd_mesh_report *rep, hd_error *e) {
+    const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
+    double normal[3], twice;
+    int64_t c;
+    int q;
+    poly->area[f] = 0;
+    for (c = begin; c < end; c++) {
+        if (mark[poly->idx[c]] == f) {
+            rep->n_repeated_corner++;
+            return HD_OK;
+        }
+        mark[poly->idx[c]] = f;
+    }
+    twice = end - begin < 3 ? 0 : hdi_poly_area(poly, f, normal);
+    if (!hdi_finite(twice)) return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f, poly->idx[begin], twice);
+    if (twice == 0 || twice / (8 * HDI_CAST(double, end - begin)) < DBL_MIN || !hdi_poly_gradients(poly, f, twice / 2)) {
+        rep->n_zero_area++;
+        return HD_OK;
+    }
+    for (q = 0; q < 3; q++) normal[q] /= twice;
+    if (end - begin > 3 && !hdi_poly_frame(poly, f, normal)) {
+        rep->n_zero_area++;
+        return HD_OK;
+    }
+    poly->area[f] = twice / 2;
+    rep->smallest_angle = hdi_min(rep->smallest_angle, hdi_poly_angle(poly, f, normal));
+    return HD_OK;
+}
+
+/* Corner lists of all vertices, over the faces that have an area. */
+static void hdi_poly_corners(hdi_poly *poly) {
+    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
+    int64_t c;
+    int32_t i;
+    memset(poly->corner_ptr, 0, (HDI_CAST(size_t, poly->n) + 1) * sizeof *poly->corner_ptr);
+    for (c = 0; c < n_corners; c++)
+        if (poly->area[poly->face[c]] > 0) poly->corner_ptr[poly->idx[c]]++;
+    hdi_prefix_sum(poly->corner_ptr, poly->n);
+    for (c = 0; c < n_corners; c++)
+        if (poly->area[poly->face[c]] > 0) poly->corner[poly->corner_ptr[poly->idx[c]]++] = HDI_CAST(int32_t, c);
+    for (i = poly->n; i > 0; i--) poly->corner_ptr[i] = poly->corner_ptr[i - 1];
+    poly->corner_ptr[0] = 0;
+}
+
+/* From a face's smallest corner towards the smaller of its neighbours: the way in which faces with the same corners in the same cyclic order are
+ * all read alike. One step from c, which is *forward or not. */
+static int64_t hdi_poly_step(const hdi_poly *poly, int64_t c, int forward) { return forward ? hdi_poly_after(poly, c) : hdi_poly_before(poly, c); }
+
+static int hdi_poly_way(const hdi_poly *poly, int64_t c) { return poly->idx[hdi_poly_after(poly, c)] < poly->idx[hdi_poly_before(poly, c)]; }
+
+/* A number for the corners of the face in the order from its smallest corner c (the hash of Fowler, Noll and Vo, a vertex at a time). */
+static uint64_t hdi_poly_key(const hdi_poly *poly, int64_t c) {
+    const int forward = hdi_poly_way(poly, c);
+    uint64_t key = 14695981039346656037u;
+    int64_t at = c;
+    do {
+        key = (key ^ HDI_CAST(uint64_t, poly->idx[at])) * 1099511628211u;
+        at = hdi_poly_step(poly, at, forward);
+    } while (at != c);
+    return key;
+}
+
+static int hdi_poly_same(const hdi_poly *poly, int64_t c, int64_t d) {
+    const int forward_c = hdi_poly_way(poly, c), forward_d = hdi_poly_way(poly, d);
+    int64_t a = c, b = d;
+    do {
+        if (poly->idx[a] != poly->idx[b]) return 0;
+        a = hdi_poly_step(poly, a, forward_c);
+        b = hdi_poly_step(poly, b, forward_d);
+    } while (a != c && b != d);
+    return a == c && b == d;
+}
+
+/* Gives faces that repeat an earlier one area 0: around each vertex, the faces in which it is the smallest corner are sorted by their keys.
+ * least [m] the smallest corner of each face; work as in hdi_mesh_repeats. */
+static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_mesh_report *rep) {
+    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
+    int64_t c, p, n, first;
+    int32_t i;
+    hdi_fill_i32(least, poly->m, -1);
+    for (c = 0; c < n_corners; c++) {
+        int32_t *best = least + poly->face[c];
+        if (*best < 0 || poly->idx[c] < poly->idx[*best]) *best = HDI_CAST(int32_t, c);
+    }
+    for (i = 0; i < poly->n; i++) {
+        n = 0;
+        for (p = poly->corner_ptr[i]; p < poly->corner_ptr[i + 1]; p++) {
+            c = poly->corner[p];
+            if (least[poly->face[c]] != c) continue;
+            work[n].key = hdi_poly_key(poly, c);
+            work[n++].id = c;
+        }
+        hdi_sort_pairs(work, n);
+        for (p = 1, first = 0; p < n; p++) {
+            if (work[p].key != work[first].key) first = p;
+            else if (hdi_poly_same(poly, work[p].id, work[first].id)) {
+                poly->area[poly->face[work[p].id]] = 0;
+                rep->n_repeated_face++;
+            }
+        }
+    }
+}
+
+/* The most corners at a vertex, at least 1. */
+static int64_t hdi_poly_busiest(const hdi_poly *poly) {
+    int64_t most = 1;
+    int32_t i;
+    for (i = 0; i < poly->n; i++)
+        if (poly->corner_ptr[i + 1] - poly->corner_ptr[i] > most) most = poly->corner_ptr[i + 1] - poly->corner_ptr[i];
+    return most;
+}
+
+/* As hdi_mesh_make. The input must have passed hdi_poly_check. */
+static hd_status hdi_poly_make(hdi_poly *poly, hd_mesh_report *rep, hdi_scope *s) {
+    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
+    const int32_t m = poly->m;
+    int32_t *mark, f;
+    hdi_pair *work;
+    int64_t c;
+    rep->n_faces = m;
+    rep->smallest_angle = m > 0 ? 4 : 0;
+    poly->area = HDI_TAKE(s, double, m);
+    poly->g = HDI_TAKE(s, double, 3 * n_corners);
+    poly->w = HDI_TAKE(s, double, 2 * n_corners);
+    poly->face = HDI_TAKE(s, int32_t, n_corners);
+    poly->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, poly->n) + 1);
+    poly->corner = HDI_TAKE(s, int32_t, n_corners);
+    mark = HDI_TAKE(s, int32_t, poly->n > m ? poly->n : m);
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0; f < m; f++)
+        for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) poly->face[c] = f;
+    hdi_fill_i32(mark, poly->n, -1);
+    for (f = 0; f < m; f++)
+        if (hdi_poly_measure(poly, f, mark, rep, s->e) < 0) return s->e->status;
+    hdi_poly_corners(poly);
+    work = HDI_TAKE(s, hdi_pair, hdi_poly_busiest(poly));
+    if (!work) return s->e->status;
+    hdi_poly_repeats(poly, mark, work, rep);
+    if (rep->n_repeated_face) hdi_poly_corners(poly);
+    for (f = 0; f < m; f++) rep->n_faces_used += poly->area[f] > 0;
+    if (!rep->n_faces_used) rep->smallest_angle = 0;
+    return HD_OK;
+}
+
+/* Fans from the first corner of each face, into tri; NULL: counted only. Returns the number of triangles. */
+static int64_t hdi_poly_fans(const int64_t *ptr, const int32_t *idx, int32_t m, int32_t *tri) {
+    int64_t t = 0, c;
+    int32_t f;
+    for (f = 0; f < m; f++) {
+        for (c = ptr[f] + 1; c + 1 < ptr[f + 1]; c++, t++) {
+            if (!tri) continue;
+            tri[3 * t] = idx[ptr[f]];
+            tri[3 * t + 1] = idx[c];
+            tri[3 * t + 2] = idx[c + 1];
+        }
+    }
+    return t;
+}
+
+/* The face that triangle t is of. */
+static int32_t hdi_poly_face_of(const int64_t *ptr, int32_t m, int64_t t) {
+    int32_t f;
+    for (f = 0; f < m; f++) {
+        const int64_t k = ptr[f + 1] - ptr[f] - 2;
+        if (k > t) return f;
+        if (k > 0) t -= k;
+    }
+    return -1;
+}
+
+/* ---- intrinsic triangulations ----
+ * Triangles that are known by the lengths of their sides and by which side is glued to which: what flips of edges need, and all that the operators
+ * need. An edge may join a vertex to itself, two vertices may share several edges, a triangle may be glued to itself.
+ * This work is based on
+ *   A. Bobenko, B. Springborn, A discrete Laplace-Beltrami operator for simplicial surfaces, 2007 (intrinsic Delaunay, non-negative weights)
+ *   M. Fisher, B. Springborn, P. Schroeder, A. Bobenko, An algorithm for the construction of intrinsic Delaunay triangulations, 2007 (flips)
+ *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (mollification, the tufted cover)
+ *   W. Kahan, Miscalculating area and angles of a needle-like triangle, 2014 (areas from lengths)
+ * Deviations: sheets around an edge of three faces or more follow each other by their angle in space, and copies of a face lie in layers (the paper takes
+ * any order); an orientable manifold without boundary is its own cover, half of it is not stored; flips must also lower the sum of the six cotangents,
+ * which in exact arithmetic they always do (Rippa 1990), so that rounding cannot make them run in circles. Zero-area faces are left out before.
+ * Lengths are in units of the mean edge length: nothing overflows, and results do not depend on the unit of the coordinates. */
+
+typedef struct hdi_intrinsic {
+    int32_t n_sides;    /* three per face */
+    int32_t n_sheets;   /* how often the surface is covered */
+    double unit;        /* mean edge length of the input */
+    int32_t *vert;      /* [n_sides] where side s begins; it runs to where the next side of its face begins */
+    int32_t *twin;      /* [n_sides] the side glued to it, which runs the other way; -1: boundary */
+    double *len;        /* [n_sides] length / unit, the same on both sides of an edge */
+    double *area;       /* [n_sides / 3] area / unit^2; 0: these lengths make no triangle, the face contributes nothing */
+} hdi_intrinsic;
+
+static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
+static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
+
+/* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none. */
+static double hdi_length_area(double a, double b, double c) {
+    double t;
+    if (a < b) { t = a; a = b; b = t; }
+    if (b < c) { t = b; b = c; c = t; }
+    if (a < b) { t = a; a = b; b = t; }
+    t = c - (a - b);
+    return t > 0 ? 0.25 * sqrt((a + (b + c)) * t * (c + (a - b)) * (a + (b - c))) : 0;
+}
+
+static void hdi_intrinsic_area(hdi_intrinsic *t, int32_t f) {
+    const double *len = t->len + 3 * HDI_CAST(int64_t, f);
+    t->area[f] = hdi_length_area(len[0], len[1], len[2]);
+}
+
+/* Cotangent of the angle opposite to side s, of a face with area. */
+static double hdi_side_cot(const hdi_intrinsic *t, int32_t s) {
+    const double a = t->len[s], b = t->len[hdi_side_next(s)], c = t->len[hdi_side_prev(s)];
+    return (b * b + c * c - a * a) / (4 * t->area[s / 3]);
+}
+
+/* Sides from v to later vertices (of faces with area), sorted by the other vertex, then by side: edges are runs of the same key. */
+static int64_t hdi_sides_at(const hdi_mesh *mesh, int32_t v, hdi_pair *list) {
+    int64_t p, n = 0;
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], before = hdi_side_prev(c), to = mesh->tri[hdi_side_next(c)], from = mesh->tri[before];
+        if (to > v) {
+            list[n].key = HDI_CAST(uint64_t, to);
+            list[n++].id = c;
+        }
+        if (from > v) {
+            list[n].key = HDI_CAST(uint64_t, from);
+            list[n++].id = before;
+        }
+    }
+    hdi_sort_pairs(list, n);
+    return n;
+}
+
+static double hdi_side_length(const hdi_mesh *mesh, int32_t s) {
+    double edge[3];
+    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_next(s)]), mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[s]), edge);
+    return hdi_norm3(edge);
+}
+
+/* Edges of the mesh: the same figures as those of hdi_edge_report, the sum of lengths, and mate [3 m], the other side of edges with two faces (-1
+ * elsewhere). parent [n] unites boundary edges. list: twice as many pairs as the busiest vertex has corners. */
+static double hdi_mesh_mates(const hdi_mesh *mesh, int32_t *mate, int32_t *parent, hdi_pair *list, hd_mesh_report *rep) {
+    double length = 0;
+    int64_t p, q, n;
+    int32_t v;
+    for (p = 0; p < 3 * HDI_CAST(int64_t, mesh->m); p++) mate[p] = -1;
+    for (v = 0; v < mesh->n; v++) parent[v] = v;
+    for (v = 0; v < mesh->n; v++) {
+        n = hdi_sides_at(mesh, v, list);
+        for (p = 0; p < n; p = q) {
+            const int32_t s = HDI_CAST(int32_t, list[p].id);
+            for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
+            length += hdi_side_length(mesh, s);
+            rep->n_edges++;
+            rep->n_nonmanifold_edges += q - p > 2;
+            rep->n_boundary_edges += q - p == 1;
+            if (q - p == 1) hdi_unite(parent, v, HDI_CAST(int32_t, list[p].key));
+            if (q - p != 2) continue;
+            mate[s] = HDI_CAST(int32_t, list[p + 1].id);
+            mate[mate[s]] = s;
+            rep->n_misoriented_edges += mesh->tri[s] == mesh->tri[mate[s]];
+        }
+    }
+    for (v = 0; v < mesh->n; v++) parent[v] = hdi_find(parent, v);
+    for (v = 0; v < mesh->n; v++) {              /* a loop is a root with another vertex in its set */
+        const int32_t root = parent[v];
+        if (root == v || parent[root] != root) continue;
+        parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
+        rep->n_boundary_loops++;
+    }
+    return length;
+}
+
+/* turned[f] = 1 for faces that have to be turned over so that all mates run opposite ways; 0 if the surface has only one side. queue [m]. */
+static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed char *turned, int32_t *queue) {
+    int32_t start, head, tail, q;
+    memset(turned, -1, HDI_CAST(size_t, mesh->m));
+    for (start = 0; start < mesh->m; start++) {
+        if (turned[start] >= 0 || !(mesh->area[start] > 0)) continue;
+        turned[start] = 0;
+        queue[0] = start;
+        for (head = 0, tail = 1; head < tail; head++) {
+            for (q = 0; q < 3; q++) {
+                const int32_t s = 3 * queue[head] + q, t = mate[s], f = t / 3;
+                int want;
+                if (t < 0) continue;
+                want = turned[queue[head]] ^ (mesh->tri[s] == mesh->tri[t]);
+                if (turned[f] >= 0 && turned[f] != want) return 0;
+                if (turned[f] >= 0) continue;
+                turned[f] = HDI_CAST(signed char, want);
+                queue[tail++] = f;
+            }
+        }
+    }
+    return 1;
+}
+
+/* Copies of a face (in soups only: meshes have none left) by the number of earlier ones, into copy [m]. list as for hdi_mesh_mates. */
+static void hdi_face_copies(const hdi_mesh *mesh, int32_t *copy, hdi_pair *list) {
+    int32_t v;
+    int64_t p, n;
+    for (v = 0; v < mesh->n; v++) {
+        n = 0;
+        for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+            const int32_t c = mesh->corner[p], a = mesh->tri[hdi_side_next(c)], b = mesh->tri[hdi_side_prev(c)], lo = a < b ? a : b, hi = a < b ? b : a;
+            if (lo < v) continue;
+            list[n].key = HDI_CAST(uint64_t, lo) << 32 | HDI_CAST(uint64_t, hi);
+            list[n++].id = c / 3;
+        }
+        hdi_sort_pairs(list, n);
+        for (p = 0; p < n; p++) copy[list[p].id] = p > 0 && list[p].key == list[p - 1].key ? copy[list[p - 1].id] + 1 : 0;
+    }
+}
+
+static void hdi_unit3(const double *from, const double *to, double *out) {
+    double norm;
+    int k;
+    hdi_sub3(to, from, out);
+    norm = hdi_norm3(out);
+    for (k = 0; k < 3; k++) out[k] /= norm;
+}
+
+/* Faces around an edge, its n sides in list: sorted by layer of copies, then by angle in space from the first side's face, counterclockwise as seen
+ * against the direction from the smaller vertex to the larger one. */
+static void hdi_sort_around(const hdi_mesh *mesh, const int32_t *copy, int32_t lo, int32_t hi, hdi_pair *list, int64_t n) {
+    const double *p = mesh->xyz + 3 * HDI_CAST(int64_t, lo), turn = 6.283185307179586;
+    double axis[3], first[3], up[3], u[3];
+    int64_t k;
+    hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, hi), axis);
+    hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[0].id))]), first);
+    hdi_cross3(axis, first, up);
+    hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
+    for (k = 0; k < n; k++) {
+        const int32_t s = HDI_CAST(int32_t, list[k].id);
+        double angle;
+        hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(s)]), u);
+        angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
+        if (angle < 0) angle += turn;
+        list[k].key = HDI_CAST(uint64_t, copy ? copy[s / 3] : 0) << 44 | HDI_CAST(uint64_t, hdi_min(angle / turn, 1) * 8796093022208.0);
+    }
+    hdi_sort_pairs(list, n);
+}
+
+/* Side s of the mesh on a sheet: place[face] is the number of the face there; the back runs through the face the other way round. */
+static int32_t hdi_sheet_side(const int32_t *place, int32_t s, int back) { return 3 * place[s / 3] + (back ? 2 - s % 3 : s % 3); }
+
+static void hdi_glue(hdi_intrinsic *t, int32_t a, int32_t b) {
+    t->twin[a] = b;
+    t->twin[b] = a;
+}
+
+/* The cover of two sheets: front of face f at place front[f], its back at back[f]. Around each edge the side of a face that looks counterclockwise is
+ * glued to the side of the next face that looks back at it; so a single face at the boundary, front to back, if it is not to stay open. */
+static void hdi_glue_cover(hdi_intrinsic *t, const hdi_mesh *mesh, const int32_t *front, const int32_t *back, const int32_t *copy, int close, hdi_pair *list) {
+    int64_t p, q, k, n;
+    int32_t v;
+    for (v = 0; v < mesh->n; v++) {
+        n = hdi_sides_at(mesh, v, list);
+        for (p = 0; p < n; p = q) {
+            const int32_t other = HDI_CAST(int32_t, list[p].key);
+            for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
+            if (q - p == 1 && !close) continue;
+            if (q - p > 2) hdi_sort_around(mesh, copy, v, other, list + p, q - p);
+            for (k = p; k < q; k++) {            /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
+                const int32_t a = HDI_CAST(int32_t, list[k].id), b = HDI_CAST(int32_t, list[k + 1 < q ? k + 1 : p].id);
+                const int back_a = mesh->tri[a] != v, back_b = mesh->tri[b] == v;
+                hdi_glue(t, hdi_sheet_side(back_a ? back : front, a, back_a), hdi_sheet_side(back_b ? back : front, b, back_b));
+            }
+        }
+    }
+}
+
+/* The faces with area at their places, their lengths and vertices. */
+static void hdi_put_face(hdi_intrinsic *t, const hdi_mesh *mesh, int32_t f, const int32_t *place, int back) {
+    int32_t q;
+    for (q = 0; q < 3; q++) {
+        const int32_t s = 3 * f + q, at = hdi_sheet_side(place, s, back);
+        t->vert[at] = mesh->tri[back ? hdi_side_next(s) : s];
+        t->len[at] = hdi_side_length(mesh, s) / t->unit;
+        t->twin[at] = -1;
+    }
+}
+
+/* The intrinsic triangulation of a mesh, in s: of itself where all its faces can be turned to one side, else of its two-sheeted cover. With close the
+ * boundary is glued to the other sheet (the tufted cover), so that no boundary is left. */
+static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int soup, int close, hd_mesh_report *rep, hdi_scope *s) {
+    const int64_t n_sides = 3 * HDI_CAST(int64_t, mesh->m);
+    int32_t *mate = HDI_TAKE(s, int32_t, n_sides), *front = HDI_TAKE(s, int32_t, mesh->m + 1), *back = HDI_TAKE(s, int32_t, mesh->m + 1);
+    int32_t *parent = HDI_TAKE(s, int32_t, mesh->n), f, q, used = 0;
+    signed char *turned = HDI_TAKE(s, signed char, mesh->m);
+    hdi_pair *list = HDI_TAKE(s, hdi_pair, 2 * hdi_most_corners(mesh));
+    int single;
+    memset(t, 0, sizeof *t);
+    if (s->e->status < 0) return s->e->status;
+    t->unit = hdi_mesh_mates(mesh, mate, parent, list, rep) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
+    single = rep->n_nonmanifold_edges == 0 && !(close && rep->n_boundary_edges) && hdi_mesh_orient(mesh, mate, turned, back);
+    t->n_sheets = single ? 1 : 2;
+    for (f = 0; f < mesh->m; f++) front[f] = mesh->area[f] > 0 ? used++ : 0;
+    for (f = 0; f < mesh->m; f++) back[f] = front[f] + used;
+    if (!single && used > INT32_MAX / 6) return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
+    t->n_sides = 3 * used * t->n_sheets;
+    t->vert = HDI_TAKE(s, int32_t, t->n_sides);
+    t->twin = HDI_TAKE(s, int32_t, t->n_sides);
+    t->len = HDI_TAKE(s, double, t->n_sides);
+    t->area = HDI_TAKE(s, double, t->n_sides / 3);
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0; f < mesh->m; f++) {
+        if (!(mesh->area[f] > 0)) continue;
+        hdi_put_face(t, mesh, f, front, single && turned[f]);
+        if (!single) hdi_put_face(t, mesh, f, back, 1);
+        for (q = 3 * f; single && q < 3 * f + 3; q++)
+            if (mate[q] >= 0 && mate[q] < q) hdi_glue(t, hdi_sheet_side(front, q, turned[f]), hdi_sheet_side(front, mate[q], turned[mate[q] / 3]));
+    }
+    if (single) return HD_OK;
+    if (soup) hdi_face_copies(mesh, mate, list); /* the mates have done their work */
+    hdi_glue_cover(t, mesh, front, back, soup ? mate : NULL, close, list);
+    return HD_OK;
+}
+
+/* Mollification (Sharp, Crane 2020, section 4.5): the smallest length that, added to all sides, makes every triangle satisfy the triangle inequality
+ * with delta to spare. delta < 0: nothing is added. */
+static void hdi_mollify(hdi_intrinsic *t, double delta, hd_mesh_report *rep) {
+    double add = 0;
+    int32_t s, k, short_faces = 0;
+    for (s = 0; s < t->n_sides && delta >= 0; s += 3) {
+        double spare = t->len[s] + t->len[s + 1] - t->len[s + 2];
+        for (k = 0; k < 2; k++) spare = hdi_min(spare, t->len[s + 2] + t->len[s + k] - t->len[s + 1 - k]);
+        short_faces += spare < delta;
+        add = hdi_max(add, delta - spare);
+    }
+    for (s = 0; s < t->n_sides; s++) t->len[s] += add;
+    for (s = 0; s < t->n_sides / 3; s++) hdi_intrinsic_area(t, s);
+    rep->n_mollified = short_faces / t->n_sheets;
+    rep->mollify_epsilon = add * t->unit;
+}
+
+/* Four times the sum of the cotangents of a triangle; also what their rounding errors are relative to. */
+static double hdi_harmonic(double a, double b, double c, double area) { return (a * a + b * b + c * c) / area; }
+
+/* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of all cotangents of its two faces. */
+#define HDI_DELAUNAY_TOL 1e-14
+
+static int hdi_not_delaunay(const hdi_intrinsic *t, int32_t a) {
+    const int32_t b = t->twin[a], f = a / 3, g = b / 3;
+    const double *p = t->len + 3 * HDI_CAST(int64_t, f), *q = t->len + 3 * HDI_CAST(int64_t, b < 0 ? 0 : g);
+    double sum;
+    if (b < 0 || f == g || !(t->area[f] > 0) || !(t->area[g] > 0)) return 0;   /* where a face is glued to itself the two sides are equal: Delaunay */
+    sum = hdi_side_cot(t, a) + hdi_side_cot(t, b);
+    return sum < 0 && sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) + hdi_harmonic(q[0], q[1], q[2], t->area[g]));
+}
+
+/* Flips the edge of side a, from i to j: side a comes to run from l to k, corners that were opposite to it. Returns 0 if it is fine as it is. The outer
+ * sides move with it, a2 to a1, b1 to a2, b2 to b1, a1 to b2:
+ *   before  a = ij, a1 = jk, a2 = ki    b = ji, b1 = il, b2 = lj        after  a = lk, a1 = ki, a2 = il    b = kl, b1 = lj, b2 = jk */
+static int hdi_flip(hdi_intrinsic *t, int32_t a) {
+    const int32_t b = t->twin[a], a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = b < 0 ? 0 : hdi_side_next(b), b2 = b < 0 ? 0 : hdi_side_prev(b);
+    int32_t from[4], to[4], twin[4], vert[4], k, q;
+    double len[4], x, y, d, area_f, area_g, before;
+    if (!hdi_not_delaunay(t, a)) return 0;
+    from[0] = to[1] = a2;
+    from[1] = to[2] = b1;
+    from[2] = to[3] = b2;
+    from[3] = to[0] = a1;
+    for (k = 0; k < 4; k++) {
+        len[k] = t->len[from[k]];
+        vert[k] = t->vert[from[k]];
+        twin[k] = t->twin[from[k]];
+        for (q = 0; q < 4; q++) {
+            if (twin[k] != from[q]) continue;    /* outer sides that are glued to each other */
+            twin[k] = to[q];
+            break;
+        }
+    }
+    /* The two triangles laid out in the plane, the edge along x: k and l are d apart. */
+    x = ((len[0] - len[3]) * (len[0] + len[3]) + (len[2] - len[1]) * (len[2] + len[1])) / (2 * t->len[a]);
+    y = 2 * (t->area[a / 3] + t->area[b / 3]) / t->len[a];
+    d = sqrt(x * x + y * y);
+    area_f = hdi_length_area(d, len[0], len[1]);
+    area_g = hdi_length_area(d, len[2], len[3]);
+    before = hdi_harmonic(t->len[a], len[0], len[3], t->area[a / 3]) + hdi_harmonic(t->len[a], len[1], len[2], t->area[b / 3]);
+    if (!(area_f > 0 && area_g > 0 && hdi_harmonic(d, len[0], len[1], area_f) + hdi_harmonic(d, len[2], len[3], area_g) < before)) return 0;
+    t->vert[a] = vert[2];                        /* l, where b2 begins */
+    t->vert[b] = vert[0];                        /* k, where a2 begins */
+    t->len[a] = t->len[b] = d;
+    for (k = 0; k < 4; k++) {
+        t->len[to[k]] = len[k];
+        t->vert[to[k]] = vert[k];
+        t->twin[to[k]] = twin[k];
+        if (twin[k] >= 0) t->twin[twin[k]] = to[k];
+    }
+    t->area[a / 3] = area_f;
+    t->area[b / 3] = area_g;
+    return 1;
+}
+
+/* Flips until every edge is Delaunay: edges by their first side, after each flip the four around it, last come first served. The order depends on
+ * nothing but the mesh. Stops after 64 flips per side, which no mesh has ever come near to; what is left is counted. */
+static hd_status hdi_flip_all(hdi_intrinsic *t, hd_mesh_report *rep, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    int32_t *stack = HDI_TAKE(&s, int32_t, t->n_sides), seed, depth = 0, k;
+    signed char *waits = HDI_TAKE_ZERO(&s, signed char, t->n_sides);
+    const int64_t most = 64 * HDI_CAST(int64_t, t->n_sides);
+    int64_t work = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (seed = 0; seed < t->n_sides; seed++) {
+        if (t->twin[seed] < seed) continue;      /* boundary, or done as its other side: who moves is put on the stack */
+        stack[depth++] = seed;
+        waits[seed] = 1;
+        while (depth > 0) {
+            const int32_t a = stack[--depth];
+            waits[a] = 0;
+            if (!(++work & 0xfffff) && hdi_progress(ctx, "flip edges", HDI_CAST(double, seed) / t->n_sides, e) < 0) return hdi_scope_end(&s);
+            if (rep->n_flips >= most || !hdi_flip(t, a)) continue;
+            rep->n_flips++;
+            for (k = 0; k < 4; k++) {
+                const int32_t b = t->twin[a], out = k == 0 ? hdi_side_prev(b) : k == 1 ? hdi_side_next(b) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a);
+                if (t->twin[out] < 0 || waits[out]) continue;
+                stack[depth++] = out;
+                waits[out] = 1;
+            }
+        }
+    }
+    for (seed = 0; seed < t->n_sides; seed++) {
+        rep->n_not_delaunay += t->twin[seed] > seed && hdi_not_delaunay(t, seed);
+        rep->n_self_edges += t->twin[seed] > seed && t->vert[seed] == t->vert[hdi_side_next(seed)];
+    }
+    return hdi_scope_end(&s);
+}
+
+/* The intrinsic triangles as a mesh for the operators, with areas and cotangents times weight; no coordinates. Corners of the same vertex come first
+ * in their face: then sums come in the same order in both rows of an edge. */
+static hd_status hdi_intrinsic_mesh(hdi_mesh *mesh, hdi_intrinsic *t, int32_t n, double weight, hd_mesh_report *rep, hdi_scope *s) {
+    int32_t f, q;
+    memset(mesh, 0, sizeof *mesh);
+    mesh->tri = t->vert;
+    mesh->n = n;
+    mesh->m = t->n_sides / 3;
+    mesh->area = t->area;
+    mesh->cot = HDI_TAKE_ZERO(s, double, t->n_sides);
+    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
+    mesh->corner = HDI_TAKE(s, int32_t, t->n_sides);
+    if (s->e->status < 0) return s->e->status;
+    rep->smallest_intrinsic_angle = mesh->m > 0 ? 4 : 0;
+    for (f = 0; f < mesh->m; f++) {
+        int32_t *v = t->vert + 3 * HDI_CAST(int64_t, f);
+        double *len = t->len + 3 * HDI_CAST(int64_t, f), *cot = mesh->cot + 3 * HDI_CAST(int64_t, f), last = len[2];
+        if (v[0] == v[2] && v[0] != v[1]) {      /* turned by one corner */
+            v[2] = v[1];
+            v[1] = v[0];
+            len[2] = len[1];
+            len[1] = len[0];
+            len[0] = last;
+        }
+        if (!(t->area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) {                /* the angle at corner q is opposite to the side that begins at the next */
+            cot[q] = hdi_side_cot(t, 3 * f + (q + 1) % 3);
+            if (!hdi_finite(cot[q])) t->area[f] = 0;
+        }
+        if (!(t->area[f] > 0)) continue;
+        rep->smallest_intrinsic_angle = hdi_min(rep->smallest_intrinsic_angle, atan2(1, hdi_max(cot[0], hdi_max(cot[1], cot[2]))));
+        for (q = 0; q < 3; q++) cot[q] *= weight;
+        t->area[f] *= weight * t->unit * t->unit;
+        if (t->area[f] / 12 < DBL_MIN) t->area[f] = 0;
+    }
+    hdi_mesh_corners(mesh);
+    return HD_OK;
+}
+
+/* Triangles as they are, copies included: what the stars of points make. The arrays live in s. */
+static hd_status hdi_soup_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep, hdi_scope *s) {
+    int32_t f;
+    memset(mesh, 0, sizeof *mesh);
+    mesh->xyz = xyz;
+    mesh->tri = tri;
+    mesh->n = n;
+    mesh->m = m;
+    mesh->cot = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, m));
+    mesh->area = HDI_TAKE(s, double, m);
+    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
+    mesh->corner = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m));
+    if (s->e->status < 0) return s->e->status;
+    rep->n_faces = m;
+    rep->smallest_angle = m > 0 ? 4 : 0;
+    for (f = 0; f < m; f++) {
+        if (hdi_face_measure(mesh, f, rep, s->e) < 0) return s->e->status;
+        rep->n_faces_used += mesh->area[f] > 0;
+    }
+    hdi_mesh_corners(mesh);
+    return HD_OK;
+}
+
 /* ==== [10] operators ====
- * The pair (L, B) on one pattern. May call [09] and [07].
+ * The pair (L, B) on one pattern. May call [09], [08] and [07].
  * This work is based on
  *   U. Pinkall, K. Polthier, Computing discrete minimal surfaces and their conjugates, 1993 (cotangent weights)
  *   M. Meyer, M. Desbrun, P. Schroeder, A. Barr, Discrete differential-geometry operators for triangulated 2-manifolds, 2003 (mixed areas)
- * Deviation: the paper cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas go negative on obtuse triangles. */
+ *   M. Alexa, M. Wardetzky, Discrete Laplacians on general polygonal meshes, 2011 (polygons)
+ *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (tufted points; the cover itself is in [09])
+ * and, of point sets, on what is named there.
+ * Deviations: the paper cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas go negative on obtuse triangles. Those of
+ * polygons and point sets are listed there. */
 
 static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     if (!lap) return;
@@ -3618,7 +4921,7 @@ static double hdi_mixed_area(const hdi_mesh *mesh, int32_t c) {
         hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[3 * f + (q + k) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, a), edge);
         sum += hdi_dot3(edge, edge) * cot[(q + 3 - k) % 3];
     }
-    return sum / 8;
+    return hdi_max(area / 4, hdi_min(sum / 8, area / 2));   /* as it must be without an obtuse angle; where cotangents round or underflow to 0 it might not */
 }
 
 static double hdi_vertex_mass(const hdi_mesh *mesh, int32_t v, hd_laplacian_kind kind) {
@@ -3764,8 +5067,9 @@ static void hdi_edge_counts(const hd_laplacian *lap, const hdi_mesh *mesh, int32
     }
 }
 
-/* Statistics of the edges of row i, and the union of boundary edges in parent [n_active]. Returns the sum of the edges' lengths. */
-static double hdi_edge_report(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, const int32_t *count, const int32_t *turn, int32_t *parent) {
+/* Statistics of the edges of row i, and the union of boundary edges in parent [n_active]. Returns the sum of the edges' lengths. An entry of L with
+ * a count of no faces is a diagonal of polygons. */
+static double hdi_edge_report(hd_laplacian *lap, const double *xyz, int32_t i, const int32_t *count, const int32_t *turn, int32_t *parent) {
     const int64_t begin = lap->L.row_ptr[i];
     hd_mesh_report *rep = &lap->mesh;
     double sum = 0, edge[3];
@@ -3773,12 +5077,13 @@ static double hdi_edge_report(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i
     for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
         const int32_t j = lap->L.col[p], faces = count[p - begin];
         if (j <= i) continue;
-        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, lap->vertex[j]), mesh->xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), edge);
+        rep->n_negative_weights += lap->L.val[p] > 0;
+        if (faces == 0) continue;
+        hdi_sub3(xyz + 3 * HDI_CAST(int64_t, lap->vertex[j]), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), edge);
         sum += hdi_norm3(edge);
         rep->n_edges++;
         rep->n_nonmanifold_edges += faces > 2;
         rep->n_misoriented_edges += faces == 2 && turn[p - begin] != 0;
-        rep->n_negative_weights += lap->L.val[p] > 0;
         if (faces != 1) continue;
         rep->n_boundary_edges++;
         hdi_unite(parent, i, j);
@@ -3786,32 +5091,54 @@ static double hdi_edge_report(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i
     return sum;
 }
 
+/* Counts the sets of hdi_edge_report: a loop is a root with another vertex in its set. seen [n_active] is overwritten. */
+static void hdi_boundary_loops(hd_laplacian *lap, int32_t *parent, int64_t *seen) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) seen[i] = 0;
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t root = hdi_find(parent, i);
+        if (root == i || seen[root]) continue;
+        seen[root] = 1;
+        lap->mesh.n_boundary_loops++;
+    }
+}
+
+/* The entries of the longest row, at least 1. */
+static int64_t hdi_widest_row(const hd_csr *a) {
+    int64_t widest = 1;
+    int32_t i;
+    for (i = 0; i < a->n_rows; i++)
+        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
+    return widest;
+}
+
 /* Values of L and B, edge statistics and h. */
 static hd_status hdi_lap_values(hd_laplacian *lap, const hdi_mesh *mesh, int32_t *parent, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active), widest = 1;
-    int32_t *count, *turn, i;
+    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
+    const int64_t widest = hdi_widest_row(&lap->L);
+    int32_t *count = HDI_TAKE(&s, int32_t, widest), *turn = HDI_TAKE(&s, int32_t, widest), i;
     double length = 0;
-    for (i = 0; i < lap->n_active; i++)
-        if (lap->L.row_ptr[i + 1] - lap->L.row_ptr[i] > widest) widest = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
-    count = HDI_TAKE(&s, int32_t, widest);
-    turn = HDI_TAKE(&s, int32_t, widest);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) parent[i] = i;
     for (i = 0; i < lap->n_active; i++) {
         hdi_lap_row_values(lap, mesh, i, place);
         hdi_edge_counts(lap, mesh, i, place, count, turn);
-        length += hdi_edge_report(lap, mesh, i, count, turn, parent);
+        length += hdi_edge_report(lap, mesh->xyz, i, count, turn, parent);
         if (lap->B) lap->b_diag[i] = lap->B[place[i]];
     }
     lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
-    for (i = 0; i < lap->n_active; i++) {   /* a loop is a root with another vertex in its set */
-        const int32_t root = hdi_find(parent, i);
-        if (root == i || place[root] == -1) continue;
-        place[root] = -1;
-        lap->mesh.n_boundary_loops++;
-    }
+    hdi_boundary_loops(lap, parent, place);
     return hdi_scope_end(&s);
+}
+
+/* Copies the places of the rows. */
+static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    int32_t i;
+    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+    if (!lap->xyz) return e->status;
+    for (i = 0; i < lap->n_active; i++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), 3 * sizeof *xyz);
+    return HD_OK;
 }
 
 static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, hd_error *e) {
@@ -3824,9 +5151,7 @@ static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const i
     if (!vertex_mass) return hdi_scope_end(&s);
     for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_vertex_mass(&mesh, v, lap->kind);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0) return hdi_scope_end(&s);
-    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
-    if (!lap->xyz) return hdi_scope_end(&s);
-    for (v = 0; v < lap->n_active; v++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, lap->vertex[v]), 3 * sizeof *xyz);
+    if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
     mark = HDI_TAKE(&s, int32_t, lap->n_active);
     if (!mark || hdi_lap_pattern(lap, &mesh, mark, e) < 0) return hdi_scope_end(&s);
     if (lap->kind == HD_LAPLACIAN_FEM) {
@@ -3840,6 +5165,279 @@ static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const i
     lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;   /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->conserves = 1;
     hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- polygons ----
+ * Of a face with k corners X [k x 3], edges E, middles of edges B_f, the difference D along the edges and the vector area of length |f|,
+ *     L_f = D'(B_f B_f'/|f| + lambda C C') D,        C an orthonormal basis of the kernel of the transposed edges projected along the vector area.
+ * Deviations from Alexa and Wardetzky, all of form: D'B_f is half the differences of next but one corners, g sqrt(|f|) here, which knows no origin;
+ * C C' = I - Q Q' with Q two columns, so that L_f = g g' + lambda (D'D - w w') costs a few products an entry, no k x k block is ever made,
+ * and faces of hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one number for all faces.
+ * On triangles the second part is zero, and is not computed. */
+
+/* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The same to the last bit for (d, c). */
+static double hdi_poly_entry(const hdi_poly *poly, int64_t c, int64_t d, int64_t k, int beside) {
+    const double *u = poly->w + 2 * c, *v = poly->w + 2 * d, first = hdi_dot3(poly->g + 3 * c, poly->g + 3 * d);
+    return k == 3 ? first : first - poly->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
+}
+
+/* As hdi_ring. */
+static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int32_t v, int32_t *mark, int32_t *col) {
+    const int32_t i = lap->row[v];
+    int64_t p, d, n = 1;
+    mark[i] = i;
+    col[0] = i;
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int32_t f = poly->face[poly->corner[p]];
+        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
+            const int32_t j = lap->row[poly->idx[d]];
+            if (mark[j] == i) continue;
+            mark[j] = i;
+            col[n++] = j;
+        }
+    }
+    return n;
+}
+
+/* As hdi_lap_pattern; col [n_active], work [n_active] serve rows of any length. */
+static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32_t *mark, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, lap->n_active);
+    int64_t nnz = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_i32(mark, lap->n_active, -1);
+    for (i = 0; i < lap->n_active; i++) nnz += hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
+    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    if (e->status < 0) {
+        memset(&lap->L, 0, sizeof lap->L);
+        return hdi_scope_end(&s);
+    }
+    hdi_fill_i32(mark, lap->n_active, -1);
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t begin = lap->L.row_ptr[i], n = hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
+        hdi_sort_indices(col, n, work);
+        memcpy(lap->L.col + begin, col, HDI_CAST(size_t, n) * sizeof *col);
+        lap->L.row_ptr[i + 1] = begin + n;
+    }
+    lap->L = hdi_csr_keep(&s, lap->L);
+    return hdi_scope_end(&s);
+}
+
+/* Values of row i, its edges counted as in hdi_edge_counts. As in hdi_lap_row_values, both rows of a pair add in the order of the faces. */
+static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i, int64_t *place, int32_t *count, int32_t *turn) {
+    const int32_t v = lap->vertex[i];
+    const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
+    double *L = lap->L.val + begin, sum = 0;
+    int64_t p, d;
+    for (p = 0; p < n; p++) {
+        place[lap->L.col[begin + p]] = p;
+        L[p] = 0;
+        count[p] = turn[p] = 0;
+    }
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int64_t c = poly->corner[p], before = hdi_poly_before(poly, c), after = hdi_poly_after(poly, c);
+        const int32_t f = poly->face[c];
+        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
+            const int64_t at = place[lap->row[poly->idx[d]]];
+            const int beside = d == before || d == after;
+            if (d == c) continue;
+            L[at] += hdi_poly_entry(poly, c, d, poly->ptr[f + 1] - poly->ptr[f], beside);
+            count[at] += beside;
+            turn[at] += (d == after) - (d == before);
+        }
+    }
+    for (p = 0; p < n; p++)
+        if (lap->L.col[begin + p] != i) sum += L[p];
+    L[place[i]] = -sum;
+}
+
+static hd_status hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, int32_t *parent, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
+    const int64_t widest = hdi_widest_row(&lap->L);
+    int32_t *count = HDI_TAKE(&s, int32_t, widest), *turn = HDI_TAKE(&s, int32_t, widest), i;
+    double length = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) parent[i] = i;
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_poly_row(lap, poly, i, place, count, turn);
+        length += hdi_edge_report(lap, poly->xyz, i, count, turn, parent);
+    }
+    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
+    hdi_boundary_loops(lap, parent, place);
+    return hdi_scope_end(&s);
+}
+
+/* Area of each face to its corners in equal parts. */
+static double hdi_poly_mass(const hdi_poly *poly, int32_t v) {
+    double sum = 0;
+    int64_t p;
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int32_t f = poly->face[poly->corner[p]];
+        sum += poly->area[f] / HDI_CAST(double, poly->ptr[f + 1] - poly->ptr[f]);
+    }
+    return sum;
+}
+
+/* poly: xyz, ptr, idx, n, m and lambda set, the input checked. */
+static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *vertex_mass;
+    int32_t *mark, v, f;
+    if (hdi_poly_make(poly, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
+    vertex_mass = HDI_TAKE(&s, double, lap->n);
+    if (!vertex_mass) return hdi_scope_end(&s);
+    for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_poly_mass(poly, v);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_places(lap, poly->xyz, e) < 0) return hdi_scope_end(&s);
+    mark = HDI_TAKE(&s, int32_t, lap->n_active);
+    if (!mark || hdi_poly_pattern(lap, poly, mark, e) < 0) return hdi_scope_end(&s);
+    if (hdi_poly_values(lap, poly, mark, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
+    for (f = 0; f < poly->m; f++) lap->area += poly->area[f];
+    lap->b_ratio = 1;
+    lap->conserves = 1;
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- intrinsic triangulations: Delaunay and tufted ---- */
+
+/* The mixed area of hdi_mixed_area, from lengths. mesh is t as a mesh. */
+static double hdi_intrinsic_mixed_area(const hdi_intrinsic *t, const hdi_mesh *mesh, int32_t c) {
+    const int32_t next = hdi_side_next(c), prev = hdi_side_prev(c);
+    const double *cot = mesh->cot, area = mesh->area[c / 3], b = t->len[c] * t->unit, d = t->len[prev] * t->unit;
+    if (cot[c] < 0 || cot[next] < 0 || cot[prev] < 0) return cot[c] < 0 ? area / 2 : area / 4;
+    return hdi_max(area / 4, hdi_min((b * b * cot[prev] + d * d * cot[next]) / 8, area / 2));
+}
+
+static void hdi_intrinsic_masses(const hdi_intrinsic *t, const hdi_mesh *mesh, hd_laplacian_kind kind, double *mass) {
+    int32_t v;
+    int64_t p;
+    for (v = 0; v < mesh->n; v++) {
+        double sum = 0;
+        for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++)
+            sum += kind == HD_LAPLACIAN_VORONOI_COT ? hdi_intrinsic_mixed_area(t, mesh, mesh->corner[p]) : mesh->area[mesh->corner[p] / 3] / 3;
+        mass[v] = kind == HD_LAPLACIAN_COT ? sum > 0 : sum;
+    }
+}
+
+/* All cotangents of the faces that rows i and j share, as often as they share them: what the rounding error of L(i,j) is relative to. */
+static double hdi_shared_cotangents(const hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, int32_t j) {
+    const int32_t v = lap->vertex[i], w = lap->vertex[j];
+    double sum = 0;
+    int64_t p;
+    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], n = (mesh->tri[hdi_side_next(c)] == w) + (mesh->tri[hdi_side_prev(c)] == w);
+        const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, c / 3);
+        sum += n * (fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]));
+    }
+    return sum;
+}
+
+/* Off-diagonal entries of L above zero, which Delaunay edges can only have by rounding, become zero when they are below 1e-13 of the cotangents of the
+ * faces they are made of, and the diagonal follows; what is larger (edges of the boundary) stays and is counted. */
+static void hdi_lap_signs(hd_laplacian *lap, const hdi_mesh *mesh) {
+    double *L = lap->L.val;
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        int64_t at = 0;
+        double sum = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t j = lap->L.col[p];
+            if (j == i) {
+                at = p;
+                continue;
+            }
+            if (L[p] > 0 && L[p] <= 1e-13 * hdi_shared_cotangents(lap, mesh, i < j ? i : j, i < j ? j : i)) L[p] = 0;
+            lap->mesh.n_negative_weights += j > i && L[p] > 0;
+            sum += L[p];
+        }
+        L[at] = -sum;
+    }
+}
+
+/* Values of L and B on the pattern. mesh: intrinsic triangles, without coordinates. */
+static hd_status hdi_lap_intrinsic_values(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
+    int32_t i;
+    if (!place) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_lap_row_values(lap, mesh, i, place);
+        if (lap->B) lap->b_diag[i] = lap->B[place[i]];
+    }
+    hdi_lap_signs(lap, mesh);
+    return hdi_scope_end(&s);
+}
+
+/* What the intrinsic Laplacians are asked for. */
+typedef struct hdi_intrinsic_task {
+    int soup;           /* triangles are the stars of points: copies stay, each counts a third */
+    int close;          /* tufted: the boundary is glued to the other sheet */
+    double delta;       /* of mollification, relative to the mean edge length; negative: none */
+} hdi_intrinsic_task;
+
+/* (L, B) of the intrinsic Delaunay triangulation of mesh, or of its cover: each sheet counts half. */
+static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_intrinsic_task *task, hdi_scope *s) {
+    hd_error *e = s->e;
+    hd_context *ctx = lap->context;
+    hdi_intrinsic t;
+    hdi_mesh flat;
+    double *vertex_mass, weight;
+    int32_t *mark, f;
+    if (hdi_intrinsic_make(&t, mesh, task->soup, task->close, &lap->mesh, s) < 0) return e->status;
+    hdi_mollify(&t, task->delta, &lap->mesh);
+    if (hdi_progress(ctx, "flip edges", 0, e) < 0 || hdi_flip_all(&t, &lap->mesh, ctx, e) < 0) return e->status;
+    weight = (task->soup ? 1.0 / 3 : 1.0) / t.n_sheets;
+    if (hdi_intrinsic_mesh(&flat, &t, lap->n, weight, &lap->mesh, s) < 0) return e->status;
+    vertex_mass = HDI_TAKE(s, double, lap->n);
+    if (!vertex_mass) return e->status;
+    hdi_intrinsic_masses(&t, &flat, lap->kind, vertex_mass);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(ctx, "assemble", 0.5, e) < 0) return e->status;
+    if (hdi_lap_places(lap, mesh->xyz, e) < 0) return e->status;
+    mark = HDI_TAKE(s, int32_t, lap->n_active);
+    if (!mark || hdi_lap_pattern(lap, &flat, mark, e) < 0) return e->status;
+    if (lap->kind == HD_LAPLACIAN_FEM) {
+        lap->B = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->L.nnz), sizeof(double), e));
+        if (!lap->B) return e->status;
+        lap->b_diag = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+        if (!lap->b_diag) return e->status;
+    }
+    if (hdi_lap_intrinsic_values(lap, &flat, e) < 0 || hdi_progress(ctx, "assemble", 0.8, e) < 0) return e->status;
+    for (f = 0; f < mesh->m; f++) lap->area += mesh->area[f] * (task->soup ? 1.0 / 3 : 1.0);
+    lap->h = t.unit;
+    lap->mesh.n_sheets = t.n_sheets;
+    lap->b_ratio = lap->kind != HD_LAPLACIAN_FEM ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;    /* element of corners v, v, w: 1/2, 1/6; 1/6, 1/6 */
+    lap->conserves = 1;
+    return hdi_lap_components(lap, e);
+}
+
+static hd_status hdi_lap_triangles_intrinsic(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task,
+                                             hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hdi_mesh mesh;
+    if (hdi_mesh_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
+    if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    else hdi_lap_intrinsic(lap, &mesh, task, &s);
+    return hdi_scope_end(&s);
+}
+
+/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
+static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task, hd_error *e) {
+    return task ? hdi_lap_triangles_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, e);
+}
+
+/* The faces split as fans, for the operators of triangles. */
+static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly, const hdi_intrinsic_task *task, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int64_t m = hdi_poly_fans(poly->ptr, poly->idx, poly->m, NULL);
+    int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
+    if (!tri) return hdi_scope_end(&s);
+    hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
+    if (hdi_lap_faces(lap, poly->xyz, tri, HDI_CAST(int32_t, m), task, e) < 0 && e->face >= 0) e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
     return hdi_scope_end(&s);
 }
 
@@ -4029,6 +5627,694 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
         if (!work || hdi_pair_ratio(lap, work, e) < 0) return hdi_scope_end(&s);
     }
     hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- point sets ---- */
+/* This work is based on
+ *   M. Belkin, P. Niyogi, Towards a theoretical foundation for Laplacian-based manifold methods, 2008 (exponential weights, `exp`)
+ *   Y. Liu, B. Prabhakaran, X. Guo, Point-based manifold harmonics, 2012 (the same with Voronoi areas: symmetric L and diagonal B, `voronoi-exp`)
+ * Deviations: the exponential is cut where it is small, by distance, so that the pattern is symmetric. Neighbours that stand off the tangent plane by
+ * more than 45 degrees count with their height instead of their projection, so that points of another sheet two spacings away do not cut a cell. At a
+ * border cells end at the convex hull of the neighbours. The papers leave coincident points, borders and the bandwidth to the reader. */
+
+enum {
+    HDI_CELL_SIDES = 12,       /* of the polygon that a cell is cut from */
+    HDI_MOST_NEIGHBOURS = 128,
+    HDI_CELLS_PER_TASK = 256
+};
+
+/* A set of different places, with the k nearest of each (the first is the place itself). */
+typedef struct hdi_cloud {
+    int32_t n, k;
+    const double *xyz;
+    const int32_t *first;      /* [n] the point that a place is named by */
+    int32_t *nbr;             /* [k n] */
+    double *d2;                /* [k n] */
+    double *spacing2;          /* [n] area for each point nearby, by the disc to the last neighbour */
+    double *area;              /* [n] of the cells */
+    int8_t *border;            /* [n] 1: the cell ends where the neighbours do */
+    double start[HDI_CELL_SIDES][2];   /* a regular polygon around the unit circle */
+} hdi_cloud;
+
+/* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix a, which is overwritten: Jacobi's rotations. */
+static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
+    int sweep, p, q, i, c;
+    for (p = 0; p < 3; p++)
+        for (q = 0; q < 3; q++) v[p][q] = p == q;
+    for (sweep = 0; sweep < 30; sweep++) {
+        const double off = fabs(a[0][1]) + fabs(a[0][2]) + fabs(a[1][2]);
+        if (off <= DBL_MIN || off <= 1e-17 * (fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]))) break;
+        for (i = 0; i < 3; i++) {
+            double theta, t, co, si;
+            p = i == 2;
+            q = i == 0 ? 1 : 2;
+            if (a[p][q] == 0) continue;
+            theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+            t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
+            co = 1 / sqrt(t * t + 1);
+            si = t * co;
+            for (c = 0; c < 3; c++) {
+                const double x = a[p][c], y = a[q][c];
+                a[p][c] = co * x - si * y;
+                a[q][c] = si * x + co * y;
+            }
+            for (c = 0; c < 3; c++) {
+                const double x = a[c][p], y = a[c][q], vx = v[p][c], vy = v[q][c];
+                a[c][p] = co * x - si * y;
+                a[c][q] = si * x + co * y;
+                v[p][c] = co * vx - si * vy;
+                v[q][c] = si * vx + co * vy;
+            }
+        }
+    }
+    for (i = 0; i < 3; i++) w[i] = a[i][i];
+    for (p = 0; p < 2; p++) {                    /* three values in order */
+        for (q = 0; q < 2 - p; q++) {
+            if (w[q] <= w[q + 1]) continue;
+            for (c = 0; c < 4; c++) {
+                double *x = c < 3 ? &v[q][c] : w + q, *y = c < 3 ? &v[q + 1][c] : w + q + 1, swap = *x;
+                *x = *y;
+                *y = swap;
+            }
+        }
+    }
+}
+
+/* The plane through a point and its n neighbours, rel [3 n] seen from it: two orthonormal axes, by principal components of the point and them, where
+ * near ones count much more, as far ones may belong to another sheet. */
+static void hdi_tangent_plane(const double *rel, int32_t n, double axis[2][3]) {
+    const double own = 1.05 * 1.05 * 1.05 * 1.05 * 1.05 * 1.05;
+    double sum = own, reach2 = 0, mean[3] = {0, 0, 0}, cov[3][3], w[3], v[3][3];
+    int32_t k;
+    int r, c;
+    memset(cov, 0, sizeof cov);
+    for (k = 0; k < n; k++) reach2 = hdi_max(reach2, hdi_dot3(rel + 3 * k, rel + 3 * k));
+    for (k = 0; k < n; k++) {
+        const double *d = rel + 3 * k, near2 = 1.05 - hdi_dot3(d, d) / reach2, weight = near2 * near2 * near2 * near2 * near2 * near2;
+        sum += weight;
+        for (r = 0; r < 3; r++) {
+            mean[r] += weight * d[r];
+            for (c = 0; c < 3; c++) cov[r][c] += weight * d[r] * d[c];
+        }
+    }
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) cov[r][c] -= mean[r] * mean[c] / sum;
+    hdi_eigen3(cov, w, v);
+    memcpy(axis, v[1], 3 * sizeof(double));
+    memcpy(axis[1], v[2], 3 * sizeof(double));
+}
+
+typedef struct hdi_polygon {
+    int32_t n;
+    double x[HDI_CELL_SIDES + 2 * HDI_MOST_NEIGHBOURS + 4][2];
+} hdi_polygon;
+
+/* Keeps what lies in a x <= b; says whether anything was cut off. */
+static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
+    hdi_polygon cut;
+    double last, here;
+    int32_t i;
+    int any = 0;
+    for (i = 0; i < g->n && !any; i++) any = a0 * g->x[i][0] + a1 * g->x[i][1] > b;
+    if (!any) return 0;
+    cut.n = 0;
+    last = a0 * g->x[g->n - 1][0] + a1 * g->x[g->n - 1][1] - b;
+    for (i = 0; i < g->n; i++) {
+        const double *from = g->x[i ? i - 1 : g->n - 1], *to = g->x[i];
+        here = a0 * to[0] + a1 * to[1] - b;
+        if ((last <= 0) != (here <= 0)) {        /* one of both is not zero */
+            const double s = last / (last - here);
+            cut.x[cut.n][0] = from[0] + s * (to[0] - from[0]);
+            cut.x[cut.n++][1] = from[1] + s * (to[1] - from[1]);
+        }
+        if (here <= 0) {
+            cut.x[cut.n][0] = to[0];
+            cut.x[cut.n++][1] = to[1];
+        }
+        last = here;
+    }
+    g->n = cut.n;
+    memcpy(g->x, cut.x, HDI_CAST(size_t, cut.n) * sizeof *g->x);
+    return 1;
+}
+
+static double hdi_polygon_area(const hdi_polygon *g) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < g->n; i++) {
+        const double *a = g->x[i], *b = g->x[i + 1 < g->n ? i + 1 : 0];
+        sum += a[0] * b[1] - a[1] * b[0];
+    }
+    return sum / 2;
+}
+
+static double hdi_turn(const double *a, const double *b, const double *c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Clips g to the convex hull of the n points x, which are sorted here (Andrew 1979); says whether that cut anything. */
+static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
+    double hull[2 * HDI_MOST_NEIGHBOURS + 4][2];
+    int32_t i, j, m = 0, base = 0;
+    int pass, cut = 0;
+    for (i = 1; i < n; i++) {
+        const double a = x[i][0], b = x[i][1];
+        for (j = i; j > 0 && (a < x[j - 1][0] || (a == x[j - 1][0] && b < x[j - 1][1])); j--) memcpy(x[j], x[j - 1], sizeof *x);
+        x[j][0] = a;
+        x[j][1] = b;
+    }
+    for (pass = 0; pass < 2; pass++) {           /* the lower half from left to right, the upper one back */
+        for (i = 0; i < n; i++) {
+            const double *p = x[pass ? n - 1 - i : i];
+            while (m >= base + 2 && hdi_turn(hull[m - 2], hull[m - 1], p) <= 0) m--;
+            memcpy(hull[m++], p, sizeof *hull);
+        }
+        base = --m;                              /* the last one begins the other half */
+    }
+    for (i = 0; i < m && g->n; i++) {
+        const double *a = hull[i], *b = hull[i + 1 < m ? i + 1 : 0], e0 = b[0] - a[0], e1 = b[1] - a[1];
+        cut |= hdi_polygon_clip(g, e1, -e0, e1 * a[0] - e0 * a[1]);
+    }
+    return cut;
+}
+
+/* The middle one of the spacings around place i: an outlier has those of the surface. */
+static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
+    double s[HDI_MOST_NEIGHBOURS + 1];
+    const int32_t *nbr = cloud->nbr + HDI_CAST(int64_t, i) * cloud->k;
+    int32_t j, k;
+    for (k = 0; k < cloud->k; k++) {
+        const double x = cloud->spacing2[nbr[k]];
+        for (j = k; j > 0 && x < s[j - 1]; j--) s[j] = s[j - 1];
+        s[j] = x;
+    }
+    return s[cloud->k / 2];
+}
+
+/* Area of the cell of place i in its tangent plane; 0 where neighbours lie on a line. Lengths are in units of the distance of the last neighbour. */
+static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
+    const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
+    const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = cloud->xyz + 3 * HDI_CAST(int64_t, i);
+    double frame[2][3], x[HDI_MOST_NEIGHBOURS + 1][2], rel[3 * (HDI_MOST_NEIGHBOURS + 1)], radius, outer2, area;
+    hdi_polygon g;
+    int32_t k, v;
+    for (k = 0; k < cloud->k; k++) {
+        hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, rel + 3 * k);
+        for (v = 0; v < 3; v++) rel[3 * k + v] *= unit;
+    }
+    hdi_tangent_plane(rel + 3, cloud->k - 1, frame);   /* the first one is the place itself */
+    radius = 2 * sqrt(hdi_cell_spacing2(cloud, i)) * unit;   /* random points leave a circle so large empty once in 3e5 times */
+    g.n = HDI_CELL_SIDES;
+    for (v = 0; v < g.n; v++) {
+        g.x[v][0] = radius * cloud->start[v][0];
+        g.x[v][1] = radius * cloud->start[v][1];
+    }
+    outer2 = 1.2 * radius * radius;
+    for (k = 0; k < cloud->k; k++) {
+        const double l2 = cloud->d2[at + k] * unit * unit;   /* and q2 the square in the plane */
+        double q2;
+        x[k][0] = hdi_dot3(frame[0], rel + 3 * k);
+        x[k][1] = hdi_dot3(frame[1], rel + 3 * k);
+        q2 = x[k][0] * x[k][0] + x[k][1] * x[k][1];
+        if (k == 0 || l2 > 8 * outer2) continue;   /* max(q2, l2 - q2) is at least l2/2: the bisector is beyond all corners */
+        if (!hdi_polygon_clip(&g, x[k][0], x[k][1], hdi_max(q2, l2 - q2) / 2)) continue;
+        for (v = 0, outer2 = 0; v < g.n; v++) outer2 = hdi_max(outer2, g.x[v][0] * g.x[v][0] + g.x[v][1] * g.x[v][1]);
+    }
+    cloud->border[i] = HDI_CAST(int8_t, hdi_polygon_clip_hull(&g, x, cloud->k) || outer2 >= radius * radius);
+    area = hdi_polygon_area(&g);
+    cloud->area[i] = area > 1e-12 * radius * radius ? area * reach * reach : 0;
+}
+
+static void hdi_cell_task(void *arg, int64_t index, int32_t worker) {
+    hdi_cloud *cloud = HDI_CAST(hdi_cloud *, arg);
+    const int64_t end = hdi_least(cloud->n, (index + 1) * HDI_CELLS_PER_TASK);
+    int64_t i;
+    (void)worker;
+    for (i = index * HDI_CELLS_PER_TASK; i < end; i++) hdi_cell_area(cloud, HDI_CAST(int32_t, i));
+}
+
+/* The number-k smallest of a, which is rearranged. */
+static double hdi_kth(double *a, int64_t n, int64_t k) {
+    int64_t lo = 0, hi = n - 1;
+    while (lo < hi) {
+        const double pivot = hdi_max(hdi_min(a[lo], a[hi]), hdi_min(hdi_max(a[lo], a[hi]), a[lo + (hi - lo) / 2]));
+        int64_t i = lo, j = hi;
+        while (i <= j) {
+            while (a[i] < pivot) i++;
+            while (a[j] > pivot) j--;
+            if (i <= j) {
+                const double swap = a[i];
+                a[i++] = a[j];
+                a[j--] = swap;
+            }
+        }
+        if (k <= j) hi = j;
+        else if (k >= i) lo = i;
+        else break;
+    }
+    return a[k];
+}
+
+static uint64_t hdi_place_hash(const double *p) {
+    uint64_t h = 0, bits;
+    int c;
+    for (c = 0; c < 3; c++) {
+        const double x = p[c] + 0.0;             /* -0 is 0 */
+        memcpy(&bits, &x, sizeof bits);
+        h = (h ^ bits) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 29;
+    }
+    return h;
+}
+
+/* place[v]: number of the place where point v is, places numbered by their first point, first[q]: that point. Returns how many. */
+static int32_t hdi_places(const double *xyz, int32_t n, int32_t *place, int32_t *first, hdi_scope *s) {
+    const int64_t slots = 2 * HDI_CAST(int64_t, n) + 1;
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *table = HDI_TAKE(&own, int32_t, slots), v, count = 0;
+    if (!table) {
+        hdi_scope_end(&own);
+        return 0;
+    }
+    hdi_fill_i32(table, slots, -1);
+    for (v = 0; v < n; v++) {
+        const double *p = xyz + 3 * HDI_CAST(int64_t, v);
+        int64_t at = HDI_CAST(int64_t, hdi_place_hash(p) % HDI_CAST(uint64_t, slots));
+        for (; table[at] >= 0; at = at + 1 < slots ? at + 1 : 0) {
+            const double *q = xyz + 3 * HDI_CAST(int64_t, first[table[at]]);
+            if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) break;
+        }
+        if (table[at] < 0) {
+            first[count] = v;
+            table[at] = count++;
+        }
+        place[v] = table[at];
+    }
+    hdi_scope_end(&own);
+    return count;
+}
+
+/* Neighbours, spacings, h and cells of the places. */
+static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scope *s) {
+    hdi_tree tree;
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    double sum = 0;
+    int32_t i;
+    const int64_t n = cloud->n, k = cloud->k;
+    cloud->spacing2 = HDI_TAKE(s, double, n);
+    cloud->area = HDI_TAKE(s, double, n);
+    cloud->border = HDI_TAKE(s, int8_t, n);
+    cloud->nbr = HDI_TAKE(s, int32_t, k * n);
+    cloud->d2 = HDI_TAKE(s, double, k * n);
+    if (s->e->status < 0 || hdi_tree_make(&tree, cloud->xyz, cloud->n, &own) < 0) return hdi_scope_end(&own);
+    if (hdi_nearest(&tree, cloud->xyz, NULL, n, cloud->k, cloud->nbr, cloud->d2, s->ctx, s->e) < 0) return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) {
+        const double *d2 = cloud->d2 + i * k;
+        if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
+            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two points are too close together: the square of their distance is no normal number", -1, cloud->first[i], d2[1]);
+            return hdi_scope_end(&own);
+        }
+        sum += sqrt(d2[1]);
+        cloud->spacing2[i] = 3.141592653589793 * d2[k - 1] / HDI_CAST(double, k - 1);
+    }
+    lap->h = sum / HDI_CAST(double, n);
+    for (i = 0; i < HDI_CELL_SIDES; i++) {
+        const double step = 6.283185307179586 / HDI_CAST(double, HDI_CELL_SIDES), r = 1 / cos(step / 2);
+        cloud->start[i][0] = r * cos(step * i);
+        cloud->start[i][1] = r * sin(step * i);
+    }
+    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) >= 0) hdi_parallel(s->ctx, (n + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
+    return hdi_scope_end(&own);
+}
+
+/* Bandwidth from the sampling: a multiple of m, the area that a point has, which is the mean of pi r_k^2 / k over the points, r_k the distance of the
+ * k-th neighbour, and of h, the mean distance of the nearest one; no square counts more than nine medians of the former, so that outliers do not
+ * matter. The multiple is that which balances the two errors on spheres and tori: smoothing takes lambda s/2 off an eigenvalue lambda, sampling about
+ * 0.02 (m/s)^2 of all of them with points independent of each other, where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence
+ * s = m (m/h^2)/4, between 0.3 and 1 m. */
+static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
+    double median, mean = 0, h = 0;
+    int32_t i;
+    memcpy(work, cloud->spacing2, HDI_CAST(size_t, cloud->n) * sizeof *work);
+    median = hdi_kth(work, cloud->n, cloud->n / 2);
+    for (i = 0; i < cloud->n; i++) {
+        mean += hdi_min(cloud->spacing2[i], 9 * median);
+        h += sqrt(hdi_min(cloud->d2[HDI_CAST(int64_t, i) * cloud->k + 1], 9 * median));
+    }
+    mean /= cloud->n;
+    h /= cloud->n;
+    return hdi_max(0.3, hdi_min(1, 0.25 * mean / (h * h))) * mean;
+}
+
+typedef struct hdi_weights {
+    hd_laplacian *lap;
+    double bandwidth, scale;   /* exp: of all weights */
+} hdi_weights;
+
+/* Squared distances of some rows become entries of L. Products commute, so that L is symmetric to the last bit. */
+static void hdi_weights_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_weights *job = HDI_CAST(const hdi_weights *, arg);
+    hd_laplacian *lap = job->lap;
+    const int32_t begin = HDI_CAST(int32_t, index * HDI_CELLS_PER_TASK);
+    const int32_t end = HDI_CAST(int32_t, hdi_least(lap->n_active, (index + 1) * HDI_CELLS_PER_TASK));
+    const double quarter = -0.25 / job->bandwidth;
+    const int voronoi = lap->kind == HD_LAPLACIAN_VORONOI_EXP;
+    int32_t i;
+    (void)worker;
+    for (i = begin; i < end; i++) {
+        double sum = 0, *diagonal = NULL;
+        int64_t p;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t j = lap->L.col[p];
+            double *value = lap->L.val + p;
+            if (j == i) {
+                diagonal = value;
+                continue;
+            }
+            *value = -exp(*value * quarter) * (voronoi ? (lap->mass[i] / job->bandwidth) * (lap->mass[j] / job->bandwidth) * 0.07957747154594767 : job->scale);
+            sum += *value;
+        }
+        *diagonal = -sum;
+    }
+}
+
+/* The pattern by a radius search over the rows, then the values in its place. */
+static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_point_report *rep = &lap->points;
+    hdi_weights job;
+    hdi_tree tree;
+    int32_t i;
+    if (hdi_tree_make(&tree, lap->xyz, lap->n_active, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_within(&lap->L, &tree, lap->xyz, NULL, lap->n_active, cut2, lap->context, e) < 0) return hdi_scope_end(&s);
+    if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
+    job.lap = lap;
+    job.bandwidth = rep->bandwidth;
+    job.scale = 0.07957747154594767 / job.bandwidth / job.bandwidth / lap->n_active;
+    hdi_parallel(lap->context, (HDI_CAST(int64_t, lap->n_active) + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_weights_task, &job);
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
+        rep->n_isolated += count == 1;
+        if (!hdi_finite(lap->L.val[lap->L.row_ptr[i]])) {
+            hdi_fail_face(e, HD_ERR_NOT_FINITE, "points: a weight is not finite; the bandwidth is too small for these lengths", -1, lap->vertex[i], rep->bandwidth);
+            break;
+        }
+        rep->most_in_row = count > rep->most_in_row ? HDI_CAST(int32_t, count) : rep->most_in_row;
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Masses of the points: equal shares of their place's cell, or 1; and what there is to report about them. */
+static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const int32_t *place, int32_t *copies, double *mass) {
+    hd_point_report *rep = &lap->points;
+    int32_t i;
+    for (i = 0; i < cloud->n; i++) copies[i] = 0;
+    for (i = 0; i < lap->n; i++) copies[place[i]]++;
+    for (i = 0; i < lap->n; i++) mass[i] = lap->kind == HD_LAPLACIAN_EXP ? 1 : cloud->area[place[i]] / copies[place[i]];
+    for (i = 0; i < cloud->n; i++) {
+        lap->area += cloud->area[i];
+        rep->n_border += cloud->border[i];
+        rep->n_no_area += cloud->area[i] > 0 ? 0 : copies[i];
+    }
+    rep->n_coincident = lap->n - cloud->n;
+}
+
+static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_point_report *rep = &lap->points;
+    int32_t *place = HDI_TAKE(&s, int32_t, lap->n), *first = HDI_TAKE(&s, int32_t, lap->n), v;
+    double *work = HDI_TAKE(&s, double, lap->n), *places;
+    hdi_cloud cloud;
+    memset(&cloud, 0, sizeof cloud);
+    if (e->status < 0 || hdi_points_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
+    cloud.n = hdi_places(xyz, lap->n, place, first, &s);
+    if (e->status >= 0 && cloud.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
+    places = HDI_TAKE(&s, double, 3 * HDI_CAST(int64_t, cloud.n));
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (v = 0; v < cloud.n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
+    cloud.xyz = places;
+    cloud.first = first;
+    cloud.k = HDI_CAST(int32_t, hdi_least(cloud.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
+    if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
+    rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
+    hdi_cloud_masses(&cloud, lap, place, first, work);
+    if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
+    if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
+    lap->b_ratio = 1;
+    lap->conserves = 1;
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- point sets: the tufted Laplacian of the points' stars ---- */
+
+enum { HDI_STAR_MOST = 256, HDI_STAR_POINTS = 1024 };   /* neighbours of a point that its star can be made of; points per task */
+
+/* A number in [0, 1) for each point: which of four cocircular points are joined must be the same in the stars of all four, on a grid for instance. */
+static double hdi_point_chance(int32_t i) {
+    uint64_t x = (HDI_CAST(uint64_t, i) + 1) * 0x9e3779b97f4a7c15u;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x ^= x >> 27;
+    return HDI_CAST(double, x >> 11) / 9007199254740992.0;
+}
+
+typedef struct hdi_star_point { double x, y, angle; int32_t id; } hdi_star_point;
+
+static int hdi_star_less(const hdi_star_point *a, const hdi_star_point *b) { return a->angle != b->angle ? a->angle < b->angle : a->id < b->id; }
+
+/* c is to the left of the line from a to b. */
+static int hdi_star_left(const hdi_star_point *a, const hdi_star_point *b, const hdi_star_point *c) {
+    return hdi_det2(b->x - a->x, c->y - b->y, b->y - a->y, c->x - b->x) > 0;
+}
+
+#define HDI_STAR_SAME 1e-6   /* directions within this angle are the same one; opposite ones likewise */
+
+/* p, n by angle: of those in the same direction only the nearest, which has the longest dual, stays. Returns how many are left. */
+static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
+    const double turn = 6.283185307179586;
+    int32_t i, m = 0;
+    for (i = 0; i < n; i++) {
+        const hdi_star_point x = p[i];
+        if (m > 0 && x.angle - p[m - 1].angle < HDI_STAR_SAME) {
+            if (x.x * x.x + x.y * x.y > p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y) p[m - 1] = x;
+        } else {
+            p[m++] = x;
+        }
+    }
+    if (m > 1 && p[0].angle + turn - p[m - 1].angle < HDI_STAR_SAME) {       /* the last is in the direction of the first */
+        if (p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y > p[0].x * p[0].x + p[0].y * p[0].y) {
+            p[0] = p[m - 1];
+            p[0].angle -= turn;
+        }
+        m--;
+    }
+    return m;
+}
+
+/* The star of the origin in the Delaunay triangulation of it and p[0..n), which are duals: the neighbour q stands at 2 q / |q|^2, so that the line
+ * between the nearer and the farther half plane is its polar. The neighbours that bound the Voronoi cell are then the corners of the convex hull, found
+ * by walking around it (Graham 1972). Where neighbours are a half turn apart the cell is open. Leaves them in p by angle; returns their number. */
+static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
+    const double half = 3.141592653589793, open_gap = half - HDI_STAR_SAME;
+    hdi_star_point hull[HDI_STAR_MOST + 2], origin;
+    int32_t i, j, first = 0, top = 0;
+    double far_away = -1;
+    for (i = 1; i < n; i++) {
+        const hdi_star_point x = p[i];
+        for (j = i; j > 0 && hdi_star_less(&x, p + j - 1); j--) p[j] = p[j - 1];
+        p[j] = x;
+    }
+    n = hdi_star_directions(p, n);
+    *closed = 1;
+    for (i = 0; i < n; i++) {                    /* begin behind a gap of a half turn, else at the nearest neighbour, which is a corner */
+        const double r = p[i].x * p[i].x + p[i].y * p[i].y, gap = i ? p[i].angle - p[i - 1].angle : p[0].angle - p[n - 1].angle + 2 * half;
+        if (gap >= open_gap) *closed = 0;
+        if (gap >= open_gap || (*closed && r > far_away)) first = i;
+        far_away = hdi_max(far_away, r);
+    }
+    memset(&origin, 0, sizeof origin);
+    for (i = 0; i < n + 1 + !*closed; i++) {     /* once around: from the nearest to itself, or from the origin, a corner now, to itself */
+        const hdi_star_point x = *closed ? p[(first + i) % n] : i == 0 || i == n + 1 ? origin : p[(first + i - 1) % n];
+        while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, &x)) top--;
+        hull[top++] = x;
+    }
+    top -= 1 + !*closed;
+    for (i = 0; i < top; i++) p[i] = hull[i + !*closed];
+    return top;
+}
+
+typedef struct hdi_star_job {
+    const double *xyz;
+    int32_t n;
+    const int64_t *ptr;
+    const int32_t *nbr;
+    double *nearest;    /* [n] distance to the nearest neighbour in another place; 0: none */
+    int32_t *star;      /* [ptr[n]] star of point i from ptr[i] on, counterclockwise in its plane */
+    int32_t *size;      /* [n] corners of the star; negative: it is open between the last and the first */
+} hdi_star_job;
+
+static void hdi_star_unit_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
+    const int64_t end = hdi_least((index + 1) * HDI_STAR_POINTS, job->n);
+    int64_t i, p;
+    (void)worker;
+    for (i = index * HDI_STAR_POINTS; i < end; i++) {
+        double least = 0, d[3];
+        for (p = job->ptr[i]; p < job->ptr[i + 1]; p++) {
+            double r;
+            hdi_sub3(job->xyz + 3 * HDI_CAST(int64_t, job->nbr[p]), job->xyz + 3 * i, d);
+            r = hdi_norm3(d);
+            if (r > 0 && (least == 0 || r < least)) least = r;
+        }
+        job->nearest[i] = least;
+    }
+}
+
+/* The star of point i. Lengths are in units of its nearest neighbour's distance. */
+static void hdi_point_star(const hdi_star_job *job, int32_t i) {
+    const double unit = job->nearest[i];
+    double rel[3 * HDI_STAR_MOST], axis[2][3];
+    hdi_star_point p[HDI_STAR_MOST];
+    int32_t n = 0, m = 0, k, id[HDI_STAR_MOST];
+    int closed;
+    int64_t q;
+    job->size[i] = 0;
+    for (q = job->ptr[i]; q < job->ptr[i + 1] && unit > 0; q++) {
+        double *d = rel + 3 * n;
+        hdi_sub3(job->xyz + 3 * HDI_CAST(int64_t, job->nbr[q]), job->xyz + 3 * HDI_CAST(int64_t, i), d);
+        for (k = 0; k < 3; k++) d[k] /= unit;
+        id[n] = job->nbr[q];
+        n += hdi_dot3(d, d) > 0;                 /* the point itself and others in its place do not count */
+    }
+    if (n < 2) return;
+    hdi_tangent_plane(rel, n, axis);
+    for (k = 0; k < n; k++) {
+        const double x = hdi_dot3(axis[0], rel + 3 * k), y = hdi_dot3(axis[1], rel + 3 * k), r2 = x * x + y * y, w = job->nearest[id[k]] / unit;
+        double power;
+        if (!(r2 > 1e-12 * hdi_dot3(rel + 3 * k, rel + 3 * k))) continue;      /* straight above */
+        power = r2 + 1e-9 * hdi_min(1, r2) * hdi_point_chance(i) - 1e-9 * hdi_min(w * w, r2) * hdi_point_chance(id[k]);
+        p[m].x = 2 * x / power;
+        p[m].y = 2 * y / power;
+        p[m].angle = atan2(y, x);
+        p[m++].id = id[k];
+    }
+    if (m < 2) return;
+    m = hdi_star_hull(p, m, &closed);
+    for (k = 0; k < m; k++) job->star[job->ptr[i] + k] = p[k].id;
+    job->size[i] = closed ? m : -m;
+}
+
+static void hdi_star_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
+    const int64_t end = hdi_least((index + 1) * HDI_STAR_POINTS, job->n);
+    int64_t i;
+    (void)worker;
+    for (i = index * HDI_STAR_POINTS; i < end; i++) hdi_point_star(job, HDI_CAST(int32_t, i));
+}
+
+static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    if (ptr[0] != 0) return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets do not begin with 0", 0, -1, HDI_CAST(double, ptr[0]));
+    for (i = 0; i < n; i++) {
+        if (ptr[i + 1] < ptr[i]) return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets descend", i, -1, HDI_CAST(double, ptr[i + 1]));
+        if (ptr[i + 1] - ptr[i] > HDI_STAR_MOST)
+            return hdi_fail_row(e, HD_ERR_TOO_LARGE, "neighbours: a point has more than 256", i, -1, HDI_CAST(double, ptr[i + 1] - ptr[i]));
+        for (p = ptr[i]; p < ptr[i + 1]; p++)
+            if (nbr[p] < 0 || nbr[p] >= n) return hdi_fail_row(e, HD_ERR_INDEX, "neighbours: an id is out of range", i, -1, nbr[p]);
+    }
+    return HD_OK;
+}
+
+/* Neighbours for points that come without: the nearest other places, named by the first point there; the list of a later one is empty. */
+static hd_status hdi_star_search(hdi_star_job *job, hd_point_report *rep, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *place = HDI_TAKE(&own, int32_t, job->n), *first = HDI_TAKE(&own, int32_t, job->n), *nbr, n, k, v;
+    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, job->n) + 1), q;
+    double *places;
+    hdi_tree tree;
+    if (s->e->status < 0 || hdi_points_check(job->xyz, job->n, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    n = hdi_places(job->xyz, job->n, place, first, &own);
+    k = HDI_CAST(int32_t, hdi_least(n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    rep->n_coincident = job->n - n;
+    places = HDI_TAKE(&own, double, 3 * HDI_CAST(int64_t, n));
+    nbr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, k) * n);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (v = 0; v < n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), job->xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
+    if (hdi_tree_make(&tree, places, n, &own) < 0 || hdi_nearest(&tree, places, NULL, n, k, nbr, NULL, s->ctx, s->e) < 0) return hdi_scope_end(&own);
+    for (q = 0; q < HDI_CAST(int64_t, k) * n; q++) nbr[q] = first[nbr[q]];
+    for (v = 0, ptr[0] = 0; v < job->n; v++) ptr[v + 1] = ptr[v] + (first[place[v]] == v ? k : 0);
+    job->ptr = ptr;
+    job->nbr = nbr;
+    return hdi_scope_end(&own);
+}
+
+/* All triangles of all stars, a third each in the end: tri in s, counted in *m. Fills lap->h-to-be in *spacing, the mean distance to the nearest. */
+static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, double *spacing, hdi_scope *s) {
+    const int64_t n_tasks = (HDI_CAST(int64_t, job->n) + HDI_STAR_POINTS - 1) / HDI_STAR_POINTS;
+    int32_t *tri, i, k, n_near = 0;
+    int64_t count = 0;
+    job->nearest = HDI_TAKE(s, double, job->n);
+    job->star = HDI_TAKE(s, int32_t, job->ptr[job->n]);
+    job->size = HDI_TAKE(s, int32_t, job->n);
+    if (s->e->status < 0) return NULL;
+    hdi_parallel(s->ctx, n_tasks, hdi_star_unit_task, job);
+    hdi_parallel(s->ctx, n_tasks, hdi_star_task, job);
+    *spacing = 0;
+    for (i = 0; i < job->n; i++) {
+        count += job->size[i] < 0 ? -job->size[i] - 1 : job->size[i];
+        n_near += job->nearest[i] > 0;
+        *spacing += job->nearest[i];
+    }
+    *spacing /= n_near > 0 ? n_near : 1;
+    if (3 * count > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 corners of triangles in the points' stars");
+    tri = HDI_TAKE(s, int32_t, 3 * count);
+    if (!tri) return NULL;
+    *m = HDI_CAST(int32_t, count);
+    count = 0;
+    for (i = 0; i < job->n; i++) {
+        const int32_t *star = job->star + job->ptr[i], size = job->size[i] < 0 ? -job->size[i] : job->size[i], last = size - (job->size[i] < 0);
+        for (k = 0; k < last; k++) {
+            tri[count++] = i;
+            tri[count++] = star[k];
+            tri[count++] = star[(k + 1) % size];
+        }
+    }
+    return tri;
+}
+
+/* The tufted Laplacian of a point set (Sharp, Crane 2020, section 5.7): every point's star in the Delaunay triangulation of its neighbourhood, in the
+ * tangent plane by principal components, goes into one soup with the weight 1/3, since where neighbours agree each triangle comes three times.
+ * Deviation: cocircular points, which every grid is full of, are told apart by heights of at most 1e-9, else the stars would not agree. */
+static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr, const int32_t *nbr, double delta, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hdi_intrinsic_task task;
+    hdi_star_job job;
+    hdi_mesh mesh;
+    double spacing = 0;
+    int32_t *tri, m = 0;
+    memset(&job, 0, sizeof job);
+    task.soup = task.close = 1;
+    task.delta = delta;
+    job.xyz = xyz;
+    job.n = lap->n;
+    job.ptr = nbr_ptr;
+    job.nbr = nbr;
+    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
+    if ((nbr_ptr ? hdi_star_check(nbr_ptr, nbr, lap->n, e) : hdi_star_search(&job, &lap->points, &s)) < 0) return hdi_scope_end(&s);
+    tri = hdi_stars(&job, &m, &spacing, &s);
+    if (!tri || hdi_progress(lap->context, "assemble", 0.2, e) < 0) return hdi_scope_end(&s);
+    if (hdi_soup_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) {
+        if (e->face >= 0) e->vertex = tri[3 * e->face];      /* the caller knows no faces */
+        e->face = -1;
+        return hdi_scope_end(&s);
+    }
+    if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
+    else hdi_lap_intrinsic(lap, &mesh, &task, &s);
+    lap->h = spacing;
     return hdi_scope_end(&s);
 }
 
@@ -11568,18 +13854,67 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
     return status;
 }
 
+static hd_laplacian_kind hdi_lap_kind(const hd_laplacian_opts *opts, hd_laplacian_kind otherwise) {
+    return opts && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : otherwise;
+}
+
+static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
+    return kind == HD_LAPLACIAN_FEM || kind == HD_LAPLACIAN_VORONOI_COT || kind == HD_LAPLACIAN_COT;
+}
+
+/* What is asked for of triangles besides their kind, checked. Returns whether that is an intrinsic triangulation. */
+static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
+    task->soup = 0;
+    task->close = opts && opts->tufted;
+    task->delta = opts && opts->mollify != 0 ? opts->mollify : 1e-5;
+    if (!(task->delta <= 1)) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
+    return opts && (opts->intrinsic_delaunay || opts->tufted);
+}
+
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err) {
-    const hd_laplacian_kind kind = opts ? opts->kind : HD_LAPLACIAN_FEM;
+    hdi_intrinsic_task task;
     hdi_call c;
-    hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
+    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
+    int intrinsic;
     if (!lap) return c.e->status;
     if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_lap_done(out, lap, hdi_missing(c.e));
     if (n_tri < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
-    if (kind != HD_LAPLACIAN_FEM && kind != HD_LAPLACIAN_VORONOI_COT && kind != HD_LAPLACIAN_COT)
+    if (!hdi_kind_of_triangles(lap->kind))
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: the kind is fem, voronoi-cot or cot"));
-    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, c.e));
+    intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
+    if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, hdi_lap_faces(lap, xyz, tri, n_tri, intrinsic ? &task : NULL, c.e));
+}
+
+HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
+                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
+    const int flips = opts && (opts->intrinsic_delaunay || opts->tufted);
+    const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
+    const int splits = hdi_kind_of_triangles(kind);
+    hdi_intrinsic_task task;
+    hdi_poly poly;
+    hdi_call c;
+    hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
+    if (!lap) return c.e->status;
+    memset(&poly, 0, sizeof poly);
+    poly.xyz = xyz;
+    poly.ptr = face_ptr;
+    poly.idx = face_idx;
+    poly.n = n;
+    poly.m = n_faces;
+    poly.lambda = opts && opts->lambda != 0 ? opts->lambda : 1;
+    if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (n_faces < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
+    if (!splits && kind != HD_LAPLACIAN_POLYGON)
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot"));
+    if (!(poly.lambda > 0 && poly.lambda <= 1e100))
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: lambda is not between 0 and 1e100"));
+    if (hdi_intrinsic_opts(opts, &task, c.e) && !splits)
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot"));
+    if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
+        return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e) : hdi_lap_polygons(lap, &poly, c.e));
 }
 
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
@@ -11594,6 +13929,86 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
         return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
     lap->h = h;
     return hdi_lap_done(out, lap, hdi_lap_matrices(lap, L, B, c.e));
+}
+
+static hd_status hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
+    rep->neighbours = opts && opts->neighbours ? opts->neighbours : 30;
+    if (rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: neighbours lies in 6..128");
+    return HD_OK;
+}
+
+/* Options of point sets, resolved, into lap->points. */
+static hd_status hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
+    hd_point_report *rep = &lap->points;
+    rep->bandwidth = opts ? opts->bandwidth : 0;
+    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : 1e-8;
+    if (lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the kind is voronoi-exp or exp (hd_laplacian_tufted_points has fem, voronoi-cot and cot)");
+    if (opts && (opts->intrinsic_delaunay || opts->tufted))
+        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: exponential weights know no triangles; hd_laplacian_tufted_points makes some");
+    if (!(rep->bandwidth >= 0) || !hdi_finite(rep->bandwidth)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
+    if (!(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
+    return hdi_point_neighbours(rep, opts, e);
+}
+
+HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err) {
+    hdi_call c;
+    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_VORONOI_EXP), err, &c);
+    if (!lap) return c.e->status;
+    if (!out || (n > 0 && !xyz)) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (hdi_point_opts(lap, opts, c.e) < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, hdi_lap_points(lap, xyz, c.e));
+}
+
+HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+                                                  const hd_laplacian_opts *opts, hd_error *err) {
+    hdi_intrinsic_task task;
+    hdi_call c;
+    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
+    if (!lap) return c.e->status;
+    if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (!hdi_kind_of_triangles(lap->kind))
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "tufted laplacian of points: the kind is fem, voronoi-cot or cot"));
+    (void)hdi_intrinsic_opts(opts, &task, c.e);
+    if (c.e->status < 0 || (!nbr_ptr && hdi_point_neighbours(&lap->points, opts, c.e) < 0)) return hdi_lap_done(out, lap, c.e->status);
+    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_done(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e));
+}
+
+/* Points, queries and sizes; *m becomes the number of queries. */
+static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m, hd_error *e) {
+    if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
+    if (!query) *m = n;
+    if (n > 0 && !xyz) return hdi_missing(e);
+    return hdi_points_check(xyz, n, query, *m, e);
+}
+
+HEATDIFF_API hd_status hd_neighbours_nearest(int32_t *index, double *distance2, const double *xyz, int32_t n, const double *query, int32_t m, int32_t k,
+                                             hd_context *ctx, hd_error *err) {
+    hdi_call c;
+    hdi_scope s;
+    hdi_tree tree;
+    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
+    if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: k is not positive");
+    if (m > 0 && !index) return hdi_missing(c.e);
+    s = hdi_scope_begin(c.ctx, c.e);
+    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
+        (void)hdi_nearest(&tree, xyz, query, m, k, index, distance2, c.ctx, c.e);
+    return hdi_scope_end(&s);
+}
+
+HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query, int32_t m, double radius, hd_context *ctx,
+                                            hd_error *err) {
+    hdi_call c;
+    hdi_scope s;
+    hdi_tree tree;
+    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
+    if (!out) return hdi_missing(c.e);
+    if (!(radius >= 0)) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
+    s = hdi_scope_begin(c.ctx, c.e);
+    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
+        (void)hdi_within(out, &tree, xyz, query, m, radius * radius, c.ctx, c.e);
+    return hdi_scope_end(&s);
 }
 
 static void hdi_gather(const hd_laplacian *lap, const double *on_vertices, double *on_rows) {
@@ -13352,21 +15767,43 @@ static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
     if (largest > 0) rep->error_rational = rep->error_bound = most / largest;
 }
 
+/* With the set's degree, into values. */
+static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
+    hd_heat *heat = h->heat;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    const int64_t size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
+    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
+    hdi_entries x;
+    if (room && hdi_entries_make(h, 0, room, size, &x) >= 0) {
+        hdi_edges_judge(&heat->elim, &x, h->rep);
+        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+    }
+    return hdi_scope_end(&scope);
+}
+
+/* As hdi_diagonal_sure, by the error relative to the largest value. */
+static hd_status hdi_edges_sure(hdi_heat_call *h, double *values) {
+    const hd_report before = *h->rep;
+    const hd_heat *heat = h->heat;
+    hd_status st;
+    if (hdi_edges_once(h, values) < 0) return h->e->status;
+    if (heat->opts.degree || heat->opts.rational || heat->opts.poles || h->rep->error_bound <= HDI_DIAGONAL_SURE) return HD_OK;
+    *h->rep = before;
+    h->degree = HDI_RAT_KERNEL_MAX;
+    st = hdi_edges_once(h, values);
+    h->degree = 0;
+    if (st != HD_ERR_MEMORY_LIMIT) return st;
+    *h->rep = before;                            /* no room for twice the factors: the first answer it is */
+    return hdi_edges_once(h, values);
+}
+
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report) {
     hdi_heat_call h;
-    hdi_entries x;
-    double *room;
-    int64_t size;
     if (hdi_kernel_begin(&h, heat, t, HD_KERNEL_SYMMETRIC, 1, report) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, 1, &t) >= 0 && !values) hdi_missing(h.e);
     if (h.e->status < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) return hdi_heat_end(&h);
     hdi_direct_only(&h);
-    size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
-    room = HDI_TAKE(&h.s, double, 2 * HDI_CAST(size_t, size));
-    if (room && hdi_entries_make(&h, 0, room, size, &x) >= 0) {
-        hdi_edges_judge(&heat->elim, &x, h.rep);
-        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
-    }
+    (void)hdi_edges_sure(&h, values);
     return hdi_heat_end(&h);
 }
 

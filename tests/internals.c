@@ -1810,7 +1810,245 @@ static void int_pairs_by_entries(void) {
     }
 }
 
+/* ---- [09] intrinsic triangulations ---- */
+
+/* The area of a needle with sides 1, 1 and x, and of triangles of integer sides. */
+static void int_length_area(void) {
+    int k;
+    for (k = 0; k < 300; k += 7) {
+        const double x = pow(10, -k / 10.0), want = x / 4 * sqrt(4 - x * x);
+        CHECK_MSG(fabs(hdi_length_area(1, 1, x) / want - 1) < 1e-15 && fabs(hdi_length_area(x, 1, 1) / want - 1) < 1e-15, "%g: %.17g", x, hdi_length_area(1, x, 1));
+    }
+    CHECK(hdi_length_area(3, 4, 5) == 6 && hdi_length_area(13, 5, 12) == 30 && hdi_length_area(15, 13, 14) == 84);
+    CHECK(hdi_length_area(1, 2, 3) == 0 && hdi_length_area(1, 2, 4) == 0 && hdi_length_area(0, 1, 1) == 0 && hdi_length_area(9, 1, 1) == 0);
+}
+
+/* Sides glued to each other have the same length and run opposite ways; the sum of the angles around each vertex is left in angle [n]. */
+static void int_intrinsic_state(const hdi_intrinsic *t, double *angle, int32_t n, double *area) {
+    int32_t s, wrong = 0;
+    for (s = 0; s < n; s++) angle[s] = 0;
+    *area = 0;
+    for (s = 0; s < t->n_sides; s++) {
+        const int32_t b = t->twin[s], next = hdi_side_next(s);
+        CHECK(hdi_side_prev(next) == s && next / 3 == s / 3);
+        angle[t->vert[s]] += atan2(1, hdi_side_cot(t, next));
+        if (s % 3 == 0) *area += t->area[s / 3];
+        if (b < 0) continue;
+        wrong += t->twin[b] != s || b == s || t->len[b] != t->len[s] || t->vert[b] != t->vert[next] || t->vert[s] != t->vert[hdi_side_next(b)];
+    }
+    CHECK_MSG(wrong == 0, "%d sides are glued wrongly", wrong);
+}
+
+/* Flips leave every cone angle as it was, and the area; whether the surface is its own cover or not, and its boundary closed or not. */
+static void int_flips(void) {
+    hd_context ctx;
+    hd_error e;
+    int k, close, loops = 0;
+    memset(&ctx, 0, sizeof ctx);
+    for (k = 0; k < 4; k++) {
+        for (close = 0; close < 2; close++) {
+            shape s = k == 0 ? shape_bumpy(3, 4) : k == 1 ? shape_grid(20, 17, 0.42) : k == 2 ? shape_torus(14, 9, 2, 0.7) : shape_grid(9, 9, 0.4);
+            hdi_scope scope = hdi_scope_begin(&ctx, &e);
+            hd_mesh_report rep;
+            hdi_mesh mesh, flat;
+            hdi_intrinsic t;
+            int open = 0;
+            double *before = DENSE_NEW(double, s.n), *after = DENSE_NEW(double, s.n), area_before, area_after, worst = 0;
+            int32_t i;
+            memset(&rep, 0, sizeof rep);
+            for (i = 0; i < s.n; i++) s.xyz[3 * i] *= 6;
+            for (i = 0; k == 3 && i < s.n_tri; i++)
+                if (s.tri[3 * i] % 3 == 0) s.tri[3 * i] = 4;     /* any triangles */
+            CHECK(hdi_mesh_make(&mesh, s.xyz, s.n, s.tri, s.n_tri, &rep, &scope) == HD_OK);
+            CHECK(hdi_intrinsic_make(&t, &mesh, 0, close, &rep, &scope) == HD_OK);
+            CHECK(t.n_sheets == (k == 0 || k == 2 || (k == 1 && !close) ? 1 : 2) && (k < 3 || rep.n_nonmanifold_edges > 5));
+            hdi_mollify(&t, 1e-5, &rep);
+            int_intrinsic_state(&t, before, s.n, &area_before);
+            CHECK_MSG(hdi_flip_all(&t, &rep, &ctx, &e) == HD_OK && rep.n_flips > 20 && rep.n_not_delaunay == 0,
+                      "shape %d: %d flips, %d edges left", k, (int)rep.n_flips, (int)rep.n_not_delaunay);
+            int_intrinsic_state(&t, after, s.n, &area_after);
+            for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(before[i] - after[i]));
+            CHECK_MSG(worst < 1e-9, "shape %d: an angle around a vertex changed by %g", k, worst);
+            CHECK_MSG(fabs(area_after / area_before - 1) < 1e-12, "shape %d: area %g not %g", k, area_after, area_before);
+            for (i = 0; i < t.n_sides; i++) open += t.twin[i] < 0;
+            CHECK_MSG(open == (close ? 0 : t.n_sheets * (int)rep.n_boundary_edges), "shape %d: %d open sides", k, open);
+            CHECK(hdi_intrinsic_mesh(&flat, &t, s.n, 1, &rep, &scope) == HD_OK);
+            for (i = 0; i < t.n_sides; i += 3) CHECK(flat.tri[i] != flat.tri[i + 2] || flat.tri[i] == flat.tri[i + 1]);
+            loops += (int)rep.n_self_edges;
+            hdi_scope_end(&scope);
+            free(before);
+            free(after);
+            shape_free(&s);
+        }
+    }
+    CHECK(ctx.bytes_in_use == 0 && loops > 10);
+}
+
+/* Faces around an edge come by their angle, from the first one's, against the turn of the hand if the smaller vertex is below. */
+static void int_around(void) {
+    static const double angles[6] = {0.4, 3.0, 1.1, 5.9, 0.39, 4.0};
+    static const int32_t want[6] = {0, 2, 1, 5, 3, 4};
+    double xyz[3 * 8];
+    int32_t tri[18], k;
+    hdi_pair list[6];
+    hdi_mesh mesh;
+    memset(&mesh, 0, sizeof mesh);
+    for (k = 0; k < 2; k++) {                    /* the axis goes up from 0 to 1 */
+        xyz[3 * k] = 7;
+        xyz[3 * k + 1] = -2;
+        xyz[3 * k + 2] = 5 * k;
+    }
+    for (k = 0; k < 6; k++) {
+        xyz[3 * k + 6] = 7 + (k + 1) * cos(angles[k]);
+        xyz[3 * k + 7] = -2 + (k + 1) * sin(angles[k]);
+        xyz[3 * k + 8] = k - 3;
+        tri[3 * k] = k + 2;
+        tri[3 * k + 1] = k % 2;
+        tri[3 * k + 2] = 1 - k % 2;
+        list[k].key = 1;
+        list[k].id = 3 * k + 1;
+    }
+    mesh.xyz = xyz;
+    mesh.tri = tri;
+    hdi_sort_around(&mesh, NULL, 0, 1, list, 6);
+    for (k = 0; k < 6; k++) CHECK_MSG(list[k].id == 3 * want[k] + 1, "place %d: face %d", k, (int)(list[k].id / 3));
+}
+
+/* A star by its definition: q is a neighbour of the origin in the Delaunay triangulation if some circle through both is empty. */
+static void int_star(void) {
+    enum { N = 40 };
+    uint64_t seed = 5;
+    int round;
+    for (round = 0; round < 60; round++) {
+        const int half = round % 3 == 0;         /* all on one side: an open star */
+        hdi_star_point p[N], q[N];
+        int32_t i, j, m, wrong = 0, found = 0;
+        int closed;
+        memset(p, 0, sizeof p);
+        for (i = 0; i < N; i++) {
+            const double x = shape_signed(&seed), y = half ? 0.01 + fabs(shape_signed(&seed)) : shape_signed(&seed), r2 = x * x + y * y;
+            p[i].x = 2 * x / r2;
+            p[i].y = 2 * y / r2;
+            p[i].angle = atan2(y, x);
+            p[i].id = i;
+        }
+        memcpy(q, p, sizeof p);
+        m = hdi_star_hull(q, N, &closed);
+        CHECK(m >= 2 && closed == !half);
+        for (i = 0; i < N; i++) {                /* centres on the bisector: a/|p|^2-like points c with c.p_i = 1, c.p_j <= 1 for all j: an interval */
+            const double n2 = p[i].x * p[i].x + p[i].y * p[i].y, cx = p[i].x / n2, cy = p[i].y / n2;
+            double low = -HUGE_VAL, high = HUGE_VAL;
+            int in = 0;
+            for (j = 0; j < N; j++) {
+                const double slope = -p[i].y * p[j].x + p[i].x * p[j].y, rest = 1 - (cx * p[j].x + cy * p[j].y);
+                if (j == i) continue;
+                if (slope > 0) high = fmin(high, rest / slope);
+                else low = fmax(low, rest / slope);
+            }
+            for (j = 0; j < m; j++) in |= q[j].id == i;
+            wrong += in != (low < high);
+            found += in;
+        }
+        CHECK_MSG(wrong == 0 && found == m, "round %d: %d neighbours wrong", round, wrong);
+        for (j = 1; j < m; j++) {                /* by angle, from wherever the star begins */
+            const double turn = remainder(q[j].angle - q[j - 1].angle, 6.283185307179586);
+            CHECK(turn > 0 || turn < -3);
+        }
+    }
+}
+
+/* ---- [08] spatial, [10] points ---- */
+
+static void int_sort_keys(void) {
+    uint64_t a[300], b[300], work[300], seed = 5;
+    int32_t n, i, j, bad = 0;
+    for (n = 0; n < 300; n++) {
+        for (i = 0; i < n; i++) a[i] = b[i] = n % 3 == 0 ? dense_random(&seed) : n % 3 == 1 ? dense_random(&seed) % 9 : (uint64_t)(n - i);
+        hdi_sort_keys(a, n, work);
+        for (i = 1; i < n; i++) {                /* the same by insertion */
+            const uint64_t x = b[i];
+            for (j = i; j > 0 && x < b[j - 1]; j--) b[j] = b[j - 1];
+            b[j] = x;
+        }
+        bad += memcmp(a, b, (size_t)n * sizeof *a) != 0;
+    }
+    CHECK_MSG(bad == 0, "%d lists out of order", (int)bad);
+}
+
+static void int_kth(void) {
+    double a[100], b[100];
+    uint64_t seed = 6;
+    int32_t n, k, i, bad = 0;
+    for (n = 1; n < 100; n += 7) {
+        for (k = 0; k < n; k++) {
+            int32_t below = 0, equal = 0;
+            for (i = 0; i < n; i++) a[i] = b[i] = k % 2 ? (double)(dense_random(&seed) % 5) : dense_signed(&seed);
+            (void)hdi_kth(a, n, k);
+            for (i = 0; i < n; i++) {
+                below += b[i] < a[k];
+                equal += b[i] == a[k];
+            }
+            bad += !(below <= k && k < below + equal);
+        }
+    }
+    CHECK_MSG(bad == 0, "%d times another one than the k-th", (int)bad);
+}
+
+/* A = V'WV with orthonormal rows V, also with equal and with zero eigenvalues. */
+static void int_eigen3(void) {
+    uint64_t seed = 7;
+    int round, i, j, c;
+    for (round = 0; round < 200; round++) {
+        double a[3][3], keep[3][3], w[3], v[3][3], worst = 0, top = 1e-300;
+        for (i = 0; i < 3; i++)
+            for (j = 0; j <= i; j++) a[i][j] = a[j][i] = round % 5 == 0 && i != j ? 0 : pow(10, round % 7 - 3) * dense_signed(&seed);
+        for (i = 0; i < 3 && round % 4 == 1; i++)   /* rank one */
+            for (j = 0; j < 3; j++) a[i][j] = (i + 1.0) * (j + 1.0);
+        for (i = 0; i < 3 && round % 4 == 2; i++)   /* a multiple of the identity */
+            for (j = 0; j < 3; j++) a[i][j] = i == j ? 2 : 0;
+        memcpy(keep, a, sizeof a);
+        hdi_eigen3(a, w, v);
+        CHECK(w[0] <= w[1] && w[1] <= w[2]);
+        for (i = 0; i < 3; i++) {
+            for (j = 0; j < 3; j++) {
+                double sum = 0, dot = 0;
+                for (c = 0; c < 3; c++) {
+                    sum += w[c] * v[c][i] * v[c][j];
+                    dot += v[i][c] * v[j][c];
+                }
+                worst = fmax(worst, fabs(sum - keep[i][j]));
+                top = fmax(top, fabs(keep[i][j]));
+                CHECK_MSG(fabs(dot - (i == j)) < 1e-14, "round %d: vectors %d and %d: %g", round, i, j, dot);
+            }
+        }
+        CHECK_MSG(worst < 4e-15 * top, "round %d: off by %g", round, worst / top);
+    }
+}
+
+/* A square cut by half-planes, and by a hull. */
+static void int_polygon(void) {
+    static const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    double x[6][2] = {{0, 0}, {0.5, 0}, {0, 0.5}, {0.1, 0.1}, {0.25, 0.25}, {0, 0}}, line[3][2] = {{0, 0}, {1, 1}, {0.5, 0.5}};
+    hdi_polygon g;
+    g.n = 4;
+    memcpy(g.x, square, sizeof square);
+    CHECK(!hdi_polygon_clip(&g, 1, 1, 2) && g.n == 4 && hdi_polygon_area(&g) == 4);
+    CHECK(hdi_polygon_clip(&g, 1, 1, 1) && g.n == 5 && fabs(hdi_polygon_area(&g) - 3.5) < 1e-15);
+    CHECK(hdi_polygon_clip(&g, -1, 0, 0) && fabs(hdi_polygon_area(&g) - 1.5) < 1e-15);
+    CHECK(hdi_polygon_clip_hull(&g, x, 6) && fabs(hdi_polygon_area(&g) - 0.125) < 1e-15);
+    CHECK(hdi_polygon_clip_hull(&g, line, 3) && fabs(hdi_polygon_area(&g)) < 1e-15);
+    CHECK(!hdi_polygon_clip(&g, 1, 0, 5));
+}
+
 int main(void) {
+    int_length_area();
+    int_flips();
+    int_around();
+    int_star();
+    int_sort_keys();
+    int_kth();
+    int_eigen3();
+    int_polygon();
     int_division();
     int_complex();
     int_sizes();

@@ -130,23 +130,28 @@ static void test_tmp_remove(void) {
 #include "test_base.h"
 #include "test_sparse.h"
 #include "test_operators.h"
+#include "test_intrinsic.h"
 #include "test_rational.h"
 #include "test_krylov.h"
 #include "test_heat.h"
+#include "test_points.h"
 #include "test_robust.h"
+#include "test_polygon.h"
 #include "test_ldl.h"
 #include "test_engines.h"
 #include "test_geodesic.h"
 #include "test_diagonal.h"
+#include "test_operators_all.h"
 #include "test_picture.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
 
 static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
+    {"intrinsic", test_intrinsic},
     {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
-    {"geodesic", test_geodesic},
-    {"diagonal", test_diagonal}, {"picture", test_picture},   {"meshio", test_meshio},
+    {"points", test_points},     {"polygon", test_polygon},   {"geodesic", test_geodesic}, {"diagonal", test_diagonal}, {"everywhere", test_operators_all},
+    {"picture", test_picture},   {"meshio", test_meshio},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };

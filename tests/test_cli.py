@@ -476,7 +476,7 @@ class Failures(Case):
         self.assertIn("bad.obj", self.kernel("# nothing here\n"))
         self.assertIn("bad.obj", self.kernel(""))
         self.assertIn("bad.obj", self.kernel(bytes(random.Random(1).randrange(256) for _ in range(4000))))
-        self.assertIn("bad.obj", self.kernel("v 0 0 0\nv 1 0 0\nv 0 1 0\n"))
+        self.assertIn("bad.obj", self.kernel("v 0 0 0\nv 1 0 0\nv 2 0 0\n"))        # points on a line: no area
 
     def test_every_cut_of_a_mesh_is_handled(self):
         good = off_text(*icosahedron()).encode()
@@ -626,11 +626,121 @@ class Numbers(Case):
         v = [(0.0, 0.0, 0.0), (2.0, 0.0, 0.1), (2.5, 1.5, 0.0), (1.0, 2.5, 0.3), (-0.5, 1.5, 0.0)]
         fan = self.file("fan.obj", obj_text(v, [(0, 1, 2), (0, 2, 3), (0, 3, 4)]))
         polygon = self.file("polygon.obj", obj_text(v, [(0, 1, 2, 3, 4)]))
-        self.assertEqual(self.field("kernel", fan, "--source", 1, "--t", "0.3"), self.field("kernel", polygon, "--source", 1, "--t", "0.3"))
+        for kind in ("fem", "voronoi-cot", "cot"):
+            args = ("--source", 1, "--t", "0.3", "--laplacian", kind)
+            self.assertEqual(self.field("kernel", fan, *args), self.field("kernel", polygon, *args))
+
+
+class Polygons(Case):
+    """Faces that are no triangles."""
+    SQUARE = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)]
+
+    def square(self):
+        return self.file("square.obj", obj_text(self.SQUARE, [(0, 1, 2, 3)]))
+
+    def test_square_in_closed_form(self):
+        """B^-1 L of the unit square has the eigenvalues 0, 4, 4 and 16 lambda."""
+        for args, weight in (([], 1), (["--laplacian", "polygon", "--lambda", "0.5"], 0.5), (["--lambda=2"], 2)):
+            t, got = 0.07, self.field("kernel", self.square(), "--source", 0, "--t", 0.07, *args)
+            a, b = math.exp(-4 * t) / 2, math.exp(-16 * weight * t) / 4
+            self.close(got, [[0.25 + a + b], [0.25 - b], [0.25 - a + b], [0.25 - b]], 1e-7)
+
+    def test_default_is_by_the_faces(self):
+        v, f = icosahedron()
+        mixed = self.file("mixed.obj", obj_text(v + [(0, 0, 3), (1, 0, 3), (1, 1, 3), (0, 1, 3)], f + [(12, 13, 14, 15)]))
+        for path, kind in ((self.square(), "polygon"), (mixed, "polygon"), (self.file("ball.obj", obj_text(v, f)), "fem")):
+            self.assertEqual(json.loads(self.good("info", path, "--json").stdout)["laplacian"], kind)
+            self.assertEqual(json.loads(self.good("kernel", path, "--source", 0, "--t", 1, "--json").stderr)["laplacian"], kind)
+
+    def test_polygon_on_triangles_is_cotangent(self):
+        """L is that of the triangles whatever lambda, B the thirds of their areas: on an icosahedron the mixed areas."""
+        path = self.file("ico.obj", obj_text(*icosahedron()))
+        want = self.field("kernel", path, "--source", 3, "--t", "2h2", "--laplacian", "voronoi-cot")
+        for weight in (0.1, 1, 10):
+            self.close(self.field("kernel", path, "--source", 3, "--t", "2h2", "--laplacian", "polygon", "--lambda", weight), want, 1e-7)
+
+    def test_h_and_counts(self):
+        r = json.loads(self.good("info", self.square(), "--json").stdout)
+        self.assertEqual((r["h"], r["area"], r["edges"], r["faces"], r["faces_used"], r["triangles"], r["boundary_loops"]), (1, 1, 4, 1, 1, 2, 1))
+        r = json.loads(self.good("info", self.square(), "--json", "--laplacian", "fem").stdout)
+        self.assertEqual((r["edges"], r["triangles_used"], r["laplacian"]), (5, 2, "fem"))
+        self.assertIn("polygon", self.good("info", self.square()).stdout.decode())
+
+    def test_defects(self):
+        v = self.SQUARE + [(3.0, 0.0, 0.0), (4.0, 0.0, 0.0), (5.0, 0.0, 0.0), (6.0, 0.0, 0.0)]
+        path = self.file("defects.obj", obj_text(v, [(0, 1, 2, 3), (2, 1, 0, 3), (4, 5, 6, 7), (0, 1, 1, 4)]))
+        r = json.loads(self.good("info", path, "--json").stdout)
+        self.assertEqual((r["repeated_faces"], r["repeated_corner_faces"], r["zero_area_faces"], r["inert"], r["faces_used"]), (1, 1, 1, 4, 1))
+        self.assertEqual(self.field("kernel", path, "--source", 5, "--t", 1), [[1.0 if i == 5 else 0.0] for i in range(8)])
+
+    def test_every_output(self):
+        for name in ("k.npy", "k.csv", "k.ply", "k.obj", "k.vtu", "k.png"):
+            self.good("kernel", self.square(), "--source", 0, "--t", "1h2", "-o", self.path(name))
+        f = self.file("f.txt", "1\n2\n3\n4\n")
+        self.close(self.field("diffuse", self.square(), "--input", f, "--t", 100), [[2.5]] * 4, 1e-7)
+
+    def test_triangulations_split_polygons(self):
+        for option, word in (("--tufted", "tufted"), ("--intrinsic-delaunay", "delaunay")):
+            r = json.loads(self.good("info", self.square(), option, "--json").stdout)
+            self.assertEqual((r["laplacian"], r["intrinsic"], r["triangles_used"]), ("fem", word, 2))
+            self.assertIn(option, self.bad(2, "info", self.square(), option, "--laplacian", "polygon"))
+
+    def test_lambda_is_checked(self):
+        for value in ("0", "-1", "x", "nan", "1e200", ""):
+            self.assertIn("--lambda", self.bad(2, "info", self.square(), "--lambda", value))
+        self.assertIn("--lambda", self.bad(2, "info", self.square(), "--lambda", "1", "--laplacian", "fem"))
 
 
 METHODS = ("direct", "krylov", "auto", "iterative")
 KINDS = ("fem", "voronoi-cot")
+
+
+class Intrinsic(Case):
+    """A torus whose vertices are joined askew, so that its triangles are slivers; and three leaves on one spine."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        v, f = torus(16, 8)
+        turn = {i * 8 + j: i * 8 + (j + 2 * i) % 8 for i in range(16) for j in range(8)}
+        cls.good_torus = cls.file("torus.obj", obj_text(v, f))
+        cls.askew = cls.file("askew.obj", obj_text(v, [tuple(turn[i] for i in t) for t in f]))
+        cls.book = cls.file("book.obj", obj_text([(0, 0, 0), (0, 0, 1), (3, 0, .5), (-1, 2, .5), (-1, -2, .4)], [(0, 1, 2), (0, 1, 3), (0, 1, 4)]))
+
+    def test_heat_is_not_negative(self):
+        def least(*more):
+            rows = self.field("kernel", self.askew, "--laplacian", "voronoi-cot", "--source", "0,37", "--t", "0.3h2,2h2", *more)
+            return min(min(r) for r in rows)
+        self.assertLess(least(), -1e-4)
+        self.assertGreater(least("--intrinsic-delaunay"), -1e-6)
+        self.assertGreater(least("--tufted"), -1e-6)
+
+    def test_report(self):
+        plain = json.loads(self.good("info", self.askew, "--json").stdout)
+        r = json.loads(self.good("info", self.askew, "--json", "--intrinsic-delaunay").stdout)
+        self.assertNotIn("intrinsic", plain)
+        self.assertEqual((r["intrinsic"], r["sheets"], r["negative_weights"], r["not_delaunay_edges"]), ("delaunay", 1, 0, 0))
+        self.assertGreater(r["flips"], 50)
+        self.assertGreater(plain["negative_weights"], 50)
+        self.assertAlmostEqual(r["h"], plain["h"], 12)
+        self.assertAlmostEqual(r["area"], plain["area"], 9)
+        self.assertEqual(r["smallest_angle"], plain["smallest_angle"])
+        self.assertGreater(r["smallest_intrinsic_angle"], r["smallest_angle"])
+        r = json.loads(self.good("kernel", self.book, "--tufted", "--source", 0, "--t", "0.1", "--json", "-o", self.path("b.txt")).stderr)
+        self.assertEqual((r["intrinsic"], r["sheets"]), ("tufted", 2))
+        self.assertLess(r["mass_drift"], 1e-9)
+
+    def test_text(self):
+        text = self.good("info", self.book, "--tufted").stdout.decode()
+        self.assertRegex(text, "sheets +2")
+        self.assertRegex(text, "edges flipped")
+        self.assertNotIn("edges flipped", self.good("info", self.book).stdout.decode())
+        text = self.good("kernel", self.askew, "--intrinsic-delaunay", "--source", 0, "--t", 1, "-o", self.path("a.txt")).stderr.decode()
+        self.assertIn("intrinsic Delaunay", text)
+
+    def test_no_value(self):
+        self.bad(2, "info", "--tufted=1", self.book)
+        self.bad(2, "render", "--tufted", self.book)
 
 
 class Methods(Case):
@@ -1363,7 +1473,7 @@ class Reports(Case):
         self.assertEqual((r["repeated_faces"], r["repeated_corner_faces"], r["zero_area_faces"]), (1, 1, 1))
 
     def test_info_of_nothing_with_area(self):
-        r = json.loads(self.good("info", self.file("points.xyz", "0 0 0\n1 0 0\n0 1 0\n"), "--json").stdout)
+        r = json.loads(self.good("info", self.file("points.xyz", "0 0 0\n1 0 0\n2 0 0\n"), "--json").stdout)
         self.assertEqual((r["n"], r["faces"], r["inert"]), (3, 0, 3))
 
     def test_strings_are_escaped(self):
@@ -1633,6 +1743,128 @@ class Demo(Case):
 
     def test_folder_is_a_file(self):
         self.bad(1, "demo", "-o", self.small)
+
+
+class Points(Case):
+    """Files without faces."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        n = 300
+        cls.v = [(math.sqrt(1 - z * z) * math.cos(2.4 * i), math.sqrt(1 - z * z) * math.sin(2.4 * i), z)
+                 for i, z in ((i, (2 * i + 1) / n - 1) for i in range(n))]
+        cls.xyz = cls.file("cloud.xyz", "".join("%.17g %.17g %.17g 7 8 9\n" % p for p in cls.v))
+
+    def report(self, *args):
+        return json.loads(self.good("info", *args, "--json").stdout)
+
+    def test_formats_agree(self):
+        rows = "".join("%.17g %.17g %.17g\n" % p for p in self.v)
+        ply = "ply\nformat ascii 1.0\nelement vertex 300\nproperty double x\nproperty double y\nproperty double z\nend_header\n" + rows
+        want = self.field("kernel", self.xyz, "--source", 5, "--t", "0.1,20h2")
+        for path in (self.file("c.ply", ply), self.file("c.obj", "".join("v " + r + "\n" for r in rows.splitlines())),
+                     self.file("c.off", "OFF\n300 0 0\n" + rows)):
+            self.assertEqual(self.field("kernel", path, "--source", 5, "--t", "0.1,20h2"), want)
+        self.assertTrue(all(x > 0 for x in columns(want, 0)[5]))
+
+    def test_info(self):
+        r = self.report(self.xyz)
+        self.assertEqual((r["n"], r["faces"], r["components"], r["inert"], r["laplacian"]), (300, 0, 1, 0, "voronoi-exp"))
+        self.assertEqual((r["coincident"], r["isolated"], r["without_area"], r["neighbours"], r["weight_cut"]), (0, 0, 0, 30, 1e-8))
+        self.assertAlmostEqual(r["area"] / (4 * math.pi), 1, delta=0.05)
+        h = sum(min(math.dist(p, q) for q in self.v if q is not p) for p in self.v) / 300
+        self.assertAlmostEqual(r["h"] / h, 1, delta=1e-13)
+        self.assertAlmostEqual(r["cut_radius"], math.sqrt(4 * r["bandwidth"] * math.log(1e8)), delta=1e-12)
+        text = self.good("info", self.xyz).stdout.decode()
+        for word in ("points", "bandwidth", "area of the cells", "from the sampling"):
+            self.assertIn(word, text)
+
+    def test_bandwidth(self):
+        h = self.report(self.xyz)["h"]
+        r = self.report(self.xyz, "--bandwidth", "0.4h2", "--laplacian", "exp")
+        self.assertAlmostEqual(r["bandwidth"] / (0.4 * h * h), 1, delta=1e-13)
+        self.assertEqual(self.report(self.xyz, "--bandwidth", "0.004")["bandwidth"], 0.004)
+        twice = self.file("twice.xyz", "".join("%.17g %.17g %.17g\n" % p for p in self.v + self.v[:20]))
+        r = self.report(twice, "--bandwidth", "2h2")
+        self.assertAlmostEqual(r["bandwidth"] / (2 * h * h), 1, delta=1e-13)
+        self.assertEqual((r["coincident"], r["n"]), (20, 320))
+        for text in ("0", "-1", "abc", "auto:3", "1,2", "", "1h", "nan"):
+            self.assertIn("--bandwidth takes", self.bad(2, "info", self.xyz, "--bandwidth=" + text))
+        self.assertIn("bandwidth", self.bad(1, "info", self.small, "--bandwidth", "1"))
+
+    def test_laplacians(self):
+        for kind in ("fem", "cot", "voronoi-cot"):
+            self.assertIn(kind, self.bad(1, "kernel", self.xyz, "--source", 0, "--t", 1, "--laplacian", kind))
+        u = self.field("kernel", self.xyz, "--source", "0,9", "--t", 1, "--laplacian", "exp")
+        for c in range(2):                      # B = I: columns sum to one, and K_t is symmetric
+            self.assertAlmostEqual(sum(r[c] for r in u), 1, delta=1e-9)
+        self.assertAlmostEqual(u[9][0], u[0][1], delta=1e-9)
+        r = self.report(self.patch, "--laplacian", "voronoi-exp")       # a mesh's vertices as points
+        self.assertEqual((r["n"], r["laplacian"], r["triangles_used"]), (100, "voronoi-exp", 0))
+        text = self.good("kernel", self.xyz, "--source", 0, "--t", "auto:2", "-o", self.path("x.txt")).stderr.decode()
+        self.assertIn("bandwidth", text)
+        self.good("kernel", self.xyz, "--source", 0, "--t", "auto:2", "--laplacian", "exp", "-o", self.path("x.txt"))
+
+    def test_outputs(self):
+        for name in ("p.ply", "p.vtu", "p.obj", "p.npy", "p.csv", "p.png"):
+            self.good("kernel", self.xyz, "--source", 3, "--t", 0.1, "-o", self.path(name), "--quiet")
+            self.assertGreater(os.path.getsize(self.path(name)), 300)
+        again = self.report(self.path("p.ply"))
+        self.assertEqual((again["n"], again["faces"]), (300, 0))
+        data = self.file("f.txt", "".join("%g\n" % p[2] for p in self.v))
+        self.good("render", self.xyz, "--input", data, "-o", self.path("r.png"))
+        out = self.field("diffuse", self.xyz, "--input", data, "--t", "0.1")
+        ratio = [a[0] / p[2] for a, p in zip(out, self.v) if abs(p[2]) > 0.3]
+        self.assertTrue(all(abs(q / math.exp(-0.2) - 1) < 0.05 for q in ratio), (min(ratio), max(ratio)))     # z has eigenvalue 2
+
+    def test_tufted(self):
+        """Triangles made of the points' neighbours; those in the place of an earlier one are left out."""
+        twice = self.file("twice.xyz", "".join("%.17g %.17g %.17g\n" % p for p in self.v + self.v[:3]))
+        data = self.file("g.txt", "".join("%g\n" % p[2] for p in self.v))
+        for kind in ((), ("--laplacian", "voronoi-cot"), ("--laplacian", "cot")):
+            r = self.report(twice, "--tufted", *kind)
+            self.assertEqual((r["laplacian"], r["intrinsic"], r["coincident"], r["inert"], r["sheets"], r["negative_weights"]),
+                             (kind[-1] if kind else "fem", "tufted", 3, 3, 2, 0))
+            self.assertAlmostEqual(r["area"] / (4 * math.pi), 1, delta=0.05)
+            self.assertNotIn("bandwidth", r)
+        for kind in ("fem", "voronoi-cot"):
+            out = self.field("diffuse", self.xyz, "--tufted", "--laplacian", kind, "--input", data, "--t", "0.1")
+            ratio = [a[0] / p[2] for a, p in zip(out, self.v) if abs(p[2]) > 0.3]
+            self.assertTrue(all(abs(q / math.exp(-0.2) - 1) < 0.05 for q in ratio), (kind, min(ratio), max(ratio)))
+        self.assertRegex(self.good("info", self.xyz, "--tufted").stdout.decode(), "edges flipped")
+        self.assertIn("--tufted", self.bad(1, "info", self.xyz, "--intrinsic-delaunay"))
+        for more in (("--laplacian", "exp"), ("--laplacian", "voronoi-exp"), ("--laplacian", "polygon"), ("--bandwidth", 1), ("--lambda", 1)):
+            self.assertIn("--tufted", self.bad(2, "info", self.xyz, "--tufted", *more))
+        self.assertIn("--lambda", self.bad(1, "info", self.xyz, "--lambda", 1))
+        self.assertIn("faces", self.bad(1, "geodesic", self.xyz, "--source", 0))
+
+    def test_every_question(self):
+        """Signature, distances, pairs and samples agree with the kernel on every kind of point Laplacian, and on polygons."""
+        square = [(float(i % 5), i // 5 + 0.1 * (i % 2), 0.0) for i in range(25)]
+        quads = self.file("quads.obj", obj_text(square, [(i, i + 1, i + 6, i + 5) for i in range(19) if i % 5 < 4]))
+        xyz = self.file("few.xyz", "".join("%.17g %.17g %.17g\n" % p for p in self.v[::6]))
+        for path, args in ((quads, ()), (quads, ("--tufted",)), (xyz, ()), (xyz, ("--laplacian", "exp")), (xyz, ("--tufted", "--laplacian", "voronoi-cot"))):
+            n, t, twice = (25, "0.4", "0.8") if path == quads else (50, "2", "4") if "exp" in args else (50, "0.1", "0.2")
+            every = ",".join(map(str, range(n)))
+            k = self.field("kernel", path, *args, "--kernel", "symmetric", "--source", every, "--t", twice)
+            want = [math.sqrt(k[0][0] - 2 * k[i][0] + k[i][i]) if i else 0 for i in range(n)]
+            self.close(self.field("hks", path, *args, "--t", twice), [[k[i][i]] for i in range(n)], 1e-6)
+            self.close(self.field("distance", path, *args, "--source", 0, "--t", t), [[x] for x in want], 1e-6)
+            pairs = self.file("p.txt", "".join("0 %d\n" % i for i in range(n)))
+            self.close(columns(self.field("pairs", path, *args, "--input", pairs, "--t", t), 3), [[x] for x in want], 1e-6)
+            found = self.field("sample", path, *args, "--source", 0, "--count", 2, "--t", t)
+            self.assertAlmostEqual(found[1][1] / max(want), 1, delta=1e-6)
+            self.assertAlmostEqual(want[int(found[1][0])] / max(want), 1, delta=1e-6)
+            for kind in ("commute", "biharmonic", "weighted"):
+                d = self.field("distance", path, *args, "--source", 0, "--definition", kind, *(("--t", t) if kind == "weighted" else ()))
+                self.assertTrue(d[0] == [0] and all(x[0] > 0 for x in d[1:]) if kind != "weighted" else d[0] == [0])
+
+    def test_nothing_to_compute_on(self):
+        line = self.file("line.xyz", "0 0 0\n1 0 0\n2 0 0\n")
+        self.assertEqual(self.report(line)["inert"], 3)
+        self.bad(1, "kernel", line, "--source", 0, "--t", 1)
+        self.bad(1, "kernel", self.file("one.xyz", "0 0 0\n0 0 0\n"), "--source", 0, "--t", 1)
 
 
 def main():

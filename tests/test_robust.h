@@ -152,6 +152,8 @@ static const rob_job rob_jobs[] = {
     {"apply", rob_apply, 1},
     {"triplets", rob_csr, 0},            {"transpose", rob_csr, 1},              {"product", rob_csr, 2},
     {"permute", rob_csr, 3},             {"check", rob_csr, 4},
+    {"points", pts_robust, 0},           {"points exp", pts_robust, 1},          {"nearest", pts_robust, 2},           {"within", pts_robust, 3},
+    {"tufted points", pts_robust, 4},
 };
 
 enum { ROB_JOBS = sizeof rob_jobs / sizeof *rob_jobs, ROB_MOST = 20000 };

@@ -385,7 +385,8 @@ static int processors(void)
 typedef struct word { const char *name; int value; } word;
 
 static const word LAPLACIANS[] = {
-    { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT }, { NULL, 0 } };
+    { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT },
+    { "polygon", HD_LAPLACIAN_POLYGON }, { "voronoi-exp", HD_LAPLACIAN_VORONOI_EXP }, { "exp", HD_LAPLACIAN_EXP }, { NULL, 0 } };
 static const word POLES[] = {
     { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { "diagonal", HD_POLES_DIAGONAL }, { NULL, 0 } };
 static const word METHODS[] = {
@@ -455,10 +456,13 @@ typedef struct options {
     int64_t *sources;                /* 64 bits, so that ids beyond any mesh are told as what they are */
     int n_sources;
     const char *input, *output, *title;
+    int has_bandwidth;
+    time_spec bandwidth;             /* absolute or h2 */
     int laplacian, poles, method, ordering, simd, solver, precond, kernel, definition;
     long degree, max_iterations, threads, count;
-    double tol;
+    double tol, lambda;
     uint64_t memory_limit;
+    int intrinsic_delaunay, tufted;
     int json, quiet, help, version;
     int colormap;                    /* pictures */
     int log_scale, has_range, has_view, has_isolines;
@@ -563,6 +567,12 @@ static int parse_tol(options *o, const option_def *def, const char *text)
     return read_real(text, &o->tol) && o->tol > 0 && o->tol < 1;
 }
 
+static int parse_lambda(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    return read_real(text, &o->lambda) && o->lambda > 0 && o->lambda <= 1e100;
+}
+
 static int parse_range(options *o, const option_def *def, const char *text)
 {
     (void)def;
@@ -642,6 +652,14 @@ static int parse_times(options *o, const option_def *def, const char *text)
     }
 }
 
+static int parse_bandwidth(options *o, const option_def *def, const char *text)
+{
+    const char *end;
+    (void)def;
+    o->has_bandwidth = 1;
+    return read_time(text, &o->bandwidth, &end) && *end == 0 && o->bandwidth.unit != TIME_AUTO && o->bandwidth.value > 0;
+}
+
 static int parse_sources(options *o, const option_def *def, const char *text)
 {
     int64_t v;
@@ -681,8 +699,19 @@ static const option_def OPTIONS[] = {
     { "input", 0, CMD_PAIRS, 0, parse_text, AT(input), NULL, 0, 0, "P", "a file name", "pairs of vertices: two ids a line, as text or .npy" },
     { "definition", 0, CMD_METRIC, 0, parse_words, AT(definition), DEFINITIONS, 0, 0, "NAME", "classical, weighted, commute or biharmonic",
       "classical (default): d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j);\nweighted: d^2 = (e_i - e_j)' B K_2t (e_i - e_j); commute and\nbiharmonic: without --t" },
-    { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME", "fem, voronoi-cot or cot",
-      "fem (default), voronoi-cot or cot" },
+    { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
+      "fem, voronoi-cot, cot, polygon, voronoi-exp or exp",
+      "fem (default of triangles), voronoi-cot, cot: other faces are\nsplit; polygon (default of meshes with other faces); of points:\n"
+      "voronoi-exp (default) or exp, which take the vertices of a mesh\nas points" },
+    { "intrinsic-delaunay", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL, "no value",
+      "L and B of the surface's own Delaunay triangulation: for bad\ntriangles; with voronoi-cot heat is then never negative" },
+    { "tufted", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
+      "the same for any triangles, also with borders and where\nthree and more faces meet; of points, with triangles made\nfrom their neighbours" },
+    { "lambda", 0, CMD_INFO | CMD_HEAT, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
+      "of polygon: weight of its stabilising part (1)" },
+    { "bandwidth", 0, CMD_INFO | CMD_HEAT, 0, parse_bandwidth, 0, NULL, 0, 0, "S", "a positive number such as 0.001, or a multiple of h^2 such as 2h2",
+      "of points: time parameter of the exponential weights, absolute\nor in multiples of the squared mean distance of nearest\n"
+      "neighbours (2h2); default: from the sampling" },
     { "kernel", 0, CMD_KERNEL | CMD_PAIRS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
       "operator: K_t (default); symmetric: k_t = K_t B^-1" },
     { "kernel", 0, CMD_HKS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
@@ -931,6 +960,18 @@ static int check_geodesic(const options *o)
 }
 
 /* What single options cannot see: what is missing, what does not go together. */
+/* Triangulations go with the Laplacians of triangles. */
+static int check_intrinsic(const options *o)
+{
+    const char *name = o->tufted ? "tufted" : "intrinsic-delaunay";
+    if (!o->tufted && !o->intrinsic_delaunay) return DONE;
+    if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP || o->laplacian == HD_LAPLACIAN_EXP)
+        return fail(USAGE, "--%s takes --laplacian fem, voronoi-cot or cot: %s has no triangles", name, word_of(LAPLACIANS, o->laplacian));
+    if (o->lambda > 0) return fail(USAGE, "--%s is of triangles, --lambda of polygons", name);
+    if (o->has_bandwidth) return fail(USAGE, "--%s is of triangles, --bandwidth of exponential weights", name);
+    return DONE;
+}
+
 static int check_options(const options *o)
 {
     const char *name = command_name(o->command);
@@ -942,6 +983,9 @@ static int check_options(const options *o)
         return fail(USAGE, "%s needs --input, which takes the file of %s", name, o->command == CMD_PAIRS ? "vertex pairs" : "a field");
     if (o->command == CMD_SAMPLE && (code = check_sample(o)) != DONE) return code;
     if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
+    if (o->lambda > 0 && o->laplacian != HD_LAPLACIAN_DEFAULT && o->laplacian != HD_LAPLACIAN_POLYGON)
+        return fail(USAGE, "--lambda takes --laplacian polygon: %s has no such part", word_of(LAPLACIANS, o->laplacian));
+    if ((code = check_intrinsic(o)) != DONE) return code;
     if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE || (code = check_method(o)) != DONE) return code;
     if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
         return fail(USAGE, "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
@@ -1403,16 +1447,75 @@ static int run_load(run *r)
     return code;
 }
 
+/* That of the command line; without one by what it asks of triangles, and by the faces: none, other ones than triangles, triangles. */
+static hd_laplacian_kind laplacian_kind(const run *r)
+{
+    if (r->o->laplacian != HD_LAPLACIAN_DEFAULT) return (hd_laplacian_kind)r->o->laplacian;
+    if (r->o->intrinsic_delaunay || r->o->tufted) return HD_LAPLACIAN_FEM;
+    if (r->mesh.n_tri == 0) return HD_LAPLACIAN_VORONOI_EXP;
+    return r->mesh.n_tri != r->mesh.n_faces ? HD_LAPLACIAN_POLYGON : HD_LAPLACIAN_FEM;    /* no face of the file has fewer than three corners */
+}
+
+static int has_exponentials(const run *r)
+{
+    const hd_laplacian_kind kind = laplacian_kind(r);
+    return kind == HD_LAPLACIAN_VORONOI_EXP || kind == HD_LAPLACIAN_EXP;
+}
+
+static int is_points(const run *r) { return r->mesh.n_tri == 0 || has_exponentials(r); }
+
+/* h of points, which the library knows only when all is done: the mean distance of different points to the nearest other one. */
+static hd_status point_spacing(run *r, double *h, hd_error *err)
+{
+    const int32_t n = r->mesh.n, k = n < 16 ? n : 16;
+    int32_t *near_ids = (int32_t *)malloc((size_t)n * (size_t)k * sizeof *near_ids + 1), i, j, count = 0;
+    double *d2 = new_columns(n, k);
+    hd_status status = HD_ERR_MEMORY;
+    *h = 0;
+    memset(err, 0, sizeof *err);
+    err->face = err->vertex = err->row = err->column = err->pole = -1;
+    err->status = status;
+    if (near_ids && d2) status = hd_neighbours_nearest(near_ids, d2, r->mesh.xyz, n, NULL, n, k, &r->context, err);
+    for (i = 0; status >= 0 && i < n; i++) {
+        const double *d = d2 + (size_t)i * (size_t)k;
+        if (d[0] == 0 && near_ids[(size_t)i * (size_t)k] != i) continue;        /* in the place of an earlier one */
+        for (j = 0; j < k && d[j] == 0; j++) { }
+        if (j == k) continue;
+        *h += sqrt(d[j]);
+        count++;
+    }
+    if (count) *h /= count;
+    free(near_ids);
+    free(d2);
+    return status;
+}
+
+static hd_status run_points(run *r, hd_laplacian_opts *opts, hd_error *err)
+{
+    const time_spec s = r->o->bandwidth;
+    double h = 1;
+    if (opts->tufted) return hd_laplacian_tufted_points(&r->lap, r->mesh.xyz, r->mesh.n, NULL, NULL, opts, err);
+    if (s.unit == TIME_H2 && point_spacing(r, &h, err) < 0) return err->status;
+    opts->bandwidth = s.value * h * h;
+    return hd_laplacian_points(&r->lap, r->mesh.xyz, r->mesh.n, opts, err);
+}
+
 static hd_status run_laplacian(run *r, hd_error *err)
 {
+    const mesh_data *m = &r->mesh;
     hd_laplacian_opts opts;
     const double start = now();
     hd_status status;
     memset(&opts, 0, sizeof opts);
-    opts.kind = (hd_laplacian_kind)r->o->laplacian;
+    opts.kind = laplacian_kind(r);
+    opts.lambda = r->o->lambda;
     opts.context = &r->context;
+    opts.intrinsic_delaunay = r->o->intrinsic_delaunay;
+    opts.tufted = r->o->tufted;
     interrupt.patient = 1;
-    status = hd_laplacian_triangles(&r->lap, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, err);
+    if (is_points(r)) status = run_points(r, &opts, err);
+    else if (opts.kind == HD_LAPLACIAN_POLYGON) status = hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces, &opts, err);
+    else status = hd_laplacian_triangles(&r->lap, m->xyz, m->n, m->tri, m->n_tri, &opts, err);
     interrupt.patient = 0;
     r->sec.assemble = now() - start;
     return status;
@@ -1420,15 +1523,29 @@ static hd_status run_laplacian(run *r, hd_error *err)
 
 static int fail_laplacian(const run *r, hd_error *err)
 {
-    if (err->face >= 0 && r->mesh.face_of) err->face = r->mesh.face_of[err->face];
+    if (err->face >= 0 && r->mesh.face_of && laplacian_kind(r) != HD_LAPLACIAN_POLYGON) err->face = r->mesh.face_of[err->face];
     return fail_library(r->mesh_name, err);
+}
+
+/* Do the options fit what the file has? */
+static int check_laplacian(const run *r)
+{
+    if (r->mesh.n_tri == 0 && r->o->intrinsic_delaunay && !r->o->tufted)
+        return fail(FAILED, "%s: --intrinsic-delaunay needs faces, and there are none; points take --tufted", r->mesh_name);
+    if (r->mesh.n_tri == 0 && !has_exponentials(r) && !r->o->tufted)
+        return fail(FAILED, "%s: --laplacian %s needs faces, and there are none; points take voronoi-exp or exp, or --tufted with fem, voronoi-cot or cot",
+                    r->mesh_name, word_of(LAPLACIANS, r->o->laplacian));
+    if (r->o->has_bandwidth && !has_exponentials(r))
+        return fail(FAILED, "%s: --bandwidth is for points (--laplacian voronoi-exp or exp), and this file has faces", r->mesh_name);
+    if (r->o->lambda > 0 && is_points(r)) return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
+    return DONE;
 }
 
 static int run_assemble(run *r)
 {
     hd_error err;
-    if (r->mesh.n_tri == 0)
-        return fail(FAILED, "%s: %ld vertices but no faces; heat needs a surface", r->mesh_name, (long)r->mesh.n);
+    const int code = check_laplacian(r);
+    if (code) return code;
     if (run_laplacian(r, &err) < 0) return fail_laplacian(r, &err);
     return interrupt.asked ? INTERRUPTED : DONE;
 }
@@ -1444,6 +1561,7 @@ static double auto_time(const run *r, int i, int count)
     double area = 0;
     int c;
     for (c = 0; c < r->lap->n_components; c++) area += r->lap->component_mass[c];
+    if (r->lap->kind == HD_LAPLACIAN_EXP) area = r->lap->area * r->lap->area;   /* B^-1 L tends to Laplacian/area */
     return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST, count > 1 ? i / (double)(count - 1) : 0.5);
 }
 
@@ -1738,6 +1856,7 @@ static int solve_geodesic(run *r)
 {
     hd_geodesic_opts opts;
     hd_error err;
+    if (r->mesh.n_tri == 0) return fail(FAILED, "%s: geodesic needs faces, and there are none", r->mesh_name);
     memset(&opts, 0, sizeof opts);
     opts.t = r->times[0];
     opts.ordering = (hd_ordering)r->o->ordering;
@@ -1806,6 +1925,36 @@ static void json_end(json *j, const run *r)
     fputc('\n', j->out);
 }
 
+static void json_points(json *j, const hd_point_report *p)
+{
+    json_integer(j, "neighbours", p->neighbours);
+    json_integer(j, "coincident", p->n_coincident);
+    if (!(p->bandwidth > 0)) return;             /* the rest is of exponential weights */
+    json_number(j, "bandwidth", p->bandwidth);
+    json_number(j, "weight_cut", p->weight_cut);
+    json_number(j, "cut_radius", p->cut_radius);
+    json_integer(j, "isolated", p->n_isolated);
+    json_integer(j, "without_area", p->n_no_area);
+    json_integer(j, "border_points", p->n_border);
+    json_integer(j, "most_in_row", p->most_in_row);
+}
+
+static const double DEGREES = 57.29577951308232;
+
+/* What --intrinsic-delaunay or --tufted did; nothing without them. */
+static void json_intrinsic(json *j, const run *r, const hd_mesh_report *m)
+{
+    if (!r->o->intrinsic_delaunay && !r->o->tufted) return;
+    json_text(j, "intrinsic", r->o->tufted ? "tufted" : "delaunay");
+    json_integer(j, "sheets", m->n_sheets);
+    json_integer(j, "flips", m->n_flips);
+    json_integer(j, "not_delaunay_edges", m->n_not_delaunay);
+    json_integer(j, "self_edges", m->n_self_edges);
+    json_integer(j, "mollified_faces", m->n_mollified);
+    json_number(j, "mollify_epsilon", m->mollify_epsilon);
+    json_number(j, "smallest_intrinsic_angle", m->smallest_intrinsic_angle * DEGREES);
+}
+
 static void json_laplacian(json *j, const hd_laplacian *lap)
 {
     json_integer(j, "components", lap->n_components);
@@ -1813,6 +1962,7 @@ static void json_laplacian(json *j, const hd_laplacian *lap)
     json_number(j, "area", lap->area);
     json_integer(j, "inert", lap->mesh.n_inert);
     json_text(j, "laplacian", word_of(LAPLACIANS, (int)lap->kind));
+    if (lap->points.neighbours) json_points(j, &lap->points);
 }
 
 /* The fill, the work and the safety of the factorisations; zeros without any. */
@@ -1942,7 +2092,20 @@ static void print_query(const run *r)
     else if (o->command != CMD_HKS) fprintf(stderr, "%d %s%s, ", r->n_inputs, r->sources ? "source" : "field", plural(r->n_inputs));
     if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
     if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
-    fprintf(stderr, "%s Laplacian\n", word_of(LAPLACIANS, (int)r->lap->kind));
+    fprintf(stderr, "%s Laplacian%s\n", word_of(LAPLACIANS, (int)r->lap->kind), o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+}
+
+/* What the operator made of triangles or points. */
+static void print_laplacian(const run *r)
+{
+    const hd_laplacian *lap = r->lap;
+    if (lap->mesh.n_sheets)
+        fprintf(stderr, "%lld edges flipped on %ld sheet%s, all lengthened by %.2g, %lld negative weights left\n", (long long)lap->mesh.n_flips,
+                (long)lap->mesh.n_sheets, plural(lap->mesh.n_sheets), lap->mesh.mollify_epsilon, (long long)lap->mesh.n_negative_weights);
+    if (lap->points.bandwidth > 0)
+        fprintf(stderr, "bandwidth %.4g (%.3gh2%s), weights up to a distance of %.4g, %.3g a row\n", lap->points.bandwidth,
+                lap->points.bandwidth / (lap->h * lap->h), r->o->has_bandwidth ? "" : ", from the sampling", lap->points.cut_radius,
+                (double)lap->L.nnz / lap->n_active);
 }
 
 /* Distances are told about by the size of what the error is of, columns by the heat they keep. */
@@ -1963,6 +2126,7 @@ static void print_heat(const run *r)
 {
     print_surface(r);
     print_query(r);
+    print_laplacian(r);
     print_method(r);
     print_errors(r);
     print_seconds(r);
@@ -1974,6 +2138,7 @@ static void report_heat(const run *r)
     if (r->o->json) {
         json_begin(&j, r, stderr);
         json_laplacian(&j, r->lap);
+        json_intrinsic(&j, r, &r->lap->mesh);
         json_heat(&j, r);
         json_end(&j, r);
     } else if (!r->o->quiet) print_heat(r);
@@ -2156,7 +2321,7 @@ static int write_png(const char *path, const run *r, const result *res, const ch
     pic_panel panel = picture_panel(&r->mesh, result_column(r, res, res->colour));
     pic_opts opts = picture_opts(r->o);
     char subtitle[300];
-    snprintf(subtitle, sizeof subtitle, "%.200s, %ld vertices", base_name(r->mesh_name), (long)r->mesh.n);
+    snprintf(subtitle, sizeof subtitle, "%.200s, %ld %s", base_name(r->mesh_name), (long)r->mesh.n, r->mesh.n_tri ? "vertices" : "points");
     opts.title = r->o->title ? r->o->title : title;
     opts.subtitle = subtitle;
     picture_from_zero(&opts, &panel);
@@ -2267,8 +2432,6 @@ static int write_ids(run *r)
 
 /* ==== info ==== */
 
-static const double DEGREES = 57.29577951308232;
-
 static void bounding_box(const mesh_data *m, double low[3], double high[3])
 {
     int32_t i;
@@ -2288,12 +2451,14 @@ static void bounding_box(const mesh_data *m, double low[3], double high[3])
 static void info_json(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_mesh_report *m = &lap->mesh;
-    const double meaningful[2] = { AUTO_SHORTEST * lap->area, AUTO_LONGEST * lap->area };
+    const double unit = lap->kind == HD_LAPLACIAN_EXP ? lap->area * lap->area : lap->area;
+    const double meaningful[2] = { AUTO_SHORTEST * unit, AUTO_LONGEST * unit };
     json j;
     json_begin(&j, r, stdout);
     json_laplacian(&j, lap);
-    json_integer(&j, "triangles", m->n_faces);
-    json_integer(&j, "triangles_used", m->n_faces_used);
+    if (lap->kind == HD_LAPLACIAN_POLYGON) json_integer(&j, "faces_used", m->n_faces_used);
+    json_integer(&j, "triangles", r->mesh.n_tri);
+    if (lap->kind != HD_LAPLACIAN_POLYGON) json_integer(&j, "triangles_used", m->n_faces_used);
     json_integer(&j, "edges", m->n_edges);
     json_integer(&j, "boundary_loops", m->n_boundary_loops);
     json_integer(&j, "boundary_edges", m->n_boundary_edges);
@@ -2305,6 +2470,7 @@ static void info_json(const run *r, const hd_laplacian *lap, const double low[3]
     json_integer(&j, "repeated_faces", m->n_repeated_face);
     json_integer(&j, "negative_weights", m->n_negative_weights);
     json_number(&j, "smallest_angle", m->smallest_angle * DEGREES);
+    json_intrinsic(&j, r, m);
     json_numbers(&j, "box_low", low, 3);
     json_numbers(&j, "box_high", high, 3);
     json_numbers(&j, "meaningful_times", meaningful, 2);
@@ -2316,11 +2482,62 @@ static void print_count(const char *what, int64_t n, const char *note)
     if (n) printf("%-22s %lld%s%s%s\n", what, (long long)n, *note ? "  (" : "", note, *note ? ")" : "");
 }
 
+static void info_times(const hd_laplacian *lap)
+{
+    const double area_h2 = lap->area / (lap->h * lap->h);
+    if (lap->kind == HD_LAPLACIAN_EXP)
+        printf("%-22s %.3g to %.3g; --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area * lap->area,
+               AUTO_LONGEST * lap->area * lap->area);
+    else if (lap->area > 0)
+        printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
+               AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
+}
+
+static void info_laplacian(const run *r, const hd_laplacian *lap)
+{
+    printf("%-22s %s%s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind), r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+}
+
+static void info_intrinsic(const hd_mesh_report *m)
+{
+    if (!m->n_sheets) return;
+    printf("%-22s %ld%s\n%-22s %lld\n", "sheets", (long)m->n_sheets, m->n_sheets > 1 ? "  (the surface is covered twice)" : "", "edges flipped",
+           (long long)m->n_flips);
+    print_count("faces mollified", m->n_mollified, "all edges were lengthened a little");
+    print_count("self-edges", m->n_self_edges, "from a vertex to itself, without weight");
+    print_count("edges not Delaunay", m->n_not_delaunay, "rounding kept them");
+    printf("%-22s %.4g degrees\n", "smallest angle now", m->smallest_intrinsic_angle * DEGREES);
+}
+
+static void info_points(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
+{
+    const hd_point_report *p = &lap->points;
+    printf("%-22s %s (%s)\n", "points", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    info_laplacian(r, lap);
+    printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "components", (long)lap->n_components);
+    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1], high[2] - low[2],
+           low[0], low[1], low[2]);
+    printf("%-22s %.9g\n%-22s %.9g  (mean distance to the nearest point)\n", r->o->tufted ? "area of the stars" : "area of the cells", lap->area, "spacing h", lap->h);
+    if (p->bandwidth > 0 && lap->n_active > 0) {
+        printf("%-22s %.9g  (%.4gh2%s)\n", "bandwidth", p->bandwidth, p->bandwidth / (lap->h * lap->h),
+               r->o->has_bandwidth ? "" : ", from the sampling");
+        printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld\n", "weights reach", p->cut_radius, p->weight_cut,
+               (double)lap->L.nnz / lap->n_active, (long)p->most_in_row);
+    }
+    print_count("coincident points", p->n_coincident, r->o->tufted ? "in the place of an earlier one, left out" : "in the place of an earlier one; they share its cell");
+    print_count("isolated points", p->n_isolated, "no other one within reach");
+    print_count("points without area", p->n_no_area, "their neighbours lie on a line");
+    print_count("border points", p->n_border, "at an edge of the surface or a gap");
+    if (r->o->tufted) print_count("points in no star", lap->mesh.n_inert, "without area");
+    info_intrinsic(&lap->mesh);
+    info_times(lap);
+}
+
 static void info_print(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_mesh_report *m = &lap->mesh;
-    const double area_h2 = lap->area / (lap->h * lap->h);
     printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    info_laplacian(r, lap);
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "faces", (long)r->mesh.n_faces);
     if (m->n_faces != r->mesh.n_faces) printf("%-22s %ld  (polygons are split as fans)\n", "triangles", (long)m->n_faces);
     printf("%-22s %lld\n%-22s %ld\n%-22s %ld\n", "edges", (long long)m->n_edges, "components", (long)lap->n_components, "boundary loops",
@@ -2337,30 +2554,32 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     print_count("faces left out", m->n_repeated_face, "repeat an earlier one");
     print_count("non-manifold edges", m->n_nonmanifold_edges, "three faces or more; their weights are summed");
     print_count("misoriented edges", m->n_misoriented_edges, "their two faces disagree about the side");
-    print_count("negative weights", m->n_negative_weights, "obtuse angles; fine, but values below 0 can occur");
-    if (lap->area > 0)
-        printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
-               AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
+    print_count("negative weights", m->n_negative_weights, m->n_sheets ? "border edges opposite to obtuse angles" :
+                lap->kind == HD_LAPLACIAN_POLYGON ? "edges and diagonals of faces; fine, but values below 0 can occur" :
+                "obtuse angles; fine, but values below 0 can occur");
+    info_intrinsic(m);
+    info_times(lap);
 }
 
-/* Meshes on which nothing can be computed, point sets among them, are told about as well: with zeros for what they have not. */
+/* Meshes and point sets on which nothing can be computed are told about as well: with zeros for what they have not. */
 static int command_info(run *r)
 {
     hd_laplacian none;
     hd_error err;
     double low[3], high[3];
     int code = run_load(r);
+    if (!code) code = check_laplacian(r);
     if (code) return code;
     memset(&none, 0, sizeof none);
-    none.kind = (hd_laplacian_kind)r->o->laplacian;
+    none.kind = laplacian_kind(r);
     none.mesh.n_inert = r->mesh.n;
-    none.mesh.n_faces = r->mesh.n_tri;
-    if (r->mesh.n_tri > 0 && run_laplacian(r, &err) < 0 && err.status != HD_ERR_EMPTY) return fail_laplacian(r, &err);
+    none.mesh.n_faces = none.kind == HD_LAPLACIAN_POLYGON ? r->mesh.n_faces : r->mesh.n_tri;
+    if (run_laplacian(r, &err) < 0 && err.status != HD_ERR_EMPTY) return fail_laplacian(r, &err);
     if (interrupt.asked) return INTERRUPTED;
     bar_hide();
     bounding_box(&r->mesh, low, high);
     if (r->o->json) info_json(r, r->lap ? r->lap : &none, low, high);
-    else if (!r->o->quiet) info_print(r, r->lap ? r->lap : &none, low, high);
+    else if (!r->o->quiet) (is_points(r) ? info_points : info_print)(r, r->lap ? r->lap : &none, low, high);
     return close_stdout();
 }
 

@@ -9,7 +9,7 @@
    memory is short or an argument makes no sense, the shape comes back empty: n = 0, xyz = NULL.
 
    Contents: [1] memory and chance  [2] simple shapes  [3] the demo's animal as an implicit function  [4] its surface by
-             marching tetrahedra  [5] remeshing  [6] the demo */
+             marching tetrahedra  [5] remeshing  [6] the demo  [7] shapes of polygons */
 
 #ifndef SHAPES_H
 #define SHAPES_H
@@ -271,6 +271,82 @@ static shape shape_disjoint(const shape *a, const shape *b, const double offset[
         s.xyz[3 * ((size_t)a->n + (size_t)i) + (size_t)c] = b->xyz[3 * (size_t)i + (size_t)c] + offset[c];
     for (i = 0; i < b->n_tri; i++) for (c = 0; c < 3; c++)
         s.tri[3 * ((size_t)a->n_tri + (size_t)i) + (size_t)c] = b->tri[3 * (size_t)i + (size_t)c] + a->n;
+    return s;
+}
+
+/* ---- points on surfaces, without triangles ---- */
+
+/* One random point of a surface, spread evenly. */
+typedef void (*shape_sampler)(uint64_t *seed, double p[3]);
+
+/* Unit sphere, area 4 pi (Archimedes: height and longitude are uniform). */
+static void shape_on_sphere(uint64_t *seed, double p[3])
+{
+    const double z = shape_signed(seed), a = 6.283185307179586 * shape_uniform(seed), r = sqrt(1 - z * z);
+    p[0] = r * cos(a); p[1] = r * sin(a); p[2] = z;
+}
+
+/* Torus around the z axis with radii 2 and 1, area 8 pi^2: the outside is met more often. */
+static void shape_on_torus(uint64_t *seed, double p[3])
+{
+    const double a = 6.283185307179586 * shape_uniform(seed);
+    double b, q;
+    do {
+        b = 6.283185307179586 * shape_uniform(seed);
+        q = 2 + cos(b);
+    } while (3 * shape_uniform(seed) > q);
+    p[0] = q * cos(a); p[1] = q * sin(a); p[2] = sin(b);
+}
+
+/* Unit square in the plane z = 0, a surface with a border. */
+static void shape_on_square(uint64_t *seed, double p[3])
+{
+    p[0] = shape_uniform(seed); p[1] = shape_uniform(seed); p[2] = 0;
+}
+
+static size_t shape_dart_slot(const int64_t c[3], size_t slots)
+{
+    return (size_t)(((uint64_t)c[0] * 0x9e3779b97f4a7c15u ^ (uint64_t)c[1] * 0xbf58476d1ce4e5b9u ^ (uint64_t)c[2] * 0x94d049bb133111ebu) % slots);
+}
+
+/* Is no point of s within r of p? Points lie in a hash table of cells of size r: head of the chain, next in the chain. */
+static int shape_dart_free(const shape *s, const double p[3], double r, const int32_t *head, const int32_t *next, size_t slots)
+{
+    int64_t c[3];
+    int k, q;
+    for (k = 0; k < 27; k++) {
+        int32_t i;
+        for (q = 0; q < 3; q++) c[q] = (int64_t)floor(p[q] / r) + (q == 0 ? k % 3 : q == 1 ? k / 3 % 3 : k / 9) - 1;
+        for (i = head[shape_dart_slot(c, slots)]; i >= 0; i = next[i])
+            if (shape_distance(s->xyz + 3 * (size_t)i, p) < r) return 0;
+    }
+    return 1;
+}
+
+/* n points of a surface of this area; n_tri = 0. blue = 0: independent of each other. blue = 1: blue noise, none closer to another than 0.75 of
+ * the typical distance sqrt(area / n) (dart throwing, Cook 1986; a surface is full at 0.84). */
+static shape shape_points(int32_t n, shape_sampler sampler, double area, int blue, uint64_t seed)
+{
+    shape s = shape_make(n, 0);
+    const size_t slots = 2 * (size_t)(n > 0 ? n : 0) + 1;
+    const double r = 0.75 * sqrt(area / (n > 0 ? n : 1));
+    int32_t *head = (int32_t *)shape_alloc((int64_t)slots, sizeof *head), *next = (int32_t *)shape_alloc(n, sizeof *next), i;
+    size_t k;
+    if (!s.xyz || !head || !next) shape_free(&s);
+    for (k = 0; k < slots && s.xyz; k++) head[k] = -1;
+    for (i = 0; i < s.n; i++) {
+        double *p = s.xyz + 3 * (size_t)i;
+        int64_t c[3];
+        do sampler(&seed, p);
+        while (blue && !shape_dart_free(&s, p, r, head, next, slots));
+        if (!blue) continue;
+        for (k = 0; k < 3; k++) c[k] = (int64_t)floor(p[k] / r);
+        k = shape_dart_slot(c, slots);
+        next[i] = head[k];
+        head[k] = i;
+    }
+    free(head);
+    free(next);
     return s;
 }
 
@@ -836,6 +912,206 @@ static shape shape_demo(int32_t approx_n)
         shape_free(&s);
         s = finer;
         for (i = 0; i < s.n; i++) shape_animal_project(s.xyz + 3 * (size_t)i, 2);
+    }
+    return s;
+}
+
+/* ==== [7] shapes of polygons ==== */
+
+typedef struct shape_poly {
+    int32_t n;
+    double *xyz;         /* [3n] */
+    int32_t n_faces;
+    int64_t *face_ptr;   /* [n_faces + 1] */
+    int32_t *face_idx;   /* the corners of face f: face_idx[face_ptr[f]] .. face_idx[face_ptr[f + 1] - 1] */
+} shape_poly;
+
+static void shape_poly_free(shape_poly *s)
+{
+    free(s->xyz);
+    free(s->face_ptr);
+    free(s->face_idx);
+    memset(s, 0, sizeof *s);
+}
+
+/* Room for faces with so many corners in all; shape_put_face fills them one after the other. */
+static shape_poly shape_poly_make(int64_t n, int64_t n_faces, int64_t n_corners)
+{
+    shape_poly s;
+    memset(&s, 0, sizeof s);
+    if (n < 0 || n_faces < 0 || n > INT32_MAX / 4 || n_faces > INT32_MAX / 4) return s;
+    s.xyz = (double *)shape_alloc(n, 3 * sizeof(double));
+    s.face_ptr = (int64_t *)shape_alloc(n_faces + 1, sizeof(int64_t));
+    s.face_idx = (int32_t *)shape_alloc(n_corners, sizeof(int32_t));
+    if (!s.xyz || !s.face_ptr || !s.face_idx) { shape_poly_free(&s); return s; }
+    s.n = (int32_t)n;
+    s.face_ptr[0] = 0;
+    return s;
+}
+
+static void shape_put_face(shape_poly *s, int32_t k, const int32_t *corner)
+{
+    memcpy(s->face_idx + s->face_ptr[s->n_faces], corner, (size_t)k * sizeof *corner);
+    s->face_ptr[s->n_faces + 1] = s->face_ptr[s->n_faces] + k;
+    s->n_faces++;
+}
+
+static void shape_put_quad(shape_poly *s, int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    const int32_t corner[4] = {a, b, c, d};
+    shape_put_face(s, 4, corner);
+}
+
+/* The triangles of a shape as faces. */
+static shape_poly shape_poly_of(const shape *s)
+{
+    shape_poly p = shape_poly_make(s->xyz ? s->n : -1, s->n_tri, 3 * (int64_t)s->n_tri);
+    int32_t t;
+    if (!p.xyz) return p;
+    memcpy(p.xyz, s->xyz, (size_t)s->n * 3 * sizeof(double));
+    for (t = 0; t < s->n_tri; t++) shape_put_face(&p, 3, s->tri + 3 * (size_t)t);
+    return p;
+}
+
+/* Torus as shape_torus, of quadrilaterals, which are not planar. */
+static shape_poly shape_quad_torus(int32_t nu, int32_t nv, double R, double r)
+{
+    shape s = shape_torus(nu, nv, R, r);
+    shape_poly p = shape_poly_make(s.xyz ? s.n : -1, s.n, 4 * (int64_t)s.n);
+    int32_t i, j;
+    if (p.xyz) {
+        memcpy(p.xyz, s.xyz, (size_t)s.n * 3 * sizeof(double));
+        for (i = 0; i < nu; i++) for (j = 0; j < nv; j++) {
+            const int32_t i1 = (i + 1) % nu, j1 = (j + 1) % nv;
+            shape_put_quad(&p, i * nv + j, i * nv + j1, i1 * nv + j1, i1 * nv + j);
+        }
+    }
+    shape_free(&s);
+    return p;
+}
+
+/* The number of lattice point (i, j, k) on the surface of a cube of m^3 cells, met in this order: layers of k, in them rows of j. */
+static int32_t shape_cube_vertex(int32_t m, int32_t i, int32_t j, int32_t k)
+{
+    const int32_t side = m + 1, ring = 4 * m;
+    int32_t before = k == 0 ? 0 : side * side + (k - 1) * ring;     /* in the layers below */
+    if (k == 0 || k == m) return before + j * side + i;
+    if (j == 0) return before + i;
+    before += side + 2 * (j - 1);
+    return j == m ? before + i : before + (i > 0);
+}
+
+/* Unit sphere of 6 m^2 quadrilaterals: a cube with equal angles between its lines, pushed out; 6 m^2 + 2 vertices. m in 1..1000. */
+static shape_poly shape_quad_sphere(int32_t m)
+{
+    const double quarter = 0.78539816339744831;
+    const int ok = m >= 1 && m <= 1000;
+    shape_poly s = shape_poly_make(ok ? 6 * (int64_t)m * m + 2 : -1, 6 * (int64_t)m * m, 24 * (int64_t)m * m);
+    int32_t i, j, k, a, b;
+    int c;
+    if (!s.xyz) return s;
+    for (k = 0; k <= m; k++) for (j = 0; j <= m; j++) for (i = 0; i <= m; i++) {
+        double *p = s.xyz + 3 * (size_t)shape_cube_vertex(m, i, j, k), len;
+        if (i > 0 && i < m && j > 0 && j < m && k > 0 && k < m) continue;
+        p[0] = tan(quarter * (2.0 * i / m - 1));
+        p[1] = tan(quarter * (2.0 * j / m - 1));
+        p[2] = tan(quarter * (2.0 * k / m - 1));
+        len = sqrt(shape_dot(p, p));
+        for (c = 0; c < 3; c++) p[c] /= len;
+    }
+    for (a = 0; a < m; a++) for (b = 0; b < m; b++) for (c = 0; c < 6; c++) {
+        int32_t v[4];
+        for (i = 0; i < 4; i++) {
+            const int32_t p = a + (i == 1 || i == 2), q = b + (i > 1), far_side = c < 3 ? 0 : m, x = c < 3 ? q : p, y = c < 3 ? p : q;
+            v[i] = c % 3 == 0 ? shape_cube_vertex(m, far_side, x, y) : c % 3 == 1 ? shape_cube_vertex(m, y, far_side, x)
+                                                                                  : shape_cube_vertex(m, x, y, far_side);
+        }
+        shape_put_face(&s, 4, v);
+    }
+    return s;
+}
+
+/* The triangle at vertex v whose corner after v is w; -1: none. list: the corners at v. */
+static int32_t shape_turn(const shape *s, const int32_t *list, int32_t count, int32_t w)
+{
+    int32_t i;
+    for (i = 0; i < count; i++)
+        if (s->tri[list[i] - list[i] % 3 + (list[i] + 1) % 3] == w) return list[i];
+    return -1;
+}
+
+/* The dual of a closed shape: a vertex in the middle of every triangle, a face around every vertex, with as many corners as it has triangles. */
+static shape_poly shape_dual(const shape *s)
+{
+    const int64_t n_corners = 3 * (int64_t)s->n_tri;
+    shape_poly d = shape_poly_make(s->xyz ? s->n_tri : -1, s->n, n_corners);
+    int32_t *ptr = (int32_t *)shape_alloc(s->n + 2, sizeof *ptr), *list = (int32_t *)shape_alloc(n_corners, sizeof *list);
+    int32_t *ring = (int32_t *)shape_alloc(n_corners, sizeof *ring), v, k, c;
+    int ok = d.xyz && ptr && list && ring, q;
+    if (ok) {
+        for (k = 0; k < s->n_tri; k++) for (q = 0; q < 3; q++)
+            d.xyz[3 * (size_t)k + (size_t)q] = (s->xyz[3 * (size_t)s->tri[3 * k] + (size_t)q] + s->xyz[3 * (size_t)s->tri[3 * k + 1] + (size_t)q] +
+                                               s->xyz[3 * (size_t)s->tri[3 * k + 2] + (size_t)q]) / 3;
+        memset(ptr, 0, ((size_t)s->n + 2) * sizeof *ptr);
+        for (c = 0; c < n_corners; c++) ptr[s->tri[c] + 2]++;
+        for (v = 0; v < s->n; v++) ptr[v + 2] += ptr[v + 1];
+        for (c = 0; c < n_corners; c++) list[ptr[s->tri[c] + 1]++] = c;
+    }
+    for (v = 0; v < s->n && ok; v++) {
+        const int32_t count = ptr[v + 1] - ptr[v];
+        c = count ? list[ptr[v]] : -1;
+        for (k = 0; k < count && c >= 0; k++) {              /* the next triangle begins where this one ends */
+            ring[k] = c / 3;
+            c = shape_turn(s, list + ptr[v], count, s->tri[c - c % 3 + (c + 2) % 3]);
+        }
+        ok = count > 2 && k == count && c == list[ptr[v]];
+        if (ok) shape_put_face(&d, count, ring);
+    }
+    free(ptr);
+    free(list);
+    free(ring);
+    if (!ok) shape_poly_free(&d);
+    return d;
+}
+
+/* Unit sphere of 12 pentagons and 10 4^levels - 10 hexagons, none of the latter quite planar: the dual of an icosphere, pushed out. */
+static shape_poly shape_hex_sphere(int levels)
+{
+    shape s = shape_icosphere(levels);
+    shape_poly d = shape_dual(&s);
+    int32_t i;
+    int c;
+    for (i = 0; i < d.n; i++) {
+        double *p = d.xyz + 3 * (size_t)i, len = sqrt(shape_dot(p, p));
+        for (c = 0; c < 3; c++) p[c] /= len;
+    }
+    shape_free(&s);
+    return d;
+}
+
+/* Planar, 3 a wide and 2 b high in cells of 1: faces of eight corners in the shape of an L, two to every three by two cells. Inner vertices are
+ * moved by up to jitter (0..0.3). */
+static shape_poly shape_trominoes(int32_t a, int32_t b, double jitter)
+{
+    static const int8_t corner[2][8][2] = {{{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}, {0, 1}},
+                                           {{2, 0}, {3, 0}, {3, 1}, {3, 2}, {2, 2}, {1, 2}, {1, 1}, {2, 1}}};
+    const int ok = a >= 1 && b >= 1 && a < 10000 && b < 10000 && jitter >= 0 && jitter <= 0.3;
+    const int32_t nx = 3 * a + 1, ny = 2 * b + 1;
+    shape_poly s = shape_poly_make(ok ? (int64_t)nx * ny : -1, ok ? 2 * (int64_t)a * b : 0, ok ? 16 * (int64_t)a * b : 0);
+    uint64_t seed = 11;
+    int32_t i, j, v[8];
+    int f, k;
+    if (!s.xyz) return s;
+    for (j = 0; j < ny; j++) for (i = 0; i < nx; i++) {
+        const double inner = i > 0 && j > 0 && i < nx - 1 && j < ny - 1 ? jitter : 0;
+        double *p = s.xyz + 3 * ((size_t)j * (size_t)nx + (size_t)i);
+        p[0] = i + inner * shape_signed(&seed);
+        p[1] = j + inner * shape_signed(&seed);
+        p[2] = 0;
+    }
+    for (j = 0; j < b; j++) for (i = 0; i < a; i++) for (f = 0; f < 2; f++) {
+        for (k = 0; k < 8; k++) v[k] = (2 * j + corner[f][k][1]) * nx + 3 * i + corner[f][k][0];
+        shape_put_face(&s, 8, v);
     }
     return s;
 }
