@@ -16298,11 +16298,13 @@ static int32_t hdi_pairs_vertices(int64_t n_pairs, const int32_t *i, const int32
     return n;
 }
 
-/* Kernel entries and distances of the pairs from columns at t: K_t(i,j) = (K_t e_j)_i, and |K_t B^-1 (e_i - e_j)|_B, which loses nothing. */
+/* Kernel entries and distances of the pairs from columns at t: K_t(i,j) = (K_t e_j)_i, and |K_t B^-1 (e_i - e_j)|_B, which loses nothing
+ * beside what the columns are off by: the report's bound of columns becomes that of distances. */
 static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind, const double *U, int64_t n_pairs, const int32_t *i, const int32_t *j, const int32_t *place,
-                                 double *K, double *d, double *work) {
+                                 double *K, double *d, double *work, hd_report *rep) {
     const size_t n = HDI_CAST(size_t, lap->n);
     const int32_t rows = lap->n_active;
+    double largest = 0, smallest = HUGE_VAL, most = 0, relative = 0, size, off;
     int64_t q, p;
     int32_t r;
     for (q = 0; q < n_pairs; q++) {
@@ -16315,9 +16317,23 @@ static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind,
             for (p = row < 0 ? 0 : lap->L.row_ptr[row]; row >= 0 && lap->B && p < lap->L.row_ptr[row + 1]; p++) K[q] += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
         }
         if (!d) continue;
-        for (r = 0; r < rows; r++) work[r] = ui[lap->vertex[r]] - uj[lap->vertex[r]];
+        for (r = 0; r < rows; r++) work[r] = ui[lap->vertex[r]];
+        size = sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + rows)));
+        for (r = 0; r < rows; r++) work[r] = uj[lap->vertex[r]];
+        off = rep->error_bound_b * (size + sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + rows))));
+        for (r = 0; r < rows; r++) work[r] = ui[lap->vertex[r]] - work[r];
         d[q] = i[q] == j[q] ? 0 : sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + rows)));
+        if (i[q] == j[q]) continue;
+        largest = hdi_max(largest, d[q]);
+        most = hdi_max(most, off);
+        if (d[q] > 0) smallest = hdi_min(smallest, d[q]);
+        relative = hdi_max(relative, d[q] > 0 ? off / d[q] : off > 0 ? HUGE_VAL : 0);
+        rep->n_lost += d[q] < 10 * off;
     }
+    if (largest == 0) return;
+    rep->smallest = smallest;
+    rep->error_bound = hdi_max(K ? rep->error_bound : 0, most / largest);
+    rep->error_relative = relative;
 }
 
 /* One by one from entries and the diagonal, for more vertices than columns fit. */
@@ -16383,7 +16399,7 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
     if (U) {
         hd_report columns;
         if (hd_heat_columns(heat, t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, n_list, list, U, 0, &columns) >= 0)
-            hdi_pairs_of_columns(heat->source, kind, U, n_pairs, i, j, place, K, d, work);
+            hdi_pairs_of_columns(heat->source, kind, U, n_pairs, i, j, place, K, d, work, &columns);
         *h.rep = columns;
     }
     return hdi_heat_end(&h);

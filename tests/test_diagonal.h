@@ -838,7 +838,8 @@ static void diag_pairs_of(const heat_case *c) {
     hd_heat *heat = diag_plan(lap, HD_POLES_DEFAULT, 0);
     int32_t i[PAIRS], j[PAIRS];
     uint64_t seed = 5;
-    hd_report rep;
+    hd_report rep, first;
+    double most;
     int kind, q;
     for (q = 0; q < PAIRS; q++) {
         i[q] = ldl_below(&seed, lap->n);
@@ -848,10 +849,12 @@ static void diag_pairs_of(const heat_case *c) {
     for (kind = 0; kind < 4; kind++) {
         double *H = diag_gram(c, (hd_distance_kind)kind, t), size = 0, size_k = dense_max_abs(KB, (int64_t)n * n);
         for (q = 0; q < PAIRS; q++) k[q] = d[q] = -5;
-        CHECK_MSG(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, k, d, &rep) >= 0, "%s, %s: %s", c->what, diag_kind_name((hd_distance_kind)kind), rep.error.text);
+        CHECK_MSG(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, k, d, &first) >= 0, "%s, %s: %s", c->what, diag_kind_name((hd_distance_kind)kind), first.error.text);
         CHECK(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, NULL, again, &rep) >= 0 && memcmp(again, d, sizeof d) == 0);
         CHECK(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, again, NULL, &rep) >= 0 && (kind > 1 || memcmp(again, k, sizeof k) == 0));
         for (q = 0; q < n; q++) size = fmax(size, sqrt(fabs(H[(size_t)q * (size_t)n + (size_t)q])));
+        for (q = 0, most = 0; q < PAIRS; q++)
+            if (d[q] < HUGE_VAL) most = fmax(most, d[q]);
         for (q = 0; q < PAIRS; q++) {
             const int32_t a = lap->row[i[q]], b = lap->row[j[q]];
             const double fa = a < 0 ? 0 : H[(size_t)a * (size_t)n + (size_t)a], fb = b < 0 ? 0 : H[(size_t)b * (size_t)n + (size_t)b];
@@ -861,6 +864,9 @@ static void diag_pairs_of(const heat_case *c) {
             if (kind > 1 && i[q] != j[q] && (a < 0 || b < 0 || lap->component[a] != lap->component[b])) want = HUGE_VAL;
             CHECK_MSG(want == HUGE_VAL ? d[q] == want : fabs(d[q] - want) <= 1e-6 * size, "%s, %s, pair %d (%d, %d): %.12g, not %.12g", c->what, diag_kind_name((hd_distance_kind)kind), q,
                       (int)i[q], (int)j[q], d[q], want);
+            if (want < HUGE_VAL && lap->b_ratio > 0)
+                CHECK_MSG(fabs(d[q] - want) <= fmin(first.error_bound * most, first.error_relative * d[q]) + 1e-11 * size, "%s, %s, pair %d: %.12g, not %.12g, bounds %g, %g", c->what,
+                          diag_kind_name((hd_distance_kind)kind), q, d[q], want, first.error_bound, first.error_relative);
             if (kind > 1) CHECK(k[q] == -5);
             else CHECK_MSG(fabs(k[q] - entry) <= 1e-7 * size_k, "%s, %s, pair %d: entry %.12g, not %.12g", c->what, diag_kind_name((hd_distance_kind)kind), q, k[q], entry);
         }
