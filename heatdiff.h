@@ -655,6 +655,13 @@ HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, h
 /* The same for all k matrices of the last complex factorisation (A^-1 is complex symmetric as A is): values [k nnz], diag [k n]. */
 HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag, hd_error *err);
 
+/* Single entries of A^-1: values[q] = (i[q], j[q]), for the last real factorisation; or for all k matrices of the last complex one, values [k n_entries].
+ * For every distinct j a forward sweep from j up the elimination tree and a backward one down to the rows i: fronts off these paths are not touched. For entries
+ * on the pattern hd_ldl_inverse is quicker from some hundred columns on.
+ * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: which entry), HD_ERR_MEMORY. */
+HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i, const int32_t *j, double *values, hd_error *err);
+HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries, const int32_t *i, const int32_t *j, hd_c64 *values, hd_error *err);
+
 HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 
 /* ---- heat ---- */
@@ -9300,6 +9307,7 @@ typedef struct hdi_sweep {
     int32_t k;                   /* right-hand sides side by side: packs any, real 1 or 8 */
     int32_t backward;
     const char *active;          /* forward */
+    const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots; NULL: all */
 } hdi_sweep;
 
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
@@ -9460,6 +9468,7 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v, int64_t part) {
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v], *gather = z->gather + z->gather_size * part;
     hdi_sweep_fetch(z, v);
     if (z->backward) {
+        if (z->wanted && !z->wanted[v]) return;
         if (f->width == 1) hdi_real_backward_front(z, v, y, gather);
         else hdi_pack_backward_front(z, v, y, gather);
         return;
@@ -14402,6 +14411,77 @@ HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 
         if (hdi_ldl_invert(f, f->pack + p, n_here, values ? &values[4 * p * f->nnz].re : NULL, diag ? &diag[HDI_CAST(int64_t, 4) * p * f->n].re : NULL, c.e) < 0) return c.e->status;
     }
     return HD_OK;
+}
+
+/* Entries of one factor's inverses for the runs of equal j in order: part c of matrix q goes to values + stride (q n_entries + entry) + c. */
+static void hdi_ldl_some(const hd_ldl *f, const hdi_factor *of, int32_t n_matrices, const hdi_pair *order, int64_t n_entries, const int32_t *i, char *active, char *wanted, double *values) {
+    const hdi_symbolic *s = &f->sym;
+    const int32_t width = of->width, stride = width == 1 ? 1 : 2, which = width == 1 ? 0 : 1;
+    double *x = f->x[which];
+    int64_t begin, end, p;
+    int32_t v, q;
+    memset(x, 0, HDI_CAST(size_t, s->n) * HDI_CAST(size_t, width) * sizeof *x);
+    for (begin = 0; begin < n_entries; begin = end) {
+        const int32_t source = f->inv[order[begin].key];
+        hdi_sweep z = hdi_sweep_open(of, 1, x, f->work[which], 1);
+        memset(active, 0, HDI_CAST(size_t, s->n_super));
+        memset(wanted, 0, HDI_CAST(size_t, s->n_super));
+        hdi_sweep_touch(s, source, active);
+        for (end = begin; end < n_entries && order[end].key == order[begin].key; end++) hdi_sweep_touch(s, f->inv[i[order[end].id]], wanted);
+        for (q = 0; q < (width == 1 ? 1 : 4); q++) x[HDI_CAST(int64_t, width) * source + q] = 1;
+        z.active = active;
+        z.wanted = wanted;
+        hdi_sweep_run(&z, NULL);
+        for (p = begin; p < end; p++) {
+            const double *at = x + HDI_CAST(int64_t, width) * f->inv[i[order[p].id]];
+            for (q = 0; q < n_matrices * stride; q++) values[stride * (q / stride * n_entries + order[p].id) + q % stride] = at[q / stride + q % stride * 4];
+        }
+        for (v = 0; v < s->n_super; v++)         /* what has been touched is cleared for the next */
+            if (active[v] || wanted[v])
+                memset(x + HDI_CAST(int64_t, width) * s->super[v], 0, HDI_CAST(size_t, s->super[v + 1] - s->super[v]) * HDI_CAST(size_t, width) * sizeof *x);
+    }
+}
+
+static hd_status hdi_ldl_entries(hd_ldl *f, int complex_ones, int64_t n_entries, const int32_t *i, const int32_t *j, double *values, hd_error *e) {
+    hdi_scope s;
+    hdi_pair *order;
+    char *marks;
+    int64_t q;
+    int32_t p;
+    if (n_entries < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ldl: the number of entries is negative");
+    if (n_entries > 0 && (!i || !j || !values)) return hdi_missing(e);
+    for (q = 0; q < n_entries; q++)
+        if (i[q] < 0 || i[q] >= f->n || j[q] < 0 || j[q] >= f->n) return hdi_fail_row(e, HD_ERR_INDEX, "ldl: an entry is not in the matrix", q, -1, i[q] < 0 || i[q] >= f->n ? i[q] : j[q]);
+    if (n_entries == 0 || hdi_ldl_room(f, complex_ones, e) < 0) return e->status;
+    s = hdi_scope_begin(f->ctx, e);
+    order = HDI_TAKE(&s, hdi_pair, n_entries);
+    marks = HDI_TAKE(&s, char, 2 * HDI_CAST(size_t, f->sym.n_super));
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (q = 0; q < n_entries; q++) {
+        order[q].key = HDI_CAST(uint64_t, j[q]);
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, n_entries);
+    for (p = 0; complex_ones && 4 * p < f->n_matrices; p++)
+        hdi_ldl_some(f, f->pack + p, f->n_matrices - 4 * p < 4 ? f->n_matrices - 4 * p : 4, order, n_entries, i, marks, marks + f->sym.n_super, values + 8 * p * n_entries);
+    if (!complex_ones) hdi_ldl_some(f, &f->real, 1, order, n_entries, i, marks, marks + f->sym.n_super, values);
+    return hdi_scope_end(&s);
+}
+
+HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i, const int32_t *j, double *values, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, f ? f->ctx : NULL, err) < 0) return c.e->status;
+    if (!f) return hdi_missing(c.e);
+    if (!f->real.ready) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a real one");
+    return hdi_ldl_entries(f, 0, n_entries, i, j, values, c.e);
+}
+
+HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries, const int32_t *i, const int32_t *j, hd_c64 *values, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, f ? f->ctx : NULL, err) < 0) return c.e->status;
+    if (!f) return hdi_missing(c.e);
+    if (f->n_matrices == 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a complex one");
+    return hdi_ldl_entries(f, 1, n_entries, i, j, values ? &values->re : NULL, c.e);
 }
 
 /* ---- heat ---- */

@@ -101,6 +101,48 @@ static void diag_complex_of(const double *x, hd_c64 *z, int64_t n) {
     for (i = 0; i < n; i++) z[i] = test_c(x[i], 0);
 }
 
+/* Single entries of the last factorisation's inverses, k complex ones or (k = 0) a real one: those of whole columns, to the last digits. */
+static void diag_entries_of(hd_ldl *f, int32_t n, int32_t k, uint64_t seed, const char *what) {
+    enum { SOME = 14 };
+    const int32_t many = k > 0 ? k : 1;
+    double *rhs = DENSE_NEW(double, n), *x = DENSE_NEW(double, n), real[SOME] = {0};
+    hd_c64 *zrhs = DENSE_NEW(hd_c64, n), *z = DENSE_NEW(hd_c64, (int64_t)many * n), *got = DENSE_NEW(hd_c64, many * SOME);
+    int32_t i[SOME], j[SOME], p, q, r;
+    for (p = 0; p < SOME; p++) {
+        i[p] = ldl_below(&seed, n);
+        j[p] = p % 3 ? j[p - 1] : ldl_below(&seed, n);
+    }
+    i[1] = j[1];
+    if (k > 0) CHECK(hd_ldl_inverse_entries_complex(f, SOME, i, j, got, NULL) == HD_OK && hd_ldl_inverse_entries(f, SOME, i, j, real, NULL) == HD_ERR_ARGUMENT);
+    else CHECK(hd_ldl_inverse_entries(f, SOME, i, j, real, NULL) == HD_OK && hd_ldl_inverse_entries_complex(f, SOME, i, j, got, NULL) == HD_ERR_ARGUMENT);
+    for (p = 0; p < SOME; p++) {
+        for (q = 0; q < n; q++) {
+            rhs[q] = q == j[p];
+            zrhs[q] = test_c(rhs[q], 0);
+        }
+        if (k > 0) CHECK(hd_ldl_solve_complex(f, zrhs, 0, z, 0, NULL) == HD_OK);
+        else {
+            CHECK(hd_ldl_solve(f, 1, rhs, 0, x, 0, NULL) == HD_OK);
+            diag_complex_of(x, z, n);
+            got[p] = test_c(real[p], 0);
+        }
+        for (q = 0; q < many; q++) {
+            const hd_c64 *column = z + (size_t)q * (size_t)n, *a = column + i[p], *b = got + q * SOME + p;
+            double size = 0;
+            for (r = 0; r < n; r++) size = fmax(size, hypot(column[r].re, column[r].im));
+            CHECK_MSG(hypot(a->re - b->re, a->im - b->im) <= 1e-14 * size, "%s, n %d, matrix %d: entry (%d,%d) is %g %+gi, not %g %+gi", what, (int)n, (int)q, (int)i[p], (int)j[p],
+                      b->re, b->im, a->re, a->im);
+        }
+    }
+    i[SOME - 1] = n;
+    CHECK(k > 0 || hd_ldl_inverse_entries(f, SOME, i, j, real, NULL) == HD_ERR_INDEX);
+    free(rhs);
+    free(x);
+    free(zrhs);
+    free(z);
+    free(got);
+}
+
 /* k complex matrices, then a real one: values and diagonal together and each alone. Patterns with all diagonal entries. */
 static void diag_inverse_of(const hd_csr *a, hd_ldl *f, int32_t k, int steep, int dense, uint64_t seed, const char *what) {
     const int32_t n = a->n_rows;
@@ -125,8 +167,10 @@ static void diag_inverse_of(const hd_csr *a, hd_ldl *f, int32_t k, int steep, in
         far = dense ? diag_off_dense(a, val + q * nnz, values + q * nnz, diag + (size_t)q * (size_t)n) : 0;
         CHECK_MSG(far <= 1e-10, "%s, n %d, matrix %d of %d: off by %g", what, (int)n, (int)q, (int)k, far);
     }
+    if (n > 0) diag_entries_of(f, n, k, seed + 9, what);
     for (p = 0; p < nnz; p++) L[p] = 7 * L[p] + B[p];
     CHECK_MSG(hd_ldl_factor(f, L, NULL, &e) == HD_OK && hd_ldl_inverse(f, v, d, &e) == HD_OK && e.status == HD_OK, "%s: %s", what, e.text);
+    if (n > 0) diag_entries_of(f, n, 0, seed + 9, what);
     diag_complex_of(L, val, nnz);
     diag_complex_of(v, values, nnz);
     diag_complex_of(d, diag, n);
