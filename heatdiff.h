@@ -15667,7 +15667,7 @@ static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *o
     const hd_heat *heat = h->heat;
     hd_status st;
     if (hdi_diagonal_once(h, kernel, out) < 0) return h->e->status;
-    if (heat->opts.degree || heat->opts.rational || heat->opts.poles || h->degree) return HD_OK;
+    if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
     if (h->rep->error_relative <= (kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1) * hdi_diagonal_limit(heat)) return HD_OK;   /* that bound is a loose one */
     *h->rep = before;
     h->degree = HDI_RAT_KERNEL_MAX;
@@ -15795,7 +15795,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const do
     if (hdi_times_check(&h, n_times, t) >= 0 && n_times > 0 && !D) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
     if (h.e->status >= 0 && hdi_heat_analysed(heat, 1, h.e) >= 0) hdi_direct_only(&h);
-    if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && h.e->status >= 0 && !heat->opts.degree && !heat->opts.rational && !heat->opts.poles && !heat->exacting) {
+    if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && h.e->status >= 0 && !heat->poles_asked && !heat->exacting) {
         int32_t packs = 0, windows;
         hdi_heat_sort_times(&h, n_times, t);
         windows = h.e->status < 0 ? 0 : hdi_shared_windows(h.times[n_times - 1] / h.times[0], HDI_SHARED_TOL, n_times, &packs);
@@ -15872,7 +15872,7 @@ static hd_status hdi_edges_sure(hdi_heat_call *h, double *values) {
     const hd_heat *heat = h->heat;
     hd_status st;
     if (hdi_edges_once(h, values) < 0) return h->e->status;
-    if (heat->opts.degree || heat->opts.rational || heat->opts.poles || h->rep->error_bound <= hdi_diagonal_limit(heat)) return HD_OK;
+    if (heat->poles_asked || heat->exacting || h->rep->error_bound <= hdi_diagonal_limit(heat)) return HD_OK;
     *h->rep = before;
     h->degree = HDI_RAT_KERNEL_MAX;
     st = hdi_edges_once(h, values);
@@ -16198,9 +16198,9 @@ static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, 
 #define HDI_DISTANCE_SURE 2.5e-6
 #define HDI_DISTANCE_EXPECTED 4.4e-7
 
-/* Are the poles beyond our choice? */
+/* Are the poles beyond our choice, or the highest degree as it is? */
 static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
-    return kind >= HD_DISTANCE_COMMUTE || heat->opts.degree || heat->opts.rational || heat->opts.poles;
+    return kind >= HD_DISTANCE_COMMUTE || heat->poles_asked || heat->exacting;
 }
 
 /* One time, all sources: columns step apart. degree 0: by default. */
@@ -16314,10 +16314,9 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
 /* All times through shared poles, when that is cheaper than one by one. 0: it is not, or not possible. */
 static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd) {
     hd_heat *heat = h->heat;
-    const hd_heat_opts *o = &heat->opts;
     int32_t packs = 0, windows, w, q0, q1;
     double span, *twice;
-    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || (kind == HD_DISTANCE_WEIGHTED && heat->source->B) || o->degree || o->rational || o->poles) return 0;
+    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || (kind == HD_DISTANCE_WEIGHTED && heat->source->B) || heat->poles_asked || heat->exacting) return 0;
     twice = HDI_TAKE(&h->s, double, n_times);
     for (q0 = 0; twice && q0 < n_times; q0++) twice[q0] = 2 * t[q0];
     if (!twice || hdi_heat_sort_times(h, n_times, twice) < 0 || hdi_heat_analysed(heat, 1, h->e) < 0) return 0;
