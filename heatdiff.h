@@ -10081,9 +10081,10 @@ static void hdi_form_below(const hdi_form_block *b, int32_t v, uint64_t set, dou
     const int32_t width = b->w->f->width, p = hdi_front_pivots(s, v), first = s->super[b->w->v], *rows = s->row + s->row_ptr[v];
     int64_t n;
     for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-        const double x = b->q->x[s->a_from[n]];
         const int32_t at = s->a_row[n] < p ? -1 : rows[s->a_row[n] - p] - first, c = at >= 0 && at < b->w->p ? b->column[at] : -1;
-        if (c >= 0 && x != 0) hdi_form_add(width, x, y + s->a_col[n] * HDI_CAST(int64_t, row) + width * hdi_form_count(set & ((HDI_CAST(uint64_t, 1) << c) - 1)));
+        double x;
+        if (c < 0 || (x = b->q->x[s->a_from[n]]) == 0) continue;
+        hdi_form_add(width, x, y + s->a_col[n] * HDI_CAST(int64_t, row) + width * hdi_form_count(set & ((HDI_CAST(uint64_t, 1) << c) - 1)));
     }
 }
 
@@ -10168,7 +10169,21 @@ static void hdi_form_front(hdi_form_block *b, int32_t v) {
     hdi_form_lift(b, v, t, row, list, k);
 }
 
-/* sum += r' Z r for the rows of J: with W its lower triangle and half of its diagonal, 2 r' W r. */
+/* sum -= 2 r c, n rows of k columns. */
+static void hdi_form_products(double *sum, const double *r, const double *c, int64_t n, int32_t k) {
+    double t[HDI_PACK];
+    int64_t i;
+    int32_t j;
+    int q;
+    for (i = 0; i < n; i++) {
+        for (j = 0; j < k; j++, r += HDI_PACK, c += HDI_PACK) {
+            hdi_pack_times(r, c, t);
+            for (q = 0; q < HDI_PACK; q++) sum[HDI_PACK * j + q] -= 2 * t[q];
+        }
+    }
+}
+
+/* sum += r' Z r for the rows of J: with W its lower triangle and half of its diagonal, 2 r' W r. c = -W r. */
 static void hdi_pack_form(hdi_form_block *b, const double *r) {
     const hdi_inverse_front *w = b->w;
     const int64_t row = HDI_PACK * b->k;
@@ -10176,12 +10191,12 @@ static void hdi_pack_form(hdi_form_block *b, const double *r) {
     hdi_pack_job g;
     int64_t i0, i, j, n;
     memset(&g, 0, sizeof g);
-    g.a = buffer;
     g.a_col = g.b_row = HDI_PACK;
     g.b_col = g.c_row = row;
     g.c = c;
     for (i0 = 0; i0 < w->m; i0 += n) {
         n = hdi_least(HDI_INV_ROWS, w->m - i0);
+        g.a = buffer;
         hdi_pack_inverse_gather(w, i0, i0 + n, i0, i0 + n, buffer);
         for (i = 0; i < HDI_PACK * n * n; i++) buffer[i] *= 0.5;
         g.depth = n;
@@ -10191,17 +10206,20 @@ static void hdi_pack_form(hdi_form_block *b, const double *r) {
         w->f->pack->multiply(&g, 0, n, 0, b->k);
         g.store = 0;
         for (j = 0; j < i0; j += g.depth) {
-            g.depth = hdi_least(HDI_INV_DEPTH, i0 - j);
+            g.depth = hdi_least(HDI_INV_DEPTH, (j < w->p ? hdi_least(i0, w->p) : i0) - j);
+            g.a = buffer;
             g.a_row = HDI_PACK * g.depth;
             g.b = r + j * row;
-            hdi_pack_inverse_gather(w, i0, i0 + n, j, j + g.depth, buffer);
+            if (j < w->p) {                      /* in place; blocks are of whole depths */
+                const hdi_pack_block block = hdi_pack_block_of(w->z, w->m, w->p, j / HDI_PANEL);
+                g.a = hdi_pack_at(&block, i0, j);
+                g.a_row = block.row;
+            } else {
+                hdi_pack_inverse_gather(w, i0, i0 + n, j, j + g.depth, buffer);
+            }
             w->f->pack->multiply(&g, 0, n, 0, b->k);
         }
-        for (i = 0; i < n * b->k; i++) {         /* c = -W r */
-            double t[HDI_PACK], *to = b->sum + HDI_PACK * (i % b->k);
-            hdi_pack_times(r + i0 * row + HDI_PACK * i, c + HDI_PACK * i, t);
-            for (j = 0; j < HDI_PACK; j++) to[j] -= 2 * t[j];
-        }
+        hdi_form_products(b->sum, r + i0 * row, c, n, b->k);
     }
 }
 
@@ -10265,7 +10283,9 @@ static int hdi_form_near(const hdi_inverse *z, const hdi_inverse_front *w, int64
         at[a] = hdi_form_place(w, HDI_CAST(int32_t, at[a]));
         for (b = 0; b <= a; b++) {
             const double *from = hdi_inverse_at(w, at[a] > at[b] ? at[a] : at[b], at[a] > at[b] ? at[b] : at[a]), xx = (a == b ? 1 : 2) * x[a] * x[b];
-            for (c = 0; c < width; c++) sum[c] += xx * from[c];
+            if (width == 1) sum[0] += xx * from[0];
+            else
+                for (c = 0; c < HDI_PACK; c++) sum[c] += xx * from[c];
         }
     }
     hdi_inverse_put(z, sum, first + j);
@@ -10366,7 +10386,7 @@ static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t wid
     q->x = x;
     q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
     q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
-    while (width > 1 && q->cols > 3 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > s->stored / 4 + 65536) q->cols /= 2;
+    while (width > 1 && q->cols > 3 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > s->stored / 2 + 65536) q->cols /= 2;
     work = width == 1 ? 0 : w * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(width);
     q->aside_task = HDI_CAST(size_t, s->task_update) * HDI_CAST(size_t, q->cols) * w;
     q->aside_slot = HDI_CAST(size_t, s->largest_update) * HDI_CAST(size_t, q->cols) * w;
