@@ -10010,7 +10010,8 @@ typedef struct hdi_form_block {
     int32_t k;
     uint64_t *active;
     int32_t *column;
-    double *top, *aside, *work;  /* of the stack; rows of a child, and what Z r works with */
+    double *top, *end;           /* of the stack */
+    double *aside, *work;        /* rows of a child, and what Z r works with */
     double sum[HDI_FORM_COLS * HDI_PACK];
 } hdi_form_block;
 
@@ -10049,6 +10050,7 @@ static double *hdi_form_open(hdi_form_block *b, int32_t v, int32_t k) {
     const int64_t size = (hdi_front_pivots(f->sym, v) + hdi_front_below(f->sym, v)) * hdi_form_row(f->width, k);
     if (!(b->active[v] & HDI_FORM_OPEN)) {
         b->active[v] |= HDI_FORM_OPEN;
+        HEATDIFF_ASSERT(size <= b->end - b->top);
         memset(b->top, 0, HDI_CAST(size_t, size) * sizeof *b->top);
         b->top += size;
     }
@@ -10314,6 +10316,7 @@ static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
     b.k = HDI_CAST(int32_t, (at + 1) * job->n / job->n_blocks - from);
     b.active = q->active + (task >= 0 ? 0 : (1 + index) * s->n_super);
     b.column = q->column + (task >= 0 ? task * s->task_pivots : HDI_CAST(int64_t, s->n_tasks) * s->task_pivots + index * s->largest_pivots);
+    b.end = room + (task >= 0 ? q->task_size : q->slot_size);
     b.aside = room;
     b.work = room + (task >= 0 ? q->aside_task : q->aside_slot);
     b.top = b.work + (job->z->f->width == 1 ? 0 : HDI_PACK * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(HDI_PACK));

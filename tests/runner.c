@@ -141,6 +141,7 @@ static void test_tmp_remove(void) {
 #include "test_engines.h"
 #include "test_geodesic.h"
 #include "test_diagonal.h"
+#include "test_forms.h"
 #include "test_operators_all.h"
 #include "test_picture.h"
 
@@ -150,7 +151,7 @@ static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
     {"intrinsic", test_intrinsic},
     {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
-    {"points", test_points},     {"polygon", test_polygon},   {"geodesic", test_geodesic}, {"diagonal", test_diagonal}, {"everywhere", test_operators_all},
+    {"points", test_points},     {"polygon", test_polygon},   {"geodesic", test_geodesic}, {"diagonal", test_diagonal}, {"forms", test_forms}, {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio},
 };
 
