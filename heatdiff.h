@@ -714,9 +714,9 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const do
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
- * t      [n_times] > 0; not looked at by commute and biharmonic, which take n_times = 1
- * Cost   a diagonal (at 2t, shared by all sources) and a column for each source. HD_DISTANCE_WEIGHTED with a full B: the same on the pattern of B^2, eight
- *        to ten times as dear
+ * t      [n_times] > 0; not looked at by commute and biharmonic, which take n_times = 1 (more: HD_ERR_ARGUMENT)
+ * Cost   a diagonal (at 2t, shared by all sources) and a column for each source. HD_DISTANCE_WEIGHTED with a full B: its diagonal, that of B K_2t, takes about
+ *        twice as long
  * Vertices without mass have f = 0. Between components commute and biharmonic are infinite (HUGE_VAL).
  *        With poles and degree by default the highest degree takes over where the bound of the error relative to the largest distance is above
  *        2.5e-6, or will be
@@ -16108,22 +16108,79 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     return hdi_scope_end(&scope);
 }
 
-/* With the set's degree by default: where its bound shows vertices (of tiny cells among large ones, slivers) whose error relative to their own value may be
- * above the promise, a second time with the highest degree. The error seen is a fifth of the bound or so on all meshes tried: 1e-7. */
-static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *out) {
+/* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other is the same. */
+static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_csr *a = &m->source->L;
+    int32_t v, i, j;
+    int64_t n;
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            const int64_t p = s->a_from[n];
+            int64_t other;
+            hdi_entry_place(s, v, n, &i, &j);
+            val[p] = unit * k[n];
+            if (i == j) continue;
+            i = s->perm[i];                      /* a_from is entry (j,i): rows of A are walked from column j */
+            j = s->perm[j];
+            other = a->row_ptr[i] + hdi_lower_bound(a->col + a->row_ptr[i], a->row_ptr[i + 1] - a->row_ptr[i], j);
+            val[other] = unit * k[n];
+        }
+    }
+}
+
+/* Adds a0 B^-1 where B is diagonal, and bounds the rational error: that of an entry (i,j) is at most the larger of those of (i,i) and (j,j). */
+static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_laplacian *lap = m->lap;
+    double largest = 0, most = 0;
+    int32_t v, i;
+    int64_t n;
+    if (lap->B) x->uniform += fabs(m->set.a0);
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            if (s->a_row[n] != s->a_col[n]) continue;
+            i = s->super[v] + s->a_col[n];
+            if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
+            largest = hdi_max(largest, fabs(x->k[n]));
+            most = hdi_max(most, hdi_entry_error(x, x->g[n], lap->b_diag[i], lap->b_ratio));
+        }
+    }
+    if (largest > 0) rep->error_rational = rep->error_bound = most / largest;
+}
+
+/* With the set's degree, into values. */
+static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
+    hd_heat *heat = h->heat;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    const int64_t size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
+    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
+    hdi_entries x;
+    if (room && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
+        hdi_edges_judge(&heat->elim, &x, h->rep);
+        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+    }
+    return hdi_scope_end(&scope);
+}
+
+/* The diagonal of the kernel on vertices, or with `edges` k_t on the pattern of L, with the set's degree by default. Where the bound shows vertices (of tiny cells
+ * among large ones, slivers) whose error relative to their own value may be above the promise, of edges that relative to the largest value, a second time with the
+ * highest degree. The error seen is a fifth of the bound or so on all meshes tried: 1e-7. */
+static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges, double *out) {
     const hd_report before = *h->rep;
     const hd_heat *heat = h->heat;
+    const double loose = kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1;   /* the bound, of the operator's diagonal */
     hd_status st;
-    if (hdi_diagonal_once(h, kernel, out) < 0) return h->e->status;
+    if ((edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out)) < 0) return h->e->status;
     if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
-    if (h->rep->error_relative <= (kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1) * hdi_diagonal_limit(heat)) return HD_OK;   /* that bound is a loose one */
+    if ((edges ? h->rep->error_bound : h->rep->error_relative) <= loose * hdi_diagonal_limit(heat)) return HD_OK;
     *h->rep = before;
     h->degree = HDI_RAT_KERNEL_MAX;
-    st = hdi_diagonal_once(h, kernel, out);
+    st = edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out);
     h->degree = 0;
     if (st != HD_ERR_MEMORY_LIMIT) return st;
     *h->rep = before;                            /* no room for twice the factors: the first answer it is */
-    return hdi_diagonal_once(h, kernel, out);
+    return edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out);
 }
 
 /* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
@@ -16254,80 +16311,9 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const do
     }
     for (q = 0; q < n_times && h.e->status >= 0; q++) {
         h.t = t[q] * heat->scale;
-        if (hdi_diagonal_sure(&h, kernel, D + HDI_CAST(size_t, q) * ldd) < 0) h.e->column = q;
+        if (hdi_entries_sure(&h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h.e->column = q;
     }
     return hdi_heat_end(&h);
-}
-
-/* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other is the same. */
-static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
-    const hdi_symbolic *s = &m->sym;
-    const hd_csr *a = &m->source->L;
-    int32_t v, i, j;
-    int64_t n;
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            const int64_t p = s->a_from[n];
-            int64_t other;
-            hdi_entry_place(s, v, n, &i, &j);
-            val[p] = unit * k[n];
-            if (i == j) continue;
-            i = s->perm[i];                      /* a_from is entry (j,i): rows of A are walked from column j */
-            j = s->perm[j];
-            other = a->row_ptr[i] + hdi_lower_bound(a->col + a->row_ptr[i], a->row_ptr[i + 1] - a->row_ptr[i], j);
-            val[other] = unit * k[n];
-        }
-    }
-}
-
-/* Adds a0 B^-1 where B is diagonal, and bounds the rational error: that of an entry (i,j) is at most the larger of those of (i,i) and (j,j). */
-static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
-    const hdi_symbolic *s = &m->sym;
-    const hd_laplacian *lap = m->lap;
-    double largest = 0, most = 0;
-    int32_t v, i;
-    int64_t n;
-    if (lap->B) x->uniform += fabs(m->set.a0);
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            if (s->a_row[n] != s->a_col[n]) continue;
-            i = s->super[v] + s->a_col[n];
-            if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
-            largest = hdi_max(largest, fabs(x->k[n]));
-            most = hdi_max(most, hdi_entry_error(x, x->g[n], lap->b_diag[i], lap->b_ratio));
-        }
-    }
-    if (largest > 0) rep->error_rational = rep->error_bound = most / largest;
-}
-
-/* With the set's degree, into values. */
-static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
-    hd_heat *heat = h->heat;
-    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    const int64_t size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
-    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
-    hdi_entries x;
-    if (room && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
-        hdi_edges_judge(&heat->elim, &x, h->rep);
-        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
-    }
-    return hdi_scope_end(&scope);
-}
-
-/* As hdi_diagonal_sure, by the error relative to the largest value. */
-static hd_status hdi_edges_sure(hdi_heat_call *h, double *values) {
-    const hd_report before = *h->rep;
-    const hd_heat *heat = h->heat;
-    hd_status st;
-    if (hdi_edges_once(h, values) < 0) return h->e->status;
-    if (heat->poles_asked || heat->exacting || h->rep->error_bound <= hdi_diagonal_limit(heat)) return HD_OK;
-    *h->rep = before;
-    h->degree = HDI_RAT_KERNEL_MAX;
-    st = hdi_edges_once(h, values);
-    h->degree = 0;
-    if (st != HD_ERR_MEMORY_LIMIT) return st;
-    *h->rep = before;                            /* no room for twice the factors: the first answer it is */
-    return hdi_edges_once(h, values);
 }
 
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report) {
@@ -16336,7 +16322,7 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd
     if (hdi_times_check(&h, 1, &t) >= 0 && !values) hdi_missing(h.e);
     if (h.e->status < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) return hdi_heat_end(&h);
     hdi_direct_only(&h);
-    (void)hdi_edges_sure(&h, values);
+    (void)hdi_entries_sure(&h, HD_KERNEL_SYMMETRIC, 1, values);
     return hdi_heat_end(&h);
 }
 
@@ -16537,7 +16523,7 @@ static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, 
     if (n_times < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: the number of times is negative");
     if (heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV)
         return hdi_fail(e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
-    if (kind >= HD_DISTANCE_COMMUTE) return HD_OK;
+    if (kind >= HD_DISTANCE_COMMUTE) return n_times > 1 ? hdi_fail_row(e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times) : HD_OK;
     if (n_times > 0 && !t) return hdi_missing(e);
     for (q = 0; q < n_times; q++)
         if (!(t[q] > 0) || !hdi_finite(2 * t[q] * heat->scale)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
