@@ -16572,16 +16572,22 @@ static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double 
     return hdi_scope_end(&s);
 }
 
-/* out [n_sets][n] += the weighted sums of column `row` of the inverses, rows in elimination order: pairs only. x [8 n], work as a sweep's, active [n_super]. */
-static void hdi_shared_column(const hdi_elim *m, int32_t row, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active) {
+/* out [n_sets][n] += the weighted sums of column `row` of the inverses, or with mass of the inverses times the (full, scaled) B, rows in elimination order: pairs only.
+ * x [8 n], work as a sweep's, active [n_super]. */
+static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active) {
     const int32_t n = m->sym.n, n_poles = m->set.n_poles;
+    const int64_t begin = m->lap->L.row_ptr[row], end = m->lap->L.row_ptr[row + 1];
+    int64_t p;
     int32_t i, k, q, j;
     memset(active, 0, HDI_CAST(size_t, m->sym.n_super));
     hdi_sweep_touch(&m->sym, row, active);
+    for (p = begin; p < end && mass; p++) hdi_sweep_touch(&m->sym, m->lap->L.col[p], active);
     for (i = 0; 4 * i < n_poles; i++) {
         hdi_sweep z;
         memset(x, 0, HDI_CAST(size_t, n) * HDI_PACK * sizeof *x);
-        for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
+        for (q = 0; q < 4 && !mass; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
+        for (p = begin; p < end && mass; p++)
+            for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, m->lap->L.col[p]) + q] = m->lap->B[p];
         z = hdi_sweep_open(m->pack + i, 1, x, work, 1);
         z.active = active;
         hdi_sweep_run(&z, m->ctx);
@@ -16598,19 +16604,21 @@ static void hdi_shared_column(const hdi_elim *m, int32_t row, int32_t n_sets, co
     }
 }
 
-/* Distances of the first two kinds (weighted ones with a diagonal B) at the (scaled, ascending) times h->times[q0..q1) of the kernel by one set of poles. */
+/* Distances of the first two kinds at the (scaled, ascending) times h->times[q0..q1) of the kernel by one set of poles. */
 static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, int32_t q0, int32_t q1, int32_t k, const int32_t *sources, double *D, size_t ldd) {
     hd_heat *heat = h->heat;
     hdi_elim *m = &heat->elim;
     const hd_laplacian *lap = heat->source;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     const int32_t n_times = q1 - q0, n = m->sym.n;
+    const int weighted = kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
     const size_t size = 2 * HDI_CAST(size_t, n_times) * HDI_CAST(size_t, n);
-    const double *t = h->times + q0, unit = kind == HD_DISTANCE_WEIGHTED ? 1 / heat->scale : heat->scale;
+    const double *t = h->times + q0, unit = weighted ? 1 / heat->scale : heat->scale;
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
     hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(size_t, n_times) * HD_MAX_POLES);
     double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n));
     double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n);
+    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n)) : NULL;
     char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
     hdi_metric metric;
     int32_t q, r, i;
@@ -16623,22 +16631,29 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     h->set = set;
     if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
     hdi_shared_weights(set, n_times, t, weight);
-    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, HDI_WANT_DIAGONAL, room, n, h->e) < 0) return hdi_scope_end(&s);
+    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, n, h->e) < 0)
+        return hdi_scope_end(&s);
     for (r = 0; r < k; r++) {
         const int32_t row = m->lap->row[sources[r]];
         if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
         memset(column, 0, size * sizeof *column);
-        if (row >= 0) hdi_shared_column(m, row, 2 * n_times, weight, column, x, work, active);
+        if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active);
         for (q = 0; q < n_times; q++) {
             const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
             double *u = D + (HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) + HDI_CAST(size_t, h->time_column[q0 + q])) * ldd;
             memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
             memset(g, 0, HDI_CAST(size_t, lap->n) * sizeof *g);
+            if (full) {                          /* B of what is B times the inverses, twice scaled; forms are not */
+                hdi_pair_apply(m->lap, 0, 1, c, product);
+                hdi_pair_apply(m->lap, 0, 1, c + n, product + n);
+                c = product;
+            }
             for (i = 0; i < n; i++) {
                 const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
-                const double b = kind == HD_DISTANCE_WEIGHTED ? m->lap->mass[i] : 1, bs = kind == HD_DISTANCE_WEIGHTED && row >= 0 ? m->lap->mass[row] : 1;
-                metric.diag[at] = unit * b * b * f[i];
-                metric.off[at] = unit * b * b * set[q].max_weighted_error * f[n + i];
+                const double b = weighted && !full ? m->lap->mass[i] : 1, bs = weighted && !full && row >= 0 ? m->lap->mass[row] : 1;
+                const double unit_f = full ? heat->scale : unit * b * b;
+                metric.diag[at] = unit_f * f[i];
+                metric.off[at] = unit_f * set[q].max_weighted_error * f[n + i];
                 u[v] = unit * b * bs * c[i];
                 g[v] = unit * b * bs * set[q].max_weighted_error * c[n + i];
             }
@@ -16653,7 +16668,7 @@ static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t
     hd_heat *heat = h->heat;
     int32_t packs = 0, windows, w, q0, q1;
     double span, *twice;
-    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || (kind == HD_DISTANCE_WEIGHTED && heat->source->B) || heat->poles_asked || heat->exacting) return 0;
+    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || heat->poles_asked || heat->exacting) return 0;
     twice = HDI_TAKE(&h->s, double, n_times);
     for (q0 = 0; twice && q0 < n_times; q0++) twice[q0] = 2 * t[q0];
     if (!twice || hdi_heat_sort_times(h, n_times, twice) < 0 || hdi_heat_analysed(heat, 1, h->e) < 0) return 0;

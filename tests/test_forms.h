@@ -366,10 +366,42 @@ static void forms_distances(void) {
     shape_free(&s);
 }
 
+/* Distances at many times in one call, by shared poles, against the dense: both kinds that have times, with full and with diagonal B. */
+static void forms_many_times(void) {
+    enum { TIMES = 16 };
+    shape ball = shape_bumpy(2, 5), odd = diag_odd_shape();
+    int q, kind, m, r;
+    for (q = 0; q < 4; q++) {
+        heat_case c = heat_case_of(test_laplacian(q % 2 ? &odd : &ball, op_kinds[q / 2]), "many times");
+        const hd_laplacian *lap = c.lap;
+        const int32_t sources[3] = {lap->vertex[0], lap->vertex[lap->n_active / 2], 0};
+        double t[TIMES], *D = DENSE_NEW(double, TIMES * 3 * (int64_t)lap->n);
+        hd_heat *heat = diag_plan(lap, HD_POLES_DEFAULT, 0);
+        hd_report rep;
+        for (m = 0; m < TIMES; m++) t[m] = lap->h * lap->h * pow(10, (m * 7 % TIMES) * 0.12);
+        for (kind = 0; kind < 2; kind++) {
+            memset(&rep, 0, sizeof rep);
+            CHECK_MSG(hd_heat_distance(heat, (hd_distance_kind)kind, TIMES, t, 3, sources, D, 0, &rep) >= 0, "%s", rep.error.text);
+            CHECK_MSG(rep.n_poles > 7, "%d poles: not shared", (int)rep.n_poles);
+            for (m = 0; m < TIMES; m++) {
+                double *H = diag_gram(&c, (hd_distance_kind)kind, t[m]);
+                for (r = 0; r < 3; r++) diag_judge_distance(&c, (hd_distance_kind)kind, t[m], H, sources[r], D + (size_t)(r * TIMES + m) * (size_t)lap->n, &rep, 1e-6, "many times");
+                free(H);
+            }
+        }
+        hd_heat_free(heat);
+        heat_case_free(&c);
+        free(D);
+    }
+    shape_free(&ball);
+    shape_free(&odd);
+}
+
 static void test_forms(void) {
     forms_shapes();
     forms_meshes();
     forms_distances();
+    forms_many_times();
 }
 
 #endif
