@@ -719,7 +719,7 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd
  *        twice as long
  * Vertices without mass have f = 0. Between components commute and biharmonic are infinite (HUGE_VAL).
  *        With poles and degree by default the highest degree takes over where the bound of the error relative to the largest distance is above
- *        2.5e-6, or will be
+ *        2.5e-6, or will be. Many times share one set of poles then, as in hd_heat_diagonal
  * Report error_bound and error_relative for d itself; n_lost counts distances of less than a digit or so: at times so large that all has become
  * equal, or next to the source at small ones. Never NaN. hd_heat_pairs loses nothing there. */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D,
@@ -9993,16 +9993,19 @@ static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at
  * entries of Z between neighbours of neighbours. Of x_j's non-zeros those that go before pivot j stand in fronts below that of j, called J, the others in
  * the rows of J. With y = L^-1 x_j,
  *     x_j' Z x_j = sum_{k below J} y_k^2/d_k + r' Z_JJ r,
- * r being what is left in the rows of J when the fronts below have been eliminated; and Z_JJ is there when J has been inverted. Plain transposes. Most columns
- * have nothing below, and r is x_j. The others go through the fronts on their ways to J in blocks; a front sees those that have come to it. That is about as much
- * work as the factorisation, of which whole solves would take 13 to 33 times. */
+ * r being what is left in the rows of J when the fronts below have been eliminated; and Z_JJ is there when J has been inverted. Plain transposes. Half of a mesh's
+ * columns have nothing below, and r is x_j. The others go through the fronts on their ways to J in blocks; a front sees those that have come to it. Sweeps and
+ * forms are three times the multiply-adds of the factorisation, of which whole solves would take 13 to 33 times.
+ * The other exact way is an analysis on the pattern of B^2, whose selected inverse has all that B Z B needs. Both measured in turn, for a mesh of 50,000 vertices
+ * with its column, in seconds of processor time: 0.74 here, 2.25 there, peak memory 345 and 1040 MB; at 150,000 vertices 3.1 and 10.8 s, 0.99 and 3.2 GB. So
+ * this is the only one that is kept: twice the time of the diagonal of Z, and its memory. A million vertices take 51 s and 6.7 GB; there B^2 does not fit 24 GB. */
 
 enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_NEAR = 32 };
 #define HDI_FORM_OPEN (HDI_CAST(uint64_t, 1) << 63)   /* of active: the front's rows are on the stack */
 
-/* A block of columns of front J under way. Rows of fronts stand on a stack: those of a front come when the first of its children is done, or it has none, and go to
- * its parent's; so that there are only those of ancestors of the front under way. A row has the entries of the columns that have come, of a real factor those of
- * eight, or of one. */
+/* A block of columns of front J under way. Rows of fronts stand on a stack: a front's come when the first of its children that is touched is done, or it has none,
+ * and are added to its parent's; so that there are never others than those of the front under way and of some of its ancestors. A row has the entries of the
+ * columns that have come, and with a real factor those of eight, or of one. */
 typedef struct hdi_form_block {
     const hdi_forms *q;
     const hdi_inverse_front *w;  /* J */
@@ -10307,7 +10310,7 @@ static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
     const hdi_forms *q = job->z->forms;
     const hdi_symbolic *s = job->z->f->sym;
     const int64_t at = job->begin + index, from = at * job->n / job->n_blocks, task = s->task_of[job->w->v];
-    double *room = task >= 0 ? q->room + q->task_size * HDI_CAST(size_t, task) : q->room + q->task_size * HDI_CAST(size_t, s->n_tasks) + q->slot_size * HDI_CAST(size_t, index);
+    double *room = q->room + q->task_size * HDI_CAST(size_t, task >= 0 ? task : s->n_tasks) + (task >= 0 ? 0 : q->slot_size * HDI_CAST(size_t, index));
     hdi_form_block b;
     (void)worker;
     b.q = q;
@@ -10323,7 +10326,8 @@ static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
     hdi_form_run(job->z, &b);
 }
 
-/* The forms of a front's pivots. Columns that begin close to each other share more of their ways. */
+/* The forms of a front's pivots, one by one where that is possible, the others in blocks that do not depend on who works on them: at the top all threads do. Columns
+ * that begin close to each other share more of their ways. */
 static void hdi_forms_front(const hdi_inverse *z, const hdi_inverse_front *w) {
     const hdi_forms *q = z->forms;
     const hdi_symbolic *s = w->f->sym;
@@ -10375,11 +10379,12 @@ static void hdi_forms_free(hdi_forms *q, hd_context *ctx) {
     memset(q, 0, sizeof *q);
 }
 
-/* Room for the forms of x on the pattern of a, with factors of the given width. On trees on which stacks grow high blocks are narrow: room for them is no more than
- * a part of the factor's. */
+/* Room for the forms of x on the pattern of a, with factors of the given width. Blocks are narrower where the room for all that go on at the same time would be
+ * more than half of the factor: on trees on which stacks grow high. */
 static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a, const double *x, hd_context *ctx, hd_error *e) {
     hdi_scope keep = hdi_scope_begin(ctx, e);
     const size_t n_tasks = HDI_CAST(size_t, s->n_tasks), n_super = HDI_CAST(size_t, s->n_super), w = HDI_CAST(size_t, width);
+    const int64_t stored = width == 1 ? s->panel[n_super] : s->stored;
     int64_t *need = HDI_TAKE(&keep, int64_t, n_super + 1), in_tasks, in_all;
     size_t columns, work, i;
     memset(q, 0, sizeof *q);
@@ -10389,7 +10394,7 @@ static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t wid
     q->x = x;
     q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
     q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
-    while (width > 1 && q->cols > 3 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > s->stored / 2 + 65536) q->cols /= 2;
+    while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 + 65536) q->cols = width == 1 ? 1 : q->cols / 2;
     work = width == 1 ? 0 : w * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(width);
     q->aside_task = HDI_CAST(size_t, s->task_update) * HDI_CAST(size_t, q->cols) * w;
     q->aside_slot = HDI_CAST(size_t, s->largest_update) * HDI_CAST(size_t, q->cols) * w;

@@ -370,6 +370,7 @@ static void forms_distances(void) {
 static void forms_many_times(void) {
     enum { TIMES = 16 };
     shape ball = shape_bumpy(2, 5), odd = diag_odd_shape();
+    double bound[4] = {0};
     int q, kind, m, r;
     for (q = 0; q < 4; q++) {
         heat_case c = heat_case_of(test_laplacian(q % 2 ? &odd : &ball, op_kinds[q / 2]), "many times");
@@ -383,6 +384,7 @@ static void forms_many_times(void) {
             memset(&rep, 0, sizeof rep);
             CHECK_MSG(hd_heat_distance(heat, (hd_distance_kind)kind, TIMES, t, 3, sources, D, 0, &rep) >= 0, "%s", rep.error.text);
             CHECK_MSG(rep.n_poles > 7, "%d poles: not shared", (int)rep.n_poles);
+            bound[q] = rep.error_bound;
             for (m = 0; m < TIMES; m++) {
                 double *H = diag_gram(&c, (hd_distance_kind)kind, t[m]);
                 for (r = 0; r < 3; r++) diag_judge_distance(&c, (hd_distance_kind)kind, t[m], H, sources[r], D + (size_t)(r * TIMES + m) * (size_t)lap->n, &rep, 1e-6, "many times");
@@ -393,7 +395,44 @@ static void forms_many_times(void) {
         heat_case_free(&c);
         free(D);
     }
+    for (q = 0; q < 2; q++)                      /* of weighted ones: much the same for either mass */
+        CHECK_MSG(bound[q] > 0.03 * bound[q + 2] && bound[q] < 3 * bound[q + 2] && bound[q] < 1e-6, "bounds %g and %g", bound[q], bound[q + 2]);
     shape_free(&ball);
+    shape_free(&odd);
+}
+
+/* A filter of the caller's with a bit of the identity, whose part of B c(-2t B^-1 L) is a0 B. */
+static void forms_own_set(void) {
+    shape odd = diag_odd_shape();
+    heat_case c = heat_case_of(test_laplacian(&odd, HD_LAPLACIAN_FEM), "own set");
+    const int32_t n = c.lap->n_active, source = c.lap->vertex[n / 3];
+    hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
+    hd_rational set;
+    hd_heat *heat;
+    hd_report rep;
+    const double t = 3 * c.lap->h * c.lap->h;
+    double *g = DENSE_NEW(double, n), *D = DENSE_NEW(double, c.lap->n), *K, *KB, *H;
+    int32_t i;
+    memset(&set, 0, sizeof set);
+    set.n_poles = set.degree = 1;
+    set.theta[0].re = 1;
+    set.a[0].re = -1;
+    set.a0 = 0.25;
+    o.rational = &set;
+    heat = eng_create(c.lap, &o);
+    for (i = 0; i < n; i++) g[i] = set.a0 + 1 / (1 + 2 * t * c.pair.lambda[i]);
+    K = diag_matrix(&c, g);
+    KB = diag_product(K, c.pair.B, n);
+    H = diag_product(c.pair.B, KB, n);
+    CHECK_MSG(hd_heat_distance(heat, HD_DISTANCE_WEIGHTED, 1, &t, 1, &source, D, 0, &rep) >= 0, "%s", rep.error.text);
+    diag_judge_distance(&c, HD_DISTANCE_WEIGHTED, t, H, source, D, &rep, 1e-9, "a0");
+    hd_heat_free(heat);
+    heat_case_free(&c);
+    free(g);
+    free(D);
+    free(K);
+    free(KB);
+    free(H);
     shape_free(&odd);
 }
 
@@ -402,6 +441,7 @@ static void test_forms(void) {
     forms_meshes();
     forms_distances();
     forms_many_times();
+    forms_own_set();
 }
 
 #endif
