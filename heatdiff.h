@@ -9539,7 +9539,7 @@ static void hdi_sweep_touch(const hdi_symbolic *s, int32_t i, char *active) {
  * The factor stays as it is. A front's Z22 stands where its update matrix stood: its life is that of the update matrix run backwards, so that the plan of
  * memory serves both. What is new, the columns of the pivots, lives in a scratch panel until the children have taken their parts. */
 
-enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 24 };
+enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 24, HDI_INV_SLICE = 6 };
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
  * sets of weights, at the entries of A's lower triangle in the order of sym->a_from, or on the diagonal by pivots. They are added to what is there. */
@@ -9572,7 +9572,7 @@ static size_t hdi_inverse_buffer(int32_t width) {
 
 static size_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
     const int64_t w = hdi_least(p, HDI_PANEL), slices = width == 1 ? (m + w) * (w + HDI_REAL_NR) : 0;
-    return HDI_CAST(size_t, width * (stored + 2 * w * w + m * w) + slices) + hdi_inverse_buffer(width) + 64;
+    return HDI_CAST(size_t, width * (stored + 2 * w * w + m * (w + HDI_INV_SLICE)) + slices) + hdi_inverse_buffer(width) + 64;
 }
 
 static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
@@ -9593,7 +9593,7 @@ static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scra
     w.T = w.z + f->width * (at[v + 1] - at[v]);
     w.S = w.T + f->width * most * most;
     w.M = w.S + f->width * most * most;
-    w.slices = w.M + f->width * w.m * most;
+    w.slices = w.M + f->width * w.m * (most + HDI_INV_SLICE);
     w.buffer = w.slices + (f->width == 1 ? (w.m + most) * (most + HDI_REAL_NR) : 0);
     return w;
 }
@@ -9687,23 +9687,32 @@ static void hdi_pack_inverse_pivots(const hdi_inverse_front *w) {
     }
 }
 
-/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front; some columns at a time, as T is triangular. */
+/* M stands in slices of some columns, by rows: entry (row k1 + r, column j) at row r of slice j / HDI_INV_SLICE. Rows of a matrix of 128 columns are 8 KB apart,
+ * and a tile's columns of them would all fall into one set of the cache. */
+static double *hdi_pack_inverse_slice(const hdi_inverse_front *w, int64_t r, int64_t j) {
+    return w->M + HDI_PACK * (j * (w->m - w->k1) + r * HDI_INV_SLICE);
+}
+
+/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front; T is triangular. */
 static void hdi_pack_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
     const hdi_pack_block l = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
     const int64_t n = w->k1 - w->k0;
     hdi_pack_job g;
-    int64_t k;
+    int64_t r, j;
     memset(&g, 0, sizeof g);
     g.a_row = l.row;
     g.a_col = g.b_row = HDI_PACK;
-    g.b_col = g.c_row = HDI_PACK * n;
+    g.b_col = HDI_PACK * n;
+    g.c_row = HDI_PACK * HDI_INV_SLICE;
     g.store = 1;
-    for (k = 0; k < n; k += HDI_INV_PIVOTS) {
-        g.a = hdi_pack_at(&l, r0, w->k0 + k);
-        g.b = w->T + HDI_PACK * (k * n + k);
-        g.c = w->M + HDI_PACK * ((r0 - w->k1) * n + k);
-        g.depth = n - k;
-        w->f->pack->multiply(&g, 0, r1 - r0, 0, hdi_least(n - k, HDI_INV_PIVOTS));
+    for (r = r0; r < r1; r += HDI_INV_ROWS) {
+        for (j = 0; j < n; j += HDI_INV_SLICE) {
+            g.a = hdi_pack_at(&l, r, w->k0 + j);
+            g.b = w->T + HDI_PACK * (j * n + j);
+            g.c = hdi_pack_inverse_slice(w, r - w->k1, j);
+            g.depth = n - j;
+            w->f->pack->multiply(&g, 0, hdi_least(r1 - r, HDI_INV_ROWS), 0, hdi_least(n - j, HDI_INV_SLICE));
+        }
     }
 }
 
@@ -9712,44 +9721,48 @@ static void hdi_pack_inverse_below(const hdi_inverse_front *w, int64_t r0, int64
     const hdi_pack_block z = hdi_pack_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
     const int64_t n = w->k1 - w->k0;
     hdi_pack_job g;
-    int64_t r, j;
+    int64_t r, d, j;
     memset(&g, 0, sizeof g);
     g.a = buffer;
     g.a_col = g.b_row = HDI_PACK;
-    g.b_col = HDI_PACK * n;
+    g.b_col = HDI_PACK * HDI_INV_SLICE;
     g.c_row = z.row;
     for (r = r0; r < r1; r += HDI_INV_ROWS) {
         const int64_t end = hdi_least(r + HDI_INV_ROWS, r1);
-        g.c = hdi_pack_at(&z, r, w->k0);
-        for (j = w->k1; j < w->m; j += HDI_INV_DEPTH) {
-            g.depth = hdi_least(w->m - j, HDI_INV_DEPTH);
+        for (d = w->k1; d < w->m; d += HDI_INV_DEPTH) {
+            g.depth = hdi_least(w->m - d, HDI_INV_DEPTH);
             g.a_row = HDI_PACK * g.depth;
-            g.b = w->M + (j - w->k1) * HDI_PACK * n;
-            g.store = j == w->k1;
-            hdi_pack_inverse_gather(w, r, end, j, j + g.depth, buffer);
-            w->f->pack->multiply(&g, 0, end - r, 0, n);
+            g.store = d == w->k1;
+            hdi_pack_inverse_gather(w, r, end, d, d + g.depth, buffer);
+            for (j = 0; j < n; j += HDI_INV_SLICE) {
+                g.b = hdi_pack_inverse_slice(w, d - w->k1, j);
+                g.c = hdi_pack_at(&z, r, w->k0 + j);
+                w->f->pack->multiply(&g, 0, end - r, 0, hdi_least(n - j, HDI_INV_SLICE));
+            }
         }
     }
 }
 
-/* Rows [r0,r1) of Z11 -= M' Z21, counted from the block's first pivot. */
+/* Rows [r0,r1) of Z11 -= Z21' M, counted from the block's first pivot. */
 static void hdi_pack_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
     const hdi_pack_block z = hdi_pack_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
-    const int64_t n = w->k1 - w->k0;
     hdi_pack_job g;
-    int64_t j;
+    int64_t d, j;
     memset(&g, 0, sizeof g);
     g.a_row = g.b_row = HDI_PACK;
-    g.a_col = HDI_PACK * n;
-    g.b_col = z.row;
+    g.a_col = z.row;
+    g.b_col = HDI_PACK * HDI_INV_SLICE;
     g.c = z.at;
     g.c_row = z.row;
     g.lower = 1;
-    for (j = w->k1; j < w->m; j += HDI_INV_DEPTH) {
-        g.depth = hdi_least(w->m - j, HDI_INV_DEPTH);
-        g.a = w->M + (j - w->k1) * HDI_PACK * n;
-        g.b = hdi_pack_at(&z, j, w->k0);
-        w->f->pack->multiply(&g, r0, r1, 0, r1);
+    for (d = w->k1; d < w->m; d += HDI_INV_DEPTH) {
+        g.depth = hdi_least(w->m - d, HDI_INV_DEPTH);
+        g.a = hdi_pack_at(&z, d, w->k0);
+        for (j = 0; j < r1; j += HDI_INV_SLICE) {
+            g.b = hdi_pack_inverse_slice(w, d - w->k1, j);
+            g.b_first = j;
+            w->f->pack->multiply(&g, r0 > j ? r0 : j, r1, j, hdi_least(r1, j + HDI_INV_SLICE));
+        }
     }
 }
 
@@ -9833,11 +9846,11 @@ static void hdi_real_inverse_pivots(const hdi_inverse_front *w) {
     int64_t i, j, k;
     memset(w->T, 0, HDI_CAST(size_t, n * n) * sizeof *w->T);
     for (k = 0; k < n; k++) {
-        double *HDI_RESTRICT t = w->T + k * n;
+        double *t = w->T + k * n;
         t[k] = -1;
-        for (j = k; j < n; j++) {
-            const double *HDI_RESTRICT c = l + j * w->m, x = t[j];
-            for (i = j + 1; i < n; i++) t[i] -= c[i] * x;
+        for (j = k; j < n; j += 8) {
+            const int64_t nc = hdi_least(n - j, 8);
+            w->f->real->forward(t + j, l + j * (w->m + 1), w->m, HDI_CAST(int32_t, nc), n - j - nc, NULL, 0, 0);
         }
         for (i = 0; i < n; i++) w->S[k * n + i] = -dinv[i] * t[i];
     }
