@@ -6,7 +6,7 @@
    heat kernel, against the smooth ones: in closed form on the sphere; on the torus, where u separates, from Fourier series in v of the
    functions exp(imu) f(v). The order is that of the last step. "shaken" meshes have their vertices moved along the surface at random, by up to a
    fifth of an edge: regular ones flatter. Then the same for sets of points, independent of each other (random) or at a distance (blue noise), with the
-   default bandwidth and with one that shrinks more slowly than the area of a point; and how well the areas of points sum up. */
+   default bandwidth and with one that shrinks more slowly than the area of a point; and how well the areas of points sum up. Takes some minutes. */
 
 #if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic ignored "-Wunused-function"
