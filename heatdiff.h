@@ -709,8 +709,8 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
 
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
- * vertices). For a full B without a0 B^-1, as above. The report's bound is that of the rational error; by default the highest degree takes over where it
- * is above 5e-7 of the largest value. */
+ * vertices). For a full B without a0 B^-1, as above. error_rational is a bound, relative to the largest value, and by default the highest degree takes
+ * over where it is above 5e-7; error_solver, rounding, is measured at the vertex of the largest value. */
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
@@ -9548,7 +9548,7 @@ static void hdi_sweep_touch(const hdi_symbolic *s, int32_t i, char *active) {
  * The factor stays as it is. A front's Z22 stands where its update matrix stood: its life is that of the update matrix run backwards, so that the plan of
  * memory serves both. What is new, the columns of the pivots, lives in a scratch panel until the children have taken their parts. */
 
-enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 24, HDI_INV_SLICE = 6 };
+enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 48, HDI_INV_PIVOTS = 24, HDI_INV_SLICE = 6 };
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
  * sets of weights, at the entries of A's lower triangle in the order of sym->a_from, or on the diagonal by pivots. They are added to what is there. */
@@ -15852,11 +15852,11 @@ static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, 
 }
 
 /* Adds a0 B^-1 where B is diagonal, and bounds the rational error: that of an entry (i,j) is at most the larger of those of (i,i) and (j,j). */
-static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
+static int32_t hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
     const hdi_symbolic *s = &m->sym;
     const hd_laplacian *lap = m->lap;
     double largest = 0, most = 0;
-    int32_t v, i;
+    int32_t v, i, worst = 0;
     int64_t n;
     if (lap->B) x->uniform += fabs(m->set.a0);
     for (v = 0; v < s->n_super; v++) {
@@ -15866,9 +15866,35 @@ static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
             if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
             largest = hdi_max(largest, fabs(x->k[n]));
             most = hdi_max(most, hdi_entry_error(x, x->g[n], lap->b_diag[i], lap->b_ratio));
+            if (fabs(x->k[n]) == largest) worst = i;
         }
     }
     if (largest > 0) rep->error_rational = rep->error_bound = most / largest;
+    return worst;
+}
+
+/* Rounding, by a solve: what the entries of a row differ by from those of vertex v's column, relative to the largest of them. (Columns conserve heat, which
+ * uniform sets do not by themselves: with these it shows their error too.) */
+static void hdi_edges_probe(hdi_heat_call *h, int32_t v, const double *values) {
+    hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const hd_rational set = heat->elim.set;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    double *u = HDI_TAKE(&scope, double, lap->n), off = 0, largest = 0;
+    hd_report probe;
+    int64_t p;
+    if (u && hdi_direct_columns(heat, h->t / heat->scale, HD_KERNEL_SYMMETRIC, &set, 1, &v, u, HDI_CAST(size_t, lap->n), &probe) < 0) *h->e = probe.error;
+    if (h->e->status >= 0) {
+        const int32_t row = lap->row[v];
+        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
+            largest = hdi_max(largest, fabs(values[p]));
+            off = hdi_max(off, fabs(u[lap->vertex[lap->L.col[p]]] - values[p]));
+        }
+        h->rep->error_solver = largest > 0 ? off / largest + DBL_EPSILON : 0;
+        h->rep->error_bound += h->rep->error_solver;
+        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
+    }
+    hdi_scope_end(&scope);
 }
 
 /* With the set's degree, into values. */
@@ -15879,8 +15905,9 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
     double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
     hdi_entries x;
     if (room && hdi_entries_make(h, 0, room, size, &x) >= 0) {
-        hdi_edges_judge(&heat->elim, &x, h->rep);
+        const int32_t worst = hdi_edges_judge(&heat->elim, &x, h->rep);
         hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+        if (heat->elim.sym.n > 0) hdi_edges_probe(h, heat->elim.lap->vertex[worst], values);
     }
     return hdi_scope_end(&scope);
 }
