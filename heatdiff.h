@@ -10015,8 +10015,8 @@ static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at
  * columns have nothing below, and r is x_j. The others go through the fronts on their ways to J in blocks; a front sees those that have come to it. Sweeps and
  * forms are three times the multiply-adds of the factorisation, of which whole solves would take 13 to 33 times.
  * The other exact way is an analysis on the pattern of B^2, whose selected inverse has all that B Z B needs. Both measured in turn, for a mesh of 50,000 vertices
- * with its column, in seconds of processor time: 0.67 here, 2.0 there, peak memory 345 and 1040 MB; at 150,000 vertices 3.1 and 10.4 s, 0.99 and 3.2 GB. So
- * this is the only one that is kept: twice the time of the diagonal of Z, and its memory. A million vertices take 51 s and 6.7 GB; there B^2 does not fit 24 GB. */
+ * with its column, in seconds of processor time: 0.67 here, 2.05 there, peak memory 345 and 1040 MB; at 150,000 vertices 2.9 and 10.3 s, 0.99 and 3.2 GB. So
+ * this is the only one that is kept: twice the time of the diagonal of Z, and its memory. A million vertices take 48 s and 6.7 GB; there B^2 does not fit 24 GB. */
 
 enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_NEAR = 32 };
 #define HDI_FORM_OPEN (HDI_CAST(uint64_t, 1) << 63)   /* of active: the front's rows are on the stack */
