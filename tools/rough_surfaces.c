@@ -1,6 +1,6 @@
 /* rough_surfaces.c - how much heat changes when a surface is noisy, has parts missing, or is sampled unevenly
 
-   Build and run from the project's folder:   cc -O2 examples/rough_surfaces.c -o rough_surfaces -lm && ./rough_surfaces
+   Build and run from the project's folder:   cc -O2 tools/rough_surfaces.c -o rough_surfaces -lm && ./rough_surfaces
    More:                                      ./rough_surfaces FOLDER, or ./rough_surfaces FOLDER MESH with a file of your own
 
    Variants of one surface are made in memory: noise along the normals, holes, an end cut off, triangles a hundred times finer in some places than in
@@ -16,9 +16,9 @@
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
-#include "../tools/meshio.h"
-#include "../tools/picture.h"
-#include "../tools/shapes.h"
+#include "meshio.h"
+#include "picture.h"
+#include "shapes.h"
 
 enum { TIMES = 3, MIDDLE = 1, FIELDS = 2 * TIMES, SPOTS = 8, SOURCES = 8 };
 
