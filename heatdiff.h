@@ -16672,6 +16672,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n)) : NULL;
     char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
     hdi_metric metric;
+    hd_report probe;
     int32_t q, r, i;
     memset(&metric, 0, sizeof metric);
     metric.kind = kind;
@@ -16710,6 +16711,11 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
             }
             hdi_metric_distance(lap, &metric, sources[r], u, g, h->rep);
         }
+    }
+    if (n > 0 && k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
+        const int32_t v = lap->row[sources[0]] >= 0 ? sources[0] : lap->vertex[0];
+        if (hdi_direct_columns(heat, t[0] / heat->scale, HD_KERNEL_SYMMETRIC, set, 1, &v, g, HDI_CAST(size_t, lap->n), &probe) < 0) *h->e = probe.error;
+        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
     }
     return hdi_scope_end(&s);
 }

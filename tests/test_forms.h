@@ -383,6 +383,7 @@ static void forms_many_times(void) {
         for (kind = 0; kind < 2; kind++) {
             memset(&rep, 0, sizeof rep);
             CHECK_MSG(hd_heat_distance(heat, (hd_distance_kind)kind, TIMES, t, 3, sources, D, 0, &rep) >= 0, "%s", rep.error.text);
+            CHECK_MSG(rep.residual > 0 && rep.residual < 1e-8, "residual %g", rep.residual);
             CHECK_MSG(rep.n_poles > 7, "%d poles: not shared", (int)rep.n_poles);
             bound[q] = rep.error_bound;
             for (m = 0; m < TIMES; m++) {
