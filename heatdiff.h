@@ -3997,6 +3997,7 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, c
 typedef struct hdi_mesh {
     const double *xyz;
     const int32_t *tri;
+    const int32_t *face;/* [m] the caller's number of each face; NULL: their own */
     int32_t n, m;
     double *cot;        /* [3 m] cotangent at each corner */
     double *area;       /* [m] 0: the face is left out */
@@ -4014,7 +4015,7 @@ static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + 
 
 /* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the rounding of one product
  * where exactly zero is right; when the result is that small it is computed again in steps that cannot be fused. */
-static double hdi_det2(double a, double b, double c, double d) {
+static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
     const double x = a * b - c * d;
     volatile double p, q;
     if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
@@ -4023,14 +4024,14 @@ static double hdi_det2(double a, double b, double c, double d) {
     return p - q;
 }
 
-static void hdi_cross3(const double *a, const double *b, double *out) {
+static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
     out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
     out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
     out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
 }
 
 /* Length without squares that underflow or overflow. */
-static double hdi_norm3(const double *a) {
+static HDI_INLINE double hdi_norm3(const double *a) {
     const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
     double b[3];
     if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
@@ -4056,7 +4057,7 @@ typedef struct hdi_face_tally {
 } hdi_face_tally;
 
 /* Area and cotangents of face f; area 0 where it has none or where a cotangent would not be finite. */
-static void hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_face_tally *tally) {
+static HDI_INLINE void hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_face_tally *tally) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
     double edge[3][3], cross[3], twice, most, *cot = mesh->cot + 3 * HDI_CAST(int64_t, f);
     int q;
@@ -4087,7 +4088,7 @@ static void hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_face_tally *ta
     tally->steepest = hdi_max(tally->steepest, most);
 }
 
-enum { HDI_FACES_PER_TASK = 8192 };
+enum { HDI_FACES_PER_TASK = 8192, HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };   /* how far ahead memory is asked for what will be needed */
 
 typedef struct hdi_measure_job { const hdi_mesh *mesh; hdi_face_tally *tally; } hdi_measure_job;
 
@@ -4100,7 +4101,13 @@ static void hdi_measure_task(void *arg, int64_t index, int32_t worker) {
     memset(&tally, 0, sizeof tally);
     tally.bad = -1;
     tally.steepest = -HUGE_VAL;
-    for (f = begin; f < end; f++) hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), &tally);
+    for (f = begin; f < end; f++) {
+        const int32_t *ahead = job->mesh->tri + 3 * hdi_least(f + HDI_FACES_AHEAD, end - 1);
+        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[0]));
+        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[1]));
+        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[2]));
+        hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), &tally);
+    }
     job->tally[index] = tally;
 }
 
@@ -4122,7 +4129,8 @@ static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hd
         rep->n_zero_area += t->n_zero_area;
         steepest = hdi_max(steepest, t->steepest);
         if (t->bad >= 0)
-            hdi_fail_face(s->e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", t->bad, mesh->tri[3 * HDI_CAST(int64_t, t->bad)], t->bad_area);
+            hdi_fail_face(s->e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", mesh->face ? mesh->face[t->bad] : t->bad,
+                          mesh->tri[3 * HDI_CAST(int64_t, t->bad)], t->bad_area);
     }
     rep->n_faces_used = mesh->m - rep->n_repeated_corner - rep->n_zero_area;
     rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, steepest) : 0;
@@ -4240,8 +4248,9 @@ static double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
 /* Edges from vertex i to later ones, in a mesh with coordinates: neighbours, components, lengths, the report. Returns how many faces came a second time:
  * their area is 0 now. */
 static int32_t hdi_edges_at(const hdi_mesh *mesh, hdi_edges *g, int32_t i, hd_mesh_report *rep) {
-    const int32_t end = g->ptr[i + 1];
+    const int32_t end = g->ptr[i + 1], ahead = i + HDI_VERTICES_AHEAD < mesh->n ? i + HDI_VERTICES_AHEAD : i;
     int32_t p, q, repeats = 0;
+    for (p = g->ptr[ahead]; p < g->ptr[ahead + 1]; p++) HDI_PREFETCH(mesh->xyz + 3 * HDI_CAST(int64_t, hdi_key_vertex(g->key[p])));
     for (p = g->ptr[i]; p < end; p = q) {
         const uint64_t first = g->key[p];
         const int32_t j = hdi_key_vertex(first);
@@ -4355,7 +4364,32 @@ static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, hdi_scope *s
     return HD_OK;
 }
 
-/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing. The arrays live in s; no corner lists. */
+/* The faces of a mesh sorted by their smallest vertex: what follows goes through vertices and faces side by side then, whatever the order of the file. */
+static void hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
+    const int32_t *HDI_RESTRICT v = mesh->tri, m = mesh->m;
+    int32_t *HDI_RESTRICT tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m)), *HDI_RESTRICT face = HDI_TAKE(s, int32_t, m);
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *HDI_RESTRICT at = HDI_TAKE_ZERO(&own, int32_t, mesh->n), f, i, sum = 0;
+    if (s->e->status >= 0) {
+        for (f = 0; f < m; f++, v += 3) at[v[0] < v[1] ? (v[0] < v[2] ? v[0] : v[2]) : v[1] < v[2] ? v[1] : v[2]]++;
+        for (i = 0; i < mesh->n; i++) {
+            const int32_t count = at[i];
+            at[i] = sum;
+            sum += count;
+        }
+        for (f = 0, v = mesh->tri; f < m; f++, v += 3) {
+            const int32_t to = at[v[0] < v[1] ? (v[0] < v[2] ? v[0] : v[2]) : v[1] < v[2] ? v[1] : v[2]]++;
+            memcpy(tri + 3 * HDI_CAST(int64_t, to), v, 3 * sizeof *v);
+            face[to] = f;
+        }
+        mesh->tri = tri;
+        mesh->face = face;
+    }
+    hdi_scope_end(&own);
+}
+
+/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing. The arrays live in s; no corner lists. The faces
+ * of the mesh are in an order of their own. */
 static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep,
                                 hdi_scope *s) {
     memset(mesh, 0, sizeof *mesh);
@@ -4368,6 +4402,8 @@ static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, const double *
     if (hdi_mesh_check(xyz, n, tri, m, s->e) < 0) return s->e->status;
     mesh->cot = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, m));
     mesh->area = HDI_TAKE(s, double, m);
+    if (s->e->status < 0) return s->e->status;
+    hdi_mesh_sort(mesh, s);
     if (s->e->status < 0 || hdi_faces_measure(mesh, rep, s) < 0) return s->e->status;
     return hdi_edges_make(edges, mesh, rep, s);
 }
@@ -5646,8 +5682,9 @@ static void hdi_lap_row(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_edges
         double l = 0, b = 0;
         for (q = p; q < end && hdi_key_vertex(g->key[q]) == to; q++) {
             l -= mesh->cot[hdi_key_opposite(g->key[q])] / 2;
-            b += mesh->area[hdi_key_face(g->key[q])] / 12;
+            b += mesh->area[hdi_key_face(g->key[q])];
         }
+        b /= 12;
         if (to == v) {                           /* an edge from the vertex to itself: no weight, and twice in its B */
             loops += 2 * b;
             continue;
@@ -5692,7 +5729,16 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_mesh *mesh, const
         next[i] = L.row_ptr[i];
         L.row_ptr[i + 1] = L.row_ptr[i] + 1 + g->smaller[v] + g->larger[v];
     }
-    for (i = 0; i < lap->n_active; i++) hdi_lap_row(lap, mesh, g, i, delaunay, next);
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t last = g->ptr[lap->vertex[i + HDI_VERTICES_AHEAD < lap->n_active ? i + HDI_VERTICES_AHEAD : i] + 1] - 1;
+        if (last >= 0) {                         /* the farthest neighbour: its row is new to the caches, those of others are in use */
+            const int64_t at = next[lap->row[hdi_key_vertex(g->key[last])]];
+            HDI_PREFETCH(L.col + at);
+            HDI_PREFETCH(L.val + at);
+            HDI_PREFETCH(B ? B + at : L.val + at);
+        }
+        hdi_lap_row(lap, mesh, g, i, delaunay, next);
+    }
     return hdi_scope_end(&s);
 }
 
