@@ -4052,19 +4052,18 @@ static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri
 
 /* What a block of faces adds to the report. */
 typedef struct hdi_face_tally {
-    int32_t n_repeated_corner, n_zero_area, bad;   /* bad: the first face whose area is not finite, or -1 */
+    int32_t n_repeated_corner, n_zero_area, bad, bad_vertex;   /* bad: the first face whose area is not finite, or -1 */
     double steepest, bad_area;                     /* steepest: the largest cotangent, of the smallest angle */
 } hdi_face_tally;
 
-/* Area and cotangents of face f; area 0 where it has none or where a cotangent would not be finite. */
-static HDI_INLINE void hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_face_tally *tally) {
+/* Area of face f, and its cotangents; 0 where it has none or where a cotangent would not be finite. */
+static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot, hdi_face_tally *tally) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
-    double edge[3][3], cross[3], twice, most, *cot = mesh->cot + 3 * HDI_CAST(int64_t, f);
+    double edge[3][3], cross[3], twice;
     int q;
-    mesh->area[f] = 0;
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
         tally->n_repeated_corner++;
-        return;
+        return 0;
     }
     hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[2]), mesh->xyz + 3 * HDI_CAST(int64_t, v[1]), edge[0]);   /* edge q runs opposite to corner q */
     hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[0]), mesh->xyz + 3 * HDI_CAST(int64_t, v[2]), edge[1]);
@@ -4072,20 +4071,39 @@ static HDI_INLINE void hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_fac
     hdi_cross3(edge[2], edge[0], cross);
     twice = hdi_norm3(cross);
     if (!hdi_finite(twice)) {
-        if (tally->bad < 0) {
-            tally->bad = f;
+        const int32_t id = mesh->face ? mesh->face[f] : f;
+        if (tally->bad < 0 || id < tally->bad) {
+            tally->bad = id;
+            tally->bad_vertex = v[0];
             tally->bad_area = twice;
         }
-        return;
+        return 0;
     }
     for (q = 0; q < 3; q++) cot[q] = -hdi_dot3(edge[q < 2 ? q + 1 : 0], edge[q ? q - 1 : 2]) / twice;
-    most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
     if (twice / 24 < DBL_MIN || !(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]) <= DBL_MAX)) {
         tally->n_zero_area++;
-        return;
+        return 0;
     }
-    mesh->area[f] = twice / 2;
-    tally->steepest = hdi_max(tally->steepest, most);
+    tally->steepest = hdi_max(tally->steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
+    return twice / 2;
+}
+
+static void hdi_tally_clear(hdi_face_tally *tally) {
+    memset(tally, 0, sizeof *tally);
+    tally->bad = tally->bad_vertex = -1;
+    tally->steepest = -HUGE_VAL;
+}
+
+/* What the report says of faces one by one. */
+static hd_status hdi_tally_report(const hdi_face_tally *tally, int32_t m, hd_mesh_report *rep, hd_error *e) {
+    if (tally->bad >= 0)
+        return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", tally->bad, tally->bad_vertex, tally->bad_area);
+    rep->n_faces = m;
+    rep->n_repeated_corner = tally->n_repeated_corner;
+    rep->n_zero_area = tally->n_zero_area;
+    rep->n_faces_used = m - tally->n_repeated_corner - tally->n_zero_area;
+    rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, tally->steepest) : 0;
+    return HD_OK;
 }
 
 enum { HDI_FACES_PER_TASK = 8192, HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };   /* how far ahead memory is asked for what will be needed */
@@ -4098,42 +4116,40 @@ static void hdi_measure_task(void *arg, int64_t index, int32_t worker) {
     hdi_face_tally tally;
     int64_t f;
     (void)worker;
-    memset(&tally, 0, sizeof tally);
-    tally.bad = -1;
-    tally.steepest = -HUGE_VAL;
+    hdi_tally_clear(&tally);
     for (f = begin; f < end; f++) {
         const int32_t *ahead = job->mesh->tri + 3 * hdi_least(f + HDI_FACES_AHEAD, end - 1);
         HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[0]));
         HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[1]));
         HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[2]));
-        hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), &tally);
+        job->mesh->area[f] = hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), job->mesh->cot + 3 * f, &tally);
     }
     job->tally[index] = tally;
 }
 
-/* All faces of a mesh whose indices are fine: cot and area, and what the report says of faces one by one. */
+/* All faces of a mesh whose indices are fine: cot and area. */
 static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     const int64_t n_tasks = (HDI_CAST(int64_t, mesh->m) + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    double steepest = -HUGE_VAL;
+    hdi_face_tally all;
     hdi_measure_job job;
     int64_t i;
+    hdi_tally_clear(&all);
     job.mesh = mesh;
     job.tally = HDI_TAKE(&own, hdi_face_tally, n_tasks);
     if (!job.tally) return hdi_scope_end(&own);
     hdi_parallel(s->ctx, n_tasks, hdi_measure_task, &job);
-    rep->n_faces = mesh->m;
-    for (i = 0; i < n_tasks && s->e->status >= 0; i++) {
+    for (i = 0; i < n_tasks; i++) {
         const hdi_face_tally *t = job.tally + i;
-        rep->n_repeated_corner += t->n_repeated_corner;
-        rep->n_zero_area += t->n_zero_area;
-        steepest = hdi_max(steepest, t->steepest);
-        if (t->bad >= 0)
-            hdi_fail_face(s->e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", mesh->face ? mesh->face[t->bad] : t->bad,
-                          mesh->tri[3 * HDI_CAST(int64_t, t->bad)], t->bad_area);
+        all.n_repeated_corner += t->n_repeated_corner;
+        all.n_zero_area += t->n_zero_area;
+        all.steepest = hdi_max(all.steepest, t->steepest);
+        if (t->bad < 0 || (all.bad >= 0 && all.bad < t->bad)) continue;
+        all.bad = t->bad;
+        all.bad_vertex = t->bad_vertex;
+        all.bad_area = t->bad_area;
     }
-    rep->n_faces_used = mesh->m - rep->n_repeated_corner - rep->n_zero_area;
-    rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, steepest) : 0;
+    (void)hdi_tally_report(&all, mesh->m, rep, s->e);
     return hdi_scope_end(&own);
 }
 
@@ -4160,16 +4176,13 @@ static int64_t hdi_most_corners(const hdi_mesh *mesh) {
     return most;
 }
 
-/* ---- edges ----
+/* ---- sides ----
  * The sides of all faces with area, gathered by the smaller of their two vertices and sorted by the larger one, then by face: an edge is a run. */
-typedef struct hdi_edges {
+typedef struct hdi_sides {
     int32_t *ptr;               /* [n + 1] runs at a vertex */
     uint64_t *key;              /* [3 m] larger vertex << 32 | 4 face + corner where the side begins */
-    uint64_t *work;             /* [busiest vertex] */
-    int32_t *smaller, *larger;  /* [n] neighbours of a vertex: those before it and those after it */
-    int32_t *parent;            /* [n] vertices united along edges */
-    double length;              /* of all edges, each once */
-} hdi_edges;
+    uint64_t *work;             /* [2 busiest vertex] */
+} hdi_sides;
 
 static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
 
@@ -4179,7 +4192,7 @@ static int32_t hdi_key_vertex(uint64_t key) { return HDI_CAST(int32_t, key >> 32
 /* The corner opposite to the side. */
 static int64_t hdi_key_opposite(uint64_t key) { return 3 * HDI_CAST(int64_t, hdi_key_face(key)) + hdi_prev3[hdi_key_corner(key)]; }
 
-static void hdi_edges_gather(const hdi_mesh *mesh, hdi_edges *g) {
+static void hdi_sides_gather(const hdi_mesh *mesh, hdi_sides *g) {
     const int32_t *v = mesh->tri;
     int32_t f, i, sum = 0, *at = g->ptr;
     memset(at, 0, (HDI_CAST(size_t, mesh->n) + 1) * sizeof *at);
@@ -4206,25 +4219,8 @@ static void hdi_edges_gather(const hdi_mesh *mesh, hdi_edges *g) {
     at[0] = 0;
 }
 
-/* Faces of the run of n sides that have the same corners as an earlier one get area 0; each face is seen at the edge of its two smaller corners. */
-static int32_t hdi_edge_repeats(const hdi_mesh *mesh, const uint64_t *run, int64_t n, uint64_t *work) {
-    int64_t p, m = 0;
-    int32_t repeats = 0;
-    for (p = 0; p < n; p++) {
-        const int32_t opposite = mesh->tri[hdi_key_opposite(run[p])];
-        if (opposite > hdi_key_vertex(run[p])) work[m++] = HDI_CAST(uint64_t, opposite) << 32 | HDI_CAST(uint64_t, hdi_key_face(run[p]));
-    }
-    hdi_sort_keys(work, m, work + n);
-    for (p = 1; p < m; p++) {
-        if (work[p] >> 32 != work[p - 1] >> 32) continue;
-        mesh->area[work[p] & 0xffffffffu] = 0;
-        repeats++;
-    }
-    return repeats;
-}
-
 /* Sorts the sides at vertex i. Most lists are short. */
-static void hdi_edges_sort(hdi_edges *g, int32_t i) {
+static void hdi_sides_sort(hdi_sides *g, int32_t i) {
     uint64_t *a = g->key + g->ptr[i];
     const int64_t n = g->ptr[i + 1] - g->ptr[i];
     int64_t p, q;
@@ -4245,173 +4241,383 @@ static double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
     return hdi_norm3(edge);
 }
 
-/* Edges from vertex i to later ones, in a mesh with coordinates: neighbours, components, lengths, the report. Returns how many faces came a second time:
- * their area is 0 now. */
-static int32_t hdi_edges_at(const hdi_mesh *mesh, hdi_edges *g, int32_t i, hd_mesh_report *rep) {
-    const int32_t end = g->ptr[i + 1], ahead = i + HDI_VERTICES_AHEAD < mesh->n ? i + HDI_VERTICES_AHEAD : i;
-    int32_t p, q, repeats = 0;
-    for (p = g->ptr[ahead]; p < g->ptr[ahead + 1]; p++) HDI_PREFETCH(mesh->xyz + 3 * HDI_CAST(int64_t, hdi_key_vertex(g->key[p])));
-    for (p = g->ptr[i]; p < end; p = q) {
-        const uint64_t first = g->key[p];
-        const int32_t j = hdi_key_vertex(first);
-        for (q = p + 1; q < end && hdi_key_vertex(g->key[q]) == j;) q++;
-        g->length += hdi_edge_length(mesh->xyz, i, j);
-        g->smaller[j]++;
-        g->larger[i]++;
-        if (g->parent[i] != g->parent[j]) hdi_unite(g->parent, i, j);
-        if (q == p + 2) {
-            const uint64_t second = g->key[p + 1];
-            const int64_t c = 3 * HDI_CAST(int64_t, hdi_key_face(first)) + hdi_key_corner(first);
-            const int64_t d = 3 * HDI_CAST(int64_t, hdi_key_face(second)) + hdi_key_corner(second);
-            rep->n_misoriented_edges += mesh->tri[c] == mesh->tri[d];
-            if (mesh->tri[hdi_key_opposite(first)] == mesh->tri[hdi_key_opposite(second)]) repeats += hdi_edge_repeats(mesh, g->key + p, 2, g->work);
-        } else if (q > p + 2) {
-            rep->n_nonmanifold_edges++;
-            repeats += hdi_edge_repeats(mesh, g->key + p, q - p, g->work);
-        } else {
-            rep->n_boundary_edges++;
-        }
-        rep->n_edges++;
-    }
-    return repeats;
+/* Gathers the sides; g->work has room to sort those of the busiest vertex. */
+static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s) {
+    int32_t i, most = 1;
+    g->ptr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
+    g->key = HDI_TAKE(s, uint64_t, 3 * HDI_CAST(int64_t, mesh->m));
+    if (s->e->status < 0) return s->e->status;
+    hdi_sides_gather(mesh, g);
+    for (i = 0; i < mesh->n; i++)
+        if (g->ptr[i + 1] - g->ptr[i] > most) most = g->ptr[i + 1] - g->ptr[i];
+    g->work = HDI_TAKE(s, uint64_t, 2 * HDI_CAST(int64_t, most));
+    return s->e->status;
 }
 
-/* Connected sets of boundary edges. copies: how often each face comes, or NULL. parent [n] is overwritten. */
-static void hdi_edges_loops(const hdi_mesh *mesh, const hdi_edges *g, const int32_t *copies, int32_t *parent, hd_mesh_report *rep) {
-    int32_t i, p, end;
-    for (i = 0; i < mesh->n; i++) parent[i] = i;
-    for (i = 0; i < mesh->n; i++) {
-        for (p = g->ptr[i], end = g->ptr[i + 1]; p < end; p++) {
-            const int32_t j = hdi_key_vertex(g->key[p]);
-            const int alone = (p == g->ptr[i] || hdi_key_vertex(g->key[p - 1]) != j) && (p + 1 == end || hdi_key_vertex(g->key[p + 1]) != j);
-            if (alone && (!copies || copies[hdi_key_face(g->key[p])] == 1)) hdi_unite(parent, i, j);
-        }
-    }
-    for (i = 0; i < mesh->n; i++) parent[i] = hdi_find(parent, i);
-    for (i = 0; i < mesh->n; i++) {              /* a loop is a root with another vertex in its set */
+/* How many connected sets of vertices are united in parent [n], which is overwritten; single vertices are none. */
+static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
+    int32_t i, count = 0;
+    for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
+    for (i = 0; i < n; i++) {                    /* a set is a root with another vertex */
         const int32_t root = parent[i];
         if (root == i || root < 0 || parent[root] != root) continue;
         parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
-        rep->n_boundary_loops++;
+        count++;
     }
+    return count;
 }
 
-/* Room for the edges of a mesh. */
-static void hdi_edges_take(hdi_edges *g, const hdi_mesh *mesh, hdi_scope *s) {
+/* ---- edges ---- */
+
+/* The edges of a mesh from each vertex to later ones, in order. */
+typedef struct hdi_edges {
+    int32_t *first;             /* [n + 1] */
+    int32_t *to;                /* [first[n]] the later vertex; in intrinsic triangulations also the vertex itself */
+    double *w;                  /* [first[n]] minus half the cotangents opposite to it */
+    double *b;                  /* [first[n]] a twelfth of the areas of its faces; NULL: not wanted */
+    int32_t *smaller, *larger;  /* [n] neighbours of a vertex: those before it and those after it */
+    int32_t *parent;            /* [n] vertices united along edges */
+    double length;              /* of all edges, each once */
+} hdi_edges;
+
+/* Room for the edges of m faces; room 0: for counts only. */
+static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int full, hdi_scope *s) {
+    int32_t i;
     memset(g, 0, sizeof *g);
-    g->ptr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
-    g->key = HDI_TAKE(s, uint64_t, 3 * HDI_CAST(int64_t, mesh->m));
-    g->smaller = HDI_TAKE(s, int32_t, mesh->n);
-    g->larger = HDI_TAKE(s, int32_t, mesh->n);
-    g->parent = HDI_TAKE(s, int32_t, mesh->n);
-}
-
-/* Gathers the sides; g->work has room to sort those of the busiest vertex. */
-static hd_status hdi_edges_begin(hdi_edges *g, const hdi_mesh *mesh, hdi_scope *s) {
-    int32_t i, most = 1;
-    hdi_edges_gather(mesh, g);
-    for (i = 0; i < mesh->n; i++) {
-        g->smaller[i] = g->larger[i] = 0;
-        g->parent[i] = i;
-        if (g->ptr[i + 1] - g->ptr[i] > most) most = g->ptr[i + 1] - g->ptr[i];
-    }
-    g->length = 0;
-    if (!g->work) g->work = HDI_TAKE(s, uint64_t, 2 * HDI_CAST(int64_t, most));
+    g->first = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, n) + 1);
+    if (room) g->to = HDI_TAKE(s, int32_t, room);
+    if (room) g->w = HDI_TAKE(s, double, room);
+    if (room && full) g->b = HDI_TAKE(s, double, room);
+    g->smaller = HDI_TAKE_ZERO(s, int32_t, n);
+    g->larger = HDI_TAKE_ZERO(s, int32_t, n);
+    g->parent = HDI_TAKE(s, int32_t, n);
+    for (i = 0; i < n && s->e->status >= 0; i++) g->parent[i] = i;
     return s->e->status;
 }
 
-/* The edges of a mesh with coordinates, and what the report says of them. Faces that come a second time are left out. */
-static hd_status hdi_edges_make(hdi_edges *g, const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
-    hd_mesh_report clear = *rep;
-    int32_t i, repeats;
-    hdi_edges_take(g, mesh, s);
-    if (s->e->status < 0) return s->e->status;
-    do {
-        *rep = clear;
-        repeats = 0;
-        if (hdi_edges_begin(g, mesh, s) < 0) return s->e->status;
-        for (i = 0; i < mesh->n; i++) {
-            hdi_edges_sort(g, i);
-            repeats += hdi_edges_at(mesh, g, i, rep);
-        }
-        clear.n_repeated_face += repeats;
-        clear.n_faces_used -= repeats;
-    } while (repeats);
-    if (rep->n_boundary_edges) {
-        int32_t *parent = HDI_TAKE(s, int32_t, mesh->n);
-        if (parent) hdi_edges_loops(mesh, g, NULL, parent, rep);
-    }
-    return s->e->status;
+/* The edge (i,j), i < j. */
+static HDI_INLINE void hdi_edges_join(hdi_edges *g, int32_t i, int32_t j) {
+    g->smaller[j]++;
+    g->larger[i]++;
+    if (g->parent[i] != g->parent[j]) hdi_unite(g->parent, i, j);
 }
 
-/* The edges of triangles without coordinates, which may run from a vertex to itself: neighbours and components only. */
-static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, hdi_scope *s) {
-    int32_t i, p;
-    hdi_edges_take(g, mesh, s);
-    if (s->e->status < 0 || hdi_edges_begin(g, mesh, s) < 0) return s->e->status;
+/* All cotangents of the faces of a run of sides: what the rounding error of their edge's weight is relative to. */
+static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int64_t n) {
+    double sum = 0;
+    int64_t p;
+    for (p = 0; p < n; p++) {
+        const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, hdi_key_face(run[p]));
+        sum += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
+    }
+    return sum;
+}
+
+/* The edges of Delaunay triangles without coordinates, which may run from a vertex to itself. Weights above zero, which are there by rounding only, become
+ * zero when they are below 1e-13 of the cotangents that they are made of. */
+static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hdi_scope *s) {
+    hdi_sides sides;
+    int32_t i, p, q, end, n_edges = 0;
+    if (hdi_edges_take(g, mesh->n, 3 * HDI_CAST(int64_t, mesh->m), full, s) < 0 || hdi_sides_make(&sides, mesh, s) < 0) return s->e->status;
     for (i = 0; i < mesh->n; i++) {
-        int32_t last = i;
-        hdi_edges_sort(g, i);
-        for (p = g->ptr[i]; p < g->ptr[i + 1]; p++) {
-            const int32_t j = hdi_key_vertex(g->key[p]);
-            if (j == last) continue;
-            last = j;
-            g->smaller[j]++;
-            g->larger[i]++;
-            if (g->parent[i] != g->parent[j]) hdi_unite(g->parent, i, j);
+        g->first[i] = n_edges;
+        hdi_sides_sort(&sides, i);
+        for (p = sides.ptr[i], end = sides.ptr[i + 1]; p < end; p = q, n_edges++) {
+            const uint64_t *key = sides.key;
+            const int32_t j = hdi_key_vertex(key[p]);
+            double w = 0, b = 0;
+            for (q = p; q < end && hdi_key_vertex(key[q]) == j; q++) {
+                w -= mesh->cot[hdi_key_opposite(key[q])] / 2;
+                b += mesh->area[hdi_key_face(key[q])];
+            }
+            if (w > 0 && w <= 1e-13 * hdi_run_cotangents(mesh, key + p, q - p)) w = 0;
+            g->to[n_edges] = j;
+            g->w[n_edges] = w;
+            if (full) g->b[n_edges] = b / 12;
+            if (j != i) hdi_edges_join(g, i, j);
         }
     }
+    g->first[mesh->n] = n_edges;
     return HD_OK;
 }
 
-/* The faces of a mesh sorted by their smallest vertex: what follows goes through vertices and faces side by side then, whatever the order of the file. */
-static void hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
-    const int32_t *HDI_RESTRICT v = mesh->tri, m = mesh->m;
-    int32_t *HDI_RESTRICT tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m)), *HDI_RESTRICT face = HDI_TAKE(s, int32_t, m);
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *HDI_RESTRICT at = HDI_TAKE_ZERO(&own, int32_t, mesh->n), f, i, sum = 0;
-    if (s->e->status >= 0) {
-        for (f = 0; f < m; f++, v += 3) at[v[0] < v[1] ? (v[0] < v[2] ? v[0] : v[2]) : v[1] < v[2] ? v[1] : v[2]]++;
-        for (i = 0; i < mesh->n; i++) {
-            const int32_t count = at[i];
-            at[i] = sum;
-            sum += count;
-        }
-        for (f = 0, v = mesh->tri; f < m; f++, v += 3) {
-            const int32_t to = at[v[0] < v[1] ? (v[0] < v[2] ? v[0] : v[2]) : v[1] < v[2] ? v[1] : v[2]]++;
-            memcpy(tri + 3 * HDI_CAST(int64_t, to), v, 3 * sizeof *v);
-            face[to] = f;
-        }
-        mesh->tri = tri;
-        mesh->face = face;
+/* How masses are lumped. */
+typedef enum hdi_lump { HDI_LUMP_THIRDS, HDI_LUMP_MIXED, HDI_LUMP_ONES } hdi_lump;
+
+/* Adds the shares of a face. The mixed rule of a face without obtuse angle, (|ab|^2 cot c + |ac|^2 cot b) / 8 at a, is area/4 (1 + cot b cot c) there, as
+ * |ab|^2 = 2 area (cot a + cot b) and the three products of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the
+ * area whatever rounding does, and cotangents may carry a factor. */
+static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const double *cot, double area, hdi_lump lump) {
+    if (lump == HDI_LUMP_THIRDS) {
+        mass[v[0]] += area / 3;
+        mass[v[1]] += area / 3;
+        mass[v[2]] += area / 3;
+    } else if (lump == HDI_LUMP_ONES) {
+        mass[v[0]] = mass[v[1]] = mass[v[2]] = 1;
+    } else if (cot[0] < 0 || cot[1] < 0 || cot[2] < 0) {
+        mass[v[0]] += cot[0] < 0 ? area / 2 : area / 4;
+        mass[v[1]] += cot[1] < 0 ? area / 2 : area / 4;
+        mass[v[2]] += cot[2] < 0 ? area / 2 : area / 4;
+    } else {
+        const double a = cot[1] * cot[2], b = cot[2] * cot[0], c = cot[0] * cot[1], sum = a + b + c;
+        const double rest = area / 4, scale = rest / sum, most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
+        const int fine = sum > 1e-100 && sum <= DBL_MAX;         /* else a needle's: its tip, which has the smallest angle, a quarter */
+        mass[v[0]] += rest + (fine ? scale * a : cot[0] < most ? area / 8 : 0);
+        mass[v[1]] += rest + (fine ? scale * b : cot[1] < most ? area / 8 : 0);
+        mass[v[2]] += rest + (fine ? scale * c : cot[2] < most ? area / 8 : 0);
     }
-    hdi_scope_end(&own);
 }
 
-/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing. The arrays live in s; no corner lists. The faces
- * of the mesh are in an order of their own. */
-static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep,
-                                hdi_scope *s) {
+static void hdi_mesh_masses(const hdi_mesh *mesh, hdi_lump lump, double *mass) {
+    int64_t f;
+    memset(mass, 0, HDI_CAST(size_t, mesh->n) * sizeof *mass);
+    for (f = 0; f < mesh->m; f++)
+        if (mesh->area[f] > 0) hdi_face_masses(mass, mesh->tri + 3 * f, mesh->cot + 3 * f, mesh->area[f], lump);
+}
+
+/* ---- one pass over a mesh ----
+ * Vertices in their order, each with the faces whose smallest corner it is: these are measured, and their two sides at the vertex join those that wait there,
+ * which were opposite to still smaller corners; then all its sides to later vertices are known, are sorted, and runs of them are its edges. What a face
+ * needs is read once, and near what was read before. */
+
+typedef struct hdi_side { int32_t to; uint32_t turn; double cot, area; } hdi_side;     /* turn: 1 if it runs to the later vertex */
+
+typedef struct hdi_pass {
+    hdi_mesh *mesh;
+    hdi_edges *edges;
+    double *mass;               /* [n] or NULL: not wanted */
+    hdi_lump lump;
+    hd_mesh_report *rep;
+    hdi_face_tally tally;
+    int32_t *face_ptr;          /* [n + 1] faces by their smallest corner */
+    int32_t *wait_ptr, *waits;  /* [n + 1], [n] where the sides of a vertex wait, and where the next one comes */
+    hdi_side *waiting;          /* [m] */
+    hdi_side *side;             /* [busiest vertex] its sides, and work arrays */
+    double *cot;                /* [3 busiest] */
+    uint64_t *key, *work;       /* [busiest] */
+    int32_t *border;            /* [n] vertices united along boundary edges */
+} hdi_pass;
+
+/* Faces of a vertex that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
+static void hdi_pass_repeats(hdi_pass *s, int32_t begin, int32_t end, void *room) {
+    const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, begin);
+    hdi_pair *pair = HDI_CAST(hdi_pair *, room);
+    int64_t n = 0, p, q;
+    int32_t f;
+    double *area = s->mesh->area;
+    for (f = begin; f < end; f++, v += 3) {
+        const int32_t least = v[0] < v[1] ? (v[0] < v[2] ? v[0] : v[2]) : v[1] < v[2] ? v[1] : v[2];
+        const uint64_t most = HDI_CAST(uint64_t, v[0] > v[1] ? (v[0] > v[2] ? v[0] : v[2]) : v[1] > v[2] ? v[1] : v[2]);
+        const uint64_t middle = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - least) - most;
+        if (area[f] > 0) s->key[n++] = middle << 32 | most;
+        else s->key[n++] = HDI_CAST(uint64_t, f - begin);      /* middle 0: no other face has that */
+    }
+    if (n <= 24) {
+        for (p = 1; p < n; p++) {
+            for (q = 0; q < p && s->key[q] != s->key[p]; q++) {}
+            if (q == p) continue;
+            area[begin + p] = 0;
+            s->rep->n_repeated_face++;
+        }
+        return;
+    }
+    for (p = 0; p < n; p++) {                    /* many: sorted with their places */
+        pair[p].key = s->key[p];
+        pair[p].id = p;
+    }
+    hdi_sort_pairs(pair, n);
+    for (p = 1; p < n; p++) {
+        if (pair[p].key != pair[p - 1].key) continue;
+        area[begin + pair[p].id] = 0;
+        s->rep->n_repeated_face++;
+    }
+}
+
+/* Measures the faces of vertex i; their sides are added to the n that s->side has, or wait at the vertex where they begin. Returns the number of sides. */
+static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
+    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1], *tri = s->mesh->tri;
+    const double *xyz = s->mesh->xyz;
+    double *area = s->mesh->area;
+    int32_t f;
+    for (f = begin; f < end; f++) {
+        const int32_t *ahead = tri + 3 * HDI_CAST(int64_t, f + HDI_FACES_AHEAD < s->mesh->m ? f + HDI_FACES_AHEAD : f);
+        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[0]));
+        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[1]));
+        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[2]));
+        area[f] = hdi_face_measure(s->mesh, f, s->cot + 3 * (f - begin), &s->tally);
+    }
+    if (end - begin > 1) hdi_pass_repeats(s, begin, end, s->side + n);
+    for (f = begin; f < end; f++) {
+        const int32_t *v = tri + 3 * HDI_CAST(int64_t, f), q = v[0] == i ? 0 : v[1] == i ? 1 : 2, r = hdi_next3[q], t = hdi_prev3[q], b = v[r], c = v[t];
+        const double *cot = s->cot + 3 * (f - begin);
+        hdi_side *side = s->side + n;
+        if (!(area[f] > 0)) continue;
+        if (s->mass) hdi_face_masses(s->mass, v, cot, area[f], s->lump);
+        side[0].to = b;
+        side[0].turn = 1;
+        side[0].cot = cot[t];
+        side[1].to = c;
+        side[1].turn = 0;
+        side[1].cot = cot[r];
+        side[0].area = side[1].area = area[f];
+        n += 2;
+        side = s->waiting + s->waits[b < c ? b : c]++;
+        side->to = b < c ? c : b;
+        side->turn = b < c;
+        side->cot = cot[q];
+        side->area = area[f];
+    }
+    return n;
+}
+
+/* The edges from vertex i to later ones, from its n sides. Returns the number of the next edge. */
+static int32_t hdi_pass_edges(hdi_pass *s, int32_t i, int32_t n, int32_t at) {
+    hdi_edges *g = s->edges;
+    hd_mesh_report *rep = s->rep;
+    int32_t p, q, k;
+    for (p = 0; p < n; p++) s->key[p] = HDI_CAST(uint64_t, s->side[p].to) << 32 | HDI_CAST(uint64_t, p);
+    if (n > 24) {
+        hdi_sort_keys(s->key, n, s->work);
+    } else {
+        for (p = 1; p < n; p++) {
+            const uint64_t x = s->key[p];
+            for (q = p; q > 0 && x < s->key[q - 1]; q--) s->key[q] = s->key[q - 1];
+            s->key[q] = x;
+        }
+    }
+    for (p = 0; p < n; p = q, at++) {
+        const hdi_side *side = s->side + (s->key[p] & 0xffffffffu);
+        const int32_t j = side->to;
+        double w = -side->cot / 2, b = side->area;
+        uint32_t turns = side->turn;
+        for (q = p + 1; q < n && HDI_CAST(int32_t, s->key[q] >> 32) == j; q++) {
+            k = HDI_CAST(int32_t, s->key[q] & 0xffffffffu);
+            w -= s->side[k].cot / 2;
+            b += s->side[k].area;
+            turns += s->side[k].turn;
+        }
+        if (g->w) {
+            g->to[at] = j;
+            g->w[at] = w;
+            if (g->b) g->b[at] = b / 12;
+        }
+        g->length += hdi_edge_length(s->mesh->xyz, i, j);
+        hdi_edges_join(g, i, j);
+        rep->n_nonmanifold_edges += q - p > 2;
+        rep->n_misoriented_edges += q - p == 2 && turns != 1;
+        if (q - p > 1) continue;
+        rep->n_boundary_edges++;
+        hdi_unite(s->border, i, j);
+    }
+    return at;
+}
+
+/* Numbers of faces and waiting sides at each vertex, as offsets; the faces of the mesh in the order of their smallest corners. */
+static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
+    const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
+    int32_t *HDI_RESTRICT faces = s->face_ptr, *HDI_RESTRICT waits = s->waits, f, i, sum = 0, wait_sum = 0;
+    memset(faces, 0, (HDI_CAST(size_t, n) + 1) * sizeof *faces);
+    memset(waits, 0, HDI_CAST(size_t, n) * sizeof *waits);
+    for (f = 0; f < m; f++, v += 3) {
+        const int32_t lo = v[0] < v[1] ? v[0] : v[1], hi = v[0] < v[1] ? v[1] : v[0];
+        faces[lo < v[2] ? lo : v[2]]++;
+        waits[lo < v[2] ? (hi < v[2] ? hi : v[2]) : lo]++;
+    }
+    for (i = 0; i < n; i++) {
+        const int32_t count = faces[i], wait = waits[i];
+        faces[i] = sum;
+        waits[i] = s->wait_ptr[i] = wait_sum;
+        sum += count;
+        wait_sum += wait;
+    }
+    s->wait_ptr[n] = wait_sum;
+    for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
+        const int32_t lo = v[0] < v[1] ? v[0] : v[1], at = faces[lo < v[2] ? lo : v[2]]++;
+        memcpy(tri + 3 * HDI_CAST(int64_t, at), v, 3 * sizeof *v);
+        face[at] = f;
+    }
+    memmove(faces + 1, faces, HDI_CAST(size_t, n) * sizeof *faces);
+    faces[0] = 0;
+    s->mesh->tri = tri;
+    s->mesh->face = face;
+}
+
+/* Room of the pass; the faces of the mesh and their areas live in s, the rest in own. */
+static hd_status hdi_pass_begin(hdi_pass *p, hdi_scope *own, hdi_scope *s) {
+    const int32_t n = p->mesh->n;
+    int32_t *tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, p->mesh->m)), *face = HDI_TAKE(s, int32_t, p->mesh->m), i, most = 1;
+    p->mesh->area = HDI_TAKE(s, double, p->mesh->m);
+    p->face_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
+    p->wait_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
+    p->waits = HDI_TAKE(own, int32_t, n);
+    p->border = HDI_TAKE(own, int32_t, n);
+    p->waiting = HDI_TAKE(own, hdi_side, p->mesh->m);
+    if (s->e->status < 0) return s->e->status;
+    hdi_pass_sort(p, tri, face);
+    for (i = 0; i < n; i++) {
+        const int32_t sides = 2 * (p->face_ptr[i + 1] - p->face_ptr[i]) + p->wait_ptr[i + 1] - p->wait_ptr[i];
+        if (sides > most) most = sides;
+        p->border[i] = i;
+    }
+    p->side = HDI_TAKE(own, hdi_side, most);
+    p->cot = HDI_TAKE(own, double, 3 * HDI_CAST(int64_t, most));
+    p->key = HDI_TAKE(own, uint64_t, most);
+    p->work = HDI_TAKE(own, uint64_t, most);
+    if (p->mass && s->e->status >= 0) memset(p->mass, 0, HDI_CAST(size_t, n) * sizeof *p->mass);
+    hdi_tally_clear(&p->tally);
+    return s->e->status;
+}
+
+static hd_status hdi_pass_run(hdi_pass *p, hd_error *e) {
+    hd_mesh_report *rep = p->rep;
+    int32_t i, n, at = 0;
+    for (i = 0; i < p->mesh->n; i++) {
+        p->edges->first[i] = at;
+        n = p->waits[i] - p->wait_ptr[i];
+        memcpy(p->side, p->waiting + p->wait_ptr[i], HDI_CAST(size_t, n) * sizeof *p->side);
+        n = hdi_pass_faces(p, i, n);
+        at = hdi_pass_edges(p, i, n, at);
+    }
+    p->edges->first[p->mesh->n] = at;
+    if (hdi_tally_report(&p->tally, p->mesh->m, rep, e) < 0) return e->status;
+    rep->n_faces_used -= rep->n_repeated_face;
+    rep->n_edges = at;
+    rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(p->border, p->mesh->n) : 0;
+    return HD_OK;
+}
+
+/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing. The arrays live in s. The faces of the mesh are in an
+ * order of their own, without cotangents and corner lists. full -1: the edges are only counted; 1: with areas. mass [n] or NULL. */
+static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, int full, double *mass, hdi_lump lump, hd_mesh_report *rep, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_pass pass;
+    memset(&pass, 0, sizeof pass);
+    pass.mesh = mesh;
+    pass.edges = edges;
+    pass.mass = mass;
+    pass.lump = lump;
+    pass.rep = rep;
+    rep->n_faces = mesh->m;
+    if (3 * HDI_CAST(int64_t, mesh->m) > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_edges_take(edges, mesh->n, full < 0 ? 0 : 3 * HDI_CAST(int64_t, mesh->m), full > 0, s) < 0) return hdi_scope_end(&own);
+    if (hdi_pass_begin(&pass, &own, s) >= 0) (void)hdi_pass_run(&pass, s->e);
+    return hdi_scope_end(&own);
+}
+
+static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m) {
     memset(mesh, 0, sizeof *mesh);
     mesh->xyz = xyz;
     mesh->tri = tri;
     mesh->n = n;
     mesh->m = m;
-    rep->n_faces = m;
-    if (3 * HDI_CAST(int64_t, m) > INT32_MAX) return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if (hdi_mesh_check(xyz, n, tri, m, s->e) < 0) return s->e->status;
-    mesh->cot = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, m));
-    mesh->area = HDI_TAKE(s, double, m);
-    if (s->e->status < 0) return s->e->status;
-    hdi_mesh_sort(mesh, s);
-    if (s->e->status < 0 || hdi_faces_measure(mesh, rep, s) < 0) return s->e->status;
-    return hdi_edges_make(edges, mesh, rep, s);
 }
 
-/* The same with corner lists. */
+/* The same with corner lists, for those who need no edges. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep, hdi_scope *s) {
     hdi_edges edges;
-    if (hdi_mesh_faces(mesh, &edges, xyz, n, tri, m, rep, s) < 0) return s->e->status;
+    hdi_mesh_clear(mesh, xyz, n, tri, m);
+    if (hdi_mesh_faces(mesh, &edges, -1, NULL, HDI_LUMP_THIRDS, rep, s) < 0) return s->e->status;
     mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
     mesh->corner = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m));
     if (s->e->status < 0) return s->e->status;
@@ -5109,7 +5315,7 @@ static hd_status hdi_intrinsic_mesh(hdi_mesh *mesh, hdi_intrinsic *t, int32_t n,
 
 typedef struct hdi_soup {
     hdi_mesh mesh;      /* each face once, its corners ascending; cot and area are those of lengths, unit 1 the mean edge length */
-    hdi_edges edges;
+    hdi_sides sides;
     int32_t *tri;       /* [3 m] */
     int32_t *copies;    /* [m] how often a face came */
     int32_t *odd;       /* [m] how many of these had their corners in odd order */
@@ -5173,14 +5379,16 @@ static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, i
     return hdi_scope_end(&own);
 }
 
-/* Edges of the soup, and the report: all copies count. */
-static void hdi_soup_edges(hdi_soup *soup, hd_mesh_report *rep) {
+/* Edges of the soup, and the report: all copies count. border [n] unites the vertices of boundary edges. Returns the sum of the edges' lengths. */
+static double hdi_soup_edges(hdi_soup *soup, int32_t *border, hd_mesh_report *rep) {
     const hdi_mesh *mesh = &soup->mesh;
-    hdi_edges *g = &soup->edges;
+    hdi_sides *g = &soup->sides;
+    double length = 0;
     int32_t i, p, q;
+    for (i = 0; i < mesh->n; i++) border[i] = i;
     for (i = 0; i < mesh->n; i++) {
         const int32_t end = g->ptr[i + 1];
-        hdi_edges_sort(g, i);
+        hdi_sides_sort(g, i);
         for (p = g->ptr[i]; p < end; p = q) {
             const int32_t j = hdi_key_vertex(g->key[p]);
             int64_t copies = 0, forward = 0;
@@ -5189,13 +5397,15 @@ static void hdi_soup_edges(hdi_soup *soup, hd_mesh_report *rep) {
                 copies += soup->copies[f];
                 forward += hdi_key_corner(g->key[q]) < 2 ? soup->copies[f] - odd : odd;
             }
-            g->length += hdi_edge_length(mesh->xyz, i, j);
+            length += hdi_edge_length(mesh->xyz, i, j);
             rep->n_edges++;
             rep->n_boundary_edges += copies == 1;
             rep->n_nonmanifold_edges += copies > 2;
             rep->n_misoriented_edges += copies == 2 && forward != 1;
+            if (copies == 1) hdi_unite(border, i, j);
         }
     }
+    return length;
 }
 
 /* Lengths of the faces in units of the mean one; how much the worst of a block lacks to satisfy the triangle inequality with delta to spare. */
@@ -5246,7 +5456,7 @@ static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, con
     hd_mesh_report faces;
     hdi_soup_job job;
     int64_t n_tasks, i, n_short = 0;
-    int32_t f;
+    int32_t f, *border;
     memset(soup, 0, sizeof *soup);
     memset(&faces, 0, sizeof faces);
     if (hdi_soup_faces(soup, tri, m, n, s) < 0) return s->e->status;
@@ -5260,7 +5470,7 @@ static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, con
     job.delta = delta;
     job.add = HDI_TAKE(s, double, n_tasks);
     job.n_short = HDI_TAKE(s, int64_t, n_tasks);
-    hdi_edges_take(&soup->edges, &soup->mesh, s);
+    border = HDI_TAKE(s, int32_t, n);
     if (s->e->status < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0) return s->e->status;
     rep->smallest_angle = faces.smallest_angle;
     for (f = 0; f < m; f++) {
@@ -5269,14 +5479,9 @@ static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, con
         *(area > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
         soup->area += area * soup->copies[f];
     }
-    if (hdi_edges_begin(&soup->edges, &soup->mesh, s) < 0) return s->e->status;
-    hdi_soup_edges(soup, rep);
-    if (rep->n_boundary_edges) {
-        int32_t *parent = HDI_TAKE(s, int32_t, n);
-        if (!parent) return s->e->status;
-        hdi_edges_loops(&soup->mesh, &soup->edges, soup->copies, parent, rep);
-    }
-    soup->unit = soup->edges.length / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
+    if (hdi_sides_make(&soup->sides, &soup->mesh, s) < 0) return s->e->status;
+    soup->unit = hdi_soup_edges(soup, border, rep) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
+    rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(border, n) : 0;
     hdi_parallel(s->ctx, n_tasks, hdi_soup_length_task, &job);
     for (i = 0; i < n_tasks; i++) {
         soup->add = hdi_max(soup->add, job.add[i]);
@@ -5375,7 +5580,7 @@ static int32_t hdi_cover_side(const hdi_cover *c, int32_t f, int32_t q, int32_t 
  * that looks counterclockwise to the side of the next one that looks back at it. */
 static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
     const hdi_soup *soup = c->soup;
-    const uint64_t *key = soup->edges.key;
+    const uint64_t *key = soup->sides.key;
     const int32_t n = q - p;
     int32_t i, layer, most = 0, first = -1, last = -1;
     if (c->glued[p]) return HD_OK;
@@ -5408,7 +5613,7 @@ static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
 
 /* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
 static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
-    const hdi_edges *g = &c->soup->edges;
+    const hdi_sides *g = &c->soup->sides;
     const int32_t i = c->t.vert[s], j = c->t.vert[hdi_side_next(s)], lo = i < j ? i : j, hi = i < j ? j : i;
     int32_t p = g->ptr[lo], end = g->ptr[lo + 1], q = end;
     if (c->t.twin[s] != -2) return HD_OK;
@@ -5423,7 +5628,7 @@ static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
 
 /* Whether the edge of keys [p, q) may have to be flipped, however its faces are glued. Two faces that come equally often always follow each other. */
 static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
-    const uint64_t *key = soup->edges.key;
+    const uint64_t *key = soup->sides.key;
     double least = HUGE_VAL, next = HUGE_VAL;
     int64_t copies = 0;
     int32_t i;
@@ -5464,7 +5669,7 @@ static hd_status hdi_cover_flip(hdi_cover *c, int64_t most, hd_mesh_report *rep)
 
 static hd_status hdi_cover_run(hdi_cover *c, hd_mesh_report *rep) {
     const hdi_soup *soup = c->soup;
-    const hdi_edges *g = &soup->edges;
+    const hdi_sides *g = &soup->sides;
     int64_t most = 0;
     int32_t v, p, q, end, side;
     for (v = 0; v < soup->mesh.m; v++) most += 64 * 6 * HDI_CAST(int64_t, soup->copies[v]);
@@ -5513,7 +5718,7 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, hd_mesh
     c.ctx = s->ctx;
     c.e = s->e;
     c.t.unit = soup->unit;
-    for (i = 0; i < soup->mesh.n; i++) most = soup->edges.ptr[i + 1] - soup->edges.ptr[i] > most ? soup->edges.ptr[i + 1] - soup->edges.ptr[i] : most;
+    for (i = 0; i < soup->mesh.n; i++) most = soup->sides.ptr[i + 1] - soup->sides.ptr[i] > most ? soup->sides.ptr[i + 1] - soup->sides.ptr[i] : most;
     c.first = HDI_TAKE(s, int32_t, m);
     c.glued = HDI_TAKE_ZERO(s, signed char, 3 * HDI_CAST(int64_t, m));
     c.list = HDI_TAKE(s, hdi_pair, most);
@@ -5564,36 +5769,8 @@ static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     hdi_free(ctx, lap);
 }
 
-/* Masses of the vertices, from areas and cotangents alone. The mixed rule of a face without obtuse angle, (|ab|^2 cot c + |ac|^2 cot b) / 8 at a, is
- * area/4 (1 + cot b cot c) there, as |ab|^2 = 2 area (cot a + cot b) and the three products of two cotangents sum to 1. Here they are divided by their sum,
- * so that the shares add up to the area whatever rounding does, and cotangents may carry a factor. */
-static void hdi_mesh_masses(const hdi_mesh *mesh, hd_laplacian_kind kind, double *mass) {
-    const int32_t *v = mesh->tri;
-    const double *cot = mesh->cot;
-    int32_t f;
-    memset(mass, 0, HDI_CAST(size_t, mesh->n) * sizeof *mass);
-    for (f = 0; f < mesh->m; f++, v += 3, cot += 3) {
-        const double area = mesh->area[f];
-        if (!(area > 0)) continue;
-        if (kind == HD_LAPLACIAN_FEM) {
-            mass[v[0]] += area / 3;
-            mass[v[1]] += area / 3;
-            mass[v[2]] += area / 3;
-        } else if (kind == HD_LAPLACIAN_COT) {
-            mass[v[0]] = mass[v[1]] = mass[v[2]] = 1;
-        } else if (cot[0] < 0 || cot[1] < 0 || cot[2] < 0) {
-            mass[v[0]] += cot[0] < 0 ? area / 2 : area / 4;
-            mass[v[1]] += cot[1] < 0 ? area / 2 : area / 4;
-            mass[v[2]] += cot[2] < 0 ? area / 2 : area / 4;
-        } else {
-            const double a = cot[1] * cot[2], b = cot[2] * cot[0], c = cot[0] * cot[1], sum = a + b + c;
-            const double rest = area / 4, scale = rest / sum, most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
-            const int fine = sum > 1e-100 && sum <= DBL_MAX;         /* else a needle's: its tip, which has the smallest angle, a quarter */
-            mass[v[0]] += rest + (fine ? scale * a : cot[0] < most ? area / 8 : 0);
-            mass[v[1]] += rest + (fine ? scale * b : cot[1] < most ? area / 8 : 0);
-            mass[v[2]] += rest + (fine ? scale * c : cot[2] < most ? area / 8 : 0);
-        }
-    }
+static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
+    return kind == HD_LAPLACIAN_FEM ? HDI_LUMP_THIRDS : kind == HD_LAPLACIAN_COT ? HDI_LUMP_ONES : HDI_LUMP_MIXED;
 }
 
 /* Numbers the rows: vertices with mass in their order. Fills row, vertex, mass, b_diag, n_active. */
@@ -5656,62 +5833,42 @@ static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e)
     return HD_OK;
 }
 
-/* All cotangents of the faces of a run of sides: what the rounding error of their edge's weight is relative to. */
-static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int64_t n) {
-    double sum = 0;
-    int64_t p;
-    for (p = 0; p < n; p++) {
-        const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, hdi_key_face(run[p]));
-        sum += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
-    }
-    return sum;
-}
-
-/* Row i from its diagonal on; what it has before was written by those rows. Each edge is summed once, in the order of the faces, and written into both its
- * rows: L and B are symmetric to the last bit. next [n_active]: where each row goes on. Off-diagonal entries above zero, which Delaunay edges (delaunay 1) can
- * only have by rounding, become zero when they are below 1e-13 of the cotangents they are made of. */
-static void hdi_lap_row(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_edges *g, int32_t i, int delaunay, int64_t *next) {
-    const int32_t v = lap->vertex[i], end = g->ptr[v + 1];
+/* Row i from its diagonal on; what it has before was written by those rows: each edge goes into both its rows, so that L and B are symmetric to the last
+ * bit. next [n_active]: where each row goes on. */
+static HDI_INLINE void hdi_lap_row(hd_laplacian *lap, const hdi_edges *g, int32_t i, int64_t *HDI_RESTRICT next) {
+    const int32_t v = lap->vertex[i], end = g->first[v + 1], *row = lap->row;
     const int64_t diagonal = next[i];
-    double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B, sum = 0, loops = 0;
-    int32_t *HDI_RESTRICT col = lap->L.col, p, q;
-    int64_t at;
+    double *L = lap->L.val, *B = lap->B, sum = 0, loops = 0;
+    int32_t *col = lap->L.col, p;
+    int64_t at, negative = 0;
     for (at = lap->L.row_ptr[i]; at < diagonal; at++) sum += L[at];
-    for (p = g->ptr[v]; p < end; p = q) {
-        const int32_t to = hdi_key_vertex(g->key[p]), j = lap->row[to];
-        double l = 0, b = 0;
-        for (q = p; q < end && hdi_key_vertex(g->key[q]) == to; q++) {
-            l -= mesh->cot[hdi_key_opposite(g->key[q])] / 2;
-            b += mesh->area[hdi_key_face(g->key[q])];
-        }
-        b /= 12;
-        if (to == v) {                           /* an edge from the vertex to itself: no weight, and twice in its B */
-            loops += 2 * b;
+    for (p = g->first[v]; p < end; p++) {
+        const int32_t j = row[g->to[p]];
+        const double w = g->w[p];
+        int64_t mirror;
+        if (j == i) {                            /* an edge from the vertex to itself: no weight, and twice in its B */
+            loops += B ? 2 * g->b[p] : 0;
             continue;
         }
-        if (delaunay && l > 0 && l <= 1e-13 * hdi_run_cotangents(mesh, g->key + p, q - p)) l = 0;
-        lap->mesh.n_negative_weights += l > 0;
-        sum += l;
-        at++;
-        col[at] = j;
-        L[at] = l;
-        if (B) B[at] = b;
-        {
-            const int64_t mirror = next[j]++;
-            col[mirror] = i;
-            L[mirror] = l;
-            if (B) B[mirror] = b;
-        }
+        negative += w > 0;
+        sum += w;
+        mirror = next[j]++;
+        col[++at] = j;
+        L[at] = w;
+        col[mirror] = i;
+        L[mirror] = w;
+        if (B) B[at] = B[mirror] = g->b[p];
     }
+    lap->mesh.n_negative_weights += negative;
     col[diagonal] = i;
     L[diagonal] = -sum;
-    if (!B) return;
-    B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + loops;    /* a sixth of the areas that the mass has thirds of */
+    if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + loops;    /* a sixth of the areas that the mass has thirds of */
 }
 
-/* Pattern and values of L and, if it is to be full, of B. */
-static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_edges *g, int full, int delaunay, hd_error *e) {
+/* Pattern and values of L and, if the edges have areas, of a full B. */
+static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int full = g->b != NULL;
     int64_t *next = HDI_TAKE(&s, int64_t, lap->n_active), nnz = 0;
     double *B = NULL, *b_diag = NULL;
     hd_csr L;
@@ -5730,14 +5887,14 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_mesh *mesh, const
         L.row_ptr[i + 1] = L.row_ptr[i] + 1 + g->smaller[v] + g->larger[v];
     }
     for (i = 0; i < lap->n_active; i++) {
-        const int32_t last = g->ptr[lap->vertex[i + HDI_VERTICES_AHEAD < lap->n_active ? i + HDI_VERTICES_AHEAD : i] + 1] - 1;
+        const int32_t last = g->first[lap->vertex[i + HDI_VERTICES_AHEAD < lap->n_active ? i + HDI_VERTICES_AHEAD : i] + 1] - 1;
         if (last >= 0) {                         /* the farthest neighbour: its row is new to the caches, those of others are in use */
-            const int64_t at = next[lap->row[hdi_key_vertex(g->key[last])]];
+            const int64_t at = next[lap->row[g->to[last]]];
             HDI_PREFETCH(L.col + at);
             HDI_PREFETCH(L.val + at);
             HDI_PREFETCH(B ? B + at : L.val + at);
         }
-        hdi_lap_row(lap, mesh, g, i, delaunay, next);
+        hdi_lap_row(lap, g, i, next);
     }
     return hdi_scope_end(&s);
 }
@@ -5796,26 +5953,27 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
-/* (L, B), places, components and h from a mesh and its edges. */
-static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_edges *edges, int full, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *vertex_mass = HDI_TAKE(&s, double, lap->n);
-    if (!vertex_mass) return hdi_scope_end(&s);
-    hdi_mesh_masses(mesh, lap->kind, vertex_mass);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);
-    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_united(lap, edges->parent, e) < 0) return hdi_scope_end(&s);
-    if (hdi_lap_assemble(lap, mesh, edges, full, 0, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
-    lap->h = edges->length / HDI_CAST(double, lap->mesh.n_edges);
-    return hdi_scope_end(&s);
+/* (L, B), places, components and h of the mesh, whose arrays come to live in s. full: B is, if its kind is. */
+static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(lap->context, s->e);
+    double *vertex_mass = HDI_TAKE(&own, double, lap->n);
+    hd_error *e = s->e;
+    hdi_edges edges;
+    if (!vertex_mass) return hdi_scope_end(&own);
+    if (hdi_mesh_faces(mesh, &edges, full && lap->kind == HD_LAPLACIAN_FEM, vertex_mass, hdi_lap_lump(lap->kind), &lap->mesh, s) < 0) return hdi_scope_end(&own);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&own);
+    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0) return hdi_scope_end(&own);
+    if (hdi_lap_assemble(lap, &edges, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&own);
+    lap->h = edges.length / HDI_CAST(double, lap->mesh.n_edges);
+    return hdi_scope_end(&own);
 }
 
 static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_edges edges;
     hdi_mesh mesh;
     int32_t f;
-    if (hdi_mesh_faces(&mesh, &edges, xyz, lap->n, tri, m, &lap->mesh, &s) < 0 || hdi_lap_mesh(lap, &mesh, &edges, lap->kind == HD_LAPLACIAN_FEM, e) < 0)
-        return hdi_scope_end(&s);
+    hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
+    if (hdi_lap_mesh(lap, &mesh, 1, &s) < 0) return hdi_scope_end(&s);
     for (f = 0; f < m; f++) lap->area += mesh.area[f];
     lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;   /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->conserves = 1;
@@ -5970,13 +6128,13 @@ static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope
     hd_error *e = s->e;
     hdi_edges edges;
     double *vertex_mass;
-    if (hdi_edges_flat(&edges, flat, s) < 0) return e->status;
+    if (hdi_edges_flat(&edges, flat, full, s) < 0) return e->status;
     vertex_mass = HDI_TAKE(s, double, flat->n);
     if (!vertex_mass) return e->status;
-    hdi_mesh_masses(flat, lap->kind, vertex_mass);
+    hdi_mesh_masses(flat, hdi_lap_lump(lap->kind), vertex_mass);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0) return e->status;
     lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;    /* element of corners v, v, w: 1/2, 1/6; 1/6, 1/6 */
-    return hdi_lap_assemble(lap, flat, &edges, full, 1, e);
+    return hdi_lap_assemble(lap, &edges, e);
 }
 
 /* (L, B) of the intrinsic Delaunay triangulation of mesh, or of its cover: each sheet counts half. */
@@ -13981,15 +14139,14 @@ static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const 
 static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *tri, int32_t m, const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     hd_laplacian *lap = HDI_CAST(hd_laplacian *, hdi_alloc(g->ctx, 1, sizeof *lap, e));
-    hdi_edges edges;
     hdi_mesh mesh;
     if (!lap) return hdi_scope_end(&s);
+    hdi_mesh_clear(&mesh, xyz, g->n, tri, m);
     memset(lap, 0, sizeof *lap);
     lap->n = g->n;
     lap->context = g->ctx;
     lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;   /* the row sums of fem are the lumped mass */
-    if (hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_mesh_faces(&mesh, &edges, xyz, g->n, tri, m, &lap->mesh, &s) >= 0 &&
-        hdi_lap_mesh(lap, &mesh, &edges, 0, e) >= 0) {
+    if (hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_mesh(lap, &mesh, 0, &s) >= 0) {
         g->n_active = lap->n_active;
         g->n_components = lap->n_components;
         g->n_faces = lap->mesh.n_faces_used;
