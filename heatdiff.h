@@ -4354,17 +4354,16 @@ static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const dou
         mass[v[2]] += area / 3;
     } else if (lump == HDI_LUMP_ONES) {
         mass[v[0]] = mass[v[1]] = mass[v[2]] = 1;
-    } else if (cot[0] < 0 || cot[1] < 0 || cot[2] < 0) {
-        mass[v[0]] += cot[0] < 0 ? area / 2 : area / 4;
-        mass[v[1]] += cot[1] < 0 ? area / 2 : area / 4;
-        mass[v[2]] += cot[2] < 0 ? area / 2 : area / 4;
     } else {
-        const double a = cot[1] * cot[2], b = cot[2] * cot[0], c = cot[0] * cot[1], sum = a + b + c;
-        const double rest = area / 4, scale = rest / sum, most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
-        const int fine = sum > 1e-100 && sum <= DBL_MAX;         /* else a needle's: its tip, which has the smallest angle, a quarter */
-        mass[v[0]] += rest + (fine ? scale * a : cot[0] < most ? area / 8 : 0);
-        mass[v[1]] += rest + (fine ? scale * b : cot[1] < most ? area / 8 : 0);
-        mass[v[2]] += rest + (fine ? scale * c : cot[2] < most ? area / 8 : 0);
+        const double x[3] = {cot[1] * cot[2], cot[2] * cot[0], cot[0] * cot[1]}, sum = x[0] + x[1] + x[2], quarter = area / 4;
+        const double obtuse = hdi_min(cot[0], hdi_min(cot[1], cot[2])) < 0, most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
+        const double flat = quarter * obtuse, scale = quarter / sum * (1 - obtuse);
+        int q;
+        if (sum > 1e-100 && sum <= DBL_MAX) {    /* without further branches: which angle is obtuse is anyone's guess */
+            for (q = 0; q < 3; q++) mass[v[q]] += quarter + (flat * (cot[q] < 0) + scale * x[q]);
+        } else {                                 /* a needle: its tip, which has the smallest angle, a quarter */
+            for (q = 0; q < 3; q++) mass[v[q]] += quarter + (obtuse > 0 ? flat * (cot[q] < 0) : cot[q] < most ? quarter / 2 : 0);
+        }
     }
 }
 
@@ -4398,6 +4397,10 @@ typedef struct hdi_pass {
     int32_t *border;            /* [n] vertices united along boundary edges */
 } hdi_pass;
 
+/* By value, so that no branch has to be guessed. */
+static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
+static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
+
 /* Faces of a vertex that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
 static void hdi_pass_repeats(hdi_pass *s, int32_t begin, int32_t end, void *room) {
     const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, begin);
@@ -4406,11 +4409,9 @@ static void hdi_pass_repeats(hdi_pass *s, int32_t begin, int32_t end, void *room
     int32_t f;
     double *area = s->mesh->area;
     for (f = begin; f < end; f++, v += 3) {
-        const int32_t least = v[0] < v[1] ? (v[0] < v[2] ? v[0] : v[2]) : v[1] < v[2] ? v[1] : v[2];
-        const uint64_t most = HDI_CAST(uint64_t, v[0] > v[1] ? (v[0] > v[2] ? v[0] : v[2]) : v[1] > v[2] ? v[1] : v[2]);
-        const uint64_t middle = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - least) - most;
-        if (area[f] > 0) s->key[n++] = middle << 32 | most;
-        else s->key[n++] = HDI_CAST(uint64_t, f - begin);      /* middle 0: no other face has that */
+        const uint64_t sum = HDI_CAST(uint64_t, v[0]) + HDI_CAST(uint64_t, v[1]) + HDI_CAST(uint64_t, v[2]), no = HDI_CAST(uint64_t, f - begin);
+        const uint64_t most = HDI_CAST(uint64_t, hdi_high32(hdi_high32(v[0], v[1]), v[2]));
+        s->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* with the smallest given, sum and largest say it all; no face has so small a sum */
     }
     if (n <= 24) {
         for (p = 1; p < n; p++) {
@@ -4448,7 +4449,7 @@ static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
     }
     if (end - begin > 1) hdi_pass_repeats(s, begin, end, s->side + n);
     for (f = begin; f < end; f++) {
-        const int32_t *v = tri + 3 * HDI_CAST(int64_t, f), q = v[0] == i ? 0 : v[1] == i ? 1 : 2, r = hdi_next3[q], t = hdi_prev3[q], b = v[r], c = v[t];
+        const int32_t *v = tri + 3 * HDI_CAST(int64_t, f), q = (v[1] == i) + 2 * (v[2] == i), r = hdi_next3[q], t = hdi_prev3[q], b = v[r], c = v[t];
         const double *cot = s->cot + 3 * (f - begin);
         hdi_side *side = s->side + n;
         if (!(area[f] > 0)) continue;
@@ -4461,8 +4462,8 @@ static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
         side[1].cot = cot[r];
         side[0].area = side[1].area = area[f];
         n += 2;
-        side = s->waiting + s->waits[b < c ? b : c]++;
-        side->to = b < c ? c : b;
+        side = s->waiting + s->waits[hdi_low32(b, c)]++;
+        side->to = hdi_high32(b, c);
         side->turn = b < c;
         side->cot = cot[q];
         side->area = area[f];
@@ -4476,14 +4477,18 @@ static int32_t hdi_pass_edges(hdi_pass *s, int32_t i, int32_t n, int32_t at) {
     hd_mesh_report *rep = s->rep;
     int32_t p, q, k;
     for (p = 0; p < n; p++) s->key[p] = HDI_CAST(uint64_t, s->side[p].to) << 32 | HDI_CAST(uint64_t, p);
-    if (n > 24) {
+    if (n > 16) {
         hdi_sort_keys(s->key, n, s->work);
-    } else {
-        for (p = 1; p < n; p++) {
+    } else {                                     /* by counting who is smaller: no branch to be guessed */
+        uint64_t *swap = s->key;
+        for (p = 0; p < n; p++) {
             const uint64_t x = s->key[p];
-            for (q = p; q > 0 && x < s->key[q - 1]; q--) s->key[q] = s->key[q - 1];
-            s->key[q] = x;
+            int32_t rank = 0;
+            for (q = 0; q < n; q++) rank += s->key[q] < x;
+            s->work[rank] = x;
         }
+        s->key = s->work;
+        s->work = swap;
     }
     for (p = 0; p < n; p = q, at++) {
         const hdi_side *side = s->side + (s->key[p] & 0xffffffffu);
@@ -4519,9 +4524,9 @@ static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
     memset(faces, 0, (HDI_CAST(size_t, n) + 1) * sizeof *faces);
     memset(waits, 0, HDI_CAST(size_t, n) * sizeof *waits);
     for (f = 0; f < m; f++, v += 3) {
-        const int32_t lo = v[0] < v[1] ? v[0] : v[1], hi = v[0] < v[1] ? v[1] : v[0];
-        faces[lo < v[2] ? lo : v[2]]++;
-        waits[lo < v[2] ? (hi < v[2] ? hi : v[2]) : lo]++;
+        const int32_t lo = hdi_low32(v[0], v[1]), hi = hdi_high32(v[0], v[1]);
+        faces[hdi_low32(lo, v[2])]++;
+        waits[hdi_high32(lo, hdi_low32(hi, v[2]))]++;
     }
     for (i = 0; i < n; i++) {
         const int32_t count = faces[i], wait = waits[i];
@@ -4532,7 +4537,7 @@ static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
     }
     s->wait_ptr[n] = wait_sum;
     for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
-        const int32_t lo = v[0] < v[1] ? v[0] : v[1], at = faces[lo < v[2] ? lo : v[2]]++;
+        const int32_t at = faces[hdi_low32(hdi_low32(v[0], v[1]), v[2])]++;
         memcpy(tri + 3 * HDI_CAST(int64_t, at), v, 3 * sizeof *v);
         face[at] = f;
     }
@@ -9597,8 +9602,9 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 /* ---- choice ---- */
 
 /* From so many rows on nested dissection pays for itself: it takes three times as long to find as minimum degree, and saves half of the flops. For the poles of a
- * set that is soon, for one real factor and some solves late. */
-enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_REAL_FROM = 250000 };
+ * set that is soon, for one real factor and some solves late. Wide rows, those of exponential weights, make factors so large that it pays at once where
+ * it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10, 20, 50, 150 thousand random points and 233 non-zeros a row. */
+enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_REAL_FROM = 250000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
 
 static hd_status hdi_sym_check(const int32_t *perm, int32_t n, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
@@ -9616,6 +9622,7 @@ static hd_status hdi_sym_order(const hd_csr *a, const double *xyz, hd_ordering k
                                hd_error *e) {
     const int32_t n = a->n_rows;
     hdi_error_clear(e);
+    if (a->nnz > HDI_DISSECT_WIDE * HDI_CAST(int64_t, n) && dissect_from > HDI_DISSECT_WIDE_FROM) dissect_from = HDI_DISSECT_WIDE_FROM;
     if (kind == HD_ORDERING_AUTO) kind = xyz && n >= dissect_from ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_MINIMUM_DEGREE;
     *chosen = HDI_CAST(int32_t, kind);
     if (hdi_progress(ctx, "order", 0, e) < 0) return e->status;
