@@ -3992,7 +3992,7 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, c
 }
 
 /* ==== [09] geometry ====
- * Triangles: checks, corner cotangents, which faces are left out, and who meets at a vertex. May call [05]. */
+ * Triangles: checks, corner cotangents, which faces are left out, edges, and who meets at a vertex. May call [08]. */
 
 typedef struct hdi_mesh {
     const double *xyz;
@@ -4401,17 +4401,18 @@ typedef struct hdi_pass {
 static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
 static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
 
-/* Faces of a vertex that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
-static void hdi_pass_repeats(hdi_pass *s, int32_t begin, int32_t end, void *room) {
+/* Faces of vertex i that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
+static void hdi_pass_repeats(hdi_pass *s, int32_t i, void *room) {
+    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1];
     const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, begin);
     hdi_pair *pair = HDI_CAST(hdi_pair *, room);
     int64_t n = 0, p, q;
     int32_t f;
     double *area = s->mesh->area;
     for (f = begin; f < end; f++, v += 3) {
-        const uint64_t sum = HDI_CAST(uint64_t, v[0]) + HDI_CAST(uint64_t, v[1]) + HDI_CAST(uint64_t, v[2]), no = HDI_CAST(uint64_t, f - begin);
+        const uint64_t sum = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - i), no = HDI_CAST(uint64_t, f - begin);
         const uint64_t most = HDI_CAST(uint64_t, hdi_high32(hdi_high32(v[0], v[1]), v[2]));
-        s->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* with the smallest given, sum and largest say it all; no face has so small a sum */
+        s->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* the sum of the two others and the larger say it all; no sum is 0 */
     }
     if (n <= 24) {
         for (p = 1; p < n; p++) {
@@ -4447,7 +4448,7 @@ static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
         HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[2]));
         area[f] = hdi_face_measure(s->mesh, f, s->cot + 3 * (f - begin), &s->tally);
     }
-    if (end - begin > 1) hdi_pass_repeats(s, begin, end, s->side + n);
+    if (end - begin > 1) hdi_pass_repeats(s, i, s->side + n);
     for (f = begin; f < end; f++) {
         const int32_t *v = tri + 3 * HDI_CAST(int64_t, f), q = (v[1] == i) + 2 * (v[2] == i), r = hdi_next3[q], t = hdi_prev3[q], b = v[r], c = v[t];
         const double *cot = s->cot + 3 * (f - begin);
@@ -6833,7 +6834,7 @@ typedef struct hdi_star_point { double x, y, angle; int32_t id; } hdi_star_point
 
 /* An angle that needs no arc tangent: 0 along x, 1 along y, a turn is 4, half a turn 2 between any two opposite directions. */
 static double hdi_star_angle(double x, double y) {
-    const double q = y / (fabs(x) + fabs(y));
+    const double sum = fabs(x) + fabs(y), q = sum > 0 ? y / sum : 0;
     return x < 0 ? 2 - q : y < 0 ? 4 + q : q;
 }
 
@@ -15658,14 +15659,17 @@ typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov
 #define HDI_STEP_COCG 4e-9
 #define HDI_ROW_ANALYSIS 0.8e-6
 
-/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops. */
+/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops; where rows are wider than 10 so much more of the former and its square
+ * of the latter (point sets with 233 and 117 a row, 20 to 150 thousand: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5). */
 static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     const hdi_symbolic *s = heat->elim.ctx ? &heat->elim.sym : NULL;
     const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->k, hh = heat->source->h * heat->source->h * heat->scale;
-    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n, flops = s ? s->flops_done : 22 * n * sqrt(n), analysis = s ? 0 : HDI_ROW_ANALYSIS * n;
-    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n, real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n;
+    const double wide = hdi_max(1, entries / (10 * n));
+    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide, flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
+    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide, real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n * wide;
+    const double analysis = s ? 0 : HDI_ROW_ANALYSIS * n * wide;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4, packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0], windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
