@@ -4450,10 +4450,16 @@ static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
     }
     if (end - begin > 1) hdi_pass_repeats(s, i, s->side + n);
     for (f = begin; f < end; f++) {
-        const int32_t *v = tri + 3 * HDI_CAST(int64_t, f), q = (v[1] == i) + 2 * (v[2] == i), r = hdi_next3[q], t = hdi_prev3[q], b = v[r], c = v[t];
+        const int32_t *v = tri + 3 * HDI_CAST(int64_t, f);
         const double *cot = s->cot + 3 * (f - begin);
         hdi_side *side = s->side + n;
+        int32_t q, r, t, b, c;
         if (!(area[f] > 0)) continue;
+        q = (v[1] == i) + 2 * (v[2] == i);       /* the corner at i */
+        r = hdi_next3[q];
+        t = hdi_prev3[q];
+        b = v[r];
+        c = v[t];
         if (s->mass) hdi_face_masses(s->mass, v, cot, area[f], s->lump);
         side[0].to = b;
         side[0].turn = 1;
