@@ -709,8 +709,8 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
 
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
- * vertices). For a full B without a0 B^-1, as above. The report's bound is that of the rational error; by default the highest degree takes over where it
- * is above 5e-7 of the largest value. */
+ * vertices). For a full B without a0 B^-1, as above. error_rational is a bound, relative to the largest value, and by default the highest degree takes
+ * over where it is above 5e-7; error_solver, rounding, is measured at the vertex of the largest value. */
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
@@ -7301,6 +7301,8 @@ static void *hdi_copy(const void *from, size_t count, size_t size, hd_context *c
     return to;
 }
 
+enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
+
 /* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row
  * ascending. */
 static hd_status hdi_sym_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
@@ -7326,6 +7328,12 @@ static hd_status hdi_sym_permute(hd_laplacian *out, const hd_laplacian *lap, con
         a.row_ptr[i + 1] = a.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
     }
     for (i = 0; i < n; i++) {
+        if (i + HDI_ROWS_AHEAD < n) {
+            const int64_t ahead = lap->L.row_ptr[perm[i + HDI_ROWS_AHEAD]];
+            HDI_PREFETCH(lap->L.col + ahead);
+            HDI_PREFETCH(lap->L.val + ahead);
+            if (B) HDI_PREFETCH(lap->B + ahead);
+        }
         for (p = lap->L.row_ptr[perm[i]]; p < lap->L.row_ptr[perm[i] + 1]; p++) {
             const int64_t q = fill[inv[lap->L.col[p]]]++;
             a.col[q] = i;
@@ -9012,6 +9020,7 @@ static void hdi_sym_lower(const hd_csr *a, const int32_t *perm, int32_t *inv, in
     for (i = 0; i < a->n_rows; i++) inv[perm[i]] = i;
     for (i = 0; i < a->n_rows; i++) {
         ptr[i] = q;
+        if (i + HDI_ROWS_AHEAD < a->n_rows) HDI_PREFETCH(a->col + a->row_ptr[perm[i + HDI_ROWS_AHEAD]]);
         for (p = a->row_ptr[perm[i]]; p < a->row_ptr[perm[i] + 1]; p++) {
             const int32_t k = inv[a->col[p]];
             if (k < i) col[q++] = k;
@@ -9463,6 +9472,7 @@ static void hdi_sym_gather(hdi_symbolic *s, const hd_csr *a, int32_t *inv, int64
         s->a_ptr[v] = q;
         for (j = s->super[v]; j < s->super[v + 1]; j++) {
             lower_ptr[j] = below;
+            if (j + HDI_ROWS_AHEAD < s->n) HDI_PREFETCH(a->col + a->row_ptr[s->perm[j + HDI_ROWS_AHEAD]]);
             for (p = a->row_ptr[s->perm[j]]; p < a->row_ptr[s->perm[j] + 1]; p++) {
                 const int32_t i = inv[a->col[p]];
                 if (i < j) {
@@ -10360,11 +10370,10 @@ static void hdi_real_backward_front(const hdi_sweep *z, int32_t v, double *y, do
 
 /* Fronts are too short for the processor to see where they lead: fetches as much of the panels as v's own takes, some way ahead. Halves the time of a
  * sweep from memory. */
-static HDI_INLINE void hdi_sweep_fetch(const hdi_sweep *z, int32_t v) {   /* a function of its own would have no effect, and be left out */
+static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int backward) {   /* a function of its own would have no effect, and be left out */
     enum { AHEAD = 1024, MOST = 8192 };          /* doubles */
-    const hdi_factor *f = z->f;
     const int64_t *at = f->width == 1 ? f->sym->panel : f->sym->panel_pack, end = f->width * at[f->sym->n_super];
-    const int64_t ahead = (f->width == 1 ? 1 : 2) * (z->backward ? -AHEAD : AHEAD), first = f->width * at[v] + ahead, last = f->width * at[v + 1] + ahead;
+    const int64_t ahead = (f->width == 1 ? 1 : 2) * (backward ? -AHEAD : AHEAD), first = f->width * at[v] + ahead, last = f->width * at[v + 1] + ahead;
     int64_t i;
     if (first < 0 || last > end || last - first > MOST) return;
     for (i = first; i < last; i += 8) HDI_PREFETCH(f->panel + i);
@@ -10374,7 +10383,7 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v, int64_t part) {
     const hdi_factor *f = z->f;
     const int64_t w = HDI_CAST(int64_t, f->width) * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v], *gather = z->gather + z->gather_size * part;
-    hdi_sweep_fetch(z, v);
+    hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
         if (z->wanted && !z->wanted[v]) return;
         if (f->width == 1) hdi_real_backward_front(z, v, y, gather);
@@ -10447,7 +10456,7 @@ static void hdi_sweep_touch(const hdi_symbolic *s, int32_t i, char *active) {
  * The factor stays as it is. A front's Z22 stands where its update matrix stood: its life is that of the update matrix run backwards, so that the plan of
  * memory serves both. What is new, the columns of the pivots, lives in a scratch panel until the children have taken their parts. */
 
-enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 96, HDI_INV_PIVOTS = 24 };
+enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 48, HDI_INV_PIVOTS = 24, HDI_INV_SLICE = 6 };
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
  * sets of weights, at the entries of A's lower triangle in the order of sym->a_from, or on the diagonal by pivots. They are added to what is there. */
@@ -10468,7 +10477,7 @@ typedef struct hdi_inverse {
 typedef struct hdi_inverse_front {
     hdi_factor *f;
     double *panel, *z, *update;  /* L; Z of the pivots' columns in the same layout; Z22, a packed triangle */
-    double *T, *S, *M, *slices, *buffer;
+    double *T, *S, *M, *D, *slices, *buffer;
     int64_t m, p, u, k0, k1;
     int32_t v;
 } hdi_inverse_front;
@@ -10480,7 +10489,7 @@ static size_t hdi_inverse_buffer(int32_t width) {
 
 static size_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
     const int64_t w = hdi_least(p, HDI_PANEL), slices = width == 1 ? (m + w) * (w + HDI_REAL_NR) : 0;
-    return HDI_CAST(size_t, width * (stored + 2 * w * w + m * w) + slices) + hdi_inverse_buffer(width) + 64;
+    return HDI_CAST(size_t, width * (stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS) + slices) + hdi_inverse_buffer(width) + 64;
 }
 
 static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
@@ -10501,7 +10510,8 @@ static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scra
     w.T = w.z + f->width * (at[v + 1] - at[v]);
     w.S = w.T + f->width * most * most;
     w.M = w.S + f->width * most * most;
-    w.slices = w.M + f->width * w.m * most;
+    w.D = w.M + f->width * w.m * (most + HDI_INV_SLICE);
+    w.slices = w.D + f->width * (most + HDI_INV_PIVOTS);
     w.buffer = w.slices + (f->width == 1 ? (w.m + most) * (most + HDI_REAL_NR) : 0);
     return w;
 }
@@ -10541,77 +10551,81 @@ static void hdi_pack_inverse_gather(const hdi_inverse_front *w, int64_t i0, int6
     }
 }
 
-/* T = -L11^-1 and Z11 = L11^-T D^-1 L11^-1 of the block, by rows of w entries. */
+/* T = -L11^-T (from T L11' = -I, some columns at a time) and Z11 = L11^-T D^-1 L11^-1 of the block, by rows of as many entries. */
 static void hdi_pack_inverse_pivots(const hdi_inverse_front *w) {
     const hdi_pack_block l = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL), z = hdi_pack_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
     const int64_t n = w->k1 - w->k0, row = HDI_PACK * n;
     const double *dinv = w->f->dinv + HDI_PACK * (w->f->sym->super[w->v] + w->k0);
+    double *one = w->D + row;
+    hdi_pack_rows x;
     hdi_pack_job g;
-    int64_t i, k, i0;
-    int q;
+    int64_t i, k;
     memset(w->T, 0, HDI_CAST(size_t, n * row) * sizeof *w->T);
+    memset(&x, 0, sizeof x);
     memset(&g, 0, sizeof g);
-    g.a_col = HDI_PACK;
-    g.b_row = HDI_PACK;
-    g.b_col = row;
-    for (i0 = 0; i0 < n; i0 += HDI_INV_PIVOTS) {
-        const int64_t i1 = hdi_least(i0 + HDI_INV_PIVOTS, n);
-        g.a = l.at + i0 * l.row;
-        g.a_row = l.row;
-        g.b = w->T;
-        g.c = w->T + i0 * row;
-        g.c_row = row;
-        g.depth = i0;
-        g.store = 1;
-        if (i0) w->f->pack->multiply(&g, 0, i1 - i0, 0, i0);
-        g.store = 0;
-        for (i = i0; i < i1; i++) {              /* rows of the block itself */
-            g.a = l.at + i * l.row + HDI_PACK * i0;
-            g.b = w->T + i0 * row;
-            g.c = w->T + i * row;
-            g.depth = i - i0;
-            if (i > i0) w->f->pack->multiply(&g, 0, 1, 0, i);
-            for (q = 0; q < 4; q++) g.c[HDI_PACK * i + q] = -1;
+    for (i = 0; i < row; i++) w->D[i] = -dinv[i];
+    for (i = 0; i < HDI_PACK * hdi_least(n, HDI_INV_PIVOTS); i++) one[i] = (i & 4) == 0;
+    x.row = g.a_row = g.c_row = row;
+    x.dinv = one;
+    x.s_row = g.b_row = l.row;
+    g.a_col = g.b_col = HDI_PACK;
+    g.store = 1;
+    for (k = 0; k < n; k += HDI_INV_PIVOTS) {
+        const int64_t nb = hdi_least(n - k, HDI_INV_PIVOTS);
+        int q;
+        for (i = k; i < k + nb; i++)
+            for (q = 0; q < 4; q++) w->T[i * row + HDI_PACK * i + q] = -1;
+        g.c = w->T + HDI_PACK * k;
+        for (i = 0; i < k; i += HDI_INV_PIVOTS) {
+            g.a = w->T + HDI_PACK * i;
+            g.b = l.at + k * l.row + HDI_PACK * i;
+            g.depth = k - i;
+            w->f->pack->multiply(&g, i, i + HDI_INV_PIVOTS, 0, nb);
         }
+        x.panel = g.c;
+        x.s = l.at + k * l.row + HDI_PACK * k;
+        x.nb = HDI_CAST(int32_t, nb);
+        w->f->pack->solve_rows(&x, 0, k + nb);
     }
-    for (i = 0; i < n; i++) {                    /* S = -D^-1 T */
-        for (k = 0; k <= i; k++) hdi_pack_times(w->T + i * row + HDI_PACK * k, dinv + HDI_PACK * i, w->S + i * row + HDI_PACK * k);
-        for (k = 0; k < HDI_PACK * (i + 1); k++) w->S[i * row + k] = -w->S[i * row + k];
-        memset(w->S + i * row + HDI_PACK * (i + 1), 0, HDI_CAST(size_t, n - i - 1) * HDI_PACK * sizeof *w->S);
-    }
-    memset(&g, 0, sizeof g);
-    g.a_row = g.b_row = HDI_PACK;
-    g.a_col = g.b_col = row;
+    w->f->pack->scale(w->T, row, 0, n, 0, n, w->D, w->S);
+    g.b_row = row;
     g.c = z.at;
     g.c_row = z.row;
     g.lower = 1;
-    for (i0 = 0; i0 < n; i0 += HDI_INV_PIVOTS) { /* (T' S)(i,k) begins at row i */
-        const int64_t i1 = hdi_least(i0 + HDI_INV_PIVOTS, n);
-        g.a = w->T + i0 * row;
-        g.b = w->S + i0 * row;
-        g.depth = n - i0;
-        g.store = 1;
-        w->f->pack->multiply(&g, i0, i1, 0, i1);
+    for (i = 0; i < n; i += HDI_INV_PIVOTS) {    /* (T S')(i,k) begins at entry i */
+        g.a = w->T + HDI_PACK * i;
+        g.b = w->S + HDI_PACK * i;
+        g.depth = n - i;
+        w->f->pack->multiply(&g, i, hdi_least(i + HDI_INV_PIVOTS, n), 0, hdi_least(i + HDI_INV_PIVOTS, n));
     }
 }
 
-/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front; some columns at a time, as T is triangular. */
+/* M stands in slices of some columns, by rows: entry (row k1 + r, column j) at row r of slice j / HDI_INV_SLICE. Rows of a matrix of 128 columns are 8 KB apart,
+ * and a tile's columns of them would all fall into one set of the cache. */
+static double *hdi_pack_inverse_slice(const hdi_inverse_front *w, int64_t r, int64_t j) {
+    return w->M + HDI_PACK * (j * (w->m - w->k1) + r * HDI_INV_SLICE);
+}
+
+/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front; T is triangular. */
 static void hdi_pack_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
     const hdi_pack_block l = hdi_pack_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
     const int64_t n = w->k1 - w->k0;
     hdi_pack_job g;
-    int64_t k;
+    int64_t r, j;
     memset(&g, 0, sizeof g);
     g.a_row = l.row;
-    g.a_col = g.b_row = HDI_PACK;
-    g.b_col = g.c_row = HDI_PACK * n;
+    g.a_col = g.b_col = HDI_PACK;
+    g.b_row = HDI_PACK * n;
+    g.c_row = HDI_PACK * HDI_INV_SLICE;
     g.store = 1;
-    for (k = 0; k < n; k += HDI_INV_PIVOTS) {
-        g.a = hdi_pack_at(&l, r0, w->k0 + k);
-        g.b = w->T + HDI_PACK * (k * n + k);
-        g.c = w->M + HDI_PACK * ((r0 - w->k1) * n + k);
-        g.depth = n - k;
-        w->f->pack->multiply(&g, 0, r1 - r0, 0, hdi_least(n - k, HDI_INV_PIVOTS));
+    for (r = r0; r < r1; r += HDI_INV_ROWS) {
+        for (j = 0; j < n; j += HDI_INV_SLICE) {
+            g.a = hdi_pack_at(&l, r, w->k0 + j);
+            g.b = w->T + HDI_PACK * (j * n + j);
+            g.c = hdi_pack_inverse_slice(w, r - w->k1, j);
+            g.depth = n - j;
+            w->f->pack->multiply(&g, 0, hdi_least(r1 - r, HDI_INV_ROWS), 0, hdi_least(n - j, HDI_INV_SLICE));
+        }
     }
 }
 
@@ -10620,44 +10634,48 @@ static void hdi_pack_inverse_below(const hdi_inverse_front *w, int64_t r0, int64
     const hdi_pack_block z = hdi_pack_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
     const int64_t n = w->k1 - w->k0;
     hdi_pack_job g;
-    int64_t r, j;
+    int64_t r, d, j;
     memset(&g, 0, sizeof g);
     g.a = buffer;
     g.a_col = g.b_row = HDI_PACK;
-    g.b_col = HDI_PACK * n;
+    g.b_col = HDI_PACK * HDI_INV_SLICE;
     g.c_row = z.row;
     for (r = r0; r < r1; r += HDI_INV_ROWS) {
         const int64_t end = hdi_least(r + HDI_INV_ROWS, r1);
-        g.c = hdi_pack_at(&z, r, w->k0);
-        for (j = w->k1; j < w->m; j += HDI_INV_DEPTH) {
-            g.depth = hdi_least(w->m - j, HDI_INV_DEPTH);
+        for (d = w->k1; d < w->m; d += HDI_INV_DEPTH) {
+            g.depth = hdi_least(w->m - d, HDI_INV_DEPTH);
             g.a_row = HDI_PACK * g.depth;
-            g.b = w->M + (j - w->k1) * HDI_PACK * n;
-            g.store = j == w->k1;
-            hdi_pack_inverse_gather(w, r, end, j, j + g.depth, buffer);
-            w->f->pack->multiply(&g, 0, end - r, 0, n);
+            g.store = d == w->k1;
+            hdi_pack_inverse_gather(w, r, end, d, d + g.depth, buffer);
+            for (j = 0; j < n; j += HDI_INV_SLICE) {
+                g.b = hdi_pack_inverse_slice(w, d - w->k1, j);
+                g.c = hdi_pack_at(&z, r, w->k0 + j);
+                w->f->pack->multiply(&g, 0, end - r, 0, hdi_least(n - j, HDI_INV_SLICE));
+            }
         }
     }
 }
 
-/* Rows [r0,r1) of Z11 -= M' Z21, counted from the block's first pivot. */
+/* Rows [r0,r1) of Z11 -= Z21' M, counted from the block's first pivot. */
 static void hdi_pack_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
     const hdi_pack_block z = hdi_pack_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
-    const int64_t n = w->k1 - w->k0;
     hdi_pack_job g;
-    int64_t j;
+    int64_t d, j;
     memset(&g, 0, sizeof g);
     g.a_row = g.b_row = HDI_PACK;
-    g.a_col = HDI_PACK * n;
-    g.b_col = z.row;
+    g.a_col = z.row;
+    g.b_col = HDI_PACK * HDI_INV_SLICE;
     g.c = z.at;
     g.c_row = z.row;
     g.lower = 1;
-    for (j = w->k1; j < w->m; j += HDI_INV_DEPTH) {
-        g.depth = hdi_least(w->m - j, HDI_INV_DEPTH);
-        g.a = w->M + (j - w->k1) * HDI_PACK * n;
-        g.b = hdi_pack_at(&z, j, w->k0);
-        w->f->pack->multiply(&g, r0, r1, 0, r1);
+    for (d = w->k1; d < w->m; d += HDI_INV_DEPTH) {
+        g.depth = hdi_least(w->m - d, HDI_INV_DEPTH);
+        g.a = hdi_pack_at(&z, d, w->k0);
+        for (j = 0; j < r1; j += HDI_INV_SLICE) {
+            g.b = hdi_pack_inverse_slice(w, d - w->k1, j);
+            g.b_first = j;
+            w->f->pack->multiply(&g, r0 > j ? r0 : j, r1, j, hdi_least(r1, j + HDI_INV_SLICE));
+        }
     }
 }
 
@@ -10741,11 +10759,11 @@ static void hdi_real_inverse_pivots(const hdi_inverse_front *w) {
     int64_t i, j, k;
     memset(w->T, 0, HDI_CAST(size_t, n * n) * sizeof *w->T);
     for (k = 0; k < n; k++) {
-        double *HDI_RESTRICT t = w->T + k * n;
+        double *t = w->T + k * n;
         t[k] = -1;
-        for (j = k; j < n; j++) {
-            const double *HDI_RESTRICT c = l + j * w->m, x = t[j];
-            for (i = j + 1; i < n; i++) t[i] -= c[i] * x;
+        for (j = k; j < n; j += 8) {
+            const int64_t nc = hdi_least(n - j, 8);
+            w->f->real->forward(t + j, l + j * (w->m + 1), w->m, HDI_CAST(int32_t, nc), n - j - nc, NULL, 0, 0);
         }
         for (i = 0; i < n; i++) w->S[k * n + i] = -dinv[i] * t[i];
     }
@@ -10890,6 +10908,7 @@ static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scrat
     const int real = z->f->width == 1;
     hdi_inverse_front w = hdi_inverse_open(z->f, v, scratch);
     int32_t k;
+    hdi_factor_fetch(z->f, v, 1);
     for (w.k0 = (w.p - 1) / HDI_PANEL * HDI_PANEL; w.k0 >= 0; w.k0 -= HDI_PANEL) {
         w.k1 = hdi_least(w.k0 + HDI_PANEL, w.p);
         if (real) hdi_real_inverse_pivots(&w);
@@ -16726,11 +16745,11 @@ static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, 
 }
 
 /* Adds a0 B^-1 where B is diagonal, and bounds the rational error: that of an entry (i,j) is at most the larger of those of (i,i) and (j,j). */
-static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
+static int32_t hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
     const hdi_symbolic *s = &m->sym;
     const hd_laplacian *lap = m->lap;
     double largest = 0, most = 0;
-    int32_t v, i;
+    int32_t v, i, worst = 0;
     int64_t n;
     if (lap->B) x->uniform += fabs(m->set.a0);
     for (v = 0; v < s->n_super; v++) {
@@ -16740,9 +16759,35 @@ static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
             if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
             largest = hdi_max(largest, fabs(x->k[n]));
             most = hdi_max(most, hdi_entry_error(x, x->g[n], lap->b_diag[i], lap->b_ratio));
+            if (fabs(x->k[n]) == largest) worst = i;
         }
     }
     if (largest > 0) rep->error_rational = rep->error_bound = most / largest;
+    return worst;
+}
+
+/* Rounding, by a solve: what the entries of a row differ by from those of vertex v's column, relative to the largest of them. (Columns conserve heat, which
+ * uniform sets do not by themselves: with these it shows their error too.) */
+static void hdi_edges_probe(hdi_heat_call *h, int32_t v, const double *values) {
+    hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const hd_rational set = heat->elim.set;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    double *u = HDI_TAKE(&scope, double, lap->n), off = 0, largest = 0;
+    hd_report probe;
+    int64_t p;
+    if (u && hdi_direct_columns(heat, h->t / heat->scale, HD_KERNEL_SYMMETRIC, &set, 1, &v, u, HDI_CAST(size_t, lap->n), &probe) < 0) *h->e = probe.error;
+    if (h->e->status >= 0) {
+        const int32_t row = lap->row[v];
+        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
+            largest = hdi_max(largest, fabs(values[p]));
+            off = hdi_max(off, fabs(u[lap->vertex[lap->L.col[p]]] - values[p]));
+        }
+        h->rep->error_solver = largest > 0 ? off / largest + DBL_EPSILON : 0;
+        h->rep->error_bound += h->rep->error_solver;
+        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
+    }
+    hdi_scope_end(&scope);
 }
 
 /* With the set's degree, into values. */
@@ -16753,8 +16798,9 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
     double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
     hdi_entries x;
     if (room && hdi_entries_make(h, 0, room, size, &x) >= 0) {
-        hdi_edges_judge(&heat->elim, &x, h->rep);
+        const int32_t worst = hdi_edges_judge(&heat->elim, &x, h->rep);
         hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+        if (heat->elim.sym.n > 0) hdi_edges_probe(h, heat->elim.lap->vertex[worst], values);
     }
     return hdi_scope_end(&scope);
 }

@@ -1404,6 +1404,36 @@ class Formats(Case):
         constant = self.file("r1.npy", npy_bytes([[3.0]] * 100, flat=True))
         self.good("render", self.patch, "--input", constant, "-o", out)
 
+    def test_render_side_by_side(self):
+        """Several fields, or several meshes with a field each, in one picture with one range of colours."""
+        low, high = self.file("low.txt", "".join("%d\n" % (i % 5) for i in range(100))), self.file("high.txt", "".join("%d\n" % i for i in range(100)))
+        other = self.path("other.ply")
+        self.good("kernel", self.patch, "--source", 8, "--t", "5h2", "-o", other)
+        out = self.path("pair.png")
+
+        def draw(*args):
+            self.good("render", *args, "-o", out, "--size", "400x200", "--isolines", 0, "--view", "0,0", "--title", "x")
+            with open(out, "rb") as g:
+                data = g.read()
+            self.assertEqual(read_png(data)[:2], (400, 200))
+            return data
+
+        pair = draw(self.patch, "--input", low, "--input", high)
+        self.assertNotEqual(pair, draw(self.patch, "--input", high, "--input", high))
+        self.assertNotEqual(pair, draw(self.patch, "--input", low, "--input", low))
+        # the range is that of both: giving it changes nothing, and the same mesh under two names is as good as one (captions apart)
+        self.assertEqual(pair, draw(self.patch, "--input", low, "--input", high, "--range", "0,99"))
+        draw(self.patch, other, "--input", low, "--input", high)
+        report = json.loads(self.good("render", self.patch, other, "--input", low, "--input", high, "-o", out, "--json").stderr)
+        self.assertEqual(report["panels"], 2)
+        self.assertIn("each mesh", self.bad(2, "render", self.patch, other, "--input", low, "-o", out))
+        self.assertIn("each mesh", self.bad(2, "render", self.patch, self.patch, "--input", low, "--input", low, "--input", low, "-o", out))
+        self.assertIn("only once", self.bad(2, "render", self.patch, "--input", "-", "--input", "-", "-o", out))
+        self.assertIn("one mesh", self.bad(2, "info", self.patch, other))
+        self.assertIn("twelve", self.bad(2, "render", self.patch, *(["--input", low] * 13), "-o", out))
+        self.assertIn("rows", self.bad(1, "render", self.patch, self.small, "--input", low, "--input", high, "-o", out))
+        self.assertIn("high.txt", self.bad(1, "render", self.patch, "--input", self.file("two.txt", "1 2\n" * 100), "--input", high, "--column", 1, "-o", out))
+
     def test_outputs_can_be_read_again(self):
         for e in ("ply", "obj", "npy", "txt", "csv"):
             out = self.path("again." + e)

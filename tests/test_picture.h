@@ -389,6 +389,39 @@ static void tpic_test_isolines(void)
     shape_free(&s);
 }
 
+/* A panel of another mesh is seen from where it is warm, or with one_view from where the first is: as if it were the same mesh. */
+static void tpic_test_one_view(void)
+{
+    shape s = shape_bumpy(3, 4), copy = shape_bumpy(3, 4);
+    double *f = (double *)malloc(2 * (size_t)s.n * sizeof *f);
+    pic_opts o = tpic_small();
+    pic_panel p[2];
+    pic_image same, other, one;
+    int32_t i;
+    CHECK(s.xyz && copy.xyz && f);
+    if (s.xyz && copy.xyz && f) {
+        const size_t size = 3 * (size_t)o.width * (size_t)o.height;
+        for (i = 0; i < s.n; i++) {
+            f[i] = exp(-4 * shape_distance(s.xyz + 3 * i, s.xyz));
+            f[s.n + i] = exp(-4 * shape_distance(s.xyz + 3 * i, s.xyz + 9));
+        }
+        p[0] = tpic_panel(&s, f);
+        p[1] = tpic_panel(&s, f + s.n);
+        CHECK(pic_render_grid(&same, p, 2, &o) == PIC_OK);
+        p[1].xyz = copy.xyz;
+        CHECK(pic_render_grid(&other, p, 2, &o) == PIC_OK);
+        o.one_view = 1;
+        CHECK(pic_render_grid(&one, p, 2, &o) == PIC_OK);
+        CHECK(same.rgb && other.rgb && one.rgb && memcmp(same.rgb, other.rgb, size) != 0 && memcmp(same.rgb, one.rgb, size) == 0);
+        pic_image_free(&same);
+        pic_image_free(&other);
+        pic_image_free(&one);
+    }
+    free(f);
+    shape_free(&s);
+    shape_free(&copy);
+}
+
 static void tpic_test_scale(void)
 {
     static const double v[5] = {-1e-18, 1e-9, 1e-3, 10, (double)NAN};
@@ -671,6 +704,7 @@ static void test_picture(void)
     tpic_test_colormaps();
     tpic_test_scale();
     tpic_test_isolines();
+    tpic_test_one_view();
     tpic_test_degenerate();
     tpic_test_picture_of_sphere();
     tpic_test_simple_shapes();

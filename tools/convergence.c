@@ -4,8 +4,9 @@
 
    Unit sphere and torus of revolution (R = 2, r = 0.7), meshes of four sizes; of each the first 20 eigenvalues and eight columns of the symmetric
    heat kernel, against the smooth ones: in closed form on the sphere; on the torus, where u separates, from Fourier series in v of the
-   functions exp(imu) f(v). The order is that of the last halving. "shaken" meshes have their vertices moved along the surface at random, by up to a
-   fifth of an edge: regular ones flatter. */
+   functions exp(imu) f(v). The order is that of the last step. "shaken" meshes have their vertices moved along the surface at random, by up to a
+   fifth of an edge: regular ones flatter. Then the same for sets of points, independent of each other (random) or at a distance (blue noise), with the
+   default bandwidth and with one that shrinks more slowly than the area of a point; and how well the areas of points sum up. Takes some minutes. */
 
 #if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -18,6 +19,8 @@
 
 static const double PI = 3.14159265358979324, R = 2, r = 0.7;
 enum { COUNT = 20, BLOCK = 36, LEVELS = 4, SOURCES = 8, WAVES = 24, TURNS = 40, NODES = 192 };
+
+static const int32_t POINTS[LEVELS] = {500, 1260, 3175, 8000};
 
 static void stop(const char *what, const hd_error *e) {
     fprintf(stderr, "convergence: %s: %s\n", what, e ? e->text : "");
@@ -158,6 +161,29 @@ static shape_poly surface(int torus, faces kind, int level, int shaken) {
     return s;
 }
 
+/* A random point of this torus, evenly spread: the outside is met more often. */
+static void on_torus(uint64_t *seed, double p[3]) {
+    const double u = 2 * PI * shape_uniform(seed);
+    double v, q;
+    do {
+        v = 2 * PI * shape_uniform(seed);
+        q = R + r * cos(v);
+    } while ((R + r) * shape_uniform(seed) > q);
+    p[0] = q * cos(u);
+    p[1] = r * sin(v);
+    p[2] = q * sin(u);
+}
+
+static double true_area(int torus) { return torus ? 4 * PI * PI * R * r : 4 * PI; }
+
+static shape_poly points_on(int torus, int32_t n, int blue) {
+    shape t = shape_points(n, torus ? on_torus : shape_on_sphere, true_area(torus), blue, 1);
+    shape_poly s = shape_poly_of(&t);
+    if (!s.xyz) stop("out of memory", NULL);
+    shape_free(&t);
+    return s;
+}
+
 /* The vertices nearest to places that are the same for all meshes. */
 static void sources_on(const shape_poly *s, int torus, int32_t *source) {
     uint64_t seed = 9;
@@ -211,6 +237,7 @@ static void eigenvalues(const hd_laplacian *lap, double *lambda) {
     uint64_t seed = 1;
     int64_t p;
     size_t i;
+    const double enough = lap->mesh.n_faces ? 1e-11 : 1e-6;
     int step;
     memset(&o, 0, sizeof o);
     o.xyz = lap->xyz;
@@ -219,7 +246,7 @@ static void eigenvalues(const hd_laplacian *lap, double *lambda) {
             val[p] = lap->L.val[p] + (lap->B ? lap->B[p] : (size_t)lap->L.col[p] == i ? lap->mass[i] : 0);
     if (hd_ldl_analyse(&f, &lap->L, &o, NULL, &e) < 0 || hd_ldl_factor(f, val, NULL, &e) < 0) stop("factor", &e);
     for (i = 0; i < BLOCK * n; i++) X[i] = dense_signed(&seed);
-    for (step = 0; step < 100 && change > 1e-11; step++) {
+    for (step = 0; step < 100 && change > enough; step++) {
         for (i = 0; i < BLOCK; i++) hd_laplacian_apply(lap, 0, 1, X + i * n, Y + i * n, NULL);
         if (hd_ldl_solve(f, BLOCK, Y, 0, Y, 0, &e) < 0) stop("solve", &e);
         ritz(lap, Y, X, lambda);
@@ -232,56 +259,62 @@ static void eigenvalues(const hd_laplacian *lap, double *lambda) {
     free(Y);
 }
 
-/* Largest relative error of the eigenvalues 2 to COUNT, and of the kernel's columns, at a vertex and in the mean square, relative to their largest value. */
-static void errors(const shape_poly *s, int torus, hd_laplacian_kind kind, double *h, double out[3]) {
-    const double t = torus ? 0.3 : 0.1;
-    int32_t source[SOURCES], i;
-    double lambda[COUNT], want[COUNT], *k = DENSE_NEW(double, SOURCES * s->n), *u = DENSE_NEW(double, SOURCES * s->n), top;
+/* What a row of a table is about. Points: bandwidth 0 is the default; p: the default's for the fewest points, then shrinking like h^p. */
+typedef struct operator_def { const char *name; hd_laplacian_kind kind; int points, tufted; double bandwidth; } operator_def;
+
+static hd_laplacian *laplacian(const shape_poly *s, const operator_def *op, double bandwidth) {
     hd_laplacian_opts lo;
-    hd_heat_opts ho;
     hd_laplacian *lap = NULL;
+    hd_error e;
+    hd_status status;
+    memset(&lo, 0, sizeof lo);
+    lo.kind = op->kind;
+    lo.bandwidth = bandwidth;
+    if (op->points && op->tufted) status = hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &lo, &e);
+    else if (op->points) status = hd_laplacian_points(&lap, s->xyz, s->n, &lo, &e);
+    else status = hd_laplacian_polygons(&lap, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &lo, &e);
+    if (status < 0) stop("laplacian", &e);
+    if (lap->n_active != lap->n) stop("vertices without mass", NULL);
+    return lap;
+}
+
+/* Largest relative error of the eigenvalues 2 to COUNT, and of the kernel's columns, at a vertex and in the mean square, relative to their largest value. */
+static void errors(const shape_poly *s, int torus, const hd_laplacian *lap, double out[3]) {
+    const int exponential = lap->kind == HD_LAPLACIAN_EXP;                       /* tends to Laplacian/area, with masses of 1 for area/n */
+    const double t = torus ? 0.3 : 0.1, slower = exponential ? lap->area : 1, thinner = exponential ? lap->n / lap->area : 1;
+    int32_t source[SOURCES], i;
+    double lambda[COUNT], want[COUNT], *k = DENSE_NEW(double, SOURCES * s->n), *u = DENSE_NEW(double, SOURCES * s->n), top, sum = 0;
+    hd_heat_opts ho;
     hd_heat *heat = NULL;
     hd_report report;
     hd_error e;
-    memset(&lo, 0, sizeof lo);
     memset(&ho, 0, sizeof ho);
-    lo.kind = kind;
-    ho.degree = 14;
+    ho.degree = lap->mesh.n_faces ? 14 : 0;      /* points are far from such digits */
     sources_on(s, torus, source);
-    if (hd_laplacian_polygons(&lap, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &lo, &e) < 0) stop("laplacian", &e);
     if (hd_heat_create(&heat, lap, &ho, &e) < 0) stop("heat", &e);
-    if (hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, SOURCES, source, u, 0, &report) < 0) stop("heat", &report.error);
+    if (hd_heat_columns(heat, t * slower, HD_KERNEL_SYMMETRIC, SOURCES, source, u, 0, &report) < 0) stop("heat", &report.error);
     if (torus) torus_kernel(s, t, source, k);
     else sphere_kernel(s, t, source, k);
     eigenvalues(lap, lambda);
     smooth_eigenvalues(torus, want);
     out[0] = out[1] = out[2] = 0;
-    for (i = 1; i < COUNT; i++) out[0] = fmax(out[0], fabs(lambda[i] / want[i] - 1));
+    for (i = 1; i < COUNT; i++) out[0] = fmax(out[0], fabs(slower * lambda[i] / want[i] - 1));
     top = dense_max_abs(k, SOURCES * s->n);
     for (i = 0; i < SOURCES * s->n; i++) {
-        const double off = (u[i] - k[i]) / top;
+        const double off = (thinner * u[i] - k[i]) / top, mass = lap->mass[i % s->n];
         out[1] = fmax(out[1], fabs(off));
-        out[2] += lap->mass[i % s->n] * off * off / (SOURCES * lap->area);
+        out[2] += mass * off * off;
+        sum += mass;
     }
-    out[2] = sqrt(out[2]);
-    *h = lap->h;
+    out[2] = sqrt(out[2] / sum);
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
     free(k);
     free(u);
 }
 
-static void row(const char *name, int torus, faces mesh, hd_laplacian_kind kind, int shaken) {
-    double e[LEVELS][3], h[LEVELS];
-    int32_t n = 0;
+static void print_row(const char *name, int32_t n, double (*e)[3], const double *h) {
     int level, q;
-    for (level = 0; level < LEVELS; level++) {
-        shape_poly s = surface(torus, mesh, level, shaken);
-        errors(&s, torus, kind, h + level, e[level]);
-        n = s.n;
-        shape_poly_free(&s);
-    }
-    printf("| %s%s | %d |", name, shaken ? ", shaken" : "", (int)n);
+    printf("| %s | %d |", name, (int)n);
     for (q = 0; q < 3; q++) {
         for (level = 0; level < LEVELS; level++) printf(" %.1e%s", e[level][q], level + 1 < LEVELS ? "," : " |");
         printf(" %.2f |", log(e[LEVELS - 2][q] / e[LEVELS - 1][q]) / log(h[LEVELS - 2] / h[LEVELS - 1]));
@@ -290,23 +323,92 @@ static void row(const char *name, int torus, faces mesh, hd_laplacian_kind kind,
     fflush(stdout);
 }
 
+static void mesh_row(const operator_def *op, int torus, faces mesh, int shaken) {
+    double e[LEVELS][3], h[LEVELS];
+    char name[80];
+    int32_t n = 0;
+    int level;
+    for (level = 0; level < LEVELS; level++) {
+        shape_poly s = surface(torus, mesh, level, shaken);
+        hd_laplacian *lap = laplacian(&s, op, 0);
+        errors(&s, torus, lap, e[level]);
+        h[level] = lap->h;
+        n = s.n;
+        hd_laplacian_free(lap);
+        shape_poly_free(&s);
+    }
+    snprintf(name, sizeof name, "%s%s", op->name, shaken ? ", shaken" : "");
+    print_row(name, n, e, h);
+}
+
+/* h: the typical distance. */
+static void point_row(const operator_def *op, int torus, int blue) {
+    double e[LEVELS][3], h[LEVELS], first = 0;
+    char name[80];
+    int32_t n = 0;
+    int level;
+    for (level = 0; level < LEVELS; level++) {
+        shape_poly s = points_on(torus, n = POINTS[level], blue);
+        hd_laplacian *lap;
+        h[level] = sqrt(true_area(torus) / n);
+        lap = laplacian(&s, op, op->bandwidth > 0 && level > 0 ? first * pow(h[level] / h[0], op->bandwidth) : 0);
+        if (level == 0) first = lap->points.bandwidth;
+        errors(&s, torus, lap, e[level]);
+        hd_laplacian_free(lap);
+        shape_poly_free(&s);
+    }
+    snprintf(name, sizeof name, "%s, %s", op->name, blue ? "blue noise" : "random");
+    print_row(name, n, e, h);
+}
+
+static void area_table(void) {
+    static const operator_def cells = {"", HD_LAPLACIAN_VORONOI_EXP, 1, 0, 0}, stars = {"", HD_LAPLACIAN_FEM, 1, 1, 0};
+    enum { N = 10000 };
+    int torus, blue;
+    printf("Areas of %d points, summed, over that of the surface, less 1\n\n| points | Voronoi cells | stars (tufted) |\n|---|---|---|\n", N);
+    for (torus = 0; torus < 2; torus++)
+        for (blue = 0; blue < 2; blue++) {
+            shape_poly s = points_on(torus, N, blue);
+            hd_laplacian *lap = laplacian(&s, &cells, 0), *tufted = laplacian(&s, &stars, 0);
+            printf("| %s, %s | %+.2e | %+.2e |\n", torus ? "torus" : "sphere", blue ? "blue noise" : "random", lap->area / true_area(torus) - 1,
+                   tufted->area / true_area(torus) - 1);
+            hd_laplacian_free(lap);
+            hd_laplacian_free(tufted);
+            shape_poly_free(&s);
+        }
+}
+
+static const struct { operator_def op; faces mesh; } MESHES[] = {
+    {{"fem, triangles", HD_LAPLACIAN_FEM, 0, 0, 0}, TRIANGLES},
+    {{"voronoi-cot, triangles", HD_LAPLACIAN_VORONOI_COT, 0, 0, 0}, TRIANGLES},
+    {{"polygon, triangles", HD_LAPLACIAN_POLYGON, 0, 0, 0}, TRIANGLES},
+    {{"polygon, quadrilaterals", HD_LAPLACIAN_POLYGON, 0, 0, 0}, QUADS},
+    {{"fem, split quadrilaterals", HD_LAPLACIAN_FEM, 0, 0, 0}, QUADS},
+    {{"polygon, hexagons", HD_LAPLACIAN_POLYGON, 0, 0, 0}, HEXAGONS},
+    {{"fem, split hexagons", HD_LAPLACIAN_FEM, 0, 0, 0}, HEXAGONS}};
+
+static const operator_def CLOUDS[] = {
+    {"voronoi-exp", HD_LAPLACIAN_VORONOI_EXP, 1, 0, 0},
+    {"voronoi-exp, bandwidth like h^1.5", HD_LAPLACIAN_VORONOI_EXP, 1, 0, 1.5},
+    {"exp", HD_LAPLACIAN_EXP, 1, 0, 0},
+    {"exp, bandwidth like h^1.5", HD_LAPLACIAN_EXP, 1, 0, 1.5},
+    {"tufted, fem", HD_LAPLACIAN_FEM, 1, 1, 0},
+    {"tufted, voronoi-cot", HD_LAPLACIAN_VORONOI_COT, 1, 1, 0}};
+
 int main(void) {
-    int torus, shaken;
+    int torus, second;
+    size_t q;
     torus_modes();
     for (torus = 0; torus < 2; torus++) {
         printf("%s\n\n| operator | vertices | eigenvalues 2 to %d, largest relative error | order | k_t, largest error | order | k_t, mean square | order |\n"
                "|---|---|---|---|---|---|---|---|\n", torus ? "Torus, t = 0.3" : "Sphere, t = 0.1", COUNT);
-        for (shaken = 0; shaken < 2; shaken++) {
-            row("fem, triangles", torus, TRIANGLES, HD_LAPLACIAN_FEM, shaken);
-            row("voronoi-cot, triangles", torus, TRIANGLES, HD_LAPLACIAN_VORONOI_COT, shaken);
-            row("polygon, triangles", torus, TRIANGLES, HD_LAPLACIAN_POLYGON, shaken);
-            row("polygon, quadrilaterals", torus, QUADS, HD_LAPLACIAN_POLYGON, shaken);
-            row("fem, split quadrilaterals", torus, QUADS, HD_LAPLACIAN_FEM, shaken);
-            row("polygon, hexagons", torus, HEXAGONS, HD_LAPLACIAN_POLYGON, shaken);
-            row("fem, split hexagons", torus, HEXAGONS, HD_LAPLACIAN_FEM, shaken);
-        }
+        for (second = 0; second < 2; second++)
+            for (q = 0; q < sizeof MESHES / sizeof *MESHES; q++) mesh_row(&MESHES[q].op, torus, MESHES[q].mesh, second);
+        for (second = 0; second < 2; second++)
+            for (q = 0; q < sizeof CLOUDS / sizeof *CLOUDS; q++) point_row(CLOUDS + q, torus, second);
         printf("\n");
     }
+    area_table();
     free(modes);
     return 0;
 }

@@ -448,9 +448,13 @@ enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO =
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_AUTO } time_unit;
 typedef struct time_spec { time_unit unit; double value; } time_spec;   /* value: the number, or for auto how many */
 
+enum { MAX_PANELS = 12 };            /* of a picture */
+
 typedef struct options {
     unsigned command;
     const char *mesh;
+    const char *inputs[MAX_PANELS], *meshes[MAX_PANELS];        /* of render: all of them; input and mesh are the first */
+    int n_inputs, n_meshes;
     time_spec *times;                /* as written; absolute times are known once h is */
     int n_times;
     int64_t *sources;                /* 64 bits, so that ids beyond any mesh are told as what they are */
@@ -537,6 +541,15 @@ static int parse_text(options *o, const option_def *def, const char *text)
 {
     *(const char **)field_of(o, def) = text;
     return *text != 0;
+}
+
+static int parse_inputs(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    if (!*text || o->n_inputs == MAX_PANELS) return 0;
+    if (!o->n_inputs) o->input = text;
+    o->inputs[o->n_inputs++] = text;
+    return 1;
 }
 
 static int parse_words(options *o, const option_def *def, const char *text)
@@ -700,8 +713,11 @@ static const option_def OPTIONS[] = {
       "vertices to begin with (default: the first that has mass)" },
     { "count", 0, CMD_SAMPLE, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
       "how many vertices, those of --source included" },
-    { "input", 0, CMD_DIFFUSE | CMD_RENDER, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
+    { "input", 0, CMD_DIFFUSE, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
       "a field: a row per vertex, one or more columns, as text or .npy" },
+    { "input", 0, CMD_RENDER, 0, parse_inputs, 0, NULL, 0, 0, "F", "a file name, up to twelve times",
+      "a field: a row per vertex, one or more columns, as text or .npy.\nGiven several times: pictures side by side in the same colours,\n"
+      "of one mesh or of as many meshes" },
     { "input", 0, CMD_PAIRS, 0, parse_text, AT(input), NULL, 0, 0, "P", "a file name", "pairs of vertices: two ids a line, as text or .npy" },
     { "definition", 0, CMD_METRIC, 0, parse_words, AT(definition), DEFINITIONS, 0, 0, "NAME", "classical, weighted, commute or biharmonic",
       "classical (default): d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j);\nweighted: d^2 = (e_i - e_j)' B K_2t (e_i - e_j); commute and\nbiharmonic: without --t" },
@@ -792,7 +808,7 @@ static const command_def COMMANDS[] = {
     { "pairs", CMD_PAIRS, "kernel and diffusion distance of pairs of vertices", "--input P --t T[,T..] [OPTIONS] MESH" },
     { "hks", CMD_HKS, "heat kernel signature of every vertex", "--t T[,T..] [OPTIONS] MESH" },
     { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH" },
-    { "render", CMD_RENDER, "a picture of a field on the mesh", "--input F -o PICTURE.png [OPTIONS] MESH" },
+    { "render", CMD_RENDER, "a picture of a field on the mesh", "--input F [--input F..] -o PICTURE.png [OPTIONS] MESH [MESH..]" },
     { "demo", CMD_DEMO, "all of it on a shape made in memory: start here", "[-o FOLDER] [OPTIONS]" },
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
@@ -878,8 +894,10 @@ static int take_mesh(options *o, const char *arg)
 {
     if (o->command == CMD_DEMO) return fail(USAGE, "demo makes its own mesh and takes none, but '%.200s' is given", arg);
     if (!*arg) return fail(USAGE, "the mesh takes a file name or - (standard input), not ''");
-    if (o->mesh) return fail(USAGE, "one mesh at a time: '%.200s' and then '%.200s'", o->mesh, arg);
-    o->mesh = arg;
+    if (o->mesh && o->command != CMD_RENDER) return fail(USAGE, "one mesh at a time: '%.200s' and then '%.200s'", o->mesh, arg);
+    if (o->n_meshes == MAX_PANELS) return fail(USAGE, "render takes at most %d meshes, but '%.200s' is one more", MAX_PANELS, arg);
+    if (!o->mesh) o->mesh = arg;
+    o->meshes[o->n_meshes++] = arg;
     return DONE;
 }
 
@@ -981,6 +999,17 @@ static int check_intrinsic(const options *o)
     return DONE;
 }
 
+/* One mesh for all fields, or one for each; and a stream can be read but once. */
+static int check_render(const options *o)
+{
+    int i, streams = 0;
+    if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
+        return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes", o->n_inputs, o->n_meshes);
+    for (i = 0; i < o->n_inputs; i++) streams += strcmp(o->inputs[i], "-") == 0;
+    for (i = 0; i < o->n_meshes; i++) streams += strcmp(o->meshes[i], "-") == 0;
+    return streams > 1 ? fail(USAGE, "--input takes a file name here: standard input can be read only once") : DONE;
+}
+
 static int check_options(const options *o)
 {
     const char *name = command_name(o->command);
@@ -998,6 +1027,7 @@ static int check_options(const options *o)
     if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE || (code = check_method(o)) != DONE) return code;
     if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
         return fail(USAGE, "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
+    if (o->command == CMD_RENDER && (code = check_render(o)) != DONE) return code;
     if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
         return fail(USAGE, "--input takes a file name here: the mesh comes from standard input already");
     return check_output(o);
@@ -1049,6 +1079,7 @@ static void print_help(void)
            "  heatdiff geodesic --source 0 bunny.obj -o geodesic.png\n"
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
+           "  heatdiff render --input a.npy --input b.npy a.obj b.obj -o pair.png\n"
            "\nMeshes: OBJ, OFF, PLY, STL; - reads standard input. Vertices are counted from 0.\n"
            "Results: .txt .csv .npy .ply .obj .vtu .png by the extension of -o; without -o text on standard output.\n"
            "Exit codes: 0 done, 1 input or computation failed, 2 the command line is wrong, 130 interrupted.\n");
@@ -2245,15 +2276,17 @@ static pic_panel picture_panel(const mesh_data *mesh, const double *field)
 
 /* Heat is never negative, computed heat can be, by rounding or a hair. Colours then begin at 0: else the isoline of 0 would run
  * through the noise. */
-static void picture_from_zero(pic_opts *opts, const pic_panel *panel)
+static void picture_from_zero(pic_opts *opts, const pic_panel *panels, int n_panels)
 {
     double low = HUGE_VAL, high = -HUGE_VAL;
     int32_t i;
+    int k;
     if (opts->lo < opts->hi || opts->log_decades > 0) return;
-    for (i = 0; i < panel->n; i++) {
-        if (panel->field[i] < low) low = panel->field[i];
-        if (panel->field[i] > high) high = panel->field[i];
-    }
+    for (k = 0; k < n_panels; k++)
+        for (i = 0; i < panels[k].n; i++) {
+            if (panels[k].field[i] < low) low = panels[k].field[i];
+            if (panels[k].field[i] > high) high = panels[k].field[i];
+        }
     if (low < 0 && -low < 1e-4 * high) {
         opts->lo = 0;
         opts->hi = high;
@@ -2338,7 +2371,7 @@ static int write_png(const char *path, const run *r, const result *res, const ch
     snprintf(subtitle, sizeof subtitle, "%.200s, %ld %s", base_name(r->mesh_name), (long)r->mesh.n, r->mesh.n_tri ? "vertices" : "points");
     opts.title = r->o->title ? r->o->title : title;
     opts.subtitle = subtitle;
-    picture_from_zero(&opts, &panel);
+    picture_from_zero(&opts, &panel, 1);
     panel.markers = marker;
     panel.n_markers = marker != NULL;
     return write_picture(path, &panel, 1, &opts);
@@ -2707,47 +2740,90 @@ static int command_diffuse(run *r)
     return code;
 }
 
-static void report_render(const run *r, const field_data *field)
+/* A field of render and the mesh it is on. */
+typedef struct view_data { mesh_data own; const mesh_data *mesh; const char *mesh_name; field_data field; } view_data;
+
+static void report_render(const run *r, const view_data *views)
 {
+    const options *o = r->o;
     json j;
-    if (r->o->json) {
+    if (o->json) {
         json_begin(&j, r, stderr);
-        json_text(&j, "input", r->o->input);
-        json_integer(&j, "columns", field->columns);
-        json_integer(&j, "column", r->o->column);
+        json_text(&j, "input", o->input);
+        json_integer(&j, "columns", views->field.columns);
+        json_integer(&j, "column", o->column);
+        json_integer(&j, "panels", o->n_inputs);
         json_end(&j, r);
-    } else if (!r->o->quiet)
-        fprintf(stderr, "%s: %ld vertices, column %ld of %ld from %s, %.3g s\n", r->mesh_name, (long)r->mesh.n, r->o->column,
-                (long)field->columns, display_name(r->o->input), now() - r->started);
+    } else if (!o->quiet && o->n_inputs > 1)
+        fprintf(stderr, "%d panels, column %ld of each field, %.3g s\n", o->n_inputs, o->column, now() - r->started);
+    else if (!o->quiet)
+        fprintf(stderr, "%s: %ld vertices, column %ld of %ld from %s, %.3g s\n", r->mesh_name, (long)r->mesh.n, o->column,
+                (long)views->field.columns, display_name(o->input), now() - r->started);
 }
 
-static int render_field(run *r, const field_data *field)
+/* Field k, and its mesh unless that of the run serves all. */
+static int view_load(const run *r, int k, view_data *v)
+{
+    const options *o = r->o;
+    const int own = k > 0 && o->n_meshes > 1;
+    int code = own ? mesh_load(&v->own, o->meshes[k]) : DONE;
+    v->mesh = own ? &v->own : &r->mesh;
+    v->mesh_name = own ? display_name(o->meshes[k]) : r->mesh_name;
+    if (!code) code = field_load(&v->field, o->inputs[k], v->mesh_name, v->mesh->n);
+    if (!code && o->column >= v->field.columns)
+        code = fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0", display_name(o->inputs[k]), o->column, (long)v->field.columns);
+    return code;
+}
+
+/* Side by side, one range of colours and one view for all, each with the name of its mesh below, or of its field where the mesh is the same. */
+static int render_panels(const run *r, const view_data *views)
+{
+    const options *o = r->o;
+    const int n = o->n_inputs;
+    pic_panel panels[MAX_PANELS];
+    pic_opts opts = picture_opts(o);
+    char title[120];
+    int k;
+    for (k = 0; k < n; k++) {
+        panels[k] = picture_panel(views[k].mesh, views[k].field.values + (size_t)o->column * (size_t)views[k].mesh->n);
+        panels[k].caption = base_name(o->n_meshes > 1 ? views[k].mesh_name : display_name(o->inputs[k]));
+    }
+    snprintf(title, sizeof title, "column %ld", o->column);
+    opts.title = o->title ? o->title : title;
+    opts.one_view = 1;
+    if (!o->height) opts.height = n == 2 ? 640 : n == 3 ? 460 : PICTURE_HEIGHT;
+    picture_from_zero(&opts, panels, n);
+    return write_picture(o->output, panels, n, &opts);
+}
+
+static int render_fields(run *r, const view_data *views)
 {
     char title[120];
     result res;
     memset(&res, 0, sizeof res);
-    res.n_columns = field->columns;
-    res.values = field->values;
+    res.n_columns = views->field.columns;
+    res.values = views->field.values;
     res.colour = r->o->column;
-    if (res.colour >= res.n_columns)
-        return fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0", display_name(r->o->input), r->o->column,
-                    (long)res.n_columns);
     if (strcmp(r->o->output, "-") == 0 && stdout_is_terminal())
         return fail(USAGE, "-o - takes a pipe or a file: a picture is nothing for a terminal");
+    if (r->o->n_inputs > 1) return render_panels(r, views);
     snprintf(title, sizeof title, "%.80s, column %ld", base_name(r->o->input), r->o->column);
     return write_png(r->o->output, r, &res, title, NULL);
 }
 
 static int command_render(run *r)
 {
-    field_data field;
-    int code;
-    memset(&field, 0, sizeof field);
+    view_data views[MAX_PANELS];
+    int k, code;
+    memset(views, 0, sizeof views);
     code = run_load(r);
-    if (!code) code = field_load(&field, r->o->input, r->mesh_name, r->mesh.n);
-    if (!code) code = render_field(r, &field);
-    if (!code) report_render(r, &field);
-    field_free(&field);
+    for (k = 0; !code && k < r->o->n_inputs; k++) code = view_load(r, k, views + k);
+    if (!code) code = render_fields(r, views);
+    if (!code) report_render(r, views);
+    for (k = 0; k < r->o->n_inputs; k++) {
+        mesh_free(&views[k].own);
+        field_free(&views[k].field);
+    }
     return code;
 }
 

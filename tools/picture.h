@@ -62,6 +62,7 @@ typedef struct pic_opts {
     int32_t edges;              /* nonzero: draw the mesh's edges, thin */
     int32_t view_given;         /* nonzero: the two angles hold; else a view that shows the shape and its warmest place */
     double azimuth, elevation;  /* of the camera, degrees; 0, 0 looks at the front, azimuth 90 at the right side */
+    int32_t one_view;           /* nonzero: panels of different meshes, too, are seen from where the first one is */
     char up;                    /* 'x', 'y' or 'z'; 0 means 'y' */
     double fov;                 /* angle of view, degrees, 0.5..90; 24 */
     double point_radius;        /* of the discs, in the points' unit; 0: from their spacing */
@@ -2182,7 +2183,7 @@ static int pic_figure_draw(pic_image *img, const pic_panel *panels, int32_t n, c
     pic_figure_paper(img);
     for (i = 0; i < n; i++) {
         int status;
-        if (i > 0 && panels[i].xyz != panels[i - 1].xyz) view.known = 0;
+        if (i > 0 && panels[i].xyz != panels[i - 1].xyz && !o->one_view) view.known = 0;
         status = pic_figure_panel(img, &l, panels, i, n, scales + i, lut, o, &view);
         if (status != PIC_OK) return status;
     }
@@ -2197,7 +2198,7 @@ static int pic_panel_ok(const pic_panel *p)
     return (p->n == 0 || p->xyz) && (p->n_tri == 0 || p->tri);
 }
 
-/* A picture of n_panels panels in a grid. Panels of the same mesh that follow each other share the view. opts may be NULL.
+/* A picture of n_panels panels in a grid. Panels of the same mesh that follow each other share the view (all with one_view). opts may be NULL.
  * out is filled anew (free with pic_image_free) and empty on failure. */
 static int pic_render_grid(pic_image *out, const pic_panel *panels, int32_t n_panels, const pic_opts *opts)
 {
