@@ -1442,7 +1442,7 @@ class Formats(Case):
                 report = json.loads(self.good("info", out, "--json").stdout)
                 self.assertEqual((report["n"], report["faces"]), (100, 162))
             else:
-                self.close(self.field("diffuse", self.patch, "--input", out, "--t", 0), columns(self.want, 1), 1e-15)
+                self.close(self.field("diffuse", self.patch, "--input", out, "--t", 0), columns(self.want, 1), 1e-14)
 
     def test_field_forms(self):
         rows = [[math.sin(i), float(i)] for i in range(12)]
