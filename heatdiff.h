@@ -4858,7 +4858,7 @@ static int hdi_poly_same(const hdi_poly *poly, int64_t c, int64_t d) {
 }
 
 /* Gives faces that repeat an earlier one area 0: around each vertex, the faces in which it is the smallest corner are sorted by their keys.
- * least [m] the smallest corner of each face; work as in hdi_mesh_repeats. */
+ * least [m] the smallest corner of each face; work: as many pairs as the busiest vertex has corners. */
 static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_mesh_report *rep) {
     const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
     int64_t c, p, n, first;
@@ -6006,7 +6006,7 @@ static double hdi_poly_entry(const hdi_poly *poly, int64_t c, int64_t d, int64_t
     return k == 3 ? first : first - poly->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
 }
 
-/* As hdi_ring. */
+/* Distinct vertices of the faces at v, v itself first, as rows of lap, unsorted, into col. mark [n_active] as in hdi_product_row. Returns how many. */
 static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int32_t v, int32_t *mark, int32_t *col) {
     const int32_t i = lap->row[v];
     int64_t p, d, n = 1;
@@ -6024,7 +6024,7 @@ static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int3
     return n;
 }
 
-/* As hdi_lap_pattern; col [n_active], work [n_active] serve rows of any length. */
+/* The pattern of L, columns ascending. mark [n_active]; col [n_active], work [n_active] serve rows of any length. */
 static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32_t *mark, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
@@ -6049,7 +6049,8 @@ static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32
     return hdi_scope_end(&s);
 }
 
-/* Values of row i, its edges counted as in hdi_edge_counts. As in hdi_lap_row_values, both rows of a pair add in the order of the faces. */
+/* Values of row i, and the faces along each of its edges: how many, and in which direction. Both rows of a pair add in the order of the faces, so that L is
+ * symmetric to the last bit. place [n_active]: where a column stands in this row. */
 static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i, int64_t *place, int32_t *count, int32_t *turn) {
     const int32_t v = lap->vertex[i];
     const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
@@ -15693,7 +15694,8 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->k, hh = heat->source->h * heat->source->h * heat->scale;
     const double wide = hdi_max(1, entries / (10 * n));
     const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide, flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
-    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide, real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n * wide;
+    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide;
+    const double real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n * wide;
     const double analysis = s ? 0 : HDI_ROW_ANALYSIS * n * wide;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4, packs = pairs > 4 ? (pairs + 3) / 4 : 1;
