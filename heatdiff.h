@@ -714,12 +714,12 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const do
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
- * t      [n_times] > 0; not looked at by commute and biharmonic, which take n_times = 1
- * Cost   a diagonal (at 2t, shared by all sources) and a column for each source. HD_DISTANCE_WEIGHTED with a full B: the same on the pattern of B^2, eight
- *        to ten times as dear
+ * t      [n_times] > 0; not looked at by commute and biharmonic, which take n_times = 1 (more: HD_ERR_ARGUMENT)
+ * Cost   a diagonal (at 2t, shared by all sources) and a column for each source. HD_DISTANCE_WEIGHTED with a full B: its diagonal, that of B K_2t, takes about
+ *        twice as long
  * Vertices without mass have f = 0. Between components commute and biharmonic are infinite (HUGE_VAL).
  *        With poles and degree by default the highest degree takes over where the bound of the error relative to the largest distance is above
- *        2.5e-6, or will be
+ *        2.5e-6, or will be. Many times share one set of poles then, as in hd_heat_diagonal
  * Report error_bound and error_relative for d itself; n_lost counts distances of less than a digit or so: at times so large that all has become
  * equal, or next to the source at small ones. Never NaN. hd_heat_pairs loses nothing there. */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D,
@@ -10459,12 +10459,31 @@ static void hdi_sweep_touch(const hdi_symbolic *s, int32_t i, char *active) {
 
 enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 48, HDI_INV_PIVOTS = 24, HDI_INV_SLICE = 6 };
 
-/* Inversion under way. Wanted of it are weighted sums over the numbers of an entry (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
- * sets of weights, at the entries of A's lower triangle in the order of sym->a_from, or on the diagonal by pivots. They are added to what is there. */
+/* What is wanted of an inverse Z: its entries in A's lower triangle in the order of sym->a_from; by pivots, its diagonal, or the quadratic forms x_j' Z x_j. */
+typedef enum hdi_wanted { HDI_WANT_ENTRIES, HDI_WANT_DIAGONAL, HDI_WANT_FORMS } hdi_wanted;
+
+/* The x_j of quadratic forms, columns of a symmetric matrix X on the pattern that was analysed, and room for them. Places to work in: one for each subtree, then
+ * one for each block of columns under way in a front of the top. */
+typedef struct hdi_forms {
+    const hd_csr *a;             /* the pattern */
+    const double *x;             /* X by its entries */
+    int32_t *inv;                /* [n] pivot of a row of A */
+    int32_t cols, n_slots;       /* columns of a block at most; blocks of a front of the top at the same time */
+    uint64_t *active;            /* [1 + n_slots][n_super], all subtrees share the first: which columns of the block have come to a front. 0 between blocks */
+    int32_t *column;             /* [n_tasks][task_pivots], [n_slots][largest_pivots] place in the block of a pivot's column, -1: not in it */
+    hdi_pair *order;             /* [n_tasks][task_pivots], [largest_pivots] */
+    double *room;                /* [n_tasks][task_size], [n_slots][slot_size] */
+    size_t task_size, slot_size, aside_task, aside_slot;
+} hdi_forms;
+
+/* Inversion under way. Wanted of it are weighted sums over the numbers of an entry or form (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
+ * sets of weights. They are added to what is there. */
 typedef struct hdi_inverse {
     hdi_factor *f;
     const double *coef;          /* [n_sets][width] */
-    int32_t n_sets, diagonal;
+    int32_t n_sets;
+    hdi_wanted wanted;
+    const hdi_forms *forms;
     double *values;              /* [n_sets][entries or n] */
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
@@ -10878,11 +10897,15 @@ static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front 
     hdi_parallel(w->f->ctx, (end - begin + h.chunk - 1) / h.chunk, hdi_inverse_share_task, &h);
 }
 
-/* sum_c coef[c] z_c of entry (i,j) of the front, for every set, to place `at`. */
-static void hdi_inverse_put(const hdi_inverse *z, const hdi_inverse_front *w, int64_t i, int64_t j, int64_t at) {
-    const int32_t width = w->f->width;
+/* Entry (i,j) of Z, j <= i. */
+static const double *hdi_inverse_at(const hdi_inverse_front *w, int64_t i, int64_t j) {
     int64_t run;
-    const double *from = width == 1 ? hdi_real_inverse_at(w, j) + (i - j) : hdi_pack_inverse_at(w, i, j, &run);
+    return w->f->width == 1 ? hdi_real_inverse_at(w, j) + (i - j) : hdi_pack_inverse_at(w, i, j, &run);
+}
+
+/* sum_c coef[c] z_c for every set, to place `at`. */
+static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at) {
+    const int32_t width = z->f->width;
     int32_t q, c;
     for (q = 0; q < z->n_sets; q++) {
         const double *coef = z->coef + q * width;
@@ -10892,14 +10915,446 @@ static void hdi_inverse_put(const hdi_inverse *z, const hdi_inverse_front *w, in
     }
 }
 
+/* ---- quadratic forms ---- */
+/* x_j' Z x_j for all columns x_j of a symmetric X on the pattern of A, exactly. Where A is t L + theta B and X is B it is the diagonal of B Z B, which needs
+ * entries of Z between neighbours of neighbours. Of x_j's non-zeros those that go before pivot j stand in fronts below that of j, called J, the others in
+ * the rows of J. With y = L^-1 x_j,
+ *     x_j' Z x_j = sum_{k below J} y_k^2/d_k + r' Z_JJ r,
+ * r being what is left in the rows of J when the fronts below have been eliminated; and Z_JJ is there when J has been inverted. Plain transposes. Half of a mesh's
+ * columns have nothing below, and r is x_j. The others go through the fronts on their ways to J in blocks; a front sees those that have come to it. Sweeps and
+ * forms are three times the multiply-adds of the factorisation, of which whole solves would take 13 to 33 times.
+ * The other exact way is an analysis on the pattern of B^2, whose selected inverse has all that B Z B needs. Both measured in turn, for a mesh of 50,000 vertices
+ * with its column, in seconds of processor time: 0.67 here, 2.05 there, peak memory 345 and 1040 MB; at 150,000 vertices 2.9 and 10.3 s, 0.99 and 3.2 GB. So
+ * this is the only one that is kept: twice the time of the diagonal of Z, and its memory. A million vertices take 48 s and 6.7 GB; there B^2 does not fit 24 GB. */
+
+enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_NEAR = 32 };
+#define HDI_FORM_OPEN (HDI_CAST(uint64_t, 1) << 63)   /* of active: the front's rows are on the stack */
+
+/* A block of columns of front J under way. Rows of fronts stand on a stack: a front's come when the first of its children that is touched is done, or it has none,
+ * and are added to its parent's; so that there are never others than those of the front under way and of some of its ancestors. A row has the entries of the
+ * columns that have come, and with a real factor those of eight, or of one. */
+typedef struct hdi_form_block {
+    const hdi_forms *q;
+    const hdi_inverse_front *w;  /* J */
+    const hdi_pair *list;        /* [k] first row and pivot of the columns */
+    int32_t k;
+    uint64_t *active;
+    int32_t *column;
+    double *top, *end;           /* of the stack */
+    double *aside, *work;        /* rows of a child, and what Z r works with */
+    double sum[HDI_FORM_COLS * HDI_PACK];
+} hdi_form_block;
+
+/* The columns of a set, ascending; returns their number. */
+static int32_t hdi_form_list(uint64_t set, int32_t *list) {
+    int32_t c, n = 0;
+    for (c = 0, set &= ~HDI_FORM_OPEN; set; c++, set >>= 1)
+        if (set & 1) list[n++] = c;
+    return n;
+}
+
+static int32_t hdi_form_count(uint64_t set) {
+    int32_t n = 0;
+    for (set &= ~HDI_FORM_OPEN; set; set &= set - 1) n++;
+    return n;
+}
+
+/* Doubles of a row of k columns. */
+static int32_t hdi_form_row(int32_t width, int32_t k) { return width > 1 ? width * k : k > 1 ? HDI_FORM_COLS_REAL : 1; }
+
+/* Adds x to an entry. */
+static void hdi_form_add(int32_t width, double x, double *to) {
+    int32_t q;
+    for (q = 0; q < (width == 1 ? 1 : 4); q++) to[q] += x;
+}
+
+/* Where pivot i of the matrix stands in the front. */
+static int64_t hdi_form_place(const hdi_inverse_front *w, int32_t i) {
+    const hdi_symbolic *s = w->f->sym;
+    return i < s->super[w->v + 1] ? i - s->super[w->v] : w->p + hdi_lower_bound(s->row + s->row_ptr[w->v], w->u, i);
+}
+
+/* Rows of front v, cleared when they are new: they are on top of the stack. */
+static double *hdi_form_open(hdi_form_block *b, int32_t v, int32_t k) {
+    const hdi_factor *f = b->w->f;
+    const int64_t size = (hdi_front_pivots(f->sym, v) + hdi_front_below(f->sym, v)) * hdi_form_row(f->width, k);
+    if (!(b->active[v] & HDI_FORM_OPEN)) {
+        b->active[v] |= HDI_FORM_OPEN;
+        HEATDIFF_ASSERT(size <= b->end - b->top);
+        memset(b->top, 0, HDI_CAST(size_t, size) * sizeof *b->top);
+        b->top += size;
+    }
+    return b->top - size;
+}
+
+/* Marks what the block's columns touch below J; returns the first. */
+static int32_t hdi_form_touch(hdi_form_block *b) {
+    const hdi_symbolic *s = b->w->f->sym;
+    const int32_t first = s->super[b->w->v];
+    int32_t c, v, least = b->w->v;
+    int64_t p;
+    for (c = 0; c < b->k; c++) {
+        const int64_t row = s->perm[first + b->list[c].id];
+        const uint64_t bit = HDI_CAST(uint64_t, 1) << c;
+        for (p = b->q->a->row_ptr[row]; p < b->q->a->row_ptr[row + 1]; p++) {
+            const int32_t i = b->q->inv[b->q->a->col[p]];
+            if (i >= first || b->q->x[p] == 0) continue;
+            v = s->super_of[i];
+            if (v < least) least = v;
+            for (; v != b->w->v && !(b->active[v] & bit); v = s->parent[v]) b->active[v] |= bit;
+        }
+    }
+    return least;
+}
+
+/* Entries of x at the pivots of front v below J, those of the columns of set. */
+static void hdi_form_below(const hdi_form_block *b, int32_t v, uint64_t set, double *y, int32_t row) {
+    const hdi_symbolic *s = b->w->f->sym;
+    const int32_t width = b->w->f->width, p = hdi_front_pivots(s, v), first = s->super[b->w->v], *rows = s->row + s->row_ptr[v];
+    int64_t n;
+    for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+        const int32_t at = s->a_row[n] < p ? -1 : rows[s->a_row[n] - p] - first, c = at >= 0 && at < b->w->p ? b->column[at] : -1;
+        double x;
+        if (c < 0 || (x = b->q->x[s->a_from[n]]) == 0) continue;
+        hdi_form_add(width, x, y + s->a_col[n] * HDI_CAST(int64_t, row) + width * hdi_form_count(set & ((HDI_CAST(uint64_t, 1) << c) - 1)));
+    }
+}
+
+/* Entries of x in the rows of J, of all columns. */
+static void hdi_form_own(const hdi_form_block *b, double *r, int32_t row) {
+    const hdi_symbolic *s = b->w->f->sym;
+    const int32_t width = b->w->f->width, first = s->super[b->w->v];
+    int32_t c;
+    int64_t p;
+    for (c = 0; c < b->k; c++) {
+        const int64_t of = s->perm[first + b->list[c].id];
+        for (p = b->q->a->row_ptr[of]; p < b->q->a->row_ptr[of + 1]; p++) {
+            const int32_t i = b->q->inv[b->q->a->col[p]];
+            if (i >= first) hdi_form_add(width, b->q->x[p], r + hdi_form_place(b->w, i) * row + width * c);
+        }
+    }
+}
+
+/* sum += y^2/d of n pivots, for the k columns listed. */
+static void hdi_form_squares(hdi_form_block *b, const double *dinv, const double *y, int32_t row, int64_t n, const int32_t *list, int32_t k) {
+    const int32_t width = b->w->f->width;
+    int64_t i;
+    int32_t c, q;
+    for (i = 0; i < n; i++, y += row, dinv += width) {
+        for (c = 0; c < k; c++) {
+            double *to = b->sum + width * list[c], t[HDI_PACK], z[HDI_PACK];
+            if (width == 1) {
+                *to += y[c] * y[c] * *dinv;
+                continue;
+            }
+            hdi_pack_times(y + HDI_PACK * c, y + HDI_PACK * c, t);
+            hdi_pack_times(t, dinv, z);
+            for (q = 0; q < HDI_PACK; q++) to[q] += z[q];
+        }
+    }
+}
+
+/* What is left below the pivots of front v, to its parent: t by rows of the k columns listed. */
+static void hdi_form_lift(hdi_form_block *b, int32_t v, const double *t, int32_t row, const int32_t *list, int32_t k) {
+    const hdi_factor *f = b->w->f;
+    const hdi_symbolic *s = f->sym;
+    const int32_t up = s->parent[v], *rel = s->rel + s->row_ptr[v];
+    const int64_t u = hdi_front_below(s, v);
+    int32_t kept[HDI_FORM_COLS], to[HDI_FORM_COLS], n = up == b->w->v ? b->k : hdi_form_list(b->active[up], kept), c, a;
+    int64_t i;
+    double *rows;
+    if (!(b->active[up] & HDI_FORM_OPEN)) {      /* where t stands now */
+        memcpy(b->aside, t, HDI_CAST(size_t, u * row) * sizeof *t);
+        t = b->aside;
+    }
+    for (c = a = 0; c < k; c++) {
+        while (up != b->w->v && kept[a] != list[c]) a++;
+        to[c] = up == b->w->v ? list[c] : a;
+    }
+    rows = hdi_form_open(b, up, n);
+    n = hdi_form_row(f->width, n);
+    for (i = 0; i < u; i++, t += row) {
+        double *HDI_RESTRICT y = rows + rel[i] * HDI_CAST(int64_t, n);
+        if (f->width > 1) f->pack->add(y, t, to, 0, k, 0);
+        else
+            for (c = 0; c < k; c++) y[to[c]] += t[c];
+    }
+}
+
+/* Front v below J, for the columns that have come to it. */
+static void hdi_form_front(hdi_form_block *b, int32_t v) {
+    const hdi_factor *f = b->w->f;
+    const int64_t p = hdi_front_pivots(f->sym, v);
+    int32_t list[HDI_FORM_COLS];
+    const int32_t k = hdi_form_list(b->active[v], list), row = hdi_form_row(f->width, k);
+    double *y = hdi_form_open(b, v, k), *t = y + p * row;
+    hdi_sweep z;
+    memset(&z, 0, sizeof z);
+    z.f = f;
+    z.k = f->width == 1 ? row : k;
+    hdi_form_below(b, v, b->active[v] & ~HDI_FORM_OPEN, y, row);
+    if (f->width == 1) hdi_real_forward_front(&z, v, y, t);
+    else hdi_pack_forward_front(&z, v, y, t);
+    hdi_form_squares(b, f->dinv + HDI_CAST(int64_t, f->width) * f->sym->super[v], y, row, p, list, k);
+    b->active[v] = 0;
+    b->top = y;
+    hdi_form_lift(b, v, t, row, list, k);
+}
+
+/* sum -= 2 r c, n rows of k columns. */
+static void hdi_form_products(double *sum, const double *r, const double *c, int64_t n, int32_t k) {
+    double t[HDI_PACK];
+    int64_t i;
+    int32_t j;
+    int q;
+    for (i = 0; i < n; i++) {
+        for (j = 0; j < k; j++, r += HDI_PACK, c += HDI_PACK) {
+            hdi_pack_times(r, c, t);
+            for (q = 0; q < HDI_PACK; q++) sum[HDI_PACK * j + q] -= 2 * t[q];
+        }
+    }
+}
+
+/* sum += r' Z r for the rows of J: with W its lower triangle and half of its diagonal, 2 r' W r. c = -W r. */
+static void hdi_pack_form(hdi_form_block *b, const double *r) {
+    const hdi_inverse_front *w = b->w;
+    const int64_t row = HDI_PACK * b->k;
+    double *c = b->work, *buffer = c + HDI_INV_ROWS * row;
+    hdi_pack_job g;
+    int64_t i0, i, j, n;
+    memset(&g, 0, sizeof g);
+    g.a_col = g.b_row = HDI_PACK;
+    g.b_col = g.c_row = row;
+    g.c = c;
+    for (i0 = 0; i0 < w->m; i0 += n) {
+        n = hdi_least(HDI_INV_ROWS, w->m - i0);
+        g.a = buffer;
+        hdi_pack_inverse_gather(w, i0, i0 + n, i0, i0 + n, buffer);
+        for (i = 0; i < HDI_PACK * n * n; i++) buffer[i] *= 0.5;
+        g.depth = n;
+        g.a_row = HDI_PACK * n;
+        g.b = r + i0 * row;
+        g.store = 1;
+        w->f->pack->multiply(&g, 0, n, 0, b->k);
+        g.store = 0;
+        for (j = 0; j < i0; j += g.depth) {
+            g.depth = hdi_least(HDI_INV_DEPTH, (j < w->p ? hdi_least(i0, w->p) : i0) - j);
+            g.a = buffer;
+            g.a_row = HDI_PACK * g.depth;
+            g.b = r + j * row;
+            if (j < w->p) {                      /* in place; blocks are of whole depths */
+                const hdi_pack_block block = hdi_pack_block_of(w->z, w->m, w->p, j / HDI_PANEL);
+                g.a = hdi_pack_at(&block, i0, j);
+                g.a_row = block.row;
+            } else {
+                hdi_pack_inverse_gather(w, i0, i0 + n, j, j + g.depth, buffer);
+            }
+            w->f->pack->multiply(&g, 0, n, 0, b->k);
+        }
+        hdi_form_products(b->sum, r + i0 * row, c, n, b->k);
+    }
+}
+
+static void hdi_real_form(hdi_form_block *b, const double *r, int32_t row) {
+    const hdi_inverse_front *w = b->w;
+    int64_t j;
+    int32_t c;
+    for (j = 0; j < w->m; j++) {
+        const double *z = hdi_real_inverse_at(w, j), *x = r + j * row;
+        double t[HDI_FORM_COLS_REAL] = {0};
+        if (row == 1) t[0] = -hdi_dot(z + 1, x + 1, w->m - j - 1);
+        else w->f->real->dots8(t, z + 1, w->m, w->m - j - 1, x + row, NULL, 1);
+        for (c = 0; c < b->k; c++) b->sum[c] += x[c] * (z[0] * x[c] - 2 * t[c]);
+    }
+}
+
+/* The forms of a block of columns. */
+static void hdi_form_run(const hdi_inverse *z, hdi_form_block *b) {
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t width = z->f->width, row = hdi_form_row(width, b->k);
+    int32_t c, v;
+    double *r;
+    memset(b->sum, 0, sizeof b->sum);
+    for (c = 0; c < b->k; c++) b->column[b->list[c].id] = c;
+    for (v = hdi_form_touch(b); v < b->w->v; v++)
+        if (b->active[v]) hdi_form_front(b, v);
+    r = hdi_form_open(b, v, b->k);
+    hdi_form_own(b, r, row);
+    if (width == 1) hdi_real_form(b, r, row);
+    else hdi_pack_form(b, r);
+    b->active[v] = 0;
+    for (c = 0; c < b->k; c++) {
+        b->column[b->list[c].id] = -1;
+        hdi_inverse_put(z, b->sum + width * c, s->super[v] + b->list[c].id);
+    }
+}
+
+/* The form of pivot j's column when all of its non-zeros are in the rows of its front, and few: 1. Else 0, and the first of them. */
+static int hdi_form_near(const hdi_inverse *z, const hdi_inverse_front *w, int64_t j, int32_t *least) {
+    const hdi_symbolic *s = w->f->sym;
+    const hdi_forms *q = z->forms;
+    const int32_t first = s->super[w->v], width = w->f->width;
+    const int64_t row = s->perm[first + j];
+    int64_t at[HDI_FORM_NEAR], p;
+    double x[HDI_FORM_NEAR], sum[HDI_PACK];
+    int32_t n = 0, a, b, c;
+    *least = HDI_CAST(int32_t, first + j);
+    for (p = q->a->row_ptr[row]; p < q->a->row_ptr[row + 1]; p++) {
+        const int32_t i = q->inv[q->a->col[p]];
+        if (q->x[p] == 0) continue;
+        if (i < *least) *least = i;
+        if (n < HDI_FORM_NEAR) {
+            at[n] = i;
+            x[n] = q->x[p];
+        }
+        n++;
+    }
+    if (*least < first || n > HDI_FORM_NEAR) return 0;
+    memset(sum, 0, sizeof sum);
+    for (a = 0; a < n; a++) {
+        at[a] = hdi_form_place(w, HDI_CAST(int32_t, at[a]));
+        for (b = 0; b <= a; b++) {
+            const double *from = hdi_inverse_at(w, at[a] > at[b] ? at[a] : at[b], at[a] > at[b] ? at[b] : at[a]), xx = (a == b ? 1 : 2) * x[a] * x[b];
+            if (width == 1) sum[0] += xx * from[0];
+            else
+                for (c = 0; c < HDI_PACK; c++) sum[c] += xx * from[c];
+        }
+    }
+    hdi_inverse_put(z, sum, first + j);
+    return 1;
+}
+
+typedef struct hdi_form_job {
+    const hdi_inverse *z;
+    const hdi_inverse_front *w;
+    const hdi_pair *list;
+    int32_t n, n_blocks, begin;
+} hdi_form_job;
+
+/* Block begin + index, at a place of its own. */
+static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_form_job *job = HDI_CAST(const hdi_form_job *, arg);
+    const hdi_forms *q = job->z->forms;
+    const hdi_symbolic *s = job->z->f->sym;
+    const int64_t at = job->begin + index, from = at * job->n / job->n_blocks, task = s->task_of[job->w->v];
+    double *room = q->room + q->task_size * HDI_CAST(size_t, task >= 0 ? task : s->n_tasks) + (task >= 0 ? 0 : q->slot_size * HDI_CAST(size_t, index));
+    hdi_form_block b;
+    (void)worker;
+    b.q = q;
+    b.w = job->w;
+    b.list = job->list + from;
+    b.k = HDI_CAST(int32_t, (at + 1) * job->n / job->n_blocks - from);
+    b.active = q->active + (task >= 0 ? 0 : (1 + index) * s->n_super);
+    b.column = q->column + (task >= 0 ? task * s->task_pivots : HDI_CAST(int64_t, s->n_tasks) * s->task_pivots + index * s->largest_pivots);
+    b.end = room + (task >= 0 ? q->task_size : q->slot_size);
+    b.aside = room;
+    b.work = room + (task >= 0 ? q->aside_task : q->aside_slot);
+    b.top = b.work + (job->z->f->width == 1 ? 0 : HDI_PACK * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(HDI_PACK));
+    hdi_form_run(job->z, &b);
+}
+
+/* The forms of a front's pivots, one by one where that is possible, the others in blocks that do not depend on who works on them: at the top all threads do. Columns
+ * that begin close to each other share more of their ways. */
+static void hdi_forms_front(const hdi_inverse *z, const hdi_inverse_front *w) {
+    const hdi_forms *q = z->forms;
+    const hdi_symbolic *s = w->f->sym;
+    const int32_t task = s->task_of[w->v];
+    hdi_pair *order = q->order + HDI_CAST(int64_t, task >= 0 ? task : s->n_tasks) * s->task_pivots;
+    hdi_form_job job;
+    int64_t j;
+    int32_t least;
+    memset(&job, 0, sizeof job);
+    for (j = 0; j < w->p; j++) {
+        if (hdi_form_near(z, w, j, &least)) continue;
+        order[job.n].key = HDI_CAST(uint64_t, least);
+        order[job.n++].id = j;
+    }
+    if (job.n == 0) return;
+    hdi_sort_pairs(order, job.n);
+    job.z = z;
+    job.w = w;
+    job.list = order;
+    job.n_blocks = (job.n + q->cols - 1) / q->cols;
+    for (; job.begin < job.n_blocks; job.begin += task >= 0 ? 1 : q->n_slots) {
+        if (task >= 0) hdi_form_task(&job, 0, 0);
+        else hdi_parallel(w->f->ctx, hdi_least(job.n_blocks - job.begin, q->n_slots), hdi_form_task, &job);
+    }
+}
+
+/* Rows on the stack at most, for columns of the fronts of subtrees and for those of all. need [n_super]. */
+static void hdi_form_rows(const hdi_symbolic *s, int64_t *need, int64_t *in_tasks, int64_t *in_all) {
+    int32_t v, k;
+    *in_tasks = *in_all = 0;
+    for (v = 0; v < s->n_super; v++) {
+        const int64_t m = hdi_front_pivots(s, v) + hdi_front_below(s, v);
+        need[v] = m;
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {   /* v's rows come after the first child */
+            const int64_t sum = need[s->kid[k]] + (k > s->kid_ptr[v] ? m : 0);
+            if (sum > need[v]) need[v] = sum;
+        }
+        if (need[v] > *in_all) *in_all = need[v];
+        if (s->task_of[v] >= 0 && need[v] > *in_tasks) *in_tasks = need[v];
+    }
+}
+
+static void hdi_forms_free(hdi_forms *q, hd_context *ctx) {
+    hdi_free(ctx, q->inv);
+    hdi_free(ctx, q->active);
+    hdi_free(ctx, q->column);
+    hdi_free(ctx, q->order);
+    hdi_free(ctx, q->room);
+    memset(q, 0, sizeof *q);
+}
+
+/* Room for the forms of x on the pattern of a, with factors of the given width. Blocks are narrower where the room for all that go on at the same time would be
+ * more than half of the factor: on trees on which stacks grow high. */
+static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a, const double *x, hd_context *ctx, hd_error *e) {
+    hdi_scope keep = hdi_scope_begin(ctx, e);
+    const size_t n_tasks = HDI_CAST(size_t, s->n_tasks), n_super = HDI_CAST(size_t, s->n_super), w = HDI_CAST(size_t, width);
+    const int64_t stored = width == 1 ? s->panel[n_super] : s->stored;
+    int64_t *need = HDI_TAKE(&keep, int64_t, n_super + 1), in_tasks, in_all;
+    size_t columns, work, i;
+    memset(q, 0, sizeof *q);
+    if (e->status < 0) return hdi_scope_end(&keep);
+    hdi_form_rows(s, need, &in_tasks, &in_all);
+    q->a = a;
+    q->x = x;
+    q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
+    q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
+    while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 + 65536) q->cols = width == 1 ? 1 : q->cols / 2;
+    work = width == 1 ? 0 : w * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(width);
+    q->aside_task = HDI_CAST(size_t, s->task_update) * HDI_CAST(size_t, q->cols) * w;
+    q->aside_slot = HDI_CAST(size_t, s->largest_update) * HDI_CAST(size_t, q->cols) * w;
+    q->task_size = q->aside_task + work + HDI_CAST(size_t, in_tasks) * HDI_CAST(size_t, q->cols) * w;
+    q->slot_size = q->aside_slot + work + HDI_CAST(size_t, in_all) * HDI_CAST(size_t, q->cols) * w;
+    columns = n_tasks * HDI_CAST(size_t, s->task_pivots) + HDI_CAST(size_t, q->n_slots) * HDI_CAST(size_t, s->largest_pivots);
+    q->inv = HDI_TAKE(&keep, int32_t, s->n);
+    q->active = HDI_CAST(uint64_t *, hdi_take_zero(&keep, (1 + HDI_CAST(size_t, q->n_slots)) * n_super, sizeof(uint64_t)));
+    q->column = HDI_TAKE(&keep, int32_t, columns);
+    q->order = HDI_TAKE(&keep, hdi_pair, n_tasks * HDI_CAST(size_t, s->task_pivots) + HDI_CAST(size_t, s->largest_pivots));
+    q->room = HDI_TAKE(&keep, double, n_tasks * q->task_size + HDI_CAST(size_t, q->n_slots) * q->slot_size);
+    if (e->status >= 0) {
+        for (i = 0; i < HDI_CAST(size_t, s->n); i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
+        for (i = 0; i < columns; i++) q->column[i] = -1;
+        hdi_free(ctx, need);
+        keep.n = 0;
+        return HD_OK;
+    }
+    memset(q, 0, sizeof *q);
+    return hdi_scope_end(&keep);
+}
+
+/* ---- the run ---- */
+
 /* What is wanted of the front's columns. */
 static void hdi_inverse_emit(const hdi_inverse *z, const hdi_inverse_front *w) {
     const hdi_symbolic *s = w->f->sym;
     int64_t n;
-    if (z->diagonal)
-        for (n = 0; n < w->p; n++) hdi_inverse_put(z, w, n, n, s->super[w->v] + n);
+    if (z->wanted == HDI_WANT_FORMS) hdi_forms_front(z, w);
+    else if (z->wanted == HDI_WANT_DIAGONAL)
+        for (n = 0; n < w->p; n++) hdi_inverse_put(z, hdi_inverse_at(w, n, n), s->super[w->v] + n);
     else
-        for (n = s->a_ptr[w->v]; n < s->a_ptr[w->v + 1]; n++) hdi_inverse_put(z, w, s->a_row[n], s->a_col[n], n);
+        for (n = s->a_ptr[w->v]; n < s->a_ptr[w->v + 1]; n++) hdi_inverse_put(z, hdi_inverse_at(w, s->a_row[n], s->a_col[n]), n);
 }
 
 /* Z of front v, whose Z22 is there: its columns, what is wanted of them, and the children's Z22. shared: all threads, else this one. */
@@ -10960,7 +11415,7 @@ static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t
     return e->status;
 }
 
-/* Inverts the factor; coef, n_sets, diagonal, values and stride are set. Uses the space of the factor's update matrices. */
+/* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of the factor's update matrices. */
 static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     const hdi_symbolic *s = f->sym;
     int32_t i;
@@ -13288,8 +13743,6 @@ struct hd_heat {
     hdi_family fam;              /* of the last set and time */
     hdi_lane lane[HDI_LANES];    /* work arrays, kept from call to call */
     double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
-    struct hd_heat *wide;        /* the same pair on the pattern of B^2, and its plan */
-    hd_laplacian *wide_lap;
 };
 
 /* Sets the heat of each component to c0 times that of the right-hand side: the constants' part of c(-t B^-1 L) f, exactly. */
@@ -13875,12 +14328,13 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, hdi_lane *l
 
 /* ---- entries of the kernel without columns ---- */
 
-/* values [n_sets][stride] += sum over poles p of Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: on the diagonal by pivots, or at the entries of the
- * lower triangle in the order of the analysis. The factors are there, and stay. */
-static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, int diagonal, double *values, int64_t stride, hd_error *e) {
+/* values [n_sets][stride] += sum over poles p of Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: entries of the lower triangle in the order of the analysis,
+ * or by pivots the diagonal, or that of B Z_p B with the source's B. The factors are there, and stay. */
+static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, hdi_wanted wanted, double *values, int64_t stride, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n_sets));
     const int32_t n_poles = m->set.n_poles;
+    hdi_forms forms;
     hdi_inverse z;
     int32_t i, k, q;
     if (e->status < 0) return hdi_scope_end(&s);
@@ -13896,13 +14350,20 @@ static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weig
             }
         }
         if (i <= 0 && hdi_inverse_make(&z, &m->sym, i < 0 ? 1 : HDI_PACK, m->ctx, e) < 0) break;
+        if (i <= 0 && wanted == HDI_WANT_FORMS && hdi_forms_make(&forms, &m->sym, i < 0 ? 1 : HDI_PACK, &m->source->L, m->source->B, m->ctx, e) < 0) {
+            hdi_inverse_free(&z, m->ctx);
+            break;
+        }
         z.coef = coef;
         z.n_sets = n_sets;
-        z.diagonal = diagonal;
+        z.wanted = wanted;
+        z.forms = &forms;
         z.values = values;
         z.stride = stride;
         (void)hdi_inverse_run(&z, i < 0 ? &m->real : m->pack + i, e);
-        if (i < 0 || e->status < 0 || 4 * (i + 1) >= n_poles - (m->lone + 1)) hdi_inverse_free(&z, m->ctx);
+        if (i >= 0 && e->status >= 0 && 4 * (i + 1) < n_poles - (m->lone + 1)) continue;   /* the next pack works in the same room */
+        hdi_inverse_free(&z, m->ctx);
+        if (wanted == HDI_WANT_FORMS) hdi_forms_free(&forms, m->ctx);
     }
     return hdi_scope_end(&s);
 }
@@ -15291,7 +15752,7 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     }
     if (diag && e->status >= 0 && (!values || found < f->n)) {
         memset(x, 0, HDI_CAST(size_t, n_sets) * HDI_CAST(size_t, f->n) * sizeof *x);
-        z.diagonal = 1;
+        z.wanted = HDI_WANT_DIAGONAL;
         z.stride = f->n;
         (void)hdi_inverse_run(&z, of, e);
         for (q = 0; q < n_sets && e->status >= 0; q++)
@@ -15483,14 +15944,6 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     int32_t i;
     if (!heat) return;
     ctx = heat->ctx;
-    hd_heat_free(heat->wide);
-    if (heat->wide_lap) {
-        hdi_free(ctx, heat->wide_lap->L.row_ptr);
-        hdi_free(ctx, heat->wide_lap->L.col);
-        hdi_free(ctx, heat->wide_lap->L.val);
-        hdi_free(ctx, heat->wide_lap->B);
-        hdi_free(ctx, heat->wide_lap);
-    }
     for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, ctx);
     hdi_family_free(&heat->fam);
     hdi_upper_free(ctx, &heat->up);
@@ -16431,8 +16884,8 @@ typedef struct hdi_entries {
     hd_rational resolvent;       /* the poles with weights for g */
 } hdi_entries;
 
-/* Factors for h->t, and from them k and g. diagonal: the diagonal by rows, else entries of the analysis. room [2 size]. */
-static hd_status hdi_entries_make(hdi_heat_call *h, int diagonal, double *room, int64_t size, hdi_entries *x) {
+/* Factors for h->t, and from them k and g. room [2 size]. */
+static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *room, int64_t size, hdi_entries *x) {
     hdi_elim *m = &h->heat->elim;
     hd_c64 weight[2 * HD_MAX_POLES];
     double factor = 1, slack = 0;
@@ -16447,7 +16900,7 @@ static hd_status hdi_entries_make(hdi_heat_call *h, int diagonal, double *room, 
         best = hdi_resolvent_pole(&m->set, &factor);
         for (p = 0; p < m->set.n_poles; p++) weight[m->set.n_poles + p] = hdi_c(p == best ? factor : 0, 0);
     }
-    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2, weight, diagonal, room, size, h->e) < 0) return h->e->status;
+    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2, weight, wanted, room, size, h->e) < 0) return h->e->status;
     x->resolvent = m->set;
     x->resolvent.kind = HD_POLES_OWN;
     x->resolvent.a0 = x->resolvent.max_error = x->resolvent.max_weighted_error = 0;
@@ -16535,7 +16988,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     size = full ? s->a_ptr[s->n_super] : s->n;
     room = HDI_TAKE(&scope, double, 2 * size);
     value = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, s->n));
-    if (h->e->status < 0 || hdi_entries_make(h, !full, room, size, &x) < 0) return hdi_scope_end(&scope);
+    if (h->e->status < 0 || hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) < 0) return hdi_scope_end(&scope);
     off = value + s->n;
     if (full) {
         hdi_operator_diagonal(&heat->elim, x.k, value);
@@ -16572,157 +17025,6 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     }
     hdi_report_values(h->rep, value, off, s->n, solver);
     return hdi_scope_end(&scope);
-}
-
-/* With the set's degree by default: where its bound shows vertices (of tiny cells among large ones, slivers) whose error relative to their own value may be
- * above the promise, a second time with the highest degree. The error seen is a fifth of the bound or so on all meshes tried: 1e-7. */
-static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *out) {
-    const hd_report before = *h->rep;
-    const hd_heat *heat = h->heat;
-    hd_status st;
-    if (hdi_diagonal_once(h, kernel, out) < 0) return h->e->status;
-    if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
-    if (h->rep->error_relative <= (kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1) * hdi_diagonal_limit(heat)) return HD_OK;   /* that bound is a loose one */
-    *h->rep = before;
-    h->degree = HDI_RAT_KERNEL_MAX;
-    st = hdi_diagonal_once(h, kernel, out);
-    h->degree = 0;
-    if (st != HD_ERR_MEMORY_LIMIT) return st;
-    *h->rep = before;                            /* no room for twice the factors: the first answer it is */
-    return hdi_diagonal_once(h, kernel, out);
-}
-
-/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
-#define HDI_SHARED_TOL 2.5e-8
-#define HDI_SHARED_DISTANCE_TOL 2e-10
-
-/* ---- diagonals at many times ---- */
-
-/* After packs that did not fit the byte limit: those that are there go, and the call begins anew. */
-static void hdi_heat_forget(hdi_heat_call *h) {
-    hdi_elim *m = &h->heat->elim;
-    hd_report *rep = h->rep;
-    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
-    m->filled = 0;
-    hdi_error_clear(h->e);
-    memset(rep, 0, sizeof *rep);
-    hdi_direct_only(h);
-    h->set = NULL;
-}
-
-/* Packs that a shared set for a ratio of times takes; 0: there is none. */
-static int32_t hdi_shared_packs(double ratio, double tol) {
-    hd_rational set;
-    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
-}
-
-/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how many packs those are. */
-static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
-    int32_t w, best = 0;
-    for (w = 1; w <= most && w <= 64; w++) {
-        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
-        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
-        best = w;
-        *packs = w * each;
-    }
-    return best;
-}
-
-/* Weights of k and of a bound of g for every time in turn, for poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
-static void hdi_shared_weights(const hd_rational *set, int32_t n_times, const double *t, hd_c64 *weight) {
-    int32_t q, p;
-    for (q = 0; q < n_times; q++) {
-        double factor = 1, tau = t[q] / t[0];
-        const int32_t best = hdi_resolvent_pole(set + q, &factor);
-        hd_c64 *k = weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
-        for (p = 0; p < set->n_poles; p++) {
-            k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
-            g[p] = hdi_c(p == best ? factor / tau : 0, 0);
-        }
-    }
-}
-
-/* k_t(v,v) for the (scaled) times t[0..n_times), ascending, by one set of poles, into the columns that `column` names. */
-static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const double *t, const int32_t *column, double *D, size_t ldd) {
-    hd_heat *heat = h->heat;
-    hdi_elim *m = &heat->elim;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    const size_t n = HDI_CAST(size_t, m->sym.n), sets = 2 * HDI_CAST(size_t, n_times);
-    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
-    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
-    double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
-    int32_t q, i, worst = 0, v;
-    double most = 0;
-    hd_report probe;
-    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
-    h->t = t[0];
-    h->set = set;
-    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
-    hdi_shared_weights(set, n_times, t, weight);
-    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, 1, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < n_times; q++) {
-        double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
-        double *out = D + HDI_CAST(size_t, column[q]) * ldd;
-        for (v = 0; v < m->lap->n; v++) out[v] = 0;
-        for (i = 0; i < m->sym.n; i++) {
-            off[i] = hdi_min(set[q].max_weighted_error * g[i], set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
-            off[i] *= heat->scale;               /* the report is in the caller's unit */
-            k[i] *= heat->scale;
-            out[m->lap->vertex[i]] = k[i];
-            if (k[i] > 0 && off[i] / k[i] > most) {
-                most = off[i] / k[i];
-                worst = i;
-            }
-        }
-        hdi_report_values(h->rep, k, off, m->sym.n, 0);
-    }
-    h->set = NULL;
-    if (n > 0) {                                 /* rounding: one entry by a solve with the same poles */
-        double *u = HDI_TAKE(&s, double, m->lap->n), there;
-        v = m->lap->vertex[worst];
-        if (u && hdi_direct_columns(heat, t[0] / heat->scale, HD_KERNEL_SYMMETRIC, set, 1, &v, u, HDI_CAST(size_t, m->lap->n), &probe) < 0) *h->e = probe.error;
-        if (h->e->status < 0) return hdi_scope_end(&s);
-        there = D[HDI_CAST(size_t, column[0]) * ldd + HDI_CAST(size_t, v)];
-        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
-        if (there != 0) h->rep->error_solver = hdi_max(h->rep->error_solver, fabs(u[v] - there) / fabs(there) + DBL_EPSILON);
-    }
-    return hdi_scope_end(&s);
-}
-
-/* All times, in windows that share their poles. */
-static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
-    const double span = h->times[h->n_times - 1] / h->times[0];
-    int32_t w, q0, q1;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
-        for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
-        if (hdi_diagonal_window(h, q1 - q0, h->times + q0, h->time_column + q0, D, ldd) < 0) break;
-    }
-    h->rep->error_bound = h->rep->error_rational + h->rep->error_solver;
-    return h->e->status;
-}
-
-HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report) {
-    hdi_heat_call h;
-    int32_t q;
-    if (hdi_kernel_begin(&h, heat, 1, kernel, 1, report) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t) >= 0 && n_times > 0 && !D) hdi_missing(h.e);
-    ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0 && hdi_heat_analysed(heat, 1, h.e) >= 0) hdi_direct_only(&h);
-    if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && h.e->status >= 0 && !heat->poles_asked && !heat->exacting) {
-        int32_t packs = 0, windows;
-        hdi_heat_sort_times(&h, n_times, t);
-        windows = h.e->status < 0 ? 0 : hdi_shared_windows(h.times[n_times - 1] / h.times[0], HDI_SHARED_TOL, n_times, &packs);
-        if (windows > 0 && 8 * packs < 9 * n_times) {   /* a set of degree 9 is a pack and a real factor */
-            if (hdi_diagonal_windows(&h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return hdi_heat_end(&h);
-            hdi_heat_forget(&h);                 /* one by one takes less */
-        }
-    }
-    for (q = 0; q < n_times && h.e->status >= 0; q++) {
-        h.t = t[q] * heat->scale;
-        if (hdi_diagonal_sure(&h, kernel, D + HDI_CAST(size_t, q) * ldd) < 0) h.e->column = q;
-    }
-    return hdi_heat_end(&h);
 }
 
 /* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other is the same. */
@@ -16799,7 +17101,7 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
     const int64_t size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
     double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
     hdi_entries x;
-    if (room && hdi_entries_make(h, 0, room, size, &x) >= 0) {
+    if (room && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
         const int32_t worst = hdi_edges_judge(&heat->elim, &x, h->rep);
         hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
         if (heat->elim.sym.n > 0) hdi_edges_probe(h, heat->elim.lap->vertex[worst], values);
@@ -16807,20 +17109,157 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
     return hdi_scope_end(&scope);
 }
 
-/* As hdi_diagonal_sure, by the error relative to the largest value. */
-static hd_status hdi_edges_sure(hdi_heat_call *h, double *values) {
+/* The diagonal of the kernel on vertices, or with `edges` k_t on the pattern of L, with the set's degree by default. Where the bound shows vertices (of tiny cells
+ * among large ones, slivers) whose error relative to their own value may be above the promise, of edges that relative to the largest value, a second time with the
+ * highest degree. The error seen is a fifth of the bound or so on all meshes tried: 1e-7. */
+static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges, double *out) {
     const hd_report before = *h->rep;
     const hd_heat *heat = h->heat;
+    const double loose = kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1;   /* the bound, of the operator's diagonal */
     hd_status st;
-    if (hdi_edges_once(h, values) < 0) return h->e->status;
-    if (heat->poles_asked || heat->exacting || h->rep->error_bound <= hdi_diagonal_limit(heat)) return HD_OK;
+    if ((edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out)) < 0) return h->e->status;
+    if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
+    if ((edges ? h->rep->error_bound : h->rep->error_relative) <= loose * hdi_diagonal_limit(heat)) return HD_OK;
     *h->rep = before;
     h->degree = HDI_RAT_KERNEL_MAX;
-    st = hdi_edges_once(h, values);
+    st = edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out);
     h->degree = 0;
     if (st != HD_ERR_MEMORY_LIMIT) return st;
     *h->rep = before;                            /* no room for twice the factors: the first answer it is */
-    return hdi_edges_once(h, values);
+    return edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out);
+}
+
+/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
+#define HDI_SHARED_TOL 2.5e-8
+#define HDI_SHARED_DISTANCE_TOL 2e-10
+
+/* ---- diagonals at many times ---- */
+
+/* After packs that did not fit the byte limit: those that are there go, and the call begins anew. */
+static void hdi_heat_forget(hdi_heat_call *h) {
+    hdi_elim *m = &h->heat->elim;
+    hd_report *rep = h->rep;
+    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
+    m->filled = 0;
+    hdi_error_clear(h->e);
+    memset(rep, 0, sizeof *rep);
+    hdi_direct_only(h);
+    h->set = NULL;
+}
+
+/* Packs that a shared set for a ratio of times takes; 0: there is none. */
+static int32_t hdi_shared_packs(double ratio, double tol) {
+    hd_rational set;
+    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
+}
+
+/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how many packs those are. */
+static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
+    int32_t w, best = 0;
+    for (w = 1; w <= most && w <= 64; w++) {
+        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
+        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
+        best = w;
+        *packs = w * each;
+    }
+    return best;
+}
+
+/* Weights of k and of a bound of g for every time in turn, for poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
+static void hdi_shared_weights(const hd_rational *set, int32_t n_times, const double *t, hd_c64 *weight) {
+    int32_t q, p;
+    for (q = 0; q < n_times; q++) {
+        double factor = 1, tau = t[q] / t[0];
+        const int32_t best = hdi_resolvent_pole(set + q, &factor);
+        hd_c64 *k = weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
+        for (p = 0; p < set->n_poles; p++) {
+            k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
+            g[p] = hdi_c(p == best ? factor / tau : 0, 0);
+        }
+    }
+}
+
+/* k_t(v,v) for the (scaled) times t[0..n_times), ascending, by one set of poles, into the columns that `column` names. */
+static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const double *t, const int32_t *column, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    hdi_elim *m = &heat->elim;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    const size_t n = HDI_CAST(size_t, m->sym.n), sets = 2 * HDI_CAST(size_t, n_times);
+    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
+    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
+    double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
+    int32_t q, i, worst = 0, v;
+    double most = 0;
+    hd_report probe;
+    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
+    h->t = t[0];
+    h->set = set;
+    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
+    hdi_shared_weights(set, n_times, t, weight);
+    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, HDI_WANT_DIAGONAL, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
+    for (q = 0; q < n_times; q++) {
+        double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
+        double *out = D + HDI_CAST(size_t, column[q]) * ldd;
+        for (v = 0; v < m->lap->n; v++) out[v] = 0;
+        for (i = 0; i < m->sym.n; i++) {
+            off[i] = hdi_min(set[q].max_weighted_error * g[i], set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
+            off[i] *= heat->scale;               /* the report is in the caller's unit */
+            k[i] *= heat->scale;
+            out[m->lap->vertex[i]] = k[i];
+            if (k[i] > 0 && off[i] / k[i] > most) {
+                most = off[i] / k[i];
+                worst = i;
+            }
+        }
+        hdi_report_values(h->rep, k, off, m->sym.n, 0);
+    }
+    h->set = NULL;
+    if (n > 0) {                                 /* rounding: one entry by a solve with the same poles */
+        double *u = HDI_TAKE(&s, double, m->lap->n), there;
+        v = m->lap->vertex[worst];
+        if (u && hdi_direct_columns(heat, t[0] / heat->scale, HD_KERNEL_SYMMETRIC, set, 1, &v, u, HDI_CAST(size_t, m->lap->n), &probe) < 0) *h->e = probe.error;
+        if (h->e->status < 0) return hdi_scope_end(&s);
+        there = D[HDI_CAST(size_t, column[0]) * ldd + HDI_CAST(size_t, v)];
+        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
+        if (there != 0) h->rep->error_solver = hdi_max(h->rep->error_solver, fabs(u[v] - there) / fabs(there) + DBL_EPSILON);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* All times, in windows that share their poles. */
+static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
+    const double span = h->times[h->n_times - 1] / h->times[0];
+    int32_t w, q0, q1;
+    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+        const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
+        for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
+        if (hdi_diagonal_window(h, q1 - q0, h->times + q0, h->time_column + q0, D, ldd) < 0) break;
+    }
+    h->rep->error_bound = h->rep->error_rational + h->rep->error_solver;
+    return h->e->status;
+}
+
+HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report) {
+    hdi_heat_call h;
+    int32_t q;
+    if (hdi_kernel_begin(&h, heat, 1, kernel, 1, report) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t) >= 0 && n_times > 0 && !D) hdi_missing(h.e);
+    ldd = hdi_leading(&h, ldd);
+    if (h.e->status >= 0 && hdi_heat_analysed(heat, 1, h.e) >= 0) hdi_direct_only(&h);
+    if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && h.e->status >= 0 && !heat->poles_asked && !heat->exacting) {
+        int32_t packs = 0, windows;
+        hdi_heat_sort_times(&h, n_times, t);
+        windows = h.e->status < 0 ? 0 : hdi_shared_windows(h.times[n_times - 1] / h.times[0], HDI_SHARED_TOL, n_times, &packs);
+        if (windows > 0 && 8 * packs < 9 * n_times) {   /* a set of degree 9 is a pack and a real factor */
+            if (hdi_diagonal_windows(&h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return hdi_heat_end(&h);
+            hdi_heat_forget(&h);                 /* one by one takes less */
+        }
+    }
+    for (q = 0; q < n_times && h.e->status >= 0; q++) {
+        h.t = t[q] * heat->scale;
+        if (hdi_entries_sure(&h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h.e->column = q;
+    }
+    return hdi_heat_end(&h);
 }
 
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report) {
@@ -16829,7 +17268,7 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd
     if (hdi_times_check(&h, 1, &t) >= 0 && !values) hdi_missing(h.e);
     if (h.e->status < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) return hdi_heat_end(&h);
     hdi_direct_only(&h);
-    (void)hdi_edges_sure(&h, values);
+    (void)hdi_entries_sure(&h, HD_KERNEL_SYMMETRIC, 1, values);
     return hdi_heat_end(&h);
 }
 
@@ -16903,90 +17342,8 @@ static hd_status hdi_filter_set(hd_heat *heat, hd_distance_kind kind, hd_rationa
 
 /* ---- distances ---- */
 
-/* The same pair on the pattern of B^2, where the inverse has all that B Z B needs on its diagonal; and a plan for it. */
-static hd_status hdi_heat_widen(hd_heat *heat, hd_error *e) {
-    const hd_laplacian *lap = heat->source;
-    const int32_t n = lap->n_active;
-    hdi_scope s = hdi_scope_begin(heat->ctx, e), keep = hdi_scope_begin(heat->ctx, e);
-    int32_t *mark = HDI_TAKE(&s, int32_t, n), i;
-    hdi_pair *sort = HDI_TAKE(&s, hdi_pair, n);
-    hd_heat_opts o = heat->opts;
-    hd_laplacian *wide;
-    int64_t p, q, nnz = 0;
-    if (heat->wide) return hdi_scope_end(&s);
-    wide = HDI_TAKE(&keep, hd_laplacian, 1);
-    if (e->status >= 0) {
-        *wide = *lap;
-        wide->L.row_ptr = HDI_TAKE(&keep, int64_t, HDI_CAST(size_t, n) + 1);
-    }
-    for (i = 0; mark && i < n; i++) mark[i] = -1;
-    for (i = 0; e->status >= 0 && i < n; i++) {  /* neighbours of neighbours */
-        wide->L.row_ptr[i] = nnz;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            for (q = lap->L.row_ptr[lap->L.col[p]]; q < lap->L.row_ptr[lap->L.col[p] + 1]; q++)
-                if (mark[lap->L.col[q]] != i) {
-                    mark[lap->L.col[q]] = i;
-                    nnz++;
-                }
-        wide->L.row_ptr[i + 1] = nnz;
-    }
-    if (e->status >= 0) {
-        wide->L.nnz = nnz;
-        wide->L.col = HDI_TAKE(&keep, int32_t, nnz);
-        wide->L.val = HDI_TAKE(&keep, double, nnz);
-        wide->B = HDI_TAKE(&keep, double, nnz);
-    }
-    for (i = 0; mark && i < n; i++) mark[i] = -1;
-    for (i = 0, nnz = 0; e->status >= 0 && i < n; i++) {
-        const int64_t begin = nnz;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            for (q = lap->L.row_ptr[lap->L.col[p]]; q < lap->L.row_ptr[lap->L.col[p] + 1]; q++)
-                if (mark[lap->L.col[q]] != i) {
-                    mark[lap->L.col[q]] = i;
-                    wide->L.col[nnz++] = lap->L.col[q];
-                }
-        hdi_sort_indices(wide->L.col + begin, nnz - begin, sort);
-        for (p = begin, q = lap->L.row_ptr[i]; p < nnz; p++) {
-            const int own = q < lap->L.row_ptr[i + 1] && lap->L.col[q] == wide->L.col[p];
-            wide->L.val[p] = own ? lap->L.val[q] : 0;
-            wide->B[p] = own ? lap->B[q] : 0;
-            q += own;
-        }
-    }
-    o.ordering = heat->opts.ordering == HD_ORDERING_OWN ? HD_ORDERING_OWN : HD_ORDERING_AUTO;
-    o.context = heat->ctx;
-    o.method = HD_METHOD_AUTO;
-    o.solver = HD_SOLVER_AUTO;
-    o.precond = HD_PRECOND_AUTO;
-    if (e->status >= 0 && hd_heat_create(&heat->wide, wide, &o, e) >= 0) {
-        heat->wide_lap = wide;                   /* the plan's from now on */
-        keep.n = 0;
-    }
-    hdi_scope_end(&keep);
-    return hdi_scope_end(&s);
-}
-
-/* diag(B Z B), rows of the source; val: Z on the pattern of wide. work [n], zeros. */
-static void hdi_sandwich_diagonal(const hd_laplacian *lap, const hd_laplacian *wide, const double *val, double *diag, double *work) {
-    int32_t i;
-    int64_t p, q;
-    for (i = 0; i < lap->n_active; i++) {
-        double sum = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) work[lap->L.col[p]] = lap->B[p];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t k = lap->L.col[p];
-            double row = 0;
-            for (q = wide->L.row_ptr[k]; q < wide->L.row_ptr[k + 1]; q++) row += val[q] * work[wide->L.col[q]];
-            sum += lap->B[p] * row;
-        }
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) work[lap->L.col[p]] = 0;
-        diag[i] = sum;
-    }
-}
-
 /* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) and the bound of its error by rows of the source. */
 typedef struct hdi_metric {
-    hd_heat *plan;
     hd_distance_kind kind;
     double t, column_unit;       /* of columns: unscaled time; factor for what the plan returns */
     hd_rational set;             /* of the factors */
@@ -17005,23 +17362,19 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     hdi_entries entries;
     hdi_elim *m;
     double *room, unit = heat->scale;
-    int64_t size;
     int32_t i;
     memset(x, 0, sizeof *x);
     x->kind = kind;
-    x->plan = heat;
     x->filter = kind == HD_DISTANCE_COMMUTE || kind == HD_DISTANCE_BIHARMONIC;
     x->diag = HDI_TAKE(keep, double, 2 * HDI_CAST(size_t, lap->n_active) + 1);
     if (!x->diag) return e->status;
     x->off = x->diag + lap->n_active;
     scope = hdi_scope_begin(heat->ctx, e);
-    if (full && hdi_heat_widen(heat, e) < 0) return e->status;
-    if (full) x->plan = heat->wide;
     if (x->filter && hdi_filter_set(heat, kind, &x->set, e) < 0) return e->status;
     x->t = x->filter ? 1 / heat->scale : 2 * t;
     x->column_unit = kind == HD_DISTANCE_COMMUTE ? 1 / heat->scale : kind == HD_DISTANCE_BIHARMONIC ? 1 / (heat->scale * heat->scale) : 1;
     if (x->filter) unit *= x->column_unit;
-    if (hdi_heat_begin(&h, x->plan, HDI_QUERY_SYMMETRIC, x->t, 1, rep) < 0 || hdi_heat_analysed(x->plan, 1, h.e) < 0) {
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, x->t, 1, rep) < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) {
         *e = *h.e;
         return hdi_heat_end(&h);
     }
@@ -17029,32 +17382,21 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     h.diagonal = 1;
     h.degree = degree;
     h.set = x->filter ? &x->set : NULL;
-    m = &x->plan->elim;
+    m = &heat->elim;
     h.lap = m->lap;
-    size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
-    room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
-    if (room && hdi_entries_make(&h, !full, room, size, &entries) >= 0) {
-        if (full) {
-            double *val = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, m->source->L.nnz)), *g = val + m->source->L.nnz;
-            double *work = HDI_TAKE_ZERO(&scope, double, lap->n_active);
-            if (e->status >= 0) {
-                hdi_entries_spread(m, entries.k, unit, val);
-                hdi_entries_spread(m, entries.g, unit, g);
-                hdi_sandwich_diagonal(lap, m->source, val, x->diag, work);
-                hdi_sandwich_diagonal(lap, m->source, g, x->off, work);
-                for (i = 0; i < lap->n_active; i++) {
-                    x->diag[i] += m->set.a0 * lap->b_diag[i];
-                    x->off[i] = hdi_min(entries.weighted < HUGE_VAL ? entries.weighted * x->off[i] : HUGE_VAL, entries.uniform * lap->b_diag[i]);
-                }
+    room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, m->sym.n));
+    if (room && hdi_entries_make(&h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) >= 0) {
+        if (lap->B && !full) entries.uniform += fabs(m->set.a0);
+        for (i = 0; i < m->sym.n; i++) {
+            const int32_t r = m->sym.perm[i];
+            const double b = lap->b_diag[r], w = kind == HD_DISTANCE_WEIGHTED ? b * b : 1;
+            if (full) {
+                x->diag[r] = unit * entries.k[i] + m->set.a0 * b;
+                x->off[r] = hdi_min(entries.weighted < HUGE_VAL ? entries.weighted * unit * entries.g[i] : HUGE_VAL, entries.uniform * b);
+                continue;
             }
-        } else {
-            if (lap->B) entries.uniform += fabs(m->set.a0);
-            for (i = 0; i < m->sym.n; i++) {
-                const int32_t r = m->sym.perm[i];
-                const double b = lap->b_diag[r], w = kind == HD_DISTANCE_WEIGHTED ? b * b : 1;
-                x->diag[r] = w * unit * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i]));
-                x->off[r] = w * unit * hdi_entry_error(&entries, entries.g[i], m->lap->b_diag[i], lap->b_ratio);
-            }
+            x->diag[r] = w * unit * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i]));
+            x->off[r] = w * unit * hdi_entry_error(&entries, entries.g[i], m->lap->b_diag[i], lap->b_ratio);
         }
     }
     x->set = m->set;
@@ -17127,7 +17469,7 @@ static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, 
     if (n_times < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: the number of times is negative");
     if (heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV)
         return hdi_fail(e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
-    if (kind >= HD_DISTANCE_COMMUTE) return HD_OK;
+    if (kind >= HD_DISTANCE_COMMUTE) return n_times > 1 ? hdi_fail_row(e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times) : HD_OK;
     if (n_times > 0 && !t) return hdi_missing(e);
     for (q = 0; q < n_times; q++)
         if (!(t[q] > 0) || !hdi_finite(2 * t[q] * heat->scale)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
@@ -17156,12 +17498,12 @@ static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double 
     int32_t r, v;
     memset(rep, 0, sizeof *rep);
     if (!work || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
-    if (hdi_direct_columns(x.plan, x.t, kernel, &x.set, k, sources, D, step, &columns) < 0) *e = columns.error;
+    if (hdi_direct_columns(heat, x.t, kernel, &x.set, k, sources, D, step, &columns) < 0) *e = columns.error;
     if (e->status >= 0 && x.weighted > 0 && x.weighted < HUGE_VAL) g = HDI_TAKE(&s, double, n);
     for (r = 0; r < k && e->status >= 0; r++) {
         double *u = D + HDI_CAST(size_t, r) * step;
         hd_report bound;
-        if (g && hdi_direct_columns(x.plan, x.t, kernel, &x.resolvent, 1, sources + r, g, n, &bound) < 0) *e = bound.error;
+        if (g && hdi_direct_columns(heat, x.t, kernel, &x.resolvent, 1, sources + r, g, n, &bound) < 0) *e = bound.error;
         if (e->status < 0) break;
         hdi_metric_column(heat->source, &x, u, work);
         if (g) hdi_metric_column(heat->source, &x, g, work);
@@ -17171,21 +17513,27 @@ static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double 
     rep->residual = hdi_max(rep->residual, columns.residual);
     rep->method = HD_METHOD_DIRECT;
     rep->reason = "selected inversion of the factors of the poles";
-    rep->ordering = x.plan->elim.sym.ordering;
-    rep->factor_nnz = x.plan->elim.sym.nnz;
+    rep->ordering = heat->elim.sym.ordering;
+    rep->factor_nnz = heat->elim.sym.nnz;
     return hdi_scope_end(&s);
 }
 
-/* out [n_sets][n] += the weighted sums of column `row` of the inverses, rows in elimination order: pairs only. x [8 n], work as a sweep's, active [n_super]. */
-static void hdi_shared_column(const hdi_elim *m, int32_t row, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active) {
+/* out [n_sets][n] += the weighted sums of column `row` of the inverses, or with mass of the inverses times the (full, scaled) B, rows in elimination order: pairs only.
+ * x [8 n], work as a sweep's, active [n_super]. */
+static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active) {
     const int32_t n = m->sym.n, n_poles = m->set.n_poles;
+    const int64_t begin = m->lap->L.row_ptr[row], end = m->lap->L.row_ptr[row + 1];
+    int64_t p;
     int32_t i, k, q, j;
     memset(active, 0, HDI_CAST(size_t, m->sym.n_super));
     hdi_sweep_touch(&m->sym, row, active);
+    for (p = begin; p < end && mass; p++) hdi_sweep_touch(&m->sym, m->lap->L.col[p], active);
     for (i = 0; 4 * i < n_poles; i++) {
         hdi_sweep z;
         memset(x, 0, HDI_CAST(size_t, n) * HDI_PACK * sizeof *x);
-        for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
+        for (q = 0; q < 4 && !mass; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
+        for (p = begin; p < end && mass; p++)
+            for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, m->lap->L.col[p]) + q] = m->lap->B[p];
         z = hdi_sweep_open(m->pack + i, 1, x, work, 1);
         z.active = active;
         hdi_sweep_run(&z, m->ctx);
@@ -17202,19 +17550,21 @@ static void hdi_shared_column(const hdi_elim *m, int32_t row, int32_t n_sets, co
     }
 }
 
-/* Distances of the first two kinds (weighted ones with a diagonal B) at the (scaled, ascending) times h->times[q0..q1) of the kernel by one set of poles. */
+/* Distances of the first two kinds at the (scaled, ascending) times h->times[q0..q1) of the kernel by one set of poles. */
 static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, int32_t q0, int32_t q1, int32_t k, const int32_t *sources, double *D, size_t ldd) {
     hd_heat *heat = h->heat;
     hdi_elim *m = &heat->elim;
     const hd_laplacian *lap = heat->source;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     const int32_t n_times = q1 - q0, n = m->sym.n;
+    const int weighted = kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
     const size_t size = 2 * HDI_CAST(size_t, n_times) * HDI_CAST(size_t, n);
-    const double *t = h->times + q0, unit = kind == HD_DISTANCE_WEIGHTED ? 1 / heat->scale : heat->scale;
+    const double *t = h->times + q0, unit = weighted ? 1 / heat->scale : heat->scale;
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
     hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(size_t, n_times) * HD_MAX_POLES);
     double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n));
     double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n);
+    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n)) : NULL;
     char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
     hdi_metric metric;
     int32_t q, r, i;
@@ -17227,22 +17577,29 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     h->set = set;
     if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
     hdi_shared_weights(set, n_times, t, weight);
-    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, 1, room, n, h->e) < 0) return hdi_scope_end(&s);
+    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, n, h->e) < 0)
+        return hdi_scope_end(&s);
     for (r = 0; r < k; r++) {
         const int32_t row = m->lap->row[sources[r]];
         if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
         memset(column, 0, size * sizeof *column);
-        if (row >= 0) hdi_shared_column(m, row, 2 * n_times, weight, column, x, work, active);
+        if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active);
         for (q = 0; q < n_times; q++) {
             const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
             double *u = D + (HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) + HDI_CAST(size_t, h->time_column[q0 + q])) * ldd;
             memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
             memset(g, 0, HDI_CAST(size_t, lap->n) * sizeof *g);
+            if (full) {                          /* B of what is B times the inverses, twice scaled; forms are not */
+                hdi_pair_apply(m->lap, 0, 1, c, product);
+                hdi_pair_apply(m->lap, 0, 1, c + n, product + n);
+                c = product;
+            }
             for (i = 0; i < n; i++) {
                 const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
-                const double b = kind == HD_DISTANCE_WEIGHTED ? m->lap->mass[i] : 1, bs = kind == HD_DISTANCE_WEIGHTED && row >= 0 ? m->lap->mass[row] : 1;
-                metric.diag[at] = unit * b * b * f[i];
-                metric.off[at] = unit * b * b * set[q].max_weighted_error * f[n + i];
+                const double b = weighted && !full ? m->lap->mass[i] : 1, bs = weighted && !full && row >= 0 ? m->lap->mass[row] : 1;
+                const double unit_f = full ? heat->scale : unit * b * b;
+                metric.diag[at] = unit_f * f[i];
+                metric.off[at] = unit_f * set[q].max_weighted_error * f[n + i];
                 u[v] = unit * b * bs * c[i];
                 g[v] = unit * b * bs * set[q].max_weighted_error * c[n + i];
             }
@@ -17257,7 +17614,7 @@ static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t
     hd_heat *heat = h->heat;
     int32_t packs = 0, windows, w, q0, q1;
     double span, *twice;
-    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || (kind == HD_DISTANCE_WEIGHTED && heat->source->B) || heat->poles_asked || heat->exacting) return 0;
+    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || heat->poles_asked || heat->exacting) return 0;
     twice = HDI_TAKE(&h->s, double, n_times);
     for (q0 = 0; twice && q0 < n_times; q0++) twice[q0] = 2 * t[q0];
     if (!twice || hdi_heat_sort_times(h, n_times, twice) < 0 || hdi_heat_analysed(heat, 1, h->e) < 0) return 0;
@@ -17379,7 +17736,7 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, doub
     for (q = 0; q < n_pairs && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
         if (q == 0 || i[q] != i[q - 1]) {
             hd_report column;
-            if (hdi_direct_columns(x.plan, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, 1, i + q, f, HDI_CAST(size_t, heat->source->n), &column) < 0) {
+            if (hdi_direct_columns(heat, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, 1, i + q, f, HDI_CAST(size_t, heat->source->n), &column) < 0) {
                 *e = column.error;
                 break;
             }
@@ -17465,7 +17822,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
         if (q + 1 == count) break;
         if (hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / count, h.e) < 0) break;
-        if (hdi_direct_columns(x.plan, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, 1, vertex + q, u, HDI_CAST(size_t, lap->n), &column) < 0) {
+        if (hdi_direct_columns(heat, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, 1, vertex + q, u, HDI_CAST(size_t, lap->n), &column) < 0) {
             *h.e = column.error;
             break;
         }

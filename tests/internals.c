@@ -1678,7 +1678,7 @@ static void int_invert_of(int kind, hd_laplacian_kind form, int level, int32_t d
     entries = DENSE_NEW(double, SETS * count);
     want = DENSE_NEW(double, SETS * PICKED * n);
     diag[0] = 100;                               /* sums are added to what is there */
-    CHECK(hdi_elim_invert(&m, SETS, weight, 1, diag, n, &e) == HD_OK && hdi_elim_invert(&m, SETS, weight, 0, entries, count, &e) == HD_OK);
+    CHECK(hdi_elim_invert(&m, SETS, weight, HDI_WANT_DIAGONAL, diag, n, &e) == HD_OK && hdi_elim_invert(&m, SETS, weight, HDI_WANT_ENTRIES, entries, count, &e) == HD_OK);
     diag[0] -= 100;
     for (p = 0; p < set.n_poles; p++) {
         for (c = 0; c < PICKED; c++) {

@@ -142,6 +142,7 @@ static void test_tmp_remove(void) {
 #include "test_engines.h"
 #include "test_geodesic.h"
 #include "test_diagonal.h"
+#include "test_forms.h"
 #include "test_operators_all.h"
 #include "test_picture.h"
 
@@ -152,7 +153,7 @@ static const test_group test_groups[] = {
     {"intrinsic", test_intrinsic},
     {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
     {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic},
-    {"diagonal", test_diagonal}, {"everywhere", test_operators_all},
+    {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio},
 };
 

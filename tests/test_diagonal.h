@@ -372,7 +372,7 @@ static void diag_inverse_threads(void) {
     hd_csr_free(&a, NULL);
 }
 
-/* variant 0: real, 1: complex, 2: without values. */
+/* variant 0: real, 1: complex, 2: without values; 3, 4: entries of a real one, of complex ones. */
 static hd_status diag_inverse_job(hd_context *ctx, int variant) {
     enum { N = 48, K = 5 };
     hd_csr a = ldl_random_pattern(N, 4, 9);
@@ -380,15 +380,18 @@ static hd_status diag_inverse_job(hd_context *ctx, int variant) {
     hd_c64 *val = DENSE_NEW(hd_c64, K * a.nnz), *z = DENSE_NEW(hd_c64, K * a.nnz), zd[K * N];
     hd_ldl_opts o = ldl_opts_of(HD_ORDERING_AUTO, NULL, NULL, ctx);
     hd_ldl *f = ldl_mark;
+    const int32_t i[4] = {0, N - 1, 7, 20}, j[4] = {3, 3, 11, 0};
     hd_error e;
     hd_status st;
     ldl_robust_values(&a, K, real, val);
     st = hd_ldl_analyse(&f, &a, &o, NULL, &e);
     if (st >= 0) {
-        if (variant == 0) CHECK((st = hd_ldl_factor(f, real, NULL, &e)) == e.status);
-        if (variant > 0) CHECK((st = hd_ldl_factor_complex(f, K, val, NULL, &e)) == e.status);
+        if (variant % 3 == 0) CHECK((st = hd_ldl_factor(f, real, NULL, &e)) == e.status);
+        if (variant % 3 > 0) CHECK((st = hd_ldl_factor_complex(f, K, val, NULL, &e)) == e.status);
         if (variant == 0 && st >= 0) CHECK((st = hd_ldl_inverse(f, v, d, &e)) == e.status);
-        if (variant > 0 && st >= 0) CHECK((st = hd_ldl_inverse_complex(f, variant == 1 ? z : NULL, zd, &e)) == e.status);
+        if ((variant == 1 || variant == 2) && st >= 0) CHECK((st = hd_ldl_inverse_complex(f, variant == 1 ? z : NULL, zd, &e)) == e.status);
+        if (variant == 3 && st >= 0) CHECK((st = hd_ldl_inverse_entries(f, 4, i, j, v, &e)) == e.status);
+        if (variant == 4 && st >= 0) CHECK((st = hd_ldl_inverse_entries_complex(f, 4, i, j, z, &e)) == e.status);
         hd_ldl_free(f);
     }
     hd_csr_free(&a, NULL);
@@ -450,9 +453,9 @@ static void diag_robust_jobs(const rob_job *job) {
 
 static void diag_inverse_robust(void) {
     int variant;
-    for (variant = 0; variant < 3; variant++) {
+    for (variant = 0; variant < 5; variant++) {
         rob_job job;
-        job.what = "inverse";
+        job.what = variant < 3 ? "inverse" : "inverse's entries";
         job.run = diag_inverse_job;
         job.variant = variant;
         diag_robust_jobs(&job);
@@ -1118,7 +1121,7 @@ static void diag_own_matrices(void) {
     shape_free(&s);
 }
 
-/* The elimination order makes no difference, whoever gives it; also on the pattern of B^2. Threads make none at all. */
+/* The elimination order makes no difference, whoever gives it. Threads make none at all. */
 static void diag_orders(void) {
     shape b = shape_bumpy(2, 9), s = eng_with_inert(&b);
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
@@ -1264,6 +1267,9 @@ static void diag_refused(void) {
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, NULL, D, 0, &rep) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, NULL, 0, &rep) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, D, 41, &rep) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_COMMUTE, 2, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT && rep.error.value == 2);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 3, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, NULL, 0, &rep) == HD_OK);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 0, NULL, 1, &v, NULL, 0, &rep) == HD_OK);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 0, NULL, NULL, 0, &rep) == HD_OK);
     CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, -1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
