@@ -3992,11 +3992,12 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, c
 }
 
 /* ==== [09] geometry ====
- * Triangles: checks, corner cotangents, which faces are left out, and who meets at a vertex. May call [05]. */
+ * Triangles: checks, corner cotangents, which faces are left out, edges, and who meets at a vertex. May call [08]. */
 
 typedef struct hdi_mesh {
     const double *xyz;
     const int32_t *tri;
+    const int32_t *face;/* [m] the caller's number of each face; NULL: their own */
     int32_t n, m;
     double *cot;        /* [3 m] cotangent at each corner */
     double *area;       /* [m] 0: the face is left out */
@@ -4014,7 +4015,7 @@ static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + 
 
 /* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the rounding of one product
  * where exactly zero is right; when the result is that small it is computed again in steps that cannot be fused. */
-static double hdi_det2(double a, double b, double c, double d) {
+static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
     const double x = a * b - c * d;
     volatile double p, q;
     if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
@@ -4023,14 +4024,14 @@ static double hdi_det2(double a, double b, double c, double d) {
     return p - q;
 }
 
-static void hdi_cross3(const double *a, const double *b, double *out) {
+static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
     out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
     out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
     out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
 }
 
 /* Length without squares that underflow or overflow. */
-static double hdi_norm3(const double *a) {
+static HDI_INLINE double hdi_norm3(const double *a) {
     const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
     double b[3];
     if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
@@ -4049,29 +4050,107 @@ static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri
     return HD_OK;
 }
 
-/* Area and cotangents of face f; area 0 where it has none or where a cotangent would not be finite. */
-static hd_status hdi_face_measure(hdi_mesh *mesh, int32_t f, hd_mesh_report *rep, hd_error *e) {
+/* What a block of faces adds to the report. */
+typedef struct hdi_face_tally {
+    int32_t n_repeated_corner, n_zero_area, bad, bad_vertex;   /* bad: the first face whose area is not finite, or -1 */
+    double steepest, bad_area;                     /* steepest: the largest cotangent, of the smallest angle */
+} hdi_face_tally;
+
+/* Area of face f, and its cotangents; 0 where it has none or where a cotangent would not be finite. */
+static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot, hdi_face_tally *tally) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
-    double edge[3][3], cross[3], twice, *cot = mesh->cot + 3 * HDI_CAST(int64_t, f);
+    double edge[3][3], cross[3], twice;
     int q;
-    mesh->area[f] = 0;
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
-        rep->n_repeated_corner++;
-        return HD_OK;
+        tally->n_repeated_corner++;
+        return 0;
     }
-    for (q = 0; q < 3; q++)   /* edge q runs opposite to corner q */
-        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 2) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), edge[q]);
+    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[2]), mesh->xyz + 3 * HDI_CAST(int64_t, v[1]), edge[0]);   /* edge q runs opposite to corner q */
+    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[0]), mesh->xyz + 3 * HDI_CAST(int64_t, v[2]), edge[1]);
+    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[1]), mesh->xyz + 3 * HDI_CAST(int64_t, v[0]), edge[2]);
     hdi_cross3(edge[2], edge[0], cross);
     twice = hdi_norm3(cross);
-    if (!hdi_finite(twice)) return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f, v[0], twice);
-    for (q = 0; q < 3; q++) cot[q] = -hdi_dot3(edge[(q + 1) % 3], edge[(q + 2) % 3]) / twice;
-    if (twice / 24 < DBL_MIN || !hdi_finite(cot[0]) || !hdi_finite(cot[1]) || !hdi_finite(cot[2])) {
-        rep->n_zero_area++;
-        return HD_OK;
+    if (!hdi_finite(twice)) {
+        const int32_t id = mesh->face ? mesh->face[f] : f;
+        if (tally->bad < 0 || id < tally->bad) {
+            tally->bad = id;
+            tally->bad_vertex = v[0];
+            tally->bad_area = twice;
+        }
+        return 0;
     }
-    mesh->area[f] = twice / 2;
-    rep->smallest_angle = hdi_min(rep->smallest_angle, atan2(1, hdi_max(cot[0], hdi_max(cot[1], cot[2]))));
+    for (q = 0; q < 3; q++) cot[q] = -hdi_dot3(edge[q < 2 ? q + 1 : 0], edge[q ? q - 1 : 2]) / twice;
+    if (twice / 24 < DBL_MIN || !(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]) <= DBL_MAX)) {
+        tally->n_zero_area++;
+        return 0;
+    }
+    tally->steepest = hdi_max(tally->steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
+    return twice / 2;
+}
+
+static void hdi_tally_clear(hdi_face_tally *tally) {
+    memset(tally, 0, sizeof *tally);
+    tally->bad = tally->bad_vertex = -1;
+    tally->steepest = -HUGE_VAL;
+}
+
+/* What the report says of faces one by one. */
+static hd_status hdi_tally_report(const hdi_face_tally *tally, int32_t m, hd_mesh_report *rep, hd_error *e) {
+    if (tally->bad >= 0)
+        return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", tally->bad, tally->bad_vertex, tally->bad_area);
+    rep->n_faces = m;
+    rep->n_repeated_corner = tally->n_repeated_corner;
+    rep->n_zero_area = tally->n_zero_area;
+    rep->n_faces_used = m - tally->n_repeated_corner - tally->n_zero_area;
+    rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, tally->steepest) : 0;
     return HD_OK;
+}
+
+enum { HDI_FACES_PER_TASK = 8192, HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };   /* how far ahead memory is asked for what will be needed */
+
+typedef struct hdi_measure_job { const hdi_mesh *mesh; hdi_face_tally *tally; } hdi_measure_job;
+
+static void hdi_measure_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_measure_job *job = HDI_CAST(const hdi_measure_job *, arg);
+    const int64_t begin = index * HDI_FACES_PER_TASK, end = hdi_least(job->mesh->m, begin + HDI_FACES_PER_TASK);
+    hdi_face_tally tally;
+    int64_t f;
+    (void)worker;
+    hdi_tally_clear(&tally);
+    for (f = begin; f < end; f++) {
+        const int32_t *ahead = job->mesh->tri + 3 * hdi_least(f + HDI_FACES_AHEAD, end - 1);
+        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[0]));
+        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[1]));
+        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[2]));
+        job->mesh->area[f] = hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), job->mesh->cot + 3 * f, &tally);
+    }
+    job->tally[index] = tally;
+}
+
+/* All faces of a mesh whose indices are fine: cot and area. */
+static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
+    const int64_t n_tasks = (HDI_CAST(int64_t, mesh->m) + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_face_tally all;
+    hdi_measure_job job;
+    int64_t i;
+    hdi_tally_clear(&all);
+    job.mesh = mesh;
+    job.tally = HDI_TAKE(&own, hdi_face_tally, n_tasks);
+    if (!job.tally) return hdi_scope_end(&own);
+    hdi_parallel(s->ctx, n_tasks, hdi_measure_task, &job);
+    for (i = 0; i < n_tasks; i++) {
+        const hdi_face_tally *t = job.tally + i;
+        all.n_repeated_corner += t->n_repeated_corner;
+        all.n_zero_area += t->n_zero_area;
+        all.steepest = hdi_max(all.steepest, t->steepest);
+        if (t->bad < 0 || (all.bad >= 0 && all.bad < t->bad)) continue;
+        all.bad = t->bad;
+        all.bad_vertex = t->bad_vertex;
+        all.bad_area = t->bad_area;
+    }
+    (void)hdi_tally_report(&all, mesh->m, rep, s->e);
+    return hdi_scope_end(&own);
 }
 
 /* Corner lists of all vertices, over the faces that have an area. */
@@ -4089,29 +4168,6 @@ static void hdi_mesh_corners(hdi_mesh *mesh) {
     mesh->corner_ptr[0] = 0;
 }
 
-/* Gives faces with the corners of an earlier one area 0: around each vertex, the faces in which it is the smallest corner are sorted
- * by their two other corners. work: as many pairs as the busiest vertex has corners. */
-static void hdi_mesh_repeats(hdi_mesh *mesh, hdi_pair *work, hd_mesh_report *rep) {
-    int32_t i;
-    int64_t p, n;
-    for (i = 0; i < mesh->n; i++) {
-        n = 0;
-        for (p = mesh->corner_ptr[i]; p < mesh->corner_ptr[i + 1]; p++) {
-            const int32_t c = mesh->corner[p], f = c / 3, *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
-            const int32_t a = v[(c + 1) % 3], b = v[(c + 2) % 3], lo = a < b ? a : b, hi = a < b ? b : a;
-            if (lo < i) continue;
-            work[n].key = HDI_CAST(uint64_t, lo) << 32 | HDI_CAST(uint64_t, hi);
-            work[n++].id = f;
-        }
-        hdi_sort_pairs(work, n);
-        for (p = 1; p < n; p++) {
-            if (work[p].key != work[p - 1].key) continue;
-            mesh->area[work[p].id] = 0;
-            rep->n_repeated_face++;
-        }
-    }
-}
-
 static int64_t hdi_most_corners(const hdi_mesh *mesh) {
     int64_t most = 1;
     int32_t i;
@@ -4120,35 +4176,464 @@ static int64_t hdi_most_corners(const hdi_mesh *mesh) {
     return most;
 }
 
-/* Checks the mesh, measures the faces, and leaves out those that contribute nothing. The arrays live in s. */
-static hd_status hdi_mesh_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep,
-                               hdi_scope *s) {
-    const int64_t n_corners = 3 * HDI_CAST(int64_t, m);
-    hdi_pair *work;
+/* ---- sides ----
+ * The sides of all faces with area, gathered by the smaller of their two vertices and sorted by the larger one, then by face: an edge is a run. */
+typedef struct hdi_sides {
+    int32_t *ptr;               /* [n + 1] runs at a vertex */
+    uint64_t *key;              /* [3 m] larger vertex << 32 | 4 face + corner where the side begins */
+    uint64_t *work;             /* [2 busiest vertex] */
+} hdi_sides;
+
+static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
+
+static int32_t hdi_key_face(uint64_t key) { return HDI_CAST(int32_t, (key & 0xffffffffu) >> 2); }
+static int hdi_key_corner(uint64_t key) { return HDI_CAST(int, key & 3); }
+static int32_t hdi_key_vertex(uint64_t key) { return HDI_CAST(int32_t, key >> 32); }
+/* The corner opposite to the side. */
+static int64_t hdi_key_opposite(uint64_t key) { return 3 * HDI_CAST(int64_t, hdi_key_face(key)) + hdi_prev3[hdi_key_corner(key)]; }
+
+static void hdi_sides_gather(const hdi_mesh *mesh, hdi_sides *g) {
+    const int32_t *v = mesh->tri;
+    int32_t f, i, sum = 0, *at = g->ptr;
+    memset(at, 0, (HDI_CAST(size_t, mesh->n) + 1) * sizeof *at);
+    for (f = 0; f < mesh->m; f++, v += 3) {
+        if (!(mesh->area[f] > 0)) continue;
+        at[v[0] < v[1] ? v[0] : v[1]]++;
+        at[v[1] < v[2] ? v[1] : v[2]]++;
+        at[v[2] < v[0] ? v[2] : v[0]]++;
+    }
+    for (i = 0; i < mesh->n; i++) {
+        const int32_t count = at[i];
+        at[i] = sum;
+        sum += count;
+    }
+    for (f = 0, v = mesh->tri; f < mesh->m; f++, v += 3) {
+        const uint64_t low = HDI_CAST(uint64_t, f) << 2;
+        const uint32_t a = HDI_CAST(uint32_t, v[0]), b = HDI_CAST(uint32_t, v[1]), c = HDI_CAST(uint32_t, v[2]);
+        if (!(mesh->area[f] > 0)) continue;
+        g->key[at[a < b ? a : b]++] = HDI_CAST(uint64_t, a < b ? b : a) << 32 | low;
+        g->key[at[b < c ? b : c]++] = HDI_CAST(uint64_t, b < c ? c : b) << 32 | (low + 1);
+        g->key[at[c < a ? c : a]++] = HDI_CAST(uint64_t, c < a ? a : c) << 32 | (low + 2);
+    }
+    memmove(at + 1, at, HDI_CAST(size_t, mesh->n) * sizeof *at);
+    at[0] = 0;
+}
+
+/* Sorts the sides at vertex i. Most lists are short. */
+static void hdi_sides_sort(hdi_sides *g, int32_t i) {
+    uint64_t *a = g->key + g->ptr[i];
+    const int64_t n = g->ptr[i + 1] - g->ptr[i];
+    int64_t p, q;
+    if (n > 24) {
+        hdi_sort_keys(a, n, g->work);
+        return;
+    }
+    for (p = 1; p < n; p++) {
+        const uint64_t x = a[p];
+        for (q = p; q > 0 && x < a[q - 1]; q--) a[q] = a[q - 1];
+        a[q] = x;
+    }
+}
+
+static double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
+    double edge[3];
+    hdi_sub3(xyz + 3 * HDI_CAST(int64_t, j), xyz + 3 * HDI_CAST(int64_t, i), edge);
+    return hdi_norm3(edge);
+}
+
+/* Gathers the sides; g->work has room to sort those of the busiest vertex. */
+static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s) {
+    int32_t i, most = 1;
+    g->ptr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
+    g->key = HDI_TAKE(s, uint64_t, 3 * HDI_CAST(int64_t, mesh->m));
+    if (s->e->status < 0) return s->e->status;
+    hdi_sides_gather(mesh, g);
+    for (i = 0; i < mesh->n; i++)
+        if (g->ptr[i + 1] - g->ptr[i] > most) most = g->ptr[i + 1] - g->ptr[i];
+    g->work = HDI_TAKE(s, uint64_t, 2 * HDI_CAST(int64_t, most));
+    return s->e->status;
+}
+
+/* How many connected sets of vertices are united in parent [n], which is overwritten; single vertices are none. */
+static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
+    int32_t i, count = 0;
+    for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
+    for (i = 0; i < n; i++) {                    /* a set is a root with another vertex */
+        const int32_t root = parent[i];
+        if (root == i || root < 0 || parent[root] != root) continue;
+        parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
+        count++;
+    }
+    return count;
+}
+
+/* ---- edges ---- */
+
+/* The edges of a mesh from each vertex to later ones, in order. */
+typedef struct hdi_edges {
+    int32_t *first;             /* [n + 1] */
+    int32_t *to;                /* [first[n]] the later vertex; in intrinsic triangulations also the vertex itself */
+    double *w;                  /* [first[n]] minus half the cotangents opposite to it */
+    double *b;                  /* [first[n]] a twelfth of the areas of its faces; NULL: not wanted */
+    int32_t *smaller, *larger;  /* [n] neighbours of a vertex: those before it and those after it */
+    int32_t *parent;            /* [n] vertices united along edges */
+    double length;              /* of all edges, each once */
+} hdi_edges;
+
+/* Room for the edges of m faces; room 0: for counts only. */
+static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int full, hdi_scope *s) {
+    int32_t i;
+    memset(g, 0, sizeof *g);
+    g->first = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, n) + 1);
+    if (room) g->to = HDI_TAKE(s, int32_t, room);
+    if (room) g->w = HDI_TAKE(s, double, room);
+    if (room && full) g->b = HDI_TAKE(s, double, room);
+    g->smaller = HDI_TAKE_ZERO(s, int32_t, n);
+    g->larger = HDI_TAKE_ZERO(s, int32_t, n);
+    g->parent = HDI_TAKE(s, int32_t, n);
+    for (i = 0; i < n && s->e->status >= 0; i++) g->parent[i] = i;
+    return s->e->status;
+}
+
+/* The edge (i,j), i < j. */
+static HDI_INLINE void hdi_edges_join(hdi_edges *g, int32_t i, int32_t j) {
+    g->smaller[j]++;
+    g->larger[i]++;
+    if (g->parent[i] != g->parent[j]) hdi_unite(g->parent, i, j);
+}
+
+/* All cotangents of the faces of a run of sides: what the rounding error of their edge's weight is relative to. */
+static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int64_t n) {
+    double sum = 0;
+    int64_t p;
+    for (p = 0; p < n; p++) {
+        const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, hdi_key_face(run[p]));
+        sum += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
+    }
+    return sum;
+}
+
+/* The edges of Delaunay triangles without coordinates, which may run from a vertex to itself. Weights above zero, which are there by rounding only, become
+ * zero when they are below 1e-13 of the cotangents that they are made of. */
+static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hdi_scope *s) {
+    hdi_sides sides;
+    int32_t i, p, q, end, n_edges = 0;
+    if (hdi_edges_take(g, mesh->n, 3 * HDI_CAST(int64_t, mesh->m), full, s) < 0 || hdi_sides_make(&sides, mesh, s) < 0) return s->e->status;
+    for (i = 0; i < mesh->n; i++) {
+        g->first[i] = n_edges;
+        hdi_sides_sort(&sides, i);
+        for (p = sides.ptr[i], end = sides.ptr[i + 1]; p < end; p = q, n_edges++) {
+            const uint64_t *key = sides.key;
+            const int32_t j = hdi_key_vertex(key[p]);
+            double w = 0, b = 0;
+            for (q = p; q < end && hdi_key_vertex(key[q]) == j; q++) {
+                w -= mesh->cot[hdi_key_opposite(key[q])] / 2;
+                b += mesh->area[hdi_key_face(key[q])];
+            }
+            if (w > 0 && w <= 1e-13 * hdi_run_cotangents(mesh, key + p, q - p)) w = 0;
+            g->to[n_edges] = j;
+            g->w[n_edges] = w;
+            if (full) g->b[n_edges] = b / 12;
+            if (j != i) hdi_edges_join(g, i, j);
+        }
+    }
+    g->first[mesh->n] = n_edges;
+    return HD_OK;
+}
+
+/* How masses are lumped. */
+typedef enum hdi_lump { HDI_LUMP_THIRDS, HDI_LUMP_MIXED, HDI_LUMP_ONES } hdi_lump;
+
+/* Adds the shares of a face. The mixed rule of a face without obtuse angle, (|ab|^2 cot c + |ac|^2 cot b) / 8 at a, is area/4 (1 + cot b cot c) there, as
+ * |ab|^2 = 2 area (cot a + cot b) and the three products of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the
+ * area whatever rounding does, and cotangents may carry a factor. */
+static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const double *cot, double area, hdi_lump lump) {
+    if (lump == HDI_LUMP_THIRDS) {
+        mass[v[0]] += area / 3;
+        mass[v[1]] += area / 3;
+        mass[v[2]] += area / 3;
+    } else if (lump == HDI_LUMP_ONES) {
+        mass[v[0]] = mass[v[1]] = mass[v[2]] = 1;
+    } else {
+        const double x[3] = {cot[1] * cot[2], cot[2] * cot[0], cot[0] * cot[1]}, sum = x[0] + x[1] + x[2], quarter = area / 4;
+        const double obtuse = hdi_min(cot[0], hdi_min(cot[1], cot[2])) < 0, most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
+        const double flat = quarter * obtuse, scale = quarter / sum * (1 - obtuse);
+        int q;
+        if (sum > 1e-100 && sum <= DBL_MAX) {    /* without further branches: which angle is obtuse is anyone's guess */
+            for (q = 0; q < 3; q++) mass[v[q]] += quarter + (flat * (cot[q] < 0) + scale * x[q]);
+        } else {                                 /* a needle: its tip, which has the smallest angle, a quarter */
+            for (q = 0; q < 3; q++) mass[v[q]] += quarter + (obtuse > 0 ? flat * (cot[q] < 0) : cot[q] < most ? quarter / 2 : 0);
+        }
+    }
+}
+
+static void hdi_mesh_masses(const hdi_mesh *mesh, hdi_lump lump, double *mass) {
+    int64_t f;
+    memset(mass, 0, HDI_CAST(size_t, mesh->n) * sizeof *mass);
+    for (f = 0; f < mesh->m; f++)
+        if (mesh->area[f] > 0) hdi_face_masses(mass, mesh->tri + 3 * f, mesh->cot + 3 * f, mesh->area[f], lump);
+}
+
+/* ---- one pass over a mesh ----
+ * Vertices in their order, each with the faces whose smallest corner it is: these are measured, and their two sides at the vertex join those that wait there,
+ * which were opposite to still smaller corners; then all its sides to later vertices are known, are sorted, and runs of them are its edges. What a face
+ * needs is read once, and near what was read before. */
+
+typedef struct hdi_side { int32_t to; uint32_t turn; double cot, area; } hdi_side;     /* turn: 1 if it runs to the later vertex */
+
+typedef struct hdi_pass {
+    hdi_mesh *mesh;
+    hdi_edges *edges;
+    double *mass;               /* [n] or NULL: not wanted */
+    hdi_lump lump;
+    hd_mesh_report *rep;
+    hdi_face_tally tally;
+    int32_t *face_ptr;          /* [n + 1] faces by their smallest corner */
+    int32_t *wait_ptr, *waits;  /* [n + 1], [n] where the sides of a vertex wait, and where the next one comes */
+    hdi_side *waiting;          /* [m] */
+    hdi_side *side;             /* [busiest vertex] its sides, and work arrays */
+    double *cot;                /* [3 busiest] */
+    uint64_t *key, *work;       /* [busiest] */
+    int32_t *border;            /* [n] vertices united along boundary edges */
+} hdi_pass;
+
+/* By value, so that no branch has to be guessed. */
+static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
+static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
+
+/* Faces of vertex i that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
+static void hdi_pass_repeats(hdi_pass *s, int32_t i, void *room) {
+    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1];
+    const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, begin);
+    hdi_pair *pair = HDI_CAST(hdi_pair *, room);
+    int64_t n = 0, p, q;
     int32_t f;
+    double *area = s->mesh->area;
+    for (f = begin; f < end; f++, v += 3) {
+        const uint64_t sum = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - i), no = HDI_CAST(uint64_t, f - begin);
+        const uint64_t most = HDI_CAST(uint64_t, hdi_high32(hdi_high32(v[0], v[1]), v[2]));
+        s->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* the sum of the two others and the larger say it all; no sum is 0 */
+    }
+    if (n <= 24) {
+        for (p = 1; p < n; p++) {
+            for (q = 0; q < p && s->key[q] != s->key[p]; q++) {}
+            if (q == p) continue;
+            area[begin + p] = 0;
+            s->rep->n_repeated_face++;
+        }
+        return;
+    }
+    for (p = 0; p < n; p++) {                    /* many: sorted with their places */
+        pair[p].key = s->key[p];
+        pair[p].id = p;
+    }
+    hdi_sort_pairs(pair, n);
+    for (p = 1; p < n; p++) {
+        if (pair[p].key != pair[p - 1].key) continue;
+        area[begin + pair[p].id] = 0;
+        s->rep->n_repeated_face++;
+    }
+}
+
+/* Measures the faces of vertex i; their sides are added to the n that s->side has, or wait at the vertex where they begin. Returns the number of sides. */
+static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
+    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1], *tri = s->mesh->tri;
+    const double *xyz = s->mesh->xyz;
+    double *area = s->mesh->area;
+    int32_t f;
+    for (f = begin; f < end; f++) {
+        const int32_t *ahead = tri + 3 * HDI_CAST(int64_t, f + HDI_FACES_AHEAD < s->mesh->m ? f + HDI_FACES_AHEAD : f);
+        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[0]));
+        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[1]));
+        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[2]));
+        area[f] = hdi_face_measure(s->mesh, f, s->cot + 3 * (f - begin), &s->tally);
+    }
+    if (end - begin > 1) hdi_pass_repeats(s, i, s->side + n);
+    for (f = begin; f < end; f++) {
+        const int32_t *v = tri + 3 * HDI_CAST(int64_t, f);
+        const double *cot = s->cot + 3 * (f - begin);
+        hdi_side *side = s->side + n;
+        int32_t q, r, t, b, c;
+        if (!(area[f] > 0)) continue;
+        q = (v[1] == i) + 2 * (v[2] == i);       /* the corner at i */
+        r = hdi_next3[q];
+        t = hdi_prev3[q];
+        b = v[r];
+        c = v[t];
+        if (s->mass) hdi_face_masses(s->mass, v, cot, area[f], s->lump);
+        side[0].to = b;
+        side[0].turn = 1;
+        side[0].cot = cot[t];
+        side[1].to = c;
+        side[1].turn = 0;
+        side[1].cot = cot[r];
+        side[0].area = side[1].area = area[f];
+        n += 2;
+        side = s->waiting + s->waits[hdi_low32(b, c)]++;
+        side->to = hdi_high32(b, c);
+        side->turn = b < c;
+        side->cot = cot[q];
+        side->area = area[f];
+    }
+    return n;
+}
+
+/* The edges from vertex i to later ones, from its n sides. Returns the number of the next edge. */
+static int32_t hdi_pass_edges(hdi_pass *s, int32_t i, int32_t n, int32_t at) {
+    hdi_edges *g = s->edges;
+    hd_mesh_report *rep = s->rep;
+    int32_t p, q, k;
+    for (p = 0; p < n; p++) s->key[p] = HDI_CAST(uint64_t, s->side[p].to) << 32 | HDI_CAST(uint64_t, p);
+    if (n > 16) {
+        hdi_sort_keys(s->key, n, s->work);
+    } else {                                     /* by counting who is smaller: no branch to be guessed */
+        uint64_t *swap = s->key;
+        for (p = 0; p < n; p++) {
+            const uint64_t x = s->key[p];
+            int32_t rank = 0;
+            for (q = 0; q < n; q++) rank += s->key[q] < x;
+            s->work[rank] = x;
+        }
+        s->key = s->work;
+        s->work = swap;
+    }
+    for (p = 0; p < n; p = q, at++) {
+        const hdi_side *side = s->side + (s->key[p] & 0xffffffffu);
+        const int32_t j = side->to;
+        double w = -side->cot / 2, b = side->area;
+        uint32_t turns = side->turn;
+        for (q = p + 1; q < n && HDI_CAST(int32_t, s->key[q] >> 32) == j; q++) {
+            k = HDI_CAST(int32_t, s->key[q] & 0xffffffffu);
+            w -= s->side[k].cot / 2;
+            b += s->side[k].area;
+            turns += s->side[k].turn;
+        }
+        if (g->w) {
+            g->to[at] = j;
+            g->w[at] = w;
+            if (g->b) g->b[at] = b / 12;
+        }
+        g->length += hdi_edge_length(s->mesh->xyz, i, j);
+        hdi_edges_join(g, i, j);
+        rep->n_nonmanifold_edges += q - p > 2;
+        rep->n_misoriented_edges += q - p == 2 && turns != 1;
+        if (q - p > 1) continue;
+        rep->n_boundary_edges++;
+        hdi_unite(s->border, i, j);
+    }
+    return at;
+}
+
+/* Numbers of faces and waiting sides at each vertex, as offsets; the faces of the mesh in the order of their smallest corners. */
+static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
+    const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
+    int32_t *HDI_RESTRICT faces = s->face_ptr, *HDI_RESTRICT waits = s->waits, f, i, sum = 0, wait_sum = 0;
+    memset(faces, 0, (HDI_CAST(size_t, n) + 1) * sizeof *faces);
+    memset(waits, 0, HDI_CAST(size_t, n) * sizeof *waits);
+    for (f = 0; f < m; f++, v += 3) {
+        const int32_t lo = hdi_low32(v[0], v[1]), hi = hdi_high32(v[0], v[1]);
+        faces[hdi_low32(lo, v[2])]++;
+        waits[hdi_high32(lo, hdi_low32(hi, v[2]))]++;
+    }
+    for (i = 0; i < n; i++) {
+        const int32_t count = faces[i], wait = waits[i];
+        faces[i] = sum;
+        waits[i] = s->wait_ptr[i] = wait_sum;
+        sum += count;
+        wait_sum += wait;
+    }
+    s->wait_ptr[n] = wait_sum;
+    for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
+        const int32_t at = faces[hdi_low32(hdi_low32(v[0], v[1]), v[2])]++;
+        memcpy(tri + 3 * HDI_CAST(int64_t, at), v, 3 * sizeof *v);
+        face[at] = f;
+    }
+    memmove(faces + 1, faces, HDI_CAST(size_t, n) * sizeof *faces);
+    faces[0] = 0;
+    s->mesh->tri = tri;
+    s->mesh->face = face;
+}
+
+/* Room of the pass; the faces of the mesh and their areas live in s, the rest in own. */
+static hd_status hdi_pass_begin(hdi_pass *p, hdi_scope *own, hdi_scope *s) {
+    const int32_t n = p->mesh->n;
+    int32_t *tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, p->mesh->m)), *face = HDI_TAKE(s, int32_t, p->mesh->m), i, most = 1;
+    p->mesh->area = HDI_TAKE(s, double, p->mesh->m);
+    p->face_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
+    p->wait_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
+    p->waits = HDI_TAKE(own, int32_t, n);
+    p->border = HDI_TAKE(own, int32_t, n);
+    p->waiting = HDI_TAKE(own, hdi_side, p->mesh->m);
+    if (s->e->status < 0) return s->e->status;
+    hdi_pass_sort(p, tri, face);
+    for (i = 0; i < n; i++) {
+        const int32_t sides = 2 * (p->face_ptr[i + 1] - p->face_ptr[i]) + p->wait_ptr[i + 1] - p->wait_ptr[i];
+        if (sides > most) most = sides;
+        p->border[i] = i;
+    }
+    p->side = HDI_TAKE(own, hdi_side, most);
+    p->cot = HDI_TAKE(own, double, 3 * HDI_CAST(int64_t, most));
+    p->key = HDI_TAKE(own, uint64_t, most);
+    p->work = HDI_TAKE(own, uint64_t, most);
+    if (p->mass && s->e->status >= 0) memset(p->mass, 0, HDI_CAST(size_t, n) * sizeof *p->mass);
+    hdi_tally_clear(&p->tally);
+    return s->e->status;
+}
+
+static hd_status hdi_pass_run(hdi_pass *p, hd_error *e) {
+    hd_mesh_report *rep = p->rep;
+    int32_t i, n, at = 0;
+    for (i = 0; i < p->mesh->n; i++) {
+        p->edges->first[i] = at;
+        n = p->waits[i] - p->wait_ptr[i];
+        memcpy(p->side, p->waiting + p->wait_ptr[i], HDI_CAST(size_t, n) * sizeof *p->side);
+        n = hdi_pass_faces(p, i, n);
+        at = hdi_pass_edges(p, i, n, at);
+    }
+    p->edges->first[p->mesh->n] = at;
+    if (hdi_tally_report(&p->tally, p->mesh->m, rep, e) < 0) return e->status;
+    rep->n_faces_used -= rep->n_repeated_face;
+    rep->n_edges = at;
+    rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(p->border, p->mesh->n) : 0;
+    return HD_OK;
+}
+
+/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing. The arrays live in s. The faces of the mesh are in an
+ * order of their own, without cotangents and corner lists. full -1: the edges are only counted; 1: with areas. mass [n] or NULL. */
+static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, int full, double *mass, hdi_lump lump, hd_mesh_report *rep, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_pass pass;
+    memset(&pass, 0, sizeof pass);
+    pass.mesh = mesh;
+    pass.edges = edges;
+    pass.mass = mass;
+    pass.lump = lump;
+    pass.rep = rep;
+    rep->n_faces = mesh->m;
+    if (3 * HDI_CAST(int64_t, mesh->m) > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_edges_take(edges, mesh->n, full < 0 ? 0 : 3 * HDI_CAST(int64_t, mesh->m), full > 0, s) < 0) return hdi_scope_end(&own);
+    if (hdi_pass_begin(&pass, &own, s) >= 0) (void)hdi_pass_run(&pass, s->e);
+    return hdi_scope_end(&own);
+}
+
+static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m) {
     memset(mesh, 0, sizeof *mesh);
     mesh->xyz = xyz;
     mesh->tri = tri;
     mesh->n = n;
     mesh->m = m;
-    rep->n_faces = m;
-    rep->smallest_angle = m > 0 ? 4 : 0;
-    if (n_corners > INT32_MAX) return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if (hdi_mesh_check(xyz, n, tri, m, s->e) < 0) return s->e->status;
-    mesh->cot = HDI_TAKE(s, double, n_corners);
-    mesh->area = HDI_TAKE(s, double, m);
+}
+
+/* The same with corner lists, for those who need no edges. */
+static hd_status hdi_mesh_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep, hdi_scope *s) {
+    hdi_edges edges;
+    hdi_mesh_clear(mesh, xyz, n, tri, m);
+    if (hdi_mesh_faces(mesh, &edges, -1, NULL, HDI_LUMP_THIRDS, rep, s) < 0) return s->e->status;
     mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
-    mesh->corner = HDI_TAKE(s, int32_t, n_corners);
+    mesh->corner = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m));
     if (s->e->status < 0) return s->e->status;
-    for (f = 0; f < m; f++)
-        if (hdi_face_measure(mesh, f, rep, s->e) < 0) return s->e->status;
     hdi_mesh_corners(mesh);
-    work = HDI_TAKE(s, hdi_pair, hdi_most_corners(mesh));
-    if (!work) return s->e->status;
-    hdi_mesh_repeats(mesh, work, rep);
-    if (rep->n_repeated_face) hdi_mesh_corners(mesh);
-    for (f = 0; f < m; f++) rep->n_faces_used += mesh->area[f] > 0;
-    if (!rep->n_faces_used) rep->smallest_angle = 0;
     return HD_OK;
 }
 
@@ -4373,7 +4858,7 @@ static int hdi_poly_same(const hdi_poly *poly, int64_t c, int64_t d) {
 }
 
 /* Gives faces that repeat an earlier one area 0: around each vertex, the faces in which it is the smallest corner are sorted by their keys.
- * least [m] the smallest corner of each face; work as in hdi_mesh_repeats. */
+ * least [m] the smallest corner of each face; work: as many pairs as the busiest vertex has corners. */
 static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_mesh_report *rep) {
     const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
     int64_t c, p, n, first;
@@ -4540,36 +5025,23 @@ static double hdi_side_length(const hdi_mesh *mesh, int32_t s) {
     return hdi_norm3(edge);
 }
 
-/* Edges of the mesh: the same figures as those of hdi_edge_report, the sum of lengths, and mate [3 m], the other side of edges with two faces (-1
- * elsewhere). parent [n] unites boundary edges. list: twice as many pairs as the busiest vertex has corners. */
-static double hdi_mesh_mates(const hdi_mesh *mesh, int32_t *mate, int32_t *parent, hdi_pair *list, hd_mesh_report *rep) {
+/* mate [3 m]: the other side of edges with two faces, -1 elsewhere. Returns the sum of the edges' lengths. list: twice as many pairs as the busiest vertex
+ * has corners. */
+static double hdi_mesh_mates(const hdi_mesh *mesh, int32_t *mate, hdi_pair *list) {
     double length = 0;
     int64_t p, q, n;
     int32_t v;
     for (p = 0; p < 3 * HDI_CAST(int64_t, mesh->m); p++) mate[p] = -1;
-    for (v = 0; v < mesh->n; v++) parent[v] = v;
     for (v = 0; v < mesh->n; v++) {
         n = hdi_sides_at(mesh, v, list);
         for (p = 0; p < n; p = q) {
             const int32_t s = HDI_CAST(int32_t, list[p].id);
             for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
             length += hdi_side_length(mesh, s);
-            rep->n_edges++;
-            rep->n_nonmanifold_edges += q - p > 2;
-            rep->n_boundary_edges += q - p == 1;
-            if (q - p == 1) hdi_unite(parent, v, HDI_CAST(int32_t, list[p].key));
             if (q - p != 2) continue;
             mate[s] = HDI_CAST(int32_t, list[p + 1].id);
             mate[mate[s]] = s;
-            rep->n_misoriented_edges += mesh->tri[s] == mesh->tri[mate[s]];
         }
-    }
-    for (v = 0; v < mesh->n; v++) parent[v] = hdi_find(parent, v);
-    for (v = 0; v < mesh->n; v++) {              /* a loop is a root with another vertex in its set */
-        const int32_t root = parent[v];
-        if (root == v || parent[root] != root) continue;
-        parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
-        rep->n_boundary_loops++;
     }
     return length;
 }
@@ -4598,23 +5070,6 @@ static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed cha
     return 1;
 }
 
-/* Copies of a face (in soups only: meshes have none left) by the number of earlier ones, into copy [m]. list as for hdi_mesh_mates. */
-static void hdi_face_copies(const hdi_mesh *mesh, int32_t *copy, hdi_pair *list) {
-    int32_t v;
-    int64_t p, n;
-    for (v = 0; v < mesh->n; v++) {
-        n = 0;
-        for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
-            const int32_t c = mesh->corner[p], a = mesh->tri[hdi_side_next(c)], b = mesh->tri[hdi_side_prev(c)], lo = a < b ? a : b, hi = a < b ? b : a;
-            if (lo < v) continue;
-            list[n].key = HDI_CAST(uint64_t, lo) << 32 | HDI_CAST(uint64_t, hi);
-            list[n++].id = c / 3;
-        }
-        hdi_sort_pairs(list, n);
-        for (p = 0; p < n; p++) copy[list[p].id] = p > 0 && list[p].key == list[p - 1].key ? copy[list[p - 1].id] + 1 : 0;
-    }
-}
-
 static void hdi_unit3(const double *from, const double *to, double *out) {
     double norm;
     int k;
@@ -4623,9 +5078,9 @@ static void hdi_unit3(const double *from, const double *to, double *out) {
     for (k = 0; k < 3; k++) out[k] /= norm;
 }
 
-/* Faces around an edge, its n sides in list: sorted by layer of copies, then by angle in space from the first side's face, counterclockwise as seen
- * against the direction from the smaller vertex to the larger one. */
-static void hdi_sort_around(const hdi_mesh *mesh, const int32_t *copy, int32_t lo, int32_t hi, hdi_pair *list, int64_t n) {
+/* Faces around an edge, its n sides in list: sorted by angle in space from the first side's face, counterclockwise as seen against the direction from
+ * the smaller vertex to the larger one. */
+static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pair *list, int64_t n) {
     const double *p = mesh->xyz + 3 * HDI_CAST(int64_t, lo), turn = 6.283185307179586;
     double axis[3], first[3], up[3], u[3];
     int64_t k;
@@ -4634,12 +5089,11 @@ static void hdi_sort_around(const hdi_mesh *mesh, const int32_t *copy, int32_t l
     hdi_cross3(axis, first, up);
     hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
     for (k = 0; k < n; k++) {
-        const int32_t s = HDI_CAST(int32_t, list[k].id);
         double angle;
-        hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(s)]), u);
+        hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[k].id))]), u);
         angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
         if (angle < 0) angle += turn;
-        list[k].key = HDI_CAST(uint64_t, copy ? copy[s / 3] : 0) << 44 | HDI_CAST(uint64_t, hdi_min(angle / turn, 1) * 8796093022208.0);
+        list[k].key = HDI_CAST(uint64_t, hdi_min(angle / turn, 1) * 8796093022208.0);
     }
     hdi_sort_pairs(list, n);
 }
@@ -4654,7 +5108,7 @@ static void hdi_glue(hdi_intrinsic *t, int32_t a, int32_t b) {
 
 /* The cover of two sheets: front of face f at place front[f], its back at back[f]. Around each edge the side of a face that looks counterclockwise is
  * glued to the side of the next face that looks back at it; so a single face at the boundary, front to back, if it is not to stay open. */
-static void hdi_glue_cover(hdi_intrinsic *t, const hdi_mesh *mesh, const int32_t *front, const int32_t *back, const int32_t *copy, int close, hdi_pair *list) {
+static void hdi_glue_cover(hdi_intrinsic *t, const hdi_mesh *mesh, const int32_t *front, const int32_t *back, int close, hdi_pair *list) {
     int64_t p, q, k, n;
     int32_t v;
     for (v = 0; v < mesh->n; v++) {
@@ -4663,7 +5117,7 @@ static void hdi_glue_cover(hdi_intrinsic *t, const hdi_mesh *mesh, const int32_t
             const int32_t other = HDI_CAST(int32_t, list[p].key);
             for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
             if (q - p == 1 && !close) continue;
-            if (q - p > 2) hdi_sort_around(mesh, copy, v, other, list + p, q - p);
+            if (q - p > 2) hdi_sort_around(mesh, v, other, list + p, q - p);
             for (k = p; k < q; k++) {            /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
                 const int32_t a = HDI_CAST(int32_t, list[k].id), b = HDI_CAST(int32_t, list[k + 1 < q ? k + 1 : p].id);
                 const int back_a = mesh->tri[a] != v, back_b = mesh->tri[b] == v;
@@ -4686,16 +5140,16 @@ static void hdi_put_face(hdi_intrinsic *t, const hdi_mesh *mesh, int32_t f, cons
 
 /* The intrinsic triangulation of a mesh, in s: of itself where all its faces can be turned to one side, else of its two-sheeted cover. With close the
  * boundary is glued to the other sheet (the tufted cover), so that no boundary is left. */
-static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int soup, int close, hd_mesh_report *rep, hdi_scope *s) {
+static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int close, hd_mesh_report *rep, hdi_scope *s) {
     const int64_t n_sides = 3 * HDI_CAST(int64_t, mesh->m);
     int32_t *mate = HDI_TAKE(s, int32_t, n_sides), *front = HDI_TAKE(s, int32_t, mesh->m + 1), *back = HDI_TAKE(s, int32_t, mesh->m + 1);
-    int32_t *parent = HDI_TAKE(s, int32_t, mesh->n), f, q, used = 0;
+    int32_t f, q, used = 0;
     signed char *turned = HDI_TAKE(s, signed char, mesh->m);
     hdi_pair *list = HDI_TAKE(s, hdi_pair, 2 * hdi_most_corners(mesh));
     int single;
     memset(t, 0, sizeof *t);
     if (s->e->status < 0) return s->e->status;
-    t->unit = hdi_mesh_mates(mesh, mate, parent, list, rep) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
+    t->unit = hdi_mesh_mates(mesh, mate, list) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
     single = rep->n_nonmanifold_edges == 0 && !(close && rep->n_boundary_edges) && hdi_mesh_orient(mesh, mate, turned, back);
     t->n_sheets = single ? 1 : 2;
     for (f = 0; f < mesh->m; f++) front[f] = mesh->area[f] > 0 ? used++ : 0;
@@ -4715,8 +5169,7 @@ static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int 
             if (mate[q] >= 0 && mate[q] < q) hdi_glue(t, hdi_sheet_side(front, q, turned[f]), hdi_sheet_side(front, mate[q], turned[mate[q] / 3]));
     }
     if (single) return HD_OK;
-    if (soup) hdi_face_copies(mesh, mate, list); /* the mates have done their work */
-    hdi_glue_cover(t, mesh, front, back, soup ? mate : NULL, close, list);
+    hdi_glue_cover(t, mesh, front, back, close, list);
     return HD_OK;
 }
 
@@ -4840,8 +5293,6 @@ static hd_status hdi_intrinsic_mesh(hdi_mesh *mesh, hdi_intrinsic *t, int32_t n,
     mesh->m = t->n_sides / 3;
     mesh->area = t->area;
     mesh->cot = HDI_TAKE_ZERO(s, double, t->n_sides);
-    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
-    mesh->corner = HDI_TAKE(s, int32_t, t->n_sides);
     if (s->e->status < 0) return s->e->status;
     rep->smallest_intrinsic_angle = mesh->m > 0 ? 4 : 0;
     for (f = 0; f < mesh->m; f++) {
@@ -4865,31 +5316,444 @@ static hd_status hdi_intrinsic_mesh(hdi_mesh *mesh, hdi_intrinsic *t, int32_t n,
         t->area[f] *= weight * t->unit * t->unit;
         if (t->area[f] / 12 < DBL_MIN) t->area[f] = 0;
     }
-    hdi_mesh_corners(mesh);
     return HD_OK;
 }
 
-/* Triangles as they are, copies included: what the stars of points make. The arrays live in s. */
-static hd_status hdi_soup_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep, hdi_scope *s) {
-    int32_t f;
-    memset(mesh, 0, sizeof *mesh);
-    mesh->xyz = xyz;
-    mesh->tri = tri;
-    mesh->n = n;
-    mesh->m = m;
-    mesh->cot = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, m));
-    mesh->area = HDI_TAKE(s, double, m);
-    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
-    mesh->corner = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m));
-    if (s->e->status < 0) return s->e->status;
-    rep->n_faces = m;
-    rep->smallest_angle = m > 0 ? 4 : 0;
-    for (f = 0; f < m; f++) {
-        if (hdi_face_measure(mesh, f, rep, s->e) < 0) return s->e->status;
-        rep->n_faces_used += mesh->area[f] > 0;
+/* ---- soups ----
+ * Triangles that come several times each: the stars of points, where every triangle comes from all its three corners if these agree. Their tufted cover is
+ * that of Sharp and Crane with copies of a face in layers, one sheet upon the other. It is not stored: what matters are the lengths of all faces, which are
+ * those in space unless they are flipped, and the gluing of those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides of
+ * their own (all copies, front and back) when one of their edges is glued, and an edge is glued, all its sides at once, when it is looked at. */
+
+typedef struct hdi_soup {
+    hdi_mesh mesh;      /* each face once, its corners ascending; cot and area are those of lengths, unit 1 the mean edge length */
+    hdi_sides sides;
+    int32_t *tri;       /* [3 m] */
+    int32_t *copies;    /* [m] how often a face came */
+    int32_t *odd;       /* [m] how many of these had their corners in odd order */
+    double *len;        /* [3 m] */
+    double unit, add;   /* add: what is added to each length */
+    double area;        /* of all copies, in space */
+} hdi_soup;
+
+/* Faces of a bucket: its keys, sorted, second corner << 32 | third corner << 1 | odd, become faces. Returns how many; with soup NULL they are only counted. */
+static int64_t hdi_soup_bucket(hdi_soup *soup, int64_t m, int32_t i, const uint64_t *key, int64_t n) {
+    int64_t p, q, count = 0;
+    for (p = 0; p < n; p = q, count++) {
+        int32_t odd = 0;
+        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += HDI_CAST(int32_t, key[q] & 1);
+        if (!soup) continue;
+        soup->tri[3 * (m + count)] = i;
+        soup->tri[3 * (m + count) + 1] = HDI_CAST(int32_t, key[p] >> 32);
+        soup->tri[3 * (m + count) + 2] = HDI_CAST(int32_t, (key[p] & 0xffffffffu) >> 1);
+        soup->copies[m + count] = HDI_CAST(int32_t, q - p);
+        soup->odd[m + count] = odd;
     }
-    hdi_mesh_corners(mesh);
+    return count;
+}
+
+/* Different faces of the m triangles tri, into soup in s. */
+static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, HDI_CAST(int64_t, n) + 1), f, count = 0;
+    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work = HDI_TAKE(&own, uint64_t, m < 4096 ? m : 4096), *large = work;
+    int32_t i;
+    int pass;
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (pass = 0; pass < 2; pass++) {           /* by their smallest corner: counted, then put there */
+        for (f = 0; f < m; f++) {
+            const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
+            const int32_t first = a < b ? (a < c ? a : c) : b < c ? b : c, last = a > b ? (a > c ? a : c) : b > c ? b : c;
+            const int64_t middle = HDI_CAST(int64_t, a) + b + c - first - last;
+            const int odd = ((a > b) + (b > c) + (a > c)) & 1;
+            if (pass) key[ptr[first]++] = HDI_CAST(uint64_t, middle) << 32 | HDI_CAST(uint64_t, last) << 1 | HDI_CAST(uint64_t, odd);
+            else ptr[first]++;
+        }
+        if (!pass) hdi_prefix_sum(ptr, n);
+    }
+    for (i = n; i > 0; i--) ptr[i] = ptr[i - 1];
+    ptr[0] = 0;
+    for (i = 0; i < n; i++) {
+        const int64_t begin = ptr[i], size = ptr[i + 1] - begin;
+        if (size > 4096 && large == work) large = HDI_TAKE(&own, uint64_t, m);
+        if (!large) return hdi_scope_end(&own);
+        hdi_sort_keys(key + begin, size, large);
+        count += hdi_soup_bucket(NULL, 0, i, key + begin, size);
+    }
+    soup->tri = HDI_TAKE(s, int32_t, 3 * count);
+    soup->copies = HDI_TAKE(s, int32_t, count);
+    soup->odd = HDI_TAKE(s, int32_t, count);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (i = 0, f = 0; i < n; i++) f += hdi_soup_bucket(soup, f, i, key + ptr[i], ptr[i + 1] - ptr[i]);
+    soup->mesh.tri = soup->tri;
+    soup->mesh.n = n;
+    soup->mesh.m = HDI_CAST(int32_t, count);
+    return hdi_scope_end(&own);
+}
+
+/* Edges of the soup, and the report: all copies count. border [n] unites the vertices of boundary edges. Returns the sum of the edges' lengths. */
+static double hdi_soup_edges(hdi_soup *soup, int32_t *border, hd_mesh_report *rep) {
+    const hdi_mesh *mesh = &soup->mesh;
+    hdi_sides *g = &soup->sides;
+    double length = 0;
+    int32_t i, p, q;
+    for (i = 0; i < mesh->n; i++) border[i] = i;
+    for (i = 0; i < mesh->n; i++) {
+        const int32_t end = g->ptr[i + 1];
+        hdi_sides_sort(g, i);
+        for (p = g->ptr[i]; p < end; p = q) {
+            const int32_t j = hdi_key_vertex(g->key[p]);
+            int64_t copies = 0, forward = 0;
+            for (q = p; q < end && hdi_key_vertex(g->key[q]) == j; q++) {
+                const int32_t f = hdi_key_face(g->key[q]), odd = soup->odd[f];
+                copies += soup->copies[f];
+                forward += hdi_key_corner(g->key[q]) < 2 ? soup->copies[f] - odd : odd;
+            }
+            length += hdi_edge_length(mesh->xyz, i, j);
+            rep->n_edges++;
+            rep->n_boundary_edges += copies == 1;
+            rep->n_nonmanifold_edges += copies > 2;
+            rep->n_misoriented_edges += copies == 2 && forward != 1;
+            if (copies == 1) hdi_unite(border, i, j);
+        }
+    }
+    return length;
+}
+
+/* Lengths of the faces in units of the mean one; how much the worst of a block lacks to satisfy the triangle inequality with delta to spare. */
+typedef struct hdi_soup_job { hdi_soup *soup; double delta, *add, *steepest; int64_t *n_short; } hdi_soup_job;
+
+static void hdi_soup_length_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
+    hdi_soup *soup = job->soup;
+    const int64_t end = hdi_least(soup->mesh.m, (index + 1) * HDI_FACES_PER_TASK);
+    double add = 0;
+    int64_t f, n_short = 0;
+    int q;
+    (void)worker;
+    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
+        double *len = soup->len + 3 * f, spare;
+        if (!(soup->mesh.area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] = hdi_edge_length(soup->mesh.xyz, soup->tri[3 * f + q], soup->tri[3 * f + hdi_next3[q]]) / soup->unit;
+        spare = hdi_min(len[0] + len[1] - len[2], hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
+        if (spare < job->delta) n_short += soup->copies[f];
+        if (job->delta >= 0) add = hdi_max(add, job->delta - spare);
+    }
+    job->add[index] = add;
+    job->n_short[index] = n_short;
+}
+
+static void hdi_soup_cot_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
+    hdi_soup *soup = job->soup;
+    const int64_t end = hdi_least(soup->mesh.m, (index + 1) * HDI_FACES_PER_TASK);
+    int64_t f;
+    int q;
+    (void)worker;
+    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
+        double *len = soup->len + 3 * f, *cot = soup->mesh.cot + 3 * f, area;
+        cot[0] = cot[1] = cot[2] = 0;
+        if (!(soup->mesh.area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] += soup->add;
+        soup->mesh.area[f] = area = hdi_length_area(len[0], len[1], len[2]);
+        for (q = 0; q < 3 && area > 0; q++) {
+            const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
+            cot[q] = (b * b + c * c - a * a) / (4 * area);
+        }
+    }
+}
+
+/* The soup of the m triangles tri among n points: faces, edges, lengths mollified by delta (see hdi_mollify), in s. */
+static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, const int32_t *tri, int64_t m, double delta, hd_mesh_report *rep, hdi_scope *s) {
+    hd_mesh_report faces;
+    hdi_soup_job job;
+    int64_t n_tasks, i, n_short = 0;
+    int32_t f, *border;
+    memset(soup, 0, sizeof *soup);
+    memset(&faces, 0, sizeof faces);
+    if (hdi_soup_faces(soup, tri, m, n, s) < 0) return s->e->status;
+    soup->mesh.xyz = xyz;
+    m = soup->mesh.m;
+    n_tasks = (m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
+    soup->mesh.cot = HDI_TAKE(s, double, 3 * m);
+    soup->mesh.area = HDI_TAKE(s, double, m);
+    soup->len = HDI_TAKE(s, double, 3 * m);
+    job.soup = soup;
+    job.delta = delta;
+    job.add = HDI_TAKE(s, double, n_tasks);
+    job.n_short = HDI_TAKE(s, int64_t, n_tasks);
+    border = HDI_TAKE(s, int32_t, n);
+    if (s->e->status < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0) return s->e->status;
+    rep->smallest_angle = faces.smallest_angle;
+    for (f = 0; f < m; f++) {
+        const double area = soup->mesh.area[f];
+        rep->n_faces += soup->copies[f];
+        *(area > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
+        soup->area += area * soup->copies[f];
+    }
+    if (hdi_sides_make(&soup->sides, &soup->mesh, s) < 0) return s->e->status;
+    soup->unit = hdi_soup_edges(soup, border, rep) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
+    rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(border, n) : 0;
+    hdi_parallel(s->ctx, n_tasks, hdi_soup_length_task, &job);
+    for (i = 0; i < n_tasks; i++) {
+        soup->add = hdi_max(soup->add, job.add[i]);
+        n_short += job.n_short[i];
+    }
+    rep->n_mollified = delta >= 0 ? HDI_CAST(int32_t, n_short) : 0;
+    rep->mollify_epsilon = soup->add * soup->unit;
+    hdi_parallel(s->ctx, n_tasks, hdi_soup_cot_task, &job);
     return HD_OK;
+}
+
+/* What of a soup's cover has been unfolded. */
+typedef struct hdi_cover {
+    const hdi_soup *soup;
+    hd_context *ctx;
+    hd_error *e;
+    hdi_intrinsic t;    /* twin -2: not glued yet */
+    int32_t n, room;    /* faces of t, and those that there is room for */
+    int32_t *first;     /* [m] where the copies of a face begin, front and back in turn; -1: not here */
+    int32_t *origin;    /* [room] the face that a face of t is a copy of */
+    int32_t *stack;     /* [3 room] sides to look at */
+    signed char *waits; /* [3 room] 1: on the stack */
+    signed char *glued; /* [3 m] at the first side of an edge */
+    hdi_pair *list;     /* [most faces at an edge] */
+    int32_t depth;
+} hdi_cover;
+
+static void hdi_cover_free(hdi_cover *c) {
+    hdi_free(c->ctx, c->t.vert);
+    hdi_free(c->ctx, c->t.twin);
+    hdi_free(c->ctx, c->t.len);
+    hdi_free(c->ctx, c->t.area);
+    hdi_free(c->ctx, c->origin);
+    hdi_free(c->ctx, c->stack);
+    hdi_free(c->ctx, c->waits);
+}
+
+/* old with n elements in a block of room elements; NULL, old freed, when there is none. */
+static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
+    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(size_t, room), size, c->e);
+    if (block && n > 0) memcpy(block, old, HDI_CAST(size_t, n) * size);
+    hdi_free(c->ctx, old);
+    return block;
+}
+
+static hd_status hdi_cover_room(hdi_cover *c, int32_t more) {
+    const int64_t n = c->n, need = n + more, room = need > 2 * HDI_CAST(int64_t, c->room) ? need + 1024 : 2 * HDI_CAST(int64_t, c->room);
+    if (need <= c->room) return HD_OK;
+    if (3 * room > INT32_MAX) return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
+    c->t.vert = HDI_CAST(int32_t *, hdi_regrow(c, c->t.vert, 3 * n, 3 * room, sizeof(int32_t)));
+    c->t.twin = HDI_CAST(int32_t *, hdi_regrow(c, c->t.twin, 3 * n, 3 * room, sizeof(int32_t)));
+    c->t.len = HDI_CAST(double *, hdi_regrow(c, c->t.len, 3 * n, 3 * room, sizeof(double)));
+    c->t.area = HDI_CAST(double *, hdi_regrow(c, c->t.area, n, room, sizeof(double)));
+    c->origin = HDI_CAST(int32_t *, hdi_regrow(c, c->origin, n, room, sizeof(int32_t)));
+    c->stack = HDI_CAST(int32_t *, hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t)));
+    c->waits = HDI_CAST(signed char *, hdi_regrow(c, c->waits, 3 * n, 3 * room, 1));
+    if (c->e->status >= 0) c->room = HDI_CAST(int32_t, room);
+    return c->e->status;
+}
+
+/* Unfolds face f: all its copies. */
+static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
+    const hdi_soup *soup = c->soup;
+    int32_t k, q;
+    if (c->first[f] >= 0) return HD_OK;
+    if (soup->copies[f] > INT32_MAX / 6 || hdi_cover_room(c, 2 * soup->copies[f]) < 0)
+        return c->e->status < 0 ? c->e->status : hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
+    c->first[f] = c->n;
+    for (k = 0; k < 2 * soup->copies[f]; k++, c->n++) {
+        for (q = 0; q < 3; q++) {                /* a back runs through the face the other way round */
+            const int32_t at = 3 * c->n + (k & 1 ? 2 - q : q);
+            c->t.vert[at] = soup->tri[3 * HDI_CAST(int64_t, f) + (k & 1 ? hdi_next3[q] : q)];
+            c->t.len[at] = soup->len[3 * HDI_CAST(int64_t, f) + q];
+            c->t.twin[at] = -2;
+            c->waits[at] = 0;
+        }
+        c->t.area[c->n] = soup->mesh.area[f];
+        c->origin[c->n] = f;
+    }
+    c->t.n_sides = 3 * c->n;
+    return HD_OK;
+}
+
+static void hdi_cover_push(hdi_cover *c, int32_t side) {
+    if (c->t.twin[side] < 0 || c->waits[side]) return;
+    c->stack[c->depth++] = side;
+    c->waits[side] = 1;
+}
+
+/* The side of a soup's face f that begins at its corner q, on copy k, front or back. */
+static int32_t hdi_cover_side(const hdi_cover *c, int32_t f, int32_t q, int32_t k, int back) {
+    return 3 * (c->first[f] + 2 * k + back) + (back ? 2 - q : q);
+}
+
+/* Glues the edge whose sides are keys [p, q) at vertex v, and puts it on the stack: in layers of copies, in each by angle, around the edge the side of a face
+ * that looks counterclockwise to the side of the next one that looks back at it. */
+static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
+    const hdi_soup *soup = c->soup;
+    const uint64_t *key = soup->sides.key;
+    const int32_t n = q - p;
+    int32_t i, layer, most = 0, first = -1, last = -1;
+    if (c->glued[p]) return HD_OK;
+    c->glued[p] = 1;
+    for (i = 0; i < n; i++) {
+        const int32_t f = hdi_key_face(key[p + i]);
+        if (hdi_cover_face(c, f) < 0) return c->e->status;
+        c->list[i].key = HDI_CAST(uint64_t, i);
+        c->list[i].id = 3 * HDI_CAST(int64_t, f) + hdi_key_corner(key[p + i]);
+        most = soup->copies[f] > most ? soup->copies[f] : most;
+    }
+    if (n > 2) hdi_sort_around(&soup->mesh, v, hdi_key_vertex(key[p]), c->list, n);
+    for (layer = 0; layer < most; layer++) {
+        for (i = 0; i < n; i++) {                /* corners ascend in a face: its front looks counterclockwise unless it is the side from last to first */
+            const int32_t side = HDI_CAST(int32_t, c->list[i].id), f = side / 3, back = side % 3 == 2;
+            int32_t counter, clock;
+            if (layer >= soup->copies[f]) continue;
+            counter = hdi_cover_side(c, f, side % 3, layer, back);
+            clock = hdi_cover_side(c, f, side % 3, layer, !back);
+            if (last >= 0) hdi_glue(&c->t, last, clock);
+            else first = clock;
+            if (last >= 0) hdi_cover_push(c, clock);
+            last = counter;
+        }
+    }
+    hdi_glue(&c->t, last, first);
+    hdi_cover_push(c, first);
+    return HD_OK;
+}
+
+/* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
+static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
+    const hdi_sides *g = &c->soup->sides;
+    const int32_t i = c->t.vert[s], j = c->t.vert[hdi_side_next(s)], lo = i < j ? i : j, hi = i < j ? j : i;
+    int32_t p = g->ptr[lo], end = g->ptr[lo + 1], q = end;
+    if (c->t.twin[s] != -2) return HD_OK;
+    while (p < q) {                              /* the first key of hi */
+        const int32_t middle = p + (q - p) / 2;
+        if (hdi_key_vertex(g->key[middle]) < hi) p = middle + 1;
+        else q = middle;
+    }
+    for (q = p; q < end && hdi_key_vertex(g->key[q]) == hi;) q++;
+    return hdi_cover_glue(c, lo, p, q);
+}
+
+/* Whether the edge of keys [p, q) may have to be flipped, however its faces are glued. Two faces that come equally often always follow each other. */
+static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
+    const uint64_t *key = soup->sides.key;
+    double least = HUGE_VAL, next = HUGE_VAL;
+    int64_t copies = 0;
+    int32_t i;
+    for (i = p; i < q; i++) {
+        const int32_t f = hdi_key_face(key[i]);
+        const double cot = soup->mesh.cot[hdi_key_opposite(key[i])];
+        if (cot < least) {
+            next = least;
+            least = cot;
+        } else {
+            next = hdi_min(next, cot);
+        }
+        if (soup->copies[f] > 1 && !(q - p == 2 && soup->copies[f] == soup->copies[hdi_key_face(key[p + q - 1 - i])])) next = hdi_min(next, cot);
+        copies += soup->copies[f];
+    }
+    return !(least + (copies == 1 ? least : next) >= 0);
+}
+
+/* Flips until every edge is Delaunay, as hdi_flip_all: edges by their vertices, after each flip the four around it. */
+static hd_status hdi_cover_flip(hdi_cover *c, int64_t most, hd_mesh_report *rep) {
+    hdi_intrinsic *t = &c->t;
+    int32_t k, side;
+    while (c->depth > 0) {
+        const int32_t a = c->stack[--c->depth], b = t->twin[a];
+        c->waits[a] = 0;
+        if (rep->n_flips >= most || !hdi_not_delaunay(t, a)) continue;
+        for (k = 0; k < 4; k++)
+            if (hdi_cover_need(c, k == 0 ? hdi_side_prev(b) : k == 1 ? hdi_side_next(b) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a)) < 0) return c->e->status;
+        if (!hdi_flip(t, a)) continue;
+        rep->n_flips++;
+        for (k = 0; k < 4; k++) {
+            side = t->twin[a];
+            hdi_cover_push(c, k == 0 ? hdi_side_prev(side) : k == 1 ? hdi_side_next(side) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a));
+        }
+    }
+    return HD_OK;
+}
+
+static hd_status hdi_cover_run(hdi_cover *c, hd_mesh_report *rep) {
+    const hdi_soup *soup = c->soup;
+    const hdi_sides *g = &soup->sides;
+    int64_t most = 0;
+    int32_t v, p, q, end, side;
+    for (v = 0; v < soup->mesh.m; v++) most += 64 * 6 * HDI_CAST(int64_t, soup->copies[v]);
+    for (v = 0; v < soup->mesh.n; v++) {
+        for (p = g->ptr[v], end = g->ptr[v + 1]; p < end; p = q) {
+            for (q = p + 1; q < end && hdi_key_vertex(g->key[q]) == hdi_key_vertex(g->key[p]);) q++;
+            if (c->glued[p] || !hdi_soup_suspect(soup, p, q)) continue;
+            if (hdi_cover_glue(c, v, p, q) < 0 || hdi_cover_flip(c, most, rep) < 0) return c->e->status;
+        }
+        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", HDI_CAST(double, v) / soup->mesh.n, c->e) < 0) return c->e->status;
+    }
+    for (side = 0; side < c->t.n_sides; side++) {
+        rep->n_not_delaunay += c->t.twin[side] > side && hdi_not_delaunay(&c->t, side);
+        rep->n_self_edges += c->t.twin[side] > side && c->t.vert[side] == c->t.vert[hdi_side_next(side)];
+    }
+    return HD_OK;
+}
+
+/* One face of the flat mesh, from its lengths: area and cotangents times weight. */
+static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double area, double unit, double weight, double *steepest) {
+    double *cot = flat->cot + 3 * HDI_CAST(int64_t, at);
+    int q;
+    flat->area[at] = 0;
+    if (!(area > 0)) return;
+    for (q = 0; q < 3; q++) {
+        const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
+        cot[q] = (b * b + c * c - a * a) / (4 * area);
+    }
+    if (!(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]) <= DBL_MAX)) return;
+    *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
+    for (q = 0; q < 3; q++) cot[q] *= weight;
+    area *= weight * unit * unit;
+    flat->area[at] = area / 12 < DBL_MIN ? 0 : area;
+}
+
+/* The intrinsic Delaunay triangulation of a soup's cover as a mesh for the operators (no coordinates), in s: faces that were not unfolded as often as they
+ * come, the others one by one; all with a third of their weight for a sheet, of which there are two. */
+static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, hd_mesh_report *rep, hdi_scope *s) {
+    const int32_t m = soup->mesh.m;
+    double steepest = -HUGE_VAL;
+    hdi_cover c;
+    int32_t f, i, most = 1, *tri;
+    memset(&c, 0, sizeof c);
+    memset(flat, 0, sizeof *flat);
+    c.soup = soup;
+    c.ctx = s->ctx;
+    c.e = s->e;
+    c.t.unit = soup->unit;
+    for (i = 0; i < soup->mesh.n; i++) most = soup->sides.ptr[i + 1] - soup->sides.ptr[i] > most ? soup->sides.ptr[i + 1] - soup->sides.ptr[i] : most;
+    c.first = HDI_TAKE(s, int32_t, m);
+    c.glued = HDI_TAKE_ZERO(s, signed char, 3 * HDI_CAST(int64_t, m));
+    c.list = HDI_TAKE(s, hdi_pair, most);
+    if (s->e->status >= 0) {
+        hdi_fill_i32(c.first, m, -1);
+        (void)hdi_cover_run(&c, rep);
+    }
+    flat->n = soup->mesh.n;
+    flat->m = m + c.n;
+    flat->tri = tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, flat->m));
+    flat->cot = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, flat->m));
+    flat->area = HDI_TAKE(s, double, flat->m);
+    if (s->e->status >= 0) {
+        memcpy(tri, soup->tri, 3 * HDI_CAST(size_t, m) * sizeof *tri);
+        if (c.n) memcpy(tri + 3 * HDI_CAST(int64_t, m), c.t.vert, 3 * HDI_CAST(size_t, c.n) * sizeof *tri);
+        for (f = 0; f < m; f++)
+            hdi_flat_face(flat, f, soup->len + 3 * HDI_CAST(int64_t, f), c.first[f] < 0 ? soup->mesh.area[f] : 0, soup->unit, soup->copies[f] / 3.0, &steepest);
+        for (i = 0; i < c.n; i++) hdi_flat_face(flat, m + i, c.t.len + 3 * HDI_CAST(int64_t, i), c.t.area[i], soup->unit, 1.0 / 6, &steepest);
+        rep->smallest_intrinsic_angle = steepest > -HUGE_VAL ? atan2(1, steepest) : 0;
+        rep->n_sheets = 2;
+    }
+    hdi_cover_free(&c);
+    return s->e->status;
 }
 
 /* ==== [10] operators ====
@@ -4917,28 +5781,8 @@ static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     hdi_free(ctx, lap);
 }
 
-/* Area that corner c of a face contributes to its vertex under the mixed rule. */
-static double hdi_mixed_area(const hdi_mesh *mesh, int32_t c) {
-    const int32_t f = c / 3, q = c % 3, a = mesh->tri[c];
-    const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, f), area = mesh->area[f];
-    double sum = 0, edge[3];
-    int k;
-    if (cot[0] < 0 || cot[1] < 0 || cot[2] < 0) return cot[q] < 0 ? area / 2 : area / 4;
-    for (k = 1; k <= 2; k++) {   /* |a b|^2 cot(c) + |a c|^2 cot(b) */
-        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[3 * f + (q + k) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, a), edge);
-        sum += hdi_dot3(edge, edge) * cot[(q + 3 - k) % 3];
-    }
-    return hdi_max(area / 4, hdi_min(sum / 8, area / 2));   /* as it must be without an obtuse angle; where cotangents round or underflow to 0 it might not */
-}
-
-static double hdi_vertex_mass(const hdi_mesh *mesh, int32_t v, hd_laplacian_kind kind) {
-    double sum = 0;
-    int64_t p;
-    if (mesh->corner_ptr[v] == mesh->corner_ptr[v + 1]) return 0;
-    if (kind == HD_LAPLACIAN_COT) return 1;
-    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++)
-        sum += kind == HD_LAPLACIAN_FEM ? mesh->area[mesh->corner[p] / 3] / 3 : hdi_mixed_area(mesh, mesh->corner[p]);
-    return sum;
+static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
+    return kind == HD_LAPLACIAN_FEM ? HDI_LUMP_THIRDS : kind == HD_LAPLACIAN_COT ? HDI_LUMP_ONES : HDI_LUMP_MIXED;
 }
 
 /* Numbers the rows: vertices with mass in their order. Fills row, vertex, mass, b_diag, n_active. */
@@ -4985,93 +5829,86 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-/* Distinct neighbours of vertex v and v itself, as rows of lap, unsorted, into col. mark [n_active] as in hdi_product_row. */
-static int64_t hdi_ring(const hdi_mesh *mesh, const hd_laplacian *lap, int32_t v, int32_t *mark, int32_t *col) {
-    const int32_t i = lap->row[v];
-    int64_t p, n = 1;
-    int k;
-    mark[i] = i;
-    col[0] = i;
-    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
-        const int32_t c = mesh->corner[p], f = c / 3;
-        for (k = 1; k <= 2; k++) {
-            const int32_t j = lap->row[mesh->tri[3 * f + (c + k) % 3]];
-            if (mark[j] == i) continue;
-            mark[j] = i;
-            col[n++] = j;
-        }
-    }
-    return n;
-}
-
-/* The pattern of L, columns ascending. */
-static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_mesh *mesh, int32_t *mark, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int64_t ring = 2 * hdi_most_corners(mesh) + 1;
-    int32_t *col = HDI_TAKE(&s, int32_t, ring), i;
-    hdi_pair *work = HDI_TAKE(&s, hdi_pair, ring);
-    int64_t nnz = 0;
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(mark, lap->n_active, -1);
-    for (i = 0; i < lap->n_active; i++) nnz += hdi_ring(mesh, lap, lap->vertex[i], mark, col);
-    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    if (e->status < 0) {
-        memset(&lap->L, 0, sizeof lap->L);
-        return hdi_scope_end(&s);
-    }
-    hdi_fill_i32(mark, lap->n_active, -1);
+/* Components from the vertices that edges unite, parent [n], as hdi_lap_components has them from the pattern. */
+static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e) {
+    int32_t i;
+    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_active), sizeof(int32_t), e));
+    if (!lap->component) return e->status;
     for (i = 0; i < lap->n_active; i++) {
-        const int64_t begin = lap->L.row_ptr[i], n = hdi_ring(mesh, lap, lap->vertex[i], mark, col);
-        hdi_sort_indices(col, n, work);
-        memcpy(lap->L.col + begin, col, HDI_CAST(size_t, n) * sizeof *col);
-        lap->L.row_ptr[i + 1] = begin + n;
+        const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];
+        lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
     }
-    lap->L = hdi_csr_keep(&s, lap->L);
+    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_components), sizeof(double), e));
+    if (!lap->component_mass) return e->status;
+    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
+    return HD_OK;
+}
+
+/* Row i from its diagonal on; what it has before was written by those rows: each edge goes into both its rows, so that L and B are symmetric to the last
+ * bit. next [n_active]: where each row goes on. */
+static HDI_INLINE void hdi_lap_row(hd_laplacian *lap, const hdi_edges *g, int32_t i, int64_t *HDI_RESTRICT next) {
+    const int32_t v = lap->vertex[i], end = g->first[v + 1], *row = lap->row;
+    const int64_t diagonal = next[i];
+    double *L = lap->L.val, *B = lap->B, sum = 0, loops = 0;
+    int32_t *col = lap->L.col, p;
+    int64_t at, negative = 0;
+    for (at = lap->L.row_ptr[i]; at < diagonal; at++) sum += L[at];
+    for (p = g->first[v]; p < end; p++) {
+        const int32_t j = row[g->to[p]];
+        const double w = g->w[p];
+        int64_t mirror;
+        if (j == i) {                            /* an edge from the vertex to itself: no weight, and twice in its B */
+            loops += B ? 2 * g->b[p] : 0;
+            continue;
+        }
+        negative += w > 0;
+        sum += w;
+        mirror = next[j]++;
+        col[++at] = j;
+        L[at] = w;
+        col[mirror] = i;
+        L[mirror] = w;
+        if (B) B[at] = B[mirror] = g->b[p];
+    }
+    lap->mesh.n_negative_weights += negative;
+    col[diagonal] = i;
+    L[diagonal] = -sum;
+    if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + loops;    /* a sixth of the areas that the mass has thirds of */
+}
+
+/* Pattern and values of L and, if the edges have areas, of a full B. */
+static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int full = g->b != NULL;
+    int64_t *next = HDI_TAKE(&s, int64_t, lap->n_active), nnz = 0;
+    double *B = NULL, *b_diag = NULL;
+    hd_csr L;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) nnz += 1 + g->smaller[lap->vertex[i]] + g->larger[lap->vertex[i]];
+    L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    if (full) B = HDI_TAKE(&s, double, nnz);
+    if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
+    if (e->status < 0) return hdi_scope_end(&s);
+    lap->L = hdi_csr_keep(&s, L);
+    lap->B = HDI_CAST(double *, hdi_keep(&s, B));
+    if (full) lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t v = lap->vertex[i];
+        next[i] = L.row_ptr[i];
+        L.row_ptr[i + 1] = L.row_ptr[i] + 1 + g->smaller[v] + g->larger[v];
+    }
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t last = g->first[lap->vertex[i + HDI_VERTICES_AHEAD < lap->n_active ? i + HDI_VERTICES_AHEAD : i] + 1] - 1;
+        if (last >= 0) {                         /* the farthest neighbour: its row is new to the caches, those of others are in use */
+            const int64_t at = next[lap->row[g->to[last]]];
+            HDI_PREFETCH(L.col + at);
+            HDI_PREFETCH(L.val + at);
+            HDI_PREFETCH(B ? B + at : L.val + at);
+        }
+        hdi_lap_row(lap, g, i, next);
+    }
     return hdi_scope_end(&s);
-}
-
-/* Values of row i. Contributions come in the order of the faces in both rows of an edge, so L and B are symmetric to the last bit.
- * place [n_active]: where a column stands in this row. */
-static void hdi_lap_row_values(hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, int64_t *place) {
-    const int32_t v = lap->vertex[i];
-    const int64_t begin = lap->L.row_ptr[i], end = lap->L.row_ptr[i + 1];
-    double *L = lap->L.val, *B = lap->B, sum = 0;
-    int64_t p;
-    int k;
-    for (p = begin; p < end; p++) {
-        place[lap->L.col[p]] = p;
-        L[p] = 0;
-        if (B) B[p] = 0;
-    }
-    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
-        const int32_t c = mesh->corner[p], f = c / 3, q = c % 3;
-        for (k = 1; k <= 2; k++) {   /* the edge to corner q + k is opposite to the third one */
-            const int64_t at = place[lap->row[mesh->tri[3 * f + (q + k) % 3]]];
-            L[at] -= mesh->cot[3 * f + (q + 3 - k) % 3] / 2;
-            if (B) B[at] += mesh->area[f] / 12;
-        }
-        if (B) B[place[i]] += mesh->area[f] / 6;
-    }
-    for (p = begin; p < end; p++)
-        if (lap->L.col[p] != i) sum += L[p];
-    L[place[i]] = -sum;
-}
-
-/* Faces along each edge of row i to later rows: how many, and in which direction. */
-static void hdi_edge_counts(const hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, const int64_t *place, int32_t *count, int32_t *turn) {
-    const int32_t v = lap->vertex[i];
-    const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
-    int64_t p;
-    int k;
-    for (p = 0; p < n; p++) count[p] = turn[p] = 0;
-    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
-        const int32_t c = mesh->corner[p], f = c / 3;
-        for (k = 1; k <= 2; k++) {
-            const int64_t at = place[lap->row[mesh->tri[3 * f + (c + k) % 3]]] - begin;
-            count[at]++;
-            turn[at] += k == 1 ? 1 : -1;
-        }
-    }
 }
 
 /* Statistics of the edges of row i, and the union of boundary edges in parent [n_active]. Returns the sum of the edges' lengths. An entry of L with
@@ -5119,26 +5956,6 @@ static int64_t hdi_widest_row(const hd_csr *a) {
     return widest;
 }
 
-/* Values of L and B, edge statistics and h. */
-static hd_status hdi_lap_values(hd_laplacian *lap, const hdi_mesh *mesh, int32_t *parent, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
-    const int64_t widest = hdi_widest_row(&lap->L);
-    int32_t *count = HDI_TAKE(&s, int32_t, widest), *turn = HDI_TAKE(&s, int32_t, widest), i;
-    double length = 0;
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) parent[i] = i;
-    for (i = 0; i < lap->n_active; i++) {
-        hdi_lap_row_values(lap, mesh, i, place);
-        hdi_edge_counts(lap, mesh, i, place, count, turn);
-        length += hdi_edge_report(lap, mesh->xyz, i, count, turn, parent);
-        if (lap->B) lap->b_diag[i] = lap->B[place[i]];
-    }
-    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
-    hdi_boundary_loops(lap, parent, place);
-    return hdi_scope_end(&s);
-}
-
 /* Copies the places of the rows. */
 static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
     int32_t i;
@@ -5148,30 +5965,30 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
+/* (L, B), places, components and h of the mesh, whose arrays come to live in s. full: B is, if its kind is. */
+static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(lap->context, s->e);
+    double *vertex_mass = HDI_TAKE(&own, double, lap->n);
+    hd_error *e = s->e;
+    hdi_edges edges;
+    if (!vertex_mass) return hdi_scope_end(&own);
+    if (hdi_mesh_faces(mesh, &edges, full && lap->kind == HD_LAPLACIAN_FEM, vertex_mass, hdi_lap_lump(lap->kind), &lap->mesh, s) < 0) return hdi_scope_end(&own);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&own);
+    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0) return hdi_scope_end(&own);
+    if (hdi_lap_assemble(lap, &edges, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&own);
+    lap->h = edges.length / HDI_CAST(double, lap->mesh.n_edges);
+    return hdi_scope_end(&own);
+}
+
 static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hdi_mesh mesh;
-    double *vertex_mass;
-    int32_t *mark, v, f;
-    if (hdi_mesh_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
-    vertex_mass = HDI_TAKE(&s, double, lap->n);
-    if (!vertex_mass) return hdi_scope_end(&s);
-    for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_vertex_mass(&mesh, v, lap->kind);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0) return hdi_scope_end(&s);
-    if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
-    mark = HDI_TAKE(&s, int32_t, lap->n_active);
-    if (!mark || hdi_lap_pattern(lap, &mesh, mark, e) < 0) return hdi_scope_end(&s);
-    if (lap->kind == HD_LAPLACIAN_FEM) {
-        lap->B = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->L.nnz), sizeof(double), e));
-        if (!lap->B) return hdi_scope_end(&s);
-        lap->b_diag = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_active), sizeof(double), e));
-        if (!lap->b_diag) return hdi_scope_end(&s);
-    }
-    if (hdi_lap_values(lap, &mesh, mark, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
+    int32_t f;
+    hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
+    if (hdi_lap_mesh(lap, &mesh, 1, &s) < 0) return hdi_scope_end(&s);
     for (f = 0; f < m; f++) lap->area += mesh.area[f];
     lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;   /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->conserves = 1;
-    hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
 }
 
@@ -5189,7 +6006,7 @@ static double hdi_poly_entry(const hdi_poly *poly, int64_t c, int64_t d, int64_t
     return k == 3 ? first : first - poly->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
 }
 
-/* As hdi_ring. */
+/* Distinct vertices of the faces at v, v itself first, as rows of lap, unsorted, into col. mark [n_active] as in hdi_product_row. Returns how many. */
 static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int32_t v, int32_t *mark, int32_t *col) {
     const int32_t i = lap->row[v];
     int64_t p, d, n = 1;
@@ -5207,7 +6024,7 @@ static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int3
     return n;
 }
 
-/* As hdi_lap_pattern; col [n_active], work [n_active] serve rows of any length. */
+/* The pattern of L, columns ascending. mark [n_active]; col [n_active], work [n_active] serve rows of any length. */
 static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32_t *mark, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
@@ -5232,7 +6049,8 @@ static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32
     return hdi_scope_end(&s);
 }
 
-/* Values of row i, its edges counted as in hdi_edge_counts. As in hdi_lap_row_values, both rows of a pair add in the order of the faces. */
+/* Values of row i, and the faces along each of its edges: how many, and in which direction. Both rows of a pair add in the order of the faces, so that L is
+ * symmetric to the last bit. place [n_active]: where a column stands in this row. */
 static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i, int64_t *place, int32_t *count, int32_t *turn) {
     const int32_t v = lap->vertex[i];
     const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
@@ -5311,81 +6129,26 @@ static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, hd_error *e
 
 /* ---- intrinsic triangulations: Delaunay and tufted ---- */
 
-/* The mixed area of hdi_mixed_area, from lengths. mesh is t as a mesh. */
-static double hdi_intrinsic_mixed_area(const hdi_intrinsic *t, const hdi_mesh *mesh, int32_t c) {
-    const int32_t next = hdi_side_next(c), prev = hdi_side_prev(c);
-    const double *cot = mesh->cot, area = mesh->area[c / 3], b = t->len[c] * t->unit, d = t->len[prev] * t->unit;
-    if (cot[c] < 0 || cot[next] < 0 || cot[prev] < 0) return cot[c] < 0 ? area / 2 : area / 4;
-    return hdi_max(area / 4, hdi_min((b * b * cot[prev] + d * d * cot[next]) / 8, area / 2));
-}
-
-static void hdi_intrinsic_masses(const hdi_intrinsic *t, const hdi_mesh *mesh, hd_laplacian_kind kind, double *mass) {
-    int32_t v;
-    int64_t p;
-    for (v = 0; v < mesh->n; v++) {
-        double sum = 0;
-        for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++)
-            sum += kind == HD_LAPLACIAN_VORONOI_COT ? hdi_intrinsic_mixed_area(t, mesh, mesh->corner[p]) : mesh->area[mesh->corner[p] / 3] / 3;
-        mass[v] = kind == HD_LAPLACIAN_COT ? sum > 0 : sum;
-    }
-}
-
-/* All cotangents of the faces that rows i and j share, as often as they share them: what the rounding error of L(i,j) is relative to. */
-static double hdi_shared_cotangents(const hd_laplacian *lap, const hdi_mesh *mesh, int32_t i, int32_t j) {
-    const int32_t v = lap->vertex[i], w = lap->vertex[j];
-    double sum = 0;
-    int64_t p;
-    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
-        const int32_t c = mesh->corner[p], n = (mesh->tri[hdi_side_next(c)] == w) + (mesh->tri[hdi_side_prev(c)] == w);
-        const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, c / 3);
-        sum += n * (fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]));
-    }
-    return sum;
-}
-
-/* Off-diagonal entries of L above zero, which Delaunay edges can only have by rounding, become zero when they are below 1e-13 of the cotangents of the
- * faces they are made of, and the diagonal follows; what is larger (edges of the boundary) stays and is counted. */
-static void hdi_lap_signs(hd_laplacian *lap, const hdi_mesh *mesh) {
-    double *L = lap->L.val;
-    int32_t i;
-    int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        int64_t at = 0;
-        double sum = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t j = lap->L.col[p];
-            if (j == i) {
-                at = p;
-                continue;
-            }
-            if (L[p] > 0 && L[p] <= 1e-13 * hdi_shared_cotangents(lap, mesh, i < j ? i : j, i < j ? j : i)) L[p] = 0;
-            lap->mesh.n_negative_weights += j > i && L[p] > 0;
-            sum += L[p];
-        }
-        L[at] = -sum;
-    }
-}
-
-/* Values of L and B on the pattern. mesh: intrinsic triangles, without coordinates. */
-static hd_status hdi_lap_intrinsic_values(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
-    int32_t i;
-    if (!place) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) {
-        hdi_lap_row_values(lap, mesh, i, place);
-        if (lap->B) lap->b_diag[i] = lap->B[place[i]];
-    }
-    hdi_lap_signs(lap, mesh);
-    return hdi_scope_end(&s);
-}
-
 /* What the intrinsic Laplacians are asked for. */
 typedef struct hdi_intrinsic_task {
-    int soup;           /* triangles are the stars of points: copies stay, each counts a third */
     int close;          /* tufted: the boundary is glued to the other sheet */
     double delta;       /* of mollification, relative to the mean edge length; negative: none */
 } hdi_intrinsic_task;
+
+/* Rows, components, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without coordinates. */
+static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope *s) {
+    const int full = lap->kind == HD_LAPLACIAN_FEM;
+    hd_error *e = s->e;
+    hdi_edges edges;
+    double *vertex_mass;
+    if (hdi_edges_flat(&edges, flat, full, s) < 0) return e->status;
+    vertex_mass = HDI_TAKE(s, double, flat->n);
+    if (!vertex_mass) return e->status;
+    hdi_mesh_masses(flat, hdi_lap_lump(lap->kind), vertex_mass);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0) return e->status;
+    lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;    /* element of corners v, v, w: 1/2, 1/6; 1/6, 1/6 */
+    return hdi_lap_assemble(lap, &edges, e);
+}
 
 /* (L, B) of the intrinsic Delaunay triangulation of mesh, or of its cover: each sheet counts half. */
 static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_intrinsic_task *task, hdi_scope *s) {
@@ -5393,33 +6156,19 @@ static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *mesh, cons
     hd_context *ctx = lap->context;
     hdi_intrinsic t;
     hdi_mesh flat;
-    double *vertex_mass, weight;
-    int32_t *mark, f;
-    if (hdi_intrinsic_make(&t, mesh, task->soup, task->close, &lap->mesh, s) < 0) return e->status;
+    double weight;
+    int32_t f;
+    if (hdi_intrinsic_make(&t, mesh, task->close, &lap->mesh, s) < 0) return e->status;
     hdi_mollify(&t, task->delta, &lap->mesh);
     if (hdi_progress(ctx, "flip edges", 0, e) < 0 || hdi_flip_all(&t, &lap->mesh, ctx, e) < 0) return e->status;
-    weight = (task->soup ? 1.0 / 3 : 1.0) / t.n_sheets;
+    weight = 1.0 / t.n_sheets;
     if (hdi_intrinsic_mesh(&flat, &t, lap->n, weight, &lap->mesh, s) < 0) return e->status;
-    vertex_mass = HDI_TAKE(s, double, lap->n);
-    if (!vertex_mass) return e->status;
-    hdi_intrinsic_masses(&t, &flat, lap->kind, vertex_mass);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(ctx, "assemble", 0.5, e) < 0) return e->status;
-    if (hdi_lap_places(lap, mesh->xyz, e) < 0) return e->status;
-    mark = HDI_TAKE(s, int32_t, lap->n_active);
-    if (!mark || hdi_lap_pattern(lap, &flat, mark, e) < 0) return e->status;
-    if (lap->kind == HD_LAPLACIAN_FEM) {
-        lap->B = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->L.nnz), sizeof(double), e));
-        if (!lap->B) return e->status;
-        lap->b_diag = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n_active), sizeof(double), e));
-        if (!lap->b_diag) return e->status;
-    }
-    if (hdi_lap_intrinsic_values(lap, &flat, e) < 0 || hdi_progress(ctx, "assemble", 0.8, e) < 0) return e->status;
-    for (f = 0; f < mesh->m; f++) lap->area += mesh->area[f] * (task->soup ? 1.0 / 3 : 1.0);
+    if (hdi_lap_flat(lap, &flat, s) < 0 || hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_progress(ctx, "assemble", 0.8, e) < 0) return e->status;
+    for (f = 0; f < mesh->m; f++) lap->area += mesh->area[f];
     lap->h = t.unit;
     lap->mesh.n_sheets = t.n_sheets;
-    lap->b_ratio = lap->kind != HD_LAPLACIAN_FEM ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;    /* element of corners v, v, w: 1/2, 1/6; 1/6, 1/6 */
     lap->conserves = 1;
-    return hdi_lap_components(lap, e);
+    return HD_OK;
 }
 
 static hd_status hdi_lap_triangles_intrinsic(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task,
@@ -5722,11 +6471,11 @@ static void hdi_tangent_plane(const double *rel, int32_t n, double axis[2][3]) {
         sum += weight;
         for (r = 0; r < 3; r++) {
             mean[r] += weight * d[r];
-            for (c = 0; c < 3; c++) cov[r][c] += weight * d[r] * d[c];
+            for (c = r; c < 3; c++) cov[r][c] += weight * d[r] * d[c];
         }
     }
     for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) cov[r][c] -= mean[r] * mean[c] / sum;
+        for (c = r; c < 3; c++) cov[c][r] = cov[r][c] -= mean[r] * mean[c] / sum;
     hdi_eigen3(cov, w, v);
     memcpy(axis, v[1], 3 * sizeof(double));
     memcpy(axis[1], v[2], 3 * sizeof(double));
@@ -6090,18 +6839,22 @@ static double hdi_point_chance(int32_t i) {
 
 typedef struct hdi_star_point { double x, y, angle; int32_t id; } hdi_star_point;
 
-static int hdi_star_less(const hdi_star_point *a, const hdi_star_point *b) { return a->angle != b->angle ? a->angle < b->angle : a->id < b->id; }
+/* An angle that needs no arc tangent: 0 along x, 1 along y, a turn is 4, half a turn 2 between any two opposite directions. */
+static double hdi_star_angle(double x, double y) {
+    const double sum = fabs(x) + fabs(y), q = sum > 0 ? y / sum : 0;
+    return x < 0 ? 2 - q : y < 0 ? 4 + q : q;
+}
 
 /* c is to the left of the line from a to b. */
 static int hdi_star_left(const hdi_star_point *a, const hdi_star_point *b, const hdi_star_point *c) {
     return hdi_det2(b->x - a->x, c->y - b->y, b->y - a->y, c->x - b->x) > 0;
 }
 
-#define HDI_STAR_SAME 1e-6   /* directions within this angle are the same one; opposite ones likewise */
+#define HDI_STAR_SAME 1e-6   /* directions within this hdi_star_angle are the same one; opposite ones likewise */
 
 /* p, n by angle: of those in the same direction only the nearest, which has the longest dual, stays. Returns how many are left. */
 static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
-    const double turn = 6.283185307179586;
+    const double turn = 4;
     int32_t i, m = 0;
     for (i = 0; i < n; i++) {
         const hdi_star_point x = p[i];
@@ -6121,19 +6874,30 @@ static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
     return m;
 }
 
+/* Sorts p by angle, equal ones as they come: the angle's bits, whose last eight make room for the place. */
+static void hdi_star_sort(hdi_star_point *p, int32_t n) {
+    hdi_star_point from[HDI_STAR_MOST];
+    uint64_t key[HDI_STAR_MOST], work[HDI_STAR_MOST];
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        p[i].angle = hdi_star_angle(p[i].x, p[i].y) + 0.0;       /* no -0 */
+        memcpy(key + i, &p[i].angle, sizeof *key);
+        key[i] = (key[i] & ~HDI_CAST(uint64_t, 255)) | HDI_CAST(uint64_t, i);
+        from[i] = p[i];
+    }
+    hdi_sort_keys(key, n, work);
+    for (i = 0; i < n; i++) p[i] = from[key[i] & 255];
+}
+
 /* The star of the origin in the Delaunay triangulation of it and p[0..n), which are duals: the neighbour q stands at 2 q / |q|^2, so that the line
  * between the nearer and the farther half plane is its polar. The neighbours that bound the Voronoi cell are then the corners of the convex hull, found
  * by walking around it (Graham 1972). Where neighbours are a half turn apart the cell is open. Leaves them in p by angle; returns their number. */
 static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
-    const double half = 3.141592653589793, open_gap = half - HDI_STAR_SAME;
+    const double half = 2, open_gap = half - HDI_STAR_SAME;
     hdi_star_point hull[HDI_STAR_MOST + 2], origin;
-    int32_t i, j, first = 0, top = 0;
+    int32_t i, at, first = 0, top = 0;
     double far_away = -1;
-    for (i = 1; i < n; i++) {
-        const hdi_star_point x = p[i];
-        for (j = i; j > 0 && hdi_star_less(&x, p + j - 1); j--) p[j] = p[j - 1];
-        p[j] = x;
-    }
+    hdi_star_sort(p, n);
     n = hdi_star_directions(p, n);
     *closed = 1;
     for (i = 0; i < n; i++) {                    /* begin behind a gap of a half turn, else at the nearest neighbour, which is a corner */
@@ -6143,23 +6907,27 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
         far_away = hdi_max(far_away, r);
     }
     memset(&origin, 0, sizeof origin);
-    for (i = 0; i < n + 1 + !*closed; i++) {     /* once around: from the nearest to itself, or from the origin, a corner now, to itself */
-        const hdi_star_point x = *closed ? p[(first + i) % n] : i == 0 || i == n + 1 ? origin : p[(first + i - 1) % n];
-        while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, &x)) top--;
-        hull[top++] = x;
+    if (!*closed) hull[top++] = origin;
+    for (i = 0, at = first; i < n; i++, at = at + 1 < n ? at + 1 : 0) {
+        while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, p + at)) top--;
+        hull[top++] = p[at];
     }
-    top -= 1 + !*closed;
+    {                                            /* once around: from the nearest to itself, or from the origin, a corner now, to itself */
+        const hdi_star_point last = *closed ? p[first] : origin;
+        while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, &last)) top--;
+    }
+    top -= !*closed;
     for (i = 0; i < top; i++) p[i] = hull[i + !*closed];
     return top;
 }
 
 typedef struct hdi_star_job {
     const double *xyz;
+    const int32_t *name;/* [n] the caller's number of a point */
     int32_t n;
     const int64_t *ptr;
-    const int32_t *nbr;
+    int32_t *nbr;       /* [ptr[n]] neighbours of point i from ptr[i] on; then its star, counterclockwise in its plane */
     double *nearest;    /* [n] distance to the nearest neighbour in another place; 0: none */
-    int32_t *star;      /* [ptr[n]] star of point i from ptr[i] on, counterclockwise in its plane */
     int32_t *size;      /* [n] corners of the star; negative: it is open between the last and the first */
 } hdi_star_job;
 
@@ -6202,15 +6970,14 @@ static void hdi_point_star(const hdi_star_job *job, int32_t i) {
         const double x = hdi_dot3(axis[0], rel + 3 * k), y = hdi_dot3(axis[1], rel + 3 * k), r2 = x * x + y * y, w = job->nearest[id[k]] / unit;
         double power;
         if (!(r2 > 1e-12 * hdi_dot3(rel + 3 * k, rel + 3 * k))) continue;      /* straight above */
-        power = r2 + 1e-9 * hdi_min(1, r2) * hdi_point_chance(i) - 1e-9 * hdi_min(w * w, r2) * hdi_point_chance(id[k]);
+        power = r2 + 1e-9 * hdi_min(1, r2) * hdi_point_chance(job->name[i]) - 1e-9 * hdi_min(w * w, r2) * hdi_point_chance(job->name[id[k]]);
         p[m].x = 2 * x / power;
         p[m].y = 2 * y / power;
-        p[m].angle = atan2(y, x);
         p[m++].id = id[k];
     }
     if (m < 2) return;
     m = hdi_star_hull(p, m, &closed);
-    for (k = 0; k < m; k++) job->star[job->ptr[i] + k] = p[k].id;
+    for (k = 0; k < m; k++) job->nbr[job->ptr[i] + k] = p[k].id;
     job->size[i] = closed ? m : -m;
 }
 
@@ -6236,26 +7003,73 @@ static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t 
     return HD_OK;
 }
 
-/* Neighbours for points that come without: the nearest other places, named by the first point there; the list of a later one is empty. */
-static hd_status hdi_star_search(hdi_star_job *job, hd_point_report *rep, hdi_scope *s) {
+/* From here on points are numbered in the order of the tree's leaves, whatever their order was: neighbours are near in memory too. points [3 n] in the order of
+ * id; the tree's own ids become these numbers. NULL: no memory. */
+static double *hdi_star_order(hdi_tree *tree, const double *xyz, hdi_scope *s) {
+    double *points = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, tree->n));
+    int32_t i;
+    for (i = 0; i < tree->n && points; i++) memcpy(points + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, tree->id[i]), 3 * sizeof *points);
+    return points;
+}
+
+/* Neighbours for points that come without: the nearest other places. Of several points in one place only the first takes part. xyz and name live in keep. */
+static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n_points, hd_point_report *rep, hdi_scope *s, hdi_scope *keep) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *place = HDI_TAKE(&own, int32_t, job->n), *first = HDI_TAKE(&own, int32_t, job->n), *nbr, n, k, v;
-    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, job->n) + 1), q;
+    int32_t *place = HDI_TAKE(&own, int32_t, n_points), *first = HDI_TAKE(&own, int32_t, n_points), *name, *nbr, n, k, v;
+    int64_t *ptr;
     double *places;
     hdi_tree tree;
-    if (s->e->status < 0 || hdi_points_check(job->xyz, job->n, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
-    n = hdi_places(job->xyz, job->n, place, first, &own);
+    if (s->e->status < 0 || hdi_points_check(xyz, n_points, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    n = hdi_places(xyz, n_points, place, first, &own);
     k = HDI_CAST(int32_t, hdi_least(n, 1 + HDI_CAST(int64_t, rep->neighbours)));
-    rep->n_coincident = job->n - n;
+    rep->n_coincident = n_points - n;
     places = HDI_TAKE(&own, double, 3 * HDI_CAST(int64_t, n));
+    ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
     nbr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, k) * n);
+    name = HDI_TAKE(keep, int32_t, n);
     if (s->e->status < 0) return hdi_scope_end(&own);
-    for (v = 0; v < n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), job->xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
-    if (hdi_tree_make(&tree, places, n, &own) < 0 || hdi_nearest(&tree, places, NULL, n, k, nbr, NULL, s->ctx, s->e) < 0) return hdi_scope_end(&own);
-    for (q = 0; q < HDI_CAST(int64_t, k) * n; q++) nbr[q] = first[nbr[q]];
-    for (v = 0, ptr[0] = 0; v < job->n; v++) ptr[v + 1] = ptr[v] + (first[place[v]] == v ? k : 0);
+    for (v = 0; v < n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
+    if (hdi_tree_make(&tree, places, n, &own) < 0) return hdi_scope_end(&own);
+    job->xyz = hdi_star_order(&tree, places, keep);
+    if (!job->xyz) return hdi_scope_end(&own);
+    for (v = 0; v < n; v++) {
+        name[v] = first[tree.id[v]];
+        tree.id[v] = v;
+        ptr[v] = HDI_CAST(int64_t, v) * k;
+    }
+    ptr[n] = HDI_CAST(int64_t, n) * k;
+    job->n = n;
+    job->name = name;
     job->ptr = ptr;
     job->nbr = nbr;
+    (void)hdi_nearest(&tree, job->xyz, NULL, n, k, nbr, NULL, s->ctx, s->e);
+    return hdi_scope_end(&own);
+}
+
+/* The caller's neighbours, points and lists renumbered. */
+static hd_status hdi_star_given(hdi_star_job *job, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr, hdi_scope *s, hdi_scope *keep) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *inverse = HDI_TAKE(&own, int32_t, n), *name = HDI_TAKE(keep, int32_t, n), *list, v;
+    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1), p, q;
+    hdi_tree tree;
+    if (s->e->status < 0 || hdi_mesh_check(xyz, n, NULL, 0, s->e) < 0 || hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
+    list = HDI_TAKE(s, int32_t, nbr_ptr[n]);
+    if (s->e->status < 0 || hdi_tree_make(&tree, xyz, n, &own) < 0) return hdi_scope_end(&own);
+    job->xyz = hdi_star_order(&tree, xyz, keep);
+    if (!job->xyz) return hdi_scope_end(&own);
+    for (v = 0; v < n; v++) {
+        name[v] = tree.id[v];
+        inverse[name[v]] = v;
+    }
+    for (v = 0, q = 0; v < n; v++) {
+        ptr[v] = q;
+        for (p = nbr_ptr[name[v]]; p < nbr_ptr[name[v] + 1]; p++) list[q++] = inverse[nbr[p]];
+    }
+    ptr[n] = q;
+    job->n = n;
+    job->name = name;
+    job->ptr = ptr;
+    job->nbr = list;
     return hdi_scope_end(&own);
 }
 
@@ -6265,7 +7079,6 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, double *spacing, hdi_sc
     int32_t *tri, i, k, n_near = 0;
     int64_t count = 0;
     job->nearest = HDI_TAKE(s, double, job->n);
-    job->star = HDI_TAKE(s, int32_t, job->ptr[job->n]);
     job->size = HDI_TAKE(s, int32_t, job->n);
     if (s->e->status < 0) return NULL;
     hdi_parallel(s->ctx, n_tasks, hdi_star_unit_task, job);
@@ -6283,14 +7096,111 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, double *spacing, hdi_sc
     *m = HDI_CAST(int32_t, count);
     count = 0;
     for (i = 0; i < job->n; i++) {
-        const int32_t *star = job->star + job->ptr[i], size = job->size[i] < 0 ? -job->size[i] : job->size[i], last = size - (job->size[i] < 0);
+        const int32_t *star = job->nbr + job->ptr[i], size = job->size[i] < 0 ? -job->size[i] : job->size[i], last = size - (job->size[i] < 0);
         for (k = 0; k < last; k++) {
             tri[count++] = i;
             tri[count++] = star[k];
-            tri[count++] = star[(k + 1) % size];
+            tri[count++] = star[k + 1 < size ? k + 1 : 0];
         }
     }
     return tri;
+}
+
+typedef struct hdi_renumber_job {
+    hd_laplacian *lap;
+    const hd_laplacian *from;
+    const int32_t *to;  /* [rows] */
+} hdi_renumber_job;
+
+/* Row r of the pair, its entries in key and work (each as long as the row), into its new place. */
+static void hdi_renumber_row(const hdi_renumber_job *job, int32_t r, uint64_t *key, uint64_t *work) {
+    const hd_laplacian *from = job->from;
+    hd_laplacian *lap = job->lap;
+    const int64_t begin = from->L.row_ptr[r], n = from->L.row_ptr[r + 1] - begin, at = lap->L.row_ptr[job->to[r]];
+    int64_t p;
+    for (p = 0; p < n; p++) key[p] = HDI_CAST(uint64_t, job->to[from->L.col[begin + p]]) << 32 | HDI_CAST(uint64_t, p);
+    hdi_sort_keys(key, n, work);
+    for (p = 0; p < n; p++) {
+        const int64_t q = begin + HDI_CAST(int64_t, key[p] & 0xffffffffu);
+        lap->L.col[at + p] = hdi_key_vertex(key[p]);
+        lap->L.val[at + p] = from->L.val[q];
+        if (lap->B) lap->B[at + p] = from->B[q];
+    }
+}
+
+enum { HDI_RENUMBER_ROWS = 4096, HDI_RENUMBER_WIDTH = 64 };
+
+static void hdi_renumber_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_renumber_job *job = HDI_CAST(const hdi_renumber_job *, arg);
+    const int64_t *ptr = job->from->L.row_ptr, end = hdi_least((index + 1) * HDI_RENUMBER_ROWS, job->from->n_active);
+    uint64_t key[HDI_RENUMBER_WIDTH], work[HDI_RENUMBER_WIDTH];
+    int64_t r;
+    (void)worker;
+    for (r = index * HDI_RENUMBER_ROWS; r < end; r++)
+        if (ptr[r + 1] - ptr[r] <= HDI_RENUMBER_WIDTH) hdi_renumber_row(job, HDI_CAST(int32_t, r), key, work);
+}
+
+/* Rows, components and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's vertices. */
+static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, const int32_t *name, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int32_t rows = from->n_active;
+    const int64_t widest = hdi_widest_row(&from->L);
+    int32_t *to = HDI_TAKE(&s, int32_t, rows), *number = HDI_TAKE(&s, int32_t, from->n_components), *component = HDI_TAKE(&s, int32_t, rows), r, i;
+    double *mass = HDI_TAKE_ZERO(&s, double, lap->n), *component_mass = HDI_TAKE(&s, double, from->n_components), *B = NULL, *b_diag = NULL;
+    uint64_t *key = HDI_TAKE(&s, uint64_t, 2 * widest);
+    hdi_renumber_job job;
+    hd_csr L = hdi_csr_take(&s, rows, rows, from->L.nnz, 1);
+    if (from->B) B = HDI_TAKE(&s, double, from->L.nnz);
+    if (from->B) b_diag = HDI_TAKE(&s, double, rows);
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (r = 0; r < rows; r++) mass[name[from->vertex[r]]] = from->mass[r];
+    if (hdi_lap_rows(lap, mass, e) < 0) return hdi_scope_end(&s);
+    lap->L = hdi_csr_keep(&s, L);
+    if (from->B) {
+        lap->B = HDI_CAST(double *, hdi_keep(&s, B));
+        lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    }
+    lap->component = HDI_CAST(int32_t *, hdi_keep(&s, component));
+    lap->component_mass = HDI_CAST(double *, hdi_keep(&s, component_mass));
+    for (r = 0; r < rows; r++) {
+        to[r] = i = lap->row[name[from->vertex[r]]];
+        L.row_ptr[i + 1] = from->L.row_ptr[r + 1] - from->L.row_ptr[r];
+        component[i] = from->component[r];
+        if (B) b_diag[i] = from->b_diag[r];
+    }
+    for (i = 0; i < rows; i++) L.row_ptr[i + 1] += L.row_ptr[i];
+    hdi_fill_i32(number, from->n_components, -1);
+    for (i = 0; i < rows; i++) {                 /* numbered by their first row, as always */
+        if (number[component[i]] < 0) {
+            component_mass[lap->n_components] = from->component_mass[component[i]];
+            number[component[i]] = lap->n_components++;
+        }
+        component[i] = number[component[i]];
+    }
+    job.lap = lap;
+    job.from = from;
+    job.to = to;
+    hdi_parallel(lap->context, (HDI_CAST(int64_t, rows) + HDI_RENUMBER_ROWS - 1) / HDI_RENUMBER_ROWS, hdi_renumber_task, &job);
+    for (r = 0; r < rows && widest > HDI_RENUMBER_WIDTH; r++)
+        if (from->L.row_ptr[r + 1] - from->L.row_ptr[r] > HDI_RENUMBER_WIDTH) hdi_renumber_row(&job, r, key, key + widest);
+    return hdi_scope_end(&s);
+}
+
+/* The soup of the stars of all points. xyz and name live in s, nothing else is left of neighbours and stars. */
+static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr, const int32_t *nbr, double delta,
+                               hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *tri, m = 0;
+    memset(job, 0, sizeof *job);
+    if ((nbr_ptr ? hdi_star_given(job, xyz, lap->n, nbr_ptr, nbr, &own, s) : hdi_star_search(job, xyz, lap->n, &lap->points, &own, s)) < 0)
+        return hdi_scope_end(&own);
+    tri = hdi_stars(job, &m, &lap->h, &own);
+    if (!tri || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_soup_make(soup, job->xyz, job->n, tri, m, delta, &lap->mesh, s) < 0) {
+        if (s->e->face >= 0) s->e->vertex = job->name[soup->tri[3 * s->e->face]];    /* the caller knows no faces */
+        s->e->face = -1;
+    }
+    return hdi_scope_end(&own);
 }
 
 /* The tufted Laplacian of a point set (Sharp, Crane 2020, section 5.7): every point's star in the Delaunay triangulation of its neighbourhood, in the
@@ -6298,30 +7208,27 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, double *spacing, hdi_sc
  * Deviation: cocircular points, which every grid is full of, are told apart by heights of at most 1e-9, else the stars would not agree. */
 static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr, const int32_t *nbr, double delta, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_intrinsic_task task;
+    hd_laplacian *inner = NULL;
     hdi_star_job job;
-    hdi_mesh mesh;
-    double spacing = 0;
-    int32_t *tri, m = 0;
-    memset(&job, 0, sizeof job);
-    task.soup = task.close = 1;
-    task.delta = delta;
-    job.xyz = xyz;
-    job.n = lap->n;
-    job.ptr = nbr_ptr;
-    job.nbr = nbr;
-    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
-    if ((nbr_ptr ? hdi_star_check(nbr_ptr, nbr, lap->n, e) : hdi_star_search(&job, &lap->points, &s)) < 0) return hdi_scope_end(&s);
-    tri = hdi_stars(&job, &m, &spacing, &s);
-    if (!tri || hdi_progress(lap->context, "assemble", 0.2, e) < 0) return hdi_scope_end(&s);
-    if (hdi_soup_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) {
-        if (e->face >= 0) e->vertex = tri[3 * e->face];      /* the caller knows no faces */
-        e->face = -1;
-        return hdi_scope_end(&s);
-    }
+    hdi_soup soup;
+    hdi_mesh flat;
+    if (hdi_star_soup(&soup, &job, lap, xyz, nbr_ptr, nbr, delta, &s) < 0) return hdi_scope_end(&s);
     if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
-    else hdi_lap_intrinsic(lap, &mesh, &task, &s);
-    lap->h = spacing;
+    if (e->status >= 0 && hdi_soup_delaunay(&flat, &soup, &lap->mesh, &s) >= 0) inner = HDI_CAST(hd_laplacian *, hdi_alloc(lap->context, 1, sizeof *inner, e));
+    if (!inner) return hdi_scope_end(&s);
+    memset(inner, 0, sizeof *inner);
+    inner->n = job.n;
+    inner->kind = lap->kind;
+    inner->context = lap->context;
+    inner->mesh = lap->mesh;
+    if (hdi_lap_flat(inner, &flat, &s) >= 0) {
+        lap->mesh = inner->mesh;
+        lap->area = soup.area / 3;
+        lap->b_ratio = inner->b_ratio;
+        lap->conserves = 1;
+        if (hdi_lap_renumber(lap, inner, job.name, e) >= 0 && hdi_lap_places(lap, xyz, e) >= 0) (void)hdi_progress(lap->context, "assemble", 0.8, e);
+    }
+    hdi_laplacian_free(inner, lap->context);
     return hdi_scope_end(&s);
 }
 
@@ -8713,8 +9620,9 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 /* ---- choice ---- */
 
 /* From so many rows on nested dissection pays for itself: it takes three times as long to find as minimum degree, and saves half of the flops. For the poles of a
- * set that is soon, for one real factor and some solves late. */
-enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_REAL_FROM = 250000 };
+ * set that is soon, for one real factor and some solves late. Wide rows, those of exponential weights, make factors so large that it pays at once where
+ * it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10, 20, 50, 150 thousand random points and 233 non-zeros a row. */
+enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_REAL_FROM = 250000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
 
 static hd_status hdi_sym_check(const int32_t *perm, int32_t n, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
@@ -8732,6 +9640,7 @@ static hd_status hdi_sym_order(const hd_csr *a, const double *xyz, hd_ordering k
                                hd_error *e) {
     const int32_t n = a->n_rows;
     hdi_error_clear(e);
+    if (a->nnz > HDI_DISSECT_WIDE * HDI_CAST(int64_t, n) && dissect_from > HDI_DISSECT_WIDE_FROM) dissect_from = HDI_DISSECT_WIDE_FROM;
     if (kind == HD_ORDERING_AUTO) kind = xyz && n >= dissect_from ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_MINIMUM_DEGREE;
     *chosen = HDI_CAST(int32_t, kind);
     if (hdi_progress(ctx, "order", 0, e) < 0) return e->status;
@@ -13598,24 +14507,6 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_free(ctx, g);
 }
 
-/* L, lumped masses, h and components of the mesh, as a Laplacian with diagonal B. */
-static hd_status hdi_geo_laplacian(hd_laplacian *lap, const hdi_mesh *mesh, hd_geodesic_mass kind, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *vertex_mass = HDI_TAKE(&s, double, lap->n);
-    int32_t *mark, i;
-    if (!vertex_mass) return hdi_scope_end(&s);
-    lap->kind = kind == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;   /* the row sums of fem are the lumped mass */
-    for (i = 0; i < lap->n; i++) vertex_mass[i] = hdi_vertex_mass(mesh, i, lap->kind);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);
-    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
-    for (i = 0; lap->xyz && i < lap->n_active; i++)
-        memcpy(lap->xyz + 3 * HDI_CAST(int64_t, i), mesh->xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), 3 * sizeof(double));
-    mark = HDI_TAKE(&s, int32_t, lap->n_active);
-    if (!mark || hdi_lap_pattern(lap, mesh, mark, e) < 0 || hdi_lap_values(lap, mesh, mark, e) < 0) return hdi_scope_end(&s);
-    hdi_lap_components(lap, e);
-    return hdi_scope_end(&s);
-}
-
 /* Face f in its plane, the longest edge on the axis: the height is then as small as it gets, and loses nothing. */
 static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
@@ -13745,11 +14636,12 @@ static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *
     hd_laplacian *lap = HDI_CAST(hd_laplacian *, hdi_alloc(g->ctx, 1, sizeof *lap, e));
     hdi_mesh mesh;
     if (!lap) return hdi_scope_end(&s);
+    hdi_mesh_clear(&mesh, xyz, g->n, tri, m);
     memset(lap, 0, sizeof *lap);
     lap->n = g->n;
     lap->context = g->ctx;
-    if (hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_mesh_make(&mesh, xyz, g->n, tri, m, &lap->mesh, &s) >= 0 &&
-        hdi_geo_laplacian(lap, &mesh, o->mass, e) >= 0) {
+    lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;   /* the row sums of fem are the lumped mass */
+    if (hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_mesh(lap, &mesh, 0, &s) >= 0) {
         g->n_active = lap->n_active;
         g->n_components = lap->n_components;
         g->n_faces = lap->mesh.n_faces_used;
@@ -14353,7 +15245,6 @@ static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
 
 /* What is asked for of triangles besides their kind, checked. Returns whether that is an intrinsic triangulation. */
 static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
-    task->soup = 0;
     task->close = opts && opts->tufted;
     task->delta = opts && opts->mollify != 0 ? opts->mollify : 1e-5;
     if (!(task->delta <= 1)) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
@@ -15247,14 +16138,18 @@ typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov
 #define HDI_STEP_COCG 4e-9
 #define HDI_ROW_ANALYSIS 0.8e-6
 
-/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops. */
+/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops; where rows are wider than 10 so much more of the former and its square
+ * of the latter (point sets with 233 and 117 a row, 20 to 150 thousand: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5). */
 static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     const hdi_symbolic *s = heat->elim.ctx ? &heat->elim.sym : NULL;
     const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->k, hh = heat->source->h * heat->source->h * heat->scale;
-    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n, flops = s ? s->flops_done : 22 * n * sqrt(n), analysis = s ? 0 : HDI_ROW_ANALYSIS * n;
-    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n, real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n;
+    const double wide = hdi_max(1, entries / (10 * n));
+    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide, flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
+    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide;
+    const double real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n * wide;
+    const double analysis = s ? 0 : HDI_ROW_ANALYSIS * n * wide;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4, packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0], windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;

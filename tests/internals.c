@@ -1860,7 +1860,7 @@ static void int_flips(void) {
             for (i = 0; k == 3 && i < s.n_tri; i++)
                 if (s.tri[3 * i] % 3 == 0) s.tri[3 * i] = 4;     /* any triangles */
             CHECK(hdi_mesh_make(&mesh, s.xyz, s.n, s.tri, s.n_tri, &rep, &scope) == HD_OK);
-            CHECK(hdi_intrinsic_make(&t, &mesh, 0, close, &rep, &scope) == HD_OK);
+            CHECK(hdi_intrinsic_make(&t, &mesh, close, &rep, &scope) == HD_OK);
             CHECK(t.n_sheets == (k == 0 || k == 2 || (k == 1 && !close) ? 1 : 2) && (k < 3 || rep.n_nonmanifold_edges > 5));
             hdi_mollify(&t, 1e-5, &rep);
             int_intrinsic_state(&t, before, s.n, &area_before);
@@ -1910,8 +1910,132 @@ static void int_around(void) {
     }
     mesh.xyz = xyz;
     mesh.tri = tri;
-    hdi_sort_around(&mesh, NULL, 0, 1, list, 6);
+    hdi_sort_around(&mesh, 0, 1, list, 6);
     for (k = 0; k < 6; k++) CHECK_MSG(list[k].id == 3 * want[k] + 1, "place %d: face %d", k, (int)(list[k].id / 3));
+}
+
+/* Triangles among N points near the unit square, each from a point to two of those near it, up to three times and in any order of the corners. */
+static int32_t int_soup_triangles(double *xyz, int32_t n, int32_t *tri, int copies, uint64_t seed) {
+    int32_t i, k, q, m = 0;
+    for (i = 0; i < n; i++) {
+        xyz[3 * i] = i % 20 + 0.45 * shape_signed(&seed);
+        xyz[3 * i + 1] = i / 20 + 0.45 * shape_signed(&seed);
+        xyz[3 * i + 2] = 0.3 * shape_signed(&seed);
+    }
+    for (i = 0; i + 21 < n; i++) {
+        for (k = 0; k < 4; k++) {
+            const int32_t a = i, b = k & 1 ? i + 20 : i + 21, c = k < 2 ? i + 1 : k == 2 ? i + 21 : i + 20;
+            if (b == c || shape_signed(&seed) > 0.6) continue;
+            for (q = 0; q < copies && (q == 0 || shape_signed(&seed) > -0.3); q++) {
+                const int turn = shape_signed(&seed) > 0;
+                tri[m++] = turn ? b : a;
+                tri[m++] = turn ? a : b;
+                tri[m++] = c;
+            }
+        }
+    }
+    return m / 3;
+}
+
+/* (L, B) of a soup; everything: all of its cover is unfolded, glued and looked at, instead of what may have to be flipped. */
+static hd_laplacian *int_soup_pair(const double *xyz, int32_t n, const int32_t *tri, int32_t m, int everything, hd_context *ctx, hd_mesh_report *rep) {
+    hd_error e;
+    hdi_scope s = hdi_scope_begin(ctx, &e);
+    hd_laplacian *lap = (hd_laplacian *)hdi_alloc(ctx, 1, sizeof *lap, &e);
+    hdi_soup soup;
+    hdi_mesh flat;
+    memset(lap, 0, sizeof *lap);
+    memset(rep, 0, sizeof *rep);
+    lap->n = n;
+    lap->context = ctx;
+    lap->kind = HD_LAPLACIAN_FEM;
+    CHECK(hdi_soup_make(&soup, xyz, n, tri, m, 1e-5, rep, &s) == HD_OK);
+    if (!everything) {
+        CHECK(hdi_soup_delaunay(&flat, &soup, rep, &s) == HD_OK);
+    } else {
+        hdi_cover c;
+        int32_t v, p, q;
+        memset(&c, 0, sizeof c);
+        c.soup = &soup;
+        c.ctx = ctx;
+        c.e = &e;
+        c.t.unit = soup.unit;
+        c.t.n_sheets = 2;
+        c.first = HDI_TAKE(&s, int32_t, soup.mesh.m);
+        c.glued = HDI_TAKE_ZERO(&s, signed char, 3 * soup.mesh.m);
+        c.list = HDI_TAKE(&s, hdi_pair, 3 * soup.mesh.m);
+        for (v = 0; v < soup.mesh.m; v++) c.first[v] = -1;
+        for (v = 0; v < n; v++) {
+            for (p = soup.sides.ptr[v]; p < soup.sides.ptr[v + 1]; p = q) {
+                for (q = p + 1; q < soup.sides.ptr[v + 1] && soup.sides.key[q] >> 32 == soup.sides.key[p] >> 32;) q++;
+                CHECK(hdi_cover_glue(&c, v, p, q) == HD_OK);
+            }
+        }
+        CHECK(c.n == 2 * m);
+        for (p = 0; p < c.t.n_sides; p++) {      /* closed: each side has another one, which runs the other way */
+            const int32_t t = c.t.twin[p];
+            CHECK(t >= 0 && t != p && c.t.twin[t] == p && c.t.vert[p] == c.t.vert[hdi_side_next(t)] && c.t.len[p] == c.t.len[t]);
+        }
+        CHECK(hdi_flip_all(&c.t, rep, ctx, &e) == HD_OK);
+        CHECK(hdi_intrinsic_mesh(&flat, &c.t, n, 1.0 / 6, rep, &s) == HD_OK);
+        CHECK(hdi_lap_flat(lap, &flat, &s) == HD_OK);
+        hdi_cover_free(&c);
+    }
+    if (!everything) CHECK(hdi_lap_flat(lap, &flat, &s) == HD_OK);
+    hdi_scope_end(&s);
+    return lap;
+}
+
+/* Largest difference of two pairs on one pattern, relative to the largest entry; 1 when the patterns differ. scale: of the first. */
+static double int_pair_difference(const hd_laplacian *a, const hd_laplacian *b, double scale) {
+    double worst[2] = {0, 0}, most[2] = {0, 0};
+    int64_t p;
+    if (a->L.nnz != b->L.nnz || memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col)) return 1;
+    for (p = 0; p < a->L.nnz; p++) {
+        worst[0] = fmax(worst[0], fabs(scale * a->L.val[p] - b->L.val[p]));
+        worst[1] = fmax(worst[1], fabs(scale * a->B[p] - b->B[p]));
+        most[0] = fmax(most[0], fabs(b->L.val[p]));
+        most[1] = fmax(most[1], fabs(b->B[p]));
+    }
+    return fmax(worst[0] / most[0], worst[1] / most[1]);
+}
+
+/* The cover of a soup unfolded where it has to be, against all of it; and for faces that come once, against that of the mesh, which is glued elsewhere. */
+static void int_soup(void) {
+    enum { N = 400 };
+    double *xyz = DENSE_NEW(double, 3 * N);
+    int32_t *tri = DENSE_NEW(int32_t, 3 * 12 * N);
+    hd_context ctx;
+    int round, flips = 0;
+    memset(&ctx, 0, sizeof ctx);
+    for (round = 0; round < 8; round++) {
+        const int32_t m = int_soup_triangles(xyz, N, tri, round % 2 ? 3 : 1, 77u + (uint64_t)round);
+        hd_mesh_report some, all;
+        hd_laplacian *a = int_soup_pair(xyz, N, tri, m, 0, &ctx, &some), *b = int_soup_pair(xyz, N, tri, m, 1, &ctx, &all), *mesh = NULL;
+        double d = int_pair_difference(a, b, 1);
+        CHECK_MSG(d < 1e-9, "round %d: %g between some and all of the cover", round, d);
+        CHECK_MSG(some.n_flips > 50 && some.n_not_delaunay == 0 && some.n_self_edges == all.n_self_edges, "round %d: %d flips, %d", round, (int)some.n_flips,
+                  (int)all.n_flips);
+        CHECK(fabs(some.smallest_intrinsic_angle - all.smallest_intrinsic_angle) < 1e-9 && some.n_edges == all.n_edges && some.n_faces == m);
+        flips += (int)some.n_flips;
+        if (round % 2 == 0) {
+            hd_laplacian_opts o;
+            memset(&o, 0, sizeof o);
+            o.tufted = 1;
+            CHECK(hd_laplacian_triangles(&mesh, xyz, N, tri, m, &o, NULL) == HD_OK);
+            d = int_pair_difference(a, mesh, 3);
+            CHECK_MSG(d < 1e-9, "round %d: %g between soup and mesh", round, d);
+            CHECK(mesh->mesh.n_edges == some.n_edges && mesh->mesh.n_boundary_edges == some.n_boundary_edges && mesh->mesh.n_boundary_loops == some.n_boundary_loops);
+            CHECK(mesh->mesh.n_nonmanifold_edges == some.n_nonmanifold_edges && mesh->mesh.n_misoriented_edges == some.n_misoriented_edges);
+            CHECK(mesh->mesh.n_mollified == some.n_mollified && fabs(mesh->mesh.smallest_angle - some.smallest_angle) < 1e-12 && mesh->mesh.n_sheets == 2);
+            hd_laplacian_free(mesh);
+        }
+        hdi_laplacian_free(a, &ctx);
+        hdi_laplacian_free(b, &ctx);
+    }
+    CHECK(ctx.bytes_in_use == 0 && flips > 1000);
+    free(xyz);
+    free(tri);
 }
 
 /* A star by its definition: q is a neighbour of the origin in the Delaunay triangulation if some circle through both is empty. */
@@ -1929,7 +2053,6 @@ static void int_star(void) {
             const double x = shape_signed(&seed), y = half ? 0.01 + fabs(shape_signed(&seed)) : shape_signed(&seed), r2 = x * x + y * y;
             p[i].x = 2 * x / r2;
             p[i].y = 2 * y / r2;
-            p[i].angle = atan2(y, x);
             p[i].id = i;
         }
         memcpy(q, p, sizeof p);
@@ -1951,8 +2074,8 @@ static void int_star(void) {
         }
         CHECK_MSG(wrong == 0 && found == m, "round %d: %d neighbours wrong", round, wrong);
         for (j = 1; j < m; j++) {                /* by angle, from wherever the star begins */
-            const double turn = remainder(q[j].angle - q[j - 1].angle, 6.283185307179586);
-            CHECK(turn > 0 || turn < -3);
+            const double turn = remainder(q[j].angle - q[j - 1].angle, 4);
+            CHECK(turn > 0 || turn < -1.9);
         }
     }
 }
@@ -2044,6 +2167,7 @@ int main(void) {
     int_length_area();
     int_flips();
     int_around();
+    int_soup();
     int_star();
     int_sort_keys();
     int_kth();

@@ -135,6 +135,7 @@ static void test_tmp_remove(void) {
 #include "test_krylov.h"
 #include "test_heat.h"
 #include "test_points.h"
+#include "test_assembly.h"
 #include "test_robust.h"
 #include "test_polygon.h"
 #include "test_ldl.h"
@@ -151,7 +152,8 @@ static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
     {"intrinsic", test_intrinsic},
     {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
-    {"points", test_points},     {"polygon", test_polygon},   {"geodesic", test_geodesic}, {"diagonal", test_diagonal}, {"forms", test_forms}, {"everywhere", test_operators_all},
+    {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic},
+    {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio},
 };
 

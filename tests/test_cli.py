@@ -690,6 +690,16 @@ class Polygons(Case):
             self.assertIn("--lambda", self.bad(2, "info", self.square(), "--lambda", value))
         self.assertIn("--lambda", self.bad(2, "info", self.square(), "--lambda", "1", "--laplacian", "fem"))
 
+    def test_lambda_is_of_polygons(self):
+        """Triangles have fem unless polygon is asked for: lambda would be ignored."""
+        path = self.file("three.off", "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n")
+        text = self.bad(1, "info", path, "--lambda", "2")
+        self.assertIn("--lambda", text)
+        self.assertIn("polygon", text)
+        self.bad(1, "kernel", path, "--source", 0, "--t", "1h2", "--lambda", "2")
+        self.good("info", path, "--lambda", "2", "--laplacian", "polygon")
+        self.good("info", self.square(), "--lambda", "2")
+
 
 METHODS = ("direct", "krylov", "auto", "iterative")
 KINDS = ("fem", "voronoi-cot")
@@ -1432,7 +1442,7 @@ class Formats(Case):
                 report = json.loads(self.good("info", out, "--json").stdout)
                 self.assertEqual((report["n"], report["faces"]), (100, 162))
             else:
-                self.close(self.field("diffuse", self.patch, "--input", out, "--t", 0), columns(self.want, 1), 1e-15)
+                self.close(self.field("diffuse", self.patch, "--input", out, "--t", 0), columns(self.want, 1), 1e-14)
 
     def test_field_forms(self):
         rows = [[math.sin(i), float(i)] for i in range(12)]
@@ -1822,6 +1832,16 @@ class Points(Case):
         for text in ("0", "-1", "abc", "auto:3", "1,2", "", "1h", "nan"):
             self.assertIn("--bandwidth takes", self.bad(2, "info", self.xyz, "--bandwidth=" + text))
         self.assertIn("bandwidth", self.bad(1, "info", self.small, "--bandwidth", "1"))
+
+    def test_weight_cut(self):
+        r = self.report(self.xyz, "--weight-cut", "1e-4")
+        self.assertEqual(r["weight_cut"], 1e-4)
+        self.assertAlmostEqual(r["cut_radius"], math.sqrt(4 * r["bandwidth"] * math.log(1e4)), delta=1e-12)
+        self.assertLess(r["most_in_row"], self.report(self.xyz)["most_in_row"])
+        for text in ("0", "1", "-1e-4", "2", "x", ""):
+            self.assertIn("--weight-cut takes", self.bad(2, "info", self.xyz, "--weight-cut=" + text))
+        self.assertIn("--weight-cut", self.bad(1, "info", self.small, "--weight-cut", "1e-4"))
+        self.assertIn("--weight-cut", self.bad(2, "info", self.xyz, "--tufted", "--weight-cut", "1e-4"))
 
     def test_laplacians(self):
         for kind in ("fem", "cot", "voronoi-cot"):

@@ -22,6 +22,8 @@
                 heat kernel signature of every vertex, t = 10 h^2 and 100 h^2, from (L, B) to the answer, against the smallest 300 eigenpairs by ARPACK; its stages
                 at 100 h^2 (inversion beside the rival's Lanczos; the check of rounding is a column); what it is of four complex factors; 16 and 100 times from 10
                 to 10^4 h^2 and classical distances from one vertex to all at 100 h^2 as multiples of it. The rival above 60000 rows only when asked for
+       assembly (L, B) from the triangles, masses fem and voronoi-cot, against lists of triplets that Eigen makes two matrices of, on one thread. Ours finds
+                edges, components and all defects of the mesh on the way. Errors: largest difference between both, relative to the largest entry
        eigen    Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU. Slow: above 60000 rows only when asked for
 
    How it is measured. Both sides begin with the same two matrices in memory and run on the same number of threads. After a warm-up they take
@@ -64,6 +66,7 @@ int rival_eigen_lu(const rival_job *job, const rival_poles *p, double *U, rival_
 int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 int rival_eigenpairs(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
 int rival_reference(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_assembly(const rival_mesh *mesh, int voronoi, const rival_pair *check, rival_result *r) { (void)mesh; (void)voronoi; (void)check; return rival_absent(r); }
 int rival_geodesic(const rival_mesh *mesh, double shift, int32_t k, const int32_t *s, double *D, rival_result *r) {
     (void)mesh; (void)shift; (void)k; (void)s; (void)D;
     return rival_absent(r);
@@ -1519,13 +1522,59 @@ static void job_geodesic(bench *b) {
     free(D);
 }
 
+/* ---- assembly ---- */
+
+/* Both begin with the mesh in memory; the masses are those of b. */
+static void job_assembly(bench *b) {
+    const int voronoi = !b->lap->B;
+    const double start = now();
+    rival_result theirs, r;
+    double best = 0, bytes = 0;
+    int round, there = 0;
+    entry row;
+    memset(&theirs, 0, sizeof theirs);
+    for (round = 0; round < 2 || round_wanted(b, round, start); round++) {
+        hd_laplacian *lap = NULL;
+        hd_laplacian_opts o;
+        hd_context ctx;
+        double t;
+        memset(&o, 0, sizeof o);
+        memset(&ctx, 0, sizeof ctx);
+        ctx.threads = b->threads;
+        o.context = &ctx;
+        o.kind = voronoi ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
+        rest();
+        t = now();
+        if (hd_laplacian_triangles(&lap, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o, NULL) < 0) return;
+        t = now() - t;
+        if (round < 2 || t < best) best = t;         /* the first run warms up */
+        bytes = (double)ctx.bytes_peak;
+        hd_laplacian_free(lap);
+        rest();
+        if (!rival_assembly(b->surface, voronoi, round ? NULL : &b->pair, &r)) continue;
+        if (!there) theirs.error = r.error;
+        if (round < 2 || r.total < theirs.total) theirs.total = r.total;
+        there = 1;
+    }
+    row_clear(&row, b, "assembly", NULL, 0);
+    snprintf(row.ours, sizeof row.ours, "hd_laplacian_triangles");
+    snprintf(row.rival, sizeof row.rival, there ? "Eigen, setFromTriplets" : "Eigen: %.28s", r.note);
+    if (!HAVE_RIVALS) row.rival[0] = 0;
+    row.seconds = best;
+    row.rival_seconds = there ? theirs.total : 0;
+    row.error = there ? theirs.error : -1;
+    row.nnz = (double)b->lap->L.nnz;
+    row.bytes = bytes;
+    row_print(&row, b);
+}
+
 /* ==== meshes ==== */
 
-enum { JOB_SMALL = 1, JOBS = 9 };   /* small has both masses */
+enum { JOB_SMALL = 1, JOB_ASSEMBLY = 9, JOBS = 10, JOBS_OF_BOTH = 1 << JOB_SMALL | 1 << JOB_ASSEMBLY };   /* of both masses */
 
 static const struct { const char *name; void (*run)(bench *); } jobs[JOBS] = {
     {"one", job_one}, {"small", job_small}, {"columns", job_columns}, {"further", job_further}, {"times", job_times}, {"stages", job_stages},
-    {"geodesic", job_geodesic}, {"signature", job_signature}, {"eigen", job_eigen}};
+    {"geodesic", job_geodesic}, {"signature", job_signature}, {"eigen", job_eigen}, {"assembly", job_assembly}};
 
 static void bench_open(bench *b, const settings *set, const char *mesh, const rival_mesh *surface, const hd_laplacian *lap, int32_t threads, const double *peak) {
     const hd_csr *L = &lap->L;
@@ -1569,7 +1618,7 @@ static void bench_pair(const settings *set, const char *mesh, const rival_mesh *
         table_head(&b);
     }
     for (k = 0; b.pair.B && k < JOBS; k++) {
-        if (!(set->jobs >> k & 1) || (k != JOB_SMALL && !lap->B)) continue;
+        if (!(set->jobs >> k & 1) || (!(JOBS_OF_BOTH >> k & 1) && !lap->B)) continue;
         jobs[k].run(&b);
         if (lap->n_active > 400000) give_back();
     }
@@ -1590,7 +1639,7 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
         hd_error e;
         memset(&o, 0, sizeof o);
         o.kind = kinds[k];
-        if (k == 1 && !(set->jobs >> JOB_SMALL & 1)) break;
+        if (k == 1 && !(set->jobs & JOBS_OF_BOTH)) break;
         if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, &e) < 0) {
             fprintf(stderr, "bench: %s: %s\n", name, e.text);
             return;
@@ -1635,7 +1684,7 @@ static int usage(const char *what) {
     fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
-                    "  --jobs LIST     of one,small,columns,further,times,stages,geodesic,signature,eigen; default: all\n"
+                    "  --jobs LIST     of one,small,columns,further,times,stages,geodesic,signature,eigen,assembly; default: all\n"
                     "  --columns K     columns of the job of that name, default 100\n"
                     "  --seconds S     rounds of a contest begin within S seconds, at least two; default 10\n"
                     "  --umfpack       UMFPACK also above 300000 rows\n"

@@ -35,6 +35,7 @@
 #endif
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/Sparse>
 #include <Eigen/SparseLU>
 #if defined(__has_include) && !__has_include(<suitesparse/cholmod.h>)
@@ -1688,6 +1689,60 @@ int rival_geodesic(const rival_mesh *mesh, double shift, int32_t n_sources, cons
         (void)mesh, (void)shift, (void)n_sources, (void)sources, (void)D, (void)r;
         throw std::runtime_error("built without it");
 #endif
+    });
+}
+
+int rival_assembly(const rival_mesh *mesh, int voronoi, const rival_pair *check, rival_result *result) {
+    return guarded(result, [&](rival_result *r) {
+        using Triplet = Eigen::Triplet<double, int>;
+        const double start = now();
+        std::vector<Triplet> l, b;
+        l.reserve(9 * (size_t)mesh->n_tri);
+        b.reserve((voronoi ? 3 : 9) * (size_t)mesh->n_tri);
+        for (size_t f = 0; f < (size_t)mesh->n_tri; f++) {
+            const int32_t *v = mesh->tri + 3 * f;
+            Eigen::Vector3d x[3], e[3];
+            double cot[3];
+            for (int k = 0; k < 3; k++) x[k] = Eigen::Map<const Eigen::Vector3d>(mesh->xyz + 3 * (size_t)v[k]);
+            for (int k = 0; k < 3; k++) e[k] = x[(k + 2) % 3] - x[(k + 1) % 3];     /* opposite to corner k */
+            const double twice = e[0].cross(e[1]).norm(), area = twice / 2;
+            for (int k = 0; k < 3; k++) cot[k] = -e[(k + 1) % 3].dot(e[(k + 2) % 3]) / twice;
+            for (int k = 0; k < 3; k++) {
+                const int32_t i = v[(k + 1) % 3], j = v[(k + 2) % 3];
+                l.emplace_back(i, j, -cot[k] / 2);
+                l.emplace_back(j, i, -cot[k] / 2);
+                l.emplace_back(v[k], v[k], (cot[(k + 1) % 3] + cot[(k + 2) % 3]) / 2);
+            }
+            for (int k = 0; k < 3; k++) {
+                if (!voronoi) {
+                    for (int q = 0; q < 3; q++) b.emplace_back(v[k], v[q], k == q ? area / 6 : area / 12);
+                } else if (cot[0] < 0 || cot[1] < 0 || cot[2] < 0) {
+                    b.emplace_back(v[k], v[k], cot[k] < 0 ? area / 2 : area / 4);
+                } else {
+                    const int p = (k + 1) % 3, q = (k + 2) % 3;
+                    b.emplace_back(v[k], v[k], (e[p].squaredNorm() * cot[p] + e[q].squaredNorm() * cot[q]) / 8);
+                }
+            }
+        }
+        const double listed = now();
+        Eigen::SparseMatrix<double> L(mesh->n, mesh->n), B(mesh->n, mesh->n);
+        L.setFromTriplets(l.begin(), l.end());
+        B.setFromTriplets(b.begin(), b.end());
+        r->total = now() - start;
+        r->analyse = listed - start;
+        r->nnz = (double)(L.nonZeros() + B.nonZeros());
+        if (!check || check->n != mesh->n || check->ptr[check->n] != L.nonZeros()) return;
+        double worst[2] = {0, 0}, most[2] = {0, 0};
+        for (int32_t i = 0; i < check->n; i++) {
+            for (int64_t p = check->ptr[i]; p < check->ptr[i + 1]; p++) {
+                const double *mine[2] = {check->L, check->B}, theirs[2] = {L.coeff(check->col[p], i), B.coeff(check->col[p], i)};
+                for (int k = 0; k < 2; k++) {
+                    worst[k] = std::max(worst[k], std::fabs(mine[k][p] - theirs[k]));
+                    most[k] = std::max(most[k], std::fabs(theirs[k]));
+                }
+            }
+        }
+        r->error = std::max(worst[0] / most[0], worst[1] / most[1]);
     });
 }
 

@@ -126,6 +126,11 @@ typedef struct rival_mesh { int32_t n, n_tri; const double *xyz; const int32_t *
  * 0 with a note when built without CGAL, or when the mesh is none for it (not manifold). */
 int rival_geodesic(const rival_mesh *mesh, double shift, int32_t n_sources, const int32_t *sources, double *D, rival_result *result);
 
+/* (L, B) of a triangle mesh as two lists of triplets, room reserved, nine of L a triangle and nine (voronoi: three, mixed areas) of B, which Eigen's
+ * setFromTriplets makes matrices of. On one thread. total: lists and matrices, analyse: the lists alone. check: NULL, or the pair to compare with: error is the
+ * largest difference of L and of B, relative to the largest entry; -1 if the patterns differ in size. Bad faces are for the caller to keep away. */
+int rival_assembly(const rival_mesh *mesh, int voronoi, const rival_pair *check, rival_result *result);
+
 typedef struct rival_machine_result {
     double peak_1, peak_n;      /* fused multiply-add, 1e9 flops a second, on 1 and on n threads; 0: no AVX2 or not an x86 */
     double read_1, read_n;      /* reading memory, 1e9 bytes a second */

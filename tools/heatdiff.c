@@ -464,7 +464,7 @@ typedef struct options {
     time_spec bandwidth;             /* absolute or h2 */
     int laplacian, poles, method, ordering, simd, solver, precond, kernel, definition;
     long degree, max_iterations, threads, count;
-    double tol, lambda;
+    double tol, lambda, weight_cut;
     uint64_t memory_limit;
     int intrinsic_delaunay, tufted;
     int json, quiet, help, version;
@@ -665,6 +665,12 @@ static int parse_times(options *o, const option_def *def, const char *text)
     }
 }
 
+static int parse_weight_cut(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    return read_real(text, &o->weight_cut) && o->weight_cut > 0 && o->weight_cut < 1;
+}
+
 static int parse_bandwidth(options *o, const option_def *def, const char *text)
 {
     const char *end;
@@ -728,6 +734,8 @@ static const option_def OPTIONS[] = {
     { "bandwidth", 0, CMD_INFO | CMD_HEAT, 0, parse_bandwidth, 0, NULL, 0, 0, "S", "a positive number such as 0.001, or a multiple of h^2 such as 2h2",
       "of points: time parameter of the exponential weights, absolute\nor in multiples of the squared mean distance of nearest\n"
       "neighbours (2h2); default: from the sampling" },
+    { "weight-cut", 0, CMD_INFO | CMD_HEAT, 0, parse_weight_cut, 0, NULL, 0, 0, "W", "a number between 0 and 1, such as 1e-4",
+      "of points: exponentials below W are left out (1e-8); 1e-4 has\nhalf as many non-zeros" },
     { "kernel", 0, CMD_KERNEL | CMD_PAIRS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
       "operator: K_t (default); symmetric: k_t = K_t B^-1" },
     { "kernel", 0, CMD_HKS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
@@ -986,7 +994,8 @@ static int check_intrinsic(const options *o)
     if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP || o->laplacian == HD_LAPLACIAN_EXP)
         return fail(USAGE, "--%s takes --laplacian fem, voronoi-cot or cot: %s has no triangles", name, word_of(LAPLACIANS, o->laplacian));
     if (o->lambda > 0) return fail(USAGE, "--%s is of triangles, --lambda of polygons", name);
-    if (o->has_bandwidth) return fail(USAGE, "--%s is of triangles, --bandwidth of exponential weights", name);
+    if (o->has_bandwidth || o->weight_cut > 0)
+        return fail(USAGE, "--%s is of triangles, --%s of exponential weights", name, o->has_bandwidth ? "bandwidth" : "weight-cut");
     return DONE;
 }
 
@@ -1528,6 +1537,7 @@ static hd_status run_points(run *r, hd_laplacian_opts *opts, hd_error *err)
     if (opts->tufted) return hd_laplacian_tufted_points(&r->lap, r->mesh.xyz, r->mesh.n, NULL, NULL, opts, err);
     if (s.unit == TIME_H2 && point_spacing(r, &h, err) < 0) return err->status;
     opts->bandwidth = s.value * h * h;
+    opts->weight_cut = r->o->weight_cut;
     return hd_laplacian_points(&r->lap, r->mesh.xyz, r->mesh.n, opts, err);
 }
 
@@ -1566,9 +1576,13 @@ static int check_laplacian(const run *r)
     if (r->mesh.n_tri == 0 && !has_exponentials(r) && !r->o->tufted)
         return fail(FAILED, "%s: --laplacian %s needs faces, and there are none; points take voronoi-exp or exp, or --tufted with fem, voronoi-cot or cot",
                     r->mesh_name, word_of(LAPLACIANS, r->o->laplacian));
-    if (r->o->has_bandwidth && !has_exponentials(r))
-        return fail(FAILED, "%s: --bandwidth is for points (--laplacian voronoi-exp or exp), and this file has faces", r->mesh_name);
+    if ((r->o->has_bandwidth || r->o->weight_cut > 0) && !has_exponentials(r))
+        return fail(FAILED, "%s: --%s is for points (--laplacian voronoi-exp or exp), and this file has faces", r->mesh_name,
+                    r->o->has_bandwidth ? "bandwidth" : "weight-cut");
     if (r->o->lambda > 0 && is_points(r)) return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
+    if (r->o->lambda > 0 && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
+        return fail(FAILED, "%s: --lambda is of --laplacian polygon, and triangles have %s by default; on triangles it changes nothing", r->mesh_name,
+                    word_of(LAPLACIANS, (int)laplacian_kind(r)));
     return DONE;
 }
 

@@ -1,0 +1,190 @@
+/* Assembly: the order of faces, corners and points is nobody's business. Included by runner.c. */
+
+/* The same triangles in another order, each turned by some corners. */
+static void asm_shuffle(int32_t *tri, int32_t m, uint64_t seed) {
+    int32_t f, k;
+    for (f = m; f-- > 1;) {
+        const int32_t g = (int32_t)((shape_signed(&seed) + 1) / 2 * f), turns = (int32_t)((shape_signed(&seed) + 1) * 1.5);
+        for (k = 0; k < 3; k++) {
+            const int32_t swap = tri[3 * f + k];
+            tri[3 * f + k] = tri[3 * g + k];
+            tri[3 * g + k] = swap;
+        }
+        for (k = 0; k < turns; k++) {
+            const int32_t first = tri[3 * f];
+            tri[3 * f] = tri[3 * f + 1];
+            tri[3 * f + 1] = tri[3 * f + 2];
+            tri[3 * f + 2] = first;
+        }
+    }
+}
+
+/* Largest difference of two arrays, relative to the largest entry. */
+static double asm_difference(const double *a, const double *b, int64_t n) {
+    double worst = 0, most = 0;
+    int64_t i;
+    for (i = 0; i < n; i++) {
+        worst = fmax(worst, fabs(a[i] - b[i]));
+        most = fmax(most, fabs(b[i]));
+    }
+    return worst / most;
+}
+
+/* Entries by a dense sum over the faces that count: nothing is sorted, nothing gathered. */
+static void asm_dense(const shape *s, const int *counts, double *L, double *B) {
+    const int32_t n = s->n;
+    int32_t f, k, q;
+    for (f = 0; f < s->n_tri; f++) {
+        const int32_t *v = s->tri + 3 * f;
+        double e[3][3], cross[3], twice;
+        if (!counts[f]) continue;
+        for (k = 0; k < 3; k++)
+            for (q = 0; q < 3; q++) e[k][q] = s->xyz[3 * v[(k + 2) % 3] + q] - s->xyz[3 * v[(k + 1) % 3] + q];
+        for (q = 0; q < 3; q++) cross[q] = e[0][(q + 1) % 3] * e[1][(q + 2) % 3] - e[0][(q + 2) % 3] * e[1][(q + 1) % 3];
+        twice = sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
+        for (k = 0; k < 3; k++) {
+            const int32_t i = v[(k + 1) % 3], j = v[(k + 2) % 3];
+            const double w = -(e[(k + 1) % 3][0] * e[(k + 2) % 3][0] + e[(k + 1) % 3][1] * e[(k + 2) % 3][1] + e[(k + 1) % 3][2] * e[(k + 2) % 3][2]) / twice / 2;
+            L[i * n + j] -= w;
+            L[j * n + i] -= w;
+            L[i * n + i] += w;
+            L[j * n + j] += w;
+            for (q = 0; q < 3; q++) B[v[k] * n + v[q]] += twice / (q == k ? 12 : 24);
+        }
+    }
+}
+
+/* A crumpled grid with fins, needles, faces that come twice and faces that are none, a hub with many faces; in several orders. */
+static void asm_orders(void) {
+    enum { EXTRA = 80 };
+    shape grid = shape_grid(13, 11, 0.45), s = shape_make(grid.n, grid.n_tri + 2 * EXTRA);
+    const int32_t n = s.n;
+    hd_laplacian *first = NULL;
+    uint64_t seed = 11;
+    int round, *counts = DENSE_NEW(int, s.n_tri);
+    double *L = DENSE_NEW(double, (size_t)n * (size_t)n), *B = DENSE_NEW(double, (size_t)n * (size_t)n);
+    int32_t f, k, i;
+    memcpy(s.xyz, grid.xyz, 3 * (size_t)n * sizeof(double));
+    memcpy(s.tri, grid.tri, 3 * (size_t)grid.n_tri * sizeof(int32_t));
+    for (i = 0; i < n; i++) s.xyz[3 * i + 2] = 0.02 * shape_signed(&seed);
+    for (f = 0; f < 2 * EXTRA; f++) {
+        int32_t *v = s.tri + 3 * (grid.n_tri + f);
+        v[0] = 3;                                                            /* the hub, and fins on its edges */
+        v[1] = 4 + (f < EXTRA ? f : f - EXTRA) / 2;
+        v[2] = f % 7 == 0 ? v[1] : 4 + (int32_t)((shape_signed(&seed) + 1) / 2 * (n - 5));
+        if (f >= EXTRA && f % 3 == 0) memcpy(v, s.tri + 3 * (grid.n_tri + f - EXTRA), 3 * sizeof *v);     /* an earlier one once more */
+    }
+    for (f = 0; f < s.n_tri; f++) {
+        const int32_t *v = s.tri + 3 * f;
+        counts[f] = v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+        for (k = 0; k < f && counts[f]; k++) {
+            const int32_t *w = s.tri + 3 * k;
+            int same = 0, a, b;
+            for (a = 0; a < 3; a++)
+                for (b = 0; b < 3; b++) same += v[a] == w[b];
+            counts[f] = !(counts[k] && same == 3);
+        }
+    }
+    asm_dense(&s, counts, L, B);
+    for (round = 0; round < 4; round++) {
+        hd_laplacian *lap = NULL;
+        double worst[2] = {0, 0}, most[2] = {0, 0};
+        int64_t p, entries = 0;
+        CHECK(hd_laplacian_triangles(&lap, s.xyz, n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
+        if (!lap) break;
+        for (i = 0; i < lap->n_active; i++) {
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+                const int64_t at = (int64_t)lap->vertex[i] * n + lap->vertex[lap->L.col[p]];
+                worst[0] = fmax(worst[0], fabs(lap->L.val[p] - L[at]));
+                worst[1] = fmax(worst[1], fabs(lap->B[p] - B[at]));
+                most[0] = fmax(most[0], fabs(L[at]));
+                most[1] = fmax(most[1], B[at]);
+            }
+        }
+        for (p = 0; p < (int64_t)n * n; p++) entries += B[p] > 0;
+        CHECK_MSG(worst[0] < 1e-12 * most[0] && worst[1] < 1e-13 * most[1], "round %d: L %g of %g, B %g of %g", round, worst[0], most[0], worst[1], most[1]);
+        CHECK(lap->L.nnz == entries);
+        if (!first) {
+            first = lap;
+            CHECK(lap->mesh.n_nonmanifold_edges > 20 && lap->mesh.n_repeated_face > 20 && lap->mesh.n_repeated_corner > 20 && lap->mesh.n_boundary_edges > 20);
+        } else {
+            const hd_mesh_report *a = &first->mesh, *b = &lap->mesh;
+            CHECK(a->n_faces_used == b->n_faces_used && a->n_repeated_corner == b->n_repeated_corner && a->n_repeated_face == b->n_repeated_face &&
+                  a->n_zero_area == b->n_zero_area && a->n_edges == b->n_edges && a->n_boundary_edges == b->n_boundary_edges && a->n_inert == b->n_inert &&
+                  a->n_nonmanifold_edges == b->n_nonmanifold_edges && a->n_boundary_loops == b->n_boundary_loops &&
+                  a->n_negative_weights == b->n_negative_weights && fabs(a->smallest_angle - b->smallest_angle) < 1e-12);
+            CHECK(fabs(lap->h / first->h - 1) < 1e-14 && fabs(lap->area / first->area - 1) < 1e-14 && lap->n_components == first->n_components);
+            CHECK(asm_difference(lap->mass, first->mass, lap->n_active) < 1e-14);
+            hd_laplacian_free(lap);
+        }
+        asm_shuffle(s.tri, s.n_tri, 5u + (uint64_t)round);
+    }
+    hd_laplacian_free(first);
+    shape_free(&grid);
+    shape_free(&s);
+    free(counts);
+    free(L);
+    free(B);
+}
+
+/* Three spheres whose points come in turns, some of them twice: rows, components and matrices are in the order of the caller, whatever order the points are
+ * worked on in. */
+static void asm_points(void) {
+    enum { N = 900 };
+    double *xyz = DENSE_NEW(double, 3 * N), mass[3] = {0, 0, 0};
+    hd_laplacian *lap = NULL, *turned = NULL;
+    hd_context ctx;
+    hd_laplacian_opts o;
+    uint64_t seed = 3;
+    int32_t i, k;
+    int64_t p;
+    int wrong = 0;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&o, 0, sizeof o);
+    ctx.threads = 1;
+    o.context = &ctx;
+    for (i = 0; i < N; i++) {
+        double r = 0;
+        for (k = 0; k < 3; k++) {
+            xyz[3 * i + k] = shape_signed(&seed);
+            r += xyz[3 * i + k] * xyz[3 * i + k];
+        }
+        for (k = 0; k < 3; k++) xyz[3 * i + k] = xyz[3 * i + k] / sqrt(r) * (1 + i % 3) + (k == 0 ? 20 - 10 * (i % 3) : 0);
+    }
+    memcpy(xyz + 3 * 31, xyz + 3 * 1, 3 * sizeof *xyz);      /* both of the second sphere */
+    CHECK(hd_laplacian_tufted_points(&lap, xyz, N, NULL, NULL, NULL, NULL) == HD_OK);
+    CHECK(hd_laplacian_tufted_points(&turned, xyz, N, NULL, NULL, &o, NULL) == HD_OK);
+    if (lap && turned) {
+        CHECK(lap->n_active == N - 1 && lap->row[31] == -1 && lap->n_components == 3 && lap->points.n_coincident == 1);
+        for (i = 0; i < lap->n_active; i++) {
+            const int32_t v = lap->vertex[i];
+            int diagonal = 0;
+            wrong += lap->row[v] != i || lap->component[i] != v % 3 || (i > 0 && v <= lap->vertex[i - 1]) || memcmp(lap->xyz + 3 * i, xyz + 3 * v, 3 * sizeof *xyz);
+            mass[v % 3] += lap->mass[i];
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+                wrong += lap->vertex[lap->L.col[p]] % 3 != v % 3 || (p > lap->L.row_ptr[i] && lap->L.col[p] <= lap->L.col[p - 1]);
+                if (lap->L.col[p] != i) continue;
+                diagonal = 1;
+                wrong += lap->b_diag[i] != lap->B[p] || !(lap->L.val[p] > 0);
+            }
+            wrong += !diagonal;
+        }
+        CHECK_MSG(wrong == 0, "%d things wrong", wrong);
+        for (k = 0; k < 3; k++) {
+            const double want = 4 * 3.141592653589793 * (k + 1) * (k + 1);
+            CHECK_MSG(fabs(lap->component_mass[k] / mass[k] - 1) < 1e-13 && fabs(mass[k] / want - 1) < 0.1, "sphere %d: %g, %g, not %g", (int)k,
+                      lap->component_mass[k], mass[k], want);
+        }
+        CHECK(lap->L.nnz == turned->L.nnz && memcmp(lap->L.val, turned->L.val, (size_t)lap->L.nnz * sizeof(double)) == 0 &&
+              memcmp(lap->B, turned->B, (size_t)lap->L.nnz * sizeof(double)) == 0);
+    }
+    hd_laplacian_free(lap);
+    hd_laplacian_free(turned);
+    CHECK(ctx.bytes_in_use == 0);
+    free(xyz);
+}
+
+static void test_assembly(void) {
+    asm_orders();
+    asm_points();
+}
