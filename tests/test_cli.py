@@ -524,7 +524,8 @@ class Failures(Case):
         self.assertFalse(os.path.exists(self.path("c.png")))
 
     def test_limits(self):
-        self.bad(1, "kernel", self.patch, "--source", 0, "--t", "10h2", "--memory-limit", 2000)
+        error = self.bad(1, "kernel", self.patch, "--source", 0, "--t", "10h2", "--memory-limit", 2000)
+        self.assertIn("--memory-limit", error)
         self.bad(1, "kernel", self.patch, "--source", 0, "--t", "1000h2", "--solver", "cocg", "--precond", "none", "--max-iterations", 2)
 
     def test_existing_output_survives(self):

@@ -379,6 +379,17 @@ static int processors(void)
 
 #endif
 
+/* Nine tenths of the machine's memory, 0 if it does not say. More would end in the system's killing this process, not in an error that can be read. */
+static uint64_t machine_bytes(void)
+{
+#ifdef _SC_PHYS_PAGES
+    const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+    return pages > 0 && size > 0 ? (uint64_t)pages / 10 * 9 * (uint64_t)size : 0;
+#else
+    return 0;
+#endif
+}
+
 /* ==== words ==== */
 /* Names on the command line and in reports, one table for both directions. */
 
@@ -766,7 +777,7 @@ static const option_def OPTIONS[] = {
     { "simd", 0, CMD_SOLVES | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
       "instruction set: none (plain C), avx2, avx512, as far as the\nprocessor has them, or auto (default: its best)" },
     { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
-      "most memory for the computation, also with K, M or G" },
+      "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
@@ -1413,7 +1424,7 @@ static void run_begin(run *r, const options *o)
     r->o = o;
     r->started = now();
     r->mesh_name = o->mesh ? display_name(o->mesh) : "demo";
-    r->context.byte_limit = o->memory_limit;
+    r->context.byte_limit = o->memory_limit ? o->memory_limit : machine_bytes();
     r->context.threads = (int32_t)o->threads;
     r->context.simd = (hd_simd)o->simd;
     r->context.progress = on_progress;
@@ -1471,6 +1482,8 @@ static int fail_library(const char *file, const hd_error *e)
 {
     char place[120] = "";
     if (e->status == HD_ERR_CANCELLED && interrupt.asked) return INTERRUPTED;
+    if (e->status == HD_ERR_MEMORY_LIMIT && e->value > 0)
+        return fail(FAILED, "%s: %.4g MB more do not fit the memory limit (--memory-limit, by default nine tenths of the machine's memory)", file, 1e-6 * e->value);
     if (e->face >= 0) snprintf(place, sizeof place, " face %lld:", (long long)e->face);
     else if (e->vertex >= 0) snprintf(place, sizeof place, " vertex %lld:", (long long)e->vertex);
     else if (e->row >= 0 && e->column >= 0)
