@@ -1076,6 +1076,15 @@ static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, h
     return hdi_fail(e, HD_ERR_ARGUMENT, "context: progress returned neither HD_PROGRESS_CONTINUE nor HD_PROGRESS_CANCEL");
 }
 
+/* Whether tasks would be done one after the other: some work is prepared for several at a time then for nothing. */
+static int hdi_is_serial(const hd_context *ctx) {
+    if (ctx->parallel_for) return 0;
+#if HDI_OPENMP
+    if (ctx->threads != 1 && !omp_in_parallel()) return ctx->threads == 0 && omp_get_max_threads() == 1;
+#endif
+    return 1;
+}
+
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
     int64_t i;
     if (ctx->parallel_for && n_tasks > 1) {
@@ -4060,7 +4069,6 @@ typedef struct hdi_face_tally {
 static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot, hdi_face_tally *tally) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
     double edge[3][3], cross[3], twice;
-    int q;
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
         tally->n_repeated_corner++;
         return 0;
@@ -4079,7 +4087,9 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, doubl
         }
         return 0;
     }
-    for (q = 0; q < 3; q++) cot[q] = -hdi_dot3(edge[q < 2 ? q + 1 : 0], edge[q ? q - 1 : 2]) / twice;
+    cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
+    cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
+    cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
     if (twice / 24 < DBL_MIN || !(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]) <= DBL_MAX)) {
         tally->n_zero_area++;
         return 0;
@@ -4092,6 +4102,16 @@ static void hdi_tally_clear(hdi_face_tally *tally) {
     memset(tally, 0, sizeof *tally);
     tally->bad = tally->bad_vertex = -1;
     tally->steepest = -HUGE_VAL;
+}
+
+static void hdi_tally_add(hdi_face_tally *all, const hdi_face_tally *t) {
+    all->n_repeated_corner += t->n_repeated_corner;
+    all->n_zero_area += t->n_zero_area;
+    all->steepest = hdi_max(all->steepest, t->steepest);
+    if (t->bad < 0 || (all->bad >= 0 && all->bad < t->bad)) return;
+    all->bad = t->bad;
+    all->bad_vertex = t->bad_vertex;
+    all->bad_area = t->bad_area;
 }
 
 /* What the report says of faces one by one. */
@@ -4139,16 +4159,7 @@ static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hd
     job.tally = HDI_TAKE(&own, hdi_face_tally, n_tasks);
     if (!job.tally) return hdi_scope_end(&own);
     hdi_parallel(s->ctx, n_tasks, hdi_measure_task, &job);
-    for (i = 0; i < n_tasks; i++) {
-        const hdi_face_tally *t = job.tally + i;
-        all.n_repeated_corner += t->n_repeated_corner;
-        all.n_zero_area += t->n_zero_area;
-        all.steepest = hdi_max(all.steepest, t->steepest);
-        if (t->bad < 0 || (all.bad >= 0 && all.bad < t->bad)) continue;
-        all.bad = t->bad;
-        all.bad_vertex = t->bad_vertex;
-        all.bad_area = t->bad_area;
-    }
+    for (i = 0; i < n_tasks; i++) hdi_tally_add(&all, job.tally + i);
     (void)hdi_tally_report(&all, mesh->m, rep, s->e);
     return hdi_scope_end(&own);
 }
@@ -4235,7 +4246,7 @@ static void hdi_sides_sort(hdi_sides *g, int32_t i) {
     }
 }
 
-static double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
+static HDI_INLINE double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
     double edge[3];
     hdi_sub3(xyz + 3 * HDI_CAST(int64_t, j), xyz + 3 * HDI_CAST(int64_t, i), edge);
     return hdi_norm3(edge);
@@ -4271,20 +4282,23 @@ static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
 
 /* The edges of a mesh from each vertex to later ones, in order. */
 typedef struct hdi_edges {
-    int32_t *first;             /* [n + 1] */
-    int32_t *to;                /* [first[n]] the later vertex; in intrinsic triangulations also the vertex itself */
-    double *w;                  /* [first[n]] minus half the cotangents opposite to it */
-    double *b;                  /* [first[n]] a twelfth of the areas of its faces; NULL: not wanted */
+    int32_t *first, *last;      /* [n + 1], [n] those of a vertex: from its first on, before its last; in between there may be unused ones */
+    int32_t *to;                /* the later vertex; in intrinsic triangulations also the vertex itself */
+    double *w;                  /* minus half the cotangents opposite to it */
+    double *b;                  /* a twelfth of the areas of its faces; NULL: not wanted */
     int32_t *smaller, *larger;  /* [n] neighbours of a vertex: those before it and those after it */
     int32_t *parent;            /* [n] vertices united along edges */
     double length;              /* of all edges, each once */
+    int32_t shift;              /* 2^shift vertices a block, which few edges leave */
 } hdi_edges;
 
 /* Room for the edges of m faces; room 0: for counts only. */
 static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int full, hdi_scope *s) {
     int32_t i;
     memset(g, 0, sizeof *g);
+    g->shift = 31;
     g->first = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, n) + 1);
+    if (g->first) g->last = g->first + 1;
     if (room) g->to = HDI_TAKE(s, int32_t, room);
     if (room) g->w = HDI_TAKE(s, double, room);
     if (room && full) g->b = HDI_TAKE(s, double, room);
@@ -4295,10 +4309,9 @@ static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int full,
     return s->e->status;
 }
 
-/* The edge (i,j), i < j. */
+/* The edge (i,j), i < j, which g->larger[i] counts already. */
 static HDI_INLINE void hdi_edges_join(hdi_edges *g, int32_t i, int32_t j) {
     g->smaller[j]++;
-    g->larger[i]++;
     if (g->parent[i] != g->parent[j]) hdi_unite(g->parent, i, j);
 }
 
@@ -4334,7 +4347,9 @@ static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hd
             g->to[n_edges] = j;
             g->w[n_edges] = w;
             if (full) g->b[n_edges] = b / 12;
-            if (j != i) hdi_edges_join(g, i, j);
+            if (j == i) continue;
+            g->larger[i]++;
+            hdi_edges_join(g, i, j);
         }
     }
     g->first[mesh->n] = n_edges;
@@ -4360,7 +4375,9 @@ static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const dou
         const double flat = quarter * obtuse, scale = quarter / sum * (1 - obtuse);
         int q;
         if (sum > 1e-100 && sum <= DBL_MAX) {    /* without further branches: which angle is obtuse is anyone's guess */
-            for (q = 0; q < 3; q++) mass[v[q]] += quarter + (flat * (cot[q] < 0) + scale * x[q]);
+            mass[v[0]] += quarter + (flat * (cot[0] < 0) + scale * x[0]);
+            mass[v[1]] += quarter + (flat * (cot[1] < 0) + scale * x[1]);
+            mass[v[2]] += quarter + (flat * (cot[2] < 0) + scale * x[2]);
         } else {                                 /* a needle: its tip, which has the smallest angle, a quarter */
             for (q = 0; q < 3; q++) mass[v[q]] += quarter + (obtuse > 0 ? flat * (cot[q] < 0) : cot[q] < most ? quarter / 2 : 0);
         }
@@ -4377,9 +4394,24 @@ static void hdi_mesh_masses(const hdi_mesh *mesh, hdi_lump lump, double *mass) {
 /* ---- one pass over a mesh ----
  * Vertices in their order, each with the faces whose smallest corner it is: these are measured, and their two sides at the vertex join those that wait there,
  * which were opposite to still smaller corners; then all its sides to later vertices are known, are sorted, and runs of them are its edges. What a face
- * needs is read once, and near what was read before. */
+ * needs is read once, and near what was read before.
+ * Blocks of vertices are worked on at a time, after what faces give to vertices behind their block is there: few faces do, as neighbours tend to have numbers
+ * close to each other, so these are measured twice. Where they do not, and for one thread, there is one block. All sums are taken in the same order, however
+ * many blocks there are. */
 
 typedef struct hdi_side { int32_t to; uint32_t turn; double cot, area; } hdi_side;     /* turn: 1 if it runs to the later vertex */
+
+/* A block of vertices: what it found, and its work arrays. */
+typedef struct hdi_pass_block {
+    int32_t begin, end;         /* its vertices */
+    int32_t from, to;           /* the vertices it gives masses and sides to */
+    int32_t n_edges, n_boundary, n_nonmanifold, n_misoriented, n_repeated;
+    double length;              /* of its edges since it was last noted */
+    hdi_face_tally tally;
+    hdi_side *side;             /* [busiest vertex] its sides, and work arrays */
+    double *cot;                /* [3 busiest] */
+    uint64_t *key, *work;       /* [busiest] */
+} hdi_pass_block;
 
 typedef struct hdi_pass {
     hdi_mesh *mesh;
@@ -4387,22 +4419,30 @@ typedef struct hdi_pass {
     double *mass;               /* [n] or NULL: not wanted */
     hdi_lump lump;
     hd_mesh_report *rep;
-    hdi_face_tally tally;
     int32_t *face_ptr;          /* [n + 1] faces by their smallest corner */
     int32_t *wait_ptr, *waits;  /* [n + 1], [n] where the sides of a vertex wait, and where the next one comes */
     hdi_side *waiting;          /* [m] */
-    hdi_side *side;             /* [busiest vertex] its sides, and work arrays */
-    double *cot;                /* [3 busiest] */
-    uint64_t *key, *work;       /* [busiest] */
     int32_t *border;            /* [n] vertices united along boundary edges */
+    double *length;             /* [HDI_BLOCKS_MOST] of edges, by blocks of a size that threads have no part in */
+    hdi_pass_block *block;      /* [n_blocks] of 2^edges->shift vertices */
+    int32_t n_blocks;
 } hdi_pass;
+
+enum { HDI_BLOCK_SHIFT = 14, HDI_BLOCKS_MOST = 64 };    /* larger: fewer faces leave; smaller: more threads have work */
+
+/* Blocks of n vertices: the size as a power of two. */
+static int32_t hdi_block_shift(int32_t n) {
+    int32_t shift = HDI_BLOCK_SHIFT;
+    while (n >> shift >= HDI_BLOCKS_MOST) shift++;
+    return shift;
+}
 
 /* By value, so that no branch has to be guessed. */
 static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
 static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
 
 /* Faces of vertex i that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
-static void hdi_pass_repeats(hdi_pass *s, int32_t i, void *room) {
+static void hdi_pass_repeats(const hdi_pass *s, hdi_pass_block *k, int32_t i, void *room) {
     const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1];
     const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, begin);
     hdi_pair *pair = HDI_CAST(hdi_pair *, room);
@@ -4412,31 +4452,41 @@ static void hdi_pass_repeats(hdi_pass *s, int32_t i, void *room) {
     for (f = begin; f < end; f++, v += 3) {
         const uint64_t sum = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - i), no = HDI_CAST(uint64_t, f - begin);
         const uint64_t most = HDI_CAST(uint64_t, hdi_high32(hdi_high32(v[0], v[1]), v[2]));
-        s->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* the sum of the two others and the larger say it all; no sum is 0 */
+        k->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* the sum of the two others and the larger say it all; no sum is 0 */
     }
     if (n <= 24) {
         for (p = 1; p < n; p++) {
-            for (q = 0; q < p && s->key[q] != s->key[p]; q++) {}
+            for (q = 0; q < p && k->key[q] != k->key[p]; q++) {}
             if (q == p) continue;
             area[begin + p] = 0;
-            s->rep->n_repeated_face++;
+            k->n_repeated++;
         }
         return;
     }
     for (p = 0; p < n; p++) {                    /* many: sorted with their places */
-        pair[p].key = s->key[p];
+        pair[p].key = k->key[p];
         pair[p].id = p;
     }
     hdi_sort_pairs(pair, n);
     for (p = 1; p < n; p++) {
         if (pair[p].key != pair[p - 1].key) continue;
         area[begin + pair[p].id] = 0;
-        s->rep->n_repeated_face++;
+        k->n_repeated++;
     }
 }
 
-/* Measures the faces of vertex i; their sides are added to the n that s->side has, or wait at the vertex where they begin. Returns the number of sides. */
-static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
+/* The shares of face v to those of its corners that the block gives to. */
+static void hdi_pass_masses(const hdi_pass *s, const hdi_pass_block *k, const int32_t *v, const double *cot, double area) {
+    static const int32_t hdi_three[3] = {0, 1, 2};
+    double share[3] = {0, 0, 0};
+    int q;
+    hdi_face_masses(share, hdi_three, cot, area, s->lump);
+    for (q = 0; q < 3; q++)
+        if (v[q] >= k->from && v[q] < k->to) s->mass[v[q]] = s->lump == HDI_LUMP_ONES ? 1 : s->mass[v[q]] + share[q];
+}
+
+/* Measures the faces of vertex i; their sides are added to the n that k->side has, or wait at the vertex where they begin. Returns the number of sides. */
+static int32_t hdi_pass_faces(const hdi_pass *s, hdi_pass_block *k, int32_t i, int32_t n) {
     const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1], *tri = s->mesh->tri;
     const double *xyz = s->mesh->xyz;
     double *area = s->mesh->area;
@@ -4446,21 +4496,22 @@ static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
         HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[0]));
         HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[1]));
         HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[2]));
-        area[f] = hdi_face_measure(s->mesh, f, s->cot + 3 * (f - begin), &s->tally);
+        area[f] = hdi_face_measure(s->mesh, f, k->cot + 3 * (f - begin), &k->tally);
     }
-    if (end - begin > 1) hdi_pass_repeats(s, i, s->side + n);
+    if (end - begin > 1) hdi_pass_repeats(s, k, i, k->side + n);
     for (f = begin; f < end; f++) {
         const int32_t *v = tri + 3 * HDI_CAST(int64_t, f);
-        const double *cot = s->cot + 3 * (f - begin);
-        hdi_side *side = s->side + n;
-        int32_t q, r, t, b, c;
+        const double *cot = k->cot + 3 * (f - begin);
+        hdi_side *side = k->side + n;
+        int32_t q, r, t, b, c, low;
         if (!(area[f] > 0)) continue;
         q = (v[1] == i) + 2 * (v[2] == i);       /* the corner at i */
         r = hdi_next3[q];
         t = hdi_prev3[q];
         b = v[r];
         c = v[t];
-        if (s->mass) hdi_face_masses(s->mass, v, cot, area[f], s->lump);
+        if (s->mass && k->from == 0 && hdi_high32(b, c) < k->to) hdi_face_masses(s->mass, v, cot, area[f], s->lump);
+        else if (s->mass) hdi_pass_masses(s, k, v, cot, area[f]);
         side[0].to = b;
         side[0].turn = 1;
         side[0].cot = cot[t];
@@ -4469,7 +4520,9 @@ static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
         side[1].cot = cot[r];
         side[0].area = side[1].area = area[f];
         n += 2;
-        side = s->waiting + s->waits[hdi_low32(b, c)]++;
+        low = hdi_low32(b, c);
+        if (low < k->from || low >= k->to) continue;
+        side = s->waiting + s->waits[low]++;
         side->to = hdi_high32(b, c);
         side->turn = b < c;
         side->cot = cot[q];
@@ -4478,63 +4531,117 @@ static int32_t hdi_pass_faces(hdi_pass *s, int32_t i, int32_t n) {
     return n;
 }
 
-/* The edges from vertex i to later ones, from its n sides. Returns the number of the next edge. */
-static int32_t hdi_pass_edges(hdi_pass *s, int32_t i, int32_t n, int32_t at) {
-    hdi_edges *g = s->edges;
-    hd_mesh_report *rep = s->rep;
-    int32_t p, q, k;
-    for (p = 0; p < n; p++) s->key[p] = HDI_CAST(uint64_t, s->side[p].to) << 32 | HDI_CAST(uint64_t, p);
+/* The keys of n sides in ascending order, into k->key. */
+static HDI_INLINE void hdi_pass_order(hdi_pass_block *k, int32_t n) {
+    uint64_t *key = k->key, *work = k->work;
+    int32_t p, q;
+    for (p = 0; p < n; p++) key[p] = HDI_CAST(uint64_t, k->side[p].to) << 32 | HDI_CAST(uint64_t, p);
     if (n > 16) {
-        hdi_sort_keys(s->key, n, s->work);
-    } else {                                     /* by counting who is smaller: no branch to be guessed */
-        uint64_t *swap = s->key;
-        for (p = 0; p < n; p++) {
-            const uint64_t x = s->key[p];
-            int32_t rank = 0;
-            for (q = 0; q < n; q++) rank += s->key[q] < x;
-            s->work[rank] = x;
-        }
-        s->key = s->work;
-        s->work = swap;
+        hdi_sort_keys(key, n, work);
+        return;
     }
+    for (p = 0; p < n; p++) {                    /* by counting who is smaller: no branch to be guessed */
+        const uint64_t x = key[p];
+        int32_t rank = 0;
+        for (q = 0; q < n; q++) rank += key[q] < x;
+        work[rank] = x;
+    }
+    k->key = work;
+    k->work = key;
+}
+
+/* The edges from vertex i to later ones, from its n sides. Those that leave the block are not joined yet; boundary edges among them are marked by ~. Returns
+ * the number of the next edge. */
+static int32_t hdi_pass_edges(const hdi_pass *s, hdi_pass_block *k, int32_t i, int32_t n, int32_t at) {
+    hdi_edges *g = s->edges;
+    const uint64_t *key;
+    const int32_t begin = at, end = k->end;
+    int32_t p, q, n_boundary = 0, n_nonmanifold = 0, n_misoriented = 0;
+    double length = 0;
+    hdi_pass_order(k, n);
+    key = k->key;
     for (p = 0; p < n; p = q, at++) {
-        const hdi_side *side = s->side + (s->key[p] & 0xffffffffu);
+        const hdi_side *side = k->side + (key[p] & 0xffffffffu);
         const int32_t j = side->to;
         double w = -side->cot / 2, b = side->area;
         uint32_t turns = side->turn;
-        for (q = p + 1; q < n && HDI_CAST(int32_t, s->key[q] >> 32) == j; q++) {
-            k = HDI_CAST(int32_t, s->key[q] & 0xffffffffu);
-            w -= s->side[k].cot / 2;
-            b += s->side[k].area;
-            turns += s->side[k].turn;
+        int boundary;
+        for (q = p + 1; q < n && HDI_CAST(int32_t, key[q] >> 32) == j; q++) {
+            const hdi_side *other = k->side + (key[q] & 0xffffffffu);
+            w -= other->cot / 2;
+            b += other->area;
+            turns += other->turn;
         }
+        boundary = q - p == 1;
         if (g->w) {
-            g->to[at] = j;
+            g->to[at] = j >= end && boundary ? ~j : j;
             g->w[at] = w;
             if (g->b) g->b[at] = b / 12;
         }
-        g->length += hdi_edge_length(s->mesh->xyz, i, j);
+        length += hdi_edge_length(s->mesh->xyz, i, j);
+        n_boundary += boundary;
+        n_nonmanifold += q - p > 2;
+        n_misoriented += (q - p == 2) & (turns != 1);
+        if (j >= end) continue;
         hdi_edges_join(g, i, j);
-        rep->n_nonmanifold_edges += q - p > 2;
-        rep->n_misoriented_edges += q - p == 2 && turns != 1;
-        if (q - p > 1) continue;
-        rep->n_boundary_edges++;
-        hdi_unite(s->border, i, j);
+        if (boundary) hdi_unite(s->border, i, j);
     }
+    g->larger[i] = at - begin;
+    k->length += length;
+    k->n_boundary += n_boundary;
+    k->n_nonmanifold += n_nonmanifold;
+    k->n_misoriented += n_misoriented;
     return at;
+}
+
+/* What the faces give to vertices behind their block: masses, and sides that wait there. */
+static void hdi_pass_leaving(const hdi_pass *s) {
+    int32_t i, b, f;
+    for (b = 0; b + 1 < s->n_blocks; b++) {
+        hdi_pass_block k = s->block[b];
+        const int32_t end = s->face_ptr[k.end];
+        k.from = k.end;
+        k.to = s->mesh->n;
+        for (f = s->face_ptr[k.begin]; f < end; f++) {
+            const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, f);
+            if (hdi_high32(v[0], hdi_high32(v[1], v[2])) < k.end) continue;
+            i = hdi_low32(v[0], hdi_low32(v[1], v[2]));
+            (void)hdi_pass_faces(s, &k, i, 0);
+            f = s->face_ptr[i + 1] - 1;          /* all faces of the vertex are done */
+        }
+    }
+}
+
+/* The edges that leave block k. */
+static void hdi_pass_crossing(const hdi_pass *s, const hdi_pass_block *k) {
+    hdi_edges *g = s->edges;
+    int32_t i, p;
+    for (i = k->begin; i < k->end; i++) {
+        for (p = g->last[i] - 1; p >= g->first[i]; p--) {
+            const int boundary = g->to[p] < 0;
+            const int32_t j = boundary ? ~g->to[p] : g->to[p];
+            if (j < k->end) break;
+            g->to[p] = j;
+            hdi_edges_join(g, i, j);
+            if (boundary) hdi_unite(s->border, i, j);
+        }
+    }
 }
 
 /* Numbers of faces and waiting sides at each vertex, as offsets; the faces of the mesh in the order of their smallest corners. */
 static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
     const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
-    int32_t *HDI_RESTRICT faces = s->face_ptr, *HDI_RESTRICT waits = s->waits, f, i, sum = 0, wait_sum = 0;
+    int32_t *HDI_RESTRICT faces = s->face_ptr, *HDI_RESTRICT waits = s->waits, f, i, sum = 0, wait_sum = 0, leaving = 0;
+    const int32_t shift = s->edges->shift;
     memset(faces, 0, (HDI_CAST(size_t, n) + 1) * sizeof *faces);
     memset(waits, 0, HDI_CAST(size_t, n) * sizeof *waits);
     for (f = 0; f < m; f++, v += 3) {
-        const int32_t lo = hdi_low32(v[0], v[1]), hi = hdi_high32(v[0], v[1]);
-        faces[hdi_low32(lo, v[2])]++;
+        const int32_t lo = hdi_low32(v[0], v[1]), hi = hdi_high32(v[0], v[1]), low = hdi_low32(lo, v[2]);
+        faces[low]++;
         waits[hdi_high32(lo, hdi_low32(hi, v[2]))]++;
+        leaving += (low ^ hdi_high32(hi, v[2])) >> shift != 0;
     }
+    if (leaving > m / 4) s->edges->shift = 31;
     for (i = 0; i < n; i++) {
         const int32_t count = faces[i], wait = waits[i];
         faces[i] = sum;
@@ -4554,46 +4661,114 @@ static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
     s->mesh->face = face;
 }
 
+/* Vertices of block k. Returns room for the sides of its busiest vertex, in whole cache lines that no other block writes to. */
+static int32_t hdi_pass_extent(const hdi_pass *p, hdi_pass_block *k, int32_t b) {
+    const int64_t step = HDI_CAST(int64_t, 1) << p->edges->shift;
+    int32_t i, most = 1;
+    memset(k, 0, sizeof *k);
+    hdi_tally_clear(&k->tally);
+    k->begin = HDI_CAST(int32_t, b * step);
+    k->end = k->to = HDI_CAST(int32_t, hdi_least(p->mesh->n, (b + 1) * step));
+    for (i = k->begin; i < k->end; i++) {
+        const int32_t sides = 2 * (p->face_ptr[i + 1] - p->face_ptr[i]) + p->wait_ptr[i + 1] - p->wait_ptr[i];
+        if (sides > most) most = sides;
+        p->border[i] = i;
+    }
+    return (most + 31) & ~15;
+}
+
+/* The blocks and their work arrays. */
+static hd_status hdi_pass_blocks(hdi_pass *p, hdi_scope *own) {
+    int32_t b;
+    int64_t sum = 0;
+    hdi_side *side;
+    double *cot;
+    uint64_t *key, *work;
+    p->n_blocks = ((p->mesh->n - 1) >> p->edges->shift) + 1;
+    p->block = HDI_TAKE(own, hdi_pass_block, p->n_blocks);
+    if (!p->block) return own->e->status;
+    for (b = 0; b < p->n_blocks; b++) {
+        p->block[b].n_edges = hdi_pass_extent(p, p->block + b, b);
+        sum += p->block[b].n_edges;
+    }
+    side = HDI_TAKE(own, hdi_side, sum);
+    cot = HDI_TAKE(own, double, 3 * sum);
+    key = HDI_TAKE(own, uint64_t, sum);
+    work = HDI_TAKE(own, uint64_t, sum);
+    if (own->e->status < 0) return own->e->status;
+    for (b = p->n_blocks; b-- > 0;) {
+        sum -= p->block[b].n_edges;
+        p->block[b].n_edges = 0;
+        p->block[b].side = side + sum;
+        p->block[b].cot = cot + 3 * sum;
+        p->block[b].key = key + sum;
+        p->block[b].work = work + sum;
+    }
+    return HD_OK;
+}
+
 /* Room of the pass; the faces of the mesh and their areas live in s, the rest in own. */
 static hd_status hdi_pass_begin(hdi_pass *p, hdi_scope *own, hdi_scope *s) {
     const int32_t n = p->mesh->n;
-    int32_t *tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, p->mesh->m)), *face = HDI_TAKE(s, int32_t, p->mesh->m), i, most = 1;
+    int32_t *tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, p->mesh->m)), *face = HDI_TAKE(s, int32_t, p->mesh->m);
     p->mesh->area = HDI_TAKE(s, double, p->mesh->m);
+    if (p->edges->w) p->edges->last = HDI_TAKE(s, int32_t, n);
     p->face_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
     p->wait_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
     p->waits = HDI_TAKE(own, int32_t, n);
     p->border = HDI_TAKE(own, int32_t, n);
     p->waiting = HDI_TAKE(own, hdi_side, p->mesh->m);
+    p->length = HDI_TAKE_ZERO(own, double, HDI_BLOCKS_MOST);
     if (s->e->status < 0) return s->e->status;
+    /* One block if nobody gains by more, or if edges are only counted: then nobody knows which leave their block. */
+    p->edges->shift = p->edges->w && !hdi_is_serial(s->ctx) ? hdi_block_shift(n) : 31;
     hdi_pass_sort(p, tri, face);
-    for (i = 0; i < n; i++) {
-        const int32_t sides = 2 * (p->face_ptr[i + 1] - p->face_ptr[i]) + p->wait_ptr[i + 1] - p->wait_ptr[i];
-        if (sides > most) most = sides;
-        p->border[i] = i;
-    }
-    p->side = HDI_TAKE(own, hdi_side, most);
-    p->cot = HDI_TAKE(own, double, 3 * HDI_CAST(int64_t, most));
-    p->key = HDI_TAKE(own, uint64_t, most);
-    p->work = HDI_TAKE(own, uint64_t, most);
-    if (p->mass && s->e->status >= 0) memset(p->mass, 0, HDI_CAST(size_t, n) * sizeof *p->mass);
-    hdi_tally_clear(&p->tally);
-    return s->e->status;
+    if (p->mass) memset(p->mass, 0, HDI_CAST(size_t, n) * sizeof *p->mass);
+    return hdi_pass_blocks(p, own);
 }
 
-static hd_status hdi_pass_run(hdi_pass *p, hd_error *e) {
-    hd_mesh_report *rep = p->rep;
-    int32_t i, n, at = 0;
-    for (i = 0; i < p->mesh->n; i++) {
+/* A block of vertices. Its edges begin where there would be room for one edge of each side before it. */
+static void hdi_pass_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_pass *p = HDI_CAST(const hdi_pass *, arg);
+    hdi_pass_block *all = p->block + index, k = *all;
+    const int32_t begin = 2 * p->face_ptr[k.begin] + p->wait_ptr[k.begin], shift = hdi_block_shift(p->mesh->n);
+    int32_t i, n, at = begin;
+    (void)worker;
+    for (i = k.begin; i < k.end; i++) {
         p->edges->first[i] = at;
         n = p->waits[i] - p->wait_ptr[i];
-        memcpy(p->side, p->waiting + p->wait_ptr[i], HDI_CAST(size_t, n) * sizeof *p->side);
-        n = hdi_pass_faces(p, i, n);
-        at = hdi_pass_edges(p, i, n, at);
+        memcpy(k.side, p->waiting + p->wait_ptr[i], HDI_CAST(size_t, n) * sizeof *k.side);
+        n = hdi_pass_faces(p, &k, i, n);
+        at = hdi_pass_edges(p, &k, i, n, at);
+        p->edges->last[i] = at;
+        if (i + 1 < k.end && (i + 1) >> shift == i >> shift) continue;
+        p->length[i >> shift] = k.length;
+        k.length = 0;
     }
-    p->edges->first[p->mesh->n] = at;
-    if (hdi_tally_report(&p->tally, p->mesh->m, rep, e) < 0) return e->status;
+    k.n_edges = at - begin;
+    *all = k;
+}
+
+static hd_status hdi_pass_run(hdi_pass *p, hdi_scope *s) {
+    hd_mesh_report *rep = p->rep;
+    hdi_face_tally tally;
+    int32_t b;
+    hdi_tally_clear(&tally);
+    hdi_pass_leaving(p);
+    hdi_parallel(s->ctx, p->n_blocks, hdi_pass_task, p);
+    for (b = 0; b < p->n_blocks; b++) {
+        const hdi_pass_block *k = p->block + b;
+        if (b + 1 < p->n_blocks) hdi_pass_crossing(p, k);
+        hdi_tally_add(&tally, &k->tally);
+        rep->n_repeated_face += k->n_repeated;
+        rep->n_edges += k->n_edges;
+        rep->n_boundary_edges += k->n_boundary;
+        rep->n_nonmanifold_edges += k->n_nonmanifold;
+        rep->n_misoriented_edges += k->n_misoriented;
+    }
+    for (b = 0; b < HDI_BLOCKS_MOST; b++) p->edges->length += p->length[b];
+    if (hdi_tally_report(&tally, p->mesh->m, rep, s->e) < 0) return s->e->status;
     rep->n_faces_used -= rep->n_repeated_face;
-    rep->n_edges = at;
     rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(p->border, p->mesh->n) : 0;
     return HD_OK;
 }
@@ -4613,7 +4788,7 @@ static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, int full, doub
     if (3 * HDI_CAST(int64_t, mesh->m) > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
     if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0) return hdi_scope_end(&own);
     if (hdi_edges_take(edges, mesh->n, full < 0 ? 0 : 3 * HDI_CAST(int64_t, mesh->m), full > 0, s) < 0) return hdi_scope_end(&own);
-    if (hdi_pass_begin(&pass, &own, s) >= 0) (void)hdi_pass_run(&pass, s->e);
+    if (hdi_pass_begin(&pass, &own, s) >= 0) (void)hdi_pass_run(&pass, s);
     return hdi_scope_end(&own);
 }
 
@@ -5845,46 +6020,108 @@ static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e)
     return HD_OK;
 }
 
+typedef struct hdi_lap_job {
+    hd_laplacian *lap;
+    const hdi_edges *g;
+    int64_t *next;              /* [n_active] where each row goes on */
+    int64_t *negative;          /* [blocks of 2^g->shift rows] edges with a weight above zero */
+} hdi_lap_job;
+
+/* The edge with number p from row i to a later row j, into that row. */
+static HDI_INLINE void hdi_lap_mirror(const hdi_lap_job *job, int32_t i, int32_t j, int32_t p) {
+    const int64_t at = job->next[j]++;
+    job->lap->L.col[at] = i;
+    job->lap->L.val[at] = job->g->w[p];
+    if (job->lap->B) job->lap->B[at] = job->g->b[p];
+}
+
 /* Row i from its diagonal on; what it has before was written by those rows: each edge goes into both its rows, so that L and B are symmetric to the last
- * bit. next [n_active]: where each row goes on. */
-static HDI_INLINE void hdi_lap_row(hd_laplacian *lap, const hdi_edges *g, int32_t i, int64_t *HDI_RESTRICT next) {
-    const int32_t v = lap->vertex[i], end = g->first[v + 1], *row = lap->row;
-    const int64_t diagonal = next[i];
+ * bit. Rows from end on have their part already. Returns the number of weights above zero. */
+static HDI_INLINE int64_t hdi_lap_row(const hdi_lap_job *job, int32_t i, int32_t end) {
+    hd_laplacian *lap = job->lap;
+    const hdi_edges *g = job->g;
+    const int32_t v = lap->vertex[i], last = g->last[v], *row = lap->row;
+    const int64_t diagonal = job->next[i];
     double *L = lap->L.val, *B = lap->B, sum = 0, loops = 0;
     int32_t *col = lap->L.col, p;
     int64_t at, negative = 0;
     for (at = lap->L.row_ptr[i]; at < diagonal; at++) sum += L[at];
-    for (p = g->first[v]; p < end; p++) {
+    for (p = g->first[v]; p < last; p++) {
         const int32_t j = row[g->to[p]];
         const double w = g->w[p];
-        int64_t mirror;
         if (j == i) {                            /* an edge from the vertex to itself: no weight, and twice in its B */
             loops += B ? 2 * g->b[p] : 0;
             continue;
         }
         negative += w > 0;
         sum += w;
-        mirror = next[j]++;
         col[++at] = j;
         L[at] = w;
-        col[mirror] = i;
-        L[mirror] = w;
-        if (B) B[at] = B[mirror] = g->b[p];
+        if (B) B[at] = g->b[p];
+        if (j < end) hdi_lap_mirror(job, i, j, p);
     }
-    lap->mesh.n_negative_weights += negative;
     col[diagonal] = i;
     L[diagonal] = -sum;
     if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + loops;    /* a sixth of the areas that the mass has thirds of */
+    return negative;
+}
+
+/* The row behind the block of row i. */
+static int32_t hdi_lap_block_end(const hdi_lap_job *job, int64_t block) {
+    return HDI_CAST(int32_t, hdi_least(job->lap->n_active, (block + 1) << job->g->shift));
+}
+
+static void hdi_lap_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_lap_job *job = HDI_CAST(const hdi_lap_job *, arg);
+    const hd_laplacian *lap = job->lap;
+    const hdi_edges *g = job->g;
+    const int32_t end = hdi_lap_block_end(job, index);
+    int32_t i;
+    int64_t negative = 0;
+    (void)worker;
+    for (i = HDI_CAST(int32_t, index << g->shift); i < end; i++) {
+        const int32_t v = lap->vertex[i + HDI_VERTICES_AHEAD < end ? i + HDI_VERTICES_AHEAD : i];
+        if (g->last[v] > g->first[v]) {          /* the farthest neighbour: its row is new to the caches, those of others are in use */
+            const int32_t far_row = lap->row[g->to[g->last[v] - 1]];
+            const int64_t at = lap->L.row_ptr[far_row];
+            HDI_PREFETCH(lap->L.col + at);
+            HDI_PREFETCH(lap->L.val + at);
+            HDI_PREFETCH(lap->B ? lap->B + at : lap->L.val + at);
+        }
+        negative += hdi_lap_row(job, i, end);
+    }
+    job->negative[index] = negative;
+}
+
+/* Block by block, the edges that leave it, into their later rows, where they come first. */
+static void hdi_lap_crossing(const hdi_lap_job *job, int64_t n_blocks) {
+    const hdi_edges *g = job->g;
+    const hd_laplacian *lap = job->lap;
+    int64_t b;
+    int32_t i = 0, p;
+    for (b = 0; b + 1 < n_blocks; b++) {
+        const int32_t end = hdi_lap_block_end(job, b), behind = lap->vertex[end];
+        for (; i < end; i++) {
+            const int32_t v = lap->vertex[i], last = g->last[v];
+            for (p = last; p > g->first[v] && g->to[p - 1] >= behind; p--) {}
+            for (; p < last; p++) hdi_lap_mirror(job, i, lap->row[g->to[p]], p);
+        }
+    }
 }
 
 /* Pattern and values of L and, if the edges have areas, of a full B. */
 static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int full = g->b != NULL;
-    int64_t *next = HDI_TAKE(&s, int64_t, lap->n_active), nnz = 0;
+    int64_t nnz = 0, n_blocks, b;
     double *B = NULL, *b_diag = NULL;
+    hdi_lap_job job;
     hd_csr L;
     int32_t i;
+    job.lap = lap;
+    job.g = g;
+    job.next = HDI_TAKE(&s, int64_t, lap->n_active);
+    job.negative = HDI_TAKE(&s, int64_t, HDI_BLOCKS_MOST);
     for (i = 0; i < lap->n_active; i++) nnz += 1 + g->smaller[lap->vertex[i]] + g->larger[lap->vertex[i]];
     L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
     if (full) B = HDI_TAKE(&s, double, nnz);
@@ -5895,19 +6132,13 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_erro
     if (full) lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
     for (i = 0; i < lap->n_active; i++) {
         const int32_t v = lap->vertex[i];
-        next[i] = L.row_ptr[i];
+        job.next[i] = L.row_ptr[i];
         L.row_ptr[i + 1] = L.row_ptr[i] + 1 + g->smaller[v] + g->larger[v];
     }
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t last = g->first[lap->vertex[i + HDI_VERTICES_AHEAD < lap->n_active ? i + HDI_VERTICES_AHEAD : i] + 1] - 1;
-        if (last >= 0) {                         /* the farthest neighbour: its row is new to the caches, those of others are in use */
-            const int64_t at = next[lap->row[g->to[last]]];
-            HDI_PREFETCH(L.col + at);
-            HDI_PREFETCH(L.val + at);
-            HDI_PREFETCH(B ? B + at : L.val + at);
-        }
-        hdi_lap_row(lap, g, i, next);
-    }
+    n_blocks = ((lap->n_active - 1) >> g->shift) + 1;
+    hdi_lap_crossing(&job, n_blocks);
+    hdi_parallel(lap->context, n_blocks, hdi_lap_task, &job);
+    for (b = 0; b < n_blocks; b++) lap->mesh.n_negative_weights += job.negative[b];
     return hdi_scope_end(&s);
 }
 

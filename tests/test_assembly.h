@@ -184,7 +184,109 @@ static void asm_points(void) {
     free(xyz);
 }
 
+/* A grid of several blocks with fins from anywhere to anywhere, holes and faces that come twice. */
+static shape asm_blocks_shape(void) {
+    enum { EXTRA = 900 };
+    shape grid = shape_grid(331, 163, 0.45), s = shape_make(grid.n, grid.n_tri + EXTRA);
+    uint64_t seed = 17;
+    int32_t f, k;
+    memcpy(s.xyz, grid.xyz, 3 * (size_t)grid.n * sizeof(double));
+    memcpy(s.tri, grid.tri, 3 * (size_t)grid.n_tri * sizeof(int32_t));
+    for (f = 0; f < s.n; f++) s.xyz[3 * f + 2] = 0.001 * shape_signed(&seed);
+    for (f = 0; f < EXTRA; f++) {
+        int32_t *v = s.tri + 3 * (grid.n_tri + f);
+        for (k = 0; k < 3; k++) v[k] = (int32_t)((shape_signed(&seed) + 1) / 2 * (s.n - 1));
+        if (f % 5 == 0) v[2] = v[0] < s.n - 1 ? v[0] + 1 : 0;                                    /* on an edge of the grid */
+        if (f % 7 == 0) memcpy(v, s.tri + 3 * ((int64_t)f * (grid.n_tri / EXTRA)), 3 * sizeof *v); /* once more, some of them across blocks */
+        if (f % 11 == 0 && f > 5) memcpy(v, v - 15, 3 * sizeof *v);
+    }
+    for (f = 0; f < grid.n_tri; f += 97) s.tri[3 * f] = s.tri[3 * f + 1];                        /* holes */
+    for (f = 0; f < 2 * 330 && f < grid.n_tri; f++) memcpy(s.tri + 3 * (50 * 660 + f), s.tri, 3 * sizeof *s.tri);    /* a cut, near where a block ends */
+    asm_shuffle(s.tri, s.n_tri, 23);
+    shape_free(&grid);
+    return s;
+}
+
+static int asm_same(const void *a, const void *b, int64_t n, size_t size) { return (!a && !b) || (a && b && memcmp(a, b, (size_t)n * size) == 0); }
+
+static void asm_compare(const hd_laplacian *a, const hd_laplacian *b) {
+    const int64_t n = a->n_active, nnz = a->L.nnz;
+    CHECK(n == b->n_active && nnz == b->L.nnz && a->n_components == b->n_components && a->h == b->h && a->area == b->area);
+    CHECK(memcmp(&a->mesh, &b->mesh, sizeof a->mesh) == 0);
+    if (n != b->n_active || nnz != b->L.nnz || a->n_components != b->n_components) return;
+    CHECK(asm_same(a->L.row_ptr, b->L.row_ptr, n + 1, sizeof(int64_t)) && asm_same(a->L.col, b->L.col, nnz, sizeof(int32_t)));
+    CHECK(asm_same(a->L.val, b->L.val, nnz, sizeof(double)) && asm_same(a->B, b->B, nnz, sizeof(double)));
+    CHECK(asm_same(a->mass, b->mass, n, sizeof(double)) && asm_same(a->b_diag, b->b_diag, n, sizeof(double)));
+    CHECK(asm_same(a->component, b->component, n, sizeof(int32_t)) && asm_same(a->vertex, b->vertex, n, sizeof(int32_t)));
+    CHECK(asm_same(a->component_mass, b->component_mass, a->n_components, sizeof(double)));
+}
+
+/* The same bits, however many blocks are worked on, in whatever order; the same complaint; no memory kept when there is too little. */
+static void asm_blocks(void) {
+    static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_COT};
+    enum { WAYS = 4 };
+    shape s = asm_blocks_shape();
+    hd_error bad[WAYS];
+    int64_t calls = 0;
+    int k, way, limit;
+    for (k = 0; k < 3; k++) {
+        hd_context ctx[WAYS];
+        hd_laplacian *lap[WAYS];
+        hd_laplacian_opts o;
+        hd_status st = HD_ERR_MEMORY_LIMIT;
+        memset(&o, 0, sizeof o);
+        memset(ctx, 0, sizeof ctx);
+        o.kind = kinds[k];
+        for (way = 0; way < WAYS; way++) {
+            ctx[way].threads = way == 1 ? 2 : 1;
+            if (way == 2) ctx[way].parallel_for = sparse_reverse_for;
+            if (way == 3) ctx[way].parallel_for = heat_shuffled_for;
+            ctx[way].parallel_user = &calls;
+            o.context = ctx + way;
+            lap[way] = NULL;
+            CHECK(hd_laplacian_triangles(lap + way, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+            if (lap[0] && lap[way]) asm_compare(lap[way], lap[0]);
+        }
+        if (lap[0]) {
+            const hd_mesh_report *r = &lap[0]->mesh;
+            CHECK(r->n_repeated_face > 50 && r->n_nonmanifold_edges > 20 && r->n_boundary_edges > 500 && r->n_repeated_corner > 500 && r->n_boundary_loops > 10);
+        }
+        for (way = 0; way < WAYS; way++) {
+            hd_laplacian_free(lap[way]);
+            CHECK(ctx[way].bytes_in_use == 0);
+        }
+        for (limit = 1; k == 0 && limit < 100 && st < 0; limit++) {
+            hd_laplacian *none = NULL;
+            ctx[2].allocations = 0;
+            ctx[2].allocation_limit = (uint64_t)limit;
+            o.context = ctx + 2;
+            st = hd_laplacian_triangles(&none, s.xyz, s.n, s.tri, s.n_tri, &o, NULL);
+            CHECK(st == HD_OK || (st == HD_ERR_MEMORY_LIMIT && !none));
+            hd_laplacian_free(none);
+            CHECK(ctx[2].bytes_in_use == 0);
+        }
+        CHECK(k > 0 || st == HD_OK);
+    }
+    s.xyz[3 * 40000] = s.xyz[3 * 40001 + 1] = s.xyz[3 * 16400] = s.xyz[3 * 16401 + 1] = 1e200;         /* edges of two blocks */
+    for (way = 0; way < WAYS; way += 2) {
+        hd_context ctx;
+        hd_laplacian *lap = NULL;
+        hd_laplacian_opts o;
+        memset(&ctx, 0, sizeof ctx);
+        memset(&o, 0, sizeof o);
+        ctx.threads = 1;
+        if (way) ctx.parallel_for = sparse_reverse_for;
+        ctx.parallel_user = &calls;
+        o.context = &ctx;
+        CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, bad + way) == HD_ERR_NOT_FINITE && !lap && ctx.bytes_in_use == 0);
+    }
+    CHECK(bad[0].face >= 0 && bad[0].face == bad[2].face && bad[0].vertex == bad[2].vertex);
+    CHECK(calls > 0);
+    shape_free(&s);
+}
+
 static void test_assembly(void) {
+    asm_blocks();
     asm_orders();
     asm_points();
 }
