@@ -1153,32 +1153,28 @@ static void diag_orders(void) {
     shape_free(&s);
 }
 
-static void diag_threads(void) {
+typedef void diag_asks(hd_heat *heat, double hh, int32_t n, double *D);
+
+/* The same bits in all ways of threading: of what is asked of a plan for a bumpy sphere, `count` fields. */
+static void diag_each_way(hd_laplacian_kind kind, int64_t count, diag_asks *ask) {
     shape s = shape_bumpy(4, 1);
-    const int32_t sources[3] = {7, 2000, 300};
-    double *first = DENSE_NEW(double, 8 * (int64_t)s.n), *D = DENSE_NEW(double, 8 * (int64_t)s.n);
+    const size_t size = (size_t)(count * s.n);
+    double *first = DENSE_NEW(double, (int64_t)size), *D = DENSE_NEW(double, (int64_t)size);
     int way;
     for (way = 0; way < LDL_WAYS; way++) {
         ldl_way *w = DENSE_NEW(ldl_way, 1);
         hd_laplacian_opts lo;
         hd_laplacian *lap = NULL;
         hd_heat *heat;
-        int32_t sample[5];
         ldl_way_begin(w, way, HD_SIMD_AUTO);
         memset(&lo, 0, sizeof lo);
         lo.context = &w->ctx;
-        lo.kind = HD_LAPLACIAN_VORONOI_COT;
+        lo.kind = kind;
         CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, NULL) == HD_OK);
         heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
-        {
-            const double t = 30 * lap->h * lap->h;
-            CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) >= 0);
-            CHECK(hd_heat_distance(heat, HD_DISTANCE_WEIGHTED, 1, &t, 3, sources, D + s.n, 0, NULL) >= 0);
-            CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, 3, sources, D + 4 * s.n, 0, NULL) >= 0);
-            CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 5, 0, sample, D + 7 * s.n, NULL) >= 0);
-        }
-        if (way == 0) memcpy(first, D, 8 * (size_t)s.n * sizeof *D);
-        CHECK_MSG(memcmp(first, D, 8 * (size_t)s.n * sizeof *D) == 0, "way %d of threading gives other bits", way);
+        ask(heat, lap->h * lap->h, s.n, D);
+        if (way == 0) memcpy(first, D, size * sizeof *D);
+        CHECK_MSG(memcmp(first, D, size * sizeof *D) == 0, "way %d of threading gives other bits", way);
         hd_heat_free(heat);
         hd_laplacian_free(lap);
         ldl_way_end(w, way);
@@ -1188,6 +1184,18 @@ static void diag_threads(void) {
     free(D);
     shape_free(&s);
 }
+
+static void diag_ask_all(hd_heat *heat, double hh, int32_t n, double *D) {
+    const int32_t sources[3] = {7, 2000, 300};
+    const double t = 30 * hh;
+    int32_t sample[5];
+    CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) >= 0);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_WEIGHTED, 1, &t, 3, sources, D + n, 0, NULL) >= 0);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, 3, sources, D + 4 * n, 0, NULL) >= 0);
+    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 5, 0, sample, D + 7 * n, NULL) >= 0);
+}
+
+static void diag_threads(void) { diag_each_way(HD_LAPLACIAN_VORONOI_COT, 8, diag_ask_all); }
 
 /* Where all distances are lost the farthest points are still different ones; given ones may be without mass. */
 static void diag_samples_lost(void) {
