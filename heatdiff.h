@@ -820,13 +820,11 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 
 #if defined(__GNUC__) || defined(__clang__)
 #define HDI_RESTRICT __restrict__
-#define HDI_NODISCARD __attribute__((warn_unused_result))
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH(p) __builtin_prefetch(p)
 #else
 #define HDI_RESTRICT
-#define HDI_NODISCARD
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
 #define HDI_PREFETCH(p) ((void)0)
@@ -10728,7 +10726,7 @@ typedef struct hdi_inverse {
 typedef struct hdi_inverse_front {
     hdi_factor *f;
     double *panel, *z, *update;  /* L; Z of the pivots' columns in the same layout; Z22, a packed triangle */
-    double *T, *S, *M, *D, *slices, *buffer;
+    double *T, *S, *M, *D, *slices, *buffer;   /* D: -1/d of the pivots, then ones */
     int64_t m, p, u, k0, k1;
     int32_t v;
 } hdi_inverse_front;
@@ -17107,6 +17105,16 @@ static hd_status hdi_direct_columns(hd_heat *heat, double t, hd_kernel kernel, c
     return hdi_heat_end(&h);
 }
 
+/* The column of vertex v by the same poles at the call's time, which entries found otherwise are held against. Its residual goes to the report. */
+static hd_status hdi_probe_column(hdi_heat_call *h, hd_kernel kernel, const hd_rational *set, int32_t v, double *u) {
+    const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
+    hd_report probe;
+    if (!u) return h->e->status;
+    if (hdi_direct_columns(h->heat, h->t / h->heat->scale, kernel, &own, 1, &v, u, HDI_CAST(size_t, h->heat->source->n), &probe) < 0) *h->e = probe.error;
+    else h->rep->residual = hdi_max(h->rep->residual, probe.residual);
+    return h->e->status;
+}
+
 /* Entries of k_t for one time, in elimination order and in the unit of the scaled pair. */
 typedef struct hdi_entries {
     double *k, *g;               /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
@@ -17209,8 +17217,6 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
     double *room, *value, *off, unit, solver = 0;
     hdi_entries x;
-    hd_rational set;
-    hd_report probe;
     int64_t size, n;
     int32_t i, v, worst = 0;
     if (hdi_heat_analysed(heat, 1, h->e) < 0) return hdi_scope_end(&scope);
@@ -17248,11 +17254,8 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     if (s->n > 0) {                              /* rounding: one entry by a solve */
         double *u = HDI_TAKE(&scope, double, lap->n);
         v = lap->vertex[worst];
-        set = heat->elim.set;
-        if (u && hdi_direct_columns(heat, h->t / heat->scale, kernel, &set, 1, &v, u, HDI_CAST(size_t, lap->n), &probe) < 0) *h->e = probe.error;
-        if (h->e->status < 0) return hdi_scope_end(&scope);
+        if (hdi_probe_column(h, kernel, &heat->elim.set, v, u) < 0) return hdi_scope_end(&scope);
         solver = out[v] != 0 ? fabs(u[v] - out[v]) / fabs(out[v]) + DBL_EPSILON : 0;
-        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
     }
     hdi_report_values(h->rep, value, off, s->n, solver);
     return hdi_scope_end(&scope);
@@ -17306,13 +17309,10 @@ static int32_t hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep
 static void hdi_edges_probe(hdi_heat_call *h, int32_t v, const double *values) {
     hd_heat *heat = h->heat;
     const hd_laplacian *lap = heat->source;
-    const hd_rational set = heat->elim.set;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
     double *u = HDI_TAKE(&scope, double, lap->n), off = 0, largest = 0;
-    hd_report probe;
     int64_t p;
-    if (u && hdi_direct_columns(heat, h->t / heat->scale, HD_KERNEL_SYMMETRIC, &set, 1, &v, u, HDI_CAST(size_t, lap->n), &probe) < 0) *h->e = probe.error;
-    if (h->e->status >= 0) {
+    if (hdi_probe_column(h, HD_KERNEL_SYMMETRIC, &heat->elim.set, v, u) >= 0) {
         const int32_t row = lap->row[v];
         for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
             largest = hdi_max(largest, fabs(values[p]));
@@ -17320,7 +17320,6 @@ static void hdi_edges_probe(hdi_heat_call *h, int32_t v, const double *values) {
         }
         h->rep->error_solver = largest > 0 ? off / largest + DBL_EPSILON : 0;
         h->rep->error_bound += h->rep->error_solver;
-        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
     }
     hdi_scope_end(&scope);
 }
@@ -17421,7 +17420,6 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
     double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
     int32_t q, i, worst = 0, v;
     double most = 0;
-    hd_report probe;
     if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
     h->t = t[0];
     h->set = set;
@@ -17448,10 +17446,8 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
     if (n > 0) {                                 /* rounding: one entry by a solve with the same poles */
         double *u = HDI_TAKE(&s, double, m->lap->n), there;
         v = m->lap->vertex[worst];
-        if (u && hdi_direct_columns(heat, t[0] / heat->scale, HD_KERNEL_SYMMETRIC, set, 1, &v, u, HDI_CAST(size_t, m->lap->n), &probe) < 0) *h->e = probe.error;
-        if (h->e->status < 0) return hdi_scope_end(&s);
+        if (hdi_probe_column(h, HD_KERNEL_SYMMETRIC, set, v, u) < 0) return hdi_scope_end(&s);
         there = D[HDI_CAST(size_t, column[0]) * ldd + HDI_CAST(size_t, v)];
-        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
         if (there != 0) h->rep->error_solver = hdi_max(h->rep->error_solver, fabs(u[v] - there) / fabs(there) + DBL_EPSILON);
     }
     return hdi_scope_end(&s);
@@ -17798,7 +17794,6 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n)) : NULL;
     char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
     hdi_metric metric;
-    hd_report probe;
     int32_t q, r, i;
     memset(&metric, 0, sizeof metric);
     metric.kind = kind;
@@ -17839,9 +17834,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
         }
     }
     if (n > 0 && k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
-        const int32_t v = lap->row[sources[0]] >= 0 ? sources[0] : lap->vertex[0];
-        if (hdi_direct_columns(heat, t[0] / heat->scale, HD_KERNEL_SYMMETRIC, set, 1, &v, g, HDI_CAST(size_t, lap->n), &probe) < 0) *h->e = probe.error;
-        h->rep->residual = hdi_max(h->rep->residual, probe.residual);
+        (void)hdi_probe_column(h, HD_KERNEL_SYMMETRIC, set, lap->row[sources[0]] >= 0 ? sources[0] : lap->vertex[0], g);
     }
     return hdi_scope_end(&s);
 }
