@@ -376,7 +376,21 @@ typedef enum hd_distance_kind {
     HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010); no time */
 } hd_distance_kind;
 
-/* What happened, and how far off the answer can be. With several fields or columns, the worst of them. */
+/* How a part of an error bound is known. The worst evidence of several answers is the largest of these numbers. */
+typedef enum hd_evidence {
+    HD_EVIDENCE_NONE = 0,       /* the part does not apply to this query */
+    HD_EVIDENCE_PROVEN,         /* by a theorem, from norms and residuals of this very answer */
+    HD_EVIDENCE_MEASURED,       /* seen at some columns or solves of this answer, and taken for all of it */
+    HD_EVIDENCE_ESTIMATED       /* by a model of what rounding does */
+} hd_evidence;
+
+/* What happened, and how far off the answer can be. With several fields, columns or times, the worst of them.
+ *
+ * The bound of the error has three parts: rational, of the approximation of exp; solver, of iterations that were
+ * stopped; and rounding. error_bound is their sum: the largest error of any value returned, relative to the largest
+ * |value| returned (of each field, column and time; of the whole list for entries and pairs). Each part says how it
+ * is known; HD_EVIDENCE_NONE: it does not apply, and the other two are all there is.
+ * A bound above 1e-2 says little: the status is HD_WARN_ACCURACY then. */
 typedef struct hd_report {
     hd_status status;
     hd_error error;             /* filled when status < 0 */
@@ -395,11 +409,13 @@ typedef struct hd_report {
     double growth;              /* largest |pivot| over largest |diagonal entry|, see hd_ldl_report */
     double residual;            /* largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1; computed, not recurred. 0 for Lanczos. With
                                    HD_ERR_NOT_CONVERGED that of the system that failed (Lanczos: its bound of the relative error) */
-    double error_rational;      /* bound of |exp's approximation error|_B / |answer|_B */
-    double error_solver;        /* bound of the solvers' part, |.|_B / |answer|_B */
-    double error_bound_b;       /* the two together */
-    double error_bound;         /* bound of the largest error at a vertex, relative to the largest |value| of the answer */
-    double error_relative;      /* diagonals and distances: bound of the largest error relative to the value itself; 0: not asked */
+    double error_bound;         /* the sum of the next three */
+    double error_rational, error_solver, error_rounding;
+    hd_evidence evidence_rational, evidence_solver, evidence_rounding;
+    double error_bound_b;       /* fields and columns: bound of |error|_B / |answer|_B. HUGE_VAL where it does not apply */
+    hd_evidence evidence_b;     /* HD_EVIDENCE_NONE where it does not apply */
+    double error_relative;      /* diagonals, distances, pairs: bound of the largest error relative to the value itself. HUGE_VAL where it does
+                                   not apply, or a value is zero that need not be */
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
     int64_t n_lost;             /* distances with less than a digit or so left, see hd_heat_distance */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|, 0 when the pair does not conserve heat or the filter is the caller's */
@@ -13172,12 +13188,141 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
  * combination that least squares make small. The conjugate of a solution is that of the conjugate pole, and counts as another one.
  * Parallel tasks are right-hand sides, and preconditioners. */
 
+/* ---- what answers can be off by ---- */
+/* An error r in the system of a pole, b - A x = r, is an error A^-1 r in its solution. Two norms bound it:
+ *   |A^-1 r|_B <= |r|_(B^-1) / min |t lambda + theta|
+ *   |A^-1 r|_M <= |r|_(B^-1) max (1 + t lambda)/|t lambda + theta|,   M = B + t L,
+ * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v), and
+ * |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1): far less where heat has spread over many vertices. */
+
+/* Bounds by parts, of an error in one of the norms, or of values. */
+typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
+
+static double hdi_parts_sum(const hdi_parts *p) { return p->rational + p->solver + p->rounding; }
+
+static hdi_parts hdi_parts_scale(double s, hdi_parts p) {
+    p.rational = p.rational > 0 ? s * p.rational : 0;   /* no infinity times zero */
+    p.solver = p.solver > 0 ? s * p.solver : 0;
+    p.rounding = p.rounding > 0 ? s * p.rounding : 0;
+    return p;
+}
+
+static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
+    a.rational = hdi_min(a.rational, b.rational);
+    a.solver = hdi_min(a.solver, b.solver);
+    a.rounding = hdi_min(a.rounding, b.rounding);
+    return a;
+}
+
+/* The account that every query keeps of its errors, and that becomes the report's. Absolute, over the values noted. */
+typedef struct hdi_ledger {
+    hdi_parts off;               /* the largest of each part */
+    hdi_parts known;             /* evidence of each part, as hd_evidence; hdi_ledger_begin sets it */
+    double largest, smallest;    /* |value|; smallest: not zero, HUGE_VAL when there is none */
+    double relative;             /* largest error over its value; negative: not asked */
+    int64_t n_values;
+} hdi_ledger;
+
+static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding, int relative) {
+    hdi_ledger l;
+    memset(&l, 0, sizeof l);
+    l.known.rational = rational;
+    l.known.solver = solver;
+    l.known.rounding = rounding;
+    l.smallest = HUGE_VAL;
+    l.relative = relative ? 0 : -1;
+    return l;
+}
+
+static double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : HUGE_VAL; }
+
+/* A value and what it can be off by. */
+static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
+    const double size = fabs(value);
+    l->off.rational = hdi_max(l->off.rational, off.rational);
+    l->off.solver = hdi_max(l->off.solver, off.solver);
+    l->off.rounding = hdi_max(l->off.rounding, off.rounding);
+    l->largest = hdi_max(l->largest, size);
+    if (size > 0) l->smallest = hdi_min(l->smallest, size);
+    if (l->relative >= 0) l->relative = hdi_max(l->relative, hdi_quotient(hdi_parts_sum(&off), size));
+    l->n_values++;
+}
+
+static void hdi_evidence_worst(hd_evidence *to, double evidence) {
+    if (evidence > HDI_CAST(double, *to)) *to = HDI_CAST(hd_evidence, HDI_CAST(int, evidence));
+}
+
+/* Above this a bound says nothing worth having. */
+#define HDI_BOUND_USEFUL 1e-2
+
+/* The one way from errors to a report, which keeps the worst of all ledgers that it is given. */
+static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
+    hdi_parts part = l->off;
+    double total;
+    if (l->n_values == 0) return;
+    part.rational = hdi_quotient(part.rational, l->largest);
+    part.solver = hdi_quotient(part.solver, l->largest);
+    part.rounding = hdi_quotient(part.rounding, l->largest);
+    total = hdi_parts_sum(&part);
+    rep->error_rational = hdi_max(rep->error_rational, part.rational);
+    rep->error_solver = hdi_max(rep->error_solver, part.solver);
+    rep->error_rounding = hdi_max(rep->error_rounding, part.rounding);
+    rep->error_bound = hdi_max(rep->error_bound, total);
+    hdi_evidence_worst(&rep->evidence_rational, l->known.rational);
+    hdi_evidence_worst(&rep->evidence_solver, l->known.solver);
+    hdi_evidence_worst(&rep->evidence_rounding, l->known.rounding);
+    if (l->smallest < HUGE_VAL) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
+    if (l->relative >= 0 && rep->error_relative < l->relative) rep->error_relative = l->relative;
+    if (!(total <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
+}
+
+/* What rounding adds to a residual b - (t L + theta B) x in row i is at most c_i sum_j M_ij |x_j| with M = t |L| + |theta| |B|
+ * and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more (N. Higham, Accuracy and Stability
+ * of Numerical Algorithms, 2002, section 3.1). In the norm of D^-1 that is at most sqrt(sum_j noise_j |x_j|^2),
+ * noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik, by Cauchy and Schwarz. work [n]. */
+#define HDI_NOISE_TERMS 8
+
+static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, double *noise, double *work) {
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        const double terms = HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) + HDI_NOISE_TERMS, c = terms * DBL_EPSILON / 2;
+        double sum = lap->B ? 0 : theta * lap->mass[i];
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) sum += t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0);
+        work[i] = hdi_min(c * c * (sum / lap->b_diag[i]), 1e150);   /* beyond, no digit is left anyway */
+    }
+    for (i = 0; i < lap->n_active; i++) {
+        double sum = lap->B ? 0 : theta * lap->mass[i] * work[i];
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) sum += (t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0)) * work[lap->L.col[p]];
+        noise[i] = hdi_min(sum, 1e300);
+    }
+}
+
+/* Largest |theta| of a set. */
+static double hdi_rat_reach(const hd_rational *set) {
+    double most = 0;
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++) most = hdi_max(most, hdi_cabs(set->theta[p]));
+    return most;
+}
+
+/* max (1 + x)/|x + theta| over x >= 0 */
+static double hdi_pole_reach(hd_c64 theta) {
+    const double x = theta.re < 1 ? theta.im * theta.im / (1 - theta.re) - theta.re : -1;
+    const double inside = x > 0 ? (1 + x) / hypot(x + theta.re, theta.im) : 0;
+    return hdi_max(inside, hdi_max(1, 1 / hdi_cabs(theta)));
+}
+
+/* 1/sqrt(b_ratio): from the norm of D^-1 to that of B^-1. */
+static double hdi_ratio_root(const hd_laplacian *lap) { return lap->b_ratio > 0 ? 1 / sqrt(lap->b_ratio) : HUGE_VAL; }
+
 /* What is shared by all right-hand sides: the pair, and preconditioners for a set and a time. */
 typedef struct hdi_family {
     hd_context *ctx;
     const hd_laplacian *lap;
     const hdi_upper *up;
     const double *weight;        /* [n] 1/diag(B) */
+    double *noise, *noise_work;  /* [n] weights of rounding for set and t */
     hd_solver solver;
     hd_precond precond;
     int64_t max_iterations;
@@ -13211,6 +13356,7 @@ static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double 
     }
     fam->set = *set;
     fam->t = t;
+    hdi_noise_weights(fam->lap, t, hdi_rat_reach(set), fam->noise, fam->noise_work);
     for (i = 0; i < set->n_poles; i++) {
         fam->m[i].kind = fam->precond;
         fam->m[i].up = fam->up;
@@ -13262,6 +13408,7 @@ typedef struct hdi_lanczos {
     double *alpha, *beta;                 /* [MAX + 1] T: diagonal, and beta[j] between j - 1 and j */
     double *d, *e, *z0, *z1, *y;          /* [MAX + 1] */
     hd_c64 *work;                         /* [2 MAX] */
+    double noise;                         /* largest error of a step by rounding, in the B norm */
     int32_t m;
 } hdi_lanczos;
 
@@ -13274,13 +13421,21 @@ typedef struct hdi_lane {
     hdi_krylov k[HD_MAX_POLES];
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
+    int32_t exponent;            /* the field is the caller's times 2^-exponent */
     /* outcome, norms absolute */
     double f_norm, u_norm;
-    double rational, solver;     /* bounds in the B norm */
+    hdi_parts off, off_m;        /* bounds of the error in the norms of B and of B + tL */
+    hd_evidence rounding;        /* how the part of rounding is known */
     double residual;
     double b_norm;               /* of the right-hand side, in the norm of diag(B)^-1 */
     double first_norm;           /* bound of |x|_B of one of the solutions, and its pole */
+    double energy;               /* bound of f'B (B + tL)^-1 B f */
     int32_t first_pole;
+    int32_t negative;            /* x'Lx < 0 was seen */
+    int32_t watch;               /* direct: a row whose entries of all solutions are kept, -1: none */
+    hd_c64 pole_value[HD_MAX_POLES];
+    double pole_off[HD_MAX_POLES];   /* residual of each in the norm of diag(B)^-1, as far as it is seen */
+    double seen_b, seen_m;       /* what these residuals make of the answer, in the norms of B and of B + tL */
     int64_t steps;               /* of Lanczos */
     hd_status status;
     hd_error error;
@@ -13374,27 +13529,57 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
     return HD_OK;
 }
 
-/* Bound of |x_i - exact|_B by the residual: |A^-1 r|_B <= |r|_(B^-1) / min |t lambda + theta|, and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio. */
+/* Bound of |x - exact|_B by the residual. */
 static double hdi_pole_error(const hdi_krylov *k) {
-    return k->r_norm / (sqrt(k->a.lap->b_ratio) * hdi_pole_distance(k->a.theta));
+    return k->r_norm * hdi_ratio_root(k->a.lap) / hdi_pole_distance(k->a.theta);
 }
 
 /* What an error of x_p does to the answer at most. */
 static double hdi_pole_weight(const hdi_family *fam, int32_t p) { return hdi_rat_count(&fam->set, p) * hdi_cabs(fam->set.a[p]); }
 
-/* u = a0 f - sum a_i x_i, in the order of the poles. Returns the bound of the solvers' part in the B norm. */
-static double hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
+/* A residual where a measurement will do: twice what was found, and an eighth of what rounding could hide at the very worst,
+ * about a unit in the last place of every row. */
+static double hdi_residual_seen(double found, double rounding) { return 2 * found + rounding / 8; }
+
+/* Enters the residual of pole p, found and by rounding, both in the norm of D^-1, into the lane's bounds. found counts
+ * as a part of rounding where nothing was iterated. */
+static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p, double found, double rounding, int iterated) {
+    const double weight = hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * hdi_ratio_root(lap);
+    const double by_b = weight / hdi_pole_distance(set->theta[p]), by_m = weight * hdi_pole_reach(set->theta[p]);
+    const double solver = iterated ? found : 0, rest = rounding + found - solver;
+    /* The sum of the answers loses half a unit of each |a x| twice a pole; |x|_B by that is at most rounding/|theta|. */
+    const double sum = weight / hdi_rat_reach(set) * rounding * (2 * set->n_poles + 2) / (HDI_NOISE_TERMS + 1);
+    lane->pole_off[p] = hdi_residual_seen(found, rounding);
+    lane->seen_b += by_b * lane->pole_off[p];
+    lane->seen_m += by_m * lane->pole_off[p];
+    lane->off.solver += by_b * solver;
+    lane->off_m.solver += by_m * solver;
+    lane->off.rounding += by_b * rest + sum;
+    lane->off_m.rounding += by_m * rest;
+    if (lane->b_norm > 0) lane->residual = hdi_max(lane->residual, found / lane->b_norm);
+}
+
+static void hdi_lane_clear_off(hdi_lane *lane) {
+    memset(&lane->off, 0, sizeof lane->off);
+    memset(&lane->off_m, 0, sizeof lane->off_m);
+    lane->seen_b = lane->seen_m = 0;
+    lane->rounding = HD_EVIDENCE_PROVEN;
+    lane->residual = 0;
+    lane->negative = 0;
+}
+
+/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds of its error but for the rational part. */
+static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
-    double error = 0, *HDI_RESTRICT u = lane->u;
+    double *HDI_RESTRICT u = lane->u;
     int32_t i, j;
     for (j = 0; j < n; j++) u[j] = fam->set.a0 * lane->f[j];
     for (i = 0; i < fam->set.n_poles; i++) {
         const hd_c64 *HDI_RESTRICT x = lane->k[i].x;
         const double c = hdi_rat_count(&fam->set, i), are = c * fam->set.a[i].re, aim = c * fam->set.a[i].im;
         for (j = 0; j < n; j++) u[j] -= are * x[j].re - aim * x[j].im;
-        error += hdi_pole_weight(fam, i) * hdi_pole_error(lane->k + i);
+        hdi_lane_residual(lane, fam->lap, &fam->set, i, lane->k[i].r_norm, sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
     }
-    return error;
 }
 
 enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
@@ -13524,10 +13709,12 @@ typedef struct hdi_check {
     const hd_laplacian *lap;
     double t, theta[HDI_PACK];   /* re[4], im[4] */
     double coef[HDI_PACK];       /* u += coef' x, by real and imaginary parts */
-    const double *weight, *rhs, *x;  /* 1/diag(B); x: its row i at x + i stride */
+    const double *weight, *noise;/* 1/diag(B); weights of rounding */
+    const double *rhs, *x;       /* x: its row i at x + i stride */
     int64_t stride;
     double *u, *bu;              /* the answer, and B times it */
-    double norm2[4], first2;     /* |rhs - A x|^2 in the norm of weight; |x|_B^2 of the first system */
+    double norm2[4], size2[4];   /* |rhs - A x|^2 in the norm of weight; |x|^2 in that of noise */
+    double first2;               /* |x|_B^2 of the first system */
 } hdi_check;
 
 static void hdi_check_c(hdi_check *const *c, int32_t k) {
@@ -13553,6 +13740,7 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
                 const double re = h->rhs[i] - h->t * l[q] - (h->theta[q] * b[q] - h->theta[q + 4] * b[q + 4]);
                 const double im = -h->t * l[q + 4] - (h->theta[q] * b[q + 4] + h->theta[q + 4] * b[q]);
                 h->norm2[q] += h->weight[i] * (re * re + im * im);
+                h->size2[q] += h->noise[i] * (x[q] * x[q] + x[q + 4] * x[q + 4]);
             }
             h->first2 += x[0] * b[0] + x[4] * b[4];
             for (q = 0; q < HDI_PACK; q++) {
@@ -13564,7 +13752,7 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
 }
 
 #if HDI_X86
-#define HDI_CHECK_DECLARE(r) hdi_v8 l##r, b##r, n##r = zero, f##r = zero;
+#define HDI_CHECK_DECLARE(r) hdi_v8 l##r, b##r, n##r = zero, f##r = zero, z##r = zero;
 #define HDI_CHECK_CLEAR(r) if (k > r) { l##r = zero; b##r = zero; if (!lap->B) b##r = _mm512_mul_pd(_mm512_set1_pd(lap->mass[i]), _mm512_loadu_pd(at + HDI_PACK * r)); }
 #define HDI_CHECK_ADD(r)                                                                                               \
     if (k > r) {                                                                                                       \
@@ -13580,6 +13768,7 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
         res = _mm512_fnmadd_pd(ti, _mm512_shuffle_f64x2(b##r, b##r, 0x4e), res);                                       \
         n##r = _mm512_fmadd_pd(_mm512_mul_pd(w, res), res, n##r);                                                      \
         f##r = _mm512_fmadd_pd(v, b##r, f##r);                                                                         \
+        z##r = _mm512_fmadd_pd(_mm512_mul_pd(nz, v), v, z##r);                                                         \
         c[r]->u[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, v));                                                    \
         c[r]->bu[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, b##r));                                                \
     }
@@ -13588,6 +13777,8 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
         double s[HDI_PACK];                                                                                            \
         _mm512_storeu_pd(s, n##r);                                                                                     \
         for (q = 0; q < 4; q++) c[r]->norm2[q] += s[q] + s[q + 4];                                                     \
+        _mm512_storeu_pd(s, z##r);                                                                                     \
+        for (q = 0; q < 4; q++) c[r]->size2[q] += s[q] + s[q + 4];                                                     \
         _mm512_storeu_pd(s, f##r);                                                                                     \
         c[r]->first2 += s[0] + s[4];                                                                                   \
     }
@@ -13607,7 +13798,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check_512_of(hdi_check *const *c, const in
     HDI_CHECK_EACH(HDI_CHECK_DECLARE)
     for (i = 0; i < lap->n_active; i++) {
         const double *at = x + stride * i;
-        const hdi_v8 w = _mm512_set1_pd(c[0]->weight[i]);
+        const hdi_v8 w = _mm512_set1_pd(c[0]->weight[i]), nz = _mm512_set1_pd(c[0]->noise[i]);
         HDI_CHECK_EACH(HDI_CHECK_CLEAR)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const double *from = x + stride * lap->L.col[p];
@@ -13645,6 +13836,9 @@ typedef struct hdi_elim {
     hd_laplacian *lap;           /* the same in elimination order, scaled */
     double scale;
     double *weight;              /* [n] 1/diag(B) */
+    double *noise, *noise_shift; /* [n] weights of rounding, of the poles' matrices and of B + shift L; [n] work after them */
+    double *reach;               /* [n] bound of diag((B + tL)^-1) for reach_t, or NULL */
+    double reach_t;
     hdi_symbolic sym;
     hdi_factor pack[HD_MAX_POLES / 4], real;
     int32_t n_packs, filled;     /* packs that have room; 1: they hold set and t */
@@ -13661,6 +13855,7 @@ static void hdi_elim_free(hdi_elim *m) {
     hdi_factor_free(&m->real);
     hdi_symbolic_free(m->ctx, &m->sym);
     hdi_free(m->ctx, m->weight);
+    hdi_free(m->ctx, m->reach);
     hdi_laplacian_free(m->lap, m->ctx);
     memset(m, 0, sizeof *m);
 }
@@ -13690,7 +13885,9 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     }
     if (m->lap) {
         (void)hdi_sym_scale(m->lap);
-        m->weight = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+        m->weight = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+        m->noise = m->weight ? m->weight + lap->n_active : NULL;
+        m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
         for (i = 0; m->weight && i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
     }
     if (e->status < 0) hdi_elim_free(m);
@@ -13738,7 +13935,8 @@ static hd_status hdi_elim_shift(hdi_elim *m, double g, hd_error *e) {
     if (m->shift == g && m->real.ready) return HD_OK;
     if (m->lone >= 0) m->filled = 0;
     if (hdi_elim_real(m, g, 1, e) < 0) return e->status;
-    if (m->real.all.negative) return hdi_fail(e, HD_ERR_NOT_POSITIVE, "B + g L is not positive definite: a pivot is negative");
+    if (m->real.all.negative) return hdi_fail(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite, or B not positive definite: B + g L has a negative pivot");
+    hdi_noise_weights(m->lap, g, 1, m->noise_shift, m->noise_shift + m->lap->n_active);
     m->shift = g;
     return HD_OK;
 }
@@ -13764,6 +13962,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
         return HD_OK;
     }
     m->filled = 0;
+    m->reach_t = -1;
     m->set = *set;
     m->t = t;
     n_packs = hdi_elim_packs(set, &m->lone);
@@ -13782,6 +13981,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
             return e->status;
         }
     }
+    hdi_noise_weights(m->lap, t, hdi_rat_reach(set), m->noise, m->noise_shift + m->lap->n_active);
     m->filled = 1;
     return HD_OK;
 }
@@ -13798,6 +13998,27 @@ static size_t hdi_batch_size(const hdi_elim *m, int32_t k, size_t *x, size_t *xr
     *x = HDI_PACK * n * HDI_CAST(size_t, k);
     *xr = n * (k > 1 ? 8 : 1);
     return *x + *xr + (pack > real ? pack : real) + HDI_CAST(size_t, m->sym.n_super) / sizeof(double) + 8;
+}
+
+static hd_status hdi_not_semidefinite(hd_error *e) {
+    return hdi_fail(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite: a vector with x'Lx < 0 was met (is it minus the matrix meant?)");
+}
+
+/* Keeps of the solution x of pole p what measures the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f, which is at most
+ * a factor times Re of rhs'x. Real parts of x are stride apart; norm2: |x|_B^2 as computed; off: bound of its residual. */
+static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p, double norm2, double off, const double *x, int64_t stride) {
+    const hd_c64 theta = set->theta[p];
+    const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
+    const double factor = theta.re > 0 ? hdi_max(1, theta.re) + theta.im * theta.im / theta.re : HUGE_VAL;
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
+    lane->first_pole = p;
+    lane->first_norm = sqrt(norm2) + error;
+    /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
+    if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error) lane->negative = 1;
+    if (factor < HUGE_VAL) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
 /* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has its solution at x + 8 at[q]. */
@@ -13820,6 +14041,7 @@ static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
             h->coef[q + 4] = count * m->set.a[p].im;
         }
         h->weight = m->weight;
+        h->noise = m->noise;
         h->rhs = lane[r]->rhs;
         h->x = x + HDI_PACK * at[r];
         h->stride = stride;
@@ -13836,12 +14058,10 @@ static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
         hdi_lane *to = lane[r];
         for (q = 0; q < n_here; q++) {
             const int32_t p = hdi_elim_pole(m, i, q);
-            const double res = sqrt(c[r].norm2[q]), error = res / (sqrt(m->lap->b_ratio) * hdi_pole_distance(m->set.theta[p]));
-            if (to->b_norm > 0) to->residual = hdi_max(to->residual, res / to->b_norm);
-            to->solver += hdi_rat_count(&m->set, p) * hdi_cabs(m->set.a[p]) * error;
+            hdi_lane_residual(to, m->lap, &m->set, p, sqrt(c[r].norm2[q]), sqrt(c[r].size2[q]), 0);
+            if (to->watch >= 0) to->pole_value[p] = hdi_c(c[r].x[stride * to->watch + q], c[r].x[stride * to->watch + q + 4]);
             if (i > 0 || q > 0) continue;
-            to->first_pole = p;                  /* measures the resolvent */
-            to->first_norm = sqrt(hdi_max(0, c[r].first2)) + error;
+            hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, c[r].first2), sqrt(c[r].norm2[q]) + sqrt(c[r].size2[q]), c[r].x, stride);
         }
     }
 }
@@ -13850,7 +14070,7 @@ static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
 static void hdi_batch_real(const hdi_elim *m, hdi_lane *lane, const double *x, int64_t stride) {
     const hd_laplacian *lap = m->lap;
     const double theta = m->set.theta[0].re, a = m->set.a[0].re;
-    double norm2 = 0, first2 = 0, r;
+    double norm2 = 0, size2 = 0, first2 = 0, r;
     int64_t p;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
@@ -13863,15 +14083,14 @@ static void hdi_batch_real(const hdi_elim *m, hdi_lane *lane, const double *x, i
         if (!lap->B) b = lap->mass[i] * x[stride * i];
         r = lane->rhs[i] - m->t * l - theta * b;
         norm2 += m->weight[i] * r * r;
+        size2 += m->noise[i] * x[stride * i] * x[stride * i];
         first2 += x[stride * i] * b;
         lane->u[i] -= a * x[stride * i];
         lane->tmp[i] -= a * b;
     }
-    r = sqrt(norm2);
-    if (lane->b_norm > 0) lane->residual = hdi_max(lane->residual, r / lane->b_norm);
-    lane->solver += fabs(a) * r / (sqrt(lap->b_ratio) * theta);
-    lane->first_pole = 0;
-    lane->first_norm = sqrt(hdi_max(0, first2)) + r / (sqrt(lap->b_ratio) * theta);
+    hdi_lane_residual(lane, lap, &m->set, 0, sqrt(norm2), sqrt(size2), 0);
+    if (lane->watch >= 0) lane->pole_value[0] = hdi_c(x[stride * lane->watch], 0);
+    hdi_lane_first(lane, lap, &m->set, 0, hdi_max(0, first2), sqrt(norm2) + sqrt(size2), x, stride);
 }
 
 /* u = a0 f - sum a_i x_i for k lanes (those that are skipped cost, but do not count). ctx: threads for the sweeps; NULL within a task. */
@@ -13901,7 +14120,8 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
             if (touched++ < 64 * HDI_CAST(int64_t, k)) hdi_sweep_touch(s, HDI_CAST(int32_t, j), b->active);
         }
         lane[r].b_norm = sqrt(norm2);
-        lane[r].solver = lane[r].residual = 0;
+        hdi_lane_clear_off(lane + r);
+        lane[r].energy = lane[r].f_norm * lane[r].f_norm;
     }
     if (m->lone >= 0) {
         for (j = 0; j < n; j++)
@@ -13937,6 +14157,8 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
  * Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver); the constants of each component are carried
  * exactly, so that uniform sets conserve heat too. */
 
+#define HDI_ROUNDING_LIMIT 1e-7              /* the direct method's own error by default is 3e-8 */
+
 enum { HDI_SILAN_MAX = 160, HDI_SILAN_POINTS = 96, HDI_SILAN_WIDE = 8 };
 
 /* The process for 1 or 8 right-hand sides side by side; times share it. */
@@ -13945,13 +14167,27 @@ typedef struct hdi_silan {
     int32_t k, wide, steps;      /* right-hand sides, 1 or 8, steps taken */
     double *v[HDI_SILAN_MAX + 1];/* [n][wide] the basis */
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
+    double *probe;               /* [2 n] a solution and its residual */
     double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
-    double f_norm[HDI_SILAN_WIDE];
+    double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
+    double solved;               /* largest residual found of a solve over that, at least 1 */
+    double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
     double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];   /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
     int32_t vectors_of, vectors_m;
     int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
     double g;
 } hdi_silan;
+
+/* L with one vertex of each component held at zero. All by rows in elimination order. */
+typedef struct hdi_ground {
+    hdi_factor factor;
+    char *held;                  /* [n] */
+    double *diag, *mean, *form;  /* [n] of G; G b; of G B G less the means' part, when formed */
+    double *trace;               /* [n_components] at least 1/lambda for the smallest eigenvalue that is not zero */
+    double largest_trace;
+    double *mean_off;            /* [n_components] G b is off by at most sqrt(G_vv) times this */
+    int32_t formed;
+} hdi_ground;
 
 struct hd_heat {
     hd_context *ctx;
@@ -13961,8 +14197,11 @@ struct hd_heat {
     int32_t *perm;
     int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
     int32_t exacting;            /* a tol below the default is asked for: sets of the highest degree */
+    double limit;                /* of rounding relative to the answer, above which the status warns: tol, or by default */
+    uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
+    hdi_ground ground;           /* made when it is first needed; of elim */
     hdi_silan *silan;
     double *batch_room;          /* arrays of the batches */
     size_t batch_doubles;
@@ -13972,6 +14211,8 @@ struct hd_heat {
     hdi_family fam;              /* of the last set and time */
     hdi_lane lane[HDI_LANES];    /* work arrays, kept from call to call */
     double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
+    double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
+    double drift;                /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
 };
 
 /* Sets the heat of each component to c0 times that of the right-hand side: the constants' part of c(-t B^-1 L) f, exactly. */
@@ -13981,6 +14222,18 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
     hdi_component_sums(lap, lap->mass, lane->u, lane->sums);
     for (c = 0; c < lap->n_components; c++) lane->sums[c] = (c0 * lane->target[c] - lane->sums[c]) / lap->component_mass[c];
     hdi_component_add(lap, lane->sums, lane->u);
+}
+
+/* What rounding does to the heat of components, n sums of masses times values, and to that of the field itself where it is
+ * dense; and what is left of L 1, which counts as zero where it is so to rounding, up to 1e-8. Same in both norms. */
+static double hdi_conserve_off(const hd_laplacian *lap, const hdi_lane *lane, double drift_t, int dense) {
+    const double sums = HDI_CAST(double, lap->n_active) * DBL_EPSILON / 2;
+    return (sums + hdi_min(drift_t, 1e-8)) * lane->u_norm + (dense ? (sums + 4 * DBL_EPSILON) * lane->f_norm : 0);
+}
+
+static void hdi_lane_rounding(hdi_lane *lane, double off) {
+    lane->off.rounding += off;
+    lane->off_m.rounding += off;
 }
 
 /* The same for c0 = 1, with the means in lane->sums kept. */
@@ -14050,20 +14303,25 @@ static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
         z->c[i] = lane->rhs[i] / f0_norm;
         z->c_old[i] = 0;
     }
-    z->beta[0] = 0;
+    z->beta[0] = z->noise = 0;
     z->m = 0;
 }
 
 /* One step: from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). work [4 n]. */
-static hd_status hdi_lanczos_step(const hd_laplacian *lap, const double *weight, hdi_lanczos *z, double *HDI_RESTRICT w, double *mass, hd_error *e) {
+static hd_status hdi_lanczos_step(const hd_heat *heat, hdi_lanczos *z, double *HDI_RESTRICT w, double *mass, hd_error *e) {
+    const hd_laplacian *lap = heat->lap;
     const int32_t n = lap->n_active, j = z->m;
-    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0, norm = 0, scale;
+    const double *HDI_RESTRICT weight = heat->weight, *HDI_RESTRICT noise = heat->noise;
+    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0, norm = 0, scale, off = 0;
     int32_t i;
     hdi_csr_apply_rows(&lap->L, v, w, 0, n);
     for (i = 0; i < n; i++) {
         w[i] -= z->beta[j] * c_old[i];
         alpha += v[i] * w[i];
+        off += noise[i] * (v[i] * v[i]);
     }
+    off = sqrt(off) * hdi_ratio_root(lap);
+    if (alpha < -1e-6 * z->beta[j] - 4 * off) return hdi_not_semidefinite(e);
     if (lap->B) {
         hdi_axpy(-alpha, c, w, n);
         if (hdi_mass_solve(lap, w, v, mass, e) < 0) return e->status;
@@ -14077,6 +14335,7 @@ static hd_status hdi_lanczos_step(const hd_laplacian *lap, const double *weight,
     }
     z->alpha[j] = alpha;
     z->beta[j + 1] = norm > 0 ? sqrt(norm) : 0;
+    z->noise = hdi_max(z->noise, off + 8 * DBL_EPSILON * (fabs(alpha) + z->beta[j] + z->beta[j + 1]));
     z->m = j + 1;
     scale = norm > 0 ? 1 / z->beta[j + 1] : 0;
     for (i = 0; i < n; i++) {
@@ -14086,6 +14345,23 @@ static hd_status hdi_lanczos_step(const hd_laplacian *lap, const double *weight,
     z->c = c_old;
     z->c_old = c;
     return HD_OK;
+}
+
+/* A bound of what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) + errors of size noise
+ * in B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j) e_j' exp(-s T) e_1 ds: at most noise sqrt(m) times
+ * the integral of |exp(-s T) e_1|, which falls with s, so that sums from the left are above it. Then the sum of the answer. */
+static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
+    const int32_t m = z->m;
+    double integral = 0, from = 0, to, size = 0;
+    int32_t i, k;
+    for (k = 24; k >= 0; k--) {
+        to = ldexp(t, -2 * k);
+        for (size = 0, i = 0; i < m; i++) size += z->z0[i] * z->z0[i] * exp(-2 * from * hdi_max(0, z->d[i]));
+        integral += sqrt(size) * (to - from);
+        from = to;
+    }
+    for (size = 0, i = 0; i < m; i++) size += z->y[i] * z->y[i];
+    return sqrt(HDI_CAST(double, m)) * (z->noise * integral + m * DBL_EPSILON * sqrt(size));
 }
 
 /* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
@@ -14108,16 +14384,16 @@ static hd_status hdi_lanczos_first(const hd_heat *heat, double t, double f0_norm
     int32_t look = 1, looked = 0, best_m = 0;
     hd_rational set;
     if (hdi_rational_get(&set, HD_POLES_UNIFORM, 14, e) < 0) return e->status;
-    lane->rational = f0_norm * set.max_error;    /* of the coefficients; the basis has no error of this kind */
     hdi_lanczos_start(lane, lap->n_active, f0_norm);
     for (;;) {
-        if (hdi_lanczos_step(lap, heat->weight, z, lane->tmp, lane->tmp + lap->n_active, e) < 0) return e->status;
+        if (hdi_lanczos_step(heat, z, lane->tmp, lane->tmp + lap->n_active, e) < 0) return e->status;
         if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
         if (hdi_lanczos_bound(z, t, &bound, e) < 0) return e->status;
         hdi_lanczos_coefficients(z, t, &set);
         lane->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * hdi_dot(z->y, z->y, z->m));
-        lane->solver = f0_norm * bound;
-        if (lane->solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
+        lane->off.solver = f0_norm * bound;
+        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t) + set.max_error);   /* the coefficients are by poles */
+        if (lane->off.solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
         if (bound < best / 2) {
             best = bound;
             best_m = z->m;
@@ -14126,12 +14402,12 @@ static hd_status hdi_lanczos_first(const hd_heat *heat, double t, double f0_norm
         }
         if (z->m >= most) {
             hdi_fail(e, HD_ERR_NOT_CONVERGED, "Lanczos did not reach the tolerance in its largest number of steps; use poles");
-            e->value = lane->solver / lane->u_norm;
+            e->value = lane->off.solver / lane->u_norm;
             return e->status;
         }
-        if (start == 0) start = lane->solver;
-        if (hdi_watch_look(watch, 0.5 * hdi_krylov_done(start, lane->solver, tol * lane->u_norm), e) < 0) return e->status;
-        look = z->m + hdi_lanczos_pace(z->m, looked, lane->solver, f0_norm * bound_before, tol * lane->u_norm);
+        if (start == 0) start = lane->off.solver;
+        if (hdi_watch_look(watch, 0.5 * hdi_krylov_done(start, lane->off.solver, tol * lane->u_norm), e) < 0) return e->status;
+        look = z->m + hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
         looked = z->m;
         bound_before = bound;
     }
@@ -14146,7 +14422,7 @@ static hd_status hdi_lanczos_second(const hd_heat *heat, double f0_norm, hdi_lan
     for (j = 0; j < m; j++) {
         hdi_axpy(f0_norm * lane->lanczos.y[j], lane->lanczos.v, lane->u, n);
         if (j % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * j / m, e) < 0) return e->status;
-        if (j + 1 < m && hdi_lanczos_step(lap, heat->weight, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0) return e->status;
+        if (j + 1 < m && hdi_lanczos_step(heat, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0) return e->status;
     }
     lane->lanczos.m = m;
     return HD_OK;
@@ -14160,6 +14436,8 @@ static hd_status hdi_heat_lanczos(const hd_heat *heat, double t, hdi_lane *lane,
     double f0_norm, fixed = 0;
     int32_t i;
     memset(lane->u, 0, HDI_CAST(size_t, n) * sizeof *lane->u);
+    hdi_lane_clear_off(lane);
+    lane->rounding = HD_EVIDENCE_ESTIMATED;
     if (lap->conserves) {
         for (i = 0; i < lap->n_components; i++) {
             lane->sums[i] = -lane->target[i] / lap->component_mass[i];
@@ -14178,6 +14456,7 @@ static hd_status hdi_heat_lanczos(const hd_heat *heat, double t, hdi_lane *lane,
         lane->steps = lane->lanczos.m;
     }
     if (status >= 0) hdi_conserve(lap, lane, 1);
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * heat->drift, 1));
     return status;
 }
 
@@ -14196,15 +14475,29 @@ static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, doub
     return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
 }
 
-/* Bound of |(exp - c)(-t B^-1 L) f|_B. A weighted set's error is relative to the resolvent (B + t L)^-1 B f, which a solution bounds; the
- * constants drop out of built-in sets. */
-static double hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, const hdi_lane *lane) {
-    double bound = set->max_error * lane->f_norm;
-    if (set->max_weighted_error > 0 && set->n_poles > 0) {
-        const double resolvent = lap->conserves && set->kind == HD_POLES_OWN ? lane->f_norm : lane->first_norm;
-        bound = hdi_min(bound, set->max_weighted_error * hdi_resolvent_ratio(set->theta[lane->first_pole]) * resolvent);
+/* Errors of a set, for |exp(x) - c(x)| and for (1 + |x|) times that. Of the caller's own sets either may be unknown, 0: a
+ * weighted one bounds the other; without both, bounds hold for c itself. */
+static double hdi_set_uniform(const hd_rational *set) {
+    return set->max_error > 0 ? set->max_error : set->max_weighted_error;
+}
+static double hdi_set_weighted(const hd_rational *set) {
+    return set->max_weighted_error > 0 ? set->max_weighted_error : set->max_error > 0 ? HUGE_VAL : 0;
+}
+
+/* Bounds of (exp - c)(-t B^-1 L) f in both norms. That of a weighted set is relative to the resolvent (B + t L)^-1 B f, which
+ * a solution bounds; the constants drop out of built-in sets, whose c(0) = 1. */
+static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, hdi_lane *lane) {
+    const double weighted = hdi_set_weighted(set);
+    const int constants = lap->conserves && set->kind == HD_POLES_OWN;
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++)           /* the sum of the answers again: |x_v| <= sqrt(g_v) |x|_M */
+        lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * hdi_pole_reach(set->theta[p]) * sqrt(lane->energy);
+    lane->off.rational = hdi_set_uniform(set) * lane->f_norm;
+    lane->off_m.rational = weighted < HUGE_VAL ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
+    if (weighted < HUGE_VAL && set->n_poles > 0) {
+        const double resolvent = constants ? lane->f_norm : hdi_resolvent_ratio(set->theta[lane->first_pole]) * lane->first_norm;
+        lane->off.rational = hdi_min(lane->off.rational, weighted * hdi_min(resolvent, lane->f_norm));
     }
-    return bound;
 }
 
 /* The right-hand side without its constants, complex. */
@@ -14216,43 +14509,52 @@ static void hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
 
 /* K_t f through a pole set. The tolerance is relative to the answer, which is not known before: a first round aims at it relative to f,
  * which is never too strict as |K_t f|_B <= |f|_B, and the next ones go on from there relative to what came out. */
-static hd_status hdi_heat_poles(const hdi_family *fam, double tol, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
+static hd_status hdi_heat_poles(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = fam->lap;
     const double c0 = fam->set.kind == HD_POLES_OWN ? hdi_rational_eval(&fam->set, 0) : 1;
     double aim = tol * lane->f_norm, room;
     hdi_watch part = *watch;
     hd_status status = HD_OK;
-    int32_t i, round;
+    int32_t round;
     hdi_lane_rhs(lane, lap);
     for (round = 0; round < 6; round++) {
         part.from = watch->from + watch->share * (round ? 0.7 : 0);
         part.share = watch->share * (round ? 0.3 : 0.7);
         status = hdi_lane_run(lane, fam, round == 0, aim, &part, e);
         if (status < 0) return status;
-        lane->solver = hdi_lane_sum(lane, fam);
+        hdi_lane_clear_off(lane);
+        lane->b_norm = fam->set.n_poles > 0 ? lane->k[0].b_norm : 0;
+        hdi_lane_sum(lane, fam);
         hdi_conserve(lap, lane, c0);
         lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
-        room = tol * (lane->u_norm - lane->solver);
-        if (lane->solver <= room || status == HD_WARN_ACCURACY) break;
+        room = tol * (lane->u_norm - lane->off.solver);
+        if (lane->off.solver <= room || status == HD_WARN_ACCURACY) break;
         aim = room > 0.01 * aim ? (1 - tol) * room : 0.01 * aim;
     }
-    for (i = 0; i < fam->set.n_poles; i++)
-        if (lane->k[i].b_norm > 0) lane->residual = hdi_max(lane->residual, lane->k[i].r_norm / lane->k[i].b_norm);
     lane->first_pole = 0;
-    lane->first_norm = fam->set.n_poles > 0 ? sqrt(hdi_b_norm2_complex(lap, lane->k[0].x, lane->tmp)) + hdi_pole_error(lane->k) : 0;
-    lane->rational = hdi_rational_bound(lap, &fam->set, lane);
-    return lane->solver <= tol * (lane->u_norm - lane->solver) ? HD_OK : HD_WARN_ACCURACY;
+    lane->first_norm = 0;
+    lane->energy = lane->f_norm * lane->f_norm;
+    if (fam->set.n_poles > 0) {
+        const hd_c64 *x = lane->k[0].x;
+        hdi_lane_first(lane, lap, &fam->set, 0, hdi_b_norm2_complex(lap, x, lane->tmp), lane->k[0].r_norm, &x->re, 2);
+        if (lane->negative) return hdi_not_semidefinite(e);
+    }
+    hdi_rational_bound(lap, &fam->set, lane);
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, 1));
+    return lane->off.solver <= tol * (lane->u_norm - lane->off.solver) ? HD_OK : HD_WARN_ACCURACY;
 }
 
-/* What is left to do after the poles' factors have been applied: constants, norms, bounds. */
-static hd_status hdi_heat_direct(const hdi_elim *m, double tol, hdi_lane *lane) {
+/* What is left to do after the poles' factors have been applied: constants, norms, bounds. limit: of rounding, relative to
+ * the answer, above which the status warns. */
+static hd_status hdi_heat_direct(const hdi_elim *m, double limit, double drift_t, int dense, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
     int32_t i;
     hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
     for (i = 0; i < lap->n_active && lap->conserves; i++) lane->tmp[i] += lap->mass[i] * lane->sums[lap->component[i]];   /* B u, what was added included */
     lane->u_norm = sqrt(hdi_max(0, hdi_dot(lane->u, lane->tmp, lap->n_active)));
-    lane->rational = hdi_rational_bound(lap, &m->set, lane);
-    return lane->solver <= tol * (lane->u_norm - lane->solver) ? HD_OK : HD_WARN_ACCURACY;
+    hdi_rational_bound(lap, &m->set, lane);
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, dense));
+    return lane->off.rounding <= limit * (lane->u_norm - lane->off.rounding) ? HD_OK : HD_WARN_ACCURACY;
 }
 
 /* ---- shift-and-invert Lanczos ---- */
@@ -14327,16 +14629,19 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     int64_t i;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_CAST(double *, hdi_alloc(ctx, n * wide, sizeof(double), e));
-    if (z->v[0] && !z->c) z->c = HDI_CAST(double *, hdi_alloc(ctx, 2 * n * wide, sizeof(double), e));
+    if (z->v[0] && !z->c) z->c = HDI_CAST(double *, hdi_alloc(ctx, 2 * n * wide + 2 * n, sizeof(double), e));
     if (z->c && !z->work) z->work = HDI_CAST(double *, hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide, 1), sizeof(double), e));
     if (e->status < 0) return e->status;
     z->w = z->c + n * wide;
+    z->probe = z->w + n * wide;
+    z->solved = 1;
     z->steps = 0;
     z->vectors_of = -1;
     for (r = 0; r < z->wide; r++) {
         double norm;
         z->done[r] = 0;
         z->f_norm[r] = 0;
+        z->whole[r] = lane[r].f_norm;
         if (r < z->k && !lane[r].skip) {
             for (i = 0; i < lap->n_components; i++) lane[r].sums[i] = lap->conserves ? lane[r].target[i] / lap->component_mass[i] : 0;
             for (i = 0; i < lap->n_active; i++) {
@@ -14358,6 +14663,32 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     return HD_OK;
 }
 
+/* The residual of the solve w = S B v of right-hand side 0, held against what rounding can make of it. Some of the first
+ * solves are looked at. */
+static void hdi_silan_probe(hdi_silan *z) {
+    const hd_laplacian *lap = z->m->lap;
+    double *x = z->probe, *r = x + lap->n_active, sum = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) x[i] = z->w[HDI_CAST(int64_t, z->wide) * i];
+    hdi_pair_apply(lap, z->g, 1, x, r);
+    for (i = 0; i < lap->n_active; i++) {
+        const double d = z->c[HDI_CAST(int64_t, z->wide) * i] - r[i];
+        sum += z->m->weight[i] * (d * d);
+    }
+    if (z->noise[z->steps][0] > 0) z->solved = hdi_max(z->solved, sqrt(sum) / z->noise[z->steps][0]);
+}
+
+/* out[r] = sqrt(sum_i weight_i x_ir^2) */
+static void hdi_wide_norms(const double *HDI_RESTRICT x, const double *HDI_RESTRICT weight, int64_t n, int32_t wide, double *out) {
+    int64_t i;
+    int r;
+    for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] = 0;
+    if (wide == 1) out[0] = hdi_norm2w(x, weight, n);
+    for (i = 0; wide > 1 && i < n; i++)
+        for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] += weight[i] * (x[HDI_SILAN_WIDE * i + r] * x[HDI_SILAN_WIDE * i + r]);
+    for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] = sqrt(out[r]);
+}
+
 /* One step for all. */
 static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
@@ -14373,6 +14704,8 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
     s = hdi_sweep_open(&z->m->real, wide, w, z->work, 1);
     hdi_sweep_run(&s, ctx);
+    hdi_wide_norms(w, z->m->noise_shift, n, wide, z->noise[j]);
+    if (j == 0 || j == 3) hdi_silan_probe(z);
     hdi_wide_dots(w, z->c, n, wide, z->alpha[j]);
     for (r = 0; r < wide; r++) inv[r] = j > 0 ? z->beta[j][r] : 0;
     if (wide == 1)
@@ -14441,6 +14774,8 @@ static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, doubl
     int32_t i, k;
     if (!hdi_silan_eigen(z, r, m, 0, m - 1, d, x, y)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
     for (i = 0; i < m; i++) {
+        /* 1/(1 + g lambda); but what is left of a constant is only rounding */
+        if (d[i] > 1.001 + 10 * z->solved * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r]) return hdi_not_semidefinite(e);
         f[i] = hdi_silan_decay(d[i], tau);
         norm += x[i] * f[i] * x[i] * f[i];
         x[i] *= y[i];
@@ -14528,15 +14863,40 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
     return worst;
 }
 
+/* What rounding does to the answer of right-hand side r after m steps, relative to |f|_B: with S V = V T + ... + errors Phi_j
+ * of the steps, it is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, divided differences as in hdi_silan_bound. A solve's
+ * residual is an error no larger in the B norm. y: the answer's coefficients. T's eigenvectors are there. */
+static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y) {
+    double f[HDI_SILAN_MAX], most[HDI_SILAN_MAX], slope[HDI_SILAN_MAX], sum = 0, size = 0;
+    const double tau = t / z->g, root = hdi_ratio_root(z->m->lap);
+    int32_t i, j, k;
+    for (i = 0; i < m; i++) {
+        f[i] = hdi_silan_decay(z->mu[i], tau);
+        most[i] = 0;
+        size += fabs(y[i]);
+    }
+    for (k = 2; k <= HDI_SILAN_POINTS; k += 2) {
+        const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS)), at = s * s, fa = hdi_silan_decay(at, tau);
+        for (i = 0; i < m; i++) slope[i] = z->vectors[i] * hdi_silan_slope(z->mu[i], f[i], at, fa, tau);
+        for (j = 0; j < m; j++) most[j] = hdi_max(most[j], fabs(hdi_dot(z->vectors + HDI_CAST(int64_t, j) * m, slope, m)));
+    }
+    for (j = 0; j < m; j++) {
+        const double step = root * z->solved * z->noise[j][r] + 4 * DBL_EPSILON * (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
+        sum += 1.5 * most[j] * step;
+    }
+    return z->f_norm[r] * sum + m * DBL_EPSILON * size;
+}
+
 /* The answer of right-hand side r at time t into its lane: constants and the basis' part. */
-static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, hdi_lane *lane, hd_error *e) {
+static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drift, hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int32_t m = z->done[r], n = lap->n_active;
     double y[HDI_SILAN_MAX], bound = 0, size, *HDI_RESTRICT u = lane->u;
     int64_t i, begin;
     int32_t j;
     for (i = 0; i < n; i++) u[i] = lane->sums[lap->component[i]];
-    lane->solver = lane->rational = lane->residual = 0;
+    hdi_lane_clear_off(lane);
+    lane->rounding = HD_EVIDENCE_MEASURED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
         if (hdi_silan_coefficients(z, r, m, t, y, e) < 0 || hdi_silan_bound(z, r, m, t, &bound, &size, e) < 0) return e->status;
@@ -14548,10 +14908,12 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, hdi_lane *l
                 else for (i = begin; i < end; i++) u[i] += y[j] * v[HDI_SILAN_WIDE * i + r];
             }
         }
-        lane->solver = bound * z->f_norm[r] + 4 * DBL_EPSILON * lane->f_norm;   /* and rounding */
+        lane->off.solver = bound * z->f_norm[r];
+        lane->off.rounding = hdi_silan_rounding(z, r, m, t, y);
     }
     hdi_conserve_sums(lap, lane);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1));
     return HD_OK;
 }
 
@@ -14630,6 +14992,259 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
     return worst < 0.2;
 }
 
+/* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new one. */
+static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
+    const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = 1.01 * hdi_max(1, theta);   /* 1.01: rounding */
+    const size_t n = HDI_CAST(size_t, m->sym.n);
+    hdi_inverse z;
+    int32_t i;
+    if (m->reach && m->reach_t == m->t) return HD_OK;
+    if (!m->reach) m->reach = HDI_CAST(double *, hdi_alloc(m->ctx, n, sizeof(double), e));
+    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, m->t, theta, e) >= 0) && hdi_inverse_make(&z, &m->sym, 1, m->ctx, e) >= 0) {
+        memset(m->reach, 0, n * sizeof *m->reach);
+        z.coef = &factor;
+        z.n_sets = 1;
+        z.wanted = HDI_WANT_DIAGONAL;
+        z.values = m->reach;
+        z.stride = m->sym.n;
+        (void)hdi_inverse_run(&z, &m->real, e);
+        hdi_inverse_free(&z, m->ctx);
+        for (i = 0; i < m->sym.n; i++) {
+            const double most = m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[i]) : HUGE_VAL;
+            if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
+        }
+        m->reach_t = m->t;
+    }
+    if (e->status < 0) {
+        hdi_free(m->ctx, m->reach);
+        m->reach = NULL;
+    }
+    return e->status;
+}
+
+/* ---- the pair grounded ---- */
+/* With one vertex of each component held at zero L has an inverse G, and
+ *     commute time  d^2 = (e_i - e_j)' G (e_i - e_j),     biharmonic  d^2 = |P G (e_i - e_j)|_B^2,
+ * P taking out the mean of each component: exactly, and whatever the spectrum. diag(G) comes by selected inversion; that of
+ * G B G is minus the derivative of diag((L + s B)^-1) at s = 0, which an imaginary s gives without cancellation.
+ * This part is based on
+ *   W. Squire, G. Trapp, Using complex variables to estimate derivatives of real functions, 1998
+ * Components whose rows of L do not sum to zero are not held: there L has an inverse of its own. */
+
+static void hdi_ground_free(hdi_ground *g, hd_context *ctx) {
+    hdi_factor_free(&g->factor);
+    hdi_free(ctx, g->held);
+    hdi_free(ctx, g->diag);
+    hdi_free(ctx, g->trace);
+    memset(g, 0, sizeof *g);
+}
+
+/* Does L 1 vanish on each component, to rounding? free [n_components]: 1 where it does. */
+static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
+    int32_t i;
+    int64_t p;
+    memset(loose, 1, HDI_CAST(size_t, lap->n_components));
+    for (i = 0; i < lap->n_active && !lap->conserves; i++) {
+        double sum = 0, size = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            sum += lap->L.val[p];
+            size += fabs(lap->L.val[p]);
+        }
+        if (fabs(sum) > HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) * DBL_EPSILON * size) loose[lap->component[i]] = 0;
+    }
+}
+
+/* L with the rows and columns held replaced by those of the identity, by entries of the source; imaginary: its B times that, or 0. */
+static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double imaginary, double *real, hd_c64 *z) {
+    const hd_laplacian *lap = m->source;
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t j = lap->L.col[p];
+            const int held = g->held[m->lap->row[lap->vertex[i]]] || g->held[m->lap->row[lap->vertex[j]]];
+            const double l = held ? i == j : lap->L.val[p], b = held ? 0 : lap->B ? lap->B[p] : i == j ? lap->mass[i] : 0;
+            if (real) real[p] = l;
+            else z[p] = hdi_c(l, imaginary * b);
+        }
+    }
+}
+
+/* out [n] += the diagonal of the inverse, by pivots, its part c times unit. */
+static hd_status hdi_ground_diagonal(const hdi_elim *m, hdi_factor *f, int c, double unit, double *out, hd_error *e) {
+    double coef[HDI_PACK];
+    hdi_inverse z;
+    memset(coef, 0, sizeof coef);
+    coef[c] = unit;
+    if (hdi_inverse_make(&z, &m->sym, f->width, m->ctx, e) < 0) return e->status;
+    memset(out, 0, HDI_CAST(size_t, m->sym.n) * sizeof *out);
+    z.coef = coef;
+    z.n_sets = 1;
+    z.wanted = HDI_WANT_DIAGONAL;
+    z.values = out;
+    z.stride = m->sym.n;
+    (void)hdi_inverse_run(&z, f, e);
+    hdi_inverse_free(&z, m->ctx);
+    return e->status;
+}
+
+/* x = G x; rows held are zero in both. work: a sweep's. */
+static void hdi_ground_solve(const hdi_elim *m, const hdi_ground *g, double *x, double *work) {
+    hdi_sweep z;
+    int32_t i;
+    for (i = 0; i < m->sym.n; i++)
+        if (g->held[i]) x[i] = 0;
+    z = hdi_sweep_open(&g->factor, 1, x, work, 1);
+    hdi_sweep_run(&z, m->ctx);
+}
+
+/* r = b - L x on the rows not held, by differences x_j - x_i: rows of L sum to zero but for `rest`, and neighbours are much
+ * alike, so that next to nothing is lost. x as it stands for G b is then off by at most sqrt(G_vv) times off of v's component: for
+ * |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i| sqrt(G_ii))^2. extra: as much more in each |r_i|, or NULL. off
+ * [n_components], or NULL. */
+static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const double *b, const double *x, const double *extra, double *r, double *off) {
+    const hd_laplacian *lap = m->lap;
+    int32_t i;
+    int64_t p;
+    if (off) memset(off, 0, HDI_CAST(size_t, lap->n_components) * sizeof *off);
+    for (i = 0; i < lap->n_active; i++) {
+        const double c = (HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) + 4) * DBL_EPSILON;
+        double size = fabs(b[i]), rest = 0;
+        r[i] = b[i];
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && !g->held[i]; p++) {
+            const double v = lap->L.val[p] * (x[lap->L.col[p]] - x[i]);
+            r[i] -= v;
+            size += fabs(v);
+            rest += lap->L.val[p];
+        }
+        if (g->held[i]) r[i] = 0;
+        else if (!lap->conserves) r[i] -= rest * x[i];
+        size += lap->conserves ? 0 : fabs(rest * x[i]);
+        if (!g->held[i] && off) off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) * sqrt(hdi_max(0, g->diag[i]));
+    }
+}
+
+/* x = G b, solved, then once more for what is left; off as above. r [n], sweep: work. */
+static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra, double *x, double *off, double *r, double *sweep) {
+    int32_t i;
+    memcpy(x, b, HDI_CAST(size_t, m->sym.n) * sizeof *x);
+    hdi_ground_solve(m, g, x, sweep);
+    hdi_ground_residual(m, g, b, x, NULL, r, NULL);
+    hdi_ground_solve(m, g, r, sweep);
+    for (i = 0; i < m->sym.n; i++) x[i] += r[i];
+    hdi_ground_residual(m, g, b, x, extra, r, off);
+}
+
+/* Factor, diag(G) and the trace. */
+static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(m->ctx, e);
+    const hd_laplacian *lap = m->lap;
+    const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
+    double *val;
+    char *loose;
+    hdi_values v;
+    int32_t i;
+    int64_t p;
+    if (g->diag) return HD_OK;
+    val = HDI_TAKE(&s, double, lap->L.nnz);
+    loose = HDI_TAKE(&s, char, n_comp);
+    if (e->status >= 0) g->held = HDI_CAST(char *, hdi_alloc(m->ctx, n, 1, e));
+    if (g->held) g->diag = HDI_CAST(double *, hdi_alloc(m->ctx, 3 * n, sizeof(double), e));
+    if (g->diag) g->trace = HDI_CAST(double *, hdi_alloc(m->ctx, 2 * n_comp, sizeof(double), e));
+    if (g->trace && hdi_factor_make(&g->factor, &m->sym, 1, m->ctx, e) >= 0) {
+        memset(g->trace, 0, n_comp * sizeof *g->trace);
+        g->mean_off = g->trace + n_comp;
+        g->mean = g->diag + n;
+        g->form = g->mean + n;
+        hdi_ground_components(lap, loose);
+        for (i = lap->n_active; i-- > 0;) {      /* the last of each component */
+            g->held[i] = loose[lap->component[i]];
+            if (g->held[i]) loose[lap->component[i]] = 0;
+        }
+        hdi_ground_values(m, g, 0, val, NULL);
+        memset(&v, 0, sizeof v);
+        v.real = val;
+        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 && hdi_ground_diagonal(m, &g->factor, 0, 1, g->diag, e) >= 0) {
+            if (g->factor.all.negative) hdi_not_semidefinite(e);
+            for (i = 0; i < lap->n_active; i++) {
+                double size = lap->B ? 0 : lap->mass[i];
+                for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) size += fabs(lap->B[p]);
+                if (g->held[i]) g->diag[i] = 0;
+                g->trace[lap->component[i]] += hdi_max(0, g->diag[i]) * size;
+            }
+            for (i = 0; i < lap->n_components; i++) g->largest_trace = hdi_max(g->largest_trace, g->trace[i]);
+        }
+    }
+    if (e->status < 0) hdi_ground_free(g, m->ctx);
+    return hdi_scope_end(&s);
+}
+
+/* diag of G B G less the means' part: form; and G b: mean, with what that can be off by. */
+static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(m->ctx, e);
+    const hd_laplacian *lap = m->lap;
+    const double step = g->largest_trace > 0 ? 1e-9 / g->largest_trace : 1;
+    double *work, *b;
+    char *loose;
+    hdi_factor pack;
+    hdi_values v;
+    hd_c64 *val;
+    int32_t i;
+    if (g->formed) return HD_OK;
+    loose = HDI_TAKE(&s, char, lap->n_components);
+    val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
+    work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1, 1));
+    b = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, lap->n_active));
+    if (e->status >= 0 && hdi_factor_make(&pack, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
+        hdi_ground_values(m, g, step * m->scale, NULL, val);
+        memset(&v, 0, sizeof v);
+        v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
+        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_ground_diagonal(m, &pack, 4, -1 / step, g->form, e);
+        hdi_factor_free(&pack);
+    }
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) b[i] = g->held[i] ? 0 : lap->mass[i];
+    hdi_ground_refined(m, g, b, NULL, g->mean, g->mean_off, b + lap->n_active, work);
+    hdi_ground_components(lap, loose);
+    for (i = 0; i < lap->n_active; i++) {
+        if (!loose[lap->component[i]]) g->mean[i] = 0;   /* nothing to take out */
+        g->form[i] = g->held[i] ? 0 : hdi_max(0, g->form[i] - g->mean[i] * g->mean[i] / lap->component_mass[lap->component[i]]);
+    }
+    g->formed = 1;
+    return hdi_scope_end(&s);
+}
+
+/* Column `row` of G, or with forms of P' G B G P, into u [n]; its error at v is at most sqrt(G_vv) times what is returned.
+ * work: hdi_ground_room. */
+static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t row, int forms, double *u, double *work) {
+    const hd_laplacian *lap = m->lap;
+    const int32_t n = lap->n_active, c = lap->component[row];
+    const double mass = lap->component_mass[c], ws = forms ? g->mean[row] : 0, trace = g->trace[c];
+    double *b = work, *y = b + n, *extra = y + n, *r = extra + n, *by = r + n, *sweep = by + lap->n_components, off;
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < n; i++) b[i] = i == row && !g->held[i];
+    hdi_ground_refined(m, g, b, NULL, u, by, r, sweep);
+    off = by[c];
+    if (!forms) return off;
+    for (i = 0; i < n; i++) {                    /* b = B y */
+        double sum = lap->B ? 0 : lap->mass[i] * u[i], size = fabs(sum);
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) {
+            sum += lap->B[p] * u[lap->L.col[p]];
+            size += fabs(lap->B[p] * u[lap->L.col[p]]);
+        }
+        b[i] = g->held[i] ? 0 : sum;
+        extra[i] = (HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) + 2) * DBL_EPSILON / 8 * size;
+    }
+    hdi_ground_refined(m, g, b, extra, y, by, r, sweep);
+    for (i = 0; i < n; i++) u[i] = y[i] - (lap->component[i] == c ? ws * g->mean[i] / mass : 0);
+    return trace * off + by[c] + g->mean_off[c] * (fabs(ws) / mass + sqrt(trace * g->diag[row] / mass));
+}
+
+static size_t hdi_ground_room(const hdi_elim *m) {
+    return 4 * HDI_CAST(size_t, m->sym.n) + HDI_CAST(size_t, m->lap->n_components) + hdi_sweep_size(&m->sym, 1, 1, 1);
+}
+
 /* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor (1 + x)) for x >= 0. -1: none does. */
 static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
     int32_t p, best = -1;
@@ -14643,23 +15258,39 @@ static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
     return best;
 }
 
-/* Adds the numbers of one field to the report, where the worst stays. */
-static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, int own, hd_report *rep) {
-    const double floor_b = lane->u_norm - lane->solver - lane->rational, total = lane->solver + lane->rational;
-    double largest = 0, smallest_b = DBL_MAX, heat = 0, heat_in = 0, heat_abs = 0;
+/* The bounds of a lane's error at the vertices where the answer is not zero: by the B norm, and by that of B + tL with
+ * reach, a bound of diag((B + tL)^-1), where that is at hand (else NULL). */
+static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
+    double smallest_b = HUGE_VAL, largest_g = 0;
+    hdi_parts by_b;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        if (lane->u[i] == 0) continue;
+        smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
+        if (reach) largest_g = hdi_max(largest_g, reach[i]);
+    }
+    if (smallest_b == HUGE_VAL) smallest_b = lap->b_diag[0];   /* nothing came out */
+    by_b = hdi_parts_scale(hdi_ratio_root(lap) / sqrt(smallest_b), lane->off);
+    return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
+}
+
+/* Adds the numbers of one field to the report, where the worst stays. ledger: a new one, or NULL when single values are noted
+ * elsewhere. */
+static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger, const double *reach, int own, hd_report *rep) {
+    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(lane->u[i]));
-        if (lane->u[i] != 0) smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
         heat += lap->mass[i] * lane->u[i];
         heat_abs += fabs(lap->mass[i] * lane->u[i]);
     }
     for (i = 0; i < lap->n_components; i++) heat_in += lane->target[i];
-    if (total > 0) {
-        rep->error_solver = hdi_max(rep->error_solver, floor_b > 0 ? lane->solver / floor_b : HUGE_VAL);
-        rep->error_rational = hdi_max(rep->error_rational, floor_b > 0 ? lane->rational / floor_b : HUGE_VAL);
-        rep->error_bound_b = hdi_max(rep->error_bound_b, floor_b > 0 ? total / floor_b : HUGE_VAL);
-        rep->error_bound = hdi_max(rep->error_bound, largest > 0 ? total / sqrt(lap->b_ratio * smallest_b) / largest : HUGE_VAL);
+    if (ledger) {
+        const double total = hdi_parts_sum(&lane->off);
+        hdi_ledger_note(ledger, largest, hdi_lane_bound(lap, lane, reach));
+        hdi_ledger_close(ledger, rep);
+        rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
+        hdi_evidence_worst(&rep->evidence_b, hdi_max(ledger->known.rational, hdi_max(ledger->known.solver, ledger->known.rounding)));
     }
     rep->residual = hdi_max(rep->residual, lane->residual);
     if (lap->conserves && !own && heat_abs > 0) rep->mass_drift = hdi_max(rep->mass_drift, fabs(heat - heat_in) / heat_abs);
@@ -15672,8 +16303,9 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return 
 
 /* ---- shifted systems ---- */
 
+/* 1/diag(B), and room for three more vectors. */
 static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    double *w = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n_active), sizeof *w, e));
+    double *w = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(size_t, lap->n_active), sizeof *w, e));
     int32_t i;
     for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
     return w;
@@ -16120,6 +16752,27 @@ static double hdi_lambda_bound(const hd_laplacian *lap) {
     return most / lap->b_ratio;
 }
 
+/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of (Neumaier 1974). */
+static hd_status hdi_heat_drift(const hd_laplacian *lap, double *drift, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    double *sum = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(size_t, lap->n_components)), *rest;
+    int64_t p;
+    int32_t i;
+    if (!sum) return hdi_scope_end(&s);
+    rest = sum + lap->n_components;
+    *drift = 0;
+    for (i = 0; i < lap->n_active && lap->conserves; i++) {
+        const int32_t c = lap->component[i];
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const double v = lap->L.val[p], t = sum[c] + v;
+            rest[c] += fabs(sum[c]) >= fabs(v) ? sum[c] - t + v : v - t + sum[c];
+            sum[c] = t;
+        }
+    }
+    for (i = 0; i < lap->n_components && lap->conserves; i++) *drift = hdi_max(*drift, fabs(sum[i] + rest[i]) / lap->component_mass[i]);
+    return hdi_scope_end(&s);
+}
+
 /* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
 static double hdi_heat_scale(const hd_laplacian *lap) {
     double largest = 0;
@@ -16151,6 +16804,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     heat->poles_asked = heat->opts.rational || heat->opts.poles || heat->opts.degree;
     heat->opts.precond = heat->opts.precond ? heat->opts.precond : HD_PRECOND_MILDL;
     heat->exacting = heat->opts.tol > 0 && heat->opts.tol < 1e-9;
+    heat->limit = heat->opts.tol > 0 ? heat->opts.tol : HDI_ROUNDING_LIMIT;
     heat->opts.tol = heat->opts.tol > 0 ? heat->opts.tol : 1e-9;
     heat->opts.max_iterations = heat->opts.max_iterations ? heat->opts.max_iterations : 20000;
     heat->scale = hdi_heat_scale(lap);
@@ -16164,6 +16818,11 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
         }
     }
     heat->opts.perm = heat->perm;
+    if (hdi_heat_drift(lap, &heat->drift, c.ctx, c.e) < 0) {
+        hd_heat_free(heat);
+        return c.e->status;
+    }
+    heat->drift /= heat->scale;
     *out = heat;
     return HD_OK;
 }
@@ -16178,6 +16837,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_upper_free(ctx, &heat->up);
     hdi_free(ctx, heat->weight);
     hdi_laplacian_free(heat->lap, ctx);
+    if (heat->ground.diag) hdi_ground_free(&heat->ground, ctx);
     hdi_elim_free(&heat->elim);
     if (heat->silan) hdi_silan_free(heat->silan, ctx);
     hdi_free(ctx, heat->silan);
@@ -16198,6 +16858,11 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     }
     if (!heat->up.ptr && hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
     heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
+    if (!heat->weight) return e->status;
+    heat->noise = heat->weight + heat->lap->n_active;
+    heat->fam.noise = heat->noise + heat->lap->n_active;
+    heat->fam.noise_work = heat->fam.noise + heat->lap->n_active;
+    hdi_noise_weights(heat->lap, 1, 0, heat->noise, heat->fam.noise_work);
     heat->fam.ctx = heat->ctx;
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
@@ -16313,6 +16978,13 @@ typedef struct hdi_heat_call {
     const double *times;         /* [n_times] scaled, ascending, for one item at several times; else t alone */
     int32_t n_times;
     const int32_t *time_column;  /* where in U each goes */
+    int32_t relative;            /* errors are told relative to each value too */
+    int32_t deflated;            /* direct: right-hand sides are without their constants */
+    int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
+    double still;                /* t = 0 stands for a t so small that K_t f is f to rounding; |K_t - 1| <= this */
+    int32_t equal;               /* t is so large that each component has its mean */
+    hdi_ledger *entries;         /* of single values; NULL: columns are judged as a whole */
+    double *off_b, *off_m;       /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
     hdi_lane *lane;              /* [HDI_LANES], the plan's */
     int32_t n_lanes, batch;      /* lanes that exist; first item in lane 0 */
     int32_t n_here, batch_width, n_batches;  /* direct: items under way, in batches of so many */
@@ -16326,6 +16998,9 @@ typedef struct hdi_heat_call {
     const int32_t *rows;
     double *values;
 } hdi_heat_call;
+
+/* t for the scaled pair. Where that is beyond all doubles, anything as large does. */
+static double hdi_heat_scaled(const hd_heat *heat, double t) { return hdi_min(t * heat->scale, 1e300); }
 
 static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, double t, int32_t k, hd_report *report) {
     memset(h, 0, sizeof *h);
@@ -16341,8 +17016,8 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->s = hdi_scope_begin(heat->ctx, h->e);
     if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
     if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    h->t = t * heat->scale;
-    if (!hdi_finite(h->t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is too large for these masses", -1, -1, t);
+    h->rep->reason = "nothing was asked for";
+    h->t = hdi_heat_scaled(heat, t);
     h->times = &h->t;
     h->n_times = 1;
     h->lap = heat->source;
@@ -16418,12 +17093,12 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     hdi_cost c;
     int no_direct, no_krylov;
     h->method = heat->opts.method;
-    h->rep->reason = "asked for";
+    h->rep->reason = h->method == HD_METHOD_AUTO ? "chosen by cost" : "asked for";
     if (h->method == HD_METHOD_AUTO && heat->iterations_asked) {
         h->method = HD_METHOD_ITERATIVE;
         h->rep->reason = "a solver or preconditioner is asked for";
     }
-    if (h->method == HD_METHOD_AUTO && heat->no_factors) {
+    if (h->method == HD_METHOD_AUTO && heat->no_factors && ctx->byte_limit == heat->no_factors_limit) {
         h->method = HD_METHOD_ITERATIVE;
         h->rep->reason = "factors did not fit the byte limit";
     }
@@ -16447,9 +17122,28 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     return HD_OK;
 }
 
+/* Below, t lambda is nothing beside one. */
+#define HDI_STILL 1e-18
+
+/* From here on (t lambda_max) the question is worth its price, and what exp(-t lambda) is nothing after. */
+#define HDI_EQUAL_FROM 1e8
+#define HDI_EQUAL_BEYOND 750
+
+/* Is t (scaled) so large that nothing is left but the means of the components? 1, 0, or an error. */
+static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
+    if (!heat->source->conserves || t * heat->lambda_max < HDI_EQUAL_FROM) return 0;
+    if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0) return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
+    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* not to be told: go on as ever */
+    return 0;
+}
+
 /* The method, its copy of the pair, and what of the report is known by now. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
+    if (h->n_times == 1 && h->t * heat->lambda_max < HDI_STILL) {   /* |exp(-t lambda) - 1| <= t lambda */
+        h->still = h->t * heat->lambda_max;
+        h->t = 0;
+    }
     if (h->t == 0) {                             /* nothing to solve */
         h->method = heat->opts.method == HD_METHOD_AUTO ? HD_METHOD_ITERATIVE : heat->opts.method;
         h->rep->reason = "t = 0";
@@ -16463,6 +17157,8 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         h->lap = heat->elim.lap;
         h->rep->ordering = heat->elim.sym.ordering;
         h->rep->factor_nnz = heat->elim.sym.nnz;
+        if (h->n_times == 1) h->equal = hdi_heat_equal(heat, h->t, h->e);
+        if (h->e->status < 0) return h->e->status;
     }
     h->rep->method = h->method;
     h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t) : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
@@ -16472,10 +17168,13 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
 }
 
 static hd_status hdi_heat_end(hdi_heat_call *h) {
-    const hd_status warned = h->rep->status;
-    hd_status st = h->e->status;
+    hd_status st = h->e->status, warned;
+    if (h->entries && st >= 0) hdi_ledger_close(h->entries, h->rep);
+    warned = h->rep->status;
     if (h->s.e) st = hdi_scope_end(&h->s);
     h->rep->status = st < 0 ? st : warned;
+    if (h->rep->evidence_b == HD_EVIDENCE_NONE) h->rep->error_bound_b = HUGE_VAL;
+    if (!h->relative) h->rep->error_relative = HUGE_VAL;
     return h->rep->status;
 }
 
@@ -16514,6 +17213,18 @@ static int32_t hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     return h->sources ? h->sources[q] : HDI_CAST(int32_t, h->order[h->begin[q]].key);
 }
 
+/* Brings fields whose squares could leave the range of doubles near one, by a power of two. */
+static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
+    double most = 0;
+    int32_t i;
+    int exponent = 0;
+    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
+    if (most > 0) frexp(most, &exponent);
+    if (exponent > -256 && exponent < 256) return;
+    lane->exponent = exponent;
+    for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
+}
+
 /* Field and right-hand side of item q. A vertex without mass needs no solve: skip. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
@@ -16521,15 +17232,19 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     int32_t row;
     lane->skip = 0;
     lane->status = HD_OK;
-    lane->rational = lane->solver = lane->residual = 0;
+    hdi_lane_clear_off(lane);
     lane->steps = 0;
+    lane->exponent = 0;
+    lane->watch = -1;
     if (h->query == HDI_QUERY_FIELD) {
         hdi_gather(lap, h->F + HDI_CAST(size_t, q) * h->ldf, lane->f);
+        hdi_lane_unit(lap, lane);
         hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
     } else {
         row = lap->row[hdi_heat_source(h, q)];
         lane->skip = row < 0;
         if (lane->skip) return HD_OK;
+        lane->watch = h->watching ? row : -1;
         memset(lane->f, 0, bytes);
         memset(lane->rhs, 0, bytes);
         if (h->query == HDI_QUERY_OPERATOR) {
@@ -16554,16 +17269,22 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
 /* What item q asked for, from the lane's answer, into that column of U. */
 static void hdi_heat_store_at(const hdi_heat_call *h, int32_t q, int32_t column, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const double *answer = h->t > 0 ? lane->u : lane->f, unit = h->query == HDI_QUERY_SYMMETRIC && lap != h->heat->source ? h->heat->scale : 1;   /* B^-1 */
+    const double *answer = lane->u, unit = h->query == HDI_QUERY_SYMMETRIC && lap != h->heat->source ? h->heat->scale : 1;   /* B^-1 */
     const int32_t source = h->query == HDI_QUERY_FIELD ? -1 : hdi_heat_source(h, q);
     double *u = h->U ? h->U + HDI_CAST(size_t, column) * h->ldu : NULL;
     int64_t p;
     int32_t i;
+    if (!h->values && !u) return;
     if (h->values) {
         for (p = h->begin[q]; p < h->begin[q + 1]; p++) {
             const int32_t v = h->rows[h->order[p].id];
             const double own = h->query == HDI_QUERY_OPERATOR && v == source;
-            h->values[h->order[p].id] = lane->skip ? own : lap->row[v] < 0 ? 0 : unit * answer[lap->row[v]];
+            double *value = h->values + h->order[p].id;
+            hdi_parts off;
+            memset(&off, 0, sizeof off);
+            *value = lane->skip ? own : lap->row[v] < 0 ? 0 : unit * answer[lap->row[v]];
+            if (!lane->skip && lap->row[v] >= 0) off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[lap->row[v]]), lane->off);
+            if (h->entries) hdi_ledger_note(h->entries, *value, off);
         }
         return;
     }
@@ -16574,7 +17295,7 @@ static void hdi_heat_store_at(const hdi_heat_call *h, int32_t q, int32_t column,
         memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
         if (lane->skip) u[source] = h->query == HDI_QUERY_OPERATOR;
     }
-    for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = unit * answer[i];
+    for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = lane->exponent ? ldexp(answer[i], lane->exponent) : unit * answer[i];
 }
 
 static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) { hdi_heat_store_at(h, q, q, lane); }
@@ -16618,15 +17339,39 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     lane->status = hdi_watch_look(&watch, 0, &lane->error);
     if (lane->status >= 0) {
         if (h->solver == HD_SOLVER_LANCZOS) lane->status = hdi_heat_lanczos(h->heat, h->t, lane, &watch, &lane->error);
-        else lane->status = hdi_heat_poles(&h->heat->fam, h->heat->opts.tol, lane, &watch, &lane->error);
+        else lane->status = hdi_heat_poles(&h->heat->fam, h->heat->opts.tol, h->t * h->heat->drift, lane, &watch, &lane->error);
     }
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
+}
+
+/* A new ledger for what the method computes. */
+static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
+    const int lanczos = h->solver == HD_SOLVER_LANCZOS, still = h->t == 0 || h->equal;
+    const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
+    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
+    const hd_evidence rational = still || lanczos || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN;
+    const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
+                             : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
+    return hdi_ledger_begin(rational, solver, HD_EVIDENCE_PROVEN, 0);
+}
+
+/* Judges lane i of the batch. */
+static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
+    const hdi_lane *lane = h->lane + i;
+    const hdi_elim *m = &h->heat->elim;
+    const double *reach = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && m->reach && m->reach_t == m->t ? m->reach : NULL;
+    ledger.known.rounding = lane->rounding;
+    hdi_heat_judge(h->lap, lane, h->entries ? NULL : &ledger, reach, own, h->rep);
+    if (h->entries) h->entries->known = ledger.known;
+    if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
+    if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
 }
 
 /* Report and errors of the lanes, in their order: the first failure that is not "another task failed" is the one to tell. */
 static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     const hd_rational *set = &h->heat->fam.set;
     const int own = h->heat->opts.rational != NULL, poles = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS;
+    const hdi_ledger blank = hdi_heat_ledger(h);
     int32_t i, p;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->lane + i;
@@ -16638,14 +17383,17 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     if (h->e->status < 0) return h->e->status;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->lane + i;
-        if (lane->skip) continue;
+        if (lane->skip) {                        /* exact */
+            if (!h->entries) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
+            continue;
+        }
         if (lane->status > h->rep->status) h->rep->status = lane->status;
         h->rep->iterations += lane->steps;
-        for (p = 0; poles && p < set->n_poles; p++) {
+        for (p = 0; poles && h->t > 0 && !h->equal && p < set->n_poles; p++) {
             h->rep->pole_iterations[p] += lane->k[p].iterations;
             h->rep->iterations += lane->k[p].iterations;
         }
-        hdi_heat_judge(h->lap, lane, own, h->rep);
+        hdi_heat_note(h, blank, i, own);
     }
     return HD_OK;
 }
@@ -16658,9 +17406,9 @@ static hd_status hdi_heat_prepare(hdi_heat_call *h) {
     h->n_lanes = h->k < HDI_LANES_ITERATIVE ? h->k : HDI_LANES_ITERATIVE;
     for (i = 0; i < h->n_lanes; i++) {
         if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-        if (h->solver == HD_SOLVER_LANCZOS && h->t > 0 && hdi_lane_lanczos(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
+        if (h->solver == HD_SOLVER_LANCZOS && hdi_lane_lanczos(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
     }
-    if (h->t == 0 || h->solver == HD_SOLVER_LANCZOS) return HD_OK;
+    if (h->solver == HD_SOLVER_LANCZOS) return HD_OK;
     if (hdi_heat_set(h, &set) < 0 || hdi_family_set(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
     h->rep->poles = set.kind;
     h->rep->degree = set.degree;
@@ -16692,7 +17440,20 @@ static void hdi_heat_batch_task(void *arg, int64_t index, int32_t worker) {
     (void)worker;
     hdi_batch_run(&h->heat->elim, &b, lane, n, h->n_batches > 1 ? NULL : h->heat->ctx);
     for (r = 0; r < n; r++)
-        if (!lane[r].skip) lane[r].status = hdi_heat_direct(&h->heat->elim, h->heat->opts.tol, lane + r);
+        if (!lane[r].skip) lane[r].status = hdi_heat_direct(&h->heat->elim, h->heat->limit, h->t * h->heat->drift, h->deflated, lane + r);
+    for (r = 0; r < n; r++)
+        if (!lane[r].skip && lane[r].negative) lane[r].status = hdi_not_semidefinite(&lane[r].error);
+}
+
+/* Growth of built-in sets is at most 4.2, of shared ones 7.9, wherever L is positive semi-definite, and the pivots of a real
+ * pole are positive. */
+static hd_status hdi_heat_growth(hdi_heat_call *h) {
+    const hdi_elim *m = &h->heat->elim;
+    int32_t i;
+    if (m->lone >= 0 && m->real.all.negative) return hdi_not_semidefinite(h->e);
+    for (i = 0; 4 * i < m->set.n_poles - (m->lone + 1) && m->set.kind != HD_POLES_OWN; i++)
+        if (m->pack[i].all.largest > 50 * m->pack[i].largest_entry) return hdi_not_semidefinite(h->e);
+    return HD_OK;
 }
 
 /* Lanes, the pole set and its factors. */
@@ -16712,6 +17473,7 @@ static hd_status hdi_direct_prepare(hdi_heat_call *h) {
         if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     if (hdi_elim_poles(&heat->elim, &set, h->t, h->e) < 0) return h->e->status;
+    if (hdi_heat_growth(h) < 0 || (!h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0)) return h->e->status;
     if (heat->batch_doubles < size * HDI_CAST(size_t, h->n_batches)) {
         hdi_free(heat->ctx, heat->batch_room);
         heat->batch_doubles = 0;
@@ -16734,7 +17496,11 @@ static hd_status hdi_direct_prepare(hdi_heat_call *h) {
     return HD_OK;
 }
 
-/* Takes the constants out of a dense right-hand side, for the digits of the rest; they are put back exactly in the end. That of a column stays sparse. */
+/* Above this t lambda_max columns, too, are solved without their constants: these are nearly all of the answer then, and
+ * rounding of them would be most of the error. Below, their right-hand sides stay sparse. */
+#define HDI_DEFLATE 3e5
+
+/* Takes the constants out of a dense right-hand side, for the digits of the rest; they are put back exactly in the end. */
 static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
     int32_t i;
     for (i = 0; i < lap->n_components; i++) lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
@@ -16749,7 +17515,9 @@ static hd_status hdi_direct_run(hdi_heat_call *h) {
         if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return h->e->status;
         for (i = 0; i < h->n_here; i++)
             if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
-        for (i = 0; i < h->n_here && h->query == HDI_QUERY_FIELD; i++) hdi_lane_deflate(h->lane + i, h->lap);
+        h->deflated = h->query == HDI_QUERY_FIELD || h->t * h->heat->lambda_max > HDI_DEFLATE;
+        for (i = 0; i < h->n_here && h->deflated; i++)
+            if (!h->lane[i].skip) hdi_lane_deflate(h->lane + i, h->lap);
         hdi_parallel(h->heat->ctx, (h->n_here + h->batch_width - 1) / h->batch_width, hdi_heat_batch_task, h);
         if (hdi_heat_collect(h, h->n_here) < 0) return h->e->status;
         for (i = 0; i < h->n_here; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
@@ -16802,8 +17570,9 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
         for (i = 0; i < n; i++) {
             hdi_lane *lane = h->lane + i;
             lane->status = status;
-            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], lane, h->e) < 0) return h->e->status;
-            if (!lane->skip && lane->solver > heat->opts.tol * lane->u_norm) lane->status = HD_WARN_ACCURACY;
+            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], heat->drift, lane, h->e) < 0) return h->e->status;
+            if (!lane->skip && (lane->off.solver > heat->opts.tol * lane->u_norm || lane->off.rounding > heat->limit * lane->u_norm))
+                lane->status = HD_WARN_ACCURACY;
         }
         for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
         if (hdi_heat_collect(h, n) < 0) return h->e->status;
@@ -16847,9 +17616,11 @@ static hd_status hdi_krylov_all(hdi_heat_call *h) {
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t i;
-    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || heat->no_factors || !heat->elim.ctx) return 0;
+    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx) return 0;
+    if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
     if (h->batch > 0 && h->query == HDI_QUERY_FIELD) return 0;   /* fields may have been overwritten by their answers */
     for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
+    if (heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
     hdi_elim_free(&heat->elim);
     if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
     hdi_free(heat->ctx, heat->silan);
@@ -16858,30 +17629,55 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     heat->batch_room = NULL;
     heat->batch_doubles = 0;
     heat->no_factors = 1;
+    heat->no_factors_limit = heat->ctx->byte_limit;
     hdi_error_clear(h->e);
     return 1;
 }
 
 static hd_status hdi_heat_factors(hdi_heat_call *h) {
-    if (hdi_heat_engine(h) < 0 || h->t == 0 || h->method == HD_METHOD_ITERATIVE) return h->e->status;
+    if (hdi_heat_engine(h) < 0 || h->t == 0 || h->equal || h->method == HD_METHOD_ITERATIVE) return h->e->status;
     return h->method == HD_METHOD_DIRECT ? hdi_direct_run(h) : hdi_krylov_all(h);
+}
+
+/* Answers that need no solve: the field itself where t is nothing, the means where t is all. */
+static hd_status hdi_heat_plain(hdi_heat_call *h) {
+    const hd_laplacian *lap = h->lap;
+    hdi_lane *lane = h->lane;
+    int32_t i;
+    if (hdi_lane_make(lane, lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    for (h->batch = 0; h->batch < h->k; h->batch++) {
+        if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
+        if (!lane->skip) {
+            for (i = 0; i < lap->n_active; i++) lane->u[i] = h->equal ? lane->target[lap->component[i]] / lap->component_mass[lap->component[i]] : lane->f[i];
+            lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
+            if (h->equal) hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->query == HDI_QUERY_FIELD));
+            else hdi_lane_rounding(lane, h->still * lane->f_norm);
+            if (!h->equal && h->query == HDI_QUERY_SYMMETRIC && lap->B) {   /* f = B^-1 e comes by iterations */
+                hdi_lane_rounding(lane, 1e-14 * hdi_ratio_root(lap) * lane->f_norm);
+                lane->rounding = HD_EVIDENCE_ESTIMATED;
+            }
+        }
+        if (hdi_heat_collect(h, 1) < 0) return h->e->status;
+        hdi_heat_store(h, h->batch, lane);
+    }
+    return HD_OK;
 }
 
 static hd_status hdi_heat_run(hdi_heat_call *h) {
     int32_t i, n;
     if (h->e->status < 0 || h->k == 0) return hdi_heat_end(h);
     if (hdi_heat_factors(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_factors(h);
-    if (h->e->status < 0 || (h->t > 0 && h->method != HD_METHOD_ITERATIVE)) return hdi_heat_end(h);
+    if (h->e->status >= 0 && (h->t == 0 || h->equal)) (void)hdi_heat_plain(h);
+    if (h->e->status < 0 || h->t == 0 || h->equal || h->method != HD_METHOD_ITERATIVE) return hdi_heat_end(h);
     if (hdi_heat_prepare(h) < 0 && !(hdi_heat_retreat(h) && hdi_heat_engine(h) >= 0 && hdi_heat_prepare(h) >= 0)) return hdi_heat_end(h);
     for (h->batch = 0; h->batch < h->k; h->batch += n) {
         n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
         for (i = 0; i < n; i++)
             if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
-        if (h->t > 0) {                          /* told here too: the calling thread may find all lanes taken */
-            if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
-            hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
-            if (hdi_heat_collect(h, n) < 0) return hdi_heat_end(h);
-        }
+        /* told here too: the calling thread may find all lanes taken */
+        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
+        hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
+        if (hdi_heat_collect(h, n) < 0) return hdi_heat_end(h);
         for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
     }
     return hdi_heat_end(h);
@@ -16903,7 +17699,15 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const d
     h.U = U;
     h.ldf = hdi_leading(&h, ldf);
     h.ldu = hdi_leading(&h, ldu);
-    if (h.e->status >= 0) (void)hdi_fields_check(&h);
+    if (h.e->status >= 0 && hdi_fields_check(&h) >= 0 && U == F && h.ldu != h.ldf) {   /* fields go where their answers will be */
+        const size_t bytes = HDI_CAST(size_t, heat->source->n) * sizeof *U;
+        int32_t q;
+        for (q = 1; q < k; q++) {
+            const size_t at = HDI_CAST(size_t, h.ldu > h.ldf ? k - q : q);
+            memmove(U + at * h.ldu, U + at * h.ldf, bytes);
+        }
+        h.ldf = h.ldu;
+    }
     return hdi_heat_run(&h);
 }
 
@@ -16950,6 +17754,11 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     sum.residual = hdi_max(all->residual, sum.residual);
     sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
     sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
+    sum.error_rounding = hdi_max(all->error_rounding, sum.error_rounding);
+    hdi_evidence_worst(&sum.evidence_rational, all->evidence_rational);
+    hdi_evidence_worst(&sum.evidence_solver, all->evidence_solver);
+    hdi_evidence_worst(&sum.evidence_rounding, all->evidence_rounding);
+    hdi_evidence_worst(&sum.evidence_b, all->evidence_b);
     sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
     sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
     sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
@@ -16973,7 +17782,7 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, int32_t n_times, const do
     hdi_sort_pairs(order, n_times);
     for (q = 0; q < n_times; q++) {
         column[q] = HDI_CAST(int32_t, order[q].id);
-        sorted[q] = t[column[q]] * h->heat->scale;
+        sorted[q] = hdi_heat_scaled(h->heat, t[column[q]]);
     }
     h->times = sorted;
     h->n_times = n_times;
@@ -17012,8 +17821,8 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
     } else if (hdi_kernel_begin(&h, heat, 0, kernel, 1, report) < 0) {
         return hdi_heat_end(&h);
     }
-    if (n_times < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of times is negative");
-    else if (n_times > 0 && (!t || !U)) hdi_missing(h.e);
+    if (n_times < 1) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: there is no time");
+    else if (!t || !U) hdi_missing(h.e);
     h.F = f;
     h.sources = &source;
     h.U = U;
@@ -17022,9 +17831,10 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
     if (h.e->status >= 0 && f) (void)hdi_fields_check(&h);
     if (h.e->status >= 0 && !f) (void)hdi_vertex_check(heat->source, source, h.e);
     for (q = 0; q < n_times && h.e->status >= 0; q++)
-        if (!(t[q] >= 0) || !hdi_finite(t[q] * heat->scale)) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
-    if (h.e->status < 0 || n_times == 0 || hdi_heat_sort_times(&h, n_times, t) < 0) return hdi_heat_end(&h);
-    if (n_times > 1 && h.times[0] > 0 && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV && (hdi_krylov_all(&h) >= 0 || !hdi_heat_retreat(&h)))
+        if (!(t[q] >= 0) || !hdi_finite(t[q])) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
+    if (h.e->status < 0 || hdi_heat_sort_times(&h, n_times, t) < 0) return hdi_heat_end(&h);
+    if (n_times > 1 && h.times[0] * heat->lambda_max >= HDI_STILL && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV &&
+        !hdi_heat_equal(heat, h.t, h.e) && (hdi_krylov_all(&h) >= 0 || !hdi_heat_retreat(&h)))
         return hdi_heat_end(&h);
     if (h.e->status < 0) (void)hdi_heat_retreat(&h);
     if (h.e->status >= 0) (void)hdi_heat_each_time(heat, n_times, t, kernel, source, f, U, h.ldu, h.rep);
@@ -17040,6 +17850,7 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
                                        double *values, hd_report *report) {
     hdi_heat_call h;
+    hdi_ledger ledger;
     hdi_pair *order;
     int64_t q, *begin;
     if (hdi_kernel_begin(&h, heat, t, kernel, 0, report) < 0) return hdi_heat_end(&h);
@@ -17062,6 +17873,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
     h.begin = begin;
     h.rows = i;
     h.values = values;
+    ledger = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
+    h.entries = &ledger;
     return hdi_heat_run(&h);
 }
 
@@ -17069,12 +17882,12 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
 
 static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t) {
     int32_t q;
-    if (n_times < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of times is negative");
-    if (n_times > 0 && !t) return hdi_missing(h->e);
+    if (n_times < 1) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: there is no time");
+    if (!t) return hdi_missing(h->e);
     if (h->heat->opts.method == HD_METHOD_ITERATIVE || h->heat->opts.method == HD_METHOD_KRYLOV)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
     for (q = 0; q < n_times; q++)
-        if (!(t[q] > 0) || !hdi_finite(t[q] * h->heat->scale)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+        if (!(t[q] > 0) || !hdi_finite(t[q])) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
     return HD_OK;
 }
 
@@ -17088,31 +17901,117 @@ static void hdi_direct_only(hdi_heat_call *h) {
 }
 
 
-/* A direct call within another: k columns at the (unscaled) time t through the factors that the plan holds or makes. */
-static hd_status hdi_direct_columns(hd_heat *heat, double t, hd_kernel kernel, const hd_rational *set, int32_t k, const int32_t *sources, double *U, size_t ldu, hd_report *rep) {
+/* Columns within another call: k of them at the (scaled) time t through the factors that the plan holds or makes. */
+typedef struct hdi_columns {
+    double t;
+    hd_kernel kernel;
+    const hd_rational *set;
+    int32_t k, equal, watching;
+    const int32_t *sources;
+    double *U;                   /* NULL: only the lanes' accounts are wanted */
+    size_t ldu;
+    double *off_b, *off_m;       /* [k] */
+} hdi_columns;
+
+static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_report *rep) {
     hdi_heat_call h;
-    if (hdi_heat_begin(&h, heat, kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR, t, k, rep) < 0) return hdi_heat_end(&h);
+    if (hdi_heat_begin(&h, heat, c->kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR, 1, c->k, rep) < 0) return hdi_heat_end(&h);
+    h.t = c->t;
     h.method = HD_METHOD_DIRECT;
     h.diagonal = 1;
-    h.sources = sources;
-    h.set = set;
-    h.U = U;
-    h.ldu = ldu;
+    h.sources = c->sources;
+    h.set = c->set;
+    h.U = c->U;
+    h.ldu = c->ldu;
+    h.equal = c->equal;
+    h.watching = c->watching;
+    h.off_b = c->off_b;
+    h.off_m = c->off_m;
     if (hdi_heat_analysed(heat, 1, h.e) >= 0) {
         h.lap = heat->elim.lap;
-        (void)hdi_direct_run(&h);
+        if (h.equal) (void)hdi_heat_plain(&h);
+        else (void)hdi_direct_run(&h);
     }
     return hdi_heat_end(&h);
 }
 
-/* The column of vertex v by the same poles at the call's time, which entries found otherwise are held against. Its residual goes to the report. */
-static hd_status hdi_probe_column(hdi_heat_call *h, hd_kernel kernel, const hd_rational *set, int32_t v, double *u) {
+/* ---- rounding of inversions ---- */
+/* What rounding does to entries found by inversion no theorem says well. It is measured at a few rows where it is largest: a
+ * solve with the same poles, whose own error its residual bounds, is held against the entry. */
+enum { HDI_PROBES = 3 };
+
+typedef struct hdi_probe {
+    int32_t k, row[HDI_PROBES];
+    int32_t deflated;
+} hdi_probe;
+
+/* Rows to look at: where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). k may be NULL. */
+static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
+    hdi_probe x;
+    double most[2] = {-1, -1};
+    int32_t i, q, at[HDI_PROBES] = {-1, -1, -1};
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        double l = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            if (lap->L.col[p] == i) l = lap->L.val[p];
+        if (l / lap->b_diag[i] > most[0]) {
+            most[0] = l / lap->b_diag[i];
+            at[0] = i;
+        }
+        if (k && l * k[i] > most[1]) {
+            most[1] = l * k[i];
+            at[1] = i;
+        }
+    }
+    at[2] = also;
+    for (x.k = 0, i = 0; i < HDI_PROBES; i++) {
+        for (q = 0; q < x.k && x.row[q] != at[i]; q++) {}
+        if (at[i] >= 0 && q == x.k) x.row[x.k++] = at[i];
+    }
+    return x;
+}
+
+/* Their columns by the poles of set at the call's time; what is found stays in the plan's lanes. */
+static hd_status hdi_probe_run(hdi_heat_call *h, hdi_probe *x, hd_kernel kernel, const hd_rational *set) {
+    hd_heat *heat = h->heat;
     const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
-    hd_report probe;
-    if (!u) return h->e->status;
-    if (hdi_direct_columns(h->heat, h->t / h->heat->scale, kernel, &own, 1, &v, u, HDI_CAST(size_t, h->heat->source->n), &probe) < 0) *h->e = probe.error;
-    else h->rep->residual = hdi_max(h->rep->residual, probe.residual);
+    int32_t vertex[HDI_PROBES], i;
+    hdi_columns c;
+    hd_report rep;
+    for (i = 0; i < x->k; i++) vertex[i] = heat->elim.lap->vertex[x->row[i]];
+    memset(&c, 0, sizeof c);
+    c.t = h->t;
+    c.kernel = kernel;
+    c.set = &own;
+    c.k = x->k;
+    c.sources = vertex;
+    c.watching = 1;
+    x->deflated = c.t * heat->lambda_max > HDI_DEFLATE;
+    if (x->k > 0 && hdi_direct_columns(heat, &c, &rep) < 0) *h->e = rep.error;
+    else if (x->k > 0) h->rep->residual = hdi_max(h->rep->residual, rep.residual);
     return h->e->status;
+}
+
+/* Probe q's own entry by the weights of `set`, a set in terms of a time that is tau times that of the factors, and a bound of
+ * its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
+static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q, const hd_rational *set, double tau, double f, double g, double *off) {
+    const hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = m->lap;
+    const hdi_lane *lane = heat->lane + q;
+    const int32_t c = lap->component[x->row[q]];
+    const double mean = x->deflated && lap->conserves ? lane->target[c] / lap->component_mass[c] : 0, b = lap->b_diag[x->row[q]];
+    double value = set->a0 * f, by_b = 0, by_m = 0;
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++) {
+        const double count = hdi_rat_count(set, p), weight = count * hdi_cabs(set->a[p]) * hdi_ratio_root(lap) * lane->pole_off[p];
+        const hd_c64 constant = hdi_cdiv(hdi_c(mean, 0), m->set.theta[p]), all = hdi_cadd(lane->pole_value[p], constant);
+        value -= count / tau * hdi_cmul(set->a[p], all).re;
+        by_m += weight * hdi_pole_reach(set->theta[p]);
+        by_b += weight / hdi_pole_distance(set->theta[p]);
+    }
+    *off = hdi_min(g > 0 && g < HUGE_VAL ? sqrt(g) * by_m : HUGE_VAL, by_b * hdi_ratio_root(lap) / sqrt(b)) + 4 * DBL_EPSILON * fabs(value);
+    return value;
 }
 
 /* Entries of k_t for one time, in elimination order and in the unit of the scaled pair. */
@@ -17147,9 +18046,9 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
     x->k = room;
     x->g = room + size;
     x->size = size;
-    x->weighted = best >= 0 && m->set.max_weighted_error > 0 ? (1 + slack) * m->set.max_weighted_error : HUGE_VAL;
-    x->uniform = m->set.max_error > 0 ? m->set.max_error : m->set.kind == HD_POLES_OWN ? 0 : HUGE_VAL;
-    if (m->set.kind == HD_POLES_OWN && x->uniform == 0) x->weighted = 0;   /* bounds hold for c itself */
+    x->weighted = best >= 0 ? (1 + slack) * hdi_set_weighted(&m->set) : HUGE_VAL;
+    x->uniform = hdi_set_uniform(&m->set);       /* 0: bounds hold for c itself */
+    if (x->uniform == 0) x->weighted = 0;
     return HD_OK;
 }
 
@@ -17182,25 +18081,6 @@ static void hdi_operator_diagonal(const hdi_elim *m, const double *k, double *di
     }
 }
 
-/* What the report says of values with errors of at most off. */
-static void hdi_report_values(hd_report *rep, const double *value, const double *off, int32_t n, double solver) {
-    double largest = 0, smallest = HUGE_VAL, most = 0, relative = 0;
-    int32_t i;
-    for (i = 0; i < n; i++) {
-        const double v = fabs(value[i]);
-        largest = hdi_max(largest, v);
-        if (v > 0) smallest = hdi_min(smallest, v);
-        most = hdi_max(most, off[i]);
-        if (v > 0) relative = hdi_max(relative, off[i] / v);
-    }
-    if (largest == 0) return;
-    rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
-    rep->error_rational = hdi_max(rep->error_rational, most / largest);
-    rep->error_solver = hdi_max(rep->error_solver, solver);
-    rep->error_bound = hdi_max(rep->error_bound, most / largest + solver);
-    rep->error_relative = hdi_max(rep->error_relative, relative + solver);
-}
-
 /* Bound of a diagonal's error relative to the value itself above which the highest degree takes over: on all meshes tried errors are below 1e-7 then. With
  * B = I errors come closer to their bound. */
 static double hdi_diagonal_limit(const hd_heat *heat) {
@@ -17208,56 +18088,103 @@ static double hdi_diagonal_limit(const hd_heat *heat) {
     return kind == HD_LAPLACIAN_COT || kind == HD_LAPLACIAN_EXP ? 4.2e-7 : 5.3e-7;
 }
 
-/* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. */
-static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out) {
+/* The ledger of values found by inversion. */
+static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
+    const int itself = h->heat->elim.set.kind == HD_POLES_OWN && hdi_set_uniform(&h->heat->elim.set) == 0;
+    return hdi_ledger_begin(h->equal || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
+}
+
+/* Values by rows to vertices; their errors, off and rounding relative to the value, to the report, in the caller's unit.
+ * Returns the largest off relative to its value. */
+static double hdi_diagonal_tell(hdi_heat_call *h, hd_kernel kernel, const double *value, const double *off, double rounding, double *out) {
+    const hd_laplacian *lap = h->lap;
+    const double unit = kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
+    hdi_ledger ledger = hdi_inverse_ledger(h, 1);
+    double most = 0;
+    int32_t i, v;
+    h->relative = 1;
+    for (v = 0; v < lap->n; v++) out[v] = kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_parts part;
+        memset(&part, 0, sizeof part);
+        part.rational = unit * off[i];
+        part.rounding = unit * rounding * fabs(value[i]);
+        out[lap->vertex[i]] = unit * value[i];
+        hdi_ledger_note(&ledger, unit * value[i], part);
+        most = hdi_max(most, hdi_quotient(off[i], fabs(value[i])));
+    }
+    hdi_ledger_close(&ledger, h->rep);
+    return most;
+}
+
+/* Where t is so large that k_t(i,i) = 1/mass of the component. */
+static void hdi_diagonal_equal(hdi_heat_call *h, hd_kernel kernel, double *value, double *off, double *out) {
+    const hd_laplacian *lap = h->lap;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        value[i] = (kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1) / lap->component_mass[lap->component[i]];
+        off[i] = 0;
+    }
+    (void)hdi_diagonal_tell(h, kernel, value, off, HDI_CAST(double, lap->n_active) * DBL_EPSILON, out);
+}
+
+/* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. *relative: the largest of the
+ * rational error relative to the value. */
+static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
     hd_heat *heat = h->heat;
     const hd_laplacian *lap;
     const hdi_symbolic *s;
     const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *room, *value, *off, unit, solver = 0;
+    double *room, *value, *off, *g, rounding = 0;
     hdi_entries x;
+    hdi_probe probe;
     int64_t size, n;
     int32_t i, v, worst = 0;
+    *relative = 0;
     if (hdi_heat_analysed(heat, 1, h->e) < 0) return hdi_scope_end(&scope);
     h->lap = lap = heat->elim.lap;
+    h->equal = hdi_heat_equal(heat, h->t, h->e);
     s = &heat->elim.sym;
     size = full ? s->a_ptr[s->n_super] : s->n;
     room = HDI_TAKE(&scope, double, 2 * size);
-    value = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, s->n));
-    if (h->e->status < 0 || hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) < 0) return hdi_scope_end(&scope);
+    value = HDI_TAKE(&scope, double, 3 * HDI_CAST(size_t, s->n));
+    if (h->e->status < 0) return hdi_scope_end(&scope);
     off = value + s->n;
+    g = off + s->n;
+    if (h->equal) {
+        hdi_diagonal_equal(h, kernel, value, off, out);
+        return hdi_scope_end(&scope);
+    }
+    if (hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) < 0) return hdi_scope_end(&scope);
     if (full) {
         hdi_operator_diagonal(&heat->elim, x.k, value);
         for (v = 0; v < s->n_super; v++)
-            for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-                const int32_t at = s->super[v] + s->a_col[n];
-                if (s->a_row[n] == s->a_col[n]) off[at] = hdi_min(x.weighted < HUGE_VAL ? x.weighted * sqrt(x.g[n] * lap->b_diag[at]) : HUGE_VAL, x.uniform / sqrt(lap->b_ratio));
-            }
+            for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++)
+                if (s->a_row[n] == s->a_col[n]) g[s->super[v] + s->a_col[n]] = x.g[n];
+        for (i = 0; i < s->n; i++) off[i] = hdi_min(x.weighted == 0 ? 0 : x.weighted < HUGE_VAL ? x.weighted * sqrt(hdi_max(0, g[i]) * lap->b_diag[i]) : HUGE_VAL,
+                                                    x.uniform * hdi_ratio_root(lap));
     } else {
         const double a0 = heat->elim.set.a0;
         if (lap->B) x.uniform += fabs(a0);       /* a0 diag(B^-1) is left out: a full B's inverse is not at hand, and a0 is of the size of the set's error */
         for (i = 0; i < s->n; i++) {
             const double b = kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
+            g[i] = x.g[i];
             value[i] = b * (x.k[i] + (lap->B ? 0 : a0 / lap->mass[i]));
             off[i] = b * hdi_entry_error(&x, x.g[i], lap->b_diag[i], lap->b_ratio);
         }
     }
     for (i = 1; i < s->n; i++)
         if (off[i] * value[worst] > off[worst] * value[i]) worst = i;
-    unit = kernel == HD_KERNEL_SYMMETRIC ? heat->scale : 1;
-    for (v = 0; v < lap->n; v++) out[v] = kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
-    for (i = 0; i < s->n; i++) {
-        off[i] *= unit;                          /* the report is in the caller's unit */
-        out[lap->vertex[i]] = value[i] *= unit;
+    probe = hdi_probe_rows(lap, value, s->n > 0 ? worst : -1);
+    if (hdi_probe_run(h, &probe, kernel, &heat->elim.set) < 0) return hdi_scope_end(&scope);
+    for (i = 0; i < probe.k; i++) {
+        const int32_t row = probe.row[i];
+        const double f = kernel == HD_KERNEL_OPERATOR ? 1 : lap->B ? 0 : 1 / lap->mass[row];
+        double by, there = hdi_probe_value(heat, &probe, i, &heat->elim.set, 1, f, g[row], &by);
+        rounding = hdi_max(rounding, hdi_quotient(fabs(there - value[row]) + by, fabs(value[row])));
     }
-    if (s->n > 0) {                              /* rounding: one entry by a solve */
-        double *u = HDI_TAKE(&scope, double, lap->n);
-        v = lap->vertex[worst];
-        if (hdi_probe_column(h, kernel, &heat->elim.set, v, u) < 0) return hdi_scope_end(&scope);
-        solver = out[v] != 0 ? fabs(u[v] - out[v]) / fabs(out[v]) + DBL_EPSILON : 0;
-    }
-    hdi_report_values(h->rep, value, off, s->n, solver);
+    *relative = hdi_diagonal_tell(h, kernel, value, off, rounding, out);
     return hdi_scope_end(&scope);
 }
 
@@ -17282,59 +18209,90 @@ static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, 
     }
 }
 
-/* Adds a0 B^-1 where B is diagonal, and bounds the rational error: that of an entry (i,j) is at most the larger of those of (i,i) and (j,j). */
-static int32_t hdi_edges_judge(const hdi_elim *m, hdi_entries *x, hd_report *rep) {
+/* Adds a0 B^-1 where B is diagonal, and notes the rational error: that of an entry (i,j) is at most the larger of those of (i,i)
+ * and (j,j). k and g [n]: their diagonals. */
+static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double *g, hdi_ledger *ledger) {
     const hdi_symbolic *s = &m->sym;
     const hd_laplacian *lap = m->lap;
-    double largest = 0, most = 0;
-    int32_t v, i, worst = 0;
+    hdi_parts part;
+    int32_t v, i;
     int64_t n;
+    memset(&part, 0, sizeof part);
     if (lap->B) x->uniform += fabs(m->set.a0);
     for (v = 0; v < s->n_super; v++) {
         for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
             if (s->a_row[n] != s->a_col[n]) continue;
             i = s->super[v] + s->a_col[n];
             if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
-            largest = hdi_max(largest, fabs(x->k[n]));
-            most = hdi_max(most, hdi_entry_error(x, x->g[n], lap->b_diag[i], lap->b_ratio));
-            if (fabs(x->k[n]) == largest) worst = i;
+            k[i] = x->k[n];
+            g[i] = x->g[n];
+            part.rational = m->scale * hdi_entry_error(x, g[i], lap->b_diag[i], lap->b_ratio);
+            hdi_ledger_note(ledger, m->scale * k[i], part);
         }
     }
-    if (largest > 0) rep->error_rational = rep->error_bound = most / largest;
-    return worst;
 }
 
-/* Rounding, by a solve: what the entries of a row differ by from those of vertex v's column, relative to the largest of them. (Columns conserve heat, which
- * uniform sets do not by themselves: with these it shows their error too.) */
-static void hdi_edges_probe(hdi_heat_call *h, int32_t v, const double *values) {
-    hd_heat *heat = h->heat;
-    const hd_laplacian *lap = heat->source;
-    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *u = HDI_TAKE(&scope, double, lap->n), off = 0, largest = 0;
+/* Rounding of a row: the probe's own entry, and what its column differs by from the entries of the row. */
+static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe, int32_t q, const double *k, const double *g, const double *values) {
+    const hd_laplacian *lap = heat->source, *in = heat->elim.lap;
+    const int32_t at = probe->row[q], row = lap->row[in->vertex[at]];
+    double by, there = hdi_probe_value(heat, probe, q, &heat->elim.set, 1, lap->B ? 0 : 1 / in->mass[at], g[at], &by), most;
+    hdi_parts part;
     int64_t p;
-    if (hdi_probe_column(h, HD_KERNEL_SYMMETRIC, &heat->elim.set, v, u) >= 0) {
-        const int32_t row = lap->row[v];
-        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
-            largest = hdi_max(largest, fabs(values[p]));
-            off = hdi_max(off, fabs(u[lap->vertex[lap->L.col[p]]] - values[p]));
-        }
-        h->rep->error_solver = largest > 0 ? off / largest + DBL_EPSILON : 0;
-        h->rep->error_bound += h->rep->error_solver;
+    most = heat->scale * (fabs(there - k[at]) + by);
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && heat->elim.set.a0 == 0; p++) {
+        const int32_t j = in->row[lap->vertex[lap->L.col[p]]];
+        const double off = hdi_max(1, g[at] > 0 ? sqrt(hdi_max(0, g[j]) / g[at]) : 1) * by;
+        most = hdi_max(most, fabs(heat->scale * heat->lane[q].u[j] - values[p]) + heat->scale * off);
     }
-    hdi_scope_end(&scope);
+    memset(&part, 0, sizeof part);
+    part.rounding = most;
+    return part;
+}
+
+/* Where t is so large that k_t is 1/mass of the component. */
+static void hdi_edges_equal(hdi_heat_call *h, double *values) {
+    const hd_laplacian *lap = h->heat->source;
+    hdi_ledger ledger = hdi_inverse_ledger(h, 0);
+    hdi_parts part;
+    int32_t i;
+    int64_t p;
+    memset(&part, 0, sizeof part);
+    for (i = 0; i < lap->n_active; i++) {
+        const double k = 1 / lap->component_mass[lap->component[i]];
+        part.rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON * k;
+        hdi_ledger_note(&ledger, k, part);
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) values[p] = k;
+    }
+    hdi_ledger_close(&ledger, h->rep);
 }
 
 /* With the set's degree, into values. */
-static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
+static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *rational) {
     hd_heat *heat = h->heat;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    const int64_t size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
-    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
+    const hdi_symbolic *s = &heat->elim.sym;
+    const int64_t size = s->a_ptr[s->n_super];
+    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size)), *k = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, s->n));
     hdi_entries x;
-    if (room && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
-        const int32_t worst = hdi_edges_judge(&heat->elim, &x, h->rep);
+    int32_t i;
+    *rational = 0;
+    h->lap = heat->elim.lap;
+    h->equal = h->e->status >= 0 && hdi_heat_equal(heat, h->t, h->e);
+    if (h->equal) hdi_edges_equal(h, values);
+    else if (h->e->status >= 0 && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
+        hdi_ledger ledger = hdi_inverse_ledger(h, 0);
+        hdi_probe probe;
+        int32_t top = 0;
+        hdi_edges_judge(&heat->elim, &x, k, k + s->n, &ledger);
+        *rational = hdi_quotient(ledger.off.rational, ledger.largest);
         hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
-        if (heat->elim.sym.n > 0) hdi_edges_probe(h, heat->elim.lap->vertex[worst], values);
+        for (i = 1; i < s->n; i++)
+            if (k[i] > k[top]) top = i;
+        probe = hdi_probe_rows(h->lap, k, s->n > 0 ? top : -1);
+        if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, &heat->elim.set) >= 0)
+            for (i = 0; i < probe.k; i++) hdi_ledger_note(&ledger, heat->scale * k[probe.row[i]], hdi_edges_rounding(heat, &probe, i, k, k + s->n, values));
+        hdi_ledger_close(&ledger, h->rep);
     }
     return hdi_scope_end(&scope);
 }
@@ -17346,17 +18304,18 @@ static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges,
     const hd_report before = *h->rep;
     const hd_heat *heat = h->heat;
     const double loose = kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1;   /* the bound, of the operator's diagonal */
+    double rational;
     hd_status st;
-    if ((edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out)) < 0) return h->e->status;
+    if ((edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational)) < 0) return h->e->status;
     if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
-    if ((edges ? h->rep->error_bound : h->rep->error_relative) <= loose * hdi_diagonal_limit(heat)) return HD_OK;
+    if (rational <= loose * hdi_diagonal_limit(heat)) return HD_OK;
     *h->rep = before;
     h->degree = HDI_RAT_KERNEL_MAX;
-    st = edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out);
+    st = edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational);
     h->degree = 0;
     if (st != HD_ERR_MEMORY_LIMIT) return st;
     *h->rep = before;                            /* no room for twice the factors: the first answer it is */
-    return edges ? hdi_edges_once(h, out) : hdi_diagonal_once(h, kernel, out);
+    return edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational);
 }
 
 /* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
@@ -17418,37 +18377,36 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
     hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
     double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
-    int32_t q, i, worst = 0, v;
+    int32_t q, i, r, worst = -1;
     double most = 0;
+    hdi_probe probe;
     if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
     h->t = t[0];
     h->set = set;
     if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
     hdi_shared_weights(set, n_times, t, weight);
     if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, HDI_WANT_DIAGONAL, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < n_times; q++) {
-        double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
-        double *out = D + HDI_CAST(size_t, column[q]) * ldd;
-        for (v = 0; v < m->lap->n; v++) out[v] = 0;
-        for (i = 0; i < m->sym.n; i++) {
-            off[i] = hdi_min(set[q].max_weighted_error * g[i], set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
-            off[i] *= heat->scale;               /* the report is in the caller's unit */
-            k[i] *= heat->scale;
-            out[m->lap->vertex[i]] = k[i];
-            if (k[i] > 0 && off[i] / k[i] > most) {
-                most = off[i] / k[i];
-                worst = i;
-            }
-        }
-        hdi_report_values(h->rep, k, off, m->sym.n, 0);
-    }
     h->set = NULL;
-    if (n > 0) {                                 /* rounding: one entry by a solve with the same poles */
-        double *u = HDI_TAKE(&s, double, m->lap->n), there;
-        v = m->lap->vertex[worst];
-        if (hdi_probe_column(h, HD_KERNEL_SYMMETRIC, set, v, u) < 0) return hdi_scope_end(&s);
-        there = D[HDI_CAST(size_t, column[0]) * ldd + HDI_CAST(size_t, v)];
-        if (there != 0) h->rep->error_solver = hdi_max(h->rep->error_solver, fabs(u[v] - there) / fabs(there) + DBL_EPSILON);
+    h->lap = m->lap;
+    for (i = 0; i < m->sym.n; i++) {             /* of the last time: there rounding is largest */
+        const double *k = room + 2 * HDI_CAST(size_t, n_times - 1) * n, *g = k + n;
+        if (worst < 0 || g[i] * most > k[i]) {
+            worst = i;
+            most = hdi_quotient(k[i], g[i]);
+        }
+    }
+    probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * n, worst);
+    if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set) < 0) return hdi_scope_end(&s);
+    for (q = 0; q < n_times; q++) {
+        const double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
+        double rounding = 0;
+        for (r = 0; r < probe.k; r++) {
+            const int32_t row = probe.row[r];
+            double by, there = hdi_probe_value(heat, &probe, r, set + q, t[q] / t[0], 0, g[row], &by);
+            rounding = hdi_max(rounding, hdi_quotient(fabs(there - k[row]) + by, fabs(k[row])));
+        }
+        for (i = 0; i < m->sym.n; i++) off[i] = hdi_min(set[q].max_weighted_error * hdi_max(0, g[i]), set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
+        (void)hdi_diagonal_tell(h, HD_KERNEL_SYMMETRIC, k, off, rounding, D + HDI_CAST(size_t, column[q]) * ldd);
     }
     return hdi_scope_end(&s);
 }
@@ -17462,7 +18420,6 @@ static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, doubl
         for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
         if (hdi_diagonal_window(h, q1 - q0, h->times + q0, h->time_column + q0, D, ldd) < 0) break;
     }
-    h->rep->error_bound = h->rep->error_rational + h->rep->error_solver;
     return h->e->status;
 }
 
@@ -17477,13 +18434,13 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const do
         int32_t packs = 0, windows;
         hdi_heat_sort_times(&h, n_times, t);
         windows = h.e->status < 0 ? 0 : hdi_shared_windows(h.times[n_times - 1] / h.times[0], HDI_SHARED_TOL, n_times, &packs);
-        if (windows > 0 && 8 * packs < 9 * n_times) {   /* a set of degree 9 is a pack and a real factor */
+        if (windows > 0 && 8 * packs < 9 * n_times && !hdi_heat_equal(heat, h.t, h.e)) {   /* a set of degree 9 is a pack and a real factor */
             if (hdi_diagonal_windows(&h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return hdi_heat_end(&h);
             hdi_heat_forget(&h);                 /* one by one takes less */
         }
     }
     for (q = 0; q < n_times && h.e->status >= 0; q++) {
-        h.t = t[q] * heat->scale;
+        h.t = hdi_heat_scaled(heat, t[q]);
         if (hdi_entries_sure(&h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h.e->column = q;
     }
     return hdi_heat_end(&h);
@@ -17499,152 +18456,154 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd
     return hdi_heat_end(&h);
 }
 
-/* ---- filters of the spectrum: commute time and biharmonic ---- */
+/* ---- distances ---- */
 
-/* The smallest eigenvalue of the (scaled) pair that is not a constant's, to a few per cent: inverse iteration with constants taken out. */
-static hd_status hdi_heat_gap(hd_heat *heat, double *lambda, hd_error *e) {
-    enum { STEPS = 12 };
+/* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source, and bounds of
+ * their errors: the rational one of f is at most weighted times a form with diagonal g, and at most uniform times one with
+ * diagonal spread; that of a column by rounding at most sqrt(g_v) times a number that is known of each column. */
+typedef struct hdi_metric {
+    hd_distance_kind kind;
+    double t;                    /* of columns, scaled */
+    double unit;                 /* of f to the plan's numbers */
+    hd_rational set;             /* of the factors */
+    int filter, equal;           /* no time; t is as good as infinite */
+    double *diag, *g, *spread;
+    hd_rational resolvent;       /* weights for g */
+    double weighted, uniform;    /* HUGE_VAL: it bounds nothing */
+    double rounding;             /* of diag, relative to it */
+} hdi_metric;
+
+/* A column of f by vertices, and what rounding can put it off by: sqrt(g_v) times off_m, and sqrt(spread_v) times off_b. */
+typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
+
+/* Commute and biharmonic, from L grounded. */
+static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scope, hd_error *e) {
+    const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
     hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap;
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    double *x, *bx, *work, *sums;
-    uint64_t seed = 88172645463325252u;
-    int32_t i, k;
-    if (hdi_heat_analysed(heat, 1, e) < 0 || hdi_elim_shift(m, 1e10 / heat->lambda_max, e) < 0) return hdi_scope_end(&s);
-    lap = m->lap;
-    x = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, lap->n_active));
-    work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1, 1));
-    sums = HDI_TAKE(&s, double, lap->n_components);
-    if (e->status < 0) return hdi_scope_end(&s);
-    bx = x + lap->n_active;
-    for (i = 0; i < lap->n_active; i++) {        /* xorshift (Marsaglia 2003) */
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        x[i] = HDI_CAST(double, seed >> 11) / 9007199254740992.0 - 0.5;
+    hdi_ground *g = &heat->ground;
+    double *work, *u;
+    hdi_probe probe;
+    int32_t i, farthest = 0;
+    if (hdi_ground_make(m, g, e) < 0 || (forms && hdi_ground_forms(m, g, e) < 0)) return e->status;
+    work = HDI_TAKE(scope, double, hdi_ground_room(m));
+    u = HDI_TAKE(scope, double, m->sym.n);
+    if (!work || !u) return scope->e->status;
+    x->unit = forms ? 1 / heat->scale : 1;
+    for (i = 0; i < m->sym.n; i++) {
+        const int32_t r = m->sym.perm[i];
+        x->diag[r] = x->unit * (forms ? g->form[i] : g->diag[i]);
+        x->g[r] = hdi_max(0, g->diag[i]);
+        x->spread[r] = HUGE_VAL;
     }
-    for (k = 0; k <= STEPS; k++) {
-        double norm;
-        if (lap->conserves) {
-            hdi_component_sums(lap, lap->mass, x, sums);
-            for (i = 0; i < lap->n_components; i++) sums[i] /= -lap->component_mass[i];
-            hdi_component_add(lap, sums, x);
-        }
-        hdi_pair_apply(lap, 0, 1, x, bx);
-        norm = hdi_dot(x, bx, lap->n_active);
-        if (!(norm > 0)) break;                  /* nothing but constants: no gap */
-        for (i = 0; i < lap->n_active; i++) x[i] /= sqrt(norm);
-        if (k == STEPS) {
-            hdi_pair_apply(lap, 1, 0, x, bx);
-            *lambda = hdi_dot(x, bx, lap->n_active);
-        } else {
-            hdi_sweep z;
-            for (i = 0; i < lap->n_active; i++) x[i] = bx[i] / sqrt(norm);
-            z = hdi_sweep_open(&m->real, 1, x, work, 1);
-            hdi_sweep_run(&z, heat->ctx);
-        }
-    }
-    return hdi_scope_end(&s);
-}
-
-/* Poles on a circle of radius rho about zero, whose trapezoidal sum of Cauchy's integral gives 1/lambda or 1/lambda^2 for lambda >= gap, and zero for
- * constants, with a relative error of (rho/gap)^8 or so. As a filter of x = -lambda; t = 1. */
-static hd_status hdi_filter_set(hd_heat *heat, hd_distance_kind kind, hd_rational *set, hd_error *e) {
-    const double step = 3.14159265358979323846 / 8;
-    double gap = 0, rho;
-    int32_t q;
-    memset(set, 0, sizeof *set);
-    if (hdi_heat_gap(heat, &gap, e) < 0) return e->status;
-    rho = gap > 0 ? gap / 40 : heat->lambda_max > 0 ? heat->lambda_max / 40 : 1;
-    set->kind = HD_POLES_OWN;
-    set->degree = 8;
-    set->n_poles = 4;
-    for (q = 0; q < 4; q++) {
-        const hd_c64 s = hdi_c(rho * cos((2 * q + 1) * step), rho * sin((2 * q + 1) * step));
-        set->theta[q] = s;
-        set->a[q] = kind == HD_DISTANCE_COMMUTE ? hdi_c(-0.125, 0) : hdi_cdiv(hdi_c(0.125, 0), s);
+    for (i = 1; i < m->sym.n; i++)
+        if (g->diag[i] > g->diag[farthest]) farthest = i;
+    probe = hdi_probe_rows(m->lap, g->diag, m->sym.n > 0 ? farthest : -1);
+    for (i = 0; i < probe.k; i++) {
+        const double there = forms ? g->form[probe.row[i]] : g->diag[probe.row[i]];
+        const double off = hdi_ground_column(m, g, probe.row[i], forms, u, work);
+        x->rounding = hdi_max(x->rounding, hdi_quotient(4 * fabs(u[probe.row[i]] - there) + off * sqrt(hdi_max(0, g->diag[probe.row[i]])), there));
     }
     return HD_OK;
 }
 
-/* ---- distances ---- */
+/* Where t is so large that kernels are the means of the components. */
+static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
+    int32_t r;
+    for (r = 0; r < lap->n_active; r++) {
+        const double b = lap->mass[r], k = 1 / lap->component_mass[lap->component[r]];
+        x->diag[r] = x->kind == HD_DISTANCE_WEIGHTED ? b * b * k : k;
+        x->g[r] = x->spread[r] = 0;
+    }
+    x->rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON;
+}
 
-/* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) and the bound of its error by rows of the source. */
-typedef struct hdi_metric {
-    hd_distance_kind kind;
-    double t, column_unit;       /* of columns: unscaled time; factor for what the plan returns */
-    hd_rational set;             /* of the factors */
-    int filter;
-    double *diag, *off;
-    hd_rational resolvent;       /* weights for g, and the factor that makes it a bound; HUGE_VAL: it bounds nothing */
-    double weighted;
-} hdi_metric;
+/* The diagonal by inversion of the factors of the poles, at h->t. */
+static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *scope) {
+    hd_heat *heat = h->heat;
+    hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = heat->source;
+    const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
+    double *room = HDI_TAKE(scope, double, 2 * HDI_CAST(size_t, m->sym.n));
+    hdi_entries entries;
+    hdi_probe probe;
+    int32_t i;
+    if (!room || hdi_entries_make(h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) < 0) return h->e->status;
+    if (lap->B && !full) entries.uniform += fabs(m->set.a0);
+    for (i = 0; i < m->sym.n; i++) {
+        const int32_t r = m->sym.perm[i];
+        const double b = lap->b_diag[r], w = weighted && !full ? b * b : 1;
+        x->diag[r] = w * heat->scale * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i])) + (full ? m->set.a0 * b : 0);
+        x->g[r] = w * heat->scale * entries.g[i];
+        x->spread[r] = weighted ? b : lap->b_ratio > 0 ? 1 / (lap->b_ratio * b) : HUGE_VAL;
+    }
+    x->set = m->set;
+    x->resolvent = entries.resolvent;
+    x->weighted = entries.weighted;
+    x->uniform = entries.uniform;
+    probe = hdi_probe_rows(m->lap, entries.k, -1);
+    if (hdi_probe_run(h, &probe, full ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x->set) < 0) return h->e->status;
+    for (i = 0; i < probe.k; i++) {
+        const int32_t row = probe.row[i];
+        double by, there, value = entries.k[row];
+        if (full) {                              /* f is (B K)(v,v): the column is K e_v */
+            hdi_pair_apply(m->lap, 0, 1, heat->lane[i].u, heat->lane[i].tmp);
+            there = heat->lane[i].tmp[row];
+            (void)hdi_probe_value(heat, &probe, i, &x->set, 1, 1, HUGE_VAL, &by);
+            by *= sqrt(m->lap->b_diag[row]) / (hdi_ratio_root(m->lap) / sqrt(m->lap->b_diag[row]));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
+            value = (x->diag[m->sym.perm[row]]) * heat->scale;
+            x->rounding = hdi_max(x->rounding, m->set.a0 == 0 ? hdi_quotient(fabs(there - value) + by, fabs(value)) : hdi_quotient(by, fabs(value)));
+            continue;
+        }
+        there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
+        x->rounding = hdi_max(x->rounding, hdi_quotient(fabs(there - value) + by, fabs(value)));
+    }
+    return HD_OK;
+}
 
 static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, hdi_metric *x, hdi_scope *keep, hd_report *rep) {
     const hd_laplacian *lap = heat->source;
-    const int full = kind == HD_DISTANCE_WEIGHTED && lap->B != NULL;
+    const size_t n = HDI_CAST(size_t, lap->n_active);
     hd_error *e = keep->e;
     hdi_scope scope;
     hdi_heat_call h;
-    hdi_entries entries;
-    hdi_elim *m;
-    double *room, unit = heat->scale;
-    int32_t i;
     memset(x, 0, sizeof *x);
     x->kind = kind;
-    x->filter = kind == HD_DISTANCE_COMMUTE || kind == HD_DISTANCE_BIHARMONIC;
-    x->diag = HDI_TAKE(keep, double, 2 * HDI_CAST(size_t, lap->n_active) + 1);
+    x->filter = kind >= HD_DISTANCE_COMMUTE;
+    x->diag = HDI_TAKE(keep, double, 3 * n + 1);
     if (!x->diag) return e->status;
-    x->off = x->diag + lap->n_active;
+    x->g = x->diag + n;
+    x->spread = x->g + n;
     scope = hdi_scope_begin(heat->ctx, e);
-    if (x->filter && hdi_filter_set(heat, kind, &x->set, e) < 0) return e->status;
-    x->t = x->filter ? 1 / heat->scale : 2 * t;
-    x->column_unit = kind == HD_DISTANCE_COMMUTE ? 1 / heat->scale : kind == HD_DISTANCE_BIHARMONIC ? 1 / (heat->scale * heat->scale) : 1;
-    if (x->filter) unit *= x->column_unit;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, x->t, 1, rep) < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) {
+    x->t = hdi_min(2 * hdi_heat_scaled(heat, t), 1e300);
+    x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, 1, 1, rep) < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) {
         *e = *h.e;
         return hdi_heat_end(&h);
     }
-    h.method = HD_METHOD_DIRECT;
-    h.diagonal = 1;
+    hdi_direct_only(&h);
+    h.t = x->t;
     h.degree = degree;
-    h.set = x->filter ? &x->set : NULL;
-    m = &heat->elim;
-    h.lap = m->lap;
-    room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, m->sym.n));
-    if (room && hdi_entries_make(&h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) >= 0) {
-        if (lap->B && !full) entries.uniform += fabs(m->set.a0);
-        for (i = 0; i < m->sym.n; i++) {
-            const int32_t r = m->sym.perm[i];
-            const double b = lap->b_diag[r], w = kind == HD_DISTANCE_WEIGHTED ? b * b : 1;
-            if (full) {
-                x->diag[r] = unit * entries.k[i] + m->set.a0 * b;
-                x->off[r] = hdi_min(entries.weighted < HUGE_VAL ? entries.weighted * unit * entries.g[i] : HUGE_VAL, entries.uniform * b);
-                continue;
-            }
-            x->diag[r] = w * unit * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i]));
-            x->off[r] = w * unit * hdi_entry_error(&entries, entries.g[i], m->lap->b_diag[i], lap->b_ratio);
-        }
-    }
-    x->set = m->set;
-    rep->method = HD_METHOD_DIRECT;
-    rep->reason = "selected inversion of the factors of the poles";
-    rep->ordering = m->sym.ordering;
-    rep->factor_nnz = m->sym.nnz;
-    if (h.e->status >= 0) {
-        x->resolvent = entries.resolvent;
-        x->weighted = entries.weighted;
+    h.lap = heat->elim.lap;
+    h.relative = 1;
+    if (x->filter) {
+        rep->reason = "one real factor of L, one vertex of each component held";
+        (void)hdi_metric_ground(heat, x, &scope, h.e);
+        rep->factor_flops = heat->elim.sym.flops;
+    } else {
+        x->equal = hdi_heat_equal(heat, x->t, h.e);
+        if (x->equal) hdi_metric_equal(lap, x);
+        else if (h.e->status >= 0) (void)hdi_metric_invert(&h, x, &scope);
     }
     if (h.e->status < 0 && e->status >= 0) *e = *h.e;
     hdi_heat_end(&h);
     return hdi_scope_end(&scope);
 }
 
-/* Column s of f into u [n], by vertices, as the metric's plan gives it; then in place what it is (a weighted one: B K_2t e_s). work [2 n_active]. */
-static void hdi_metric_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
+/* Column s of f into u [n], by vertices, from what the plan gives: of k_t, or of K_t e_s. work [2 n_active]. */
+static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
     int32_t i;
     if (x->kind != HD_DISTANCE_WEIGHTED) {
-        for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : x->column_unit * u[i];
+        for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : u[i];
         return;
     }
     hdi_gather(lap, u, work);
@@ -17652,20 +18611,79 @@ static void hdi_metric_column(const hd_laplacian *lap, const hdi_metric *x, doub
     for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : work[lap->n_active + lap->row[i]];
 }
 
-/* d from column s of f, in place. g: the same column of weighted times the resolvent, whose own d^2 bounds the error of this one; NULL: from the diagonals,
- * which is less sharp near s. Between components the last two kinds are infinite. */
-static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s, double *u, const double *g, hd_report *rep) {
+/* Columns of f for k sources, step apart; c [k]. rep: residual. */
+static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, int32_t k, const int32_t *sources, double *D, size_t step, hdi_metric_column *c, hd_report *rep, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    const hd_laplacian *lap = heat->source;
+    const size_t n = HDI_CAST(size_t, lap->n_active);
+    const double unit = x->kind == HD_DISTANCE_WEIGHTED ? 1 / sqrt(heat->scale) : sqrt(heat->scale);
+    double *work, *off, *u;
+    hdi_columns query;
+    hd_report columns;
+    int32_t r, i;
+    for (r = 0; r < k; r++) c[r].u = D + HDI_CAST(size_t, r) * step;
+    if (x->filter) {
+        work = HDI_TAKE(&s, double, hdi_ground_room(&heat->elim));
+        u = HDI_TAKE(&s, double, n);
+        for (r = 0; r < k && e->status >= 0; r++) {
+            const int32_t row = heat->elim.lap->row[sources[r]];
+            if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, e) < 0) break;
+            c[r].off_m = 0;
+            c[r].off_b = HUGE_VAL;
+            memset(c[r].u, 0, HDI_CAST(size_t, lap->n) * sizeof(double));
+            if (row < 0) continue;
+            c[r].off_m = x->unit * hdi_ground_column(&heat->elim, &heat->ground, row, x->kind == HD_DISTANCE_BIHARMONIC, u, work);
+            for (i = 0; i < heat->elim.sym.n; i++) c[r].u[heat->elim.lap->vertex[i]] = x->unit * u[i];
+        }
+        return hdi_scope_end(&s);
+    }
+    off = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(size_t, k) + 1);
+    work = HDI_TAKE(&s, double, 2 * n + 1);
+    if (e->status < 0) return hdi_scope_end(&s);
+    memset(&query, 0, sizeof query);
+    query.t = x->t;
+    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    query.set = &x->set;
+    query.k = k;
+    query.equal = x->equal;
+    query.sources = sources;
+    query.U = D;
+    query.ldu = step;
+    query.off_b = off;
+    query.off_m = off + k;
+    if (hdi_direct_columns(heat, &query, &columns) < 0) *e = columns.error;
+    else rep->residual = hdi_max(rep->residual, columns.residual);
+    for (r = 0; r < k && e->status >= 0; r++) {
+        hdi_metric_of_column(lap, x, c[r].u, work);
+        c[r].off_m = unit * off[k + r];
+        c[r].off_b = unit * off[r] * (x->kind == HD_DISTANCE_WEIGHTED ? sqrt(heat->scale) : 1);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Bound of the rational error of d^2 between s and v: of the form of g, whose column g_sv is known or not, and of that of
+ * spread; either bounds it alone. */
+static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss, double sv) {
+    const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, gv)), wide = sqrt(ss) + sqrt(sv);
+    double form = root * root, bound = HUGE_VAL;
+    if (x->filter || x->equal || x->uniform == 0) return 0;
+    if (gsv) form = hdi_min(form, hdi_max(0, gs + gv - 2 * *gsv) + (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
+    if (x->weighted < HUGE_VAL) bound = x->weighted * form;
+    return hdi_min(bound, x->uniform * wide * wide);
+}
+
+/* d from column s of f, in place. g: the same column of the resolvent, whose own d^2 bounds the rational error; NULL: from the
+ * diagonals, which is less sharp near s. Between components the last two kinds are infinite. */
+static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s, const hdi_metric_column *c, const double *g, hd_report *rep, hdi_ledger *ledger) {
     const int32_t rs = lap->row[s];
-    const double fs = rs < 0 ? 0 : x->diag[rs], offs = rs < 0 ? 0 : x->off[rs];
-    const double solver = rs < 0 ? 0 : fabs(u[s] - fs) + 4 * DBL_EPSILON * fs;
-    double largest = 0, smallest = HUGE_VAL, most = 0, relative = 0;
+    const double fs = rs < 0 ? 0 : x->diag[rs], gs = rs < 0 ? 0 : x->g[rs], ss = rs < 0 ? 0 : x->spread[rs];
+    double *u = c->u;
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         const int32_t r = lap->row[v];
-        const double f = r < 0 ? 0 : x->diag[r], off = r < 0 ? 0 : x->off[r], d2 = fs - 2 * u[v] + f;
-        const double root = sqrt(hdi_max(off, 0)) + sqrt(hdi_max(offs, 0)), form = g ? hdi_min(hdi_max(0, offs + off - 2 * g[v]), root * root) : root * root;
-        const double delta = form + 4 * solver + 4 * DBL_EPSILON * f;
-        double d, error;
+        const double f = r < 0 ? 0 : x->diag[r], gv = r < 0 ? 0 : x->g[r], sv = r < 0 ? 0 : x->spread[r], d2 = fs - 2 * u[v] + f;
+        double rational, rounding = 0, delta, error, d;
+        hdi_parts part;
         if (v == s) {
             u[v] = 0;
             continue;
@@ -17674,32 +18692,43 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
             u[v] = HUGE_VAL;
             continue;
         }
+        rational = hdi_metric_rational(x, gs, gv, g ? g + v : NULL, ss, sv);
+        if (r >= 0 && rs >= 0) {
+            const double by_m = c->off_m == 0 ? 0 : gv < HUGE_VAL ? sqrt(hdi_max(0, gv)) * c->off_m : HUGE_VAL;
+            const double by_b = c->off_b == 0 ? 0 : sv < HUGE_VAL && c->off_b < HUGE_VAL ? sqrt(sv) * c->off_b : HUGE_VAL;
+            rounding = 2 * hdi_min(by_m, by_b);
+        }
+        rounding += (x->rounding + 4 * DBL_EPSILON) * (fs + f);
+        delta = rational + rounding;
         d = d2 > 0 ? sqrt(d2) : 0;
         u[v] = d;
-        if (delta == 0) continue;
         error = d2 > delta ? delta / d : sqrt(2 * delta);
-        rep->n_lost += d2 < 10 * delta;
-        largest = hdi_max(largest, d);
-        if (d > 0) smallest = hdi_min(smallest, d);
-        most = hdi_max(most, error);
-        relative = hdi_max(relative, d > 0 ? error / d : HUGE_VAL);
+        rep->n_lost += delta > 0 && d2 < 10 * delta;
+        memset(&part, 0, sizeof part);
+        if (delta > 0) {
+            part.rational = delta < HUGE_VAL ? error * (rational / delta) : rational;
+            part.rounding = delta < HUGE_VAL ? error * (rounding / delta) : rounding;
+        }
+        hdi_ledger_note(ledger, d, part);
     }
-    if (most == 0) return;
-    if (largest > 0) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, smallest) : smallest;
-    rep->error_bound = hdi_max(rep->error_bound, largest > 0 ? most / largest : HUGE_VAL);   /* nothing is left of any */
-    rep->error_relative = hdi_max(rep->error_relative, relative);
+}
+
+static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
+    const int none = x->filter || x->equal || x->uniform == 0;
+    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, 1);
 }
 
 static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, hd_error *e) {
     int32_t q;
     if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC) return hdi_fail(e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (n_times < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: the number of times is negative");
     if (heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV)
         return hdi_fail(e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
-    if (kind >= HD_DISTANCE_COMMUTE) return n_times > 1 ? hdi_fail_row(e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times) : HD_OK;
-    if (n_times > 0 && !t) return hdi_missing(e);
+    if (kind >= HD_DISTANCE_COMMUTE)
+        return n_times > 1 || n_times < 0 ? hdi_fail_row(e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times) : HD_OK;
+    if (n_times < 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: there is no time");
+    if (!t) return hdi_missing(e);
     for (q = 0; q < n_times; q++)
-        if (!(t[q] > 0) || !hdi_finite(2 * t[q] * heat->scale)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+        if (!(t[q] > 0) || !hdi_finite(t[q])) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
     return HD_OK;
 }
 
@@ -17713,42 +18742,52 @@ static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
     return kind >= HD_DISTANCE_COMMUTE || heat->poles_asked || heat->exacting;
 }
 
-/* One time, all sources: columns step apart. degree 0: by default. */
+/* The same columns of the resolvent's bound g, in f's units. */
+static hd_status hdi_metric_resolvent(hd_heat *heat, const hdi_metric *x, int32_t source, double *g, double *work, hd_error *e) {
+    hdi_columns query;
+    hd_report rep;
+    memset(&query, 0, sizeof query);
+    query.t = x->t;
+    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    query.set = &x->resolvent;
+    query.k = 1;
+    query.sources = &source;
+    query.U = g;
+    query.ldu = HDI_CAST(size_t, heat->source->n);
+    if (hdi_direct_columns(heat, &query, &rep) < 0) *e = rep.error;
+    else hdi_metric_of_column(heat->source, x, g, work);
+    return e->status;
+}
+
+/* One time, all sources: columns step apart. degree 0: by default. *rational: that part of the bound. */
 static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, int32_t k, const int32_t *sources, double *D, size_t step,
                                    hd_report *rep, hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
     const size_t n = HDI_CAST(size_t, heat->source->n);
-    const hd_kernel kernel = kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
-    hd_report columns;
+    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, HDI_CAST(size_t, k) + 1);
     hdi_metric x;
-    int32_t r, v;
+    int32_t r;
     memset(rep, 0, sizeof *rep);
-    if (!work || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
-    if (hdi_direct_columns(heat, x.t, kernel, &x.set, k, sources, D, step, &columns) < 0) *e = columns.error;
-    if (e->status >= 0 && x.weighted > 0 && x.weighted < HUGE_VAL) g = HDI_TAKE(&s, double, n);
+    if (e->status < 0 || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
+    rep->error_relative = 0;
+    (void)hdi_metric_columns(heat, &x, k, sources, D, step, column, rep, e);
+    if (e->status >= 0 && !x.filter && !x.equal && x.weighted > 0 && x.weighted < HUGE_VAL) g = HDI_TAKE(&s, double, n);
     for (r = 0; r < k && e->status >= 0; r++) {
-        double *u = D + HDI_CAST(size_t, r) * step;
-        hd_report bound;
-        if (g && hdi_direct_columns(heat, x.t, kernel, &x.resolvent, 1, sources + r, g, n, &bound) < 0) *e = bound.error;
-        if (e->status < 0) break;
-        hdi_metric_column(heat->source, &x, u, work);
-        if (g) hdi_metric_column(heat->source, &x, g, work);
-        for (v = 0; g && v < heat->source->n; v++) g[v] *= x.weighted;
-        hdi_metric_distance(heat->source, &x, sources[r], u, g, rep);
+        hdi_ledger ledger = hdi_metric_ledger(&x);
+        if (g && hdi_metric_resolvent(heat, &x, sources[r], g, work, e) < 0) break;
+        hdi_metric_distance(heat->source, &x, sources[r], column + r, g, rep, &ledger);
+        hdi_ledger_close(&ledger, rep);
     }
-    rep->residual = hdi_max(rep->residual, columns.residual);
-    rep->method = HD_METHOD_DIRECT;
-    rep->reason = "selected inversion of the factors of the poles";
-    rep->ordering = heat->elim.sym.ordering;
-    rep->factor_nnz = heat->elim.sym.nnz;
     return hdi_scope_end(&s);
 }
 
 /* out [n_sets][n] += the weighted sums of column `row` of the inverses, or with mass of the inverses times the (full, scaled) B, rows in elimination order: pairs only.
- * x [8 n], work as a sweep's, active [n_super]. */
-static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active) {
+ * x [8 n], work as a sweep's, active [n_super], spare [3 n]. pole_off: the poles' residuals as seen, in the norm of D^-1. */
+static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active,
+                              double *spare, double *pole_off) {
     const int32_t n = m->sym.n, n_poles = m->set.n_poles;
+    hdi_check check, *list = &check;
     const int64_t begin = m->lap->L.row_ptr[row], end = m->lap->L.row_ptr[row + 1];
     int64_t p;
     int32_t i, k, q, j;
@@ -17764,6 +18803,25 @@ static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t 
         z = hdi_sweep_open(m->pack + i, 1, x, work, 1);
         z.active = active;
         hdi_sweep_run(&z, m->ctx);
+        memset(&check, 0, sizeof check);
+        memset(spare, 0, 3 * HDI_CAST(size_t, n) * sizeof *spare);
+        if (!mass) spare[row] = 1;
+        for (p = begin; p < end && mass; p++) spare[m->lap->L.col[p]] = m->lap->B[p];
+        check.lap = m->lap;
+        check.t = m->t;
+        check.weight = m->weight;
+        check.noise = m->noise;
+        check.rhs = spare;
+        check.x = x;
+        check.stride = HDI_PACK;
+        check.u = spare + n;
+        check.bu = check.u + n;
+        for (q = 0; q < 4; q++) {
+            check.theta[q] = m->set.theta[hdi_elim_pole(m, i, q)].re;
+            check.theta[q + 4] = m->set.theta[hdi_elim_pole(m, i, q)].im;
+        }
+        hdi_check_c(&list, 1);
+        for (q = 0; q < 4 && 4 * i + q < n_poles; q++) pole_off[4 * i + q] = hdi_residual_seen(sqrt(check.norm2[q]), sqrt(check.size2[q]));
         for (k = 0; k < n_sets; k++) {
             const hd_c64 *w = weight + HDI_CAST(int64_t, k) * n_poles + 4 * i;
             double *HDI_RESTRICT to = out + HDI_CAST(int64_t, k) * n, c[HDI_PACK];
@@ -17790,30 +18848,60 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
     hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(size_t, n_times) * HD_MAX_POLES);
     double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n));
-    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n);
-    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n)) : NULL;
+    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n), *spare = HDI_TAKE(&s, double, 3 * HDI_CAST(size_t, n));
+    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n)) : NULL, *rounding = HDI_TAKE_ZERO(&s, double, n_times);
     char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
+    double pole_off[HD_MAX_POLES];
     hdi_metric metric;
-    int32_t q, r, i;
+    hdi_probe probe;
+    int32_t q, r, i, p;
     memset(&metric, 0, sizeof metric);
     metric.kind = kind;
-    metric.diag = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n) + 1);
+    metric.diag = HDI_TAKE(&s, double, 3 * HDI_CAST(size_t, n) + 1);
     if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_DISTANCE_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
-    metric.off = metric.diag + n;
+    metric.g = metric.diag + n;
+    metric.spread = metric.g + n;
     h->t = t[0];
     h->set = set;
+    h->lap = m->lap;
+    h->relative = 1;
     if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
     hdi_shared_weights(set, n_times, t, weight);
     if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, n, h->e) < 0)
         return hdi_scope_end(&s);
+    probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * HDI_CAST(size_t, n), -1);
+    for (i = 0; i < probe.k; i++) {              /* columns of the forms' rows, as those of sources are found */
+        memset(column, 0, size * sizeof *column);
+        hdi_shared_column(m, probe.row[i], full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
+        for (q = 0; q < n_times; q++) {
+            const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
+            const int32_t row = probe.row[i];
+            double there = c[row], off = 0;
+            if (full) {
+                hdi_pair_apply(m->lap, 0, 1, c, product);
+                there = product[row];
+            }
+            for (p = 0; p < set[q].n_poles; p++) off += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
+            off *= sqrt(hdi_max(0, f[n + row]));
+            if (full) {                          /* forms are with the source's B */
+                there /= heat->scale * heat->scale;
+                off /= heat->scale;
+            }
+            rounding[q] = hdi_max(rounding[q], hdi_quotient(fabs(there - f[row]) + off, fabs(f[row])));
+        }
+    }
     for (r = 0; r < k; r++) {
         const int32_t row = m->lap->row[sources[r]];
         if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
         memset(column, 0, size * sizeof *column);
-        if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active);
+        memset(pole_off, 0, sizeof pole_off);
+        if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
         for (q = 0; q < n_times; q++) {
             const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
             double *u = D + (HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) + HDI_CAST(size_t, h->time_column[q0 + q])) * ldd;
+            const double bs = weighted && !full && row >= 0 ? m->lap->mass[row] : 1;
+            hdi_metric_column of;
+            hdi_ledger ledger;
             memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
             memset(g, 0, HDI_CAST(size_t, lap->n) * sizeof *g);
             if (full) {                          /* B of what is B times the inverses, twice scaled; forms are not */
@@ -17823,18 +18911,30 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
             }
             for (i = 0; i < n; i++) {
                 const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
-                const double b = weighted && !full ? m->lap->mass[i] : 1, bs = weighted && !full && row >= 0 ? m->lap->mass[row] : 1;
-                const double unit_f = full ? heat->scale : unit * b * b;
+                const double b = weighted && !full ? m->lap->mass[i] : 1, unit_f = full ? heat->scale : unit * b * b;
                 metric.diag[at] = unit_f * f[i];
-                metric.off[at] = unit_f * set[q].max_weighted_error * f[n + i];
+                metric.g[at] = unit_f * f[n + i];
+                metric.spread[at] = weighted ? lap->b_diag[at] : lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[at]) : HUGE_VAL;
                 u[v] = unit * b * bs * c[i];
-                g[v] = unit * b * bs * set[q].max_weighted_error * c[n + i];
+                g[v] = unit * b * bs * c[n + i];
             }
-            hdi_metric_distance(lap, &metric, sources[r], u, g, h->rep);
+            metric.weighted = set[q].max_weighted_error;
+            metric.uniform = set[q].max_error;
+            metric.rounding = rounding[q];
+            of.u = u;
+            of.off_m = 0;
+            of.off_b = HUGE_VAL;
+            for (p = 0; p < set[q].n_poles; p++) of.off_m += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
+            of.off_m *= sqrt(full ? 1 / heat->scale : unit) * bs;
+            ledger = hdi_metric_ledger(&metric);
+            hdi_metric_distance(lap, &metric, sources[r], &of, g, h->rep, &ledger);
+            hdi_ledger_close(&ledger, h->rep);
         }
     }
     if (n > 0 && k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
-        (void)hdi_probe_column(h, HD_KERNEL_SYMMETRIC, set, lap->row[sources[0]] >= 0 ? sources[0] : lap->vertex[0], g);
+        probe.k = 1;
+        probe.row[0] = m->lap->row[sources[0]] >= 0 ? m->lap->row[sources[0]] : 0;
+        (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set);
     }
     return hdi_scope_end(&s);
 }
@@ -17850,7 +18950,7 @@ static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t
     if (!twice || hdi_heat_sort_times(h, n_times, twice) < 0 || hdi_heat_analysed(heat, 1, h->e) < 0) return 0;
     span = h->times[n_times - 1] / h->times[0];
     windows = hdi_shared_windows(span, HDI_SHARED_DISTANCE_TOL, n_times, &packs);
-    if (windows == 0 || packs > n_times) return 0;
+    if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return 0;
     hdi_direct_only(h);
     for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
         const double end = h->times[0] * pow(span, (w + 1.0) / windows);
@@ -17867,7 +18967,9 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
     int32_t q;
     if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, 1, k, report) < 0) return hdi_heat_end(&h);
     rep = h.rep;
-    if (hdi_distance_check(heat, kind, n_times, t, h.e) >= 0 && k > 0 && n_times > 0 && (!sources || !D)) hdi_missing(h.e);
+    if (hdi_distance_check(heat, kind, n_times, t, h.e) >= 0 && k > 0 && (!sources || !D)) hdi_missing(h.e);
+    if (kind >= HD_DISTANCE_COMMUTE) n_times = 1;
+    h.relative = 1;
     ldd = hdi_leading(&h, ldd);
     for (q = 0; q < k && !h.e->status; q++)
         if (hdi_vertex_check(heat->source, sources[q], h.e) < 0) h.e->column = q;
@@ -17879,7 +18981,7 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
         const int settled = hdi_metric_settled(heat, kind);
         const int sure = !settled && kind == HD_DISTANCE_CLASSICAL && heat->source->h > 0 && HDI_DISTANCE_EXPECTED * sqrt(t[q]) > HDI_DISTANCE_SURE * heat->source->h;
         if (!sure) (void)hdi_distance_once(heat, kind, t ? t[q] : 0, 0, k, sources, first, step, &one, h.e);
-        if (h.e->status >= 0 && !settled && (sure || one.error_bound > HDI_DISTANCE_SURE))   /* much has cancelled: the highest degree */
+        if (h.e->status >= 0 && !settled && (sure || one.error_rational > HDI_DISTANCE_SURE))   /* much has cancelled: the highest degree */
             (void)hdi_distance_once(heat, kind, t[q], HDI_RAT_KERNEL_MAX, k, sources, first, step, &one, h.e);
         if (h.e->status == HD_ERR_MEMORY_LIMIT && !settled && heat->elim.n_packs > 0) {
             hdi_error_clear(h.e);
@@ -17910,73 +19012,143 @@ static int32_t hdi_pairs_vertices(int64_t n_pairs, const int32_t *i, const int32
     return n;
 }
 
-/* Kernel entries and distances of the pairs from columns at t: K_t(i,j) = (K_t e_j)_i, and |K_t B^-1 (e_i - e_j)|_B, which loses nothing
- * beside what the columns are off by: the report's bound of columns becomes that of distances. */
-static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind, const double *U, int64_t n_pairs, const int32_t *i, const int32_t *j, const int32_t *place,
-                                 double *K, double *d, double *work, hd_report *rep) {
-    const size_t n = HDI_CAST(size_t, lap->n);
-    const int32_t rows = lap->n_active;
-    double largest = 0, smallest = HUGE_VAL, most = 0, relative = 0, size, off;
-    int64_t q, p;
+/* |u - v|_B of fields on vertices, v NULL: |u|_B; whatever their size, with B times scale near one. work [2 n_active]. */
+static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work, double scale) {
+    double most = 0;
     int32_t r;
-    for (q = 0; q < n_pairs; q++) {
-        const double *ui = U + n * HDI_CAST(size_t, place[2 * q]), *uj = U + n * HDI_CAST(size_t, place[2 * q + 1]);
-        if (K && kind == HD_DISTANCE_WEIGHTED) {
-            K[q] = uj[i[q]];
-        } else if (K) {                          /* symmetric columns: K_t(i,j) = (k_t(i,.) B)_j */
-            const int32_t row = lap->row[j[q]];
-            K[q] = row < 0 ? i[q] == j[q] : lap->B ? 0 : ui[j[q]] * lap->mass[row];
-            for (p = row < 0 ? 0 : lap->L.row_ptr[row]; row >= 0 && lap->B && p < lap->L.row_ptr[row + 1]; p++) K[q] += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
-        }
-        if (!d) continue;
-        for (r = 0; r < rows; r++) work[r] = ui[lap->vertex[r]];
-        size = sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + rows)));
-        for (r = 0; r < rows; r++) work[r] = uj[lap->vertex[r]];
-        off = rep->error_bound_b * (size + sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + rows))));
-        for (r = 0; r < rows; r++) work[r] = ui[lap->vertex[r]] - work[r];
-        d[q] = i[q] == j[q] ? 0 : sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + rows)));
-        if (i[q] == j[q]) continue;
-        largest = hdi_max(largest, d[q]);
-        most = hdi_max(most, off);
-        if (d[q] > 0) smallest = hdi_min(smallest, d[q]);
-        relative = hdi_max(relative, d[q] > 0 ? off / d[q] : off > 0 ? HUGE_VAL : 0);
-        rep->n_lost += d[q] < 10 * off;
+    int exponent = 0;
+    for (r = 0; r < lap->n_active; r++) {
+        work[r] = u[lap->vertex[r]] - (v ? v[lap->vertex[r]] : 0);
+        most = hdi_max(most, fabs(work[r]));
     }
-    if (largest == 0) return;
-    rep->smallest = smallest;
-    rep->error_bound = hdi_max(K ? rep->error_bound : 0, most / largest);
-    rep->error_relative = relative;
+    if (most == 0) return 0;
+    frexp(most, &exponent);
+    for (r = 0; r < lap->n_active; r++) work[r] = ldexp(work[r], -exponent);
+    if (lap->B) {
+        double sum = 0;
+        int64_t p;
+        for (r = 0; r < lap->n_active; r++) {
+            double s = 0;
+            for (p = lap->L.row_ptr[r]; p < lap->L.row_ptr[r + 1]; p++) s += scale * lap->B[p] * work[lap->L.col[p]];
+            sum += work[r] * s;
+        }
+        return ldexp(sqrt(hdi_max(0, sum)) / sqrt(scale), exponent);
+    }
+    for (most = 0, r = 0; r < lap->n_active; r++) most += scale * lap->mass[r] * (work[r] * work[r]);
+    return ldexp(sqrt(most) / sqrt(scale), exponent);
 }
 
-/* One by one from entries and the diagonal, for more vertices than columns fit. */
-static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *rep) {
-    hd_report one;
-    hdi_scope s;
-    hdi_metric x;
-    double *f, *rows;
+/* The parts of a report's bound. */
+static hdi_parts hdi_parts_of(const hd_report *rep) {
+    hdi_parts p;
+    p.rational = rep->error_rational;
+    p.solver = rep->error_solver;
+    p.rounding = rep->error_rounding;
+    return p;
+}
+
+/* Shares out what stands in rounding as another bound has it. */
+static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
+    const double all = to->rounding, sum = hdi_parts_sum(as);
+    if (!(sum > 0 && sum < HUGE_VAL && all < HUGE_VAL)) return;
+    to->rational = all * (as->rational / sum);
+    to->solver = all * (as->solver / sum);
+    to->rounding = all * (as->rounding / sum);
+}
+
+/* Kernel entries and distances of the pairs from columns at t: K_t(i,j) = (K_t e_j)_i, and |K_t B^-1 (e_i - e_j)|_B, which loses nothing
+ * beside what the columns are off by: the report's bound of columns becomes that of distances. */
+static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind, double scale, const double *U, int64_t n_pairs, const int32_t *i, const int32_t *j, const int32_t *place,
+                                 double *K, double *d, double *work, hd_report *rep) {
+    const size_t n = HDI_CAST(size_t, lap->n);
+    const hdi_parts share = hdi_parts_of(rep);
+    const double bound_b = rep->error_bound_b;
+    hdi_ledger of_k = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0), of_d = of_k;
+    hdi_parts part;
+    int64_t q, p;
+    memset(&part, 0, sizeof part);
+    of_d.relative = 0;
+    for (q = 0; q < n_pairs; q++) {
+        const double *ui = U + n * HDI_CAST(size_t, place[2 * q]), *uj = U + n * HDI_CAST(size_t, place[2 * q + 1]);
+        const int32_t ri = lap->row[i[q]], rj = lap->row[j[q]];
+        const double size_i = hdi_vertex_norm(lap, ui, NULL, work, scale), size_j = hdi_vertex_norm(lap, uj, NULL, work, scale);
+        double distance, off;
+        if (K && kind == HD_DISTANCE_WEIGHTED) {
+            K[q] = uj[i[q]];
+            off = bound_b * size_j * (ri < 0 ? 0 : hdi_ratio_root(lap) / sqrt(lap->b_diag[ri]));
+        } else if (K) {                          /* symmetric columns: K_t(i,j) = (k_t(i,.) B)_j, and |(B e)_j| <= sqrt(B_jj) |e|_B */
+            K[q] = rj < 0 ? i[q] == j[q] : lap->B ? 0 : ui[j[q]] * lap->mass[rj];
+            for (p = rj < 0 ? 0 : lap->L.row_ptr[rj]; rj >= 0 && lap->B && p < lap->L.row_ptr[rj + 1]; p++) K[q] += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
+            off = bound_b * size_i * (rj < 0 ? 0 : sqrt(lap->b_diag[rj]));
+        }
+        if (K) {
+            part.rounding = off + 8 * DBL_EPSILON * fabs(K[q]);
+            hdi_ledger_note(&of_k, K[q], part);
+        }
+        if (!d) continue;
+        distance = i[q] == j[q] ? 0 : hdi_vertex_norm(lap, ui, uj, work, scale);
+        d[q] = distance;
+        if (i[q] == j[q]) continue;
+        part.rounding = (bound_b + 4 * DBL_EPSILON) * (size_i + size_j);
+        rep->n_lost += distance < 10 * part.rounding;
+        hdi_ledger_note(&of_d, distance, part);
+    }
+    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = rep->error_relative = rep->smallest = 0;
+    rep->error_bound_b = HUGE_VAL;
+    rep->evidence_b = HD_EVIDENCE_NONE;
+    hdi_parts_share(&of_k.off, &share);
+    hdi_parts_share(&of_d.off, &share);
+    hdi_ledger_close(&of_k, rep);
+    rep->smallest = 0;                           /* of the distances */
+    hdi_ledger_close(&of_d, rep);
+}
+
+/* Distances one by one from entries and the diagonal, for more vertices than columns fit; each is judged by itself. */
+static hd_status hdi_pairs_distances(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *d, hd_report *rep) {
     hd_error *e = &rep->error;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    double *f = HDI_TAKE(&s, double, heat->source->n);
+    hdi_ledger ledger;
+    hdi_metric_column c;
+    hdi_metric x;
     int64_t q;
-    if (K && kind < HD_DISTANCE_COMMUTE && hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, n_pairs, i, j, K, rep) < 0) return rep->status;
-    if (!d) return rep->status;
-    s = hdi_scope_begin(heat->ctx, e);
-    f = HDI_TAKE(&s, double, heat->source->n);
-    rows = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, heat->source->n) + 1);
-    memset(&one, 0, sizeof one);
-    if (!rows || hdi_metric_make(heat, kind, t, 0, &x, &s, &one) < 0) return rep->status = hdi_scope_end(&s);
+    if (!f || hdi_metric_make(heat, kind, t, 0, &x, &s, rep) < 0) return hdi_scope_end(&s);
+    rep->error_relative = 0;
+    ledger = hdi_metric_ledger(&x);
     for (q = 0; q < n_pairs && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
         if (q == 0 || i[q] != i[q - 1]) {
-            hd_report column;
-            if (hdi_direct_columns(heat, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, 1, i + q, f, HDI_CAST(size_t, heat->source->n), &column) < 0) {
-                *e = column.error;
-                break;
-            }
-            hdi_metric_column(heat->source, &x, f, rows);
-            hdi_metric_distance(heat->source, &x, i[q], f, NULL, &one);
+            hdi_ledger all = hdi_metric_ledger(&x);
+            if (hdi_metric_columns(heat, &x, 1, i + q, f, HDI_CAST(size_t, heat->source->n), &c, rep, e) < 0) break;
+            hdi_metric_distance(heat->source, &x, i[q], &c, NULL, rep, &all);
+            ledger.off.rational = hdi_max(ledger.off.rational, all.off.rational);   /* of the pairs, as of all vertices */
+            ledger.off.rounding = hdi_max(ledger.off.rounding, all.off.rounding);
+            ledger.relative = hdi_max(ledger.relative, all.relative);
         }
         d[q] = f[j[q]];
+        if (d[q] < HUGE_VAL) ledger.largest = hdi_max(ledger.largest, d[q]);
+        if (d[q] > 0 && d[q] < HUGE_VAL) ledger.smallest = hdi_min(ledger.smallest, d[q]);
+        ledger.n_values += i[q] != j[q] && d[q] < HUGE_VAL;
     }
-    if (e->status >= 0) hdi_report_merge(rep, &one);
-    return rep->status = hdi_scope_end(&s);
+    if (e->status >= 0) hdi_ledger_close(&ledger, rep);
+    return hdi_scope_end(&s);
+}
+
+/* Both, each of which may be NULL. */
+static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *rep) {
+    hd_report one;
+    memset(rep, 0, sizeof *rep);
+    hdi_error_clear(&rep->error);
+    if (K && kind < HD_DISTANCE_COMMUTE && hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, n_pairs, i, j, K, rep) < 0) return rep->status;
+    if (!d) return rep->status;
+    memset(&one, 0, sizeof one);
+    hdi_error_clear(&one.error);
+    rep->error_relative = 0;                     /* of the distances */
+    if (hdi_pairs_distances(heat, kind, t, n_pairs, i, j, d, &one) < 0) {
+        rep->error = one.error;
+        return rep->status = one.error.status;
+    }
+    hdi_report_merge(rep, &one);
+    return rep->status;
 }
 
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report) {
@@ -17987,7 +19159,8 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
     int32_t *list, *place, n_list = 0;
     int64_t q;
     if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, kind >= HD_DISTANCE_COMMUTE ? 1 : t, 0, report) < 0) return hdi_heat_end(&h);
-    if (kind < HD_DISTANCE_CLASSICAL || kind >= HD_DISTANCE_COMMUTE) (void)hdi_distance_check(heat, kind, 0, NULL, h.e);
+    if (kind < HD_DISTANCE_CLASSICAL || kind >= HD_DISTANCE_COMMUTE) (void)hdi_distance_check(heat, kind, 1, NULL, h.e);
+    h.relative = d != NULL;
     if (h.e->status < 0) return hdi_heat_end(&h);
     if (n_pairs < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
     else if (n_pairs > 0 && (!i || !j)) hdi_missing(h.e);
@@ -18001,17 +19174,19 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
     if (h.e->status < 0) return hdi_heat_end(&h);
     n_list = hdi_pairs_vertices(n_pairs, i, j, order, list, place);
     if (kind >= HD_DISTANCE_COMMUTE || HDI_CAST(int64_t, n_list) * heat->source->n > MOST_DOUBLES) {
-        const hd_status st = hdi_pairs_by_entries(heat, kind, t, n_pairs, i, j, K, d, h.rep);
-        const hd_error kept = *h.e;
-        hdi_scope_end(&h.s);
-        *h.e = kept;
-        return h.rep->status = st;
+        hd_report all;
+        if (hdi_pairs_by_entries(heat, kind, t, n_pairs, i, j, K, d, &all) < 0) *h.e = all.error;
+        else {
+            all.error = *h.e;
+            *h.rep = all;
+        }
+        return hdi_heat_end(&h);
     }
     U = HDI_TAKE(&h.s, double, HDI_CAST(size_t, heat->source->n) * HDI_CAST(size_t, n_list));
     if (U) {
         hd_report columns;
         if (hd_heat_columns(heat, t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, n_list, list, U, 0, &columns) >= 0)
-            hdi_pairs_of_columns(heat->source, kind, U, n_pairs, i, j, place, K, d, work, &columns);
+            hdi_pairs_of_columns(heat->source, kind, heat->scale, U, n_pairs, i, j, place, K, d, work, &columns);
         *h.rep = columns;
     }
     return hdi_heat_end(&h);
@@ -18022,8 +19197,10 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
 HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex, double *distance, hd_report *report) {
     hdi_heat_call h;
     hdi_metric x;
+    hdi_metric_column c;
+    hdi_ledger ledger;
     hd_report one;
-    double *nearest, *u, *work;
+    double *nearest, *u;
     const hd_laplacian *lap = heat ? heat->source : NULL;
     int32_t q, v;
     if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, kind >= HD_DISTANCE_COMMUTE ? 1 : t, 1, report) < 0) return hdi_heat_end(&h);
@@ -18034,7 +19211,6 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         if (hdi_vertex_check(lap, vertex[q], h.e) < 0) h.e->column = q;
     nearest = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, double, lap->n);
     u = HDI_TAKE(&h.s, double, lap ? lap->n : 0);
-    work = HDI_TAKE(&h.s, double, lap ? 2 * HDI_CAST(size_t, lap->n) + 1 : 0);
     memset(&one, 0, sizeof one);
     if (h.e->status >= 0) (void)hdi_metric_make(heat, kind, t, hdi_metric_settled(heat, kind) ? 0 : HDI_RAT_KERNEL_MAX, &x, &h.s, &one);
     if (h.e->status == HD_ERR_MEMORY_LIMIT && heat->elim.n_packs > 0 && !hdi_metric_settled(heat, kind)) {   /* no room for twice the factors */
@@ -18042,9 +19218,10 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         (void)hdi_metric_make(heat, kind, t, 0, &x, &h.s, &one);
     }
     if (h.e->status < 0) return hdi_heat_end(&h);
+    one.error_relative = 0;
+    h.relative = 1;
     for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
     for (q = 0; q < count && h.e->status >= 0; q++) {
-        hd_report column;
         int32_t best = -1;
         for (v = 0; v < lap->n && q >= n_given; v++)
             if (lap->row[v] >= 0 && (best < 0 || nearest[v] > nearest[best])) best = v;   /* without mass: never chosen */
@@ -18052,20 +19229,15 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
         if (q + 1 == count) break;
         if (hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / count, h.e) < 0) break;
-        if (hdi_direct_columns(heat, x.t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x.set, 1, vertex + q, u, HDI_CAST(size_t, lap->n), &column) < 0) {
-            *h.e = column.error;
-            break;
-        }
-        hdi_metric_column(lap, &x, u, work);
-        hdi_metric_distance(lap, &x, vertex[q], u, NULL, &one);
+        if (hdi_metric_columns(heat, &x, 1, vertex + q, u, HDI_CAST(size_t, lap->n), &c, &one, h.e) < 0) break;
+        ledger = hdi_metric_ledger(&x);
+        hdi_metric_distance(lap, &x, vertex[q], &c, NULL, &one, &ledger);
+        hdi_ledger_close(&ledger, &one);
         for (v = 0; v < lap->n; v++) nearest[v] = hdi_min(nearest[v], u[v]);
         nearest[vertex[q]] = -1;                 /* not again, even when no distance is left */
     }
-    {
-        const hd_error kept = *h.e;
-        *h.rep = one;
-        *h.e = kept;
-    }
+    one.error = *h.e;
+    *h.rep = one;
     return hdi_heat_end(&h);
 }
 

@@ -1514,7 +1514,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 if (step > 1 && !(z->beta[step - 1][r] > 1e-13)) continue;
                 CHECK(hdi_silan_bound(z, r, step, at, &bound, &size, &e) == HD_OK);
                 z->done[r] = step;
-                CHECK(hdi_silan_answer(z, r, at, lane + r, &e) == HD_OK);
+                CHECK(hdi_silan_answer(z, r, at, 0, lane + r, &e) == HD_OK);
                 z->done[r] = 0;
                 dense_pair_heat(&pair, at, lane[r].rhs, want);
                 for (i = 0; i < n; i++) u[i] = lane[r].u[i] - want[i];
@@ -1532,7 +1532,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 CHECK_MSG(fabs(size * z->f_norm[r] - dense_pair_norm(&pair, u)) <= 1.01 * (bound + eps) * z->f_norm[r], "%s: size %g, not %g",
                     what, size,
                           dense_pair_norm(&pair, u) / z->f_norm[r]);
-                CHECK(fabs(lane[r].solver - bound * z->f_norm[r] - 4 * DBL_EPSILON * lane[r].f_norm) <= 1e-12 * lane[r].solver);
+                CHECK(lane[r].off.solver == bound * z->f_norm[r] && lane[r].off.rounding > 0 && error * z->f_norm[r] <= lane[r].off.solver + lane[r].off.rounding + 3e-14 * z->f_norm[r]);
             }
         }
     }
@@ -1614,7 +1614,7 @@ static void int_batches(void) {
                 hdi_pair_apply(m.lap, 0, 1, want, mass);
                 CHECK_MSG(int_off(lane[r].tmp, mass, n) < 1e-12, "degree %d, %d together: B u is off by %g", (int)degrees[q], (int)k,
                     int_off(lane[r].tmp, mass, n));
-                CHECK(lane[r].residual > 0 && lane[r].residual < 1e-12 && lane[r].solver > 0 && lane[r].solver < 1e-8 * lane[r].f_norm);
+                CHECK(lane[r].residual > 0 && lane[r].residual < 1e-12 && lane[r].off.rounding > 0 && lane[r].off.rounding < 1e-8 * lane[r].f_norm);
             }
             for (r = 0; r < k; r++) hdi_lane_free(lane + r, &ctx);
             free(lane);

@@ -538,12 +538,14 @@ static void diag_against_dense(const heat_case *c, hd_heat *heat, double t, int3
     int q;
     for (q = 0; q < 2; q++) {
         for (i = 0; i < n; i++) want[i] = (q ? K : KB)[(size_t)i * (size_t)n + (size_t)i];
-        CHECK_MSG(hd_heat_diagonal(heat, 1, &t, q ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, D, 0, &rep) == HD_OK, "%s, %s: %s", c->what, what, rep.error.text);
+        hd_heat_diagonal(heat, 1, &t, q ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, D, 0, &rep);
+        CHECK_MSG(rep.status == (rep.error_bound <= 1e-2 ? HD_OK : HD_WARN_ACCURACY), "%s, %s: %s", c->what, what, rep.error.text);
         diag_judge(c, t, want, D, &rep, most, what);
         CHECK_MSG(degree == 0 || rep.degree == degree, "%s, %s: degree %d, not %d", c->what, what, (int)rep.degree, (int)degree);
         for (i = 0; i < lap->n; i++) CHECK(lap->row[i] >= 0 || D[i] == (q ? 0 : 1));
     }
-    CHECK_MSG(hd_heat_edges(heat, t, E, &rep) == HD_OK, "%s, %s: %s", c->what, what, rep.error.text);
+    hd_heat_edges(heat, t, E, &rep);
+    CHECK_MSG(rep.status == (rep.error_bound <= 1e-2 ? HD_OK : HD_WARN_ACCURACY), "%s, %s: %s", c->what, what, rep.error.text);
     for (i = 0; i < n; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const double w = K[(size_t)i * (size_t)n + (size_t)lap->L.col[p]];
@@ -552,7 +554,7 @@ static void diag_against_dense(const heat_case *c, hd_heat *heat, double t, int3
         }
     CHECK_MSG(most == 0 || off <= (most + diag_slack(c, t)) * size, "%s, %s, t %g: edges are off by %g", c->what, what, t, off / size);
     CHECK_MSG(off <= (rep.error_bound + diag_slack(c, t)) * size, "%s, %s, t %g: edges are off by %g, bound %g", c->what, what, t, off / size, rep.error_bound);
-    CHECK_MSG(rep.error_solver > 0 && (rep.error_solver < 1e-9 || strncmp(what, "uniform", 7) == 0) && rep.residual > 0, "%s, %s: rounding of edges %g, residual %g", c->what, what, rep.error_solver, rep.residual);
+    CHECK_MSG(rep.error_rounding > 0 && rep.error_rounding < 1e-8 && rep.residual > 0, "%s, %s: rounding of edges %g, residual %g", c->what, what, rep.error_rounding, rep.residual);
     for (i = 0; i < n && degree; i++)            /* the same set: the same numbers but for rounding */
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             if (lap->L.col[p] == i) CHECK_MSG(fabs(E[p] - D[lap->vertex[i]]) <= 1e-10 * size, "%s, %s: edges and diagonal", c->what, what);
@@ -658,7 +660,7 @@ static void diag_times(void) {
             CHECK_MSG(D[(size_t)order[q] * ldd + (size_t)i] <= D[(size_t)order[q - 1] * ldd + (size_t)i] * (1 + 1e-8), "t %g, vertex %d: it grows", t[order[q]], (int)i);
         for (i = s.n; i < (int32_t)ldd; i++) CHECK(D[(size_t)q * ldd + (size_t)i] == -7);
     }
-    CHECK(hd_heat_diagonal(heat, 0, NULL, HD_KERNEL_SYMMETRIC, NULL, 0, &rep) == HD_OK);
+    CHECK(hd_heat_diagonal(heat, 0, NULL, HD_KERNEL_SYMMETRIC, NULL, 0, &rep) == HD_ERR_ARGUMENT);
     hd_heat_free(heat);
     heat_case_free(&c);
     free(D);
@@ -1228,7 +1230,7 @@ static void diag_refused(void) {
     hd_heat *heat = diag_plan(lap, HD_POLES_DEFAULT, 0);
     static const hd_method methods[2] = {HD_METHOD_ITERATIVE, HD_METHOD_KRYLOV};
     double D[200], E[400];
-    const double t = 0.1, bad[5] = {0, -1, HUGE_VAL, NAN, 1e308};
+    const double t = 0.1, bad[5] = {0, -1, HUGE_VAL, NAN, -HUGE_VAL};
     const int32_t v = 3, out_of_range[2] = {-1, 42}, big = 42;
     int32_t sample[50] = {0};
     hd_report rep;
@@ -1277,8 +1279,10 @@ static void diag_refused(void) {
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, D, 41, &rep) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_COMMUTE, 2, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT && rep.error.value == 2);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 3, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, NULL, 0, &rep) == HD_OK);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 0, NULL, 1, &v, NULL, 0, &rep) == HD_OK);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, NULL, 0, &rep) == HD_ERR_ARGUMENT);
+    D[1] = -5;
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, D, 0, &rep) == HD_OK && D[1] > 0);    /* it has no time */
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 0, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 0, NULL, NULL, 0, &rep) == HD_OK);
     CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, -1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, NULL, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);

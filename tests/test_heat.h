@@ -69,7 +69,8 @@ static void heat_judge(const heat_case *c, double t, const double *rhs, const do
     CHECK_MSG(off <= rep->error_bound * size + slack, "%s, %s, poles %d degree %d, t %g: error %g, bound %g (maximum)", c->what,
               heat_solver_name(rep->solver), (int)rep->poles, (int)rep->degree, t, off / size, rep->error_bound);
     CHECK_MSG(rep->mass_drift <= 1e-12, "%s: mass drift %g", c->what, rep->mass_drift);
-    CHECK(rep->error_bound_b >= rep->error_rational && rep->error_bound_b >= rep->error_solver);
+    CHECK(rep->error_bound >= rep->error_rational && rep->error_bound >= rep->error_solver && rep->error_bound >= rep->error_rounding);
+    CHECK(rep->evidence_b != HD_EVIDENCE_NONE && rep->error_relative == HUGE_VAL);
     free(want);
     free(diff);
     free(f);
@@ -714,7 +715,9 @@ static void heat_many(void) {
         for (q = 0; q < K; q++) {
             CHECK(hd_heat_apply(heat, t, 1, F + q * ldf, 0, u, 0, &one) >= 0);
             CHECK_MSG(memcmp(u, U + q * ldu, (size_t)n * sizeof *u) == 0, "%s: field %d differs from a call of its own", heat_solver_name(solvers[k]), (int)q);
-            CHECK(rep.error_bound >= one.error_bound && rep.error_bound_b >= one.error_bound_b && rep.residual >= one.residual);
+            CHECK_MSG(rep.error_bound >= one.error_bound && rep.error_bound_b >= one.error_bound_b && rep.residual >= one.residual,
+                "%s, field %d: %g and %g, %g and %g, %g and %g", heat_solver_name(solvers[k]), (int)q, rep.error_bound, one.error_bound,
+                rep.error_bound_b, one.error_bound_b, rep.residual, one.residual);
             steps += one.iterations;
             for (i = n; i < ldu; i++) CHECK(U[q * ldu + i] == 1234);
         }
