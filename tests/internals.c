@@ -1326,7 +1326,7 @@ static void int_checks(void) {
                 if (r == 0) int_noise(a[r].theta, HDI_PACK, &seed);
                 else memcpy(a[r].theta, a[0].theta, sizeof a[r].theta);
                 int_noise(a[r].coef, HDI_PACK, &seed);
-                a[r].weight = weight;
+                a[r].weight = a[r].noise = weight;
                 a[r].rhs = rhs + r * n;
                 a[r].x = x + HDI_PACK * r;
                 a[r].stride = HDI_PACK * 6;
@@ -1345,6 +1345,7 @@ static void int_checks(void) {
                 for (q = 0; q < 4; q++) CHECK_MSG(fabs(a[r].norm2[q] - b[r].norm2[q]) <= 1e-12 * a[r].norm2[q] && a[r].norm2[q] > 0,
                     "%d checked together: residual %g, %g", (int)k,
                                                   a[r].norm2[q], b[r].norm2[q]);
+                for (q = 0; q < 4; q++) CHECK(fabs(a[r].size2[q] - b[r].size2[q]) <= 1e-12 * a[r].size2[q] && a[r].size2[q] > 0);
                 CHECK_MSG(fabs(a[r].first2 - b[r].first2) <= 1e-12 * fabs(a[r].first2), "%d checked together: norm %g, %g", (int)k, a[r].first2,
                     b[r].first2);
             }
@@ -1379,6 +1380,7 @@ static void int_check_plain(void) {
         int_noise(c.theta, HDI_PACK, &seed);
         int_noise(c.coef, HDI_PACK, &seed);
         c.weight = weight;
+        c.noise = lap->mass;
         c.rhs = rhs;
         c.x = x;
         c.stride = HDI_PACK;
@@ -1386,8 +1388,9 @@ static void int_check_plain(void) {
         c.bu = u + n;
         hdi_check_c(&list, 1);
         for (q = 0; q < 4; q++) {
-            double norm2 = 0;
+            double norm2 = 0, size2 = 0;
             for (i = 0; i < n; i++) {
+                size2 += lap->mass[i] * (x[HDI_PACK * i + q] * x[HDI_PACK * i + q] + x[HDI_PACK * i + q + 4] * x[HDI_PACK * i + q + 4]);
                 part[i] = x[HDI_PACK * i + q];
                 part[n + i] = x[HDI_PACK * i + q + 4];
             }
@@ -1404,6 +1407,7 @@ static void int_check_plain(void) {
                 if (q == 0) first += part[i] * b[i] + part[n + i] * b[n + i];
             }
             CHECK_MSG(fabs(norm2 / c.norm2[q] - 1) < 1e-12, "residual %g, told %g", norm2, c.norm2[q]);
+            CHECK_MSG(fabs(size2 / c.size2[q] - 1) < 1e-12, "size %g, told %g", size2, c.size2[q]);
         }
         CHECK_MSG(fabs(first / c.first2 - 1) < 1e-12, "norm %g, told %g", first, c.first2);
         CHECK_MSG(int_off(u, want, 2 * n) < 1e-13, "off by %g", int_off(u, want, 2 * n));
