@@ -96,7 +96,7 @@ typedef struct hd_c64 { double re, im; } hd_c64;
 /* Zero is success, negative an error, positive "usable, but read the report". One list makes codes and texts. */
 #define HD_STATUS_LIST(X)                                                                                              \
     X(HD_OK, 0, "done")                                                                                                \
-    X(HD_WARN_ACCURACY, 1, "done, but rounding kept the error above the tolerance asked for")                          \
+    X(HD_WARN_ACCURACY, 1, "done, but the bound of the error is above the tolerance, or says little")                  \
     X(HD_ERR_ARGUMENT, -1, "an argument or option is out of its range")                                                \
     X(HD_ERR_MEMORY, -2, "out of memory")                                                                              \
     X(HD_ERR_MEMORY_LIMIT, -3, "the byte or allocation limit of the context is reached")                               \

@@ -1273,6 +1273,11 @@ static void report_merge(hd_report *all, const hd_report *one)
     keep_larger(&all->residual, one->residual);
     keep_larger(&all->error_rational, one->error_rational);
     keep_larger(&all->error_solver, one->error_solver);
+    keep_larger(&all->error_rounding, one->error_rounding);
+    if (one->evidence_rational > all->evidence_rational) all->evidence_rational = one->evidence_rational;
+    if (one->evidence_solver > all->evidence_solver) all->evidence_solver = one->evidence_solver;
+    if (one->evidence_rounding > all->evidence_rounding) all->evidence_rounding = one->evidence_rounding;
+    if (one->evidence_b > all->evidence_b) all->evidence_b = one->evidence_b;
     keep_larger(&all->error_bound_b, one->error_bound_b);
     keep_larger(&all->error_bound, one->error_bound);
     keep_larger(&all->mass_drift, one->mass_drift);
@@ -2031,6 +2036,26 @@ static void json_factor(json *j, const hd_report *p)
     json_number(j, "growth", p->growth);
 }
 
+static const char *const EVIDENCE[] = {"none", "proven", "measured", "estimated"};    /* by hd_evidence */
+
+/* The bound, its parts, and how each is known. */
+static void json_errors(json *j, const hd_report *p)
+{
+    json inner;
+    json_number(j, "residual", p->residual);
+    json_number(j, "error_bound", p->error_bound);
+    json_number(j, "error_rational", p->error_rational);
+    json_number(j, "error_solver", p->error_solver);
+    json_number(j, "error_rounding", p->error_rounding);
+    json_number(j, "error_bound_b", p->error_bound_b);
+    json_key(j, "evidence");
+    json_open(&inner, j->out);
+    json_text(&inner, "rational", EVIDENCE[p->evidence_rational]);
+    json_text(&inner, "solver", EVIDENCE[p->evidence_solver]);
+    json_text(&inner, "rounding", EVIDENCE[p->evidence_rounding]);
+    json_close(&inner);
+}
+
 /* Of diagonals and distances. */
 static void json_values(json *j, const hd_report *p)
 {
@@ -2054,8 +2079,7 @@ static void json_time(FILE *out, double t, const hd_report *p)
     json_integer(&j, "iterations", p->iterations);
     json_text(&j, "ordering", ordering_name(p));
     json_factor(&j, p);
-    json_number(&j, "residual", p->residual);
-    json_number(&j, "error_bound", p->error_bound);
+    json_errors(&j, p);
     json_number(&j, "mass_drift", p->mass_drift);
     json_values(&j, p);
     json_text(&j, "status", hd_status_name(p->status));
@@ -2090,11 +2114,7 @@ static void json_heat(json *j, const run *r)
     json_integers(j, "pole_iterations", w->pole_iterations, w->n_poles);
     json_text(j, "ordering", or_none(&r->sum.ordering));
     json_factor(j, w);
-    json_number(j, "residual", w->residual);
-    json_number(j, "error_rational", w->error_rational);
-    json_number(j, "error_solver", w->error_solver);
-    json_number(j, "error_bound_b", w->error_bound_b);
-    json_number(j, "error_bound", w->error_bound);
+    json_errors(j, w);
     json_number(j, "mass_drift", w->mass_drift);
     json_values(j, w);
     json_text(j, "status", hd_status_name(w->status));
@@ -2170,7 +2190,7 @@ static void print_laplacian(const run *r)
 static void print_errors(const run *r)
 {
     const hd_report *w = &r->sum.worst;
-    if (w->error_relative > 0 || w->n_lost > 0) {
+    if (w->evidence_b == HD_EVIDENCE_NONE) {
         fprintf(stderr, "error at most %.1e of the largest value, %.1e of each; the smallest is %.4g\n", w->error_bound, w->error_relative, w->smallest);
         if (w->n_lost)
             fprintf(stderr, "note: %lld distances are error for the most part, far smaller than what they are the difference of; pairs finds them\n",
