@@ -533,6 +533,7 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
  * L      n x n, symmetric positive semi-definite. Rows need not sum to zero (then heat is not conserved)
  * B      n x n, symmetric positive definite; any pattern. Rows of B without any non-zero are inert vertices. Definiteness is
  *        checked on the diagonal, and on B itself where a solver meets it (HD_ERR_NOT_POSITIVE)
+ *        The pattern of the pair is that of both; explicit zeros stay where their mirror entry is stored too
  * h      unit length of the caller's mesh for lap->h; 0 if none
  * Errors as hd_csr_check, HD_ERR_NOT_POSITIVE (row, value), HD_ERR_EMPTY. */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
@@ -3358,6 +3359,18 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     hdi_csr_merge(&a);
     *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
+}
+
+/* Whether a stores the entry (i,j), zero or not. */
+static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) {
+    int64_t p = a->row_ptr[i], end = a->row_ptr[i + 1];
+    while (p < end) {
+        const int64_t middle = p + (end - p) / 2;
+        if (a->col[middle] == j) return 1;
+        if (a->col[middle] < j) p = middle + 1;
+        else end = middle;
+    }
+    return 0;
 }
 
 static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
@@ -6478,7 +6491,8 @@ static void hdi_component_add(const hd_laplacian *lap, const double *value, doub
 
 /* ---- the caller's own matrices ---- */
 
-/* Merges row i of L and B (both over vertices) on the active columns, the diagonal always there. col NULL: counts only. */
+/* Merges row v of L and B (both over vertices) on the active columns, the diagonal always there. An explicit zero
+ * whose mirror entry neither matrix stores is left out: the pattern becomes symmetric. col NULL: counts only. */
 static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v, int32_t *col, double *Lx, double *Bx) {
     int64_t p = L->row_ptr[v], q = B->row_ptr[v], n = 0;
     const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
@@ -6486,11 +6500,13 @@ static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_c
     while (p < p_end || q < q_end || !diagonal) {
         const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX, cd = diagonal ? INT32_MAX : v;
         const int32_t c = cp < cq ? (cp < cd ? cp : cd) : (cq < cd ? cq : cd);
-        if (lap->row[c] >= 0) {
+        const double l = cp == c ? L->val[p] : 0, b = cq == c ? B->val[q] : 0;
+        const int kept = l != 0 || b != 0 || c == v || hdi_csr_stores(L, c, v) || hdi_csr_stores(B, c, v);
+        if (lap->row[c] >= 0 && kept) {
             if (col) {
                 col[n] = lap->row[c];
-                Lx[n] = cp == c ? L->val[p] : 0;
-                Bx[n] = cq == c ? B->val[q] : 0;
+                Lx[n] = l;
+                Bx[n] = b;
             }
             n++;
         }

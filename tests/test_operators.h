@@ -558,6 +558,45 @@ static void op_matrices_inert(void) {
     hd_csr_free(&B, NULL);
 }
 
+/* Explicit zeros, one without its mirror entry in L or in B, one whose mirror entry the other matrix stores: the
+ * pattern of the pair is symmetric, and no method reads beside it. */
+static void op_matrices_zeros(void) {
+    int64_t ptr[6] = {0, 1, 2, 3, 4, 5}, ptr_one[6] = {0, 2, 3, 4, 5, 6}, ptr_two[6] = {0, 1, 3, 4, 5, 6};
+    int32_t col[5] = {0, 1, 2, 3, 4}, col_one[6] = {0, 2, 1, 2, 3, 4}, col_two[6] = {0, 1, 4, 2, 3, 4}, v;
+    double val[5] = {3, 3, 3, 3, 3}, one[6] = {3, 0, 3, 3, 3, 3}, two[6] = {3, 3, 0, 3, 3, 3}, u[5];
+    static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
+    hd_csr plain = {5, 5, 5, ptr, col, val}, lone = {5, 5, 6, ptr_one, col_one, one}, other = {5, 5, 6, ptr_two, col_two, two};
+    hd_csr *L[4] = {&plain, &lone, &lone, &other}, *B[4] = {&lone, &plain, &lone, &lone};
+    hd_laplacian *lap = NULL;
+    hd_heat_opts o;
+    hd_heat *heat;
+    hd_error e;
+    int q, m;
+    memset(&o, 0, sizeof o);
+    for (q = 0; q < 4; q++) {
+        hd_csr shape;
+        if (!CHECK(hd_laplacian_matrices(&lap, L[q], B[q], 0, NULL, &e) == HD_OK)) continue;
+        shape = lap->L;
+        shape.val = NULL;
+        CHECK_MSG(hd_csr_check(&shape, 1, NULL, &e) == HD_OK && lap->L.nnz == 5 && !lap->B, "pair %d: %s", q, e.text);
+        for (m = 0; m < 4; m++) {
+            o.method = methods[m];
+            if (!CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK)) continue;
+            CHECK(hd_heat_column(heat, 1, 2, u, NULL) == HD_OK);
+            for (v = 0; v < 5; v++) CHECK_MSG(fabs(u[v] - (v == 2) * exp(-1.0)) < 1e-7, "pair %d, method %d: %g", q, m, u[v]);
+            hd_heat_free(heat);
+        }
+        hd_laplacian_free(lap);
+    }
+    col_two[1] = 0;                              /* L stores (1,0) where B stores (0,1): both zero, both kept */
+    col_two[2] = 1;
+    two[1] = 0;
+    two[2] = 3;
+    col_one[1] = 1;
+    CHECK(hd_laplacian_matrices(&lap, &other, &lone, 0, NULL, &e) == HD_OK && lap->L.nnz == 7);
+    hd_laplacian_free(lap);
+}
+
 static void op_matrices_bad(void) {
     enum { N = 4 };
     double d[N] = {1, 2, 3, 4};
@@ -615,6 +654,7 @@ static void test_operators(void) {
     op_extreme_scale();
     op_matrices_good();
     op_matrices_inert();
+    op_matrices_zeros();
     op_matrices_bad();
 }
 
