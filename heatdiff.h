@@ -106,7 +106,7 @@ typedef struct hd_c64 { double re, im; } hd_c64;
     X(HD_ERR_INDEX, -7, "an index is out of range")                                                                    \
     X(HD_ERR_NOT_FINITE, -8, "a value is not finite")                                                                  \
     X(HD_ERR_NOT_SYMMETRIC, -9, "a matrix is not symmetric")                                                           \
-    X(HD_ERR_NOT_POSITIVE, -10, "a mass matrix is not positive definite")                                              \
+    X(HD_ERR_NOT_POSITIVE, -10, "L is not positive semi-definite, or B is not positive definite")                      \
     X(HD_ERR_STRUCTURE, -11, "a sparse matrix is not well formed")                                                     \
     X(HD_ERR_EMPTY, -12, "nothing is left to compute on: no vertex has mass")                                          \
     X(HD_ERR_BREAKDOWN, -13, "the iteration broke down")
@@ -280,8 +280,9 @@ typedef struct hd_laplacian {
     int32_t *component;         /* [n_active] row -> component, numbered by their first vertex */
     double *xyz;                /* [3 n_active] places of the rows; NULL for matrices */
     double *component_mass;     /* [n_components] sum of mass */
-    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem (0.42 with edges from a vertex to itself), 0 when not known */
-    int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes) */
+    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem (0.42 with edges from a vertex to itself); matrices: proven by
+                                   Gershgorin's circles or by factorisations; 0 when not known */
+    int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes; matrices: up to 4 DBL_EPSILON sum_j |L_ij|) */
     hd_mesh_report mesh;        /* zeros for matrices but n_inert; of points too, but when tufted: then of the stars' triangles */
     hd_point_report points;     /* zeros for meshes and matrices; tufted: neighbours and n_coincident, where neighbours were searched */
     hd_context *context;
@@ -530,12 +531,13 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
                                                   const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices on any graph, copied.
- * L      n x n, symmetric positive semi-definite. Rows need not sum to zero (then heat is not conserved)
+ * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked: L_ii >= 0, L_ij^2 <= L_ii L_jj.
+ *        Rows need not sum to zero (then heat is not conserved)
  * B      n x n, symmetric positive definite; any pattern. Rows of B without any non-zero are inert vertices. Definiteness is
- *        checked on the diagonal, and on B itself where a solver meets it (HD_ERR_NOT_POSITIVE)
+ *        checked on the diagonal, by factorising B where rows of it are not dominated by their diagonal, and where a solver meets it
  *        The pattern of the pair is that of both; explicit zeros stay where their mirror entry is stored too
  * h      unit length of the caller's mesh for lap->h; 0 if none
- * Errors as hd_csr_check, HD_ERR_NOT_POSITIVE (row, value), HD_ERR_EMPTY. */
+ * Errors as hd_csr_check, HD_ERR_NOT_POSITIVE (row, column, value), HD_ERR_EMPTY, HD_ERR_CANCELLED. Cost linear, but for factorising B. */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
@@ -901,6 +903,15 @@ static double hdi_pythag(double a, double b) {
 static double hdi_max(double a, double b) { return a > b ? a : b; }
 static double hdi_min(double a, double b) { return a < b ? a : b; }
 static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
+
+/* A sum with what its additions rounded away (Knuth): sums that cancel keep their digits. */
+typedef struct hdi_sum { double high, low; } hdi_sum;
+
+static void hdi_sum_add(hdi_sum *s, double x) {
+    const double t = s->high + x, z = t - s->high;
+    s->low += (s->high - (t - z)) + (x - z);
+    s->high = t;
+}
 
 /* *out = a * b + c; 0 if that does not fit. */
 static int hdi_size(size_t a, size_t b, size_t c, size_t *out) {
@@ -6517,26 +6528,39 @@ static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_c
     return n;
 }
 
-/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0. */
-static hd_status hdi_pair_measure(hd_laplacian *lap, int *diagonal, hd_error *e) {
+/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the rounding of its
+ * entries. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry leaves open. */
+static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal, hd_error *e) {
     int32_t i;
     int64_t p;
     *diagonal = 1;
     lap->conserves = 1;
     lap->b_ratio = 1;
     for (i = 0; i < lap->n_active; i++) {
-        double l_sum = 0, l_abs = 0, b_sum = 0, b_off = 0, b_diag = 0;
+        const int32_t v = lap->vertex[i];
+        hdi_sum l_sum = {0, 0}, b_off = {0, 0};
+        double l_abs = 0, l_diag = 0, b_sum = 0, b_diag = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            l_sum += lap->L.val[p];
+            hdi_sum_add(&l_sum, lap->L.val[p]);
             l_abs += fabs(lap->L.val[p]);
             b_sum += lap->B[p];
-            if (lap->L.col[p] == i) b_diag = lap->B[p];
-            else b_off += fabs(lap->B[p]);
+            if (lap->L.col[p] != i) {
+                hdi_sum_add(&b_off, fabs(lap->B[p]));
+                continue;
+            }
+            l_diag = lap->L.val[p];
+            b_diag = lap->B[p];
         }
-        if (!(b_diag > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", lap->vertex[i], lap->vertex[i], b_diag);
-        if (fabs(l_sum) > 1e-11 * l_abs) lap->conserves = 0;
-        if (b_off > 0) *diagonal = 0;
-        lap->b_ratio = hdi_min(lap->b_ratio, 1 - b_off / b_diag);
+        if (!(b_diag > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
+        if (l_diag + 1e-12 * l_abs < 0)
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L has a negative diagonal entry: L is positive semi-definite here, "
+                                "minus the cotangent matrix of libigl", v, v, l_diag);
+        root[i] = sqrt(l_diag + 1e-12 * l_abs);
+        if (fabs(l_sum.high + l_sum.low) > 4 * DBL_EPSILON * l_abs) lap->conserves = 0;
+        if (b_off.high > 0) {                    /* Gershgorin */
+            *diagonal = 0;
+            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * ((b_diag - b_off.high) - b_off.low) / b_diag);
+        }
         lap->mass[i] = b_sum;
         lap->b_diag[i] = b_diag;
         lap->area += b_sum;
@@ -6544,9 +6568,21 @@ static hd_status hdi_pair_measure(hd_laplacian *lap, int *diagonal, hd_error *e)
     return HD_OK;
 }
 
+/* What every positive semi-definite L satisfies: L_ij^2 <= L_ii L_jj. root as above. */
+static hd_status hdi_pair_semidefinite(const hd_laplacian *lap, const double *root, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            if (lap->L.col[p] > i && fabs(lap->L.val[p]) > (1 + 1e-10) * root[i] * root[lap->L.col[p]])
+                return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite: an entry is larger than the diagonal "
+                                    "entries of its row and column allow", lap->vertex[i], lap->vertex[lap->L.col[p]], lap->L.val[p]);
+    return HD_OK;
+}
+
 /* Where rows of B are not dominated by their diagonal, as in finite elements: the smallest eigenvalue of D^-1 B, D = diag(B), by 40 Lanczos
- * steps, a fifth taken off for safety. An estimate, not a bound: meshes know theirs exactly. work [4 n]. */
-static hd_status hdi_pair_ratio(hd_laplacian *lap, double *work, hd_error *e) {
+ * steps. An estimate from above, to be proven: see hdi_lap_ratio. work [4 n]. */
+static hd_status hdi_pair_ratio(const hd_laplacian *lap, double *work, double *ratio, hd_error *e) {
     enum { STEPS = 40 };
     const int32_t n = lap->n_active;
     double *v = work, *v_old = v + n, *w = v_old + n, *s = w + n, d[STEPS], off[STEPS], z[2 * STEPS], beta = 0, norm = 0, least;
@@ -6585,13 +6621,13 @@ static hd_status hdi_pair_ratio(hd_laplacian *lap, double *work, hd_error *e) {
     if (!hdi_tridiag_eigen(d, off, z, z + STEPS, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "B: the estimate of its smallest eigenvalue did not converge");
     for (least = d[0], k = 1; k < m; k++) least = hdi_min(least, d[k]);
     if (!(least > 1e-12)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B is not positive definite", -1, -1, least);
-    lap->b_ratio = hdi_min(1, 0.8 * least);
+    *ratio = least;
     return HD_OK;
 }
 
 static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag;
+    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag, *root;
     int64_t nnz = 0, p;
     int32_t i;
     int diagonal;
@@ -6604,6 +6640,7 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
     lap->B = HDI_TAKE(&s, double, nnz);
     b_diag = HDI_TAKE(&s, double, lap->n_active);
+    root = HDI_TAKE(&s, double, lap->n_active);
     if (e->status < 0) {
         memset(&lap->L, 0, sizeof lap->L);
         lap->B = NULL;
@@ -6616,16 +6653,12 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
         p = lap->L.row_ptr[i];
         lap->L.row_ptr[i + 1] = p + hdi_pair_row(lap, L, B, lap->vertex[i], lap->L.col + p, lap->L.val + p, lap->B + p);
     }
-    if (hdi_pair_measure(lap, &diagonal, e) < 0) return hdi_scope_end(&s);
+    if (hdi_pair_measure(lap, root, &diagonal, e) < 0 || hdi_pair_semidefinite(lap, root, e) < 0) return hdi_scope_end(&s);
     if (diagonal) {
         hdi_free(lap->context, lap->B);
         hdi_free(lap->context, lap->b_diag);
         lap->B = NULL;
         lap->b_diag = lap->mass;
-    }
-    if (lap->b_ratio < 0.01) {
-        double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active));
-        if (!work || hdi_pair_ratio(lap, work, e) < 0) return hdi_scope_end(&s);
     }
     hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
@@ -15542,6 +15575,75 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e) : hdi_lap_polygons(lap, &poly, c.e));
 }
 
+/* B without the zeros that the common pattern has. */
+static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
+    int64_t nnz = 0, p;
+    int32_t i;
+    hd_csr b;
+    for (p = 0; p < lap->L.nnz; p++) nnz += lap->B[p] != 0;
+    b = hdi_csr_take(s, lap->n_active, lap->n_active, nnz, 1);
+    if (s->e->status < 0) return b;
+    for (i = 0, nnz = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            if (lap->B[p] == 0) continue;
+            b.col[nnz] = lap->L.col[p];
+            b.val[nnz++] = lap->B[p];
+        }
+        b.row_ptr[i + 1] = nnz;
+    }
+    return b;
+}
+
+/* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester). value [nnz]: room. */
+static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value, hdi_factor *f, hd_error *e) {
+    hdi_values v;
+    int32_t i;
+    int64_t p;
+    memset(&v, 0, sizeof v);
+    v.real = value;
+    for (i = 0; i < b->n_rows; i++)
+        for (p = b->row_ptr[i]; p < b->row_ptr[i + 1]; p++)
+            value[p] = b->col[p] == i ? (1 - sigma) * lap->b_diag[i] : b->val[p];
+    if (hdi_factor_run(f, &v, e) >= 0) return f->all.negative == 0;
+    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* a pivot of zero proves nothing */
+    return 0;
+}
+
+/* A proven b_ratio where Gershgorin's, in lap, is poor: values from the estimate downwards, each tried by a factorisation. What that
+ * rounds is a matrix E with |x'Ex| <= eps (nnz(L) + 2 n) x'diag(B)x (after Rump 2006): so much is added to sigma.
+ * Where all fail, B has a negative eigenvalue, or the ratio is not known. */
+static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const double dominant = hdi_max(lap->b_ratio, 0);
+    double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active)), least, sigma, slack;
+    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), chosen, tries;
+    hd_csr b = hdi_lap_mass_matrix(lap, &s);
+    double *value = HDI_TAKE(&s, double, b.nnz);
+    hdi_symbolic sym;
+    hdi_factor f;
+    memset(&sym, 0, sizeof sym);
+    memset(&f, 0, sizeof f);
+    lap->b_ratio = dominant;
+    if (e->status >= 0 && hdi_pair_ratio(lap, work, &least, e) >= 0 &&
+        hdi_sym_order(&b, NULL, HD_ORDERING_AUTO, HDI_DISSECT_FROM, NULL, perm, &chosen, lap->context, e) >= 0 &&
+        hdi_symbolic_make(&sym, &b, perm, lap->context, e) >= 0 && hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
+        slack = DBL_EPSILON * (HDI_CAST(double, sym.nnz) + 2.0 * lap->n_active);
+        for (tries = 0; e->status >= 0; tries++) {
+            sigma = tries == 0 ? 0.8 * least : ldexp(least, 1 - 2 * tries);
+            if (sigma < hdi_max(dominant, 1e-12)) break;
+            if (hdi_lap_exceeds(lap, &b, sigma + slack, value, &f, e)) {
+                lap->b_ratio = sigma;
+                break;
+            }
+            if (tries == 1 && e->status >= 0 && !hdi_lap_exceeds(lap, &b, -slack, value, &f, e) && f.all.negative)
+                hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: a pivot of its factorisation is negative");
+        }
+    }
+    hdi_factor_free(&f);
+    hdi_symbolic_free(lap->context, &sym);
+    return hdi_scope_end(&s);
+}
+
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
                                              hd_error *err) {
     hdi_call c;
@@ -15553,7 +15655,8 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (L->n_rows != B->n_rows)
         return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
     lap->h = h;
-    return hdi_lap_done(out, lap, hdi_lap_matrices(lap, L, B, c.e));
+    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < 0.01) (void)hdi_lap_ratio(lap, c.e);
+    return hdi_lap_done(out, lap, c.e->status);
 }
 
 static hd_status hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
@@ -16123,7 +16226,7 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     return o->rational ? hdi_rational_check(o->rational, e) : HD_OK;
 }
 
-/* Gershgorin: every eigenvalue of B^-1 L is below this. */
+/* Gershgorin: every eigenvalue of B^-1 L is below this. A guess where b_ratio is not known: it serves for choices only. */
 static double hdi_lambda_bound(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
@@ -16133,7 +16236,7 @@ static double hdi_lambda_bound(const hd_laplacian *lap) {
         for (; p < lap->L.row_ptr[i + 1]; p++) sum += fabs(lap->L.val[p]);
         most = hdi_max(most, sum / lap->b_diag[i]);
     }
-    return most / lap->b_ratio;
+    return most / hdi_max(lap->b_ratio, 1e-12);
 }
 
 /* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
