@@ -447,7 +447,8 @@ HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" *
 /* ---- sparse matrices ---- */
 
 /* A from triplets (i, j, v) in any order; those with the same place are summed in the order given. v may be NULL: a pattern.
- * Cost O(n_rows + n_cols + n_triplets). Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE. */
+ * Cost O(n_rows + n_cols + n_triplets). Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE (row: index of the
+ * triplet; of a sum its row and column). */
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
                                             const int32_t *j, const double *v, hd_context *ctx, hd_error *err);
 
@@ -458,7 +459,7 @@ HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_conte
 /* out = A'. Cost O(nnz). */
 HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *err);
 
-/* out = A B (Gustavson 1978). Cost O(flops + sorting of the rows). */
+/* out = A B (Gustavson 1978). Errors HD_ERR_NOT_FINITE (row, column: an entry overflows). Cost O(flops + sorting of the rows). */
 HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *err);
 
 /* out = P A P', a square A with rows and columns renumbered: row i of out is row perm[i] of A. Errors HD_ERR_INDEX when perm is not
@@ -597,7 +598,8 @@ typedef struct hd_solve_report {
 /* (t L + theta B) x = rhs, complex symmetric. rhs, x [n] on the vertices, may be the same array; 0 at vertices without mass.
  * theta not on (-inf, 0], t >= 0. The report is filled too when the status is HD_ERR_NOT_CONVERGED. Every call makes its own ordering and
  * preconditioner.
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED. HD_WARN_ACCURACY. */
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row: of rhs, or of x when that overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_MEMORY,
+ * HD_ERR_CANCELLED. HD_WARN_ACCURACY. */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                         const hd_solve_opts *opts, hd_solve_report *report, hd_error *err);
 
@@ -3344,6 +3346,16 @@ static void hdi_csr_merge(hd_csr *a) {
     a->nnz = q;
 }
 
+/* For sums that may have overflowed. */
+static hd_status hdi_csr_check_finite(const hd_csr *a, const char *text, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    for (i = 0; a->val && i < a->n_rows; i++)
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
+            if (!hdi_finite(a->val[p])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, text, i, a->col[p], a->val[p]);
+    return HD_OK;
+}
+
 static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n, const int32_t *ti, const int32_t *tj,
                                        const double *tv, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
@@ -3368,7 +3380,7 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     t.row_ptr[0] = 0;
     hdi_csr_transpose_into(&t, &a);
     hdi_csr_merge(&a);
-    *out = hdi_csr_keep(&s, a);
+    if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0) *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
 }
 
@@ -3490,7 +3502,7 @@ static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, 
             for (q = b->row_ptr[a->col[p]]; q < b->row_ptr[a->col[p] + 1]; q++) sum[b->col[q]] += a->val[p] * b->val[q];
         for (p = 0; p < n; p++) c.val[c.row_ptr[i] + p] = sum[col[p]];
     }
-    *out = hdi_csr_keep(&s, c);
+    if (hdi_csr_check_finite(&c, "product: an entry is not finite", e) >= 0) *out = hdi_csr_keep(&s, c);
     return hdi_scope_end(&s);
 }
 
@@ -15424,6 +15436,14 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
     return hdi_context_check(c->ctx, c->e);
 }
 
+#define HDI_CLEARED(opts) (!(opts)->begin_zero && !(opts)->end_zero)
+
+/* The same where options may name the context. Those that were not cleared are an error, and nothing in them is followed. */
+static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
+    if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
+    return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
+}
+
 static hd_status hdi_missing(hd_error *e) { return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL"); }
 
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
@@ -15485,11 +15505,7 @@ typedef struct hdi_laplacian { hd_laplacian lap; hd_context context; } hdi_lapla
 
 static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind, hd_error *err, hdi_call *c) {
     hdi_laplacian *shell;
-    if (hdi_enter(c, opts ? opts->context : NULL, err) < 0) return NULL;
-    if (opts && (opts->begin_zero || opts->end_zero)) {
-        hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian options: not cleared before use");
-        return NULL;
-    }
+    if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL, "laplacian options: not cleared before use", err) < 0) return NULL;
     if (n < 0) {
         hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian: a size is negative");
         return NULL;
@@ -15514,7 +15530,7 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
 }
 
 static hd_laplacian_kind hdi_lap_kind(const hd_laplacian_opts *opts, hd_laplacian_kind otherwise) {
-    return opts && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : otherwise;
+    return opts && HDI_CLEARED(opts) && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : otherwise;
 }
 
 static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
@@ -15799,7 +15815,6 @@ static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_erro
 }
 
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
-    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "solve options: not cleared before use");
     if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
     if (!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: theta lies on (-inf, 0] or is not finite");
     if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: the solver is cocg, cocr or minres");
@@ -15870,9 +15885,8 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     int32_t *perm, i;
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
-    if (hdi_enter(&c, o.context, err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "ldl options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !a) return hdi_missing(c.e);
-    if (o.begin_zero || o.end_zero) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl options: not cleared before use");
     shape = *a;
     shape.val = NULL;
     if (hdi_csr_check(&shape, 1, c.ctx, c.e) < 0) return c.e->status;
@@ -16206,7 +16220,6 @@ HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entri
 /* ---- heat ---- */
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
-    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "heat options: not cleared before use");
     if (o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown method");
     if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown solver");
     if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown preconditioner");
@@ -16252,7 +16265,8 @@ static double hdi_heat_scale(const hd_laplacian *lap) {
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err) {
     hdi_call c;
     hd_heat *heat;
-    if (hdi_enter(&c, opts && opts->context ? opts->context : lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts), opts && opts->context ? opts->context : lap ? lap->context : NULL,
+                       "heat options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !lap) return hdi_missing(c.e);
     if (opts && hdi_heat_check(opts, c.e) < 0) return c.e->status;
     heat = HDI_CAST(hd_heat *, hdi_alloc(c.ctx, 1, sizeof *heat, c.e));
@@ -16333,6 +16347,20 @@ static hd_status hdi_heat_analysed(hd_heat *heat, int poles, hd_error *e) {
     return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, poles ? HDI_DISSECT_FROM : HDI_DISSECT_REAL_FROM, heat->perm, heat->scale, heat->ctx, e);
 }
 
+/* Checks a right-hand side. *exponent: its largest part is between 2^(exponent - 1) and 2^exponent. */
+static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
+    double largest = 0;
+    int32_t v;
+    for (v = 0; v < lap->n; v++) {
+        if (!hdi_cfinite(rhs[v]))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v, -1,
+                                hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
+        if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
+    }
+    frexp(largest, exponent);
+    return HD_OK;
+}
+
 /* One system with a plan made for it. */
 static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x, double tol, hd_solve_report *report,
                                    hd_error *e) {
@@ -16344,7 +16372,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     hd_status status;
     double b_norm;
     int32_t i, v;
-    if (hdi_heat_iterative(heat, e) < 0) return e->status;
+    int exponent, unit;
+    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0 || hdi_heat_iterative(heat, e) < 0) return e->status;
     lap = heat->lap;
     memset(&watch, 0, sizeof watch);
     memset(&set, 0, sizeof set);
@@ -16356,7 +16385,12 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     if (hdi_family_set(&heat->fam, &set, t * heat->scale, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
     if (hdi_lane_systems(lane, &heat->fam, e) < 0) return e->status;
     if (hdi_family_fill(&heat->fam, lane->vectors, hdi_lane_stride(&heat->fam), e) < 0) return e->status;
-    for (i = 0; i < lap->n_active; i++) lane->b[i] = hdi_cscale(heat->scale, rhs[lap->vertex[i]]);
+    for (i = 0; i < lap->n_active; i++) {        /* near one, so that no norm underflows or overflows */
+        const hd_c64 r = rhs[lap->vertex[i]];
+        lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
+    }
+    frexp(heat->scale, &unit);                   /* the answer is in units of the right-hand side's, times those of B */
+    unit += exponent - 1;
     b_norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
     memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
     if (lap->conserves) {                        /* constants apart: b - B mean(b), and mean(b)/theta to the solution */
@@ -16377,6 +16411,10 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
         report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
     }
     if (status > 0) e->status = status;
+    for (v = 0; v < lap->n; v++) {
+        x[v] = hdi_c(ldexp(x[v].re, unit), ldexp(x[v].im, unit));
+        if (!hdi_cfinite(x[v]) && e->status >= 0) hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1, x[v].re);
+    }
     return e->status;
 }
 
@@ -16389,7 +16427,8 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     memset(&o, 0, sizeof o);
     memset(&plan, 0, sizeof plan);
     if (opts) o = *opts;
-    if (hdi_enter(&c, o.context ? o.context : lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context ? o.context : lap ? lap->context : NULL, "solve options: not cleared before use", err) < 0)
+        return c.e->status;
     if (!lap || !rhs || !x) return hdi_missing(c.e);
     if (hdi_solve_check(t, theta, &o, c.e) < 0) return c.e->status;
     plan.solver = o.solver ? o.solver : HD_SOLVER_COCG;
@@ -17028,7 +17067,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const d
 
 static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
     if (v >= 0 && v < lap->n) return HD_OK;
-    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, lap->n);
+    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
 }
 
 static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, double t, hd_kernel kernel, int32_t k, hd_report *report) {
@@ -18191,7 +18230,6 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 /* ---- geodesic distance ---- */
 
 static hd_status hdi_geo_check(const hd_geodesic_opts *o, hd_error *e) {
-    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic options: not cleared before use");
     if (!(o->t >= 0) || !hdi_finite(o->t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
     if (o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown mass");
     if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown ordering");
@@ -18206,7 +18244,7 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
     hdi_call c;
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
-    if (hdi_enter(&c, o.context, err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0) return c.e->status;
     if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_missing(c.e);
     if (n < 0 || n_tri < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: a size is negative");
     if (hdi_geo_check(&o, c.e) < 0) return c.e->status;
@@ -18260,7 +18298,7 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
     hdi_geo_tell_plan(g, rep);
     for (q = 0; q < k; q++) {
         if (sources[q] >= 0 && sources[q] < g->n) continue;
-        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q], g->n);
+        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q], sources[q]);
         c->e->column = q;
         return c->e->status;
     }
