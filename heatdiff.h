@@ -915,9 +915,9 @@ static void hdi_sum_add(hdi_sum *s, double x) {
     s->high = t;
 }
 
-/* *out = a * b + c; 0 if that does not fit. */
-static int hdi_size(size_t a, size_t b, size_t c, size_t *out) {
-    if (b && a > (SIZE_MAX - c) / b) return 0;
+/* *out = a * b + c; 0 if that does not fit, or is more than most. Counts of elements have 64 bits everywhere, also where an address has 32. */
+static int hdi_size(uint64_t a, uint64_t b, uint64_t c, uint64_t most, uint64_t *out) {
+    if (c > most || (b && a > (most - c) / b)) return 0;
     *out = a * b + c;
     return 1;
 }
@@ -983,14 +983,15 @@ static void hdi_large_pages(char *raw, size_t total) {
 }
 
 /* [count] elements of size bytes, not cleared. NULL with e filled when there are none to have; e must be clear before. */
-static void *hdi_alloc(hd_context *ctx, size_t count, size_t size, hd_error *e) {
+static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e) {
     size_t total, offset;
     uint64_t head[2];
     char *raw;
-    if (!hdi_size(count, size, HDI_ALIGN + HDI_HEADER, &total)) {
+    if (!hdi_size(count, size, HDI_ALIGN + HDI_HEADER, SIZE_MAX / 2, head)) {
         hdi_fail(e, HD_ERR_TOO_LARGE, "an array would be larger than the address space");
         return NULL;
     }
+    total = HDI_CAST(size_t, head[0]);
     if (hdi_alloc_check(ctx, total, e) < 0) return NULL;
     ctx->allocations++;
     raw = HDI_CAST(char *, ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total) : HEATDIFF_MALLOC(total));
@@ -1037,7 +1038,7 @@ static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
     return s;
 }
 
-static void *hdi_take(hdi_scope *s, size_t count, size_t size) {
+static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
     void *p;
     HEATDIFF_ASSERT(s->n < HDI_CAST(int32_t, sizeof s->block / sizeof *s->block));
     if (s->e->status < 0) return NULL;
@@ -1046,9 +1047,9 @@ static void *hdi_take(hdi_scope *s, size_t count, size_t size) {
     return p;
 }
 
-static void *hdi_take_zero(hdi_scope *s, size_t count, size_t size) {
+static void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
     void *p = hdi_take(s, count, size);
-    if (p) memset(p, 0, count * size);
+    if (p) memset(p, 0, HDI_CAST(size_t, count) * size);
     return p;
 }
 
@@ -1065,8 +1066,8 @@ static hd_status hdi_scope_end(hdi_scope *s) {
     return s->e->status;
 }
 
-#define HDI_TAKE(scope, type, count) HDI_CAST(type *, hdi_take(scope, HDI_CAST(size_t, count), sizeof(type)))
-#define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(size_t, count), sizeof(type)))
+#define HDI_TAKE(scope, type, count) HDI_CAST(type *, hdi_take(scope, HDI_CAST(uint64_t, count), sizeof(type)))
+#define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 
 /* ==== [04] context ====
  * Progress, cancelling and parallel loops. May call [03]. */
@@ -5351,7 +5352,8 @@ static void hdi_put_face(hdi_intrinsic *t, const hdi_mesh *mesh, int32_t f, cons
  * boundary is glued to the other sheet (the tufted cover), so that no boundary is left. */
 static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int close, hd_mesh_report *rep, hdi_scope *s) {
     const int64_t n_sides = 3 * HDI_CAST(int64_t, mesh->m);
-    int32_t *mate = HDI_TAKE(s, int32_t, n_sides), *front = HDI_TAKE(s, int32_t, mesh->m + 1), *back = HDI_TAKE(s, int32_t, mesh->m + 1);
+    int32_t *mate = HDI_TAKE(s, int32_t, n_sides), *front = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
+    int32_t *back = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
     int32_t f, q, used = 0;
     signed char *turned = HDI_TAKE(s, signed char, mesh->m);
     hdi_pair *list = HDI_TAKE(s, hdi_pair, 2 * hdi_most_corners(mesh));
@@ -5742,7 +5744,7 @@ static void hdi_cover_free(hdi_cover *c) {
 
 /* old with n elements in a block of room elements; NULL, old freed, when there is none. */
 static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
-    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(size_t, room), size, c->e);
+    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(uint64_t, room), size, c->e);
     if (block && n > 0) memcpy(block, old, HDI_CAST(size_t, n) * size);
     hdi_free(c->ctx, old);
     return block;
@@ -5998,14 +6000,14 @@ static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
 static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
     int32_t v, k = 0;
     hd_context *ctx = lap->context;
-    lap->row = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n), sizeof(int32_t), e));
+    lap->row = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), e));
     if (!lap->row) return e->status;
     for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : -1;
     lap->n_active = k;
     lap->mesh.n_inert = lap->n - k;
     if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
-    lap->vertex = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(size_t, k), sizeof(int32_t), e));
-    if (lap->vertex) lap->mass = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, k), sizeof(double), e));
+    lap->vertex = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(uint64_t, k), sizeof(int32_t), e));
+    if (lap->vertex) lap->mass = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, k), sizeof(double), e));
     if (e->status < 0) return e->status;
     lap->b_diag = lap->mass;
     for (v = 0; v < lap->n; v++) {
@@ -6022,7 +6024,7 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
     int32_t *parent = HDI_TAKE(&s, int32_t, lap->n_active), i;
     int64_t p;
     if (!parent) return hdi_scope_end(&s);
-    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_active), sizeof(int32_t), e));
+    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_active), sizeof(int32_t), e));
     if (!lap->component) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) parent[i] = i;
     for (i = 0; i < lap->n_active; i++)
@@ -6031,7 +6033,7 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
         const int32_t root = hdi_find(parent, i);    /* roots are smallest members, so they have their number already */
         lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
     }
-    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_components), sizeof(double), e));
+    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_components), sizeof(double), e));
     if (!lap->component_mass) return hdi_scope_end(&s);
     memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
@@ -6041,13 +6043,13 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
 /* Components from the vertices that edges unite, parent [n], as hdi_lap_components has them from the pattern. */
 static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e) {
     int32_t i;
-    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_active), sizeof(int32_t), e));
+    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_active), sizeof(int32_t), e));
     if (!lap->component) return e->status;
     for (i = 0; i < lap->n_active; i++) {
         const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];
         lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
     }
-    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_components), sizeof(double), e));
+    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_components), sizeof(double), e));
     if (!lap->component_mass) return e->status;
     memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
@@ -6224,7 +6226,7 @@ static int64_t hdi_widest_row(const hd_csr *a) {
 /* Copies the places of the rows. */
 static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
     int32_t i;
-    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
     if (!lap->xyz) return e->status;
     for (i = 0; i < lap->n_active; i++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), 3 * sizeof *xyz);
     return HD_OK;
@@ -7586,9 +7588,9 @@ static hd_status hdi_sym_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_contex
     return hdi_scope_end(&s);
 }
 
-static void *hdi_copy(const void *from, size_t count, size_t size, hd_context *ctx, hd_error *e) {
+static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
     void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
-    if (to) memcpy(to, from, count * size);
+    if (to) memcpy(to, from, HDI_CAST(size_t, count) * size);
     return to;
 }
 
@@ -7598,7 +7600,7 @@ enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are aske
  * ascending. */
 static hd_status hdi_sym_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
     const int32_t n = lap->n_active;
-    const size_t n1 = HDI_CAST(size_t, n) + 1, nnz = HDI_CAST(size_t, lap->L.nnz);
+    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, nnz = HDI_CAST(uint64_t, lap->L.nnz);
     hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
     int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
     int64_t *fill = HDI_TAKE(&s, int64_t, n1), p;
@@ -7653,8 +7655,8 @@ static hd_laplacian *hdi_sym_renumber(const hd_laplacian *lap, const int32_t *pe
     out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
     out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
     out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
-    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(size_t, lap->n), sizeof(int32_t), ctx, e));
-    out->component_mass = HDI_CAST(double *, hdi_copy(lap->component_mass, HDI_CAST(size_t, lap->n_components), sizeof(double), ctx, e));
+    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
+    out->component_mass = HDI_CAST(double *, hdi_copy(lap->component_mass, HDI_CAST(uint64_t, lap->n_components), sizeof(double), ctx, e));
     out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
     if (e->status < 0 || hdi_sym_permute(out, lap, perm, ctx, e) < 0) {
         hdi_laplacian_free(out, ctx);
@@ -9178,7 +9180,7 @@ static hdi_nd_part hdi_nd_load(const hdi_nd *nd, const hd_csr *a, const int32_t 
 }
 
 static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) {
-    const size_t n = HDI_CAST(size_t, a->n_rows) + 1, nnz = HDI_CAST(size_t, a->nnz) + 1;
+    const uint64_t n = HDI_CAST(uint64_t, a->n_rows) + 1, nnz = HDI_CAST(uint64_t, a->nnz) + 1;
     int32_t *p = HDI_TAKE(s, int32_t, 7 * n + nnz + 2 * (nnz / 4 + 1));
     if (!p) return;
     b->ptr = p;
@@ -9211,7 +9213,7 @@ static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
  * Does not depend on the number of threads. Progress stage "order". Errors HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_CANCELLED. */
 static hd_status hdi_sym_nested_dissection(const hd_csr *a, const double *xyz, int32_t *perm, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    const size_t n = HDI_CAST(size_t, a->n_rows);
+    const uint64_t n = HDI_CAST(uint64_t, a->n_rows);
     hdi_nd nd;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
     int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
@@ -9221,7 +9223,7 @@ static hd_status hdi_sym_nested_dissection(const hd_csr *a, const double *xyz, i
     memset(&nd, 0, sizeof nd);
     nd.perm = perm;
     nd.xyz = HDI_TAKE(&s, float, 3 * n + 1);
-    nd.work = HDI_TAKE(&s, int32_t, HDI_ND_WORDS * n + 2 * HDI_CAST(size_t, a->nnz) + HDI_ND_SLACK * HDI_ND_TASKS);
+    nd.work = HDI_TAKE(&s, int32_t, HDI_ND_WORDS * n + 2 * HDI_CAST(uint64_t, a->nnz) + HDI_ND_SLACK * HDI_ND_TASKS);
     nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
     nd.child = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
     hdi_nd_buffer_make(nd.buffer, a, &s);
@@ -9654,9 +9656,9 @@ static double hdi_sym_front_work(double m, double p) {
  * fronts are large enough to be shared. Then places the update matrices. */
 static hd_status hdi_sym_plan(hdi_symbolic *s, hdi_scope *scope) {
     int32_t *task = s->task_of, v, k;
-    hdi_pair *roots = HDI_TAKE(scope, hdi_pair, s->n_super + 1);
+    hdi_pair *roots = HDI_TAKE(scope, hdi_pair, HDI_CAST(int64_t, s->n_super) + 1);
     hdi_gaps gaps;
-    double *sum = HDI_TAKE_ZERO(scope, double, s->n_super + 1), total = 0, open = 0, limit;
+    double *sum = HDI_TAKE_ZERO(scope, double, HDI_CAST(int64_t, s->n_super) + 1), total = 0, open = 0, limit;
     gaps.room = 1024;
     gaps.at = HDI_TAKE(scope, int64_t, gaps.room);
     gaps.size = HDI_TAKE(scope, int64_t, gaps.room);
@@ -9849,7 +9851,8 @@ static void hdi_sym_number(hdi_symbolic *s, const hdi_node *node, const int32_t 
 static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx, hd_error *e) {
     hdi_scope w = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
-    const size_t n1 = HDI_CAST(size_t, n) + 1, half = HDI_CAST(size_t, a->nnz);
+    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, half = HDI_CAST(uint64_t, a->nnz);
+    uint64_t supers;
     int32_t *parent = HDI_TAKE(&w, int32_t, n1), *count = HDI_TAKE(&w, int32_t, n1), *lower = HDI_TAKE(&w, int32_t, half);
     int32_t *upper = HDI_TAKE(&w, int32_t, half), *work = HDI_TAKE(&w, int32_t, 7 * n1), i, n_nodes;
     int64_t *lower_ptr = HDI_TAKE(&w, int64_t, n1), *upper_ptr = HDI_TAKE(&w, int64_t, n1);
@@ -9867,23 +9870,24 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
     n_nodes = hdi_sym_supernodes(n, parent, count, node, work, work + n1);     /* work: next_col */
     hdi_sym_relax(node, n_nodes, work, work + n1, work + 2 * n1);
     s->n_super = hdi_sym_order_nodes(node, n_nodes, work + n1, upper_ptr, work + 2 * n1, work + 3 * n1, work + 4 * n1, pairs);
+    supers = HDI_CAST(uint64_t, s->n_super) + 1;
     s->perm = HDI_TAKE(&keep, int32_t, n1);
     s->super_of = HDI_TAKE(&keep, int32_t, n1);
-    s->super = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->parent = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->inner = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->row_ptr = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->panel_pack = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->panel = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->update = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->vector = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->a_ptr = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->kid_ptr = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->kid = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->task_begin = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->task_end = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->task_of = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->top = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->super = HDI_TAKE(&keep, int32_t, supers);
+    s->parent = HDI_TAKE(&keep, int32_t, supers);
+    s->inner = HDI_TAKE(&keep, int32_t, supers);
+    s->row_ptr = HDI_TAKE(&keep, int64_t, supers);
+    s->panel_pack = HDI_TAKE(&keep, int64_t, supers);
+    s->panel = HDI_TAKE(&keep, int64_t, supers);
+    s->update = HDI_TAKE(&keep, int64_t, supers);
+    s->vector = HDI_TAKE(&keep, int64_t, supers);
+    s->a_ptr = HDI_TAKE(&keep, int64_t, supers);
+    s->kid_ptr = HDI_TAKE(&keep, int32_t, supers);
+    s->kid = HDI_TAKE(&keep, int32_t, supers);
+    s->task_begin = HDI_TAKE(&keep, int32_t, supers);
+    s->task_end = HDI_TAKE(&keep, int32_t, supers);
+    s->task_of = HDI_TAKE(&keep, int32_t, supers);
+    s->top = HDI_TAKE(&keep, int32_t, supers);
     if (e->status >= 0) hdi_sym_number(s, node, work + n1, work, perm, work + 2 * n1);
     s->row = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : s->row_ptr[s->n_super]);
     s->rel = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : s->row_ptr[s->n_super]);
@@ -9916,7 +9920,7 @@ enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_REAL_FROM = 250000, HDI_DISSECT_WID
 
 static hd_status hdi_sym_check(const int32_t *perm, int32_t n, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    char *seen = HDI_CAST(char *, hdi_take_zero(&s, HDI_CAST(size_t, n) + 1, 1));
+    char *seen = HDI_CAST(char *, hdi_take_zero(&s, HDI_CAST(uint64_t, n) + 1, 1));
     int32_t i;
     for (i = 0; seen && i < n && !e->status; i++) {
         if (perm[i] < 0 || perm[i] >= n || seen[perm[i]]) hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, perm[i]);
@@ -9983,7 +9987,7 @@ typedef struct hdi_factor {
     double *work;                    /* [sym->work] entries: update matrices */
     double *scratch;                 /* [n_tasks + 1][scratch_size], the last one larger: for the top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
-    size_t scratch_size, chunk_size; /* doubles */
+    uint64_t scratch_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
@@ -10231,10 +10235,10 @@ static void hdi_pack_update(const hdi_factor *f, const hdi_front *w, double *S, 
 
 /* Doubles of scratch for fronts of at most so many pivots and rows below: of packs their pivots, their block of scaled rows, and a block of columns of the
  * update; of real ones the scaled rows, and the work of their kernels. */
-static size_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
-    const size_t p = HDI_CAST(size_t, pivots), rows = p * HDI_PACK_BLOCK;
-    const size_t cols = HDI_CAST(size_t, hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH));
-    if (width == 1) return HDI_CAST(size_t, hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
+static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
+    const uint64_t p = HDI_CAST(uint64_t, pivots), rows = p * HDI_PACK_BLOCK;
+    const uint64_t cols = HDI_CAST(uint64_t, hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH));
+    if (width == 1) return HDI_CAST(uint64_t, hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
     return HDI_PACK * (p + (rows > cols ? rows : cols)) + 64;
 }
 
@@ -10433,7 +10437,7 @@ static void hdi_factor_free(hdi_factor *f) {
 /* Room for a factor of the given width; all that factoring and refactoring need. */
 static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    const size_t w = HDI_CAST(size_t, width);
+    const uint64_t w = HDI_CAST(uint64_t, width);
     const int32_t n_parts = sym->n_tasks > 0 ? sym->n_tasks : 1, n_chunks = sym->largest_front / HDI_FRONT_CHUNK + 1;
     memset(f, 0, sizeof *f);
     f->sym = sym;
@@ -10442,11 +10446,11 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     f->real = hdi_real_ops_get(hdi_simd_level(ctx));
     f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
     f->chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
-    f->panel = HDI_TAKE(&s, double, HDI_CAST(size_t, width == 1 ? sym->panel[sym->n_super] : sym->stored) * w);
-    f->dinv = HDI_TAKE(&s, double, HDI_CAST(size_t, sym->n) * w);
-    f->work = HDI_TAKE(&s, double, HDI_CAST(size_t, sym->work) * w);
-    f->scratch = HDI_TAKE(&s, double, hdi_front_scratch(sym->largest_pivots, sym->largest_update, width) + f->scratch_size * HDI_CAST(size_t, n_parts));
-    f->chunk_scratch = HDI_TAKE(&s, double, sym->n_top ? f->chunk_size * HDI_CAST(size_t, n_chunks) : 1);
+    f->panel = HDI_TAKE(&s, double, HDI_CAST(uint64_t, width == 1 ? sym->panel[sym->n_super] : sym->stored) * w);
+    f->dinv = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->n) * w);
+    f->work = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->work) * w);
+    f->scratch = HDI_TAKE(&s, double, hdi_front_scratch(sym->largest_pivots, sym->largest_update, width) + f->scratch_size * HDI_CAST(uint64_t, n_parts));
+    f->chunk_scratch = HDI_TAKE(&s, double, sym->n_top ? f->chunk_size * HDI_CAST(uint64_t, n_chunks) : 1);
     f->pivots = HDI_TAKE(&s, hdi_pivots, n_parts + 1);
     if (e->status < 0) {
         memset(f, 0, sizeof *f);
@@ -10714,9 +10718,9 @@ static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
 }
 
 /* Doubles that a sweep of k right-hand sides works with besides x: vec, and gather for each part under way at the same time. */
-static size_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k, int parallel) {
-    const size_t w = HDI_CAST(size_t, width) * HDI_CAST(size_t, k), parts = parallel ? HDI_CAST(size_t, s->n_tasks) + 1 : 1;
-    return w * (HDI_CAST(size_t, s->vector_size) + parts * HDI_CAST(size_t, s->largest_update)) + 16;
+static uint64_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k, int parallel) {
+    const uint64_t w = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, k), parts = parallel ? HDI_CAST(uint64_t, s->n_tasks) + 1 : 1;
+    return w * (HDI_CAST(uint64_t, s->vector_size) + parts * HDI_CAST(uint64_t, s->largest_update)) + 16;
 }
 
 static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, double *work, int parallel) {
@@ -10763,7 +10767,7 @@ typedef struct hdi_forms {
     int32_t *column;             /* [n_tasks][task_pivots], [n_slots][largest_pivots] place in the block of a pivot's column, -1: not in it */
     hdi_pair *order;             /* [n_tasks][task_pivots], [largest_pivots] */
     double *room;                /* [n_tasks][task_size], [n_slots][slot_size] */
-    size_t task_size, slot_size, aside_task, aside_slot;
+    uint64_t task_size, slot_size, aside_task, aside_slot;
 } hdi_forms;
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry or form (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
@@ -10777,7 +10781,7 @@ typedef struct hdi_inverse {
     double *values;              /* [n_sets][entries or n] */
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
-    size_t scratch_size, top_size, chunk_size;
+    uint64_t scratch_size, top_size, chunk_size;
     int32_t stop;
     double done;
     hd_error error;
@@ -10793,13 +10797,13 @@ typedef struct hdi_inverse_front {
 } hdi_inverse_front;
 
 /* Doubles of a block of rows of Z that is gathered, and of all scratch of a front of at most so many rows and pivots and stored entries. */
-static size_t hdi_inverse_buffer(int32_t width) {
-    return width == 1 ? HDI_CAST(size_t, HDI_REAL_MR) * HDI_INV_DEPTH_REAL : HDI_CAST(size_t, HDI_PACK) * HDI_INV_ROWS * HDI_INV_DEPTH;
+static uint64_t hdi_inverse_buffer(int32_t width) {
+    return width == 1 ? HDI_CAST(uint64_t, HDI_REAL_MR) * HDI_INV_DEPTH_REAL : HDI_CAST(uint64_t, HDI_PACK) * HDI_INV_ROWS * HDI_INV_DEPTH;
 }
 
-static size_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
+static uint64_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
     const int64_t w = hdi_least(p, HDI_PANEL), slices = width == 1 ? (m + w) * (w + HDI_REAL_NR) : 0;
-    return HDI_CAST(size_t, width * (stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS) + slices) + hdi_inverse_buffer(width) + 64;
+    return HDI_CAST(uint64_t, width * (stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS) + slices) + hdi_inverse_buffer(width) + 64;
 }
 
 static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
@@ -11600,10 +11604,10 @@ static void hdi_forms_free(hdi_forms *q, hd_context *ctx) {
  * more than half of the factor: on trees on which stacks grow high. */
 static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a, const double *x, hd_context *ctx, hd_error *e) {
     hdi_scope keep = hdi_scope_begin(ctx, e);
-    const size_t n_tasks = HDI_CAST(size_t, s->n_tasks), n_super = HDI_CAST(size_t, s->n_super), w = HDI_CAST(size_t, width);
+    const uint64_t n_tasks = HDI_CAST(uint64_t, s->n_tasks), n_super = HDI_CAST(uint64_t, s->n_super), w = HDI_CAST(uint64_t, width);
     const int64_t stored = width == 1 ? s->panel[n_super] : s->stored;
     int64_t *need = HDI_TAKE(&keep, int64_t, n_super + 1), in_tasks, in_all;
-    size_t columns, work, i;
+    uint64_t columns, work, i;
     memset(q, 0, sizeof *q);
     if (e->status < 0) return hdi_scope_end(&keep);
     hdi_form_rows(s, need, &in_tasks, &in_all);
@@ -11612,19 +11616,19 @@ static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t wid
     q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
     q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
     while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 + 65536) q->cols = width == 1 ? 1 : q->cols / 2;
-    work = width == 1 ? 0 : w * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(width);
-    q->aside_task = HDI_CAST(size_t, s->task_update) * HDI_CAST(size_t, q->cols) * w;
-    q->aside_slot = HDI_CAST(size_t, s->largest_update) * HDI_CAST(size_t, q->cols) * w;
-    q->task_size = q->aside_task + work + HDI_CAST(size_t, in_tasks) * HDI_CAST(size_t, q->cols) * w;
-    q->slot_size = q->aside_slot + work + HDI_CAST(size_t, in_all) * HDI_CAST(size_t, q->cols) * w;
-    columns = n_tasks * HDI_CAST(size_t, s->task_pivots) + HDI_CAST(size_t, q->n_slots) * HDI_CAST(size_t, s->largest_pivots);
+    work = width == 1 ? 0 : w * HDI_INV_ROWS * HDI_CAST(uint64_t, q->cols) + hdi_inverse_buffer(width);
+    q->aside_task = HDI_CAST(uint64_t, s->task_update) * HDI_CAST(uint64_t, q->cols) * w;
+    q->aside_slot = HDI_CAST(uint64_t, s->largest_update) * HDI_CAST(uint64_t, q->cols) * w;
+    q->task_size = q->aside_task + work + HDI_CAST(uint64_t, in_tasks) * HDI_CAST(uint64_t, q->cols) * w;
+    q->slot_size = q->aside_slot + work + HDI_CAST(uint64_t, in_all) * HDI_CAST(uint64_t, q->cols) * w;
+    columns = n_tasks * HDI_CAST(uint64_t, s->task_pivots) + HDI_CAST(uint64_t, q->n_slots) * HDI_CAST(uint64_t, s->largest_pivots);
     q->inv = HDI_TAKE(&keep, int32_t, s->n);
-    q->active = HDI_CAST(uint64_t *, hdi_take_zero(&keep, (1 + HDI_CAST(size_t, q->n_slots)) * n_super, sizeof(uint64_t)));
+    q->active = HDI_CAST(uint64_t *, hdi_take_zero(&keep, (1 + HDI_CAST(uint64_t, q->n_slots)) * n_super, sizeof(uint64_t)));
     q->column = HDI_TAKE(&keep, int32_t, columns);
-    q->order = HDI_TAKE(&keep, hdi_pair, n_tasks * HDI_CAST(size_t, s->task_pivots) + HDI_CAST(size_t, s->largest_pivots));
-    q->room = HDI_TAKE(&keep, double, n_tasks * q->task_size + HDI_CAST(size_t, q->n_slots) * q->slot_size);
+    q->order = HDI_TAKE(&keep, hdi_pair, n_tasks * HDI_CAST(uint64_t, s->task_pivots) + HDI_CAST(uint64_t, s->largest_pivots));
+    q->room = HDI_TAKE(&keep, double, n_tasks * q->task_size + HDI_CAST(uint64_t, q->n_slots) * q->slot_size);
     if (e->status >= 0) {
-        for (i = 0; i < HDI_CAST(size_t, s->n); i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
+        for (i = 0; i < HDI_CAST(uint64_t, s->n); i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
         for (i = 0; i < columns; i++) q->column[i] = -1;
         hdi_free(ctx, need);
         keep.n = 0;
@@ -11694,13 +11698,13 @@ static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t
     memset(z, 0, sizeof *z);
     for (v = 0; v < s->n_super; v++) {
         const int64_t p = hdi_front_pivots(s, v), m = p + hdi_front_below(s, v);
-        const size_t size = hdi_inverse_scratch(m, p, at[v + 1] - at[v], width);
+        const uint64_t size = hdi_inverse_scratch(m, p, at[v + 1] - at[v], width);
         if (size > z->top_size) z->top_size = size;
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
     z->chunk_size = hdi_inverse_buffer(width);
-    z->scratch = HDI_CAST(double *, hdi_alloc(ctx, z->scratch_size * HDI_CAST(size_t, s->n_tasks) + z->top_size, sizeof(double), e));
-    if (z->scratch) z->chunk = HDI_CAST(double *, hdi_alloc(ctx, s->n_top ? z->chunk_size * HDI_CAST(size_t, n_chunks) : 1, sizeof(double), e));
+    z->scratch = HDI_CAST(double *, hdi_alloc(ctx, z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size, sizeof(double), e));
+    if (z->scratch) z->chunk = HDI_CAST(double *, hdi_alloc(ctx, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, n_chunks) : 1, sizeof(double), e));
     if (!z->chunk) hdi_inverse_free(z, ctx);
     return e->status;
 }
@@ -13001,8 +13005,8 @@ typedef struct hdi_shared_work {
 static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 96; }
 
 /* Doubles that hdi_shared_fit works in. */
-static size_t hdi_shared_room(int32_t n_poles) {
-    const size_t n = HDI_CAST(size_t, 2 * n_poles), rows = HDI_CAST(size_t, hdi_shared_points(n_poles)) + 1;
+static uint64_t hdi_shared_room(int32_t n_poles) {
+    const uint64_t n = HDI_CAST(uint64_t, 2 * n_poles), rows = HDI_CAST(uint64_t, hdi_shared_points(n_poles)) + 1;
     return rows * n + rows + (rows + n) * n + 2 * rows + 3 * n;
 }
 
@@ -13259,14 +13263,14 @@ static void hdi_family_free(hdi_family *fam) {
 
 /* Takes up a set and a time, with room for the preconditioners. hdi_family_fill is to follow when filled is 0. */
 static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double t, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, fam->lap->n_active), upper = HDI_CAST(size_t, fam->up->ptr[n]);
-    const size_t size = fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
+    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
+    const uint64_t size = fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
     int32_t i;
     if (fam->filled && fam->t == t && memcmp(&fam->set, set, sizeof *set) == 0) return HD_OK;
     fam->filled = 0;
     if (fam->n_values < set->n_poles) {
         hdi_family_free(fam);
-        fam->values = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, HDI_CAST(size_t, set->n_poles), (size + 1) * sizeof(hd_c64), e));
+        fam->values = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, HDI_CAST(uint64_t, set->n_poles) * (size + 1), sizeof(hd_c64), e));
         if (!fam->values) return e->status;
         fam->n_values = set->n_poles;
     }
@@ -13284,7 +13288,7 @@ static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double 
 typedef struct hdi_fill_job {
     hdi_family *fam;
     hd_c64 *work;
-    size_t stride;               /* of work from pole to pole, at least 2 n */
+    uint64_t stride;             /* of work from pole to pole, at least 2 n */
 } hdi_fill_job;
 
 static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
@@ -13300,7 +13304,7 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
 }
 
 /* Makes the preconditioners, one parallel task each. */
-static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, size_t stride, hd_error *e) {
+static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, uint64_t stride, hd_error *e) {
     hdi_fill_job job;
     if (fam->filled) return HD_OK;
     if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
@@ -13358,7 +13362,7 @@ static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
 }
 
 static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), n_comp = HDI_CAST(uint64_t, lap->n_components);
     if (lane->f) return HD_OK;
     lane->f = HDI_CAST(double *, hdi_alloc(ctx, 7 * n, sizeof(double), e));
     if (lane->f) lane->target = HDI_CAST(double *, hdi_alloc(ctx, 3 * n_comp, sizeof(double), e));
@@ -13376,7 +13380,7 @@ static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_conte
 
 /* Room for Lanczos. */
 static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, lap->n_active), most = HDI_LANCZOS_MAX + 1;
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), most = HDI_LANCZOS_MAX + 1;
     hdi_lanczos *z = &lane->lanczos;
     if (z->alpha) return HD_OK;
     hdi_free(ctx, z->v);
@@ -13396,22 +13400,22 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_co
 }
 
 /* Complex numbers that a system has in a lane. */
-static size_t hdi_lane_stride(const hdi_family *fam) {
-    return HDI_CAST(size_t, hdi_krylov_vectors(fam->solver)) * HDI_CAST(size_t, fam->lap->n_active);
+static uint64_t hdi_lane_stride(const hdi_family *fam) {
+    return HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)) * HDI_CAST(uint64_t, fam->lap->n_active);
 }
 
 /* Room for the systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, fam->lap->n_active), n_comp = HDI_CAST(size_t, fam->lap->n_components);
-    const size_t n_vec = HDI_CAST(size_t, hdi_krylov_vectors(fam->solver)), count = HDI_CAST(size_t, fam->set.n_poles);
-    size_t i, j;
+    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), n_comp = HDI_CAST(uint64_t, fam->lap->n_components);
+    const uint64_t n_vec = HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)), count = HDI_CAST(uint64_t, fam->set.n_poles);
+    uint64_t i, j;
     if (!lane->vectors || lane->n_systems < fam->set.n_poles) {
         hdi_free(fam->ctx, lane->b);
         hdi_free(fam->ctx, lane->vectors);
         lane->vectors = NULL;
         lane->n_systems = 0;
         lane->b = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, 3 * n + n_comp, sizeof(hd_c64), e));
-        if (lane->b) lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count, n_vec * n * sizeof(hd_c64), e));
+        if (lane->b) lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count * n_vec * n, sizeof(hd_c64), e));
         if (!lane->vectors) return e->status;
         lane->n_systems = fam->set.n_poles;
     }
@@ -13751,7 +13755,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     }
     if (m->lap) {
         (void)hdi_sym_scale(m->lap);
-        m->weight = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+        m->weight = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
         for (i = 0; m->weight && i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
     }
     if (e->status < 0) hdi_elim_free(m);
@@ -13854,11 +13858,11 @@ typedef struct hdi_batch {
 } hdi_batch;
 
 /* Doubles of a batch's arrays. */
-static size_t hdi_batch_size(const hdi_elim *m, int32_t k, size_t *x, size_t *xr) {
-    const size_t n = HDI_CAST(size_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1), real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
-    *x = HDI_PACK * n * HDI_CAST(size_t, k);
+static uint64_t hdi_batch_size(const hdi_elim *m, int32_t k, uint64_t *x, uint64_t *xr) {
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1), real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
+    *x = HDI_PACK * n * HDI_CAST(uint64_t, k);
     *xr = n * (k > 1 ? 8 : 1);
-    return *x + *xr + (pack > real ? pack : real) + HDI_CAST(size_t, m->sym.n_super) / sizeof(double) + 8;
+    return *x + *xr + (pack > real ? pack : real) + HDI_CAST(uint64_t, m->sym.n_super) / sizeof(double) + 8;
 }
 
 /* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has its solution at x + 8 at[q]. */
@@ -14026,7 +14030,7 @@ struct hd_heat {
     hdi_elim elim;               /* to factorise */
     hdi_silan *silan;
     double *batch_room;          /* arrays of the batches */
-    size_t batch_doubles;
+    uint64_t batch_doubles;
     hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
     hdi_upper up;
     double *weight;              /* [n] 1/diag(B) */
@@ -14384,7 +14388,7 @@ static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRI
 /* Starts from the lanes' f and rhs = B f without constants, which lanes keep apart in sums; |f|_B of what is left. */
 static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
-    const size_t n = HDI_CAST(size_t, lap->n_active), wide = HDI_CAST(size_t, z->wide);
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), wide = HDI_CAST(uint64_t, z->wide);
     int64_t i;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_CAST(double *, hdi_alloc(ctx, n * wide, sizeof(double), e));
@@ -14429,7 +14433,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     hdi_sweep s;
     int64_t i;
     int32_t r;
-    if (!z->v[j + 1]) z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, count), sizeof(double), e));
+    if (!z->v[j + 1]) z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(double), e));
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
     s = hdi_sweep_open(&z->m->real, wide, w, z->work, 1);
@@ -14622,7 +14626,7 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, hdi_lane *l
  * or by pivots the diagonal, or that of B Z_p B with the source's B. The factors are there, and stay. */
 static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, hdi_wanted wanted, double *values, int64_t stride, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
-    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n_sets));
+    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n_sets));
     const int32_t n_poles = m->set.n_poles;
     hdi_forms forms;
     hdi_inverse z;
@@ -14827,7 +14831,7 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int64_t *at = HDI_TAKE_ZERO(&s, int64_t, HDI_CAST(int64_t, g->n_active) + 1);
     int32_t f;
-    g->face = HDI_CAST(hdi_geo_face *, at ? hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_faces), sizeof *g->face, e) : NULL);
+    g->face = HDI_CAST(hdi_geo_face *, at ? hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_faces), sizeof *g->face, e) : NULL);
     if (!g->face) return hdi_scope_end(&s);
     for (f = 0; f < mesh->m; f++)
         if (mesh->area[f] > 0) at[hdi_geo_first(mesh->tri + 3 * HDI_CAST(int64_t, f), g->row)]++;
@@ -14840,10 +14844,10 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e
 /* What is per row, in elimination order. */
 static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     int32_t i, v;
-    g->mass = HDI_CAST(double *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_active), sizeof(double), e));
-    if (g->mass) g->row = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n), sizeof(int32_t), e));
-    if (g->row) g->component = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_active), sizeof(int32_t), e));
-    if (g->component) g->pin = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components), sizeof(int32_t), e));
+    g->mass = HDI_CAST(double *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_active), sizeof(double), e));
+    if (g->mass) g->row = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n), sizeof(int32_t), e));
+    if (g->row) g->component = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_active), sizeof(int32_t), e));
+    if (g->component) g->pin = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components), sizeof(int32_t), e));
     if (e->status < 0) return e->status;
     for (v = 0; v < g->n; v++) g->row[v] = -1;
     for (i = 0; i < g->n_active; i++) {
@@ -14897,11 +14901,11 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
 }
 
 static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, g->n_active);
-    g->active = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->sym.n_super), 1, e));
-    if (g->active) g->reached = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components), 1, e));
+    const uint64_t n = HDI_CAST(uint64_t, g->n_active);
+    g->active = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->sym.n_super), 1, e));
+    if (g->active) g->reached = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components), 1, e));
     if (g->reached) g->mark = HDI_CAST(char *, hdi_alloc(g->ctx, n, 1, e));
-    if (g->mark) g->value_ptr = HDI_CAST(int64_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components) + 1, sizeof(int64_t), e));
+    if (g->mark) g->value_ptr = HDI_CAST(int64_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components) + 1, sizeof(int64_t), e));
     if (g->value_ptr) g->x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->x) g->b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->b) g->r = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
@@ -15219,7 +15223,7 @@ static double hdi_geo_residual(const hd_geodesic *g, const double *phi) {
 
 /* Room for phi at k sources. */
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t k, hd_error *e) {
-    const size_t most = HDI_CAST(size_t, k < g->n_active ? k : g->n_active);
+    const uint64_t most = HDI_CAST(uint64_t, k < g->n_active ? k : g->n_active);
     if (HDI_CAST(size_t, g->value_size) >= most) return HD_OK;
     hdi_free(g->ctx, g->value);
     hdi_free(g->ctx, g->sorted);
@@ -15314,7 +15318,7 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
 }
 
 static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
-    const size_t n = HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active);
+    const uint64_t n = HDI_GEO_WIDE * HDI_CAST(uint64_t, g->n_active);
     if (!g->wide_x) g->wide_x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->wide_x && !g->wide_b) g->wide_b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->wide_b && !g->wide_work) g->wide_work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1), sizeof(double), e));
@@ -15808,7 +15812,7 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return 
 /* ---- shifted systems ---- */
 
 static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    double *w = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n_active), sizeof *w, e));
+    double *w = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, lap->n_active), sizeof *w, e));
     int32_t i;
     for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
     return w;
@@ -15904,9 +15908,9 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     perm = HDI_TAKE(&s, int32_t, f->n);
     if (perm && hdi_sym_order(&shape, o.xyz, o.ordering, HDI_DISSECT_FROM, o.perm, perm, &i, c.ctx, c.e) >= 0 && hdi_symbolic_make(&f->sym, &shape, perm, c.ctx, c.e) >= 0) {
         f->sym.ordering = HDI_CAST(hd_ordering, i);
-        f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, HDI_CAST(size_t, f->n) + 1, sizeof *f->row_ptr, c.ctx, c.e));
-        f->col = HDI_CAST(int32_t *, hdi_copy(a->col, HDI_CAST(size_t, f->nnz), sizeof *f->col, c.ctx, c.e));
-        if (c.e->status >= 0) f->inv = HDI_CAST(int32_t *, hdi_alloc(c.ctx, HDI_CAST(size_t, f->n), sizeof *f->inv, c.e));
+        f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, HDI_CAST(uint64_t, f->n) + 1, sizeof *f->row_ptr, c.ctx, c.e));
+        f->col = HDI_CAST(int32_t *, hdi_copy(a->col, HDI_CAST(uint64_t, f->nnz), sizeof *f->col, c.ctx, c.e));
+        if (c.e->status >= 0) f->inv = HDI_CAST(int32_t *, hdi_alloc(c.ctx, HDI_CAST(uint64_t, f->n), sizeof *f->inv, c.e));
         for (i = 0; f->inv && i < f->n; i++) f->inv[f->sym.perm[i]] = i;
     }
     if (hdi_scope_end(&s) < 0) {
@@ -15957,7 +15961,7 @@ static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
     hdi_factor *pack;
     int32_t i;
     if (f->n_packs >= want) return HD_OK;
-    pack = HDI_CAST(hdi_factor *, hdi_alloc(f->ctx, HDI_CAST(size_t, want), sizeof *pack, e));
+    pack = HDI_CAST(hdi_factor *, hdi_alloc(f->ctx, HDI_CAST(uint64_t, want), sizeof *pack, e));
     if (!pack) return e->status;
     memset(pack, 0, HDI_CAST(size_t, want) * sizeof *pack);
     for (i = 0; i < f->n_packs; i++) pack[i] = f->pack[i];
@@ -16010,7 +16014,7 @@ static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
     const int32_t width = which ? HDI_PACK : 1, k = which ? 1 : 8;
     if (f->x[which]) return HD_OK;
     if (!f->work[which]) f->work[which] = HDI_CAST(double *, hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k, 1), sizeof(double), e));
-    if (f->work[which]) f->x[which] = HDI_CAST(double *, hdi_alloc(f->ctx, HDI_CAST(size_t, f->n) * HDI_CAST(size_t, width * k), sizeof(double), e));
+    if (f->work[which]) f->x[which] = HDI_CAST(double *, hdi_alloc(f->ctx, HDI_CAST(uint64_t, f->n) * HDI_CAST(uint64_t, width * k), sizeof(double), e));
     return e->status;
 }
 
@@ -16095,7 +16099,7 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     const int32_t stride = of->width == 1 ? 1 : 2, n_sets = stride * n_matrices;
     const int64_t entries = f->sym.a_ptr[f->sym.n_super], size = values ? entries : f->n;
     hdi_scope s = hdi_scope_begin(f->ctx, e);
-    double coef[HDI_PACK * HDI_PACK], *x = HDI_TAKE(&s, double, HDI_CAST(size_t, n_sets) * HDI_CAST(size_t, size > f->n ? size : f->n));
+    double coef[HDI_PACK * HDI_PACK], *x = HDI_TAKE(&s, double, HDI_CAST(uint64_t, n_sets) * HDI_CAST(uint64_t, size > f->n ? size : f->n));
     int32_t q, i, found = 0;
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
@@ -16188,7 +16192,7 @@ static hd_status hdi_ldl_entries(hd_ldl *f, int complex_ones, int64_t n_entries,
     if (n_entries == 0 || hdi_ldl_room(f, complex_ones, e) < 0) return e->status;
     s = hdi_scope_begin(f->ctx, e);
     order = HDI_TAKE(&s, hdi_pair, n_entries);
-    marks = HDI_TAKE(&s, char, 2 * HDI_CAST(size_t, f->sym.n_super));
+    marks = HDI_TAKE(&s, char, 2 * HDI_CAST(uint64_t, f->sym.n_super));
     if (e->status < 0) return hdi_scope_end(&s);
     for (q = 0; q < n_entries; q++) {
         order[q].key = HDI_CAST(uint64_t, j[q]);
@@ -16290,7 +16294,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
     if (heat->opts.ordering == HD_ORDERING_OWN) {
         if (hdi_sym_check(heat->opts.perm, lap->n, c.ctx, c.e) >= 0)
-            heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(size_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
+            heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
         if (!heat->perm) {
             hd_heat_free(heat);
             return c.e->status;
@@ -16833,7 +16837,7 @@ static hd_status hdi_heat_prepare(hdi_heat_call *h) {
 /* Arrays of a batch of k, from the plan's room. */
 static hdi_batch hdi_heat_batch(const hdi_heat_call *h, int32_t index, int32_t k) {
     hdi_batch b;
-    size_t x, xr, size = hdi_batch_size(&h->heat->elim, k, &x, &xr);
+    uint64_t x, xr, size = hdi_batch_size(&h->heat->elim, k, &x, &xr);
     b.x = h->heat->batch_room + size * HDI_CAST(size_t, index);
     b.xr = b.x + x;
     b.work = b.xr + xr;
@@ -16856,8 +16860,8 @@ static void hdi_heat_batch_task(void *arg, int64_t index, int32_t worker) {
 /* Lanes, the pole set and its factors. */
 static hd_status hdi_direct_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const size_t n = HDI_CAST(size_t, h->lap->n_active), most = 8 * HDI_CAST(size_t, heat->elim.sym.stored);
-    size_t x, xr, size;
+    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active), most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
+    uint64_t x, xr, size;
     hd_rational set;
     int32_t i;
     h->batch_width = h->k < HDI_LANES_BATCH ? h->k : HDI_LANES_BATCH;
@@ -16873,7 +16877,7 @@ static hd_status hdi_direct_prepare(hdi_heat_call *h) {
     if (heat->batch_doubles < size * HDI_CAST(size_t, h->n_batches)) {
         hdi_free(heat->ctx, heat->batch_room);
         heat->batch_doubles = 0;
-        heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, size * HDI_CAST(size_t, h->n_batches), sizeof(double), h->e));
+        heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, size * HDI_CAST(uint64_t, h->n_batches), sizeof(double), h->e));
         if (!heat->batch_room) return h->e->status;
         heat->batch_doubles = size * HDI_CAST(size_t, h->n_batches);
     }
@@ -17382,7 +17386,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     s = &heat->elim.sym;
     size = full ? s->a_ptr[s->n_super] : s->n;
     room = HDI_TAKE(&scope, double, 2 * size);
-    value = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, s->n));
+    value = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, s->n));
     if (h->e->status < 0 || hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) < 0) return hdi_scope_end(&scope);
     off = value + s->n;
     if (full) {
@@ -17487,7 +17491,7 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values) {
     hd_heat *heat = h->heat;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
     const int64_t size = heat->elim.sym.a_ptr[heat->elim.sym.n_super];
-    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size));
+    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, size));
     hdi_entries x;
     if (room && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
         const int32_t worst = hdi_edges_judge(&heat->elim, &x, h->rep);
@@ -17572,7 +17576,7 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
     hd_heat *heat = h->heat;
     hdi_elim *m = &heat->elim;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    const size_t n = HDI_CAST(size_t, m->sym.n), sets = 2 * HDI_CAST(size_t, n_times);
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), sets = 2 * HDI_CAST(uint64_t, n_times);
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
     hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
     double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
@@ -17670,7 +17674,7 @@ static hd_status hdi_heat_gap(hd_heat *heat, double *lambda, hd_error *e) {
     int32_t i, k;
     if (hdi_heat_analysed(heat, 1, e) < 0 || hdi_elim_shift(m, 1e10 / heat->lambda_max, e) < 0) return hdi_scope_end(&s);
     lap = m->lap;
-    x = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, lap->n_active));
+    x = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n_active));
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1, 1));
     sums = HDI_TAKE(&s, double, lap->n_components);
     if (e->status < 0) return hdi_scope_end(&s);
@@ -17751,7 +17755,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     memset(x, 0, sizeof *x);
     x->kind = kind;
     x->filter = kind == HD_DISTANCE_COMMUTE || kind == HD_DISTANCE_BIHARMONIC;
-    x->diag = HDI_TAKE(keep, double, 2 * HDI_CAST(size_t, lap->n_active) + 1);
+    x->diag = HDI_TAKE(keep, double, 2 * HDI_CAST(uint64_t, lap->n_active) + 1);
     if (!x->diag) return e->status;
     x->off = x->diag + lap->n_active;
     scope = hdi_scope_begin(heat->ctx, e);
@@ -17769,7 +17773,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     h.set = x->filter ? &x->set : NULL;
     m = &heat->elim;
     h.lap = m->lap;
-    room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, m->sym.n));
+    room = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, m->sym.n));
     if (room && hdi_entries_make(&h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) >= 0) {
         if (lap->B && !full) entries.uniform += fabs(m->set.a0);
         for (i = 0; i < m->sym.n; i++) {
@@ -17875,7 +17879,7 @@ static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
 static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, int32_t k, const int32_t *sources, double *D, size_t step,
                                    hd_report *rep, hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const size_t n = HDI_CAST(size_t, heat->source->n);
+    const uint64_t n = HDI_CAST(uint64_t, heat->source->n);
     const hd_kernel kernel = kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
     hd_report columns;
@@ -17888,7 +17892,7 @@ static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double 
     for (r = 0; r < k && e->status >= 0; r++) {
         double *u = D + HDI_CAST(size_t, r) * step;
         hd_report bound;
-        if (g && hdi_direct_columns(heat, x.t, kernel, &x.resolvent, 1, sources + r, g, n, &bound) < 0) *e = bound.error;
+        if (g && hdi_direct_columns(heat, x.t, kernel, &x.resolvent, 1, sources + r, g, HDI_CAST(size_t, n), &bound) < 0) *e = bound.error;
         if (e->status < 0) break;
         hdi_metric_column(heat->source, &x, u, work);
         if (g) hdi_metric_column(heat->source, &x, g, work);
@@ -17943,19 +17947,19 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     const int32_t n_times = q1 - q0, n = m->sym.n;
     const int weighted = kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
-    const size_t size = 2 * HDI_CAST(size_t, n_times) * HDI_CAST(size_t, n);
+    const uint64_t size = 2 * HDI_CAST(uint64_t, n_times) * HDI_CAST(uint64_t, n);
     const double *t = h->times + q0, unit = weighted ? 1 / heat->scale : heat->scale;
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
-    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(size_t, n_times) * HD_MAX_POLES);
-    double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n));
+    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(uint64_t, n_times) * HD_MAX_POLES);
+    double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n));
     double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n);
-    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n)) : NULL;
-    char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
+    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, n)) : NULL;
+    char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(uint64_t, m->sym.n_super) + 1, 1));
     hdi_metric metric;
     int32_t q, r, i;
     memset(&metric, 0, sizeof metric);
     metric.kind = kind;
-    metric.diag = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n) + 1);
+    metric.diag = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, n) + 1);
     if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_DISTANCE_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
     metric.off = metric.diag + n;
     h->t = t[0];
@@ -17967,7 +17971,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     for (r = 0; r < k; r++) {
         const int32_t row = m->lap->row[sources[r]];
         if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
-        memset(column, 0, size * sizeof *column);
+        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
         if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active);
         for (q = 0; q < n_times; q++) {
             const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
@@ -18118,7 +18122,7 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, doub
     if (!d) return rep->status;
     s = hdi_scope_begin(heat->ctx, e);
     f = HDI_TAKE(&s, double, heat->source->n);
-    rows = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, heat->source->n) + 1);
+    rows = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, heat->source->n) + 1);
     memset(&one, 0, sizeof one);
     if (!rows || hdi_metric_make(heat, kind, t, 0, &x, &s, &one) < 0) return rep->status = hdi_scope_end(&s);
     for (q = 0; q < n_pairs && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
@@ -18155,7 +18159,7 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
     order = HDI_TAKE(&h.s, hdi_pair, 2 * n_pairs);
     list = HDI_TAKE(&h.s, int32_t, 2 * n_pairs);
     place = HDI_TAKE(&h.s, int32_t, 2 * n_pairs);
-    work = HDI_TAKE(&h.s, double, 2 * HDI_CAST(size_t, heat->source->n) + 1);
+    work = HDI_TAKE(&h.s, double, 2 * HDI_CAST(uint64_t, heat->source->n) + 1);
     if (h.e->status < 0) return hdi_heat_end(&h);
     n_list = hdi_pairs_vertices(n_pairs, i, j, order, list, place);
     if (kind >= HD_DISTANCE_COMMUTE || HDI_CAST(int64_t, n_list) * heat->source->n > MOST_DOUBLES) {
@@ -18165,7 +18169,7 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
         *h.e = kept;
         return h.rep->status = st;
     }
-    U = HDI_TAKE(&h.s, double, HDI_CAST(size_t, heat->source->n) * HDI_CAST(size_t, n_list));
+    U = HDI_TAKE(&h.s, double, HDI_CAST(uint64_t, heat->source->n) * HDI_CAST(uint64_t, n_list));
     if (U) {
         hd_report columns;
         if (hd_heat_columns(heat, t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, n_list, list, U, 0, &columns) >= 0)
@@ -18192,7 +18196,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
         if (hdi_vertex_check(lap, vertex[q], h.e) < 0) h.e->column = q;
     nearest = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, double, lap->n);
     u = HDI_TAKE(&h.s, double, lap ? lap->n : 0);
-    work = HDI_TAKE(&h.s, double, lap ? 2 * HDI_CAST(size_t, lap->n) + 1 : 0);
+    work = HDI_TAKE(&h.s, double, lap ? 2 * HDI_CAST(uint64_t, lap->n) + 1 : 0);
     memset(&one, 0, sizeof one);
     if (h.e->status >= 0) (void)hdi_metric_make(heat, kind, t, hdi_metric_settled(heat, kind) ? 0 : HDI_RAT_KERNEL_MAX, &x, &h.s, &one);
     if (h.e->status == HD_ERR_MEMORY_LIMIT && heat->elim.n_packs > 0 && !hdi_metric_settled(heat, kind)) {   /* no room for twice the factors */
