@@ -106,7 +106,7 @@ typedef struct hd_c64 { double re, im; } hd_c64;
     X(HD_ERR_INDEX, -7, "an index is out of range")                                                                    \
     X(HD_ERR_NOT_FINITE, -8, "a value is not finite")                                                                  \
     X(HD_ERR_NOT_SYMMETRIC, -9, "a matrix is not symmetric")                                                           \
-    X(HD_ERR_NOT_POSITIVE, -10, "a mass matrix is not positive definite")                                              \
+    X(HD_ERR_NOT_POSITIVE, -10, "L is not positive semi-definite, or B is not positive definite")                      \
     X(HD_ERR_STRUCTURE, -11, "a sparse matrix is not well formed")                                                     \
     X(HD_ERR_EMPTY, -12, "nothing is left to compute on: no vertex has mass")                                          \
     X(HD_ERR_BREAKDOWN, -13, "the iteration broke down")
@@ -280,8 +280,9 @@ typedef struct hd_laplacian {
     int32_t *component;         /* [n_active] row -> component, numbered by their first vertex */
     double *xyz;                /* [3 n_active] places of the rows; NULL for matrices */
     double *component_mass;     /* [n_components] sum of mass */
-    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem (0.42 with edges from a vertex to itself), 0 when not known */
-    int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes) */
+    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem (0.42 with edges from a vertex to itself); matrices: proven by
+                                   Gershgorin's circles or by factorisations; 0 when not known */
+    int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes; matrices: up to 4 DBL_EPSILON sum_j |L_ij|) */
     hd_mesh_report mesh;        /* zeros for matrices but n_inert; of points too, but when tufted: then of the stars' triangles */
     hd_point_report points;     /* zeros for meshes and matrices; tufted: neighbours and n_coincident, where neighbours were searched */
     hd_context *context;
@@ -462,7 +463,8 @@ HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" *
 /* ---- sparse matrices ---- */
 
 /* A from triplets (i, j, v) in any order; those with the same place are summed in the order given. v may be NULL: a pattern.
- * Cost O(n_rows + n_cols + n_triplets). Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE. */
+ * Cost O(n_rows + n_cols + n_triplets). Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE (row: index of the
+ * triplet; of a sum its row and column). */
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
                                             const int32_t *j, const double *v, hd_context *ctx, hd_error *err);
 
@@ -473,7 +475,7 @@ HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_conte
 /* out = A'. Cost O(nnz). */
 HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *err);
 
-/* out = A B (Gustavson 1978). Cost O(flops + sorting of the rows). */
+/* out = A B (Gustavson 1978). Errors HD_ERR_NOT_FINITE (row, column: an entry overflows). Cost O(flops + sorting of the rows). */
 HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *err);
 
 /* out = P A P', a square A with rows and columns renumbered: row i of out is row perm[i] of A. Errors HD_ERR_INDEX when perm is not
@@ -546,11 +548,13 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
                                                   const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices on any graph, copied.
- * L      n x n, symmetric positive semi-definite. Rows need not sum to zero (then heat is not conserved)
+ * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked: L_ii >= 0, L_ij^2 <= L_ii L_jj.
+ *        Rows need not sum to zero (then heat is not conserved)
  * B      n x n, symmetric positive definite; any pattern. Rows of B without any non-zero are inert vertices. Definiteness is
- *        checked on the diagonal, and on B itself where a solver meets it (HD_ERR_NOT_POSITIVE)
+ *        checked on the diagonal, by factorising B where rows of it are not dominated by their diagonal, and where a solver meets it
+ *        The pattern of the pair is that of both; explicit zeros stay where their mirror entry is stored too
  * h      unit length of the caller's mesh for lap->h; 0 if none
- * Errors as hd_csr_check, HD_ERR_NOT_POSITIVE (row, value), HD_ERR_EMPTY. */
+ * Errors as hd_csr_check, HD_ERR_NOT_POSITIVE (row, column, value), HD_ERR_EMPTY, HD_ERR_CANCELLED. Cost linear, but for factorising B. */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
@@ -610,7 +614,8 @@ typedef struct hd_solve_report {
 /* (t L + theta B) x = rhs, complex symmetric. rhs, x [n] on the vertices, may be the same array; 0 at vertices without mass.
  * theta not on (-inf, 0], t >= 0. The report is filled too when the status is HD_ERR_NOT_CONVERGED. Every call makes its own ordering and
  * preconditioner.
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED. HD_WARN_ACCURACY. */
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row: of rhs, or of x when that overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_MEMORY,
+ * HD_ERR_CANCELLED. HD_WARN_ACCURACY. */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                         const hd_solve_opts *opts, hd_solve_report *report, hd_error *err);
 
@@ -917,9 +922,18 @@ static double hdi_max(double a, double b) { return a > b ? a : b; }
 static double hdi_min(double a, double b) { return a < b ? a : b; }
 static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
 
-/* *out = a * b + c; 0 if that does not fit. */
-static int hdi_size(size_t a, size_t b, size_t c, size_t *out) {
-    if (b && a > (SIZE_MAX - c) / b) return 0;
+/* A sum with what its additions rounded away (Knuth): sums that cancel keep their digits. */
+typedef struct hdi_sum { double high, low; } hdi_sum;
+
+static void hdi_sum_add(hdi_sum *s, double x) {
+    const double t = s->high + x, z = t - s->high;
+    s->low += (s->high - (t - z)) + (x - z);
+    s->high = t;
+}
+
+/* *out = a * b + c; 0 if that does not fit, or is more than most. Counts of elements have 64 bits everywhere, also where an address has 32. */
+static int hdi_size(uint64_t a, uint64_t b, uint64_t c, uint64_t most, uint64_t *out) {
+    if (c > most || (b && a > (most - c) / b)) return 0;
     *out = a * b + c;
     return 1;
 }
@@ -985,14 +999,15 @@ static void hdi_large_pages(char *raw, size_t total) {
 }
 
 /* [count] elements of size bytes, not cleared. NULL with e filled when there are none to have; e must be clear before. */
-static void *hdi_alloc(hd_context *ctx, size_t count, size_t size, hd_error *e) {
+static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e) {
     size_t total, offset;
     uint64_t head[2];
     char *raw;
-    if (!hdi_size(count, size, HDI_ALIGN + HDI_HEADER, &total)) {
+    if (!hdi_size(count, size, HDI_ALIGN + HDI_HEADER, SIZE_MAX / 2, head)) {
         hdi_fail(e, HD_ERR_TOO_LARGE, "an array would be larger than the address space");
         return NULL;
     }
+    total = HDI_CAST(size_t, head[0]);
     if (hdi_alloc_check(ctx, total, e) < 0) return NULL;
     ctx->allocations++;
     raw = HDI_CAST(char *, ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total) : HEATDIFF_MALLOC(total));
@@ -1039,7 +1054,7 @@ static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
     return s;
 }
 
-static void *hdi_take(hdi_scope *s, size_t count, size_t size) {
+static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
     void *p;
     HEATDIFF_ASSERT(s->n < HDI_CAST(int32_t, sizeof s->block / sizeof *s->block));
     if (s->e->status < 0) return NULL;
@@ -1048,9 +1063,9 @@ static void *hdi_take(hdi_scope *s, size_t count, size_t size) {
     return p;
 }
 
-static void *hdi_take_zero(hdi_scope *s, size_t count, size_t size) {
+static void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
     void *p = hdi_take(s, count, size);
-    if (p) memset(p, 0, count * size);
+    if (p) memset(p, 0, HDI_CAST(size_t, count) * size);
     return p;
 }
 
@@ -1067,8 +1082,8 @@ static hd_status hdi_scope_end(hdi_scope *s) {
     return s->e->status;
 }
 
-#define HDI_TAKE(scope, type, count) HDI_CAST(type *, hdi_take(scope, HDI_CAST(size_t, count), sizeof(type)))
-#define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(size_t, count), sizeof(type)))
+#define HDI_TAKE(scope, type, count) HDI_CAST(type *, hdi_take(scope, HDI_CAST(uint64_t, count), sizeof(type)))
+#define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 
 /* ==== [04] context ====
  * Progress, cancelling and parallel loops. May call [03]. */
@@ -3348,6 +3363,16 @@ static void hdi_csr_merge(hd_csr *a) {
     a->nnz = q;
 }
 
+/* For sums that may have overflowed. */
+static hd_status hdi_csr_check_finite(const hd_csr *a, const char *text, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    for (i = 0; a->val && i < a->n_rows; i++)
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
+            if (!hdi_finite(a->val[p])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, text, i, a->col[p], a->val[p]);
+    return HD_OK;
+}
+
 static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n, const int32_t *ti, const int32_t *tj,
                                        const double *tv, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
@@ -3372,8 +3397,20 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     t.row_ptr[0] = 0;
     hdi_csr_transpose_into(&t, &a);
     hdi_csr_merge(&a);
-    *out = hdi_csr_keep(&s, a);
+    if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0) *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
+}
+
+/* Whether a stores the entry (i,j), zero or not. */
+static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) {
+    int64_t p = a->row_ptr[i], end = a->row_ptr[i + 1];
+    while (p < end) {
+        const int64_t middle = p + (end - p) / 2;
+        if (a->col[middle] == j) return 1;
+        if (a->col[middle] < j) p = middle + 1;
+        else end = middle;
+    }
+    return 0;
 }
 
 static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
@@ -3482,7 +3519,7 @@ static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, 
             for (q = b->row_ptr[a->col[p]]; q < b->row_ptr[a->col[p] + 1]; q++) sum[b->col[q]] += a->val[p] * b->val[q];
         for (p = 0; p < n; p++) c.val[c.row_ptr[i] + p] = sum[col[p]];
     }
-    *out = hdi_csr_keep(&s, c);
+    if (hdi_csr_check_finite(&c, "product: an entry is not finite", e) >= 0) *out = hdi_csr_keep(&s, c);
     return hdi_scope_end(&s);
 }
 
@@ -5331,7 +5368,8 @@ static void hdi_put_face(hdi_intrinsic *t, const hdi_mesh *mesh, int32_t f, cons
  * boundary is glued to the other sheet (the tufted cover), so that no boundary is left. */
 static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int close, hd_mesh_report *rep, hdi_scope *s) {
     const int64_t n_sides = 3 * HDI_CAST(int64_t, mesh->m);
-    int32_t *mate = HDI_TAKE(s, int32_t, n_sides), *front = HDI_TAKE(s, int32_t, mesh->m + 1), *back = HDI_TAKE(s, int32_t, mesh->m + 1);
+    int32_t *mate = HDI_TAKE(s, int32_t, n_sides), *front = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
+    int32_t *back = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
     int32_t f, q, used = 0;
     signed char *turned = HDI_TAKE(s, signed char, mesh->m);
     hdi_pair *list = HDI_TAKE(s, hdi_pair, 2 * hdi_most_corners(mesh));
@@ -5722,7 +5760,7 @@ static void hdi_cover_free(hdi_cover *c) {
 
 /* old with n elements in a block of room elements; NULL, old freed, when there is none. */
 static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
-    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(size_t, room), size, c->e);
+    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(uint64_t, room), size, c->e);
     if (block && n > 0) memcpy(block, old, HDI_CAST(size_t, n) * size);
     hdi_free(c->ctx, old);
     return block;
@@ -5978,14 +6016,14 @@ static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
 static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
     int32_t v, k = 0;
     hd_context *ctx = lap->context;
-    lap->row = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(size_t, lap->n), sizeof(int32_t), e));
+    lap->row = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), e));
     if (!lap->row) return e->status;
     for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : -1;
     lap->n_active = k;
     lap->mesh.n_inert = lap->n - k;
     if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
-    lap->vertex = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(size_t, k), sizeof(int32_t), e));
-    if (lap->vertex) lap->mass = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, k), sizeof(double), e));
+    lap->vertex = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(uint64_t, k), sizeof(int32_t), e));
+    if (lap->vertex) lap->mass = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, k), sizeof(double), e));
     if (e->status < 0) return e->status;
     lap->b_diag = lap->mass;
     for (v = 0; v < lap->n; v++) {
@@ -6002,7 +6040,7 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
     int32_t *parent = HDI_TAKE(&s, int32_t, lap->n_active), i;
     int64_t p;
     if (!parent) return hdi_scope_end(&s);
-    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_active), sizeof(int32_t), e));
+    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_active), sizeof(int32_t), e));
     if (!lap->component) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) parent[i] = i;
     for (i = 0; i < lap->n_active; i++)
@@ -6011,7 +6049,7 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
         const int32_t root = hdi_find(parent, i);    /* roots are smallest members, so they have their number already */
         lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
     }
-    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_components), sizeof(double), e));
+    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_components), sizeof(double), e));
     if (!lap->component_mass) return hdi_scope_end(&s);
     memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
@@ -6021,13 +6059,13 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
 /* Components from the vertices that edges unite, parent [n], as hdi_lap_components has them from the pattern. */
 static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e) {
     int32_t i;
-    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_active), sizeof(int32_t), e));
+    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_active), sizeof(int32_t), e));
     if (!lap->component) return e->status;
     for (i = 0; i < lap->n_active; i++) {
         const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];
         lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
     }
-    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(size_t, lap->n_components), sizeof(double), e));
+    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_components), sizeof(double), e));
     if (!lap->component_mass) return e->status;
     memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
@@ -6204,7 +6242,7 @@ static int64_t hdi_widest_row(const hd_csr *a) {
 /* Copies the places of the rows. */
 static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
     int32_t i;
-    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
     if (!lap->xyz) return e->status;
     for (i = 0; i < lap->n_active; i++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), 3 * sizeof *xyz);
     return HD_OK;
@@ -6494,7 +6532,8 @@ static void hdi_component_add(const hd_laplacian *lap, const double *value, doub
 
 /* ---- the caller's own matrices ---- */
 
-/* Merges row i of L and B (both over vertices) on the active columns, the diagonal always there. col NULL: counts only. */
+/* Merges row v of L and B (both over vertices) on the active columns, the diagonal always there. An explicit zero
+ * whose mirror entry neither matrix stores is left out: the pattern becomes symmetric. col NULL: counts only. */
 static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v, int32_t *col, double *Lx, double *Bx) {
     int64_t p = L->row_ptr[v], q = B->row_ptr[v], n = 0;
     const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
@@ -6502,11 +6541,13 @@ static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_c
     while (p < p_end || q < q_end || !diagonal) {
         const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX, cd = diagonal ? INT32_MAX : v;
         const int32_t c = cp < cq ? (cp < cd ? cp : cd) : (cq < cd ? cq : cd);
-        if (lap->row[c] >= 0) {
+        const double l = cp == c ? L->val[p] : 0, b = cq == c ? B->val[q] : 0;
+        const int kept = l != 0 || b != 0 || c == v || hdi_csr_stores(L, c, v) || hdi_csr_stores(B, c, v);
+        if (lap->row[c] >= 0 && kept) {
             if (col) {
                 col[n] = lap->row[c];
-                Lx[n] = cp == c ? L->val[p] : 0;
-                Bx[n] = cq == c ? B->val[q] : 0;
+                Lx[n] = l;
+                Bx[n] = b;
             }
             n++;
         }
@@ -6517,26 +6558,39 @@ static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_c
     return n;
 }
 
-/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0. */
-static hd_status hdi_pair_measure(hd_laplacian *lap, int *diagonal, hd_error *e) {
+/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the rounding of its
+ * entries. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry leaves open. */
+static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal, hd_error *e) {
     int32_t i;
     int64_t p;
     *diagonal = 1;
     lap->conserves = 1;
     lap->b_ratio = 1;
     for (i = 0; i < lap->n_active; i++) {
-        double l_sum = 0, l_abs = 0, b_sum = 0, b_off = 0, b_diag = 0;
+        const int32_t v = lap->vertex[i];
+        hdi_sum l_sum = {0, 0}, b_off = {0, 0};
+        double l_abs = 0, l_diag = 0, b_sum = 0, b_diag = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            l_sum += lap->L.val[p];
+            hdi_sum_add(&l_sum, lap->L.val[p]);
             l_abs += fabs(lap->L.val[p]);
             b_sum += lap->B[p];
-            if (lap->L.col[p] == i) b_diag = lap->B[p];
-            else b_off += fabs(lap->B[p]);
+            if (lap->L.col[p] != i) {
+                hdi_sum_add(&b_off, fabs(lap->B[p]));
+                continue;
+            }
+            l_diag = lap->L.val[p];
+            b_diag = lap->B[p];
         }
-        if (!(b_diag > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", lap->vertex[i], lap->vertex[i], b_diag);
-        if (fabs(l_sum) > 1e-11 * l_abs) lap->conserves = 0;
-        if (b_off > 0) *diagonal = 0;
-        lap->b_ratio = hdi_min(lap->b_ratio, 1 - b_off / b_diag);
+        if (!(b_diag > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
+        if (l_diag + 1e-12 * l_abs < 0)
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L has a negative diagonal entry: L is positive semi-definite here, "
+                                "minus the cotangent matrix of libigl", v, v, l_diag);
+        root[i] = sqrt(l_diag + 1e-12 * l_abs);
+        if (fabs(l_sum.high + l_sum.low) > 4 * DBL_EPSILON * l_abs) lap->conserves = 0;
+        if (b_off.high > 0) {                    /* Gershgorin */
+            *diagonal = 0;
+            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * ((b_diag - b_off.high) - b_off.low) / b_diag);
+        }
         lap->mass[i] = b_sum;
         lap->b_diag[i] = b_diag;
         lap->area += b_sum;
@@ -6544,9 +6598,21 @@ static hd_status hdi_pair_measure(hd_laplacian *lap, int *diagonal, hd_error *e)
     return HD_OK;
 }
 
+/* What every positive semi-definite L satisfies: L_ij^2 <= L_ii L_jj. root as above. */
+static hd_status hdi_pair_semidefinite(const hd_laplacian *lap, const double *root, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            if (lap->L.col[p] > i && fabs(lap->L.val[p]) > (1 + 1e-10) * root[i] * root[lap->L.col[p]])
+                return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite: an entry is larger than the diagonal "
+                                    "entries of its row and column allow", lap->vertex[i], lap->vertex[lap->L.col[p]], lap->L.val[p]);
+    return HD_OK;
+}
+
 /* Where rows of B are not dominated by their diagonal, as in finite elements: the smallest eigenvalue of D^-1 B, D = diag(B), by 40 Lanczos
- * steps, a fifth taken off for safety. An estimate, not a bound: meshes know theirs exactly. work [4 n]. */
-static hd_status hdi_pair_ratio(hd_laplacian *lap, double *work, hd_error *e) {
+ * steps. An estimate from above, to be proven: see hdi_lap_ratio. work [4 n]. */
+static hd_status hdi_pair_ratio(const hd_laplacian *lap, double *work, double *ratio, hd_error *e) {
     enum { STEPS = 40 };
     const int32_t n = lap->n_active;
     double *v = work, *v_old = v + n, *w = v_old + n, *s = w + n, d[STEPS], off[STEPS], z[2 * STEPS], beta = 0, norm = 0, least;
@@ -6585,13 +6651,13 @@ static hd_status hdi_pair_ratio(hd_laplacian *lap, double *work, hd_error *e) {
     if (!hdi_tridiag_eigen(d, off, z, z + STEPS, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "B: the estimate of its smallest eigenvalue did not converge");
     for (least = d[0], k = 1; k < m; k++) least = hdi_min(least, d[k]);
     if (!(least > 1e-12)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B is not positive definite", -1, -1, least);
-    lap->b_ratio = hdi_min(1, 0.8 * least);
+    *ratio = least;
     return HD_OK;
 }
 
 static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag;
+    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag, *root;
     int64_t nnz = 0, p;
     int32_t i;
     int diagonal;
@@ -6604,6 +6670,7 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
     lap->B = HDI_TAKE(&s, double, nnz);
     b_diag = HDI_TAKE(&s, double, lap->n_active);
+    root = HDI_TAKE(&s, double, lap->n_active);
     if (e->status < 0) {
         memset(&lap->L, 0, sizeof lap->L);
         lap->B = NULL;
@@ -6616,16 +6683,12 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
         p = lap->L.row_ptr[i];
         lap->L.row_ptr[i + 1] = p + hdi_pair_row(lap, L, B, lap->vertex[i], lap->L.col + p, lap->L.val + p, lap->B + p);
     }
-    if (hdi_pair_measure(lap, &diagonal, e) < 0) return hdi_scope_end(&s);
+    if (hdi_pair_measure(lap, root, &diagonal, e) < 0 || hdi_pair_semidefinite(lap, root, e) < 0) return hdi_scope_end(&s);
     if (diagonal) {
         hdi_free(lap->context, lap->B);
         hdi_free(lap->context, lap->b_diag);
         lap->B = NULL;
         lap->b_diag = lap->mass;
-    }
-    if (lap->b_ratio < 0.01) {
-        double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active));
-        if (!work || hdi_pair_ratio(lap, work, e) < 0) return hdi_scope_end(&s);
     }
     hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
@@ -7541,9 +7604,9 @@ static hd_status hdi_sym_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_contex
     return hdi_scope_end(&s);
 }
 
-static void *hdi_copy(const void *from, size_t count, size_t size, hd_context *ctx, hd_error *e) {
+static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
     void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
-    if (to) memcpy(to, from, count * size);
+    if (to) memcpy(to, from, HDI_CAST(size_t, count) * size);
     return to;
 }
 
@@ -7553,7 +7616,7 @@ enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are aske
  * ascending. */
 static hd_status hdi_sym_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
     const int32_t n = lap->n_active;
-    const size_t n1 = HDI_CAST(size_t, n) + 1, nnz = HDI_CAST(size_t, lap->L.nnz);
+    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, nnz = HDI_CAST(uint64_t, lap->L.nnz);
     hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
     int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
     int64_t *fill = HDI_TAKE(&s, int64_t, n1), p;
@@ -7608,8 +7671,8 @@ static hd_laplacian *hdi_sym_renumber(const hd_laplacian *lap, const int32_t *pe
     out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
     out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
     out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
-    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(size_t, lap->n), sizeof(int32_t), ctx, e));
-    out->component_mass = HDI_CAST(double *, hdi_copy(lap->component_mass, HDI_CAST(size_t, lap->n_components), sizeof(double), ctx, e));
+    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
+    out->component_mass = HDI_CAST(double *, hdi_copy(lap->component_mass, HDI_CAST(uint64_t, lap->n_components), sizeof(double), ctx, e));
     out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
     if (e->status < 0 || hdi_sym_permute(out, lap, perm, ctx, e) < 0) {
         hdi_laplacian_free(out, ctx);
@@ -9133,7 +9196,7 @@ static hdi_nd_part hdi_nd_load(const hdi_nd *nd, const hd_csr *a, const int32_t 
 }
 
 static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) {
-    const size_t n = HDI_CAST(size_t, a->n_rows) + 1, nnz = HDI_CAST(size_t, a->nnz) + 1;
+    const uint64_t n = HDI_CAST(uint64_t, a->n_rows) + 1, nnz = HDI_CAST(uint64_t, a->nnz) + 1;
     int32_t *p = HDI_TAKE(s, int32_t, 7 * n + nnz + 2 * (nnz / 4 + 1));
     if (!p) return;
     b->ptr = p;
@@ -9166,7 +9229,7 @@ static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
  * Does not depend on the number of threads. Progress stage "order". Errors HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_CANCELLED. */
 static hd_status hdi_sym_nested_dissection(const hd_csr *a, const double *xyz, int32_t *perm, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    const size_t n = HDI_CAST(size_t, a->n_rows);
+    const uint64_t n = HDI_CAST(uint64_t, a->n_rows);
     hdi_nd nd;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
     int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
@@ -9176,7 +9239,7 @@ static hd_status hdi_sym_nested_dissection(const hd_csr *a, const double *xyz, i
     memset(&nd, 0, sizeof nd);
     nd.perm = perm;
     nd.xyz = HDI_TAKE(&s, float, 3 * n + 1);
-    nd.work = HDI_TAKE(&s, int32_t, HDI_ND_WORDS * n + 2 * HDI_CAST(size_t, a->nnz) + HDI_ND_SLACK * HDI_ND_TASKS);
+    nd.work = HDI_TAKE(&s, int32_t, HDI_ND_WORDS * n + 2 * HDI_CAST(uint64_t, a->nnz) + HDI_ND_SLACK * HDI_ND_TASKS);
     nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
     nd.child = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
     hdi_nd_buffer_make(nd.buffer, a, &s);
@@ -9609,9 +9672,9 @@ static double hdi_sym_front_work(double m, double p) {
  * fronts are large enough to be shared. Then places the update matrices. */
 static hd_status hdi_sym_plan(hdi_symbolic *s, hdi_scope *scope) {
     int32_t *task = s->task_of, v, k;
-    hdi_pair *roots = HDI_TAKE(scope, hdi_pair, s->n_super + 1);
+    hdi_pair *roots = HDI_TAKE(scope, hdi_pair, HDI_CAST(int64_t, s->n_super) + 1);
     hdi_gaps gaps;
-    double *sum = HDI_TAKE_ZERO(scope, double, s->n_super + 1), total = 0, open = 0, limit;
+    double *sum = HDI_TAKE_ZERO(scope, double, HDI_CAST(int64_t, s->n_super) + 1), total = 0, open = 0, limit;
     gaps.room = 1024;
     gaps.at = HDI_TAKE(scope, int64_t, gaps.room);
     gaps.size = HDI_TAKE(scope, int64_t, gaps.room);
@@ -9804,7 +9867,8 @@ static void hdi_sym_number(hdi_symbolic *s, const hdi_node *node, const int32_t 
 static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx, hd_error *e) {
     hdi_scope w = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
-    const size_t n1 = HDI_CAST(size_t, n) + 1, half = HDI_CAST(size_t, a->nnz);
+    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, half = HDI_CAST(uint64_t, a->nnz);
+    uint64_t supers;
     int32_t *parent = HDI_TAKE(&w, int32_t, n1), *count = HDI_TAKE(&w, int32_t, n1), *lower = HDI_TAKE(&w, int32_t, half);
     int32_t *upper = HDI_TAKE(&w, int32_t, half), *work = HDI_TAKE(&w, int32_t, 7 * n1), i, n_nodes;
     int64_t *lower_ptr = HDI_TAKE(&w, int64_t, n1), *upper_ptr = HDI_TAKE(&w, int64_t, n1);
@@ -9822,23 +9886,24 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
     n_nodes = hdi_sym_supernodes(n, parent, count, node, work, work + n1);     /* work: next_col */
     hdi_sym_relax(node, n_nodes, work, work + n1, work + 2 * n1);
     s->n_super = hdi_sym_order_nodes(node, n_nodes, work + n1, upper_ptr, work + 2 * n1, work + 3 * n1, work + 4 * n1, pairs);
+    supers = HDI_CAST(uint64_t, s->n_super) + 1;
     s->perm = HDI_TAKE(&keep, int32_t, n1);
     s->super_of = HDI_TAKE(&keep, int32_t, n1);
-    s->super = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->parent = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->inner = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->row_ptr = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->panel_pack = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->panel = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->update = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->vector = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->a_ptr = HDI_TAKE(&keep, int64_t, s->n_super + 1);
-    s->kid_ptr = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->kid = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->task_begin = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->task_end = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->task_of = HDI_TAKE(&keep, int32_t, s->n_super + 1);
-    s->top = HDI_TAKE(&keep, int32_t, s->n_super + 1);
+    s->super = HDI_TAKE(&keep, int32_t, supers);
+    s->parent = HDI_TAKE(&keep, int32_t, supers);
+    s->inner = HDI_TAKE(&keep, int32_t, supers);
+    s->row_ptr = HDI_TAKE(&keep, int64_t, supers);
+    s->panel_pack = HDI_TAKE(&keep, int64_t, supers);
+    s->panel = HDI_TAKE(&keep, int64_t, supers);
+    s->update = HDI_TAKE(&keep, int64_t, supers);
+    s->vector = HDI_TAKE(&keep, int64_t, supers);
+    s->a_ptr = HDI_TAKE(&keep, int64_t, supers);
+    s->kid_ptr = HDI_TAKE(&keep, int32_t, supers);
+    s->kid = HDI_TAKE(&keep, int32_t, supers);
+    s->task_begin = HDI_TAKE(&keep, int32_t, supers);
+    s->task_end = HDI_TAKE(&keep, int32_t, supers);
+    s->task_of = HDI_TAKE(&keep, int32_t, supers);
+    s->top = HDI_TAKE(&keep, int32_t, supers);
     if (e->status >= 0) hdi_sym_number(s, node, work + n1, work, perm, work + 2 * n1);
     s->row = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : s->row_ptr[s->n_super]);
     s->rel = HDI_TAKE(&keep, int32_t, e->status < 0 ? 0 : s->row_ptr[s->n_super]);
@@ -9871,7 +9936,7 @@ enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_REAL_FROM = 250000, HDI_DISSECT_WID
 
 static hd_status hdi_sym_check(const int32_t *perm, int32_t n, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    char *seen = HDI_CAST(char *, hdi_take_zero(&s, HDI_CAST(size_t, n) + 1, 1));
+    char *seen = HDI_CAST(char *, hdi_take_zero(&s, HDI_CAST(uint64_t, n) + 1, 1));
     int32_t i;
     for (i = 0; seen && i < n && !e->status; i++) {
         if (perm[i] < 0 || perm[i] >= n || seen[perm[i]]) hdi_fail_row(e, HD_ERR_INDEX, "ordering: not a permutation", i, -1, perm[i]);
@@ -9938,7 +10003,7 @@ typedef struct hdi_factor {
     double *work;                    /* [sym->work] entries: update matrices */
     double *scratch;                 /* [n_tasks + 1][scratch_size], the last one larger: for the top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
-    size_t scratch_size, chunk_size; /* doubles */
+    uint64_t scratch_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
@@ -10186,10 +10251,10 @@ static void hdi_pack_update(const hdi_factor *f, const hdi_front *w, double *S, 
 
 /* Doubles of scratch for fronts of at most so many pivots and rows below: of packs their pivots, their block of scaled rows, and a block of columns of the
  * update; of real ones the scaled rows, and the work of their kernels. */
-static size_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
-    const size_t p = HDI_CAST(size_t, pivots), rows = p * HDI_PACK_BLOCK;
-    const size_t cols = HDI_CAST(size_t, hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH));
-    if (width == 1) return HDI_CAST(size_t, hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
+static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
+    const uint64_t p = HDI_CAST(uint64_t, pivots), rows = p * HDI_PACK_BLOCK;
+    const uint64_t cols = HDI_CAST(uint64_t, hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH));
+    if (width == 1) return HDI_CAST(uint64_t, hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
     return HDI_PACK * (p + (rows > cols ? rows : cols)) + 64;
 }
 
@@ -10388,7 +10453,7 @@ static void hdi_factor_free(hdi_factor *f) {
 /* Room for a factor of the given width; all that factoring and refactoring need. */
 static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    const size_t w = HDI_CAST(size_t, width);
+    const uint64_t w = HDI_CAST(uint64_t, width);
     const int32_t n_parts = sym->n_tasks > 0 ? sym->n_tasks : 1, n_chunks = sym->largest_front / HDI_FRONT_CHUNK + 1;
     memset(f, 0, sizeof *f);
     f->sym = sym;
@@ -10397,11 +10462,11 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     f->real = hdi_real_ops_get(hdi_simd_level(ctx));
     f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
     f->chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
-    f->panel = HDI_TAKE(&s, double, HDI_CAST(size_t, width == 1 ? sym->panel[sym->n_super] : sym->stored) * w);
-    f->dinv = HDI_TAKE(&s, double, HDI_CAST(size_t, sym->n) * w);
-    f->work = HDI_TAKE(&s, double, HDI_CAST(size_t, sym->work) * w);
-    f->scratch = HDI_TAKE(&s, double, hdi_front_scratch(sym->largest_pivots, sym->largest_update, width) + f->scratch_size * HDI_CAST(size_t, n_parts));
-    f->chunk_scratch = HDI_TAKE(&s, double, sym->n_top ? f->chunk_size * HDI_CAST(size_t, n_chunks) : 1);
+    f->panel = HDI_TAKE(&s, double, HDI_CAST(uint64_t, width == 1 ? sym->panel[sym->n_super] : sym->stored) * w);
+    f->dinv = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->n) * w);
+    f->work = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->work) * w);
+    f->scratch = HDI_TAKE(&s, double, hdi_front_scratch(sym->largest_pivots, sym->largest_update, width) + f->scratch_size * HDI_CAST(uint64_t, n_parts));
+    f->chunk_scratch = HDI_TAKE(&s, double, sym->n_top ? f->chunk_size * HDI_CAST(uint64_t, n_chunks) : 1);
     f->pivots = HDI_TAKE(&s, hdi_pivots, n_parts + 1);
     if (e->status < 0) {
         memset(f, 0, sizeof *f);
@@ -10669,9 +10734,9 @@ static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
 }
 
 /* Doubles that a sweep of k right-hand sides works with besides x: vec, and gather for each part under way at the same time. */
-static size_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k, int parallel) {
-    const size_t w = HDI_CAST(size_t, width) * HDI_CAST(size_t, k), parts = parallel ? HDI_CAST(size_t, s->n_tasks) + 1 : 1;
-    return w * (HDI_CAST(size_t, s->vector_size) + parts * HDI_CAST(size_t, s->largest_update)) + 16;
+static uint64_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k, int parallel) {
+    const uint64_t w = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, k), parts = parallel ? HDI_CAST(uint64_t, s->n_tasks) + 1 : 1;
+    return w * (HDI_CAST(uint64_t, s->vector_size) + parts * HDI_CAST(uint64_t, s->largest_update)) + 16;
 }
 
 static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, double *work, int parallel) {
@@ -10718,7 +10783,7 @@ typedef struct hdi_forms {
     int32_t *column;             /* [n_tasks][task_pivots], [n_slots][largest_pivots] place in the block of a pivot's column, -1: not in it */
     hdi_pair *order;             /* [n_tasks][task_pivots], [largest_pivots] */
     double *room;                /* [n_tasks][task_size], [n_slots][slot_size] */
-    size_t task_size, slot_size, aside_task, aside_slot;
+    uint64_t task_size, slot_size, aside_task, aside_slot;
 } hdi_forms;
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry or form (four complex ones in a pack): sum_c coef[c] z_c, for each of n_sets
@@ -10732,7 +10797,7 @@ typedef struct hdi_inverse {
     double *values;              /* [n_sets][entries or n] */
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
-    size_t scratch_size, top_size, chunk_size;
+    uint64_t scratch_size, top_size, chunk_size;
     int32_t stop;
     double done;
     hd_error error;
@@ -10748,13 +10813,13 @@ typedef struct hdi_inverse_front {
 } hdi_inverse_front;
 
 /* Doubles of a block of rows of Z that is gathered, and of all scratch of a front of at most so many rows and pivots and stored entries. */
-static size_t hdi_inverse_buffer(int32_t width) {
-    return width == 1 ? HDI_CAST(size_t, HDI_REAL_MR) * HDI_INV_DEPTH_REAL : HDI_CAST(size_t, HDI_PACK) * HDI_INV_ROWS * HDI_INV_DEPTH;
+static uint64_t hdi_inverse_buffer(int32_t width) {
+    return width == 1 ? HDI_CAST(uint64_t, HDI_REAL_MR) * HDI_INV_DEPTH_REAL : HDI_CAST(uint64_t, HDI_PACK) * HDI_INV_ROWS * HDI_INV_DEPTH;
 }
 
-static size_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
+static uint64_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
     const int64_t w = hdi_least(p, HDI_PANEL), slices = width == 1 ? (m + w) * (w + HDI_REAL_NR) : 0;
-    return HDI_CAST(size_t, width * (stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS) + slices) + hdi_inverse_buffer(width) + 64;
+    return HDI_CAST(uint64_t, width * (stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS) + slices) + hdi_inverse_buffer(width) + 64;
 }
 
 static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
@@ -11555,10 +11620,10 @@ static void hdi_forms_free(hdi_forms *q, hd_context *ctx) {
  * more than half of the factor: on trees on which stacks grow high. */
 static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a, const double *x, hd_context *ctx, hd_error *e) {
     hdi_scope keep = hdi_scope_begin(ctx, e);
-    const size_t n_tasks = HDI_CAST(size_t, s->n_tasks), n_super = HDI_CAST(size_t, s->n_super), w = HDI_CAST(size_t, width);
+    const uint64_t n_tasks = HDI_CAST(uint64_t, s->n_tasks), n_super = HDI_CAST(uint64_t, s->n_super), w = HDI_CAST(uint64_t, width);
     const int64_t stored = width == 1 ? s->panel[n_super] : s->stored;
     int64_t *need = HDI_TAKE(&keep, int64_t, n_super + 1), in_tasks, in_all;
-    size_t columns, work, i;
+    uint64_t columns, work, i;
     memset(q, 0, sizeof *q);
     if (e->status < 0) return hdi_scope_end(&keep);
     hdi_form_rows(s, need, &in_tasks, &in_all);
@@ -11567,19 +11632,19 @@ static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t wid
     q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
     q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
     while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 + 65536) q->cols = width == 1 ? 1 : q->cols / 2;
-    work = width == 1 ? 0 : w * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(width);
-    q->aside_task = HDI_CAST(size_t, s->task_update) * HDI_CAST(size_t, q->cols) * w;
-    q->aside_slot = HDI_CAST(size_t, s->largest_update) * HDI_CAST(size_t, q->cols) * w;
-    q->task_size = q->aside_task + work + HDI_CAST(size_t, in_tasks) * HDI_CAST(size_t, q->cols) * w;
-    q->slot_size = q->aside_slot + work + HDI_CAST(size_t, in_all) * HDI_CAST(size_t, q->cols) * w;
-    columns = n_tasks * HDI_CAST(size_t, s->task_pivots) + HDI_CAST(size_t, q->n_slots) * HDI_CAST(size_t, s->largest_pivots);
+    work = width == 1 ? 0 : w * HDI_INV_ROWS * HDI_CAST(uint64_t, q->cols) + hdi_inverse_buffer(width);
+    q->aside_task = HDI_CAST(uint64_t, s->task_update) * HDI_CAST(uint64_t, q->cols) * w;
+    q->aside_slot = HDI_CAST(uint64_t, s->largest_update) * HDI_CAST(uint64_t, q->cols) * w;
+    q->task_size = q->aside_task + work + HDI_CAST(uint64_t, in_tasks) * HDI_CAST(uint64_t, q->cols) * w;
+    q->slot_size = q->aside_slot + work + HDI_CAST(uint64_t, in_all) * HDI_CAST(uint64_t, q->cols) * w;
+    columns = n_tasks * HDI_CAST(uint64_t, s->task_pivots) + HDI_CAST(uint64_t, q->n_slots) * HDI_CAST(uint64_t, s->largest_pivots);
     q->inv = HDI_TAKE(&keep, int32_t, s->n);
-    q->active = HDI_CAST(uint64_t *, hdi_take_zero(&keep, (1 + HDI_CAST(size_t, q->n_slots)) * n_super, sizeof(uint64_t)));
+    q->active = HDI_CAST(uint64_t *, hdi_take_zero(&keep, (1 + HDI_CAST(uint64_t, q->n_slots)) * n_super, sizeof(uint64_t)));
     q->column = HDI_TAKE(&keep, int32_t, columns);
-    q->order = HDI_TAKE(&keep, hdi_pair, n_tasks * HDI_CAST(size_t, s->task_pivots) + HDI_CAST(size_t, s->largest_pivots));
-    q->room = HDI_TAKE(&keep, double, n_tasks * q->task_size + HDI_CAST(size_t, q->n_slots) * q->slot_size);
+    q->order = HDI_TAKE(&keep, hdi_pair, n_tasks * HDI_CAST(uint64_t, s->task_pivots) + HDI_CAST(uint64_t, s->largest_pivots));
+    q->room = HDI_TAKE(&keep, double, n_tasks * q->task_size + HDI_CAST(uint64_t, q->n_slots) * q->slot_size);
     if (e->status >= 0) {
-        for (i = 0; i < HDI_CAST(size_t, s->n); i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
+        for (i = 0; i < HDI_CAST(uint64_t, s->n); i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
         for (i = 0; i < columns; i++) q->column[i] = -1;
         hdi_free(ctx, need);
         keep.n = 0;
@@ -11649,13 +11714,13 @@ static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t
     memset(z, 0, sizeof *z);
     for (v = 0; v < s->n_super; v++) {
         const int64_t p = hdi_front_pivots(s, v), m = p + hdi_front_below(s, v);
-        const size_t size = hdi_inverse_scratch(m, p, at[v + 1] - at[v], width);
+        const uint64_t size = hdi_inverse_scratch(m, p, at[v + 1] - at[v], width);
         if (size > z->top_size) z->top_size = size;
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
     z->chunk_size = hdi_inverse_buffer(width);
-    z->scratch = HDI_CAST(double *, hdi_alloc(ctx, z->scratch_size * HDI_CAST(size_t, s->n_tasks) + z->top_size, sizeof(double), e));
-    if (z->scratch) z->chunk = HDI_CAST(double *, hdi_alloc(ctx, s->n_top ? z->chunk_size * HDI_CAST(size_t, n_chunks) : 1, sizeof(double), e));
+    z->scratch = HDI_CAST(double *, hdi_alloc(ctx, z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size, sizeof(double), e));
+    if (z->scratch) z->chunk = HDI_CAST(double *, hdi_alloc(ctx, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, n_chunks) : 1, sizeof(double), e));
     if (!z->chunk) hdi_inverse_free(z, ctx);
     return e->status;
 }
@@ -12956,8 +13021,8 @@ typedef struct hdi_shared_work {
 static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 96; }
 
 /* Doubles that hdi_shared_fit works in. */
-static size_t hdi_shared_room(int32_t n_poles) {
-    const size_t n = HDI_CAST(size_t, 2 * n_poles), rows = HDI_CAST(size_t, hdi_shared_points(n_poles)) + 1;
+static uint64_t hdi_shared_room(int32_t n_poles) {
+    const uint64_t n = HDI_CAST(uint64_t, 2 * n_poles), rows = HDI_CAST(uint64_t, hdi_shared_points(n_poles)) + 1;
     return rows * n + rows + (rows + n) * n + 2 * rows + 3 * n;
 }
 
@@ -13343,14 +13408,14 @@ static void hdi_family_free(hdi_family *fam) {
 
 /* Takes up a set and a time, with room for the preconditioners. hdi_family_fill is to follow when filled is 0. */
 static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double t, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, fam->lap->n_active), upper = HDI_CAST(size_t, fam->up->ptr[n]);
-    const size_t size = fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
+    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
+    const uint64_t size = fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
     int32_t i;
     if (fam->filled && fam->t == t && memcmp(&fam->set, set, sizeof *set) == 0) return HD_OK;
     fam->filled = 0;
     if (fam->n_values < set->n_poles) {
         hdi_family_free(fam);
-        fam->values = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, HDI_CAST(size_t, set->n_poles), (size + 1) * sizeof(hd_c64), e));
+        fam->values = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, HDI_CAST(uint64_t, set->n_poles) * (size + 1), sizeof(hd_c64), e));
         if (!fam->values) return e->status;
         fam->n_values = set->n_poles;
     }
@@ -13369,7 +13434,7 @@ static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double 
 typedef struct hdi_fill_job {
     hdi_family *fam;
     hd_c64 *work;
-    size_t stride;               /* of work from pole to pole, at least 2 n */
+    uint64_t stride;             /* of work from pole to pole, at least 2 n */
 } hdi_fill_job;
 
 static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
@@ -13385,7 +13450,7 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
 }
 
 /* Makes the preconditioners, one parallel task each. */
-static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, size_t stride, hd_error *e) {
+static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, uint64_t stride, hd_error *e) {
     hdi_fill_job job;
     if (fam->filled) return HD_OK;
     if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
@@ -13452,7 +13517,7 @@ static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
 }
 
 static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), n_comp = HDI_CAST(uint64_t, lap->n_components);
     if (lane->f) return HD_OK;
     lane->f = HDI_CAST(double *, hdi_alloc(ctx, 7 * n, sizeof(double), e));
     if (lane->f) lane->target = HDI_CAST(double *, hdi_alloc(ctx, 3 * n_comp, sizeof(double), e));
@@ -13470,7 +13535,7 @@ static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_conte
 
 /* Room for Lanczos. */
 static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, lap->n_active), most = HDI_LANCZOS_MAX + 1;
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), most = HDI_LANCZOS_MAX + 1;
     hdi_lanczos *z = &lane->lanczos;
     if (z->alpha) return HD_OK;
     hdi_free(ctx, z->v);
@@ -13490,22 +13555,22 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_co
 }
 
 /* Complex numbers that a system has in a lane. */
-static size_t hdi_lane_stride(const hdi_family *fam) {
-    return HDI_CAST(size_t, hdi_krylov_vectors(fam->solver)) * HDI_CAST(size_t, fam->lap->n_active);
+static uint64_t hdi_lane_stride(const hdi_family *fam) {
+    return HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)) * HDI_CAST(uint64_t, fam->lap->n_active);
 }
 
 /* Room for the systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, fam->lap->n_active), n_comp = HDI_CAST(size_t, fam->lap->n_components);
-    const size_t n_vec = HDI_CAST(size_t, hdi_krylov_vectors(fam->solver)), count = HDI_CAST(size_t, fam->set.n_poles);
-    size_t i, j;
+    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), n_comp = HDI_CAST(uint64_t, fam->lap->n_components);
+    const uint64_t n_vec = HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)), count = HDI_CAST(uint64_t, fam->set.n_poles);
+    uint64_t i, j;
     if (!lane->vectors || lane->n_systems < fam->set.n_poles) {
         hdi_free(fam->ctx, lane->b);
         hdi_free(fam->ctx, lane->vectors);
         lane->vectors = NULL;
         lane->n_systems = 0;
         lane->b = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, 3 * n + n_comp, sizeof(hd_c64), e));
-        if (lane->b) lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count, n_vec * n * sizeof(hd_c64), e));
+        if (lane->b) lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count * n_vec * n, sizeof(hd_c64), e));
         if (!lane->vectors) return e->status;
         lane->n_systems = fam->set.n_poles;
     }
@@ -13885,7 +13950,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     }
     if (m->lap) {
         (void)hdi_sym_scale(m->lap);
-        m->weight = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(size_t, lap->n_active), sizeof(double), e));
+        m->weight = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
         m->noise = m->weight ? m->weight + lap->n_active : NULL;
         m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
         for (i = 0; m->weight && i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
@@ -13993,11 +14058,11 @@ typedef struct hdi_batch {
 } hdi_batch;
 
 /* Doubles of a batch's arrays. */
-static size_t hdi_batch_size(const hdi_elim *m, int32_t k, size_t *x, size_t *xr) {
-    const size_t n = HDI_CAST(size_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1), real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
-    *x = HDI_PACK * n * HDI_CAST(size_t, k);
+static uint64_t hdi_batch_size(const hdi_elim *m, int32_t k, uint64_t *x, uint64_t *xr) {
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1), real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
+    *x = HDI_PACK * n * HDI_CAST(uint64_t, k);
     *xr = n * (k > 1 ? 8 : 1);
-    return *x + *xr + (pack > real ? pack : real) + HDI_CAST(size_t, m->sym.n_super) / sizeof(double) + 8;
+    return *x + *xr + (pack > real ? pack : real) + HDI_CAST(uint64_t, m->sym.n_super) / sizeof(double) + 8;
 }
 
 static hd_status hdi_not_semidefinite(hd_error *e) {
@@ -14204,7 +14269,7 @@ struct hd_heat {
     hdi_ground ground;           /* made when it is first needed; of elim */
     hdi_silan *silan;
     double *batch_room;          /* arrays of the batches */
-    size_t batch_doubles;
+    uint64_t batch_doubles;
     hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
     hdi_upper up;
     double *weight;              /* [n] 1/diag(B) */
@@ -14254,7 +14319,7 @@ static void hdi_conserve_sums(const hd_laplacian *lap, hdi_lane *lane) {
  * beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds, the last factor has one sign for all s, and the first shrinks. */
 static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_error *e) {
     const int32_t m = z->m;
-    double sum = 0;
+    double sum = 0, least = 0, most = 0;
     int32_t i;
     for (i = 0; i < m; i++) {
         z->d[i] = z->alpha[i];
@@ -14263,6 +14328,11 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
         z->z1[i] = i == m - 1;
     }
     if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+    for (i = 0; i < m; i++) {
+        least = hdi_min(least, z->d[i]);
+        most = hdi_max(most, fabs(z->d[i]));
+    }
+    if (least < -1e-8 * most - 2 * sqrt(HDI_CAST(double, m)) * z->noise) return hdi_not_semidefinite(e);
     for (i = 0; i < m; i++) {
         const double x = t * z->d[i];
         sum += z->z0[i] * z->z1[i] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
@@ -14500,6 +14570,22 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     }
 }
 
+/* Is u'Lu of an answer negative, beyond rounding? Matrices of the caller's own may be anything; a mesh's are not asked. */
+static int hdi_lane_negative(const hd_laplacian *lap, const hdi_lane *lane) {
+    double sum = 0, size = 0;
+    int32_t i;
+    int64_t p;
+    if (lap->kind != HD_LAPLACIAN_MATRICES) return 0;
+    for (i = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const double v = lane->u[i] * lap->L.val[p] * lane->u[lap->L.col[p]];
+            sum += v;
+            size += fabs(v);
+        }
+    }
+    return sum < -1e-10 * size;
+}
+
 /* The right-hand side without its constants, complex. */
 static void hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
     int32_t i;
@@ -14537,7 +14623,7 @@ static hd_status hdi_heat_poles(const hdi_family *fam, double tol, double drift_
     if (fam->set.n_poles > 0) {
         const hd_c64 *x = lane->k[0].x;
         hdi_lane_first(lane, lap, &fam->set, 0, hdi_b_norm2_complex(lap, x, lane->tmp), lane->k[0].r_norm, &x->re, 2);
-        if (lane->negative) return hdi_not_semidefinite(e);
+        if (lane->negative || hdi_lane_negative(lap, lane)) return hdi_not_semidefinite(e);
     }
     hdi_rational_bound(lap, &fam->set, lane);
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, 1));
@@ -14552,6 +14638,7 @@ static hd_status hdi_heat_direct(const hdi_elim *m, double limit, double drift_t
     hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
     for (i = 0; i < lap->n_active && lap->conserves; i++) lane->tmp[i] += lap->mass[i] * lane->sums[lap->component[i]];   /* B u, what was added included */
     lane->u_norm = sqrt(hdi_max(0, hdi_dot(lane->u, lane->tmp, lap->n_active)));
+    if (hdi_lane_negative(lap, lane)) lane->negative = 1;
     hdi_rational_bound(lap, &m->set, lane);
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, dense));
     return lane->off.rounding <= limit * (lane->u_norm - lane->off.rounding) ? HD_OK : HD_WARN_ACCURACY;
@@ -14625,7 +14712,7 @@ static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRI
 /* Starts from the lanes' f and rhs = B f without constants, which lanes keep apart in sums; |f|_B of what is left. */
 static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
-    const size_t n = HDI_CAST(size_t, lap->n_active), wide = HDI_CAST(size_t, z->wide);
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), wide = HDI_CAST(uint64_t, z->wide);
     int64_t i;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_CAST(double *, hdi_alloc(ctx, n * wide, sizeof(double), e));
@@ -14699,7 +14786,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     hdi_sweep s;
     int64_t i;
     int32_t r;
-    if (!z->v[j + 1]) z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(size_t, count), sizeof(double), e));
+    if (!z->v[j + 1]) z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(double), e));
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
     s = hdi_sweep_open(&z->m->real, wide, w, z->work, 1);
@@ -14923,7 +15010,7 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
  * or by pivots the diagonal, or that of B Z_p B with the source's B. The factors are there, and stay. */
 static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, hdi_wanted wanted, double *values, int64_t stride, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
-    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n_sets));
+    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n_sets));
     const int32_t n_poles = m->set.n_poles;
     hdi_forms forms;
     hdi_inverse z;
@@ -15194,7 +15281,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     loose = HDI_TAKE(&s, char, lap->n_components);
     val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1, 1));
-    b = HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, lap->n_active));
+    b = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n_active));
     if (e->status >= 0 && hdi_factor_make(&pack, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
         hdi_ground_values(m, g, step * m->scale, NULL, val);
         memset(&v, 0, sizeof v);
@@ -15241,8 +15328,8 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t 
     return trace * off + by[c] + g->mean_off[c] * (fabs(ws) / mass + sqrt(trace * g->diag[row] / mass));
 }
 
-static size_t hdi_ground_room(const hdi_elim *m) {
-    return 4 * HDI_CAST(size_t, m->sym.n) + HDI_CAST(size_t, m->lap->n_components) + hdi_sweep_size(&m->sym, 1, 1, 1);
+static uint64_t hdi_ground_room(const hdi_elim *m) {
+    return 4 * HDI_CAST(uint64_t, m->sym.n) + HDI_CAST(uint64_t, m->lap->n_components) + hdi_sweep_size(&m->sym, 1, 1, 1);
 }
 
 /* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor (1 + x)) for x >= 0. -1: none does. */
@@ -15397,7 +15484,7 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int64_t *at = HDI_TAKE_ZERO(&s, int64_t, HDI_CAST(int64_t, g->n_active) + 1);
     int32_t f;
-    g->face = HDI_CAST(hdi_geo_face *, at ? hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_faces), sizeof *g->face, e) : NULL);
+    g->face = HDI_CAST(hdi_geo_face *, at ? hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_faces), sizeof *g->face, e) : NULL);
     if (!g->face) return hdi_scope_end(&s);
     for (f = 0; f < mesh->m; f++)
         if (mesh->area[f] > 0) at[hdi_geo_first(mesh->tri + 3 * HDI_CAST(int64_t, f), g->row)]++;
@@ -15410,10 +15497,10 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e
 /* What is per row, in elimination order. */
 static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     int32_t i, v;
-    g->mass = HDI_CAST(double *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_active), sizeof(double), e));
-    if (g->mass) g->row = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n), sizeof(int32_t), e));
-    if (g->row) g->component = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_active), sizeof(int32_t), e));
-    if (g->component) g->pin = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components), sizeof(int32_t), e));
+    g->mass = HDI_CAST(double *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_active), sizeof(double), e));
+    if (g->mass) g->row = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n), sizeof(int32_t), e));
+    if (g->row) g->component = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_active), sizeof(int32_t), e));
+    if (g->component) g->pin = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components), sizeof(int32_t), e));
     if (e->status < 0) return e->status;
     for (v = 0; v < g->n; v++) g->row[v] = -1;
     for (i = 0; i < g->n_active; i++) {
@@ -15467,11 +15554,11 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
 }
 
 static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, g->n_active);
-    g->active = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->sym.n_super), 1, e));
-    if (g->active) g->reached = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components), 1, e));
+    const uint64_t n = HDI_CAST(uint64_t, g->n_active);
+    g->active = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->sym.n_super), 1, e));
+    if (g->active) g->reached = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components), 1, e));
     if (g->reached) g->mark = HDI_CAST(char *, hdi_alloc(g->ctx, n, 1, e));
-    if (g->mark) g->value_ptr = HDI_CAST(int64_t *, hdi_alloc(g->ctx, HDI_CAST(size_t, g->n_components) + 1, sizeof(int64_t), e));
+    if (g->mark) g->value_ptr = HDI_CAST(int64_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components) + 1, sizeof(int64_t), e));
     if (g->value_ptr) g->x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->x) g->b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->b) g->r = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
@@ -15789,7 +15876,7 @@ static double hdi_geo_residual(const hd_geodesic *g, const double *phi) {
 
 /* Room for phi at k sources. */
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t k, hd_error *e) {
-    const size_t most = HDI_CAST(size_t, k < g->n_active ? k : g->n_active);
+    const uint64_t most = HDI_CAST(uint64_t, k < g->n_active ? k : g->n_active);
     if (HDI_CAST(size_t, g->value_size) >= most) return HD_OK;
     hdi_free(g->ctx, g->value);
     hdi_free(g->ctx, g->sorted);
@@ -15884,7 +15971,7 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
 }
 
 static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
-    const size_t n = HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active);
+    const uint64_t n = HDI_GEO_WIDE * HDI_CAST(uint64_t, g->n_active);
     if (!g->wide_x) g->wide_x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->wide_x && !g->wide_b) g->wide_b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->wide_b && !g->wide_work) g->wide_work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1), sizeof(double), e));
@@ -16006,6 +16093,14 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
     return hdi_context_check(c->ctx, c->e);
 }
 
+#define HDI_CLEARED(opts) (!(opts)->begin_zero && !(opts)->end_zero)
+
+/* The same where options may name the context. Those that were not cleared are an error, and nothing in them is followed. */
+static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
+    if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
+    return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
+}
+
 static hd_status hdi_missing(hd_error *e) { return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL"); }
 
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
@@ -16067,11 +16162,7 @@ typedef struct hdi_laplacian { hd_laplacian lap; hd_context context; } hdi_lapla
 
 static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind, hd_error *err, hdi_call *c) {
     hdi_laplacian *shell;
-    if (hdi_enter(c, opts ? opts->context : NULL, err) < 0) return NULL;
-    if (opts && (opts->begin_zero || opts->end_zero)) {
-        hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian options: not cleared before use");
-        return NULL;
-    }
+    if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL, "laplacian options: not cleared before use", err) < 0) return NULL;
     if (n < 0) {
         hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian: a size is negative");
         return NULL;
@@ -16096,7 +16187,7 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
 }
 
 static hd_laplacian_kind hdi_lap_kind(const hd_laplacian_opts *opts, hd_laplacian_kind otherwise) {
-    return opts && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : otherwise;
+    return opts && HDI_CLEARED(opts) && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : otherwise;
 }
 
 static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
@@ -16157,6 +16248,75 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e) : hdi_lap_polygons(lap, &poly, c.e));
 }
 
+/* B without the zeros that the common pattern has. */
+static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
+    int64_t nnz = 0, p;
+    int32_t i;
+    hd_csr b;
+    for (p = 0; p < lap->L.nnz; p++) nnz += lap->B[p] != 0;
+    b = hdi_csr_take(s, lap->n_active, lap->n_active, nnz, 1);
+    if (s->e->status < 0) return b;
+    for (i = 0, nnz = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            if (lap->B[p] == 0) continue;
+            b.col[nnz] = lap->L.col[p];
+            b.val[nnz++] = lap->B[p];
+        }
+        b.row_ptr[i + 1] = nnz;
+    }
+    return b;
+}
+
+/* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester). value [nnz]: room. */
+static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value, hdi_factor *f, hd_error *e) {
+    hdi_values v;
+    int32_t i;
+    int64_t p;
+    memset(&v, 0, sizeof v);
+    v.real = value;
+    for (i = 0; i < b->n_rows; i++)
+        for (p = b->row_ptr[i]; p < b->row_ptr[i + 1]; p++)
+            value[p] = b->col[p] == i ? (1 - sigma) * lap->b_diag[i] : b->val[p];
+    if (hdi_factor_run(f, &v, e) >= 0) return f->all.negative == 0;
+    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* a pivot of zero proves nothing */
+    return 0;
+}
+
+/* A proven b_ratio where Gershgorin's, in lap, is poor: values from the estimate downwards, each tried by a factorisation. What that
+ * rounds is a matrix E with |x'Ex| <= eps (nnz(L) + 2 n) x'diag(B)x (after Rump 2006): so much is added to sigma.
+ * Where all fail, B has a negative eigenvalue, or the ratio is not known. */
+static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const double dominant = hdi_max(lap->b_ratio, 0);
+    double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active)), least, sigma, slack;
+    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), chosen, tries;
+    hd_csr b = hdi_lap_mass_matrix(lap, &s);
+    double *value = HDI_TAKE(&s, double, b.nnz);
+    hdi_symbolic sym;
+    hdi_factor f;
+    memset(&sym, 0, sizeof sym);
+    memset(&f, 0, sizeof f);
+    lap->b_ratio = dominant;
+    if (e->status >= 0 && hdi_pair_ratio(lap, work, &least, e) >= 0 &&
+        hdi_sym_order(&b, NULL, HD_ORDERING_AUTO, HDI_DISSECT_FROM, NULL, perm, &chosen, lap->context, e) >= 0 &&
+        hdi_symbolic_make(&sym, &b, perm, lap->context, e) >= 0 && hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
+        slack = DBL_EPSILON * (HDI_CAST(double, sym.nnz) + 2.0 * lap->n_active);
+        for (tries = 0; e->status >= 0; tries++) {
+            sigma = tries == 0 ? 0.8 * least : ldexp(least, 1 - 2 * tries);
+            if (sigma < hdi_max(dominant, 1e-12)) break;
+            if (hdi_lap_exceeds(lap, &b, sigma + slack, value, &f, e)) {
+                lap->b_ratio = sigma;
+                break;
+            }
+            if (tries == 1 && e->status >= 0 && !hdi_lap_exceeds(lap, &b, -slack, value, &f, e) && f.all.negative)
+                hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: a pivot of its factorisation is negative");
+        }
+    }
+    hdi_factor_free(&f);
+    hdi_symbolic_free(lap->context, &sym);
+    return hdi_scope_end(&s);
+}
+
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
                                              hd_error *err) {
     hdi_call c;
@@ -16168,7 +16328,8 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (L->n_rows != B->n_rows)
         return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
     lap->h = h;
-    return hdi_lap_done(out, lap, hdi_lap_matrices(lap, L, B, c.e));
+    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < 0.01) (void)hdi_lap_ratio(lap, c.e);
+    return hdi_lap_done(out, lap, c.e->status);
 }
 
 static hd_status hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
@@ -16305,14 +16466,13 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return 
 
 /* 1/diag(B), and room for three more vectors. */
 static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    double *w = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(size_t, lap->n_active), sizeof *w, e));
+    double *w = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof *w, e));
     int32_t i;
     for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
     return w;
 }
 
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
-    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "solve options: not cleared before use");
     if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
     if (!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: theta lies on (-inf, 0] or is not finite");
     if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: the solver is cocg, cocr or minres");
@@ -16383,9 +16543,8 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     int32_t *perm, i;
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
-    if (hdi_enter(&c, o.context, err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "ldl options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !a) return hdi_missing(c.e);
-    if (o.begin_zero || o.end_zero) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl options: not cleared before use");
     shape = *a;
     shape.val = NULL;
     if (hdi_csr_check(&shape, 1, c.ctx, c.e) < 0) return c.e->status;
@@ -16403,9 +16562,9 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     perm = HDI_TAKE(&s, int32_t, f->n);
     if (perm && hdi_sym_order(&shape, o.xyz, o.ordering, HDI_DISSECT_FROM, o.perm, perm, &i, c.ctx, c.e) >= 0 && hdi_symbolic_make(&f->sym, &shape, perm, c.ctx, c.e) >= 0) {
         f->sym.ordering = HDI_CAST(hd_ordering, i);
-        f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, HDI_CAST(size_t, f->n) + 1, sizeof *f->row_ptr, c.ctx, c.e));
-        f->col = HDI_CAST(int32_t *, hdi_copy(a->col, HDI_CAST(size_t, f->nnz), sizeof *f->col, c.ctx, c.e));
-        if (c.e->status >= 0) f->inv = HDI_CAST(int32_t *, hdi_alloc(c.ctx, HDI_CAST(size_t, f->n), sizeof *f->inv, c.e));
+        f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, HDI_CAST(uint64_t, f->n) + 1, sizeof *f->row_ptr, c.ctx, c.e));
+        f->col = HDI_CAST(int32_t *, hdi_copy(a->col, HDI_CAST(uint64_t, f->nnz), sizeof *f->col, c.ctx, c.e));
+        if (c.e->status >= 0) f->inv = HDI_CAST(int32_t *, hdi_alloc(c.ctx, HDI_CAST(uint64_t, f->n), sizeof *f->inv, c.e));
         for (i = 0; f->inv && i < f->n; i++) f->inv[f->sym.perm[i]] = i;
     }
     if (hdi_scope_end(&s) < 0) {
@@ -16456,7 +16615,7 @@ static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
     hdi_factor *pack;
     int32_t i;
     if (f->n_packs >= want) return HD_OK;
-    pack = HDI_CAST(hdi_factor *, hdi_alloc(f->ctx, HDI_CAST(size_t, want), sizeof *pack, e));
+    pack = HDI_CAST(hdi_factor *, hdi_alloc(f->ctx, HDI_CAST(uint64_t, want), sizeof *pack, e));
     if (!pack) return e->status;
     memset(pack, 0, HDI_CAST(size_t, want) * sizeof *pack);
     for (i = 0; i < f->n_packs; i++) pack[i] = f->pack[i];
@@ -16509,7 +16668,7 @@ static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
     const int32_t width = which ? HDI_PACK : 1, k = which ? 1 : 8;
     if (f->x[which]) return HD_OK;
     if (!f->work[which]) f->work[which] = HDI_CAST(double *, hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k, 1), sizeof(double), e));
-    if (f->work[which]) f->x[which] = HDI_CAST(double *, hdi_alloc(f->ctx, HDI_CAST(size_t, f->n) * HDI_CAST(size_t, width * k), sizeof(double), e));
+    if (f->work[which]) f->x[which] = HDI_CAST(double *, hdi_alloc(f->ctx, HDI_CAST(uint64_t, f->n) * HDI_CAST(uint64_t, width * k), sizeof(double), e));
     return e->status;
 }
 
@@ -16594,7 +16753,7 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     const int32_t stride = of->width == 1 ? 1 : 2, n_sets = stride * n_matrices;
     const int64_t entries = f->sym.a_ptr[f->sym.n_super], size = values ? entries : f->n;
     hdi_scope s = hdi_scope_begin(f->ctx, e);
-    double coef[HDI_PACK * HDI_PACK], *x = HDI_TAKE(&s, double, HDI_CAST(size_t, n_sets) * HDI_CAST(size_t, size > f->n ? size : f->n));
+    double coef[HDI_PACK * HDI_PACK], *x = HDI_TAKE(&s, double, HDI_CAST(uint64_t, n_sets) * HDI_CAST(uint64_t, size > f->n ? size : f->n));
     int32_t q, i, found = 0;
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
@@ -16687,7 +16846,7 @@ static hd_status hdi_ldl_entries(hd_ldl *f, int complex_ones, int64_t n_entries,
     if (n_entries == 0 || hdi_ldl_room(f, complex_ones, e) < 0) return e->status;
     s = hdi_scope_begin(f->ctx, e);
     order = HDI_TAKE(&s, hdi_pair, n_entries);
-    marks = HDI_TAKE(&s, char, 2 * HDI_CAST(size_t, f->sym.n_super));
+    marks = HDI_TAKE(&s, char, 2 * HDI_CAST(uint64_t, f->sym.n_super));
     if (e->status < 0) return hdi_scope_end(&s);
     for (q = 0; q < n_entries; q++) {
         order[q].key = HDI_CAST(uint64_t, j[q]);
@@ -16719,7 +16878,6 @@ HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entri
 /* ---- heat ---- */
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
-    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "heat options: not cleared before use");
     if (o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown method");
     if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown solver");
     if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown preconditioner");
@@ -16739,7 +16897,7 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     return o->rational ? hdi_rational_check(o->rational, e) : HD_OK;
 }
 
-/* Gershgorin: every eigenvalue of B^-1 L is below this. */
+/* Gershgorin: every eigenvalue of B^-1 L is below this. A guess where b_ratio is not known: it serves for choices only. */
 static double hdi_lambda_bound(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
@@ -16749,13 +16907,13 @@ static double hdi_lambda_bound(const hd_laplacian *lap) {
         for (; p < lap->L.row_ptr[i + 1]; p++) sum += fabs(lap->L.val[p]);
         most = hdi_max(most, sum / lap->b_diag[i]);
     }
-    return most / lap->b_ratio;
+    return most / hdi_max(lap->b_ratio, 1e-12);
 }
 
 /* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of (Neumaier 1974). */
 static hd_status hdi_heat_drift(const hd_laplacian *lap, double *drift, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    double *sum = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(size_t, lap->n_components)), *rest;
+    double *sum = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, lap->n_components)), *rest;
     int64_t p;
     int32_t i;
     if (!sum) return hdi_scope_end(&s);
@@ -16786,7 +16944,8 @@ static double hdi_heat_scale(const hd_laplacian *lap) {
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err) {
     hdi_call c;
     hd_heat *heat;
-    if (hdi_enter(&c, opts && opts->context ? opts->context : lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts), opts && opts->context ? opts->context : lap ? lap->context : NULL,
+                       "heat options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !lap) return hdi_missing(c.e);
     if (opts && hdi_heat_check(opts, c.e) < 0) return c.e->status;
     heat = HDI_CAST(hd_heat *, hdi_alloc(c.ctx, 1, sizeof *heat, c.e));
@@ -16811,7 +16970,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
     if (heat->opts.ordering == HD_ORDERING_OWN) {
         if (hdi_sym_check(heat->opts.perm, lap->n, c.ctx, c.e) >= 0)
-            heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(size_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
+            heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
         if (!heat->perm) {
             hd_heat_free(heat);
             return c.e->status;
@@ -16879,6 +17038,20 @@ static hd_status hdi_heat_analysed(hd_heat *heat, int poles, hd_error *e) {
     return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, poles ? HDI_DISSECT_FROM : HDI_DISSECT_REAL_FROM, heat->perm, heat->scale, heat->ctx, e);
 }
 
+/* Checks a right-hand side. *exponent: its largest part is between 2^(exponent - 1) and 2^exponent. */
+static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
+    double largest = 0;
+    int32_t v;
+    for (v = 0; v < lap->n; v++) {
+        if (!hdi_cfinite(rhs[v]))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v, -1,
+                                hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
+        if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
+    }
+    frexp(largest, exponent);
+    return HD_OK;
+}
+
 /* One system with a plan made for it. */
 static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x, double tol, hd_solve_report *report,
                                    hd_error *e) {
@@ -16890,7 +17063,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     hd_status status;
     double b_norm;
     int32_t i, v;
-    if (hdi_heat_iterative(heat, e) < 0) return e->status;
+    int exponent, unit;
+    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0 || hdi_heat_iterative(heat, e) < 0) return e->status;
     lap = heat->lap;
     memset(&watch, 0, sizeof watch);
     memset(&set, 0, sizeof set);
@@ -16902,7 +17076,12 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     if (hdi_family_set(&heat->fam, &set, t * heat->scale, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
     if (hdi_lane_systems(lane, &heat->fam, e) < 0) return e->status;
     if (hdi_family_fill(&heat->fam, lane->vectors, hdi_lane_stride(&heat->fam), e) < 0) return e->status;
-    for (i = 0; i < lap->n_active; i++) lane->b[i] = hdi_cscale(heat->scale, rhs[lap->vertex[i]]);
+    for (i = 0; i < lap->n_active; i++) {        /* near one, so that no norm underflows or overflows */
+        const hd_c64 r = rhs[lap->vertex[i]];
+        lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
+    }
+    frexp(heat->scale, &unit);                   /* the answer is in units of the right-hand side's, times those of B */
+    unit += exponent - 1;
     b_norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
     memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
     if (lap->conserves) {                        /* constants apart: b - B mean(b), and mean(b)/theta to the solution */
@@ -16923,6 +17102,10 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
         report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
     }
     if (status > 0) e->status = status;
+    for (v = 0; v < lap->n; v++) {
+        x[v] = hdi_c(ldexp(x[v].re, unit), ldexp(x[v].im, unit));
+        if (!hdi_cfinite(x[v]) && e->status >= 0) hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1, x[v].re);
+    }
     return e->status;
 }
 
@@ -16935,7 +17118,8 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     memset(&o, 0, sizeof o);
     memset(&plan, 0, sizeof plan);
     if (opts) o = *opts;
-    if (hdi_enter(&c, o.context ? o.context : lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context ? o.context : lap ? lap->context : NULL, "solve options: not cleared before use", err) < 0)
+        return c.e->status;
     if (!lap || !rhs || !x) return hdi_missing(c.e);
     if (hdi_solve_check(t, theta, &o, c.e) < 0) return c.e->status;
     plan.solver = o.solver ? o.solver : HD_SOLVER_COCG;
@@ -17131,7 +17315,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
 
 /* Is t (scaled) so large that nothing is left but the means of the components? 1, 0, or an error. */
 static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
-    if (!heat->source->conserves || t * heat->lambda_max < HDI_EQUAL_FROM) return 0;
+    if (!heat->source->conserves || heat->opts.rational || t * heat->lambda_max < HDI_EQUAL_FROM) return 0;
     if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0) return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
     if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* not to be told: go on as ever */
     return 0;
@@ -17140,7 +17324,7 @@ static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
 /* The method, its copy of the pair, and what of the report is known by now. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    if (h->n_times == 1 && h->t * heat->lambda_max < HDI_STILL) {   /* |exp(-t lambda) - 1| <= t lambda */
+    if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {   /* |exp(-t lambda) - 1| <= t lambda */
         h->still = h->t * heat->lambda_max;
         h->t = 0;
     }
@@ -17423,7 +17607,7 @@ static hd_status hdi_heat_prepare(hdi_heat_call *h) {
 /* Arrays of a batch of k, from the plan's room. */
 static hdi_batch hdi_heat_batch(const hdi_heat_call *h, int32_t index, int32_t k) {
     hdi_batch b;
-    size_t x, xr, size = hdi_batch_size(&h->heat->elim, k, &x, &xr);
+    uint64_t x, xr, size = hdi_batch_size(&h->heat->elim, k, &x, &xr);
     b.x = h->heat->batch_room + size * HDI_CAST(size_t, index);
     b.xr = b.x + x;
     b.work = b.xr + xr;
@@ -17459,8 +17643,8 @@ static hd_status hdi_heat_growth(hdi_heat_call *h) {
 /* Lanes, the pole set and its factors. */
 static hd_status hdi_direct_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const size_t n = HDI_CAST(size_t, h->lap->n_active), most = 8 * HDI_CAST(size_t, heat->elim.sym.stored);
-    size_t x, xr, size;
+    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active), most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
+    uint64_t x, xr, size;
     hd_rational set;
     int32_t i;
     h->batch_width = h->k < HDI_LANES_BATCH ? h->k : HDI_LANES_BATCH;
@@ -17477,7 +17661,7 @@ static hd_status hdi_direct_prepare(hdi_heat_call *h) {
     if (heat->batch_doubles < size * HDI_CAST(size_t, h->n_batches)) {
         hdi_free(heat->ctx, heat->batch_room);
         heat->batch_doubles = 0;
-        heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, size * HDI_CAST(size_t, h->n_batches), sizeof(double), h->e));
+        heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, size * HDI_CAST(uint64_t, h->n_batches), sizeof(double), h->e));
         if (!heat->batch_room) return h->e->status;
         heat->batch_doubles = size * HDI_CAST(size_t, h->n_batches);
     }
@@ -17652,6 +17836,7 @@ static hd_status hdi_heat_plain(hdi_heat_call *h) {
             lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
             if (h->equal) hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->query == HDI_QUERY_FIELD));
             else hdi_lane_rounding(lane, h->still * lane->f_norm);
+            if (!h->equal && h->query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
             if (!h->equal && h->query == HDI_QUERY_SYMMETRIC && lap->B) {   /* f = B^-1 e comes by iterations */
                 hdi_lane_rounding(lane, 1e-14 * hdi_ratio_root(lap) * lane->f_norm);
                 lane->rounding = HD_EVIDENCE_ESTIMATED;
@@ -17713,7 +17898,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const d
 
 static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
     if (v >= 0 && v < lap->n) return HD_OK;
-    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, lap->n);
+    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
 }
 
 static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, double t, hd_kernel kernel, int32_t k, hd_report *report) {
@@ -18148,7 +18333,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     s = &heat->elim.sym;
     size = full ? s->a_ptr[s->n_super] : s->n;
     room = HDI_TAKE(&scope, double, 2 * size);
-    value = HDI_TAKE(&scope, double, 3 * HDI_CAST(size_t, s->n));
+    value = HDI_TAKE(&scope, double, 3 * HDI_CAST(uint64_t, s->n));
     if (h->e->status < 0) return hdi_scope_end(&scope);
     off = value + s->n;
     g = off + s->n;
@@ -18273,7 +18458,7 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *ration
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
     const hdi_symbolic *s = &heat->elim.sym;
     const int64_t size = s->a_ptr[s->n_super];
-    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, size)), *k = HDI_TAKE(&scope, double, 2 * HDI_CAST(size_t, s->n));
+    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, size)), *k = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, s->n));
     hdi_entries x;
     int32_t i;
     *rational = 0;
@@ -18373,7 +18558,7 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
     hd_heat *heat = h->heat;
     hdi_elim *m = &heat->elim;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    const size_t n = HDI_CAST(size_t, m->sym.n), sets = 2 * HDI_CAST(size_t, n_times);
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), sets = 2 * HDI_CAST(uint64_t, n_times);
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
     hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
     double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
@@ -18523,7 +18708,7 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
     hdi_elim *m = &heat->elim;
     const hd_laplacian *lap = heat->source;
     const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
-    double *room = HDI_TAKE(scope, double, 2 * HDI_CAST(size_t, m->sym.n));
+    double *room = HDI_TAKE(scope, double, 2 * HDI_CAST(uint64_t, m->sym.n));
     hdi_entries entries;
     hdi_probe probe;
     int32_t i;
@@ -18637,7 +18822,7 @@ static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, int32_t 
         }
         return hdi_scope_end(&s);
     }
-    off = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(size_t, k) + 1);
+    off = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, k) + 1);
     work = HDI_TAKE(&s, double, 2 * n + 1);
     if (e->status < 0) return hdi_scope_end(&s);
     memset(&query, 0, sizeof query);
@@ -18765,7 +18950,7 @@ static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double 
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
     const size_t n = HDI_CAST(size_t, heat->source->n);
     double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
-    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, HDI_CAST(size_t, k) + 1);
+    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, HDI_CAST(uint64_t, k) + 1);
     hdi_metric x;
     int32_t r;
     memset(rep, 0, sizeof *rep);
@@ -18843,13 +19028,13 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     const int32_t n_times = q1 - q0, n = m->sym.n;
     const int weighted = kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
-    const size_t size = 2 * HDI_CAST(size_t, n_times) * HDI_CAST(size_t, n);
+    const uint64_t size = 2 * HDI_CAST(uint64_t, n_times) * HDI_CAST(uint64_t, n);
     const double *t = h->times + q0, unit = weighted ? 1 / heat->scale : heat->scale;
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
-    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(size_t, n_times) * HD_MAX_POLES);
-    double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(size_t, n));
-    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n), *spare = HDI_TAKE(&s, double, 3 * HDI_CAST(size_t, n));
-    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(size_t, n)) : NULL, *rounding = HDI_TAKE_ZERO(&s, double, n_times);
+    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(uint64_t, n_times) * HD_MAX_POLES);
+    double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n));
+    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n), *spare = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n));
+    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, n)) : NULL, *rounding = HDI_TAKE_ZERO(&s, double, n_times);
     char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
     double pole_off[HD_MAX_POLES];
     hdi_metric metric;
@@ -18857,7 +19042,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     int32_t q, r, i, p;
     memset(&metric, 0, sizeof metric);
     metric.kind = kind;
-    metric.diag = HDI_TAKE(&s, double, 3 * HDI_CAST(size_t, n) + 1);
+    metric.diag = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n) + 1);
     if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_DISTANCE_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
     metric.g = metric.diag + n;
     metric.spread = metric.g + n;
@@ -18871,7 +19056,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
         return hdi_scope_end(&s);
     probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * HDI_CAST(size_t, n), -1);
     for (i = 0; i < probe.k; i++) {              /* columns of the forms' rows, as those of sources are found */
-        memset(column, 0, size * sizeof *column);
+        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
         hdi_shared_column(m, probe.row[i], full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
         for (q = 0; q < n_times; q++) {
             const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
@@ -18893,7 +19078,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     for (r = 0; r < k; r++) {
         const int32_t row = m->lap->row[sources[r]];
         if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
-        memset(column, 0, size * sizeof *column);
+        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
         memset(pole_off, 0, sizeof pole_off);
         if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
         for (q = 0; q < n_times; q++) {
@@ -19170,7 +19355,7 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
     order = HDI_TAKE(&h.s, hdi_pair, 2 * n_pairs);
     list = HDI_TAKE(&h.s, int32_t, 2 * n_pairs);
     place = HDI_TAKE(&h.s, int32_t, 2 * n_pairs);
-    work = HDI_TAKE(&h.s, double, 2 * HDI_CAST(size_t, heat->source->n) + 1);
+    work = HDI_TAKE(&h.s, double, 2 * HDI_CAST(uint64_t, heat->source->n) + 1);
     if (h.e->status < 0) return hdi_heat_end(&h);
     n_list = hdi_pairs_vertices(n_pairs, i, j, order, list, place);
     if (kind >= HD_DISTANCE_COMMUTE || HDI_CAST(int64_t, n_list) * heat->source->n > MOST_DOUBLES) {
@@ -19182,7 +19367,7 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
         }
         return hdi_heat_end(&h);
     }
-    U = HDI_TAKE(&h.s, double, HDI_CAST(size_t, heat->source->n) * HDI_CAST(size_t, n_list));
+    U = HDI_TAKE(&h.s, double, HDI_CAST(uint64_t, heat->source->n) * HDI_CAST(uint64_t, n_list));
     if (U) {
         hd_report columns;
         if (hd_heat_columns(heat, t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, n_list, list, U, 0, &columns) >= 0)
@@ -19244,7 +19429,6 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 /* ---- geodesic distance ---- */
 
 static hd_status hdi_geo_check(const hd_geodesic_opts *o, hd_error *e) {
-    if (o->begin_zero || o->end_zero) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic options: not cleared before use");
     if (!(o->t >= 0) || !hdi_finite(o->t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
     if (o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown mass");
     if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown ordering");
@@ -19259,7 +19443,7 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
     hdi_call c;
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
-    if (hdi_enter(&c, o.context, err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0) return c.e->status;
     if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_missing(c.e);
     if (n < 0 || n_tri < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: a size is negative");
     if (hdi_geo_check(&o, c.e) < 0) return c.e->status;
@@ -19313,7 +19497,7 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
     hdi_geo_tell_plan(g, rep);
     for (q = 0; q < k; q++) {
         if (sources[q] >= 0 && sources[q] < g->n) continue;
-        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q], g->n);
+        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q], sources[q]);
         c->e->column = q;
         return c->e->status;
     }

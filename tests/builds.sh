@@ -24,6 +24,32 @@ for c in "gcc -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "gcc -std=c11" 
   count=$((count + 1))
   echo "ok: $c"
 done
+# 32 bits: the product of a full column by a full row has 2^32 entries, more than such a program can have
+cat >"$work/wide.c" <<'END'
+#define HEATDIFF_IMPLEMENTATION
+#include "heatdiff.h"
+enum { N = 65536 };
+static int64_t many[N + 1], one[2] = {0, N};
+static int32_t zero[N], each[N];
+static double val[N];
+int main(void) {
+    hd_csr a = {N, 1, N, many, zero, val}, b = {1, N, N, one, each, val}, c;
+    int32_t i;
+    for (i = 0; i < N; i++) {
+        many[i + 1] = i + 1;
+        each[i] = i;
+        val[i] = 1;
+    }
+    return hd_csr_product(&c, &a, &b, NULL, NULL) != HD_ERR_TOO_LARGE;
+}
+END
+if echo 'int main(void) { return 0; }' | gcc -m32 -x c - -o "$work/small" 2>/dev/null && "$work/small"; then
+  gcc -m32 -std=c99 $warn -Wno-psabi "$work/wide.c" -o "$work/wide" -lm
+  "$work/wide"
+  echo "ok: gcc -m32"
+else
+  echo "not here: gcc -m32"
+fi
 # names: everything the implementation exports begins with hd_
 gcc -std=c99 -I"$top" -c "$work/impl.c" -o "$work/impl.o"
 foreign=$(nm -g --defined-only "$work/impl.o" | awk '{print $3}' | grep -v '^hd_' || true)

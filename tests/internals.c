@@ -78,16 +78,19 @@ static void int_complex(void) {
 }
 
 static void int_sizes(void) {
-    size_t out = 77;
-    CHECK(hdi_size(3, 4, 5, &out) && out == 17);
-    CHECK(hdi_size(0, SIZE_MAX, 5, &out) && out == 5);
-    CHECK(hdi_size(SIZE_MAX, 0, 5, &out) && out == 5);
-    CHECK(hdi_size(SIZE_MAX, 1, 0, &out) && out == SIZE_MAX);
+    const uint64_t all = UINT64_MAX, small = UINT32_MAX;   /* small: what an address of 32 bits reaches */
+    uint64_t out = 77;
+    CHECK(hdi_size(3, 4, 5, all, &out) && out == 17);
+    CHECK(hdi_size(0, all, 5, all, &out) && out == 5);
+    CHECK(hdi_size(all, 0, 5, all, &out) && out == 5);
+    CHECK(hdi_size(all, 1, 0, all, &out) && out == all);
     out = 77;
-    CHECK(!hdi_size(SIZE_MAX, 1, 1, &out) && out == 77);
-    CHECK(!hdi_size(SIZE_MAX / 2 + 1, 2, 0, &out) && !hdi_size(2, SIZE_MAX / 2 + 1, 0, &out));
-    CHECK(hdi_size(SIZE_MAX / 2, 2, 1, &out) && out == SIZE_MAX);
-    CHECK(!hdi_size(SIZE_MAX / 16, 16, 80, &out));
+    CHECK(!hdi_size(all, 1, 1, all, &out) && out == 77);
+    CHECK(!hdi_size(all / 2 + 1, 2, 0, all, &out) && !hdi_size(2, all / 2 + 1, 0, all, &out));
+    CHECK(hdi_size(all / 2, 2, 1, all, &out) && out == all);
+    CHECK(!hdi_size(all / 16, 16, 80, all, &out));
+    CHECK(!hdi_size(small + 1, 8, 0, small, &out) && !hdi_size(small / 8, 8, 80, small, &out) && !hdi_size(0, 8, 80, 79, &out));
+    CHECK(hdi_size(small / 8, 8, 7, small, &out) && out == small);
 }
 
 /* ---- [03] memory ---- */

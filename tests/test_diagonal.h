@@ -1254,9 +1254,9 @@ static void diag_refused(void) {
         if (q) CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, bad[q], 1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
     }
     for (q = 0; q < 2; q++) {
-        CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, out_of_range + q, D, 0, &rep) == HD_ERR_INDEX && rep.error.column == 0);
+        CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, out_of_range + q, D, 0, &rep) == HD_ERR_INDEX && rep.error.column == 0 && rep.error.value == out_of_range[q]);
         CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, out_of_range + q, &v, NULL, D, &rep) == HD_ERR_INDEX && rep.error.row == 0);
-        CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, &v, out_of_range + q, NULL, D, &rep) == HD_ERR_INDEX);
+        CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, &v, out_of_range + q, NULL, D, &rep) == HD_ERR_INDEX && rep.error.value == out_of_range[q]);
         sample[0] = out_of_range[q];
         CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 1, sample, NULL, &rep) == HD_ERR_INDEX && rep.error.column == 0);
     }

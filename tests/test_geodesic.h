@@ -590,8 +590,8 @@ static void geo_errors(void) {
     CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 7 && !g);
     s.xyz[3 * 7 + 1] = keep;
     CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, &e) == HD_OK && e.status == HD_OK);
-    CHECK(hd_geodesic_distance(g, beyond, 3, d, &rep) == HD_ERR_INDEX && rep.status == HD_ERR_INDEX && rep.error.vertex == 42 && rep.error.column == 2);
-    CHECK(hd_geodesic_distance(g, &below, 1, d, &rep) == HD_ERR_INDEX && rep.error.vertex == -1 && rep.error.column == 0);
+    CHECK(hd_geodesic_distance(g, beyond, 3, d, &rep) == HD_ERR_INDEX && rep.status == HD_ERR_INDEX && rep.error.vertex == 42 && rep.error.value == 42 && rep.error.column == 2);
+    CHECK(hd_geodesic_distance(g, &below, 1, d, &rep) == HD_ERR_INDEX && rep.error.vertex == -1 && rep.error.value == -1 && rep.error.column == 0);
     CHECK(hd_geodesic_distances(g, 3, beyond, d, 0, &rep) == HD_ERR_INDEX && rep.error.column == 2);
     CHECK(hd_geodesic_distance(g, beyond, 0, d, &rep) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, beyond, -1, d, NULL) == HD_ERR_ARGUMENT);
     CHECK(hd_geodesic_distance(g, NULL, 1, d, &rep) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, beyond, 1, NULL, &rep) == HD_ERR_ARGUMENT);

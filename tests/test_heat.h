@@ -822,10 +822,10 @@ static void heat_errors(void) {
         F[12 + 7] = 0;
     }
     HEAT_BAD(hd_heat_columns(heat, 1, HD_KERNEL_OPERATOR, 3, sources, U, 0, &rep), HD_ERR_INDEX);
-    CHECK(rep.error.vertex == 12 && rep.error.column == 1);
+    CHECK(rep.error.vertex == 12 && rep.error.value == 12 && rep.error.column == 1);
     sources[1] = -5;
     HEAT_BAD(hd_heat_columns(heat, 1, HD_KERNEL_SYMMETRIC, 3, sources, U, 0, &rep), HD_ERR_INDEX);
-    CHECK(rep.error.vertex == -5 && rep.error.column == 1);
+    CHECK(rep.error.vertex == -5 && rep.error.value == -5 && rep.error.column == 1);
     HEAT_BAD(hd_heat_column(heat, 1, 12, U, &rep), HD_ERR_INDEX);
     HEAT_BAD(hd_heat_columns(heat, 1, (hd_kernel)5, 1, rows, U, 0, &rep), HD_ERR_ARGUMENT);
     HEAT_BAD(hd_heat_columns(heat, 1, HD_KERNEL_OPERATOR, 1, NULL, U, 0, &rep), HD_ERR_ARGUMENT);

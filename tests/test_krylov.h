@@ -305,12 +305,64 @@ static void kry_errors(void) {
     shape_free(&s);
 }
 
+/* Right-hand sides of any size: the answer scales with them, whatever squares would do. Values that are none are told. */
+static void kry_sizes(void) {
+    static const double sizes[6] = {1, 1e-170, 1e-230, 1e160, 1e200, 1e240};
+    const double scales[3] = {1, 1e-30, 1e30};
+    shape s = shape_bumpy(1, 5);
+    hd_c64 *rhs = DENSE_NEW(hd_c64, s.n), *x = DENSE_NEW(hd_c64, s.n), *want = DENSE_NEW(hd_c64, s.n);
+    hd_solve_report rep;
+    hd_solve_opts o;
+    hd_error e;
+    int32_t v;
+    int k, q, r, pick;
+    memset(&o, 0, sizeof o);
+    for (pick = 0; pick < 3; pick++) {
+        shape own = shape_bumpy(1, 5);
+        hd_laplacian *lap;
+        double h2;
+        for (v = 0; v < 3 * s.n; v++) own.xyz[v] *= scales[pick];
+        lap = test_laplacian(&own, pick ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        h2 = lap->h * lap->h;
+        for (k = 0; k < 3; k++) {
+            o.solver = kry_solvers[k];
+            for (q = 0; q < 6; q++) {
+                double off = 0;
+                const double size = sizes[q] * h2;
+                for (v = 0; v < s.n; v++) rhs[v] = test_c(size * sin(1.0 + v), size * (v % 3));
+                memset(&rep, 0, sizeof rep);
+                CHECK(hd_shifted_solve(lap, 3 * h2, test_c(-1, 2), rhs, q ? x : want, &o, &rep, &e) == HD_OK);
+                CHECK_MSG(rep.residual > 0 && rep.residual <= 1e-10 && rep.error_b > 0 && rep.error_b < 1e-8, "size %g: residual %g, error %g", size, rep.residual, rep.error_b);
+                for (v = 0; v < s.n && q; v++) off = fmax(off, hypot(x[v].re / sizes[q] - want[v].re, x[v].im / sizes[q] - want[v].im) / hypot(want[v].re, want[v].im));
+                CHECK_MSG(off < 1e-8, "size %g, scale %g, solver %d: off by %g", size, scales[pick], k, off);
+            }
+            for (q = 0; q < 4; q++) {
+                const double bad = q % 2 ? (double)NAN : -(double)INFINITY;
+                rhs[7] = test_c(q < 2 ? bad : 1, q < 2 ? 0 : bad);
+                CHECK(hd_shifted_solve(lap, 3 * h2, test_c(-1, 2), rhs, x, &o, &rep, &e) == HD_ERR_NOT_FINITE && e.row == 7 && !(fabs(e.value) <= DBL_MAX));
+            }
+            rhs[7] = test_c(0, 0);
+        }
+        for (r = 0; r < s.n; r++) rhs[r] = test_c(0, 0);
+        CHECK(hd_shifted_solve(lap, 3 * h2, test_c(-1, 2), rhs, x, NULL, &rep, &e) == HD_OK && x[3].re == 0 && rep.residual == 0);
+        for (r = 0; r < s.n; r++) rhs[r] = test_c(1e308, 0);
+        if (pick == 1) CHECK(hd_shifted_solve(lap, 3 * h2, test_c(-1, 2), rhs, x, NULL, &rep, &e) == HD_ERR_NOT_FINITE && e.row >= 0);    /* over areas of 1e-60 */
+        hd_laplacian_free(lap);
+        shape_free(&own);
+    }
+    shape_free(&s);
+    free(rhs);
+    free(x);
+    free(want);
+}
+
 static void test_krylov(void) {
     kry_against_dense();
     kry_tiny();
     kry_special();
     kry_not_converged();
     kry_errors();
+    kry_sizes();
 }
 
 #endif

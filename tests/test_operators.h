@@ -558,6 +558,45 @@ static void op_matrices_inert(void) {
     hd_csr_free(&B, NULL);
 }
 
+/* Explicit zeros, one without its mirror entry in L or in B, one whose mirror entry the other matrix stores: the
+ * pattern of the pair is symmetric, and no method reads beside it. */
+static void op_matrices_zeros(void) {
+    int64_t ptr[6] = {0, 1, 2, 3, 4, 5}, ptr_one[6] = {0, 2, 3, 4, 5, 6}, ptr_two[6] = {0, 1, 3, 4, 5, 6};
+    int32_t col[5] = {0, 1, 2, 3, 4}, col_one[6] = {0, 2, 1, 2, 3, 4}, col_two[6] = {0, 1, 4, 2, 3, 4}, v;
+    double val[5] = {3, 3, 3, 3, 3}, one[6] = {3, 0, 3, 3, 3, 3}, two[6] = {3, 3, 0, 3, 3, 3}, u[5];
+    static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
+    hd_csr plain = {5, 5, 5, ptr, col, val}, lone = {5, 5, 6, ptr_one, col_one, one}, other = {5, 5, 6, ptr_two, col_two, two};
+    hd_csr *L[4] = {&plain, &lone, &lone, &other}, *B[4] = {&lone, &plain, &lone, &lone};
+    hd_laplacian *lap = NULL;
+    hd_heat_opts o;
+    hd_heat *heat;
+    hd_error e;
+    int q, m;
+    memset(&o, 0, sizeof o);
+    for (q = 0; q < 4; q++) {
+        hd_csr shape;
+        if (!CHECK(hd_laplacian_matrices(&lap, L[q], B[q], 0, NULL, &e) == HD_OK)) continue;
+        shape = lap->L;
+        shape.val = NULL;
+        CHECK_MSG(hd_csr_check(&shape, 1, NULL, &e) == HD_OK && lap->L.nnz == 5 && !lap->B, "pair %d: %s", q, e.text);
+        for (m = 0; m < 4; m++) {
+            o.method = methods[m];
+            if (!CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK)) continue;
+            CHECK(hd_heat_column(heat, 1, 2, u, NULL) == HD_OK);
+            for (v = 0; v < 5; v++) CHECK_MSG(fabs(u[v] - (v == 2) * exp(-1.0)) < 1e-7, "pair %d, method %d: %g", q, m, u[v]);
+            hd_heat_free(heat);
+        }
+        hd_laplacian_free(lap);
+    }
+    col_two[1] = 0;                              /* L stores (1,0) where B stores (0,1): both zero, both kept */
+    col_two[2] = 1;
+    two[1] = 0;
+    two[2] = 3;
+    col_one[1] = 1;
+    CHECK(hd_laplacian_matrices(&lap, &other, &lone, 0, NULL, &e) == HD_OK && lap->L.nnz == 7);
+    hd_laplacian_free(lap);
+}
+
 static void op_matrices_bad(void) {
     enum { N = 4 };
     double d[N] = {1, 2, 3, 4};
@@ -599,6 +638,187 @@ static void op_matrices_bad(void) {
     hd_csr_free(&indefinite, NULL);
 }
 
+/* A pair on 4 vertices with B = I and single entries of the path's L changed, both of a pair. */
+static hd_status op_changed(const int32_t *i, const int32_t *j, const double *v, int32_t count, hd_error *e) {
+    hd_csr L = test_path_csr(4, 0), B = test_diagonal_csr(4, NULL);
+    hd_laplacian *lap = NULL;
+    hd_status st;
+    int32_t k, side;
+    for (k = 0; k < 2 * count; k++) {
+        const int32_t at = k / 2, row = k & 1 ? j[at] : i[at], column = k & 1 ? i[at] : j[at];
+        for (side = (int32_t)L.row_ptr[row]; side < L.row_ptr[row + 1]; side++)
+            if (L.col[side] == column) L.val[side] = v[at];
+    }
+    st = hd_laplacian_matrices(&lap, &L, &B, 0, NULL, e);
+    if (st >= 0) hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    return st;
+}
+
+/* Matrices that cannot be positive semi-definite say so, and where: libigl's sign, zeros and entries too large. */
+static void op_matrices_sign(void) {
+    const int32_t two[1] = {2}, both[2] = {2, 2}, one_two[1] = {1}, ends[2] = {0, 0}, next[2] = {0, 1};
+    const double zero[1] = {0}, negative[1] = {-0.5}, large[1] = {-2.1}, most[1] = {-2}, tiny[2] = {1e-30, -1}, fine[2] = {1e-30, -1e-15};
+    shape ball = shape_bumpy(2, 5);
+    hd_laplacian *mesh = test_laplacian(&ball, HD_LAPLACIAN_VORONOI_COT), *lap = NULL;
+    hd_csr L = mesh->L, B = test_diagonal_csr(L.n_rows, mesh->mass);
+    hd_error e;
+    int64_t p;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK && lap->conserves);
+    hd_laplacian_free(lap);
+    for (p = 0; p < L.nnz; p++) L.val[p] = -L.val[p];
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_POSITIVE && strstr(e.text, "libigl"));
+    CHECK(e.row == 0 && e.column == 0 && e.value < 0);
+    CHECK(op_changed(two, two, negative, 1, &e) == HD_ERR_NOT_POSITIVE && e.row == 2 && e.column == 2 && e.value == -0.5 && strstr(e.text, "libigl"));
+    CHECK(op_changed(both, both, zero, 1, &e) == HD_ERR_NOT_POSITIVE && e.row == 1 && e.column == 2 && e.value == -1);
+    CHECK(op_changed(one_two, two, large, 1, &e) == HD_ERR_NOT_POSITIVE && e.row == 1 && e.column == 2 && e.value == -2.1);
+    CHECK(op_changed(one_two, two, most, 1, &e) == HD_OK);       /* singular, but not yet negative by this test */
+    CHECK(op_changed(ends, next, tiny, 2, &e) == HD_ERR_NOT_POSITIVE && e.row == 0 && e.column == 1 && e.value == -1);
+    CHECK(op_changed(ends, next, fine, 2, &e) == HD_OK);
+    hd_csr_free(&B, NULL);
+    hd_laplacian_free(mesh);
+    shape_free(&ball);
+}
+
+/* Cotangent weights summed corner by corner in any order: rows are off zero by rounding, and heat is conserved. */
+static void op_matrices_assembled(void) {
+    shape s = shape_bumpy(4, 3);
+    const int32_t room = 12 * s.n_tri;
+    int32_t *i = DENSE_NEW(int32_t, room), *j = DENSE_NEW(int32_t, room), f, k, order;
+    double *v = DENSE_NEW(double, room);
+    hd_csr B = test_diagonal_csr(s.n, NULL);
+    uint64_t seed = 8;
+    for (f = 0; f < s.n; f++) s.xyz[3 * f + 2] *= 0.03;          /* slivers among them */
+    for (order = 0; order < 2; order++) {
+        hd_laplacian *lap = NULL;
+        hd_csr L;
+        int32_t c = 0, off = 0;
+        for (f = 0; f < s.n_tri; f++) {
+            for (k = 0; k < 3; k++) {
+                const int32_t a = s.tri[3 * f + (k + 1) % 3], b = s.tri[3 * f + (k + 2) % 3], o = s.tri[3 * f + k];
+                double u[3], w[3], dot = 0, uu = 0, ww = 0, weight;
+                int q;
+                for (q = 0; q < 3; q++) {
+                    u[q] = s.xyz[3 * a + q] - s.xyz[3 * o + q];
+                    w[q] = s.xyz[3 * b + q] - s.xyz[3 * o + q];
+                    dot += u[q] * w[q];
+                    uu += u[q] * u[q];
+                    ww += w[q] * w[q];
+                }
+                weight = 0.5 * dot / sqrt(uu * ww - dot * dot);
+                i[c] = a; j[c] = b; v[c++] = -weight;
+                i[c] = b; j[c] = a; v[c++] = -weight;
+                i[c] = j[c] = a; v[c++] = weight;
+                i[c] = j[c] = b; v[c++] = weight;
+            }
+        }
+        for (k = c - 1; order && k > 0; k--) {
+            const int32_t r = (int32_t)(dense_random(&seed) % (uint64_t)(k + 1)), ti = i[k], tj = j[k];
+            const double tv = v[k];
+            i[k] = i[r]; j[k] = j[r]; v[k] = v[r];
+            i[r] = ti; j[r] = tj; v[r] = tv;
+        }
+        CHECK(hd_csr_from_triplets(&L, s.n, s.n, c, i, j, v, NULL, NULL) == HD_OK);
+        for (k = 0; k < s.n; k++) {
+            int64_t p;
+            double sum = 0;
+            for (p = L.row_ptr[k]; p < L.row_ptr[k + 1]; p++) sum += L.val[p];
+            off += sum != 0;
+        }
+        CHECK(off > s.n / 2);
+        if (CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, NULL) == HD_OK)) {
+            CHECK(lap->conserves == 1);
+            hd_laplacian_free(lap);
+        }
+        hd_csr_free(&L, NULL);
+    }
+    hd_csr_free(&B, NULL);
+    shape_free(&s);
+    free(i);
+    free(j);
+    free(v);
+}
+
+/* A leak of 4e-12 is one, whatever the rows' largest entries hide of it. */
+static void op_matrices_leak(void) {
+    hd_csr L = test_path_csr(64, 1), B = test_diagonal_csr(64, NULL);
+    hd_laplacian *lap = NULL;
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < 64; i++)
+        for (p = L.row_ptr[i]; p < L.row_ptr[i + 1]; p++)
+            if (L.col[p] == i) L.val[p] = 2 + 4e-12;
+    if (CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, NULL) == HD_OK)) {
+        CHECK(lap->conserves == 0);
+        hd_laplacian_free(lap);
+    }
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+}
+
+/* b_ratio for B of 3 x 3 blocks I - (1 - mu) w w', w = (2, 1, 1)/sqrt 6, count of them, whose rows their diagonal does not dominate. */
+static hd_status op_block_ratio(int32_t count, double mu, hd_laplacian **lap, hd_error *e) {
+    const double w[3] = {2 / sqrt(6), 1 / sqrt(6), 1 / sqrt(6)};
+    const int32_t n = 3 * count;
+    int32_t *i = DENSE_NEW(int32_t, 9 * count), *j = DENSE_NEW(int32_t, 9 * count), k;
+    double *v = DENSE_NEW(double, 9 * count);
+    hd_csr L = test_path_csr(n, 0), B;
+    hd_status st;
+    for (k = 0; k < 9 * count; k++) {
+        i[k] = k / 9 * 3 + k % 9 / 3;
+        j[k] = k / 9 * 3 + k % 3;
+        v[k] = (i[k] == j[k]) - (1 - mu) * w[k % 9 / 3] * w[k % 3];
+    }
+    CHECK(hd_csr_from_triplets(&B, n, n, 9 * count, i, j, v, NULL, NULL) == HD_OK);
+    st = hd_laplacian_matrices(lap, &L, &B, 0, NULL, e);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    free(i);
+    free(j);
+    free(v);
+    return st;
+}
+
+/* b_ratio is a lower bound, and where it can be a good one. */
+static void op_matrices_ratio(void) {
+    enum { N = 20000 };
+    static const double mus[4] = {1e-3, 1e-6, 1e-9, 1e-10};
+    hd_csr L = test_path_csr(N, 0), B = test_path_csr(N, 0);
+    hd_laplacian *lap = NULL;
+    hd_heat *heat;
+    hd_report rep;
+    hd_error e;
+    double *u = DENSE_NEW(double, 3 * 2000), exact;
+    int32_t i, q;
+    int64_t p;
+    for (i = 0; i < N; i++)
+        for (p = B.row_ptr[i]; p < B.row_ptr[i + 1]; p++) B.val[p] = B.col[p] == i ? 1 + 1e-9 : 0.5;
+    exact = (1e-9 + 2 * pow(sin(1.5707963267948966 / (N + 1)), 2)) / (1 + 1e-9);
+    if (CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK)) {
+        CHECK_MSG(lap->b_ratio >= 9.9e-10 && lap->b_ratio <= exact, "%g, exact %g", lap->b_ratio, exact);
+        hd_laplacian_free(lap);
+    }
+    for (i = 0; i < N; i++)                      /* below zero, which 40 steps of Lanczos do not see */
+        for (p = B.row_ptr[i]; p < B.row_ptr[i + 1]; p++) B.val[p] = B.col[p] == i ? 1 - 1e-7 : 0.5;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_POSITIVE);
+    for (q = 0; q < 4; q++) {                    /* in the scaling by diag(B) the least eigenvalue of a block is about 2 mu */
+        if (!CHECK_MSG(op_block_ratio(100, mus[q], &lap, &e) == HD_OK, "%s", e.text)) continue;
+        CHECK_MSG(lap->b_ratio > 0.1 * mus[q] && lap->b_ratio <= 2.1 * mus[q], "%g for mu %g", lap->b_ratio, mus[q]);
+        hd_laplacian_free(lap);
+    }
+    CHECK(op_block_ratio(100, -1e-9, &lap, &e) == HD_ERR_NOT_POSITIVE && op_block_ratio(100, 0, &lap, &e) == HD_ERR_NOT_POSITIVE);
+    if (CHECK(op_block_ratio(2000, 2e-12, &lap, &e) == HD_OK)) {   /* beyond what a factorisation can tell: not known, no bound */
+        CHECK(lap->b_ratio == 0 && hd_heat_create(&heat, lap, NULL, &e) == HD_OK);
+        CHECK(hd_heat_column(heat, 1e-3, 5, u, &rep) >= 0 && rep.error_bound == HUGE_VAL);
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+    }
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    free(u);
+}
+
 static void test_operators(void) {
     op_all_properties();
     op_single_fem();
@@ -615,7 +835,12 @@ static void test_operators(void) {
     op_extreme_scale();
     op_matrices_good();
     op_matrices_inert();
+    op_matrices_zeros();
     op_matrices_bad();
+    op_matrices_sign();
+    op_matrices_assembled();
+    op_matrices_leak();
+    op_matrices_ratio();
 }
 
 #endif

@@ -315,6 +315,51 @@ static void rob_plan_survives(void) {
     shape_free(&s);
 }
 
+/* Options that nobody cleared, by all functions that take some: an error, whatever their context points to. */
+static void rob_not_cleared(void) {
+    shape s = shape_icosphere(0);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM), *made = rob_mark_lap;
+    hd_csr L = test_path_csr(4, 0), B = test_diagonal_csr(4, NULL);
+    const int64_t face_ptr[2] = {0, 3};
+    hd_laplacian_opts lo;
+    hd_solve_opts so;
+    hd_ldl_opts fo;
+    hd_heat_opts ho;
+    hd_geodesic_opts go;
+    hd_heat *heat = rob_mark_heat;
+    hd_geodesic *g = NULL;
+    hd_ldl *f = NULL;
+    hd_c64 x[12];
+    hd_error e;
+    int k;
+    memset(x, 0, sizeof x);
+#define ROB_NOT_CLEARED(call) \
+    CHECK((call) == HD_ERR_ARGUMENT && e.status == HD_ERR_ARGUMENT && strstr(e.text, "not cleared") && made == rob_mark_lap && heat == rob_mark_heat && !g && !f)
+    for (k = 0; k < 3; k++) {                    /* rubbish everywhere; all but the first word; all but the last */
+        memset(&lo, 0xa5, sizeof lo);
+        memset(&so, 0xa5, sizeof so);
+        memset(&fo, 0xa5, sizeof fo);
+        memset(&ho, 0xa5, sizeof ho);
+        memset(&go, 0xa5, sizeof go);
+        if (k == 1) lo.begin_zero = so.begin_zero = fo.begin_zero = ho.begin_zero = go.begin_zero = 0;
+        if (k == 2) lo.end_zero = so.end_zero = fo.end_zero = ho.end_zero = go.end_zero = 0;
+        ROB_NOT_CLEARED(hd_laplacian_triangles(&made, s.xyz, s.n, s.tri, s.n_tri, &lo, &e));
+        ROB_NOT_CLEARED(hd_laplacian_polygons(&made, s.xyz, s.n, face_ptr, s.tri, 1, &lo, &e));
+        ROB_NOT_CLEARED(hd_laplacian_points(&made, s.xyz, s.n, &lo, &e));
+        ROB_NOT_CLEARED(hd_laplacian_tufted_points(&made, s.xyz, s.n, NULL, NULL, &lo, &e));
+        ROB_NOT_CLEARED(hd_laplacian_matrices(&made, &L, &B, 0, &lo, &e));
+        ROB_NOT_CLEARED(hd_shifted_solve(lap, 1, test_c(1, 1), x, x, &so, NULL, &e));
+        ROB_NOT_CLEARED(hd_ldl_analyse(&f, &L, &fo, NULL, &e));
+        ROB_NOT_CLEARED(hd_heat_create(&heat, lap, &ho, &e));
+        ROB_NOT_CLEARED(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &go, &e));
+    }
+#undef ROB_NOT_CLEARED
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 static void test_robust(void) {
     int k;
     for (k = 0; k < ROB_JOBS; k++) {
@@ -326,6 +371,7 @@ static void test_robust(void) {
     }
     rob_cancel_lanes();
     rob_plan_survives();
+    rob_not_cleared();
 }
 
 #endif

@@ -199,6 +199,25 @@ static void sparse_transpose(void) {
     free(t);
 }
 
+/* Finite numbers whose sums or products are not. */
+static void sparse_overflow(void) {
+    const int32_t i[5] = {0, 2, 1, 2, 0}, j[5] = {0, 3, 1, 3, 2};
+    const double v[5] = {1, 1.5e308, 2, 1.5e308, 3}, w[5] = {1, 1, 1, 1, 1e200}, x[5] = {1, 1, 1e200, 1, 3};
+    const int32_t p[5] = {0, 1, 2, 0, 1}, q[5] = {0, 1, 1, 1, 2};
+    hd_csr a, b, c, mark;
+    hd_error e;
+    memset(&a, 0x5a, sizeof a);
+    mark = a;
+    CHECK(hd_csr_from_triplets(&a, 3, 4, 5, i, j, v, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 2 && e.column == 3 && e.value == HUGE_VAL);
+    CHECK(memcmp(&a, &mark, sizeof a) == 0);
+    CHECK(hd_csr_from_triplets(&a, 3, 4, 5, i, j, w, NULL, &e) == HD_OK && hd_csr_from_triplets(&b, 4, 4, 5, p, q, x, NULL, &e) == HD_OK);
+    memset(&c, 0x5a, sizeof c);                  /* (0,2) of a times (2,1) of b: 1e200 1e200 */
+    CHECK(hd_csr_product(&c, &a, &b, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 0 && e.column == 1 && e.value == HUGE_VAL);
+    CHECK(memcmp(&c, &mark, sizeof c) == 0);
+    hd_csr_free(&a, NULL);
+    hd_csr_free(&b, NULL);
+}
+
 static void sparse_product_of(int32_t n, int32_t k, int32_t m, int32_t count, uint64_t seed) {
     double *x = DENSE_NEW(double, n * k), *y = DENSE_NEW(double, k * m), *z = DENSE_NEW(double, n * m);
     hd_csr a = sparse_random(n, k, count, seed, x), b = sparse_random(k, m, count, seed + 1, y), c, pattern;
@@ -298,6 +317,7 @@ static void test_sparse(void) {
     sparse_check();
     sparse_check_symmetric();
     sparse_transpose();
+    sparse_overflow();
     sparse_product_of(9, 14, 6, 40, 17);
     sparse_product_of(30, 30, 30, 90, 18);
     sparse_product_of(50, 40, 60, 900, 19);      /* rows long enough for heapsort */
