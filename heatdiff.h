@@ -15025,7 +15025,7 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
  * so that the scale is of no interest. A face belongs to the first stage that tells one of its corners.
  * A stage costs what it touches, so that a long strip costs in proportion to its length: the faces around the
  * rows just told; forward, the fronts on the ways from the border towards the root, as far as they have
- * something to hand on; backward, those that heat beyond S comes to from above. u' is zero on S, and fades. */
+ * something to hand on; backward, those that heat beyond S comes to from above. u' is 0 on S, and fades. */
 
 static const double hdi_geo_faint = 1e-200;      /* of the largest u: below, doubles are soon at their end */
 enum { HDI_GEO_BEYOND = 0, HDI_GEO_EARLIER = 1, HDI_GEO_NOW = 2 };
@@ -15183,8 +15183,8 @@ static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
     return 0;
 }
 
-/* From the ends of the way up down again, the highest first: an end with another one above it may have got heat
- * from there, by fronts that nothing came to forward. */
+/* From the ends of the way up down again, the highest first: an end with another one above it may have got
+ * heat from there, by fronts that nothing came to forward. */
 static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
     const hdi_symbolic *s = &w->g->sym;
     int32_t k;

@@ -340,8 +340,8 @@ static void geo_long(void) {
     shape_free(&s);
 }
 
-/* Stages cost what they touch: together they go to each front a few times, however long the strip, however high
- * the tree. */
+/* Stages cost what they touch: together they go to each front a few times, however long the strip and however
+ * high the tree. */
 static void geo_strip(hd_ordering ordering) {
     shape s = shape_grid(10001, 2, 0.2);
     const int32_t source = 3000;
@@ -829,7 +829,7 @@ static void test_geodesic(void) {
     geo_stages_ordered(shape_grid(130, 130, 0), 8000, 1e-12);
     geo_stages_ordered(shape_grid(900, 6, 0.4), 5, 1e-8);
     geo_stages_ordered(shape_bumpy(5, 2), 0, 1e-14);
-    geo_stages_ordered(shape_cylinder(620, 2, 0.16, 1 / 620.0), 0, 2.6e-8);   /* ends of the way up above others */
+    geo_stages_ordered(shape_cylinder(620, 2, 0.16, 1 / 620.0), 0, 2.6e-8);   /* ends above others */
     geo_moved();
     geo_renumbered();
     geo_symmetric();
