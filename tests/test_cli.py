@@ -511,8 +511,9 @@ class Failures(Case):
         import resource
         before = sorted(os.listdir(self.folder))
         for out in ("limit.txt", "limit.csv", "limit.npy", "limit.ply", "limit.vtu", "limit.png"):
-            p = subprocess.run([TOOL, "kernel", self.patch, "--source", "0", "--t", "1h2,2h2", "--quiet", "-o", self.path(out)],
-                               stderr=subprocess.PIPE, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+            run = [TOOL, "kernel", self.patch, "--source", "0", "--t", "1h2,2h2", "--quiet", "-o", self.path(out)]
+            p = subprocess.run(run, stderr=subprocess.PIPE,
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
             self.assertEqual(p.returncode, 1, p.stderr)
             self.assertRegex(p.stderr.decode(), r"^heatdiff: error: .*limit\....: cannot write: .*\n$")
             self.assertEqual(sorted(os.listdir(self.folder)), before)
@@ -1257,7 +1258,8 @@ class Distances(Case):
                 self.good(*run, self.patch, "-o", out)
                 with open(out, "rb") as f:
                     data = f.read()
-                self.assertEqual(read_npy(data) if e == "npy" else csv(data.decode())[1] if e == "csv" else numbers(data.decode()), want)
+                got = read_npy(data) if e == "npy" else csv(data.decode())[1] if e == "csv" else numbers(data.decode())
+                self.assertEqual(got, want)
         binary = self.file("pairs.npy", npy_bytes([[1.0, 2.0], [4.0, 4.0]]))
         self.assertEqual(self.field("pairs", self.patch, "--input", binary, "--t", "1h2"),
                          self.field("pairs", self.patch, "--input", "-", "--t", "1h2", stdin=b"# two\n1, 2\n\n4 4\n"))
@@ -1387,7 +1389,8 @@ class Formats(Case):
 
     def test_text(self):
         self.assertEqual(numbers(self.write("k.txt").decode()), self.want)
-        self.assertEqual(csv(self.write("k.csv").decode()), (["v8_1h2", "v8_5h2", "v90_1h2", "v90_5h2"], self.want))
+        names = ["v8_1h2", "v8_5h2", "v90_1h2", "v90_5h2"]
+        self.assertEqual(csv(self.write("k.csv").decode()), (names, self.want))
         self.assertEqual(numbers(self.write("k.csv", "--no-header").decode(), ","), self.want)
         self.assertEqual(numbers(self.write("K.TXT").decode()), self.want)
 
@@ -1396,11 +1399,16 @@ class Formats(Case):
         two = self.file("two.txt", "1 2\n" * 100)
         pairs = self.file("p.txt", "3 8\n8 3\n")
         for run, names in (
-                (["kernel", "--source", "3,8", "--t", "1,2"], "v3_1,v3_2,v8_1,v8_2"), (["kernel", "--source", "3,3", "--t", "1"], "v3_1_c0,v3_1_c1"),
-                (["distance", "--source", "3,8", "--t", "1,2"], "v3_1,v3_2,v8_1,v8_2"), (["distance", "--source", "3", "--definition", "commute"], "v3_commute"),
-                (["diffuse", "--input", two, "--t", "1,2"], "f0_1,f0_2,f1_1,f1_2"), (["geodesic", "--source", "3,8"], "v3_1h2,v8_1h2"),
-                (["hks", "--t", "1,2"], "hks_1,hks_2"), (["pairs", "--input", pairs, "--t", "1,2"], "i,j,K_1,d_1,K_2,d_2"),
-                (["pairs", "--input", pairs, "--definition", "commute"], "i,j,d_commute"), (["sample", "--count", 3, "--t", "1"], "vertex,distance")):
+                (["kernel", "--source", "3,8", "--t", "1,2"], "v3_1,v3_2,v8_1,v8_2"),
+                (["kernel", "--source", "3,3", "--t", "1"], "v3_1_c0,v3_1_c1"),
+                (["distance", "--source", "3,8", "--t", "1,2"], "v3_1,v3_2,v8_1,v8_2"),
+                (["distance", "--source", "3", "--definition", "commute"], "v3_commute"),
+                (["diffuse", "--input", two, "--t", "1,2"], "f0_1,f0_2,f1_1,f1_2"),
+                (["geodesic", "--source", "3,8"], "v3_1h2,v8_1h2"),
+                (["hks", "--t", "1,2"], "hks_1,hks_2"),
+                (["pairs", "--input", pairs, "--t", "1,2"], "i,j,K_1,d_1,K_2,d_2"),
+                (["pairs", "--input", pairs, "--definition", "commute"], "i,j,d_commute"),
+                (["sample", "--count", 3, "--t", "1"], "vertex,distance")):
             out = self.path("names.csv")
             self.assertEqual(self.good(*run, self.patch, "-o", out).stdout, b"")
             with open(out) as f:

@@ -278,6 +278,9 @@ static void tmio_test_xyz(void)
     tmio_bad("x.xyz", "C 0 0 0\n", "x.xyz:1", "'C'");
     tmio_bad("x.dat", "what is this\n", "x.dat", "OBJ, OFF, PLY, STL, XYZ");
     tmio_bad("x.dat", "\x1f\x8b\x08", "x.dat", "gzip");
+    tmio_bad("x.obj", "\x1f\x8b\x08", "x.obj", "gzip");
+    tmio_bad_bytes("x.obj", "\xff\xfev\0 \0000\0 \0001\0 \0002\0\n", 17, "x.obj", "UTF-16");
+    tmio_bad_bytes("x.off", "\xfe\xff\0O\0F\0F", 8, "x.off", "UTF-16");
 }
 
 /* ---- PLY ---- */
@@ -554,6 +557,8 @@ static void tmio_test_table_text(void)
     tmio_bad_table("x.csv", "1,2,\n", 5, "x.csv:1", "comma");
     tmio_bad_table("x.csv", "1,2\n,3\n", 7, "x.csv:2", "comma");
     tmio_bad_table("x.csv", "1;2\n", 4, "x.csv:1", "';'");
+    tmio_bad_table("x.csv", "\xff\xfe" "1\0,\0002\0\n", 9, "x.csv", "UTF-16");
+    tmio_bad_table("x.txt", "\x1f\x8b\x08", 3, "x.txt", "gzip");
     tmio_bad_table("x.txt", "", 0, "x.txt", "no numbers");
     tmio_bad_table("x.txt", "# c\n\n", 5, "x.txt", "no numbers");
     CHECK(mio_load_table(&v, &r, &c, tmio_path("not-there.txt"), NULL, &e) == MIO_FAILED && strstr(e.text, "not-there.txt: cannot open"));
@@ -697,7 +702,8 @@ static void tmio_test_csv_names(void)
     static tmio_sample s;
     static char buf[4000];
     static const char *const id_names[2] = {"i", "j"};
-    static const char *const begin[] = {"\"t < 1 & \"\"two\"\"\",second\n", "i,j,\"t < 1 & \"\"two\"\"\",second\n0,0,", "0,0,", "0 0 "};
+    static const char *const begin[] = {"\"t < 1 & \"\"two\"\"\",second\n",
+                                        "i,j,\"t < 1 & \"\"two\"\"\",second\n0,0,", "0,0,", "0 0 "};
     int k;
     tmio_sample_make(&s);
     s.o.names = s.names;
@@ -732,7 +738,7 @@ static void tmio_test_long_names(void)
         CHECK_MSG(mio_write(tmio_path(name), MIO_TXT, &s.m, &s.o, &e) == 0, "%d bytes: %s", size, e.text);
         CHECK(mio_temporary_path[0] && !fopen(mio_temporary_path, "rb"));
         n = (int)(strstr(mio_temporary_path, ".part") - mio_temporary_path) - 10;
-        CHECK((mio_temporary_path[n] & 0x80) == 0 || (unsigned char)mio_temporary_path[n] == 0xa9);     /* no half letter */
+        CHECK((mio_temporary_path[n] & 0x80) == 0 || (unsigned char)mio_temporary_path[n] == 0xa9);  /* whole letters */
         CHECK(tmio_get(tmio_path(name), back, sizeof back) > 8);
         remove(tmio_path(name));
     }

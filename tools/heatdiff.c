@@ -237,7 +237,7 @@ static void catch_interrupts(void)
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
 #ifdef SIGXFSZ
-    signal(SIGXFSZ, SIG_IGN);        /* beyond the limit of a file's size, writing then fails as on a full disk */
+    signal(SIGXFSZ, SIG_IGN);        /* beyond the limit of a file's size writing fails, as on a full disk */
 #endif
 #else
     signal(SIGINT, on_interrupt);
@@ -1134,8 +1134,8 @@ static void print_help(void)
            "  heatdiff render --input a.npy --input b.npy a.obj b.obj -o pair.png\n"
            "\n%sVertices are counted from 0.\n"
            "Results: .txt .csv .npy .ply .obj .vtu .png by the extension of -o; without -o text on standard output.\n"
-           "Exit codes: 0 done, 1 input or computation failed, 2 the command line is wrong, 130 interrupted.\n",
-           INPUTS);
+           "Exit codes: 0 done, 1 input or computation failed, 2 the command line is wrong, "
+           "130 interrupted.\n", INPUTS);
 }
 
 static void print_option(const option_def *def)
@@ -2459,8 +2459,8 @@ static int has_twice(const run *r)
     return 0;
 }
 
-/* "v8_10h2", "f0_10h2" or "hks_10h2": the source or the field, then the time; "K_10h2" and "d_10h2" of pairs. With
- * the same of them twice also the number of the column, because readers want names that differ. */
+/* "v8_10h2", "f0_10h2" or "hks_10h2": the source or the field, then the time; "K_10h2" and "d_10h2" of pairs.
+ * With the same of them twice also the number of the column, because readers want names that differ. */
 static int heat_names(run *r)
 {
     const int pairs = r->o->command == CMD_PAIRS, step = pairs && !is_timeless(r->o) ? 2 : 1;
@@ -2476,7 +2476,8 @@ static int heat_names(run *r)
         if (r->o->command == CMD_HKS) snprintf(r->names[c], NAME_SIZE, "hks_%.14s%s", r->time_names[c], number);
         else if (r->o->command == CMD_SAMPLE) snprintf(r->names[c], NAME_SIZE, "distance");
         else if (pairs)
-            snprintf(r->names[c], NAME_SIZE, "%c_%.14s%s", c % step < step - 1 ? 'K' : 'd', r->time_names[c / step], number);
+            snprintf(r->names[c], NAME_SIZE, "%c_%.14s%s", c % step < step - 1 ? 'K' : 'd', r->time_names[c / step],
+                     number);
         else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->sources ? 'v' : 'f', r->sources ? (long)r->sources[q] : (long)q,
                       r->time_names[c % r->n_times], number);
         r->name_list[c] = r->names[c];

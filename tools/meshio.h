@@ -105,8 +105,8 @@ typedef struct mio_file {
      int  mio_triangulate(const mio_mesh *m, int32_t **tri, int32_t *n_tri, int32_t **face_of_tri, mio_error *e);
               Fans from each face's first corner; tri[3*n_tri]; face_of_tri[n_tri] may be NULL. The caller frees both.
      int  mio_load_table(double **values, int64_t *rows, int32_t *cols, const char *path, int (*stop)(void), mio_error *e);
-              Text (white space or commas, # comments, blank lines; a first line of words without any number, the
-              names of the columns, is skipped) or .npy (floats and integers, 1-d or 2-d).
+              Text (white space or commas, # comments, blank lines; a first line of words without any number,
+              the names of the columns, is skipped) or .npy (floats and integers, 1-d or 2-d).
               values[c*rows + r], all finite, at least one row and one column; the caller frees it. "-" reads standard input.
      int  mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, int64_t **lines, const char *path,
                                int (*stop)(void), mio_error *e);
@@ -284,6 +284,18 @@ static int mio_open(mio_in *in, const char *path, int (*stop)(void), mio_error *
     in->p = in->data;
     in->end = in->data + in->size;
     if (in->size >= 3 && memcmp(in->data, bom, 3) == 0) in->p += 3;        /* a mark that some editors leave */
+    return MIO_OK;
+}
+
+/* What has to be turned into something else before it can be read: says so. Editors and shells of Windows write
+   UTF-16 with a mark in front. */
+static int mio_refuse(const mio_in *in)
+{
+    const unsigned char *const p = (const unsigned char *)in->data;
+    if (in->size < 2) return MIO_OK;
+    if (p[0] == 0x1f && p[1] == 0x8b) return mio_fail(in, 0, "compressed with gzip: please unpack it first");
+    if ((p[0] == 0xff && p[1] == 0xfe) || (p[0] == 0xfe && p[1] == 0xff))
+        return mio_fail(in, 0, "text in UTF-16: please save it as UTF-8 first");
     return MIO_OK;
 }
 
@@ -1534,11 +1546,9 @@ static int mio_load_numbers(mio_in *in, mio_build *b, mio_mesh *m)
 
 static int mio_unknown(const mio_in *in)
 {
-    const unsigned char *const p = (const unsigned char *)in->data;
     mio_in look = *in;
     look.hash = 1;
     if (!mio_space(&look)) return mio_fail(in, 0, in->size ? "no vertices found (nothing but comments)" : "no vertices found (the file is empty)");
-    if (in->size > 2 && p[0] == 0x1f && p[1] == 0x8b) return mio_fail(in, 0, "compressed with gzip: please unpack it first");
     return mio_fail(in, 0, "neither the content nor the name tells a format this reads (OBJ, OFF, PLY, STL, XYZ)");
 }
 
@@ -1551,7 +1561,8 @@ static int mio_load(mio_mesh *m, const char *path, int (*stop)(void), mio_error 
     memset(&b, 0, sizeof b);
     status = mio_open(&in, path, stop, e);
     if (status != MIO_OK) return status;
-    switch (mio_which(&in)) {
+    if (!mio_looks_stl_binary(&in)) status = mio_refuse(&in);         /* whose header can be anything */
+    if (status == MIO_OK) switch (mio_which(&in)) {
     case MIO_IN_OBJ:        status = mio_load_obj(&in, &b, m); break;
     case MIO_IN_OFF:        status = mio_load_off(&in, &b, m); break;
     case MIO_IN_PLY:        status = mio_load_ply(&in, &b, m); break;
@@ -1643,7 +1654,7 @@ static int mio_table_row(mio_in *in, mio_numbers *t)
     return MIO_OK;
 }
 
-/* Is this the line of names that CSV files begin with: words, and no number among them, nan and inf included? */
+/* Is this the line of names that CSV files begin with: words, no number among them, nan and inf included? */
 static int mio_table_names(const mio_in *in)
 {
     const char *p = in->p;
@@ -1793,7 +1804,7 @@ static int mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, i
     if (status != MIO_OK) return status;
     if (in.size >= 6 && memcmp(in.data, "\223NUMPY", 6) == 0) status = mio_table_npy(&in, values, rows, cols);
     else if (mio_has_extension(path, "npy")) status = mio_fail(&in, 0, "not a .npy file: it does not begin as one");
-    else status = mio_table_text(&in, &t, values, rows, cols);
+    else if ((status = mio_refuse(&in)) == MIO_OK) status = mio_table_text(&in, &t, values, rows, cols);
     if (status == MIO_OK && lines) { *lines = t.lines; t.lines = NULL; }
     if (status != MIO_OK) { free(*values); *values = NULL; }
     free(t.values);
@@ -1856,15 +1867,15 @@ static size_t mio_folder_length(const char *path)
     return n;
 }
 
-/* A name beside the target that is not taken, made known to mio_remove_temporary before the file exists. It begins as
-   the target's, but is short enough for every file system: these have room for 255 bytes, some for 143. */
+/* A name beside the target that is not taken, made known to mio_remove_temporary before the file exists. It begins
+   as the target's, but is short enough for every file system: these have room for 255 bytes, some for 143. */
 static int mio_file_name_temporary(mio_file *f)
 {
     const size_t room = strlen(f->path) + 32, most = mio_folder_length(f->path) + 100;
     int keep = (int)(strlen(f->path) < most ? strlen(f->path) : most);
     uint32_t mix = (uint32_t)time(NULL) * 2654435761u ^ (uint32_t)clock() ^ (uint32_t)((uintptr_t)f >> 4);
     int tries;
-    while (strlen(f->path) > most && ((unsigned char)f->path[keep] & 0xc0) == 0x80) keep--;   /* whole letters of UTF-8 */
+    while (strlen(f->path) > most && ((unsigned char)f->path[keep] & 0xc0) == 0x80) keep--;  /* whole letters */
     f->temporary = (char *)mio_alloc(room, 1);
     if (!f->temporary) return MIO_FAILED;
     for (tries = 0; tries < 64; tries++, mix = mix * 1664525u + 1013904223u) {
