@@ -782,7 +782,9 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
  * from i to j and from j to i differ by so much, and what is near a source can be off by a good part of it.
  * sources  [n_sources] at least one; twice counts once
  * Cost     two solves and two passes over the faces; with a report two more passes. Where heat fades below 1e-200 of the source's, some 450 edges away at
- *          t = h^2, a solve more for every so many edges (report->n_stages). Only a call with more sources than any before allocates
+ *          t = h^2, a solve more for every so many edges (report->n_stages), but only of the part of the
+ *          mesh that it reaches. Only that (some 60 bytes a vertex for the time of the call) and more sources
+ *          than in any call before allocate
  * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED, HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, with a report only. One thread at a time for a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const int32_t *sources, int32_t n_sources, double *d, hd_geodesic_report *report);
@@ -15419,6 +15421,7 @@ struct hd_geodesic {
     double *value;               /* [value_size] of phi at the sources, by component, ascending */
     hdi_pair *sorted;            /* [value_size] */
     int32_t value_size;
+    int64_t n_staged;            /* fronts that all stages after the first ones went to, so far */
 };
 
 /* ---- making ---- */
@@ -15737,60 +15740,229 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
 /* u falls by about a factor of e over a distance of sqrt(t), and at t = h^2 it is gone after some 700 edges. Let S be where it could be told, and u' = u
  * beyond S, 0 on it. Then A u' = f, A = L + B/t, is zero but for the rows along the border of S, and there it is known: f_i = sum over j beyond of A_ij u_j for i in
  * S, f_j = -sum over i in S of A_ij u_i beyond. Solved with f scaled to one, the same u goes on, as far again as before. Only directions are wanted,
- * so that the scale is of no interest. A face belongs to the first stage that tells one of its corners. */
+ * so that the scale is of no interest. A face belongs to the first stage that tells one of its corners.
+ * A stage costs what it touches, so that a long strip costs in proportion to its length: the faces around the
+ * rows just told; forward, the fronts on the ways from the border towards the root, as far as they have
+ * something to hand on; backward, those that heat beyond S comes to from above. u' is 0 on S, and fades. */
 
 static const double hdi_geo_faint = 1e-200;      /* of the largest u: below, doubles are soon at their end */
 enum { HDI_GEO_BEYOND = 0, HDI_GEO_EARLIER = 1, HDI_GEO_NOW = 2 };
 
-/* f along the border, into r. Returns the largest. */
-static double hdi_geo_border(const hd_geodesic *g, const double *u, double *r) {
-    double most = 0;
+/* g->x is zero but for the pivots of front, g->r is zero between stages, and so is g->active. */
+typedef struct hdi_geo_far {
+    hd_geodesic *g;
+    int64_t *around_ptr;         /* [n_active + 1] */
+    int32_t *around;             /* [3 n_faces] faces around each row */
+    int32_t *told;               /* [n_active] rows in the order in which they are told, */
+    int32_t n_told, now;         /* those of this stage from now on */
+    int32_t *front, n_fronts;    /* [n_super] */
+    int32_t *end, n_ends;        /* [n_super] where the way up ends, ascending */
+    hdi_pair *open;              /* [n_super] fronts to go to: forward a heap, backward a stack */
+    int32_t n_open;
+} hdi_geo_far;
+
+static hd_status hdi_geo_far_begin(hdi_geo_far *w, hd_geodesic *g, hdi_scope *s) {
+    const size_t n = HDI_CAST(size_t, g->n_active), n_super = HDI_CAST(size_t, g->sym.n_super);
     int32_t f, i;
     int q;
-    memset(r, 0, HDI_CAST(size_t, g->n_active) * sizeof *r);
-    for (f = 0; f < g->n_faces; f++) {
-        const hdi_geo_face *a = g->face + f;
-        const char m0 = g->mark[a->v[0]], m1 = g->mark[a->v[1]], m2 = g->mark[a->v[2]];
-        double weight[3];                        /* of L, of the edge opposite to a corner: -cot/2 */
-        if ((m0 && m1 && m2) || (!m0 && !m1 && !m2)) continue;
-        weight[0] = -a->p / a->q / 2;
-        weight[1] = -(a->l - a->p) / a->q / 2;
-        weight[2] = -(a->q / a->l - a->p / a->l * ((a->l - a->p) / a->q)) / 2;
-        for (q = 0; q < 3; q++) {
-            const int32_t j = a->v[(q + 1) % 3], k = a->v[(q + 2) % 3];
-            const int32_t in = g->mark[j] ? j : k, out = g->mark[j] ? k : j;
-            if (g->mark[in] != HDI_GEO_NOW || g->mark[out] != HDI_GEO_BEYOND) continue;
-            r[in] += weight[q] * u[out];
-            r[out] -= weight[q] * u[in];
+    memset(w, 0, sizeof *w);
+    w->g = g;
+    w->around_ptr = HDI_TAKE_ZERO(s, int64_t, n + 1);
+    w->around = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, g->n_faces));
+    w->told = HDI_TAKE(s, int32_t, n);
+    w->front = HDI_TAKE(s, int32_t, n_super);
+    w->end = HDI_TAKE(s, int32_t, n_super);
+    w->open = HDI_TAKE(s, hdi_pair, n_super);
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0; f < g->n_faces; f++)
+        for (q = 0; q < 3; q++) w->around_ptr[g->face[f].v[q]]++;
+    hdi_prefix_sum(w->around_ptr, g->n_active);
+    for (f = 0; f < g->n_faces; f++)
+        for (q = 0; q < 3; q++) w->around[w->around_ptr[g->face[f].v[q]]++] = f;
+    for (i = g->n_active; i > 0; i--) w->around_ptr[i] = w->around_ptr[i - 1];
+    w->around_ptr[0] = 0;
+    for (w->n_fronts = 0; w->n_fronts < g->sym.n_super; w->n_fronts++) w->front[w->n_fronts] = w->n_fronts;
+    memset(g->mark, HDI_GEO_BEYOND, n);
+    memset(g->active, 0, n_super);
+    memset(g->r, 0, n * sizeof *g->r);
+    return HD_OK;
+}
+
+/* Marks what u tells, of the rows beyond. */
+static void hdi_geo_tell(hdi_geo_far *w, double least) {
+    const hd_geodesic *g = w->g;
+    int32_t k, i;
+    for (; w->now < w->n_told; w->now++) g->mark[w->told[w->now]] = HDI_GEO_EARLIER;
+    for (k = 0; k < w->n_fronts; k++)
+        for (i = g->sym.super[w->front[k]]; i < g->sym.super[w->front[k] + 1]; i++) {
+            if (g->mark[i] != HDI_GEO_BEYOND || !(fabs(g->x[i]) >= least)) continue;
+            g->mark[i] = HDI_GEO_NOW;
+            w->told[w->n_told++] = i;
         }
-    }
-    for (i = 0; i < g->n_active; i++) most = hdi_max(most, fabs(r[i]));
+}
+
+/* The largest |u| beyond. */
+static double hdi_geo_largest(const hdi_geo_far *w) {
+    const hd_geodesic *g = w->g;
+    double most = 0;
+    int32_t k, i;
+    for (k = 0; k < w->n_fronts; k++)
+        for (i = g->sym.super[w->front[k]]; i < g->sym.super[w->front[k] + 1]; i++)
+            if (g->mark[i] == HDI_GEO_BEYOND) most = hdi_max(most, fabs(g->x[i]));
     return most;
 }
 
-/* Marks what u tells, of the rows beyond. Returns how many are left; those of components without a source always are, and have no border. */
-static int32_t hdi_geo_tell(hd_geodesic *g, const double *u, double least) {
-    int32_t i, left = 0;
-    for (i = 0; i < g->n_active; i++) {
-        if (g->mark[i] != HDI_GEO_BEYOND) g->mark[i] = HDI_GEO_EARLIER;
-        else if (fabs(u[i]) >= least) g->mark[i] = HDI_GEO_NOW;
-        else left++;
+/* Whether row i is the first corner of a face that is told now: each face is visited from one corner. */
+static int hdi_geo_visit(const hd_geodesic *g, const hdi_geo_face *a, int32_t i) {
+    int q = 0;
+    while (g->mark[a->v[q]] != HDI_GEO_NOW) q++;
+    return a->v[q] == i;
+}
+
+/* Forward, tasks come before the top: the vectors of its fronts take the room that theirs leave. */
+static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
+    const hdi_symbolic *s = &w->g->sym;
+    const uint64_t place = HDI_CAST(uint64_t, v) + (s->task_of[v] < 0 ? HDI_CAST(uint64_t, s->n_super) : 0);
+    int64_t i = w->n_open, up;
+    hdi_pair x;
+    if (w->g->active[v]) return;
+    w->g->active[v] = 1;
+    w->n_open++;
+    x.key = ~place;
+    x.id = v;
+    for (; i > 0 && hdi_pair_less(w->open + (up = (i - 1) / 2), &x); i = up) w->open[i] = w->open[up];
+    w->open[i] = x;
+}
+
+/* f along the border of what is told, into g->r, with its fronts opened. */
+static void hdi_geo_border(hdi_geo_far *w) {
+    const hd_geodesic *g = w->g;
+    int64_t p;
+    int32_t n;
+    int q;
+    for (n = w->now; n < w->n_told; n++)
+        for (p = w->around_ptr[w->told[n]]; p < w->around_ptr[w->told[n] + 1]; p++) {
+            const hdi_geo_face *a = g->face + w->around[p];
+            double weight[3];                    /* of L, of the edge opposite to a corner: -cot/2 */
+            if (g->mark[a->v[0]] && g->mark[a->v[1]] && g->mark[a->v[2]]) continue;
+            if (!hdi_geo_visit(g, a, w->told[n])) continue;
+            weight[0] = -a->p / a->q / 2;
+            weight[1] = -(a->l - a->p) / a->q / 2;
+            weight[2] = -(a->q / a->l - a->p / a->l * ((a->l - a->p) / a->q)) / 2;
+            for (q = 0; q < 3; q++) {
+                const int32_t j = a->v[(q + 1) % 3], k = a->v[(q + 2) % 3];
+                const int32_t in = g->mark[j] ? j : k, out = g->mark[j] ? k : j;
+                if (g->mark[in] != HDI_GEO_NOW || g->mark[out] != HDI_GEO_BEYOND) continue;
+                g->r[in] += weight[q] * g->x[out];
+                g->r[out] -= weight[q] * g->x[in];
+                hdi_geo_open(w, g->sym.super_of[in]);
+                hdi_geo_open(w, g->sym.super_of[out]);
+            }
+        }
+}
+
+/* The largest |f|, which then becomes 1. 0: there is no border, or none with numbers to compute with. */
+static int hdi_geo_scale(const hdi_geo_far *w) {
+    const hd_geodesic *g = w->g;
+    double most = 0;
+    const int32_t *super = g->sym.super;
+    int32_t k, i;
+    for (k = 0; k < w->n_open; k++)
+        for (i = super[w->open[k].id]; i < super[w->open[k].id + 1]; i++) most = hdi_max(most, fabs(g->r[i]));
+    if (!(most > DBL_MIN)) return 0;
+    for (k = 0; k < w->n_open; k++)
+        for (i = super[w->open[k].id]; i < super[w->open[k].id + 1]; i++) g->r[i] /= most;
+    return 1;
+}
+
+/* From the open fronts upwards, as long as a front has something to hand on. */
+static void hdi_geo_forward(hdi_geo_far *w, const hdi_sweep *z) {
+    const hdi_symbolic *s = &w->g->sym;
+    w->n_ends = 0;
+    while (w->n_open > 0) {
+        const int32_t v = HDI_CAST(int32_t, w->open[0].id);
+        const double *up = z->vec + s->vector[v];
+        const int64_t below = hdi_front_below(s, v);
+        int64_t i = 0;
+        w->open[0] = w->open[--w->n_open];
+        if (w->n_open > 0) hdi_sift_down(w->open, 0, w->n_open);
+        hdi_sweep_front(z, v, 0);
+        while (i < below && !(fabs(up[i]) >= DBL_MIN)) i++;
+        if (i < below) hdi_geo_open(w, s->parent[v]);
+        else w->end[w->n_ends++] = v;
     }
-    return left;
+}
+
+/* Whether a front that nothing came to forward has heat: from its rows above, of those beyond. */
+static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
+    int64_t p;
+    for (p = g->sym.row_ptr[v]; p < g->sym.row_ptr[v + 1]; p++)
+        if (g->mark[g->sym.row[p]] == HDI_GEO_BEYOND && fabs(g->x[g->sym.row[p]]) >= DBL_MIN) return 1;
+    return 0;
+}
+
+/* From the ends of the way up down again, the highest first: an end with another one above it may have got
+ * heat from there, by fronts that nothing came to forward. */
+static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
+    const hdi_symbolic *s = &w->g->sym;
+    int32_t k;
+    w->n_fronts = 0;
+    while (w->n_ends > 0) {
+        const int32_t end = w->end[--w->n_ends];
+        if (s->parent[end] >= 0 && w->g->active[s->parent[end]]) continue;   /* comes with it, or did */
+        w->open[w->n_open++].id = end;
+        while (w->n_open > 0) {
+            const int32_t v = HDI_CAST(int32_t, w->open[--w->n_open].id);
+            hdi_sweep_front(z, v, 0);
+            w->g->active[v] = 1;
+            w->front[w->n_fronts++] = v;
+            for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+                const int32_t kid = s->kid[k];
+                if (w->g->active[kid] || hdi_geo_warm(w->g, kid)) w->open[w->n_open++].id = kid;
+            }
+        }
+    }
+}
+
+/* g->x = A^-1 f, f in g->r, where it matters. What was in g->x goes. */
+static void hdi_geo_stage(hdi_geo_far *w) {
+    hd_geodesic *g = w->g;
+    const int32_t *super = g->sym.super;
+    double *swap = g->x;
+    hdi_sweep z;
+    int32_t k;
+    for (k = 0; k < w->n_fronts; k++) {
+        const int32_t v = w->front[k];
+        memset(g->x + super[v], 0, HDI_CAST(size_t, super[v + 1] - super[v]) * sizeof *g->x);
+    }
+    g->x = g->r;
+    g->r = swap;
+    z = hdi_sweep_open(&g->heat, 1, g->x, g->work, 1);
+    z.active = g->active;
+    hdi_geo_forward(w, &z);
+    z.backward = 1;
+    hdi_geo_backward(w, &z);
+    for (k = 0; k < w->n_fronts; k++) g->active[w->front[k]] = 0;
+    g->n_staged += w->n_fronts;
 }
 
 /* div X of the faces of which nothing was told before this stage. */
-static void hdi_geo_divergence_beyond(const hd_geodesic *g, const double *u, double least, double *b) {
-    int32_t f;
-    for (f = 0; f < g->n_faces; f++) {
-        const hdi_geo_face *a = g->face + f;
-        double d[3];
-        if (g->mark[a->v[0]] || g->mark[a->v[1]] || g->mark[a->v[2]]) continue;
-        (void)hdi_geo_flow(a, u[a->v[0]], u[a->v[1]], u[a->v[2]], least, d);
-        b[a->v[0]] -= d[1] + d[2];
-        b[a->v[1]] += d[1];
-        b[a->v[2]] += d[2];
-    }
+static void hdi_geo_divergence_now(const hdi_geo_far *w, double least) {
+    const hd_geodesic *g = w->g;
+    int32_t n;
+    int64_t p;
+    for (n = w->now; n < w->n_told; n++)
+        for (p = w->around_ptr[w->told[n]]; p < w->around_ptr[w->told[n] + 1]; p++) {
+            const hdi_geo_face *a = g->face + w->around[p];
+            const int32_t i = a->v[0], j = a->v[1], k = a->v[2];
+            double d[3];
+            if (g->mark[i] == HDI_GEO_EARLIER || g->mark[j] == HDI_GEO_EARLIER) continue;
+            if (g->mark[k] == HDI_GEO_EARLIER || !hdi_geo_visit(g, a, w->told[n])) continue;
+            (void)hdi_geo_flow(a, g->x[i], g->x[j], g->x[k], least, d);
+            g->b[i] -= d[1] + d[2];
+            g->b[j] += d[1];
+            g->b[k] += d[2];
+        }
 }
 
 static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, double *x, const char *active) {
@@ -15801,25 +15973,21 @@ static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, 
 
 /* Adds to b what lies beyond u >= least, stage by stage. u is in g->x. Where heat ends for good (no more of the component, weights of zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
-    memset(g->mark, HDI_GEO_BEYOND, HDI_CAST(size_t, g->n_active));
-    while (hdi_geo_tell(g, g->x, least) > 0) {
-        const double scale = hdi_geo_border(g, g->x, g->r);
-        double most = 0, *swap = g->x;
-        int32_t i;
-        if (!(scale > DBL_MIN)) return HD_OK;
-        if (hdi_progress(g->ctx, "solve", 0.5, e) < 0) return e->status;
-        for (i = 0; i < g->n_active; i++) g->r[i] /= scale;
-        g->x = g->r;
-        g->r = swap;
-        hdi_geo_sweep(g, &g->heat, 1, g->x, NULL);
+    hdi_scope s = hdi_scope_begin(g->ctx, e);
+    hdi_geo_far w;
+    if (hdi_geo_far_begin(&w, g, &s) < 0) return hdi_scope_end(&s);
+    hdi_geo_tell(&w, least);
+    while (w.n_told < g->n_active) {
+        hdi_geo_border(&w);
+        if (!hdi_geo_scale(&w) || hdi_progress(g->ctx, "solve", 0.5, e) < 0) break;
+        hdi_geo_stage(&w);
         ++*n_stages;
-        for (i = 0; i < g->n_active; i++)
-            if (g->mark[i] == HDI_GEO_BEYOND) most = hdi_max(most, fabs(g->x[i]));
-        least = most * hdi_geo_faint;
-        if (!(least > DBL_MIN)) return HD_OK;
-        hdi_geo_divergence_beyond(g, g->x, least, g->b);
+        least = hdi_geo_largest(&w) * hdi_geo_faint;
+        if (!(least > DBL_MIN)) break;
+        hdi_geo_tell(&w, least);
+        hdi_geo_divergence_now(&w, least);
     }
-    return HD_OK;
+    return hdi_scope_end(&s);
 }
 
 /* ---- queries ---- */

@@ -161,6 +161,15 @@ def numbers(text, separator=None):
     return [[float(x) for x in line.split(separator)] for line in text.splitlines() if line.strip() and not line.startswith("#")]
 
 
+def csv(text):
+    """The names and the rows of a .csv."""
+    names, rows = text.split("\n", 1)
+    rows = numbers(rows, ",")
+    names = names.split(",")
+    assert all(len(r) == len(names) for r in rows) and len(set(names)) == len(names), names
+    return names, rows
+
+
 def read_npy(data):
     assert data[:6] == b"\x93NUMPY", data[:6]
     size = struct.unpack("<H", data[8:10])[0] if data[6] == 1 else struct.unpack("<I", data[8:12])[0]
@@ -495,6 +504,27 @@ class Failures(Case):
             p = subprocess.run([TOOL, "kernel", self.small, "--source", "0", "--t", "1", "--quiet"], stdout=full, stderr=subprocess.PIPE)
         self.assertEqual(p.returncode, 1)
         self.assertEqual(p.stderr.count(b"heatdiff: error: "), 1)
+
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_file_size_limit(self):
+        """A limit of the file's size is told as a full disk is, and leaves nothing."""
+        import resource
+        before = sorted(os.listdir(self.folder))
+        for out in ("limit.txt", "limit.csv", "limit.npy", "limit.ply", "limit.vtu", "limit.png"):
+            run = [TOOL, "kernel", self.patch, "--source", "0", "--t", "1h2,2h2", "--quiet", "-o", self.path(out)]
+            p = subprocess.run(run, stderr=subprocess.PIPE,
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+            self.assertEqual(p.returncode, 1, p.stderr)
+            self.assertRegex(p.stderr.decode(), r"^heatdiff: error: .*limit\....: cannot write: .*\n$")
+            self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    @unittest.skipUnless(POSIX, "names end elsewhere")
+    def test_long_names(self):
+        for e in ("txt", "csv", "npy", "ply", "obj", "vtu", "png"):
+            for size in (250, 255):
+                name = self.path("x" * (size - len(e) - 1) + "." + e)
+                self.good("kernel", self.patch, "--source", 0, "--t", "1h2", "-o", name)
+                os.remove(name)
 
     def test_source_beyond_the_mesh(self):
         for s in (12, 10 ** 7, 10 ** 18, 10 ** 30, "0,12"):
@@ -1209,7 +1239,7 @@ class Distances(Case):
                 with open(out, "rb") as f:
                     data = f.read()
                 if e in ("txt", "csv"):
-                    self.assertEqual(numbers(data.decode(), "," if e == "csv" else None), want)
+                    self.assertEqual(csv(data.decode())[1] if e == "csv" else numbers(data.decode()), want)
                 elif e == "npy":
                     self.assertEqual(read_npy(data), want)
                 elif e == "vtu":
@@ -1228,7 +1258,8 @@ class Distances(Case):
                 self.good(*run, self.patch, "-o", out)
                 with open(out, "rb") as f:
                     data = f.read()
-                self.assertEqual(read_npy(data) if e == "npy" else numbers(data.decode(), "," if e == "csv" else None), want)
+                got = read_npy(data) if e == "npy" else csv(data.decode())[1] if e == "csv" else numbers(data.decode())
+                self.assertEqual(got, want)
         binary = self.file("pairs.npy", npy_bytes([[1.0, 2.0], [4.0, 4.0]]))
         self.assertEqual(self.field("pairs", self.patch, "--input", binary, "--t", "1h2"),
                          self.field("pairs", self.patch, "--input", "-", "--t", "1h2", stdin=b"# two\n1, 2\n\n4 4\n"))
@@ -1358,8 +1389,49 @@ class Formats(Case):
 
     def test_text(self):
         self.assertEqual(numbers(self.write("k.txt").decode()), self.want)
-        self.assertEqual(numbers(self.write("k.csv").decode(), ","), self.want)
+        names = ["v8_1h2", "v8_5h2", "v90_1h2", "v90_5h2"]
+        self.assertEqual(csv(self.write("k.csv").decode()), (names, self.want))
+        self.assertEqual(numbers(self.write("k.csv", "--no-header").decode(), ","), self.want)
         self.assertEqual(numbers(self.write("K.TXT").decode()), self.want)
+
+    def test_names_of_columns(self):
+        """The first line of .csv says what the command's help says, and leaves the text alone."""
+        two = self.file("two.txt", "1 2\n" * 100)
+        pairs = self.file("p.txt", "3 8\n8 3\n")
+        for run, names in (
+                (["kernel", "--source", "3,8", "--t", "1,2"], "v3_1,v3_2,v8_1,v8_2"),
+                (["kernel", "--source", "3,3", "--t", "1"], "v3_1_c0,v3_1_c1"),
+                (["distance", "--source", "3,8", "--t", "1,2"], "v3_1,v3_2,v8_1,v8_2"),
+                (["distance", "--source", "3", "--definition", "commute"], "v3_commute"),
+                (["diffuse", "--input", two, "--t", "1,2"], "f0_1,f0_2,f1_1,f1_2"),
+                (["geodesic", "--source", "3,8"], "v3_1h2,v8_1h2"),
+                (["hks", "--t", "1,2"], "hks_1,hks_2"),
+                (["pairs", "--input", pairs, "--t", "1,2"], "i,j,K_1,d_1,K_2,d_2"),
+                (["pairs", "--input", pairs, "--definition", "commute"], "i,j,d_commute"),
+                (["sample", "--count", 3, "--t", "1"], "vertex,distance")):
+            out = self.path("names.csv")
+            self.assertEqual(self.good(*run, self.patch, "-o", out).stdout, b"")
+            with open(out) as f:
+                text = f.read()
+            self.assertEqual(csv(text), (names.split(","), self.field(*run, self.patch)))
+            self.good(*run, self.patch, "--no-header", "-o", out)
+            with open(out) as f:
+                self.assertEqual(f.read(), text.split("\n", 1)[1])
+            if "3,3" in run or "commute" in run:
+                continue
+            words = self.good(run[0], "--help").stdout.decode().replace(",", " ").replace(".", " ").split()
+            for name in names.split(","):
+                self.assertIn(name, words, run)
+
+    def test_help_lists_inputs(self):
+        for command in ([], ["kernel"], ["info"], ["render"]):
+            text = self.good(*command, "--help").stdout.decode()
+            for name in ("OBJ", "OFF", "PLY", "STL", "XYZ"):
+                self.assertIn(name, text)
+        for command in COMMANDS:
+            self.assertIn("\nOutput\n", self.good(command, "--help").stdout.decode())
+            if command not in ("info", "render", "demo"):
+                self.assertIn("--no-header", self.good(command, "--help").stdout.decode())
 
     def test_npy(self):
         self.assertEqual(read_npy(self.write("k.npy")), self.want)

@@ -340,6 +340,57 @@ static void geo_long(void) {
     shape_free(&s);
 }
 
+/* Stages cost what they touch: together they go to each front a few times, however long the strip and however
+ * high the tree. */
+static void geo_strip(hd_ordering ordering) {
+    shape s = shape_grid(10001, 2, 0.2);
+    const int32_t source = 3000;
+    double *d = DENSE_NEW(double, s.n), worst = 0, times;
+    hd_geodesic *g = NULL;
+    hd_geodesic_opts o;
+    hd_geodesic_report rep;
+    int32_t i;
+    memset(&o, 0, sizeof o);
+    o.ordering = ordering;
+    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, &source, 1, d, &rep) == HD_OK && rep.n_stages >= 12);
+    times = (double)g->n_staged / g->sym.n_super;
+    CHECK_MSG(times > 0.5 && times < 6, "%d stages go to %.1f times the fronts", (int)rep.n_stages, times);
+    for (i = 0; i < 10001; i++) worst = fmax(worst, fabs(d[i] - fabs(s.xyz[3 * i] - s.xyz[3 * source])));
+    CHECK_MSG(worst < 0.01, "off by %g", worst);
+    hd_geodesic_free(g);
+    free(d);
+    shape_free(&s);
+}
+
+/* What a stage leaves out is nothing: the same in orders whose trees have nothing in common. */
+static void geo_stages_ordered(shape s, int32_t source, double t) {
+    double *want = DENSE_NEW(double, s.n), *d = DENSE_NEW(double, s.n);
+    int32_t *perm = DENSE_NEW(int32_t, s.n), i;
+    hd_geodesic *g = NULL;
+    hd_geodesic_opts o;
+    hd_geodesic_report rep;
+    memset(&o, 0, sizeof o);
+    o.t = t;
+    o.perm = perm;
+    for (i = 0; i < s.n; i++) perm[i] = (source + i) % s.n;
+    for (i = HD_ORDERING_MINIMUM_DEGREE; i <= HD_ORDERING_OWN; i++) {
+        o.ordering = (hd_ordering)i;
+        CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, &source, 1, i == HD_ORDERING_MINIMUM_DEGREE ? want : d, &rep) == HD_OK);
+        CHECK_MSG(rep.n_stages > 3, "%d stages", (int)rep.n_stages);
+        if (i > HD_ORDERING_MINIMUM_DEGREE) {
+            const double off = geo_difference(d, want, s.n) / geo_largest(want, s.n);
+            CHECK_MSG(off < 1e-10, "order %d, t %g: off by %g", (int)i, t, off);
+        }
+        hd_geodesic_free(g);
+    }
+    free(perm);
+    free(want);
+    free(d);
+    shape_free(&s);
+}
+
 /* ---- properties ---- */
 
 static void geo_moved(void) {
@@ -773,6 +824,12 @@ static void test_geodesic(void) {
     geo_refine(0, plane, 5);
     geo_refine(1, ball, 4);
     geo_long();
+    geo_strip(HD_ORDERING_MINIMUM_DEGREE);
+    geo_strip(HD_ORDERING_NESTED_DISSECTION);
+    geo_stages_ordered(shape_grid(130, 130, 0), 8000, 1e-12);
+    geo_stages_ordered(shape_grid(900, 6, 0.4), 5, 1e-8);
+    geo_stages_ordered(shape_bumpy(5, 2), 0, 1e-14);
+    geo_stages_ordered(shape_cylinder(620, 2, 0.16, 1 / 620.0), 0, 2.6e-8);   /* ends above others */
     geo_moved();
     geo_renumbered();
     geo_symmetric();

@@ -278,6 +278,9 @@ static void tmio_test_xyz(void)
     tmio_bad("x.xyz", "C 0 0 0\n", "x.xyz:1", "'C'");
     tmio_bad("x.dat", "what is this\n", "x.dat", "OBJ, OFF, PLY, STL, XYZ");
     tmio_bad("x.dat", "\x1f\x8b\x08", "x.dat", "gzip");
+    tmio_bad("x.obj", "\x1f\x8b\x08", "x.obj", "gzip");
+    tmio_bad_bytes("x.obj", "\xff\xfev\0 \0000\0 \0001\0 \0002\0\n", 17, "x.obj", "UTF-16");
+    tmio_bad_bytes("x.off", "\xfe\xff\0O\0F\0F", 8, "x.off", "UTF-16");
 }
 
 /* ---- PLY ---- */
@@ -520,7 +523,10 @@ static void tmio_make_npy(tmio_bytes *t, const char *descr, const char *order, c
 static void tmio_test_table_text(void)
 {
     const char *const text = "# c\n\n1 2.5\r\n\t3 ,  -4e1 # row\n 5,6\n";
+    static const char *const named[] = {"a,b\n3,4\n", "\n# c\n_x 10h2\r\n3 4\r\n", "\"a, b\",\"c\"\"d\"\n3,4",
+                                        "nano,info\n3,4", "\xef\xbb\xbfv1, v2\n3, 4\n"};
     double *v = tmio_table("a.txt", text, strlen(text), 3, 2);
+    int i;
     int64_t r, *lines;
     int32_t c;
     mio_error e;
@@ -533,6 +539,16 @@ static void tmio_test_table_text(void)
     free(v);
     free(lines);
     remove(tmio_path("c.txt"));
+    for (i = 0; i < (int)(sizeof named / sizeof *named); i++) {     /* a first line of names is no row */
+        v = tmio_table("n.csv", named[i], strlen(named[i]), 1, 2);
+        CHECK_MSG(v && v[0] == 3 && v[1] == 4, "%s", named[i]);
+        free(v);
+    }
+    tmio_bad_table("x.csv", "a 1\n2 3\n", 8, "x.csv:1", "'a'");
+    tmio_bad_table("x.csv", "nan,b\n2,3\n", 10, "x.csv:1", "'nan'");
+    tmio_bad_table("x.csv", "a,-Inf\n2,3\n", 11, "x.csv:1", "'a'");
+    tmio_bad_table("x.csv", "a,b\nc,d\n", 8, "x.csv:2", "'c'");
+    tmio_bad_table("x.csv", "a,b\n", 4, "x.csv", "no numbers");
     tmio_bad_table("x.txt", "1 2\n3\n", 6, "x.txt:2", "1 columns, but 2");
     tmio_bad_table("x.txt", "1 2\n3 zwei\n", 11, "x.txt:2", "'zwei'");
     tmio_bad_table("x.txt", "1 2\n3 nan\n", 10, "x.txt:2", "'nan'");
@@ -541,6 +557,8 @@ static void tmio_test_table_text(void)
     tmio_bad_table("x.csv", "1,2,\n", 5, "x.csv:1", "comma");
     tmio_bad_table("x.csv", "1,2\n,3\n", 7, "x.csv:2", "comma");
     tmio_bad_table("x.csv", "1;2\n", 4, "x.csv:1", "';'");
+    tmio_bad_table("x.csv", "\xff\xfe" "1\0,\0002\0\n", 9, "x.csv", "UTF-16");
+    tmio_bad_table("x.txt", "\x1f\x8b\x08", 3, "x.txt", "gzip");
     tmio_bad_table("x.txt", "", 0, "x.txt", "no numbers");
     tmio_bad_table("x.txt", "# c\n\n", 5, "x.txt", "no numbers");
     CHECK(mio_load_table(&v, &r, &c, tmio_path("not-there.txt"), NULL, &e) == MIO_FAILED && strstr(e.text, "not-there.txt: cannot open"));
@@ -676,6 +694,54 @@ static void tmio_test_write_tables(void)
     CHECK(memcmp(buf, "\x93NUMPY\1\0\x76\0{'descr': '<f8', 'fortran_order': False, 'shape': (6, 4), } ", 70) == 0 && buf[127] == '\n');
     CHECK(mio_format_of("a.txt") == MIO_TXT && mio_format_of("b/a.VTU") == MIO_VTU && mio_format_of("a.png") == MIO_UNKNOWN && mio_format_of("a.d/txt") == MIO_UNKNOWN);
     CHECK(mio_has_extension("x.PnG", "png") && !mio_has_extension("png", "png") && !mio_has_extension("x.pngs", "png") && !mio_has_extension(NULL, "png"));
+}
+
+/* CSV alone begins with names, if there are any and they are wanted; and is read without them. */
+static void tmio_test_csv_names(void)
+{
+    static tmio_sample s;
+    static char buf[4000];
+    static const char *const id_names[2] = {"i", "j"};
+    static const char *const begin[] = {"\"t < 1 & \"\"two\"\"\",second\n",
+                                        "i,j,\"t < 1 & \"\"two\"\"\",second\n0,0,", "0,0,", "0 0 "};
+    int k;
+    tmio_sample_make(&s);
+    s.o.names = s.names;
+    s.o.ids = s.ids;
+    s.o.id_names = id_names;
+    for (k = 0; k < 4; k++) {
+        const char *const name = k < 3 ? "o.csv" : "o.txt";
+        size_t n;
+        s.o.n_ids = k > 0 ? 2 : 0;
+        s.o.no_header = k == 2;
+        n = tmio_written(&s, name, buf, sizeof buf);
+        CHECK_MSG(strncmp(buf, begin[k], strlen(begin[k])) == 0, "%s", buf);
+        free(tmio_table(name, buf, n, 6, s.o.n_ids + 2));
+    }
+}
+
+/* The longest names that file systems have, of letters of two bytes at every place. */
+static void tmio_test_long_names(void)
+{
+    static tmio_sample s;
+    char name[256], back[64];
+    int k, n;
+    mio_error e;
+    tmio_sample_make(&s);
+    for (k = 0; k < 12; k++) {
+        const int size = k < 8 ? 248 + k : 96 + k;      /* with its extension */
+        for (n = 0; n < k % 2; n++) name[n] = 'x';
+        for (; n + 6 <= size; n += 2) memcpy(name + n, "\303\251", 2);
+        for (; n + 4 < size; n++) name[n] = 'y';
+        memcpy(name + n, ".txt", 5);
+        e.text[0] = 0;
+        CHECK_MSG(mio_write(tmio_path(name), MIO_TXT, &s.m, &s.o, &e) == 0, "%d bytes: %s", size, e.text);
+        CHECK(mio_temporary_path[0] && !fopen(mio_temporary_path, "rb"));
+        n = (int)(strstr(mio_temporary_path, ".part") - mio_temporary_path) - 10;
+        CHECK((mio_temporary_path[n] & 0x80) == 0 || (unsigned char)mio_temporary_path[n] == 0xa9);  /* whole letters */
+        CHECK(tmio_get(tmio_path(name), back, sizeof back) > 8);
+        remove(tmio_path(name));
+    }
 }
 
 static int tmio_same_mesh(const mio_mesh *a, const mio_mesh *b)
@@ -996,6 +1062,8 @@ static void test_meshio(void)
     tmio_test_write_meshes();
     tmio_test_wide_ply();
     tmio_test_vtu();
+    tmio_test_csv_names();
+    tmio_test_long_names();
     tmio_test_failures();
     tmio_test_stop();
     tmio_test_triangulate();

@@ -271,6 +271,10 @@ static void tpic_test_png_file(void)
     CHECK(f == NULL);
     if (f) fclose(f);
     remove(path);
+    n = (size_t)snprintf(path, sizeof path, "%s/", test_tmp_dir());
+    memset(path + n, 'x', 255);                         /* as long as names can be */
+    memcpy(path + n + 251, ".png", 5);
+    CHECK(pic_png_write(path, rgb, 2, 2) == PIC_OK && remove(path) == 0);
     snprintf(path, sizeof path, "%s/no such folder/x.png", test_tmp_dir());
     CHECK(pic_png_write(path, rgb, 2, 2) == PIC_ERR_FILE);
     CHECK(pic_png_write(path, rgb, 0, 2) == PIC_ERR_ARGUMENT);

@@ -236,6 +236,9 @@ static void catch_interrupts(void)
     action.sa_handler = on_interrupt;
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+#ifdef SIGXFSZ
+    signal(SIGXFSZ, SIG_IGN);        /* beyond the limit of a file's size writing fails, as on a full disk */
+#endif
 #else
     signal(SIGINT, on_interrupt);
 #endif
@@ -478,7 +481,7 @@ typedef struct options {
     double tol, lambda, weight_cut;
     uint64_t memory_limit;
     int intrinsic_delaunay, tufted;
-    int json, quiet, help, version;
+    int json, quiet, help, version, no_header;
     int colormap;                    /* pictures */
     int log_scale, has_range, has_view, has_isolines;
     long isolines, column, width, height;
@@ -782,6 +785,8 @@ static const option_def OPTIONS[] = {
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n- or nothing: standard output, as text" },
+    { "no-header", 0, CMD_SOLVES, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
+      "of .csv: no first line with the names of the columns" },
     { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",
       "the .png, or - for standard output" },
     { "output", 'o', CMD_DEMO, 0, parse_text, AT(output), NULL, 0, 0, "FOLDER", "the name of a folder",
@@ -808,19 +813,52 @@ enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
 
 /* ---- commands ---- */
 
-typedef struct command_def { const char *name; unsigned bit; const char *help, *usage; } command_def;
+typedef struct command_def {
+    const char *name;
+    unsigned bit;
+    const char *help, *usage;
+    const char *output;              /* the columns of the output, lines of the help */
+} command_def;
+
+#define VERTEX_ROWS "A row for each vertex, in the order of the file, vertices in no face included.\n"
+#define SOURCE_COLUMNS "A column for each source and time, sources outermost: --source 3,8 --t 1,2 gives\n" \
+                       "v3_1, v3_2, v8_1, v8_2, as .csv and .vtu name them. Row i of vV_T is "
 
 static const command_def COMMANDS[] = {
-    { "info", CMD_INFO, "counts, area, edge length and defects of a mesh", "[OPTIONS] MESH" },
-    { "kernel", CMD_KERNEL, "columns of the heat kernel: heat from single vertices", "--source V[,V..] --t T[,T..] [OPTIONS] MESH" },
-    { "diffuse", CMD_DIFFUSE, "diffuses your own fields", "--input F --t T[,T..] [OPTIONS] MESH" },
-    { "geodesic", CMD_GEODESIC, "distances along the surface, by the heat method", "--source V[,V..] [--t T] [OPTIONS] MESH" },
-    { "distance", CMD_DISTANCE, "diffusion distances from single vertices to all", "--source V[,V..] --t T[,T..] [OPTIONS] MESH" },
-    { "pairs", CMD_PAIRS, "kernel and diffusion distance of pairs of vertices", "--input P --t T[,T..] [OPTIONS] MESH" },
-    { "hks", CMD_HKS, "heat kernel signature of every vertex", "--t T[,T..] [OPTIONS] MESH" },
-    { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH" },
-    { "render", CMD_RENDER, "a picture of a field on the mesh", "--input F [--input F..] -o PICTURE.png [OPTIONS] MESH [MESH..]" },
-    { "demo", CMD_DEMO, "all of it on a shape made in memory: start here", "[-o FOLDER] [OPTIONS]" },
+    { "info", CMD_INFO, "counts, area, edge length and defects of a mesh", "[OPTIONS] MESH",
+      "A report on standard output: a name and a value on each line, or with --json one object." },
+    { "kernel", CMD_KERNEL, "columns of the heat kernel: heat from single vertices",
+      "--source V[,V..] --t T[,T..] [OPTIONS] MESH",
+      VERTEX_ROWS SOURCE_COLUMNS "K_T(i,V), the\n"
+      "heat at vertex i after the time T from 1 at vertex V (--kernel symmetric: k_T(i,V))." },
+    { "diffuse", CMD_DIFFUSE, "diffuses your own fields", "--input F --t T[,T..] [OPTIONS] MESH",
+      VERTEX_ROWS "A column for each field (column of F) and time, fields outermost: two fields with\n"
+      "--t 1,2 give f0_1, f0_2, f1_1, f1_2, as .csv and .vtu name them. Row i of fC_T is K_T f at\n"
+      "vertex i, f column C of F, counted from 0." },
+    { "geodesic", CMD_GEODESIC, "distances along the surface, by the heat method",
+      "--source V[,V..] [--t T] [OPTIONS] MESH",
+      VERTEX_ROWS "A column for each source, in the order of --source: v3_1h2, v8_1h2, as .csv and .vtu\n"
+      "name them. Row i of vV_T is the distance of vertex i from vertex V, inf where there is no\nway." },
+    { "distance", CMD_DISTANCE, "diffusion distances from single vertices to all",
+      "--source V[,V..] --t T[,T..] [OPTIONS] MESH",
+      VERTEX_ROWS SOURCE_COLUMNS "the\ndistance of vertex i from vertex V at the time T." },
+    { "pairs", CMD_PAIRS, "kernel and diffusion distance of pairs of vertices",
+      "--input P --t T[,T..] [OPTIONS] MESH",
+      "A row for each pair, in the order of P: i, j, then for each time the kernel K_T(i,j) (--kernel\n"
+      "symmetric: k_T(i,j)) and the distance. --t 1,2 gives i, j, K_1, d_1, K_2, d_2, as .csv names\n"
+      "them. Without times (commute, biharmonic): i, j and the distance." },
+    { "hks", CMD_HKS, "heat kernel signature of every vertex", "--t T[,T..] [OPTIONS] MESH",
+      VERTEX_ROWS "A column for each time, in the order of --t: hks_1, hks_2, as .csv and .vtu name them.\n"
+      "Row i of hks_T is k_T(i,i) (--kernel operator: K_T(i,i))." },
+    { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH",
+      "A row for each point, in the order in which they were chosen: vertex, its id counted from 0,\n"
+      "and distance, to the nearest of those before it (0 in the first row)." },
+    { "render", CMD_RENDER, "a picture of a field on the mesh",
+      "--input F [--input F..] -o PICTURE.png [OPTIONS] MESH [MESH..]",
+      "A PNG picture, without numbers." },
+    { "demo", CMD_DEMO, "all of it on a shape made in memory: start here", "[-o FOLDER] [OPTIONS]",
+      "Pictures and meshes with fields in the folder, and a text on standard output that tells\n"
+      "what each file is." },
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
 
@@ -1068,6 +1106,9 @@ static void free_options(options *o)
 
 /* ---- help ---- */
 
+static const char INPUTS[] =
+    "Meshes: OBJ, OFF, PLY, STL; points: the same without faces, XYZ. - reads standard input.\n";
+
 static void print_version(void)
 {
     printf("heatdiff %d.%d.%d\n", HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH);
@@ -1091,9 +1132,10 @@ static void print_help(void)
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
            "  heatdiff render --input a.npy --input b.npy a.obj b.obj -o pair.png\n"
-           "\nMeshes: OBJ, OFF, PLY, STL; - reads standard input. Vertices are counted from 0.\n"
+           "\n%sVertices are counted from 0.\n"
            "Results: .txt .csv .npy .ply .obj .vtu .png by the extension of -o; without -o text on standard output.\n"
-           "Exit codes: 0 done, 1 input or computation failed, 2 the command line is wrong, 130 interrupted.\n");
+           "Exit codes: 0 done, 1 input or computation failed, 2 the command line is wrong, "
+           "130 interrupted.\n", INPUTS);
 }
 
 static void print_option(const option_def *def)
@@ -1111,10 +1153,24 @@ static void print_option(const option_def *def)
     }
 }
 
+static void print_indented(const char *text)
+{
+    while (*text) {
+        const int n = (int)strcspn(text, "\n");
+        printf("  %.*s\n", n, text);
+        text += n + (text[n] != 0);
+    }
+}
+
 static void print_command_help(const command_def *command)
 {
     int i;
-    printf("heatdiff %s - %s\n\nUse:  heatdiff %s %s\n\nOptions\n", command->name, command->help, command->name, command->usage);
+    printf("heatdiff %s - %s\n\n", command->name, command->help);
+    printf("Use:  heatdiff %s %s\n\n", command->name, command->usage);
+    if (command->bit != CMD_DEMO) printf("%s\n", INPUTS);
+    printf("Output\n");
+    print_indented(command->output);
+    printf("\nOptions\n");
     for (i = 0; i < N_OPTIONS; i++)
         if (OPTIONS[i].commands & command->bit) print_option(&OPTIONS[i]);
 }
@@ -2390,6 +2446,7 @@ static int write_table(const char *path, int kind, const run *r, const result *r
     out.cols = (int32_t)res->n_columns;
     out.values = res->values;
     out.names = res->names;
+    out.no_header = r->o->no_header;
     status = mio_write(path, kind, &r->mesh.file, &out, &e);
     free(rgb);
     return status < 0 ? fail_file(status, &e) : DONE;
@@ -2422,10 +2479,11 @@ static int has_twice(const run *r)
     return 0;
 }
 
-/* "v8_10h2", "f0_10h2" or "hks_10h2": the source or the field, then the time. With the same of them twice also the number of the column,
- * because readers want names that differ. */
+/* "v8_10h2", "f0_10h2" or "hks_10h2": the source or the field, then the time; "K_10h2" and "d_10h2" of pairs.
+ * With the same of them twice also the number of the column, because readers want names that differ. */
 static int heat_names(run *r)
 {
+    const int pairs = r->o->command == CMD_PAIRS, step = pairs && !is_timeless(r->o) ? 2 : 1;
     const int twice = has_twice(r);
     int64_t c;
     r->names = (char (*)[NAME_SIZE])malloc((size_t)r->n_columns * sizeof *r->names);
@@ -2436,6 +2494,10 @@ static int heat_names(run *r)
         char number[12] = "";
         if (twice) snprintf(number, sizeof number, "_c%d", (int)(c % 1000000));
         if (r->o->command == CMD_HKS) snprintf(r->names[c], NAME_SIZE, "hks_%.14s%s", r->time_names[c], number);
+        else if (r->o->command == CMD_SAMPLE) snprintf(r->names[c], NAME_SIZE, "distance");
+        else if (pairs)
+            snprintf(r->names[c], NAME_SIZE, "%c_%.14s%s", c % step < step - 1 ? 'K' : 'd', r->time_names[c / step],
+                     number);
         else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->sources ? 'v' : 'f', r->sources ? (long)r->sources[q] : (long)q,
                       r->time_names[c % r->n_times], number);
         r->name_list[c] = r->names[c];
@@ -2488,18 +2550,23 @@ static int write_heat(run *r)
 /* The ids in front of each row, then the numbers. */
 static int write_ids(run *r)
 {
+    static const char *const pair_names[2] = { "i", "j" }, *const point_names[1] = { "vertex" };
     const double start = now();
     const int32_t *ids[2];
     mio_output out;
     mio_error e;
-    int status;
+    int status = heat_names(r);
     hd_heat_free(r->heat);
     r->heat = NULL;
+    if (status) return status;
     memset(&out, 0, sizeof out);
     ids[0] = r->o->command == CMD_PAIRS ? r->pairs : r->sources;
     ids[1] = r->pairs ? r->pairs + r->rows : NULL;
     out.ids = ids;
     out.n_ids = r->o->command == CMD_PAIRS ? 2 : 1;
+    out.id_names = r->o->command == CMD_PAIRS ? pair_names : point_names;
+    out.names = r->name_list;
+    out.no_header = r->o->no_header;
     out.rows = out.ld = r->rows;
     out.cols = (int32_t)r->n_columns;
     out.values = r->values;

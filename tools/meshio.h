@@ -72,8 +72,10 @@ typedef struct mio_output {
     int64_t ld;                 /* rows, when the columns follow one another */
     int32_t n_ids;              /* text, CSV, .npy: this many columns of integers come first */
     const int32_t *const *ids;  /* [n_ids] arrays of `rows` integers */
+    const char *const *id_names;            /* [n_ids] for CSV, where there are names */
     const char *comment;        /* text and CSV: first line, after "# "; no line end in it. NULL: none */
-    const char *const *names;   /* [cols] names of the columns for PLY (as comments) and VTU, or NULL */
+    const char *const *names;   /* [cols] names of the columns for CSV, PLY (as comments) and VTU, or NULL */
+    int no_header;              /* CSV: no line of names */
     const uint8_t *rgb;         /* [3 rows] colours of the vertices for PLY, OBJ, VTU, or NULL: no colours */
     int (*stop)(void);
 } mio_output;
@@ -103,7 +105,8 @@ typedef struct mio_file {
      int  mio_triangulate(const mio_mesh *m, int32_t **tri, int32_t *n_tri, int32_t **face_of_tri, mio_error *e);
               Fans from each face's first corner; tri[3*n_tri]; face_of_tri[n_tri] may be NULL. The caller frees both.
      int  mio_load_table(double **values, int64_t *rows, int32_t *cols, const char *path, int (*stop)(void), mio_error *e);
-              Text (white space or commas, # comments, blank lines) or .npy (floats and integers, 1-d or 2-d).
+              Text (white space or commas, # comments, blank lines; a first line of words without any number,
+              the names of the columns, is skipped) or .npy (floats and integers, 1-d or 2-d).
               values[c*rows + r], all finite, at least one row and one column; the caller frees it. "-" reads standard input.
      int  mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, int64_t **lines, const char *path,
                                int (*stop)(void), mio_error *e);
@@ -117,7 +120,7 @@ typedef struct mio_file {
      int  mio_write(const char *path, int format, const mio_mesh *m, const mio_output *o, mio_error *e);
               m may be NULL for MIO_TXT, MIO_CSV, MIO_NPY. Meshes with a field: o->rows must be m->n.
      int  mio_write_text(const char *path, const mio_output *o, mio_error *e);            "%.17g", separated by blanks
-     int  mio_write_csv(const char *path, const mio_output *o, mio_error *e);             the same with commas, no header line
+     int  mio_write_csv(const char *path, const mio_output *o, mio_error *e);             the same with commas, below a line of names
      int  mio_write_npy(const char *path, const mio_output *o, mio_error *e);             float64, little endian, (rows, columns)
      int  mio_write_ply(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e);   binary; field: quality, quality_1..
      int  mio_write_obj(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e);   v x y z r g b
@@ -281,6 +284,18 @@ static int mio_open(mio_in *in, const char *path, int (*stop)(void), mio_error *
     in->p = in->data;
     in->end = in->data + in->size;
     if (in->size >= 3 && memcmp(in->data, bom, 3) == 0) in->p += 3;        /* a mark that some editors leave */
+    return MIO_OK;
+}
+
+/* What has to be turned into something else before it can be read: says so. Editors and shells of Windows write
+   UTF-16 with a mark in front. */
+static int mio_refuse(const mio_in *in)
+{
+    const unsigned char *const p = (const unsigned char *)in->data;
+    if (in->size < 2) return MIO_OK;
+    if (p[0] == 0x1f && p[1] == 0x8b) return mio_fail(in, 0, "compressed with gzip: please unpack it first");
+    if ((p[0] == 0xff && p[1] == 0xfe) || (p[0] == 0xfe && p[1] == 0xff))
+        return mio_fail(in, 0, "text in UTF-16: please save it as UTF-8 first");
     return MIO_OK;
 }
 
@@ -452,13 +467,19 @@ static const char *mio_integer(const char *p, int64_t *x)
 
 static int mio_more(mio_in *in) { return in->spread ? mio_space(in) : mio_blanks(in); }
 
+/* Does it begin as nan or inf, in any case and with any sign? */
+static int mio_not_finite(const char *w)
+{
+    if (*w == '-' || *w == '+') w++;
+    return ((w[0] | 32) == 'n' && (w[1] | 32) == 'a' && (w[2] | 32) == 'n') ||
+           ((w[0] | 32) == 'i' && (w[1] | 32) == 'n' && (w[2] | 32) == 'f');
+}
+
 /* Names what stands at p instead of a number. */
 static int mio_no_number(const mio_in *in)
 {
     char word[48];
-    const char *w = mio_show(in, in->p, word);
-    if (*w == '-' || *w == '+') w++;
-    if (((w[0] | 32) == 'n' && (w[1] | 32) == 'a' && (w[2] | 32) == 'n') || ((w[0] | 32) == 'i' && (w[1] | 32) == 'n' && (w[2] | 32) == 'f'))
+    if (mio_not_finite(mio_show(in, in->p, word)))
         return mio_fail(in, in->line, "'%s' is not a finite number", word);
     return mio_fail(in, in->line, "'%s' is not a number", word);
 }
@@ -1525,11 +1546,9 @@ static int mio_load_numbers(mio_in *in, mio_build *b, mio_mesh *m)
 
 static int mio_unknown(const mio_in *in)
 {
-    const unsigned char *const p = (const unsigned char *)in->data;
     mio_in look = *in;
     look.hash = 1;
     if (!mio_space(&look)) return mio_fail(in, 0, in->size ? "no vertices found (nothing but comments)" : "no vertices found (the file is empty)");
-    if (in->size > 2 && p[0] == 0x1f && p[1] == 0x8b) return mio_fail(in, 0, "compressed with gzip: please unpack it first");
     return mio_fail(in, 0, "neither the content nor the name tells a format this reads (OBJ, OFF, PLY, STL, XYZ)");
 }
 
@@ -1542,7 +1561,8 @@ static int mio_load(mio_mesh *m, const char *path, int (*stop)(void), mio_error 
     memset(&b, 0, sizeof b);
     status = mio_open(&in, path, stop, e);
     if (status != MIO_OK) return status;
-    switch (mio_which(&in)) {
+    if (!mio_looks_stl_binary(&in)) status = mio_refuse(&in);         /* whose header can be anything */
+    if (status == MIO_OK) switch (mio_which(&in)) {
     case MIO_IN_OBJ:        status = mio_load_obj(&in, &b, m); break;
     case MIO_IN_OFF:        status = mio_load_off(&in, &b, m); break;
     case MIO_IN_PLY:        status = mio_load_ply(&in, &b, m); break;
@@ -1634,11 +1654,28 @@ static int mio_table_row(mio_in *in, mio_numbers *t)
     return MIO_OK;
 }
 
+/* Is this the line of names that CSV files begin with: words, no number among them, nan and inf included? */
+static int mio_table_names(const mio_in *in)
+{
+    const char *p = in->p;
+    double x;
+    if (!((*p | 32) >= 'a' && (*p | 32) <= 'z') && *p != '_' && *p != '"') return 0;
+    for (; p < in->end && !mio_eol(*p); p++) {
+        const char *q = p + strcspn(p, ", \t\r\n");
+        if (*p == '"') q = p + 1 + strcspn(p + 1, "\"\r\n");
+        if (mio_number(p, &x) == q || (mio_not_finite(p) && q - p <= 3 + (*p == '-' || *p == '+'))) return 0;
+        p = q;
+        if (mio_eol(*p)) break;                         /* else it stands on what ends the item */
+    }
+    return 1;
+}
+
 static int mio_table_text(mio_in *in, mio_numbers *t, double **values, int64_t *rows, int32_t *cols)
 {
     size_t r, c;
     in->comma = 2;
     in->hash = 1;
+    if (mio_space(in) && mio_table_names(in)) mio_next_line(in);
     while (mio_space(in)) {
         const int status = mio_tick(in);
         if (status != MIO_OK) return status;
@@ -1767,7 +1804,7 @@ static int mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, i
     if (status != MIO_OK) return status;
     if (in.size >= 6 && memcmp(in.data, "\223NUMPY", 6) == 0) status = mio_table_npy(&in, values, rows, cols);
     else if (mio_has_extension(path, "npy")) status = mio_fail(&in, 0, "not a .npy file: it does not begin as one");
-    else status = mio_table_text(&in, &t, values, rows, cols);
+    else if ((status = mio_refuse(&in)) == MIO_OK) status = mio_table_text(&in, &t, values, rows, cols);
     if (status == MIO_OK && lines) { *lines = t.lines; t.lines = NULL; }
     if (status != MIO_OK) { free(*values); *values = NULL; }
     free(t.values);
@@ -1817,17 +1854,33 @@ static int mio_file_fail(mio_file *f, const char *what)
     return f->status;
 }
 
-/* A name beside the target that is not taken, made known to mio_remove_temporary before the file exists. */
+/* Where the file's own name begins. */
+static size_t mio_folder_length(const char *path)
+{
+    size_t n = strlen(path);
+    while (n > 0 && path[n - 1] != '/') {
+#if defined(_WIN32)
+        if (path[n - 1] == '\\' || path[n - 1] == ':') break;
+#endif
+        n--;
+    }
+    return n;
+}
+
+/* A name beside the target that is not taken, made known to mio_remove_temporary before the file exists. It begins
+   as the target's, but is short enough for every file system: these have room for 255 bytes, some for 143. */
 static int mio_file_name_temporary(mio_file *f)
 {
-    const size_t room = strlen(f->path) + 32;
+    const size_t room = strlen(f->path) + 32, most = mio_folder_length(f->path) + 100;
+    int keep = (int)(strlen(f->path) < most ? strlen(f->path) : most);
     uint32_t mix = (uint32_t)time(NULL) * 2654435761u ^ (uint32_t)clock() ^ (uint32_t)((uintptr_t)f >> 4);
     int tries;
+    while (strlen(f->path) > most && ((unsigned char)f->path[keep] & 0xc0) == 0x80) keep--;  /* whole letters */
     f->temporary = (char *)mio_alloc(room, 1);
     if (!f->temporary) return MIO_FAILED;
     for (tries = 0; tries < 64; tries++, mix = mix * 1664525u + 1013904223u) {
         FILE *there;
-        snprintf(f->temporary, room, "%s.%08lx.part", f->path, (unsigned long)mix);
+        snprintf(f->temporary, room, "%.*s.%08lx.part", keep, f->path, (unsigned long)mix);
         there = fopen(f->temporary, "rb");
         if (!there) break;
         fclose(there);
@@ -1994,7 +2047,31 @@ static int mio_check_rows(const char *path, const mio_mesh *m, const mio_output 
     return MIO_OK;
 }
 
-static int mio_write_rows(const char *path, const mio_output *o, const char *between, mio_error *e)
+/* A name as CSV has it: in quotes where it holds what separates. */
+static void mio_put_name(mio_file *f, const char *name)
+{
+    const int quoted = name[strcspn(name, ", \"\t\r\n")] != 0;
+    if (quoted) mio_put_text(f, "\"");
+    for (; *name; name++) {
+        if (*name == '"') mio_put_text(f, "\"");
+        mio_file_put(f, (unsigned char)*name < 32 ? " " : name, 1);
+    }
+    if (quoted) mio_put_text(f, "\"");
+}
+
+/* The line of names above the numbers. */
+static void mio_put_names(mio_file *f, const mio_output *o, const char *between)
+{
+    int32_t c;
+    for (c = 0; c < o->n_ids + o->cols; c++) {
+        if (c) mio_put_text(f, between);
+        mio_put_name(f, c < o->n_ids ? o->id_names[c] : o->names[c - o->n_ids]);
+    }
+    mio_put_text(f, "\n");
+}
+
+/* names: 1 with a line of names, 0 without. */
+static int mio_write_rows(const char *path, const mio_output *o, const char *between, int names, mio_error *e)
 {
     mio_file f;
     int64_t r;
@@ -2005,6 +2082,7 @@ static int mio_write_rows(const char *path, const mio_output *o, const char *bet
         mio_put_line(&f, o->comment);
         mio_put_text(&f, "\n");
     }
+    if (names) mio_put_names(&f, o, between);
     for (r = 0; r < o->rows && f.status == MIO_OK; r++) {
         for (c = 0; c < o->n_ids; c++) {
             if (c) mio_put_text(&f, between);
@@ -2019,8 +2097,15 @@ static int mio_write_rows(const char *path, const mio_output *o, const char *bet
     return mio_file_close(&f);
 }
 
-static int mio_write_text(const char *path, const mio_output *o, mio_error *e) { return mio_write_rows(path, o, " ", e); }
-static int mio_write_csv(const char *path, const mio_output *o, mio_error *e) { return mio_write_rows(path, o, ",", e); }
+static int mio_write_text(const char *path, const mio_output *o, mio_error *e)
+{
+    return mio_write_rows(path, o, " ", 0, e);
+}
+
+static int mio_write_csv(const char *path, const mio_output *o, mio_error *e)
+{
+    return mio_write_rows(path, o, ",", !o->no_header && o->names && (o->n_ids == 0 || o->id_names), e);
+}
 
 static int mio_write_npy(const char *path, const mio_output *o, mio_error *e)
 {

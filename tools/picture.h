@@ -538,13 +538,15 @@ static int pic_replace(const char *from, const char *to)
 static int pic_png_write(const char *path, const uint8_t *rgb, int32_t w, int32_t h)
 {
     uint8_t *data;
-    size_t size, n = path ? strlen(path) : 0;
+    size_t size, n = path ? strlen(path) : 0, name = n;
     char *temp;
     FILE *file;
     int ok, status;
     if (n == 0) return PIC_ERR_ARGUMENT;
     status = pic_png_encode(&data, &size, rgb, w, h);
     if (status != PIC_OK) return status;
+    while (name > 0 && path[name - 1] != '/') name--;
+    if (n - name > 100) n = name + 100;                  /* names have an end: 255 bytes, or fewer */
     temp = (char *)pic_alloc(n + 6, 1);
     if (!temp) { free(data); return PIC_ERR_MEMORY; }
     memcpy(temp, path, n);
