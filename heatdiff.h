@@ -14507,6 +14507,7 @@ static hd_status hdi_heat_lanczos(const hd_heat *heat, double t, hdi_lane *lane,
     hd_status status = HD_OK;
     double f0_norm, fixed = 0;
     int32_t i;
+    if (heat->lambda_max > 0) t = hdi_min(t, 1e100 / heat->lambda_max);   /* beyond, all that moves is gone */
     memset(lane->u, 0, HDI_CAST(size_t, n) * sizeof *lane->u);
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_ESTIMATED;
@@ -15009,14 +15010,20 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
 /* ---- entries of the kernel without columns ---- */
 
 /* values [n_sets][stride] += sum over poles p of Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: entries of the lower triangle in the order of the analysis,
- * or by pivots the diagonal, or that of B Z_p B with the source's B. The factors are there, and stay. */
+ * or by pivots the diagonal, or that of B Z_p B. The factors are there, and stay. */
 static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, hdi_wanted wanted, double *values, int64_t stride, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n_sets));
     const int32_t n_poles = m->set.n_poles;
     hdi_forms forms;
     hdi_inverse z;
+    double *b = NULL;
+    int64_t p;
     int32_t i, k, q;
+    if (wanted == HDI_WANT_FORMS) {              /* the source's entries, scaled as m->lap is */
+        b = HDI_TAKE(&s, double, m->source->L.nnz);
+        for (p = 0; b && p < m->source->L.nnz; p++) b[p] = m->scale * m->source->B[p];
+    }
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = -1; i < (n_poles - (m->lone + 1) + 3) / 4 && e->status >= 0; i++) {   /* -1: the lone real pole */
         if (i < 0 && m->lone < 0) continue;
@@ -15030,7 +15037,7 @@ static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weig
             }
         }
         if (i <= 0 && hdi_inverse_make(&z, &m->sym, i < 0 ? 1 : HDI_PACK, m->ctx, e) < 0) break;
-        if (i <= 0 && wanted == HDI_WANT_FORMS && hdi_forms_make(&forms, &m->sym, i < 0 ? 1 : HDI_PACK, &m->source->L, m->source->B, m->ctx, e) < 0) {
+        if (i <= 0 && wanted == HDI_WANT_FORMS && hdi_forms_make(&forms, &m->sym, i < 0 ? 1 : HDI_PACK, &m->source->L, b, m->ctx, e) < 0) {
             hdi_inverse_free(&z, m->ctx);
             break;
         }
@@ -15081,6 +15088,11 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
     return worst < 0.2;
 }
 
+/* What the constants alone are of diag((B + tL)^-1), however much of them rounding has eaten. */
+static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
+    return lap->conserves ? 1 / lap->component_mass[lap->component[i]] : 0;
+}
+
 /* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new one. */
 static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = 1.01 * hdi_max(1, theta);   /* 1.01: rounding */
@@ -15101,6 +15113,7 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
         for (i = 0; i < m->sym.n; i++) {
             const double most = m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[i]) : HUGE_VAL;
             if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
+            m->reach[i] = hdi_max(m->reach[i], hdi_constant_part(m->lap, i));
         }
         m->reach_t = m->t;
     }
@@ -18372,6 +18385,7 @@ typedef struct hdi_entries {
     double *k, *g;               /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
     int64_t size;
     double weighted, uniform;    /* of the set: |error| <= weighted g, uniform diag(B^-1) */
+    double left_out;             /* besides, times diag(B^-1): a0 of a set where B is full */
     hd_rational resolvent;       /* the poles with weights for g */
 } hdi_entries;
 
@@ -18380,7 +18394,7 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
     hdi_elim *m = &h->heat->elim;
     hd_c64 weight[2 * HD_MAX_POLES];
     double factor = 1, slack = 0;
-    int32_t p, best;
+    int32_t p, best, i;
     memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
     memset(weight, 0, sizeof weight);
     if (hdi_direct_prepare(h) < 0) return h->e->status;
@@ -18402,13 +18416,17 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
     x->weighted = best >= 0 ? (1 + slack) * hdi_set_weighted(&m->set) : HUGE_VAL;
     x->uniform = hdi_set_uniform(&m->set);       /* 0: bounds hold for c itself */
     if (x->uniform == 0) x->weighted = 0;
+    x->left_out = 0;
+    for (i = 0; i < m->sym.n && wanted != HDI_WANT_ENTRIES; i++)
+        x->g[i] = hdi_max(x->g[i], hdi_constant_part(m->lap, i) * (wanted == HDI_WANT_FORMS ? m->lap->mass[i] * m->lap->mass[i] : 1));
     return HD_OK;
 }
 
 /* Bound of the rational error of k_t(i,i), from g(i,i) and diag(B)(i). */
 static double hdi_entry_error(const hdi_entries *x, double g, double b, double b_ratio) {
-    const double uniform = b_ratio > 0 ? x->uniform / (b_ratio * b) : HUGE_VAL;
-    return x->weighted < HUGE_VAL ? hdi_min(x->weighted * g, uniform) : uniform;
+    const double spread = b_ratio > 0 ? 1 / (b_ratio * b) : HUGE_VAL, out = x->left_out > 0 ? x->left_out * spread : 0;
+    const double uniform = x->uniform > 0 ? x->uniform * spread : 0;
+    return (x->weighted < HUGE_VAL ? hdi_min(x->weighted * hdi_max(0, g), uniform) : uniform) + out;
 }
 
 /* Place of each of the analysis' entries: row and column in elimination order. */
@@ -18443,13 +18461,13 @@ static double hdi_diagonal_limit(const hd_heat *heat) {
 
 /* The ledger of values found by inversion. */
 static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
-    const int itself = h->heat->elim.set.kind == HD_POLES_OWN && hdi_set_uniform(&h->heat->elim.set) == 0;
+    const hd_rational *set = &h->heat->elim.set;
+    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && (set->a0 == 0 || !h->heat->source->B);
     return hdi_ledger_begin(h->equal || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
 }
 
-/* Values by rows to vertices; their errors, off and rounding relative to the value, to the report, in the caller's unit.
- * Returns the largest off relative to its value. */
-static double hdi_diagonal_tell(hdi_heat_call *h, hd_kernel kernel, const double *value, const double *off, double rounding, double *out) {
+/* Values by rows to vertices; their errors, off and rounding relative to size, to the report, in the caller's unit. Returns the largest off relative to its value. */
+static double hdi_diagonal_tell(hdi_heat_call *h, hd_kernel kernel, const double *value, const double *off, const double *size, double rounding, double *out) {
     const hd_laplacian *lap = h->lap;
     const double unit = kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
     hdi_ledger ledger = hdi_inverse_ledger(h, 1);
@@ -18461,7 +18479,7 @@ static double hdi_diagonal_tell(hdi_heat_call *h, hd_kernel kernel, const double
         hdi_parts part;
         memset(&part, 0, sizeof part);
         part.rational = unit * off[i];
-        part.rounding = unit * rounding * fabs(value[i]);
+        part.rounding = rounding > 0 ? unit * rounding * fabs(size[i]) : 0;
         out[lap->vertex[i]] = unit * value[i];
         hdi_ledger_note(&ledger, unit * value[i], part);
         most = hdi_max(most, hdi_quotient(off[i], fabs(value[i])));
@@ -18478,7 +18496,7 @@ static void hdi_diagonal_equal(hdi_heat_call *h, hd_kernel kernel, double *value
         value[i] = (kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1) / lap->component_mass[lap->component[i]];
         off[i] = 0;
     }
-    (void)hdi_diagonal_tell(h, kernel, value, off, HDI_CAST(double, lap->n_active) * DBL_EPSILON, out);
+    (void)hdi_diagonal_tell(h, kernel, value, off, value, HDI_CAST(double, lap->n_active) * DBL_EPSILON, out);
 }
 
 /* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. *relative: the largest of the
@@ -18489,7 +18507,8 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     const hdi_symbolic *s;
     const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *room, *value, *off, *g, rounding = 0;
+    double *room, *value, *off, *g, *own, rounding = 0;
+    const double *size_of;
     hdi_entries x;
     hdi_probe probe;
     int64_t size, n;
@@ -18501,10 +18520,11 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     s = &heat->elim.sym;
     size = full ? s->a_ptr[s->n_super] : s->n;
     room = HDI_TAKE(&scope, double, 2 * size);
-    value = HDI_TAKE(&scope, double, 3 * HDI_CAST(uint64_t, s->n));
+    value = HDI_TAKE(&scope, double, 4 * HDI_CAST(uint64_t, s->n));
     if (h->e->status < 0) return hdi_scope_end(&scope);
     off = value + s->n;
     g = off + s->n;
+    own = g + s->n;
     if (h->equal) {
         hdi_diagonal_equal(h, kernel, value, off, out);
         return hdi_scope_end(&scope);
@@ -18514,18 +18534,27 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         hdi_operator_diagonal(&heat->elim, x.k, value);
         for (v = 0; v < s->n_super; v++)
             for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++)
-                if (s->a_row[n] == s->a_col[n]) g[s->super[v] + s->a_col[n]] = x.g[n];
+                if (s->a_row[n] == s->a_col[n]) g[s->super[v] + s->a_col[n]] = hdi_max(x.g[n], hdi_constant_part(lap, s->super[v] + s->a_col[n]));
         for (i = 0; i < s->n; i++) off[i] = hdi_min(x.weighted == 0 ? 0 : x.weighted < HUGE_VAL ? x.weighted * sqrt(hdi_max(0, g[i]) * lap->b_diag[i]) : HUGE_VAL,
                                                     x.uniform * hdi_ratio_root(lap));
     } else {
         const double a0 = heat->elim.set.a0;
-        if (lap->B) x.uniform += fabs(a0);       /* a0 diag(B^-1) is left out: a full B's inverse is not at hand, and a0 is of the size of the set's error */
+        if (lap->B) x.left_out = fabs(a0);       /* a full B's inverse is not at hand, and a0 is of the size of the set's error */
         for (i = 0; i < s->n; i++) {
             const double b = kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
             g[i] = x.g[i];
             value[i] = b * (x.k[i] + (lap->B ? 0 : a0 / lap->mass[i]));
             off[i] = b * hdi_entry_error(&x, x.g[i], lap->b_diag[i], lap->b_ratio);
         }
+    }
+    /* Rounding is relative to the value; of any function of the caller's, which may vanish, to the resolvent. */
+    size_of = value;
+    if (heat->elim.set.kind == HD_POLES_OWN) {
+        for (i = 0; i < s->n; i++) {
+            const double most = lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[i]) : HUGE_VAL;
+            own[i] = (g[i] > 0 && g[i] < most ? g[i] : most) * (kernel == HD_KERNEL_OPERATOR ? lap->b_diag[i] : 1);
+        }
+        size_of = own;
     }
     for (i = 1; i < s->n; i++)
         if (off[i] * value[worst] > off[worst] * value[i]) worst = i;
@@ -18535,9 +18564,9 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         const int32_t row = probe.row[i];
         const double f = kernel == HD_KERNEL_OPERATOR ? 1 : lap->B ? 0 : 1 / lap->mass[row];
         double by, there = hdi_probe_value(heat, &probe, i, &heat->elim.set, 1, f, g[row], &by);
-        rounding = hdi_max(rounding, hdi_quotient(fabs(there - value[row]) + by, fabs(value[row])));
+        rounding = hdi_max(rounding, hdi_quotient(fabs(there - value[row]) + by, fabs(size_of[row])));
     }
-    *relative = hdi_diagonal_tell(h, kernel, value, off, rounding, out);
+    *relative = hdi_diagonal_tell(h, kernel, value, off, size_of, rounding, out);
     return hdi_scope_end(&scope);
 }
 
@@ -18571,7 +18600,7 @@ static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double
     int32_t v, i;
     int64_t n;
     memset(&part, 0, sizeof part);
-    if (lap->B) x->uniform += fabs(m->set.a0);
+    if (lap->B) x->left_out = fabs(m->set.a0);
     for (v = 0; v < s->n_super; v++) {
         for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
             if (s->a_row[n] != s->a_col[n]) continue;
@@ -18759,7 +18788,7 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
             rounding = hdi_max(rounding, hdi_quotient(fabs(there - k[row]) + by, fabs(k[row])));
         }
         for (i = 0; i < m->sym.n; i++) off[i] = hdi_min(set[q].max_weighted_error * hdi_max(0, g[i]), set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
-        (void)hdi_diagonal_tell(h, HD_KERNEL_SYMMETRIC, k, off, rounding, D + HDI_CAST(size_t, column[q]) * ldd);
+        (void)hdi_diagonal_tell(h, HD_KERNEL_SYMMETRIC, k, off, k, rounding, D + HDI_CAST(size_t, column[q]) * ldd);
     }
     return hdi_scope_end(&s);
 }
@@ -18823,7 +18852,9 @@ typedef struct hdi_metric {
     double *diag, *g, *spread;
     hd_rational resolvent;       /* weights for g */
     double weighted, uniform;    /* HUGE_VAL: it bounds nothing */
-    double rounding;             /* of diag, relative to it */
+    double left_out;             /* times the form of spread, besides: a0 B^-1 of a full B */
+    double rounding;             /* of diag, relative to it, or with own to g: of any function of the caller's, which may vanish */
+    int own;
 } hdi_metric;
 
 /* A column of f by vertices, and what rounding can put it off by: sqrt(g_v) times off_m, and sqrt(spread_v) times off_b. */
@@ -18881,14 +18912,15 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
     hdi_probe probe;
     int32_t i;
     if (!room || hdi_entries_make(h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) < 0) return h->e->status;
-    if (lap->B && !full) entries.uniform += fabs(m->set.a0);
+    if (lap->B && !full) x->left_out = fabs(m->set.a0);
     for (i = 0; i < m->sym.n; i++) {
         const int32_t r = m->sym.perm[i];
-        const double b = lap->b_diag[r], w = weighted && !full ? b * b : 1;
-        x->diag[r] = w * heat->scale * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i])) + (full ? m->set.a0 * b : 0);
-        x->g[r] = w * heat->scale * entries.g[i];
+        const double b = lap->b_diag[r], w = full ? 1 / heat->scale : weighted ? b * m->lap->mass[i] : heat->scale;   /* no square of b */
+        x->diag[r] = w * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i])) + (full ? m->set.a0 * b : 0);
+        x->g[r] = w * entries.g[i];
         x->spread[r] = weighted ? b : lap->b_ratio > 0 ? 1 / (lap->b_ratio * b) : HUGE_VAL;
     }
+    x->own = m->set.kind == HD_POLES_OWN;
     x->set = m->set;
     x->resolvent = entries.resolvent;
     x->weighted = entries.weighted;
@@ -18904,11 +18936,12 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
             (void)hdi_probe_value(heat, &probe, i, &x->set, 1, 1, HUGE_VAL, &by);
             by *= sqrt(m->lap->b_diag[row]) / (hdi_ratio_root(m->lap) / sqrt(m->lap->b_diag[row]));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
             value = (x->diag[m->sym.perm[row]]) * heat->scale;
-            x->rounding = hdi_max(x->rounding, m->set.a0 == 0 ? hdi_quotient(fabs(there - value) + by, fabs(value)) : hdi_quotient(by, fabs(value)));
-            continue;
+            by += m->set.a0 == 0 ? fabs(there - value) : 0;
+        } else {
+            there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
+            by += fabs(there - value);
         }
-        there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
-        x->rounding = hdi_max(x->rounding, hdi_quotient(fabs(there - value) + by, fabs(value)));
+        x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(x->own ? entries.g[row] : value)));
     }
     return HD_OK;
 }
@@ -19019,10 +19052,12 @@ static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, int32_t 
 static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss, double sv) {
     const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, gv)), wide = sqrt(ss) + sqrt(sv);
     double form = root * root, bound = HUGE_VAL;
-    if (x->filter || x->equal || x->uniform == 0) return 0;
+    if (x->filter || x->equal) return 0;
+    if (x->uniform == 0) return x->left_out > 0 ? x->left_out * wide * wide : 0;
     if (gsv) form = hdi_min(form, hdi_max(0, gs + gv - 2 * *gsv) + (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
     if (x->weighted < HUGE_VAL) bound = x->weighted * form;
-    return hdi_min(bound, x->uniform * wide * wide);
+    bound = hdi_min(bound, x->uniform * wide * wide);
+    return x->left_out > 0 ? bound + x->left_out * wide * wide : bound;
 }
 
 /* d from column s of f, in place. g: the same column of the resolvent, whose own d^2 bounds the rational error; NULL: from the
@@ -19051,7 +19086,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
             const double by_b = c->off_b == 0 ? 0 : sv < HUGE_VAL && c->off_b < HUGE_VAL ? sqrt(sv) * c->off_b : HUGE_VAL;
             rounding = 2 * hdi_min(by_m, by_b);
         }
-        rounding += (x->rounding + 4 * DBL_EPSILON) * (fs + f);
+        if (x->rounding > 0) rounding += x->rounding * (x->own ? fabs(gs) + fabs(gv) : fabs(fs) + fabs(f));
+        rounding += 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
         delta = rational + rounding;
         d = d2 > 0 ? sqrt(d2) : 0;
         u[v] = d;
@@ -19067,7 +19103,7 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
 }
 
 static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
-    const int none = x->filter || x->equal || x->uniform == 0;
+    const int none = x->filter || x->equal || (x->uniform == 0 && x->left_out == 0);
     return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, 1);
 }
 
@@ -19236,10 +19272,6 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
             }
             for (p = 0; p < set[q].n_poles; p++) off += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
             off *= sqrt(hdi_max(0, f[n + row]));
-            if (full) {                          /* forms are with the source's B */
-                there /= heat->scale * heat->scale;
-                off /= heat->scale;
-            }
             rounding[q] = hdi_max(rounding[q], hdi_quotient(fabs(there - f[row]) + off, fabs(f[row])));
         }
     }
@@ -19257,14 +19289,14 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
             hdi_ledger ledger;
             memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
             memset(g, 0, HDI_CAST(size_t, lap->n) * sizeof *g);
-            if (full) {                          /* B of what is B times the inverses, twice scaled; forms are not */
+            if (full) {                          /* B of what is B times the inverses */
                 hdi_pair_apply(m->lap, 0, 1, c, product);
                 hdi_pair_apply(m->lap, 0, 1, c + n, product + n);
                 c = product;
             }
             for (i = 0; i < n; i++) {
                 const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
-                const double b = weighted && !full ? m->lap->mass[i] : 1, unit_f = full ? heat->scale : unit * b * b;
+                const double b = weighted && !full ? m->lap->mass[i] : 1, unit_f = unit * b * b;
                 metric.diag[at] = unit_f * f[i];
                 metric.g[at] = unit_f * f[n + i];
                 metric.spread[at] = weighted ? lap->b_diag[at] : lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[at]) : HUGE_VAL;
@@ -19278,7 +19310,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
             of.off_m = 0;
             of.off_b = HUGE_VAL;
             for (p = 0; p < set[q].n_poles; p++) of.off_m += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
-            of.off_m *= sqrt(full ? 1 / heat->scale : unit) * bs;
+            of.off_m *= sqrt(unit) * bs;
             ledger = hdi_metric_ledger(&metric);
             hdi_metric_distance(lap, &metric, sources[r], &of, g, h->rep, &ledger);
             hdi_ledger_close(&ledger, h->rep);
