@@ -531,8 +531,9 @@ HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz
  * opts     kind of masses (fem, voronoi-cot, cot), neighbours, mollify, context; NULL: fem. Always tufted
  * The Delaunay star of each point among its neighbours is found in their tangent plane; all stars together are a soup of triangles that counts a third.
  * lap->mesh tells of that soup. Points in no star become inert. Cost O(n log n + n_neighbours + flips).
- * Two sheets of a surface stay apart where at least 1.5 spacings are between them (for points independent of
- * each other 2.5). Closer ones are taken for a single rough sheet; lap->points.n_not_flat counts such places.
+ * Two sheets of a surface stay apart where about two spacings are between them (for points independent of
+ * each other three). Closer ones are taken for a single rough sheet, or mix; lap->points.n_not_flat counts
+ * such places.
  * HINT: if you know normals, leave neighbours whose normals point the other way out of nbr.
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row: the point), HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY. */
 HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
