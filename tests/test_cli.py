@@ -1962,6 +1962,16 @@ class Points(Case):
         self.assertIn("--lambda", self.bad(1, "info", self.xyz, "--lambda", 1))
         self.assertIn("faces", self.bad(1, "geodesic", self.xyz, "--source", 0))
 
+    def test_not_flat(self):
+        """Two sheets one spacing apart are told of, a sphere is not."""
+        lines = ("%d %d %d\n" % (i % 12, i // 12 % 12, i // 144) for i in range(288))
+        sheets = self.file("sheets.xyz", "".join(lines))
+        for more in ((), ("--tufted",)):
+            self.assertGreater(self.report(sheets, *more)["not_flat"], 250)
+            self.assertRegex(self.good("info", sheets, *more).stdout.decode(), "places not flat")
+            self.assertEqual(self.report(self.xyz, *more)["not_flat"], 0)
+            self.assertNotIn("not flat", self.good("info", self.xyz, *more).stdout.decode())
+
     def test_every_question(self):
         """Signature, distances, pairs and samples agree with the kernel on every kind of point Laplacian, and on polygons."""
         square = [(float(i % 5), i // 5 + 0.1 * (i % 2), 0.0) for i in range(25)]

@@ -609,6 +609,150 @@ static void pts_sphere(hd_laplacian_kind kind, int blue, double tol_value, doubl
     free(y);
 }
 
+/* ---- tufted: thin parts ---- */
+
+static hd_laplacian *pts_tufted(const double *xyz, int32_t n) {
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    CHECK_MSG(hd_laplacian_tufted_points(&lap, xyz, n, NULL, NULL, NULL, &e) == HD_OK, "%s", e.text);
+    return lap;
+}
+
+/* Largest difference of the symmetric kernel's column 0 from want, relative to its largest value. */
+static double pts_kernel_error(const hd_laplacian *lap, double t, const double *want) {
+    const int32_t source = 0;
+    double *u = DENSE_NEW(double, lap->n), worst = 0;
+    hd_heat *heat = NULL;
+    hd_report rep;
+    int32_t i;
+    CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+    CHECK(hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, &rep) >= 0);
+    for (i = 0; i < lap->n; i++) worst = fmax(worst, fabs(u[i] - want[i]));
+    worst /= dense_max_abs(want, lap->n);
+    hd_heat_free(heat);
+    free(u);
+    return worst;
+}
+
+/* The unit sphere and one that is some spacings smaller: heat stays on its own. What cannot be told apart is
+ * counted. */
+static void pts_shells(void) {
+    enum { N = 500 };
+    static const double gaps[] = {1, 1.5, 2, 3}, origin[3] = {0, 0, 0};
+    static const double tol_area[] = {1, 0.02, 0.02, 0.02}, tol_kernel[] = {1, 0.35, 0.06, 0.06};
+    const double t = 0.1;
+    size_t k;
+    for (k = 0; k < 4; k++) {
+        shape a = shape_points(N, shape_on_sphere, 4 * pts_pi, 1, 3);
+        shape b = shape_points(N, shape_on_sphere, 4 * pts_pi, 1, 4);
+        const double q = 1 - gaps[k] * sqrt(4 * pts_pi / N);
+        double *want = DENSE_NEW(double, 2 * N), area, worst;    /* zeros on the smaller one */
+        shape both;
+        hd_laplacian *lap, *cells;
+        int32_t i, flagged;
+        for (i = 0; i < 3 * N; i++) b.xyz[i] *= q;
+        both = shape_disjoint(&a, &b, origin);
+        for (i = 0; i < N; i++) want[i] = pts_sphere_kernel(t, shape_dot(a.xyz, a.xyz + 3 * i));
+        lap = pts_tufted(both.xyz, both.n);
+        cells = pts_make(both.xyz, both.n, HD_LAPLACIAN_VORONOI_EXP, 0);
+        flagged = lap->points.n_not_flat;
+        area = lap->area / (4 * pts_pi * (1 + q * q)) - 1;
+        worst = pts_kernel_error(lap, t, want);
+        CHECK_MSG(fabs(area) < tol_area[k] && worst < tol_kernel[k],
+                  "%g spacings: area %+g, kernel off by %g", gaps[k], area, worst);
+        CHECK_MSG(gaps[k] < 1.5 ? flagged > 1.8 * N : gaps[k] < 2 ? flagged > 0.2 * N : flagged == 0,
+                  "%g spacings: %d places not flat", gaps[k], (int)flagged);
+        CHECK(gaps[k] < 2 || lap->n_components == 2);
+        CHECK(cells->points.n_not_flat == flagged);
+        hd_laplacian_free(lap);
+        hd_laplacian_free(cells);
+        shape_free(&a);
+        shape_free(&b);
+        shape_free(&both);
+        free(want);
+    }
+}
+
+/* An ear: a ball pressed flat, five spacings thick in the middle and none at the rim; as the mesh of the same
+ * vertices has it. */
+static void pts_ear(void) {
+    shape s = shape_icosphere(4);
+    const double edge = 0.075;
+    double *want = DENSE_NEW(double, s.n), t, worst;
+    uint64_t seed = 6;
+    hd_laplacian *mesh = NULL, *lap;
+    hd_heat *heat = NULL;
+    hd_report rep;
+    const int32_t source = 0;
+    int32_t i;
+    for (i = 0; i < 3 * s.n; i++) s.xyz[i] += 0.2 * edge * shape_signed(&seed);
+    for (i = 0; i < s.n; i++) {
+        const double len = sqrt(shape_dot(s.xyz + 3 * i, s.xyz + 3 * i));
+        s.xyz[3 * i] /= len;
+        s.xyz[3 * i + 1] /= len;
+        s.xyz[3 * i + 2] *= 0.15 / len;
+    }
+    CHECK(hd_laplacian_triangles(&mesh, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
+    t = 0.02 * mesh->area;
+    CHECK(hd_heat_create(&heat, mesh, NULL, NULL) == HD_OK);
+    CHECK(hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, want, 0, &rep) >= 0);
+    lap = pts_tufted(s.xyz, s.n);
+    worst = pts_kernel_error(lap, t, want);
+    CHECK_MSG(fabs(lap->area / mesh->area - 1) < 0.01 && worst < 0.05, "area %+g, kernel off by %g",
+              lap->area / mesh->area - 1, worst);
+    CHECK_MSG(lap->points.n_not_flat < s.n / 5, "%d places not flat", (int)lap->points.n_not_flat);
+    hd_heat_free(heat);
+    hd_laplacian_free(mesh);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(want);
+}
+
+/* Noise along the normals, of up to half a spacing: triangles follow it no more than they must, and points
+ * without noise are flat. */
+static void pts_noise(void) {
+    enum { N = 2000 };
+    const double area = 8 * pts_pi * pts_pi, h = sqrt(area / N);
+    static const double most[] = {0.01, 0.035, 0.18};
+    int k, c;
+    for (k = 0; k < 3; k++) {
+        shape s = shape_points(N, shape_on_torus, area, 0, 12);
+        const double noise[] = {0, 0.2, 0.5};
+        uint64_t seed = 5;
+        hd_laplacian *lap;
+        int32_t i;
+        for (i = 0; i < N; i++) {
+            double *p = s.xyz + 3 * i, ring = sqrt(p[0] * p[0] + p[1] * p[1]);
+            const double off = noise[k] * h * 0.7 * (shape_signed(&seed) + shape_signed(&seed));
+            const double normal[3] = {p[0] * (1 - 2 / ring), p[1] * (1 - 2 / ring), p[2]};
+            for (c = 0; c < 3; c++) p[c] += off * normal[c];
+        }
+        lap = pts_tufted(s.xyz, N);
+        CHECK_MSG(fabs(lap->area / area - 1) < most[k], "noise %g: area %+g", noise[k], lap->area / area - 1);
+        CHECK_MSG(k == 2 ? lap->points.n_not_flat > N / 5 : lap->points.n_not_flat <= 5 * k,
+                  "noise %g: %d places not flat", noise[k], (int)lap->points.n_not_flat);
+        hd_laplacian_free(lap);
+        shape_free(&s);
+    }
+}
+
+/* Points on a line have no plane, and are flat. */
+static void pts_line(void) {
+    uint64_t seed = 2;
+    int k, c;
+    for (k = 0; k < 20; k++) {
+        double xyz[3 * 40], to[3], u;
+        hd_laplacian *lap;
+        int32_t i;
+        for (c = 0; c < 3; c++) to[c] = shape_signed(&seed);
+        for (i = 0; i < 40; i++)
+            for (u = shape_uniform(&seed), c = 0; c < 3; c++) xyz[3 * i + c] = u * to[c];
+        lap = pts_make(xyz, 40, HD_LAPLACIAN_EXP, 1);
+        CHECK(lap->points.n_not_flat == 0);
+        hd_laplacian_free(lap);
+    }
+}
+
 /* ---- memory; used by test_robust.h ---- */
 
 /* Points of a small sphere, some of them twice. */
@@ -662,6 +806,10 @@ static void test_points(void) {
     pts_sphere(HD_LAPLACIAN_VORONOI_EXP, 1, 0.03, 0.04);
     pts_sphere(HD_LAPLACIAN_EXP, 0, 0.15, 0.5);
     pts_sphere(HD_LAPLACIAN_EXP, 1, 0.05, 0.13);
+    pts_shells();
+    pts_ear();
+    pts_noise();
+    pts_line();
 }
 
 #endif

@@ -2048,6 +2048,7 @@ static void json_points(json *j, const hd_point_report *p)
 {
     json_integer(j, "neighbours", p->neighbours);
     json_integer(j, "coincident", p->n_coincident);
+    json_integer(j, "not_flat", p->n_not_flat);
     if (!(p->bandwidth > 0)) return;             /* the rest is of exponential weights */
     json_number(j, "bandwidth", p->bandwidth);
     json_number(j, "weight_cut", p->weight_cut);
@@ -2675,6 +2676,7 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
     print_count("isolated points", p->n_isolated, "no other one within reach");
     print_count("points without area", p->n_no_area, "their neighbours lie on a line");
     print_count("border points", p->n_border, "at an edge of the surface or a gap");
+    print_count("places not flat", p->n_not_flat, "creases, noise, or two sheets too close together");
     if (r->o->tufted) print_count("points in no star", lap->mesh.n_inert, "without area");
     info_intrinsic(&lap->mesh);
     info_times(lap);
