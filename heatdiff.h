@@ -18612,7 +18612,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         const int32_t row = probe.row[i];
         const double f = kernel == HD_KERNEL_OPERATOR ? 1 : lap->B ? 0 : 1 / lap->mass[row];
         double by, there = hdi_probe_value(heat, &probe, i, &heat->elim.set, 1, f, g[row], &by);
-        rounding = hdi_max(rounding, hdi_quotient(fabs(there - value[row]) + by, fabs(size_of[row])));
+        rounding = hdi_max(rounding, hdi_quotient(2 * fabs(there - value[row]) + by, fabs(size_of[row])));
     }
     *relative = hdi_diagonal_tell(h, kernel, value, off, size_of, rounding, out);
     return hdi_scope_end(&scope);
@@ -18669,7 +18669,7 @@ static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe,
     double by, there = hdi_probe_value(heat, probe, q, &heat->elim.set, 1, lap->B ? 0 : 1 / in->mass[at], g[at], &by), most;
     hdi_parts part;
     int64_t p;
-    most = heat->scale * (fabs(there - k[at]) + by);
+    most = heat->scale * (2 * fabs(there - k[at]) + by);
     for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && heat->elim.set.a0 == 0; p++) {
         const int32_t j = in->row[lap->vertex[lap->L.col[p]]];
         const double off = hdi_max(1, g[at] > 0 ? sqrt(hdi_max(0, g[j]) / g[at]) : 1) * by;
@@ -18833,7 +18833,7 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
         for (r = 0; r < probe.k; r++) {
             const int32_t row = probe.row[r];
             double by, there = hdi_probe_value(heat, &probe, r, set + q, t[q] / t[0], 0, g[row], &by);
-            rounding = hdi_max(rounding, hdi_quotient(fabs(there - k[row]) + by, fabs(k[row])));
+            rounding = hdi_max(rounding, hdi_quotient(2 * fabs(there - k[row]) + by, fabs(k[row])));
         }
         for (i = 0; i < m->sym.n; i++) off[i] = hdi_min(set[q].max_weighted_error * hdi_max(0, g[i]), set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
         (void)hdi_diagonal_tell(h, HD_KERNEL_SYMMETRIC, k, off, k, rounding, D + HDI_CAST(size_t, column[q]) * ldd);
@@ -18943,7 +18943,7 @@ static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
     int32_t r;
     for (r = 0; r < lap->n_active; r++) {
         const double b = lap->mass[r], k = 1 / lap->component_mass[lap->component[r]];
-        x->diag[r] = x->kind == HD_DISTANCE_WEIGHTED ? b * b * k : k;
+        x->diag[r] = x->kind == HD_DISTANCE_WEIGHTED ? b * (b * k) : k;
         x->g[r] = x->spread[r] = 0;
     }
     x->rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON;
@@ -18984,10 +18984,10 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
             (void)hdi_probe_value(heat, &probe, i, &x->set, 1, 1, HUGE_VAL, &by);
             by *= sqrt(m->lap->b_diag[row]) / (hdi_ratio_root(m->lap) / sqrt(m->lap->b_diag[row]));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
             value = (x->diag[m->sym.perm[row]]) * heat->scale;
-            by += m->set.a0 == 0 ? fabs(there - value) : 0;
+            by += m->set.a0 == 0 ? 2 * fabs(there - value) : 0;
         } else {
             there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
-            by += fabs(there - value);
+            by += 2 * fabs(there - value);
         }
         x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(x->own ? entries.g[row] : value)));
     }
@@ -19320,7 +19320,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
             }
             for (p = 0; p < set[q].n_poles; p++) off += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
             off *= sqrt(hdi_max(0, f[n + row]));
-            rounding[q] = hdi_max(rounding[q], hdi_quotient(fabs(there - f[row]) + off, fabs(f[row])));
+            rounding[q] = hdi_max(rounding[q], hdi_quotient(2 * fabs(there - f[row]) + off, fabs(f[row])));
         }
     }
     for (r = 0; r < k; r++) {
