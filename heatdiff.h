@@ -15408,14 +15408,17 @@ static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
     return best;
 }
 
-/* The bounds of a lane's error at the vertices where the answer is not zero: by the B norm, and by that of B + tL with
- * reach, a bound of diag((B + tL)^-1), where that is at hand (else NULL). */
+/* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm, and by that of
+ * B + tL with reach, a bound of diag((B + tL)^-1), where that is at hand (else NULL). */
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
-    double smallest_b = HUGE_VAL, largest_g = 0;
+    double smallest_b = HUGE_VAL, largest_g = 0, *touched = lane->spare_sums;
     hdi_parts by_b;
     int32_t i;
+    memset(touched, 0, HDI_CAST(size_t, lap->n_components) * sizeof *touched);
+    for (i = 0; i < lap->n_active; i++)
+        if (lane->u[i] != 0) touched[lap->component[i]] = 1;
     for (i = 0; i < lap->n_active; i++) {
-        if (lane->u[i] == 0) continue;
+        if (touched[lap->component[i]] == 0) continue;
         smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
         if (reach) largest_g = hdi_max(largest_g, reach[i]);
     }
@@ -17412,8 +17415,10 @@ typedef struct hdi_heat_call {
     double *values;
 } hdi_heat_call;
 
-/* t for the scaled pair. Where that is beyond all doubles, anything as large does. */
-static double hdi_heat_scaled(const hd_heat *heat, double t) { return hdi_min(t * heat->scale, 1e300); }
+/* t for the scaled pair. Where that is beyond all doubles anything as large does, and as small where it vanishes. */
+static double hdi_heat_scaled(const hd_heat *heat, double t) {
+    return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
+}
 
 static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, double t, int32_t k, hd_report *report) {
     memset(h, 0, sizeof *h);
@@ -18527,7 +18532,7 @@ static double hdi_diagonal_tell(hdi_heat_call *h, hd_kernel kernel, const double
         hdi_parts part;
         memset(&part, 0, sizeof part);
         part.rational = unit * off[i];
-        part.rounding = rounding > 0 ? unit * rounding * fabs(size[i]) : 0;
+        part.rounding = 4 * DBL_EPSILON * unit * fabs(value[i]) + (rounding > 0 ? unit * rounding * fabs(size[i]) : 0);
         out[lap->vertex[i]] = unit * value[i];
         hdi_ledger_note(&ledger, unit * value[i], part);
         most = hdi_max(most, hdi_quotient(off[i], fabs(value[i])));
@@ -18984,7 +18989,7 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
             (void)hdi_probe_value(heat, &probe, i, &x->set, 1, 1, HUGE_VAL, &by);
             by *= sqrt(m->lap->b_diag[row]) / (hdi_ratio_root(m->lap) / sqrt(m->lap->b_diag[row]));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
             value = (x->diag[m->sym.perm[row]]) * heat->scale;
-            by += m->set.a0 == 0 ? 2 * fabs(there - value) : 0;
+            by += 2 * fabs(there - value);
         } else {
             there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
             by += 2 * fabs(there - value);
