@@ -14285,7 +14285,7 @@ typedef struct hdi_silan {
     double *probe;               /* [2 n] a solution and its residual */
     double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
     double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
-    double solved;               /* largest residual found of a solve over that, at least 1 */
+    double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
     double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];   /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
     int32_t vectors_of, vectors_m;
@@ -14481,7 +14481,7 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
         from = to;
     }
     for (size = 0, i = 0; i < m; i++) size += z->y[i] * z->y[i];
-    return sqrt(HDI_CAST(double, m)) * (z->noise * integral + m * DBL_EPSILON * sqrt(size));
+    return sqrt(HDI_CAST(double, m)) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
 }
 
 /* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
@@ -14772,7 +14772,7 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     if (e->status < 0) return e->status;
     z->w = z->c + n * wide;
     z->probe = z->w + n * wide;
-    z->solved = 1;
+    z->solved = 0;
     z->steps = 0;
     z->vectors_of = -1;
     for (r = 0; r < z->wide; r++) {
@@ -14913,7 +14913,7 @@ static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, doubl
     if (!hdi_silan_eigen(z, r, m, 0, m - 1, d, x, y)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
-        if (d[i] > 1.001 + 10 * z->solved * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r]) return hdi_not_semidefinite(e);
+        if (d[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r]) return hdi_not_semidefinite(e);
         f[i] = hdi_silan_decay(d[i], tau);
         norm += x[i] * f[i] * x[i] * f[i];
         x[i] *= y[i];
@@ -15019,7 +15019,7 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
         for (j = 0; j < m; j++) most[j] = hdi_max(most[j], fabs(hdi_dot(z->vectors + HDI_CAST(int64_t, j) * m, slope, m)));
     }
     for (j = 0; j < m; j++) {
-        const double step = root * z->solved * z->noise[j][r] + 4 * DBL_EPSILON * (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
+        const double step = root * hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]) + 4 * DBL_EPSILON * (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
         sum += 1.5 * most[j] * step;
     }
     return z->f_norm[r] * sum + m * DBL_EPSILON * size;
