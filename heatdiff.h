@@ -894,7 +894,15 @@ static hd_c64 hdi_cdiv(hd_c64 a, hd_c64 b) {
     return hdi_c((a.re * q + a.im) / d, (a.im * q - a.re) / d);
 }
 
-static int hdi_finite(double x) { return fabs(x) <= DBL_MAX; }
+/* By their bits: comparisons raise the invalid flag for NaN, and with -ffast-math compilers take it that there is none. */
+static HDI_INLINE uint64_t hdi_bits(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static HDI_INLINE int hdi_finite(double x) { return (hdi_bits(x) >> 52 & 0x7ff) != 0x7ff; }
+static HDI_INLINE int hdi_nan(double x) { return hdi_bits(x) << 1 > HDI_CAST(uint64_t, 0xffe) << 52; }
 static int hdi_cfinite(hd_c64 a) { return hdi_finite(a.re) && hdi_finite(a.im); }
 /* sqrt(a^2 + b^2): hypot's care only where it is needed. */
 static double hdi_pythag(double a, double b) {
@@ -1564,6 +1572,7 @@ static void hdi_r128_block(double *P, int64_t ld, int32_t kc, int32_t nc, int32_
             c[i] = s;
         }
         d = c[j];
+        if (d == 0) return;                      /* which hdi_real_block finds on the diagonal */
         dinv[kc + j] = 1 / d;
         for (i = 0; i < 4; i++) T[4 * j + i] = i > j && i < nc ? c[i] : 0.0;
         for (i = j + 1; i < nc; i++) c[i] *= dinv[kc + j];
@@ -1919,6 +1928,7 @@ static HDI_AVX2 HDI_INLINE void hdi_r256_pivots(const int nv, double *P, int64_t
 #define HDI_R256_LANE(v, k) _mm256_permute4x64_pd(v, 0x55 * k)
 #define HDI_R256_PIVOT(j)                                                                                                \
         const __m128d d##j = _mm256_castpd256_pd128(HDI_R256_LANE(x##j, j));                                             \
+        if (_mm_ucomieq_sd(d##j, _mm_setzero_pd())) { _mm_store_sd(C + j, d##j); return; }                               \
         const __m128d q##j = _mm_div_sd(_mm_set_sd(1.0), d##j);                                                          \
         const __m256d r##j = _mm256_broadcastsd_pd(q##j), l##j = _mm256_mul_pd(x##j, r##j);                              \
         _mm256_storeu_pd(T + 4 * j, x##j);                                                                               \
@@ -2379,6 +2389,7 @@ static HDI_AVX512 HDI_INLINE void hdi_r512_pivots(const int nv, double *P, int64
     }
 #define HDI_R512_PIVOT(j)                                                                                                \
         const __m128d d##j = _mm512_castpd512_pd128(_mm512_permutexvar_pd(_mm512_set1_epi64(j), x##j));                  \
+        if (_mm_ucomieq_sd(d##j, _mm_setzero_pd())) { _mm_store_sd(C + j, d##j); return; }                               \
         const __m128d q##j = _mm_div_sd(_mm_set_sd(1.0), d##j);                                                          \
         const __m512d r##j = _mm512_broadcastsd_pd(q##j), l##j = _mm512_mul_pd(x##j, r##j);                              \
         _mm512_storeu_pd(T + 8 * j, x##j);                                                                               \
@@ -2600,7 +2611,7 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
         o->block(P + k, m, k, nc, n, S, dinv);
         for (j = k; j < k + nc; j++) {
             const double d = P[j * (m + 1)], a = fabs(d);
-            if (!(a > 0 && a <= DBL_MAX)) return j;
+            if (a == 0 || !hdi_finite(a)) return j;
             if (a > pivots->largest) pivots->largest = a;
             if (a < pivots->smallest) pivots->smallest = a;
             pivots->negative += d < 0;
@@ -3739,7 +3750,7 @@ typedef struct hdi_found {
 enum { HDI_COUNT = -1 };
 
 static void hdi_found_bound(hdi_found *f, double bound) {
-    f->bound = hdi_min(bound, DBL_MAX);
+    f->bound = hdi_min(bound, 1e305);            /* beyond all squared distances, which hdi_points_check keeps below 1e301 */
     f->prune = f->bound * (1 + 8 * DBL_EPSILON);
 }
 
@@ -3893,7 +3904,7 @@ static void hdi_nearest_task(void *arg, int64_t index, int32_t worker) {
         const double *q = job->query + 3 * v;
         const double limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
         int64_t m;
-        hdi_found_bound(f, before ? limit * limit * (1 + 16 * DBL_EPSILON) : DBL_MAX);
+        hdi_found_bound(f, before ? limit * limit * (1 + 16 * DBL_EPSILON) : 1e305);
         hdi_search(job->t, q, f);
         m = hdi_found_sort(f);
         for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? HDI_CAST(int32_t, f->sorted[p].id) : -1;
@@ -4122,10 +4133,12 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, doubl
         }
         return 0;
     }
-    cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
-    cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
-    cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
-    if (twice / 24 < DBL_MIN || !(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]) <= DBL_MAX)) {
+    if (twice / 24 >= DBL_MIN) {
+        cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
+        cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
+        cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
+    }
+    if (twice / 24 < DBL_MIN || !hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) {
         tally->n_zero_area++;
         return 0;
     }
@@ -4407,9 +4420,10 @@ static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const dou
     } else {
         const double x[3] = {cot[1] * cot[2], cot[2] * cot[0], cot[0] * cot[1]}, sum = x[0] + x[1] + x[2], quarter = area / 4;
         const double obtuse = hdi_min(cot[0], hdi_min(cot[1], cot[2])) < 0, most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
-        const double flat = quarter * obtuse, scale = quarter / sum * (1 - obtuse);
+        const int round = hdi_finite(sum) && sum > 1e-100;
+        const double flat = quarter * obtuse, scale = quarter / (round ? sum : 1) * (1 - obtuse);
         int q;
-        if (sum > 1e-100 && sum <= DBL_MAX) {    /* without further branches: which angle is obtuse is anyone's guess */
+        if (round) {                             /* without further branches: which angle is obtuse is anyone's guess */
             mass[v[0]] += quarter + (flat * (cot[0] < 0) + scale * x[0]);
             mass[v[1]] += quarter + (flat * (cot[1] < 0) + scale * x[1]);
             mass[v[2]] += quarter + (flat * (cot[2] < 0) + scale * x[2]);
@@ -5921,7 +5935,7 @@ static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double 
         const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
         cot[q] = (b * b + c * c - a * a) / (4 * area);
     }
-    if (!(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]) <= DBL_MAX)) return;
+    if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
     *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
     for (q = 0; q < 3; q++) cot[q] *= weight;
     area *= weight * unit * unit;
@@ -5960,7 +5974,7 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, hd_mesh
         for (f = 0; f < m; f++)
             hdi_flat_face(flat, f, soup->len + 3 * HDI_CAST(int64_t, f), c.first[f] < 0 ? soup->mesh.area[f] : 0, soup->unit, soup->copies[f] / 3.0, &steepest);
         for (i = 0; i < c.n; i++) hdi_flat_face(flat, m + i, c.t.len + 3 * HDI_CAST(int64_t, i), c.t.area[i], soup->unit, 1.0 / 6, &steepest);
-        rep->smallest_intrinsic_angle = steepest > -HUGE_VAL ? atan2(1, steepest) : 0;
+        rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
         rep->n_sheets = 2;
     }
     hdi_cover_free(&c);
@@ -10183,9 +10197,10 @@ static int hdi_pack_pivots(const hdi_factor *f, const hdi_front *w, hdi_pivots *
             for (c = 0; c < HDI_PACK; c++) d[c] -= t[c];
         }
         for (c = 0; c < 4; c++) {
-            const hd_c64 one = hdi_cdiv(hdi_c(1, 0), hdi_c(d[c], d[c + 4]));
             const double size = hdi_pythag(d[c], d[c + 4]);
-            if (!(size > 0) || !hdi_finite(size) || !hdi_cfinite(one)) {
+            hd_c64 one = hdi_c(0, 0);
+            if (hdi_finite(size) && size > 0) one = hdi_cdiv(hdi_c(1, 0), hdi_c(d[c], d[c + 4]));
+            if (!hdi_finite(size) || !(size > 0) || !hdi_cfinite(one)) {
                 note->failed = w->first + HDI_CAST(int32_t, k0) + i;
                 note->lane = c;
                 note->value = size;
@@ -12637,7 +12652,7 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
 static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     int32_t i;
     if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES) return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
-    if (!hdi_finite(set->a0) || !(set->max_error >= 0) || !(set->max_weighted_error >= 0))
+    if (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 || hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0)
         return hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
     for (i = 0; i < set->n_poles; i++) {
         const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
@@ -13530,6 +13545,7 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     }
     hdi_warm_solve(h, c, m);
     for (i = 0; i < m; i++) sum = hdi_cadd(sum, c[i]);
+    if (sum.re == 0 && sum.im == 0) return;
     for (i = 0; i < m; i++) {
         const hd_c64 w = hdi_cdiv(c[i], sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
         const double sign = conj[i] ? -1 : 1;
@@ -13548,7 +13564,7 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
     hd_status worst = HD_OK, status;
     double left = aim;
     int32_t p;
-    part.share = watch->share / n_poles;
+    part.share = n_poles > 0 ? watch->share / n_poles : 0;
     for (p = n_poles; p-- > 0;) {
         hdi_krylov *k = lane->k + p;
         const int32_t last = p + HDI_WARM_POLES < n_poles ? p + HDI_WARM_POLES : n_poles - 1;
@@ -15015,10 +15031,11 @@ static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *
         for (c = 0; c < HDI_GEO_WIDE; c += 4) {
             const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c)), u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
             const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c)), m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
-            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ), s = _mm256_and_pd(lit, _mm256_div_pd(one, m));
+            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ), s = _mm256_and_pd(lit, _mm256_div_pd(one, _mm256_blendv_pd(one, m, lit)));
             const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s), d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
             const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1)), norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
-            const hdi_v4 w = _mm256_and_pd(_mm256_cmp_pd(norm2, flat, _CMP_GT_OQ), _mm256_div_pd(minus, _mm256_sqrt_pd(norm2)));
+            const hdi_v4 slope = _mm256_cmp_pd(norm2, flat, _CMP_GT_OQ);
+            const hdi_v4 w = _mm256_and_pd(slope, _mm256_div_pd(minus, _mm256_sqrt_pd(_mm256_blendv_pd(one, norm2, slope))));
             const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w), g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
             faint |= (_mm256_movemask_pd(_mm256_cmp_pd(m, zero, _CMP_GT_OQ)) & ~_mm256_movemask_pd(lit)) << c;
             _mm256_storeu_pd(b + i + c, _mm256_sub_pd(_mm256_loadu_pd(b + i + c), _mm256_add_pd(g1, g2)));
@@ -15545,7 +15562,7 @@ static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
 static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
     task->close = opts && opts->tufted;
     task->delta = opts && opts->mollify != 0 ? opts->mollify : 1e-5;
-    if (!(task->delta <= 1)) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
+    if (hdi_nan(task->delta) || task->delta > 1) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
     return opts && (opts->intrinsic_delaunay || opts->tufted);
 }
 
@@ -15586,7 +15603,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     if (n_faces < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
     if (!splits && kind != HD_LAPLACIAN_POLYGON)
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot"));
-    if (!(poly.lambda > 0 && poly.lambda <= 1e100))
+    if (!hdi_finite(poly.lambda) || !(poly.lambda > 0 && poly.lambda <= 1e100))
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: lambda is not between 0 and 1e100"));
     if (hdi_intrinsic_opts(opts, &task, c.e) && !splits)
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot"));
@@ -15670,7 +15687,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     hd_laplacian *lap = hdi_lap_new(opts, L ? L->n_rows : 0, HD_LAPLACIAN_MATRICES, err, &c);
     if (!lap) return c.e->status;
     if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (!(h >= 0) || !hdi_finite(h)) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: h is negative or not finite"));
+    if (!hdi_finite(h) || h < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: h is negative or not finite"));
     if (hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
     if (L->n_rows != B->n_rows)
         return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
@@ -15694,8 +15711,8 @@ static hd_status hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts
         return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the kind is voronoi-exp or exp (hd_laplacian_tufted_points has fem, voronoi-cot and cot)");
     if (opts && (opts->intrinsic_delaunay || opts->tufted))
         return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: exponential weights know no triangles; hd_laplacian_tufted_points makes some");
-    if (!(rep->bandwidth >= 0) || !hdi_finite(rep->bandwidth)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
-    if (!(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
+    if (!hdi_finite(rep->bandwidth) || rep->bandwidth < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
+    if (!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
     return hdi_point_neighbours(rep, opts, e);
 }
 
@@ -15752,10 +15769,10 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     hdi_tree tree;
     if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
     if (!out) return hdi_missing(c.e);
-    if (!(radius >= 0)) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
+    if (hdi_nan(radius) || radius < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
     s = hdi_scope_begin(c.ctx, c.e);
     if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
-        (void)hdi_within(out, &tree, xyz, query, m, radius * radius, c.ctx, c.e);
+        (void)hdi_within(out, &tree, xyz, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
@@ -15819,11 +15836,11 @@ static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_erro
 }
 
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
-    if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
+    if (!hdi_finite(t) || t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
     if (!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: theta lies on (-inf, 0] or is not finite");
     if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: the solver is cocg, cocr or minres");
     if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: unknown preconditioner");
-    if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: tol is not in [0, 1)");
+    if (!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: tol is not in [0, 1)");
     if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: max_iterations is negative");
     return HD_OK;
 }
@@ -15876,7 +15893,7 @@ static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *r
     if (!of) return;
     rep->n_matrices = of->width == 1 ? 1 : f->n_matrices;
     rep->growth = of->largest_entry > 0 ? of->all.largest / of->largest_entry : 0;
-    rep->smallest_pivot = of->largest_entry > 0 && of->all.smallest < HUGE_VAL ? of->all.smallest / of->largest_entry : 0;
+    rep->smallest_pivot = of->largest_entry > 0 && hdi_finite(of->all.smallest) ? of->all.smallest / of->largest_entry : 0;
     rep->n_negative = HDI_CAST(int32_t, of->all.negative);
 }
 
@@ -16231,7 +16248,7 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     if (o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the degree is not in 1..14", -1, -1, o->degree);
     if ((o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL) && o->degree && o->degree < HDI_RAT_KERNEL_MIN)
         return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: kernel and diagonal sets have degrees 2 to 14", -1, -1, o->degree);
-    if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
+    if (!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
     if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: max_iterations is negative");
     if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown ordering");
     if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
@@ -16501,7 +16518,7 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->k = k;
     if (!heat) return hdi_missing(h->e);
     h->s = hdi_scope_begin(heat->ctx, h->e);
-    if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
+    if (!hdi_finite(t) || t < 0) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
     if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     h->t = t * heat->scale;
     if (!hdi_finite(h->t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is too large for these masses", -1, -1, t);
@@ -17184,7 +17201,7 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
     if (h.e->status >= 0 && f) (void)hdi_fields_check(&h);
     if (h.e->status >= 0 && !f) (void)hdi_vertex_check(heat->source, source, h.e);
     for (q = 0; q < n_times && h.e->status >= 0; q++)
-        if (!(t[q] >= 0) || !hdi_finite(t[q] * heat->scale)) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
+        if (!hdi_finite(t[q]) || t[q] < 0 || !hdi_finite(t[q] * heat->scale)) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
     if (h.e->status < 0 || n_times == 0 || hdi_heat_sort_times(&h, n_times, t) < 0) return hdi_heat_end(&h);
     if (n_times > 1 && h.times[0] > 0 && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV && (hdi_krylov_all(&h) >= 0 || !hdi_heat_retreat(&h)))
         return hdi_heat_end(&h);
@@ -17236,7 +17253,7 @@ static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double
     if (h->heat->opts.method == HD_METHOD_ITERATIVE || h->heat->opts.method == HD_METHOD_KRYLOV)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
     for (q = 0; q < n_times; q++)
-        if (!(t[q] > 0) || !hdi_finite(t[q] * h->heat->scale)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+        if (!hdi_finite(t[q]) || !(t[q] > 0) || !hdi_finite(t[q] * h->heat->scale)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
     return HD_OK;
 }
 
@@ -17318,7 +17335,7 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
 /* Bound of the rational error of k_t(i,i), from g(i,i) and diag(B)(i). */
 static double hdi_entry_error(const hdi_entries *x, double g, double b, double b_ratio) {
     const double uniform = b_ratio > 0 ? x->uniform / (b_ratio * b) : HUGE_VAL;
-    return x->weighted < HUGE_VAL ? hdi_min(x->weighted * g, uniform) : uniform;
+    return hdi_finite(x->weighted) ? hdi_min(x->weighted * g, uniform) : uniform;
 }
 
 /* Place of each of the analysis' entries: row and column in elimination order. */
@@ -17394,7 +17411,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         for (v = 0; v < s->n_super; v++)
             for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
                 const int32_t at = s->super[v] + s->a_col[n];
-                if (s->a_row[n] == s->a_col[n]) off[at] = hdi_min(x.weighted < HUGE_VAL ? x.weighted * sqrt(x.g[n] * lap->b_diag[at]) : HUGE_VAL, x.uniform / sqrt(lap->b_ratio));
+                if (s->a_row[n] == s->a_col[n]) off[at] = hdi_min(hdi_finite(x.weighted) ? x.weighted * sqrt(x.g[n] * lap->b_diag[at]) : HUGE_VAL, x.uniform / sqrt(lap->b_ratio));
             }
     } else {
         const double a0 = heat->elim.set.a0;
@@ -17781,7 +17798,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
             const double b = lap->b_diag[r], w = kind == HD_DISTANCE_WEIGHTED ? b * b : 1;
             if (full) {
                 x->diag[r] = unit * entries.k[i] + m->set.a0 * b;
-                x->off[r] = hdi_min(entries.weighted < HUGE_VAL ? entries.weighted * unit * entries.g[i] : HUGE_VAL, entries.uniform * b);
+                x->off[r] = hdi_min(hdi_finite(entries.weighted) ? entries.weighted * unit * entries.g[i] : HUGE_VAL, entries.uniform * b);
                 continue;
             }
             x->diag[r] = w * unit * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i]));
@@ -17861,7 +17878,7 @@ static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, 
     if (kind >= HD_DISTANCE_COMMUTE) return n_times > 1 ? hdi_fail_row(e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times) : HD_OK;
     if (n_times > 0 && !t) return hdi_missing(e);
     for (q = 0; q < n_times; q++)
-        if (!(t[q] > 0) || !hdi_finite(2 * t[q] * heat->scale)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+        if (!hdi_finite(t[q]) || !(t[q] > 0) || !hdi_finite(2 * t[q] * heat->scale)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
     return HD_OK;
 }
 
@@ -17888,7 +17905,7 @@ static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double 
     memset(rep, 0, sizeof *rep);
     if (!work || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
     if (hdi_direct_columns(heat, x.t, kernel, &x.set, k, sources, D, step, &columns) < 0) *e = columns.error;
-    if (e->status >= 0 && x.weighted > 0 && x.weighted < HUGE_VAL) g = HDI_TAKE(&s, double, n);
+    if (e->status >= 0 && x.weighted > 0 && hdi_finite(x.weighted)) g = HDI_TAKE(&s, double, n);
     for (r = 0; r < k && e->status >= 0; r++) {
         double *u = D + HDI_CAST(size_t, r) * step;
         hd_report bound;
@@ -18234,7 +18251,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 /* ---- geodesic distance ---- */
 
 static hd_status hdi_geo_check(const hd_geodesic_opts *o, hd_error *e) {
-    if (!(o->t >= 0) || !hdi_finite(o->t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
+    if (!hdi_finite(o->t) || o->t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
     if (o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown mass");
     if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown ordering");
     if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
