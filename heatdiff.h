@@ -828,11 +828,14 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH(p) __builtin_prefetch(p)
+/* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
+#define HDI_PREFETCH_AT(p, i) __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(i) * sizeof *(p)))
 #else
 #define HDI_RESTRICT
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
 #define HDI_PREFETCH(p) ((void)0)
+#define HDI_PREFETCH_AT(p, i) ((void)0)
 #endif
 
 /* Instruction sets. A few kernels are compiled several times in this one file, with function-level targets, and chosen at run time, so that a plain
@@ -1029,12 +1032,14 @@ static void hdi_free(hd_context *ctx, void *block) {
     else HEATDIFF_FREE(raw);
 }
 
+enum { HDI_SCOPE_MOST = 32 };
+
 /* Work arrays of one function. After a failed take all further ones give NULL, so one check of e->status serves for many. */
 typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
     int32_t n;
-    void *block[32];
+    void *block[HDI_SCOPE_MOST];
 } hdi_scope;
 
 static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
@@ -1048,8 +1053,11 @@ static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
 
 static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
     void *p;
-    HEATDIFF_ASSERT(s->n < HDI_CAST(int32_t, sizeof s->block / sizeof *s->block));
     if (s->e->status < 0) return NULL;
+    if (s->n == HDI_SCOPE_MOST) {                /* a mistake of ours, which tests would see */
+        hdi_fail(s->e, HD_ERR_TOO_LARGE, "a function takes more work arrays than its scope holds");
+        return NULL;
+    }
     p = hdi_alloc(s->ctx, count, size, s->e);
     if (p) s->block[s->n++] = p;
     return p;
@@ -3565,8 +3573,8 @@ static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x, do
     for (i = begin; i < end; i++) {
         const int64_t row_end = Ap[i + 1];
         double sum = 0;
-        HDI_PREFETCH(Ax + p + HDI_AHEAD);
-        HDI_PREFETCH(Aj + p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Ax, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         for (; p < row_end; p++) sum += Ax[p] * x[Aj[p]];
         y[i] = sum;
     }
@@ -3858,6 +3866,7 @@ typedef struct hdi_search_job {
     double *distance2;         /* NULL: not wanted */
     double radius2;            /* all within a radius: counts first, then columns and distances */
     hd_csr *out;
+    int32_t *kept;             /* [n_queries] entries of the rows */
     hdi_found *found;          /* [tasks] */
 } hdi_search_job;
 
@@ -3970,6 +3979,7 @@ static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
     if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
 }
 
+/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise than those of the other. */
 static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
     const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
     const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
@@ -3980,7 +3990,7 @@ static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
     for (i = begin; i < end; i++) {
         const int64_t v = job->order ? job->order[i] : i;
         f->counted = 0;
-        hdi_found_bound(f, job->radius2);
+        hdi_found_bound(f, job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN);
         hdi_search(job->t, job->query + 3 * v, f);
         job->out->row_ptr[v] = f->counted + f->m;
     }
@@ -4011,11 +4021,28 @@ static void hdi_within_task(void *arg, int64_t index, int32_t worker) {
         hdi_found_bound(f, job->radius2);
         hdi_search(job->t, job->query + 3 * v, f);
         hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
+        job->kept[v] = HDI_CAST(int32_t, f->m);
     }
 }
 
 /* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values are these. Counted in a first pass, written
  * in a second one. Other arguments as in hdi_nearest. */
+/* Closes the gaps that rows with fewer entries than were counted leave. */
+static void hdi_within_close(hd_csr *a, const int32_t *kept) {
+    int64_t to = 0;
+    int32_t i;
+    for (i = 0; i < a->n_rows; i++) {
+        const int64_t from = a->row_ptr[i];
+        if (from != to) {
+            memmove(a->col + to, a->col + from, HDI_CAST(size_t, kept[i]) * sizeof *a->col);
+            memmove(a->val + to, a->val + from, HDI_CAST(size_t, kept[i]) * sizeof *a->val);
+        }
+        a->row_ptr[i] = to;
+        to += kept[i];
+    }
+    a->nnz = a->row_ptr[a->n_rows] = to;
+}
+
 static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, const double *query, int32_t n_queries, double radius2, hd_context *ctx,
                             hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
@@ -4040,7 +4067,11 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, c
     a.val = HDI_TAKE(&s, double, a.nnz);
     tasks = hdi_search_tasks(&job, widest);
     hdi_search_take(&job, tasks, widest, &passes);
-    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_within_task, &job);
+    job.kept = HDI_TAKE(&passes, int32_t, n_queries);
+    if (e->status >= 0) {
+        hdi_parallel(ctx, tasks, hdi_within_task, &job);
+        hdi_within_close(&a, job.kept);
+    }
     if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
     *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
@@ -6487,10 +6518,10 @@ static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta, c
     int64_t p = 0;
     for (i = 0; i < lap->n_active; i++) {
         double l = 0, b = 0;
-        HDI_PREFETCH(Lx + p + HDI_AHEAD);
-        HDI_PREFETCH(Aj + p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         if (Bx) {
-            HDI_PREFETCH(Bx + p + HDI_AHEAD);
+            HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
             for (; p < Ap[i + 1]; p++) {
                 l += Lx[p] * x[Aj[p]];
                 b += Bx[p] * x[Aj[p]];
@@ -6787,12 +6818,16 @@ static void hdi_tangent_plane(const double *rel, int32_t n, double axis[2][3]) {
     memcpy(axis[1], v[2], 3 * sizeof(double));
 }
 
+enum { HDI_POLYGON_MOST = HDI_CELL_SIDES + 2 * HDI_MOST_NEIGHBOURS + 4 };
+
 typedef struct hdi_polygon {
     int32_t n;
-    double x[HDI_CELL_SIDES + 2 * HDI_MOST_NEIGHBOURS + 4][2];
+    double x[HDI_POLYGON_MOST][2];
 } hdi_polygon;
 
-/* Keeps what lies in a x <= b; says whether anything was cut off. */
+/* Keeps what lies in a x <= b; says whether anything was cut off. A cut adds one corner to a convex polygon: there is room for one by each
+ * neighbour and one by each side of their hull. Rounding can leave corners that are not convex, and a line through those may add more: where
+ * there is no room for that, nothing is cut off. */
 static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
     hdi_polygon cut;
     double last, here;
@@ -6804,6 +6839,7 @@ static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
     last = a0 * g->x[g->n - 1][0] + a1 * g->x[g->n - 1][1] - b;
     for (i = 0; i < g->n; i++) {
         const double *from = g->x[i ? i - 1 : g->n - 1], *to = g->x[i];
+        if (cut.n + 2 > HDI_POLYGON_MOST) return 0;
         here = a0 * to[0] + a1 * to[1] - b;
         if ((last <= 0) != (here <= 0)) {        /* one of both is not zero */
             const double s = last / (last - here);
@@ -7815,6 +7851,8 @@ static void hdi_amd_element(hdi_amd *g, int32_t me) {
     int32_t begin, end, p, weight = 0;
     const int32_t elen = v->elen;
     if (elen > 0 && v->degree > g->size - g->free) hdi_amd_compact(g);
+    /* Lists that are alive hold at most the nnz entries that they began with: L_me replaces the longer ones it is made of, and whoever gets me into its list
+     * loses one entry at least. So n words and more are free after compacting, and degrees are below n. */
     HEATDIFF_ASSERT(elen == 0 || v->degree <= g->size - g->free);
     begin = end = elen > 0 ? g->free : v->at;
     v->weight = -v->weight;
@@ -8194,6 +8232,12 @@ typedef struct hdi_nd {
 /* Work space left to a task; taken from its front, given back by forgetting the copy that was taken from. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
+/* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes 1.25 n (rows by number, sides), and the list of a
+ * cut's vertices 2 n; what else it takes is given back before the next step. Of these steps the largest is hdi_nd_cut_clusters: 1.25 c for c <= n clusters,
+ * 2 n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N, all 9.5 c; where a copy fails it keeps 3.17 N
+ * at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is
+ * 9.5 c (1 - (2/3)^l) + 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words a copy, of which there are 24. The flow takes 10.25 n,
+ * fresh clusters 3.17 n + 5.5 (2/3 n), clusters of a half 2 n; hdi_nd_leaf looks itself. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
     HEATDIFF_ASSERT(words <= s->end - s->at);
@@ -11283,7 +11327,9 @@ static int64_t hdi_form_place(const hdi_inverse_front *w, int32_t i) {
     return i < s->super[w->v + 1] ? i - s->super[w->v] : w->p + hdi_lower_bound(s->row + s->row_ptr[w->v], w->u, i);
 }
 
-/* Rows of front v, cleared when they are new: they are on top of the stack. */
+/* Rows of front v, cleared when they are new: they are on top of the stack. It has room for all: fronts are worked on in the order of the tree, so that of
+ * the ways from J down to the front under way those fronts are open that an earlier child has handed rows to, as hdi_form_rows counts them, and no front has
+ * more columns than the block. */
 static double *hdi_form_open(hdi_form_block *b, int32_t v, int32_t k) {
     const hdi_factor *f = b->w->f;
     const int64_t size = (hdi_front_pivots(f->sym, v) + hdi_front_below(f->sym, v)) * hdi_form_row(f->width, k);
@@ -11915,14 +11961,14 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     memcpy(z, r, HDI_CAST(size_t, n) * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
-        HDI_PREFETCH(u + ptr[i] + HDI_AHEAD / 4);
-        HDI_PREFETCH(col + ptr[i] + HDI_AHEAD);
+        HDI_PREFETCH_AT(u, ptr[i] + HDI_AHEAD / 4);
+        HDI_PREFETCH_AT(col, ptr[i] + HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
     for (i = n; i-- > 0;) {
         hd_c64 w = hdi_cmul(z[i], m->d_inv[i]);
-        HDI_PREFETCH(u + ptr[i] - HDI_AHEAD / 4);
-        HDI_PREFETCH(col + ptr[i] - HDI_AHEAD);
+        HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
+        HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
         z[i] = w;
     }
@@ -11954,10 +12000,10 @@ static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x
     for (i = 0; i < n; i++) {
         const int64_t end = Ap[i + 1];
         hd_c64 l = hdi_c(0, 0), m = hdi_c(0, 0), s;
-        HDI_PREFETCH(Lx + p + HDI_AHEAD);
-        HDI_PREFETCH(Aj + p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         if (Bx) {
-            HDI_PREFETCH(Bx + p + HDI_AHEAD);
+            HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
             for (; p < end; p++) {
                 const hd_c64 v = x[Aj[p]];
                 l.re += Lx[p] * v.re;
