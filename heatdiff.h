@@ -856,11 +856,14 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH(p) __builtin_prefetch(p)
+/* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
+#define HDI_PREFETCH_AT(p, i) __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(i) * sizeof *(p)))
 #else
 #define HDI_RESTRICT
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
 #define HDI_PREFETCH(p) ((void)0)
+#define HDI_PREFETCH_AT(p, i) ((void)0)
 #endif
 
 /* Instruction sets. A few kernels are compiled several times in this one file, with function-level targets, and chosen at run time, so that a plain
@@ -922,7 +925,15 @@ static hd_c64 hdi_cdiv(hd_c64 a, hd_c64 b) {
     return hdi_c((a.re * q + a.im) / d, (a.im * q - a.re) / d);
 }
 
-static int hdi_finite(double x) { return fabs(x) <= DBL_MAX; }
+/* By their bits: comparisons raise the invalid flag for NaN, and with -ffast-math compilers take it that there is none. */
+static HDI_INLINE uint64_t hdi_bits(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static HDI_INLINE int hdi_finite(double x) { return (hdi_bits(x) >> 52 & 0x7ff) != 0x7ff; }
+static HDI_INLINE int hdi_nan(double x) { return hdi_bits(x) << 1 > HDI_CAST(uint64_t, 0xffe) << 52; }
 static int hdi_cfinite(hd_c64 a) { return hdi_finite(a.re) && hdi_finite(a.im); }
 /* sqrt(a^2 + b^2): hypot's care only where it is needed. */
 static double hdi_pythag(double a, double b) {
@@ -1049,12 +1060,14 @@ static void hdi_free(hd_context *ctx, void *block) {
     else HEATDIFF_FREE(raw);
 }
 
+enum { HDI_SCOPE_MOST = 32 };
+
 /* Work arrays of one function. After a failed take all further ones give NULL, so one check of e->status serves for many. */
 typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
     int32_t n;
-    void *block[32];
+    void *block[HDI_SCOPE_MOST];
 } hdi_scope;
 
 static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
@@ -1068,8 +1081,11 @@ static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
 
 static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
     void *p;
-    HEATDIFF_ASSERT(s->n < HDI_CAST(int32_t, sizeof s->block / sizeof *s->block));
     if (s->e->status < 0) return NULL;
+    if (s->n == HDI_SCOPE_MOST) {                /* a mistake of ours, which tests would see */
+        hdi_fail(s->e, HD_ERR_TOO_LARGE, "a function takes more work arrays than its scope holds");
+        return NULL;
+    }
     p = hdi_alloc(s->ctx, count, size, s->e);
     if (p) s->block[s->n++] = p;
     return p;
@@ -1592,6 +1608,7 @@ static void hdi_r128_block(double *P, int64_t ld, int32_t kc, int32_t nc, int32_
             c[i] = s;
         }
         d = c[j];
+        if (d == 0) return;                      /* which hdi_real_block finds on the diagonal */
         dinv[kc + j] = 1 / d;
         for (i = 0; i < 4; i++) T[4 * j + i] = i > j && i < nc ? c[i] : 0.0;
         for (i = j + 1; i < nc; i++) c[i] *= dinv[kc + j];
@@ -1947,6 +1964,7 @@ static HDI_AVX2 HDI_INLINE void hdi_r256_pivots(const int nv, double *P, int64_t
 #define HDI_R256_LANE(v, k) _mm256_permute4x64_pd(v, 0x55 * k)
 #define HDI_R256_PIVOT(j)                                                                                                \
         const __m128d d##j = _mm256_castpd256_pd128(HDI_R256_LANE(x##j, j));                                             \
+        if (_mm_ucomieq_sd(d##j, _mm_setzero_pd())) { _mm_store_sd(C + j, d##j); return; }                               \
         const __m128d q##j = _mm_div_sd(_mm_set_sd(1.0), d##j);                                                          \
         const __m256d r##j = _mm256_broadcastsd_pd(q##j), l##j = _mm256_mul_pd(x##j, r##j);                              \
         _mm256_storeu_pd(T + 4 * j, x##j);                                                                               \
@@ -2407,6 +2425,7 @@ static HDI_AVX512 HDI_INLINE void hdi_r512_pivots(const int nv, double *P, int64
     }
 #define HDI_R512_PIVOT(j)                                                                                                \
         const __m128d d##j = _mm512_castpd512_pd128(_mm512_permutexvar_pd(_mm512_set1_epi64(j), x##j));                  \
+        if (_mm_ucomieq_sd(d##j, _mm_setzero_pd())) { _mm_store_sd(C + j, d##j); return; }                               \
         const __m128d q##j = _mm_div_sd(_mm_set_sd(1.0), d##j);                                                          \
         const __m512d r##j = _mm512_broadcastsd_pd(q##j), l##j = _mm512_mul_pd(x##j, r##j);                              \
         _mm512_storeu_pd(T + 8 * j, x##j);                                                                               \
@@ -2628,7 +2647,7 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
         o->block(P + k, m, k, nc, n, S, dinv);
         for (j = k; j < k + nc; j++) {
             const double d = P[j * (m + 1)], a = fabs(d);
-            if (!(a > 0 && a <= DBL_MAX)) return j;
+            if (a == 0 || !hdi_finite(a)) return j;
             if (a > pivots->largest) pivots->largest = a;
             if (a < pivots->smallest) pivots->smallest = a;
             pivots->negative += d < 0;
@@ -3582,8 +3601,8 @@ static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x, do
     for (i = begin; i < end; i++) {
         const int64_t row_end = Ap[i + 1];
         double sum = 0;
-        HDI_PREFETCH(Ax + p + HDI_AHEAD);
-        HDI_PREFETCH(Aj + p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Ax, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         for (; p < row_end; p++) sum += Ax[p] * x[Aj[p]];
         y[i] = sum;
     }
@@ -3767,7 +3786,7 @@ typedef struct hdi_found {
 enum { HDI_COUNT = -1 };
 
 static void hdi_found_bound(hdi_found *f, double bound) {
-    f->bound = hdi_min(bound, DBL_MAX);
+    f->bound = hdi_min(bound, 1e305);            /* beyond all squared distances, which hdi_points_check keeps below 1e301 */
     f->prune = f->bound * (1 + 8 * DBL_EPSILON);
 }
 
@@ -3875,6 +3894,7 @@ typedef struct hdi_search_job {
     double *distance2;         /* NULL: not wanted */
     double radius2;            /* all within a radius: counts first, then columns and distances */
     hd_csr *out;
+    int32_t *kept;             /* [n_queries] entries of the rows */
     hdi_found *found;          /* [tasks] */
 } hdi_search_job;
 
@@ -3921,7 +3941,7 @@ static void hdi_nearest_task(void *arg, int64_t index, int32_t worker) {
         const double *q = job->query + 3 * v;
         const double limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
         int64_t m;
-        hdi_found_bound(f, before ? limit * limit * (1 + 16 * DBL_EPSILON) : DBL_MAX);
+        hdi_found_bound(f, before ? limit * limit * (1 + 16 * DBL_EPSILON) : 1e305);
         hdi_search(job->t, q, f);
         m = hdi_found_sort(f);
         for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? HDI_CAST(int32_t, f->sorted[p].id) : -1;
@@ -3987,6 +4007,7 @@ static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
     if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
 }
 
+/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise than those of the other. */
 static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
     const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
     const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
@@ -3997,7 +4018,7 @@ static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
     for (i = begin; i < end; i++) {
         const int64_t v = job->order ? job->order[i] : i;
         f->counted = 0;
-        hdi_found_bound(f, job->radius2);
+        hdi_found_bound(f, job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN);
         hdi_search(job->t, job->query + 3 * v, f);
         job->out->row_ptr[v] = f->counted + f->m;
     }
@@ -4028,11 +4049,28 @@ static void hdi_within_task(void *arg, int64_t index, int32_t worker) {
         hdi_found_bound(f, job->radius2);
         hdi_search(job->t, job->query + 3 * v, f);
         hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
+        job->kept[v] = HDI_CAST(int32_t, f->m);
     }
 }
 
 /* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values are these. Counted in a first pass, written
  * in a second one. Other arguments as in hdi_nearest. */
+/* Closes the gaps that rows with fewer entries than were counted leave. */
+static void hdi_within_close(hd_csr *a, const int32_t *kept) {
+    int64_t to = 0;
+    int32_t i;
+    for (i = 0; i < a->n_rows; i++) {
+        const int64_t from = a->row_ptr[i];
+        if (from != to) {
+            memmove(a->col + to, a->col + from, HDI_CAST(size_t, kept[i]) * sizeof *a->col);
+            memmove(a->val + to, a->val + from, HDI_CAST(size_t, kept[i]) * sizeof *a->val);
+        }
+        a->row_ptr[i] = to;
+        to += kept[i];
+    }
+    a->nnz = a->row_ptr[a->n_rows] = to;
+}
+
 static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, const double *query, int32_t n_queries, double radius2, hd_context *ctx,
                             hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
@@ -4057,7 +4095,11 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, c
     a.val = HDI_TAKE(&s, double, a.nnz);
     tasks = hdi_search_tasks(&job, widest);
     hdi_search_take(&job, tasks, widest, &passes);
-    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_within_task, &job);
+    job.kept = HDI_TAKE(&passes, int32_t, n_queries);
+    if (e->status >= 0) {
+        hdi_parallel(ctx, tasks, hdi_within_task, &job);
+        hdi_within_close(&a, job.kept);
+    }
     if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
     *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
@@ -4150,10 +4192,12 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, doubl
         }
         return 0;
     }
-    cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
-    cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
-    cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
-    if (twice / 24 < DBL_MIN || !(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]) <= DBL_MAX)) {
+    if (twice / 24 >= DBL_MIN) {
+        cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
+        cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
+        cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
+    }
+    if (twice / 24 < DBL_MIN || !hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) {
         tally->n_zero_area++;
         return 0;
     }
@@ -4435,9 +4479,10 @@ static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const dou
     } else {
         const double x[3] = {cot[1] * cot[2], cot[2] * cot[0], cot[0] * cot[1]}, sum = x[0] + x[1] + x[2], quarter = area / 4;
         const double obtuse = hdi_min(cot[0], hdi_min(cot[1], cot[2])) < 0, most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
-        const double flat = quarter * obtuse, scale = quarter / sum * (1 - obtuse);
+        const int round = hdi_finite(sum) && sum > 1e-100;
+        const double flat = quarter * obtuse, scale = quarter / (round ? sum : 1) * (1 - obtuse);
         int q;
-        if (sum > 1e-100 && sum <= DBL_MAX) {    /* without further branches: which angle is obtuse is anyone's guess */
+        if (round) {                             /* without further branches: which angle is obtuse is anyone's guess */
             mass[v[0]] += quarter + (flat * (cot[0] < 0) + scale * x[0]);
             mass[v[1]] += quarter + (flat * (cot[1] < 0) + scale * x[1]);
             mass[v[2]] += quarter + (flat * (cot[2] < 0) + scale * x[2]);
@@ -5949,7 +5994,7 @@ static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double 
         const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
         cot[q] = (b * b + c * c - a * a) / (4 * area);
     }
-    if (!(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]) <= DBL_MAX)) return;
+    if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
     *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
     for (q = 0; q < 3; q++) cot[q] *= weight;
     area *= weight * unit * unit;
@@ -5988,7 +6033,7 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, hd_mesh
         for (f = 0; f < m; f++)
             hdi_flat_face(flat, f, soup->len + 3 * HDI_CAST(int64_t, f), c.first[f] < 0 ? soup->mesh.area[f] : 0, soup->unit, soup->copies[f] / 3.0, &steepest);
         for (i = 0; i < c.n; i++) hdi_flat_face(flat, m + i, c.t.len + 3 * HDI_CAST(int64_t, i), c.t.area[i], soup->unit, 1.0 / 6, &steepest);
-        rep->smallest_intrinsic_angle = steepest > -HUGE_VAL ? atan2(1, steepest) : 0;
+        rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
         rep->n_sheets = 2;
     }
     hdi_cover_free(&c);
@@ -6502,10 +6547,10 @@ static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta, c
     int64_t p = 0;
     for (i = 0; i < lap->n_active; i++) {
         double l = 0, b = 0;
-        HDI_PREFETCH(Lx + p + HDI_AHEAD);
-        HDI_PREFETCH(Aj + p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         if (Bx) {
-            HDI_PREFETCH(Bx + p + HDI_AHEAD);
+            HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
             for (; p < Ap[i + 1]; p++) {
                 l += Lx[p] * x[Aj[p]];
                 b += Bx[p] * x[Aj[p]];
@@ -6814,12 +6859,16 @@ static hdi_plane hdi_tangent_plane(const double *rel, int32_t n) {
     return plane;
 }
 
+enum { HDI_POLYGON_MOST = HDI_CELL_SIDES + 2 * HDI_MOST_NEIGHBOURS + 4 };
+
 typedef struct hdi_polygon {
     int32_t n;
-    double x[HDI_CELL_SIDES + 2 * HDI_MOST_NEIGHBOURS + 4][2];
+    double x[HDI_POLYGON_MOST][2];
 } hdi_polygon;
 
-/* Keeps what lies in a x <= b; says whether anything was cut off. */
+/* Keeps what lies in a x <= b; says whether anything was cut off. A cut adds one corner to a convex polygon: there is room for one by each
+ * neighbour and one by each side of their hull. Rounding can leave corners that are not convex, and a line through those may add more: where
+ * there is no room for that, nothing is cut off. */
 static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
     hdi_polygon cut;
     double last, here;
@@ -6831,6 +6880,7 @@ static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
     last = a0 * g->x[g->n - 1][0] + a1 * g->x[g->n - 1][1] - b;
     for (i = 0; i < g->n; i++) {
         const double *from = g->x[i ? i - 1 : g->n - 1], *to = g->x[i];
+        if (cut.n + 2 > HDI_POLYGON_MOST) return 0;
         here = a0 * to[0] + a1 * to[1] - b;
         if ((last <= 0) != (here <= 0)) {        /* one of both is not zero */
             const double s = last / (last - here);
@@ -7867,6 +7917,8 @@ static void hdi_amd_element(hdi_amd *g, int32_t me) {
     int32_t begin, end, p, weight = 0;
     const int32_t elen = v->elen;
     if (elen > 0 && v->degree > g->size - g->free) hdi_amd_compact(g);
+    /* Lists that are alive hold at most the nnz entries that they began with: L_me replaces the longer ones it is made of, and whoever gets me into its list
+     * loses one entry at least. So n words and more are free after compacting, and degrees are below n. */
     HEATDIFF_ASSERT(elen == 0 || v->degree <= g->size - g->free);
     begin = end = elen > 0 ? g->free : v->at;
     v->weight = -v->weight;
@@ -8246,6 +8298,12 @@ typedef struct hdi_nd {
 /* Work space left to a task; taken from its front, given back by forgetting the copy that was taken from. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
+/* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes 1.25 n (rows by number, sides), and the list of a
+ * cut's vertices 2 n; what else it takes is given back before the next step. Of these steps the largest is hdi_nd_cut_clusters: 1.25 c for c <= n clusters,
+ * 2 n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N, all 9.5 c; where a copy fails it keeps 3.17 N
+ * at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is
+ * 9.5 c (1 - (2/3)^l) + 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words a copy, of which there are 24. The flow takes 10.25 n,
+ * fresh clusters 3.17 n + 5.5 (2/3 n), clusters of a half 2 n; hdi_nd_leaf looks itself. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
     HEATDIFF_ASSERT(words <= s->end - s->at);
@@ -10249,9 +10307,10 @@ static int hdi_pack_pivots(const hdi_factor *f, const hdi_front *w, hdi_pivots *
             for (c = 0; c < HDI_PACK; c++) d[c] -= t[c];
         }
         for (c = 0; c < 4; c++) {
-            const hd_c64 one = hdi_cdiv(hdi_c(1, 0), hdi_c(d[c], d[c + 4]));
             const double size = hdi_pythag(d[c], d[c + 4]);
-            if (!(size > 0) || !hdi_finite(size) || !hdi_cfinite(one)) {
+            hd_c64 one = hdi_c(0, 0);
+            if (hdi_finite(size) && size > 0) one = hdi_cdiv(hdi_c(1, 0), hdi_c(d[c], d[c + 4]));
+            if (!hdi_finite(size) || !(size > 0) || !hdi_cfinite(one)) {
                 note->failed = w->first + HDI_CAST(int32_t, k0) + i;
                 note->lane = c;
                 note->value = size;
@@ -11334,7 +11393,9 @@ static int64_t hdi_form_place(const hdi_inverse_front *w, int32_t i) {
     return i < s->super[w->v + 1] ? i - s->super[w->v] : w->p + hdi_lower_bound(s->row + s->row_ptr[w->v], w->u, i);
 }
 
-/* Rows of front v, cleared when they are new: they are on top of the stack. */
+/* Rows of front v, cleared when they are new: they are on top of the stack. It has room for all: fronts are worked on in the order of the tree, so that of
+ * the ways from J down to the front under way those fronts are open that an earlier child has handed rows to, as hdi_form_rows counts them, and no front has
+ * more columns than the block. */
 static double *hdi_form_open(hdi_form_block *b, int32_t v, int32_t k) {
     const hdi_factor *f = b->w->f;
     const int64_t size = (hdi_front_pivots(f->sym, v) + hdi_front_below(f->sym, v)) * hdi_form_row(f->width, k);
@@ -11966,14 +12027,14 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     memcpy(z, r, HDI_CAST(size_t, n) * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
-        HDI_PREFETCH(u + ptr[i] + HDI_AHEAD / 4);
-        HDI_PREFETCH(col + ptr[i] + HDI_AHEAD);
+        HDI_PREFETCH_AT(u, ptr[i] + HDI_AHEAD / 4);
+        HDI_PREFETCH_AT(col, ptr[i] + HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
     for (i = n; i-- > 0;) {
         hd_c64 w = hdi_cmul(z[i], m->d_inv[i]);
-        HDI_PREFETCH(u + ptr[i] - HDI_AHEAD / 4);
-        HDI_PREFETCH(col + ptr[i] - HDI_AHEAD);
+        HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
+        HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
         z[i] = w;
     }
@@ -12005,10 +12066,10 @@ static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x
     for (i = 0; i < n; i++) {
         const int64_t end = Ap[i + 1];
         hd_c64 l = hdi_c(0, 0), m = hdi_c(0, 0), s;
-        HDI_PREFETCH(Lx + p + HDI_AHEAD);
-        HDI_PREFETCH(Aj + p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         if (Bx) {
-            HDI_PREFETCH(Bx + p + HDI_AHEAD);
+            HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
             for (; p < end; p++) {
                 const hd_c64 v = x[Aj[p]];
                 l.re += Lx[p] * v.re;
@@ -12703,7 +12764,7 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
 static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     int32_t i;
     if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES) return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
-    if (!hdi_finite(set->a0) || !(set->max_error >= 0) || !(set->max_weighted_error >= 0))
+    if (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 || hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0)
         return hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
     for (i = 0; i < set->n_poles; i++) {
         const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
@@ -13276,7 +13337,7 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
     int32_t q, i;
     if (n_times < 1 || !(tol > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: no times, or tol is not positive", -1, -1, n_times < 1 ? n_times : tol);
     for (q = 0; q < n_times; q++) {
-        if (!(t[q] > 0) || !hdi_finite(t[q])) return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: a time is not positive or not finite", q, -1, t[q]);
+        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: a time is not positive or not finite", q, -1, t[q]);
         least = hdi_min(least, t[q]);
         most = hdi_max(most, t[q]);
     }
@@ -13386,7 +13447,7 @@ static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     hdi_evidence_worst(&rep->evidence_rational, l->known.rational);
     hdi_evidence_worst(&rep->evidence_solver, l->known.solver);
     hdi_evidence_worst(&rep->evidence_rounding, l->known.rounding);
-    if (l->smallest < HUGE_VAL) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
+    if (hdi_finite(l->smallest)) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
     if (l->relative >= 0 && rep->error_relative < l->relative) rep->error_relative = l->relative;
     if (!(total <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
 }
@@ -13765,6 +13826,7 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     }
     hdi_warm_solve(h, c, m);
     for (i = 0; i < m; i++) sum = hdi_cadd(sum, c[i]);
+    if (sum.re == 0 && sum.im == 0) return;
     for (i = 0; i < m; i++) {
         const hd_c64 w = hdi_cdiv(c[i], sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
         const double sign = conj[i] ? -1 : 1;
@@ -13783,7 +13845,7 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
     hd_status worst = HD_OK, status;
     double left = aim;
     int32_t p;
-    part.share = watch->share / n_poles;
+    part.share = n_poles > 0 ? watch->share / n_poles : 0;
     for (p = n_poles; p-- > 0;) {
         hdi_krylov *k = lane->k + p;
         const int32_t last = p + HDI_WARM_POLES < n_poles ? p + HDI_WARM_POLES : n_poles - 1;
@@ -14133,7 +14195,7 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     lane->first_norm = sqrt(norm2) + error;
     /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
     if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error) lane->negative = 1;
-    if (factor < HUGE_VAL) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
+    if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
 /* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has its solution at x + 8 at[q]. */
@@ -14614,8 +14676,8 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     for (p = 0; p < set->n_poles; p++)           /* the sum of the answers again: |x_v| <= sqrt(g_v) |x|_M */
         lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * hdi_pole_reach(set->theta[p]) * sqrt(lane->energy);
     lane->off.rational = hdi_set_uniform(set) * lane->f_norm;
-    lane->off_m.rational = weighted < HUGE_VAL ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
-    if (weighted < HUGE_VAL && set->n_poles > 0) {
+    lane->off_m.rational = hdi_finite(weighted) ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
+    if (hdi_finite(weighted) && set->n_poles > 0) {
         const double resolvent = constants ? lane->f_norm : hdi_resolvent_ratio(set->theta[lane->first_pole]) * lane->first_norm;
         lane->off.rational = hdi_min(lane->off.rational, weighted * hdi_min(resolvent, lane->f_norm));
     }
@@ -15422,7 +15484,7 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
         smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
         if (reach) largest_g = hdi_max(largest_g, reach[i]);
     }
-    if (smallest_b == HUGE_VAL) smallest_b = lap->b_diag[0];   /* nothing came out */
+    if (!hdi_finite(smallest_b)) smallest_b = lap->b_diag[0];   /* nothing came out */
     by_b = hdi_parts_scale(hdi_ratio_root(lap) / sqrt(smallest_b), lane->off);
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
@@ -15735,10 +15797,11 @@ static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *
         for (c = 0; c < HDI_GEO_WIDE; c += 4) {
             const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c)), u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
             const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c)), m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
-            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ), s = _mm256_and_pd(lit, _mm256_div_pd(one, m));
+            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ), s = _mm256_and_pd(lit, _mm256_div_pd(one, _mm256_blendv_pd(one, m, lit)));
             const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s), d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
             const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1)), norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
-            const hdi_v4 w = _mm256_and_pd(_mm256_cmp_pd(norm2, flat, _CMP_GT_OQ), _mm256_div_pd(minus, _mm256_sqrt_pd(norm2)));
+            const hdi_v4 slope = _mm256_cmp_pd(norm2, flat, _CMP_GT_OQ);
+            const hdi_v4 w = _mm256_and_pd(slope, _mm256_div_pd(minus, _mm256_sqrt_pd(_mm256_blendv_pd(one, norm2, slope))));
             const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w), g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
             faint |= (_mm256_movemask_pd(_mm256_cmp_pd(m, zero, _CMP_GT_OQ)) & ~_mm256_movemask_pd(lit)) << c;
             _mm256_storeu_pd(b + i + c, _mm256_sub_pd(_mm256_loadu_pd(b + i + c), _mm256_add_pd(g1, g2)));
@@ -16430,7 +16493,7 @@ static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
 static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
     task->close = opts && opts->tufted;
     task->delta = opts && opts->mollify != 0 ? opts->mollify : 1e-5;
-    if (!(task->delta <= 1)) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
+    if (hdi_nan(task->delta) || task->delta > 1) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
     return opts && (opts->intrinsic_delaunay || opts->tufted);
 }
 
@@ -16471,7 +16534,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     if (n_faces < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
     if (!splits && kind != HD_LAPLACIAN_POLYGON)
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot"));
-    if (!(poly.lambda > 0 && poly.lambda <= 1e100))
+    if (!hdi_finite(poly.lambda) || !(poly.lambda > 0 && poly.lambda <= 1e100))
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: lambda is not between 0 and 1e100"));
     if (hdi_intrinsic_opts(opts, &task, c.e) && !splits)
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot"));
@@ -16555,7 +16618,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     hd_laplacian *lap = hdi_lap_new(opts, L ? L->n_rows : 0, HD_LAPLACIAN_MATRICES, err, &c);
     if (!lap) return c.e->status;
     if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (!(h >= 0) || !hdi_finite(h)) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: h is negative or not finite"));
+    if (!hdi_finite(h) || h < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: h is negative or not finite"));
     if (hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
     if (L->n_rows != B->n_rows)
         return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
@@ -16579,8 +16642,8 @@ static hd_status hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts
         return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the kind is voronoi-exp or exp (hd_laplacian_tufted_points has fem, voronoi-cot and cot)");
     if (opts && (opts->intrinsic_delaunay || opts->tufted))
         return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: exponential weights know no triangles; hd_laplacian_tufted_points makes some");
-    if (!(rep->bandwidth >= 0) || !hdi_finite(rep->bandwidth)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
-    if (!(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
+    if (!hdi_finite(rep->bandwidth) || rep->bandwidth < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
+    if (!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
     return hdi_point_neighbours(rep, opts, e);
 }
 
@@ -16637,10 +16700,10 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     hdi_tree tree;
     if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
     if (!out) return hdi_missing(c.e);
-    if (!(radius >= 0)) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
+    if (hdi_nan(radius) || radius < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
     s = hdi_scope_begin(c.ctx, c.e);
     if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
-        (void)hdi_within(out, &tree, xyz, query, m, radius * radius, c.ctx, c.e);
+        (void)hdi_within(out, &tree, xyz, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
@@ -16705,11 +16768,11 @@ static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_erro
 }
 
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
-    if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
+    if (!hdi_finite(t) || t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
     if (!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: theta lies on (-inf, 0] or is not finite");
     if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: the solver is cocg, cocr or minres");
     if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: unknown preconditioner");
-    if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: tol is not in [0, 1)");
+    if (!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: tol is not in [0, 1)");
     if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: max_iterations is negative");
     return HD_OK;
 }
@@ -16762,7 +16825,7 @@ static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *r
     if (!of) return;
     rep->n_matrices = of->width == 1 ? 1 : f->n_matrices;
     rep->growth = of->largest_entry > 0 ? of->all.largest / of->largest_entry : 0;
-    rep->smallest_pivot = of->largest_entry > 0 && of->all.smallest < HUGE_VAL ? of->all.smallest / of->largest_entry : 0;
+    rep->smallest_pivot = of->largest_entry > 0 && hdi_finite(of->all.smallest) ? of->all.smallest / of->largest_entry : 0;
     rep->n_negative = HDI_CAST(int32_t, of->all.negative);
 }
 
@@ -17117,7 +17180,7 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     if (o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the degree is not in 1..14", -1, -1, o->degree);
     if ((o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL) && o->degree && o->degree < HDI_RAT_KERNEL_MIN)
         return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: kernel and diagonal sets have degrees 2 to 14", -1, -1, o->degree);
-    if (!(o->tol >= 0) || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
+    if (!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
     if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: max_iterations is negative");
     if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown ordering");
     if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
@@ -17432,7 +17495,7 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->k = k;
     if (!heat) return hdi_missing(h->e);
     h->s = hdi_scope_begin(heat->ctx, h->e);
-    if (!(t >= 0) || !hdi_finite(t)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
+    if (!hdi_finite(t) || t < 0) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
     if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     h->rep->reason = "nothing was asked for";
     h->t = hdi_heat_scaled(heat, t);
@@ -18250,7 +18313,7 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
     if (h.e->status >= 0 && f) (void)hdi_fields_check(&h);
     if (h.e->status >= 0 && !f) (void)hdi_vertex_check(heat->source, source, h.e);
     for (q = 0; q < n_times && h.e->status >= 0; q++)
-        if (!(t[q] >= 0) || !hdi_finite(t[q])) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
+        if (!hdi_finite(t[q]) || t[q] < 0) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
     if (h.e->status < 0 || hdi_heat_sort_times(&h, n_times, t) < 0) return hdi_heat_end(&h);
     if (n_times > 1 && h.times[0] * heat->lambda_max >= HDI_STILL && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV &&
         !hdi_heat_equal(heat, h.t, h.e) && (hdi_krylov_all(&h) >= 0 || !hdi_heat_retreat(&h)))
@@ -18306,7 +18369,7 @@ static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double
     if (h->heat->opts.method == HD_METHOD_ITERATIVE || h->heat->opts.method == HD_METHOD_KRYLOV)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
     for (q = 0; q < n_times; q++)
-        if (!(t[q] > 0) || !hdi_finite(t[q])) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
     return HD_OK;
 }
 
@@ -18429,7 +18492,7 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q
         by_m += weight * hdi_pole_reach(set->theta[p]);
         by_b += weight / hdi_pole_distance(set->theta[p]);
     }
-    *off = hdi_min(g > 0 && g < HUGE_VAL ? sqrt(g) * by_m : HUGE_VAL, by_b * hdi_ratio_root(lap) / sqrt(b)) + 4 * DBL_EPSILON * fabs(value);
+    *off = hdi_min(g > 0 && hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL, by_b * hdi_ratio_root(lap) / sqrt(b)) + 4 * DBL_EPSILON * fabs(value);
     return value;
 }
 
@@ -18479,7 +18542,7 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
 static double hdi_entry_error(const hdi_entries *x, double g, double b, double b_ratio) {
     const double spread = b_ratio > 0 ? 1 / (b_ratio * b) : HUGE_VAL, out = x->left_out > 0 ? x->left_out * spread : 0;
     const double uniform = x->uniform > 0 ? x->uniform * spread : 0;
-    return (x->weighted < HUGE_VAL ? hdi_min(x->weighted * hdi_max(0, g), uniform) : uniform) + out;
+    return (hdi_finite(x->weighted) ? hdi_min(x->weighted * hdi_max(0, g), uniform) : uniform) + out;
 }
 
 /* Place of each of the analysis' entries: row and column in elimination order. */
@@ -18588,7 +18651,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         for (v = 0; v < s->n_super; v++)
             for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++)
                 if (s->a_row[n] == s->a_col[n]) g[s->super[v] + s->a_col[n]] = hdi_max(x.g[n], hdi_constant_part(lap, s->super[v] + s->a_col[n]));
-        for (i = 0; i < s->n; i++) off[i] = hdi_min(x.weighted == 0 ? 0 : x.weighted < HUGE_VAL ? x.weighted * sqrt(hdi_max(0, g[i]) * lap->b_diag[i]) : HUGE_VAL,
+        for (i = 0; i < s->n; i++) off[i] = hdi_min(x.weighted == 0 ? 0 : hdi_finite(x.weighted) ? x.weighted * sqrt(hdi_max(0, g[i]) * lap->b_diag[i]) : HUGE_VAL,
                                                     x.uniform * hdi_ratio_root(lap));
     } else {
         const double a0 = heat->elim.set.a0;
@@ -19108,7 +19171,7 @@ static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, con
     if (x->filter || x->equal) return 0;
     if (x->uniform == 0) return x->left_out > 0 ? x->left_out * wide * wide : 0;
     if (gsv) form = hdi_min(form, hdi_max(0, gs + gv - 2 * *gsv) + (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
-    if (x->weighted < HUGE_VAL) bound = x->weighted * form;
+    if (hdi_finite(x->weighted)) bound = x->weighted * form;
     bound = hdi_min(bound, x->uniform * wide * wide);
     return x->left_out > 0 ? bound + x->left_out * wide * wide : bound;
 }
@@ -19135,8 +19198,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
         }
         rational = hdi_metric_rational(x, gs, gv, g ? g + v : NULL, ss, sv);
         if (r >= 0 && rs >= 0) {
-            const double by_m = c->off_m == 0 ? 0 : gv < HUGE_VAL ? sqrt(hdi_max(0, gv)) * c->off_m : HUGE_VAL;
-            const double by_b = c->off_b == 0 ? 0 : sv < HUGE_VAL && c->off_b < HUGE_VAL ? sqrt(sv) * c->off_b : HUGE_VAL;
+            const double by_m = c->off_m == 0 ? 0 : hdi_finite(gv) ? sqrt(hdi_max(0, gv)) * c->off_m : HUGE_VAL;
+            const double by_b = c->off_b == 0 ? 0 : hdi_finite(sv) && hdi_finite(c->off_b) ? sqrt(sv) * c->off_b : HUGE_VAL;
             rounding = 2 * hdi_min(by_m, by_b);
         }
         if (x->rounding > 0) rounding += x->rounding * (x->own ? fabs(gs) + fabs(gv) : fabs(fs) + fabs(f));
@@ -19148,8 +19211,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
         rep->n_lost += delta > 0 && d2 < 10 * delta;
         memset(&part, 0, sizeof part);
         if (delta > 0) {
-            part.rational = delta < HUGE_VAL ? error * (rational / delta) : rational;
-            part.rounding = delta < HUGE_VAL ? error * (rounding / delta) : rounding;
+            part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
+            part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
         }
         hdi_ledger_note(ledger, d, part);
     }
@@ -19170,7 +19233,7 @@ static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, 
     if (n_times < 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: there is no time");
     if (!t) return hdi_missing(e);
     for (q = 0; q < n_times; q++)
-        if (!(t[q] > 0) || !hdi_finite(t[q])) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
     return HD_OK;
 }
 
@@ -19214,7 +19277,7 @@ static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double 
     if (e->status < 0 || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
     rep->error_relative = 0;
     (void)hdi_metric_columns(heat, &x, k, sources, D, step, column, rep, e);
-    if (e->status >= 0 && !x.filter && !x.equal && x.weighted > 0 && x.weighted < HUGE_VAL) g = HDI_TAKE(&s, double, n);
+    if (e->status >= 0 && !x.filter && !x.equal && x.weighted > 0 && hdi_finite(x.weighted)) g = HDI_TAKE(&s, double, n);
     for (r = 0; r < k && e->status >= 0; r++) {
         hdi_ledger ledger = hdi_metric_ledger(&x);
         if (g && hdi_metric_resolvent(heat, &x, sources[r], g, work, e) < 0) break;
@@ -19488,7 +19551,7 @@ static hdi_parts hdi_parts_of(const hd_report *rep) {
 /* Shares out what stands in rounding as another bound has it. */
 static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
     const double all = to->rounding, sum = hdi_parts_sum(as);
-    if (!(sum > 0 && sum < HUGE_VAL && all < HUGE_VAL)) return;
+    if (!(sum > 0 && hdi_finite(sum) && hdi_finite(all))) return;
     to->rational = all * (as->rational / sum);
     to->solver = all * (as->solver / sum);
     to->rounding = all * (as->rounding / sum);
@@ -19563,9 +19626,9 @@ static hd_status hdi_pairs_distances(hd_heat *heat, hd_distance_kind kind, doubl
             ledger.relative = hdi_max(ledger.relative, all.relative);
         }
         d[q] = f[j[q]];
-        if (d[q] < HUGE_VAL) ledger.largest = hdi_max(ledger.largest, d[q]);
-        if (d[q] > 0 && d[q] < HUGE_VAL) ledger.smallest = hdi_min(ledger.smallest, d[q]);
-        ledger.n_values += i[q] != j[q] && d[q] < HUGE_VAL;
+        if (hdi_finite(d[q])) ledger.largest = hdi_max(ledger.largest, d[q]);
+        if (d[q] > 0 && hdi_finite(d[q])) ledger.smallest = hdi_min(ledger.smallest, d[q]);
+        ledger.n_values += i[q] != j[q] && hdi_finite(d[q]);
     }
     if (e->status >= 0) hdi_ledger_close(&ledger, rep);
     return hdi_scope_end(&s);
@@ -19682,7 +19745,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 /* ---- geodesic distance ---- */
 
 static hd_status hdi_geo_check(const hd_geodesic_opts *o, hd_error *e) {
-    if (!(o->t >= 0) || !hdi_finite(o->t)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
+    if (!hdi_finite(o->t) || o->t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
     if (o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown mass");
     if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown ordering");
     if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");

@@ -106,6 +106,19 @@ static void int_odd_free(void *user, void *block, size_t size) {
     free((char *)block - 8);
 }
 
+/* A scope that is full gives no more, and frees what it has. */
+static void int_scope_room(void) {
+    hd_context ctx;
+    hd_error e;
+    hdi_scope s;
+    int i;
+    memset(&ctx, 0, sizeof ctx);
+    s = hdi_scope_begin(&ctx, &e);
+    for (i = 0; i < HDI_SCOPE_MOST; i++) CHECK(HDI_TAKE(&s, int32_t, i) != NULL);
+    CHECK(e.status == HD_OK && HDI_TAKE(&s, int32_t, 1) == NULL && e.status == HD_ERR_TOO_LARGE && ctx.bytes_in_use > 0);
+    CHECK(hdi_scope_end(&s) == HD_ERR_TOO_LARGE && ctx.bytes_in_use == 0);
+}
+
 static void int_memory(void) {
     hd_context ctx;
     hd_error e;
@@ -2155,6 +2168,36 @@ static void int_eigen3(void) {
     }
 }
 
+/* A star: every cut through it would add as many corners as it has points. */
+static void int_polygon_room(void) {
+    struct { hdi_polygon g; double guard[512]; } at;
+    hdi_polygon before;
+    int32_t i, k;
+    for (i = 0; i < 512; i++) at.guard[i] = 77;
+    at.g.n = 240;
+    for (i = 0; i < at.g.n; i++) {
+        const double r = i % 2 ? 1 : 3, phi = 6.283185307179586 * i / at.g.n;
+        at.g.x[i][0] = r * cos(phi);
+        at.g.x[i][1] = r * sin(phi);
+    }
+    for (k = 0; k < 40; k++) {
+        before = at.g;
+        if (!hdi_polygon_clip(&at.g, cos(0.1 * k), sin(0.1 * k), 2)) CHECK(memcmp(&before, &at.g, sizeof before) == 0);
+        CHECK(at.g.n >= 0 && at.g.n <= HDI_POLYGON_MOST);
+    }
+    for (i = 0; i < 512; i++) CHECK(at.guard[i] == 77);
+    at.g.n = HDI_CELL_SIDES;                     /* a circle by as many cuts as there can be */
+    for (i = 0; i < at.g.n; i++) {
+        at.g.x[i][0] = 2 * cos(6.283185307179586 * i / at.g.n);
+        at.g.x[i][1] = 2 * sin(6.283185307179586 * i / at.g.n);
+    }
+    for (k = 0; k < 2 * HDI_MOST_NEIGHBOURS; k++) {
+        const double phi = 6.283185307179586 * (k * 101 % 256) / 256;
+        CHECK(hdi_polygon_clip(&at.g, cos(phi), sin(phi), 1));
+    }
+    CHECK(at.g.n == 2 * HDI_MOST_NEIGHBOURS);
+}
+
 /* A square cut by half-planes, and by a hull. */
 static void int_polygon(void) {
     static const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -2180,10 +2223,12 @@ int main(void) {
     int_kth();
     int_eigen3();
     int_polygon();
+    int_polygon_room();
     int_division();
     int_complex();
     int_sizes();
     int_memory();
+    int_scope_room();
     int_sorting();
     int_union_find();
     int_tridiagonal();

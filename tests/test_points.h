@@ -144,6 +144,33 @@ static void pts_within(void) {
     free(xyz);
 }
 
+/* Distances that are just the radius, and a few units in the last place above it: rows end where they should, without gaps. */
+static void pts_within_edges(void) {
+    enum { N = 600 };
+    double *xyz = DENSE_NEW(double, 3 * N);
+    int32_t i, j, more = 0;
+    hd_csr a;
+    hd_error e;
+    for (i = 0; i < N; i++) xyz[3 * i] = i + (i % 5) * 2 * DBL_EPSILON * (i < 8 ? 1 : 0);
+    for (i = 8; i < N; i++) xyz[3 * i + 1] = i % 3 ? 0 : 1e-8 * (i % 2);      /* 1 + 5e-17 and so: rounds to one */
+    if (CHECK(hd_neighbours_radius(&a, xyz, N, NULL, 0, 1, NULL, &e) == HD_OK)) {
+        int64_t p = 0;
+        for (i = 0; i < N; i++) {
+            CHECK(a.row_ptr[i] == p);
+            for (j = 0; j < N; j++) {
+                const double dx = xyz[3 * i] - xyz[3 * j], dy = xyz[3 * i + 1] - xyz[3 * j + 1], d2 = dx * dx + dy * dy;
+                more += d2 > 1 && d2 <= 1 + 8 * DBL_EPSILON;
+                if (d2 > 1) continue;
+                CHECK(p < a.nnz && a.col[p] == j && a.val[p] == d2);
+                p++;
+            }
+        }
+        CHECK(a.nnz == p && a.row_ptr[N] == p && more > 3);
+        hd_csr_free(&a, NULL);
+    }
+    free(xyz);
+}
+
 static void pts_neighbour_errors(void) {
     double xyz[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, query[6] = {0, 0, 0, 1, 1, NAN}, d2[9];
     int32_t id[9];
@@ -792,6 +819,7 @@ static hd_status pts_robust(hd_context *ctx, int variant) {
 static void test_points(void) {
     pts_nearest();
     pts_within();
+    pts_within_edges();
     pts_neighbour_errors();
     pts_operators();
     pts_areas();

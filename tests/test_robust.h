@@ -360,6 +360,220 @@ static void rob_not_cleared(void) {
     shape_free(&s);
 }
 
+/* ---- with floating-point traps on ---- */
+
+#if defined(__GLIBC__) && (defined(__x86_64__) || defined(__i386__)) && !defined(__clang__)   /* clang divides first and chooses then */
+#define ROB_TRAPS 1
+#include <fenv.h>
+#include <setjmp.h>
+#include <signal.h>
+extern int feenableexcept(int excepts);
+extern int fedisableexcept(int excepts);
+
+static jmp_buf rob_trapped;
+
+static void rob_on_trap(int sig) {
+    (void)sig;
+    longjmp(rob_trapped, 1);
+}
+
+static void rob_trap_laplacian(hd_laplacian *lap, hd_context *ctx, const char **at) {
+    static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
+    const int32_t sources[3] = {0, 7, 9};
+    double *u = DENSE_NEW(double, 20 * lap->n), *f = DENSE_NEW(double, 3 * lap->n);
+    const double t = lap->h > 0 ? 20 * lap->h * lap->h : 2, times[3] = {t, 5 * t, 1e6 * t};
+    int32_t v;
+    int m, k;
+    for (v = 0; v < lap->n; v++) f[v] = v % 5 - 1;           /* the second field is zero, the third constant */
+    for (v = 0; v < lap->n; v++) f[2 * lap->n + v] = 2;
+    for (m = 0; m < 4; m++) {
+        hd_heat_opts o;
+        hd_heat *heat = NULL;
+        memset(&o, 0, sizeof o);
+        o.method = methods[m];
+        o.context = ctx;
+        if (hd_heat_create(&heat, lap, &o, NULL) < 0) continue;
+        *at = "columns";
+        (void)hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 3, sources, u, 0, NULL);
+        (void)hd_heat_column(heat, 0, 3, u, NULL);
+        *at = "fields";
+        (void)hd_heat_apply(heat, t, 3, f, 0, u, 0, NULL);
+        (void)hd_heat_apply(heat, t, 1, f + lap->n, 0, u, 0, NULL);
+        *at = "times";
+        (void)hd_heat_times(heat, 3, times, HD_KERNEL_SYMMETRIC, 3, NULL, u, 0, NULL);
+        *at = "diagonal";
+        (void)hd_heat_diagonal(heat, 3, times, HD_KERNEL_SYMMETRIC, u, 0, NULL);
+        *at = "distances";
+        for (k = 0; k < 4; k++) (void)hd_heat_distance(heat, (hd_distance_kind)k, 1, &t, 2, sources, u, 0, NULL);
+        hd_heat_free(heat);
+    }
+    free(u);
+    free(f);
+}
+
+static void rob_trap_geodesic(const shape *s, hd_context *ctx) {
+    const int32_t sources[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    hd_geodesic_opts o;
+    hd_geodesic *g = NULL;
+    hd_geodesic_report rep;
+    double *d = DENSE_NEW(double, 9 * s->n);
+    memset(&o, 0, sizeof o);
+    o.context = ctx;
+    if (CHECK(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) >= 0)) {
+        (void)hd_geodesic_distance(g, sources + 3, 1, d, &rep);
+        (void)hd_geodesic_distances(g, 9, sources, d, 0, &rep);
+    }
+    hd_geodesic_free(g);
+    free(d);
+}
+
+/* Matrices with zero pivots, of all sizes of the kernels' blocks. */
+static void rob_trap_pivots(hd_context *ctx) {
+    enum { N = 40 };
+    int32_t i[N * N], j[N * N], n, zero;
+    double v[N * N];
+    hd_c64 z[N * N];
+    int64_t c, p;
+    for (n = 1; n <= N; n += 3) {
+        hd_csr a;
+        hd_ldl_opts o;
+        hd_ldl *f = NULL;
+        hd_error e;
+        memset(&o, 0, sizeof o);
+        o.context = ctx;
+        c = 0;
+        for (p = 0; p < (int64_t)n * n; p++) {
+            i[c] = (int32_t)(p / n);
+            j[c] = (int32_t)(p % n);
+            v[c++] = i[p] == j[p] ? n : 1;
+        }
+        CHECK(hd_csr_from_triplets(&a, n, n, c, i, j, v, NULL, NULL) == HD_OK && hd_ldl_analyse(&f, &a, &o, NULL, NULL) == HD_OK);
+        for (zero = 0; zero < n; zero += 2) {
+            for (p = 0; p < a.nnz; p++) {        /* row and column of zeros */
+                const int32_t row = (int32_t)(p / n), column = (int32_t)(p % n);
+                v[p] = row == zero || column == zero ? 0 : row == column ? n : 1;
+                z[p] = test_c(v[p], v[p] / 2);
+            }
+            CHECK(hd_ldl_factor(f, v, NULL, &e) == HD_ERR_BREAKDOWN && e.row == zero && e.value == 0);
+            CHECK(hd_ldl_factor_complex(f, 1, z, NULL, &e) == HD_ERR_BREAKDOWN && e.row == zero && e.value == 0);
+        }
+        hd_ldl_free(f);
+        hd_csr_free(&a, NULL);
+    }
+}
+
+/* Bad input is told as ever: no check compares numbers that are none. */
+static void rob_trap_bad_input(const shape *s, const hd_laplacian *lap) {
+    const double bad[2] = {(double)NAN, (double)INFINITY};
+    const double keep = s->xyz[3];
+    const int32_t i[2] = {0, 1};
+    double v[2] = {1, 2};
+    hd_laplacian *none = NULL;
+    hd_geodesic *g = NULL;
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    hd_csr a;
+    double *u = DENSE_NEW(double, s->n);
+    int q;
+    CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+    memset(&o, 0, sizeof o);
+    for (q = 0; q < 2; q++) {
+        s->xyz[3] = bad[q];
+        CHECK(hd_laplacian_triangles(&none, s->xyz, s->n, s->tri, s->n_tri, NULL, NULL) == HD_ERR_NOT_FINITE);
+        CHECK(hd_laplacian_points(&none, s->xyz, s->n, NULL, NULL) == HD_ERR_NOT_FINITE);
+        CHECK(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, NULL, NULL) == HD_ERR_NOT_FINITE);
+        s->xyz[3] = keep;
+        v[1] = bad[q];
+        CHECK(hd_csr_from_triplets(&a, 2, 2, 2, i, i, v, NULL, NULL) == HD_ERR_NOT_FINITE);
+        u[2] = bad[q];
+        CHECK(hd_heat_apply(heat, 1, 1, u, 0, u, 0, NULL) == HD_ERR_NOT_FINITE);
+        u[2] = 0;
+        CHECK(hd_heat_column(heat, bad[q], 0, u, NULL) == HD_ERR_ARGUMENT);
+        CHECK(hd_heat_diagonal(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, u, 0, NULL) == HD_ERR_ARGUMENT);
+        CHECK(hd_heat_times(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, 0, NULL, u, 0, NULL) == HD_ERR_ARGUMENT);
+        CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, bad + q, 1, i, u, 0, NULL) == HD_ERR_ARGUMENT);
+        o.tol = bad[q];
+        CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_ERR_ARGUMENT);
+        if (q == 0) CHECK(hd_neighbours_radius(&a, s->xyz, s->n, NULL, 0, bad[q], NULL, NULL) == HD_ERR_ARGUMENT);
+        if (q == 1 && CHECK(hd_neighbours_radius(&a, s->xyz, s->n, NULL, 0, bad[q], NULL, NULL) == HD_OK)) {
+            CHECK(a.nnz == (int64_t)s->n * s->n);
+            hd_csr_free(&a, NULL);
+        }
+    }
+    hd_heat_free(heat);
+    free(u);
+}
+
+/* Programs that stop at the first division by zero, overflow or invalid operation can use the library on ordinary input, faces without area and zero
+ * pivots among it. */
+static void rob_traps(void) {
+    static const hd_simd simds[3] = {HD_SIMD_AUTO, HD_SIMD_NONE, HD_SIMD_AVX2};
+    const double offset[3] = {5, 0, 0};
+    shape ball = shape_bumpy(2, 5), grid = shape_grid(9, 8, 0.3), s = shape_disjoint(&ball, &grid, offset);
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts lo;
+    hd_context ctx;
+    const char *volatile stage = "";
+    const char *at = "";
+    void (*before)(int) = signal(SIGFPE, rob_on_trap);
+    volatile int k = 0, q = 0;
+    int32_t f;
+    for (f = 0; f < s.n_tri; f += 23) s.tri[3 * f + 1] = s.tri[3 * f];               /* a corner twice */
+    for (f = 5; f < s.n_tri; f += 41) memcpy(s.xyz + 3 * s.tri[3 * f], s.xyz + 3 * s.tri[3 * f + 1], 3 * sizeof(double));    /* two places the same */
+    memcpy(s.xyz + 3, s.xyz, 3 * sizeof(double));
+    if (setjmp(rob_trapped)) {
+        fedisableexcept(FE_ALL_EXCEPT);
+        CHECK_MSG(0, "trapped: %s, kind %d, instruction set %d, %s", stage, q, k, at);
+        signal(SIGFPE, before);
+        return;
+    }
+    feclearexcept(FE_ALL_EXCEPT);
+    feenableexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW);
+    memset(&ctx, 0, sizeof ctx);
+    memset(&lo, 0, sizeof lo);
+    lo.context = &ctx;
+    for (k = 0; k < 3; k++) {
+        ctx.simd = simds[k];
+        for (q = 0; q < 5; q++) {
+            stage = "triangles";
+            lo.kind = op_kinds[q % 3];
+            lo.intrinsic_delaunay = q == 3;
+            lo.tufted = q == 4;
+            if (CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, NULL) >= 0)) {
+                rob_trap_laplacian(lap, &ctx, &at);
+                hd_laplacian_free(lap);
+            }
+        }
+        lo.kind = HD_LAPLACIAN_DEFAULT;
+        lo.tufted = 0;
+        stage = "points";
+        if (CHECK(hd_laplacian_points(&lap, s.xyz, s.n, &lo, NULL) >= 0)) {
+            rob_trap_laplacian(lap, &ctx, &at);
+            hd_laplacian_free(lap);
+        }
+        stage = "tufted points";
+        if (CHECK(hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, &lo, NULL) >= 0)) {
+            rob_trap_laplacian(lap, &ctx, &at);
+            hd_laplacian_free(lap);
+        }
+        at = "";
+        stage = "geodesic";
+        rob_trap_geodesic(&s, &ctx);
+        stage = "pivots";
+        rob_trap_pivots(&ctx);
+    }
+    stage = "bad input";
+    lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
+    rob_trap_bad_input(&ball, lap);
+    fedisableexcept(FE_ALL_EXCEPT);
+    signal(SIGFPE, before);
+    hd_laplacian_free(lap);
+    shape_free(&ball);
+    shape_free(&grid);
+    shape_free(&s);
+}
+#endif
+
 static void test_robust(void) {
     int k;
     for (k = 0; k < ROB_JOBS; k++) {
@@ -372,6 +586,9 @@ static void test_robust(void) {
     rob_cancel_lanes();
     rob_plan_survives();
     rob_not_cleared();
+#ifdef ROB_TRAPS
+    rob_traps();
+#endif
 }
 
 #endif
