@@ -13376,10 +13376,16 @@ typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
 
 static double hdi_parts_sum(const hdi_parts *p) { return p->rational + p->solver + p->rounding; }
 
+/* A product of bounds: where one is nothing so is the other's part, and infinity is no operand. */
+static double hdi_bound_times(double a, double b) {
+    if (a == 0 || b == 0) return 0;
+    return hdi_finite(a) && hdi_finite(b) ? a * b : HUGE_VAL;
+}
+
 static hdi_parts hdi_parts_scale(double s, hdi_parts p) {
-    p.rational = p.rational > 0 ? s * p.rational : 0;   /* no infinity times zero */
-    p.solver = p.solver > 0 ? s * p.solver : 0;
-    p.rounding = p.rounding > 0 ? s * p.rounding : 0;
+    p.rational = hdi_bound_times(s, p.rational);
+    p.solver = hdi_bound_times(s, p.solver);
+    p.rounding = hdi_bound_times(s, p.rounding);
     return p;
 }
 
@@ -19198,9 +19204,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
         }
         rational = hdi_metric_rational(x, gs, gv, g ? g + v : NULL, ss, sv);
         if (r >= 0 && rs >= 0) {
-            const double by_m = c->off_m == 0 ? 0 : hdi_finite(gv) ? sqrt(hdi_max(0, gv)) * c->off_m : HUGE_VAL;
-            const double by_b = c->off_b == 0 ? 0 : hdi_finite(sv) && hdi_finite(c->off_b) ? sqrt(sv) * c->off_b : HUGE_VAL;
-            rounding = 2 * hdi_min(by_m, by_b);
+            const double by_m = hdi_bound_times(hdi_finite(gv) ? sqrt(hdi_max(0, gv)) : HUGE_VAL, c->off_m);
+            rounding = 2 * hdi_min(by_m, hdi_bound_times(hdi_finite(sv) ? sqrt(sv) : HUGE_VAL, c->off_b));
         }
         if (x->rounding > 0) rounding += x->rounding * (x->own ? fabs(gs) + fabs(gv) : fabs(fs) + fabs(f));
         rounding += 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
