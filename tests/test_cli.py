@@ -960,7 +960,7 @@ class Methods(Case):
     # ---- reports ----
 
     def test_reports(self):
-        stages = ("load", "assemble", "order", "analyse", "factor", "precondition", "solve", "write")
+        stages = ("load", "assemble", "order", "analyse", "factor", "precondition", "invert", "solve", "write")
         for method in METHODS:
             for t in ("30h2", "3h2,30h2"):
                 r = self.report("kernel", self.large, "--source", "1,2", "--t", t, "--method", method)
