@@ -7644,7 +7644,7 @@ static hd_status hdi_sym_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_contex
 
 static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
     void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
-    if (to) memcpy(to, from, HDI_CAST(size_t, count) * size);
+    if (to && count > 0) memcpy(to, from, HDI_CAST(size_t, count) * size);
     return to;
 }
 
@@ -10005,7 +10005,7 @@ static hd_status hdi_sym_order(const hd_csr *a, const double *xyz, hd_ordering k
         return xyz ? hdi_sym_nested_dissection(a, xyz, perm, ctx, e) : hdi_fail(e, HD_ERR_ARGUMENT, "ordering: nested dissection needs coordinates");
     if (kind != HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: unknown kind");
     if (!own && n > 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
-    memcpy(perm, own, HDI_CAST(size_t, n) * sizeof *perm);
+    if (n > 0) memcpy(perm, own, HDI_CAST(size_t, n) * sizeof *perm);
     return hdi_sym_check(own, n, ctx, e);
 }
 
@@ -16056,8 +16056,8 @@ HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 
         memset(&v, 0, sizeof v);
         pack->largest_entry = 0;
         for (q = 0; q < 4; q++) {                /* a matrix that is not there is the last one again */
-            v.z[q] = val + f->nnz * (4 * i + q < k ? 4 * i + q : k - 1);
-            if (4 * i + q < k && hdi_ldl_values(f, &v.z[q]->re, 2, &pack->largest_entry, c.e) < 0) {
+            v.z[q] = f->nnz > 0 ? val + f->nnz * (4 * i + q < k ? 4 * i + q : k - 1) : val;
+            if (f->nnz > 0 && 4 * i + q < k && hdi_ldl_values(f, &v.z[q]->re, 2, &pack->largest_entry, c.e) < 0) {
                 c.e->pole = 4 * i + q;
                 return c.e->status;
             }
