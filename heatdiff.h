@@ -79,7 +79,9 @@
 #define HD_VERSION HD_MAKE_VERSION(HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH)
 
 #ifndef HEATDIFF_API
-#ifdef HEATDIFF_STATIC
+#if defined(HEATDIFF_STATIC) && (defined(__GNUC__) || defined(__clang__))
+#define HEATDIFF_API static __attribute__((unused))   /* nobody calls all of them */
+#elif defined(HEATDIFF_STATIC)
 #define HEATDIFF_API static
 #else
 #define HEATDIFF_API extern
@@ -857,7 +859,7 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH(p) __builtin_prefetch(p)
 /* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
-#define HDI_PREFETCH_AT(p, i) __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(i) * sizeof *(p)))
+#define HDI_PREFETCH_AT(p, i) __builtin_prefetch(HDI_RECAST(const void *, HDI_RECAST(uintptr_t, p) + HDI_CAST(uintptr_t, i) * sizeof *(p)))
 #else
 #define HDI_RESTRICT
 #define HDI_LOAD(p) (*(p))
@@ -890,9 +892,11 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 
 #ifdef __cplusplus
 #define HDI_CAST(type, x) static_cast<type>(x)
+#define HDI_RECAST(type, x) reinterpret_cast<type>(x)   /* of pointers and numbers */
 extern "C" {
 #else
 #define HDI_CAST(type, x) ((type)(x))
+#define HDI_RECAST(type, x) ((type)(x))
 #endif
 
 #ifdef HEATDIFF_USE_BLAS
@@ -1013,8 +1017,8 @@ static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
 /* Asks for large pages where the system has them to give: fresh memory costs a seventh of the time then, of which a factor needs a lot. */
 static void hdi_large_pages(char *raw, size_t total) {
 #if HDI_LARGE_PAGES
-    const size_t page = 4096, skip = (page - (size_t)raw % page) % page;
-    if (total >= (size_t)4 << 20) (void)madvise(raw + skip, (total - skip) & ~(page - 1), MADV_HUGEPAGE);
+    const size_t page = 4096, skip = (page - HDI_RECAST(size_t, raw) % page) % page;
+    if (total >= HDI_CAST(size_t, 4) << 20) (void)madvise(raw + skip, (total - skip) & ~(page - 1), MADV_HUGEPAGE);
 #else
     (void)raw;
     (void)total;
@@ -1042,7 +1046,7 @@ static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e
     }
     ctx->bytes_in_use += total;
     if (ctx->bytes_peak < ctx->bytes_in_use) ctx->bytes_peak = ctx->bytes_in_use;
-    offset = HDI_HEADER + (HDI_ALIGN - ((size_t)raw + HDI_HEADER) % HDI_ALIGN) % HDI_ALIGN;
+    offset = HDI_HEADER + (HDI_ALIGN - (HDI_RECAST(size_t, raw) + HDI_HEADER) % HDI_ALIGN) % HDI_ALIGN;
     head[0] = total;
     head[1] = offset;
     memcpy(raw + offset - HDI_HEADER, head, sizeof head);
@@ -3899,7 +3903,7 @@ typedef struct hdi_search_job {
 } hdi_search_job;
 
 static int64_t hdi_search_tasks(hdi_search_job *job, int64_t room) {
-    const int64_t blocks = (job->n_queries + 255) / 256, fit = 1 + ((int64_t)64 << 20) / (28 * (room + HDI_LEAF));
+    const int64_t blocks = (job->n_queries + 255) / 256, fit = 1 + (HDI_CAST(int64_t, 64) << 20) / (28 * (room + HDI_LEAF));
     const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
     job->per_task = tasks ? (job->n_queries + tasks - 1) / tasks : 0;
     return tasks;
@@ -7706,7 +7710,7 @@ static hd_status hdi_sym_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_contex
 
 static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
     void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
-    if (to) memcpy(to, from, HDI_CAST(size_t, count) * size);
+    if (to && count > 0) memcpy(to, from, HDI_CAST(size_t, count) * size);
     return to;
 }
 
@@ -8761,7 +8765,7 @@ static hdi_nd_cut hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int3
     kept = cut;
     side = hdi_nd_take_bytes(&s, g->n);
     work = hdi_nd_take(&s, 3 * HDI_CAST(int64_t, g->n));
-    if ((uintptr_t)s.at % sizeof(uint64_t)) hdi_nd_take(&s, 1);
+    if (HDI_RECAST(uintptr_t, s.at) % sizeof(uint64_t)) hdi_nd_take(&s, 1);
     key = HDI_CAST(hdi_pair *, HDI_CAST(void *, hdi_nd_take(&s, 4 * HDI_CAST(int64_t, g->n))));
     for (t = 0; t < tries; t++) {
         double cost;
@@ -10067,7 +10071,7 @@ static hd_status hdi_sym_order(const hd_csr *a, const double *xyz, hd_ordering k
         return xyz ? hdi_sym_nested_dissection(a, xyz, perm, ctx, e) : hdi_fail(e, HD_ERR_ARGUMENT, "ordering: nested dissection needs coordinates");
     if (kind != HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: unknown kind");
     if (!own && n > 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
-    memcpy(perm, own, HDI_CAST(size_t, n) * sizeof *perm);
+    if (n > 0) memcpy(perm, own, HDI_CAST(size_t, n) * sizeof *perm);
     return hdi_sym_check(own, n, ctx, e);
 }
 
@@ -11055,7 +11059,7 @@ static void hdi_pack_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r
     g.a_row = l.row;
     g.a_col = g.b_col = HDI_PACK;
     g.b_row = HDI_PACK * n;
-    g.c_row = HDI_PACK * HDI_INV_SLICE;
+    g.c_row = HDI_CAST(int64_t, HDI_PACK) * HDI_INV_SLICE;
     g.store = 1;
     for (r = r0; r < r1; r += HDI_INV_ROWS) {
         for (j = 0; j < n; j += HDI_INV_SLICE) {
@@ -11077,7 +11081,7 @@ static void hdi_pack_inverse_below(const hdi_inverse_front *w, int64_t r0, int64
     memset(&g, 0, sizeof g);
     g.a = buffer;
     g.a_col = g.b_row = HDI_PACK;
-    g.b_col = HDI_PACK * HDI_INV_SLICE;
+    g.b_col = HDI_CAST(int64_t, HDI_PACK) * HDI_INV_SLICE;
     g.c_row = z.row;
     for (r = r0; r < r1; r += HDI_INV_ROWS) {
         const int64_t end = hdi_least(r + HDI_INV_ROWS, r1);
@@ -11103,7 +11107,7 @@ static void hdi_pack_inverse_corner(const hdi_inverse_front *w, int64_t r0, int6
     memset(&g, 0, sizeof g);
     g.a_row = g.b_row = HDI_PACK;
     g.a_col = z.row;
-    g.b_col = HDI_PACK * HDI_INV_SLICE;
+    g.b_col = HDI_CAST(int64_t, HDI_PACK) * HDI_INV_SLICE;
     g.c = z.at;
     g.c_row = z.row;
     g.lower = 1;
@@ -11361,7 +11365,7 @@ typedef struct hdi_form_block {
     int32_t *column;
     double *top, *end;           /* of the stack */
     double *aside, *work;        /* rows of a child, and what Z r works with */
-    double sum[HDI_FORM_COLS * HDI_PACK];
+    double sum[HDI_CAST(int, HDI_FORM_COLS) * HDI_PACK];
 } hdi_form_block;
 
 /* The columns of a set, ascending; returns their number. */
@@ -11670,7 +11674,7 @@ static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
     b.end = room + (task >= 0 ? q->task_size : q->slot_size);
     b.aside = room;
     b.work = room + (task >= 0 ? q->aside_task : q->aside_slot);
-    b.top = b.work + (job->z->f->width == 1 ? 0 : HDI_PACK * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(HDI_PACK));
+    b.top = b.work + (job->z->f->width == 1 ? 0 : HDI_CAST(size_t, HDI_PACK) * HDI_INV_ROWS * HDI_CAST(size_t, q->cols) + hdi_inverse_buffer(HDI_PACK));
     hdi_form_run(job->z, &b);
 }
 
@@ -11820,7 +11824,7 @@ static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
 /* Room to invert factors of the given width. */
 static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hd_context *ctx, hd_error *e) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
-    const int32_t n_chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_REAL_MR + 2;
+    const int32_t n_chunks = s->largest_front / HDI_INV_CHUNK + HDI_CAST(int32_t, HDI_PANEL) / HDI_REAL_MR + 2;
     int32_t v;
     memset(z, 0, sizeof *z);
     for (v = 0; v < s->n_super; v++) {
@@ -16944,8 +16948,8 @@ HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 
         memset(&v, 0, sizeof v);
         pack->largest_entry = 0;
         for (q = 0; q < 4; q++) {                /* a matrix that is not there is the last one again */
-            v.z[q] = val + f->nnz * (4 * i + q < k ? 4 * i + q : k - 1);
-            if (4 * i + q < k && hdi_ldl_values(f, &v.z[q]->re, 2, &pack->largest_entry, c.e) < 0) {
+            v.z[q] = f->nnz > 0 ? val + f->nnz * (4 * i + q < k ? 4 * i + q : k - 1) : val;
+            if (f->nnz > 0 && 4 * i + q < k && hdi_ldl_values(f, &v.z[q]->re, 2, &pack->largest_entry, c.e) < 0) {
                 c.e->pole = 4 * i + q;
                 return c.e->status;
             }

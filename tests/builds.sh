@@ -12,14 +12,17 @@ printf '#define HEATDIFF_STATIC\n#define HEATDIFF_IMPLEMENTATION\n#include "heat
 for f in impl use copy1 copy2; do cp "$work/$f.c" "$work/$f.cpp"; done
 count=0
 for c in "gcc -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "gcc -std=c11" "gcc -std=c99 -O3 -march=native -fopenmp" "gcc -std=c99 -DNDEBUG -O2" \
-         "clang -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "clang -std=c11" "g++ -std=c++11 -Wold-style-cast" "g++ -std=c++17" "clang++ -std=c++11" "clang++ -std=c++17"; do
+         "clang -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "clang -std=c11" "g++ -std=c++11 -Wold-style-cast" "g++ -std=c++17" "g++ -std=c++20" "g++ -std=c++23" \
+         "clang++ -std=c++11 -Wold-style-cast" "clang++ -std=c++17" "clang++ -std=c++20"; do
   command -v "${c%% *}" >/dev/null || { echo "not here: ${c%% *}"; continue; }
+  case $c in *++*) lang=c++ ;; *) lang=c ;; esac
+  $c -x $lang -fsyntax-only /dev/null 2>/dev/null || { echo "not here: $c"; continue; }
   ext=c; case $c in *++*) ext=cpp ;; esac
   $c $warn -c "$work/impl.$ext" -o "$work/impl.o"
   $c $warn -c "$work/use.$ext" -o "$work/use.o"
   $c "$work/impl.o" "$work/use.o" -o "$work/two" -lm
   "$work/two"
-  $c $warn -Wno-unused-function "$work/copy1.$ext" "$work/copy2.$ext" -o "$work/copies" -lm
+  $c $warn "$work/copy1.$ext" "$work/copy2.$ext" -o "$work/copies" -lm
   "$work/copies"
   count=$((count + 1))
   echo "ok: $c"

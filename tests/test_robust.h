@@ -360,6 +360,46 @@ static void rob_not_cleared(void) {
     shape_free(&s);
 }
 
+/* Patterns without entries, over no arrays at all: nothing is read from them, nor copied (which a sanitizer sees). */
+static void rob_nothing(void) {
+    static const hd_ordering orderings[4] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION, HD_ORDERING_OWN};
+    const int32_t perm[2] = {1, 0};
+    const double xyz[6] = {0, 0, 0, 1, 0, 0};
+    int64_t ptr[3] = {0, 0, 0};
+    hd_csr none, out;
+    hd_ldl_opts o;
+    hd_error e;
+    int32_t n;
+    int k;
+    memset(&none, 0, sizeof none);
+    none.row_ptr = ptr;
+    for (n = 0; n < 3; n += 2) {
+        none.n_rows = none.n_cols = n;
+        CHECK(hd_csr_check(&none, 1, NULL, &e) == HD_OK);
+        CHECK(hd_csr_transpose(&out, &none, NULL, &e) == HD_OK);
+        hd_csr_free(&out, NULL);
+        CHECK(hd_csr_permute(&out, &none, n ? perm : NULL, NULL, &e) == HD_OK);
+        hd_csr_free(&out, NULL);
+        CHECK(hd_csr_product(&out, &none, &none, NULL, &e) == HD_OK);
+        hd_csr_free(&out, NULL);
+        for (k = 0; k < 4; k++) {
+            hd_ldl *f = NULL;
+            memset(&o, 0, sizeof o);
+            o.ordering = orderings[k];
+            o.xyz = n ? xyz : NULL;
+            o.perm = n ? perm : NULL;
+            if (hd_ldl_analyse(&f, &none, &o, NULL, &e) < 0) {
+                CHECK(n == 0 && k >= 2 && e.status == HD_ERR_ARGUMENT);     /* nothing was given that these two ask for */
+                continue;
+            }
+            CHECK(hd_ldl_factor(f, NULL, NULL, &e) == (n ? HD_ERR_BREAKDOWN : HD_OK));
+            CHECK(hd_ldl_factor_complex(f, 5, NULL, NULL, &e) == (n ? HD_ERR_BREAKDOWN : HD_OK));
+            if (n == 0) CHECK(hd_ldl_solve_complex(f, NULL, 0, NULL, 0, &e) == HD_OK);
+            hd_ldl_free(f);
+        }
+    }
+}
+
 /* ---- with floating-point traps on ---- */
 
 #if defined(__GLIBC__) && (defined(__x86_64__) || defined(__i386__)) && !defined(__clang__)   /* clang divides first and chooses then */
@@ -586,6 +626,7 @@ static void test_robust(void) {
     rob_cancel_lanes();
     rob_plan_survives();
     rob_not_cleared();
+    rob_nothing();
 #ifdef ROB_TRAPS
     rob_traps();
 #endif
