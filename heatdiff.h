@@ -289,7 +289,8 @@ typedef struct hd_laplacian {
     double *component_mass;     /* [n_components] sum of mass */
     double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem (0.42 with edges from a vertex to itself); matrices: proven by
                                    Gershgorin's circles or by factorisations; 0 when not known */
-    int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes; matrices: up to 4 DBL_EPSILON sum_j |L_ij|) */
+    int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes; matrices: up to 4 DBL_EPSILON sum_j |L_ij|).
+                                   What rounding left in the row sums then counts as zero: t may be as large as you like */
     hd_mesh_report mesh;        /* zeros for matrices but n_inert; of points too, but when tufted: then of the stars' triangles */
     hd_point_report points;     /* zeros for meshes and matrices; tufted: n_not_flat, and neighbours and
                                    n_coincident, where neighbours were searched */
@@ -316,9 +317,9 @@ typedef struct hd_rational {
     double a0;
     hd_c64 theta[HD_MAX_POLES];
     hd_c64 a[HD_MAX_POLES];
-    double max_error;           /* max |exp(x) - c(x)| on (-inf, 0]; 0 in a set of your own: not known, the reports' bounds then
-                                   hold for c itself */
+    double max_error;           /* max |exp(x) - c(x)| on (-inf, 0] */
     double max_weighted_error;  /* max (1 + |x|) |exp(x) - c(x)|; 0: not bounded or not known */
+    /* In a set of your own either may be 0: not known. Both 0: bounds in reports are for c itself, not for exp. */
 } hd_rational;
 
 typedef enum hd_method {
@@ -381,8 +382,8 @@ typedef enum hd_kernel {
 typedef enum hd_distance_kind {
     HD_DISTANCE_CLASSICAL = 0,  /* d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006): intrinsic, what peers compute */
     HD_DISTANCE_WEIGHTED,       /* d^2 = (e_i - e_j)' B K_2t (e_i - e_j): eq. (6) of the paper. Not intrinsic: tends to |b_i - b_j|/sqrt(area) for large t */
-    HD_DISTANCE_COMMUTE,        /* d^2 = sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance; no time */
-    HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010); no time */
+    HD_DISTANCE_COMMUTE,        /* d^2 = sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance; no time, no poles */
+    HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
 } hd_distance_kind;
 
 /* How a part of an error bound is known. The worst evidence of several answers is the largest of these numbers. */
@@ -707,7 +708,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 
 /* U = K_t F.
- * t      >= 0, unit length^2 (t = 0 copies F)
+ * t      >= 0, unit length^2 (t = 0 copies F). However large: the answer tends to the mean of each component, and becomes it
  * F, U   n x k doubles, column-major, columns ldf and ldu apart (0: n); U may be F
  *        With a degree by default, all fields of a call share the largest that one of them needs
  * Cost   direct: a factorisation of all poles for every new t, then one sweep of the factors for eight fields at a time; krylov: one real factor, 15 to 30
@@ -738,23 +739,26 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
  * Cost   for every t the factors of all poles and about twice as much again; many times, when neither poles nor a degree are asked for, share one set: 16 or
  *        100 over three decades cost four or five times as much as one
  * Errors HD_ERR_ARGUMENT (also for the methods iterative and krylov), HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED
- * Report error_rational is a bound; error_solver, rounding, is measured at the vertex that suffers most. */
+ *        (also for n_times < 1)
+ * Report The rational part is proven at every vertex. Rounding is measured at the vertices that suffer most, by solves whose
+ *        residuals are known; of many times, at each of them. */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
 
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
- * vertices). For a full B without a0 B^-1, as above. error_rational is a bound, relative to the largest value, and by default the highest degree takes
- * over where it is above 5e-7; error_solver, rounding, is measured at the vertex of the largest value. */
+ * vertices). For a full B without a0 B^-1, as above. By default the highest degree takes over where the rational part of the
+ * bound is above 5e-7. Rounding is measured in the rows that suffer most. */
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
- * t      [n_times] > 0; not looked at by commute and biharmonic, which take n_times = 1 (more: HD_ERR_ARGUMENT)
+ * t      [n_times] > 0, n_times >= 1. Commute and biharmonic have no time: t is not looked at, and n_times is 0 or 1
  * Cost   a diagonal (at 2t, shared by all sources) and a column for each source. HD_DISTANCE_WEIGHTED with a full B: its diagonal, that of B K_2t, takes about
- *        twice as long
+ *        twice as long. Commute: one real factorisation and its inversion; biharmonic: that, and those of one pole
  * Vertices without mass have f = 0. Between components commute and biharmonic are infinite (HUGE_VAL).
  *        With poles and degree by default the highest degree takes over where the bound of the error relative to the largest distance is above
  *        2.5e-6, or will be. Many times share one set of poles then, as in hd_heat_diagonal
- * Report error_bound and error_relative for d itself; n_lost counts distances of less than a digit or so: at times so large that all has become
- * equal, or next to the source at small ones. Never NaN. hd_heat_pairs loses nothing there. */
+ * Report error_bound and error_relative for d itself; n_lost counts distances of which less than a digit or so is sure: at times so large
+ *        that all vertices look alike, or next to the source at small ones. Then the status is HD_WARN_ACCURACY. Never NaN.
+ *        hd_heat_pairs loses nothing there */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D,
                                         size_t ldd, hd_report *report);
 
@@ -769,7 +773,8 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, doubl
 HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex, double *distance,
                                       hd_report *report);
 
-/* Single entries: values[q] = (i[q], j[q]) of K_t or k_t. One column per distinct j is solved, n doubles at a time. */
+/* Single entries: values[q] = (i[q], j[q]) of K_t or k_t. One column per distinct j is solved, n doubles at a time. The bound is
+ * relative to the largest |value| in the list: far from the source, where the kernel is nearly zero, it may say nothing. */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
                                        double *values, hd_report *report);
 
