@@ -391,6 +391,49 @@ static void bnd_turned(void) {
     hd_laplacian_free(lap);
 }
 
+/* ---- sizes at the ends of doubles, and nothing left ---- */
+
+/* Pairs of an octahedron times 10^100 and 10^-100: distances are 1/length^2 and have all their digits. */
+static void bnd_octahedron(void) {
+    static const double xyz[18] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
+    static const int32_t tri[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+    static const int32_t i[3] = {0, 0, 2}, j[3] = {1, 2, 5};
+    static const double sizes[3] = {1, 1e100, 1e-100};
+    double at[18], K[3], d[3], K1[3], d1[3];
+    int q, p;
+    for (q = 0; q < 3; q++) {
+        hd_laplacian *lap = NULL;
+        hd_heat *heat;
+        hd_report r;
+        for (p = 0; p < 18; p++) at[p] = sizes[q] * xyz[p];
+        CHECK(hd_laplacian_triangles(&lap, at, 6, tri, 8, NULL, NULL) == HD_OK);
+        heat = bnd_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
+        CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 0.3 * lap->h * lap->h, 3, i, j, q ? K1 : K, q ? d1 : d, &r) == HD_OK);
+        CHECK_MSG(r.n_lost == 0 && r.error_bound < 1e-5 && r.error_relative < 1e-5, "bound %g, relative %g", r.error_bound, r.error_relative);
+        for (p = 0; p < 3 && q; p++)
+            CHECK_MSG(fabs(K1[p] / K[p] - 1) < 1e-9 && fabs(d1[p] * sizes[q] / d[p] - 1) < 1e-9, "pair %d: K %g, d %g", p, K1[p], d1[p]);
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+    }
+}
+
+/* Where all vertices are alike distances are noise, and so is an order of samples: the status says so. */
+static void bnd_nothing_left(void) {
+    hd_laplacian *lap = bnd_cycle(40, NULL, 1);
+    hd_heat *heat = bnd_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
+    double d[40], far[4], t;
+    const int32_t source = 3;
+    int32_t vertex[4];
+    hd_report r;
+    for (t = 3e3; t < 1e300; t *= 1e33) {
+        CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r) == HD_WARN_ACCURACY);
+        CHECK(r.n_lost == 39 && !(r.error_bound <= 1e-2) && r.error_bound == r.error_bound);
+        CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 4, 0, vertex, far, &r) == HD_WARN_ACCURACY && !(r.error_bound <= 1e-2));
+    }
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+}
+
 /* ---- single entries ---- */
 
 /* An error relative to the value itself, where that may be next to nothing. */
@@ -1033,6 +1076,8 @@ static void test_bounds(void) {
     bnd_sliver();
     bnd_no_edges();
     bnd_turned();
+    bnd_octahedron();
+    bnd_nothing_left();
     bnd_far_entry();
     bnd_almost_conserving();
     bnd_long_path();

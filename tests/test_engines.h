@@ -1246,6 +1246,44 @@ static void eng_choice_limits(void) {
     shape_free(&s);
 }
 
+/* A plan that once had to do without factors takes them again when there is room: the same bits as a new one. */
+static void eng_limit_lifted(void) {
+    shape s = shape_bumpy(3, 2);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const double t = 40 * lap->h * lap->h;
+    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
+    hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
+    hd_context ctx, free_ctx;
+    hd_heat *heat;
+    hd_report rep;
+    uint64_t need;
+    memset(&ctx, 0, sizeof ctx);
+    o.context = &ctx;
+    heat = eng_create(lap, &o);
+    CHECK(hd_heat_column(heat, t, 7, u, NULL) >= 0);
+    need = ctx.bytes_peak;
+    hd_heat_free(heat);
+    memset(&ctx, 0, sizeof ctx);
+    memset(&free_ctx, 0, sizeof free_ctx);
+    o.method = HD_METHOD_AUTO;
+    o.context = &free_ctx;
+    heat = eng_create(lap, &o);
+    CHECK(eng_ok(hd_heat_column(heat, t, 7, want, &rep), &rep, "no limit") && rep.method != HD_METHOD_ITERATIVE);
+    hd_heat_free(heat);
+    ctx.byte_limit = need + need / 8;
+    o.context = &ctx;
+    heat = eng_create(lap, &o);
+    CHECK(eng_ok(hd_heat_column(heat, t, 7, u, &rep), &rep, "limit") && rep.method == HD_METHOD_ITERATIVE && strcmp(rep.reason, "asked for") != 0);
+    ctx.byte_limit = 0;
+    CHECK(eng_ok(hd_heat_column(heat, t, 7, u, &rep), &rep, "limit lifted") && rep.method != HD_METHOD_ITERATIVE);
+    CHECK(memcmp(u, want, (size_t)lap->n * sizeof *u) == 0);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(u);
+    free(want);
+}
+
 /* ---- errors ---- */
 
 static void eng_bad_options(void) {
@@ -1543,6 +1581,7 @@ static void test_engines(void) {
     eng_bad_perms();
     eng_choice();
     eng_choice_limits();
+    eng_limit_lifted();
     eng_bad_options();
     eng_bad_calls();
     eng_robust();
