@@ -484,7 +484,8 @@ HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_conte
 /* out = A'. Cost O(nnz). */
 HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *err);
 
-/* out = A B (Gustavson 1978). Errors HD_ERR_NOT_FINITE (row, column: an entry overflows). Cost O(flops + sorting of the rows). */
+/* out = A B (Gustavson 1978). Errors HD_ERR_NOT_FINITE (row, column: an entry overflows). Cost O(flops +
+ * sorting of the rows). */
 HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *err);
 
 /* out = P A P', a square A with rows and columns renumbered: row i of out is row perm[i] of A. Errors HD_ERR_INDEX when perm is not
@@ -561,13 +562,15 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
                                                   const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices on any graph, copied.
- * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked: L_ii >= 0, L_ij^2 <= L_ii L_jj.
- *        Rows need not sum to zero (then heat is not conserved)
+ * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked: L_ii >= 0 and
+ *        L_ij^2 <= L_ii L_jj. Rows need not sum to zero (then heat is not conserved)
  * B      n x n, symmetric positive definite; any pattern. Rows of B without any non-zero are inert vertices. Definiteness is
- *        checked on the diagonal, by factorising B where rows of it are not dominated by their diagonal, and where a solver meets it
+ *        checked on the diagonal, by factorising B where rows of it are not dominated by their diagonal, and
+ *        where a solver meets it
  *        The pattern of the pair is that of both; explicit zeros stay where their mirror entry is stored too
  * h      unit length of the caller's mesh for lap->h; 0 if none
- * Errors as hd_csr_check, HD_ERR_NOT_POSITIVE (row, column, value), HD_ERR_EMPTY, HD_ERR_CANCELLED. Cost linear, but for factorising B. */
+ * Errors as hd_csr_check, HD_ERR_NOT_POSITIVE (row, column, value), HD_ERR_EMPTY, HD_ERR_CANCELLED. Cost linear,
+ *        but for factorising B. */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
@@ -627,8 +630,8 @@ typedef struct hd_solve_report {
 /* (t L + theta B) x = rhs, complex symmetric. rhs, x [n] on the vertices, may be the same array; 0 at vertices without mass.
  * theta not on (-inf, 0], t >= 0. The report is filled too when the status is HD_ERR_NOT_CONVERGED. Every call makes its own ordering and
  * preconditioner.
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row: of rhs, or of x when that overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_MEMORY,
- * HD_ERR_CANCELLED. HD_WARN_ACCURACY. */
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row: of rhs, or of x when that overflows), HD_ERR_NOT_CONVERGED,
+ * HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED. HD_WARN_ACCURACY. */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                         const hd_solve_opts *opts, hd_solve_report *report, hd_error *err);
 
@@ -864,7 +867,8 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH(p) __builtin_prefetch(p)
 /* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
-#define HDI_PREFETCH_AT(p, i) __builtin_prefetch(HDI_RECAST(const void *, HDI_RECAST(uintptr_t, p) + HDI_CAST(uintptr_t, i) * sizeof *(p)))
+#define HDI_PREFETCH_AT(p, i)                                                                                          \
+    __builtin_prefetch(HDI_RECAST(const void *, HDI_RECAST(uintptr_t, p) + HDI_CAST(uintptr_t, i) * sizeof *(p)))
 #else
 #define HDI_RESTRICT
 #define HDI_LOAD(p) (*(p))
@@ -934,7 +938,8 @@ static hd_c64 hdi_cdiv(hd_c64 a, hd_c64 b) {
     return hdi_c((a.re * q + a.im) / d, (a.im * q - a.re) / d);
 }
 
-/* By their bits: comparisons raise the invalid flag for NaN, and with -ffast-math compilers take it that there is none. */
+/* By their bits: comparisons raise the invalid flag for NaN, and with -ffast-math compilers take it that
+ * there is none. */
 static HDI_INLINE uint64_t hdi_bits(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -963,7 +968,8 @@ static void hdi_sum_add(hdi_sum *s, double x) {
     s->high = t;
 }
 
-/* *out = a * b + c; 0 if that does not fit, or is more than most. Counts of elements have 64 bits everywhere, also where an address has 32. */
+/* *out = a * b + c; 0 if that does not fit, or is more than most. Counts of elements have 64 bits everywhere,
+ * also where an address has 32. */
 static int hdi_size(uint64_t a, uint64_t b, uint64_t c, uint64_t most, uint64_t *out) {
     if (c > most || (b && a > (most - c) / b)) return 0;
     *out = a * b + c;
@@ -3409,7 +3415,8 @@ static hd_status hdi_csr_check_finite(const hd_csr *a, const char *text, hd_erro
     int64_t p;
     for (i = 0; a->val && i < a->n_rows; i++)
         for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
-            if (!hdi_finite(a->val[p])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, text, i, a->col[p], a->val[p]);
+            if (!hdi_finite(a->val[p]))
+                return hdi_fail_row(e, HD_ERR_NOT_FINITE, text, i, a->col[p], a->val[p]);
     return HD_OK;
 }
 
@@ -3437,7 +3444,8 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     t.row_ptr[0] = 0;
     hdi_csr_transpose_into(&t, &a);
     hdi_csr_merge(&a);
-    if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0) *out = hdi_csr_keep(&s, a);
+    if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0)
+        *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
 }
 
@@ -3795,7 +3803,7 @@ typedef struct hdi_found {
 enum { HDI_COUNT = -1 };
 
 static void hdi_found_bound(hdi_found *f, double bound) {
-    f->bound = hdi_min(bound, 1e305);            /* beyond all squared distances, which hdi_points_check keeps below 1e301 */
+    f->bound = hdi_min(bound, 1e305);            /* hdi_points_check keeps squared distances below 1e301 */
     f->prune = f->bound * (1 + 8 * DBL_EPSILON);
 }
 
@@ -4016,7 +4024,8 @@ static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
     if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
 }
 
-/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise than those of the other. */
+/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise
+ * than those of the other. */
 static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
     const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
     const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
@@ -4491,7 +4500,7 @@ static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const dou
         const int round = hdi_finite(sum) && sum > 1e-100;
         const double flat = quarter * obtuse, scale = quarter / (round ? sum : 1) * (1 - obtuse);
         int q;
-        if (round) {                             /* without further branches: which angle is obtuse is anyone's guess */
+        if (round) {                             /* without branches: which angle is obtuse is anyone's guess */
             mass[v[0]] += quarter + (flat * (cot[0] < 0) + scale * x[0]);
             mass[v[1]] += quarter + (flat * (cot[1] < 0) + scale * x[1]);
             mass[v[2]] += quarter + (flat * (cot[2] < 0) + scale * x[2]);
@@ -5434,7 +5443,8 @@ static void hdi_put_face(hdi_intrinsic *t, const hdi_mesh *mesh, int32_t f, cons
  * boundary is glued to the other sheet (the tufted cover), so that no boundary is left. */
 static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int close, hd_mesh_report *rep, hdi_scope *s) {
     const int64_t n_sides = 3 * HDI_CAST(int64_t, mesh->m);
-    int32_t *mate = HDI_TAKE(s, int32_t, n_sides), *front = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
+    int32_t *mate = HDI_TAKE(s, int32_t, n_sides);
+    int32_t *front = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
     int32_t *back = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
     int32_t f, q, used = 0;
     signed char *turned = HDI_TAKE(s, signed char, mesh->m);
@@ -6599,8 +6609,9 @@ static void hdi_component_add(const hd_laplacian *lap, const double *value, doub
 
 /* ---- the caller's own matrices ---- */
 
-/* Merges row v of L and B (both over vertices) on the active columns, the diagonal always there. An explicit zero
- * whose mirror entry neither matrix stores is left out: the pattern becomes symmetric. col NULL: counts only. */
+/* Merges row v of L and B (both over vertices) on the active columns, the diagonal always there. An explicit
+ * zero whose mirror entry neither matrix stores is left out: the pattern becomes symmetric. col NULL: counts
+ * only. */
 static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v, int32_t *col, double *Lx, double *Bx) {
     int64_t p = L->row_ptr[v], q = B->row_ptr[v], n = 0;
     const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
@@ -6625,8 +6636,9 @@ static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_c
     return n;
 }
 
-/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the rounding of its
- * entries. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry leaves open. */
+/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the
+ * rounding of its entries. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry
+ * leaves open. */
 static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal, hd_error *e) {
     int32_t i;
     int64_t p;
@@ -6650,13 +6662,14 @@ static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal
         }
         if (!(b_diag > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
         if (l_diag + 1e-12 * l_abs < 0)
-            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L has a negative diagonal entry: L is positive semi-definite here, "
-                                "minus the cotangent matrix of libigl", v, v, l_diag);
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L has a negative diagonal entry: L is positive semi-definite "
+                                "here, minus the cotangent matrix of libigl", v, v, l_diag);
         root[i] = sqrt(l_diag + 1e-12 * l_abs);
         if (fabs(l_sum.high + l_sum.low) > 4 * DBL_EPSILON * l_abs) lap->conserves = 0;
         if (b_off.high > 0) {                    /* Gershgorin */
             *diagonal = 0;
-            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * ((b_diag - b_off.high) - b_off.low) / b_diag);
+            b_off.high = (b_diag - b_off.high) - b_off.low;
+            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * b_off.high / b_diag);
         }
         lap->mass[i] = b_sum;
         lap->b_diag[i] = b_diag;
@@ -6667,13 +6680,16 @@ static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal
 
 /* What every positive semi-definite L satisfies: L_ij^2 <= L_ii L_jj. root as above. */
 static hd_status hdi_pair_semidefinite(const hd_laplacian *lap, const double *root, hd_error *e) {
-    int32_t i;
+    int32_t i, j;
     int64_t p;
-    for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            if (lap->L.col[p] > i && fabs(lap->L.val[p]) > (1 + 1e-10) * root[i] * root[lap->L.col[p]])
-                return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite: an entry is larger than the diagonal "
-                                    "entries of its row and column allow", lap->vertex[i], lap->vertex[lap->L.col[p]], lap->L.val[p]);
+    for (i = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            j = lap->L.col[p];
+            if (j <= i || fabs(lap->L.val[p]) <= (1 + 1e-10) * root[i] * root[j]) continue;
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite: an entry is larger than the "
+                                "diagonal entries of its row and column allow", lap->vertex[i], lap->vertex[j], lap->L.val[p]);
+        }
+    }
     return HD_OK;
 }
 
@@ -6717,7 +6733,7 @@ static hd_status hdi_pair_ratio(const hd_laplacian *lap, double *work, double *r
     for (k = 0; k < 2 * STEPS; k++) z[k] = 0;
     if (!hdi_tridiag_eigen(d, off, z, z + STEPS, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "B: the estimate of its smallest eigenvalue did not converge");
     for (least = d[0], k = 1; k < m; k++) least = hdi_min(least, d[k]);
-    if (!(least > 1e-12)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B is not positive definite", -1, -1, least);
+    if (!(least > 1e-12) && !(lap->b_ratio > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B is not positive definite", -1, -1, least);
     *ratio = least;
     return HD_OK;
 }
@@ -6750,7 +6766,8 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
         p = lap->L.row_ptr[i];
         lap->L.row_ptr[i + 1] = p + hdi_pair_row(lap, L, B, lap->vertex[i], lap->L.col + p, lap->L.val + p, lap->B + p);
     }
-    if (hdi_pair_measure(lap, root, &diagonal, e) < 0 || hdi_pair_semidefinite(lap, root, e) < 0) return hdi_scope_end(&s);
+    if (hdi_pair_measure(lap, root, &diagonal, e) < 0) return hdi_scope_end(&s);
+    if (hdi_pair_semidefinite(lap, root, e) < 0) return hdi_scope_end(&s);
     if (diagonal) {
         hdi_free(lap->context, lap->B);
         hdi_free(lap->context, lap->b_diag);
@@ -6875,9 +6892,10 @@ typedef struct hdi_polygon {
     double x[HDI_POLYGON_MOST][2];
 } hdi_polygon;
 
-/* Keeps what lies in a x <= b; says whether anything was cut off. A cut adds one corner to a convex polygon: there is room for one by each
- * neighbour and one by each side of their hull. Rounding can leave corners that are not convex, and a line through those may add more: where
- * there is no room for that, nothing is cut off. */
+/* Keeps what lies in a x <= b; says whether anything was cut off. A cut adds one corner to a convex polygon:
+ * there is room for one by each neighbour and one by each side of their hull. Rounding can leave corners that
+ * are not convex, and a line through those may add more: where there is no room for that, nothing is cut off.
+ * */
 static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
     hdi_polygon cut;
     double last, here;
@@ -7926,8 +7944,9 @@ static void hdi_amd_element(hdi_amd *g, int32_t me) {
     int32_t begin, end, p, weight = 0;
     const int32_t elen = v->elen;
     if (elen > 0 && v->degree > g->size - g->free) hdi_amd_compact(g);
-    /* Lists that are alive hold at most the nnz entries that they began with: L_me replaces the longer ones it is made of, and whoever gets me into its list
-     * loses one entry at least. So n words and more are free after compacting, and degrees are below n. */
+    /* Lists that are alive hold at most the nnz entries that they began with: L_me replaces the longer ones
+     * it is made of, and whoever gets me into its list loses one entry at least. So n words and more are free
+     * after compacting, and degrees are below n. */
     HEATDIFF_ASSERT(elen == 0 || v->degree <= g->size - g->free);
     begin = end = elen > 0 ? g->free : v->at;
     v->weight = -v->weight;
@@ -8307,12 +8326,15 @@ typedef struct hdi_nd {
 /* Work space left to a task; taken from its front, given back by forgetting the copy that was taken from. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
-/* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes 1.25 n (rows by number, sides), and the list of a
- * cut's vertices 2 n; what else it takes is given back before the next step. Of these steps the largest is hdi_nd_cut_clusters: 1.25 c for c <= n clusters,
- * 2 n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N, all 9.5 c; where a copy fails it keeps 3.17 N
- * at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is
- * 9.5 c (1 - (2/3)^l) + 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words a copy, of which there are 24. The flow takes 10.25 n,
- * fresh clusters 3.17 n + 5.5 (2/3 n), clusters of a half 2 n; hdi_nd_leaf looks itself. */
+/* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes
+ * 1.25 n (rows by number, sides), and the list of a cut's vertices 2 n; what else it takes is given back
+ * before the next step. Of these steps the largest is hdi_nd_cut_clusters: 1.25 c for c <= n clusters, 2
+ * n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N,
+ * all 9.5 c; where a copy fails it keeps 3.17 N at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N
+ * on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is 9.5 c (1 - (2/3)^l) +
+ * 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words a copy, of which there are
+ * 24. The flow takes 10.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), clusters of a half 2 n; hdi_nd_leaf looks
+ * itself. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
     HEATDIFF_ASSERT(words <= s->end - s->at);
@@ -11402,9 +11424,10 @@ static int64_t hdi_form_place(const hdi_inverse_front *w, int32_t i) {
     return i < s->super[w->v + 1] ? i - s->super[w->v] : w->p + hdi_lower_bound(s->row + s->row_ptr[w->v], w->u, i);
 }
 
-/* Rows of front v, cleared when they are new: they are on top of the stack. It has room for all: fronts are worked on in the order of the tree, so that of
- * the ways from J down to the front under way those fronts are open that an earlier child has handed rows to, as hdi_form_rows counts them, and no front has
- * more columns than the block. */
+/* Rows of front v, cleared when they are new: they are on top of the stack. It has room for all: fronts are
+ * worked on in the order of the tree, so that of the ways from J down to the front under way those fronts are
+ * open that an earlier child has handed rows to, as hdi_form_rows counts them, and no front has more columns
+ * than the block. */
 static double *hdi_form_open(hdi_form_block *b, int32_t v, int32_t k) {
     const hdi_factor *f = b->w->f;
     const int64_t size = (hdi_front_pivots(f->sym, v) + hdi_front_below(f->sym, v)) * hdi_form_row(f->width, k);
@@ -12773,7 +12796,8 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
 static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     int32_t i;
     if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES) return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
-    if (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 || hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0)
+    if (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 ||
+        hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0)
         return hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
     for (i = 0; i < set->n_poles; i++) {
         const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
@@ -15812,11 +15836,13 @@ static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *
         for (c = 0; c < HDI_GEO_WIDE; c += 4) {
             const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c)), u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
             const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c)), m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
-            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ), s = _mm256_and_pd(lit, _mm256_div_pd(one, _mm256_blendv_pd(one, m, lit)));
+            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ);
+            const hdi_v4 s = _mm256_and_pd(lit, _mm256_div_pd(one, _mm256_blendv_pd(one, m, lit)));
             const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s), d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
             const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1)), norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
             const hdi_v4 slope = _mm256_cmp_pd(norm2, flat, _CMP_GT_OQ);
-            const hdi_v4 w = _mm256_and_pd(slope, _mm256_div_pd(minus, _mm256_sqrt_pd(_mm256_blendv_pd(one, norm2, slope))));
+            const hdi_v4 length = _mm256_sqrt_pd(_mm256_blendv_pd(one, norm2, slope));
+            const hdi_v4 w = _mm256_and_pd(slope, _mm256_div_pd(minus, length));
             const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w), g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
             faint |= (_mm256_movemask_pd(_mm256_cmp_pd(m, zero, _CMP_GT_OQ)) & ~_mm256_movemask_pd(lit)) << c;
             _mm256_storeu_pd(b + i + c, _mm256_sub_pd(_mm256_loadu_pd(b + i + c), _mm256_add_pd(g1, g2)));
@@ -16405,7 +16431,8 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
 
 #define HDI_CLEARED(opts) (!(opts)->begin_zero && !(opts)->end_zero)
 
-/* The same where options may name the context. Those that were not cleared are an error, and nothing in them is followed. */
+/* The same where options may name the context. Those that were not cleared are an error, and nothing in them
+ * is followed. */
 static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
     if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
@@ -16472,7 +16499,8 @@ typedef struct hdi_laplacian { hd_laplacian lap; hd_context context; } hdi_lapla
 
 static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind, hd_error *err, hdi_call *c) {
     hdi_laplacian *shell;
-    if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL, "laplacian options: not cleared before use", err) < 0) return NULL;
+    if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
+                       "laplacian options: not cleared before use", err) < 0) return NULL;
     if (n < 0) {
         hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian: a size is negative");
         return NULL;
@@ -16577,8 +16605,10 @@ static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
     return b;
 }
 
-/* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester). value [nnz]: room. */
-static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value, hdi_factor *f, hd_error *e) {
+/* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester).
+ * value [nnz]: room. */
+static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value, hdi_factor *f,
+                           hd_error *e) {
     hdi_values v;
     int32_t i;
     int64_t p;
@@ -16592,9 +16622,10 @@ static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigm
     return 0;
 }
 
-/* A proven b_ratio where Gershgorin's, in lap, is poor: values from the estimate downwards, each tried by a factorisation. What that
- * rounds is a matrix E with |x'Ex| <= eps (nnz(L) + 2 n) x'diag(B)x (after Rump 2006): so much is added to sigma.
- * Where all fail, B has a negative eigenvalue, or the ratio is not known. */
+/* A proven b_ratio where Gershgorin's, in lap, is poor: values from the estimate downwards, each tried by a
+ * factorisation. What that rounds is a matrix E with |x'Ex| <= eps (nnz(L) + 2 n) x'diag(B)x (after Rump
+ * 2006): so much is added to sigma. Where all fail, B has a negative eigenvalue, or the ratio is not known.
+ * */
 static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const double dominant = hdi_max(lap->b_ratio, 0);
@@ -16608,8 +16639,9 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     memset(&f, 0, sizeof f);
     lap->b_ratio = dominant;
     if (e->status >= 0 && hdi_pair_ratio(lap, work, &least, e) >= 0 &&
-        hdi_sym_order(&b, NULL, HD_ORDERING_AUTO, HDI_DISSECT_FROM, NULL, perm, &chosen, lap->context, e) >= 0 &&
-        hdi_symbolic_make(&sym, &b, perm, lap->context, e) >= 0 && hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
+        hdi_sym_order(&b, NULL, HD_ORDERING_MINIMUM_DEGREE, 0, NULL, perm, &chosen, lap->context, e) >= 0 &&
+        hdi_symbolic_make(&sym, &b, perm, lap->context, e) >= 0 &&
+        hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
         slack = DBL_EPSILON * (HDI_CAST(double, sym.nnz) + 2.0 * lap->n_active);
         for (tries = 0; e->status >= 0; tries++) {
             sigma = tries == 0 ? 0.8 * least : ldexp(least, 1 - 2 * tries);
@@ -16618,8 +16650,8 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
                 lap->b_ratio = sigma;
                 break;
             }
-            if (tries == 1 && e->status >= 0 && !hdi_lap_exceeds(lap, &b, -slack, value, &f, e) && f.all.negative)
-                hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: a pivot of its factorisation is negative");
+            if (tries != 1 || e->status < 0 || hdi_lap_exceeds(lap, &b, -slack, value, &f, e)) continue;
+            if (f.all.negative) hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: it has a negative pivot");
         }
     }
     hdi_factor_free(&f);
@@ -17207,7 +17239,8 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     return o->rational ? hdi_rational_check(o->rational, e) : HD_OK;
 }
 
-/* Gershgorin: every eigenvalue of B^-1 L is below this. A guess where b_ratio is not known: it serves for choices only. */
+/* Gershgorin: every eigenvalue of B^-1 L is below this. A guess where b_ratio is not known: it serves for
+ * choices only. */
 static double hdi_lambda_bound(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
@@ -17254,7 +17287,8 @@ static double hdi_heat_scale(const hd_laplacian *lap) {
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err) {
     hdi_call c;
     hd_heat *heat;
-    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts), opts && opts->context ? opts->context : lap ? lap->context : NULL,
+    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
+                       opts && opts->context ? opts->context : lap ? lap->context : NULL,
                        "heat options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !lap) return hdi_missing(c.e);
     if (opts && hdi_heat_check(opts, c.e) < 0) return c.e->status;
@@ -17354,8 +17388,8 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         if (!hdi_cfinite(rhs[v]))
-            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v, -1,
-                                hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v,
+                                -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
         if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
     }
     frexp(largest, exponent);
@@ -17414,7 +17448,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     if (status > 0) e->status = status;
     for (v = 0; v < lap->n; v++) {
         x[v] = hdi_c(ldexp(x[v].re, unit), ldexp(x[v].im, unit));
-        if (!hdi_cfinite(x[v]) && e->status >= 0) hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1, x[v].re);
+        if (!hdi_cfinite(x[v]) && e->status >= 0)
+            hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1, x[v].re);
     }
     return e->status;
 }
@@ -17428,8 +17463,8 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     memset(&o, 0, sizeof o);
     memset(&plan, 0, sizeof plan);
     if (opts) o = *opts;
-    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context ? o.context : lap ? lap->context : NULL, "solve options: not cleared before use", err) < 0)
-        return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context ? o.context : lap ? lap->context : NULL,
+                       "solve options: not cleared before use", err) < 0) return c.e->status;
     if (!lap || !rhs || !x) return hdi_missing(c.e);
     if (hdi_solve_check(t, theta, &o, c.e) < 0) return c.e->status;
     plan.solver = o.solver ? o.solver : HD_SOLVER_COCG;

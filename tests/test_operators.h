@@ -802,6 +802,13 @@ static void op_matrices_ratio(void) {
     for (i = 0; i < N; i++)                      /* below zero, which 40 steps of Lanczos do not see */
         for (p = B.row_ptr[i]; p < B.row_ptr[i + 1]; p++) B.val[p] = B.col[p] == i ? 1 - 1e-7 : 0.5;
     CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_POSITIVE);
+    for (i = 0; i < N; i++)                      /* nearly singular, but Gershgorin says not quite */
+        for (p = B.row_ptr[i]; p < B.row_ptr[i + 1]; p++)
+            B.val[p] = B.col[p] == i ? 1 + 1e-13 : i < N - 2 || i + B.col[p] < 2 * N - 3 ? 0 : 1;
+    if (CHECK_MSG(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK, "%s", e.text)) {
+        CHECK_MSG(lap->b_ratio > 9e-14 && lap->b_ratio < 1.1e-13, "%g", lap->b_ratio);
+        hd_laplacian_free(lap);
+    }
     for (q = 0; q < 4; q++) {                    /* in the scaling by diag(B) the least eigenvalue of a block is about 2 mu */
         if (!CHECK_MSG(op_block_ratio(100, mus[q], &lap, &e) == HD_OK, "%s", e.text)) continue;
         CHECK_MSG(lap->b_ratio > 0.1 * mus[q] && lap->b_ratio <= 2.1 * mus[q], "%g for mu %g", lap->b_ratio, mus[q]);
