@@ -14444,7 +14444,7 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
  * dense; and what is left of L 1, which counts as zero where it is so to rounding, up to 1e-8. Same in both norms. */
 static double hdi_conserve_off(const hd_laplacian *lap, const hdi_lane *lane, double drift_t, int dense) {
     const double sums = HDI_CAST(double, lap->n_active) * DBL_EPSILON / 2;
-    return (sums + hdi_min(drift_t, 1e-8)) * lane->u_norm + (dense ? (sums + 4 * DBL_EPSILON) * lane->f_norm : 0);
+    return (sums + 32 * DBL_EPSILON + hdi_min(drift_t, 1e-8)) * lane->u_norm + (dense ? (sums + 4 * DBL_EPSILON) * lane->f_norm : 0);
 }
 
 static void hdi_lane_rounding(hdi_lane *lane, double off) {
@@ -14712,6 +14712,11 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     const double weighted = hdi_set_weighted(set);
     const int constants = lap->conserves && set->kind == HD_POLES_OWN;
     int32_t p;
+    for (p = 0; p < set->n_poles && constants; p++) {   /* c(0), by which constants are multiplied, and what they leave when taken out */
+        const double off = 8 * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) / hdi_pole_distance(set->theta[p]) * lane->f_norm;
+        lane->off.rounding += off;
+        lane->off_m.rounding += off;
+    }
     for (p = 0; p < set->n_poles; p++)           /* the sum of the answers again: |x_v| <= sqrt(g_v) |x|_M */
         lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * hdi_pole_reach(set->theta[p]) * sqrt(lane->energy);
     lane->off.rational = hdi_set_uniform(set) * lane->f_norm;
@@ -18046,7 +18051,7 @@ static hd_status hdi_direct_run(hdi_heat_call *h) {
         if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return h->e->status;
         for (i = 0; i < h->n_here; i++)
             if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
-        h->deflated = h->query == HDI_QUERY_FIELD || h->t * h->heat->lambda_max > HDI_DEFLATE;
+        h->deflated = !h->watching && (h->query == HDI_QUERY_FIELD || h->t * h->heat->lambda_max > HDI_DEFLATE);
         for (i = 0; i < h->n_here && h->deflated; i++)
             if (!h->lane[i].skip) hdi_lane_deflate(h->lane + i, h->lap);
         hdi_parallel(h->heat->ctx, (h->n_here + h->batch_width - 1) / h->batch_width, hdi_heat_batch_task, h);
@@ -18471,11 +18476,17 @@ static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_repo
 /* What rounding does to entries found by inversion no theorem says well. It is measured at a few rows where it is largest: a
  * solve with the same poles, whose own error its residual bounds, is held against the entry. */
 enum { HDI_PROBES = 3 };
+#define HDI_PROBE_SAFETY 4   /* differences seen at the probes stand for those of all rows */
+#define HDI_PROBE_OWN 100    /* and more so for functions of the caller's, whose poles may lie beside the spectrum */
 
-typedef struct hdi_probe {
-    int32_t k, row[HDI_PROBES];
-    int32_t deflated;
-} hdi_probe;
+/* Can rounding be told from the values alone? k_t(i,i) is at least what the constants are of it, most (of row i) times value:
+ * returns the relative error that a smaller value shows. For sets that approximate exp. */
+static double hdi_below_constants(const hd_laplacian *lap, const hd_rational *set, int32_t i, double value, double times) {
+    const double least = times * (lap->conserves && set->kind != HD_POLES_OWN ? 1 / lap->component_mass[lap->component[i]] : 0);
+    return value < 0.999 * least ? hdi_quotient(least - value, fabs(value)) : 0;
+}
+
+typedef struct hdi_probe { int32_t k, row[HDI_PROBES]; } hdi_probe;
 
 /* Rows to look at: where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). k may be NULL. */
 static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
@@ -18519,7 +18530,6 @@ static hd_status hdi_probe_run(hdi_heat_call *h, hdi_probe *x, hd_kernel kernel,
     c.k = x->k;
     c.sources = vertex;
     c.watching = 1;
-    x->deflated = c.t * heat->lambda_max > HDI_DEFLATE;
     if (x->k > 0 && hdi_direct_columns(heat, &c, &rep) < 0) *h->e = rep.error;
     else if (x->k > 0) h->rep->residual = hdi_max(h->rep->residual, rep.residual);
     return h->e->status;
@@ -18531,14 +18541,12 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q
     const hdi_elim *m = &heat->elim;
     const hd_laplacian *lap = m->lap;
     const hdi_lane *lane = heat->lane + q;
-    const int32_t c = lap->component[x->row[q]];
-    const double mean = x->deflated && lap->conserves ? lane->target[c] / lap->component_mass[c] : 0, b = lap->b_diag[x->row[q]];
+    const double b = lap->b_diag[x->row[q]];
     double value = set->a0 * f, by_b = 0, by_m = 0;
     int32_t p;
     for (p = 0; p < set->n_poles; p++) {
         const double count = hdi_rat_count(set, p), weight = count * hdi_cabs(set->a[p]) * hdi_ratio_root(lap) * lane->pole_off[p];
-        const hd_c64 constant = hdi_cdiv(hdi_c(mean, 0), m->set.theta[p]), all = hdi_cadd(lane->pole_value[p], constant);
-        value -= count / tau * hdi_cmul(set->a[p], all).re;
+        value -= count / tau * hdi_cmul(set->a[p], lane->pole_value[p]).re;
         by_m += weight * hdi_pole_reach(set->theta[p]);
         by_b += weight / hdi_pole_distance(set->theta[p]);
     }
@@ -18730,8 +18738,10 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         const int32_t row = probe.row[i];
         const double f = kernel == HD_KERNEL_OPERATOR ? 1 : lap->B ? 0 : 1 / lap->mass[row];
         double by, there = hdi_probe_value(heat, &probe, i, &heat->elim.set, 1, f, g[row], &by);
-        rounding = hdi_max(rounding, hdi_quotient(2 * fabs(there - value[row]) + by, fabs(size_of[row])));
+        rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - value[row]) + by, fabs(size_of[row])));
     }
+    for (i = 0; i < s->n; i++) rounding = hdi_max(rounding, hdi_below_constants(lap, &heat->elim.set, i, value[i], kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1));
+    if (size_of == own) rounding *= HDI_PROBE_OWN;
     *relative = hdi_diagonal_tell(h, kernel, value, off, size_of, rounding, out);
     return hdi_scope_end(&scope);
 }
@@ -18775,6 +18785,7 @@ static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double
             k[i] = x->k[n];
             g[i] = x->g[n];
             part.rational = m->scale * hdi_entry_error(x, g[i], lap->b_diag[i], lap->b_ratio);
+            part.rounding = 4 * DBL_EPSILON * m->scale * fabs(k[i]);
             hdi_ledger_note(ledger, m->scale * k[i], part);
         }
     }
@@ -18787,14 +18798,15 @@ static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe,
     double by, there = hdi_probe_value(heat, probe, q, &heat->elim.set, 1, lap->B ? 0 : 1 / in->mass[at], g[at], &by), most;
     hdi_parts part;
     int64_t p;
-    most = heat->scale * (2 * fabs(there - k[at]) + by);
+    most = heat->scale * (HDI_PROBE_SAFETY * fabs(there - k[at]) + by);
     for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && heat->elim.set.a0 == 0; p++) {
         const int32_t j = in->row[lap->vertex[lap->L.col[p]]];
         const double off = hdi_max(1, g[at] > 0 ? sqrt(hdi_max(0, g[j]) / g[at]) : 1) * by;
         most = hdi_max(most, fabs(heat->scale * heat->lane[q].u[j] - values[p]) + heat->scale * off);
     }
     memset(&part, 0, sizeof part);
-    part.rounding = most;
+    part.rounding = heat->elim.set.kind == HD_POLES_OWN ? HDI_PROBE_OWN * most : most;
+    part.rounding += 4 * DBL_EPSILON * heat->scale * fabs(k[at]);
     return part;
 }
 
@@ -18951,8 +18963,9 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
         for (r = 0; r < probe.k; r++) {
             const int32_t row = probe.row[r];
             double by, there = hdi_probe_value(heat, &probe, r, set + q, t[q] / t[0], 0, g[row], &by);
-            rounding = hdi_max(rounding, hdi_quotient(2 * fabs(there - k[row]) + by, fabs(k[row])));
+            rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - k[row]) + by, fabs(k[row])));
         }
+        for (i = 0; i < m->sym.n; i++) rounding = hdi_max(rounding, hdi_below_constants(m->lap, set + q, i, k[i], 1));
         for (i = 0; i < m->sym.n; i++) off[i] = hdi_min(set[q].max_weighted_error * hdi_max(0, g[i]), set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
         (void)hdi_diagonal_tell(h, HD_KERNEL_SYMMETRIC, k, off, k, rounding, D + HDI_CAST(size_t, column[q]) * ldd);
     }
@@ -19026,6 +19039,9 @@ typedef struct hdi_metric {
 /* A column of f by vertices, and what rounding can put it off by: sqrt(g_v) times off_m, and sqrt(spread_v) times off_b. */
 typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
 
+/* What rounding of a function of the caller's is relative to: the resolvent, or where that bounds nothing the mass. */
+static double hdi_own_size(double g, double spread) { return g > 0 && hdi_finite(g) ? g : spread; }
+
 /* Commute and biharmonic, from L grounded. */
 static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scope, hd_error *e) {
     const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
@@ -19051,7 +19067,7 @@ static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scop
     for (i = 0; i < probe.k; i++) {
         const double there = forms ? g->form[probe.row[i]] : g->diag[probe.row[i]];
         const double off = hdi_ground_column(m, g, probe.row[i], forms, u, work);
-        x->rounding = hdi_max(x->rounding, hdi_quotient(4 * fabs(u[probe.row[i]] - there) + off * sqrt(hdi_max(0, g->diag[probe.row[i]])), there));
+        x->rounding = hdi_max(x->rounding, hdi_quotient(4 * HDI_PROBE_SAFETY * fabs(u[probe.row[i]] - there) + off * sqrt(hdi_max(0, g->diag[probe.row[i]])), there));
     }
     return HD_OK;
 }
@@ -19102,13 +19118,17 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
             (void)hdi_probe_value(heat, &probe, i, &x->set, 1, 1, HUGE_VAL, &by);
             by *= sqrt(m->lap->b_diag[row]) / (hdi_ratio_root(m->lap) / sqrt(m->lap->b_diag[row]));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
             value = (x->diag[m->sym.perm[row]]) * heat->scale;
-            by += 2 * fabs(there - value);
+            by += HDI_PROBE_SAFETY * fabs(there - value);
         } else {
             there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
-            by += 2 * fabs(there - value);
+            by += HDI_PROBE_SAFETY * fabs(there - value);
         }
-        x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(x->own ? entries.g[row] : value)));
+        if (x->own) value = hdi_own_size(entries.g[row], m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[row]) : HUGE_VAL);
+        x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(value)));
     }
+    if (x->own) x->rounding *= HDI_PROBE_OWN;
+    for (i = 0; i < m->sym.n && x->set.a0 == 0; i++)
+        x->rounding = hdi_max(x->rounding, hdi_below_constants(m->lap, &x->set, i, entries.k[i], full ? m->lap->mass[i] * m->lap->mass[i] : 1));
     return HD_OK;
 }
 
@@ -19251,7 +19271,7 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
             const double by_m = hdi_bound_times(hdi_finite(gv) ? sqrt(hdi_max(0, gv)) : HUGE_VAL, c->off_m);
             rounding = 2 * hdi_min(by_m, hdi_bound_times(hdi_finite(sv) ? sqrt(sv) : HUGE_VAL, c->off_b));
         }
-        if (x->rounding > 0) rounding += x->rounding * (x->own ? fabs(gs) + fabs(gv) : fabs(fs) + fabs(f));
+        if (x->rounding > 0) rounding += x->rounding * (x->own ? hdi_own_size(gs, ss) + hdi_own_size(gv, sv) : fabs(fs) + fabs(f));
         rounding += 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
         delta = rational + rounding;
         d = d2 > 0 ? sqrt(d2) : 0;
@@ -19437,9 +19457,13 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
             }
             for (p = 0; p < set[q].n_poles; p++) off += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
             off *= sqrt(hdi_max(0, f[n + row]));
-            rounding[q] = hdi_max(rounding[q], hdi_quotient(2 * fabs(there - f[row]) + off, fabs(f[row])));
+            rounding[q] = hdi_max(rounding[q], hdi_quotient(HDI_PROBE_SAFETY * fabs(there - f[row]) + off, fabs(f[row])));
         }
     }
+    for (q = 0; q < n_times; q++)
+        for (i = 0; i < n; i++)
+            rounding[q] = hdi_max(rounding[q], hdi_below_constants(m->lap, set + q, i, room[2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n) + HDI_CAST(size_t, i)],
+                                                                   full ? m->lap->mass[i] * m->lap->mass[i] : 1));
     for (r = 0; r < k; r++) {
         const int32_t row = m->lap->row[sources[r]];
         if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;

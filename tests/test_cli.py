@@ -1540,7 +1540,7 @@ class Formats(Case):
 class Reports(Case):
     KEYS = ("n", "faces", "components", "h", "area", "inert", "laplacian", "method", "solver", "precond", "poles", "degree", "times", "iterations",
             "residual", "error_bound", "mass_drift", "threads", "peak_bytes", "seconds", "reason", "ordering", "factor_nnz", "factor_flops",
-            "growth")
+            "growth", "evidence", "error_rational", "error_solver", "error_rounding")
 
     def test_kernel_json(self):
         p = self.good("kernel", self.patch, "--source", "1,2", "--t", "2,40h2", "--json")
@@ -1555,6 +1555,9 @@ class Reports(Case):
         self.assertEqual(r["times"][0], 2)
         self.assertAlmostEqual(r["times"][1], 40 * r["h"] ** 2)
         self.assertLess(r["error_bound_b"], 2e-7)
+        self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding"})
+        self.assertLessEqual(set(r["evidence"].values()), {"none", "proven", "measured", "estimated"})
+        self.assertIn(r["evidence"]["rounding"], ("proven", "measured", "estimated"))
         self.assertLess(r["error_bound"], 1e-5)
         self.assertLess(r["mass_drift"], 1e-6)
         self.assertGreater(r["peak_bytes"], 1000)
