@@ -739,9 +739,12 @@ static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *time
 }
 
 static void eng_no_times(const hd_laplacian *lap, const hd_heat_opts *o) {
-    hd_heat *heat = eng_create(lap, o);
+    hd_heat_opts own = *o;
+    hd_heat *heat;
     hd_report rep;
     double u = 7;
+    own.context = NULL;                          /* that of the last call is gone */
+    heat = eng_create(lap, &own);
     CHECK(hd_heat_times(heat, 0, NULL, HD_KERNEL_OPERATOR, lap->vertex[0], NULL, &u, 0, &rep) == HD_ERR_ARGUMENT && u == 7);
     hd_heat_free(heat);
 }
