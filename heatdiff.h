@@ -15546,7 +15546,9 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     for (i = 0; i < lap->n_components; i++) heat_in += lane->target[i];
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
-        hdi_ledger_note(ledger, largest, hdi_lane_bound(lap, lane, reach));
+        hdi_parts off = hdi_lane_bound(lap, lane, reach);
+        if (total > 0) off.rounding += DBL_EPSILON * largest;    /* of the value itself */
+        hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
         hdi_evidence_worst(&rep->evidence_b, hdi_max(ledger->known.rational, hdi_max(ledger->known.solver, ledger->known.rounding)));
