@@ -14885,7 +14885,7 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
         double norm;
         z->done[r] = 0;
         z->f_norm[r] = 0;
-        z->whole[r] = lane[r].f_norm;
+        z->whole[r] = r < z->k ? lane[r].f_norm : 0;
         if (r < z->k && !lane[r].skip) {
             for (i = 0; i < lap->n_components; i++) lane[r].sums[i] = lap->conserves ? lane[r].target[i] / lap->component_mass[i] : 0;
             for (i = 0; i < lap->n_active; i++) {
