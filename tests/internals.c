@@ -1552,7 +1552,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 CHECK_MSG(fabs(size * z->f_norm[r] - dense_pair_norm(&pair, u)) <= 1.01 * (bound + eps) * z->f_norm[r], "%s: size %g, not %g",
                     what, size,
                           dense_pair_norm(&pair, u) / z->f_norm[r]);
-                CHECK(lane[r].off.solver == bound * z->f_norm[r] && lane[r].off.rounding > 0 && error * z->f_norm[r] <= lane[r].off.solver + lane[r].off.rounding + 3e-14 * z->f_norm[r]);
+                CHECK(lane[r].off.solver == bound * z->f_norm[r] && lane[r].off.rounding > 0 && error * z->f_norm[r] <= lane[r].off.solver + lane[r].off.rounding + eps * z->f_norm[r]);
             }
         }
     }
