@@ -13528,6 +13528,11 @@ static double hdi_pole_reach(hd_c64 theta) {
     return hdi_max(inside, hdi_max(1, 1 / hdi_cabs(theta)));
 }
 
+/* Re 1/(x + theta) >= 1/(this (1 + x)) for x >= 0; HUGE_VAL where the left side may be negative. */
+static double hdi_resolvent_factor(hd_c64 theta) {
+    return theta.re > 0 ? hdi_max(1, theta.re) + theta.im * theta.im / theta.re : HUGE_VAL;
+}
+
 /* 1/sqrt(b_ratio): from the norm of D^-1 to that of B^-1. */
 static double hdi_ratio_root(const hd_laplacian *lap) { return lap->b_ratio > 0 ? 1 / sqrt(lap->b_ratio) : HUGE_VAL; }
 
@@ -14225,7 +14230,7 @@ static hd_status hdi_not_semidefinite(hd_error *e) {
 static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p, double norm2, double off, const double *x, int64_t stride) {
     const hd_c64 theta = set->theta[p];
     const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
-    const double factor = theta.re > 0 ? hdi_max(1, theta.re) + theta.im * theta.im / theta.re : HUGE_VAL;
+    const double factor = hdi_resolvent_factor(theta);
     double sum = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++)
@@ -15505,9 +15510,8 @@ static uint64_t hdi_ground_room(const hdi_elim *m) {
 static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
     int32_t p, best = -1;
     for (p = 0; p < set->n_poles; p++) {
-        const hd_c64 z = set->theta[p];
-        const double f = z.re > 0 ? hdi_max(1, z.re) + z.im * z.im / z.re : HUGE_VAL;
-        if (z.re <= 0 || (best >= 0 && f >= *factor)) continue;
+        const double f = hdi_resolvent_factor(set->theta[p]);
+        if (set->theta[p].re <= 0 || (best >= 0 && f >= *factor)) continue;
         best = p;
         *factor = f;
     }
@@ -19335,7 +19339,7 @@ static hd_status hdi_metric_resolvent(hd_heat *heat, const hdi_metric *x, int32_
     return e->status;
 }
 
-/* One time, all sources: columns step apart. degree 0: by default. *rational: that part of the bound. */
+/* One time, all sources: columns step apart. degree 0: by default. */
 static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, int32_t k, const int32_t *sources, double *D, size_t step,
                                    hd_report *rep, hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
