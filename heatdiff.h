@@ -13470,6 +13470,10 @@ static void hdi_evidence_worst(hd_evidence *to, double evidence) {
 /* Above this a bound says nothing worth having. */
 #define HDI_BOUND_USEFUL 1e-2
 
+static void hdi_bound_judge(double bound, hd_report *rep) {
+    if (!(bound <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
+}
+
 /* The one way from errors to a report, which keeps the worst of all ledgers that it is given. */
 static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     hdi_parts part = l->off;
@@ -13488,7 +13492,7 @@ static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     hdi_evidence_worst(&rep->evidence_rounding, l->known.rounding);
     if (hdi_finite(l->smallest)) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
     if (l->relative >= 0 && rep->error_relative < l->relative) rep->error_relative = l->relative;
-    if (!(total <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
+    hdi_bound_judge(total, rep);
 }
 
 /* What rounding adds to a residual b - (t L + theta B) x in row i is at most c_i sum_j M_ij |x_j| with M = t |L| + |theta| |B|
@@ -15555,6 +15559,7 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
+        hdi_bound_judge(rep->error_bound_b, rep);
         hdi_evidence_worst(&rep->evidence_b, hdi_max(ledger->known.rational, hdi_max(ledger->known.solver, ledger->known.rounding)));
     }
     rep->residual = hdi_max(rep->residual, lane->residual);
@@ -18492,6 +18497,28 @@ static double hdi_below_constants(const hd_laplacian *lap, const hd_rational *se
     return value < 0.999 * least ? hdi_quotient(least - value, fabs(value)) : 0;
 }
 
+/* A pole beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss. What rounding
+ * of its entries, (|theta| + t lambda) eps, then does to the inverse in the B norm: estimated by first-order perturbation.
+ * Poles further than 1 from the spectrum are left to the probes. */
+static double hdi_own_near(const hd_heat *heat, const hd_rational *set, double t) {
+    double sum = 0;
+    int32_t p;
+    for (p = 0; p < set->n_poles && set->kind == HD_POLES_OWN; p++) {
+        const double d = hdi_pole_distance(set->theta[p]);
+        const double size = hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
+        if (d < 1) sum += DBL_EPSILON * hdi_quotient(hdi_quotient(size, d), d);
+    }
+    return sum;
+}
+
+/* The largest entry of diag(B^-1), or a bound of it: a matrix whose B norm is x has entries of at most this times x. */
+static double hdi_largest_spread(const hd_laplacian *lap) {
+    double most = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, 1 / lap->b_diag[i]);
+    return hdi_quotient(most, lap->b_ratio);
+}
+
 typedef struct hdi_probe { int32_t k, row[HDI_PROBES]; } hdi_probe;
 
 /* Rows to look at: where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). k may be NULL. */
@@ -18747,7 +18774,15 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - value[row]) + by, fabs(size_of[row])));
     }
     for (i = 0; i < s->n; i++) rounding = hdi_max(rounding, hdi_below_constants(lap, &heat->elim.set, i, value[i], kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1));
-    if (size_of == own) rounding *= HDI_PROBE_OWN;
+    if (size_of == own) {
+        const double near = hdi_own_near(heat, &heat->elim.set, h->t);
+        double most = 0;
+        for (i = 0; i < s->n && near > 0; i++) {
+            const double b = lap->b_diag[i], spread = (kernel == HD_KERNEL_OPERATOR ? 1 : 1 / b) / lap->b_ratio;
+            most = hdi_max(most, hdi_quotient(spread, own[i]));
+        }
+        rounding = HDI_PROBE_OWN * rounding + near * most;
+    }
     *relative = hdi_diagonal_tell(h, kernel, value, off, size_of, rounding, out);
     return hdi_scope_end(&scope);
 }
@@ -18857,7 +18892,11 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *ration
             if (k[i] > k[top]) top = i;
         probe = hdi_probe_rows(h->lap, k, s->n > 0 ? top : -1);
         if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, &heat->elim.set) >= 0)
-            for (i = 0; i < probe.k; i++) hdi_ledger_note(&ledger, heat->scale * k[probe.row[i]], hdi_edges_rounding(heat, &probe, i, k, k + s->n, values));
+            for (i = 0; i < probe.k; i++) {
+                hdi_parts part = hdi_edges_rounding(heat, &probe, i, k, k + s->n, values);
+                part.rounding += heat->scale * hdi_own_near(heat, &heat->elim.set, h->t) * hdi_largest_spread(h->lap);
+                hdi_ledger_note(&ledger, heat->scale * k[probe.row[i]], part);
+            }
         hdi_ledger_close(&ledger, h->rep);
     }
     return hdi_scope_end(&scope);
@@ -19132,7 +19171,15 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
         if (x->own) value = hdi_own_size(entries.g[row], m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[row]) : HUGE_VAL);
         x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(value)));
     }
-    if (x->own) x->rounding *= HDI_PROBE_OWN;
+    if (x->own) {
+        const double near = hdi_own_near(heat, &x->set, h->t);
+        double most = 0;
+        for (i = 0; i < m->sym.n && near > 0; i++) {
+            const double spread = hdi_quotient(1 / m->lap->b_diag[i], m->lap->b_ratio);
+            most = hdi_max(most, hdi_quotient(spread, hdi_own_size(entries.g[i], spread)));
+        }
+        x->rounding = HDI_PROBE_OWN * x->rounding + near * most;
+    }
     for (i = 0; i < m->sym.n && x->set.a0 == 0; i++)
         x->rounding = hdi_max(x->rounding, hdi_below_constants(m->lap, &x->set, i, entries.k[i], full ? m->lap->mass[i] * m->lap->mass[i] : 1));
     return HD_OK;

@@ -1258,6 +1258,11 @@ static const char *const fixed_cases[] = {
     "shape=cycle/60 op=I query=diagonal kernel=symmetric own=near x=7 method=direct t=1 seed=13",
     "shape=cycle/60 op=I query=column own=near x=5 method=direct t=1 seed=13",
     "shape=cycle/60 op=I query=column own=near x=7 method=direct t=1 seed=13",
+    "shape=grid/6/2 op=fem+id query=edges degree=11 own=near x=7 tol=1e-11 t=417.9347234573265 seed=20079",
+    "shape=grid/6/2 op=fem+id query=diagonal degree=11 own=near x=7 tol=1e-11 t=417.9347234573265 seed=20079",
+    "shape=leak/40/1e-3 op=I scale=1e-05 query=distance method=direct degree=4 own=near x=5 "
+    "t=8.874288504572718 span=22.899661973943026 times=3 seed=849640",
+    "shape=weak/66/35/6 op=I query=column poles=kernel degree=3 t=252134.45926565715 k=4 seed=122858",
     /* a mass matrix that is nearly singular, and a field along it */
     "shape=path/80 op=near query=apply t=1 field=alternate",
     "shape=path/80 op=near query=apply t=1 field=alternate poles=uniform degree=4 method=direct",
