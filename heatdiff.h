@@ -1010,6 +1010,8 @@ static hd_status hdi_fail_face(hd_error *e, hd_status status, const char *text, 
     return status;
 }
 
+static hd_status hdi_missing(hd_error *e) { return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL"); }
+
 /* ==== [03] memory ====
  * Counted allocation, aligned to 64 bytes with the block's size kept in front; and scopes, which free the work arrays of a
  * function at its one exit. May call [02]. */
@@ -13389,7 +13391,7 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
     return hdi_scope_end(&s);
 }
 
-/* ==== [17] shifted ====
+/* ==== [22] poles ====
  * The family t L + theta_i B over the poles of a set, for one right-hand side: solutions, their weighted sum, and what it can be off by.
  * May call [15] and [16].
  * One right-hand side goes through its poles one after the other, since what is solved already is a good start for the next: with
@@ -14373,72 +14375,83 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     }
 }
 
-/* ==== [18] heat ====
- * K_t f for one field: through the poles, by shift-and-invert Lanczos, or by Lanczos for the exponential; the stopping rule, conservation, and the bound of the error.
- * May call [17].
- * This work is based on
- *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013, eqs. (8), (9)
- *   M. Hochbruck, Ch. Lubich, On Krylov subspace approximations to the matrix exponential operator, 1997 (Lanczos and its error)
- * Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver); the constants of each component are carried
- * exactly, so that uniform sets conserve heat too. */
+static void hdi_gather(const hd_laplacian *lap, const double *on_vertices, double *on_rows) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) on_rows[i] = on_vertices[lap->vertex[i]];
+}
 
-#define HDI_ROUNDING_LIMIT 1e-7              /* the direct method's own error by default is 3e-8 */
+/* B without the zeros that the common pattern has. */
+static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
+    int64_t nnz = 0, p;
+    int32_t i;
+    hd_csr b;
+    for (p = 0; p < lap->L.nnz; p++) nnz += lap->B[p] != 0;
+    b = hdi_csr_take(s, lap->n_active, lap->n_active, nnz, 1);
+    if (s->e->status < 0) return b;
+    for (i = 0, nnz = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            if (lap->B[p] == 0) continue;
+            b.col[nnz] = lap->L.col[p];
+            b.val[nnz++] = lap->B[p];
+        }
+        b.row_ptr[i + 1] = nnz;
+    }
+    return b;
+}
 
-enum { HDI_SILAN_MAX = 160, HDI_SILAN_POINTS = 96, HDI_SILAN_WIDE = 8 };
+/* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester).
+ * value [nnz]: room. */
+static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value, hdi_factor *f,
+                           hd_error *e) {
+    hdi_values v;
+    int32_t i;
+    int64_t p;
+    memset(&v, 0, sizeof v);
+    v.real = value;
+    for (i = 0; i < b->n_rows; i++)
+        for (p = b->row_ptr[i]; p < b->row_ptr[i + 1]; p++)
+            value[p] = b->col[p] == i ? (1 - sigma) * lap->b_diag[i] : b->val[p];
+    if (hdi_factor_run(f, &v, e) >= 0) return f->all.negative == 0;
+    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* a pivot of zero proves nothing */
+    return 0;
+}
 
-/* The process for 1 or 8 right-hand sides side by side; times share it. */
-typedef struct hdi_silan {
-    const hdi_elim *m;
-    int32_t k, wide, steps;      /* right-hand sides, 1 or 8, steps taken */
-    double *v[HDI_SILAN_MAX + 1];/* [n][wide] the basis */
-    double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
-    double *probe;               /* [2 n] a solution and its residual */
-    double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
-    double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
-    double solved;               /* largest residual found of a solve over that */
-    double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
-    double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];   /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
-    int32_t vectors_of, vectors_m;
-    int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
-    double g;
-} hdi_silan;
-
-/* L with one vertex of each component held at zero. All by rows in elimination order. */
-typedef struct hdi_ground {
-    hdi_factor factor;
-    char *held;                  /* [n] */
-    double *diag, *mean, *form;  /* [n] of G; G b; of G B G less the means' part, when formed */
-    double *trace;               /* [n_components] at least 1/lambda for the smallest eigenvalue that is not zero */
-    double largest_trace;
-    double *mean_off;            /* [n_components] G b is off by at most sqrt(G_vv) times this */
-    int32_t formed;
-} hdi_ground;
-
-struct hd_heat {
-    hd_context *ctx;
-    const hd_laplacian *source;  /* the caller's */
-    double scale;                /* what B, and with it t, is multiplied by in the two copies below, each made when it is first needed */
-    hd_heat_opts opts;           /* resolved, perm and rational copied */
-    int32_t *perm;
-    int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
-    int32_t exacting;            /* a tol below the default is asked for: sets of the highest degree */
-    double limit;                /* of rounding relative to the answer, above which the status warns: tol, or by default */
-    uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
-    hd_rational own_set;
-    hdi_elim elim;               /* to factorise */
-    hdi_ground ground;           /* made when it is first needed; of elim */
-    hdi_silan *silan;
-    double *batch_room;          /* arrays of the batches */
-    uint64_t batch_doubles;
-    hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
-    hdi_upper up;
-    double *weight;              /* [n] 1/diag(B) */
-    hdi_family fam;              /* of the last set and time */
-    hdi_lane lane[HDI_LANES];    /* work arrays, kept from call to call */
-    double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
-    double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
-    double drift;                /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
-};
+/* A proven b_ratio where Gershgorin's, in lap, is poor: values from the estimate downwards, each tried by a
+ * factorisation. What that rounds is a matrix E with |x'Ex| <= eps (nnz(L) + 2 n) x'diag(B)x (after Rump
+ * 2006): so much is added to sigma. Where all fail, B has a negative eigenvalue, or the ratio is not known.
+ * */
+static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const double dominant = hdi_max(lap->b_ratio, 0);
+    double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active)), least, sigma, slack;
+    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), chosen, tries;
+    hd_csr b = hdi_lap_mass_matrix(lap, &s);
+    double *value = HDI_TAKE(&s, double, b.nnz);
+    hdi_symbolic sym;
+    hdi_factor f;
+    memset(&sym, 0, sizeof sym);
+    memset(&f, 0, sizeof f);
+    lap->b_ratio = dominant;
+    if (e->status >= 0 && hdi_pair_ratio(lap, work, &least, e) >= 0 &&
+        hdi_sym_order(&b, NULL, HD_ORDERING_MINIMUM_DEGREE, 0, NULL, perm, &chosen, lap->context, e) >= 0 &&
+        hdi_symbolic_make(&sym, &b, perm, lap->context, e) >= 0 &&
+        hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
+        slack = DBL_EPSILON * (HDI_CAST(double, sym.nnz) + 2.0 * lap->n_active);
+        for (tries = 0; e->status >= 0; tries++) {
+            sigma = tries == 0 ? 0.8 * least : ldexp(least, 1 - 2 * tries);
+            if (sigma < hdi_max(dominant, 1e-12)) break;
+            if (hdi_lap_exceeds(lap, &b, sigma + slack, value, &f, e)) {
+                lap->b_ratio = sigma;
+                break;
+            }
+            if (tries != 1 || e->status < 0 || hdi_lap_exceeds(lap, &b, -slack, value, &f, e)) continue;
+            if (f.all.negative) hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: it has a negative pivot");
+        }
+    }
+    hdi_factor_free(&f);
+    hdi_symbolic_free(lap->context, &sym);
+    return hdi_scope_end(&s);
+}
 
 /* Sets the heat of each component to c0 times that of the right-hand side: the constants' part of c(-t B^-1 L) f, exactly. */
 static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
@@ -14467,228 +14480,6 @@ static void hdi_conserve_sums(const hd_laplacian *lap, hdi_lane *lane) {
     lane->sums = lane->spare_sums;
     hdi_conserve(lap, lane, 1);
     lane->sums = sums;
-}
-
-/* ---- Lanczos for the exponential ---- */
-/* The basis is not kept. A first sweep finds the coefficients, a second one makes the same vectors again, to the last bit, and adds them up: as
- * much work as writing them to fresh memory and reading them back would be, with six vectors in place of hundreds.
- * No reorthogonalisation: the few huge eigenvalues that slivers have come back as copies, which costs a third more steps (bunny, t = 100 h^2: 280
- * where full reorthogonalisation takes 200) and no accuracy. Simon's partial reorthogonalisation saves those steps and takes 2.4 times as long. */
-
-/* t beta_(m+1) |e_m' phi_1(-t T) e_1|, phi_1(z) = (e^z - 1)/z: bounds the error of m steps from a vector of norm one. For the error is
- * beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds, the last factor has one sign for all s, and the first shrinks. */
-static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_error *e) {
-    const int32_t m = z->m;
-    double sum = 0, least = 0, most = 0;
-    int32_t i;
-    for (i = 0; i < m; i++) {
-        z->d[i] = z->alpha[i];
-        z->e[i] = i + 1 < m ? z->beta[i + 1] : 0;
-        z->z0[i] = i == 0;
-        z->z1[i] = i == m - 1;
-    }
-    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
-    for (i = 0; i < m; i++) {
-        least = hdi_min(least, z->d[i]);
-        most = hdi_max(most, fabs(z->d[i]));
-    }
-    if (least < -1e-8 * most - 2 * sqrt(HDI_CAST(double, m)) * z->noise) return hdi_not_semidefinite(e);
-    for (i = 0; i < m; i++) {
-        const double x = t * z->d[i];
-        sum += z->z0[i] * z->z1[i] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
-    }
-    *bound = t * z->beta[m] * fabs(sum);
-    return HD_OK;
-}
-
-/* y = exp(-t T) e_1 through the best uniform set of degree 14: O(m) a pole, and as exact as rounding would leave an eigensolution. */
-static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set) {
-    const int32_t m = z->m;
-    hd_c64 *d = z->work, *g = z->work + m;
-    int32_t i, p;
-    for (i = 0; i < m; i++) z->y[i] = i == 0 ? set->a0 : 0;
-    for (p = 0; p < set->n_poles; p++) {
-        for (i = 0; i < m; i++) {                /* (t T + theta) g = e_1 by L D L' */
-            const double off = i ? t * z->beta[i] : 0;
-            d[i] = hdi_c(t * z->alpha[i] + set->theta[p].re, set->theta[p].im);
-            g[i] = hdi_c(i == 0, 0);
-            if (!i) continue;
-            d[i] = hdi_csub(d[i], hdi_cdiv(hdi_c(off * off, 0), d[i - 1]));
-            g[i] = hdi_cscale(-off, hdi_cdiv(g[i - 1], d[i - 1]));
-        }
-        for (i = m; i-- > 0;) {
-            if (i + 1 < m) g[i] = hdi_csub(g[i], hdi_cscale(t * z->beta[i + 1], g[i + 1]));
-            g[i] = hdi_cdiv(g[i], d[i]);
-            z->y[i] -= hdi_rat_count(set, p) * hdi_cmul(set->a[p], g[i]).re;
-        }
-    }
-}
-
-/* A start: v of B norm one, c = B v. */
-static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
-    hdi_lanczos *z = &lane->lanczos;
-    int32_t i;
-    for (i = 0; i < n; i++) {
-        z->v[i] = lane->f[i] / f0_norm;
-        z->c[i] = lane->rhs[i] / f0_norm;
-        z->c_old[i] = 0;
-    }
-    z->beta[0] = z->noise = 0;
-    z->m = 0;
-}
-
-/* One step: from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). work [4 n]. */
-static hd_status hdi_lanczos_step(const hd_heat *heat, hdi_lanczos *z, double *HDI_RESTRICT w, double *mass, hd_error *e) {
-    const hd_laplacian *lap = heat->lap;
-    const int32_t n = lap->n_active, j = z->m;
-    const double *HDI_RESTRICT weight = heat->weight, *HDI_RESTRICT noise = heat->noise;
-    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0, norm = 0, scale, off = 0;
-    int32_t i;
-    hdi_csr_apply_rows(&lap->L, v, w, 0, n);
-    for (i = 0; i < n; i++) {
-        w[i] -= z->beta[j] * c_old[i];
-        alpha += v[i] * w[i];
-        off += noise[i] * (v[i] * v[i]);
-    }
-    off = sqrt(off) * hdi_ratio_root(lap);
-    if (alpha < -1e-6 * z->beta[j] - 4 * off) return hdi_not_semidefinite(e);
-    if (lap->B) {
-        hdi_axpy(-alpha, c, w, n);
-        if (hdi_mass_solve(lap, w, v, mass, e) < 0) return e->status;
-        norm = hdi_dot(w, v, n);
-    } else {                                     /* the same in one pass */
-        for (i = 0; i < n; i++) {
-            w[i] -= alpha * c[i];
-            v[i] = w[i] * weight[i];
-            norm += w[i] * v[i];
-        }
-    }
-    z->alpha[j] = alpha;
-    z->beta[j + 1] = norm > 0 ? sqrt(norm) : 0;
-    z->noise = hdi_max(z->noise, off + 8 * DBL_EPSILON * (fabs(alpha) + z->beta[j] + z->beta[j + 1]));
-    z->m = j + 1;
-    scale = norm > 0 ? 1 / z->beta[j + 1] : 0;
-    for (i = 0; i < n; i++) {
-        v[i] *= scale;
-        c_old[i] = w[i] * scale;
-    }
-    z->c = c_old;
-    z->c_old = c;
-    return HD_OK;
-}
-
-/* A bound of what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) + errors of size noise
- * in B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j) e_j' exp(-s T) e_1 ds: at most noise sqrt(m) times
- * the integral of |exp(-s T) e_1|, which falls with s, so that sums from the left are above it. Then the sum of the answer. */
-static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
-    const int32_t m = z->m;
-    double integral = 0, from = 0, to, size = 0;
-    int32_t i, k;
-    for (k = 24; k >= 0; k--) {
-        to = ldexp(t, -2 * k);
-        for (size = 0, i = 0; i < m; i++) size += z->z0[i] * z->z0[i] * exp(-2 * from * hdi_max(0, z->d[i]));
-        integral += sqrt(size) * (to - from);
-        from = to;
-    }
-    for (size = 0, i = 0; i < m; i++) size += z->y[i] * z->y[i];
-    return sqrt(HDI_CAST(double, m)) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
-}
-
-/* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
-static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before, double target) {
-    const int32_t most = m < 64 ? 1 : m / 32;
-    double rate, want;
-    if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
-    rate = log(bound_before / bound) / (m - m_before);
-    want = 0.5 * log(bound / target) / rate;
-    return want < 1 ? 1 : want > most ? most : HDI_CAST(int32_t, want);
-}
-
-/* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2 is what |u|_B^2 has besides. */
-static hd_status hdi_lanczos_first(const hd_heat *heat, double t, double f0_norm, double fixed_norm2, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
-    const hd_laplacian *lap = heat->lap;
-    const double tol = heat->opts.tol;
-    const int32_t most = heat->opts.max_iterations < HDI_LANCZOS_MAX ? heat->opts.max_iterations : HDI_LANCZOS_MAX;
-    hdi_lanczos *z = &lane->lanczos;
-    double bound = 0, bound_before = 0, best = DBL_MAX, start = 0;
-    int32_t look = 1, looked = 0, best_m = 0;
-    hd_rational set;
-    if (hdi_rational_get(&set, HD_POLES_UNIFORM, 14, e) < 0) return e->status;
-    hdi_lanczos_start(lane, lap->n_active, f0_norm);
-    for (;;) {
-        if (hdi_lanczos_step(heat, z, lane->tmp, lane->tmp + lap->n_active, e) < 0) return e->status;
-        if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
-        if (hdi_lanczos_bound(z, t, &bound, e) < 0) return e->status;
-        hdi_lanczos_coefficients(z, t, &set);
-        lane->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * hdi_dot(z->y, z->y, z->m));
-        lane->off.solver = f0_norm * bound;
-        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t) + set.max_error);   /* the coefficients are by poles */
-        if (lane->off.solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
-        if (bound < best / 2) {
-            best = bound;
-            best_m = z->m;
-        } else if (best < 1e-10 && z->m > best_m + 20 + z->m / 4) {
-            return HD_WARN_ACCURACY;             /* what rounding leaves */
-        }
-        if (z->m >= most) {
-            hdi_fail(e, HD_ERR_NOT_CONVERGED, "Lanczos did not reach the tolerance in its largest number of steps; use poles");
-            e->value = lane->off.solver / lane->u_norm;
-            return e->status;
-        }
-        if (start == 0) start = lane->off.solver;
-        if (hdi_watch_look(watch, 0.5 * hdi_krylov_done(start, lane->off.solver, tol * lane->u_norm), e) < 0) return e->status;
-        look = z->m + hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
-        looked = z->m;
-        bound_before = bound;
-    }
-}
-
-/* Second sweep: u += f0_norm sum y_j v_j. */
-static hd_status hdi_lanczos_second(const hd_heat *heat, double f0_norm, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
-    const hd_laplacian *lap = heat->lap;
-    const int32_t n = lap->n_active, m = lane->lanczos.m;
-    int32_t j;
-    hdi_lanczos_start(lane, n, f0_norm);
-    for (j = 0; j < m; j++) {
-        hdi_axpy(f0_norm * lane->lanczos.y[j], lane->lanczos.v, lane->u, n);
-        if (j % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * j / m, e) < 0) return e->status;
-        if (j + 1 < m && hdi_lanczos_step(heat, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0) return e->status;
-    }
-    lane->lanczos.m = m;
-    return HD_OK;
-}
-
-/* K_t f by Lanczos. The constants of each component need none of it. */
-static hd_status hdi_heat_lanczos(const hd_heat *heat, double t, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
-    const hd_laplacian *lap = heat->lap;
-    const int32_t n = lap->n_active;
-    hd_status status = HD_OK;
-    double f0_norm, fixed = 0;
-    int32_t i;
-    if (heat->lambda_max > 0) t = hdi_min(t, 1e100 / heat->lambda_max);   /* beyond, all that moves is gone */
-    memset(lane->u, 0, HDI_CAST(size_t, n) * sizeof *lane->u);
-    hdi_lane_clear_off(lane);
-    lane->rounding = HD_EVIDENCE_ESTIMATED;
-    if (lap->conserves) {
-        for (i = 0; i < lap->n_components; i++) {
-            lane->sums[i] = -lane->target[i] / lap->component_mass[i];
-            fixed += lane->target[i] * lane->target[i] / lap->component_mass[i];
-        }
-        hdi_component_add(lap, lane->sums, lane->f);               /* f0 = f - constants, rhs0 = B f0 */
-        for (i = 0; i < n; i++) lane->rhs[i] += lap->mass[i] * lane->sums[lap->component[i]];
-        for (i = 0; i < n; i++) lane->u[i] = -lane->sums[lap->component[i]];
-    }
-    f0_norm = hdi_dot(lane->f, lane->rhs, n);
-    f0_norm = f0_norm > 0 ? sqrt(f0_norm) : 0;
-    lane->u_norm = sqrt(fixed);
-    if (f0_norm > DBL_EPSILON * lane->f_norm) {
-        status = hdi_lanczos_first(heat, t, f0_norm, fixed, lane, watch, e);
-        if (status >= 0 && hdi_lanczos_second(heat, f0_norm, lane, watch, e) < 0) return e->status;
-        lane->steps = lane->lanczos.m;
-    }
-    if (status >= 0) hdi_conserve(lap, lane, 1);
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * heat->drift, 1));
-    return status;
 }
 
 /* ---- through the poles ---- */
@@ -14761,7 +14552,7 @@ static void hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
 
 /* K_t f through a pole set. The tolerance is relative to the answer, which is not known before: a first round aims at it relative to f,
  * which is never too strict as |K_t f|_B <= |f|_B, and the next ones go on from there relative to what came out. */
-static hd_status hdi_heat_poles(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
+static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = fam->lap;
     const double c0 = fam->set.kind == HD_POLES_OWN ? hdi_rational_eval(&fam->set, 0) : 1;
     double aim = tol * lane->f_norm, room;
@@ -14798,7 +14589,7 @@ static hd_status hdi_heat_poles(const hdi_family *fam, double tol, double drift_
 
 /* What is left to do after the poles' factors have been applied: constants, norms, bounds. limit: of rounding, relative to
  * the answer, above which the status warns. */
-static hd_status hdi_heat_direct(const hdi_elim *m, double limit, double drift_t, int dense, hdi_lane *lane) {
+static hd_status hdi_elim_finish(const hdi_elim *m, double limit, double drift_t, int dense, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
     int32_t i;
     hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
@@ -14810,12 +14601,396 @@ static hd_status hdi_heat_direct(const hdi_elim *m, double limit, double drift_t
     return lane->off.rounding <= limit * (lane->u_norm - lane->off.rounding) ? HD_OK : HD_WARN_ACCURACY;
 }
 
-/* ---- shift-and-invert Lanczos ---- */
-/* Lanczos in the B inner product for S = (B + g L)^-1 B, whose large eigenvalues are those of the smooth modes: with S V = V T + beta v e_m',
- * exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1 for every t around 10 g. One real factor and one basis serve all these times.
- * This part is based on
+/* ---- entries of the kernel without columns ---- */
+
+/* values [n_sets][stride] += sum over poles p of Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: entries of the lower triangle in the order of the analysis,
+ * or by pivots the diagonal, or that of B Z_p B. The factors are there, and stay. */
+static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, hdi_wanted wanted, double *values, int64_t stride, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(m->ctx, e);
+    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n_sets));
+    const int32_t n_poles = m->set.n_poles;
+    hdi_forms forms;
+    hdi_inverse z;
+    double *b = NULL;
+    int64_t p;
+    int32_t i, k, q;
+    if (wanted == HDI_WANT_FORMS) {              /* the source's entries, scaled as m->lap is */
+        b = HDI_TAKE(&s, double, m->source->L.nnz);
+        for (p = 0; b && p < m->source->L.nnz; p++) b[p] = m->scale * m->source->B[p];
+    }
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = -1; i < (n_poles - (m->lone + 1) + 3) / 4 && e->status >= 0; i++) {   /* -1: the lone real pole */
+        if (i < 0 && m->lone < 0) continue;
+        memset(coef, 0, HDI_PACK * HDI_CAST(size_t, n_sets) * sizeof *coef);
+        for (k = 0; k < n_sets; k++) {
+            if (i < 0) coef[k] = weight[HDI_CAST(int64_t, k) * n_poles].re;
+            for (q = 0; i >= 0 && q < 4 && m->lone + 1 + 4 * i + q < n_poles; q++) {
+                const hd_c64 w = weight[HDI_CAST(int64_t, k) * n_poles + m->lone + 1 + 4 * i + q];
+                coef[HDI_PACK * k + q] = w.re;
+                coef[HDI_PACK * k + q + 4] = -w.im;
+            }
+        }
+        if (i <= 0 && hdi_inverse_make(&z, &m->sym, i < 0 ? 1 : HDI_PACK, m->ctx, e) < 0) break;
+        if (i <= 0 && wanted == HDI_WANT_FORMS && hdi_forms_make(&forms, &m->sym, i < 0 ? 1 : HDI_PACK, &m->source->L, b, m->ctx, e) < 0) {
+            hdi_inverse_free(&z, m->ctx);
+            break;
+        }
+        z.coef = coef;
+        z.n_sets = n_sets;
+        z.wanted = wanted;
+        z.forms = &forms;
+        z.values = values;
+        z.stride = stride;
+        (void)hdi_inverse_run(&z, i < 0 ? &m->real : m->pack + i, e);
+        if (i >= 0 && e->status >= 0 && 4 * (i + 1) < n_poles - (m->lone + 1)) continue;   /* the next pack works in the same room */
+        hdi_inverse_free(&z, m->ctx);
+        if (wanted == HDI_WANT_FORMS) hdi_forms_free(&forms, m->ctx);
+    }
+    return hdi_scope_end(&s);
+}
+
+enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
+
+/* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares of the relative error. 0: not to be had; for
+ * sets of few poles. work: columns [2 HDI_RESOLVENT_POLES + 1][HDI_RESOLVENT_POINTS]. */
+static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double *slack) {
+    double work[(2 * HDI_RESOLVENT_POLES + 1) * HDI_RESOLVENT_POINTS], *b = work + 2 * HDI_RESOLVENT_POLES * HDI_RESOLVENT_POINTS, worst = 0;
+    int32_t p, i, cols = 0;
+    if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
+    for (p = 0; p < set->n_poles; cols += set->theta[p].im != 0 ? 2 : 1, p++) {
+        for (i = 0; i < HDI_RESOLVENT_POINTS; i++) {
+            const double s = (i + 0.5) / HDI_CAST(double, HDI_RESOLVENT_POINTS), x = 2 * s / ((1 - s) * (1 - s));
+            const hd_c64 f = hdi_cdiv(hdi_c(1 + x, 0), hdi_c(x + set->theta[p].re, set->theta[p].im));
+            work[cols * HDI_RESOLVENT_POINTS + i] = f.re;
+            if (set->theta[p].im != 0) work[(cols + 1) * HDI_RESOLVENT_POINTS + i] = -f.im;
+            b[i] = 1;
+        }
+    }
+    hdi_least_squares(work, HDI_RESOLVENT_POINTS, cols, b);
+    for (p = 0, cols = 0; p < set->n_poles; p++) {
+        const int pair = set->theta[p].im != 0;
+        weight[p] = hdi_c(b[cols], pair ? b[cols + 1] : 0);
+        cols += pair ? 2 : 1;
+    }
+    for (i = 0; i <= 8 * HDI_RESOLVENT_POINTS; i++) {   /* the end is x = infinity */
+        const double s = i / (8 * HDI_CAST(double, HDI_RESOLVENT_POINTS)), q = 0.5 * (1 - s) * (1 - s);   /* x = s/q */
+        double sum = 0;
+        for (p = 0; p < set->n_poles; p++) sum += hdi_cmul(weight[p], hdi_cdiv(hdi_c(q + s, 0), hdi_c(s + q * set->theta[p].re, q * set->theta[p].im))).re;
+        worst = hdi_max(worst, fabs(sum - 1));
+    }
+    *slack = 2 * worst;
+    return worst < 0.2;
+}
+
+/* What the constants alone are of diag((B + tL)^-1), however much of them rounding has eaten. */
+static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
+    return lap->conserves ? 1 / lap->component_mass[lap->component[i]] : 0;
+}
+
+/* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new one. */
+static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
+    const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = 1.01 * hdi_max(1, theta);   /* 1.01: rounding */
+    const size_t n = HDI_CAST(size_t, m->sym.n);
+    hdi_inverse z;
+    int32_t i;
+    if (m->reach && m->reach_t == m->t) return HD_OK;
+    if (!m->reach) m->reach = HDI_CAST(double *, hdi_alloc(m->ctx, n, sizeof(double), e));
+    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, m->t, theta, e) >= 0) && hdi_inverse_make(&z, &m->sym, 1, m->ctx, e) >= 0) {
+        memset(m->reach, 0, n * sizeof *m->reach);
+        z.coef = &factor;
+        z.n_sets = 1;
+        z.wanted = HDI_WANT_DIAGONAL;
+        z.values = m->reach;
+        z.stride = m->sym.n;
+        (void)hdi_inverse_run(&z, &m->real, e);
+        hdi_inverse_free(&z, m->ctx);
+        for (i = 0; i < m->sym.n; i++) {
+            const double most = m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[i]) : HUGE_VAL;
+            if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
+            m->reach[i] = hdi_max(m->reach[i], hdi_constant_part(m->lap, i));
+        }
+        m->reach_t = m->t;
+    }
+    if (e->status < 0) {
+        hdi_free(m->ctx, m->reach);
+        m->reach = NULL;
+    }
+    return e->status;
+}
+
+/* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor (1 + x)) for x >= 0. -1: none does. */
+static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
+    int32_t p, best = -1;
+    for (p = 0; p < set->n_poles; p++) {
+        const double f = hdi_resolvent_factor(set->theta[p]);
+        if (set->theta[p].re <= 0 || (best >= 0 && f >= *factor)) continue;
+        best = p;
+        *factor = f;
+    }
+    return best;
+}
+
+/* ==== [23] lanczos ====
+ * Owns K_t f without poles: Lanczos for the exponential, and shift-and-invert Lanczos on one real factor. May call [22].
+ * This work is based on
+ *   M. Hochbruck, Ch. Lubich, On Krylov subspace approximations to the matrix exponential operator, 1997
  *   I. Moret, P. Novati, RD-rational approximations of the matrix exponential, 2004
  *   J. van den Eshof, M. Hochbruck, Preconditioning Lanczos approximations to the matrix exponential, 2006 */
+
+/* ---- Lanczos for the exponential ---- */
+/* The basis is not kept. A first sweep finds the coefficients, a second one makes the same vectors again, to the last bit, and adds them up: as
+ * much work as writing them to fresh memory and reading them back would be, with six vectors in place of hundreds.
+ * No reorthogonalisation: the few huge eigenvalues that slivers have come back as copies, which costs a third more steps (bunny, t = 100 h^2: 280
+ * where full reorthogonalisation takes 200) and no accuracy. Simon's partial reorthogonalisation saves those steps and takes 2.4 times as long. */
+
+/* t beta_(m+1) |e_m' phi_1(-t T) e_1|, phi_1(z) = (e^z - 1)/z: bounds the error of m steps from a vector of norm one. For the error is
+ * beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds, the last factor has one sign for all s, and the first shrinks. */
+static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_error *e) {
+    const int32_t m = z->m;
+    double sum = 0, least = 0, most = 0;
+    int32_t i;
+    for (i = 0; i < m; i++) {
+        z->d[i] = z->alpha[i];
+        z->e[i] = i + 1 < m ? z->beta[i + 1] : 0;
+        z->z0[i] = i == 0;
+        z->z1[i] = i == m - 1;
+    }
+    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+    for (i = 0; i < m; i++) {
+        least = hdi_min(least, z->d[i]);
+        most = hdi_max(most, fabs(z->d[i]));
+    }
+    if (least < -1e-8 * most - 2 * sqrt(HDI_CAST(double, m)) * z->noise) return hdi_not_semidefinite(e);
+    for (i = 0; i < m; i++) {
+        const double x = t * z->d[i];
+        sum += z->z0[i] * z->z1[i] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
+    }
+    *bound = t * z->beta[m] * fabs(sum);
+    return HD_OK;
+}
+
+/* y = exp(-t T) e_1 through the best uniform set of degree 14: O(m) a pole, and as exact as rounding would leave an eigensolution. */
+static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set) {
+    const int32_t m = z->m;
+    hd_c64 *d = z->work, *g = z->work + m;
+    int32_t i, p;
+    for (i = 0; i < m; i++) z->y[i] = i == 0 ? set->a0 : 0;
+    for (p = 0; p < set->n_poles; p++) {
+        for (i = 0; i < m; i++) {                /* (t T + theta) g = e_1 by L D L' */
+            const double off = i ? t * z->beta[i] : 0;
+            d[i] = hdi_c(t * z->alpha[i] + set->theta[p].re, set->theta[p].im);
+            g[i] = hdi_c(i == 0, 0);
+            if (!i) continue;
+            d[i] = hdi_csub(d[i], hdi_cdiv(hdi_c(off * off, 0), d[i - 1]));
+            g[i] = hdi_cscale(-off, hdi_cdiv(g[i - 1], d[i - 1]));
+        }
+        for (i = m; i-- > 0;) {
+            if (i + 1 < m) g[i] = hdi_csub(g[i], hdi_cscale(t * z->beta[i + 1], g[i + 1]));
+            g[i] = hdi_cdiv(g[i], d[i]);
+            z->y[i] -= hdi_rat_count(set, p) * hdi_cmul(set->a[p], g[i]).re;
+        }
+    }
+}
+
+/* What the process works on. */
+typedef struct hdi_lanczos_task {
+    const hd_laplacian *lap;
+    const double *weight, *noise;        /* [n] 1/diag(B); weights of rounding of a product with L */
+    double t, tol;
+    double drift;                        /* change of a constant in unit time */
+    int32_t max_iterations;
+} hdi_lanczos_task;
+
+/* A start: v of B norm one, c = B v. */
+static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
+    hdi_lanczos *z = &lane->lanczos;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        z->v[i] = lane->f[i] / f0_norm;
+        z->c[i] = lane->rhs[i] / f0_norm;
+        z->c_old[i] = 0;
+    }
+    z->beta[0] = z->noise = 0;
+    z->m = 0;
+}
+
+/* One step: from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). work [4 n]. */
+static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, double *HDI_RESTRICT w, double *mass,
+                                  hd_error *e) {
+    const hd_laplacian *lap = task->lap;
+    const int32_t n = lap->n_active, j = z->m;
+    const double *HDI_RESTRICT weight = task->weight, *HDI_RESTRICT noise = task->noise;
+    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0, norm = 0, scale, off = 0;
+    int32_t i;
+    hdi_csr_apply_rows(&lap->L, v, w, 0, n);
+    for (i = 0; i < n; i++) {
+        w[i] -= z->beta[j] * c_old[i];
+        alpha += v[i] * w[i];
+        off += noise[i] * (v[i] * v[i]);
+    }
+    off = sqrt(off) * hdi_ratio_root(lap);
+    if (alpha < -1e-6 * z->beta[j] - 4 * off) return hdi_not_semidefinite(e);
+    if (lap->B) {
+        hdi_axpy(-alpha, c, w, n);
+        if (hdi_mass_solve(lap, w, v, mass, e) < 0) return e->status;
+        norm = hdi_dot(w, v, n);
+    } else {                                     /* the same in one pass */
+        for (i = 0; i < n; i++) {
+            w[i] -= alpha * c[i];
+            v[i] = w[i] * weight[i];
+            norm += w[i] * v[i];
+        }
+    }
+    z->alpha[j] = alpha;
+    z->beta[j + 1] = norm > 0 ? sqrt(norm) : 0;
+    z->noise = hdi_max(z->noise, off + 8 * DBL_EPSILON * (fabs(alpha) + z->beta[j] + z->beta[j + 1]));
+    z->m = j + 1;
+    scale = norm > 0 ? 1 / z->beta[j + 1] : 0;
+    for (i = 0; i < n; i++) {
+        v[i] *= scale;
+        c_old[i] = w[i] * scale;
+    }
+    z->c = c_old;
+    z->c_old = c;
+    return HD_OK;
+}
+
+/* A bound of what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) + errors of size noise
+ * in B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j) e_j' exp(-s T) e_1 ds: at most noise sqrt(m) times
+ * the integral of |exp(-s T) e_1|, which falls with s, so that sums from the left are above it. Then the sum of the answer. */
+static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
+    const int32_t m = z->m;
+    double integral = 0, from = 0, to, size = 0;
+    int32_t i, k;
+    for (k = 24; k >= 0; k--) {
+        to = ldexp(t, -2 * k);
+        for (size = 0, i = 0; i < m; i++) size += z->z0[i] * z->z0[i] * exp(-2 * from * hdi_max(0, z->d[i]));
+        integral += sqrt(size) * (to - from);
+        from = to;
+    }
+    for (size = 0, i = 0; i < m; i++) size += z->y[i] * z->y[i];
+    return sqrt(HDI_CAST(double, m)) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
+}
+
+/* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
+static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before, double target) {
+    const int32_t most = m < 64 ? 1 : m / 32;
+    double rate, want;
+    if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
+    rate = log(bound_before / bound) / (m - m_before);
+    want = 0.5 * log(bound / target) / rate;
+    return want < 1 ? 1 : want > most ? most : HDI_CAST(int32_t, want);
+}
+
+/* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2 is what |u|_B^2 has besides. */
+static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm, double fixed_norm2, hdi_lane *lane,
+                                   const hdi_watch *watch, hd_error *e) {
+    const hd_laplacian *lap = task->lap;
+    const double t = task->t, tol = task->tol;
+    const int32_t most = task->max_iterations < HDI_LANCZOS_MAX ? task->max_iterations : HDI_LANCZOS_MAX;
+    hdi_lanczos *z = &lane->lanczos;
+    double bound = 0, bound_before = 0, best = DBL_MAX, start = 0;
+    int32_t look = 1, looked = 0, best_m = 0;
+    hd_rational set;
+    if (hdi_rational_get(&set, HD_POLES_UNIFORM, 14, e) < 0) return e->status;
+    hdi_lanczos_start(lane, lap->n_active, f0_norm);
+    for (;;) {
+        if (hdi_lanczos_step(task, z, lane->tmp, lane->tmp + lap->n_active, e) < 0) return e->status;
+        if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
+        if (hdi_lanczos_bound(z, t, &bound, e) < 0) return e->status;
+        hdi_lanczos_coefficients(z, t, &set);
+        lane->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * hdi_dot(z->y, z->y, z->m));
+        lane->off.solver = f0_norm * bound;
+        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t) + set.max_error);   /* the coefficients are by poles */
+        if (lane->off.solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
+        if (bound < best / 2) {
+            best = bound;
+            best_m = z->m;
+        } else if (best < 1e-10 && z->m > best_m + 20 + z->m / 4) {
+            return HD_WARN_ACCURACY;             /* what rounding leaves */
+        }
+        if (z->m >= most) {
+            hdi_fail(e, HD_ERR_NOT_CONVERGED, "Lanczos did not reach the tolerance in its largest number of steps; use poles");
+            e->value = lane->off.solver / lane->u_norm;
+            return e->status;
+        }
+        if (start == 0) start = lane->off.solver;
+        if (hdi_watch_look(watch, 0.5 * hdi_krylov_done(start, lane->off.solver, tol * lane->u_norm), e) < 0) return e->status;
+        look = z->m + hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
+        looked = z->m;
+        bound_before = bound;
+    }
+}
+
+/* Second sweep: u += f0_norm sum y_j v_j. */
+static hd_status hdi_lanczos_second(const hdi_lanczos_task *task, double f0_norm, hdi_lane *lane, const hdi_watch *watch,
+                                    hd_error *e) {
+    const int32_t n = task->lap->n_active, m = lane->lanczos.m;
+    int32_t j;
+    hdi_lanczos_start(lane, n, f0_norm);
+    for (j = 0; j < m; j++) {
+        hdi_axpy(f0_norm * lane->lanczos.y[j], lane->lanczos.v, lane->u, n);
+        if (j % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * j / m, e) < 0) return e->status;
+        if (j + 1 < m && hdi_lanczos_step(task, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0) return e->status;
+    }
+    lane->lanczos.m = m;
+    return HD_OK;
+}
+
+/* K_t f by Lanczos. The constants of each component need none of it. */
+static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
+    const hd_laplacian *lap = task->lap;
+    const int32_t n = lap->n_active;
+    hd_status status = HD_OK;
+    double f0_norm, fixed = 0;
+    int32_t i;
+    memset(lane->u, 0, HDI_CAST(size_t, n) * sizeof *lane->u);
+    hdi_lane_clear_off(lane);
+    lane->rounding = HD_EVIDENCE_ESTIMATED;
+    if (lap->conserves) {
+        for (i = 0; i < lap->n_components; i++) {
+            lane->sums[i] = -lane->target[i] / lap->component_mass[i];
+            fixed += lane->target[i] * lane->target[i] / lap->component_mass[i];
+        }
+        hdi_component_add(lap, lane->sums, lane->f);               /* f0 = f - constants, rhs0 = B f0 */
+        for (i = 0; i < n; i++) lane->rhs[i] += lap->mass[i] * lane->sums[lap->component[i]];
+        for (i = 0; i < n; i++) lane->u[i] = -lane->sums[lap->component[i]];
+    }
+    f0_norm = hdi_dot(lane->f, lane->rhs, n);
+    f0_norm = f0_norm > 0 ? sqrt(f0_norm) : 0;
+    lane->u_norm = sqrt(fixed);
+    if (f0_norm > DBL_EPSILON * lane->f_norm) {
+        status = hdi_lanczos_first(task, f0_norm, fixed, lane, watch, e);
+        if (status >= 0 && hdi_lanczos_second(task, f0_norm, lane, watch, e) < 0) return e->status;
+        lane->steps = lane->lanczos.m;
+    }
+    if (status >= 0) hdi_conserve(lap, lane, 1);
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, task->t * task->drift, 1));
+    return status;
+}
+
+enum { HDI_SILAN_MAX = 160, HDI_SILAN_POINTS = 96, HDI_SILAN_WIDE = 8 };
+
+/* The process for 1 or 8 right-hand sides side by side; times share it. */
+typedef struct hdi_silan {
+    const hdi_elim *m;
+    int32_t k, wide, steps;      /* right-hand sides, 1 or 8, steps taken */
+    double *v[HDI_SILAN_MAX + 1];/* [n][wide] the basis */
+    double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
+    double *probe;               /* [2 n] a solution and its residual */
+    double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
+    double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
+    double solved;               /* largest residual found of a solve over that */
+    double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
+    double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];   /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
+    int32_t vectors_of, vectors_m;
+    int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
+    double g;
+} hdi_silan;
+
+/* ---- shift-and-invert Lanczos ---- */
+/* Lanczos in the B inner product for S = (B + g L)^-1 B, whose large eigenvalues are those of the smooth modes: with S V = V T + beta v e_m',
+ * exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1 for every t around 10 g. One real factor and one basis serve all these times. */
 static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
     int32_t i;
     for (i = 0; i <= HDI_SILAN_MAX; i++) hdi_free(ctx, z->v[i]);
@@ -15170,122 +15345,20 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
     return HD_OK;
 }
 
-/* ---- entries of the kernel without columns ---- */
+/* ==== [24] ground ====
+ * Owns L with one vertex of each component held at zero: its inverse, for distances without a time, and a bound of the
+ * smallest eigenvalue that is not zero. May call [22]. */
 
-/* values [n_sets][stride] += sum over poles p of Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: entries of the lower triangle in the order of the analysis,
- * or by pivots the diagonal, or that of B Z_p B. The factors are there, and stay. */
-static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, hdi_wanted wanted, double *values, int64_t stride, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(m->ctx, e);
-    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n_sets));
-    const int32_t n_poles = m->set.n_poles;
-    hdi_forms forms;
-    hdi_inverse z;
-    double *b = NULL;
-    int64_t p;
-    int32_t i, k, q;
-    if (wanted == HDI_WANT_FORMS) {              /* the source's entries, scaled as m->lap is */
-        b = HDI_TAKE(&s, double, m->source->L.nnz);
-        for (p = 0; b && p < m->source->L.nnz; p++) b[p] = m->scale * m->source->B[p];
-    }
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = -1; i < (n_poles - (m->lone + 1) + 3) / 4 && e->status >= 0; i++) {   /* -1: the lone real pole */
-        if (i < 0 && m->lone < 0) continue;
-        memset(coef, 0, HDI_PACK * HDI_CAST(size_t, n_sets) * sizeof *coef);
-        for (k = 0; k < n_sets; k++) {
-            if (i < 0) coef[k] = weight[HDI_CAST(int64_t, k) * n_poles].re;
-            for (q = 0; i >= 0 && q < 4 && m->lone + 1 + 4 * i + q < n_poles; q++) {
-                const hd_c64 w = weight[HDI_CAST(int64_t, k) * n_poles + m->lone + 1 + 4 * i + q];
-                coef[HDI_PACK * k + q] = w.re;
-                coef[HDI_PACK * k + q + 4] = -w.im;
-            }
-        }
-        if (i <= 0 && hdi_inverse_make(&z, &m->sym, i < 0 ? 1 : HDI_PACK, m->ctx, e) < 0) break;
-        if (i <= 0 && wanted == HDI_WANT_FORMS && hdi_forms_make(&forms, &m->sym, i < 0 ? 1 : HDI_PACK, &m->source->L, b, m->ctx, e) < 0) {
-            hdi_inverse_free(&z, m->ctx);
-            break;
-        }
-        z.coef = coef;
-        z.n_sets = n_sets;
-        z.wanted = wanted;
-        z.forms = &forms;
-        z.values = values;
-        z.stride = stride;
-        (void)hdi_inverse_run(&z, i < 0 ? &m->real : m->pack + i, e);
-        if (i >= 0 && e->status >= 0 && 4 * (i + 1) < n_poles - (m->lone + 1)) continue;   /* the next pack works in the same room */
-        hdi_inverse_free(&z, m->ctx);
-        if (wanted == HDI_WANT_FORMS) hdi_forms_free(&forms, m->ctx);
-    }
-    return hdi_scope_end(&s);
-}
-
-enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
-
-/* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares of the relative error. 0: not to be had; for
- * sets of few poles. work: columns [2 HDI_RESOLVENT_POLES + 1][HDI_RESOLVENT_POINTS]. */
-static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double *slack) {
-    double work[(2 * HDI_RESOLVENT_POLES + 1) * HDI_RESOLVENT_POINTS], *b = work + 2 * HDI_RESOLVENT_POLES * HDI_RESOLVENT_POINTS, worst = 0;
-    int32_t p, i, cols = 0;
-    if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
-    for (p = 0; p < set->n_poles; cols += set->theta[p].im != 0 ? 2 : 1, p++) {
-        for (i = 0; i < HDI_RESOLVENT_POINTS; i++) {
-            const double s = (i + 0.5) / HDI_CAST(double, HDI_RESOLVENT_POINTS), x = 2 * s / ((1 - s) * (1 - s));
-            const hd_c64 f = hdi_cdiv(hdi_c(1 + x, 0), hdi_c(x + set->theta[p].re, set->theta[p].im));
-            work[cols * HDI_RESOLVENT_POINTS + i] = f.re;
-            if (set->theta[p].im != 0) work[(cols + 1) * HDI_RESOLVENT_POINTS + i] = -f.im;
-            b[i] = 1;
-        }
-    }
-    hdi_least_squares(work, HDI_RESOLVENT_POINTS, cols, b);
-    for (p = 0, cols = 0; p < set->n_poles; p++) {
-        const int pair = set->theta[p].im != 0;
-        weight[p] = hdi_c(b[cols], pair ? b[cols + 1] : 0);
-        cols += pair ? 2 : 1;
-    }
-    for (i = 0; i <= 8 * HDI_RESOLVENT_POINTS; i++) {   /* the end is x = infinity */
-        const double s = i / (8 * HDI_CAST(double, HDI_RESOLVENT_POINTS)), q = 0.5 * (1 - s) * (1 - s);   /* x = s/q */
-        double sum = 0;
-        for (p = 0; p < set->n_poles; p++) sum += hdi_cmul(weight[p], hdi_cdiv(hdi_c(q + s, 0), hdi_c(s + q * set->theta[p].re, q * set->theta[p].im))).re;
-        worst = hdi_max(worst, fabs(sum - 1));
-    }
-    *slack = 2 * worst;
-    return worst < 0.2;
-}
-
-/* What the constants alone are of diag((B + tL)^-1), however much of them rounding has eaten. */
-static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
-    return lap->conserves ? 1 / lap->component_mass[lap->component[i]] : 0;
-}
-
-/* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new one. */
-static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
-    const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = 1.01 * hdi_max(1, theta);   /* 1.01: rounding */
-    const size_t n = HDI_CAST(size_t, m->sym.n);
-    hdi_inverse z;
-    int32_t i;
-    if (m->reach && m->reach_t == m->t) return HD_OK;
-    if (!m->reach) m->reach = HDI_CAST(double *, hdi_alloc(m->ctx, n, sizeof(double), e));
-    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, m->t, theta, e) >= 0) && hdi_inverse_make(&z, &m->sym, 1, m->ctx, e) >= 0) {
-        memset(m->reach, 0, n * sizeof *m->reach);
-        z.coef = &factor;
-        z.n_sets = 1;
-        z.wanted = HDI_WANT_DIAGONAL;
-        z.values = m->reach;
-        z.stride = m->sym.n;
-        (void)hdi_inverse_run(&z, &m->real, e);
-        hdi_inverse_free(&z, m->ctx);
-        for (i = 0; i < m->sym.n; i++) {
-            const double most = m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[i]) : HUGE_VAL;
-            if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
-            m->reach[i] = hdi_max(m->reach[i], hdi_constant_part(m->lap, i));
-        }
-        m->reach_t = m->t;
-    }
-    if (e->status < 0) {
-        hdi_free(m->ctx, m->reach);
-        m->reach = NULL;
-    }
-    return e->status;
-}
+/* L with one vertex of each component held at zero. All by rows in elimination order. */
+typedef struct hdi_ground {
+    hdi_factor factor;
+    char *held;                  /* [n] */
+    double *diag, *mean, *form;  /* [n] of G; G b; of G B G less the means' part, when formed */
+    double *trace;               /* [n_components] at least 1/lambda for the smallest eigenvalue that is not zero */
+    double largest_trace;
+    double *mean_off;            /* [n_components] G b is off by at most sqrt(G_vv) times this */
+    int32_t formed;
+} hdi_ground;
 
 /* ---- the pair grounded ---- */
 /* With one vertex of each component held at zero L has an inverse G, and
@@ -15510,17 +15583,41 @@ static uint64_t hdi_ground_room(const hdi_elim *m) {
     return 4 * HDI_CAST(uint64_t, m->sym.n) + HDI_CAST(uint64_t, m->lap->n_components) + hdi_sweep_size(&m->sym, 1, 1, 1);
 }
 
-/* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor (1 + x)) for x >= 0. -1: none does. */
-static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
-    int32_t p, best = -1;
-    for (p = 0; p < set->n_poles; p++) {
-        const double f = hdi_resolvent_factor(set->theta[p]);
-        if (set->theta[p].re <= 0 || (best >= 0 && f >= *factor)) continue;
-        best = p;
-        *factor = f;
-    }
-    return best;
-}
+/* ==== [25] plan ====
+ * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors and bases that are kept, the run of
+ * a request, and the report. May call [24] and [23].
+ * This work is based on
+ *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013, eqs. (8), (9)
+ * Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver). The constants of each
+ * component are carried exactly, so that uniform sets conserve heat too. */
+
+#define HDI_ROUNDING_LIMIT 1e-7              /* the direct method's own error by default is 3e-8 */
+
+struct hd_heat {
+    hd_context *ctx;
+    const hd_laplacian *source;  /* the caller's */
+    double scale;                /* what B, and with it t, is multiplied by in the two copies below, each made when it is first needed */
+    hd_heat_opts opts;           /* resolved, perm and rational copied */
+    int32_t *perm;
+    int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
+    int32_t exacting;            /* a tol below the default is asked for: sets of the highest degree */
+    double limit;                /* of rounding relative to the answer, above which the status warns: tol, or by default */
+    uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
+    hd_rational own_set;
+    hdi_elim elim;               /* to factorise */
+    hdi_ground ground;           /* made when it is first needed; of elim */
+    hdi_silan *silan;
+    double *batch_room;          /* arrays of the batches */
+    uint64_t batch_doubles;
+    hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
+    hdi_upper up;
+    double *weight;              /* [n] 1/diag(B) */
+    hdi_family fam;              /* of the last set and time */
+    hdi_lane lane[HDI_LANES];    /* work arrays, kept from call to call */
+    double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
+    double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
+    double drift;                /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
+};
 
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm, and by that of
  * B + tL with reach, a bound of diag((B + tL)^-1), where that is at hand (else NULL). */
@@ -15566,7 +15663,2298 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     if (lap->conserves && !own && heat_abs > 0) rep->mass_drift = hdi_max(rep->mass_drift, fabs(heat - heat_in) / heat_abs);
 }
 
-/* ==== [19] distance ====
+/* Gershgorin: every eigenvalue of B^-1 L is below this. A guess where b_ratio is not known: it serves for
+ * choices only. */
+static double hdi_lambda_bound(const hd_laplacian *lap) {
+    double most = 0;
+    int32_t i;
+    int64_t p = 0;
+    for (i = 0; i < lap->n_active; i++) {
+        double sum = 0;
+        for (; p < lap->L.row_ptr[i + 1]; p++) sum += fabs(lap->L.val[p]);
+        most = hdi_max(most, sum / lap->b_diag[i]);
+    }
+    return most / hdi_max(lap->b_ratio, 1e-12);
+}
+
+/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of (Neumaier 1974). */
+static hd_status hdi_heat_drift(const hd_laplacian *lap, double *drift, hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    double *sum = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, lap->n_components)), *rest;
+    int64_t p;
+    int32_t i;
+    if (!sum) return hdi_scope_end(&s);
+    rest = sum + lap->n_components;
+    *drift = 0;
+    for (i = 0; i < lap->n_active && lap->conserves; i++) {
+        const int32_t c = lap->component[i];
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const double v = lap->L.val[p], t = sum[c] + v;
+            rest[c] += fabs(sum[c]) >= fabs(v) ? sum[c] - t + v : v - t + sum[c];
+            sum[c] = t;
+        }
+    }
+    for (i = 0; i < lap->n_components && lap->conserves; i++) *drift = hdi_max(*drift, fabs(sum[i] + rest[i]) / lap->component_mass[i]);
+    return hdi_scope_end(&s);
+}
+
+/* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
+static double hdi_heat_scale(const hd_laplacian *lap) {
+    double largest = 0;
+    int32_t i;
+    int exponent;
+    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
+    frexp(largest, &exponent);
+    return ldexp(1, -2 * (exponent / 2));
+}
+
+/* 1/diag(B), and room for three more vectors. */
+static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
+    double *w = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof *w, e));
+    int32_t i;
+    for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
+    return w;
+}
+
+/* The copy of the pair to iterate on. */
+static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
+    if (heat->weight) return HD_OK;
+    hdi_error_clear(e);
+    if (!heat->lap) {
+        if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
+        heat->lap = hdi_sym_ordered(heat->source, heat->ctx, e);
+        if (!heat->lap) return e->status;
+        (void)hdi_sym_scale(heat->lap);
+    }
+    if (!heat->up.ptr && hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
+    heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
+    if (!heat->weight) return e->status;
+    heat->noise = heat->weight + heat->lap->n_active;
+    heat->fam.noise = heat->noise + heat->lap->n_active;
+    heat->fam.noise_work = heat->fam.noise + heat->lap->n_active;
+    hdi_noise_weights(heat->lap, 1, 0, heat->noise, heat->fam.noise_work);
+    heat->fam.ctx = heat->ctx;
+    heat->fam.lap = heat->lap;
+    heat->fam.up = &heat->up;
+    heat->fam.weight = heat->weight;
+    heat->fam.solver = heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES ? heat->opts.solver : HD_SOLVER_COCG;
+    heat->fam.precond = heat->opts.precond;
+    heat->fam.max_iterations = heat->opts.max_iterations;
+    return e->status;
+}
+
+/* The copy of the pair in elimination order, analysed. */
+static hd_status hdi_heat_analysed(hd_heat *heat, int poles, hd_error *e) {
+    if (heat->elim.ctx) return HD_OK;
+    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, poles ? HDI_DISSECT_FROM : HDI_DISSECT_REAL_FROM, heat->perm, heat->scale, heat->ctx, e);
+}
+
+/* Checks a right-hand side. *exponent: its largest part is between 2^(exponent - 1) and 2^exponent. */
+static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
+    double largest = 0;
+    int32_t v;
+    for (v = 0; v < lap->n; v++) {
+        if (!hdi_cfinite(rhs[v]))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v,
+                                -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
+        if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
+    }
+    frexp(largest, exponent);
+    return HD_OK;
+}
+
+/* One system with a plan made for it. */
+static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x, double tol, hd_solve_report *report,
+                                   hd_error *e) {
+    const hd_laplacian *lap;
+    hdi_lane *lane = heat->lane;
+    hdi_krylov *k = lane->k;
+    hdi_watch watch;
+    hd_rational set;
+    hd_status status;
+    double b_norm;
+    int32_t i, v;
+    int exponent, unit;
+    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0 || hdi_heat_iterative(heat, e) < 0) return e->status;
+    lap = heat->lap;
+    memset(&watch, 0, sizeof watch);
+    memset(&set, 0, sizeof set);
+    watch.ctx = heat->ctx;
+    watch.share = 1;
+    watch.stage = "solve";
+    set.n_poles = 1;
+    set.theta[0] = theta;
+    if (hdi_family_set(&heat->fam, &set, t * heat->scale, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
+    if (hdi_lane_systems(lane, &heat->fam, e) < 0) return e->status;
+    if (hdi_family_fill(&heat->fam, lane->vectors, hdi_lane_stride(&heat->fam), e) < 0) return e->status;
+    for (i = 0; i < lap->n_active; i++) {        /* near one, so that no norm underflows or overflows */
+        const hd_c64 r = rhs[lap->vertex[i]];
+        lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
+    }
+    frexp(heat->scale, &unit);                   /* the answer is in units of the right-hand side's, times those of B */
+    unit += exponent - 1;
+    b_norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
+    memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
+    if (lap->conserves) {                        /* constants apart: b - B mean(b), and mean(b)/theta to the solution */
+        for (i = 0; i < lap->n_active; i++) k->sums[lap->component[i]] = hdi_cadd(k->sums[lap->component[i]], lane->b[i]);
+        for (i = 0; i < lap->n_components; i++) k->sums[i] = hdi_cscale(1 / lap->component_mass[i], k->sums[i]);
+        for (i = 0; i < lap->n_active; i++) lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], k->sums[lap->component[i]]));
+        for (v = 0; v < lap->n; v++) x[v] = lap->row[v] >= 0 ? hdi_cdiv(k->sums[lap->component[lap->row[v]]], theta) : hdi_c(0, 0);
+    } else {
+        for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
+    }
+    hdi_krylov_start(k, lane->b, b_norm);
+    status = hdi_krylov_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
+    for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
+    if (report) {
+        const double error = hdi_pole_error(k), norm = sqrt(hdi_b_norm2_complex(lap, k->x, lane->tmp)) - error;
+        report->iterations = k->iterations;
+        report->residual = b_norm > 0 ? k->r_norm / b_norm : 0;
+        report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
+    }
+    if (status > 0) e->status = status;
+    for (v = 0; v < lap->n; v++) {
+        x[v] = hdi_c(ldexp(x[v].re, unit), ldexp(x[v].im, unit));
+        if (!hdi_cfinite(x[v]) && e->status >= 0)
+            hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1, x[v].re);
+    }
+    return e->status;
+}
+
+/* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and its steps are few: a step reads L once and
+ * streams about ten vectors, and stores one; through the poles a step reads as much five times over, in complex. */
+static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
+    const hd_heat_opts *o = &heat->opts;
+    const double steps = 1.2 * sqrt(t * heat->lambda_max) + 10;
+    if (o->solver) return o->solver;
+    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B) return HD_SOLVER_COCG;
+    return steps <= 400 ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
+}
+
+typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
+
+/* A heat call under way: k items, each a field, a column, or the pairs that share a column; a few at a time, each in a lane. */
+typedef struct hdi_heat_call {
+    hd_heat *heat;
+    hdi_query query;
+    double t;
+    int32_t k;
+    hd_solver solver;
+    const hd_rational *set;      /* instead of what the plan would take */
+    int32_t diagonal, degree;    /* by default a set made for diagonals; its degree, 0: as ever */
+    hd_report *rep;
+    hd_report own_report;
+    hd_error *e;
+    hdi_scope s;
+    hd_method method;
+    const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
+    const double *times;         /* [n_times] scaled, ascending, for one item at several times; else t alone */
+    int32_t n_times;
+    const int32_t *time_column;  /* where in U each goes */
+    int32_t relative;            /* errors are told relative to each value too */
+    int32_t deflated;            /* direct: right-hand sides are without their constants */
+    int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
+    double still;                /* t = 0 stands for a t so small that K_t f is f to rounding; |K_t - 1| <= this */
+    int32_t equal;               /* t is so large that each component has its mean */
+    hdi_ledger *entries;         /* of single values; NULL: columns are judged as a whole */
+    double *off_b, *off_m;       /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
+    hdi_lane *lane;              /* [HDI_LANES], the plan's */
+    int32_t n_lanes, batch;      /* lanes that exist; first item in lane 0 */
+    int32_t n_here, batch_width, n_batches;  /* direct: items under way, in batches of so many */
+    int32_t stop;
+    const double *F;             /* fields */
+    double *U;                   /* answers, columns */
+    size_t ldf, ldu;
+    const int32_t *sources;      /* columns */
+    const hdi_pair *order;       /* entries: sorted by column; where each column begins; rows; values */
+    const int64_t *begin;
+    const int32_t *rows;
+    double *values;
+} hdi_heat_call;
+
+/* t for the scaled pair. Where that is beyond all doubles anything as large does, and as small where it vanishes. */
+static double hdi_heat_scaled(const hd_heat *heat, double t) {
+    return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
+}
+
+static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, double t, int32_t k, hd_report *report) {
+    memset(h, 0, sizeof *h);
+    h->rep = report ? report : &h->own_report;
+    memset(h->rep, 0, sizeof *h->rep);
+    h->e = &h->rep->error;
+    hdi_error_clear(h->e);
+    h->heat = heat;
+    h->query = query;
+    h->t = t;
+    h->k = k;
+    if (!heat) return hdi_missing(h->e);
+    h->s = hdi_scope_begin(heat->ctx, h->e);
+    if (!hdi_finite(t) || t < 0) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
+    if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    h->rep->reason = "nothing was asked for";
+    h->t = hdi_heat_scaled(heat, t);
+    h->times = &h->t;
+    h->n_times = 1;
+    h->lap = heat->source;
+    h->lane = heat->lane;
+    return HD_OK;
+}
+
+/* ---- choice of the method ---- */
+
+/* Seconds that methods would take at rates one core has been seen to reach, and the bytes they would hold. */
+typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov_bytes; } hdi_cost;
+
+/* Rates: flops of packs, with seconds per non-zero for what small fronts cost besides, and of real fronts; bytes per second of sweeps; seconds per
+ * non-zero of a step of Lanczos (with what looks at its bound cost, per step squared) and of COCG; per row of an ordering with its analysis.
+ * Measured on meshes of 36K to 1M vertices. */
+#define HDI_RATE_PACK 70e9
+#define HDI_ENTRY_PACK 12e-9
+#define HDI_RATE_REAL 25e9
+#define HDI_RATE_SWEEP 15e9
+#define HDI_STEP_LANCZOS 1.6e-9
+#define HDI_LOOK_LANCZOS 0.4e-6
+#define HDI_STEP_COCG 4e-9
+#define HDI_ROW_ANALYSIS 0.8e-6
+
+/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops; where rows are wider than 10 so much more of the former and its square
+ * of the latter (point sets with 233 and 117 a row, 20 to 150 thousand: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5). */
+static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    const hd_heat_opts *o = &heat->opts;
+    const hdi_symbolic *s = heat->elim.ctx ? &heat->elim.sym : NULL;
+    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->k, hh = heat->source->h * heat->source->h * heat->scale;
+    const double wide = hdi_max(1, entries / (10 * n));
+    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide, flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
+    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide;
+    const double real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n * wide;
+    const double analysis = s ? 0 : HDI_ROW_ANALYSIS * n * wide;
+    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
+    const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4, packs = pairs > 4 ? (pairs + 3) / 4 : 1;
+    const double span = h->times[h->n_times - 1] / h->times[0], windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
+    const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
+    double one, factor;
+    hdi_cost c;
+    int32_t q;
+    c.iterative = 0.4e-6 * n;
+    for (q = 0; q < h->n_times; q++) {
+        const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
+        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) {
+            one = 1.2 * sqrt(t * heat->lambda_max) + 10;
+            one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
+        } else {
+            one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) * (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
+        }
+        c.iterative += k * one;
+    }
+    c.krylov = analysis + windows * flops / HDI_RATE_REAL + k * windows * steps * (16 * nnz + 100 * n) / HDI_RATE_SWEEP + k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
+    factor = packs * (16 * flops / HDI_RATE_PACK + HDI_ENTRY_PACK * nnz) + (poles % 4 == 1 ? flops / HDI_RATE_REAL : 0);
+    c.direct = analysis + h->n_times * (factor + k * packs * (64 * nnz + 400 * n) / (k > 1 ? 1.6 * HDI_RATE_SWEEP : 0.6 * HDI_RATE_SWEEP));
+    if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= factor;
+    c.direct_bytes = 64 * packs * stored + 200 * n + 8 * real_stored;
+    c.krylov_bytes = 8 * real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
+    c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
+    c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
+    if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
+    if (heat->silan) c.krylov_bytes = 0;
+    return c;
+}
+
+/* By the model, or as asked. The analysis is made only when iterating does not win against the least that a factorisation could cost. */
+static hd_status hdi_heat_pick(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    const hd_context *ctx = heat->ctx;
+    const double room = ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
+    hdi_cost c;
+    int no_direct, no_krylov;
+    h->method = heat->opts.method;
+    h->rep->reason = h->method == HD_METHOD_AUTO ? "chosen by cost" : "asked for";
+    if (h->method == HD_METHOD_AUTO && heat->iterations_asked) {
+        h->method = HD_METHOD_ITERATIVE;
+        h->rep->reason = "a solver or preconditioner is asked for";
+    }
+    if (h->method == HD_METHOD_AUTO && heat->no_factors && ctx->byte_limit == heat->no_factors_limit) {
+        h->method = HD_METHOD_ITERATIVE;
+        h->rep->reason = "factors did not fit the byte limit";
+    }
+    if (h->method != HD_METHOD_AUTO) return HD_OK;
+    c = hdi_heat_cost(h);
+    if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) && hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
+        if (hdi_heat_analysed(heat, heat->poles_asked || c.direct < c.krylov, h->e) < 0) return h->e->status;
+        c = hdi_heat_cost(h);
+    }
+    no_direct = c.direct_bytes > room;
+    no_krylov = c.krylov_bytes > room || heat->poles_asked;
+    h->method = HD_METHOD_ITERATIVE;
+    h->rep->reason = no_direct && c.krylov_bytes > room ? "factors would not fit the byte limit" : "iterations cost less than a factorisation";
+    if (!no_krylov && c.krylov < c.iterative && (no_direct || c.krylov <= c.direct)) {
+        h->method = HD_METHOD_KRYLOV;
+        h->rep->reason = h->n_times > 1 ? "one real factor serves many times" : "few columns: one real factor costs less than those of the poles";
+    } else if (!no_direct && c.direct < c.iterative) {
+        h->method = HD_METHOD_DIRECT;
+        h->rep->reason = h->k > 1 ? "many columns: solves with the factors of the poles cost least" : "the factors of the poles cost least";
+    }
+    return HD_OK;
+}
+
+/* Below, t lambda is nothing beside one. */
+#define HDI_STILL 1e-18
+
+/* From here on (t lambda_max) the question is worth its price, and what exp(-t lambda) is nothing after. */
+#define HDI_EQUAL_FROM 1e8
+#define HDI_EQUAL_BEYOND 750
+
+/* Is t (scaled) so large that nothing is left but the means of the components? 1, 0, or an error. */
+static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
+    if (!heat->source->conserves || heat->opts.rational || t * heat->lambda_max < HDI_EQUAL_FROM) return 0;
+    if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0) return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
+    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* not to be told: go on as ever */
+    return 0;
+}
+
+/* The method, its copy of the pair, and what of the report is known by now. */
+static hd_status hdi_heat_engine(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {   /* |exp(-t lambda) - 1| <= t lambda */
+        h->still = h->t * heat->lambda_max;
+        h->t = 0;
+    }
+    if (h->t == 0) {                             /* nothing to solve */
+        h->method = heat->opts.method == HD_METHOD_AUTO ? HD_METHOD_ITERATIVE : heat->opts.method;
+        h->rep->reason = "t = 0";
+    } else if (hdi_heat_pick(h) < 0) {
+        return h->e->status;
+    } else if (h->method == HD_METHOD_ITERATIVE) {
+        if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
+        h->lap = heat->lap;
+    } else {
+        if (hdi_heat_analysed(heat, h->method == HD_METHOD_DIRECT, h->e) < 0) return h->e->status;
+        h->lap = heat->elim.lap;
+        h->rep->ordering = heat->elim.sym.ordering;
+        h->rep->factor_nnz = heat->elim.sym.nnz;
+        if (h->n_times == 1) h->equal = hdi_heat_equal(heat, h->t, h->e);
+        if (h->e->status < 0) return h->e->status;
+    }
+    h->rep->method = h->method;
+    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t) : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
+    h->rep->solver = h->solver;
+    h->rep->precond = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS ? heat->opts.precond : HD_PRECOND_NONE;
+    return HD_OK;
+}
+
+static hd_status hdi_heat_end(hdi_heat_call *h) {
+    hd_status st = h->e->status, warned;
+    if (h->entries && st >= 0) hdi_ledger_close(h->entries, h->rep);
+    warned = h->rep->status;
+    if (h->s.e) st = hdi_scope_end(&h->s);
+    h->rep->status = st < 0 ? st : warned;
+    if (h->rep->evidence_b == HD_EVIDENCE_NONE) h->rep->error_bound_b = HUGE_VAL;
+    if (!h->relative) h->rep->error_relative = HUGE_VAL;
+    return h->rep->status;
+}
+
+/* Norm of f and heat per component, from f and rhs. */
+static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
+    const double f2 = hdi_dot(lane->f, lane->rhs, lap->n_active);
+    lane->f_norm = f2 > 0 ? sqrt(f2) : 0;
+    hdi_component_sums(lap, NULL, lane->rhs, lane->target);
+}
+
+/* Degree of a uniform set: even ones, as an odd one costs as much as the next; the first whose error is 1e-9 of the least that the
+ * answer can be, which is what its constants amount to. */
+static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
+    hd_rational set;
+    hd_error e;
+    double least = 0;
+    int32_t c, r;
+    for (c = 0; c < lap->n_components && lap->conserves; c++) least += lane->target[c] * lane->target[c] / lap->component_mass[c];
+    for (r = 8; r < HDI_RAT_UNIFORM_MAX; r = !direct ? r + 2 : r == 8 ? 9 : HDI_RAT_UNIFORM_MAX)
+        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= (direct ? 2e-9 : 1e-9) * sqrt(least)) break;
+    return r;
+}
+
+/* All fields, before anything is solved or written. */
+static hd_status hdi_fields_check(const hdi_heat_call *h) {
+    int32_t q, v;
+    for (q = 0; q < h->k; q++) {
+        const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
+        for (v = 0; v < h->heat->source->n; v++)
+            if (!hdi_finite(f[v])) return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v, q, f[v]);
+    }
+    return HD_OK;
+}
+
+static int32_t hdi_heat_source(const hdi_heat_call *h, int32_t q) {
+    return h->sources ? h->sources[q] : HDI_CAST(int32_t, h->order[h->begin[q]].key);
+}
+
+/* Brings fields whose squares could leave the range of doubles near one, by a power of two. */
+static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
+    double most = 0;
+    int32_t i;
+    int exponent = 0;
+    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
+    if (most > 0) frexp(most, &exponent);
+    if (exponent > -256 && exponent < 256) return;
+    lane->exponent = exponent;
+    for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
+}
+
+/* Field and right-hand side of item q. A vertex without mass needs no solve: skip. */
+static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
+    const hd_laplacian *lap = h->lap;
+    const size_t bytes = HDI_CAST(size_t, lap->n_active) * sizeof(double);
+    int32_t row;
+    lane->skip = 0;
+    lane->status = HD_OK;
+    hdi_lane_clear_off(lane);
+    lane->steps = 0;
+    lane->exponent = 0;
+    lane->watch = -1;
+    if (h->query == HDI_QUERY_FIELD) {
+        hdi_gather(lap, h->F + HDI_CAST(size_t, q) * h->ldf, lane->f);
+        hdi_lane_unit(lap, lane);
+        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+    } else {
+        row = lap->row[hdi_heat_source(h, q)];
+        lane->skip = row < 0;
+        if (lane->skip) return HD_OK;
+        lane->watch = h->watching ? row : -1;
+        memset(lane->f, 0, bytes);
+        memset(lane->rhs, 0, bytes);
+        if (h->query == HDI_QUERY_OPERATOR) {
+            int64_t p;
+            lane->f[row] = 1;
+            for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++) lane->rhs[lap->L.col[p]] = lap->B[p];   /* B e_row */
+            if (!lap->B) lane->rhs[row] = lap->mass[row];
+        } else {
+            lane->rhs[row] = 1;
+            if (h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && lap->b_ratio > 0) {   /* B^-1 e is not needed, only a bound of its norm */
+                hdi_component_sums(lap, NULL, lane->rhs, lane->target);
+                lane->f_norm = 1 / sqrt(lap->b_ratio * lap->b_diag[row]);
+                return HD_OK;
+            }
+            if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
+        }
+    }
+    hdi_heat_measure(lap, lane);
+    return HD_OK;
+}
+
+/* What item q asked for, from the lane's answer, into that column of U. */
+static void hdi_heat_store_at(const hdi_heat_call *h, int32_t q, int32_t column, const hdi_lane *lane) {
+    const hd_laplacian *lap = h->lap;
+    const double *answer = lane->u, unit = h->query == HDI_QUERY_SYMMETRIC && lap != h->heat->source ? h->heat->scale : 1;   /* B^-1 */
+    const int32_t source = h->query == HDI_QUERY_FIELD ? -1 : hdi_heat_source(h, q);
+    double *u = h->U ? h->U + HDI_CAST(size_t, column) * h->ldu : NULL;
+    int64_t p;
+    int32_t i;
+    if (!h->values && !u) return;
+    if (h->values) {
+        for (p = h->begin[q]; p < h->begin[q + 1]; p++) {
+            const int32_t v = h->rows[h->order[p].id];
+            const double own = h->query == HDI_QUERY_OPERATOR && v == source;
+            double *value = h->values + h->order[p].id;
+            hdi_parts off;
+            memset(&off, 0, sizeof off);
+            *value = lane->skip ? own : lap->row[v] < 0 ? 0 : unit * answer[lap->row[v]];
+            if (!lane->skip && lap->row[v] >= 0) off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[lap->row[v]]), lane->off);
+            if (h->entries) hdi_ledger_note(h->entries, *value, off);
+        }
+        return;
+    }
+    if (h->query == HDI_QUERY_FIELD) {           /* vertices without mass keep their value */
+        const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
+        if (u != f) memmove(u, f, HDI_CAST(size_t, lap->n) * sizeof *u);
+    } else {
+        memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
+        if (lane->skip) u[source] = h->query == HDI_QUERY_OPERATOR;
+    }
+    for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = lane->exponent ? ldexp(answer[i], lane->exponent) : unit * answer[i];
+}
+
+static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) { hdi_heat_store_at(h, q, q, lane); }
+
+/* The degree of a uniform set that serves all fields; columns, whose constants are known to be small, get the highest. */
+static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
+    int32_t q, r;
+    *degree = h->query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
+    for (q = 0; q < h->k && h->query == HDI_QUERY_FIELD; q++) {
+        if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
+        r = hdi_uniform_degree(h->lap, h->lane, h->method == HD_METHOD_DIRECT);
+        if (r > *degree) *degree = r;
+    }
+    return HD_OK;
+}
+
+/* The pole set of this call. */
+static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
+    const hd_heat_opts *o = &h->heat->opts;
+    const hd_pole_kind kind = o->poles ? o->poles : h->query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
+    int32_t degree = o->degree ? o->degree : h->degree ? h->degree : h->heat->exacting ? HDI_RAT_KERNEL_MAX : h->method == HD_METHOD_DIRECT ? 9 : 10;   /* four pairs fill a pack, a real pole costs little */
+    if (h->set || o->rational) {
+        *set = h->set ? *h->set : *o->rational;
+        return HD_OK;
+    }
+    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0) return h->e->status;
+    return hdi_rational_get(set, kind, degree, h->e);
+}
+
+static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
+    hdi_lanczos_task task;
+    task.lap = heat->lap;
+    task.weight = heat->weight;
+    task.noise = heat->noise;
+    task.t = heat->lambda_max > 0 ? hdi_min(t, 1e100 / heat->lambda_max) : t;   /* beyond, all that moves is gone */
+    task.tol = heat->opts.tol;
+    task.drift = heat->drift;
+    task.max_iterations = heat->opts.max_iterations;
+    return task;
+}
+
+static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
+    hdi_heat_call *h = HDI_CAST(hdi_heat_call *, arg);
+    hdi_lane *lane = h->lane + index;
+    const hdi_lanczos_task task = hdi_heat_lanczos_task(h->heat, h->t);
+    hdi_watch watch;
+    hdi_error_clear(&lane->error);
+    if (lane->skip) return;
+    watch.ctx = worker == 0 ? h->heat->ctx : NULL;
+    watch.stop = &h->stop;
+    watch.stage = "solve";
+    watch.share = 1.0 / h->k;
+    watch.from = watch.share * HDI_CAST(double, h->batch + index);
+    lane->status = hdi_watch_look(&watch, 0, &lane->error);
+    if (lane->status >= 0) {
+        if (h->solver == HD_SOLVER_LANCZOS) lane->status = hdi_lanczos_run(&task, lane, &watch, &lane->error);
+        else lane->status = hdi_family_run(&h->heat->fam, h->heat->opts.tol, h->t * h->heat->drift, lane, &watch, &lane->error);
+    }
+    if (lane->status < 0) HDI_STORE(&h->stop, 1);
+}
+
+/* A new ledger for what the method computes. */
+static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
+    const int lanczos = h->solver == HD_SOLVER_LANCZOS, still = h->t == 0 || h->equal;
+    const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
+    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
+    const hd_evidence rational = still || lanczos || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN;
+    const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
+                             : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
+    return hdi_ledger_begin(rational, solver, HD_EVIDENCE_PROVEN, 0);
+}
+
+/* Judges lane i of the batch. */
+static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
+    const hdi_lane *lane = h->lane + i;
+    const hdi_elim *m = &h->heat->elim;
+    const double *reach = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && m->reach && m->reach_t == m->t ? m->reach : NULL;
+    ledger.known.rounding = lane->rounding;
+    hdi_heat_judge(h->lap, lane, h->entries ? NULL : &ledger, reach, own, h->rep);
+    if (h->entries) h->entries->known = ledger.known;
+    if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
+    if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
+}
+
+/* Report and errors of the lanes, in their order: the first failure that is not "another task failed" is the one to tell. */
+static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
+    const hd_rational *set = &h->heat->fam.set;
+    const int own = h->heat->opts.rational != NULL, poles = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS;
+    const hdi_ledger blank = hdi_heat_ledger(h);
+    int32_t i, p;
+    for (i = 0; i < n; i++) {
+        const hdi_lane *lane = h->lane + i;
+        if (lane->status >= 0 || (h->e->status < 0 && h->e->status != HD_ERR_CANCELLED)) continue;
+        *h->e = lane->error;
+        h->e->column = h->batch + i;
+    }
+    if (h->e->status == HD_ERR_NOT_CONVERGED) h->rep->residual = h->e->value;   /* what was achieved */
+    if (h->e->status < 0) return h->e->status;
+    for (i = 0; i < n; i++) {
+        const hdi_lane *lane = h->lane + i;
+        if (lane->skip) {                        /* exact */
+            if (!h->entries) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
+            continue;
+        }
+        if (lane->status > h->rep->status) h->rep->status = lane->status;
+        h->rep->iterations += lane->steps;
+        for (p = 0; poles && h->t > 0 && !h->equal && p < set->n_poles; p++) {
+            h->rep->pole_iterations[p] += lane->k[p].iterations;
+            h->rep->iterations += lane->k[p].iterations;
+        }
+        hdi_heat_note(h, blank, i, own);
+    }
+    return HD_OK;
+}
+
+/* Lanes, the pole set and its preconditioners. */
+static hd_status hdi_heat_prepare(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    hd_rational set;
+    int32_t i;
+    h->n_lanes = h->k < HDI_LANES_ITERATIVE ? h->k : HDI_LANES_ITERATIVE;
+    for (i = 0; i < h->n_lanes; i++) {
+        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
+        if (h->solver == HD_SOLVER_LANCZOS && hdi_lane_lanczos(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
+    }
+    if (h->solver == HD_SOLVER_LANCZOS) return HD_OK;
+    if (hdi_heat_set(h, &set) < 0 || hdi_family_set(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
+    h->rep->poles = set.kind;
+    h->rep->degree = set.degree;
+    h->rep->n_poles = set.n_poles;
+    for (i = 0; i < h->n_lanes; i++)
+        if (hdi_lane_systems(h->lane + i, &heat->fam, h->e) < 0) return h->e->status;
+    return hdi_family_fill(&heat->fam, h->lane->vectors, hdi_lane_stride(&heat->fam), h->e);
+}
+
+/* ---- direct ---- */
+
+/* Arrays of a batch of k, from the plan's room. */
+static hdi_batch hdi_heat_batch(const hdi_heat_call *h, int32_t index, int32_t k) {
+    hdi_batch b;
+    uint64_t x, xr, size = hdi_batch_size(&h->heat->elim, k, &x, &xr);
+    b.x = h->heat->batch_room + size * HDI_CAST(size_t, index);
+    b.xr = b.x + x;
+    b.work = b.xr + xr;
+    b.active = HDI_CAST(char *, HDI_CAST(void *, b.x + size)) - h->heat->elim.sym.n_super - 8;
+    return b;
+}
+
+static void hdi_heat_batch_task(void *arg, int64_t index, int32_t worker) {
+    hdi_heat_call *h = HDI_CAST(hdi_heat_call *, arg);
+    const hdi_batch b = hdi_heat_batch(h, HDI_CAST(int32_t, index), h->batch_width);
+    hdi_lane *lane = h->lane + index * h->batch_width;
+    const int32_t left = h->n_here - HDI_CAST(int32_t, index) * h->batch_width, n = left < h->batch_width ? left : h->batch_width;
+    int32_t r;
+    (void)worker;
+    hdi_batch_run(&h->heat->elim, &b, lane, n, h->n_batches > 1 ? NULL : h->heat->ctx);
+    for (r = 0; r < n; r++)
+        if (!lane[r].skip) lane[r].status = hdi_elim_finish(&h->heat->elim, h->heat->limit, h->t * h->heat->drift, h->deflated, lane + r);
+    for (r = 0; r < n; r++)
+        if (!lane[r].skip && lane[r].negative) lane[r].status = hdi_not_semidefinite(&lane[r].error);
+}
+
+/* Growth of built-in sets is at most 4.2, of shared ones 7.9, wherever L is positive semi-definite, and the pivots of a real
+ * pole are positive. */
+static hd_status hdi_heat_growth(hdi_heat_call *h) {
+    const hdi_elim *m = &h->heat->elim;
+    int32_t i;
+    if (m->lone >= 0 && m->real.all.negative) return hdi_not_semidefinite(h->e);
+    for (i = 0; 4 * i < m->set.n_poles - (m->lone + 1) && m->set.kind != HD_POLES_OWN; i++)
+        if (m->pack[i].all.largest > 50 * m->pack[i].largest_entry) return hdi_not_semidefinite(h->e);
+    return HD_OK;
+}
+
+/* Lanes, the pole set and its factors. */
+static hd_status hdi_direct_prepare(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active), most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
+    uint64_t x, xr, size;
+    hd_rational set;
+    int32_t i;
+    h->batch_width = h->k < HDI_LANES_BATCH ? h->k : HDI_LANES_BATCH;
+    size = hdi_batch_size(&heat->elim, h->batch_width, &x, &xr);
+    h->n_batches = (h->k + h->batch_width - 1) / h->batch_width;
+    if (h->n_batches > HDI_BATCHES) h->n_batches = HDI_BATCHES;   /* as many as take no more than a pack */
+    while (h->n_batches > 1 && HDI_CAST(size_t, h->n_batches) * (size + 7 * n * HDI_CAST(size_t, h->batch_width)) > most) h->n_batches--;
+    h->n_lanes = h->n_batches * h->batch_width < h->k ? h->n_batches * h->batch_width : h->k;
+    for (i = 0; i < h->n_lanes; i++)
+        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
+    if (hdi_heat_set(h, &set) < 0) return h->e->status;
+    if (hdi_elim_poles(&heat->elim, &set, h->t, h->e) < 0) return h->e->status;
+    if (hdi_heat_growth(h) < 0 || (!h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0)) return h->e->status;
+    if (heat->batch_doubles < size * HDI_CAST(size_t, h->n_batches)) {
+        hdi_free(heat->ctx, heat->batch_room);
+        heat->batch_doubles = 0;
+        heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, size * HDI_CAST(uint64_t, h->n_batches), sizeof(double), h->e));
+        if (!heat->batch_room) return h->e->status;
+        heat->batch_doubles = size * HDI_CAST(size_t, h->n_batches);
+    }
+    h->rep->poles = set.kind;
+    h->rep->degree = set.degree;
+    h->rep->n_poles = set.n_poles;
+    for (i = 0; 4 * i < set.n_poles - (heat->elim.lone + 1); i++) {
+        const hdi_factor *f = heat->elim.pack + i;
+        h->rep->factor_flops += 16 * heat->elim.sym.flops;
+        h->rep->growth = hdi_max(h->rep->growth, f->all.largest / f->largest_entry);
+    }
+    if (heat->elim.lone >= 0) {
+        h->rep->factor_flops += heat->elim.sym.flops;
+        h->rep->growth = hdi_max(h->rep->growth, heat->elim.real.all.largest / heat->elim.real.largest_entry);
+    }
+    return HD_OK;
+}
+
+/* Above this t lambda_max columns, too, are solved without their constants: these are nearly all of the answer then, and
+ * rounding of them would be most of the error. Below, their right-hand sides stay sparse. */
+#define HDI_DEFLATE 3e5
+
+/* Takes the constants out of a dense right-hand side, for the digits of the rest; they are put back exactly in the end. */
+static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
+    int32_t i;
+    for (i = 0; i < lap->n_components; i++) lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
+    for (i = 0; i < lap->n_active && lap->conserves; i++) lane->rhs[i] -= lap->mass[i] * lane->sums[lap->component[i]];
+}
+
+static hd_status hdi_direct_run(hdi_heat_call *h) {
+    int32_t i;
+    if (hdi_direct_prepare(h) < 0) return h->e->status;
+    for (h->batch = 0; h->batch < h->k; h->batch += h->n_here) {
+        h->n_here = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
+        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return h->e->status;
+        for (i = 0; i < h->n_here; i++)
+            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
+        h->deflated = !h->watching && (h->query == HDI_QUERY_FIELD || h->t * h->heat->lambda_max > HDI_DEFLATE);
+        for (i = 0; i < h->n_here && h->deflated; i++)
+            if (!h->lane[i].skip) hdi_lane_deflate(h->lane + i, h->lap);
+        hdi_parallel(h->heat->ctx, (h->n_here + h->batch_width - 1) / h->batch_width, hdi_heat_batch_task, h);
+        if (hdi_heat_collect(h, h->n_here) < 0) return h->e->status;
+        for (i = 0; i < h->n_here; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
+    }
+    return h->e->status;
+}
+
+/* ---- krylov ---- */
+
+/* A shift for times [from, to]; that of the factor at hand when it will do. Not so large that B drowns beside g L. */
+static double hdi_krylov_shift(const hdi_elim *m, double from, double to, double lambda_max) {
+    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL), have = m->real.ready ? m->shift : 0;
+    return have > 0 && best <= 3 * have && have <= 3 * best && to / from < 10 ? have : best;
+}
+
+/* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its times. */
+static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
+    const double factor = s->flops_done / HDI_RATE_REAL, step = 16 * HDI_CAST(double, s->nnz) / HDI_RATE_SWEEP + 1e-8 * s->n;
+    double best = HUGE_VAL;
+    int32_t w, least = 1;
+    for (w = 1; w <= 16; w++) {
+        const double ratio = pow(span, 1.0 / w), steps = 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
+        const double cost = w * (factor + steps * step);
+        if (cost < best) {
+            best = cost;
+            least = w;
+        }
+    }
+    return least;
+}
+
+/* One basis for items batch to batch + n - 1 and the times [q0, q1). */
+static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
+    hd_heat *heat = h->heat;
+    hdi_silan *z = heat->silan;
+    double fixed[HDI_SILAN_WIDE];
+    hd_status status;
+    int32_t i, q;
+    int64_t c;
+    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(&heat->elim, h->times[q0], h->times[q1 - 1], heat->lambda_max), h->e) < 0) return h->e->status;
+    z->g = heat->elim.shift;
+    z->k = n;
+    if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
+    for (i = 0; i < n; i++)
+        for (fixed[i] = 0, c = 0; c < h->lap->n_components && h->lap->conserves && !h->lane[i].skip; c++)
+            fixed[i] += h->lane[i].target[c] * h->lane[i].target[c] / h->lap->component_mass[c];
+    status = hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+    if (status < 0) return status;
+    for (q = q0; q < q1; q++) {
+        for (i = 0; i < n; i++) {
+            hdi_lane *lane = h->lane + i;
+            lane->status = status;
+            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], heat->drift, lane, h->e) < 0) return h->e->status;
+            if (!lane->skip && (lane->off.solver > heat->opts.tol * lane->u_norm || lane->off.rounding > heat->limit * lane->u_norm))
+                lane->status = HD_WARN_ACCURACY;
+        }
+        for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
+        if (hdi_heat_collect(h, n) < 0) return h->e->status;
+        for (i = 0; i < n; i++) hdi_heat_store_at(h, h->batch + i, h->time_column ? h->time_column[q] : h->batch + i, h->lane + i);
+    }
+    return HD_OK;
+}
+
+static hd_status hdi_krylov_all(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    const double span = h->times[h->n_times - 1] / h->times[0];
+    const int32_t wide = h->k > 3 ? HDI_SILAN_WIDE : 1, n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
+    int32_t i, n, q0, q1, w;
+    if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
+    if (!heat->silan) {
+        heat->silan = HDI_CAST(hdi_silan *, hdi_alloc(heat->ctx, 1, sizeof *heat->silan, h->e));
+        if (!heat->silan) return h->e->status;
+        memset(heat->silan, 0, sizeof *heat->silan);
+    }
+    heat->silan->wide = wide;
+    heat->silan->m = &heat->elim;
+    h->n_lanes = h->k < wide ? h->k : wide;
+    for (i = 0; i < h->n_lanes; i++)
+        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
+    for (h->batch = 0; h->batch < h->k; h->batch += n) {
+        n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
+        for (i = 0; i < n; i++)
+            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
+        for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+            const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
+            for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-9)); q1++) {}
+            if (hdi_krylov_window(h, n, q0, q1) < 0) return h->e->status;
+        }
+    }
+    h->rep->factor_flops = heat->elim.sym.flops;
+    h->rep->growth = heat->elim.real.largest_entry > 0 ? heat->elim.real.all.largest / heat->elim.real.largest_entry : 0;
+    return h->e->status;
+}
+
+/* Did a method that auto chose run into the byte limit? Then what was factorised goes, and iterations take its place. */
+static int hdi_heat_retreat(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    int32_t i;
+    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx) return 0;
+    if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
+    if (h->batch > 0 && h->query == HDI_QUERY_FIELD) return 0;   /* fields may have been overwritten by their answers */
+    for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
+    if (heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+    hdi_elim_free(&heat->elim);
+    if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
+    hdi_free(heat->ctx, heat->silan);
+    hdi_free(heat->ctx, heat->batch_room);
+    heat->silan = NULL;
+    heat->batch_room = NULL;
+    heat->batch_doubles = 0;
+    heat->no_factors = 1;
+    heat->no_factors_limit = heat->ctx->byte_limit;
+    hdi_error_clear(h->e);
+    return 1;
+}
+
+static hd_status hdi_heat_factors(hdi_heat_call *h) {
+    if (hdi_heat_engine(h) < 0 || h->t == 0 || h->equal || h->method == HD_METHOD_ITERATIVE) return h->e->status;
+    return h->method == HD_METHOD_DIRECT ? hdi_direct_run(h) : hdi_krylov_all(h);
+}
+
+/* Answers that need no solve: the field itself where t is nothing, the means where t is all. */
+static hd_status hdi_heat_plain(hdi_heat_call *h) {
+    const hd_laplacian *lap = h->lap;
+    hdi_lane *lane = h->lane;
+    int32_t i;
+    if (hdi_lane_make(lane, lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    for (h->batch = 0; h->batch < h->k; h->batch++) {
+        if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
+        if (!lane->skip) {
+            for (i = 0; i < lap->n_active; i++) lane->u[i] = h->equal ? lane->target[lap->component[i]] / lap->component_mass[lap->component[i]] : lane->f[i];
+            lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
+            if (h->equal) hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->query == HDI_QUERY_FIELD));
+            else hdi_lane_rounding(lane, h->still * lane->f_norm);
+            if (!h->equal && h->query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
+            if (!h->equal && h->query == HDI_QUERY_SYMMETRIC && lap->B) {   /* f = B^-1 e comes by iterations */
+                hdi_lane_rounding(lane, 1e-14 * hdi_ratio_root(lap) * lane->f_norm);
+                lane->rounding = HD_EVIDENCE_ESTIMATED;
+            }
+        }
+        if (hdi_heat_collect(h, 1) < 0) return h->e->status;
+        hdi_heat_store(h, h->batch, lane);
+    }
+    return HD_OK;
+}
+
+static hd_status hdi_heat_run(hdi_heat_call *h) {
+    int32_t i, n;
+    if (h->e->status < 0 || h->k == 0) return hdi_heat_end(h);
+    if (hdi_heat_factors(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_factors(h);
+    if (h->e->status >= 0 && (h->t == 0 || h->equal)) (void)hdi_heat_plain(h);
+    if (h->e->status < 0 || h->t == 0 || h->equal || h->method != HD_METHOD_ITERATIVE) return hdi_heat_end(h);
+    if (hdi_heat_prepare(h) < 0 && !(hdi_heat_retreat(h) && hdi_heat_engine(h) >= 0 && hdi_heat_prepare(h) >= 0)) return hdi_heat_end(h);
+    for (h->batch = 0; h->batch < h->k; h->batch += n) {
+        n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
+        for (i = 0; i < n; i++)
+            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
+        /* told here too: the calling thread may find all lanes taken */
+        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
+        hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
+        if (hdi_heat_collect(h, n) < 0) return hdi_heat_end(h);
+        for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
+    }
+    return hdi_heat_end(h);
+}
+
+/* Sets a leading dimension's default and checks it. */
+static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
+    const size_t n = HDI_CAST(size_t, h->heat->source->n);
+    if (ld && ld < n) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
+    return ld ? ld : n;
+}
+
+static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
+    if (v >= 0 && v < lap->n) return HD_OK;
+    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
+}
+
+static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, double t, hd_kernel kernel, int32_t k, hd_report *report) {
+    const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
+    if (hdi_heat_begin(h, heat, query, t, k, report) < 0) return h->e->status;
+    if (kernel == HD_KERNEL_OPERATOR || kernel == HD_KERNEL_SYMMETRIC) return HD_OK;
+    return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the kernel is operator or symmetric");
+}
+
+/* The worse of two reports, counts added. */
+static void hdi_report_merge(hd_report *all, const hd_report *one) {
+    hd_report sum = *one;
+    int32_t p;
+    sum.status = all->status > sum.status ? all->status : sum.status;
+    sum.iterations += all->iterations;
+    for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
+    sum.degree = all->degree > sum.degree ? all->degree : sum.degree;
+    sum.n_poles = all->n_poles > sum.n_poles ? all->n_poles : sum.n_poles;
+    sum.growth = hdi_max(all->growth, sum.growth);
+    sum.residual = hdi_max(all->residual, sum.residual);
+    sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
+    sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
+    sum.error_rounding = hdi_max(all->error_rounding, sum.error_rounding);
+    hdi_evidence_worst(&sum.evidence_rational, all->evidence_rational);
+    hdi_evidence_worst(&sum.evidence_solver, all->evidence_solver);
+    hdi_evidence_worst(&sum.evidence_rounding, all->evidence_rounding);
+    hdi_evidence_worst(&sum.evidence_b, all->evidence_b);
+    sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
+    sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
+    sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
+    sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
+    sum.smallest = all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest) ? all->smallest : sum.smallest;
+    sum.n_lost += all->n_lost;
+    *all = sum;
+}
+
+/* The times of a call, ascending and scaled, and the columns they belong to. h->t becomes the last. */
+static hd_status hdi_heat_sort_times(hdi_heat_call *h, int32_t n_times, const double *t) {
+    hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n_times);
+    double *sorted = HDI_TAKE(&h->s, double, n_times);
+    int32_t *column = HDI_TAKE(&h->s, int32_t, n_times), q;
+    if (h->e->status < 0) return h->e->status;
+    for (q = 0; q < n_times; q++) {              /* bits of doubles that are not negative are in their order */
+        const double v = t[q] + 0.0;
+        memcpy(&order[q].key, &v, sizeof v);
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, n_times);
+    for (q = 0; q < n_times; q++) {
+        column[q] = HDI_CAST(int32_t, order[q].id);
+        sorted[q] = hdi_heat_scaled(h->heat, t[column[q]]);
+    }
+    h->times = sorted;
+    h->n_times = n_times;
+    h->time_column = column;
+    h->t = sorted[n_times - 1];
+    return HD_OK;
+}
+
+/* The times one by one. */
+static hd_status hdi_heat_each_time(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
+                                    hd_report *rep) {
+    hd_report all, one;
+    int32_t q;
+    memset(&all, 0, sizeof all);
+    for (q = 0; q < n_times; q++) {
+        double *u = U + HDI_CAST(size_t, q) * ldu;
+        const hd_status st = f ? hd_heat_apply(heat, t[q], 1, f, 0, u, 0, &one) : hd_heat_columns(heat, t[q], kernel, 1, &source, u, 0, &one);
+        if (st < 0) {
+            *rep = one;
+            rep->error.column = q;
+            return st;
+        }
+        if (q == 0) all = one;
+        else hdi_report_merge(&all, &one);
+    }
+    *rep = all;
+    return rep->status;
+}
+
+/* ==== [26] kernel ====
+ * Owns entries of the kernel that come by selected inversion: diagonals, edges, and how rounding of them is measured.
+ * May call [25]. */
+
+/* ---- diagonals ---- */
+
+static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t) {
+    int32_t q;
+    if (n_times < 1) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: there is no time");
+    if (!t) return hdi_missing(h->e);
+    if (h->heat->opts.method == HD_METHOD_ITERATIVE || h->heat->opts.method == HD_METHOD_KRYLOV)
+        return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
+    for (q = 0; q < n_times; q++)
+        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+    return HD_OK;
+}
+
+/* What the report says of queries that have but one way. */
+static void hdi_direct_only(hdi_heat_call *h) {
+    h->method = h->rep->method = HD_METHOD_DIRECT;
+    h->diagonal = 1;
+    h->rep->reason = "selected inversion of the factors of the poles";
+    h->rep->ordering = h->heat->elim.sym.ordering;
+    h->rep->factor_nnz = h->heat->elim.sym.nnz;
+}
+
+
+/* Columns within another call: k of them at the (scaled) time t through the factors that the plan holds or makes. */
+typedef struct hdi_columns {
+    double t;
+    hd_kernel kernel;
+    const hd_rational *set;
+    int32_t k, equal, watching;
+    const int32_t *sources;
+    double *U;                   /* NULL: only the lanes' accounts are wanted */
+    size_t ldu;
+    double *off_b, *off_m;       /* [k] */
+} hdi_columns;
+
+static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_report *rep) {
+    hdi_heat_call h;
+    if (hdi_heat_begin(&h, heat, c->kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR, 1, c->k, rep) < 0) return hdi_heat_end(&h);
+    h.t = c->t;
+    h.method = HD_METHOD_DIRECT;
+    h.diagonal = 1;
+    h.sources = c->sources;
+    h.set = c->set;
+    h.U = c->U;
+    h.ldu = c->ldu;
+    h.equal = c->equal;
+    h.watching = c->watching;
+    h.off_b = c->off_b;
+    h.off_m = c->off_m;
+    if (hdi_heat_analysed(heat, 1, h.e) >= 0) {
+        h.lap = heat->elim.lap;
+        if (h.equal) (void)hdi_heat_plain(&h);
+        else (void)hdi_direct_run(&h);
+    }
+    return hdi_heat_end(&h);
+}
+
+/* ---- rounding of inversions ---- */
+/* What rounding does to entries found by inversion no theorem says well. It is measured at a few rows where it is largest: a
+ * solve with the same poles, whose own error its residual bounds, is held against the entry. */
+enum { HDI_PROBES = 3 };
+#define HDI_PROBE_SAFETY 4   /* differences seen at the probes stand for those of all rows */
+#define HDI_PROBE_OWN 100    /* and more so for functions of the caller's, whose poles may lie beside the spectrum */
+
+/* Can rounding be told from the values alone? k_t(i,i) is at least what the constants are of it, most (of row i) times value:
+ * returns the relative error that a smaller value shows. For sets that approximate exp. */
+static double hdi_below_constants(const hd_laplacian *lap, const hd_rational *set, int32_t i, double value, double times) {
+    const double least = times * (lap->conserves && set->kind != HD_POLES_OWN ? 1 / lap->component_mass[lap->component[i]] : 0);
+    return value < 0.999 * least ? hdi_quotient(least - value, fabs(value)) : 0;
+}
+
+/* A pole beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss. What rounding
+ * of its entries, (|theta| + t lambda) eps, then does to the inverse in the B norm: estimated by first-order perturbation.
+ * Poles further than 1 from the spectrum are left to the probes. */
+static double hdi_own_near(const hd_heat *heat, const hd_rational *set, double t) {
+    double sum = 0;
+    int32_t p;
+    for (p = 0; p < set->n_poles && set->kind == HD_POLES_OWN; p++) {
+        const double d = hdi_pole_distance(set->theta[p]);
+        const double size = hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
+        if (d < 1) sum += DBL_EPSILON * hdi_quotient(hdi_quotient(size, d), d);
+    }
+    return sum;
+}
+
+/* The largest entry of diag(B^-1), or a bound of it: a matrix whose B norm is x has entries of at most this times x. */
+static double hdi_largest_spread(const hd_laplacian *lap) {
+    double most = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, 1 / lap->b_diag[i]);
+    return hdi_quotient(most, lap->b_ratio);
+}
+
+typedef struct hdi_probe { int32_t k, row[HDI_PROBES]; } hdi_probe;
+
+/* Rows to look at: where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). k may be NULL. */
+static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
+    hdi_probe x;
+    double most[2] = {-1, -1};
+    int32_t i, q, at[HDI_PROBES] = {-1, -1, -1};
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        double l = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            if (lap->L.col[p] == i) l = lap->L.val[p];
+        if (l / lap->b_diag[i] > most[0]) {
+            most[0] = l / lap->b_diag[i];
+            at[0] = i;
+        }
+        if (k && l * k[i] > most[1]) {
+            most[1] = l * k[i];
+            at[1] = i;
+        }
+    }
+    at[2] = also;
+    for (x.k = 0, i = 0; i < HDI_PROBES; i++) {
+        for (q = 0; q < x.k && x.row[q] != at[i]; q++) {}
+        if (at[i] >= 0 && q == x.k) x.row[x.k++] = at[i];
+    }
+    return x;
+}
+
+/* Their columns by the poles of set at the call's time; what is found stays in the plan's lanes. */
+static hd_status hdi_probe_run(hdi_heat_call *h, hdi_probe *x, hd_kernel kernel, const hd_rational *set) {
+    hd_heat *heat = h->heat;
+    const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
+    int32_t vertex[HDI_PROBES], i;
+    hdi_columns c;
+    hd_report rep;
+    for (i = 0; i < x->k; i++) vertex[i] = heat->elim.lap->vertex[x->row[i]];
+    memset(&c, 0, sizeof c);
+    c.t = h->t;
+    c.kernel = kernel;
+    c.set = &own;
+    c.k = x->k;
+    c.sources = vertex;
+    c.watching = 1;
+    if (x->k > 0 && hdi_direct_columns(heat, &c, &rep) < 0) *h->e = rep.error;
+    else if (x->k > 0) h->rep->residual = hdi_max(h->rep->residual, rep.residual);
+    return h->e->status;
+}
+
+/* Probe q's own entry by the weights of `set`, a set in terms of a time that is tau times that of the factors, and a bound of
+ * its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
+static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q, const hd_rational *set, double tau, double f, double g, double *off) {
+    const hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = m->lap;
+    const hdi_lane *lane = heat->lane + q;
+    const double b = lap->b_diag[x->row[q]];
+    double value = set->a0 * f, by_b = 0, by_m = 0;
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++) {
+        const double count = hdi_rat_count(set, p), weight = count * hdi_cabs(set->a[p]) * hdi_ratio_root(lap) * lane->pole_off[p];
+        value -= count / tau * hdi_cmul(set->a[p], lane->pole_value[p]).re;
+        by_m += weight * hdi_pole_reach(set->theta[p]);
+        by_b += weight / hdi_pole_distance(set->theta[p]);
+    }
+    *off = hdi_min(g > 0 && hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL, by_b * hdi_ratio_root(lap) / sqrt(b)) + 4 * DBL_EPSILON * fabs(value);
+    return value;
+}
+
+/* Entries of k_t for one time, in elimination order and in the unit of the scaled pair. */
+typedef struct hdi_entries {
+    double *k, *g;               /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
+    int64_t size;
+    double weighted, uniform;    /* of the set: |error| <= weighted g, uniform diag(B^-1) */
+    double left_out;             /* besides, times diag(B^-1): a0 of a set where B is full */
+    hd_rational resolvent;       /* the poles with weights for g */
+} hdi_entries;
+
+/* Factors for h->t, and from them k and g. room [2 size]. */
+static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *room, int64_t size, hdi_entries *x) {
+    hdi_elim *m = &h->heat->elim;
+    hd_c64 weight[2 * HD_MAX_POLES];
+    double factor = 1, slack = 0;
+    int32_t p, best, i;
+    memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
+    memset(weight, 0, sizeof weight);
+    if (hdi_direct_prepare(h) < 0) return h->e->status;
+    for (p = 0; p < m->set.n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
+    best = 0;
+    if (!hdi_resolvent_weights(&m->set, weight + m->set.n_poles, &slack)) {
+        slack = 0;
+        best = hdi_resolvent_pole(&m->set, &factor);
+        for (p = 0; p < m->set.n_poles; p++) weight[m->set.n_poles + p] = hdi_c(p == best ? factor : 0, 0);
+    }
+    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2, weight, wanted, room, size, h->e) < 0) return h->e->status;
+    x->resolvent = m->set;
+    x->resolvent.kind = HD_POLES_OWN;
+    x->resolvent.a0 = x->resolvent.max_error = x->resolvent.max_weighted_error = 0;
+    for (p = 0; p < m->set.n_poles; p++) x->resolvent.a[p] = hdi_cscale(-1 / hdi_rat_count(&m->set, p), weight[m->set.n_poles + p]);
+    x->k = room;
+    x->g = room + size;
+    x->size = size;
+    x->weighted = best >= 0 ? (1 + slack) * hdi_set_weighted(&m->set) : HUGE_VAL;
+    x->uniform = hdi_set_uniform(&m->set);       /* 0: bounds hold for c itself */
+    if (x->uniform == 0) x->weighted = 0;
+    x->left_out = 0;
+    for (i = 0; i < m->sym.n && wanted != HDI_WANT_ENTRIES; i++)
+        x->g[i] = hdi_max(x->g[i], hdi_constant_part(m->lap, i) * (wanted == HDI_WANT_FORMS ? m->lap->mass[i] * m->lap->mass[i] : 1));
+    return HD_OK;
+}
+
+/* Bound of the rational error of k_t(i,i), from g(i,i) and diag(B)(i). */
+static double hdi_entry_error(const hdi_entries *x, double g, double b, double b_ratio) {
+    const double spread = b_ratio > 0 ? 1 / (b_ratio * b) : HUGE_VAL, out = x->left_out > 0 ? x->left_out * spread : 0;
+    const double uniform = x->uniform > 0 ? x->uniform * spread : 0;
+    return (hdi_finite(x->weighted) ? hdi_min(x->weighted * hdi_max(0, g), uniform) : uniform) + out;
+}
+
+/* Place of each of the analysis' entries: row and column in elimination order. */
+static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t *i, int32_t *j) {
+    const int32_t begin = s->super[v], end = s->super[v + 1];
+    *j = begin + s->a_col[n];
+    *i = s->a_row[n] < end - begin ? begin + s->a_row[n] : s->row[s->row_ptr[v] + s->a_row[n] - (end - begin)];
+}
+
+/* diag(k_t B), a0 included, for a full B: from the entries of k_t on the pattern of B. */
+static void hdi_operator_diagonal(const hdi_elim *m, const double *k, double *diag) {
+    const hdi_symbolic *s = &m->sym;
+    int32_t v, i, j;
+    int64_t n;
+    for (i = 0; i < s->n; i++) diag[i] = m->set.a0;
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
+            hdi_entry_place(s, v, n, &i, &j);
+            diag[i] += kb;
+            if (i != j) diag[j] += kb;
+        }
+    }
+}
+
+/* Bound of a diagonal's error relative to the value itself above which the highest degree takes over: on all meshes tried errors are below 1e-7 then. With
+ * B = I errors come closer to their bound. */
+static double hdi_diagonal_limit(const hd_heat *heat) {
+    const hd_laplacian_kind kind = heat->source->kind;
+    return kind == HD_LAPLACIAN_COT || kind == HD_LAPLACIAN_EXP ? 4.2e-7 : 5.3e-7;
+}
+
+/* The ledger of values found by inversion. */
+static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
+    const hd_rational *set = &h->heat->elim.set;
+    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && (set->a0 == 0 || !h->heat->source->B);
+    return hdi_ledger_begin(h->equal || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
+}
+
+/* Values by rows to vertices; their errors, off and rounding relative to size, to the report, in the caller's unit. Returns the largest off relative to its value. */
+static double hdi_diagonal_tell(hdi_heat_call *h, hd_kernel kernel, const double *value, const double *off, const double *size, double rounding, double *out) {
+    const hd_laplacian *lap = h->lap;
+    const double unit = kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
+    hdi_ledger ledger = hdi_inverse_ledger(h, 1);
+    double most = 0;
+    int32_t i, v;
+    h->relative = 1;
+    for (v = 0; v < lap->n; v++) out[v] = kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_parts part;
+        memset(&part, 0, sizeof part);
+        part.rational = unit * off[i];
+        part.rounding = 4 * DBL_EPSILON * unit * fabs(value[i]) + (rounding > 0 ? unit * rounding * fabs(size[i]) : 0);
+        out[lap->vertex[i]] = unit * value[i];
+        hdi_ledger_note(&ledger, unit * value[i], part);
+        most = hdi_max(most, hdi_quotient(off[i], fabs(value[i])));
+    }
+    hdi_ledger_close(&ledger, h->rep);
+    return most;
+}
+
+/* Where t is so large that k_t(i,i) = 1/mass of the component. */
+static void hdi_diagonal_equal(hdi_heat_call *h, hd_kernel kernel, double *value, double *off, double *out) {
+    const hd_laplacian *lap = h->lap;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        value[i] = (kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1) / lap->component_mass[lap->component[i]];
+        off[i] = 0;
+    }
+    (void)hdi_diagonal_tell(h, kernel, value, off, value, HDI_CAST(double, lap->n_active) * DBL_EPSILON, out);
+}
+
+/* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. *relative: the largest of the
+ * rational error relative to the value. */
+static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
+    hd_heat *heat = h->heat;
+    const hd_laplacian *lap;
+    const hdi_symbolic *s;
+    const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    double *room, *value, *off, *g, *own, rounding = 0;
+    const double *size_of;
+    hdi_entries x;
+    hdi_probe probe;
+    int64_t size, n;
+    int32_t i, v, worst = 0;
+    *relative = 0;
+    if (hdi_heat_analysed(heat, 1, h->e) < 0) return hdi_scope_end(&scope);
+    h->lap = lap = heat->elim.lap;
+    h->equal = hdi_heat_equal(heat, h->t, h->e);
+    s = &heat->elim.sym;
+    size = full ? s->a_ptr[s->n_super] : s->n;
+    room = HDI_TAKE(&scope, double, 2 * size);
+    value = HDI_TAKE(&scope, double, 4 * HDI_CAST(uint64_t, s->n));
+    if (h->e->status < 0) return hdi_scope_end(&scope);
+    off = value + s->n;
+    g = off + s->n;
+    own = g + s->n;
+    if (h->equal) {
+        hdi_diagonal_equal(h, kernel, value, off, out);
+        return hdi_scope_end(&scope);
+    }
+    if (hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) < 0) return hdi_scope_end(&scope);
+    if (full) {
+        hdi_operator_diagonal(&heat->elim, x.k, value);
+        for (v = 0; v < s->n_super; v++)
+            for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++)
+                if (s->a_row[n] == s->a_col[n]) g[s->super[v] + s->a_col[n]] = hdi_max(x.g[n], hdi_constant_part(lap, s->super[v] + s->a_col[n]));
+        for (i = 0; i < s->n; i++) off[i] = hdi_min(x.weighted == 0 ? 0 : hdi_finite(x.weighted) ? x.weighted * sqrt(hdi_max(0, g[i]) * lap->b_diag[i]) : HUGE_VAL,
+                                                    x.uniform * hdi_ratio_root(lap));
+    } else {
+        const double a0 = heat->elim.set.a0;
+        if (lap->B) x.left_out = fabs(a0);       /* a full B's inverse is not at hand, and a0 is of the size of the set's error */
+        for (i = 0; i < s->n; i++) {
+            const double b = kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
+            g[i] = x.g[i];
+            value[i] = b * (x.k[i] + (lap->B ? 0 : a0 / lap->mass[i]));
+            off[i] = b * hdi_entry_error(&x, x.g[i], lap->b_diag[i], lap->b_ratio);
+        }
+    }
+    /* Rounding is relative to the value; of any function of the caller's, which may vanish, to the resolvent. */
+    size_of = value;
+    if (heat->elim.set.kind == HD_POLES_OWN) {
+        for (i = 0; i < s->n; i++) {
+            const double most = lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[i]) : HUGE_VAL;
+            own[i] = (g[i] > 0 && g[i] < most ? g[i] : most) * (kernel == HD_KERNEL_OPERATOR ? lap->b_diag[i] : 1);
+        }
+        size_of = own;
+    }
+    for (i = 1; i < s->n; i++)
+        if (off[i] * value[worst] > off[worst] * value[i]) worst = i;
+    probe = hdi_probe_rows(lap, value, s->n > 0 ? worst : -1);
+    if (hdi_probe_run(h, &probe, kernel, &heat->elim.set) < 0) return hdi_scope_end(&scope);
+    for (i = 0; i < probe.k; i++) {
+        const int32_t row = probe.row[i];
+        const double f = kernel == HD_KERNEL_OPERATOR ? 1 : lap->B ? 0 : 1 / lap->mass[row];
+        double by, there = hdi_probe_value(heat, &probe, i, &heat->elim.set, 1, f, g[row], &by);
+        rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - value[row]) + by, fabs(size_of[row])));
+    }
+    for (i = 0; i < s->n; i++) rounding = hdi_max(rounding, hdi_below_constants(lap, &heat->elim.set, i, value[i], kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1));
+    if (size_of == own) {
+        const double near = hdi_own_near(heat, &heat->elim.set, h->t);
+        double most = 0;
+        for (i = 0; i < s->n && near > 0; i++) {
+            const double b = lap->b_diag[i], spread = (kernel == HD_KERNEL_OPERATOR ? 1 : 1 / b) / lap->b_ratio;
+            most = hdi_max(most, hdi_quotient(spread, own[i]));
+        }
+        rounding = HDI_PROBE_OWN * rounding + near * most;
+    }
+    *relative = hdi_diagonal_tell(h, kernel, value, off, size_of, rounding, out);
+    return hdi_scope_end(&scope);
+}
+
+/* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other is the same. */
+static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_csr *a = &m->source->L;
+    int32_t v, i, j;
+    int64_t n;
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            const int64_t p = s->a_from[n];
+            int64_t other;
+            hdi_entry_place(s, v, n, &i, &j);
+            val[p] = unit * k[n];
+            if (i == j) continue;
+            i = s->perm[i];                      /* a_from is entry (j,i): rows of A are walked from column j */
+            j = s->perm[j];
+            other = a->row_ptr[i] + hdi_lower_bound(a->col + a->row_ptr[i], a->row_ptr[i + 1] - a->row_ptr[i], j);
+            val[other] = unit * k[n];
+        }
+    }
+}
+
+/* Adds a0 B^-1 where B is diagonal, and notes the rational error: that of an entry (i,j) is at most the larger of those of (i,i)
+ * and (j,j). k and g [n]: their diagonals. */
+static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double *g, hdi_ledger *ledger) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_laplacian *lap = m->lap;
+    hdi_parts part;
+    int32_t v, i;
+    int64_t n;
+    memset(&part, 0, sizeof part);
+    if (lap->B) x->left_out = fabs(m->set.a0);
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            if (s->a_row[n] != s->a_col[n]) continue;
+            i = s->super[v] + s->a_col[n];
+            if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
+            k[i] = x->k[n];
+            g[i] = x->g[n];
+            part.rational = m->scale * hdi_entry_error(x, g[i], lap->b_diag[i], lap->b_ratio);
+            part.rounding = 4 * DBL_EPSILON * m->scale * fabs(k[i]);
+            hdi_ledger_note(ledger, m->scale * k[i], part);
+        }
+    }
+}
+
+/* Rounding of a row: the probe's own entry, and what its column differs by from the entries of the row. */
+static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe, int32_t q, const double *k, const double *g, const double *values) {
+    const hd_laplacian *lap = heat->source, *in = heat->elim.lap;
+    const int32_t at = probe->row[q], row = lap->row[in->vertex[at]];
+    double by, there = hdi_probe_value(heat, probe, q, &heat->elim.set, 1, lap->B ? 0 : 1 / in->mass[at], g[at], &by), most;
+    hdi_parts part;
+    int64_t p;
+    most = heat->scale * (HDI_PROBE_SAFETY * fabs(there - k[at]) + by);
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && heat->elim.set.a0 == 0; p++) {
+        const int32_t j = in->row[lap->vertex[lap->L.col[p]]];
+        const double off = hdi_max(1, g[at] > 0 ? sqrt(hdi_max(0, g[j]) / g[at]) : 1) * by;
+        most = hdi_max(most, fabs(heat->scale * heat->lane[q].u[j] - values[p]) + heat->scale * off);
+    }
+    memset(&part, 0, sizeof part);
+    part.rounding = heat->elim.set.kind == HD_POLES_OWN ? HDI_PROBE_OWN * most : most;
+    part.rounding += 4 * DBL_EPSILON * heat->scale * fabs(k[at]);
+    return part;
+}
+
+/* Where t is so large that k_t is 1/mass of the component. */
+static void hdi_edges_equal(hdi_heat_call *h, double *values) {
+    const hd_laplacian *lap = h->heat->source;
+    hdi_ledger ledger = hdi_inverse_ledger(h, 0);
+    hdi_parts part;
+    int32_t i;
+    int64_t p;
+    memset(&part, 0, sizeof part);
+    for (i = 0; i < lap->n_active; i++) {
+        const double k = 1 / lap->component_mass[lap->component[i]];
+        part.rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON * k;
+        hdi_ledger_note(&ledger, k, part);
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) values[p] = k;
+    }
+    hdi_ledger_close(&ledger, h->rep);
+}
+
+/* With the set's degree, into values. */
+static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *rational) {
+    hd_heat *heat = h->heat;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    const hdi_symbolic *s = &heat->elim.sym;
+    const int64_t size = s->a_ptr[s->n_super];
+    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, size)), *k = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, s->n));
+    hdi_entries x;
+    int32_t i;
+    *rational = 0;
+    h->lap = heat->elim.lap;
+    h->equal = h->e->status >= 0 && hdi_heat_equal(heat, h->t, h->e);
+    if (h->equal) hdi_edges_equal(h, values);
+    else if (h->e->status >= 0 && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
+        hdi_ledger ledger = hdi_inverse_ledger(h, 0);
+        hdi_probe probe;
+        int32_t top = 0;
+        hdi_edges_judge(&heat->elim, &x, k, k + s->n, &ledger);
+        *rational = hdi_quotient(ledger.off.rational, ledger.largest);
+        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
+        for (i = 1; i < s->n; i++)
+            if (k[i] > k[top]) top = i;
+        probe = hdi_probe_rows(h->lap, k, s->n > 0 ? top : -1);
+        if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, &heat->elim.set) >= 0)
+            for (i = 0; i < probe.k; i++) {
+                hdi_parts part = hdi_edges_rounding(heat, &probe, i, k, k + s->n, values);
+                part.rounding += heat->scale * hdi_own_near(heat, &heat->elim.set, h->t) * hdi_largest_spread(h->lap);
+                hdi_ledger_note(&ledger, heat->scale * k[probe.row[i]], part);
+            }
+        hdi_ledger_close(&ledger, h->rep);
+    }
+    return hdi_scope_end(&scope);
+}
+
+/* The diagonal of the kernel on vertices, or with `edges` k_t on the pattern of L, with the set's degree by default. Where the bound shows vertices (of tiny cells
+ * among large ones, slivers) whose error relative to their own value may be above the promise, of edges that relative to the largest value, a second time with the
+ * highest degree. The error seen is a fifth of the bound or so on all meshes tried: 1e-7. */
+static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges, double *out) {
+    const hd_report before = *h->rep;
+    const hd_heat *heat = h->heat;
+    const double loose = kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1;   /* the bound, of the operator's diagonal */
+    double rational;
+    hd_status st;
+    if ((edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational)) < 0) return h->e->status;
+    if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
+    if (rational <= loose * hdi_diagonal_limit(heat)) return HD_OK;
+    *h->rep = before;
+    h->degree = HDI_RAT_KERNEL_MAX;
+    st = edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational);
+    h->degree = 0;
+    if (st != HD_ERR_MEMORY_LIMIT) return st;
+    *h->rep = before;                            /* no room for twice the factors: the first answer it is */
+    return edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational);
+}
+
+/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
+#define HDI_SHARED_TOL 2.5e-8
+#define HDI_SHARED_DISTANCE_TOL 2e-10
+
+/* ---- diagonals at many times ---- */
+
+/* After packs that did not fit the byte limit: those that are there go, and the call begins anew. */
+static void hdi_heat_forget(hdi_heat_call *h) {
+    hdi_elim *m = &h->heat->elim;
+    hd_report *rep = h->rep;
+    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
+    m->filled = 0;
+    hdi_error_clear(h->e);
+    memset(rep, 0, sizeof *rep);
+    hdi_direct_only(h);
+    h->set = NULL;
+}
+
+/* Packs that a shared set for a ratio of times takes; 0: there is none. */
+static int32_t hdi_shared_packs(double ratio, double tol) {
+    hd_rational set;
+    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
+}
+
+/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how many packs those are. */
+static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
+    int32_t w, best = 0;
+    for (w = 1; w <= most && w <= 64; w++) {
+        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
+        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
+        best = w;
+        *packs = w * each;
+    }
+    return best;
+}
+
+/* Weights of k and of a bound of g for every time in turn, for poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
+static void hdi_shared_weights(const hd_rational *set, int32_t n_times, const double *t, hd_c64 *weight) {
+    int32_t q, p;
+    for (q = 0; q < n_times; q++) {
+        double factor = 1, tau = t[q] / t[0];
+        const int32_t best = hdi_resolvent_pole(set + q, &factor);
+        hd_c64 *k = weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
+        for (p = 0; p < set->n_poles; p++) {
+            k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
+            g[p] = hdi_c(p == best ? factor / tau : 0, 0);
+        }
+    }
+}
+
+/* k_t(v,v) for the (scaled) times t[0..n_times), ascending, by one set of poles, into the columns that `column` names. */
+static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const double *t, const int32_t *column, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    hdi_elim *m = &heat->elim;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), sets = 2 * HDI_CAST(uint64_t, n_times);
+    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
+    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
+    double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
+    int32_t q, i, r, worst = -1;
+    double most = 0;
+    hdi_probe probe;
+    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
+    h->t = t[0];
+    h->set = set;
+    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
+    hdi_shared_weights(set, n_times, t, weight);
+    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, HDI_WANT_DIAGONAL, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
+    h->set = NULL;
+    h->lap = m->lap;
+    for (i = 0; i < m->sym.n; i++) {             /* of the last time: there rounding is largest */
+        const double *k = room + 2 * HDI_CAST(size_t, n_times - 1) * n, *g = k + n;
+        if (worst < 0 || g[i] * most > k[i]) {
+            worst = i;
+            most = hdi_quotient(k[i], g[i]);
+        }
+    }
+    probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * n, worst);
+    if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set) < 0) return hdi_scope_end(&s);
+    for (q = 0; q < n_times; q++) {
+        const double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
+        double rounding = 0;
+        for (r = 0; r < probe.k; r++) {
+            const int32_t row = probe.row[r];
+            double by, there = hdi_probe_value(heat, &probe, r, set + q, t[q] / t[0], 0, g[row], &by);
+            rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - k[row]) + by, fabs(k[row])));
+        }
+        for (i = 0; i < m->sym.n; i++) rounding = hdi_max(rounding, hdi_below_constants(m->lap, set + q, i, k[i], 1));
+        for (i = 0; i < m->sym.n; i++) off[i] = hdi_min(set[q].max_weighted_error * hdi_max(0, g[i]), set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
+        (void)hdi_diagonal_tell(h, HD_KERNEL_SYMMETRIC, k, off, k, rounding, D + HDI_CAST(size_t, column[q]) * ldd);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* All times, in windows that share their poles. */
+static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
+    const double span = h->times[h->n_times - 1] / h->times[0];
+    int32_t w, q0, q1;
+    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+        const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
+        for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
+        if (hdi_diagonal_window(h, q1 - q0, h->times + q0, h->time_column + q0, D, ldd) < 0) break;
+    }
+    return h->e->status;
+}
+
+/* ==== [27] diffusion ====
+ * Owns distances: the metric of a kind and a time, one to all, pairs. May call [26]. */
+
+/* ---- distances ---- */
+
+/* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source, and bounds of
+ * their errors: the rational one of f is at most weighted times a form with diagonal g, and at most uniform times one with
+ * diagonal spread; that of a column by rounding at most sqrt(g_v) times a number that is known of each column. */
+typedef struct hdi_metric {
+    hd_distance_kind kind;
+    double t;                    /* of columns, scaled */
+    double unit;                 /* of f to the plan's numbers */
+    hd_rational set;             /* of the factors */
+    int filter, equal;           /* no time; t is as good as infinite */
+    double *diag, *g, *spread;
+    hd_rational resolvent;       /* weights for g */
+    double weighted, uniform;    /* HUGE_VAL: it bounds nothing */
+    double left_out;             /* times the form of spread, besides: a0 B^-1 of a full B */
+    double rounding;             /* of diag, relative to it, or with own to g: of any function of the caller's, which may vanish */
+    int own;
+} hdi_metric;
+
+/* A column of f by vertices, and what rounding can put it off by: sqrt(g_v) times off_m, and sqrt(spread_v) times off_b. */
+typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
+
+/* What rounding of a function of the caller's is relative to: the resolvent, or where that bounds nothing the mass. */
+static double hdi_own_size(double g, double spread) { return g > 0 && hdi_finite(g) ? g : spread; }
+
+/* Commute and biharmonic, from L grounded. */
+static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scope, hd_error *e) {
+    const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
+    hdi_elim *m = &heat->elim;
+    hdi_ground *g = &heat->ground;
+    double *work, *u;
+    hdi_probe probe;
+    int32_t i, farthest = 0;
+    if (hdi_ground_make(m, g, e) < 0 || (forms && hdi_ground_forms(m, g, e) < 0)) return e->status;
+    work = HDI_TAKE(scope, double, hdi_ground_room(m));
+    u = HDI_TAKE(scope, double, m->sym.n);
+    if (!work || !u) return scope->e->status;
+    x->unit = forms ? 1 / heat->scale : 1;
+    for (i = 0; i < m->sym.n; i++) {
+        const int32_t r = m->sym.perm[i];
+        x->diag[r] = x->unit * (forms ? g->form[i] : g->diag[i]);
+        x->g[r] = hdi_max(0, g->diag[i]);
+        x->spread[r] = HUGE_VAL;
+    }
+    for (i = 1; i < m->sym.n; i++)
+        if (g->diag[i] > g->diag[farthest]) farthest = i;
+    probe = hdi_probe_rows(m->lap, g->diag, m->sym.n > 0 ? farthest : -1);
+    for (i = 0; i < probe.k; i++) {
+        const double there = forms ? g->form[probe.row[i]] : g->diag[probe.row[i]];
+        const double off = hdi_ground_column(m, g, probe.row[i], forms, u, work);
+        x->rounding = hdi_max(x->rounding, hdi_quotient(4 * HDI_PROBE_SAFETY * fabs(u[probe.row[i]] - there) + off * sqrt(hdi_max(0, g->diag[probe.row[i]])), there));
+    }
+    return HD_OK;
+}
+
+/* Where t is so large that kernels are the means of the components. */
+static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
+    int32_t r;
+    for (r = 0; r < lap->n_active; r++) {
+        const double b = lap->mass[r], k = 1 / lap->component_mass[lap->component[r]];
+        x->diag[r] = x->kind == HD_DISTANCE_WEIGHTED ? b * (b * k) : k;
+        x->g[r] = x->spread[r] = 0;
+    }
+    x->rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON;
+}
+
+/* The diagonal by inversion of the factors of the poles, at h->t. */
+static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *scope) {
+    hd_heat *heat = h->heat;
+    hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = heat->source;
+    const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
+    double *room = HDI_TAKE(scope, double, 2 * HDI_CAST(uint64_t, m->sym.n));
+    hdi_entries entries;
+    hdi_probe probe;
+    int32_t i;
+    if (!room || hdi_entries_make(h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) < 0) return h->e->status;
+    if (lap->B && !full) x->left_out = fabs(m->set.a0);
+    for (i = 0; i < m->sym.n; i++) {
+        const int32_t r = m->sym.perm[i];
+        const double b = lap->b_diag[r], w = full ? 1 / heat->scale : weighted ? b * m->lap->mass[i] : heat->scale;   /* no square of b */
+        x->diag[r] = w * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i])) + (full ? m->set.a0 * b : 0);
+        x->g[r] = w * entries.g[i];
+        x->spread[r] = weighted ? b : lap->b_ratio > 0 ? 1 / (lap->b_ratio * b) : HUGE_VAL;
+    }
+    x->own = m->set.kind == HD_POLES_OWN;
+    x->set = m->set;
+    x->resolvent = entries.resolvent;
+    x->weighted = entries.weighted;
+    x->uniform = entries.uniform;
+    probe = hdi_probe_rows(m->lap, entries.k, -1);
+    if (hdi_probe_run(h, &probe, full ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x->set) < 0) return h->e->status;
+    for (i = 0; i < probe.k; i++) {
+        const int32_t row = probe.row[i];
+        double by, there, value = entries.k[row];
+        if (full) {                              /* f is (B K)(v,v): the column is K e_v */
+            hdi_pair_apply(m->lap, 0, 1, heat->lane[i].u, heat->lane[i].tmp);
+            there = heat->lane[i].tmp[row];
+            (void)hdi_probe_value(heat, &probe, i, &x->set, 1, 1, HUGE_VAL, &by);
+            by *= sqrt(m->lap->b_diag[row]) / (hdi_ratio_root(m->lap) / sqrt(m->lap->b_diag[row]));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
+            value = (x->diag[m->sym.perm[row]]) * heat->scale;
+            by += HDI_PROBE_SAFETY * fabs(there - value);
+        } else {
+            there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
+            by += HDI_PROBE_SAFETY * fabs(there - value);
+        }
+        if (x->own) value = hdi_own_size(entries.g[row], m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[row]) : HUGE_VAL);
+        x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(value)));
+    }
+    if (x->own) {
+        const double near = hdi_own_near(heat, &x->set, h->t);
+        double most = 0;
+        for (i = 0; i < m->sym.n && near > 0; i++) {
+            const double spread = hdi_quotient(1 / m->lap->b_diag[i], m->lap->b_ratio);
+            most = hdi_max(most, hdi_quotient(spread, hdi_own_size(entries.g[i], spread)));
+        }
+        x->rounding = HDI_PROBE_OWN * x->rounding + near * most;
+    }
+    for (i = 0; i < m->sym.n && x->set.a0 == 0; i++)
+        x->rounding = hdi_max(x->rounding, hdi_below_constants(m->lap, &x->set, i, entries.k[i], full ? m->lap->mass[i] * m->lap->mass[i] : 1));
+    return HD_OK;
+}
+
+static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, hdi_metric *x, hdi_scope *keep, hd_report *rep) {
+    const hd_laplacian *lap = heat->source;
+    const size_t n = HDI_CAST(size_t, lap->n_active);
+    hd_error *e = keep->e;
+    hdi_scope scope;
+    hdi_heat_call h;
+    memset(x, 0, sizeof *x);
+    x->kind = kind;
+    x->filter = kind >= HD_DISTANCE_COMMUTE;
+    x->diag = HDI_TAKE(keep, double, 3 * n + 1);
+    if (!x->diag) return e->status;
+    x->g = x->diag + n;
+    x->spread = x->g + n;
+    scope = hdi_scope_begin(heat->ctx, e);
+    x->t = hdi_min(2 * hdi_heat_scaled(heat, t), 1e300);
+    x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, 1, 1, rep) < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) {
+        *e = *h.e;
+        return hdi_heat_end(&h);
+    }
+    hdi_direct_only(&h);
+    h.t = x->t;
+    h.degree = degree;
+    h.lap = heat->elim.lap;
+    h.relative = 1;
+    if (x->filter) {
+        rep->reason = "one real factor of L, one vertex of each component held";
+        (void)hdi_metric_ground(heat, x, &scope, h.e);
+        rep->factor_flops = heat->elim.sym.flops;
+    } else {
+        x->equal = hdi_heat_equal(heat, x->t, h.e);
+        if (x->equal) hdi_metric_equal(lap, x);
+        else if (h.e->status >= 0) (void)hdi_metric_invert(&h, x, &scope);
+    }
+    if (h.e->status < 0 && e->status >= 0) *e = *h.e;
+    hdi_heat_end(&h);
+    return hdi_scope_end(&scope);
+}
+
+/* Column s of f into u [n], by vertices, from what the plan gives: of k_t, or of K_t e_s. work [2 n_active]. */
+static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
+    int32_t i;
+    if (x->kind != HD_DISTANCE_WEIGHTED) {
+        for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : u[i];
+        return;
+    }
+    hdi_gather(lap, u, work);
+    hdi_pair_apply(lap, 0, 1, work, work + lap->n_active);
+    for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : work[lap->n_active + lap->row[i]];
+}
+
+/* Columns of f for k sources, step apart; c [k]. rep: residual. */
+static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, int32_t k, const int32_t *sources, double *D, size_t step, hdi_metric_column *c, hd_report *rep, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    const hd_laplacian *lap = heat->source;
+    const size_t n = HDI_CAST(size_t, lap->n_active);
+    const double unit = x->kind == HD_DISTANCE_WEIGHTED ? 1 / sqrt(heat->scale) : sqrt(heat->scale);
+    double *work, *off, *u;
+    hdi_columns query;
+    hd_report columns;
+    int32_t r, i;
+    for (r = 0; r < k; r++) c[r].u = D + HDI_CAST(size_t, r) * step;
+    if (x->filter) {
+        work = HDI_TAKE(&s, double, hdi_ground_room(&heat->elim));
+        u = HDI_TAKE(&s, double, n);
+        for (r = 0; r < k && e->status >= 0; r++) {
+            const int32_t row = heat->elim.lap->row[sources[r]];
+            if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, e) < 0) break;
+            c[r].off_m = 0;
+            c[r].off_b = HUGE_VAL;
+            memset(c[r].u, 0, HDI_CAST(size_t, lap->n) * sizeof(double));
+            if (row < 0) continue;
+            c[r].off_m = x->unit * hdi_ground_column(&heat->elim, &heat->ground, row, x->kind == HD_DISTANCE_BIHARMONIC, u, work);
+            for (i = 0; i < heat->elim.sym.n; i++) c[r].u[heat->elim.lap->vertex[i]] = x->unit * u[i];
+        }
+        return hdi_scope_end(&s);
+    }
+    off = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, k) + 1);
+    work = HDI_TAKE(&s, double, 2 * n + 1);
+    if (e->status < 0) return hdi_scope_end(&s);
+    memset(&query, 0, sizeof query);
+    query.t = x->t;
+    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    query.set = &x->set;
+    query.k = k;
+    query.equal = x->equal;
+    query.sources = sources;
+    query.U = D;
+    query.ldu = step;
+    query.off_b = off;
+    query.off_m = off + k;
+    if (hdi_direct_columns(heat, &query, &columns) < 0) *e = columns.error;
+    else rep->residual = hdi_max(rep->residual, columns.residual);
+    for (r = 0; r < k && e->status >= 0; r++) {
+        hdi_metric_of_column(lap, x, c[r].u, work);
+        c[r].off_m = unit * off[k + r];
+        c[r].off_b = unit * off[r] * (x->kind == HD_DISTANCE_WEIGHTED ? sqrt(heat->scale) : 1);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Bound of the rational error of d^2 between s and v: of the form of g, whose column g_sv is known or not, and of that of
+ * spread; either bounds it alone. */
+static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss, double sv) {
+    const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, gv)), wide = sqrt(ss) + sqrt(sv);
+    double form = root * root, bound = HUGE_VAL;
+    if (x->filter || x->equal) return 0;
+    if (x->uniform == 0) return x->left_out > 0 ? x->left_out * wide * wide : 0;
+    if (gsv) form = hdi_min(form, hdi_max(0, gs + gv - 2 * *gsv) + (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
+    if (hdi_finite(x->weighted)) bound = x->weighted * form;
+    bound = hdi_min(bound, x->uniform * wide * wide);
+    return x->left_out > 0 ? bound + x->left_out * wide * wide : bound;
+}
+
+/* d from column s of f, in place. g: the same column of the resolvent, whose own d^2 bounds the rational error; NULL: from the
+ * diagonals, which is less sharp near s. Between components the last two kinds are infinite. */
+static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s, const hdi_metric_column *c, const double *g, hd_report *rep, hdi_ledger *ledger) {
+    const int32_t rs = lap->row[s];
+    const double fs = rs < 0 ? 0 : x->diag[rs], gs = rs < 0 ? 0 : x->g[rs], ss = rs < 0 ? 0 : x->spread[rs];
+    double *u = c->u;
+    int32_t v;
+    for (v = 0; v < lap->n; v++) {
+        const int32_t r = lap->row[v];
+        const double f = r < 0 ? 0 : x->diag[r], gv = r < 0 ? 0 : x->g[r], sv = r < 0 ? 0 : x->spread[r], d2 = fs - 2 * u[v] + f;
+        double rational, rounding = 0, delta, error, d;
+        hdi_parts part;
+        if (v == s) {
+            u[v] = 0;
+            continue;
+        }
+        if (x->filter && (r < 0 || rs < 0 || lap->component[r] != lap->component[rs])) {
+            u[v] = HUGE_VAL;
+            continue;
+        }
+        rational = hdi_metric_rational(x, gs, gv, g ? g + v : NULL, ss, sv);
+        if (r >= 0 && rs >= 0) {
+            const double by_m = hdi_bound_times(hdi_finite(gv) ? sqrt(hdi_max(0, gv)) : HUGE_VAL, c->off_m);
+            rounding = 2 * hdi_min(by_m, hdi_bound_times(hdi_finite(sv) ? sqrt(sv) : HUGE_VAL, c->off_b));
+        }
+        if (x->rounding > 0) rounding += x->rounding * (x->own ? hdi_own_size(gs, ss) + hdi_own_size(gv, sv) : fabs(fs) + fabs(f));
+        rounding += 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
+        delta = rational + rounding;
+        d = d2 > 0 ? sqrt(d2) : 0;
+        u[v] = d;
+        error = d2 > delta ? delta / d : sqrt(2 * delta);
+        rep->n_lost += delta > 0 && d2 < 10 * delta;
+        memset(&part, 0, sizeof part);
+        if (delta > 0) {
+            part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
+            part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
+        }
+        hdi_ledger_note(ledger, d, part);
+    }
+}
+
+static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
+    const int none = x->filter || x->equal || (x->uniform == 0 && x->left_out == 0);
+    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, 1);
+}
+
+static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, hd_error *e) {
+    int32_t q;
+    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC) return hdi_fail(e, HD_ERR_ARGUMENT, "distance: unknown kind");
+    if (heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
+    if (kind >= HD_DISTANCE_COMMUTE)
+        return n_times > 1 || n_times < 0 ? hdi_fail_row(e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times) : HD_OK;
+    if (n_times < 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: there is no time");
+    if (!t) return hdi_missing(e);
+    for (q = 0; q < n_times; q++)
+        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+    return HD_OK;
+}
+
+/* Bound of the error relative to the largest distance that sends the default to the highest degree, and what the bound of degree 9 is to be expected at, as
+ * seen on meshes of 1K to 50K vertices: so much times sqrt(t)/h. */
+#define HDI_DISTANCE_SURE 2.5e-6
+#define HDI_DISTANCE_EXPECTED 4.4e-7
+
+/* Are the poles beyond our choice, or the highest degree as it is? */
+static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
+    return kind >= HD_DISTANCE_COMMUTE || heat->poles_asked || heat->exacting;
+}
+
+/* The same columns of the resolvent's bound g, in f's units. */
+static hd_status hdi_metric_resolvent(hd_heat *heat, const hdi_metric *x, int32_t source, double *g, double *work, hd_error *e) {
+    hdi_columns query;
+    hd_report rep;
+    memset(&query, 0, sizeof query);
+    query.t = x->t;
+    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    query.set = &x->resolvent;
+    query.k = 1;
+    query.sources = &source;
+    query.U = g;
+    query.ldu = HDI_CAST(size_t, heat->source->n);
+    if (hdi_direct_columns(heat, &query, &rep) < 0) *e = rep.error;
+    else hdi_metric_of_column(heat->source, x, g, work);
+    return e->status;
+}
+
+/* One time, all sources: columns step apart. degree 0: by default. */
+static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, int32_t k, const int32_t *sources, double *D, size_t step,
+                                   hd_report *rep, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    const size_t n = HDI_CAST(size_t, heat->source->n);
+    double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
+    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, HDI_CAST(uint64_t, k) + 1);
+    hdi_metric x;
+    int32_t r;
+    memset(rep, 0, sizeof *rep);
+    if (e->status < 0 || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
+    rep->error_relative = 0;
+    (void)hdi_metric_columns(heat, &x, k, sources, D, step, column, rep, e);
+    if (e->status >= 0 && !x.filter && !x.equal && x.weighted > 0 && hdi_finite(x.weighted)) g = HDI_TAKE(&s, double, n);
+    for (r = 0; r < k && e->status >= 0; r++) {
+        hdi_ledger ledger = hdi_metric_ledger(&x);
+        if (g && hdi_metric_resolvent(heat, &x, sources[r], g, work, e) < 0) break;
+        hdi_metric_distance(heat->source, &x, sources[r], column + r, g, rep, &ledger);
+        hdi_ledger_close(&ledger, rep);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* out [n_sets][n] += the weighted sums of column `row` of the inverses, or with mass of the inverses times the (full, scaled) B, rows in elimination order: pairs only.
+ * x [8 n], work as a sweep's, active [n_super], spare [3 n]. pole_off: the poles' residuals as seen, in the norm of D^-1. */
+static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active,
+                              double *spare, double *pole_off) {
+    const int32_t n = m->sym.n, n_poles = m->set.n_poles;
+    hdi_check check, *list = &check;
+    const int64_t begin = m->lap->L.row_ptr[row], end = m->lap->L.row_ptr[row + 1];
+    int64_t p;
+    int32_t i, k, q, j;
+    memset(active, 0, HDI_CAST(size_t, m->sym.n_super));
+    hdi_sweep_touch(&m->sym, row, active);
+    for (p = begin; p < end && mass; p++) hdi_sweep_touch(&m->sym, m->lap->L.col[p], active);
+    for (i = 0; 4 * i < n_poles; i++) {
+        hdi_sweep z;
+        memset(x, 0, HDI_CAST(size_t, n) * HDI_PACK * sizeof *x);
+        for (q = 0; q < 4 && !mass; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
+        for (p = begin; p < end && mass; p++)
+            for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, m->lap->L.col[p]) + q] = m->lap->B[p];
+        z = hdi_sweep_open(m->pack + i, 1, x, work, 1);
+        z.active = active;
+        hdi_sweep_run(&z, m->ctx);
+        memset(&check, 0, sizeof check);
+        memset(spare, 0, 3 * HDI_CAST(size_t, n) * sizeof *spare);
+        if (!mass) spare[row] = 1;
+        for (p = begin; p < end && mass; p++) spare[m->lap->L.col[p]] = m->lap->B[p];
+        check.lap = m->lap;
+        check.t = m->t;
+        check.weight = m->weight;
+        check.noise = m->noise;
+        check.rhs = spare;
+        check.x = x;
+        check.stride = HDI_PACK;
+        check.u = spare + n;
+        check.bu = check.u + n;
+        for (q = 0; q < 4; q++) {
+            check.theta[q] = m->set.theta[hdi_elim_pole(m, i, q)].re;
+            check.theta[q + 4] = m->set.theta[hdi_elim_pole(m, i, q)].im;
+        }
+        hdi_check_c(&list, 1);
+        for (q = 0; q < 4 && 4 * i + q < n_poles; q++) pole_off[4 * i + q] = hdi_residual_seen(sqrt(check.norm2[q]), sqrt(check.size2[q]));
+        for (k = 0; k < n_sets; k++) {
+            const hd_c64 *w = weight + HDI_CAST(int64_t, k) * n_poles + 4 * i;
+            double *HDI_RESTRICT to = out + HDI_CAST(int64_t, k) * n, c[HDI_PACK];
+            for (q = 0; q < 4; q++) {
+                c[q] = 4 * i + q < n_poles ? w[q].re : 0;
+                c[q + 4] = 4 * i + q < n_poles ? -w[q].im : 0;
+            }
+            for (j = 0; j < n; j++)
+                for (q = 0; q < HDI_PACK; q++) to[j] += c[q] * x[HDI_PACK * HDI_CAST(int64_t, j) + q];
+        }
+    }
+}
+
+/* Distances of the first two kinds at the (scaled, ascending) times h->times[q0..q1) of the kernel by one set of poles. */
+static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, int32_t q0, int32_t q1, int32_t k, const int32_t *sources, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = heat->source;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    const int32_t n_times = q1 - q0, n = m->sym.n;
+    const int weighted = kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
+    const uint64_t size = 2 * HDI_CAST(uint64_t, n_times) * HDI_CAST(uint64_t, n);
+    const double *t = h->times + q0, unit = weighted ? 1 / heat->scale : heat->scale;
+    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
+    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(uint64_t, n_times) * HD_MAX_POLES);
+    double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n));
+    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n), *spare = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n));
+    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, n)) : NULL, *rounding = HDI_TAKE_ZERO(&s, double, n_times);
+    char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
+    double pole_off[HD_MAX_POLES];
+    hdi_metric metric;
+    hdi_probe probe;
+    int32_t q, r, i, p;
+    memset(&metric, 0, sizeof metric);
+    metric.kind = kind;
+    metric.diag = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n) + 1);
+    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_DISTANCE_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
+    metric.g = metric.diag + n;
+    metric.spread = metric.g + n;
+    h->t = t[0];
+    h->set = set;
+    h->lap = m->lap;
+    h->relative = 1;
+    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
+    hdi_shared_weights(set, n_times, t, weight);
+    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, n, h->e) < 0)
+        return hdi_scope_end(&s);
+    probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * HDI_CAST(size_t, n), -1);
+    for (i = 0; i < probe.k; i++) {              /* columns of the forms' rows, as those of sources are found */
+        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
+        hdi_shared_column(m, probe.row[i], full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
+        for (q = 0; q < n_times; q++) {
+            const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
+            const int32_t row = probe.row[i];
+            double there = c[row], off = 0;
+            if (full) {
+                hdi_pair_apply(m->lap, 0, 1, c, product);
+                there = product[row];
+            }
+            for (p = 0; p < set[q].n_poles; p++) off += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
+            off *= sqrt(hdi_max(0, f[n + row]));
+            rounding[q] = hdi_max(rounding[q], hdi_quotient(HDI_PROBE_SAFETY * fabs(there - f[row]) + off, fabs(f[row])));
+        }
+    }
+    for (q = 0; q < n_times; q++)
+        for (i = 0; i < n; i++)
+            rounding[q] = hdi_max(rounding[q], hdi_below_constants(m->lap, set + q, i, room[2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n) + HDI_CAST(size_t, i)],
+                                                                   full ? m->lap->mass[i] * m->lap->mass[i] : 1));
+    for (r = 0; r < k; r++) {
+        const int32_t row = m->lap->row[sources[r]];
+        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
+        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
+        memset(pole_off, 0, sizeof pole_off);
+        if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
+        for (q = 0; q < n_times; q++) {
+            const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
+            double *u = D + (HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) + HDI_CAST(size_t, h->time_column[q0 + q])) * ldd;
+            const double bs = weighted && !full && row >= 0 ? m->lap->mass[row] : 1;
+            hdi_metric_column of;
+            hdi_ledger ledger;
+            memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
+            memset(g, 0, HDI_CAST(size_t, lap->n) * sizeof *g);
+            if (full) {                          /* B of what is B times the inverses */
+                hdi_pair_apply(m->lap, 0, 1, c, product);
+                hdi_pair_apply(m->lap, 0, 1, c + n, product + n);
+                c = product;
+            }
+            for (i = 0; i < n; i++) {
+                const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
+                const double b = weighted && !full ? m->lap->mass[i] : 1, unit_f = unit * b * b;
+                metric.diag[at] = unit_f * f[i];
+                metric.g[at] = unit_f * f[n + i];
+                metric.spread[at] = weighted ? lap->b_diag[at] : lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[at]) : HUGE_VAL;
+                u[v] = unit * b * bs * c[i];
+                g[v] = unit * b * bs * c[n + i];
+            }
+            metric.weighted = set[q].max_weighted_error;
+            metric.uniform = set[q].max_error;
+            metric.rounding = rounding[q];
+            of.u = u;
+            of.off_m = 0;
+            of.off_b = HUGE_VAL;
+            for (p = 0; p < set[q].n_poles; p++) of.off_m += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
+            of.off_m *= sqrt(unit) * bs;
+            ledger = hdi_metric_ledger(&metric);
+            hdi_metric_distance(lap, &metric, sources[r], &of, g, h->rep, &ledger);
+            hdi_ledger_close(&ledger, h->rep);
+        }
+    }
+    if (n > 0 && k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
+        probe.k = 1;
+        probe.row[0] = m->lap->row[sources[0]] >= 0 ? m->lap->row[sources[0]] : 0;
+        (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* All times through shared poles, when that is cheaper than one by one. 0: it is not, or not possible. */
+static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    int32_t packs = 0, windows, w, q0, q1;
+    double span, *twice;
+    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || heat->poles_asked || heat->exacting) return 0;
+    twice = HDI_TAKE(&h->s, double, n_times);
+    for (q0 = 0; twice && q0 < n_times; q0++) twice[q0] = 2 * t[q0];
+    if (!twice || hdi_heat_sort_times(h, n_times, twice) < 0 || hdi_heat_analysed(heat, 1, h->e) < 0) return 0;
+    span = h->times[n_times - 1] / h->times[0];
+    windows = hdi_shared_windows(span, HDI_SHARED_DISTANCE_TOL, n_times, &packs);
+    if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return 0;
+    hdi_direct_only(h);
+    for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
+        const double end = h->times[0] * pow(span, (w + 1.0) / windows);
+        for (q1 = q0 + 1; q1 < n_times && (w + 1 >= windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
+        if (hdi_distance_window(h, kind, q0, q1, k, sources, D, ldd) < 0) break;
+    }
+    return 1;
+}
+
+/* ---- pairs ---- */
+
+/* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. list [2 n_pairs], place [2 n_pairs]. Returns their number. */
+static int32_t hdi_pairs_vertices(int64_t n_pairs, const int32_t *i, const int32_t *j, hdi_pair *order, int32_t *list, int32_t *place) {
+    int32_t n = 0;
+    int64_t q;
+    for (q = 0; q < 2 * n_pairs; q++) {
+        order[q].key = HDI_CAST(uint64_t, q % 2 ? j[q / 2] : i[q / 2]);
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, 2 * n_pairs);
+    for (q = 0; q < 2 * n_pairs; q++) {
+        if (q == 0 || order[q].key != order[q - 1].key) list[n++] = HDI_CAST(int32_t, order[q].key);
+        place[order[q].id] = n - 1;
+    }
+    return n;
+}
+
+/* |u - v|_B of fields on vertices, v NULL: |u|_B; whatever their size, with B times scale near one. work [2 n_active]. */
+static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work, double scale) {
+    double most = 0;
+    int32_t r;
+    int exponent = 0;
+    for (r = 0; r < lap->n_active; r++) {
+        work[r] = u[lap->vertex[r]] - (v ? v[lap->vertex[r]] : 0);
+        most = hdi_max(most, fabs(work[r]));
+    }
+    if (most == 0) return 0;
+    frexp(most, &exponent);
+    for (r = 0; r < lap->n_active; r++) work[r] = ldexp(work[r], -exponent);
+    if (lap->B) {
+        double sum = 0;
+        int64_t p;
+        for (r = 0; r < lap->n_active; r++) {
+            double s = 0;
+            for (p = lap->L.row_ptr[r]; p < lap->L.row_ptr[r + 1]; p++) s += scale * lap->B[p] * work[lap->L.col[p]];
+            sum += work[r] * s;
+        }
+        return ldexp(sqrt(hdi_max(0, sum)) / sqrt(scale), exponent);
+    }
+    for (most = 0, r = 0; r < lap->n_active; r++) most += scale * lap->mass[r] * (work[r] * work[r]);
+    return ldexp(sqrt(most) / sqrt(scale), exponent);
+}
+
+/* The parts of a report's bound. */
+static hdi_parts hdi_parts_of(const hd_report *rep) {
+    hdi_parts p;
+    p.rational = rep->error_rational;
+    p.solver = rep->error_solver;
+    p.rounding = rep->error_rounding;
+    return p;
+}
+
+/* Shares out what stands in rounding as another bound has it. */
+static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
+    const double all = to->rounding, sum = hdi_parts_sum(as);
+    if (!(sum > 0 && hdi_finite(sum) && hdi_finite(all))) return;
+    to->rational = all * (as->rational / sum);
+    to->solver = all * (as->solver / sum);
+    to->rounding = all * (as->rounding / sum);
+}
+
+/* Kernel entries and distances of the pairs from columns at t: K_t(i,j) = (K_t e_j)_i, and |K_t B^-1 (e_i - e_j)|_B, which loses nothing
+ * beside what the columns are off by: the report's bound of columns becomes that of distances. */
+static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind, double scale, const double *U, int64_t n_pairs, const int32_t *i, const int32_t *j, const int32_t *place,
+                                 double *K, double *d, double *work, hd_report *rep) {
+    const size_t n = HDI_CAST(size_t, lap->n);
+    const hdi_parts share = hdi_parts_of(rep);
+    const double bound_b = rep->error_bound_b;
+    hdi_ledger of_k = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0), of_d = of_k;
+    hdi_parts part;
+    int64_t q, p;
+    memset(&part, 0, sizeof part);
+    of_d.relative = 0;
+    for (q = 0; q < n_pairs; q++) {
+        const double *ui = U + n * HDI_CAST(size_t, place[2 * q]), *uj = U + n * HDI_CAST(size_t, place[2 * q + 1]);
+        const int32_t ri = lap->row[i[q]], rj = lap->row[j[q]];
+        const double size_i = hdi_vertex_norm(lap, ui, NULL, work, scale), size_j = hdi_vertex_norm(lap, uj, NULL, work, scale);
+        double distance, off;
+        if (K && kind == HD_DISTANCE_WEIGHTED) {
+            K[q] = uj[i[q]];
+            off = bound_b * size_j * (ri < 0 ? 0 : hdi_ratio_root(lap) / sqrt(lap->b_diag[ri]));
+        } else if (K) {                          /* symmetric columns: K_t(i,j) = (k_t(i,.) B)_j, and |(B e)_j| <= sqrt(B_jj) |e|_B */
+            K[q] = rj < 0 ? i[q] == j[q] : lap->B ? 0 : ui[j[q]] * lap->mass[rj];
+            for (p = rj < 0 ? 0 : lap->L.row_ptr[rj]; rj >= 0 && lap->B && p < lap->L.row_ptr[rj + 1]; p++) K[q] += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
+            off = bound_b * size_i * (rj < 0 ? 0 : sqrt(lap->b_diag[rj]));
+        }
+        if (K) {
+            part.rounding = off + 8 * DBL_EPSILON * fabs(K[q]);
+            hdi_ledger_note(&of_k, K[q], part);
+        }
+        if (!d) continue;
+        distance = i[q] == j[q] ? 0 : hdi_vertex_norm(lap, ui, uj, work, scale);
+        d[q] = distance;
+        if (i[q] == j[q]) continue;
+        part.rounding = (bound_b + 4 * DBL_EPSILON) * (size_i + size_j);
+        rep->n_lost += distance < 10 * part.rounding;
+        hdi_ledger_note(&of_d, distance, part);
+    }
+    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = rep->error_relative = rep->smallest = 0;
+    rep->error_bound_b = HUGE_VAL;
+    rep->evidence_b = HD_EVIDENCE_NONE;
+    hdi_parts_share(&of_k.off, &share);
+    hdi_parts_share(&of_d.off, &share);
+    hdi_ledger_close(&of_k, rep);
+    rep->smallest = 0;                           /* of the distances */
+    hdi_ledger_close(&of_d, rep);
+}
+
+/* Distances one by one from entries and the diagonal, for more vertices than columns fit; each is judged by itself. */
+static hd_status hdi_pairs_distances(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *d, hd_report *rep) {
+    hd_error *e = &rep->error;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    double *f = HDI_TAKE(&s, double, heat->source->n);
+    hdi_ledger ledger;
+    hdi_metric_column c;
+    hdi_metric x;
+    int64_t q;
+    if (!f || hdi_metric_make(heat, kind, t, 0, &x, &s, rep) < 0) return hdi_scope_end(&s);
+    rep->error_relative = 0;
+    ledger = hdi_metric_ledger(&x);
+    for (q = 0; q < n_pairs && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
+        if (q == 0 || i[q] != i[q - 1]) {
+            hdi_ledger all = hdi_metric_ledger(&x);
+            if (hdi_metric_columns(heat, &x, 1, i + q, f, HDI_CAST(size_t, heat->source->n), &c, rep, e) < 0) break;
+            hdi_metric_distance(heat->source, &x, i[q], &c, NULL, rep, &all);
+            ledger.off.rational = hdi_max(ledger.off.rational, all.off.rational);   /* of the pairs, as of all vertices */
+            ledger.off.rounding = hdi_max(ledger.off.rounding, all.off.rounding);
+            ledger.relative = hdi_max(ledger.relative, all.relative);
+        }
+        d[q] = f[j[q]];
+        if (hdi_finite(d[q])) ledger.largest = hdi_max(ledger.largest, d[q]);
+        if (d[q] > 0 && hdi_finite(d[q])) ledger.smallest = hdi_min(ledger.smallest, d[q]);
+        ledger.n_values += i[q] != j[q] && hdi_finite(d[q]);
+    }
+    if (e->status >= 0) hdi_ledger_close(&ledger, rep);
+    return hdi_scope_end(&s);
+}
+
+/* Both, each of which may be NULL. */
+static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *rep) {
+    hd_report one;
+    memset(rep, 0, sizeof *rep);
+    hdi_error_clear(&rep->error);
+    if (K && kind < HD_DISTANCE_COMMUTE && hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, n_pairs, i, j, K, rep) < 0) return rep->status;
+    if (!d) return rep->status;
+    memset(&one, 0, sizeof one);
+    hdi_error_clear(&one.error);
+    rep->error_relative = 0;                     /* of the distances */
+    if (hdi_pairs_distances(heat, kind, t, n_pairs, i, j, d, &one) < 0) {
+        rep->error = one.error;
+        return rep->status = one.error.status;
+    }
+    hdi_report_merge(rep, &one);
+    return rep->status;
+}
+
+/* ==== [28] geodesic ====
  * Geodesic distance by the heat method on triangle meshes. May call [18].
  * This work is based on
  *   K. Crane, C. Weischedel, M. Wardetzky, Geodesics in heat: a new approach to computing distance based on heat flow, 2013
@@ -16406,7 +18794,7 @@ static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k,
     return HD_OK;
 }
 
-/* ==== [21] api ====
+/* ==== [29] api ====
  * Argument checks, defaults, lifetimes; the bodies of the public functions. May call everything. */
 
 HEATDIFF_API const char *hd_status_name(hd_status status) {
@@ -16453,8 +18841,6 @@ static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const
     if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
 }
-
-static hd_status hdi_missing(hd_error *e) { return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL"); }
 
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
                                             const int32_t *j, const double *v, hd_context *ctx, hd_error *err) {
@@ -16602,79 +18988,6 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e) : hdi_lap_polygons(lap, &poly, c.e));
 }
 
-/* B without the zeros that the common pattern has. */
-static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
-    int64_t nnz = 0, p;
-    int32_t i;
-    hd_csr b;
-    for (p = 0; p < lap->L.nnz; p++) nnz += lap->B[p] != 0;
-    b = hdi_csr_take(s, lap->n_active, lap->n_active, nnz, 1);
-    if (s->e->status < 0) return b;
-    for (i = 0, nnz = 0; i < lap->n_active; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            if (lap->B[p] == 0) continue;
-            b.col[nnz] = lap->L.col[p];
-            b.val[nnz++] = lap->B[p];
-        }
-        b.row_ptr[i + 1] = nnz;
-    }
-    return b;
-}
-
-/* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester).
- * value [nnz]: room. */
-static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value, hdi_factor *f,
-                           hd_error *e) {
-    hdi_values v;
-    int32_t i;
-    int64_t p;
-    memset(&v, 0, sizeof v);
-    v.real = value;
-    for (i = 0; i < b->n_rows; i++)
-        for (p = b->row_ptr[i]; p < b->row_ptr[i + 1]; p++)
-            value[p] = b->col[p] == i ? (1 - sigma) * lap->b_diag[i] : b->val[p];
-    if (hdi_factor_run(f, &v, e) >= 0) return f->all.negative == 0;
-    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* a pivot of zero proves nothing */
-    return 0;
-}
-
-/* A proven b_ratio where Gershgorin's, in lap, is poor: values from the estimate downwards, each tried by a
- * factorisation. What that rounds is a matrix E with |x'Ex| <= eps (nnz(L) + 2 n) x'diag(B)x (after Rump
- * 2006): so much is added to sigma. Where all fail, B has a negative eigenvalue, or the ratio is not known.
- * */
-static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const double dominant = hdi_max(lap->b_ratio, 0);
-    double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active)), least, sigma, slack;
-    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), chosen, tries;
-    hd_csr b = hdi_lap_mass_matrix(lap, &s);
-    double *value = HDI_TAKE(&s, double, b.nnz);
-    hdi_symbolic sym;
-    hdi_factor f;
-    memset(&sym, 0, sizeof sym);
-    memset(&f, 0, sizeof f);
-    lap->b_ratio = dominant;
-    if (e->status >= 0 && hdi_pair_ratio(lap, work, &least, e) >= 0 &&
-        hdi_sym_order(&b, NULL, HD_ORDERING_MINIMUM_DEGREE, 0, NULL, perm, &chosen, lap->context, e) >= 0 &&
-        hdi_symbolic_make(&sym, &b, perm, lap->context, e) >= 0 &&
-        hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
-        slack = DBL_EPSILON * (HDI_CAST(double, sym.nnz) + 2.0 * lap->n_active);
-        for (tries = 0; e->status >= 0; tries++) {
-            sigma = tries == 0 ? 0.8 * least : ldexp(least, 1 - 2 * tries);
-            if (sigma < hdi_max(dominant, 1e-12)) break;
-            if (hdi_lap_exceeds(lap, &b, sigma + slack, value, &f, e)) {
-                lap->b_ratio = sigma;
-                break;
-            }
-            if (tries != 1 || e->status < 0 || hdi_lap_exceeds(lap, &b, -slack, value, &f, e)) continue;
-            if (f.all.negative) hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: it has a negative pivot");
-        }
-    }
-    hdi_factor_free(&f);
-    hdi_symbolic_free(lap->context, &sym);
-    return hdi_scope_end(&s);
-}
-
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
                                              hd_error *err) {
     hdi_call c;
@@ -16770,11 +19083,6 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     return hdi_scope_end(&s);
 }
 
-static void hdi_gather(const hd_laplacian *lap, const double *on_vertices, double *on_rows) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) on_rows[i] = on_vertices[lap->vertex[i]];
-}
-
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y, hd_error *err) {
     hdi_call c;
     hdi_scope s;
@@ -16821,14 +19129,6 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return hdi_rational_eval(set, x); }
 
 /* ---- shifted systems ---- */
-
-/* 1/diag(B), and room for three more vectors. */
-static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    double *w = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof *w, e));
-    int32_t i;
-    for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
-    return w;
-}
 
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
     if (!hdi_finite(t) || t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
@@ -17255,51 +19555,6 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     return o->rational ? hdi_rational_check(o->rational, e) : HD_OK;
 }
 
-/* Gershgorin: every eigenvalue of B^-1 L is below this. A guess where b_ratio is not known: it serves for
- * choices only. */
-static double hdi_lambda_bound(const hd_laplacian *lap) {
-    double most = 0;
-    int32_t i;
-    int64_t p = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        double sum = 0;
-        for (; p < lap->L.row_ptr[i + 1]; p++) sum += fabs(lap->L.val[p]);
-        most = hdi_max(most, sum / lap->b_diag[i]);
-    }
-    return most / hdi_max(lap->b_ratio, 1e-12);
-}
-
-/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of (Neumaier 1974). */
-static hd_status hdi_heat_drift(const hd_laplacian *lap, double *drift, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    double *sum = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, lap->n_components)), *rest;
-    int64_t p;
-    int32_t i;
-    if (!sum) return hdi_scope_end(&s);
-    rest = sum + lap->n_components;
-    *drift = 0;
-    for (i = 0; i < lap->n_active && lap->conserves; i++) {
-        const int32_t c = lap->component[i];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double v = lap->L.val[p], t = sum[c] + v;
-            rest[c] += fabs(sum[c]) >= fabs(v) ? sum[c] - t + v : v - t + sum[c];
-            sum[c] = t;
-        }
-    }
-    for (i = 0; i < lap->n_components && lap->conserves; i++) *drift = hdi_max(*drift, fabs(sum[i] + rest[i]) / lap->component_mass[i]);
-    return hdi_scope_end(&s);
-}
-
-/* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
-static double hdi_heat_scale(const hd_laplacian *lap) {
-    double largest = 0;
-    int32_t i;
-    int exponent;
-    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    frexp(largest, &exponent);
-    return ldexp(1, -2 * (exponent / 2));
-}
-
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err) {
     hdi_call c;
     hd_heat *heat;
@@ -17365,111 +19620,6 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_free(ctx, heat);
 }
 
-/* The copy of the pair to iterate on. */
-static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
-    if (heat->weight) return HD_OK;
-    hdi_error_clear(e);
-    if (!heat->lap) {
-        if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
-        heat->lap = hdi_sym_ordered(heat->source, heat->ctx, e);
-        if (!heat->lap) return e->status;
-        (void)hdi_sym_scale(heat->lap);
-    }
-    if (!heat->up.ptr && hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
-    heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
-    if (!heat->weight) return e->status;
-    heat->noise = heat->weight + heat->lap->n_active;
-    heat->fam.noise = heat->noise + heat->lap->n_active;
-    heat->fam.noise_work = heat->fam.noise + heat->lap->n_active;
-    hdi_noise_weights(heat->lap, 1, 0, heat->noise, heat->fam.noise_work);
-    heat->fam.ctx = heat->ctx;
-    heat->fam.lap = heat->lap;
-    heat->fam.up = &heat->up;
-    heat->fam.weight = heat->weight;
-    heat->fam.solver = heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES ? heat->opts.solver : HD_SOLVER_COCG;
-    heat->fam.precond = heat->opts.precond;
-    heat->fam.max_iterations = heat->opts.max_iterations;
-    return e->status;
-}
-
-/* The copy of the pair in elimination order, analysed. */
-static hd_status hdi_heat_analysed(hd_heat *heat, int poles, hd_error *e) {
-    if (heat->elim.ctx) return HD_OK;
-    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, poles ? HDI_DISSECT_FROM : HDI_DISSECT_REAL_FROM, heat->perm, heat->scale, heat->ctx, e);
-}
-
-/* Checks a right-hand side. *exponent: its largest part is between 2^(exponent - 1) and 2^exponent. */
-static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
-    double largest = 0;
-    int32_t v;
-    for (v = 0; v < lap->n; v++) {
-        if (!hdi_cfinite(rhs[v]))
-            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v,
-                                -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
-        if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
-    }
-    frexp(largest, exponent);
-    return HD_OK;
-}
-
-/* One system with a plan made for it. */
-static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x, double tol, hd_solve_report *report,
-                                   hd_error *e) {
-    const hd_laplacian *lap;
-    hdi_lane *lane = heat->lane;
-    hdi_krylov *k = lane->k;
-    hdi_watch watch;
-    hd_rational set;
-    hd_status status;
-    double b_norm;
-    int32_t i, v;
-    int exponent, unit;
-    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0 || hdi_heat_iterative(heat, e) < 0) return e->status;
-    lap = heat->lap;
-    memset(&watch, 0, sizeof watch);
-    memset(&set, 0, sizeof set);
-    watch.ctx = heat->ctx;
-    watch.share = 1;
-    watch.stage = "solve";
-    set.n_poles = 1;
-    set.theta[0] = theta;
-    if (hdi_family_set(&heat->fam, &set, t * heat->scale, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
-    if (hdi_lane_systems(lane, &heat->fam, e) < 0) return e->status;
-    if (hdi_family_fill(&heat->fam, lane->vectors, hdi_lane_stride(&heat->fam), e) < 0) return e->status;
-    for (i = 0; i < lap->n_active; i++) {        /* near one, so that no norm underflows or overflows */
-        const hd_c64 r = rhs[lap->vertex[i]];
-        lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
-    }
-    frexp(heat->scale, &unit);                   /* the answer is in units of the right-hand side's, times those of B */
-    unit += exponent - 1;
-    b_norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
-    memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
-    if (lap->conserves) {                        /* constants apart: b - B mean(b), and mean(b)/theta to the solution */
-        for (i = 0; i < lap->n_active; i++) k->sums[lap->component[i]] = hdi_cadd(k->sums[lap->component[i]], lane->b[i]);
-        for (i = 0; i < lap->n_components; i++) k->sums[i] = hdi_cscale(1 / lap->component_mass[i], k->sums[i]);
-        for (i = 0; i < lap->n_active; i++) lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], k->sums[lap->component[i]]));
-        for (v = 0; v < lap->n; v++) x[v] = lap->row[v] >= 0 ? hdi_cdiv(k->sums[lap->component[lap->row[v]]], theta) : hdi_c(0, 0);
-    } else {
-        for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
-    }
-    hdi_krylov_start(k, lane->b, b_norm);
-    status = hdi_krylov_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
-    for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
-    if (report) {
-        const double error = hdi_pole_error(k), norm = sqrt(hdi_b_norm2_complex(lap, k->x, lane->tmp)) - error;
-        report->iterations = k->iterations;
-        report->residual = b_norm > 0 ? k->r_norm / b_norm : 0;
-        report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
-    }
-    if (status > 0) e->status = status;
-    for (v = 0; v < lap->n; v++) {
-        x[v] = hdi_c(ldexp(x[v].re, unit), ldexp(x[v].im, unit));
-        if (!hdi_cfinite(x[v]) && e->status >= 0)
-            hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1, x[v].re);
-    }
-    return e->status;
-}
-
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                         const hd_solve_opts *opts, hd_solve_report *report, hd_error *err) {
     hd_solve_opts o;
@@ -17493,751 +19643,6 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     return c.e->status;
 }
 
-/* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and its steps are few: a step reads L once and
- * streams about ten vectors, and stores one; through the poles a step reads as much five times over, in complex. */
-static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
-    const hd_heat_opts *o = &heat->opts;
-    const double steps = 1.2 * sqrt(t * heat->lambda_max) + 10;
-    if (o->solver) return o->solver;
-    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B) return HD_SOLVER_COCG;
-    return steps <= 400 ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
-}
-
-typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
-
-/* A heat call under way: k items, each a field, a column, or the pairs that share a column; a few at a time, each in a lane. */
-typedef struct hdi_heat_call {
-    hd_heat *heat;
-    hdi_query query;
-    double t;
-    int32_t k;
-    hd_solver solver;
-    const hd_rational *set;      /* instead of what the plan would take */
-    int32_t diagonal, degree;    /* by default a set made for diagonals; its degree, 0: as ever */
-    hd_report *rep;
-    hd_report own_report;
-    hd_error *e;
-    hdi_scope s;
-    hd_method method;
-    const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
-    const double *times;         /* [n_times] scaled, ascending, for one item at several times; else t alone */
-    int32_t n_times;
-    const int32_t *time_column;  /* where in U each goes */
-    int32_t relative;            /* errors are told relative to each value too */
-    int32_t deflated;            /* direct: right-hand sides are without their constants */
-    int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
-    double still;                /* t = 0 stands for a t so small that K_t f is f to rounding; |K_t - 1| <= this */
-    int32_t equal;               /* t is so large that each component has its mean */
-    hdi_ledger *entries;         /* of single values; NULL: columns are judged as a whole */
-    double *off_b, *off_m;       /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
-    hdi_lane *lane;              /* [HDI_LANES], the plan's */
-    int32_t n_lanes, batch;      /* lanes that exist; first item in lane 0 */
-    int32_t n_here, batch_width, n_batches;  /* direct: items under way, in batches of so many */
-    int32_t stop;
-    const double *F;             /* fields */
-    double *U;                   /* answers, columns */
-    size_t ldf, ldu;
-    const int32_t *sources;      /* columns */
-    const hdi_pair *order;       /* entries: sorted by column; where each column begins; rows; values */
-    const int64_t *begin;
-    const int32_t *rows;
-    double *values;
-} hdi_heat_call;
-
-/* t for the scaled pair. Where that is beyond all doubles anything as large does, and as small where it vanishes. */
-static double hdi_heat_scaled(const hd_heat *heat, double t) {
-    return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
-}
-
-static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, double t, int32_t k, hd_report *report) {
-    memset(h, 0, sizeof *h);
-    h->rep = report ? report : &h->own_report;
-    memset(h->rep, 0, sizeof *h->rep);
-    h->e = &h->rep->error;
-    hdi_error_clear(h->e);
-    h->heat = heat;
-    h->query = query;
-    h->t = t;
-    h->k = k;
-    if (!heat) return hdi_missing(h->e);
-    h->s = hdi_scope_begin(heat->ctx, h->e);
-    if (!hdi_finite(t) || t < 0) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
-    if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    h->rep->reason = "nothing was asked for";
-    h->t = hdi_heat_scaled(heat, t);
-    h->times = &h->t;
-    h->n_times = 1;
-    h->lap = heat->source;
-    h->lane = heat->lane;
-    return HD_OK;
-}
-
-/* ---- choice of the method ---- */
-
-/* Seconds that methods would take at rates one core has been seen to reach, and the bytes they would hold. */
-typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov_bytes; } hdi_cost;
-
-/* Rates: flops of packs, with seconds per non-zero for what small fronts cost besides, and of real fronts; bytes per second of sweeps; seconds per
- * non-zero of a step of Lanczos (with what looks at its bound cost, per step squared) and of COCG; per row of an ordering with its analysis.
- * Measured on meshes of 36K to 1M vertices. */
-#define HDI_RATE_PACK 70e9
-#define HDI_ENTRY_PACK 12e-9
-#define HDI_RATE_REAL 25e9
-#define HDI_RATE_SWEEP 15e9
-#define HDI_STEP_LANCZOS 1.6e-9
-#define HDI_LOOK_LANCZOS 0.4e-6
-#define HDI_STEP_COCG 4e-9
-#define HDI_ROW_ANALYSIS 0.8e-6
-
-/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops; where rows are wider than 10 so much more of the former and its square
- * of the latter (point sets with 233 and 117 a row, 20 to 150 thousand: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5). */
-static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    const hd_heat_opts *o = &heat->opts;
-    const hdi_symbolic *s = heat->elim.ctx ? &heat->elim.sym : NULL;
-    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->k, hh = heat->source->h * heat->source->h * heat->scale;
-    const double wide = hdi_max(1, entries / (10 * n));
-    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide, flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
-    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide;
-    const double real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n * wide;
-    const double analysis = s ? 0 : HDI_ROW_ANALYSIS * n * wide;
-    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
-    const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4, packs = pairs > 4 ? (pairs + 3) / 4 : 1;
-    const double span = h->times[h->n_times - 1] / h->times[0], windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
-    const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
-    double one, factor;
-    hdi_cost c;
-    int32_t q;
-    c.iterative = 0.4e-6 * n;
-    for (q = 0; q < h->n_times; q++) {
-        const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
-        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) {
-            one = 1.2 * sqrt(t * heat->lambda_max) + 10;
-            one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
-        } else {
-            one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) * (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
-        }
-        c.iterative += k * one;
-    }
-    c.krylov = analysis + windows * flops / HDI_RATE_REAL + k * windows * steps * (16 * nnz + 100 * n) / HDI_RATE_SWEEP + k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
-    factor = packs * (16 * flops / HDI_RATE_PACK + HDI_ENTRY_PACK * nnz) + (poles % 4 == 1 ? flops / HDI_RATE_REAL : 0);
-    c.direct = analysis + h->n_times * (factor + k * packs * (64 * nnz + 400 * n) / (k > 1 ? 1.6 * HDI_RATE_SWEEP : 0.6 * HDI_RATE_SWEEP));
-    if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= factor;
-    c.direct_bytes = 64 * packs * stored + 200 * n + 8 * real_stored;
-    c.krylov_bytes = 8 * real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
-    c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
-    c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
-    if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
-    if (heat->silan) c.krylov_bytes = 0;
-    return c;
-}
-
-/* By the model, or as asked. The analysis is made only when iterating does not win against the least that a factorisation could cost. */
-static hd_status hdi_heat_pick(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    const hd_context *ctx = heat->ctx;
-    const double room = ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
-    hdi_cost c;
-    int no_direct, no_krylov;
-    h->method = heat->opts.method;
-    h->rep->reason = h->method == HD_METHOD_AUTO ? "chosen by cost" : "asked for";
-    if (h->method == HD_METHOD_AUTO && heat->iterations_asked) {
-        h->method = HD_METHOD_ITERATIVE;
-        h->rep->reason = "a solver or preconditioner is asked for";
-    }
-    if (h->method == HD_METHOD_AUTO && heat->no_factors && ctx->byte_limit == heat->no_factors_limit) {
-        h->method = HD_METHOD_ITERATIVE;
-        h->rep->reason = "factors did not fit the byte limit";
-    }
-    if (h->method != HD_METHOD_AUTO) return HD_OK;
-    c = hdi_heat_cost(h);
-    if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) && hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
-        if (hdi_heat_analysed(heat, heat->poles_asked || c.direct < c.krylov, h->e) < 0) return h->e->status;
-        c = hdi_heat_cost(h);
-    }
-    no_direct = c.direct_bytes > room;
-    no_krylov = c.krylov_bytes > room || heat->poles_asked;
-    h->method = HD_METHOD_ITERATIVE;
-    h->rep->reason = no_direct && c.krylov_bytes > room ? "factors would not fit the byte limit" : "iterations cost less than a factorisation";
-    if (!no_krylov && c.krylov < c.iterative && (no_direct || c.krylov <= c.direct)) {
-        h->method = HD_METHOD_KRYLOV;
-        h->rep->reason = h->n_times > 1 ? "one real factor serves many times" : "few columns: one real factor costs less than those of the poles";
-    } else if (!no_direct && c.direct < c.iterative) {
-        h->method = HD_METHOD_DIRECT;
-        h->rep->reason = h->k > 1 ? "many columns: solves with the factors of the poles cost least" : "the factors of the poles cost least";
-    }
-    return HD_OK;
-}
-
-/* Below, t lambda is nothing beside one. */
-#define HDI_STILL 1e-18
-
-/* From here on (t lambda_max) the question is worth its price, and what exp(-t lambda) is nothing after. */
-#define HDI_EQUAL_FROM 1e8
-#define HDI_EQUAL_BEYOND 750
-
-/* Is t (scaled) so large that nothing is left but the means of the components? 1, 0, or an error. */
-static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
-    if (!heat->source->conserves || heat->opts.rational || t * heat->lambda_max < HDI_EQUAL_FROM) return 0;
-    if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0) return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
-    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* not to be told: go on as ever */
-    return 0;
-}
-
-/* The method, its copy of the pair, and what of the report is known by now. */
-static hd_status hdi_heat_engine(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {   /* |exp(-t lambda) - 1| <= t lambda */
-        h->still = h->t * heat->lambda_max;
-        h->t = 0;
-    }
-    if (h->t == 0) {                             /* nothing to solve */
-        h->method = heat->opts.method == HD_METHOD_AUTO ? HD_METHOD_ITERATIVE : heat->opts.method;
-        h->rep->reason = "t = 0";
-    } else if (hdi_heat_pick(h) < 0) {
-        return h->e->status;
-    } else if (h->method == HD_METHOD_ITERATIVE) {
-        if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
-        h->lap = heat->lap;
-    } else {
-        if (hdi_heat_analysed(heat, h->method == HD_METHOD_DIRECT, h->e) < 0) return h->e->status;
-        h->lap = heat->elim.lap;
-        h->rep->ordering = heat->elim.sym.ordering;
-        h->rep->factor_nnz = heat->elim.sym.nnz;
-        if (h->n_times == 1) h->equal = hdi_heat_equal(heat, h->t, h->e);
-        if (h->e->status < 0) return h->e->status;
-    }
-    h->rep->method = h->method;
-    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t) : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
-    h->rep->solver = h->solver;
-    h->rep->precond = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS ? heat->opts.precond : HD_PRECOND_NONE;
-    return HD_OK;
-}
-
-static hd_status hdi_heat_end(hdi_heat_call *h) {
-    hd_status st = h->e->status, warned;
-    if (h->entries && st >= 0) hdi_ledger_close(h->entries, h->rep);
-    warned = h->rep->status;
-    if (h->s.e) st = hdi_scope_end(&h->s);
-    h->rep->status = st < 0 ? st : warned;
-    if (h->rep->evidence_b == HD_EVIDENCE_NONE) h->rep->error_bound_b = HUGE_VAL;
-    if (!h->relative) h->rep->error_relative = HUGE_VAL;
-    return h->rep->status;
-}
-
-/* Norm of f and heat per component, from f and rhs. */
-static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
-    const double f2 = hdi_dot(lane->f, lane->rhs, lap->n_active);
-    lane->f_norm = f2 > 0 ? sqrt(f2) : 0;
-    hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-}
-
-/* Degree of a uniform set: even ones, as an odd one costs as much as the next; the first whose error is 1e-9 of the least that the
- * answer can be, which is what its constants amount to. */
-static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
-    hd_rational set;
-    hd_error e;
-    double least = 0;
-    int32_t c, r;
-    for (c = 0; c < lap->n_components && lap->conserves; c++) least += lane->target[c] * lane->target[c] / lap->component_mass[c];
-    for (r = 8; r < HDI_RAT_UNIFORM_MAX; r = !direct ? r + 2 : r == 8 ? 9 : HDI_RAT_UNIFORM_MAX)
-        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= (direct ? 2e-9 : 1e-9) * sqrt(least)) break;
-    return r;
-}
-
-/* All fields, before anything is solved or written. */
-static hd_status hdi_fields_check(const hdi_heat_call *h) {
-    int32_t q, v;
-    for (q = 0; q < h->k; q++) {
-        const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
-        for (v = 0; v < h->heat->source->n; v++)
-            if (!hdi_finite(f[v])) return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v, q, f[v]);
-    }
-    return HD_OK;
-}
-
-static int32_t hdi_heat_source(const hdi_heat_call *h, int32_t q) {
-    return h->sources ? h->sources[q] : HDI_CAST(int32_t, h->order[h->begin[q]].key);
-}
-
-/* Brings fields whose squares could leave the range of doubles near one, by a power of two. */
-static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
-    double most = 0;
-    int32_t i;
-    int exponent = 0;
-    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
-    if (most > 0) frexp(most, &exponent);
-    if (exponent > -256 && exponent < 256) return;
-    lane->exponent = exponent;
-    for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
-}
-
-/* Field and right-hand side of item q. A vertex without mass needs no solve: skip. */
-static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
-    const hd_laplacian *lap = h->lap;
-    const size_t bytes = HDI_CAST(size_t, lap->n_active) * sizeof(double);
-    int32_t row;
-    lane->skip = 0;
-    lane->status = HD_OK;
-    hdi_lane_clear_off(lane);
-    lane->steps = 0;
-    lane->exponent = 0;
-    lane->watch = -1;
-    if (h->query == HDI_QUERY_FIELD) {
-        hdi_gather(lap, h->F + HDI_CAST(size_t, q) * h->ldf, lane->f);
-        hdi_lane_unit(lap, lane);
-        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-    } else {
-        row = lap->row[hdi_heat_source(h, q)];
-        lane->skip = row < 0;
-        if (lane->skip) return HD_OK;
-        lane->watch = h->watching ? row : -1;
-        memset(lane->f, 0, bytes);
-        memset(lane->rhs, 0, bytes);
-        if (h->query == HDI_QUERY_OPERATOR) {
-            int64_t p;
-            lane->f[row] = 1;
-            for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++) lane->rhs[lap->L.col[p]] = lap->B[p];   /* B e_row */
-            if (!lap->B) lane->rhs[row] = lap->mass[row];
-        } else {
-            lane->rhs[row] = 1;
-            if (h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && lap->b_ratio > 0) {   /* B^-1 e is not needed, only a bound of its norm */
-                hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-                lane->f_norm = 1 / sqrt(lap->b_ratio * lap->b_diag[row]);
-                return HD_OK;
-            }
-            if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
-        }
-    }
-    hdi_heat_measure(lap, lane);
-    return HD_OK;
-}
-
-/* What item q asked for, from the lane's answer, into that column of U. */
-static void hdi_heat_store_at(const hdi_heat_call *h, int32_t q, int32_t column, const hdi_lane *lane) {
-    const hd_laplacian *lap = h->lap;
-    const double *answer = lane->u, unit = h->query == HDI_QUERY_SYMMETRIC && lap != h->heat->source ? h->heat->scale : 1;   /* B^-1 */
-    const int32_t source = h->query == HDI_QUERY_FIELD ? -1 : hdi_heat_source(h, q);
-    double *u = h->U ? h->U + HDI_CAST(size_t, column) * h->ldu : NULL;
-    int64_t p;
-    int32_t i;
-    if (!h->values && !u) return;
-    if (h->values) {
-        for (p = h->begin[q]; p < h->begin[q + 1]; p++) {
-            const int32_t v = h->rows[h->order[p].id];
-            const double own = h->query == HDI_QUERY_OPERATOR && v == source;
-            double *value = h->values + h->order[p].id;
-            hdi_parts off;
-            memset(&off, 0, sizeof off);
-            *value = lane->skip ? own : lap->row[v] < 0 ? 0 : unit * answer[lap->row[v]];
-            if (!lane->skip && lap->row[v] >= 0) off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[lap->row[v]]), lane->off);
-            if (h->entries) hdi_ledger_note(h->entries, *value, off);
-        }
-        return;
-    }
-    if (h->query == HDI_QUERY_FIELD) {           /* vertices without mass keep their value */
-        const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
-        if (u != f) memmove(u, f, HDI_CAST(size_t, lap->n) * sizeof *u);
-    } else {
-        memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
-        if (lane->skip) u[source] = h->query == HDI_QUERY_OPERATOR;
-    }
-    for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = lane->exponent ? ldexp(answer[i], lane->exponent) : unit * answer[i];
-}
-
-static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) { hdi_heat_store_at(h, q, q, lane); }
-
-/* The degree of a uniform set that serves all fields; columns, whose constants are known to be small, get the highest. */
-static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
-    int32_t q, r;
-    *degree = h->query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
-    for (q = 0; q < h->k && h->query == HDI_QUERY_FIELD; q++) {
-        if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
-        r = hdi_uniform_degree(h->lap, h->lane, h->method == HD_METHOD_DIRECT);
-        if (r > *degree) *degree = r;
-    }
-    return HD_OK;
-}
-
-/* The pole set of this call. */
-static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
-    const hd_heat_opts *o = &h->heat->opts;
-    const hd_pole_kind kind = o->poles ? o->poles : h->query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
-    int32_t degree = o->degree ? o->degree : h->degree ? h->degree : h->heat->exacting ? HDI_RAT_KERNEL_MAX : h->method == HD_METHOD_DIRECT ? 9 : 10;   /* four pairs fill a pack, a real pole costs little */
-    if (h->set || o->rational) {
-        *set = h->set ? *h->set : *o->rational;
-        return HD_OK;
-    }
-    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0) return h->e->status;
-    return hdi_rational_get(set, kind, degree, h->e);
-}
-
-static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
-    hdi_heat_call *h = HDI_CAST(hdi_heat_call *, arg);
-    hdi_lane *lane = h->lane + index;
-    hdi_watch watch;
-    hdi_error_clear(&lane->error);
-    if (lane->skip) return;
-    watch.ctx = worker == 0 ? h->heat->ctx : NULL;
-    watch.stop = &h->stop;
-    watch.stage = "solve";
-    watch.share = 1.0 / h->k;
-    watch.from = watch.share * HDI_CAST(double, h->batch + index);
-    lane->status = hdi_watch_look(&watch, 0, &lane->error);
-    if (lane->status >= 0) {
-        if (h->solver == HD_SOLVER_LANCZOS) lane->status = hdi_heat_lanczos(h->heat, h->t, lane, &watch, &lane->error);
-        else lane->status = hdi_heat_poles(&h->heat->fam, h->heat->opts.tol, h->t * h->heat->drift, lane, &watch, &lane->error);
-    }
-    if (lane->status < 0) HDI_STORE(&h->stop, 1);
-}
-
-/* A new ledger for what the method computes. */
-static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
-    const int lanczos = h->solver == HD_SOLVER_LANCZOS, still = h->t == 0 || h->equal;
-    const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
-    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
-    const hd_evidence rational = still || lanczos || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN;
-    const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
-                             : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
-    return hdi_ledger_begin(rational, solver, HD_EVIDENCE_PROVEN, 0);
-}
-
-/* Judges lane i of the batch. */
-static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
-    const hdi_lane *lane = h->lane + i;
-    const hdi_elim *m = &h->heat->elim;
-    const double *reach = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && m->reach && m->reach_t == m->t ? m->reach : NULL;
-    ledger.known.rounding = lane->rounding;
-    hdi_heat_judge(h->lap, lane, h->entries ? NULL : &ledger, reach, own, h->rep);
-    if (h->entries) h->entries->known = ledger.known;
-    if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
-    if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
-}
-
-/* Report and errors of the lanes, in their order: the first failure that is not "another task failed" is the one to tell. */
-static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
-    const hd_rational *set = &h->heat->fam.set;
-    const int own = h->heat->opts.rational != NULL, poles = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS;
-    const hdi_ledger blank = hdi_heat_ledger(h);
-    int32_t i, p;
-    for (i = 0; i < n; i++) {
-        const hdi_lane *lane = h->lane + i;
-        if (lane->status >= 0 || (h->e->status < 0 && h->e->status != HD_ERR_CANCELLED)) continue;
-        *h->e = lane->error;
-        h->e->column = h->batch + i;
-    }
-    if (h->e->status == HD_ERR_NOT_CONVERGED) h->rep->residual = h->e->value;   /* what was achieved */
-    if (h->e->status < 0) return h->e->status;
-    for (i = 0; i < n; i++) {
-        const hdi_lane *lane = h->lane + i;
-        if (lane->skip) {                        /* exact */
-            if (!h->entries) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
-            continue;
-        }
-        if (lane->status > h->rep->status) h->rep->status = lane->status;
-        h->rep->iterations += lane->steps;
-        for (p = 0; poles && h->t > 0 && !h->equal && p < set->n_poles; p++) {
-            h->rep->pole_iterations[p] += lane->k[p].iterations;
-            h->rep->iterations += lane->k[p].iterations;
-        }
-        hdi_heat_note(h, blank, i, own);
-    }
-    return HD_OK;
-}
-
-/* Lanes, the pole set and its preconditioners. */
-static hd_status hdi_heat_prepare(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    hd_rational set;
-    int32_t i;
-    h->n_lanes = h->k < HDI_LANES_ITERATIVE ? h->k : HDI_LANES_ITERATIVE;
-    for (i = 0; i < h->n_lanes; i++) {
-        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-        if (h->solver == HD_SOLVER_LANCZOS && hdi_lane_lanczos(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-    }
-    if (h->solver == HD_SOLVER_LANCZOS) return HD_OK;
-    if (hdi_heat_set(h, &set) < 0 || hdi_family_set(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
-    h->rep->poles = set.kind;
-    h->rep->degree = set.degree;
-    h->rep->n_poles = set.n_poles;
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_systems(h->lane + i, &heat->fam, h->e) < 0) return h->e->status;
-    return hdi_family_fill(&heat->fam, h->lane->vectors, hdi_lane_stride(&heat->fam), h->e);
-}
-
-/* ---- direct ---- */
-
-/* Arrays of a batch of k, from the plan's room. */
-static hdi_batch hdi_heat_batch(const hdi_heat_call *h, int32_t index, int32_t k) {
-    hdi_batch b;
-    uint64_t x, xr, size = hdi_batch_size(&h->heat->elim, k, &x, &xr);
-    b.x = h->heat->batch_room + size * HDI_CAST(size_t, index);
-    b.xr = b.x + x;
-    b.work = b.xr + xr;
-    b.active = HDI_CAST(char *, HDI_CAST(void *, b.x + size)) - h->heat->elim.sym.n_super - 8;
-    return b;
-}
-
-static void hdi_heat_batch_task(void *arg, int64_t index, int32_t worker) {
-    hdi_heat_call *h = HDI_CAST(hdi_heat_call *, arg);
-    const hdi_batch b = hdi_heat_batch(h, HDI_CAST(int32_t, index), h->batch_width);
-    hdi_lane *lane = h->lane + index * h->batch_width;
-    const int32_t left = h->n_here - HDI_CAST(int32_t, index) * h->batch_width, n = left < h->batch_width ? left : h->batch_width;
-    int32_t r;
-    (void)worker;
-    hdi_batch_run(&h->heat->elim, &b, lane, n, h->n_batches > 1 ? NULL : h->heat->ctx);
-    for (r = 0; r < n; r++)
-        if (!lane[r].skip) lane[r].status = hdi_heat_direct(&h->heat->elim, h->heat->limit, h->t * h->heat->drift, h->deflated, lane + r);
-    for (r = 0; r < n; r++)
-        if (!lane[r].skip && lane[r].negative) lane[r].status = hdi_not_semidefinite(&lane[r].error);
-}
-
-/* Growth of built-in sets is at most 4.2, of shared ones 7.9, wherever L is positive semi-definite, and the pivots of a real
- * pole are positive. */
-static hd_status hdi_heat_growth(hdi_heat_call *h) {
-    const hdi_elim *m = &h->heat->elim;
-    int32_t i;
-    if (m->lone >= 0 && m->real.all.negative) return hdi_not_semidefinite(h->e);
-    for (i = 0; 4 * i < m->set.n_poles - (m->lone + 1) && m->set.kind != HD_POLES_OWN; i++)
-        if (m->pack[i].all.largest > 50 * m->pack[i].largest_entry) return hdi_not_semidefinite(h->e);
-    return HD_OK;
-}
-
-/* Lanes, the pole set and its factors. */
-static hd_status hdi_direct_prepare(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active), most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
-    uint64_t x, xr, size;
-    hd_rational set;
-    int32_t i;
-    h->batch_width = h->k < HDI_LANES_BATCH ? h->k : HDI_LANES_BATCH;
-    size = hdi_batch_size(&heat->elim, h->batch_width, &x, &xr);
-    h->n_batches = (h->k + h->batch_width - 1) / h->batch_width;
-    if (h->n_batches > HDI_BATCHES) h->n_batches = HDI_BATCHES;   /* as many as take no more than a pack */
-    while (h->n_batches > 1 && HDI_CAST(size_t, h->n_batches) * (size + 7 * n * HDI_CAST(size_t, h->batch_width)) > most) h->n_batches--;
-    h->n_lanes = h->n_batches * h->batch_width < h->k ? h->n_batches * h->batch_width : h->k;
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-    if (hdi_heat_set(h, &set) < 0) return h->e->status;
-    if (hdi_elim_poles(&heat->elim, &set, h->t, h->e) < 0) return h->e->status;
-    if (hdi_heat_growth(h) < 0 || (!h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0)) return h->e->status;
-    if (heat->batch_doubles < size * HDI_CAST(size_t, h->n_batches)) {
-        hdi_free(heat->ctx, heat->batch_room);
-        heat->batch_doubles = 0;
-        heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, size * HDI_CAST(uint64_t, h->n_batches), sizeof(double), h->e));
-        if (!heat->batch_room) return h->e->status;
-        heat->batch_doubles = size * HDI_CAST(size_t, h->n_batches);
-    }
-    h->rep->poles = set.kind;
-    h->rep->degree = set.degree;
-    h->rep->n_poles = set.n_poles;
-    for (i = 0; 4 * i < set.n_poles - (heat->elim.lone + 1); i++) {
-        const hdi_factor *f = heat->elim.pack + i;
-        h->rep->factor_flops += 16 * heat->elim.sym.flops;
-        h->rep->growth = hdi_max(h->rep->growth, f->all.largest / f->largest_entry);
-    }
-    if (heat->elim.lone >= 0) {
-        h->rep->factor_flops += heat->elim.sym.flops;
-        h->rep->growth = hdi_max(h->rep->growth, heat->elim.real.all.largest / heat->elim.real.largest_entry);
-    }
-    return HD_OK;
-}
-
-/* Above this t lambda_max columns, too, are solved without their constants: these are nearly all of the answer then, and
- * rounding of them would be most of the error. Below, their right-hand sides stay sparse. */
-#define HDI_DEFLATE 3e5
-
-/* Takes the constants out of a dense right-hand side, for the digits of the rest; they are put back exactly in the end. */
-static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
-    int32_t i;
-    for (i = 0; i < lap->n_components; i++) lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
-    for (i = 0; i < lap->n_active && lap->conserves; i++) lane->rhs[i] -= lap->mass[i] * lane->sums[lap->component[i]];
-}
-
-static hd_status hdi_direct_run(hdi_heat_call *h) {
-    int32_t i;
-    if (hdi_direct_prepare(h) < 0) return h->e->status;
-    for (h->batch = 0; h->batch < h->k; h->batch += h->n_here) {
-        h->n_here = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
-        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return h->e->status;
-        for (i = 0; i < h->n_here; i++)
-            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
-        h->deflated = !h->watching && (h->query == HDI_QUERY_FIELD || h->t * h->heat->lambda_max > HDI_DEFLATE);
-        for (i = 0; i < h->n_here && h->deflated; i++)
-            if (!h->lane[i].skip) hdi_lane_deflate(h->lane + i, h->lap);
-        hdi_parallel(h->heat->ctx, (h->n_here + h->batch_width - 1) / h->batch_width, hdi_heat_batch_task, h);
-        if (hdi_heat_collect(h, h->n_here) < 0) return h->e->status;
-        for (i = 0; i < h->n_here; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
-    }
-    return h->e->status;
-}
-
-/* ---- krylov ---- */
-
-/* A shift for times [from, to]; that of the factor at hand when it will do. Not so large that B drowns beside g L. */
-static double hdi_krylov_shift(const hdi_elim *m, double from, double to, double lambda_max) {
-    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL), have = m->real.ready ? m->shift : 0;
-    return have > 0 && best <= 3 * have && have <= 3 * best && to / from < 10 ? have : best;
-}
-
-/* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its times. */
-static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
-    const double factor = s->flops_done / HDI_RATE_REAL, step = 16 * HDI_CAST(double, s->nnz) / HDI_RATE_SWEEP + 1e-8 * s->n;
-    double best = HUGE_VAL;
-    int32_t w, least = 1;
-    for (w = 1; w <= 16; w++) {
-        const double ratio = pow(span, 1.0 / w), steps = 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
-        const double cost = w * (factor + steps * step);
-        if (cost < best) {
-            best = cost;
-            least = w;
-        }
-    }
-    return least;
-}
-
-/* One basis for items batch to batch + n - 1 and the times [q0, q1). */
-static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
-    hd_heat *heat = h->heat;
-    hdi_silan *z = heat->silan;
-    double fixed[HDI_SILAN_WIDE];
-    hd_status status;
-    int32_t i, q;
-    int64_t c;
-    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(&heat->elim, h->times[q0], h->times[q1 - 1], heat->lambda_max), h->e) < 0) return h->e->status;
-    z->g = heat->elim.shift;
-    z->k = n;
-    if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
-    for (i = 0; i < n; i++)
-        for (fixed[i] = 0, c = 0; c < h->lap->n_components && h->lap->conserves && !h->lane[i].skip; c++)
-            fixed[i] += h->lane[i].target[c] * h->lane[i].target[c] / h->lap->component_mass[c];
-    status = hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
-    if (status < 0) return status;
-    for (q = q0; q < q1; q++) {
-        for (i = 0; i < n; i++) {
-            hdi_lane *lane = h->lane + i;
-            lane->status = status;
-            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], heat->drift, lane, h->e) < 0) return h->e->status;
-            if (!lane->skip && (lane->off.solver > heat->opts.tol * lane->u_norm || lane->off.rounding > heat->limit * lane->u_norm))
-                lane->status = HD_WARN_ACCURACY;
-        }
-        for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
-        if (hdi_heat_collect(h, n) < 0) return h->e->status;
-        for (i = 0; i < n; i++) hdi_heat_store_at(h, h->batch + i, h->time_column ? h->time_column[q] : h->batch + i, h->lane + i);
-    }
-    return HD_OK;
-}
-
-static hd_status hdi_krylov_all(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    const double span = h->times[h->n_times - 1] / h->times[0];
-    const int32_t wide = h->k > 3 ? HDI_SILAN_WIDE : 1, n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
-    int32_t i, n, q0, q1, w;
-    if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
-    if (!heat->silan) {
-        heat->silan = HDI_CAST(hdi_silan *, hdi_alloc(heat->ctx, 1, sizeof *heat->silan, h->e));
-        if (!heat->silan) return h->e->status;
-        memset(heat->silan, 0, sizeof *heat->silan);
-    }
-    heat->silan->wide = wide;
-    heat->silan->m = &heat->elim;
-    h->n_lanes = h->k < wide ? h->k : wide;
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-    for (h->batch = 0; h->batch < h->k; h->batch += n) {
-        n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
-        for (i = 0; i < n; i++)
-            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
-        for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-            const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
-            for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-9)); q1++) {}
-            if (hdi_krylov_window(h, n, q0, q1) < 0) return h->e->status;
-        }
-    }
-    h->rep->factor_flops = heat->elim.sym.flops;
-    h->rep->growth = heat->elim.real.largest_entry > 0 ? heat->elim.real.all.largest / heat->elim.real.largest_entry : 0;
-    return h->e->status;
-}
-
-/* Did a method that auto chose run into the byte limit? Then what was factorised goes, and iterations take its place. */
-static int hdi_heat_retreat(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    int32_t i;
-    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx) return 0;
-    if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
-    if (h->batch > 0 && h->query == HDI_QUERY_FIELD) return 0;   /* fields may have been overwritten by their answers */
-    for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
-    if (heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
-    hdi_elim_free(&heat->elim);
-    if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
-    hdi_free(heat->ctx, heat->silan);
-    hdi_free(heat->ctx, heat->batch_room);
-    heat->silan = NULL;
-    heat->batch_room = NULL;
-    heat->batch_doubles = 0;
-    heat->no_factors = 1;
-    heat->no_factors_limit = heat->ctx->byte_limit;
-    hdi_error_clear(h->e);
-    return 1;
-}
-
-static hd_status hdi_heat_factors(hdi_heat_call *h) {
-    if (hdi_heat_engine(h) < 0 || h->t == 0 || h->equal || h->method == HD_METHOD_ITERATIVE) return h->e->status;
-    return h->method == HD_METHOD_DIRECT ? hdi_direct_run(h) : hdi_krylov_all(h);
-}
-
-/* Answers that need no solve: the field itself where t is nothing, the means where t is all. */
-static hd_status hdi_heat_plain(hdi_heat_call *h) {
-    const hd_laplacian *lap = h->lap;
-    hdi_lane *lane = h->lane;
-    int32_t i;
-    if (hdi_lane_make(lane, lap, h->heat->ctx, h->e) < 0) return h->e->status;
-    for (h->batch = 0; h->batch < h->k; h->batch++) {
-        if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
-        if (!lane->skip) {
-            for (i = 0; i < lap->n_active; i++) lane->u[i] = h->equal ? lane->target[lap->component[i]] / lap->component_mass[lap->component[i]] : lane->f[i];
-            lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
-            if (h->equal) hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->query == HDI_QUERY_FIELD));
-            else hdi_lane_rounding(lane, h->still * lane->f_norm);
-            if (!h->equal && h->query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
-            if (!h->equal && h->query == HDI_QUERY_SYMMETRIC && lap->B) {   /* f = B^-1 e comes by iterations */
-                hdi_lane_rounding(lane, 1e-14 * hdi_ratio_root(lap) * lane->f_norm);
-                lane->rounding = HD_EVIDENCE_ESTIMATED;
-            }
-        }
-        if (hdi_heat_collect(h, 1) < 0) return h->e->status;
-        hdi_heat_store(h, h->batch, lane);
-    }
-    return HD_OK;
-}
-
-static hd_status hdi_heat_run(hdi_heat_call *h) {
-    int32_t i, n;
-    if (h->e->status < 0 || h->k == 0) return hdi_heat_end(h);
-    if (hdi_heat_factors(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_factors(h);
-    if (h->e->status >= 0 && (h->t == 0 || h->equal)) (void)hdi_heat_plain(h);
-    if (h->e->status < 0 || h->t == 0 || h->equal || h->method != HD_METHOD_ITERATIVE) return hdi_heat_end(h);
-    if (hdi_heat_prepare(h) < 0 && !(hdi_heat_retreat(h) && hdi_heat_engine(h) >= 0 && hdi_heat_prepare(h) >= 0)) return hdi_heat_end(h);
-    for (h->batch = 0; h->batch < h->k; h->batch += n) {
-        n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
-        for (i = 0; i < n; i++)
-            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
-        /* told here too: the calling thread may find all lanes taken */
-        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
-        hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
-        if (hdi_heat_collect(h, n) < 0) return hdi_heat_end(h);
-        for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
-    }
-    return hdi_heat_end(h);
-}
-
-/* Sets a leading dimension's default and checks it. */
-static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
-    const size_t n = HDI_CAST(size_t, h->heat->source->n);
-    if (ld && ld < n) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
-    return ld ? ld : n;
-}
-
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report) {
     hdi_heat_call h;
@@ -18259,18 +19664,6 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const d
     return hdi_heat_run(&h);
 }
 
-static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
-    if (v >= 0 && v < lap->n) return HD_OK;
-    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
-}
-
-static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, double t, hd_kernel kernel, int32_t k, hd_report *report) {
-    const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
-    if (hdi_heat_begin(h, heat, query, t, k, report) < 0) return h->e->status;
-    if (kernel == HD_KERNEL_OPERATOR || kernel == HD_KERNEL_SYMMETRIC) return HD_OK;
-    return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the kernel is operator or symmetric");
-}
-
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, double t, hd_kernel kernel, int32_t k, const int32_t *sources, double *U, size_t ldu,
                                        hd_report *report) {
     hdi_heat_call h;
@@ -18287,77 +19680,6 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, double t, hd_kernel kernel
 
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, double t, int32_t source, double *u, hd_report *report) {
     return hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 1, &source, u, 0, report);
-}
-
-/* The worse of two reports, counts added. */
-static void hdi_report_merge(hd_report *all, const hd_report *one) {
-    hd_report sum = *one;
-    int32_t p;
-    sum.status = all->status > sum.status ? all->status : sum.status;
-    sum.iterations += all->iterations;
-    for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
-    sum.degree = all->degree > sum.degree ? all->degree : sum.degree;
-    sum.n_poles = all->n_poles > sum.n_poles ? all->n_poles : sum.n_poles;
-    sum.growth = hdi_max(all->growth, sum.growth);
-    sum.residual = hdi_max(all->residual, sum.residual);
-    sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
-    sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
-    sum.error_rounding = hdi_max(all->error_rounding, sum.error_rounding);
-    hdi_evidence_worst(&sum.evidence_rational, all->evidence_rational);
-    hdi_evidence_worst(&sum.evidence_solver, all->evidence_solver);
-    hdi_evidence_worst(&sum.evidence_rounding, all->evidence_rounding);
-    hdi_evidence_worst(&sum.evidence_b, all->evidence_b);
-    sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
-    sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
-    sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
-    sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
-    sum.smallest = all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest) ? all->smallest : sum.smallest;
-    sum.n_lost += all->n_lost;
-    *all = sum;
-}
-
-/* The times of a call, ascending and scaled, and the columns they belong to. h->t becomes the last. */
-static hd_status hdi_heat_sort_times(hdi_heat_call *h, int32_t n_times, const double *t) {
-    hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n_times);
-    double *sorted = HDI_TAKE(&h->s, double, n_times);
-    int32_t *column = HDI_TAKE(&h->s, int32_t, n_times), q;
-    if (h->e->status < 0) return h->e->status;
-    for (q = 0; q < n_times; q++) {              /* bits of doubles that are not negative are in their order */
-        const double v = t[q] + 0.0;
-        memcpy(&order[q].key, &v, sizeof v);
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, n_times);
-    for (q = 0; q < n_times; q++) {
-        column[q] = HDI_CAST(int32_t, order[q].id);
-        sorted[q] = hdi_heat_scaled(h->heat, t[column[q]]);
-    }
-    h->times = sorted;
-    h->n_times = n_times;
-    h->time_column = column;
-    h->t = sorted[n_times - 1];
-    return HD_OK;
-}
-
-/* The times one by one. */
-static hd_status hdi_heat_each_time(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
-                                    hd_report *rep) {
-    hd_report all, one;
-    int32_t q;
-    memset(&all, 0, sizeof all);
-    for (q = 0; q < n_times; q++) {
-        double *u = U + HDI_CAST(size_t, q) * ldu;
-        const hd_status st = f ? hd_heat_apply(heat, t[q], 1, f, 0, u, 0, &one) : hd_heat_columns(heat, t[q], kernel, 1, &source, u, 0, &one);
-        if (st < 0) {
-            *rep = one;
-            rep->error.column = q;
-            return st;
-        }
-        if (q == 0) all = one;
-        else hdi_report_merge(&all, &one);
-    }
-    *rep = all;
-    return rep->status;
 }
 
 HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
@@ -18426,609 +19748,6 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel
     return hdi_heat_run(&h);
 }
 
-/* ---- diagonals ---- */
-
-static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t) {
-    int32_t q;
-    if (n_times < 1) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: there is no time");
-    if (!t) return hdi_missing(h->e);
-    if (h->heat->opts.method == HD_METHOD_ITERATIVE || h->heat->opts.method == HD_METHOD_KRYLOV)
-        return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
-    for (q = 0; q < n_times; q++)
-        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
-    return HD_OK;
-}
-
-/* What the report says of queries that have but one way. */
-static void hdi_direct_only(hdi_heat_call *h) {
-    h->method = h->rep->method = HD_METHOD_DIRECT;
-    h->diagonal = 1;
-    h->rep->reason = "selected inversion of the factors of the poles";
-    h->rep->ordering = h->heat->elim.sym.ordering;
-    h->rep->factor_nnz = h->heat->elim.sym.nnz;
-}
-
-
-/* Columns within another call: k of them at the (scaled) time t through the factors that the plan holds or makes. */
-typedef struct hdi_columns {
-    double t;
-    hd_kernel kernel;
-    const hd_rational *set;
-    int32_t k, equal, watching;
-    const int32_t *sources;
-    double *U;                   /* NULL: only the lanes' accounts are wanted */
-    size_t ldu;
-    double *off_b, *off_m;       /* [k] */
-} hdi_columns;
-
-static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_report *rep) {
-    hdi_heat_call h;
-    if (hdi_heat_begin(&h, heat, c->kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR, 1, c->k, rep) < 0) return hdi_heat_end(&h);
-    h.t = c->t;
-    h.method = HD_METHOD_DIRECT;
-    h.diagonal = 1;
-    h.sources = c->sources;
-    h.set = c->set;
-    h.U = c->U;
-    h.ldu = c->ldu;
-    h.equal = c->equal;
-    h.watching = c->watching;
-    h.off_b = c->off_b;
-    h.off_m = c->off_m;
-    if (hdi_heat_analysed(heat, 1, h.e) >= 0) {
-        h.lap = heat->elim.lap;
-        if (h.equal) (void)hdi_heat_plain(&h);
-        else (void)hdi_direct_run(&h);
-    }
-    return hdi_heat_end(&h);
-}
-
-/* ---- rounding of inversions ---- */
-/* What rounding does to entries found by inversion no theorem says well. It is measured at a few rows where it is largest: a
- * solve with the same poles, whose own error its residual bounds, is held against the entry. */
-enum { HDI_PROBES = 3 };
-#define HDI_PROBE_SAFETY 4   /* differences seen at the probes stand for those of all rows */
-#define HDI_PROBE_OWN 100    /* and more so for functions of the caller's, whose poles may lie beside the spectrum */
-
-/* Can rounding be told from the values alone? k_t(i,i) is at least what the constants are of it, most (of row i) times value:
- * returns the relative error that a smaller value shows. For sets that approximate exp. */
-static double hdi_below_constants(const hd_laplacian *lap, const hd_rational *set, int32_t i, double value, double times) {
-    const double least = times * (lap->conserves && set->kind != HD_POLES_OWN ? 1 / lap->component_mass[lap->component[i]] : 0);
-    return value < 0.999 * least ? hdi_quotient(least - value, fabs(value)) : 0;
-}
-
-/* A pole beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss. What rounding
- * of its entries, (|theta| + t lambda) eps, then does to the inverse in the B norm: estimated by first-order perturbation.
- * Poles further than 1 from the spectrum are left to the probes. */
-static double hdi_own_near(const hd_heat *heat, const hd_rational *set, double t) {
-    double sum = 0;
-    int32_t p;
-    for (p = 0; p < set->n_poles && set->kind == HD_POLES_OWN; p++) {
-        const double d = hdi_pole_distance(set->theta[p]);
-        const double size = hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
-        if (d < 1) sum += DBL_EPSILON * hdi_quotient(hdi_quotient(size, d), d);
-    }
-    return sum;
-}
-
-/* The largest entry of diag(B^-1), or a bound of it: a matrix whose B norm is x has entries of at most this times x. */
-static double hdi_largest_spread(const hd_laplacian *lap) {
-    double most = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, 1 / lap->b_diag[i]);
-    return hdi_quotient(most, lap->b_ratio);
-}
-
-typedef struct hdi_probe { int32_t k, row[HDI_PROBES]; } hdi_probe;
-
-/* Rows to look at: where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). k may be NULL. */
-static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
-    hdi_probe x;
-    double most[2] = {-1, -1};
-    int32_t i, q, at[HDI_PROBES] = {-1, -1, -1};
-    int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        double l = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            if (lap->L.col[p] == i) l = lap->L.val[p];
-        if (l / lap->b_diag[i] > most[0]) {
-            most[0] = l / lap->b_diag[i];
-            at[0] = i;
-        }
-        if (k && l * k[i] > most[1]) {
-            most[1] = l * k[i];
-            at[1] = i;
-        }
-    }
-    at[2] = also;
-    for (x.k = 0, i = 0; i < HDI_PROBES; i++) {
-        for (q = 0; q < x.k && x.row[q] != at[i]; q++) {}
-        if (at[i] >= 0 && q == x.k) x.row[x.k++] = at[i];
-    }
-    return x;
-}
-
-/* Their columns by the poles of set at the call's time; what is found stays in the plan's lanes. */
-static hd_status hdi_probe_run(hdi_heat_call *h, hdi_probe *x, hd_kernel kernel, const hd_rational *set) {
-    hd_heat *heat = h->heat;
-    const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
-    int32_t vertex[HDI_PROBES], i;
-    hdi_columns c;
-    hd_report rep;
-    for (i = 0; i < x->k; i++) vertex[i] = heat->elim.lap->vertex[x->row[i]];
-    memset(&c, 0, sizeof c);
-    c.t = h->t;
-    c.kernel = kernel;
-    c.set = &own;
-    c.k = x->k;
-    c.sources = vertex;
-    c.watching = 1;
-    if (x->k > 0 && hdi_direct_columns(heat, &c, &rep) < 0) *h->e = rep.error;
-    else if (x->k > 0) h->rep->residual = hdi_max(h->rep->residual, rep.residual);
-    return h->e->status;
-}
-
-/* Probe q's own entry by the weights of `set`, a set in terms of a time that is tau times that of the factors, and a bound of
- * its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
-static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q, const hd_rational *set, double tau, double f, double g, double *off) {
-    const hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap = m->lap;
-    const hdi_lane *lane = heat->lane + q;
-    const double b = lap->b_diag[x->row[q]];
-    double value = set->a0 * f, by_b = 0, by_m = 0;
-    int32_t p;
-    for (p = 0; p < set->n_poles; p++) {
-        const double count = hdi_rat_count(set, p), weight = count * hdi_cabs(set->a[p]) * hdi_ratio_root(lap) * lane->pole_off[p];
-        value -= count / tau * hdi_cmul(set->a[p], lane->pole_value[p]).re;
-        by_m += weight * hdi_pole_reach(set->theta[p]);
-        by_b += weight / hdi_pole_distance(set->theta[p]);
-    }
-    *off = hdi_min(g > 0 && hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL, by_b * hdi_ratio_root(lap) / sqrt(b)) + 4 * DBL_EPSILON * fabs(value);
-    return value;
-}
-
-/* Entries of k_t for one time, in elimination order and in the unit of the scaled pair. */
-typedef struct hdi_entries {
-    double *k, *g;               /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
-    int64_t size;
-    double weighted, uniform;    /* of the set: |error| <= weighted g, uniform diag(B^-1) */
-    double left_out;             /* besides, times diag(B^-1): a0 of a set where B is full */
-    hd_rational resolvent;       /* the poles with weights for g */
-} hdi_entries;
-
-/* Factors for h->t, and from them k and g. room [2 size]. */
-static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *room, int64_t size, hdi_entries *x) {
-    hdi_elim *m = &h->heat->elim;
-    hd_c64 weight[2 * HD_MAX_POLES];
-    double factor = 1, slack = 0;
-    int32_t p, best, i;
-    memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
-    memset(weight, 0, sizeof weight);
-    if (hdi_direct_prepare(h) < 0) return h->e->status;
-    for (p = 0; p < m->set.n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
-    best = 0;
-    if (!hdi_resolvent_weights(&m->set, weight + m->set.n_poles, &slack)) {
-        slack = 0;
-        best = hdi_resolvent_pole(&m->set, &factor);
-        for (p = 0; p < m->set.n_poles; p++) weight[m->set.n_poles + p] = hdi_c(p == best ? factor : 0, 0);
-    }
-    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2, weight, wanted, room, size, h->e) < 0) return h->e->status;
-    x->resolvent = m->set;
-    x->resolvent.kind = HD_POLES_OWN;
-    x->resolvent.a0 = x->resolvent.max_error = x->resolvent.max_weighted_error = 0;
-    for (p = 0; p < m->set.n_poles; p++) x->resolvent.a[p] = hdi_cscale(-1 / hdi_rat_count(&m->set, p), weight[m->set.n_poles + p]);
-    x->k = room;
-    x->g = room + size;
-    x->size = size;
-    x->weighted = best >= 0 ? (1 + slack) * hdi_set_weighted(&m->set) : HUGE_VAL;
-    x->uniform = hdi_set_uniform(&m->set);       /* 0: bounds hold for c itself */
-    if (x->uniform == 0) x->weighted = 0;
-    x->left_out = 0;
-    for (i = 0; i < m->sym.n && wanted != HDI_WANT_ENTRIES; i++)
-        x->g[i] = hdi_max(x->g[i], hdi_constant_part(m->lap, i) * (wanted == HDI_WANT_FORMS ? m->lap->mass[i] * m->lap->mass[i] : 1));
-    return HD_OK;
-}
-
-/* Bound of the rational error of k_t(i,i), from g(i,i) and diag(B)(i). */
-static double hdi_entry_error(const hdi_entries *x, double g, double b, double b_ratio) {
-    const double spread = b_ratio > 0 ? 1 / (b_ratio * b) : HUGE_VAL, out = x->left_out > 0 ? x->left_out * spread : 0;
-    const double uniform = x->uniform > 0 ? x->uniform * spread : 0;
-    return (hdi_finite(x->weighted) ? hdi_min(x->weighted * hdi_max(0, g), uniform) : uniform) + out;
-}
-
-/* Place of each of the analysis' entries: row and column in elimination order. */
-static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t *i, int32_t *j) {
-    const int32_t begin = s->super[v], end = s->super[v + 1];
-    *j = begin + s->a_col[n];
-    *i = s->a_row[n] < end - begin ? begin + s->a_row[n] : s->row[s->row_ptr[v] + s->a_row[n] - (end - begin)];
-}
-
-/* diag(k_t B), a0 included, for a full B: from the entries of k_t on the pattern of B. */
-static void hdi_operator_diagonal(const hdi_elim *m, const double *k, double *diag) {
-    const hdi_symbolic *s = &m->sym;
-    int32_t v, i, j;
-    int64_t n;
-    for (i = 0; i < s->n; i++) diag[i] = m->set.a0;
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
-            hdi_entry_place(s, v, n, &i, &j);
-            diag[i] += kb;
-            if (i != j) diag[j] += kb;
-        }
-    }
-}
-
-/* Bound of a diagonal's error relative to the value itself above which the highest degree takes over: on all meshes tried errors are below 1e-7 then. With
- * B = I errors come closer to their bound. */
-static double hdi_diagonal_limit(const hd_heat *heat) {
-    const hd_laplacian_kind kind = heat->source->kind;
-    return kind == HD_LAPLACIAN_COT || kind == HD_LAPLACIAN_EXP ? 4.2e-7 : 5.3e-7;
-}
-
-/* The ledger of values found by inversion. */
-static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
-    const hd_rational *set = &h->heat->elim.set;
-    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && (set->a0 == 0 || !h->heat->source->B);
-    return hdi_ledger_begin(h->equal || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
-}
-
-/* Values by rows to vertices; their errors, off and rounding relative to size, to the report, in the caller's unit. Returns the largest off relative to its value. */
-static double hdi_diagonal_tell(hdi_heat_call *h, hd_kernel kernel, const double *value, const double *off, const double *size, double rounding, double *out) {
-    const hd_laplacian *lap = h->lap;
-    const double unit = kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
-    hdi_ledger ledger = hdi_inverse_ledger(h, 1);
-    double most = 0;
-    int32_t i, v;
-    h->relative = 1;
-    for (v = 0; v < lap->n; v++) out[v] = kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
-    for (i = 0; i < lap->n_active; i++) {
-        hdi_parts part;
-        memset(&part, 0, sizeof part);
-        part.rational = unit * off[i];
-        part.rounding = 4 * DBL_EPSILON * unit * fabs(value[i]) + (rounding > 0 ? unit * rounding * fabs(size[i]) : 0);
-        out[lap->vertex[i]] = unit * value[i];
-        hdi_ledger_note(&ledger, unit * value[i], part);
-        most = hdi_max(most, hdi_quotient(off[i], fabs(value[i])));
-    }
-    hdi_ledger_close(&ledger, h->rep);
-    return most;
-}
-
-/* Where t is so large that k_t(i,i) = 1/mass of the component. */
-static void hdi_diagonal_equal(hdi_heat_call *h, hd_kernel kernel, double *value, double *off, double *out) {
-    const hd_laplacian *lap = h->lap;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        value[i] = (kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1) / lap->component_mass[lap->component[i]];
-        off[i] = 0;
-    }
-    (void)hdi_diagonal_tell(h, kernel, value, off, value, HDI_CAST(double, lap->n_active) * DBL_EPSILON, out);
-}
-
-/* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. *relative: the largest of the
- * rational error relative to the value. */
-static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
-    hd_heat *heat = h->heat;
-    const hd_laplacian *lap;
-    const hdi_symbolic *s;
-    const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
-    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *room, *value, *off, *g, *own, rounding = 0;
-    const double *size_of;
-    hdi_entries x;
-    hdi_probe probe;
-    int64_t size, n;
-    int32_t i, v, worst = 0;
-    *relative = 0;
-    if (hdi_heat_analysed(heat, 1, h->e) < 0) return hdi_scope_end(&scope);
-    h->lap = lap = heat->elim.lap;
-    h->equal = hdi_heat_equal(heat, h->t, h->e);
-    s = &heat->elim.sym;
-    size = full ? s->a_ptr[s->n_super] : s->n;
-    room = HDI_TAKE(&scope, double, 2 * size);
-    value = HDI_TAKE(&scope, double, 4 * HDI_CAST(uint64_t, s->n));
-    if (h->e->status < 0) return hdi_scope_end(&scope);
-    off = value + s->n;
-    g = off + s->n;
-    own = g + s->n;
-    if (h->equal) {
-        hdi_diagonal_equal(h, kernel, value, off, out);
-        return hdi_scope_end(&scope);
-    }
-    if (hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) < 0) return hdi_scope_end(&scope);
-    if (full) {
-        hdi_operator_diagonal(&heat->elim, x.k, value);
-        for (v = 0; v < s->n_super; v++)
-            for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++)
-                if (s->a_row[n] == s->a_col[n]) g[s->super[v] + s->a_col[n]] = hdi_max(x.g[n], hdi_constant_part(lap, s->super[v] + s->a_col[n]));
-        for (i = 0; i < s->n; i++) off[i] = hdi_min(x.weighted == 0 ? 0 : hdi_finite(x.weighted) ? x.weighted * sqrt(hdi_max(0, g[i]) * lap->b_diag[i]) : HUGE_VAL,
-                                                    x.uniform * hdi_ratio_root(lap));
-    } else {
-        const double a0 = heat->elim.set.a0;
-        if (lap->B) x.left_out = fabs(a0);       /* a full B's inverse is not at hand, and a0 is of the size of the set's error */
-        for (i = 0; i < s->n; i++) {
-            const double b = kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
-            g[i] = x.g[i];
-            value[i] = b * (x.k[i] + (lap->B ? 0 : a0 / lap->mass[i]));
-            off[i] = b * hdi_entry_error(&x, x.g[i], lap->b_diag[i], lap->b_ratio);
-        }
-    }
-    /* Rounding is relative to the value; of any function of the caller's, which may vanish, to the resolvent. */
-    size_of = value;
-    if (heat->elim.set.kind == HD_POLES_OWN) {
-        for (i = 0; i < s->n; i++) {
-            const double most = lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[i]) : HUGE_VAL;
-            own[i] = (g[i] > 0 && g[i] < most ? g[i] : most) * (kernel == HD_KERNEL_OPERATOR ? lap->b_diag[i] : 1);
-        }
-        size_of = own;
-    }
-    for (i = 1; i < s->n; i++)
-        if (off[i] * value[worst] > off[worst] * value[i]) worst = i;
-    probe = hdi_probe_rows(lap, value, s->n > 0 ? worst : -1);
-    if (hdi_probe_run(h, &probe, kernel, &heat->elim.set) < 0) return hdi_scope_end(&scope);
-    for (i = 0; i < probe.k; i++) {
-        const int32_t row = probe.row[i];
-        const double f = kernel == HD_KERNEL_OPERATOR ? 1 : lap->B ? 0 : 1 / lap->mass[row];
-        double by, there = hdi_probe_value(heat, &probe, i, &heat->elim.set, 1, f, g[row], &by);
-        rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - value[row]) + by, fabs(size_of[row])));
-    }
-    for (i = 0; i < s->n; i++) rounding = hdi_max(rounding, hdi_below_constants(lap, &heat->elim.set, i, value[i], kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1));
-    if (size_of == own) {
-        const double near = hdi_own_near(heat, &heat->elim.set, h->t);
-        double most = 0;
-        for (i = 0; i < s->n && near > 0; i++) {
-            const double b = lap->b_diag[i], spread = (kernel == HD_KERNEL_OPERATOR ? 1 : 1 / b) / lap->b_ratio;
-            most = hdi_max(most, hdi_quotient(spread, own[i]));
-        }
-        rounding = HDI_PROBE_OWN * rounding + near * most;
-    }
-    *relative = hdi_diagonal_tell(h, kernel, value, off, size_of, rounding, out);
-    return hdi_scope_end(&scope);
-}
-
-/* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other is the same. */
-static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
-    const hdi_symbolic *s = &m->sym;
-    const hd_csr *a = &m->source->L;
-    int32_t v, i, j;
-    int64_t n;
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            const int64_t p = s->a_from[n];
-            int64_t other;
-            hdi_entry_place(s, v, n, &i, &j);
-            val[p] = unit * k[n];
-            if (i == j) continue;
-            i = s->perm[i];                      /* a_from is entry (j,i): rows of A are walked from column j */
-            j = s->perm[j];
-            other = a->row_ptr[i] + hdi_lower_bound(a->col + a->row_ptr[i], a->row_ptr[i + 1] - a->row_ptr[i], j);
-            val[other] = unit * k[n];
-        }
-    }
-}
-
-/* Adds a0 B^-1 where B is diagonal, and notes the rational error: that of an entry (i,j) is at most the larger of those of (i,i)
- * and (j,j). k and g [n]: their diagonals. */
-static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double *g, hdi_ledger *ledger) {
-    const hdi_symbolic *s = &m->sym;
-    const hd_laplacian *lap = m->lap;
-    hdi_parts part;
-    int32_t v, i;
-    int64_t n;
-    memset(&part, 0, sizeof part);
-    if (lap->B) x->left_out = fabs(m->set.a0);
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            if (s->a_row[n] != s->a_col[n]) continue;
-            i = s->super[v] + s->a_col[n];
-            if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
-            k[i] = x->k[n];
-            g[i] = x->g[n];
-            part.rational = m->scale * hdi_entry_error(x, g[i], lap->b_diag[i], lap->b_ratio);
-            part.rounding = 4 * DBL_EPSILON * m->scale * fabs(k[i]);
-            hdi_ledger_note(ledger, m->scale * k[i], part);
-        }
-    }
-}
-
-/* Rounding of a row: the probe's own entry, and what its column differs by from the entries of the row. */
-static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe, int32_t q, const double *k, const double *g, const double *values) {
-    const hd_laplacian *lap = heat->source, *in = heat->elim.lap;
-    const int32_t at = probe->row[q], row = lap->row[in->vertex[at]];
-    double by, there = hdi_probe_value(heat, probe, q, &heat->elim.set, 1, lap->B ? 0 : 1 / in->mass[at], g[at], &by), most;
-    hdi_parts part;
-    int64_t p;
-    most = heat->scale * (HDI_PROBE_SAFETY * fabs(there - k[at]) + by);
-    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && heat->elim.set.a0 == 0; p++) {
-        const int32_t j = in->row[lap->vertex[lap->L.col[p]]];
-        const double off = hdi_max(1, g[at] > 0 ? sqrt(hdi_max(0, g[j]) / g[at]) : 1) * by;
-        most = hdi_max(most, fabs(heat->scale * heat->lane[q].u[j] - values[p]) + heat->scale * off);
-    }
-    memset(&part, 0, sizeof part);
-    part.rounding = heat->elim.set.kind == HD_POLES_OWN ? HDI_PROBE_OWN * most : most;
-    part.rounding += 4 * DBL_EPSILON * heat->scale * fabs(k[at]);
-    return part;
-}
-
-/* Where t is so large that k_t is 1/mass of the component. */
-static void hdi_edges_equal(hdi_heat_call *h, double *values) {
-    const hd_laplacian *lap = h->heat->source;
-    hdi_ledger ledger = hdi_inverse_ledger(h, 0);
-    hdi_parts part;
-    int32_t i;
-    int64_t p;
-    memset(&part, 0, sizeof part);
-    for (i = 0; i < lap->n_active; i++) {
-        const double k = 1 / lap->component_mass[lap->component[i]];
-        part.rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON * k;
-        hdi_ledger_note(&ledger, k, part);
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) values[p] = k;
-    }
-    hdi_ledger_close(&ledger, h->rep);
-}
-
-/* With the set's degree, into values. */
-static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *rational) {
-    hd_heat *heat = h->heat;
-    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    const hdi_symbolic *s = &heat->elim.sym;
-    const int64_t size = s->a_ptr[s->n_super];
-    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, size)), *k = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, s->n));
-    hdi_entries x;
-    int32_t i;
-    *rational = 0;
-    h->lap = heat->elim.lap;
-    h->equal = h->e->status >= 0 && hdi_heat_equal(heat, h->t, h->e);
-    if (h->equal) hdi_edges_equal(h, values);
-    else if (h->e->status >= 0 && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
-        hdi_ledger ledger = hdi_inverse_ledger(h, 0);
-        hdi_probe probe;
-        int32_t top = 0;
-        hdi_edges_judge(&heat->elim, &x, k, k + s->n, &ledger);
-        *rational = hdi_quotient(ledger.off.rational, ledger.largest);
-        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
-        for (i = 1; i < s->n; i++)
-            if (k[i] > k[top]) top = i;
-        probe = hdi_probe_rows(h->lap, k, s->n > 0 ? top : -1);
-        if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, &heat->elim.set) >= 0)
-            for (i = 0; i < probe.k; i++) {
-                hdi_parts part = hdi_edges_rounding(heat, &probe, i, k, k + s->n, values);
-                part.rounding += heat->scale * hdi_own_near(heat, &heat->elim.set, h->t) * hdi_largest_spread(h->lap);
-                hdi_ledger_note(&ledger, heat->scale * k[probe.row[i]], part);
-            }
-        hdi_ledger_close(&ledger, h->rep);
-    }
-    return hdi_scope_end(&scope);
-}
-
-/* The diagonal of the kernel on vertices, or with `edges` k_t on the pattern of L, with the set's degree by default. Where the bound shows vertices (of tiny cells
- * among large ones, slivers) whose error relative to their own value may be above the promise, of edges that relative to the largest value, a second time with the
- * highest degree. The error seen is a fifth of the bound or so on all meshes tried: 1e-7. */
-static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges, double *out) {
-    const hd_report before = *h->rep;
-    const hd_heat *heat = h->heat;
-    const double loose = kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1;   /* the bound, of the operator's diagonal */
-    double rational;
-    hd_status st;
-    if ((edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational)) < 0) return h->e->status;
-    if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
-    if (rational <= loose * hdi_diagonal_limit(heat)) return HD_OK;
-    *h->rep = before;
-    h->degree = HDI_RAT_KERNEL_MAX;
-    st = edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational);
-    h->degree = 0;
-    if (st != HD_ERR_MEMORY_LIMIT) return st;
-    *h->rep = before;                            /* no room for twice the factors: the first answer it is */
-    return edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational);
-}
-
-/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
-#define HDI_SHARED_TOL 2.5e-8
-#define HDI_SHARED_DISTANCE_TOL 2e-10
-
-/* ---- diagonals at many times ---- */
-
-/* After packs that did not fit the byte limit: those that are there go, and the call begins anew. */
-static void hdi_heat_forget(hdi_heat_call *h) {
-    hdi_elim *m = &h->heat->elim;
-    hd_report *rep = h->rep;
-    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
-    m->filled = 0;
-    hdi_error_clear(h->e);
-    memset(rep, 0, sizeof *rep);
-    hdi_direct_only(h);
-    h->set = NULL;
-}
-
-/* Packs that a shared set for a ratio of times takes; 0: there is none. */
-static int32_t hdi_shared_packs(double ratio, double tol) {
-    hd_rational set;
-    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
-}
-
-/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how many packs those are. */
-static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
-    int32_t w, best = 0;
-    for (w = 1; w <= most && w <= 64; w++) {
-        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
-        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
-        best = w;
-        *packs = w * each;
-    }
-    return best;
-}
-
-/* Weights of k and of a bound of g for every time in turn, for poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
-static void hdi_shared_weights(const hd_rational *set, int32_t n_times, const double *t, hd_c64 *weight) {
-    int32_t q, p;
-    for (q = 0; q < n_times; q++) {
-        double factor = 1, tau = t[q] / t[0];
-        const int32_t best = hdi_resolvent_pole(set + q, &factor);
-        hd_c64 *k = weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
-        for (p = 0; p < set->n_poles; p++) {
-            k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
-            g[p] = hdi_c(p == best ? factor / tau : 0, 0);
-        }
-    }
-}
-
-/* k_t(v,v) for the (scaled) times t[0..n_times), ascending, by one set of poles, into the columns that `column` names. */
-static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const double *t, const int32_t *column, double *D, size_t ldd) {
-    hd_heat *heat = h->heat;
-    hdi_elim *m = &heat->elim;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), sets = 2 * HDI_CAST(uint64_t, n_times);
-    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
-    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
-    double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
-    int32_t q, i, r, worst = -1;
-    double most = 0;
-    hdi_probe probe;
-    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
-    h->t = t[0];
-    h->set = set;
-    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
-    hdi_shared_weights(set, n_times, t, weight);
-    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, HDI_WANT_DIAGONAL, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
-    h->set = NULL;
-    h->lap = m->lap;
-    for (i = 0; i < m->sym.n; i++) {             /* of the last time: there rounding is largest */
-        const double *k = room + 2 * HDI_CAST(size_t, n_times - 1) * n, *g = k + n;
-        if (worst < 0 || g[i] * most > k[i]) {
-            worst = i;
-            most = hdi_quotient(k[i], g[i]);
-        }
-    }
-    probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * n, worst);
-    if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < n_times; q++) {
-        const double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
-        double rounding = 0;
-        for (r = 0; r < probe.k; r++) {
-            const int32_t row = probe.row[r];
-            double by, there = hdi_probe_value(heat, &probe, r, set + q, t[q] / t[0], 0, g[row], &by);
-            rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - k[row]) + by, fabs(k[row])));
-        }
-        for (i = 0; i < m->sym.n; i++) rounding = hdi_max(rounding, hdi_below_constants(m->lap, set + q, i, k[i], 1));
-        for (i = 0; i < m->sym.n; i++) off[i] = hdi_min(set[q].max_weighted_error * hdi_max(0, g[i]), set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
-        (void)hdi_diagonal_tell(h, HD_KERNEL_SYMMETRIC, k, off, k, rounding, D + HDI_CAST(size_t, column[q]) * ldd);
-    }
-    return hdi_scope_end(&s);
-}
-
-/* All times, in windows that share their poles. */
-static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
-    const double span = h->times[h->n_times - 1] / h->times[0];
-    int32_t w, q0, q1;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
-        for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
-        if (hdi_diagonal_window(h, q1 - q0, h->times + q0, h->time_column + q0, D, ldd) < 0) break;
-    }
-    return h->e->status;
-}
-
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report) {
     hdi_heat_call h;
     int32_t q;
@@ -19060,531 +19779,6 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd
     hdi_direct_only(&h);
     (void)hdi_entries_sure(&h, HD_KERNEL_SYMMETRIC, 1, values);
     return hdi_heat_end(&h);
-}
-
-/* ---- distances ---- */
-
-/* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source, and bounds of
- * their errors: the rational one of f is at most weighted times a form with diagonal g, and at most uniform times one with
- * diagonal spread; that of a column by rounding at most sqrt(g_v) times a number that is known of each column. */
-typedef struct hdi_metric {
-    hd_distance_kind kind;
-    double t;                    /* of columns, scaled */
-    double unit;                 /* of f to the plan's numbers */
-    hd_rational set;             /* of the factors */
-    int filter, equal;           /* no time; t is as good as infinite */
-    double *diag, *g, *spread;
-    hd_rational resolvent;       /* weights for g */
-    double weighted, uniform;    /* HUGE_VAL: it bounds nothing */
-    double left_out;             /* times the form of spread, besides: a0 B^-1 of a full B */
-    double rounding;             /* of diag, relative to it, or with own to g: of any function of the caller's, which may vanish */
-    int own;
-} hdi_metric;
-
-/* A column of f by vertices, and what rounding can put it off by: sqrt(g_v) times off_m, and sqrt(spread_v) times off_b. */
-typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
-
-/* What rounding of a function of the caller's is relative to: the resolvent, or where that bounds nothing the mass. */
-static double hdi_own_size(double g, double spread) { return g > 0 && hdi_finite(g) ? g : spread; }
-
-/* Commute and biharmonic, from L grounded. */
-static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scope, hd_error *e) {
-    const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
-    hdi_elim *m = &heat->elim;
-    hdi_ground *g = &heat->ground;
-    double *work, *u;
-    hdi_probe probe;
-    int32_t i, farthest = 0;
-    if (hdi_ground_make(m, g, e) < 0 || (forms && hdi_ground_forms(m, g, e) < 0)) return e->status;
-    work = HDI_TAKE(scope, double, hdi_ground_room(m));
-    u = HDI_TAKE(scope, double, m->sym.n);
-    if (!work || !u) return scope->e->status;
-    x->unit = forms ? 1 / heat->scale : 1;
-    for (i = 0; i < m->sym.n; i++) {
-        const int32_t r = m->sym.perm[i];
-        x->diag[r] = x->unit * (forms ? g->form[i] : g->diag[i]);
-        x->g[r] = hdi_max(0, g->diag[i]);
-        x->spread[r] = HUGE_VAL;
-    }
-    for (i = 1; i < m->sym.n; i++)
-        if (g->diag[i] > g->diag[farthest]) farthest = i;
-    probe = hdi_probe_rows(m->lap, g->diag, m->sym.n > 0 ? farthest : -1);
-    for (i = 0; i < probe.k; i++) {
-        const double there = forms ? g->form[probe.row[i]] : g->diag[probe.row[i]];
-        const double off = hdi_ground_column(m, g, probe.row[i], forms, u, work);
-        x->rounding = hdi_max(x->rounding, hdi_quotient(4 * HDI_PROBE_SAFETY * fabs(u[probe.row[i]] - there) + off * sqrt(hdi_max(0, g->diag[probe.row[i]])), there));
-    }
-    return HD_OK;
-}
-
-/* Where t is so large that kernels are the means of the components. */
-static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
-    int32_t r;
-    for (r = 0; r < lap->n_active; r++) {
-        const double b = lap->mass[r], k = 1 / lap->component_mass[lap->component[r]];
-        x->diag[r] = x->kind == HD_DISTANCE_WEIGHTED ? b * (b * k) : k;
-        x->g[r] = x->spread[r] = 0;
-    }
-    x->rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON;
-}
-
-/* The diagonal by inversion of the factors of the poles, at h->t. */
-static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *scope) {
-    hd_heat *heat = h->heat;
-    hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap = heat->source;
-    const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
-    double *room = HDI_TAKE(scope, double, 2 * HDI_CAST(uint64_t, m->sym.n));
-    hdi_entries entries;
-    hdi_probe probe;
-    int32_t i;
-    if (!room || hdi_entries_make(h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) < 0) return h->e->status;
-    if (lap->B && !full) x->left_out = fabs(m->set.a0);
-    for (i = 0; i < m->sym.n; i++) {
-        const int32_t r = m->sym.perm[i];
-        const double b = lap->b_diag[r], w = full ? 1 / heat->scale : weighted ? b * m->lap->mass[i] : heat->scale;   /* no square of b */
-        x->diag[r] = w * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i])) + (full ? m->set.a0 * b : 0);
-        x->g[r] = w * entries.g[i];
-        x->spread[r] = weighted ? b : lap->b_ratio > 0 ? 1 / (lap->b_ratio * b) : HUGE_VAL;
-    }
-    x->own = m->set.kind == HD_POLES_OWN;
-    x->set = m->set;
-    x->resolvent = entries.resolvent;
-    x->weighted = entries.weighted;
-    x->uniform = entries.uniform;
-    probe = hdi_probe_rows(m->lap, entries.k, -1);
-    if (hdi_probe_run(h, &probe, full ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x->set) < 0) return h->e->status;
-    for (i = 0; i < probe.k; i++) {
-        const int32_t row = probe.row[i];
-        double by, there, value = entries.k[row];
-        if (full) {                              /* f is (B K)(v,v): the column is K e_v */
-            hdi_pair_apply(m->lap, 0, 1, heat->lane[i].u, heat->lane[i].tmp);
-            there = heat->lane[i].tmp[row];
-            (void)hdi_probe_value(heat, &probe, i, &x->set, 1, 1, HUGE_VAL, &by);
-            by *= sqrt(m->lap->b_diag[row]) / (hdi_ratio_root(m->lap) / sqrt(m->lap->b_diag[row]));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
-            value = (x->diag[m->sym.perm[row]]) * heat->scale;
-            by += HDI_PROBE_SAFETY * fabs(there - value);
-        } else {
-            there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
-            by += HDI_PROBE_SAFETY * fabs(there - value);
-        }
-        if (x->own) value = hdi_own_size(entries.g[row], m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[row]) : HUGE_VAL);
-        x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(value)));
-    }
-    if (x->own) {
-        const double near = hdi_own_near(heat, &x->set, h->t);
-        double most = 0;
-        for (i = 0; i < m->sym.n && near > 0; i++) {
-            const double spread = hdi_quotient(1 / m->lap->b_diag[i], m->lap->b_ratio);
-            most = hdi_max(most, hdi_quotient(spread, hdi_own_size(entries.g[i], spread)));
-        }
-        x->rounding = HDI_PROBE_OWN * x->rounding + near * most;
-    }
-    for (i = 0; i < m->sym.n && x->set.a0 == 0; i++)
-        x->rounding = hdi_max(x->rounding, hdi_below_constants(m->lap, &x->set, i, entries.k[i], full ? m->lap->mass[i] * m->lap->mass[i] : 1));
-    return HD_OK;
-}
-
-static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, hdi_metric *x, hdi_scope *keep, hd_report *rep) {
-    const hd_laplacian *lap = heat->source;
-    const size_t n = HDI_CAST(size_t, lap->n_active);
-    hd_error *e = keep->e;
-    hdi_scope scope;
-    hdi_heat_call h;
-    memset(x, 0, sizeof *x);
-    x->kind = kind;
-    x->filter = kind >= HD_DISTANCE_COMMUTE;
-    x->diag = HDI_TAKE(keep, double, 3 * n + 1);
-    if (!x->diag) return e->status;
-    x->g = x->diag + n;
-    x->spread = x->g + n;
-    scope = hdi_scope_begin(heat->ctx, e);
-    x->t = hdi_min(2 * hdi_heat_scaled(heat, t), 1e300);
-    x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, 1, 1, rep) < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) {
-        *e = *h.e;
-        return hdi_heat_end(&h);
-    }
-    hdi_direct_only(&h);
-    h.t = x->t;
-    h.degree = degree;
-    h.lap = heat->elim.lap;
-    h.relative = 1;
-    if (x->filter) {
-        rep->reason = "one real factor of L, one vertex of each component held";
-        (void)hdi_metric_ground(heat, x, &scope, h.e);
-        rep->factor_flops = heat->elim.sym.flops;
-    } else {
-        x->equal = hdi_heat_equal(heat, x->t, h.e);
-        if (x->equal) hdi_metric_equal(lap, x);
-        else if (h.e->status >= 0) (void)hdi_metric_invert(&h, x, &scope);
-    }
-    if (h.e->status < 0 && e->status >= 0) *e = *h.e;
-    hdi_heat_end(&h);
-    return hdi_scope_end(&scope);
-}
-
-/* Column s of f into u [n], by vertices, from what the plan gives: of k_t, or of K_t e_s. work [2 n_active]. */
-static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
-    int32_t i;
-    if (x->kind != HD_DISTANCE_WEIGHTED) {
-        for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : u[i];
-        return;
-    }
-    hdi_gather(lap, u, work);
-    hdi_pair_apply(lap, 0, 1, work, work + lap->n_active);
-    for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : work[lap->n_active + lap->row[i]];
-}
-
-/* Columns of f for k sources, step apart; c [k]. rep: residual. */
-static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, int32_t k, const int32_t *sources, double *D, size_t step, hdi_metric_column *c, hd_report *rep, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const hd_laplacian *lap = heat->source;
-    const size_t n = HDI_CAST(size_t, lap->n_active);
-    const double unit = x->kind == HD_DISTANCE_WEIGHTED ? 1 / sqrt(heat->scale) : sqrt(heat->scale);
-    double *work, *off, *u;
-    hdi_columns query;
-    hd_report columns;
-    int32_t r, i;
-    for (r = 0; r < k; r++) c[r].u = D + HDI_CAST(size_t, r) * step;
-    if (x->filter) {
-        work = HDI_TAKE(&s, double, hdi_ground_room(&heat->elim));
-        u = HDI_TAKE(&s, double, n);
-        for (r = 0; r < k && e->status >= 0; r++) {
-            const int32_t row = heat->elim.lap->row[sources[r]];
-            if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, e) < 0) break;
-            c[r].off_m = 0;
-            c[r].off_b = HUGE_VAL;
-            memset(c[r].u, 0, HDI_CAST(size_t, lap->n) * sizeof(double));
-            if (row < 0) continue;
-            c[r].off_m = x->unit * hdi_ground_column(&heat->elim, &heat->ground, row, x->kind == HD_DISTANCE_BIHARMONIC, u, work);
-            for (i = 0; i < heat->elim.sym.n; i++) c[r].u[heat->elim.lap->vertex[i]] = x->unit * u[i];
-        }
-        return hdi_scope_end(&s);
-    }
-    off = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, k) + 1);
-    work = HDI_TAKE(&s, double, 2 * n + 1);
-    if (e->status < 0) return hdi_scope_end(&s);
-    memset(&query, 0, sizeof query);
-    query.t = x->t;
-    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    query.set = &x->set;
-    query.k = k;
-    query.equal = x->equal;
-    query.sources = sources;
-    query.U = D;
-    query.ldu = step;
-    query.off_b = off;
-    query.off_m = off + k;
-    if (hdi_direct_columns(heat, &query, &columns) < 0) *e = columns.error;
-    else rep->residual = hdi_max(rep->residual, columns.residual);
-    for (r = 0; r < k && e->status >= 0; r++) {
-        hdi_metric_of_column(lap, x, c[r].u, work);
-        c[r].off_m = unit * off[k + r];
-        c[r].off_b = unit * off[r] * (x->kind == HD_DISTANCE_WEIGHTED ? sqrt(heat->scale) : 1);
-    }
-    return hdi_scope_end(&s);
-}
-
-/* Bound of the rational error of d^2 between s and v: of the form of g, whose column g_sv is known or not, and of that of
- * spread; either bounds it alone. */
-static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss, double sv) {
-    const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, gv)), wide = sqrt(ss) + sqrt(sv);
-    double form = root * root, bound = HUGE_VAL;
-    if (x->filter || x->equal) return 0;
-    if (x->uniform == 0) return x->left_out > 0 ? x->left_out * wide * wide : 0;
-    if (gsv) form = hdi_min(form, hdi_max(0, gs + gv - 2 * *gsv) + (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
-    if (hdi_finite(x->weighted)) bound = x->weighted * form;
-    bound = hdi_min(bound, x->uniform * wide * wide);
-    return x->left_out > 0 ? bound + x->left_out * wide * wide : bound;
-}
-
-/* d from column s of f, in place. g: the same column of the resolvent, whose own d^2 bounds the rational error; NULL: from the
- * diagonals, which is less sharp near s. Between components the last two kinds are infinite. */
-static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s, const hdi_metric_column *c, const double *g, hd_report *rep, hdi_ledger *ledger) {
-    const int32_t rs = lap->row[s];
-    const double fs = rs < 0 ? 0 : x->diag[rs], gs = rs < 0 ? 0 : x->g[rs], ss = rs < 0 ? 0 : x->spread[rs];
-    double *u = c->u;
-    int32_t v;
-    for (v = 0; v < lap->n; v++) {
-        const int32_t r = lap->row[v];
-        const double f = r < 0 ? 0 : x->diag[r], gv = r < 0 ? 0 : x->g[r], sv = r < 0 ? 0 : x->spread[r], d2 = fs - 2 * u[v] + f;
-        double rational, rounding = 0, delta, error, d;
-        hdi_parts part;
-        if (v == s) {
-            u[v] = 0;
-            continue;
-        }
-        if (x->filter && (r < 0 || rs < 0 || lap->component[r] != lap->component[rs])) {
-            u[v] = HUGE_VAL;
-            continue;
-        }
-        rational = hdi_metric_rational(x, gs, gv, g ? g + v : NULL, ss, sv);
-        if (r >= 0 && rs >= 0) {
-            const double by_m = hdi_bound_times(hdi_finite(gv) ? sqrt(hdi_max(0, gv)) : HUGE_VAL, c->off_m);
-            rounding = 2 * hdi_min(by_m, hdi_bound_times(hdi_finite(sv) ? sqrt(sv) : HUGE_VAL, c->off_b));
-        }
-        if (x->rounding > 0) rounding += x->rounding * (x->own ? hdi_own_size(gs, ss) + hdi_own_size(gv, sv) : fabs(fs) + fabs(f));
-        rounding += 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
-        delta = rational + rounding;
-        d = d2 > 0 ? sqrt(d2) : 0;
-        u[v] = d;
-        error = d2 > delta ? delta / d : sqrt(2 * delta);
-        rep->n_lost += delta > 0 && d2 < 10 * delta;
-        memset(&part, 0, sizeof part);
-        if (delta > 0) {
-            part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
-            part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
-        }
-        hdi_ledger_note(ledger, d, part);
-    }
-}
-
-static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
-    const int none = x->filter || x->equal || (x->uniform == 0 && x->left_out == 0);
-    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, 1);
-}
-
-static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, hd_error *e) {
-    int32_t q;
-    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC) return hdi_fail(e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
-    if (kind >= HD_DISTANCE_COMMUTE)
-        return n_times > 1 || n_times < 0 ? hdi_fail_row(e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times) : HD_OK;
-    if (n_times < 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: there is no time");
-    if (!t) return hdi_missing(e);
-    for (q = 0; q < n_times; q++)
-        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
-    return HD_OK;
-}
-
-/* Bound of the error relative to the largest distance that sends the default to the highest degree, and what the bound of degree 9 is to be expected at, as
- * seen on meshes of 1K to 50K vertices: so much times sqrt(t)/h. */
-#define HDI_DISTANCE_SURE 2.5e-6
-#define HDI_DISTANCE_EXPECTED 4.4e-7
-
-/* Are the poles beyond our choice, or the highest degree as it is? */
-static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
-    return kind >= HD_DISTANCE_COMMUTE || heat->poles_asked || heat->exacting;
-}
-
-/* The same columns of the resolvent's bound g, in f's units. */
-static hd_status hdi_metric_resolvent(hd_heat *heat, const hdi_metric *x, int32_t source, double *g, double *work, hd_error *e) {
-    hdi_columns query;
-    hd_report rep;
-    memset(&query, 0, sizeof query);
-    query.t = x->t;
-    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    query.set = &x->resolvent;
-    query.k = 1;
-    query.sources = &source;
-    query.U = g;
-    query.ldu = HDI_CAST(size_t, heat->source->n);
-    if (hdi_direct_columns(heat, &query, &rep) < 0) *e = rep.error;
-    else hdi_metric_of_column(heat->source, x, g, work);
-    return e->status;
-}
-
-/* One time, all sources: columns step apart. degree 0: by default. */
-static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, int32_t k, const int32_t *sources, double *D, size_t step,
-                                   hd_report *rep, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const size_t n = HDI_CAST(size_t, heat->source->n);
-    double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
-    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, HDI_CAST(uint64_t, k) + 1);
-    hdi_metric x;
-    int32_t r;
-    memset(rep, 0, sizeof *rep);
-    if (e->status < 0 || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
-    rep->error_relative = 0;
-    (void)hdi_metric_columns(heat, &x, k, sources, D, step, column, rep, e);
-    if (e->status >= 0 && !x.filter && !x.equal && x.weighted > 0 && hdi_finite(x.weighted)) g = HDI_TAKE(&s, double, n);
-    for (r = 0; r < k && e->status >= 0; r++) {
-        hdi_ledger ledger = hdi_metric_ledger(&x);
-        if (g && hdi_metric_resolvent(heat, &x, sources[r], g, work, e) < 0) break;
-        hdi_metric_distance(heat->source, &x, sources[r], column + r, g, rep, &ledger);
-        hdi_ledger_close(&ledger, rep);
-    }
-    return hdi_scope_end(&s);
-}
-
-/* out [n_sets][n] += the weighted sums of column `row` of the inverses, or with mass of the inverses times the (full, scaled) B, rows in elimination order: pairs only.
- * x [8 n], work as a sweep's, active [n_super], spare [3 n]. pole_off: the poles' residuals as seen, in the norm of D^-1. */
-static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active,
-                              double *spare, double *pole_off) {
-    const int32_t n = m->sym.n, n_poles = m->set.n_poles;
-    hdi_check check, *list = &check;
-    const int64_t begin = m->lap->L.row_ptr[row], end = m->lap->L.row_ptr[row + 1];
-    int64_t p;
-    int32_t i, k, q, j;
-    memset(active, 0, HDI_CAST(size_t, m->sym.n_super));
-    hdi_sweep_touch(&m->sym, row, active);
-    for (p = begin; p < end && mass; p++) hdi_sweep_touch(&m->sym, m->lap->L.col[p], active);
-    for (i = 0; 4 * i < n_poles; i++) {
-        hdi_sweep z;
-        memset(x, 0, HDI_CAST(size_t, n) * HDI_PACK * sizeof *x);
-        for (q = 0; q < 4 && !mass; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
-        for (p = begin; p < end && mass; p++)
-            for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, m->lap->L.col[p]) + q] = m->lap->B[p];
-        z = hdi_sweep_open(m->pack + i, 1, x, work, 1);
-        z.active = active;
-        hdi_sweep_run(&z, m->ctx);
-        memset(&check, 0, sizeof check);
-        memset(spare, 0, 3 * HDI_CAST(size_t, n) * sizeof *spare);
-        if (!mass) spare[row] = 1;
-        for (p = begin; p < end && mass; p++) spare[m->lap->L.col[p]] = m->lap->B[p];
-        check.lap = m->lap;
-        check.t = m->t;
-        check.weight = m->weight;
-        check.noise = m->noise;
-        check.rhs = spare;
-        check.x = x;
-        check.stride = HDI_PACK;
-        check.u = spare + n;
-        check.bu = check.u + n;
-        for (q = 0; q < 4; q++) {
-            check.theta[q] = m->set.theta[hdi_elim_pole(m, i, q)].re;
-            check.theta[q + 4] = m->set.theta[hdi_elim_pole(m, i, q)].im;
-        }
-        hdi_check_c(&list, 1);
-        for (q = 0; q < 4 && 4 * i + q < n_poles; q++) pole_off[4 * i + q] = hdi_residual_seen(sqrt(check.norm2[q]), sqrt(check.size2[q]));
-        for (k = 0; k < n_sets; k++) {
-            const hd_c64 *w = weight + HDI_CAST(int64_t, k) * n_poles + 4 * i;
-            double *HDI_RESTRICT to = out + HDI_CAST(int64_t, k) * n, c[HDI_PACK];
-            for (q = 0; q < 4; q++) {
-                c[q] = 4 * i + q < n_poles ? w[q].re : 0;
-                c[q + 4] = 4 * i + q < n_poles ? -w[q].im : 0;
-            }
-            for (j = 0; j < n; j++)
-                for (q = 0; q < HDI_PACK; q++) to[j] += c[q] * x[HDI_PACK * HDI_CAST(int64_t, j) + q];
-        }
-    }
-}
-
-/* Distances of the first two kinds at the (scaled, ascending) times h->times[q0..q1) of the kernel by one set of poles. */
-static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, int32_t q0, int32_t q1, int32_t k, const int32_t *sources, double *D, size_t ldd) {
-    hd_heat *heat = h->heat;
-    hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap = heat->source;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    const int32_t n_times = q1 - q0, n = m->sym.n;
-    const int weighted = kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
-    const uint64_t size = 2 * HDI_CAST(uint64_t, n_times) * HDI_CAST(uint64_t, n);
-    const double *t = h->times + q0, unit = weighted ? 1 / heat->scale : heat->scale;
-    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
-    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(uint64_t, n_times) * HD_MAX_POLES);
-    double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n));
-    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n), *spare = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n));
-    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, n)) : NULL, *rounding = HDI_TAKE_ZERO(&s, double, n_times);
-    char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
-    double pole_off[HD_MAX_POLES];
-    hdi_metric metric;
-    hdi_probe probe;
-    int32_t q, r, i, p;
-    memset(&metric, 0, sizeof metric);
-    metric.kind = kind;
-    metric.diag = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n) + 1);
-    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_DISTANCE_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
-    metric.g = metric.diag + n;
-    metric.spread = metric.g + n;
-    h->t = t[0];
-    h->set = set;
-    h->lap = m->lap;
-    h->relative = 1;
-    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
-    hdi_shared_weights(set, n_times, t, weight);
-    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, n, h->e) < 0)
-        return hdi_scope_end(&s);
-    probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * HDI_CAST(size_t, n), -1);
-    for (i = 0; i < probe.k; i++) {              /* columns of the forms' rows, as those of sources are found */
-        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
-        hdi_shared_column(m, probe.row[i], full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
-        for (q = 0; q < n_times; q++) {
-            const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
-            const int32_t row = probe.row[i];
-            double there = c[row], off = 0;
-            if (full) {
-                hdi_pair_apply(m->lap, 0, 1, c, product);
-                there = product[row];
-            }
-            for (p = 0; p < set[q].n_poles; p++) off += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
-            off *= sqrt(hdi_max(0, f[n + row]));
-            rounding[q] = hdi_max(rounding[q], hdi_quotient(HDI_PROBE_SAFETY * fabs(there - f[row]) + off, fabs(f[row])));
-        }
-    }
-    for (q = 0; q < n_times; q++)
-        for (i = 0; i < n; i++)
-            rounding[q] = hdi_max(rounding[q], hdi_below_constants(m->lap, set + q, i, room[2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n) + HDI_CAST(size_t, i)],
-                                                                   full ? m->lap->mass[i] * m->lap->mass[i] : 1));
-    for (r = 0; r < k; r++) {
-        const int32_t row = m->lap->row[sources[r]];
-        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
-        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
-        memset(pole_off, 0, sizeof pole_off);
-        if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
-        for (q = 0; q < n_times; q++) {
-            const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
-            double *u = D + (HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) + HDI_CAST(size_t, h->time_column[q0 + q])) * ldd;
-            const double bs = weighted && !full && row >= 0 ? m->lap->mass[row] : 1;
-            hdi_metric_column of;
-            hdi_ledger ledger;
-            memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
-            memset(g, 0, HDI_CAST(size_t, lap->n) * sizeof *g);
-            if (full) {                          /* B of what is B times the inverses */
-                hdi_pair_apply(m->lap, 0, 1, c, product);
-                hdi_pair_apply(m->lap, 0, 1, c + n, product + n);
-                c = product;
-            }
-            for (i = 0; i < n; i++) {
-                const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
-                const double b = weighted && !full ? m->lap->mass[i] : 1, unit_f = unit * b * b;
-                metric.diag[at] = unit_f * f[i];
-                metric.g[at] = unit_f * f[n + i];
-                metric.spread[at] = weighted ? lap->b_diag[at] : lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[at]) : HUGE_VAL;
-                u[v] = unit * b * bs * c[i];
-                g[v] = unit * b * bs * c[n + i];
-            }
-            metric.weighted = set[q].max_weighted_error;
-            metric.uniform = set[q].max_error;
-            metric.rounding = rounding[q];
-            of.u = u;
-            of.off_m = 0;
-            of.off_b = HUGE_VAL;
-            for (p = 0; p < set[q].n_poles; p++) of.off_m += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
-            of.off_m *= sqrt(unit) * bs;
-            ledger = hdi_metric_ledger(&metric);
-            hdi_metric_distance(lap, &metric, sources[r], &of, g, h->rep, &ledger);
-            hdi_ledger_close(&ledger, h->rep);
-        }
-    }
-    if (n > 0 && k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
-        probe.k = 1;
-        probe.row[0] = m->lap->row[sources[0]] >= 0 ? m->lap->row[sources[0]] : 0;
-        (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set);
-    }
-    return hdi_scope_end(&s);
-}
-
-/* All times through shared poles, when that is cheaper than one by one. 0: it is not, or not possible. */
-static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd) {
-    hd_heat *heat = h->heat;
-    int32_t packs = 0, windows, w, q0, q1;
-    double span, *twice;
-    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || heat->poles_asked || heat->exacting) return 0;
-    twice = HDI_TAKE(&h->s, double, n_times);
-    for (q0 = 0; twice && q0 < n_times; q0++) twice[q0] = 2 * t[q0];
-    if (!twice || hdi_heat_sort_times(h, n_times, twice) < 0 || hdi_heat_analysed(heat, 1, h->e) < 0) return 0;
-    span = h->times[n_times - 1] / h->times[0];
-    windows = hdi_shared_windows(span, HDI_SHARED_DISTANCE_TOL, n_times, &packs);
-    if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return 0;
-    hdi_direct_only(h);
-    for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
-        const double end = h->times[0] * pow(span, (w + 1.0) / windows);
-        for (q1 = q0 + 1; q1 < n_times && (w + 1 >= windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
-        if (hdi_distance_window(h, kind, q0, q1, k, sources, D, ldd) < 0) break;
-    }
-    return 1;
 }
 
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd,
@@ -19619,163 +19813,6 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
         else hdi_report_merge(rep, &one);
     }
     return hdi_heat_end(&h);
-}
-
-/* ---- pairs ---- */
-
-/* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. list [2 n_pairs], place [2 n_pairs]. Returns their number. */
-static int32_t hdi_pairs_vertices(int64_t n_pairs, const int32_t *i, const int32_t *j, hdi_pair *order, int32_t *list, int32_t *place) {
-    int32_t n = 0;
-    int64_t q;
-    for (q = 0; q < 2 * n_pairs; q++) {
-        order[q].key = HDI_CAST(uint64_t, q % 2 ? j[q / 2] : i[q / 2]);
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, 2 * n_pairs);
-    for (q = 0; q < 2 * n_pairs; q++) {
-        if (q == 0 || order[q].key != order[q - 1].key) list[n++] = HDI_CAST(int32_t, order[q].key);
-        place[order[q].id] = n - 1;
-    }
-    return n;
-}
-
-/* |u - v|_B of fields on vertices, v NULL: |u|_B; whatever their size, with B times scale near one. work [2 n_active]. */
-static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work, double scale) {
-    double most = 0;
-    int32_t r;
-    int exponent = 0;
-    for (r = 0; r < lap->n_active; r++) {
-        work[r] = u[lap->vertex[r]] - (v ? v[lap->vertex[r]] : 0);
-        most = hdi_max(most, fabs(work[r]));
-    }
-    if (most == 0) return 0;
-    frexp(most, &exponent);
-    for (r = 0; r < lap->n_active; r++) work[r] = ldexp(work[r], -exponent);
-    if (lap->B) {
-        double sum = 0;
-        int64_t p;
-        for (r = 0; r < lap->n_active; r++) {
-            double s = 0;
-            for (p = lap->L.row_ptr[r]; p < lap->L.row_ptr[r + 1]; p++) s += scale * lap->B[p] * work[lap->L.col[p]];
-            sum += work[r] * s;
-        }
-        return ldexp(sqrt(hdi_max(0, sum)) / sqrt(scale), exponent);
-    }
-    for (most = 0, r = 0; r < lap->n_active; r++) most += scale * lap->mass[r] * (work[r] * work[r]);
-    return ldexp(sqrt(most) / sqrt(scale), exponent);
-}
-
-/* The parts of a report's bound. */
-static hdi_parts hdi_parts_of(const hd_report *rep) {
-    hdi_parts p;
-    p.rational = rep->error_rational;
-    p.solver = rep->error_solver;
-    p.rounding = rep->error_rounding;
-    return p;
-}
-
-/* Shares out what stands in rounding as another bound has it. */
-static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
-    const double all = to->rounding, sum = hdi_parts_sum(as);
-    if (!(sum > 0 && hdi_finite(sum) && hdi_finite(all))) return;
-    to->rational = all * (as->rational / sum);
-    to->solver = all * (as->solver / sum);
-    to->rounding = all * (as->rounding / sum);
-}
-
-/* Kernel entries and distances of the pairs from columns at t: K_t(i,j) = (K_t e_j)_i, and |K_t B^-1 (e_i - e_j)|_B, which loses nothing
- * beside what the columns are off by: the report's bound of columns becomes that of distances. */
-static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind, double scale, const double *U, int64_t n_pairs, const int32_t *i, const int32_t *j, const int32_t *place,
-                                 double *K, double *d, double *work, hd_report *rep) {
-    const size_t n = HDI_CAST(size_t, lap->n);
-    const hdi_parts share = hdi_parts_of(rep);
-    const double bound_b = rep->error_bound_b;
-    hdi_ledger of_k = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0), of_d = of_k;
-    hdi_parts part;
-    int64_t q, p;
-    memset(&part, 0, sizeof part);
-    of_d.relative = 0;
-    for (q = 0; q < n_pairs; q++) {
-        const double *ui = U + n * HDI_CAST(size_t, place[2 * q]), *uj = U + n * HDI_CAST(size_t, place[2 * q + 1]);
-        const int32_t ri = lap->row[i[q]], rj = lap->row[j[q]];
-        const double size_i = hdi_vertex_norm(lap, ui, NULL, work, scale), size_j = hdi_vertex_norm(lap, uj, NULL, work, scale);
-        double distance, off;
-        if (K && kind == HD_DISTANCE_WEIGHTED) {
-            K[q] = uj[i[q]];
-            off = bound_b * size_j * (ri < 0 ? 0 : hdi_ratio_root(lap) / sqrt(lap->b_diag[ri]));
-        } else if (K) {                          /* symmetric columns: K_t(i,j) = (k_t(i,.) B)_j, and |(B e)_j| <= sqrt(B_jj) |e|_B */
-            K[q] = rj < 0 ? i[q] == j[q] : lap->B ? 0 : ui[j[q]] * lap->mass[rj];
-            for (p = rj < 0 ? 0 : lap->L.row_ptr[rj]; rj >= 0 && lap->B && p < lap->L.row_ptr[rj + 1]; p++) K[q] += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
-            off = bound_b * size_i * (rj < 0 ? 0 : sqrt(lap->b_diag[rj]));
-        }
-        if (K) {
-            part.rounding = off + 8 * DBL_EPSILON * fabs(K[q]);
-            hdi_ledger_note(&of_k, K[q], part);
-        }
-        if (!d) continue;
-        distance = i[q] == j[q] ? 0 : hdi_vertex_norm(lap, ui, uj, work, scale);
-        d[q] = distance;
-        if (i[q] == j[q]) continue;
-        part.rounding = (bound_b + 4 * DBL_EPSILON) * (size_i + size_j);
-        rep->n_lost += distance < 10 * part.rounding;
-        hdi_ledger_note(&of_d, distance, part);
-    }
-    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = rep->error_relative = rep->smallest = 0;
-    rep->error_bound_b = HUGE_VAL;
-    rep->evidence_b = HD_EVIDENCE_NONE;
-    hdi_parts_share(&of_k.off, &share);
-    hdi_parts_share(&of_d.off, &share);
-    hdi_ledger_close(&of_k, rep);
-    rep->smallest = 0;                           /* of the distances */
-    hdi_ledger_close(&of_d, rep);
-}
-
-/* Distances one by one from entries and the diagonal, for more vertices than columns fit; each is judged by itself. */
-static hd_status hdi_pairs_distances(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *d, hd_report *rep) {
-    hd_error *e = &rep->error;
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    double *f = HDI_TAKE(&s, double, heat->source->n);
-    hdi_ledger ledger;
-    hdi_metric_column c;
-    hdi_metric x;
-    int64_t q;
-    if (!f || hdi_metric_make(heat, kind, t, 0, &x, &s, rep) < 0) return hdi_scope_end(&s);
-    rep->error_relative = 0;
-    ledger = hdi_metric_ledger(&x);
-    for (q = 0; q < n_pairs && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
-        if (q == 0 || i[q] != i[q - 1]) {
-            hdi_ledger all = hdi_metric_ledger(&x);
-            if (hdi_metric_columns(heat, &x, 1, i + q, f, HDI_CAST(size_t, heat->source->n), &c, rep, e) < 0) break;
-            hdi_metric_distance(heat->source, &x, i[q], &c, NULL, rep, &all);
-            ledger.off.rational = hdi_max(ledger.off.rational, all.off.rational);   /* of the pairs, as of all vertices */
-            ledger.off.rounding = hdi_max(ledger.off.rounding, all.off.rounding);
-            ledger.relative = hdi_max(ledger.relative, all.relative);
-        }
-        d[q] = f[j[q]];
-        if (hdi_finite(d[q])) ledger.largest = hdi_max(ledger.largest, d[q]);
-        if (d[q] > 0 && hdi_finite(d[q])) ledger.smallest = hdi_min(ledger.smallest, d[q]);
-        ledger.n_values += i[q] != j[q] && hdi_finite(d[q]);
-    }
-    if (e->status >= 0) hdi_ledger_close(&ledger, rep);
-    return hdi_scope_end(&s);
-}
-
-/* Both, each of which may be NULL. */
-static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *rep) {
-    hd_report one;
-    memset(rep, 0, sizeof *rep);
-    hdi_error_clear(&rep->error);
-    if (K && kind < HD_DISTANCE_COMMUTE && hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, n_pairs, i, j, K, rep) < 0) return rep->status;
-    if (!d) return rep->status;
-    memset(&one, 0, sizeof one);
-    hdi_error_clear(&one.error);
-    rep->error_relative = 0;                     /* of the distances */
-    if (hdi_pairs_distances(heat, kind, t, n_pairs, i, j, d, &one) < 0) {
-        rep->error = one.error;
-        return rep->status = one.error.status;
-    }
-    hdi_report_merge(rep, &one);
-    return rep->status;
 }
 
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report) {
@@ -19972,7 +20009,7 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
     return hdi_geo_end(report, c.e);
 }
 
-/* ==== [22] closing ==== */
+/* ==== [30] closing ==== */
 
 #ifdef __cplusplus
 }
