@@ -587,8 +587,8 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
  * xyz        [3 n] the points, finite
  * query      [3 m] where to look from; NULL: from all the points, m = n
  * Exact. Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex; the row for a query). Cost O((n + k m) log n). Source Friedman, Bentley, Finkel 1977. */
-HEATDIFF_API hd_status hd_neighbours_nearest(int32_t *index, double *distance2, const double *xyz, int32_t n, const double *query, int32_t m, int32_t k,
-                                             hd_context *ctx, hd_error *err);
+HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m, int32_t k, int32_t *index,
+                                             double *distance2, hd_context *ctx, hd_error *err);
 
 /* All points within a radius of every query: row i of out, m x n, lists the points at a distance d with d^2 <= radius^2 by id, its values are d^2.
  * Arguments, errors as above; free out with hd_csr_free and the same ctx. */
@@ -719,22 +719,17 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY,
  *        HD_ERR_CANCELLED; details in report->error. HD_WARN_ACCURACY.
  * Source Patane, Spagnuolo 2013, eqs. (8), (9); signs as in the opening. */
-HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const double *F, size_t ldf, double *U, size_t ldu,
-                                     hd_report *report);
+HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
+                                     double *U, size_t ldu, hd_report *report, hd_error *err);
 
 /* u = K_t e_source: the heat that reaches each vertex from a unit at source (its own area's worth). u [n]. */
-HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, double t, int32_t source, double *u, hd_report *report);
+HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u, hd_report *report,
+                                      hd_error *err);
 
 /* Several columns of K_t or of k_t = K_t B^-1. U n x k as above, column q for sources[q]. The column of a vertex without mass is
  * its unit vector for the operator, zero for the symmetric kernel. */
-HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, double t, hd_kernel kernel, int32_t k, const int32_t *sources, double *U, size_t ldu,
-                                       hd_report *report);
-
-/* One field or one column at many times: U n x n_times, column q for t[q], in any order. f [n], or NULL: the column of source, as in hd_heat_columns.
- * By the krylov method one factor and one basis serve all times within a decade or two, so that many cost little more than one; other
- * methods take the times one by one. The report is the worst of all. */
-HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
-                                     hd_report *report);
+HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int32_t k,
+                                       const int32_t *sources, double *U, size_t ldu, hd_report *report, hd_error *err);
 
 /* The diagonal of k_t (heat kernel signature, Sun et al. 2009; auto-diffusion function, Gebal et al. 2009) or of K_t at every vertex, exactly, by selected
  * inversion: no spectrum, no column. D n x n_times, column q for t[q] > 0, columns ldd apart (0: n). A vertex without mass has 0 (K_t: 1).
@@ -745,12 +740,14 @@ HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const doubl
  *        (also for n_times < 1)
  * Report The rational part is proven at every vertex. Rounding is measured at the vertices that suffer most, by solves whose
  *        residuals are known; of many times, at each of them. */
-HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report);
+HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *D, size_t ldd,
+                                        hd_report *report, hd_error *err);
 
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
  * vertices). For a full B without a0 B^-1, as above. By default the highest degree takes over where the rational part of the
  * bound is above 5e-7. Rounding is measured in the rows that suffer most. */
-HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report);
+HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *values,
+                                     hd_report *report, hd_error *err);
 
 /* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
  * t      [n_times] > 0, n_times >= 1. Commute and biharmonic have no time: t is not looked at, and n_times is 0 or 1
@@ -762,24 +759,24 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd
  * Report error_bound and error_relative for d itself; n_lost counts distances of which less than a digit or so is sure: at times so large
  *        that all vertices look alike, or next to the source at small ones. Then the status is HD_WARN_ACCURACY. Never NaN.
  *        hd_heat_pairs loses nothing there */
-HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D,
-                                        size_t ldd, hd_report *report);
+HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k,
+                                        const int32_t *sources, double *D, size_t ldd, hd_report *report, hd_error *err);
 
 /* K_t(i[q],j[q]) and distances for listed pairs. K, d [n_pairs], each may be NULL; K is left alone by commute and biharmonic.
  * From columns at t of the vertices that occur, d = |K_t B^-1 (e_i - e_j)|_B without subtraction; when these columns would take more than half a GiB, from
  * entries and the diagonal at 2t, a column at a time: sort the pairs by i then. Commute and biharmonic always so; they need the direct method. */
-HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d,
-                                     hd_report *report);
+HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int64_t n_pairs,
+                                     const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report, hd_error *err);
 
 /* Farthest points (Gonzalez 1985): each the farthest from those before it under the distance. vertex [count]: the first n_given are given; with none the
  * first vertex with mass begins. distance [count] or NULL: to those before (0 for the first). Cost a diagonal, and a column for each point. */
-HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex, double *distance,
-                                      hd_report *report);
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given,
+                                      int32_t *vertex, double *distance, hd_report *report, hd_error *err);
 
 /* Single entries: values[q] = (i[q], j[q]) of K_t or k_t. One column per distinct j is solved, n doubles at a time. The bound is
  * relative to the largest |value| in the list: far from the source, where the kernel is nearly zero, it may say nothing. */
-HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
-                                       double *values, hd_report *report);
+HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int64_t n_pairs,
+                                       const int32_t *i, const int32_t *j, double *values, hd_report *report, hd_error *err);
 
 /* ---- geodesic distance ---- */
 
@@ -807,11 +804,13 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
  *          than in any call before allocate
  * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED, HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, with a report only. One thread at a time for a plan. */
-HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const int32_t *sources, int32_t n_sources, double *d, hd_geodesic_report *report);
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources, double *d, hd_geodesic_report *report,
+                                            hd_error *err);
 
 /* The same for k sources, each for itself: column q of D, n x k, columns ldd apart (0: n), is the distance to sources[q]. Eight go side by side, in a third
  * of the time of eight calls. The first call with three or more makes room for that: some 150 bytes a vertex. */
-HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd, hd_geodesic_report *report);
+HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd,
+                                             hd_geodesic_report *report, hd_error *err);
 
 #ifdef __cplusplus
 }
@@ -12455,7 +12454,10 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
 
 /* ---- conjugate gradients for B u = w, with the diagonal as preconditioner ---- */
 
-/* Condition of diag(B)^-1 B is at most 4 for linear elements: about 30 steps to rounding. work [3 n]. u is the start too when warm. */
+/* Error in the B norm, relative to u and times 1/sqrt(b_ratio), as seen. The recurrence stops at a tenth of it. */
+#define HDI_MASS_TOL 1e-14
+
+/* Condition of diag(B)^-1 B is at most 4 for linear elements: about 30 steps to rounding. work [3 n]. */
 static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double *u, double *work, hd_error *e) {
     const int32_t n = lap->n_active;
     double *r = work, *p = work + n, *q = work + 2 * HDI_CAST(int64_t, n), rho = 0, rho_new, start;
@@ -13461,7 +13463,10 @@ static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     l->off.rounding = hdi_max(l->off.rounding, off.rounding);
     l->largest = hdi_max(l->largest, size);
     if (size > 0) l->smallest = hdi_min(l->smallest, size);
-    if (l->relative >= 0) l->relative = hdi_max(l->relative, hdi_quotient(hdi_parts_sum(&off), size));
+    if (l->relative >= 0) {                      /* relative to the exact value, which is at least size - all */
+        const double all = hdi_parts_sum(&off);
+        l->relative = hdi_max(l->relative, all == 0 ? 0 : hdi_quotient(all, size - all));
+    }
     l->n_values++;
 }
 
@@ -13648,6 +13653,7 @@ typedef struct hdi_lane {
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
+    double f_off, rhs_off;       /* what f, and B^-1 times the right-hand side, are off by in the B norm */
     /* outcome, norms absolute */
     double f_norm, u_norm;
     hdi_parts off, off_m;        /* bounds of the error in the norms of B and of B + tL */
@@ -14466,7 +14472,8 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
  * dense; and what is left of L 1, which counts as zero where it is so to rounding, up to 1e-8. Same in both norms. */
 static double hdi_conserve_off(const hd_laplacian *lap, const hdi_lane *lane, double drift_t, int dense) {
     const double sums = HDI_CAST(double, lap->n_active) * DBL_EPSILON / 2;
-    return (sums + 32 * DBL_EPSILON + hdi_min(drift_t, 1e-8)) * lane->u_norm + (dense ? (sums + 4 * DBL_EPSILON) * lane->f_norm : 0);
+    const double given = dense ? (sums + 4 * DBL_EPSILON) * lane->f_norm : 0;
+    return (sums + 32 * DBL_EPSILON + hdi_min(drift_t, 1e-8)) * lane->u_norm + given + lane->rhs_off;
 }
 
 static void hdi_lane_rounding(hdi_lane *lane, double off) {
@@ -14519,6 +14526,11 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     }
     for (p = 0; p < set->n_poles; p++)           /* the sum of the answers again: |x_v| <= sqrt(g_v) |x|_M */
         lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * hdi_pole_reach(set->theta[p]) * sqrt(lane->energy);
+    if (set->a0 != 0 && lane->f_off > 0) {       /* nothing is known of f's error in the norm of B + tL */
+        lane->off.rounding += fabs(set->a0) * lane->f_off;
+        lane->off_m.rounding = HUGE_VAL;
+        lane->rounding = HD_EVIDENCE_ESTIMATED;
+    }
     lane->off.rational = hdi_set_uniform(set) * lane->f_norm;
     lane->off_m.rational = hdi_finite(weighted) ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
     if (hdi_finite(weighted) && set->n_poles > 0) {
@@ -15744,9 +15756,9 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
 }
 
 /* The copy of the pair in elimination order, analysed. */
-static hd_status hdi_heat_analysed(hd_heat *heat, int poles, hd_error *e) {
+static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
     if (heat->elim.ctx) return HD_OK;
-    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, poles ? HDI_DISSECT_FROM : HDI_DISSECT_REAL_FROM, heat->perm, heat->scale, heat->ctx, e);
+    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, HDI_DISSECT_FROM, heat->perm, heat->scale, heat->ctx, e);
 }
 
 /* Checks a right-hand side. *exponent: its largest part is between 2^(exponent - 1) and 2^exponent. */
@@ -15833,43 +15845,55 @@ static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
 
 typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
 
-/* A heat call under way: k items, each a field, a column, or the pairs that share a column; a few at a time, each in a lane. */
+/* Single entries of the kernel, sorted by their column: item q is order[begin[q]] to order[begin[q + 1] - 1]. */
+typedef struct hdi_entry_list {
+    hdi_pair *order;             /* [n] key: the column; id: which entry */
+    int64_t *begin;              /* [k + 1] */
+    const int32_t *rows;         /* [n] */
+    double *values;              /* [n] for each time */
+    hdi_ledger *ledger;          /* for each time */
+    int64_t n;
+} hdi_entry_list;
+
+/* What is asked for: k items, each a field, a column, or the entries of a column. */
+typedef struct hdi_request {
+    hdi_query query;
+    int32_t k, n_times;
+    const double *t;             /* [n_times] in the caller's unit and order */
+    const double *F;             /* fields, columns ldf apart */
+    const int32_t *sources;      /* columns */
+    const hdi_entry_list *list;  /* entries */
+    double *U;                   /* item q at time m goes to column q n_times + m, ldu apart; NULL: nowhere */
+    size_t ldf, ldu;
+} hdi_request;
+
+/* A call under way: a few items at a time, each in a lane. */
 typedef struct hdi_heat_call {
     hd_heat *heat;
-    hdi_query query;
-    double t;
-    int32_t k;
-    hd_solver solver;
-    const hd_rational *set;      /* instead of what the plan would take */
-    int32_t diagonal, degree;    /* by default a set made for diagonals; its degree, 0: as ever */
+    hdi_request ask;
     hd_report *rep;
     hd_report own_report;
-    hd_error *e;
+    hd_error *e, *err;           /* the report's; the caller's, or NULL */
     hdi_scope s;
-    hd_method method;
-    const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
-    const double *times;         /* [n_times] scaled, ascending, for one item at several times; else t alone */
+    double t;                    /* the time under way, scaled */
+    int32_t now;                 /* which of ask.t that is */
+    const double *times;         /* [n_times] scaled, ascending; or t alone */
     int32_t n_times;
-    const int32_t *time_column;  /* where in U each goes */
-    int32_t relative;            /* errors are told relative to each value too */
+    const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
+    hd_method method;
+    hd_solver solver;
+    const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
+    const hd_rational *set;      /* instead of what the plan would take */
+    int32_t diagonal, degree;    /* by default a set made for diagonals; its degree, 0: as ever */
+    int32_t relative;            /* the report has errors relative to each value too */
     int32_t deflated;            /* direct: right-hand sides are without their constants */
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
     double still;                /* t = 0 stands for a t so small that K_t f is f to rounding; |K_t - 1| <= this */
     int32_t equal;               /* t is so large that each component has its mean */
-    hdi_ledger *entries;         /* of single values; NULL: columns are judged as a whole */
     double *off_b, *off_m;       /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
     hdi_lane *lane;              /* [HDI_LANES], the plan's */
     int32_t n_lanes, batch;      /* lanes that exist; first item in lane 0 */
-    int32_t n_here, batch_width, n_batches;  /* direct: items under way, in batches of so many */
     int32_t stop;
-    const double *F;             /* fields */
-    double *U;                   /* answers, columns */
-    size_t ldf, ldu;
-    const int32_t *sources;      /* columns */
-    const hdi_pair *order;       /* entries: sorted by column; where each column begins; rows; values */
-    const int64_t *begin;
-    const int32_t *rows;
-    double *values;
 } hdi_heat_call;
 
 /* t for the scaled pair. Where that is beyond all doubles anything as large does, and as small where it vanishes. */
@@ -15877,24 +15901,20 @@ static double hdi_heat_scaled(const hd_heat *heat, double t) {
     return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
 }
 
-static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, double t, int32_t k, hd_report *report) {
+static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, hd_report *report, hd_error *err) {
     memset(h, 0, sizeof *h);
     h->rep = report ? report : &h->own_report;
     memset(h->rep, 0, sizeof *h->rep);
     h->e = &h->rep->error;
+    h->err = err;
     hdi_error_clear(h->e);
     h->heat = heat;
-    h->query = query;
-    h->t = t;
-    h->k = k;
+    h->ask.query = query;
+    h->ask.n_times = h->n_times = 1;
+    h->times = &h->t;
     if (!heat) return hdi_missing(h->e);
     h->s = hdi_scope_begin(heat->ctx, h->e);
-    if (!hdi_finite(t) || t < 0) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, -1, t);
-    if (k < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     h->rep->reason = "nothing was asked for";
-    h->t = hdi_heat_scaled(heat, t);
-    h->times = &h->t;
-    h->n_times = 1;
     h->lap = heat->source;
     h->lane = heat->lane;
     return HD_OK;
@@ -15923,7 +15943,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     const hdi_symbolic *s = heat->elim.ctx ? &heat->elim.sym : NULL;
-    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->k, hh = heat->source->h * heat->source->h * heat->scale;
+    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->ask.k, hh = heat->source->h * heat->source->h * heat->scale;
     const double wide = hdi_max(1, entries / (10 * n));
     const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide, flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
     const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide;
@@ -15980,7 +16000,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     c = hdi_heat_cost(h);
     if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) && hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
-        if (hdi_heat_analysed(heat, heat->poles_asked || c.direct < c.krylov, h->e) < 0) return h->e->status;
+        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
         c = hdi_heat_cost(h);
     }
     no_direct = c.direct_bytes > room;
@@ -15992,7 +16012,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
         h->rep->reason = h->n_times > 1 ? "one real factor serves many times" : "few columns: one real factor costs less than those of the poles";
     } else if (!no_direct && c.direct < c.iterative) {
         h->method = HD_METHOD_DIRECT;
-        h->rep->reason = h->k > 1 ? "many columns: solves with the factors of the poles cost least" : "the factors of the poles cost least";
+        h->rep->reason = h->ask.k > 1 ? "many columns: solves with the factors of the poles cost least" : "the factors of the poles cost least";
     }
     return HD_OK;
 }
@@ -16028,7 +16048,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
         h->lap = heat->lap;
     } else {
-        if (hdi_heat_analysed(heat, h->method == HD_METHOD_DIRECT, h->e) < 0) return h->e->status;
+        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
         h->lap = heat->elim.lap;
         h->rep->ordering = heat->elim.sym.ordering;
         h->rep->factor_nnz = heat->elim.sym.nnz;
@@ -16043,13 +16063,13 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
 }
 
 static hd_status hdi_heat_end(hdi_heat_call *h) {
-    hd_status st = h->e->status, warned;
-    if (h->entries && st >= 0) hdi_ledger_close(h->entries, h->rep);
-    warned = h->rep->status;
-    if (h->s.e) st = hdi_scope_end(&h->s);
-    h->rep->status = st < 0 ? st : warned;
+    const hd_error kept = *h->e;
+    if (h->s.e) hdi_scope_end(&h->s);
+    *h->e = kept;
+    if (kept.status < 0) h->rep->status = kept.status;
     if (h->rep->evidence_b == HD_EVIDENCE_NONE) h->rep->error_bound_b = HUGE_VAL;
     if (!h->relative) h->rep->error_relative = HUGE_VAL;
+    if (h->err) *h->err = kept;
     return h->rep->status;
 }
 
@@ -16076,8 +16096,8 @@ static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane,
 /* All fields, before anything is solved or written. */
 static hd_status hdi_fields_check(const hdi_heat_call *h) {
     int32_t q, v;
-    for (q = 0; q < h->k; q++) {
-        const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
+    for (q = 0; q < h->ask.k; q++) {
+        const double *f = h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf;
         for (v = 0; v < h->heat->source->n; v++)
             if (!hdi_finite(f[v])) return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v, q, f[v]);
     }
@@ -16085,7 +16105,7 @@ static hd_status hdi_fields_check(const hdi_heat_call *h) {
 }
 
 static int32_t hdi_heat_source(const hdi_heat_call *h, int32_t q) {
-    return h->sources ? h->sources[q] : HDI_CAST(int32_t, h->order[h->begin[q]].key);
+    return h->ask.sources ? h->ask.sources[q] : HDI_CAST(int32_t, h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
 /* Brings fields whose squares could leave the range of doubles near one, by a power of two. */
@@ -16100,6 +16120,20 @@ static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
     for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
 
+/* What rounding does to B f for a full B, in the B norm after B^-1. Much where f lies along B's small eigenvectors. */
+static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
+    double sum = 0;
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active && lap->B; i++) {
+        double size = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) size += fabs(lap->B[p] * f[lap->L.col[p]]);
+        size *= HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) * DBL_EPSILON / 2;
+        sum += size * size / lap->b_diag[i];
+    }
+    return sum > 0 ? sqrt(sum) * hdi_ratio_root(lap) : 0;
+}
+
 /* Field and right-hand side of item q. A vertex without mass needs no solve: skip. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
@@ -16110,11 +16144,13 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     hdi_lane_clear_off(lane);
     lane->steps = 0;
     lane->exponent = 0;
+    lane->f_off = lane->rhs_off = 0;
     lane->watch = -1;
-    if (h->query == HDI_QUERY_FIELD) {
-        hdi_gather(lap, h->F + HDI_CAST(size_t, q) * h->ldf, lane->f);
+    if (h->ask.query == HDI_QUERY_FIELD) {
+        hdi_gather(lap, h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf, lane->f);
         hdi_lane_unit(lap, lane);
         hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+        lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
     } else {
         row = lap->row[hdi_heat_source(h, q)];
         lane->skip = row < 0;
@@ -16122,7 +16158,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         lane->watch = h->watching ? row : -1;
         memset(lane->f, 0, bytes);
         memset(lane->rhs, 0, bytes);
-        if (h->query == HDI_QUERY_OPERATOR) {
+        if (h->ask.query == HDI_QUERY_OPERATOR) {
             int64_t p;
             lane->f[row] = 1;
             for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++) lane->rhs[lap->L.col[p]] = lap->B[p];   /* B e_row */
@@ -16138,48 +16174,60 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         }
     }
     hdi_heat_measure(lap, lane);
+    if (h->ask.query == HDI_QUERY_SYMMETRIC && lap->B) lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
     return HD_OK;
 }
 
-/* What item q asked for, from the lane's answer, into that column of U. */
-static void hdi_heat_store_at(const hdi_heat_call *h, int32_t q, int32_t column, const hdi_lane *lane) {
+/* The unit of answers in terms of the method's copy of the pair: k_t has that of B^-1. */
+static double hdi_heat_unit(const hdi_heat_call *h) {
+    return h->ask.query == HDI_QUERY_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
+}
+
+/* The entries of item q, from the lane's answer. */
+static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const double *answer = lane->u, unit = h->query == HDI_QUERY_SYMMETRIC && lap != h->heat->source ? h->heat->scale : 1;   /* B^-1 */
-    const int32_t source = h->query == HDI_QUERY_FIELD ? -1 : hdi_heat_source(h, q);
-    double *u = h->U ? h->U + HDI_CAST(size_t, column) * h->ldu : NULL;
+    const hdi_entry_list *list = h->ask.list;
+    const double unit = hdi_heat_unit(h);
+    double *values = list->values + list->n * h->now;
     int64_t p;
-    int32_t i;
-    if (!h->values && !u) return;
-    if (h->values) {
-        for (p = h->begin[q]; p < h->begin[q + 1]; p++) {
-            const int32_t v = h->rows[h->order[p].id];
-            const double own = h->query == HDI_QUERY_OPERATOR && v == source;
-            double *value = h->values + h->order[p].id;
-            hdi_parts off;
-            memset(&off, 0, sizeof off);
-            *value = lane->skip ? own : lap->row[v] < 0 ? 0 : unit * answer[lap->row[v]];
-            if (!lane->skip && lap->row[v] >= 0) off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[lap->row[v]]), lane->off);
-            if (h->entries) hdi_ledger_note(h->entries, *value, off);
-        }
-        return;
+    for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
+        const hdi_pair at = list->order[p];
+        const int32_t v = list->rows[at.id], row = lap->row[v];
+        hdi_parts off;
+        memset(&off, 0, sizeof off);
+        values[at.id] = row < 0 ? 0 : unit * lane->u[row];
+        if (lane->skip) values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && HDI_CAST(uint64_t, v) == at.key;
+        if (!lane->skip && row >= 0) off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
+        hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
-    if (h->query == HDI_QUERY_FIELD) {           /* vertices without mass keep their value */
-        const double *f = h->F + HDI_CAST(size_t, q) * h->ldf;
+}
+
+/* What item q asked for at the time under way, from the lane's answer. */
+static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
+    const hd_laplacian *lap = h->lap;
+    const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, h->now);
+    const double unit = hdi_heat_unit(h);
+    double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
+    int32_t i;
+    if (h->ask.list) hdi_heat_store_entries(h, q, lane);
+    if (!u) return;
+    if (h->ask.query == HDI_QUERY_FIELD) {       /* vertices without mass keep their value */
+        const double *f = h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf;
         if (u != f) memmove(u, f, HDI_CAST(size_t, lap->n) * sizeof *u);
     } else {
         memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
-        if (lane->skip) u[source] = h->query == HDI_QUERY_OPERATOR;
+        if (lane->skip) u[hdi_heat_source(h, q)] = h->ask.query == HDI_QUERY_OPERATOR;
     }
-    for (i = 0; i < lap->n_active && !lane->skip; i++) u[lap->vertex[i]] = lane->exponent ? ldexp(answer[i], lane->exponent) : unit * answer[i];
+    for (i = 0; i < lap->n_active && !lane->skip; i++)
+        u[lap->vertex[i]] = lane->exponent ? ldexp(lane->u[i], lane->exponent) : unit * lane->u[i];
 }
-
-static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) { hdi_heat_store_at(h, q, q, lane); }
 
 /* The degree of a uniform set that serves all fields; columns, whose constants are known to be small, get the highest. */
 static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
     int32_t q, r;
-    *degree = h->query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
-    for (q = 0; q < h->k && h->query == HDI_QUERY_FIELD; q++) {
+    *degree = h->ask.query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
+    if (h->ask.query == HDI_QUERY_FIELD && hdi_lane_make(h->lane, h->lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    for (q = 0; q < h->ask.k && h->ask.query == HDI_QUERY_FIELD; q++) {
         if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
         r = hdi_uniform_degree(h->lap, h->lane, h->method == HD_METHOD_DIRECT);
         if (r > *degree) *degree = r;
@@ -16190,7 +16238,7 @@ static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
 /* The pole set of this call. */
 static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
-    const hd_pole_kind kind = o->poles ? o->poles : h->query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
+    const hd_pole_kind kind = o->poles ? o->poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
     int32_t degree = o->degree ? o->degree : h->degree ? h->degree : h->heat->exacting ? HDI_RAT_KERNEL_MAX : h->method == HD_METHOD_DIRECT ? 9 : 10;   /* four pairs fill a pack, a real pole costs little */
     if (h->set || o->rational) {
         *set = h->set ? *h->set : *o->rational;
@@ -16222,7 +16270,7 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     watch.ctx = worker == 0 ? h->heat->ctx : NULL;
     watch.stop = &h->stop;
     watch.stage = "solve";
-    watch.share = 1.0 / h->k;
+    watch.share = 1.0 / h->ask.k;
     watch.from = watch.share * HDI_CAST(double, h->batch + index);
     lane->status = hdi_watch_look(&watch, 0, &lane->error);
     if (lane->status >= 0) {
@@ -16249,8 +16297,8 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     const hdi_elim *m = &h->heat->elim;
     const double *reach = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
-    hdi_heat_judge(h->lap, lane, h->entries ? NULL : &ledger, reach, own, h->rep);
-    if (h->entries) h->entries->known = ledger.known;
+    hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->rep);
+    if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
     if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
     if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
 }
@@ -16272,7 +16320,7 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->lane + i;
         if (lane->skip) {                        /* exact */
-            if (!h->entries) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
+            if (!h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
             continue;
         }
         if (lane->status > h->rep->status) h->rep->status = lane->status;
@@ -16286,56 +16334,73 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     return HD_OK;
 }
 
+static void hdi_report_set(hd_report *rep, const hd_rational *set) {
+    rep->poles = set->kind;
+    rep->degree = set->degree;
+    rep->n_poles = set->n_poles;
+}
+
+/* Lanes for the items of the call, at most so many at a time. */
+static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most) {
+    int32_t i;
+    h->n_lanes = h->ask.k < most ? h->ask.k : most;
+    for (i = 0; i < h->n_lanes; i++)
+        if (hdi_lane_make(h->lane + i, h->lap, h->heat->ctx, h->e) < 0) break;
+    return h->e->status;
+}
+
+/* Loads the next items into the lanes; how many they are. */
+static int32_t hdi_heat_load_some(hdi_heat_call *h) {
+    const int32_t left = h->ask.k - h->batch, n = left < h->n_lanes ? left : h->n_lanes;
+    int32_t i;
+    for (i = 0; i < n; i++)
+        if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) break;
+    return n;
+}
+
+/* Judges and stores the answers of n lanes. */
+static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
+    int32_t i;
+    if (h->e->status < 0 || hdi_heat_collect(h, n) < 0) return h->e->status;
+    for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
+    return HD_OK;
+}
+
+/* ---- iterative ---- */
+
 /* Lanes, the pole set and its preconditioners. */
-static hd_status hdi_heat_prepare(hdi_heat_call *h) {
+static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     hd_rational set;
     int32_t i;
-    h->n_lanes = h->k < HDI_LANES_ITERATIVE ? h->k : HDI_LANES_ITERATIVE;
-    for (i = 0; i < h->n_lanes; i++) {
-        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-        if (h->solver == HD_SOLVER_LANCZOS && hdi_lane_lanczos(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-    }
+    if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE) < 0) return h->e->status;
+    for (i = 0; i < h->n_lanes && h->solver == HD_SOLVER_LANCZOS; i++)
+        if (hdi_lane_lanczos(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
     if (h->solver == HD_SOLVER_LANCZOS) return HD_OK;
     if (hdi_heat_set(h, &set) < 0 || hdi_family_set(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
-    h->rep->poles = set.kind;
-    h->rep->degree = set.degree;
-    h->rep->n_poles = set.n_poles;
+    hdi_report_set(h->rep, &set);
     for (i = 0; i < h->n_lanes; i++)
         if (hdi_lane_systems(h->lane + i, &heat->fam, h->e) < 0) return h->e->status;
     return hdi_family_fill(&heat->fam, h->lane->vectors, hdi_lane_stride(&heat->fam), h->e);
 }
 
+static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
+    int32_t n;
+    for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
+        n = hdi_heat_load_some(h);
+        /* told here too: the calling thread may find all lanes taken */
+        if (h->e->status >= 0 && hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) >= 0)
+            hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
+        if (hdi_heat_store_some(h, n) < 0) break;
+    }
+    return h->e->status;
+}
+
 /* ---- direct ---- */
-
-/* Arrays of a batch of k, from the plan's room. */
-static hdi_batch hdi_heat_batch(const hdi_heat_call *h, int32_t index, int32_t k) {
-    hdi_batch b;
-    uint64_t x, xr, size = hdi_batch_size(&h->heat->elim, k, &x, &xr);
-    b.x = h->heat->batch_room + size * HDI_CAST(size_t, index);
-    b.xr = b.x + x;
-    b.work = b.xr + xr;
-    b.active = HDI_CAST(char *, HDI_CAST(void *, b.x + size)) - h->heat->elim.sym.n_super - 8;
-    return b;
-}
-
-static void hdi_heat_batch_task(void *arg, int64_t index, int32_t worker) {
-    hdi_heat_call *h = HDI_CAST(hdi_heat_call *, arg);
-    const hdi_batch b = hdi_heat_batch(h, HDI_CAST(int32_t, index), h->batch_width);
-    hdi_lane *lane = h->lane + index * h->batch_width;
-    const int32_t left = h->n_here - HDI_CAST(int32_t, index) * h->batch_width, n = left < h->batch_width ? left : h->batch_width;
-    int32_t r;
-    (void)worker;
-    hdi_batch_run(&h->heat->elim, &b, lane, n, h->n_batches > 1 ? NULL : h->heat->ctx);
-    for (r = 0; r < n; r++)
-        if (!lane[r].skip) lane[r].status = hdi_elim_finish(&h->heat->elim, h->heat->limit, h->t * h->heat->drift, h->deflated, lane + r);
-    for (r = 0; r < n; r++)
-        if (!lane[r].skip && lane[r].negative) lane[r].status = hdi_not_semidefinite(&lane[r].error);
-}
 
 /* Growth of built-in sets is at most 4.2, of shared ones 7.9, wherever L is positive semi-definite, and the pivots of a real
  * pole are positive. */
-static hd_status hdi_heat_growth(hdi_heat_call *h) {
+static hd_status hdi_direct_growth(hdi_heat_call *h) {
     const hdi_elim *m = &h->heat->elim;
     int32_t i;
     if (m->lone >= 0 && m->real.all.negative) return hdi_not_semidefinite(h->e);
@@ -16344,44 +16409,81 @@ static hd_status hdi_heat_growth(hdi_heat_call *h) {
     return HD_OK;
 }
 
-/* Lanes, the pole set and its factors. */
-static hd_status hdi_direct_prepare(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active), most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
-    uint64_t x, xr, size;
+/* The pole set and its factors. */
+static hd_status hdi_direct_factors(hdi_heat_call *h) {
+    hdi_elim *m = &h->heat->elim;
+    hd_report *rep = h->rep;
     hd_rational set;
     int32_t i;
-    h->batch_width = h->k < HDI_LANES_BATCH ? h->k : HDI_LANES_BATCH;
-    size = hdi_batch_size(&heat->elim, h->batch_width, &x, &xr);
-    h->n_batches = (h->k + h->batch_width - 1) / h->batch_width;
-    if (h->n_batches > HDI_BATCHES) h->n_batches = HDI_BATCHES;   /* as many as take no more than a pack */
-    while (h->n_batches > 1 && HDI_CAST(size_t, h->n_batches) * (size + 7 * n * HDI_CAST(size_t, h->batch_width)) > most) h->n_batches--;
-    h->n_lanes = h->n_batches * h->batch_width < h->k ? h->n_batches * h->batch_width : h->k;
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-    if (hdi_heat_set(h, &set) < 0) return h->e->status;
-    if (hdi_elim_poles(&heat->elim, &set, h->t, h->e) < 0) return h->e->status;
-    if (hdi_heat_growth(h) < 0 || (!h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0)) return h->e->status;
-    if (heat->batch_doubles < size * HDI_CAST(size_t, h->n_batches)) {
-        hdi_free(heat->ctx, heat->batch_room);
-        heat->batch_doubles = 0;
-        heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, size * HDI_CAST(uint64_t, h->n_batches), sizeof(double), h->e));
-        if (!heat->batch_room) return h->e->status;
-        heat->batch_doubles = size * HDI_CAST(size_t, h->n_batches);
+    if (hdi_heat_set(h, &set) < 0 || hdi_elim_poles(m, &set, h->t, h->e) < 0 || hdi_direct_growth(h) < 0) return h->e->status;
+    hdi_report_set(rep, &set);
+    for (i = 0; 4 * i < set.n_poles - (m->lone + 1); i++) {
+        rep->factor_flops += 16 * m->sym.flops;
+        rep->growth = hdi_max(rep->growth, m->pack[i].all.largest / m->pack[i].largest_entry);
     }
-    h->rep->poles = set.kind;
-    h->rep->degree = set.degree;
-    h->rep->n_poles = set.n_poles;
-    for (i = 0; 4 * i < set.n_poles - (heat->elim.lone + 1); i++) {
-        const hdi_factor *f = heat->elim.pack + i;
-        h->rep->factor_flops += 16 * heat->elim.sym.flops;
-        h->rep->growth = hdi_max(h->rep->growth, f->all.largest / f->largest_entry);
-    }
-    if (heat->elim.lone >= 0) {
-        h->rep->factor_flops += heat->elim.sym.flops;
-        h->rep->growth = hdi_max(h->rep->growth, heat->elim.real.all.largest / heat->elim.real.largest_entry);
+    if (m->lone >= 0) {
+        rep->factor_flops += m->sym.flops;
+        rep->growth = hdi_max(rep->growth, m->real.all.largest / m->real.largest_entry);
     }
     return HD_OK;
+}
+
+/* Items that are solved at the same time: `count` batches of `width` lanes, a task each. */
+typedef struct hdi_batches {
+    hdi_heat_call *h;
+    int32_t width, count, n_here;
+    uint64_t doubles;            /* of a batch's arrays */
+} hdi_batches;
+
+/* How many, and room for them: lanes, and the batches' arrays in the plan. No more batches than take the room of a pack. */
+static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active), most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
+    uint64_t x, xr;
+    b->h = h;
+    b->n_here = 0;
+    b->width = h->ask.k < HDI_LANES_BATCH ? h->ask.k : HDI_LANES_BATCH;
+    b->doubles = hdi_batch_size(&heat->elim, b->width, &x, &xr);
+    b->count = (h->ask.k + b->width - 1) / b->width;
+    if (b->count > HDI_BATCHES) b->count = HDI_BATCHES;
+    while (b->count > 1 && HDI_CAST(uint64_t, b->count) * (b->doubles + 7 * n * HDI_CAST(uint64_t, b->width)) > most) b->count--;
+    if (hdi_heat_lanes(h, b->count * b->width) < 0) return h->e->status;
+    if (heat->batch_doubles >= b->doubles * HDI_CAST(uint64_t, b->count)) return HD_OK;
+    hdi_free(heat->ctx, heat->batch_room);
+    heat->batch_doubles = 0;
+    heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, b->doubles * HDI_CAST(uint64_t, b->count), sizeof(double), h->e));
+    if (heat->batch_room) heat->batch_doubles = b->doubles * HDI_CAST(uint64_t, b->count);
+    return h->e->status;
+}
+
+/* The arrays of one batch. */
+static hdi_batch hdi_batches_get(const hdi_batches *b, int64_t index) {
+    const hdi_elim *m = &b->h->heat->elim;
+    hdi_batch one;
+    uint64_t x, xr;
+    (void)hdi_batch_size(m, b->width, &x, &xr);
+    one.x = b->h->heat->batch_room + b->doubles * HDI_CAST(size_t, index);
+    one.xr = one.x + x;
+    one.work = one.xr + xr;
+    one.active = HDI_CAST(char *, HDI_CAST(void *, one.x + b->doubles)) - m->sym.n_super - 8;
+    return one;
+}
+
+static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_batches *b = HDI_CAST(const hdi_batches *, arg);
+    const hdi_heat_call *h = b->h;
+    const hd_heat *heat = h->heat;
+    const hdi_batch batch = hdi_batches_get(b, index);
+    hdi_lane *lane = h->lane + index * b->width;
+    const int32_t left = b->n_here - HDI_CAST(int32_t, index) * b->width, n = left < b->width ? left : b->width;
+    int32_t r;
+    (void)worker;
+    hdi_batch_run(&heat->elim, &batch, lane, n, b->count > 1 ? NULL : heat->ctx);
+    for (r = 0; r < n; r++) {
+        if (lane[r].skip) continue;
+        lane[r].status = hdi_elim_finish(&heat->elim, heat->limit, h->t * heat->drift, h->deflated, lane + r);
+        if (lane[r].negative) lane[r].status = hdi_not_semidefinite(&lane[r].error);
+    }
 }
 
 /* Above this t lambda_max columns, too, are solved without their constants: these are nearly all of the answer then, and
@@ -16395,20 +16497,20 @@ static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
     for (i = 0; i < lap->n_active && lap->conserves; i++) lane->rhs[i] -= lap->mass[i] * lane->sums[lap->component[i]];
 }
 
-static hd_status hdi_direct_run(hdi_heat_call *h) {
+static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    hdi_batches b;
     int32_t i;
-    if (hdi_direct_prepare(h) < 0) return h->e->status;
-    for (h->batch = 0; h->batch < h->k; h->batch += h->n_here) {
-        h->n_here = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
-        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return h->e->status;
-        for (i = 0; i < h->n_here; i++)
-            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
-        h->deflated = !h->watching && (h->query == HDI_QUERY_FIELD || h->t * h->heat->lambda_max > HDI_DEFLATE);
-        for (i = 0; i < h->n_here && h->deflated; i++)
+    if (hdi_direct_factors(h) < 0 || (!h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0)) return h->e->status;
+    if (hdi_batches_make(&b, h) < 0) return h->e->status;
+    h->deflated = !h->watching && (h->ask.query == HDI_QUERY_FIELD || h->t * heat->lambda_max > HDI_DEFLATE);
+    for (h->batch = 0; h->batch < h->ask.k; h->batch += b.n_here) {
+        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0) return h->e->status;
+        b.n_here = hdi_heat_load_some(h);
+        for (i = 0; i < b.n_here && h->deflated; i++)
             if (!h->lane[i].skip) hdi_lane_deflate(h->lane + i, h->lap);
-        hdi_parallel(h->heat->ctx, (h->n_here + h->batch_width - 1) / h->batch_width, hdi_heat_batch_task, h);
-        if (hdi_heat_collect(h, h->n_here) < 0) return h->e->status;
-        for (i = 0; i < h->n_here; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
+        if (h->e->status >= 0) hdi_parallel(heat->ctx, (b.n_here + b.width - 1) / b.width, hdi_batches_task, &b);
+        if (hdi_heat_store_some(h, b.n_here) < 0) return h->e->status;
     }
     return h->e->status;
 }
@@ -16419,6 +16521,14 @@ static hd_status hdi_direct_run(hdi_heat_call *h) {
 static double hdi_krylov_shift(const hdi_elim *m, double from, double to, double lambda_max) {
     const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL), have = m->real.ready ? m->shift : 0;
     return have > 0 && best <= 3 * have && have <= 3 * best && to / from < 10 ? have : best;
+}
+
+/* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
+static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w, int32_t n_windows) {
+    const double end = times[0] * pow(times[n_times - 1] / times[0], (w + 1.0) / n_windows);
+    int32_t q1 = q0 + 1;
+    while (q1 < n_times && (w + 1 >= n_windows || times[q1] <= end * (1 + 1e-13))) q1++;   /* 1e-13: rounding of pow */
+    return q1;
 }
 
 /* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its times. */
@@ -16463,17 +16573,18 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
                 lane->status = HD_WARN_ACCURACY;
         }
         for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
-        if (hdi_heat_collect(h, n) < 0) return h->e->status;
-        for (i = 0; i < n; i++) hdi_heat_store_at(h, h->batch + i, h->time_column ? h->time_column[q] : h->batch + i, h->lane + i);
+        h->now = h->time_column ? h->time_column[q] : h->now;
+        if (hdi_heat_store_some(h, n) < 0) return h->e->status;
     }
     return HD_OK;
 }
 
-static hd_status hdi_krylov_all(hdi_heat_call *h) {
+static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const double span = h->times[h->n_times - 1] / h->times[0];
-    const int32_t wide = h->k > 3 ? HDI_SILAN_WIDE : 1, n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
-    int32_t i, n, q0, q1, w;
+    const int32_t wide = h->ask.k > 3 ? HDI_SILAN_WIDE : 1;
+    const int32_t n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
+    int32_t n, q0, q1, w;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
         heat->silan = HDI_CAST(hdi_silan *, hdi_alloc(heat->ctx, 1, sizeof *heat->silan, h->e));
@@ -16482,17 +16593,12 @@ static hd_status hdi_krylov_all(hdi_heat_call *h) {
     }
     heat->silan->wide = wide;
     heat->silan->m = &heat->elim;
-    h->n_lanes = h->k < wide ? h->k : wide;
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
-    for (h->batch = 0; h->batch < h->k; h->batch += n) {
-        n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
-        for (i = 0; i < n; i++)
-            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return h->e->status;
-        for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-            const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
-            for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-9)); q1++) {}
-            if (hdi_krylov_window(h, n, q0, q1) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, wide) < 0) return h->e->status;
+    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
+        for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
+            n = hdi_heat_load_some(h);
+            if (h->e->status < 0 || hdi_krylov_window(h, n, q0, q1) < 0) return h->e->status;
         }
     }
     h->rep->factor_flops = heat->elim.sym.flops;
@@ -16500,13 +16606,15 @@ static hd_status hdi_krylov_all(hdi_heat_call *h) {
     return h->e->status;
 }
 
+/* ---- the run ---- */
+
 /* Did a method that auto chose run into the byte limit? Then what was factorised goes, and iterations take its place. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t i;
     if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx) return 0;
     if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
-    if (h->batch > 0 && h->query == HDI_QUERY_FIELD) return 0;   /* fields may have been overwritten by their answers */
+    if (h->batch > 0 && h->ask.query == HDI_QUERY_FIELD) return 0;   /* fields may have been overwritten by their answers */
     for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
     if (heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
     hdi_elim_free(&heat->elim);
@@ -16522,54 +16630,86 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     return 1;
 }
 
-static hd_status hdi_heat_factors(hdi_heat_call *h) {
-    if (hdi_heat_engine(h) < 0 || h->t == 0 || h->equal || h->method == HD_METHOD_ITERATIVE) return h->e->status;
-    return h->method == HD_METHOD_DIRECT ? hdi_direct_run(h) : hdi_krylov_all(h);
-}
-
 /* Answers that need no solve: the field itself where t is nothing, the means where t is all. */
 static hd_status hdi_heat_plain(hdi_heat_call *h) {
     const hd_laplacian *lap = h->lap;
     hdi_lane *lane = h->lane;
     int32_t i;
     if (hdi_lane_make(lane, lap, h->heat->ctx, h->e) < 0) return h->e->status;
-    for (h->batch = 0; h->batch < h->k; h->batch++) {
+    for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
         if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
         if (!lane->skip) {
             for (i = 0; i < lap->n_active; i++) lane->u[i] = h->equal ? lane->target[lap->component[i]] / lap->component_mass[lap->component[i]] : lane->f[i];
             lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
-            if (h->equal) hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->query == HDI_QUERY_FIELD));
+            if (h->equal) hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->ask.query == HDI_QUERY_FIELD));
             else hdi_lane_rounding(lane, h->still * lane->f_norm);
-            if (!h->equal && h->query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
-            if (!h->equal && h->query == HDI_QUERY_SYMMETRIC && lap->B) {   /* f = B^-1 e comes by iterations */
-                hdi_lane_rounding(lane, 1e-14 * hdi_ratio_root(lap) * lane->f_norm);
+            if (!h->equal && h->ask.query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
+            if (!h->equal && lane->f_off > 0) {
+                hdi_lane_rounding(lane, lane->f_off);
                 lane->rounding = HD_EVIDENCE_ESTIMATED;
             }
         }
-        if (hdi_heat_collect(h, 1) < 0) return h->e->status;
-        hdi_heat_store(h, h->batch, lane);
+        if (hdi_heat_store_some(h, 1) < 0) return h->e->status;
     }
     return HD_OK;
 }
 
-static hd_status hdi_heat_run(hdi_heat_call *h) {
-    int32_t i, n;
-    if (h->e->status < 0 || h->k == 0) return hdi_heat_end(h);
-    if (hdi_heat_factors(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_factors(h);
-    if (h->e->status >= 0 && (h->t == 0 || h->equal)) (void)hdi_heat_plain(h);
-    if (h->e->status < 0 || h->t == 0 || h->equal || h->method != HD_METHOD_ITERATIVE) return hdi_heat_end(h);
-    if (hdi_heat_prepare(h) < 0 && !(hdi_heat_retreat(h) && hdi_heat_engine(h) >= 0 && hdi_heat_prepare(h) >= 0)) return hdi_heat_end(h);
-    for (h->batch = 0; h->batch < h->k; h->batch += n) {
-        n = h->k - h->batch < h->n_lanes ? h->k - h->batch : h->n_lanes;
-        for (i = 0; i < n; i++)
-            if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) return hdi_heat_end(h);
-        /* told here too: the calling thread may find all lanes taken */
-        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->k, h->e) < 0) return hdi_heat_end(h);
-        hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
-        if (hdi_heat_collect(h, n) < 0) return hdi_heat_end(h);
-        for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
+/* One time by the method picked for it. */
+static hd_status hdi_heat_answer(hdi_heat_call *h) {
+    if (hdi_heat_engine(h) < 0) return h->e->status;
+    if (h->t == 0 || h->equal) return hdi_heat_plain(h);
+    if (h->method == HD_METHOD_DIRECT) return hdi_heat_by_direct(h);
+    if (h->method == HD_METHOD_KRYLOV) return hdi_heat_by_krylov(h);
+    return hdi_iterative_prepare(h) < 0 ? h->e->status : hdi_heat_by_iterations(h);
+}
+
+/* The time under way, and if factors do not fit the byte limit by iterations. */
+static hd_status hdi_heat_single(hdi_heat_call *h) {
+    if (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_answer(h);
+    if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
+    return h->e->status;
+}
+
+static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
+    if (v >= 0 && v < lap->n) return HD_OK;
+    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
+}
+
+/* Sources, or vertices of pairs: *which gets the index of one that is not in the mesh. */
+static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which, hd_error *e) {
+    int64_t q;
+    for (q = 0; q < k && e->status >= 0; q++)
+        if (hdi_vertex_check(lap, vertex[q], e) < 0) *which = q;
+    return e->status;
+}
+
+static hd_status hdi_sources_check(hdi_heat_call *h, int32_t k, const int32_t *sources) {
+    return hdi_vertices_check(h->heat->source, k, sources, &h->e->column, h->e);
+}
+
+/* Checks the times of a call and takes them up; with `positive` 0 is none. */
+static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t, int positive) {
+    int32_t q;
+    if (n_times < 1) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: there is no time");
+    if (!t) return hdi_missing(h->e);
+    for (q = 0; q < n_times; q++) {
+        if (positive && !(hdi_finite(t[q]) && t[q] > 0))
+            return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
+        if (!hdi_finite(t[q]) || t[q] < 0)
+            return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
     }
-    return hdi_heat_end(h);
+    h->ask.n_times = n_times;
+    h->ask.t = t;
+    h->t = hdi_heat_scaled(h->heat, t[0]);
+    return HD_OK;
+}
+
+/* The start of a query of a kernel. */
+static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, hd_report *report, hd_error *err) {
+    const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
+    if (hdi_heat_begin(h, heat, query, report, err) < 0) return h->e->status;
+    if (kernel == HD_KERNEL_OPERATOR || kernel == HD_KERNEL_SYMMETRIC) return HD_OK;
+    return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the kernel is operator or symmetric");
 }
 
 /* Sets a leading dimension's default and checks it. */
@@ -16579,16 +16719,12 @@ static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
     return ld ? ld : n;
 }
 
-static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
-    if (v >= 0 && v < lap->n) return HD_OK;
-    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
-}
-
-static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, double t, hd_kernel kernel, int32_t k, hd_report *report) {
-    const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
-    if (hdi_heat_begin(h, heat, query, t, k, report) < 0) return h->e->status;
-    if (kernel == HD_KERNEL_OPERATOR || kernel == HD_KERNEL_SYMMETRIC) return HD_OK;
-    return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the kernel is operator or symmetric");
+/* Queries that have but one way. */
+static hd_status hdi_direct_only(hdi_heat_call *h) {
+    const hd_method asked = h->heat->opts.method;
+    if (asked == HD_METHOD_ITERATIVE || asked == HD_METHOD_KRYLOV)
+        return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
+    return HD_OK;
 }
 
 /* The worse of two reports, counts added. */
@@ -16618,48 +16754,101 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     *all = sum;
 }
 
-/* The times of a call, ascending and scaled, and the columns they belong to. h->t becomes the last. */
-static hd_status hdi_heat_sort_times(hdi_heat_call *h, int32_t n_times, const double *t) {
-    hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n_times);
-    double *sorted = HDI_TAKE(&h->s, double, n_times);
-    int32_t *column = HDI_TAKE(&h->s, int32_t, n_times), q;
+/* The n_times times of a call, ascending and scaled, times factor, and which each is. h->t becomes the last. */
+static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor) {
+    const int32_t n = h->ask.n_times;
+    hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n);
+    double *sorted = HDI_TAKE(&h->s, double, n);
+    int32_t *column = HDI_TAKE(&h->s, int32_t, n), q;
     if (h->e->status < 0) return h->e->status;
-    for (q = 0; q < n_times; q++) {              /* bits of doubles that are not negative are in their order */
-        const double v = t[q] + 0.0;
+    for (q = 0; q < n; q++) {                    /* bits of doubles that are not negative are in their order */
+        const double v = h->ask.t[q] + 0.0;
         memcpy(&order[q].key, &v, sizeof v);
         order[q].id = q;
     }
-    hdi_sort_pairs(order, n_times);
-    for (q = 0; q < n_times; q++) {
+    hdi_sort_pairs(order, n);
+    for (q = 0; q < n; q++) {
         column[q] = HDI_CAST(int32_t, order[q].id);
-        sorted[q] = hdi_heat_scaled(h->heat, t[column[q]]);
+        sorted[q] = hdi_min(factor * hdi_heat_scaled(h->heat, h->ask.t[column[q]]), 1e300);
     }
     h->times = sorted;
-    h->n_times = n_times;
+    h->n_times = n;
     h->time_column = column;
-    h->t = sorted[n_times - 1];
+    h->t = sorted[n - 1];
     return HD_OK;
 }
 
 /* The times one by one. */
-static hd_status hdi_heat_each_time(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
-                                    hd_report *rep) {
-    hd_report all, one;
+static hd_status hdi_heat_each_time(hdi_heat_call *h) {
+    hd_report one;
     int32_t q;
-    memset(&all, 0, sizeof all);
-    for (q = 0; q < n_times; q++) {
-        double *u = U + HDI_CAST(size_t, q) * ldu;
-        const hd_status st = f ? hd_heat_apply(heat, t[q], 1, f, 0, u, 0, &one) : hd_heat_columns(heat, t[q], kernel, 1, &source, u, 0, &one);
-        if (st < 0) {
-            *rep = one;
-            rep->error.column = q;
-            return st;
+    for (q = 0; q < h->ask.n_times; q++) {
+        hdi_heat_call c = *h;
+        memset(&one, 0, sizeof one);
+        hdi_error_clear(&one.error);
+        memset(&c.s, 0, sizeof c.s);
+        c.rep = &one;
+        c.e = &one.error;
+        c.err = NULL;
+        c.now = q;
+        c.t = hdi_heat_scaled(h->heat, h->ask.t[q]);
+        c.times = &c.t;
+        c.n_times = 1;
+        c.time_column = NULL;
+        (void)hdi_heat_single(&c);
+        (void)hdi_heat_end(&c);
+        if (one.status < 0) {
+            *h->rep = one;
+            h->e->column = q;
+            return one.status;
         }
-        if (q == 0) all = one;
-        else hdi_report_merge(&all, &one);
+        if (q == 0) *h->rep = one;
+        else hdi_report_merge(h->rep, &one);
     }
-    *rep = all;
-    return rep->status;
+    return h->rep->status;
+}
+
+/* Many times by one krylov basis or few, where that is the method. 0: it is not. */
+static int hdi_heat_together(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    int32_t q;
+    if (hdi_heat_sort_times(h, 1) < 0) return 1;
+    if (h->times[0] * heat->lambda_max < HDI_STILL || hdi_heat_engine(h) < 0 || h->method != HD_METHOD_KRYLOV) return h->e->status < 0 && !hdi_heat_retreat(h);
+    if (hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return h->e->status < 0;
+    if (hdi_heat_by_krylov(h) < 0) return !hdi_heat_retreat(h);
+    for (q = 0; q < h->ask.n_times && h->ask.list; q++) hdi_ledger_close(h->ask.list->ledger + q, h->rep);
+    return 1;
+}
+
+/* Runs a request whose arguments are checked. */
+static hd_status hdi_heat_run(hdi_heat_call *h) {
+    if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
+    if (h->ask.n_times == 1) (void)hdi_heat_single(h);
+    else if (!hdi_heat_together(h)) (void)hdi_heat_each_time(h);
+    return hdi_heat_end(h);
+}
+
+/* Entries (i[q], j[q]) sorted by column, and a ledger for each time; the request of h becomes that. list: what it points to. */
+static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int64_t n, const int32_t *i, const int32_t *j) {
+    int64_t q;
+    list->n = n;
+    list->rows = i;
+    list->order = HDI_TAKE(&h->s, hdi_pair, n);
+    list->begin = HDI_TAKE(&h->s, int64_t, n + 1);
+    list->ledger = HDI_TAKE(&h->s, hdi_ledger, h->ask.n_times);
+    if (h->e->status < 0) return h->e->status;
+    for (q = 0; q < n; q++) {
+        list->order[q].key = HDI_CAST(uint64_t, j[q]);
+        list->order[q].id = q;
+    }
+    hdi_sort_pairs(list->order, n);
+    for (q = 0; q < n; q++)                      /* at most as many distinct columns as vertices */
+        if (q == 0 || list->order[q].key != list->order[q - 1].key) list->begin[h->ask.k++] = q;
+    list->begin[h->ask.k] = n;
+    for (q = 0; q < h->ask.n_times; q++)
+        list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
+    h->ask.list = list;
+    return HD_OK;
 }
 
 /* ==== [26] kernel ====
@@ -16668,19 +16857,8 @@ static hd_status hdi_heat_each_time(hd_heat *heat, int32_t n_times, const double
 
 /* ---- diagonals ---- */
 
-static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t) {
-    int32_t q;
-    if (n_times < 1) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: there is no time");
-    if (!t) return hdi_missing(h->e);
-    if (h->heat->opts.method == HD_METHOD_ITERATIVE || h->heat->opts.method == HD_METHOD_KRYLOV)
-        return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
-    for (q = 0; q < n_times; q++)
-        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
-    return HD_OK;
-}
-
-/* What the report says of queries that have but one way. */
-static void hdi_direct_only(hdi_heat_call *h) {
+/* What the report says of selected inversion. */
+static void hdi_inverse_tell(hdi_heat_call *h) {
     h->method = h->rep->method = HD_METHOD_DIRECT;
     h->diagonal = 1;
     h->rep->reason = "selected inversion of the factors of the poles";
@@ -16703,22 +16881,23 @@ typedef struct hdi_columns {
 
 static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_report *rep) {
     hdi_heat_call h;
-    if (hdi_heat_begin(&h, heat, c->kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR, 1, c->k, rep) < 0) return hdi_heat_end(&h);
+    if (hdi_kernel_begin(&h, heat, c->kernel, rep, NULL) < 0) return hdi_heat_end(&h);
     h.t = c->t;
+    h.ask.k = c->k;
     h.method = HD_METHOD_DIRECT;
     h.diagonal = 1;
-    h.sources = c->sources;
+    h.ask.sources = c->sources;
     h.set = c->set;
-    h.U = c->U;
-    h.ldu = c->ldu;
+    h.ask.U = c->U;
+    h.ask.ldu = c->ldu;
     h.equal = c->equal;
     h.watching = c->watching;
     h.off_b = c->off_b;
     h.off_m = c->off_m;
-    if (hdi_heat_analysed(heat, 1, h.e) >= 0) {
+    if (hdi_heat_analysed(heat, h.e) >= 0) {
         h.lap = heat->elim.lap;
         if (h.equal) (void)hdi_heat_plain(&h);
-        else (void)hdi_direct_run(&h);
+        else (void)hdi_heat_by_direct(&h);
     }
     return hdi_heat_end(&h);
 }
@@ -16844,7 +17023,7 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
     int32_t p, best, i;
     memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
     memset(weight, 0, sizeof weight);
-    if (hdi_direct_prepare(h) < 0) return h->e->status;
+    if (hdi_direct_factors(h) < 0) return h->e->status;
     for (p = 0; p < m->set.n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
     best = 0;
     if (!hdi_resolvent_weights(&m->set, weight + m->set.n_poles, &slack)) {
@@ -16961,7 +17140,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     int64_t size, n;
     int32_t i, v, worst = 0;
     *relative = 0;
-    if (hdi_heat_analysed(heat, 1, h->e) < 0) return hdi_scope_end(&scope);
+    if (hdi_heat_analysed(heat, h->e) < 0) return hdi_scope_end(&scope);
     h->lap = lap = heat->elim.lap;
     h->equal = hdi_heat_equal(heat, h->t, h->e);
     s = &heat->elim.sym;
@@ -17077,10 +17256,12 @@ static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe,
     const hd_laplacian *lap = heat->source, *in = heat->elim.lap;
     const int32_t at = probe->row[q], row = lap->row[in->vertex[at]];
     double by, there = hdi_probe_value(heat, probe, q, &heat->elim.set, 1, lap->B ? 0 : 1 / in->mass[at], g[at], &by), most;
+    /* columns of uniform sets carry the constants exactly, which the entries do not; a full B's entries are without a0 B^-1 */
+    const int comparable = heat->elim.set.a0 == 0 || (heat->elim.set.kind == HD_POLES_OWN && !lap->B);
     hdi_parts part;
     int64_t p;
     most = heat->scale * (HDI_PROBE_SAFETY * fabs(there - k[at]) + by);
-    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && heat->elim.set.a0 == 0; p++) {
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && comparable; p++) {
         const int32_t j = in->row[lap->vertex[lap->L.col[p]]];
         const double off = hdi_max(1, g[at] > 0 ? sqrt(hdi_max(0, g[j]) / g[at]) : 1) * by;
         most = hdi_max(most, fabs(heat->scale * heat->lane[q].u[j] - values[p]) + heat->scale * off);
@@ -17177,7 +17358,7 @@ static void hdi_heat_forget(hdi_heat_call *h) {
     m->filled = 0;
     hdi_error_clear(h->e);
     memset(rep, 0, sizeof *rep);
-    hdi_direct_only(h);
+    hdi_inverse_tell(h);
     h->set = NULL;
 }
 
@@ -17228,7 +17409,7 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
     if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
     h->t = t[0];
     h->set = set;
-    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
+    if (hdi_direct_factors(h) < 0) return hdi_scope_end(&s);
     hdi_shared_weights(set, n_times, t, weight);
     if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, HDI_WANT_DIAGONAL, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
     h->set = NULL;
@@ -17259,12 +17440,46 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const do
 
 /* All times, in windows that share their poles. */
 static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
-    const double span = h->times[h->n_times - 1] / h->times[0];
     int32_t w, q0, q1;
     for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        const double end = h->times[0] * pow(span, (w + 1.0) / n_windows);
-        for (q1 = q0 + 1; q1 < h->n_times && (w + 1 >= n_windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
+        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
         if (hdi_diagonal_window(h, q1 - q0, h->times + q0, h->time_column + q0, D, ldd) < 0) break;
+    }
+    return h->e->status;
+}
+
+/* All times of a call: by shared poles where that takes fewer packs, else one by one. A set of degree 9, which one time
+ * takes, costs as much as 9/8 packs: a pack and a real factor. */
+static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    int32_t q;
+    if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+    hdi_inverse_tell(h);
+    if (kernel == HD_KERNEL_SYMMETRIC && h->ask.n_times > 1 && !heat->poles_asked && !heat->exacting) {
+        int32_t packs = 0, windows;
+        if (hdi_heat_sort_times(h, 1) < 0) return h->e->status;
+        windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], HDI_SHARED_TOL, h->n_times, &packs);
+        if (windows > 0 && 8 * packs < 9 * h->n_times && !hdi_heat_equal(heat, h->t, h->e)) {
+            if (hdi_diagonal_windows(h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return h->e->status;
+            hdi_heat_forget(h);                  /* one by one takes less */
+        }
+    }
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
+        h->t = hdi_heat_scaled(heat, h->ask.t[q]);
+        if (hdi_entries_sure(h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h->e->column = q;
+    }
+    return h->e->status;
+}
+
+/* k_t on the pattern of L at all times of a call, nnz(L) values each. */
+static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
+    const size_t nnz = HDI_CAST(size_t, h->heat->source->L.nnz);
+    int32_t q;
+    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+    hdi_inverse_tell(h);
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
+        h->t = hdi_heat_scaled(h->heat, h->ask.t[q]);
+        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + HDI_CAST(size_t, q) * nnz) < 0) h->e->column = q;
     }
     return h->e->status;
 }
@@ -17304,7 +17519,7 @@ static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scop
     hdi_ground *g = &heat->ground;
     double *work, *u;
     hdi_probe probe;
-    int32_t i, farthest = 0;
+    int32_t i, farthest = 0, nearest = 0;
     if (hdi_ground_make(m, g, e) < 0 || (forms && hdi_ground_forms(m, g, e) < 0)) return e->status;
     work = HDI_TAKE(scope, double, hdi_ground_room(m));
     u = HDI_TAKE(scope, double, m->sym.n);
@@ -17316,13 +17531,16 @@ static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scop
         x->g[r] = hdi_max(0, g->diag[i]);
         x->spread[r] = HUGE_VAL;
     }
-    for (i = 1; i < m->sym.n; i++)
+    for (i = 1; i < m->sym.n; i++) {
         if (g->diag[i] > g->diag[farthest]) farthest = i;
+        if (g->diag[i] > 0 && !(g->diag[nearest] > 0 && g->diag[nearest] <= g->diag[i])) nearest = i;
+    }
     probe = hdi_probe_rows(m->lap, g->diag, m->sym.n > 0 ? farthest : -1);
-    for (i = 0; i < probe.k; i++) {
-        const double there = forms ? g->form[probe.row[i]] : g->diag[probe.row[i]];
-        const double off = hdi_ground_column(m, g, probe.row[i], forms, u, work);
-        x->rounding = hdi_max(x->rounding, hdi_quotient(4 * HDI_PROBE_SAFETY * fabs(u[probe.row[i]] - there) + off * sqrt(hdi_max(0, g->diag[probe.row[i]])), there));
+    for (i = 0; i <= probe.k && m->sym.n > 0; i++) {   /* and the nearest, where the relative error is largest */
+        const int32_t row = i < probe.k ? probe.row[i] : nearest;
+        const double there = forms ? g->form[row] : g->diag[row];
+        const double off = hdi_ground_column(m, g, row, forms, u, work) * sqrt(hdi_max(0, g->diag[row]));
+        x->rounding = hdi_max(x->rounding, hdi_quotient(4 * HDI_PROBE_SAFETY * fabs(u[row] - there) + off, there));
     }
     return HD_OK;
 }
@@ -17411,11 +17629,11 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     scope = hdi_scope_begin(heat->ctx, e);
     x->t = hdi_min(2 * hdi_heat_scaled(heat, t), 1e300);
     x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, 1, 1, rep) < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) {
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, rep, NULL) < 0 || hdi_heat_analysed(heat, h.e) < 0) {
         *e = *h.e;
         return hdi_heat_end(&h);
     }
-    hdi_direct_only(&h);
+    hdi_inverse_tell(&h);
     h.t = x->t;
     h.degree = degree;
     h.lap = heat->elim.lap;
@@ -17555,20 +17773,6 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
     return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, 1);
 }
 
-static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, hd_error *e) {
-    int32_t q;
-    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC) return hdi_fail(e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
-    if (kind >= HD_DISTANCE_COMMUTE)
-        return n_times > 1 || n_times < 0 ? hdi_fail_row(e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times) : HD_OK;
-    if (n_times < 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: there is no time");
-    if (!t) return hdi_missing(e);
-    for (q = 0; q < n_times; q++)
-        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: t is not positive and finite", -1, q, t[q]);
-    return HD_OK;
-}
-
 /* Bound of the error relative to the largest distance that sends the default to the highest degree, and what the bound of degree 9 is to be expected at, as
  * seen on meshes of 1K to 50K vertices: so much times sqrt(t)/h. */
 #define HDI_DISTANCE_SURE 2.5e-6
@@ -17577,6 +17781,13 @@ static hd_status hdi_distance_check(const hd_heat *heat, hd_distance_kind kind, 
 /* Are the poles beyond our choice, or the highest degree as it is? */
 static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
     return kind >= HD_DISTANCE_COMMUTE || heat->poles_asked || heat->exacting;
+}
+
+/* Did the factors of the highest degree not fit the byte limit? Then those of the default are to be tried. */
+static int hdi_metric_retry(const hd_heat *heat, hd_error *e) {
+    if (e->status != HD_ERR_MEMORY_LIMIT || heat->elim.n_packs == 0) return 0;
+    hdi_error_clear(e);
+    return 1;
 }
 
 /* The same columns of the resolvent's bound g, in f's units. */
@@ -17702,7 +17913,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     h->set = set;
     h->lap = m->lap;
     h->relative = 1;
-    if (hdi_direct_prepare(h) < 0) return hdi_scope_end(&s);
+    if (hdi_direct_factors(h) < 0) return hdi_scope_end(&s);
     hdi_shared_weights(set, n_times, t, weight);
     if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, n, h->e) < 0)
         return hdi_scope_end(&s);
@@ -17777,24 +17988,52 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
 }
 
 /* All times through shared poles, when that is cheaper than one by one. 0: it is not, or not possible. */
-static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd) {
+static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t k, const int32_t *sources, double *D, size_t ldd) {
     hd_heat *heat = h->heat;
+    const int32_t n_times = h->ask.n_times;
     int32_t packs = 0, windows, w, q0, q1;
-    double span, *twice;
-    if (n_times < 2 || k == 0 || kind > HD_DISTANCE_WEIGHTED || heat->poles_asked || heat->exacting) return 0;
-    twice = HDI_TAKE(&h->s, double, n_times);
-    for (q0 = 0; twice && q0 < n_times; q0++) twice[q0] = 2 * t[q0];
-    if (!twice || hdi_heat_sort_times(h, n_times, twice) < 0 || hdi_heat_analysed(heat, 1, h->e) < 0) return 0;
-    span = h->times[n_times - 1] / h->times[0];
-    windows = hdi_shared_windows(span, HDI_SHARED_DISTANCE_TOL, n_times, &packs);
+    if (n_times < 2 || heat->poles_asked || heat->exacting) return 0;
+    if (hdi_heat_sort_times(h, 2) < 0 || hdi_heat_analysed(heat, h->e) < 0) return 0;
+    windows = hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
     if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return 0;
-    hdi_direct_only(h);
+    hdi_inverse_tell(h);
     for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
-        const double end = h->times[0] * pow(span, (w + 1.0) / windows);
-        for (q1 = q0 + 1; q1 < n_times && (w + 1 >= windows || h->times[q1] <= end * (1 + 1e-13)); q1++) {}
+        q1 = hdi_window_end(h->times, n_times, q0, w, windows);
         if (hdi_distance_window(h, kind, q0, q1, k, sources, D, ldd) < 0) break;
     }
     return 1;
+}
+
+/* Distances at one time. Where much cancels, or is sure to, with the highest degree if there is room for its factors. */
+static hd_status hdi_distance_time(hd_heat *heat, hd_distance_kind kind, double t, int32_t k, const int32_t *sources, double *D,
+                                   size_t step, hd_report *rep, hd_error *e) {
+    const int settled = hdi_metric_settled(heat, kind);
+    const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
+    const int sure = !settled && kind == HD_DISTANCE_CLASSICAL && expected > HDI_DISTANCE_SURE;
+    if (!sure) (void)hdi_distance_once(heat, kind, t, 0, k, sources, D, step, rep, e);
+    if (e->status >= 0 && !settled && (sure || rep->error_rational > HDI_DISTANCE_SURE))
+        (void)hdi_distance_once(heat, kind, t, HDI_RAT_KERNEL_MAX, k, sources, D, step, rep, e);
+    if (settled || !hdi_metric_retry(heat, e)) return e->status;
+    return hdi_distance_once(heat, kind, t, 0, k, sources, D, step, rep, e);
+}
+
+/* One to all: all times and sources of a call. */
+static hd_status hdi_distance_run(hdi_heat_call *h, hd_distance_kind kind, int32_t k, const int32_t *sources, double *D, size_t ldd) {
+    hd_heat *heat = h->heat;
+    const int timeless = kind >= HD_DISTANCE_COMMUTE;
+    const int32_t n_times = timeless ? 1 : h->ask.n_times;
+    hd_report one;
+    int32_t q;
+    if (!timeless && hdi_distance_windows(h, kind, k, sources, D, ldd) && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
+    if (h->e->status == HD_ERR_MEMORY_LIMIT && n_times > 1) hdi_heat_forget(h);   /* one by one takes less */
+    for (q = 0; q < n_times && h->e->status >= 0; q++) {
+        (void)hdi_distance_time(heat, kind, timeless ? 0 : h->ask.t[q], k, sources, D + HDI_CAST(size_t, q) * ldd,
+                                ldd * HDI_CAST(size_t, n_times), &one, h->e);
+        if (h->e->status < 0) h->e->column = q;
+        else if (q == 0) *h->rep = one;
+        else hdi_report_merge(h->rep, &one);
+    }
+    return h->e->status;
 }
 
 /* ---- pairs ---- */
@@ -17936,12 +18175,20 @@ static hd_status hdi_pairs_distances(hd_heat *heat, hd_distance_kind kind, doubl
     return hdi_scope_end(&s);
 }
 
-/* Both, each of which may be NULL. */
-static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *rep) {
+/* Both, each of which may be NULL, without columns in store. */
+static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i,
+                                      const int32_t *j, double *K, double *d, hd_report *rep) {
+    hdi_heat_call h;
+    hdi_entry_list list;
     hd_report one;
     memset(rep, 0, sizeof *rep);
     hdi_error_clear(&rep->error);
-    if (K && kind < HD_DISTANCE_COMMUTE && hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, n_pairs, i, j, K, rep) < 0) return rep->status;
+    if (K && kind < HD_DISTANCE_COMMUTE) {
+        if (hdi_kernel_begin(&h, heat, HD_KERNEL_OPERATOR, rep, NULL) < 0 || hdi_times_check(&h, 1, &t, 0) < 0) return hdi_heat_end(&h);
+        list.values = K;
+        (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
+        if (hdi_heat_run(&h) < 0) return rep->status;
+    }
     if (!d) return rep->status;
     memset(&one, 0, sizeof one);
     hdi_error_clear(&one.error);
@@ -17952,6 +18199,110 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, doub
     }
     hdi_report_merge(rep, &one);
     return rep->status;
+}
+
+/* Columns that are held at the same time: at most so many doubles, half a GiB. */
+#define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
+
+/* Pairs at time t; rep, cleared, gets the report. */
+static hd_status hdi_pairs_once(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j,
+                                double *K, double *d, hd_report *rep) {
+    const hd_laplacian *lap = heat->source;
+    hd_error e;
+    hdi_scope s;
+    hdi_heat_call h;
+    hdi_pair *order;
+    double *work, *U;
+    int32_t *list, *place, n_list;
+    hdi_error_clear(&e);
+    s = hdi_scope_begin(heat->ctx, &e);
+    order = HDI_TAKE(&s, hdi_pair, 2 * n_pairs);
+    list = HDI_TAKE(&s, int32_t, 2 * n_pairs);
+    place = HDI_TAKE(&s, int32_t, 2 * n_pairs);
+    work = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n) + 1);
+    n_list = e.status < 0 ? 0 : hdi_pairs_vertices(n_pairs, i, j, order, list, place);
+    if (e.status >= 0 && (kind >= HD_DISTANCE_COMMUTE || HDI_CAST(int64_t, n_list) * lap->n > HDI_PAIRS_DOUBLES)) {
+        hdi_scope_end(&s);
+        return hdi_pairs_by_entries(heat, kind, t, n_pairs, i, j, K, d, rep);
+    }
+    U = HDI_TAKE(&s, double, HDI_CAST(uint64_t, lap->n) * HDI_CAST(uint64_t, n_list));
+    if (hdi_kernel_begin(&h, heat, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, rep, NULL) < 0 ||
+        hdi_times_check(&h, 1, &t, 0) < 0 || e.status < 0) {
+        if (e.status < 0) *h.e = e;
+        hdi_heat_end(&h);
+    } else {
+        h.ask.k = n_list;
+        h.ask.sources = list;
+        h.ask.U = U;
+        h.ask.ldu = HDI_CAST(size_t, lap->n);
+        if (hdi_heat_run(&h) >= 0) hdi_pairs_of_columns(lap, kind, heat->scale, U, n_pairs, i, j, place, K, d, work, rep);
+    }
+    hdi_scope_end(&s);
+    return rep->status;
+}
+
+/* The pairs at all times of a call. */
+static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K,
+                               double *d) {
+    const int32_t n_times = kind >= HD_DISTANCE_COMMUTE ? 1 : h->ask.n_times;
+    hd_report one;
+    int32_t q;
+    for (q = 0; q < n_times; q++) {
+        const int64_t at = n_pairs * q;
+        const double t = kind >= HD_DISTANCE_COMMUTE ? 0 : h->ask.t[q];
+        if (hdi_pairs_once(h->heat, kind, t, n_pairs, i, j, K ? K + at : NULL, d ? d + at : NULL, &one) < 0) {
+            *h->rep = one;
+            if (n_times > 1) h->e->column = q;
+            return h->e->status;
+        }
+        if (q == 0) *h->rep = one;
+        else hdi_report_merge(h->rep, &one);
+    }
+    return h->e->status;
+}
+
+/* ---- farthest points ---- */
+
+/* The vertex that is farthest from those chosen, the first of several; without mass never. */
+static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
+    int32_t v, best = -1;
+    for (v = 0; v < lap->n; v++)
+        if (lap->row[v] >= 0 && (best < 0 || nearest[v] > nearest[best])) best = v;
+    return best;
+}
+
+/* Gonzalez 1985. */
+static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex,
+                                double *distance) {
+    hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const int settled = hdi_metric_settled(heat, kind);
+    double *nearest = HDI_TAKE(&h->s, double, lap->n), *u = HDI_TAKE(&h->s, double, lap->n);
+    hdi_metric x;
+    hdi_metric_column c;
+    hdi_ledger ledger;
+    hd_report one;
+    int32_t q, v;
+    memset(&one, 0, sizeof one);
+    if (h->e->status >= 0) (void)hdi_metric_make(heat, kind, t, settled ? 0 : HDI_RAT_KERNEL_MAX, &x, &h->s, &one);
+    if (!settled && hdi_metric_retry(heat, h->e)) (void)hdi_metric_make(heat, kind, t, 0, &x, &h->s, &one);
+    if (h->e->status < 0) return h->e->status;
+    one.error_relative = 0;
+    for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
+    for (q = 0; q < count && h->e->status >= 0; q++) {
+        if (q >= n_given) vertex[q] = q == 0 ? lap->vertex[0] : hdi_sample_next(lap, nearest);
+        if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
+        if (q + 1 == count || hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / count, h->e) < 0) break;
+        if (hdi_metric_columns(heat, &x, 1, vertex + q, u, HDI_CAST(size_t, lap->n), &c, &one, h->e) < 0) break;
+        ledger = hdi_metric_ledger(&x);
+        hdi_metric_distance(lap, &x, vertex[q], &c, NULL, &one, &ledger);
+        hdi_ledger_close(&ledger, &one);
+        for (v = 0; v < lap->n; v++) nearest[v] = hdi_min(nearest[v], u[v]);
+        nearest[vertex[q]] = -1;                 /* not again, even when no distance is left */
+    }
+    one.error = *h->e;
+    *h->rep = one;
+    return h->e->status;
 }
 
 /* ==== [28] geodesic ====
@@ -19055,8 +19406,8 @@ static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double
     return hdi_points_check(xyz, n, query, *m, e);
 }
 
-HEATDIFF_API hd_status hd_neighbours_nearest(int32_t *index, double *distance2, const double *xyz, int32_t n, const double *query, int32_t m, int32_t k,
-                                             hd_context *ctx, hd_error *err) {
+HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m, int32_t k, int32_t *index,
+                                             double *distance2, hd_context *ctx, hd_error *err) {
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
@@ -19643,265 +19994,141 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     return c.e->status;
 }
 
-HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, double t, int32_t k, const double *F, size_t ldf, double *U, size_t ldu,
-                                     hd_report *report) {
-    hdi_heat_call h;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, t, k, report) < 0) return hdi_heat_end(&h);
-    if (k > 0 && (!F || !U)) hdi_missing(h.e);
-    h.F = F;
-    h.U = U;
-    h.ldf = hdi_leading(&h, ldf);
-    h.ldu = hdi_leading(&h, ldu);
-    if (h.e->status >= 0 && hdi_fields_check(&h) >= 0 && U == F && h.ldu != h.ldf) {   /* fields go where their answers will be */
-        const size_t bytes = HDI_CAST(size_t, heat->source->n) * sizeof *U;
-        int32_t q;
-        for (q = 1; q < k; q++) {
-            const size_t at = HDI_CAST(size_t, h.ldu > h.ldf ? k - q : q);
-            memmove(U + at * h.ldu, U + at * h.ldf, bytes);
-        }
-        h.ldf = h.ldu;
+/* Fields that lie ldf apart and whose answers will lie ldu apart in the same array: they go where their answers will be. */
+static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
+    int32_t q;
+    for (q = 1; q < ask->k && ask->ldu != ask->ldf; q++) {
+        const size_t at = HDI_CAST(size_t, ask->ldu > ask->ldf ? ask->k - q : q);
+        memmove(U + at * ask->ldu, U + at * ask->ldf, n * sizeof *U);
     }
+    ask->ldf = ask->ldu;
+}
+
+HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
+                                     double *U, size_t ldu, hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 0) < 0) return hdi_heat_end(&h);
+    if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (k > 0 && (!F || !U)) hdi_missing(h.e);
+    h.ask.k = k;
+    h.ask.F = F;
+    h.ask.U = U;
+    h.ask.ldf = hdi_leading(&h, ldf);
+    h.ask.ldu = hdi_leading(&h, ldu);
+    if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
+    if (U == F && n_times > 1) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
+    else if (U == F) hdi_fields_spread(&h.ask, HDI_CAST(size_t, heat->source->n), U);
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, double t, hd_kernel kernel, int32_t k, const int32_t *sources, double *U, size_t ldu,
-                                       hd_report *report) {
+HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int32_t k,
+                                       const int32_t *sources, double *U, size_t ldu, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    int32_t q;
-    if (hdi_kernel_begin(&h, heat, t, kernel, k, report) < 0) return hdi_heat_end(&h);
-    if (k > 0 && (!sources || !U)) hdi_missing(h.e);
-    h.sources = sources;
-    h.U = U;
-    h.ldu = hdi_leading(&h, ldu);
-    for (q = 0; q < k && !h.e->status; q++)
-        if (hdi_vertex_check(heat->source, sources[q], h.e) < 0) h.e->column = q;
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 0) < 0) return hdi_heat_end(&h);
+    if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (k > 0 && (!sources || !U)) hdi_missing(h.e);
+    h.ask.k = k;
+    h.ask.sources = sources;
+    h.ask.U = U;
+    h.ask.ldu = hdi_leading(&h, ldu);
+    if (h.e->status >= 0) (void)hdi_sources_check(&h, k, sources);
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, double t, int32_t source, double *u, hd_report *report) {
-    return hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 1, &source, u, 0, report);
+HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u, hd_report *report,
+                                      hd_error *err) {
+    return hd_heat_columns(heat, kernel, 1, &t, 1, &source, u, 0, report, err);
 }
 
-HEATDIFF_API hd_status hd_heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f, double *U, size_t ldu,
-                                     hd_report *report) {
-    hdi_heat_call h;
-    int32_t q;
-    if (f) {
-        if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, 0, 1, report) < 0) return hdi_heat_end(&h);
-    } else if (hdi_kernel_begin(&h, heat, 0, kernel, 1, report) < 0) {
-        return hdi_heat_end(&h);
-    }
-    if (n_times < 1) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: there is no time");
-    else if (!t || !U) hdi_missing(h.e);
-    h.F = f;
-    h.sources = &source;
-    h.U = U;
-    h.ldf = hdi_leading(&h, 0);
-    h.ldu = hdi_leading(&h, ldu);
-    if (h.e->status >= 0 && f) (void)hdi_fields_check(&h);
-    if (h.e->status >= 0 && !f) (void)hdi_vertex_check(heat->source, source, h.e);
-    for (q = 0; q < n_times && h.e->status >= 0; q++)
-        if (!hdi_finite(t[q]) || t[q] < 0) hdi_fail_row(h.e, HD_ERR_ARGUMENT, "heat: t is negative or not finite", -1, q, t[q]);
-    if (h.e->status < 0 || hdi_heat_sort_times(&h, n_times, t) < 0) return hdi_heat_end(&h);
-    if (n_times > 1 && h.times[0] * heat->lambda_max >= HDI_STILL && hdi_heat_engine(&h) >= 0 && h.method == HD_METHOD_KRYLOV &&
-        !hdi_heat_equal(heat, h.t, h.e) && (hdi_krylov_all(&h) >= 0 || !hdi_heat_retreat(&h)))
-        return hdi_heat_end(&h);
-    if (h.e->status < 0) (void)hdi_heat_retreat(&h);
-    if (h.e->status >= 0) (void)hdi_heat_each_time(heat, n_times, t, kernel, source, f, U, h.ldu, h.rep);
-    {
-        const hd_status st = h.e->status < 0 ? h.e->status : h.rep->status;
-        const hd_error kept = *h.e;
-        hdi_scope_end(&h.s);
-        *h.e = kept;
-        return h.rep->status = st;
-    }
+/* Pairs of vertices. */
+static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_t *i, const int32_t *j) {
+    const hd_laplacian *lap = h->heat->source;
+    if (n_pairs < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
+    if (n_pairs > 0 && (!i || !j)) return hdi_missing(h->e);
+    if (hdi_vertices_check(lap, n_pairs, i, &h->e->row, h->e) < 0) return h->e->status;
+    return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
 }
 
-HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
-                                       double *values, hd_report *report) {
+HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int64_t n_pairs,
+                                       const int32_t *i, const int32_t *j, double *values, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    hdi_ledger ledger;
-    hdi_pair *order;
-    int64_t q, *begin;
-    if (hdi_kernel_begin(&h, heat, t, kernel, 0, report) < 0) return hdi_heat_end(&h);
-    if (n_pairs < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
-    else if (n_pairs > 0 && (!i || !j || !values)) hdi_missing(h.e);
-    for (q = 0; q < n_pairs && !h.e->status; q++)
-        if (hdi_vertex_check(heat->source, i[q], h.e) < 0 || hdi_vertex_check(heat->source, j[q], h.e) < 0) h.e->row = q;
-    order = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, hdi_pair, n_pairs);
-    begin = HDI_TAKE(&h.s, int64_t, n_pairs + 1);
-    if (h.e->status < 0) return hdi_heat_end(&h);
-    for (q = 0; q < n_pairs; q++) {
-        order[q].key = HDI_CAST(uint64_t, j[q]);
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, n_pairs);
-    for (q = 0; q < n_pairs; q++)                /* at most n distinct columns */
-        if (q == 0 || order[q].key != order[q - 1].key) begin[h.k++] = q;
-    begin[h.k] = n_pairs;
-    h.order = order;
-    h.begin = begin;
-    h.rows = i;
-    h.values = values;
-    ledger = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
-    h.entries = &ledger;
+    hdi_entry_list list;
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 0) < 0 || hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
+    if (n_pairs > 0 && !values) hdi_missing(h.e);
+    list.values = values;
+    if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd, hd_report *report) {
+HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *D, size_t ldd,
+                                        hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    int32_t q;
-    if (hdi_kernel_begin(&h, heat, 1, kernel, 1, report) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t) >= 0 && n_times > 0 && !D) hdi_missing(h.e);
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (!D) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0 && hdi_heat_analysed(heat, 1, h.e) >= 0) hdi_direct_only(&h);
-    if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && h.e->status >= 0 && !heat->poles_asked && !heat->exacting) {
-        int32_t packs = 0, windows;
-        hdi_heat_sort_times(&h, n_times, t);
-        windows = h.e->status < 0 ? 0 : hdi_shared_windows(h.times[n_times - 1] / h.times[0], HDI_SHARED_TOL, n_times, &packs);
-        if (windows > 0 && 8 * packs < 9 * n_times && !hdi_heat_equal(heat, h.t, h.e)) {   /* a set of degree 9 is a pack and a real factor */
-            if (hdi_diagonal_windows(&h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return hdi_heat_end(&h);
-            hdi_heat_forget(&h);                 /* one by one takes less */
-        }
-    }
-    for (q = 0; q < n_times && h.e->status >= 0; q++) {
-        h.t = hdi_heat_scaled(heat, t[q]);
-        if (hdi_entries_sure(&h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h.e->column = q;
-    }
+    if (h.e->status >= 0) (void)hdi_diagonal_run(&h, kernel, D, ldd);
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, double t, double *values, hd_report *report) {
+HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *values,
+                                     hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_kernel_begin(&h, heat, t, HD_KERNEL_SYMMETRIC, 1, report) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, 1, &t) >= 0 && !values) hdi_missing(h.e);
-    if (h.e->status < 0 || hdi_heat_analysed(heat, 1, h.e) < 0) return hdi_heat_end(&h);
-    hdi_direct_only(&h);
-    (void)hdi_entries_sure(&h, HD_KERNEL_SYMMETRIC, 1, values);
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (!values) hdi_missing(h.e);
+    else if (kernel != HD_KERNEL_SYMMETRIC)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
+    if (h.e->status >= 0) (void)hdi_edges_run(&h, values);
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k, const int32_t *sources, double *D, size_t ldd,
-                                        hd_report *report) {
+/* The start of a query of a distance. Commute and biharmonic have no time: n_times is 0 or 1 and t is not looked at. */
+static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
+                                    int positive, hd_report *report, hd_error *err) {
+    if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
+    h->relative = 1;
+    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC)
+        return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
+    if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
+    if (n_times > 1 || n_times < 0)
+        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times);
+    return hdi_direct_only(h);
+}
+
+HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k,
+                                        const int32_t *sources, double *D, size_t ldd, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    hd_report *rep, one;
-    int32_t q;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, 1, k, report) < 0) return hdi_heat_end(&h);
-    rep = h.rep;
-    if (hdi_distance_check(heat, kind, n_times, t, h.e) >= 0 && k > 0 && (!sources || !D)) hdi_missing(h.e);
-    if (kind >= HD_DISTANCE_COMMUTE) n_times = 1;
-    h.relative = 1;
+    if (hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (k > 0 && (!sources || !D)) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
-    for (q = 0; q < k && !h.e->status; q++)
-        if (hdi_vertex_check(heat->source, sources[q], h.e) < 0) h.e->column = q;
-    if (h.e->status >= 0 && hdi_distance_windows(&h, kind, n_times, t, k, sources, D, ldd) && h.e->status != HD_ERR_MEMORY_LIMIT) return hdi_heat_end(&h);
-    if (h.e->status == HD_ERR_MEMORY_LIMIT && n_times > 1) hdi_heat_forget(&h);   /* one by one takes less */
-    for (q = 0; q < n_times && k > 0 && h.e->status >= 0; q++) {
-        const size_t step = ldd * HDI_CAST(size_t, n_times);
-        double *first = D + HDI_CAST(size_t, q) * ldd;
-        const int settled = hdi_metric_settled(heat, kind);
-        const int sure = !settled && kind == HD_DISTANCE_CLASSICAL && heat->source->h > 0 && HDI_DISTANCE_EXPECTED * sqrt(t[q]) > HDI_DISTANCE_SURE * heat->source->h;
-        if (!sure) (void)hdi_distance_once(heat, kind, t ? t[q] : 0, 0, k, sources, first, step, &one, h.e);
-        if (h.e->status >= 0 && !settled && (sure || one.error_rational > HDI_DISTANCE_SURE))   /* much has cancelled: the highest degree */
-            (void)hdi_distance_once(heat, kind, t[q], HDI_RAT_KERNEL_MAX, k, sources, first, step, &one, h.e);
-        if (h.e->status == HD_ERR_MEMORY_LIMIT && !settled && heat->elim.n_packs > 0) {
-            hdi_error_clear(h.e);
-            (void)hdi_distance_once(heat, kind, t[q], 0, k, sources, first, step, &one, h.e);
-        }
-        if (h.e->status < 0) h.e->column = q;
-        else if (q == 0) *rep = one;
-        else hdi_report_merge(rep, &one);
-    }
+    if (h.e->status >= 0 && hdi_sources_check(&h, k, sources) >= 0 && k > 0)
+        (void)hdi_distance_run(&h, kind, k, sources, D, ldd);
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report) {
-    enum { MOST_DOUBLES = 1 << 26 };             /* of columns held at the same time */
+HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int64_t n_pairs,
+                                     const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    hdi_pair *order;
-    double *U = NULL, *work;
-    int32_t *list, *place, n_list = 0;
-    int64_t q;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, kind >= HD_DISTANCE_COMMUTE ? 1 : t, 0, report) < 0) return hdi_heat_end(&h);
-    if (kind < HD_DISTANCE_CLASSICAL || kind >= HD_DISTANCE_COMMUTE) (void)hdi_distance_check(heat, kind, 1, NULL, h.e);
+    if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0) return hdi_heat_end(&h);
     h.relative = d != NULL;
-    if (h.e->status < 0) return hdi_heat_end(&h);
-    if (n_pairs < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
-    else if (n_pairs > 0 && (!i || !j)) hdi_missing(h.e);
-    for (q = 0; q < n_pairs && !h.e->status; q++)
-        if (hdi_vertex_check(heat->source, i[q], h.e) < 0 || hdi_vertex_check(heat->source, j[q], h.e) < 0) h.e->row = q;
-    if (h.e->status < 0 || n_pairs == 0) return hdi_heat_end(&h);
-    order = HDI_TAKE(&h.s, hdi_pair, 2 * n_pairs);
-    list = HDI_TAKE(&h.s, int32_t, 2 * n_pairs);
-    place = HDI_TAKE(&h.s, int32_t, 2 * n_pairs);
-    work = HDI_TAKE(&h.s, double, 2 * HDI_CAST(uint64_t, heat->source->n) + 1);
-    if (h.e->status < 0) return hdi_heat_end(&h);
-    n_list = hdi_pairs_vertices(n_pairs, i, j, order, list, place);
-    if (kind >= HD_DISTANCE_COMMUTE || HDI_CAST(int64_t, n_list) * heat->source->n > MOST_DOUBLES) {
-        hd_report all;
-        if (hdi_pairs_by_entries(heat, kind, t, n_pairs, i, j, K, d, &all) < 0) *h.e = all.error;
-        else {
-            all.error = *h.e;
-            *h.rep = all;
-        }
-        return hdi_heat_end(&h);
-    }
-    U = HDI_TAKE(&h.s, double, HDI_CAST(uint64_t, heat->source->n) * HDI_CAST(uint64_t, n_list));
-    if (U) {
-        hd_report columns;
-        if (hd_heat_columns(heat, t, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, n_list, list, U, 0, &columns) >= 0)
-            hdi_pairs_of_columns(heat->source, kind, heat->scale, U, n_pairs, i, j, place, K, d, work, &columns);
-        *h.rep = columns;
-    }
+    if (hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0) (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
     return hdi_heat_end(&h);
 }
 
-/* ---- farthest points ---- */
-
-HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex, double *distance, hd_report *report) {
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given,
+                                      int32_t *vertex, double *distance, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    hdi_metric x;
-    hdi_metric_column c;
-    hdi_ledger ledger;
-    hd_report one;
-    double *nearest, *u;
-    const hd_laplacian *lap = heat ? heat->source : NULL;
-    int32_t q, v;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, kind >= HD_DISTANCE_COMMUTE ? 1 : t, 1, report) < 0) return hdi_heat_end(&h);
-    if (hdi_distance_check(heat, kind, 1, &t, h.e) >= 0 && (count < 1 || n_given < 0 || n_given > count || count > lap->n_active))
+    if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (count < 1 || n_given < 0 || n_given > count || count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, count);
-    if (h.e->status >= 0 && !vertex) hdi_missing(h.e);
-    for (q = 0; q < n_given && h.e->status >= 0; q++)
-        if (hdi_vertex_check(lap, vertex[q], h.e) < 0) h.e->column = q;
-    nearest = h.e->status < 0 ? NULL : HDI_TAKE(&h.s, double, lap->n);
-    u = HDI_TAKE(&h.s, double, lap ? lap->n : 0);
-    memset(&one, 0, sizeof one);
-    if (h.e->status >= 0) (void)hdi_metric_make(heat, kind, t, hdi_metric_settled(heat, kind) ? 0 : HDI_RAT_KERNEL_MAX, &x, &h.s, &one);
-    if (h.e->status == HD_ERR_MEMORY_LIMIT && heat->elim.n_packs > 0 && !hdi_metric_settled(heat, kind)) {   /* no room for twice the factors */
-        hdi_error_clear(h.e);
-        (void)hdi_metric_make(heat, kind, t, 0, &x, &h.s, &one);
-    }
-    if (h.e->status < 0) return hdi_heat_end(&h);
-    one.error_relative = 0;
-    h.relative = 1;
-    for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
-    for (q = 0; q < count && h.e->status >= 0; q++) {
-        int32_t best = -1;
-        for (v = 0; v < lap->n && q >= n_given; v++)
-            if (lap->row[v] >= 0 && (best < 0 || nearest[v] > nearest[best])) best = v;   /* without mass: never chosen */
-        if (q >= n_given) vertex[q] = q == 0 ? lap->vertex[0] : best;
-        if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
-        if (q + 1 == count) break;
-        if (hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / count, h.e) < 0) break;
-        if (hdi_metric_columns(heat, &x, 1, vertex + q, u, HDI_CAST(size_t, lap->n), &c, &one, h.e) < 0) break;
-        ledger = hdi_metric_ledger(&x);
-        hdi_metric_distance(lap, &x, vertex[q], &c, NULL, &one, &ledger);
-        hdi_ledger_close(&ledger, &one);
-        for (v = 0; v < lap->n; v++) nearest[v] = hdi_min(nearest[v], u[v]);
-        nearest[vertex[q]] = -1;                 /* not again, even when no distance is left */
-    }
-    one.error = *h.e;
-    *h.rep = one;
+    else if (!vertex) hdi_missing(h.e);
+    if (h.e->status >= 0 && hdi_sources_check(&h, n_given, vertex) >= 0)
+        (void)hdi_sample_run(&h, kind, t, count, n_given, vertex, distance);
     return hdi_heat_end(&h);
 }
 
@@ -19965,13 +20192,14 @@ static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
 }
 
 /* Checks the arguments of a query; the report is filled with what is known of the plan. */
-static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d, hd_geodesic_report *rep, hdi_call *c) {
+static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d, hd_geodesic_report *rep, hd_error *err,
+                               hdi_call *c) {
     int32_t q;
     if (rep) {
         memset(rep, 0, sizeof *rep);
         hdi_error_clear(&rep->error);
     }
-    if (hdi_enter(c, g ? g->ctx : NULL, NULL) < 0) return c->e->status;
+    if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
     if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
     hdi_geo_tell_plan(g, rep);
     for (q = 0; q < k; q++) {
@@ -19983,18 +20211,20 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
     return hdi_progress(g->ctx, "solve", 0, c->e);
 }
 
-HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const int32_t *sources, int32_t n_sources, double *d, hd_geodesic_report *report) {
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources, double *d, hd_geodesic_report *report,
+                                            hd_error *err) {
     hdi_call c;
-    if (hdi_geo_begin(g, sources, n_sources, d, report, &c) < 0) return hdi_geo_end(report, c.e);
+    if (hdi_geo_begin(g, sources, n_sources, d, report, err, &c) < 0) return hdi_geo_end(report, c.e);
     if (n_sources < 1) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: there is no source");
     else (void)hdi_geo_one(g, sources, n_sources, d, report, c.e);
     return hdi_geo_end(report, c.e);
 }
 
-HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd, hd_geodesic_report *report) {
+HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd,
+                                             hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
     int32_t q, n_cols;
-    if (hdi_geo_begin(g, sources, k, D, report, &c) < 0) return hdi_geo_end(report, c.e);
+    if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0) return hdi_geo_end(report, c.e);
     ldd = ldd ? ldd : HDI_CAST(size_t, g->n);
     if (k < 0) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the number of sources is negative");
     else if (ldd < HDI_CAST(size_t, g->n)) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the leading dimension is smaller than n");

@@ -44,7 +44,7 @@ static hd_status smallest(hd_heat *heat, double t, double *least, hd_report *rep
     static double u[N];
     double low = 0, high = 0;
     int32_t i;
-    if (hd_heat_column(heat, t, 0, u, report) < 0) return report->status;
+    if (hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 0, u, report, NULL) < 0) return report->status;
     for (i = 0; i < N; i++) {
         low = fmin(low, u[i]);
         high = fmax(high, u[i]);

@@ -51,21 +51,21 @@ int main(void) {
     if (hd_geodesic_create(&g, xyz, N, tri, 2 * N, NULL, &err) < 0) return fail(&err, NULL);
 
     /* Round the tube, from its outermost point: the circle of radius 1 is the shortest way. */
-    if (hd_geodesic_distance(g, sample, 1, d, &report) < 0) return fail(&report.error, g);
+    if (hd_geodesic_distance(g, 1, sample, d, &report, NULL) < 0) return fail(&report.error, g);
     printf("torus: %d vertices, mean edge length h = %.4f, heat flows for t = %.3g\n", (int)N, report.h, report.t);
     for (i = NV / 8; i <= NV / 2; i += NV / 8)
         printf("round the tube by %3d degrees: %.4f, in truth %.4f\n", 360 * (int)i / NV, d[i], 6.283185307179586 * i / NV);
 
     /* The farthest from the first k, k = 1, 2, ... */
     for (k = 1; k < SAMPLES; k++) {
-        if (hd_geodesic_distance(g, sample, k, d, &report) < 0) return fail(&report.error, g);
+        if (hd_geodesic_distance(g, k, sample, d, &report, NULL) < 0) return fail(&report.error, g);
         for (i = 0; i < N; i++)
             if (d[i] > d[sample[k]]) sample[k] = i;
         printf("sample %d: vertex %5d, %.3f from those before\n", (int)k, (int)sample[k], d[sample[k]]);
     }
 
     /* All of them, each for itself: eight columns take little longer than two. */
-    if (hd_geodesic_distances(g, SAMPLES, sample, D, 0, &report) < 0) return fail(&report.error, g);
+    if (hd_geodesic_distances(g, SAMPLES, sample, D, 0, &report, NULL) < 0) return fail(&report.error, g);
     for (k = 0; k < SAMPLES; k++)
         for (i = 0; i < SAMPLES; i++)
             if (i != k && D[k * N + sample[i]] < nearest) nearest = D[k * N + sample[i]];

@@ -59,7 +59,7 @@ int main(void) {
         const double t = times[k] * lap->h * lap->h;
         int32_t i;
         double mass = 0;
-        if (hd_heat_column(heat, t, source, u, &report) < 0) {
+        if (hd_heat_column(heat, HD_KERNEL_OPERATOR, t, source, u, &report, NULL) < 0) {
             hd_heat_free(heat);
             hd_laplacian_free(lap);
             return fail(&report.error);

@@ -47,7 +47,7 @@ static hd_status work(hd_context *ctx, const double *xyz, const int32_t *tri, do
     lap_opts.context = ctx;
     status = hd_laplacian_triangles(&lap, xyz, N, tri, 2 * (SIDE - 1) * (SIDE - 1), &lap_opts, NULL);
     if (status >= 0) status = hd_heat_create(&heat, lap, NULL, NULL);
-    if (status >= 0) status = hd_heat_column(heat, 50 * lap->h * lap->h, N / 2, u, NULL);
+    if (status >= 0) status = hd_heat_column(heat, HD_KERNEL_OPERATOR, 50 * lap->h * lap->h, N / 2, u, NULL, NULL);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     return status;

@@ -66,7 +66,7 @@ int main(void) {
     hd_csr_free(&L, NULL);                          /* the pair is copied */
     hd_csr_free(&B, NULL);
 
-    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_column(heat, t, 0, u, &report) < 0) return fail(heat ? &report.error : &err);
+    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 0, u, &report, NULL) < 0) return fail(heat ? &report.error : &err);
     printf("heat kernel of a ring of %d points at t = %g: error %.1e, of a largest value %.3e; the bound says %.1e\n", N, t, compare(u, t, 0), u[0],
            report.error_bound * u[0]);
     hd_heat_free(heat);
@@ -78,7 +78,7 @@ int main(void) {
     euler.a[0].re = -1;
     memset(&opts, 0, sizeof opts);
     opts.rational = &euler;
-    if (hd_heat_create(&heat, lap, &opts, &err) < 0 || hd_heat_column(heat, t, 0, u, &report) < 0) return fail(heat ? &report.error : &err);
+    if (hd_heat_create(&heat, lap, &opts, &err) < 0 || hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 0, u, &report, NULL) < 0) return fail(heat ? &report.error : &err);
     printf("a step of backward Euler: error %.1e, of a largest value %.3e, in %lld iterations\n", compare(u, t, 1), u[0], (long long)report.iterations);
     hd_heat_free(heat);
     hd_laplacian_free(lap);

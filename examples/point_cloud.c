@@ -62,7 +62,7 @@ static int show(const double *xyz, const char *what) {
     printf("%s: %d points, h = %.4f, area of the cells %.3f (sphere: 12.566)\n", what, N, lap->h, lap->area);
     printf("  bandwidth %.2e = %.2f h^2, weights up to a distance of %.3f, %.0f in a row\n", lap->points.bandwidth,
            lap->points.bandwidth / (lap->h * lap->h), lap->points.cut_radius, (double)lap->L.nnz / lap->n_active);
-    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, &report) < 0) {
+    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) {
         const hd_error *why = heat ? &report.error : &err;
         hd_heat_free(heat);
         hd_laplacian_free(lap);

@@ -75,7 +75,7 @@ static double error_of(hd_laplacian_kind kind, double t) {
         fprintf(stderr, "polygon_mesh: %s (face %lld)\n", err.text, (long long)err.face);
         return -1;
     }
-    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, &report) < 0) worst = -1;
+    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) worst = -1;
     for (i = 0; i < N && worst >= 0; i++) {
         const double *p = xyz + 3 * i, *q = xyz + 3 * SOURCE, cosine = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         worst = fmax(worst, fabs(u[i] - exact(t, cosine)) / exact(t, 1));

@@ -60,19 +60,19 @@ int main(void) {
     if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, NULL, &err) < 0 || hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
     for (q = 0; q < TIMES; q++) t[q] = pow(10, q + 1) * lap->h * lap->h;
 
-    if (hd_heat_diagonal(heat, TIMES, t, HD_KERNEL_SYMMETRIC, signature, 0, &report) < 0) return fail(&report.error);
+    if (hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, TIMES, t, signature, 0, &report, NULL) < 0) return fail(&report.error);
     for (q = 0; q < TIMES; q++)
         printf("k_t(x,x) at t = %4.0f h^2: %.6f on the outer rim, %.6f on the inner one; between images under a turn %.1e\n", t[q] / (lap->h * lap->h),
                signature[q * N], signature[q * N + NV / 2], unevenness(signature + q * N));
     printf("    off by at most %.1e of each value\n", report.error_relative);
 
-    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, &source, distance, 0, &report) < 0) return fail(&report.error);
+    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, &source, distance, 0, &report, NULL) < 0) return fail(&report.error);
     for (q = 0; q < TIMES; q++)
         printf("distance at t = %4.0f h^2: %.6f to the next vertex, %.6f to the far side\n", t[q] / (lap->h * lap->h), distance[q * N + 1], distance[q * N + opposite]);
-    if (hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, 1, &source, distance, 0, &report) < 0) return fail(&report.error);
+    if (hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, 1, &source, distance, 0, &report, NULL) < 0) return fail(&report.error);
     printf("biharmonic distance: %.6f to the next vertex, %.6f to the far side\n", distance[1], distance[opposite]);
 
-    if (hd_heat_sample(heat, HD_DISTANCE_BIHARMONIC, 0, POINTS, 0, point, apart, &report) < 0) return fail(&report.error);
+    if (hd_heat_sample(heat, HD_DISTANCE_BIHARMONIC, 0, POINTS, 0, point, apart, &report, NULL) < 0) return fail(&report.error);
     for (q = 0; q < POINTS; q++) printf("point %d: vertex %4d, at a distance of %.4f from those before\n", (int)q + 1, (int)point[q], apart[q]);
     hd_heat_free(heat);
     hd_laplacian_free(lap);

@@ -16,6 +16,7 @@
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
 #include "dense.h"
+#include "at.h"
 #include "../tools/shapes.h"
 
 static int64_t int_passed, int_failed;
@@ -654,7 +655,7 @@ static void int_warm_start(void) {
     o.tol = 1e-10;
     CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
     CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
-    CHECK(hd_heat_column(heat, 100 * lap->h * lap->h, 3, u, &rep) >= 0 && rep.n_poles == 5);
+    CHECK(heat_column(heat, 100 * lap->h * lap->h, 3, u, &rep) >= 0 && rep.n_poles == 5);
     CHECK_MSG(rep.pole_iterations[0] * 5 <= rep.pole_iterations[4] * 4, "%d steps for the last pole, %d for the first", (int)rep.pole_iterations[4],
               (int)rep.pole_iterations[0]);
     hd_heat_free(heat);
@@ -1802,7 +1803,7 @@ static void int_pairs_by_entries(void) {
                 i[q] = q % 3 ? i[q - 1] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
                 j[q] = q % 11 == 5 ? i[q] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
             }
-            CHECK(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, K, d, NULL) >= 0);
+            CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, K, d, NULL) >= 0);
             CHECK(hdi_pairs_by_entries(heat, (hd_distance_kind)kind, t, PAIRS, i, j, one_K, one_d, &rep) >= 0 && rep.error.status == HD_OK && rep.status >= 0);
             for (q = 0; q < PAIRS; q++) {
                 size = fmax(size, d[q]);

@@ -125,6 +125,7 @@ static void test_tmp_remove(void) {
 /* ---- groups ---- */
 
 #include "dense.h"
+#include "at.h"
 #include "test_meshio.h"
 #include "../tools/shapes.h"
 #include "test_base.h"

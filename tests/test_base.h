@@ -184,10 +184,10 @@ static void base_accounting(void) {
     CHECK(ctx.allocations == (uint64_t)m.calls);
     CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
     before = ctx.bytes_in_use;
-    CHECK(hd_heat_column(heat, lap->h * lap->h, 5, u, NULL) >= 0);
+    CHECK(heat_column(heat, lap->h * lap->h, 5, u, NULL) >= 0);
     CHECK(ctx.bytes_in_use == m.bytes && ctx.bytes_peak > before);
     before = ctx.bytes_in_use;                   /* a plan may keep preconditioners, but calls do not pile up */
-    CHECK(hd_heat_column(heat, 2 * lap->h * lap->h, 7, u, NULL) >= 0);
+    CHECK(heat_column(heat, 2 * lap->h * lap->h, 7, u, NULL) >= 0);
     CHECK(ctx.bytes_in_use == before);
     hd_heat_free(heat);
     CHECK(ctx.bytes_in_use == m.bytes);
@@ -314,8 +314,8 @@ static void base_null(void) {
     CHECK(hd_laplacian_triangles(&lap, xyz, 3, NULL, 1, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_laplacian_matrices(&lap, NULL, NULL, 0, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_laplacian_apply(NULL, 1, 1, u, u, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_column(NULL, 1, 0, u, &rep) == HD_ERR_ARGUMENT && rep.status == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_apply(NULL, 1, 1, u, 0, u, 0, NULL) == HD_ERR_ARGUMENT);
+    CHECK(heat_column(NULL, 1, 0, u, &rep) == HD_ERR_ARGUMENT && rep.status == HD_ERR_ARGUMENT);
+    CHECK(heat_apply(NULL, 1, 1, u, 0, u, 0, NULL) == HD_ERR_ARGUMENT);
     CHECK(hd_csr_from_triplets(NULL, 1, 1, 0, NULL, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_csr_check(NULL, 0, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_csr_transpose(&a, NULL, NULL, &e) == HD_ERR_ARGUMENT);

@@ -240,7 +240,7 @@ static void bnd_resistances_hold(const hd_laplacian *lap, const char *what, doub
     int kind;
     for (kind = 0; kind < 2; kind++) {
         hd_report r;
-        const hd_status st = hd_heat_distance(heat, kind ? HD_DISTANCE_BIHARMONIC : HD_DISTANCE_COMMUTE, 1,
+        const hd_status st = heat_distance(heat, kind ? HD_DISTANCE_BIHARMONIC : HD_DISTANCE_COMMUTE, 1,
                                               NULL, 1, &source, d, 0, &r);
         double most = 0, off = 0;
         int32_t v;
@@ -316,7 +316,7 @@ static void bnd_no_edges(void) {
         hd_heat *heat = bnd_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
         double d[5];
         hd_report r;
-        const hd_status st = hd_heat_distance(heat, HD_DISTANCE_COMMUTE, 1, NULL, 1, &zero, d, 0, &r);
+        const hd_status st = heat_distance(heat, HD_DISTANCE_COMMUTE, 1, NULL, 1, &zero, d, 0, &r);
         if (CHECK_MSG(st >= 0, "%d vertices: %s %s", (int)n, hd_status_name(st), r.error.text))
             for (v = 0; v < n; v++) CHECK(v == 0 ? d[v] == 0 : d[v] == HUGE_VAL);
         hd_heat_free(heat);
@@ -366,7 +366,7 @@ static void bnd_turned(void) {
         for (m = HD_METHOD_AUTO; m <= HD_METHOD_KRYLOV; m++) {
             hd_heat *heat = bnd_plan(lap, (hd_method)m, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
             snprintf(text, sizeof text, "indefinite L, column, %s, t = %g", bnd_method((hd_method)m), t);
-            st = hd_heat_column(heat, t, source, u, &r);
+            st = heat_column(heat, t, source, u, &r);
             bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, N), 1e-13);
             refused += st == HD_ERR_NOT_POSITIVE;
             hd_heat_free(heat);
@@ -374,11 +374,11 @@ static void bnd_turned(void) {
         {
             hd_heat *heat = bnd_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
             snprintf(text, sizeof text, "indefinite L, diagonal, t = %g", t);
-            st = hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, u, 0, &r);
+            st = heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, u, 0, &r);
             for (i = 0; i < N; i++) want[i] = bnd_cycle_heat(N, 0, t);
             bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, N), 1e-13);
             snprintf(text, sizeof text, "indefinite L, distance, t = %g", t);
-            st = hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, u, 0, &r);
+            st = heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, u, 0, &r);
             for (i = 0; i < N; i++)
                 want[i] =
                     sqrt(fmax(0, 2 * (bnd_cycle_heat(N, 0, 2 * t) - bnd_cycle_heat(N, i, 2 * t))));
@@ -408,7 +408,7 @@ static void bnd_octahedron(void) {
         for (p = 0; p < 18; p++) at[p] = sizes[q] * xyz[p];
         CHECK(hd_laplacian_triangles(&lap, at, 6, tri, 8, NULL, NULL) == HD_OK);
         heat = bnd_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
-        CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 0.3 * lap->h * lap->h, 3, i, j, q ? K1 : K, q ? d1 : d, &r) == HD_OK);
+        CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, 0.3 * lap->h * lap->h, 3, i, j, q ? K1 : K, q ? d1 : d, &r) == HD_OK);
         CHECK_MSG(r.n_lost == 0 && r.error_bound < 1e-5 && r.error_relative < 1e-5, "bound %g, relative %g", r.error_bound, r.error_relative);
         for (p = 0; p < 3 && q; p++)
             CHECK_MSG(fabs(K1[p] / K[p] - 1) < 1e-9 && fabs(d1[p] * sizes[q] / d[p] - 1) < 1e-9, "pair %d: K %g, d %g", p, K1[p], d1[p]);
@@ -426,9 +426,9 @@ static void bnd_nothing_left(void) {
     int32_t vertex[4];
     hd_report r;
     for (t = 3e3; t < 1e300; t *= 1e33) {
-        CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r) == HD_WARN_ACCURACY);
+        CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r) == HD_WARN_ACCURACY);
         CHECK(r.n_lost == 39 && !(r.error_bound <= 1e-2) && r.error_bound == r.error_bound);
-        CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 4, 0, vertex, far, &r) == HD_WARN_ACCURACY && !(r.error_bound <= 1e-2));
+        CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 4, 0, vertex, far, &r) == HD_WARN_ACCURACY && !(r.error_bound <= 1e-2));
     }
     hd_heat_free(heat);
     hd_laplacian_free(lap);
@@ -456,15 +456,15 @@ static void bnd_far_entry(void) {
         hd_report r, r0;
         hd_status st;
         double slack;
-        CHECK(hd_heat_columns(best, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, &r0) >= 0);
+        CHECK(heat_columns(best, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, &r0) >= 0);
         slack = r0.error_bound * dense_max_abs(u, s.n);
         snprintf(text, sizeof text, "k_t of antipodes, t = %g h^2", c);
-        st = hd_heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 1, &far_off, &source, &value, &r);
+        st = heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 1, &far_off, &source, &value, &r);
         bnd_judge(text, st, &r, bnd_beside(fabs(value - u[far_off]), value), bnd_beside(slack, value));
-        CHECK(hd_heat_columns(best, t, HD_KERNEL_OPERATOR, 1, &source, u, 0, &r0) >= 0);
+        CHECK(heat_columns(best, t, HD_KERNEL_OPERATOR, 1, &source, u, 0, &r0) >= 0);
         slack = r0.error_bound * dense_max_abs(u, s.n);
         snprintf(text, sizeof text, "K_t of antipodes, as a pair, t = %g h^2", c);
-        st = hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, &far_off, &source, &K, &d, &r);
+        st = heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, &far_off, &source, &K, &d, &r);
         bnd_judge(text, st, &r, bnd_beside(fabs(K - u[far_off]), K), bnd_beside(slack, K));
     }
     hd_heat_free(heat);
@@ -495,11 +495,11 @@ static void bnd_almost_conserving(void) {
     for (m = HD_METHOD_AUTO; m <= HD_METHOD_KRYLOV; m++) {
         hd_heat *heat = bnd_plan(lap, (hd_method)m, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
         hd_report r;
-        hd_status st = hd_heat_apply(heat, t, 1, f, 0, u, 0, &r);
+        hd_status st = heat_apply(heat, t, 1, f, 0, u, 0, &r);
         for (i = 0; i < N; i++) want[i] = exp(-eps * t) * (N + 1) / 2;
         snprintf(text, sizeof text, "field, almost conserving, %s", bnd_method((hd_method)m));
         bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, N), 1e-14);
-        st = hd_heat_column(heat, t, 0, u, &r);
+        st = heat_column(heat, t, 0, u, &r);
         for (i = 0; i < N; i++) want[i] = exp(-eps * t) / N;
         snprintf(text, sizeof text, "column, almost conserving, %s", bnd_method((hd_method)m));
         bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, N), 1e-14);
@@ -532,7 +532,7 @@ static void bnd_long_path(void) {
                 const double t = (q ? 0.1 : 0.01) * n * n;
                 hd_heat *heat = bnd_plan(lap, (hd_method)m, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
                 hd_report r;
-                const hd_status st = hd_heat_apply(heat, t, 1, f, 0, u, 0, &r);
+                const hd_status st = heat_apply(heat, t, 1, f, 0, u, 0, &r);
                 for (i = 0; i < n; i++) want[i] = exp(-t * lambda) * f[i];
                 snprintf(text, sizeof text, "path of %d, t = %g, %s", (int)n, t, bnd_method((hd_method)m));
                 bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, n), 2e-15);
@@ -580,8 +580,8 @@ static void bnd_loose_set(void) {
             memset(&o, 0, sizeof o);
             o.rational = &set;
             CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
-            CHECK(hd_heat_distance(best, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, want, 0, &r0) >= 0);
-            st = hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r);
+            CHECK(heat_distance(best, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, want, 0, &r0) >= 0);
+            st = heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r);
             snprintf(text, sizeof text, "distance, own set, weighted error %g, t = %g h^2",
                      set.max_weighted_error, c);
             bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(d, want, s.n), 1.01 * r0.error_bound);
@@ -633,11 +633,11 @@ static void bnd_near_poles(void) {
         o.rational = &set;
         o.method = HD_METHOD_DIRECT;
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
-        st = hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, u, 0, &r);
+        st = heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, u, 0, &r);
         for (i = 0; i < N; i++) want[i] = (double)truth;
         snprintf(text, sizeof text, "diagonal, poles 1e-%d off the spectrum", k);
         bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, N), 1e-14);
-        st = hd_heat_column(heat, t, 3, u, &r);
+        st = heat_column(heat, t, 3, u, &r);
         for (i = 0; i < N; i++) {
             long double sum = 0;
             for (q = 0; q < N; q++)
@@ -693,8 +693,8 @@ static void bnd_near_singular_mass(void) {
                 hd_status st, st0;
                 for (p = 0; p < N; p++)
                     f[p] = 1 + (p % 2 ? -1e5 : 1e5) * (q ? sin(heat_pi * (p + 1) / (N + 1)) : 1);
-                st0 = hd_heat_apply(best, 1, 1, f, 0, want, 0, &r0);
-                st = hd_heat_apply(heat, 1, 1, f, 0, u, 0, &r);
+                st0 = heat_apply(best, 1, 1, f, 0, want, 0, &r0);
+                st = heat_apply(heat, 1, 1, f, 0, u, 0, &r);
                 snprintf(text, sizeof text, "mass nearly singular, field %d, %s", q,
                          c ? c == 1 ? "degree 4" : "degree 8" : "default");
                 /* degree 4 and 8 are seen to err by more than 1e-3 and 1e-6 of the largest value */
@@ -740,9 +740,9 @@ static void bnd_graded_times(void) {
             for (source = 0; source < s.n; source += s.n / 2) {
                 hd_report r, one;
                 const hd_status st =
-                    hd_heat_distance(heat, (hd_distance_kind)kind, TIMES, ts, 1, &source, D, 0, &r);
+                    heat_distance(heat, (hd_distance_kind)kind, TIMES, ts, 1, &source, D, 0, &r);
                 for (q = 0; q < TIMES && CHECK(st >= 0); q++) {
-                    if (hd_heat_distance(heat, (hd_distance_kind)kind, 1, ts + q, 1, &source, d, 0, &one) < 0)
+                    if (heat_distance(heat, (hd_distance_kind)kind, 1, ts + q, 1, &source, d, 0, &one) < 0)
                         continue;
                     snprintf(text, sizeof text, "%s, power %d, source %d, time %d of 16 at once",
                              kind ? "weighted" : "classical", p, (int)source, q);
@@ -776,8 +776,8 @@ static void bnd_penalty(void) {
     for (t = 10; t < 2000; t *= 10) {
         hd_report r, r0;
         hd_status st;
-        CHECK(hd_heat_columns(best, t, HD_KERNEL_SYMMETRIC, 1, &source, want, 0, &r0) >= 0);
-        st = hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, &r);
+        CHECK(heat_columns(best, t, HD_KERNEL_SYMMETRIC, 1, &source, want, 0, &r0) >= 0);
+        st = heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, &r);
         snprintf(text, sizeof text, "Lanczos with a penalty of 1e6, t = %g", t);
         bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, N), 1.01 * r0.error_bound);
     }
@@ -813,7 +813,7 @@ static void bnd_weak_edge(void) {
                 bnd_plan(lap, (hd_method)m, m == HD_METHOD_ITERATIVE ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO,
                          HD_POLES_DEFAULT, 0, 0);
             hd_report r;
-            const hd_status st = hd_heat_apply(heat, t, 1, f, 0, u, 0, &r);
+            const hd_status st = heat_apply(heat, t, 1, f, 0, u, 0, &r);
             snprintf(text, sizeof text, "weak edge 2^-%d, %s", k,
                      m == HD_METHOD_ITERATIVE ? "Lanczos" : bnd_method((hd_method)m));
             bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, N), 10 * eps + 1e-15);
@@ -873,14 +873,14 @@ static void bnd_overlap(const hd_laplacian *lap) {
         hd_status st;
         double off = 0;
         for (i = 0; i < n * K; i++) F[i] = G[i] = sin(1.7 * i);
-        CHECK(hd_heat_apply(heat, 0.1, K, G, 0, R, 0, &r0) >= 0);
-        st = hd_heat_apply(heat, 0.1, K, F, (size_t)n, F, (size_t)ldu, &r);
+        CHECK(heat_apply(heat, 0.1, K, G, 0, R, 0, &r0) >= 0);
+        st = heat_apply(heat, 0.1, K, F, (size_t)n, F, (size_t)ldu, &r);
         for (c = 0; c < K && st >= 0; c++) off = fmax(off, bnd_error(F + c * ldu, R + c * n, n));
         CHECK_MSG(st == HD_ERR_ARGUMENT || (st >= 0 && off <= r.error_bound + r0.error_bound),
                   "U over F with another stride, %s: %s, off by %.3g, bound %.3g", bnd_method((hd_method)m),
                   hd_status_name(st), off, r.error_bound);
         if (m == HD_METHOD_AUTO) {
-            CHECK(hd_heat_apply(heat, 0.1, 0, F, 0, G, 0, &r) == HD_OK);
+            CHECK(heat_apply(heat, 0.1, 0, F, 0, G, 0, &r) == HD_OK);
             CHECK(r.reason != NULL);             /* a report that is printed */
         }
         hd_heat_free(heat);
@@ -902,13 +902,13 @@ static void bnd_field_sizes(const hd_laplacian *lap) {
     int q, m;
     int32_t i;
     for (i = 0; i < n; i++) f[i] = sin(1.7 * i * i);
-    CHECK(hd_heat_apply(best, 0.1, 1, f, 0, want, 0, &r0) >= 0);
+    CHECK(heat_apply(best, 0.1, 1, f, 0, want, 0, &r0) >= 0);
     for (q = 0; q < 4; q++)
         for (m = HD_METHOD_AUTO; m <= HD_METHOD_KRYLOV; m++) {
             hd_heat *heat = bnd_plan(lap, (hd_method)m, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
             hd_status st;
             for (i = 0; i < n; i++) g[i] = ldexp(f[i], sizes[q]);
-            st = hd_heat_apply(heat, 0.1, 1, g, 0, u, 0, &r);
+            st = heat_apply(heat, 0.1, 1, g, 0, u, 0, &r);
             for (i = 0; i < n; i++) u[i] = ldexp(u[i], -sizes[q]);
             snprintf(text, sizeof text, "field of size 2^%d, %s", sizes[q], bnd_method((hd_method)m));
             bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, n), 1.01 * r0.error_bound);
@@ -969,20 +969,20 @@ static void bnd_all_times_of(const hd_laplacian *lap, const char *name) {
         for (q = 0; q < 12; q++) {
             hd_heat *heat = bnd_plan(lap, (hd_method)m, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
             hd_report r;
-            hd_status st = hd_heat_column(heat, times[q], source, u, &r);
+            hd_status st = heat_column(heat, times[q], source, u, &r);
             bnd_small_truth(&p, times[q], source, 0, want);
             snprintf(text, sizeof text, "%s, column, %s, t = %g", name, bnd_method((hd_method)m), times[q]);
             bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, n), 1e-12);
             if (m == HD_METHOD_KRYLOV) {
                 const double ts[2] = {times[q], 1};
-                st = hd_heat_times(heat, 2, ts, HD_KERNEL_OPERATOR, source, NULL, u, 0, &r);
+                st = heat_times(heat, 2, ts, HD_KERNEL_OPERATOR, source, NULL, u, 0, &r);
                 snprintf(text, sizeof text, "%s, krylov, times %g and 1", name, times[q]);
                 bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, n), 1e-12);
                 bnd_small_truth(&p, 1, source, 0, want);
                 bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u + n, want, n), 1e-12);
             }
             if (m == HD_METHOD_DIRECT) {
-                st = hd_heat_diagonal(heat, 1, times + q, HD_KERNEL_SYMMETRIC, u, 0, &r);
+                st = heat_diagonal(heat, 1, times + q, HD_KERNEL_SYMMETRIC, u, 0, &r);
                 bnd_small_truth(&p, times[q], source, 1, want);
                 snprintf(text, sizeof text, "%s, diagonal, t = %g", name, times[q]);
                 bnd_judge(text, st, &r, st < 0 ? 0 : bnd_error(u, want, n), 1e-12);
@@ -994,7 +994,7 @@ static void bnd_all_times_of(const hd_laplacian *lap, const char *name) {
             const double t = c * lap->h * lap->h;
             hd_heat *heat = bnd_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
             hd_report r;
-            const hd_status st = hd_heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, u, 0, &r);
+            const hd_status st = heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, u, 0, &r);
             double off;
             bnd_small_truth(&p, t, source, 2 + kind, want);
             off = st < 0 ? 0 : bnd_error(u, want, n);
@@ -1045,12 +1045,12 @@ static void bnd_truck(void) {
     D = DENSE_NEW(double, s.n);
     u = DENSE_NEW(double, s.n);
     t = 10 * lap->h * lap->h;
-    st = hd_heat_diagonal(plan, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &r);
+    st = heat_diagonal(plan, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &r);
     CHECK(st >= 0);
     for (i = 1700; i < 1950 && i < lap->n_active && st >= 0; i++) {
         const int32_t v = lap->vertex[i];
         double error, own;
-        if (!CHECK(hd_heat_columns(columns, t, HD_KERNEL_SYMMETRIC, 1, &v, u, 0, &c) >= 0)) break;
+        if (!CHECK(heat_columns(columns, t, HD_KERNEL_SYMMETRIC, 1, &v, u, 0, &c) >= 0)) break;
         error = fabs(u[v] - D[v]) / fabs(D[v]);
         own = c.error_bound * dense_max_abs(u, s.n) / fabs(D[v]);
         if (error - own <= worst - slack && at >= 0) continue;

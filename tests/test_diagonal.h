@@ -538,13 +538,13 @@ static void diag_against_dense(const heat_case *c, hd_heat *heat, double t, int3
     int q;
     for (q = 0; q < 2; q++) {
         for (i = 0; i < n; i++) want[i] = (q ? K : KB)[(size_t)i * (size_t)n + (size_t)i];
-        hd_heat_diagonal(heat, 1, &t, q ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, D, 0, &rep);
+        heat_diagonal(heat, 1, &t, q ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, D, 0, &rep);
         CHECK_MSG(rep.status == (rep.error_bound <= 1e-2 ? HD_OK : HD_WARN_ACCURACY), "%s, %s: %s", c->what, what, rep.error.text);
         diag_judge(c, t, want, D, &rep, most, what);
         CHECK_MSG(degree == 0 || rep.degree == degree, "%s, %s: degree %d, not %d", c->what, what, (int)rep.degree, (int)degree);
         for (i = 0; i < lap->n; i++) CHECK(lap->row[i] >= 0 || D[i] == (q ? 0 : 1));
     }
-    hd_heat_edges(heat, t, E, &rep);
+    heat_edges(heat, t, E, &rep);
     CHECK_MSG(rep.status == (rep.error_bound <= 1e-2 ? HD_OK : HD_WARN_ACCURACY), "%s, %s: %s", c->what, what, rep.error.text);
     for (i = 0; i < n; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
@@ -646,10 +646,10 @@ static void diag_times(void) {
     int32_t i, k;
     int q;
     for (i = 0; i < 5 * (int32_t)ldd; i++) D[i] = -7;
-    CHECK(hd_heat_diagonal(heat, 5, t, HD_KERNEL_SYMMETRIC, D, ldd, &rep) == HD_OK);
+    CHECK(heat_diagonal(heat, 5, t, HD_KERNEL_SYMMETRIC, D, ldd, &rep) == HD_OK);
     for (q = 0; q < 5; q++) {
         double sum = 0, trace = 0;
-        CHECK(hd_heat_diagonal(heat, 1, t + q, HD_KERNEL_SYMMETRIC, one, 0, &single) == HD_OK);
+        CHECK(heat_diagonal(heat, 1, t + q, HD_KERNEL_SYMMETRIC, one, 0, &single) == HD_OK);
         for (i = 0; i < s.n; i++)                /* by shared poles, not those of the single time */
             CHECK_MSG(fabs(one[i] - D[(size_t)q * ldd + (size_t)i]) <= (single.error_relative + rep.error_relative) * one[i] && fabs(one[i] - D[(size_t)q * ldd + (size_t)i]) <= 2e-7 * one[i],
                       "t %g, vertex %d: %.12g, alone %.12g", t[q], (int)i, D[(size_t)q * ldd + (size_t)i], one[i]);
@@ -660,7 +660,7 @@ static void diag_times(void) {
             CHECK_MSG(D[(size_t)order[q] * ldd + (size_t)i] <= D[(size_t)order[q - 1] * ldd + (size_t)i] * (1 + 1e-8), "t %g, vertex %d: it grows", t[order[q]], (int)i);
         for (i = s.n; i < (int32_t)ldd; i++) CHECK(D[(size_t)q * ldd + (size_t)i] == -7);
     }
-    CHECK(hd_heat_diagonal(heat, 0, NULL, HD_KERNEL_SYMMETRIC, NULL, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, 0, NULL, HD_KERNEL_SYMMETRIC, NULL, 0, &rep) == HD_ERR_ARGUMENT);
     hd_heat_free(heat);
     heat_case_free(&c);
     free(D);
@@ -681,7 +681,7 @@ static void diag_sphere(void) {
             double *D = DENSE_NEW(double, s.n);
             int32_t i;
             worst = 0;
-            CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) == HD_OK);
+            CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) == HD_OK);
             for (i = 0; i < s.n; i++) worst += fabs(D[i] - want) / want / s.n;    /* in the mean: near the twelve odd vertices it converges more slowly */
             if (level > 1) CHECK_MSG(worst < before / 3, "kind %d level %d: error %g after %g", q, level, worst, before);
             before = worst;
@@ -766,7 +766,7 @@ static void diag_distances_of(const heat_case *c, hd_pole_kind poles, int32_t de
         const int n_times = kind < 2 ? 3 : 1;
         size_t i;
         for (i = 0; i < 12 * ldd; i++) D[i] = -3;
-        CHECK_MSG(hd_heat_distance(heat, (hd_distance_kind)kind, n_times, kind < 2 ? times : NULL, 4, sources, D, ldd, &rep) >= 0, "%s, %s: %s", c->what,
+        CHECK_MSG(heat_distance(heat, (hd_distance_kind)kind, n_times, kind < 2 ? times : NULL, 4, sources, D, ldd, &rep) >= 0, "%s, %s: %s", c->what,
                   diag_kind_name((hd_distance_kind)kind), rep.error.text);
         CHECK(rep.method == HD_METHOD_DIRECT && rep.status >= 0);
         if (kind < 2 && degree) CHECK(rep.degree == degree);
@@ -837,7 +837,7 @@ static void diag_resistances(void) {
         }
         CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, NULL) == HD_OK);
         heat = diag_plan(lap, HD_POLES_DEFAULT, 0);
-        CHECK_MSG(hd_heat_distance(heat, HD_DISTANCE_COMMUTE, 1, NULL, 2, sources, D, 0, &rep) == HD_OK, "%s", rep.error.text);
+        CHECK_MSG(heat_distance(heat, HD_DISTANCE_COMMUTE, 1, NULL, 2, sources, D, 0, &rep) == HD_OK, "%s", rep.error.text);
         for (s = 0; s < 2; s++)
             for (v = 0; v < N; v++) {
                 const int32_t k = v > sources[s] ? v - sources[s] : sources[s] - v;
@@ -864,7 +864,7 @@ static void diag_lost(void) {
         hd_report rep;
         int32_t v;
         for (kind = 0; kind < 2; kind++) {
-            CHECK(hd_heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D, 0, &rep) >= 0);
+            CHECK(heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D, 0, &rep) >= 0);
             for (v = 0; v < s.n; v++) CHECK_MSG(D[v] >= 0 && D[v] < 1e3, "%g", D[v]);
             CHECK_MSG((rep.n_lost > 0) == (kind == 0), "kind %d: %lld lost", kind, (long long)rep.n_lost);
             CHECK_MSG(rep.error_bound == rep.error_bound && rep.error_relative == rep.error_relative, "kind %d: NaN in the report", kind);
@@ -899,9 +899,9 @@ static void diag_pairs_of(const heat_case *c) {
     for (kind = 0; kind < 4; kind++) {
         double *H = diag_gram(c, (hd_distance_kind)kind, t), size = 0, size_k = dense_max_abs(KB, (int64_t)n * n);
         for (q = 0; q < PAIRS; q++) k[q] = d[q] = -5;
-        CHECK_MSG(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, k, d, &first) >= 0, "%s, %s: %s", c->what, diag_kind_name((hd_distance_kind)kind), first.error.text);
-        CHECK(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, NULL, again, &rep) >= 0 && memcmp(again, d, sizeof d) == 0);
-        CHECK(hd_heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, again, NULL, &rep) >= 0 && (kind > 1 || memcmp(again, k, sizeof k) == 0));
+        CHECK_MSG(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, k, d, &first) >= 0, "%s, %s: %s", c->what, diag_kind_name((hd_distance_kind)kind), first.error.text);
+        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, NULL, again, &rep) >= 0 && memcmp(again, d, sizeof d) == 0);
+        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, again, NULL, &rep) >= 0 && (kind > 1 || memcmp(again, k, sizeof k) == 0));
         for (q = 0; q < n; q++) size = fmax(size, sqrt(fabs(H[(size_t)q * (size_t)n + (size_t)q])));
         for (q = 0, most = 0; q < PAIRS; q++)
             if (d[q] < HUGE_VAL) most = fmax(most, d[q]);
@@ -922,7 +922,7 @@ static void diag_pairs_of(const heat_case *c) {
         }
         free(H);
     }
-    CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 0, NULL, NULL, NULL, NULL, &rep) == HD_OK);
+    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 0, NULL, NULL, NULL, NULL, &rep) == HD_OK);
     hd_heat_free(heat);
     free(K);
     free(KB);
@@ -946,7 +946,7 @@ static void diag_metric_laws(void) {
         }
     }
     for (kind = 0; kind < 4; kind++) {
-        CHECK(hd_heat_pairs(heat, (hd_distance_kind)kind, 500 * lap->h * lap->h, 6 * TRIPLES, i, j, NULL, d, NULL) >= 0);
+        CHECK(heat_pairs(heat, (hd_distance_kind)kind, 500 * lap->h * lap->h, 6 * TRIPLES, i, j, NULL, d, NULL) >= 0);
         for (q = 0; q < TRIPLES; q++) {
             const double *e = d + 6 * q;
             for (k = 0; k < 3; k++) {
@@ -975,7 +975,7 @@ static void diag_samples_of(const heat_case *c) {
             double distance[COUNT];
             hd_report rep;
             for (q = 0; q < given; q++) vertex[q] = lap->vertex[(q * 31 + 11) % n];
-            CHECK_MSG(hd_heat_sample(heat, (hd_distance_kind)kind, t, COUNT, given, vertex, distance, &rep) >= 0, "%s", rep.error.text);
+            CHECK_MSG(heat_sample(heat, (hd_distance_kind)kind, t, COUNT, given, vertex, distance, &rep) >= 0, "%s", rep.error.text);
             for (q = 0; q < COUNT; q++) {        /* what brute force makes of the same beginning */
                 double best = -1, own = HUGE_VAL;
                 chosen[q] = vertex[q];
@@ -1003,7 +1003,7 @@ static void diag_samples_of(const heat_case *c) {
         }
         {
             int32_t one = -9;
-            CHECK(hd_heat_sample(heat, (hd_distance_kind)kind, t, 1, 0, &one, NULL, NULL) >= 0 && one == lap->vertex[0]);
+            CHECK(heat_sample(heat, (hd_distance_kind)kind, t, 1, 0, &one, NULL, NULL) >= 0 && one == lap->vertex[0]);
         }
         free(H);
     }
@@ -1074,7 +1074,7 @@ static void diag_own_sets(void) {
             heat = eng_create(c.lap, &o);
             for (i = 0; i < n; i++) g[i] = set.a0 + 1 / (1 + t * c.pair.lambda[i]);
             K = diag_matrix(&c, g);
-            CHECK_MSG(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_OK && rep.n_poles == 1, "%s", rep.error.text);
+            CHECK_MSG(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_OK && rep.n_poles == 1, "%s", rep.error.text);
             for (i = 0; i < n; i++) {
                 off = fmax(off, fabs(D[c.lap->vertex[i]] - K[(size_t)i * (size_t)n + (size_t)i]));
                 size = fmax(size, D[i]);
@@ -1087,7 +1087,7 @@ static void diag_own_sets(void) {
             free(K);
             K = diag_matrix(&c, g);
             KB = diag_product(K, c.pair.B, n);
-            CHECK_MSG(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D, 0, &rep) == HD_OK, "%s", rep.error.text);
+            CHECK_MSG(heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D, 0, &rep) == HD_OK, "%s", rep.error.text);
             for (i = 0; i < n; i++) CHECK_MSG(fabs(D[c.lap->vertex[i]] - KB[(size_t)i * (size_t)n + (size_t)i]) <= 1e-12, "own set, kind %d: operator %.15g, not %.15g", q,
                                               D[c.lap->vertex[i]], KB[(size_t)i * (size_t)n + (size_t)i]);
             free(KB);
@@ -1141,8 +1141,8 @@ static void diag_orders(void) {
         o.perm = perm;
         heat = eng_create(lap, &o);
         if (q == 3) memset(perm, 0, (size_t)s.n * sizeof *perm);    /* it was copied */
-        for (kind = 0; kind < 4; kind++) CHECK_MSG(hd_heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D + kind * s.n, 0, &rep) >= 0, "%s", rep.error.text);
-        CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D + 4 * s.n, 0, &rep) >= 0);
+        for (kind = 0; kind < 4; kind++) CHECK_MSG(heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D + kind * s.n, 0, &rep) >= 0, "%s", rep.error.text);
+        CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D + 4 * s.n, 0, &rep) >= 0);
         if (q == 0) memcpy(first, D, 5 * (size_t)s.n * sizeof *D);
         for (i = 0; i < 5 * s.n; i++) CHECK_MSG(D[i] == first[i] || fabs(D[i] - first[i]) <= 1e-8 * fabs(first[i]), "ordering %d: %.12g, not %.12g", q, D[i], first[i]);
         hd_heat_free(heat);
@@ -1191,10 +1191,10 @@ static void diag_ask_all(hd_heat *heat, double hh, int32_t n, double *D) {
     const int32_t sources[3] = {7, 2000, 300};
     const double t = 30 * hh;
     int32_t sample[5];
-    CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) >= 0);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_WEIGHTED, 1, &t, 3, sources, D + n, 0, NULL) >= 0);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, 3, sources, D + 4 * n, 0, NULL) >= 0);
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 5, 0, sample, D + 7 * n, NULL) >= 0);
+    CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) >= 0);
+    CHECK(heat_distance(heat, HD_DISTANCE_WEIGHTED, 1, &t, 3, sources, D + n, 0, NULL) >= 0);
+    CHECK(heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, 3, sources, D + 4 * n, 0, NULL) >= 0);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 5, 0, sample, D + 7 * n, NULL) >= 0);
 }
 
 static void diag_threads(void) { diag_each_way(HD_LAPLACIAN_VORONOI_COT, 8, diag_ask_all); }
@@ -1207,14 +1207,14 @@ static void diag_samples_lost(void) {
     int32_t v[42] = {0}, q, k;
     double d[42];
     CHECK(lap->row[0] < 0);
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, 1e6, 42, 0, v, d, NULL) >= 0);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, 1e6, 42, 0, v, d, NULL) >= 0);
     for (q = 0; q < 42; q++) {
         CHECK(lap->row[v[q]] >= 0 && d[q] >= 0);
         for (k = 0; k < q; k++) CHECK_MSG(v[k] != v[q], "points %d and %d are both %d", (int)k, (int)q, (int)v[q]);
     }
     v[0] = 0;
     v[1] = 5;                                    /* both without mass, f = 0: at no distance of each other */
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, 0.1, 4, 2, v, d, NULL) >= 0);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, 0.1, 4, 2, v, d, NULL) >= 0);
     CHECK(lap->row[5] < 0 && d[1] == 0 && d[2] > 0 && d[3] > 0 && lap->row[v[2]] >= 0 && lap->row[v[3]] >= 0);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
@@ -1237,64 +1237,64 @@ static void diag_refused(void) {
     int q, kind;
     for (q = 0; q < 2; q++) {
         hd_heat *other = eng_plan(lap, methods[q], HD_POLES_DEFAULT, 0);
-        CHECK(hd_heat_diagonal(other, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT && rep.status == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
-        CHECK(hd_heat_edges(other, t, E, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
+        CHECK(heat_diagonal(other, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT && rep.status == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
+        CHECK(heat_edges(other, t, E, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
         for (kind = 0; kind < 4; kind++) {
-            CHECK(hd_heat_distance(other, (hd_distance_kind)kind, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
-            CHECK(hd_heat_sample(other, (hd_distance_kind)kind, t, 3, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
-            CHECK(hd_heat_pairs(other, (hd_distance_kind)kind, t, 1, &v, &v, NULL, D, &rep) == (kind < 2 ? HD_OK : HD_ERR_ARGUMENT));
+            CHECK(heat_distance(other, (hd_distance_kind)kind, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
+            CHECK(heat_sample(other, (hd_distance_kind)kind, t, 3, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
+            CHECK(heat_pairs(other, (hd_distance_kind)kind, t, 1, &v, &v, NULL, D, &rep) == (kind < 2 ? HD_OK : HD_ERR_ARGUMENT));
         }
         hd_heat_free(other);
     }
     for (q = 0; q < 5; q++) {
-        CHECK(hd_heat_diagonal(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT);
-        CHECK(hd_heat_edges(heat, bad[q], E, &rep) == HD_ERR_ARGUMENT);
-        CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, bad + q, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-        CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, bad[q], 2, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
-        if (q) CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, bad[q], 1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
+        CHECK(heat_diagonal(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT);
+        CHECK(heat_edges(heat, bad[q], E, &rep) == HD_ERR_ARGUMENT);
+        CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, bad + q, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+        CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, bad[q], 2, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
+        if (q) CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, bad[q], 1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
     }
     for (q = 0; q < 2; q++) {
-        CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, out_of_range + q, D, 0, &rep) == HD_ERR_INDEX && rep.error.column == 0 && rep.error.value == out_of_range[q]);
-        CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, out_of_range + q, &v, NULL, D, &rep) == HD_ERR_INDEX && rep.error.row == 0);
-        CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, &v, out_of_range + q, NULL, D, &rep) == HD_ERR_INDEX && rep.error.value == out_of_range[q]);
+        CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, out_of_range + q, D, 0, &rep) == HD_ERR_INDEX && rep.error.column == 0 && rep.error.value == out_of_range[q]);
+        CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, out_of_range + q, &v, NULL, D, &rep) == HD_ERR_INDEX && rep.error.row == 0);
+        CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, &v, out_of_range + q, NULL, D, &rep) == HD_ERR_INDEX && rep.error.value == out_of_range[q]);
         sample[0] = out_of_range[q];
-        CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 1, sample, NULL, &rep) == HD_ERR_INDEX && rep.error.column == 0);
+        CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 1, sample, NULL, &rep) == HD_ERR_INDEX && rep.error.column == 0);
     }
     sample[0] = 0;
-    CHECK(hd_heat_diagonal(heat, -1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_diagonal(heat, 1, NULL, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, NULL, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 41, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_diagonal(heat, 1, &t, (hd_kernel)7, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_diagonal(NULL, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_edges(heat, t, NULL, &rep) == HD_ERR_ARGUMENT && hd_heat_edges(NULL, t, E, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(NULL, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, (hd_distance_kind)4, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, (hd_distance_kind)-1, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, -1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, -1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, NULL, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, NULL, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, D, 41, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_COMMUTE, 2, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT && rep.error.value == 2);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 3, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, NULL, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, -1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, 1, NULL, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, NULL, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 41, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, 1, &t, (hd_kernel)7, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(NULL, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_edges(heat, t, NULL, &rep) == HD_ERR_ARGUMENT && heat_edges(NULL, t, E, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(NULL, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, (hd_distance_kind)4, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, (hd_distance_kind)-1, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, -1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, -1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, NULL, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, NULL, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, D, 41, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_COMMUTE, 2, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT && rep.error.value == 2);
+    CHECK(heat_distance(heat, HD_DISTANCE_BIHARMONIC, 3, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, NULL, 0, &rep) == HD_ERR_ARGUMENT);
     D[1] = -5;
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, D, 0, &rep) == HD_OK && D[1] > 0);    /* it has no time */
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 0, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 0, NULL, NULL, 0, &rep) == HD_OK);
-    CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, -1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, NULL, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_pairs(heat, (hd_distance_kind)9, t, 1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_pairs(NULL, HD_DISTANCE_CLASSICAL, t, 1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 0, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, big + 1, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 3, sample, NULL, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, -1, sample, NULL, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 0, NULL, NULL, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_sample(NULL, HD_DISTANCE_CLASSICAL, t, 2, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, big, 0, sample, NULL, &rep) >= 0);   /* all of them, each once */
+    CHECK(heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, D, 0, &rep) == HD_OK && D[1] > 0);    /* it has no time */
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 0, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 0, NULL, NULL, 0, &rep) == HD_OK);
+    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, -1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, NULL, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_pairs(heat, (hd_distance_kind)9, t, 1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_pairs(NULL, HD_DISTANCE_CLASSICAL, t, 1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 0, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, big + 1, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 3, sample, NULL, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, -1, sample, NULL, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 0, NULL, NULL, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(NULL, HD_DISTANCE_CLASSICAL, t, 2, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, big, 0, sample, NULL, &rep) >= 0);   /* all of them, each once */
     for (q = 0; q < big; q++)
         for (kind = 0; kind < q; kind++) CHECK(sample[q] != sample[kind]);
     hd_heat_free(heat);
@@ -1321,11 +1321,11 @@ static hd_status diag_job(hd_context *ctx, int variant) {
         const double t[2] = {lap->h * lap->h, 4 * lap->h * lap->h};
         const hd_distance_kind kind = (hd_distance_kind)(variant % 8 - 2);
         memset(&rep, 0, sizeof rep);
-        if (variant % 8 == 0) st = hd_heat_diagonal(heat, 2, t, HD_KERNEL_SYMMETRIC, D, 0, &rep);
-        if (variant % 8 == 1) st = hd_heat_edges(heat, t[0], E, &rep);
-        if (variant % 8 >= 2 && variant % 8 < 6) st = hd_heat_distance(heat, kind, kind < 2 ? 2 : 1, t, 3, i, D, 0, &rep);
-        if (variant % 8 == 6) st = hd_heat_pairs(heat, HD_DISTANCE_BIHARMONIC, t[0], 3, i, j, E, D, &rep);
-        if (variant % 8 == 7) st = hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t[0], 3, 0, v, NULL, &rep);
+        if (variant % 8 == 0) st = heat_diagonal(heat, 2, t, HD_KERNEL_SYMMETRIC, D, 0, &rep);
+        if (variant % 8 == 1) st = heat_edges(heat, t[0], E, &rep);
+        if (variant % 8 >= 2 && variant % 8 < 6) st = heat_distance(heat, kind, kind < 2 ? 2 : 1, t, 3, i, D, 0, &rep);
+        if (variant % 8 == 6) st = heat_pairs(heat, HD_DISTANCE_BIHARMONIC, t[0], 3, i, j, E, D, &rep);
+        if (variant % 8 == 7) st = heat_sample(heat, HD_DISTANCE_CLASSICAL, t[0], 3, 0, v, NULL, &rep);
         CHECK_MSG(rep.status == st && (st >= 0 || rep.error.status == st), "variant %d: status %d, report %d, error %d", variant, (int)st, (int)rep.status, (int)rep.error.status);
         hd_heat_free(heat);
     }
@@ -1350,8 +1350,8 @@ static hd_status diag_job_more(hd_context *ctx, int variant) {
     if (st >= 0) {
         const double t = lap->h * lap->h;
         memset(&rep, 0, sizeof rep);
-        if (variant < 2) st = hd_heat_pairs(heat, (hd_distance_kind)variant, t, 3, i, j, K, D, &rep);
-        if (variant == 2) st = hd_heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D, 0, &rep);
+        if (variant < 2) st = heat_pairs(heat, (hd_distance_kind)variant, t, 3, i, j, K, D, &rep);
+        if (variant == 2) st = heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D, 0, &rep);
         CHECK(rep.status == st && (st >= 0 || rep.error.status == st));
         hd_heat_free(heat);
     }
@@ -1399,8 +1399,8 @@ static void diag_limits_by_default(void) {
             ctx.byte_limit = limit ? base + limit : 0;
             ctx.bytes_peak = ctx.bytes_in_use;
             st = hd_heat_create(&heat, lap, NULL, &rep.error);
-            if (st >= 0 && kind < 0) st = hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep);
-            else if (st >= 0) st = hd_heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D, 0, &rep);
+            if (st >= 0 && kind < 0) st = heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep);
+            else if (st >= 0) st = heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D, 0, &rep);
             CHECK_MSG(st >= 0 ? rep.error.status == HD_OK : st == HD_ERR_MEMORY_LIMIT && rep.error.status == st, "kind %d: status %d, %d", kind, (int)st, (int)rep.error.status);
             fine += st >= 0;
             refused += st < 0;

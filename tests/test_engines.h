@@ -203,7 +203,7 @@ static void eng_against_dense(const heat_case *c, hd_heat *heat, hd_method metho
     for (z = 1; z <= K; z += K - 1) {            /* alone, and in a batch */
         for (k = 0; k < 2; k++) {
             const hd_kernel kernel = k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
-            if (!eng_ok(hd_heat_columns(heat, t, kernel, z, sources, u, 0, &rep), &rep, what)) continue;
+            if (!eng_ok(heat_columns(heat, t, kernel, z, sources, u, 0, &rep), &rep, what)) continue;
             eng_check_report(&rep, method, what);
             for (q = 0; q < z; q++) {
                 heat_source_rhs(c, sources[q], kernel, rhs);
@@ -215,7 +215,7 @@ static void eng_against_dense(const heat_case *c, hd_heat *heat, hd_method metho
             f[n + i] = 2 + sin(0.3 * i);
             f[2 * n + i] = i == 7 ? 1 : 0;
         }
-        if (!eng_ok(hd_heat_apply(heat, t, z, f, 0, u, 0, &rep), &rep, what)) continue;
+        if (!eng_ok(heat_apply(heat, t, z, f, 0, u, 0, &rep), &rep, what)) continue;
         eng_check_report(&rep, method, what);
         for (q = 0; q < z; q++) {
             if (q == 2 && lap->row[7] < 0) continue;
@@ -228,12 +228,12 @@ static void eng_against_dense(const heat_case *c, hd_heat *heat, hd_method metho
         const int32_t ascending[K] = {sources[1], sources[0], sources[2]};
         int32_t rows[4 * K], cols[4 * K];
         double values[4 * K];
-        if (!eng_ok(hd_heat_columns(heat, t, kernel, K, ascending, u, 0, &rep), &rep, what)) continue;
+        if (!eng_ok(heat_columns(heat, t, kernel, K, ascending, u, 0, &rep), &rep, what)) continue;
         for (i = 0; i < 4 * K; i++) {
             cols[i] = ascending[(i * 2 + 1) % K];
             rows[i] = lap->vertex[(i * 37) % m];
         }
-        if (!eng_ok(hd_heat_entries(heat, t, kernel, 4 * K, rows, cols, values, &rep), &rep, what)) continue;
+        if (!eng_ok(heat_entries(heat, t, kernel, 4 * K, rows, cols, values, &rep), &rep, what)) continue;
         eng_check_report(&rep, method, what);
         for (i = 0; i < 4 * K; i++) CHECK(values[i] == u[(i * 2 + 1) % K * n + rows[i]]);
     }
@@ -300,17 +300,17 @@ static void eng_large(void) {
         hd_report rep, rep2;
         int32_t i;
         for (i = 0; i < K * n; i++) F[i] = sin(0.01 * i) + (i % n == 1100);
-        CHECK(hd_heat_apply(oracle, t, K, F, 0, want, 0, &rep2) >= 0);
+        CHECK(heat_apply(oracle, t, K, F, 0, want, 0, &rep2) >= 0);
         for (k = 0; k < 2; k++) {
             hd_heat *heat = eng_plan(lap, eng_methods[k], HD_POLES_DEFAULT, 0);
             for (z = 1; z <= K; z += K - 1) {
                 double off;
-                if (!eng_ok(hd_heat_apply(heat, t, z, F, 0, u, 0, &rep), &rep, "large")) continue;
+                if (!eng_ok(heat_apply(heat, t, z, F, 0, u, 0, &rep), &rep, "large")) continue;
                 off = dense_max_diff(u, want, z * n) / dense_max_abs(want, n);
                 CHECK_MSG(off <= 1e-7 && off <= 2 * (rep.error_bound + rep2.error_bound), "%s, %d fields: off by %g", eng_name(eng_methods[k]), z,
                     off);
             }
-            CHECK(eng_ok(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, F, all, 0, &rep), &rep, "large"));
+            CHECK(eng_ok(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, F, all, 0, &rep), &rep, "large"));
             CHECK_MSG(dense_max_diff(all, want, n) <= 1e-7 * dense_max_abs(want, n), "%s, times: off by %g", eng_name(eng_methods[k]),
                 dense_max_diff(all, want, n));
             hd_heat_free(heat);
@@ -339,8 +339,8 @@ static void eng_batches(void) {
     hd_report rep, rep2;
     for (q = 0; q < K; q++) sources[q] = lap->vertex[q * 31 % lap->n_active];
     for (k = 8; k <= K; k += 9) {
-        CHECK(eng_ok(hd_heat_columns(direct, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep), &rep, "batches"));
-        CHECK(eng_ok(hd_heat_columns(krylov, t, HD_KERNEL_OPERATOR, k, sources, v, 0, &rep2), &rep2, "batches"));
+        CHECK(eng_ok(heat_columns(direct, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep), &rep, "batches"));
+        CHECK(eng_ok(heat_columns(krylov, t, HD_KERNEL_OPERATOR, k, sources, v, 0, &rep2), &rep2, "batches"));
         if (k == 8) memcpy(first, u, (size_t)(k * n) * sizeof *u);
         CHECK_MSG(memcmp(first, u, (size_t)(8 * n) * sizeof *u) == 0, "%d columns: the first batch is not what it was", (int)k);
         for (q = 0; q < k; q++) {
@@ -348,7 +348,7 @@ static void eng_batches(void) {
             CHECK_MSG(off <= (rep.error_bound + rep2.error_bound) * top, "%d columns: direct and krylov differ by %g in the %d.", (int)k,
                 off / top, (int)q);
             if (k != K || q % 5) continue;
-            CHECK(hd_heat_column(direct, t, sources[q], v, NULL) >= 0);
+            CHECK(heat_column(direct, t, sources[q], v, NULL) >= 0);
             CHECK_MSG(dense_max_diff(u + q * n, v, n) <= 1e-12 * top, "the %d. column differs by %g from one alone", (int)q,
                 dense_max_diff(u + q * n, v, n) / top);
         }
@@ -378,7 +378,7 @@ static void eng_degrees(void) {
                 char what[40];
                 hd_report rep;
                 snprintf(what, sizeof what, "%s %d", k ? "kernel" : "uniform", (int)r);
-                CHECK(hd_heat_column(heat, 3 * c.lap->h * c.lap->h, 5, u, &rep) >= 0);
+                CHECK(heat_column(heat, 3 * c.lap->h * c.lap->h, 5, u, &rep) >= 0);
                 CHECK_MSG(rep.degree == r && rep.n_poles == (r + 1) / 2 && rep.poles == (k ? HD_POLES_KERNEL : HD_POLES_UNIFORM), "%s", what);
                 CHECK_MSG(rep.residual < 1e-12, "%s: residual %g", what, rep.residual);
                 eng_against_dense(&c, heat, HD_METHOD_DIRECT, 3 * c.lap->h * c.lap->h, NULL, what);
@@ -451,7 +451,7 @@ static void eng_own_sets(void) {
             memset(&set, 0x55, sizeof set);      /* it was copied */
             for (z = 0; z < 3; z++) {
                 const double t = unit * pow(30, z);
-                if (!eng_ok(hd_heat_column(heat, t, 3, u, &rep), &rep, what)) continue;
+                if (!eng_ok(heat_column(heat, t, 3, u, &rep), &rep, what)) continue;
                 CHECK(rep.poles == HD_POLES_OWN && rep.n_poles == kept.n_poles && rep.degree == kept.degree && rep.error_rational == 0);
                 CHECK_MSG(rep.mass_drift == 0 && rep.method == HD_METHOD_DIRECT, "%s: drift %g", what, rep.mass_drift);
                 if (kept.n_poles) eng_against_dense(&c, heat, HD_METHOD_DIRECT, t, &kept, what);
@@ -490,7 +490,7 @@ static void eng_counts_of(const heat_case *c, hd_method method) {
         const hd_kernel kernel = k % 2 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
         double size = 0;
         for (i = 0; i < MOST * ld; i++) U[i] = 1234;
-        if (!eng_ok(hd_heat_columns(heat, t, kernel, k, sources, U, (size_t)ld, &rep), &rep, "counts")) continue;
+        if (!eng_ok(heat_columns(heat, t, kernel, k, sources, U, (size_t)ld, &rep), &rep, "counts")) continue;
         for (q = 0; q < k; q++) {
             const double *column = U + q * ld;
             if (lap->row[sources[q]] < 0) {
@@ -504,14 +504,14 @@ static void eng_counts_of(const heat_case *c, hd_method method) {
         }
         for (i = k * ld; i < MOST * ld; i++) CHECK(U[i] == 1234);
         q = k - 1;
-        CHECK(hd_heat_columns(heat, t, kernel, 1, sources + q, u, 0, NULL) >= 0);
+        CHECK(heat_columns(heat, t, kernel, 1, sources + q, u, 0, NULL) >= 0);
         size = dense_max_abs(u, n);
         CHECK_MSG(dense_max_diff(u, U + q * ld, n) <= (method == HD_METHOD_DIRECT ? 1e-12 : 1e-8) * size,
             "%s: the last of %d columns differs by %g from a call of its own",
                   eng_name(method), (int)k, dense_max_diff(u, U + q * ld, n) / size);
         if (k % 5 > 1) continue;
         memcpy(U, F, (size_t)(MOST * ld) * sizeof *U);
-        CHECK(hd_heat_apply(heat, t, k, U, (size_t)ld, U, (size_t)ld, &rep) >= 0);
+        CHECK(heat_apply(heat, t, k, U, (size_t)ld, U, (size_t)ld, &rep) >= 0);
         for (q = 0; q < k; q++) {
             for (i = 0; i < n; i++) CHECK(lap->row[i] >= 0 || U[q * ld + i] == F[q * ld + i]);
             CHECK(memcmp(U + q * ld + n, F + q * ld + n, PAD * sizeof *U) == 0);
@@ -520,10 +520,10 @@ static void eng_counts_of(const heat_case *c, hd_method method) {
         }
     }
     memset(&rep, 0x77, sizeof rep);
-    CHECK(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK &&
+    CHECK(heat_columns(heat, t, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK &&
         rep.iterations == 0);
-    CHECK(hd_heat_apply(heat, t, 0, NULL, 0, NULL, 0, &rep) == HD_OK && rep.status == HD_OK);
-    CHECK(hd_heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 0, NULL, NULL, NULL, &rep) == HD_OK && rep.status == HD_OK);
+    CHECK(heat_apply(heat, t, 0, NULL, 0, NULL, 0, &rep) == HD_OK && rep.status == HD_OK);
+    CHECK(heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 0, NULL, NULL, NULL, &rep) == HD_OK && rep.status == HD_OK);
     hd_heat_free(heat);
     test_memory_done(&m, &ctx, "counts");
     free(U);
@@ -542,12 +542,12 @@ static void eng_nothing_to_do(const hd_laplacian *lap, hd_method method) {
     int32_t i, k;
     CHECK(n > 25 && lap->row[0] < 0 && lap->row[5] < 0);
     for (k = 1; k <= 3; k++) {
-        CHECK(eng_ok(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, k, inert, u, 0, &rep), &rep, "inert"));
+        CHECK(eng_ok(heat_columns(heat, t, HD_KERNEL_OPERATOR, k, inert, u, 0, &rep), &rep, "inert"));
         for (i = 0; i < k * n; i++) CHECK(u[i] == (i % n == inert[i / n]));
         CHECK(rep.error_bound == 0 && rep.error_bound_b == 0 && rep.residual == 0 && rep.iterations == 0);
         for (i = 0; i < 9 * n; i++) f[i] = i / n == 1 ? -3.25 : 0;
         for (i = 0; i < 9 * n; i++) u[i] = 77;
-        CHECK(eng_ok(hd_heat_apply(heat, t, k * k, f, 0, u, 0, &rep), &rep, "nothing"));
+        CHECK(eng_ok(heat_apply(heat, t, k * k, f, 0, u, 0, &rep), &rep, "nothing"));
         CHECK_MSG(dense_max_diff(u, f, k * k * n) <= 1e-13 * 4, "%s: nothing moves by %g", eng_name(method), dense_max_diff(u, f, k * k * n));
         for (i = 0; i < k * k * n; i++) CHECK(i / n == 1 || u[i] == 0);
     }
@@ -585,10 +585,10 @@ static hd_status eng_do(hd_heat *heat, const hd_laplacian *lap, const eng_call *
     for (i = 0; i < call->k; i++) sources[i] = lap->vertex[i * 5 % lap->n_active];
     for (i = 0; i < call->k * n; i++) f[i] = sin(i);
     for (i = 0; i < 3; i++) times[i] = call->t * (1 + i);
-    if (call->task == 2) st = hd_heat_apply(heat, call->t, call->k, f, 0, u, 0, rep);
-    else if (call->task == 3) st = hd_heat_entries(heat, call->t, HD_KERNEL_OPERATOR, call->k, sources, sources, u, rep);
-    else if (call->task == 4) st = hd_heat_times(heat, 3, times, HD_KERNEL_SYMMETRIC, sources[0], NULL, u, 0, rep);
-    else st = hd_heat_columns(heat, call->t, call->task ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, call->k, sources, u, 0, rep);
+    if (call->task == 2) st = heat_apply(heat, call->t, call->k, f, 0, u, 0, rep);
+    else if (call->task == 3) st = heat_entries(heat, call->t, HD_KERNEL_OPERATOR, call->k, sources, sources, u, rep);
+    else if (call->task == 4) st = heat_times(heat, 3, times, HD_KERNEL_SYMMETRIC, sources[0], NULL, u, 0, rep);
+    else st = heat_columns(heat, call->t, call->task ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, call->k, sources, u, 0, rep);
     free(f);
     free(sources);
     return st;
@@ -672,8 +672,8 @@ static void eng_switch(void) {
     for (round = 0; round < 3; round++) {
         double *out = round ? u : first;
         hd_report rep, rep2;
-        CHECK(eng_ok(hd_heat_columns(heat, times[TIMES - 1], HD_KERNEL_OPERATOR, K, sources, out, 0, &rep), &rep, "switch"));
-        CHECK(eng_ok(hd_heat_times(heat, TIMES, times, HD_KERNEL_OPERATOR, sources[5], NULL, out + K * s.n, 0, &rep2), &rep2, "switch"));
+        CHECK(eng_ok(heat_columns(heat, times[TIMES - 1], HD_KERNEL_OPERATOR, K, sources, out, 0, &rep), &rep, "switch"));
+        CHECK(eng_ok(heat_times(heat, TIMES, times, HD_KERNEL_OPERATOR, sources[5], NULL, out + K * s.n, 0, &rep2), &rep2, "switch"));
         CHECK_MSG(rep.method == HD_METHOD_DIRECT && rep.n_poles % 4 == 1 && rep2.method == HD_METHOD_KRYLOV, "%s with %d poles, %s",
             eng_name(rep.method), (int)rep.n_poles,
                   eng_name(rep2.method));
@@ -709,7 +709,7 @@ static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *time
         hd_report rep, one;
         for (i = 0; i < (n_times + 1) * ld; i++) U[i] = 4321;
         memset(&rep, 0x77, sizeof rep);
-        if (!eng_ok(hd_heat_times(heat, n_times, times, kernel, source, k == 2 ? f : NULL, U, (size_t)ld, &rep), &rep, what)) continue;
+        if (!eng_ok(heat_times(heat, n_times, times, kernel, source, k == 2 ? f : NULL, U, (size_t)ld, &rep), &rep, what)) continue;
         CHECK_MSG(n_times == 0 || o->method == HD_METHOD_AUTO || rep.method == o->method, "%s: %s", what, eng_name(rep.method));
         CHECK(n_times == 0 || (rep.reason && rep.reason[0]));
         for (q = 0; q < n_times; q++) {
@@ -717,8 +717,8 @@ static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *time
             if (k == 2) heat_field_rhs(c, f, rhs);
             else heat_source_rhs(c, source, kernel, rhs);
             if (times[q] > 0) eng_judge(c, times[q], NULL, rhs, column, &rep, n_times == 1, what);
-            if (k == 2) CHECK(eng_ok(hd_heat_apply(heat, times[q], 1, f, 0, u, 0, &one), &one, what));
-            else CHECK(eng_ok(hd_heat_columns(heat, times[q], kernel, 1, &source, u, 0, &one), &one, what));
+            if (k == 2) CHECK(eng_ok(heat_apply(heat, times[q], 1, f, 0, u, 0, &one), &one, what));
+            else CHECK(eng_ok(heat_columns(heat, times[q], kernel, 1, &source, u, 0, &one), &one, what));
             CHECK_MSG(dense_max_diff(u, column, n) <= (rep.error_bound + one.error_bound + 1e-13) * dense_max_abs(u, n),
                 "%s: time %g: off by %g from a call of its own", what, times[q],
                       dense_max_diff(u, column, n) / dense_max_abs(u, n));
@@ -745,7 +745,7 @@ static void eng_no_times(const hd_laplacian *lap, const hd_heat_opts *o) {
     double u = 7;
     own.context = NULL;                          /* that of the last call is gone */
     heat = eng_create(lap, &own);
-    CHECK(hd_heat_times(heat, 0, NULL, HD_KERNEL_OPERATOR, lap->vertex[0], NULL, &u, 0, &rep) == HD_ERR_ARGUMENT && u == 7);
+    CHECK(heat_times(heat, 0, NULL, HD_KERNEL_OPERATOR, lap->vertex[0], NULL, &u, 0, &rep) == HD_ERR_ARGUMENT && u == 7);
     hd_heat_free(heat);
 }
 
@@ -796,7 +796,7 @@ static void eng_times_inert(void) {
         for (k = 0; k < 2; k++) {
             hd_heat *heat = eng_plan(lap, eng_methods[z], HD_POLES_DEFAULT, 0);
             hd_report rep;
-            CHECK(eng_ok(hd_heat_times(heat, 3, times, k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, 5, NULL, u, 0, &rep), &rep, "inert"));
+            CHECK(eng_ok(heat_times(heat, 3, times, k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, 5, NULL, u, 0, &rep), &rep, "inert"));
             for (i = 0; i < 3 * s.n; i++) CHECK(u[i] == (k == 0 && i % s.n == 5));
             CHECK(rep.error_bound == 0 && rep.iterations == 0);
             hd_heat_free(heat);
@@ -831,9 +831,9 @@ static int64_t eng_thread_run(const shape *s, hd_laplacian_kind kind, hd_heat_op
     for (i = 0; i < 15; i++) sources[i] = lap->vertex[i * 31 % lap->n_active];
     for (i = 0; i < 15 * n; i++) f[i] = sin(i % n) + i / n;
     for (i = 0; i < 3; i++) times[i] = (3 + 9 * i) * lap->h * lap->h;
-    for (k = 0; k < 3; k++, out += 15 * n) CHECK(hd_heat_columns(heat, times[0], HD_KERNEL_SYMMETRIC, counts[k], sources, out, 0, rep + k) >= 0);
-    CHECK(hd_heat_apply(heat, times[0], 15, f, 0, out, 0, rep + 3) >= 0);
-    CHECK(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, sources[0], NULL, out + 15 * n, 0, rep + 4) >= 0);
+    for (k = 0; k < 3; k++, out += 15 * n) CHECK(heat_columns(heat, times[0], HD_KERNEL_SYMMETRIC, counts[k], sources, out, 0, rep + k) >= 0);
+    CHECK(heat_apply(heat, times[0], 15, f, 0, out, 0, rep + 3) >= 0);
+    CHECK(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, sources[0], NULL, out + 15 * n, 0, rep + 4) >= 0);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     ldl_way_end(w, way);
@@ -919,7 +919,7 @@ static void eng_extreme_times(void) {
                 static const double times[12] = {1e-300, 1e-100, 1e-30, 1e-18, 1e-320, 1e-25, 1e3, 1e4, 1e5, 1e6, 1e9, 1e12};
                 double off = 0;
                 hd_report rep;
-                if (!eng_ok(hd_heat_apply(heat, times[z], 1, f, 0, u, 0, &rep), &rep, "extreme")) continue;
+                if (!eng_ok(heat_apply(heat, times[z], 1, f, 0, u, 0, &rep), &rep, "extreme")) continue;
                 for (i = 0; i < s.n; i++) off = fmax(off, fabs(u[i] - (times[z] < 1 ? f[i] : mean[lap->component[i]])));
                 CHECK_MSG(off <= (z < 6 ? 3e-9 : 1e-8), "%s, t %g: off by %g", eng_name(eng_methods[k]), times[z], off);
                 CHECK(rep.mass_drift < 1e-12);
@@ -955,7 +955,7 @@ static void eng_warnings(void) {
                 heat = eng_create(lap, &o);
                 for (q = 0; q < 2; q++) {
                     times[q] = when[z][q] * lap->h * lap->h;
-                    st = hd_heat_column(heat, times[q], 7, u, &rep);
+                    st = heat_column(heat, times[q], 7, u, &rep);
                     CHECK(st == rep.status && (st == HD_OK || st == HD_WARN_ACCURACY));
                     rest = rep.error_bound > 0 ? rep.error_bound_b * (1 - rep.error_rational / rep.error_bound) : 0;
                     CHECK_MSG(st == HD_OK ? rest <= 2.5 * o.tol : rest > 0.1 * o.tol, "%s, tolerance %g: bound %g, but %s", eng_name(eng_methods[k]),
@@ -964,7 +964,7 @@ static void eng_warnings(void) {
                     if (st > worst) worst = st;
                     seen[st == HD_OK] |= 1 << k;
                 }
-                if (k == 0) CHECK(hd_heat_times(heat, 2, times, HD_KERNEL_OPERATOR, 7, NULL, u, 0, &rep) == worst && rep.status == worst);
+                if (k == 0) CHECK(heat_times(heat, 2, times, HD_KERNEL_OPERATOR, 7, NULL, u, 0, &rep) == worst && rep.status == worst);
                 hd_heat_free(heat);
             }
         }
@@ -994,14 +994,14 @@ static void eng_told(void) {
     }
     o.solver = HD_SOLVER_COCG;
     heat = eng_create(lap, &o);
-    for (q = 0; q < 2; q++) CHECK(hd_heat_apply(heat, t, 1, F + q * n, 0, u, 0, one + q) >= 0);
+    for (q = 0; q < 2; q++) CHECK(heat_apply(heat, t, 1, F + q * n, 0, u, 0, one + q) >= 0);
     CHECK_MSG(one[0].degree < one[1].degree, "degrees %d, %d", (int)one[0].degree, (int)one[1].degree);
-    CHECK(hd_heat_apply(heat, t, 2, F, 0, u, 0, &rep) >= 0 && rep.degree == one[1].degree);
+    CHECK(heat_apply(heat, t, 2, F, 0, u, 0, &rep) >= 0 && rep.degree == one[1].degree);
     hd_heat_free(heat);
     o.precond = HD_PRECOND_JACOBI;
     o.max_iterations = 4;
     heat = eng_create(lap, &o);
-    CHECK(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 3, NULL, u, 0, &rep) == HD_ERR_NOT_CONVERGED && rep.status == rep.error.status);
+    CHECK(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 3, NULL, u, 0, &rep) == HD_ERR_NOT_CONVERGED && rep.status == rep.error.status);
     CHECK_MSG(rep.error.column == 1, "time %lld failed", (long long)rep.error.column);
     hd_heat_free(heat);
     for (k = 0; k < 2; k++) {                    /* progress is called while solving, and every stage has a name */
@@ -1014,7 +1014,7 @@ static void eng_told(void) {
         o = eng_opts(eng_methods[k]);
         o.context = &ctx;
         heat = eng_create(lap, &o);
-        CHECK(hd_heat_column(heat, t, 3, u, NULL) >= 0);
+        CHECK(heat_column(heat, t, 3, u, NULL) >= 0);
         CHECK_MSG(p.solving > 0 && p.calls > p.solving + 2, "%s: progress is called %lld times, %lld while solving", eng_name(eng_methods[k]),
             (long long)p.calls,
             (long long)p.solving);
@@ -1056,7 +1056,7 @@ static void eng_orderings(void) {
             o.perm = kinds[q] == HD_ORDERING_OWN ? perm : NULL;
             heat = eng_create(lap, &o);
             for (i = 0; i < n; i++) perm[i] = -1;    /* it was copied */
-            if (!eng_ok(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 4, sources, q ? u : first, 0, &rep), &rep, "ordering")) continue;
+            if (!eng_ok(heat_columns(heat, t, HD_KERNEL_OPERATOR, 4, sources, q ? u : first, 0, &rep), &rep, "ordering")) continue;
             CHECK_MSG(q == 0 || dense_max_diff(u, first, 4 * n) <= (k ? 1e-8 : 1e-12), "%s: ordering %d differs by %g", eng_name(eng_methods[k]),
                 q, dense_max_diff(u, first, 4 * n));
             CHECK(rep.ordering == (q == 0 ? HD_ORDERING_MINIMUM_DEGREE : kinds[q]));
@@ -1107,7 +1107,7 @@ static void eng_bad_perms(void) {
             st = hd_heat_create(&heat, lap, &o, &e);
             for (again = 0; again < 2; again++) {
                 if (st >= 0) {
-                    const hd_status got = hd_heat_column(heat, 0.1, 4, u, &rep);
+                    const hd_status got = heat_column(heat, 0.1, 4, u, &rep);
                     e = rep.error;
                     CHECK(e.status == got);
                 }
@@ -1134,8 +1134,8 @@ static hd_method eng_chosen(const hd_laplacian *lap, const hd_heat_opts *o, doub
     hd_report rep;
     for (i = 0; i < k; i++) sources[i] = i * 3 % lap->n;
     for (i = 0; i < times; i++) at[i] = t * (1 + i);
-    if (times) CHECK(hd_heat_times(heat, times, at, HD_KERNEL_OPERATOR, 3, NULL, u, 0, &rep) >= 0);
-    else CHECK(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep) >= 0);
+    if (times) CHECK(heat_times(heat, times, at, HD_KERNEL_OPERATOR, 3, NULL, u, 0, &rep) >= 0);
+    else CHECK(heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep) >= 0);
     CHECK(rep.method != HD_METHOD_AUTO);
     CHECK_MSG(rep.reason && (!reason || strstr(rep.reason, reason)), "%s: %s", eng_name(rep.method), rep.reason ? rep.reason : "no reason");
     hd_heat_free(heat);
@@ -1182,7 +1182,7 @@ static void eng_choice(void) {
         CHECK(eng_chosen(voronoi, &o, 20 * hh, 1, 3, "asked") == (hd_method)k);
     }
     heat = eng_create(fem, &none);
-    CHECK(hd_heat_column(heat, 0, 3, u, &rep) == HD_OK && rep.method != HD_METHOD_AUTO && rep.reason && rep.factor_nnz == 0);
+    CHECK(heat_column(heat, 0, 3, u, &rep) == HD_OK && rep.method != HD_METHOD_AUTO && rep.reason && rep.factor_nnz == 0);
     hd_heat_free(heat);
     hd_laplacian_free(fem);
     hd_laplacian_free(voronoi);
@@ -1204,13 +1204,13 @@ static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
     memset(&ctx, 0, sizeof ctx);
     o.context = &ctx;
     heat = eng_create(lap, &o);
-    CHECK(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, want, 0, NULL) >= 0);
+    CHECK(heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, want, 0, NULL) >= 0);
     need = ctx.bytes_peak;
     hd_heat_free(heat);
     memset(&ctx, 0, sizeof ctx);
     o.method = HD_METHOD_DIRECT;
     heat = eng_create(lap, &o);
-    CHECK(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, NULL) >= 0);
+    CHECK(heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, NULL) >= 0);
     enough = 3 * ctx.bytes_peak;
     hd_heat_free(heat);
     o.method = HD_METHOD_AUTO;
@@ -1218,13 +1218,13 @@ static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
         memset(&ctx, 0, sizeof ctx);
         ctx.byte_limit = limit;
         heat = eng_create(lap, &o);
-        if (eng_ok(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep), &rep, "limits")) {
+        if (eng_ok(heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep), &rep, "limits")) {
             const double off = dense_max_diff(u, want, k * lap->n);
             CHECK_MSG(off <= 1e-6 * dense_max_abs(want, k * lap->n), "limit %llu, %s: off by %g", (unsigned long long)limit, eng_name(rep.method),
                 off);
             CHECK(rep.reason && ctx.bytes_peak <= limit);
             seen |= 1 << rep.method;
-            CHECK(eng_ok(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep2), &rep2, "limits"));
+            CHECK(eng_ok(heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep2), &rep2, "limits"));
             CHECK_MSG(rep.method == rep2.method, "limit %llu: %s, then %s", (unsigned long long)limit, eng_name(rep.method), eng_name(rep2.method));
         }
         hd_heat_free(heat);
@@ -1263,7 +1263,7 @@ static void eng_limit_lifted(void) {
     memset(&ctx, 0, sizeof ctx);
     o.context = &ctx;
     heat = eng_create(lap, &o);
-    CHECK(hd_heat_column(heat, t, 7, u, NULL) >= 0);
+    CHECK(heat_column(heat, t, 7, u, NULL) >= 0);
     need = ctx.bytes_peak;
     hd_heat_free(heat);
     memset(&ctx, 0, sizeof ctx);
@@ -1271,14 +1271,14 @@ static void eng_limit_lifted(void) {
     o.method = HD_METHOD_AUTO;
     o.context = &free_ctx;
     heat = eng_create(lap, &o);
-    CHECK(eng_ok(hd_heat_column(heat, t, 7, want, &rep), &rep, "no limit") && rep.method != HD_METHOD_ITERATIVE);
+    CHECK(eng_ok(heat_column(heat, t, 7, want, &rep), &rep, "no limit") && rep.method != HD_METHOD_ITERATIVE);
     hd_heat_free(heat);
     ctx.byte_limit = need + need / 8;
     o.context = &ctx;
     heat = eng_create(lap, &o);
-    CHECK(eng_ok(hd_heat_column(heat, t, 7, u, &rep), &rep, "limit") && rep.method == HD_METHOD_ITERATIVE && strcmp(rep.reason, "asked for") != 0);
+    CHECK(eng_ok(heat_column(heat, t, 7, u, &rep), &rep, "limit") && rep.method == HD_METHOD_ITERATIVE && strcmp(rep.reason, "asked for") != 0);
     ctx.byte_limit = 0;
-    CHECK(eng_ok(hd_heat_column(heat, t, 7, u, &rep), &rep, "limit lifted") && rep.method != HD_METHOD_ITERATIVE);
+    CHECK(eng_ok(heat_column(heat, t, 7, u, &rep), &rep, "limit lifted") && rep.method != HD_METHOD_ITERATIVE);
     CHECK(memcmp(u, want, (size_t)lap->n * sizeof *u) == 0);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
@@ -1334,7 +1334,7 @@ static void eng_bad_options(void) {
         for (q = 0; q < 2; q++) {
             hd_status st = hd_heat_create(&heat, own, &o, &e);
             if (st >= 0) {
-                st = q ? hd_heat_apply(heat, 1, 1, u, 0, u, 0, &rep) : hd_heat_column(heat, 1, 2, u, &rep);
+                st = q ? heat_apply(heat, 1, 1, u, 0, u, 0, &rep) : heat_column(heat, 1, 2, u, &rep);
                 e = rep.error;
                 hd_heat_free(heat);
             }
@@ -1343,7 +1343,7 @@ static void eng_bad_options(void) {
         o.ordering = HD_ORDERING_OWN;            /* without any, an order of the caller's will do */
         o.perm = perm;
         heat = eng_create(own, &o);
-        CHECK(eng_ok(hd_heat_column(heat, 1, 2, u, &rep), &rep, "own"));
+        CHECK(eng_ok(heat_column(heat, 1, 2, u, &rep), &rep, "own"));
         hd_heat_free(heat);
     }
     hd_laplacian_free(lap);
@@ -1365,42 +1365,42 @@ static void eng_bad_calls(void) {
 #define ENG_BAD(call, st)                                                                                              \
     CHECK_MSG((call) == (st) && rep.status == (st) && rep.error.status == (st) && rep.error.text[0], "%s: %s", eng_name(methods[k]),   \
               hd_status_name(rep.status))
-        ENG_BAD(hd_heat_apply(heat, -1, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_apply(heat, (double)NAN, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_column(heat, (double)INFINITY, 1, U, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_apply(heat, 1, 1, F, 11, U, 0, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_columns(heat, 1, HD_KERNEL_OPERATOR, 3, sources, U, 0, &rep), HD_ERR_INDEX);
+        ENG_BAD(heat_apply(heat, -1, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_apply(heat, (double)NAN, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_column(heat, (double)INFINITY, 1, U, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_apply(heat, 1, 1, F, 11, U, 0, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_columns(heat, 1, HD_KERNEL_OPERATOR, 3, sources, U, 0, &rep), HD_ERR_INDEX);
         CHECK(rep.error.vertex == 12 && rep.error.column == 1);
         U[0] = 77;                               /* nothing is written before it is seen */
         F[12 + 7] = (double)NAN;
-        ENG_BAD(hd_heat_apply(heat, 1, 3, F, 0, U, 0, &rep), HD_ERR_NOT_FINITE);
+        ENG_BAD(heat_apply(heat, 1, 3, F, 0, U, 0, &rep), HD_ERR_NOT_FINITE);
         CHECK(rep.error.row == 7 && rep.error.column == 1);
         F[12 + 7] = 0;
         F[5] = -(double)INFINITY;
-        ENG_BAD(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, F, U, 0, &rep), HD_ERR_NOT_FINITE);
+        ENG_BAD(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, F, U, 0, &rep), HD_ERR_NOT_FINITE);
         CHECK(rep.error.row == 5 && rep.error.column == 0);
         F[5] = 5;
         for (i = 0; i < 3; i++) {
             const double good = times[i], bad[3] = {-0.1, (double)NAN, (double)INFINITY};
             times[i] = bad[i];
-            ENG_BAD(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, i == 1 ? F : NULL, U, 0, &rep), HD_ERR_ARGUMENT);
+            ENG_BAD(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, i == 1 ? F : NULL, U, 0, &rep), HD_ERR_ARGUMENT);
             CHECK(rep.error.column == i && (rep.error.value == bad[i] || i == 1));
             times[i] = good;
         }
-        ENG_BAD(hd_heat_times(heat, -1, times, HD_KERNEL_OPERATOR, 0, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_times(heat, 3, NULL, HD_KERNEL_OPERATOR, 0, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, NULL, U, 11, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_times(heat, 3, times, (hd_kernel)2, 0, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 12, NULL, U, 0, &rep), HD_ERR_INDEX);
+        ENG_BAD(heat_times(heat, -1, times, HD_KERNEL_OPERATOR, 0, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_times(heat, 3, NULL, HD_KERNEL_OPERATOR, 0, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, NULL, U, 11, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_times(heat, 3, times, (hd_kernel)2, 0, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 12, NULL, U, 0, &rep), HD_ERR_INDEX);
         CHECK(rep.error.vertex == 12);
-        ENG_BAD(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, -1, NULL, U, 0, &rep), HD_ERR_INDEX);
-        ENG_BAD(hd_heat_times(NULL, 3, times, HD_KERNEL_OPERATOR, 1, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
+        ENG_BAD(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, -1, NULL, U, 0, &rep), HD_ERR_INDEX);
+        ENG_BAD(heat_times(NULL, 3, times, HD_KERNEL_OPERATOR, 1, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
         CHECK(U[0] == 77);
-        CHECK(hd_heat_times(heat, 3, times, HD_KERNEL_OPERATOR, -99, F, U, 0, NULL) >= 0);    /* with a field the source is not looked at */
-        CHECK(hd_heat_times(heat, -3, times, HD_KERNEL_OPERATOR, 0, F, U, 0, NULL) == HD_ERR_ARGUMENT);
-        ENG_BAD(hd_heat_column(heat, 0.1, -1, U, &rep), HD_ERR_INDEX);
-        CHECK(hd_heat_column(heat, 0.1, 1, U, &rep) >= 0);    /* the plan is as good as before */
+        CHECK(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, -99, F, U, 0, NULL) >= 0);    /* with a field the source is not looked at */
+        CHECK(heat_times(heat, -3, times, HD_KERNEL_OPERATOR, 0, F, U, 0, NULL) == HD_ERR_ARGUMENT);
+        ENG_BAD(heat_column(heat, 0.1, -1, U, &rep), HD_ERR_INDEX);
+        CHECK(heat_column(heat, 0.1, 1, U, &rep) >= 0);    /* the plan is as good as before */
 #undef ENG_BAD
         hd_heat_free(heat);
     }
@@ -1441,11 +1441,11 @@ static hd_status eng_rob_job(hd_context *ctx, int variant) {
     CHECK(e.status == st && (st >= 0) == (heat != rob_mark_heat));
     if (st >= 0) {
         const double t = lap->h * lap->h;
-        if (task == 0) st = hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 7, sources, U, 0, &rep);
-        if (task == 1) st = hd_heat_apply(heat, t, 7, F, 0, U, 0, &rep);
-        if (task == 2) st = hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, 7, sources, sources, U, &rep);
-        if (task == 3) st = hd_heat_times(heat, 7, times, HD_KERNEL_SYMMETRIC, 3, NULL, U, 0, &rep);
-        if (task == 4) st = hd_heat_column(heat, t, 7, U, &rep);
+        if (task == 0) st = heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 7, sources, U, 0, &rep);
+        if (task == 1) st = heat_apply(heat, t, 7, F, 0, U, 0, &rep);
+        if (task == 2) st = heat_entries(heat, t, HD_KERNEL_OPERATOR, 7, sources, sources, U, &rep);
+        if (task == 3) st = heat_times(heat, 7, times, HD_KERNEL_SYMMETRIC, 3, NULL, U, 0, &rep);
+        if (task == 4) st = heat_column(heat, t, 7, U, &rep);
         CHECK(rep.status == st && (st >= 0 || rep.error.status == st));
         hd_heat_free(heat);
     }

@@ -338,7 +338,7 @@ static void forms_ask(hd_heat *heat, double hh, int32_t n, double *D) {
     const int32_t sources[2] = {7, 2000};
     const double t[2] = {30 * hh, 3 * hh};
     (void)n;
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_WEIGHTED, 2, t, 2, sources, D, 0, NULL) >= 0);
+    CHECK(heat_distance(heat, HD_DISTANCE_WEIGHTED, 2, t, 2, sources, D, 0, NULL) >= 0);
 }
 
 static void forms_distances(void) { diag_each_way(HD_LAPLACIAN_FEM, 4, forms_ask); }
@@ -359,7 +359,7 @@ static void forms_many_times(void) {
         for (m = 0; m < TIMES; m++) t[m] = lap->h * lap->h * pow(10, (m * 7 % TIMES) * 0.12);
         for (kind = 0; kind < 2; kind++) {
             memset(&rep, 0, sizeof rep);
-            CHECK_MSG(hd_heat_distance(heat, (hd_distance_kind)kind, TIMES, t, 3, sources, D, 0, &rep) >= 0, "%s", rep.error.text);
+            CHECK_MSG(heat_distance(heat, (hd_distance_kind)kind, TIMES, t, 3, sources, D, 0, &rep) >= 0, "%s", rep.error.text);
             CHECK_MSG(rep.residual > 0 && rep.residual < 1e-8, "residual %g", rep.residual);
             CHECK_MSG(rep.n_poles > 7, "%d poles: not shared", (int)rep.n_poles);
             bound[q] = rep.error_bound;
@@ -402,7 +402,7 @@ static void forms_own_set(void) {
     K = diag_matrix(&c, g);
     KB = diag_product(K, c.pair.B, n);
     H = diag_product(c.pair.B, KB, n);
-    CHECK_MSG(hd_heat_distance(heat, HD_DISTANCE_WEIGHTED, 1, &t, 1, &source, D, 0, &rep) >= 0, "%s", rep.error.text);
+    CHECK_MSG(heat_distance(heat, HD_DISTANCE_WEIGHTED, 1, &t, 1, &source, D, 0, &rep) >= 0, "%s", rep.error.text);
     diag_judge_distance(&c, HD_DISTANCE_WEIGHTED, t, H, source, D, &rep, 1e-9, "a0");
     hd_heat_free(heat);
     heat_case_free(&c);

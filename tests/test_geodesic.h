@@ -186,7 +186,7 @@ static hd_geodesic *geo_plan(const shape *s, double t, hd_geodesic_mass mass, hd
 static double *geo_of(const shape *s, double t, const int32_t *sources, int32_t k) {
     hd_geodesic *g = geo_plan(s, t, HD_GEODESIC_MASS_BARYCENTRIC, NULL);
     double *d = DENSE_NEW(double, s->n);
-    CHECK(hd_geodesic_distance(g, sources, k, d, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, k, sources, d, NULL, NULL) == HD_OK);
     hd_geodesic_free(g);
     return d;
 }
@@ -251,7 +251,7 @@ static void geo_against_dense(shape s, const char *what) {
             int32_t q, n_sources;
             for (n_sources = 1; n_sources <= 8; n_sources += 7) {
                 geo_dense_distance(&oracle, sources, n_sources, want);
-                CHECK(hd_geodesic_distance(g, sources, n_sources, d, &rep) == HD_OK);
+                CHECK(hd_geodesic_distance(g, n_sources, sources, d, &rep, NULL) == HD_OK);
                 CHECK_MSG(geo_difference(d, want, s.n) <= tol * geo_largest(want, s.n), "%s, t %g h2, mass %d, %d sources: off by %g", what, times[k], mass,
                           (int)n_sources, geo_difference(d, want, s.n) / geo_largest(want, s.n));
                 CHECK_MSG(rep.residual_heat < (times[k] > 100 ? 1e-7 : 1e-13) && rep.residual_distance < 1e-11, "%s: residuals %g %g", what, rep.residual_heat, rep.residual_distance);
@@ -259,7 +259,7 @@ static void geo_against_dense(shape s, const char *what) {
             CHECK_MSG(fabs(rep.h - oracle.h) <= 1e-13 * oracle.h && fabs(rep.t - oracle.t) <= 1e-12 * oracle.t && rep.n_stages == 1 && rep.factor_nnz >= s.n / 2,
                       "%s: report", what);
             for (q = 0; q < 8; q++) geo_dense_distance(&oracle, sources + q, 1, want + q * s.n);
-            CHECK(hd_geodesic_distances(g, 8, sources, d, 0, &rep) == HD_OK && rep.n_stages == 1 && rep.residual_distance > 0 && rep.residual_distance < 1e-11);
+            CHECK(hd_geodesic_distances(g, 8, sources, d, 0, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_distance > 0 && rep.residual_distance < 1e-11);
             CHECK_MSG(geo_difference(d, want, 8 * s.n) <= tol * geo_largest(want, 8 * s.n), "%s, t %g h2, mass %d: eight columns off by %g", what, times[k], mass,
                       geo_difference(d, want, 8 * s.n) / geo_largest(want, 8 * s.n));
             hd_geodesic_free(g);
@@ -283,7 +283,7 @@ static void geo_tube(int32_t around, int32_t rows, double tau, int32_t n_stages)
     int32_t *sources = DENSE_NEW(int32_t, around), i;
     hd_geodesic_report rep;
     for (i = 0; i < around; i++) sources[i] = i * rows;
-    CHECK(hd_geodesic_distance(g, sources, around, d, &rep) == HD_OK);
+    CHECK(hd_geodesic_distance(g, around, sources, d, &rep, NULL) == HD_OK);
     for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(d[i] - s.xyz[3 * i + 1] - 0.5));
     CHECK_MSG(worst <= 1e-9, "tube of %d x %d, t %g rows: off by %g, %d stages", (int)around, (int)rows, tau, worst, (int)rep.n_stages);
     CHECK_MSG(rep.n_stages == n_stages, "tube of %d rows: %d stages", (int)rows, (int)rep.n_stages);
@@ -323,15 +323,15 @@ static void geo_long(void) {
     const int32_t four[4] = {source, source + 3999, source + 1700, 5};
     hd_geodesic_report rep;
     int32_t i;
-    CHECK(hd_geodesic_distance(g, &source, 1, d, &rep) == HD_OK);
+    CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK);
     CHECK_MSG(rep.n_stages >= 6 && rep.n_stages < 14, "%d stages", (int)rep.n_stages);
     for (i = 1; i < 4000; i++) worst = fmax(worst, fabs((d[source + i] - d[source + i - 1]) / (s.xyz[3 * (source + i)] - s.xyz[3 * (source + i) - 3]) - 1));
     CHECK_MSG(worst < 0.3, "a step is off by %g", worst);
     CHECK_MSG(fabs(d[source + 3999] - 1) < 0.01, "the other end is at %g", d[source + 3999]);
-    for (i = 0; i < 4; i++) CHECK(hd_geodesic_distance(g, four + i, 1, d + i * s.n, NULL) == HD_OK);
+    for (i = 0; i < 4; i++) CHECK(hd_geodesic_distance(g, 1, four + i, d + i * s.n, NULL, NULL) == HD_OK);
     {
         double *wide = DENSE_NEW(double, 4 * s.n);
-        CHECK(hd_geodesic_distances(g, 4, four, wide, 0, &rep) == HD_OK && rep.n_stages >= 6);
+        CHECK(hd_geodesic_distances(g, 4, four, wide, 0, &rep, NULL) == HD_OK && rep.n_stages >= 6);
         CHECK(memcmp(wide, d, 4 * (size_t)s.n * sizeof *d) == 0);      /* all are done again alone */
         free(wide);
     }
@@ -353,7 +353,7 @@ static void geo_strip(hd_ordering ordering) {
     memset(&o, 0, sizeof o);
     o.ordering = ordering;
     CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance(g, &source, 1, d, &rep) == HD_OK && rep.n_stages >= 12);
+    CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK && rep.n_stages >= 12);
     times = (double)g->n_staged / g->sym.n_super;
     CHECK_MSG(times > 0.5 && times < 6, "%d stages go to %.1f times the fronts", (int)rep.n_stages, times);
     for (i = 0; i < 10001; i++) worst = fmax(worst, fabs(d[i] - fabs(s.xyz[3 * i] - s.xyz[3 * source])));
@@ -377,7 +377,7 @@ static void geo_stages_ordered(shape s, int32_t source, double t) {
     for (i = HD_ORDERING_MINIMUM_DEGREE; i <= HD_ORDERING_OWN; i++) {
         o.ordering = (hd_ordering)i;
         CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
-        CHECK(hd_geodesic_distance(g, &source, 1, i == HD_ORDERING_MINIMUM_DEGREE ? want : d, &rep) == HD_OK);
+        CHECK(hd_geodesic_distance(g, 1, &source, i == HD_ORDERING_MINIMUM_DEGREE ? want : d, &rep, NULL) == HD_OK);
         CHECK_MSG(rep.n_stages > 3, "%d stages", (int)rep.n_stages);
         if (i > HD_ORDERING_MINIMUM_DEGREE) {
             const double off = geo_difference(d, want, s.n) / geo_largest(want, s.n);
@@ -501,9 +501,9 @@ static void geo_parts(void) {
         int32_t k, q;
         for (k = 0; k <= 11; k++) {
             for (i = 0; i < (int32_t)(11 * ld); i++) all[i] = -7;
-            CHECK(hd_geodesic_distances(g, k, columns, all, ld, &rep) == HD_OK && (k == 0 || rep.residual_distance > 0));
+            CHECK(hd_geodesic_distances(g, k, columns, all, ld, &rep, NULL) == HD_OK && (k == 0 || rep.residual_distance > 0));
             for (q = 0; q < k; q++) {
-                CHECK(hd_geodesic_distance(g, columns + q, 1, one, NULL) == HD_OK);
+                CHECK(hd_geodesic_distance(g, 1, columns + q, one, NULL, NULL) == HD_OK);
                 CHECK_MSG(geo_difference(one, all + (size_t)q * ld, r.n) < 1e-12, "column %d of %d: off by %g", (int)q, (int)k, geo_difference(one, all + (size_t)q * ld, r.n));
                 for (i = r.n; i < (int32_t)ld; i++) CHECK(all[(size_t)q * ld + (size_t)i] == -7);
             }
@@ -531,7 +531,7 @@ static void geo_ugly_of(shape s, const char *what, int finite) {
     for (k = 0; k < 4; k++) {
         hd_geodesic *g = geo_plan(&s, times[k] * hh, HD_GEODESIC_MASS_BARYCENTRIC, NULL);
         hd_geodesic_report rep;
-        hd_status st = hd_geodesic_distances(g, 4, sources, d, 0, &rep);
+        hd_status st = hd_geodesic_distances(g, 4, sources, d, 0, &rep, NULL);
         CHECK_MSG(st >= 0 || st == HD_ERR_BREAKDOWN, "%s: %s", what, rep.error.text);
         for (i = 0; st >= 0 && i < 4 * s.n; i++)
             if (!CHECK_MSG(d[i] >= 0 && (d[i] <= DBL_MAX || !finite), "%s, t %g h2: %g at %d", what, times[k], d[i], (int)i)) break;
@@ -575,13 +575,13 @@ static void geo_plans(void) {
     hd_geodesic_report rep;
     hd_error e;
     int k;
-    CHECK(hd_geodesic_distance(g, sources, 5, a, NULL) == HD_OK);              /* twice is once */
-    CHECK(hd_geodesic_distance(g, pair, 2, b, &rep) == HD_OK && memcmp(a, b, (size_t)s.n * sizeof *a) == 0);
+    CHECK(hd_geodesic_distance(g, 5, sources, a, NULL, NULL) == HD_OK);              /* twice is once */
+    CHECK(hd_geodesic_distance(g, 2, pair, b, &rep, NULL) == HD_OK && memcmp(a, b, (size_t)s.n * sizeof *a) == 0);
     CHECK(rep.status == HD_OK && rep.error.status == HD_OK && rep.n_components == 1 && rep.ordering == HD_ORDERING_MINIMUM_DEGREE && rep.factor_flops > 0);
-    CHECK(hd_geodesic_distance(g, pair, 1, b, NULL) == HD_OK);                 /* a query leaves nothing behind */
-    CHECK(hd_geodesic_distance(g, pair, 2, b, NULL) == HD_OK && memcmp(a, b, (size_t)s.n * sizeof *a) == 0);
+    CHECK(hd_geodesic_distance(g, 1, pair, b, NULL, NULL) == HD_OK);                 /* a query leaves nothing behind */
+    CHECK(hd_geodesic_distance(g, 2, pair, b, NULL, NULL) == HD_OK && memcmp(a, b, (size_t)s.n * sizeof *a) == 0);
     for (i = 0; i < s.n; i++) perm[i] = i;
-    CHECK(hd_geodesic_distance(g, perm, s.n, b, NULL) == HD_OK);               /* everywhere is a source */
+    CHECK(hd_geodesic_distance(g, s.n, perm, b, NULL, NULL) == HD_OK);               /* everywhere is a source */
     for (i = 0; i < s.n; i++) CHECK(b[i] == 0);
     memset(&o, 0, sizeof o);
     for (k = HD_ORDERING_MINIMUM_DEGREE; k <= HD_ORDERING_OWN; k++) {
@@ -589,7 +589,7 @@ static void geo_plans(void) {
         o.ordering = (hd_ordering)k;
         o.perm = perm;
         CHECK(hd_geodesic_create(&own, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_OK);
-        CHECK(hd_geodesic_distance(own, pair, 2, b, &rep) == HD_OK && rep.ordering == (hd_ordering)k);
+        CHECK(hd_geodesic_distance(own, 2, pair, b, &rep, NULL) == HD_OK && rep.ordering == (hd_ordering)k);
         CHECK_MSG(geo_difference(a, b, s.n) < 1e-9, "ordering %d: off by %g", k, geo_difference(a, b, s.n));
         hd_geodesic_free(own);
     }
@@ -641,15 +641,15 @@ static void geo_errors(void) {
     CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 7 && !g);
     s.xyz[3 * 7 + 1] = keep;
     CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, &e) == HD_OK && e.status == HD_OK);
-    CHECK(hd_geodesic_distance(g, beyond, 3, d, &rep) == HD_ERR_INDEX && rep.status == HD_ERR_INDEX && rep.error.vertex == 42 && rep.error.value == 42 && rep.error.column == 2);
-    CHECK(hd_geodesic_distance(g, &below, 1, d, &rep) == HD_ERR_INDEX && rep.error.vertex == -1 && rep.error.value == -1 && rep.error.column == 0);
-    CHECK(hd_geodesic_distances(g, 3, beyond, d, 0, &rep) == HD_ERR_INDEX && rep.error.column == 2);
-    CHECK(hd_geodesic_distance(g, beyond, 0, d, &rep) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, beyond, -1, d, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distance(g, NULL, 1, d, &rep) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, beyond, 1, NULL, &rep) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distance(NULL, beyond, 1, d, &rep) == HD_ERR_ARGUMENT && rep.error.text[0]);
-    CHECK(hd_geodesic_distances(g, -1, beyond, d, 0, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distances(g, 1, beyond, d, 41, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distances(g, 0, NULL, NULL, 0, &rep) == HD_OK && rep.h > 0);
-    CHECK(hd_geodesic_distance(g, &zero, 1, d, &rep) == HD_OK && d[0] == 0 && d[1] > 0);     /* and is as good as before */
+    CHECK(hd_geodesic_distance(g, 3, beyond, d, &rep, NULL) == HD_ERR_INDEX && rep.status == HD_ERR_INDEX && rep.error.vertex == 42 && rep.error.value == 42 && rep.error.column == 2);
+    CHECK(hd_geodesic_distance(g, 1, &below, d, &rep, NULL) == HD_ERR_INDEX && rep.error.vertex == -1 && rep.error.value == -1 && rep.error.column == 0);
+    CHECK(hd_geodesic_distances(g, 3, beyond, d, 0, &rep, NULL) == HD_ERR_INDEX && rep.error.column == 2);
+    CHECK(hd_geodesic_distance(g, 0, beyond, d, &rep, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, -1, beyond, d, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance(g, 1, NULL, d, &rep, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, 1, beyond, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance(NULL, 1, beyond, d, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.text[0]);
+    CHECK(hd_geodesic_distances(g, -1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distances(g, 1, beyond, d, 41, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distances(g, 0, NULL, NULL, 0, &rep, NULL) == HD_OK && rep.h > 0);
+    CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, NULL) == HD_OK && d[0] == 0 && d[1] > 0);     /* and is as good as before */
     hd_geodesic_free(g);
     hd_geodesic_free(NULL);
     shape_free(&s);
@@ -662,7 +662,7 @@ static void geo_triangle(void) {
     hd_geodesic *g = NULL;
     double d[3];
     CHECK(hd_geodesic_create(&g, xyz, 3, tri, 1, NULL, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance(g, &source, 1, d, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, 1, &source, d, NULL, NULL) == HD_OK);
     CHECK_MSG(d[0] == 0 && fabs(d[1] - xyz[7]) < 1e-14 && fabs(d[2] - xyz[7]) < 1e-14, "%.17g %.17g %.17g", d[0], d[1], d[2]);
     hd_geodesic_free(g);
 }
@@ -684,7 +684,7 @@ static void geo_triangles(void) {
         sources[i] = 3 * i;
     }
     CHECK(hd_geodesic_create(&g, xyz, 3 * M, tri, M, NULL, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance(g, sources, M, d, &rep) == HD_OK && rep.n_components == M);
+    CHECK(hd_geodesic_distance(g, M, sources, d, &rep, NULL) == HD_OK && rep.n_components == M);
     for (i = 0; i < M; i++) CHECK_MSG(d[3 * i] == 0 && fabs(d[3 * i + 1] - sqrt(0.5)) < 1e-14 && fabs(d[3 * i + 2] - sqrt(0.5)) < 1e-14, "%.17g %.17g", d[3 * i + 1], d[3 * i + 2]);
     hd_geodesic_free(g);
 }
@@ -698,8 +698,8 @@ static int64_t geo_thread_run(const shape *s, hd_simd simd, int way, double *out
     int64_t calls;
     ldl_way_begin(w, way, simd);
     g = geo_plan(s, 0, HD_GEODESIC_MASS_BARYCENTRIC, &w->ctx);
-    CHECK(hd_geodesic_distance(g, sources, 3, out, NULL) == HD_OK);
-    CHECK(hd_geodesic_distances(g, 11, sources, out + s->n, 0, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, 3, sources, out, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distances(g, 11, sources, out + s->n, 0, NULL, NULL) == HD_OK);
     hd_geodesic_free(g);
     ldl_way_end(w, way);
     calls = w->calls;
@@ -755,8 +755,8 @@ static hd_status geo_job(hd_context *ctx, int variant) {
     st = hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, &e);
     CHECK(e.status == st && (st >= 0) == (g != geo_mark));
     if (st >= 0) {
-        if (variant == 1 || variant == 3) st = hd_geodesic_distance(g, sources, 2, d, &rep);
-        if (variant == 2) st = hd_geodesic_distances(g, 6, sources, d, 0, &rep);
+        if (variant == 1 || variant == 3) st = hd_geodesic_distance(g, 2, sources, d, &rep, NULL);
+        if (variant == 2) st = hd_geodesic_distances(g, 6, sources, d, 0, &rep, NULL);
         if (variant) CHECK(rep.status == st && rep.error.status == (st < 0 ? st : HD_OK));
         hd_geodesic_free(g);
     }
@@ -779,10 +779,10 @@ static void geo_survives(void) {
         hd_geodesic *g = geo_plan(&s, 0, HD_GEODESIC_MASS_BARYCENTRIC, &ctx);
         hd_status st = HD_OK;
         m.fail_at = k ? m.calls + k : 0;
-        if (k) st = hd_geodesic_distance(g, sources, 4, d, NULL);
-        if (k && st >= 0) st = hd_geodesic_distances(g, 4, sources, d, 0, NULL);
+        if (k) st = hd_geodesic_distance(g, 4, sources, d, NULL, NULL);
+        if (k && st >= 0) st = hd_geodesic_distances(g, 4, sources, d, 0, NULL, NULL);
         m.fail_at = 0;
-        CHECK(hd_geodesic_distances(g, 4, sources, k ? d : want, 0, NULL) == HD_OK);
+        CHECK(hd_geodesic_distances(g, 4, sources, k ? d : want, 0, NULL, NULL) == HD_OK);
         CHECK(k == 0 || memcmp(d, want, 4 * (size_t)s.n * sizeof *d) == 0);
         hd_geodesic_free(g);
         if (k && st >= 0) break;

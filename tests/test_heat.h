@@ -102,7 +102,7 @@ static void heat_against_dense(const heat_case *c, hd_heat *heat, double t) {
     int k;
     for (k = 0; k < 2; k++) {
         const hd_kernel kernel = k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
-        const hd_status st = hd_heat_columns(heat, t, kernel, 1, &source, u, 0, &rep);
+        const hd_status st = heat_columns(heat, t, kernel, 1, &source, u, 0, &rep);
         if (!CHECK_MSG(st >= 0, "%s: %s", c->what, rep.error.text)) continue;
         heat_source_rhs(c, source, kernel, rhs);
         heat_judge(c, t, rhs, u, &rep);
@@ -112,7 +112,7 @@ static void heat_against_dense(const heat_case *c, hd_heat *heat, double t) {
         f[n + i] = 2 + sin(0.3 * i);
     }
     for (k = 0; k < 2; k++) {
-        if (!CHECK_MSG(hd_heat_apply(heat, t, 1, f + k * n, 0, u, 0, &rep) >= 0, "%s: %s", c->what, rep.error.text)) continue;
+        if (!CHECK_MSG(heat_apply(heat, t, 1, f + k * n, 0, u, 0, &rep) >= 0, "%s: %s", c->what, rep.error.text)) continue;
         heat_field_rhs(c, f + k * n, rhs);
         heat_judge(c, t, rhs, u, &rep);
     }
@@ -167,7 +167,7 @@ static void heat_degrees(void) {
             hd_heat *heat = heat_plan(c.lap, HD_SOLVER_COCG, k ? HD_POLES_KERNEL : HD_POLES_UNIFORM, r, 1e-13);
             double u[42];
             hd_report rep;
-            CHECK(hd_heat_column(heat, 3 * c.lap->h * c.lap->h, 5, u, &rep) >= 0 && rep.degree == r && rep.n_poles == (r + 1) / 2);
+            CHECK(heat_column(heat, 3 * c.lap->h * c.lap->h, 5, u, &rep) >= 0 && rep.degree == r && rep.n_poles == (r + 1) / 2);
             CHECK(rep.poles == (k ? HD_POLES_KERNEL : HD_POLES_UNIFORM) && rep.method == HD_METHOD_ITERATIVE && rep.precond == HD_PRECOND_MILDL);
             heat_against_dense(&c, heat, 3 * c.lap->h * c.lap->h);
             hd_heat_free(heat);
@@ -191,7 +191,7 @@ static void heat_defaults(void) {
             hd_report rep;
             int32_t p;
             heat_against_dense(&c, heat, t);
-            CHECK(hd_heat_column(heat, t, 100, u, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK);
+            CHECK(heat_column(heat, t, 100, u, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK);
             CHECK_MSG(rep.error_bound_b < 1e-7 && rep.error_bound < 1e-5, "t %g: bounds %g, %g say little", t, rep.error_bound_b, rep.error_bound);
             CHECK(rep.reason != NULL && (rep.iterations > 0) == (rep.method != HD_METHOD_DIRECT));
             CHECK((rep.solver == HD_SOLVER_LANCZOS) == (rep.n_poles == 0));
@@ -215,7 +215,7 @@ static double *heat_matrix(hd_heat *heat, int32_t n, double t, hd_kernel kernel)
     int32_t *sources = DENSE_NEW(int32_t, n), i;
     hd_report rep;
     for (i = 0; i < n; i++) sources[i] = i;
-    CHECK(hd_heat_columns(heat, t, kernel, n, sources, k, 0, &rep) >= 0);
+    CHECK(heat_columns(heat, t, kernel, n, sources, k, 0, &rep) >= 0);
     CHECK(rep.mass_drift < 1e-12);
     free(sources);
     return k;
@@ -237,7 +237,7 @@ static void heat_identities_of(const shape *s, hd_laplacian_kind kind) {
         dense_apply(B, K + (size_t)j * (size_t)n, bk + (size_t)j * (size_t)n, n);
         for (i = 0; i < n; i++) heat_out += bk[(size_t)j * (size_t)n + (size_t)i];
         mass = fmax(mass, fabs(heat_out - heat_in) / heat_in);
-        CHECK(hd_heat_apply(heat, t2, 1, K + (size_t)j * (size_t)n, 0, u, 0, NULL) >= 0);
+        CHECK(heat_apply(heat, t2, 1, K + (size_t)j * (size_t)n, 0, u, 0, NULL) >= 0);
         semigroup = fmax(semigroup, dense_max_diff(u, K3 + (size_t)j * (size_t)n, n));
         for (i = 0; i < n; i++) {                /* K = S B */
             double sum = 0;
@@ -257,7 +257,7 @@ static void heat_identities_of(const shape *s, hd_laplacian_kind kind) {
     CHECK_MSG(mass < 1e-12, "kind %d: heat lost or made: %g", (int)kind, mass);
     CHECK_MSG(relation < 1e-9, "kind %d: K_t is not k_t B by %g", (int)kind, relation);
     for (i = 0; i < n; i++) f[i] = -3.25;
-    CHECK(hd_heat_apply(heat, 1000 * unit, 1, f, 0, u, 0, NULL) >= 0);
+    CHECK(heat_apply(heat, 1000 * unit, 1, f, 0, u, 0, NULL) >= 0);
     CHECK_MSG(dense_max_diff(u, f, n) < 1e-13, "constants move by %g", dense_max_diff(u, f, n));
     free(K);
     free(S);
@@ -289,13 +289,13 @@ static void heat_components_by(hd_laplacian *lap, hd_solver solver, double t, co
     int32_t i, k, source, leaks;
     for (k = 0; k < 2; k++) {                    /* a source in each */
         for (source = 0; (to[source] >= n_ball) != k; source++) {}
-        CHECK(hd_heat_column(heat, t, source, u, NULL) >= 0);
+        CHECK(heat_column(heat, t, source, u, NULL) >= 0);
         for (i = 0, leaks = 0; i < lap->n; i++) leaks += (to[i] >= n_ball) != k && u[i] != 0;
         CHECK_MSG(leaks == 0, "%s, %s: heat at %d vertices of another component", what, heat_solver_name(solver), (int)leaks);
         CHECK(u[source] > 0);
     }
     for (i = 0; i < lap->n; i++) f[i] = to[i] < n_ball ? 1 + 0.5 * sin(i) : -2 + cos(i);
-    CHECK(hd_heat_apply(heat, t, 1, f, 0, u, 0, NULL) >= 0);
+    CHECK(heat_apply(heat, t, 1, f, 0, u, 0, NULL) >= 0);
     for (i = 0; i < lap->n; i++) {
         in[to[i] >= n_ball] += lap->mass[i] * f[i];
         out[to[i] >= n_ball] += lap->mass[i] * u[i];
@@ -351,20 +351,20 @@ static void heat_inert(void) {
         double *u = DENSE_NEW(double, 3 * n), *w = DENSE_NEW(double, n), v[5];
         hd_report rep;
         CHECK(lap->mesh.n_inert == 2 && lap->row[0] == -1 && lap->row[22] == -1);
-        CHECK(hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 3, sources, u, 0, &rep) >= 0);
-        CHECK(hd_heat_column(other, t, 0, w, NULL) >= 0);
+        CHECK(heat_columns(heat, t, HD_KERNEL_OPERATOR, 3, sources, u, 0, &rep) >= 0);
+        CHECK(heat_column(other, t, 0, w, NULL) >= 0);
         for (i = 0; i < n; i++) CHECK(u[i] == (i == 0));                     /* its unit vector */
         CHECK(u[n] == 0 && u[n + 22] == 0);
         for (i = 0; i < b.n; i++) CHECK(fabs(u[n + i + (i > 20) + 1] - w[i]) <= (k ? 0 : 1e-7) * w[0]);   /* the others do not notice */
-        CHECK(hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 3, sources, u, 0, &rep) >= 0);
+        CHECK(heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 3, sources, u, 0, &rep) >= 0);
         for (i = 0; i < n; i++) CHECK(u[i] == 0);
         CHECK(u[n + 1] > 0 && u[n] == 0);
         for (i = 0; i < n; i++) w[i] = i + 1;
-        CHECK(hd_heat_apply(heat, t, 1, w, 0, u, 0, NULL) >= 0);
+        CHECK(heat_apply(heat, t, 1, w, 0, u, 0, NULL) >= 0);
         CHECK(u[0] == 1 && u[22] == 23 && u[5] != 6);                        /* a field keeps its value there */
-        CHECK(hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, 5, rows, cols, v, NULL) >= 0);
+        CHECK(heat_entries(heat, t, HD_KERNEL_OPERATOR, 5, rows, cols, v, NULL) >= 0);
         CHECK(v[0] == 1 && v[1] == 0 && v[2] > 0 && v[3] == 0 && v[4] == 0);
-        CHECK(hd_heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 5, rows, cols, v, NULL) >= 0);
+        CHECK(heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 5, rows, cols, v, NULL) >= 0);
         CHECK(v[0] == 0 && v[1] == 0 && v[2] > 0 && v[3] == 0);
         free(u);
         free(w);
@@ -387,17 +387,17 @@ static void heat_time_zero(void) {
     hd_report rep;
     int32_t i;
     for (i = 0; i < 25; i++) f[i] = cos(3 * i) / 7;
-    CHECK(hd_heat_apply(heat, 0, 1, f, 0, u, 0, &rep) == HD_OK && memcmp(f, u, sizeof f) == 0);
+    CHECK(heat_apply(heat, 0, 1, f, 0, u, 0, &rep) == HD_OK && memcmp(f, u, sizeof f) == 0);
     CHECK(rep.iterations == 0 && rep.error_bound == 0);
-    CHECK(hd_heat_column(heat, 0, source, u, NULL) == HD_OK);
+    CHECK(heat_column(heat, 0, source, u, NULL) == HD_OK);
     for (i = 0; i < 25; i++) CHECK(u[i] == (i == source));
-    CHECK(hd_heat_columns(heat, 0, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, NULL) == HD_OK);    /* B^-1 e */
+    CHECK(heat_columns(heat, 0, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, NULL) == HD_OK);    /* B^-1 e */
     heat_source_rhs(&c, source, HD_KERNEL_SYMMETRIC, rhs);
     dense_pair_heat(&c.pair, 0, rhs, want);
     CHECK(dense_max_diff(u, want, 25) < 1e-11 * dense_max_abs(want, 25));
-    CHECK(hd_heat_apply(heat, 1, 0, NULL, 0, NULL, 0, &rep) == HD_OK && rep.iterations == 0);    /* no fields are fine */
-    CHECK(hd_heat_columns(heat, 1, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep) == HD_OK);
-    CHECK(hd_heat_entries(heat, 1, HD_KERNEL_OPERATOR, 0, NULL, NULL, NULL, &rep) == HD_OK);
+    CHECK(heat_apply(heat, 1, 0, NULL, 0, NULL, 0, &rep) == HD_OK && rep.iterations == 0);    /* no fields are fine */
+    CHECK(heat_columns(heat, 1, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep) == HD_OK);
+    CHECK(heat_entries(heat, 1, HD_KERNEL_OPERATOR, 0, NULL, NULL, NULL, &rep) == HD_OK);
     hd_heat_free(heat);
     heat_case_free(&c);
     shape_free(&s);
@@ -421,11 +421,11 @@ static void heat_invariance(void) {
         hd_heat *ha = heat_plan(a, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 1e-11), *hb = heat_plan(b, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 1e-11);
         hd_heat *hc = heat_plan(c, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 1e-11);
         const double t = q == 2 ? 20 : 20 * a->h * a->h;
-        CHECK(hd_heat_column(ha, t, 40, u, NULL) >= 0);
-        CHECK(hd_heat_column(hb, q == 2 ? t : t * scale * scale, 40, v, NULL) >= 0);
+        CHECK(heat_column(ha, t, 40, u, NULL) >= 0);
+        CHECK(heat_column(hb, q == 2 ? t : t * scale * scale, 40, v, NULL) >= 0);
         worst = dense_max_diff(u, v, s.n) / dense_max_abs(u, s.n);
         CHECK_MSG(worst < 1e-8, "kind %d: moved and scaled, off by %g", q, worst);
-        CHECK(hd_heat_column(hc, t, source, v, NULL) >= 0);
+        CHECK(heat_column(hc, t, source, v, NULL) >= 0);
         for (i = 0, worst = 0; i < s.n; i++) worst = fmax(worst, fabs(v[i] - u[to[i]]));
         CHECK_MSG(worst < 1e-8 * dense_max_abs(u, s.n), "kind %d: renumbered, off by %g", q, worst);
         hd_heat_free(ha);
@@ -473,7 +473,7 @@ static void heat_sphere_converges(void) {
             hd_heat *heat = heat_plan(lap, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
             double *u = DENSE_NEW(double, s.n), worst = 0;
             int32_t i;
-            CHECK(hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, NULL) >= 0);
+            CHECK(heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, NULL) >= 0);
             for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(u[i] - heat_sphere(t, shape_dot(s.xyz + 3 * i, s.xyz + 3 * source))));
             worst /= heat_sphere(t, 1);
             if (level > 1) CHECK_MSG(worst < before / 3, "kind %d level %d: error %g after %g", q, level, worst, before);
@@ -538,7 +538,7 @@ static void heat_closed_one(const hd_csr *L, double mass, double t, int32_t sour
     CHECK_MSG(hd_laplacian_matrices(&lap, L, &B, 0, NULL, &e) == HD_OK, "%s", e.text);
     for (k = 0; k < 4; k++) {
         hd_heat *heat = heat_plan(lap, solvers[k], k < 3 ? HD_POLES_KERNEL : HD_POLES_DEFAULT, k < 3 ? 14 : 0, 1e-12);
-        CHECK(hd_heat_column(heat, t * mass, source, u, NULL) >= 0);
+        CHECK(heat_column(heat, t * mass, source, u, NULL) >= 0);
         CHECK_MSG(dense_max_diff(u, want, L->n_rows) < 1e-10 * dense_max_abs(want, L->n_rows), "%s, %s, t %g: off by %g", what, heat_solver_name(solvers[k]), t,
                   dense_max_diff(u, want, L->n_rows));
         hd_heat_free(heat);
@@ -596,7 +596,7 @@ static void heat_neumann_grid(void) {
         const double t = pow(10, k) * 0.5;
         hd_heat *heat = heat_plan(lap, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 1e-11);
         for (i = 0; i < s.n; i++) want[i] = heat_interval(nx, t, i % nx, 1) * heat_interval(ny, t, i / nx, 2) / (h * h);
-        CHECK(hd_heat_columns(heat, t * h * h, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, NULL) >= 0);
+        CHECK(heat_columns(heat, t * h * h, HD_KERNEL_SYMMETRIC, 1, &source, u, 0, NULL) >= 0);
         CHECK_MSG(dense_max_diff(u, want, s.n) < 1e-8 * dense_max_abs(want, s.n), "t %g: off by %g", t, dense_max_diff(u, want, s.n) / dense_max_abs(want, s.n));
         hd_heat_free(heat);
     }
@@ -627,7 +627,7 @@ static void heat_own_one(const heat_case *c, const hd_rational *set, double t, h
     heat_field_rhs(c, f, rhs);
     dense_pair_filter(&c->pair, g, rhs, want);
     CHECK(hd_heat_create(&heat, c->lap, &o, NULL) == HD_OK);
-    CHECK(hd_heat_apply(heat, t, 1, f, 0, u, 0, &rep) >= 0);
+    CHECK(heat_apply(heat, t, 1, f, 0, u, 0, &rep) >= 0);
     CHECK_MSG(dense_max_diff(u, want, n) < 1e-10 * dense_max_abs(want, n), "%s: own filter, solver %s, off by %g", c->what, heat_solver_name(solver),
               dense_max_diff(u, want, n));
     CHECK(rep.poles == HD_POLES_OWN && rep.mass_drift == 0 && rep.n_poles == set->n_poles);
@@ -711,9 +711,9 @@ static void heat_many(void) {
         hd_report rep, one;
         int64_t steps = 0;
         for (i = 0; i < ldu * K; i++) U[i] = 1234;
-        CHECK(hd_heat_apply(heat, t, K, F, (size_t)ldf, U, (size_t)ldu, &rep) >= 0);
+        CHECK(heat_apply(heat, t, K, F, (size_t)ldf, U, (size_t)ldu, &rep) >= 0);
         for (q = 0; q < K; q++) {
-            CHECK(hd_heat_apply(heat, t, 1, F + q * ldf, 0, u, 0, &one) >= 0);
+            CHECK(heat_apply(heat, t, 1, F + q * ldf, 0, u, 0, &one) >= 0);
             CHECK_MSG(memcmp(u, U + q * ldu, (size_t)n * sizeof *u) == 0, "%s: field %d differs from a call of its own", heat_solver_name(solvers[k]), (int)q);
             CHECK_MSG(rep.error_bound >= one.error_bound && rep.error_bound_b >= one.error_bound_b && rep.residual >= one.residual,
                 "%s, field %d: %g and %g, %g and %g, %g and %g", heat_solver_name(solvers[k]), (int)q, rep.error_bound, one.error_bound,
@@ -726,16 +726,16 @@ static void heat_many(void) {
             const hd_kernel kernel = z ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
             int32_t rows[3 * K], cols[3 * K];
             double values[3 * K];
-            CHECK(hd_heat_columns(heat, t, kernel, K, sources, U, (size_t)ldu, NULL) >= 0);
+            CHECK(heat_columns(heat, t, kernel, K, sources, U, (size_t)ldu, NULL) >= 0);
             for (q = 0; q < K; q++) {
-                CHECK(hd_heat_columns(heat, t, kernel, 1, sources + q, u, 0, NULL) >= 0);
+                CHECK(heat_columns(heat, t, kernel, 1, sources + q, u, 0, NULL) >= 0);
                 CHECK(memcmp(u, U + q * ldu, (size_t)n * sizeof *u) == 0);
             }
             for (q = 0; q < 3 * K; q++) {        /* entries of the same columns, in disorder and with repeats */
                 cols[q] = sources[(q * 5) % K];
                 rows[q] = (q * 11) % n;
             }
-            CHECK(hd_heat_entries(heat, t, kernel, 3 * K, rows, cols, values, &rep) >= 0);
+            CHECK(heat_entries(heat, t, kernel, 3 * K, rows, cols, values, &rep) >= 0);
             for (q = 0; q < 3 * K; q++) CHECK(values[q] == U[(q * 5) % K * ldu + rows[q]]);
         }
         hd_heat_free(heat);
@@ -757,8 +757,8 @@ static void heat_in_place(void) {
     uint64_t seed = 2;
     int32_t i;
     for (i = 0; i < 42 * K; i++) F[i] = dense_signed(&seed) + 0.3;
-    CHECK(hd_heat_apply(heat, t, K, F, 0, U, 0, NULL) >= 0);
-    CHECK(hd_heat_apply(heat, t, K, F, 0, F, 0, NULL) >= 0);
+    CHECK(heat_apply(heat, t, K, F, 0, U, 0, NULL) >= 0);
+    CHECK(heat_apply(heat, t, K, F, 0, F, 0, NULL) >= 0);
     CHECK(memcmp(F, U, sizeof F) == 0);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
@@ -780,9 +780,9 @@ static void heat_reuse(void) {
         const int q = k % 3;
         double *to = k < 3 ? u[q] : v;
         hd_heat *fresh = heat_plan(lap, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0), *plan = k < 3 ? fresh : heat;
-        if (q == 0) CHECK(hd_heat_apply(plan, 3 * unit, 1, f, 0, to, 0, NULL) >= 0);
-        if (q == 1) CHECK(hd_heat_columns(plan, 3 * unit, HD_KERNEL_SYMMETRIC, 1, &source, to, 0, NULL) >= 0);
-        if (q == 2) CHECK(hd_heat_column(plan, 70 * unit, source, to, NULL) >= 0);
+        if (q == 0) CHECK(heat_apply(plan, 3 * unit, 1, f, 0, to, 0, NULL) >= 0);
+        if (q == 1) CHECK(heat_columns(plan, 3 * unit, HD_KERNEL_SYMMETRIC, 1, &source, to, 0, NULL) >= 0);
+        if (q == 2) CHECK(heat_column(plan, 70 * unit, source, to, NULL) >= 0);
         if (k >= 3) CHECK(memcmp(u[q], v, sizeof v) == 0);
         hd_heat_free(fresh);
     }
@@ -801,39 +801,39 @@ static void heat_errors(void) {
     int32_t i;
     for (i = 0; i < 36; i++) F[i] = i;
 #define HEAT_BAD(call, st) CHECK_MSG((call) == (st) && rep.status == (st) && rep.error.status == (st) && rep.error.text[0], "%s", hd_status_name(rep.status))
-    HEAT_BAD(hd_heat_apply(heat, -1, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_apply(heat, -1, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
     CHECK(rep.error.value == -1);
-    HEAT_BAD(hd_heat_apply(heat, (double)NAN, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_apply(heat, (double)INFINITY, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_apply(heat, 1, -1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_apply(heat, 1, 1, NULL, 0, U, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_apply(heat, 1, 1, F, 0, NULL, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_apply(heat, 1, 1, F, 11, U, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_apply(heat, 1, 1, F, 0, U, 11, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_apply(heat, (double)NAN, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_apply(heat, (double)INFINITY, 1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_apply(heat, 1, -1, F, 0, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_apply(heat, 1, 1, NULL, 0, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_apply(heat, 1, 1, F, 0, NULL, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_apply(heat, 1, 1, F, 11, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_apply(heat, 1, 1, F, 0, U, 11, &rep), HD_ERR_ARGUMENT);
     for (i = 0; i < 2; i++) {
         hd_heat *plan = i ? lanczos : heat;
         F[12 + 7] = i ? -(double)INFINITY : (double)NAN;
         U[0] = 77;                               /* the bad value is in a later field: nothing may be written before it is seen */
-        HEAT_BAD(hd_heat_apply(plan, 1, 3, F, 0, U, 0, &rep), HD_ERR_NOT_FINITE);
+        HEAT_BAD(heat_apply(plan, 1, 3, F, 0, U, 0, &rep), HD_ERR_NOT_FINITE);
         CHECK(U[0] == 77);
         CHECK(rep.error.row == 7 && rep.error.column == 1);
-        HEAT_BAD(hd_heat_apply(plan, 0, 3, F, 0, U, 0, &rep), HD_ERR_NOT_FINITE);
+        HEAT_BAD(heat_apply(plan, 0, 3, F, 0, U, 0, &rep), HD_ERR_NOT_FINITE);
         CHECK(rep.error.row == 7 && rep.error.column == 1);
         F[12 + 7] = 0;
     }
-    HEAT_BAD(hd_heat_columns(heat, 1, HD_KERNEL_OPERATOR, 3, sources, U, 0, &rep), HD_ERR_INDEX);
+    HEAT_BAD(heat_columns(heat, 1, HD_KERNEL_OPERATOR, 3, sources, U, 0, &rep), HD_ERR_INDEX);
     CHECK(rep.error.vertex == 12 && rep.error.value == 12 && rep.error.column == 1);
     sources[1] = -5;
-    HEAT_BAD(hd_heat_columns(heat, 1, HD_KERNEL_SYMMETRIC, 3, sources, U, 0, &rep), HD_ERR_INDEX);
+    HEAT_BAD(heat_columns(heat, 1, HD_KERNEL_SYMMETRIC, 3, sources, U, 0, &rep), HD_ERR_INDEX);
     CHECK(rep.error.vertex == -5 && rep.error.value == -5 && rep.error.column == 1);
-    HEAT_BAD(hd_heat_column(heat, 1, 12, U, &rep), HD_ERR_INDEX);
-    HEAT_BAD(hd_heat_columns(heat, 1, (hd_kernel)5, 1, rows, U, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_columns(heat, 1, HD_KERNEL_OPERATOR, 1, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_columns(heat, 1, HD_KERNEL_OPERATOR, -2, rows, U, 0, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_entries(heat, 1, HD_KERNEL_OPERATOR, 2, rows, cols, U, &rep), HD_ERR_INDEX);
+    HEAT_BAD(heat_column(heat, 1, 12, U, &rep), HD_ERR_INDEX);
+    HEAT_BAD(heat_columns(heat, 1, (hd_kernel)5, 1, rows, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_columns(heat, 1, HD_KERNEL_OPERATOR, 1, NULL, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_columns(heat, 1, HD_KERNEL_OPERATOR, -2, rows, U, 0, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_entries(heat, 1, HD_KERNEL_OPERATOR, 2, rows, cols, U, &rep), HD_ERR_INDEX);
     CHECK(rep.error.vertex == -1 && rep.error.row == 1);
-    HEAT_BAD(hd_heat_entries(heat, 1, HD_KERNEL_OPERATOR, -1, rows, cols, U, &rep), HD_ERR_ARGUMENT);
-    HEAT_BAD(hd_heat_entries(heat, 1, HD_KERNEL_OPERATOR, 2, rows, NULL, U, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_entries(heat, 1, HD_KERNEL_OPERATOR, -1, rows, cols, U, &rep), HD_ERR_ARGUMENT);
+    HEAT_BAD(heat_entries(heat, 1, HD_KERNEL_OPERATOR, 2, rows, NULL, U, &rep), HD_ERR_ARGUMENT);
 #undef HEAT_BAD
     hd_heat_free(heat);
     hd_heat_free(lanczos);
@@ -856,7 +856,7 @@ static void heat_not_converged(void) {
         o.max_iterations = 2;
         o.precond = HD_PRECOND_JACOBI;
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
-        CHECK(hd_heat_column(heat, 500 * lap->h * lap->h, 3, u, &rep) == HD_ERR_NOT_CONVERGED);
+        CHECK(heat_column(heat, 500 * lap->h * lap->h, 3, u, &rep) == HD_ERR_NOT_CONVERGED);
         CHECK(rep.status == HD_ERR_NOT_CONVERGED && rep.error.status == HD_ERR_NOT_CONVERGED && rep.error.value > 1e-9 && rep.error.column == 0);
         CHECK((rep.error.pole >= 0) == (k < 3));
         CHECK_MSG(rep.residual == rep.error.value, "achieved %g, reported %g", rep.error.value, rep.residual);
@@ -916,7 +916,7 @@ static void heat_threads(void) {
             ho.solver = solvers[k];
             CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, NULL) == HD_OK);
             CHECK(hd_heat_create(&heat, lap, &ho, NULL) == HD_OK);
-            CHECK(hd_heat_columns(heat, 8 * lap->h * lap->h, HD_KERNEL_OPERATOR, K, sources, way ? u : first, 0, &rep) >= 0);
+            CHECK(heat_columns(heat, 8 * lap->h * lap->h, HD_KERNEL_OPERATOR, K, sources, way ? u : first, 0, &rep) >= 0);
             if (way == 0) rep0 = rep;
             CHECK_MSG(way == 0 || memcmp(u, first, (size_t)(n * K) * sizeof *u) == 0, "%s: way %d of threading gives other bits", heat_solver_name(solvers[k]), way);
             CHECK(rep.iterations == rep0.iterations && rep.error_bound == rep0.error_bound && rep.residual == rep0.residual);

@@ -683,7 +683,7 @@ static double tri_smallest_heat(const hd_laplacian *lap, double t, int32_t colum
     for (q = 0; heat && q < columns; q++) {
         const int32_t source = lap->vertex[(int32_t)((int64_t)lap->n_active * q / columns)];
         double low = 0, high = 0;
-        CHECK(hd_heat_column(heat, t, source, u, &rep) >= 0);
+        CHECK(heat_column(heat, t, source, u, &rep) >= 0);
         for (i = 0; i < lap->n; i++) {
             low = fmin(low, u[i]);
             high = fmax(high, u[i]);

@@ -424,7 +424,7 @@ static void op_star(void) {
     ho.degree = 4;
     ho.tol = 1e-4;
     CHECK(hd_heat_create(&heat, lap, &ho, NULL) == HD_OK);
-    CHECK(hd_heat_column(heat, 1e-6, RIM / 2, u, &rep) >= 0);
+    CHECK(heat_column(heat, 1e-6, RIM / 2, u, &rep) >= 0);
     for (i = 0; i <= RIM; i++) sum += u[i];
     want = 1;                                    /* B = I: the heat of the column is that of its source */
     CHECK_MSG(fabs(sum - want) < 1e-9, "star: %.17g", sum);
@@ -486,7 +486,7 @@ static hd_status op_scaled_heat(double scale, hd_laplacian_kind kind, hd_solver 
     for (i = 0; i < 3 * s.n; i++) s.xyz[i] *= scale;
     st = hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, &rep->error);
     if (st >= 0) st = hd_heat_create(&heat, lap, &ho, &rep->error);
-    if (st >= 0) st = hd_heat_column(heat, 0.1 * scale * scale, 3, u, rep);
+    if (st >= 0) st = heat_column(heat, 0.1 * scale * scale, 3, u, rep);
     CHECK(st >= 0 || (rep->error.status == st && rep->error.text[0]));
     hd_heat_free(heat);
     hd_laplacian_free(lap);
@@ -582,7 +582,7 @@ static void op_matrices_zeros(void) {
         for (m = 0; m < 4; m++) {
             o.method = methods[m];
             if (!CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK)) continue;
-            CHECK(hd_heat_column(heat, 1, 2, u, NULL) == HD_OK);
+            CHECK(heat_column(heat, 1, 2, u, NULL) == HD_OK);
             for (v = 0; v < 5; v++) CHECK_MSG(fabs(u[v] - (v == 2) * exp(-1.0)) < 1e-7, "pair %d, method %d: %g", q, m, u[v]);
             hd_heat_free(heat);
         }
@@ -627,7 +627,7 @@ static void op_matrices_bad(void) {
     if (st >= 0) {                               /* where a solver meets it is soon enough */
         hd_heat *heat = NULL;
         CHECK(hd_heat_create(&heat, lap, NULL, &e) == HD_OK);
-        st = hd_heat_columns(heat, 1, HD_KERNEL_SYMMETRIC, 1, i, u, 0, NULL);
+        st = heat_columns(heat, 1, HD_KERNEL_SYMMETRIC, 1, i, u, 0, NULL);
         hd_heat_free(heat);
         hd_laplacian_free(lap);
     }
@@ -817,7 +817,7 @@ static void op_matrices_ratio(void) {
     CHECK(op_block_ratio(100, -1e-9, &lap, &e) == HD_ERR_NOT_POSITIVE && op_block_ratio(100, 0, &lap, &e) == HD_ERR_NOT_POSITIVE);
     if (CHECK(op_block_ratio(2000, 2e-12, &lap, &e) == HD_OK)) {   /* beyond what a factorisation can tell: not known, no bound */
         CHECK(lap->b_ratio == 0 && hd_heat_create(&heat, lap, NULL, &e) == HD_OK);
-        CHECK(hd_heat_column(heat, 1e-3, 5, u, &rep) >= 0 && rep.error_bound == HUGE_VAL);
+        CHECK(heat_column(heat, 1e-3, 5, u, &rep) >= 0 && rep.error_bound == HUGE_VAL);
         hd_heat_free(heat);
         hd_laplacian_free(lap);
     }

@@ -107,7 +107,7 @@ static void all_heat(const heat_case *c, hd_method method) {
     for (k = 0; k < 2; k++) {
         const hd_kernel kernel = k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
         heat_source_rhs(c, source, kernel, rhs);
-        CHECK_MSG(hd_heat_times(heat, 3, times, kernel, source, NULL, U, 0, &rep) >= 0, "%s: %s", c->what, rep.error.text);
+        CHECK_MSG(heat_times(heat, 3, times, kernel, source, NULL, U, 0, &rep) >= 0, "%s: %s", c->what, rep.error.text);
         CHECK(rep.error_bound_b < 1e-6 && (method == HD_METHOD_AUTO || rep.method == method));
         for (m = 0; m < 3; m++) heat_judge(c, times[m], rhs, U + (size_t)m * (size_t)n, &rep);
     }
@@ -156,7 +156,7 @@ static void all_diagonal(const heat_case *c, hd_heat *heat, double t) {
     int32_t v;
     int q;
     for (q = 0; q < 2; q++) {
-        CHECK_MSG(hd_heat_diagonal(heat, 1, &t, q ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, D, 0, &rep) >= 0, "%s: %s", c->what, rep.error.text);
+        CHECK_MSG(heat_diagonal(heat, 1, &t, q ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, D, 0, &rep) >= 0, "%s: %s", c->what, rep.error.text);
         for (v = 0, off = size = 0; v < lap->n; v++) {
             const double want = lap->row[v] < 0 ? !q : all_at(q ? K : KB, lap, v, v);
             off = fmax(off, fabs(D[v] - want));
@@ -164,7 +164,7 @@ static void all_diagonal(const heat_case *c, hd_heat *heat, double t) {
         }
         CHECK_MSG(off <= (rep.error_bound + slack) * size && off <= (1e-6 + slack) * size, "%s, t %g: the diagonal is off by %g, bound %g", c->what, t, off / size, rep.error_bound);
     }
-    CHECK_MSG(hd_heat_edges(heat, t, E, &rep) >= 0, "%s: %s", c->what, rep.error.text);
+    CHECK_MSG(heat_edges(heat, t, E, &rep) >= 0, "%s: %s", c->what, rep.error.text);
     for (v = 0, off = size = 0; v < n; v++)
         for (p = lap->L.row_ptr[v]; p < lap->L.row_ptr[v + 1]; p++) {
             const double want = K[(size_t)v * (size_t)n + (size_t)lap->L.col[p]];
@@ -186,7 +186,7 @@ static void all_distances(const heat_case *c, hd_heat *heat, hd_distance_kind ki
     hd_report rep;
     int32_t v;
     int s;
-    CHECK_MSG(hd_heat_distance(heat, kind, 1, &t, 3, sources, D, 0, &rep) >= 0, "%s, distance %d: %s", c->what, (int)kind, rep.error.text);
+    CHECK_MSG(heat_distance(heat, kind, 1, &t, 3, sources, D, 0, &rep) >= 0, "%s, distance %d: %s", c->what, (int)kind, rep.error.text);
     for (s = 0; s < 3; s++) {
         double off = 0, size = 0;
         for (v = 0; v < n; v++) {
@@ -216,7 +216,7 @@ static void all_pairs(const heat_case *c, hd_heat *heat, hd_distance_kind kind, 
         j[q] = q == 0 ? i[q] : q < 8 ? lap->vertex[q] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
         k[q] = -7;
     }
-    CHECK_MSG(hd_heat_pairs(heat, kind, t, PAIRS, i, j, k, d, &rep) >= 0, "%s, pairs %d: %s", c->what, (int)kind, rep.error.text);
+    CHECK_MSG(heat_pairs(heat, kind, t, PAIRS, i, j, k, d, &rep) >= 0, "%s, pairs %d: %s", c->what, (int)kind, rep.error.text);
     for (q = 0; q < PAIRS; q++) {
         const double want = all_distance(H, lap, kind, i[q], j[q]), want_k = i[q] == j[q] && lap->row[i[q]] < 0 ? 1 : all_at(KB, lap, i[q], j[q]);
         const double diff = all_off(d[q], want, noise);
@@ -241,7 +241,7 @@ static void all_samples(const heat_case *c, hd_heat *heat, hd_distance_kind kind
     int32_t vertex[COUNT], q, p, v;
     hd_report rep;
     vertex[0] = lap->vertex[1];
-    CHECK_MSG(hd_heat_sample(heat, kind, t, COUNT, 1, vertex, distance, &rep) >= 0, "%s, sample %d: %s", c->what, (int)kind, rep.error.text);
+    CHECK_MSG(heat_sample(heat, kind, t, COUNT, 1, vertex, distance, &rep) >= 0, "%s, sample %d: %s", c->what, (int)kind, rep.error.text);
     for (q = 1; q < COUNT; q++) {
         double farthest = 0, own = HUGE_VAL;
         for (p = 0; p < q; p++) own = fmin(own, all_distance(H, lap, kind, vertex[p], vertex[q]));
@@ -279,8 +279,8 @@ static void all_refusals(const heat_case *c, hd_method method) {
     double *D = DENSE_NEW(double, c->lap->n);
     all_pairs(c, heat, HD_DISTANCE_CLASSICAL, t);
     all_pairs(c, heat, HD_DISTANCE_WEIGHTED, t);
-    CHECK(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, D, 0, NULL) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, NULL) == HD_ERR_ARGUMENT);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, D, 0, NULL) == HD_ERR_ARGUMENT);
     hd_heat_free(heat);
     free(D);
 }
@@ -306,7 +306,7 @@ static void all_neighbours(void) {
     int32_t i;
     memset(&o, 0, sizeof o);
     o.neighbours = K;
-    CHECK(hd_neighbours_nearest(nbr, NULL, s.xyz, N, NULL, N, K + 1, NULL, &e) == HD_OK);
+    CHECK(hd_neighbours_nearest(s.xyz, N, NULL, N, K + 1, nbr, NULL, NULL, &e) == HD_OK);
     for (i = 0; i <= N; i++) ptr[i] = (int64_t)i * (K + 1);
     CHECK_MSG(hd_laplacian_tufted_points(&found, s.xyz, N, NULL, NULL, &o, &e) == HD_OK, "%s", e.text);
     CHECK(hd_laplacian_tufted_points(&given, s.xyz, N, ptr, nbr, &o, &e) == HD_OK);

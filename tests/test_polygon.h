@@ -672,7 +672,7 @@ static void poly_heat(void) {
         memset(&o, 0, sizeof o);
         o.method = methods[k];
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
-        CHECK(hd_heat_column(heat, t, 7, u, &rep) == HD_OK);
+        CHECK(heat_column(heat, t, 7, u, &rep) == HD_OK);
         CHECK_MSG(dense_max_diff(u, want, s.n) < 1e-7 * dense_max_abs(want, s.n) && rep.mass_drift < 1e-12, "method %d: %g, drift %g", k,
                   dense_max_diff(u, want, s.n) / dense_max_abs(want, s.n), rep.mass_drift);
         hd_heat_free(heat);

@@ -83,9 +83,9 @@ static hd_status rob_heat(hd_context *ctx, int variant) {
     CHECK(e.status == st && (st >= 0) == (heat != rob_mark_heat));
     if (st >= 0) {
         const double t = lap->h * lap->h;
-        if (task == 0) st = hd_heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 6, sources, U, 0, &rep);
-        if (task == 1) st = hd_heat_apply(heat, t, 6, F, 0, U, 0, &rep);
-        if (task == 2) st = hd_heat_entries(heat, t, HD_KERNEL_OPERATOR, 6, sources, sources, U, &rep);
+        if (task == 0) st = heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 6, sources, U, 0, &rep);
+        if (task == 1) st = heat_apply(heat, t, 6, F, 0, U, 0, &rep);
+        if (task == 2) st = heat_entries(heat, t, HD_KERNEL_OPERATOR, 6, sources, sources, U, &rep);
         CHECK(rep.status == st && (st >= 0 || rep.error.status == st));
         hd_heat_free(heat);
     }
@@ -267,11 +267,11 @@ static void rob_cancel_lanes(void) {
         p.answer = HD_PROGRESS_CANCEL;
         ctx.progress = rob_on_progress;
         ctx.progress_user = &p;
-        st = hd_heat_columns(heat, 2 * lap->h * lap->h, HD_KERNEL_OPERATOR, 4, sources, U, 0, &rep);
+        st = heat_columns(heat, 2 * lap->h * lap->h, HD_KERNEL_OPERATOR, 4, sources, U, 0, &rep);
         CHECK_MSG(st == (p.calls >= k ? HD_ERR_CANCELLED : HD_OK), "%s", hd_status_name(st));
         if (st < 0) CHECK_MSG(strstr(rep.error.text, "progress") != NULL, "%s", rep.error.text);
         ctx.progress = NULL;                     /* the plan is as good as before */
-        CHECK(hd_heat_columns(heat, 2 * lap->h * lap->h, HD_KERNEL_OPERATOR, 4, sources, U, 0, &rep) == HD_OK);
+        CHECK(heat_columns(heat, 2 * lap->h * lap->h, HD_KERNEL_OPERATOR, 4, sources, U, 0, &rep) == HD_OK);
         hd_heat_free(heat);
         hd_laplacian_free(lap);
         test_memory_done(&m, &ctx, "cancelled lanes");
@@ -298,11 +298,11 @@ static void rob_plan_survives(void) {
         for (k = 0; k < 100; k++) {
             hd_heat *heat = heat_plan(lap, HD_SOLVER_AUTO, HD_POLES_DEFAULT, 0, 0);
             hd_status st = HD_OK;
-            if (q) CHECK(hd_heat_column(heat, 0.2, 2, u, NULL) >= 0);
+            if (q) CHECK(heat_column(heat, 0.2, 2, u, NULL) >= 0);
             m.fail_at = k ? m.calls + k : 0;
-            if (k) st = q ? hd_heat_column(heat, 0.7, 3, u, NULL) : hd_heat_apply(heat, 0.3, 1, want, 0, u, 0, NULL);
+            if (k) st = q ? heat_column(heat, 0.7, 3, u, NULL) : heat_apply(heat, 0.3, 1, want, 0, u, 0, NULL);
             m.fail_at = 0;
-            CHECK(hd_heat_column(heat, 0.7, 2, k ? u : want, NULL) >= 0);
+            CHECK(heat_column(heat, 0.7, 2, k ? u : want, NULL) >= 0);
             CHECK(k == 0 || memcmp(u, want, sizeof u) == 0);
             hd_heat_free(heat);
             if (k && st >= 0) break;
@@ -434,17 +434,17 @@ static void rob_trap_laplacian(hd_laplacian *lap, hd_context *ctx, const char **
         o.context = ctx;
         if (hd_heat_create(&heat, lap, &o, NULL) < 0) continue;
         *at = "columns";
-        (void)hd_heat_columns(heat, t, HD_KERNEL_OPERATOR, 3, sources, u, 0, NULL);
-        (void)hd_heat_column(heat, 0, 3, u, NULL);
+        (void)heat_columns(heat, t, HD_KERNEL_OPERATOR, 3, sources, u, 0, NULL);
+        (void)heat_column(heat, 0, 3, u, NULL);
         *at = "fields";
-        (void)hd_heat_apply(heat, t, 3, f, 0, u, 0, NULL);
-        (void)hd_heat_apply(heat, t, 1, f + lap->n, 0, u, 0, NULL);
+        (void)heat_apply(heat, t, 3, f, 0, u, 0, NULL);
+        (void)heat_apply(heat, t, 1, f + lap->n, 0, u, 0, NULL);
         *at = "times";
-        (void)hd_heat_times(heat, 3, times, HD_KERNEL_SYMMETRIC, 3, NULL, u, 0, NULL);
+        (void)heat_times(heat, 3, times, HD_KERNEL_SYMMETRIC, 3, NULL, u, 0, NULL);
         *at = "diagonal";
-        (void)hd_heat_diagonal(heat, 3, times, HD_KERNEL_SYMMETRIC, u, 0, NULL);
+        (void)heat_diagonal(heat, 3, times, HD_KERNEL_SYMMETRIC, u, 0, NULL);
         *at = "distances";
-        for (k = 0; k < 4; k++) (void)hd_heat_distance(heat, (hd_distance_kind)k, 1, &t, 2, sources, u, 0, NULL);
+        for (k = 0; k < 4; k++) (void)heat_distance(heat, (hd_distance_kind)k, 1, &t, 2, sources, u, 0, NULL);
         hd_heat_free(heat);
     }
     free(u);
@@ -460,8 +460,8 @@ static void rob_trap_geodesic(const shape *s, hd_context *ctx) {
     memset(&o, 0, sizeof o);
     o.context = ctx;
     if (CHECK(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) >= 0)) {
-        (void)hd_geodesic_distance(g, sources + 3, 1, d, &rep);
-        (void)hd_geodesic_distances(g, 9, sources, d, 0, &rep);
+        (void)hd_geodesic_distance(g, 1, sources + 3, d, &rep, NULL);
+        (void)hd_geodesic_distances(g, 9, sources, d, 0, &rep, NULL);
     }
     hd_geodesic_free(g);
     free(d);
@@ -526,12 +526,12 @@ static void rob_trap_bad_input(const shape *s, const hd_laplacian *lap) {
         v[1] = bad[q];
         CHECK(hd_csr_from_triplets(&a, 2, 2, 2, i, i, v, NULL, NULL) == HD_ERR_NOT_FINITE);
         u[2] = bad[q];
-        CHECK(hd_heat_apply(heat, 1, 1, u, 0, u, 0, NULL) == HD_ERR_NOT_FINITE);
+        CHECK(heat_apply(heat, 1, 1, u, 0, u, 0, NULL) == HD_ERR_NOT_FINITE);
         u[2] = 0;
-        CHECK(hd_heat_column(heat, bad[q], 0, u, NULL) == HD_ERR_ARGUMENT);
-        CHECK(hd_heat_diagonal(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, u, 0, NULL) == HD_ERR_ARGUMENT);
-        CHECK(hd_heat_times(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, 0, NULL, u, 0, NULL) == HD_ERR_ARGUMENT);
-        CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, bad + q, 1, i, u, 0, NULL) == HD_ERR_ARGUMENT);
+        CHECK(heat_column(heat, bad[q], 0, u, NULL) == HD_ERR_ARGUMENT);
+        CHECK(heat_diagonal(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, u, 0, NULL) == HD_ERR_ARGUMENT);
+        CHECK(heat_times(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, 0, NULL, u, 0, NULL) == HD_ERR_ARGUMENT);
+        CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, bad + q, 1, i, u, 0, NULL) == HD_ERR_ARGUMENT);
         o.tol = bad[q];
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_ERR_ARGUMENT);
         if (q == 0) CHECK(hd_neighbours_radius(&a, s->xyz, s->n, NULL, 0, bad[q], NULL, NULL) == HD_ERR_ARGUMENT);

@@ -362,7 +362,7 @@ static void shared_heat(void) {
         memset(&o, 0, sizeof o);
         o.rational = &own;
         o.method = HD_METHOD_DIRECT;
-        CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK && hd_heat_column(heat, t, source, v, NULL) >= 0);
+        CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK && heat_column(heat, t, source, v, NULL) >= 0);
         CHECK_MSG(dense_max_diff(u, v, n) < 1e-10 * dense_max_abs(want, n), "by hd_heat: %g apart", dense_max_diff(u, v, n));
         hd_heat_free(heat);
     }

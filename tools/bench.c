@@ -187,7 +187,7 @@ static void parts_solvers(const hd_laplacian *lap) {
             t0 = now();
             if (hd_heat_create(&heat, lap, &o, NULL) < 0) continue;
             t1 = now();
-            if (hd_heat_column(heat, taus[k] * lap->h * lap->h, lap->vertex[lap->n_active / 2], u, &rep) >= 0) {
+            if (hd_heat_column(heat, HD_KERNEL_OPERATOR, taus[k] * lap->h * lap->h, lap->vertex[lap->n_active / 2], u, &rep, NULL) >= 0) {
                 t2 = now();
                 printf("  column, t = %4g h^2, %-8s plan %7.1f ms, solve %8.1f ms, %5lld steps, %.3f ms a step\n", taus[k],
                        s == 0 ? "cocg" : "lanczos", 1e3 * (t1 - t0), 1e3 * (t2 - t1), (long long)rep.iterations,
@@ -381,10 +381,9 @@ static hd_status plan_open(plan *p, const bench *b, const ask *a) {
 static void plan_close(plan *p) { hd_heat_free(p->heat); }
 
 static hd_status plan_call(hd_heat *heat, const ask *a, double *U, hd_report *r) {
-    if (a->what == DIAGONAL) return hd_heat_diagonal(heat, a->n_times, a->times, HD_KERNEL_SYMMETRIC, U, 0, r);
-    if (a->what == DISTANCES) return hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, a->times, 1, a->vertices, U, 0, r);
-    if (a->n_times > 1) return hd_heat_times(heat, a->n_times, a->times, HD_KERNEL_OPERATOR, a->vertices[0], NULL, U, 0, r);
-    return hd_heat_columns(heat, a->times[0], HD_KERNEL_OPERATOR, a->n_columns, a->vertices, U, 0, r);
+    if (a->what == DIAGONAL) return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, a->n_times, a->times, U, 0, r, NULL);
+    if (a->what == DISTANCES) return hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, a->times, 1, a->vertices, U, 0, r, NULL);
+    return hd_heat_columns(heat, HD_KERNEL_OPERATOR, a->n_times, a->times, a->n_columns, a->vertices, U, 0, r, NULL);
 }
 
 /* Runs what is asked for on the plan; times since watch_start. */
@@ -963,7 +962,7 @@ static void stages_warm(plan *p, const ask *a, const double *F, double *U, stage
     hd_report rep;
     memset(&run, 0, sizeof run);
     watch_start(&p->w);
-    if (hd_heat_apply(p->heat, a->times[0], 1, F, 0, U, 0, &rep) >= 0) s->field = hdi_min(s->field, now() - t0);
+    if (hd_heat_apply(p->heat, 1, &a->times[0], 1, F, 0, U, 0, &rep, NULL) >= 0) s->field = hdi_min(s->field, now() - t0);
     watch_turn(&p->w, STAGE_OTHER);
     if (p->w.seconds[STAGE_FACTOR] > 0) fprintf(stderr, "bench: a field made new factors\n");
     p->w.name = NULL;
@@ -1440,19 +1439,19 @@ static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run 
     ctx.threads = b->threads;
     o.context = &ctx;
     r->fine = hd_geodesic_create(&g, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o, NULL) >= 0 &&
-              hd_geodesic_distance(g, sources, 1, D, NULL) >= 0;
+              hd_geodesic_distance(g, 1, sources, D, NULL, NULL) >= 0;
     r->total = now() - t0;
     for (q = 1; q < GEO_SOURCES && r->fine; q++) {
         t0 = now();
-        r->fine = hd_geodesic_distance(g, sources + q, 1, D + (size_t)q * n, NULL) >= 0;
+        r->fine = hd_geodesic_distance(g, 1, sources + q, D + (size_t)q * n, NULL, NULL) >= 0;
         if (q == 1 || now() - t0 < r->further) r->further = now() - t0;
     }
     for (q = 0; q < 2 && r->fine; q++) {
         t0 = now();
-        r->fine = hd_geodesic_distances(g, GEO_SOURCES - 1, sources + 1, D + n, 0, NULL) >= 0;
+        r->fine = hd_geodesic_distances(g, GEO_SOURCES - 1, sources + 1, D + n, 0, NULL, NULL) >= 0;
         r->batch = (now() - t0) / (GEO_SOURCES - 1);
     }
-    if (r->fine) r->fine = hd_geodesic_distance(g, sources, 1, D, &rep) >= 0;
+    if (r->fine) r->fine = hd_geodesic_distance(g, 1, sources, D, &rep, NULL) >= 0;
     r->nnz = r->fine ? (double)rep.factor_nnz : 0;
     r->bytes = (double)ctx.bytes_peak;
     hd_geodesic_free(g);

@@ -1263,6 +1263,13 @@ static const char *const fixed_cases[] = {
     "shape=leak/40/1e-3 op=I scale=1e-05 query=distance method=direct degree=4 own=near x=5 "
     "t=8.874288504572718 span=22.899661973943026 times=3 seed=849640",
     "shape=weak/66/35/6 op=I query=column poles=kernel degree=3 t=252134.45926565715 k=4 seed=122858",
+    "shape=graph/30/12 op=near scale=1e-80 query=times kernel=symmetric tol=1e-13 t=7.701053733488825e-173 "
+    "span=322.49545416235975 times=7 field=nearly seed=466076",
+    "shape=path/71 op=diag query=distance kind=biharmonic t=0.010021720690390704 seed=586095",
+    "shape=weak/60/45 op=diag query=distance kind=biharmonic tol=1e-13 t=2.187386761734381e-05 seed=631770",
+    "shape=weak/66/34/6 op=I query=edges kernel=symmetric degree=6 own=a0 x=2 tol=1e-11 t=1e+100 seed=468408",
+    "shape=weak/66/46/6 op=I query=distance kind=biharmonic t=4999.9999999999945 seed=341872",
+    "shape=penalty/60/4 op=tri scale=1e-80 query=column kernel=symmetric degree=2 own=a0 x=3 t=1e+100 k=40 seed=19214",
     /* a mass matrix that is nearly singular, and a field along it */
     "shape=path/80 op=near query=apply t=1 field=alternate",
     "shape=path/80 op=near query=apply t=1 field=alternate poles=uniform degree=4 method=direct",
@@ -1752,11 +1759,11 @@ static void run_columns(work *w, hd_heat *heat) {
     if (c->query == QUERY_APPLY) {
         for (q = 0; q < k; q++) make_field(w, q == 0 ? c->field : draw(&seed, FIELD_HUGE), &seed, F + q * n);
         row_name(w, "apply");
-        hd_heat_apply(heat, c->t, k, F, 0, U, 0, &w->rep);
+        hd_heat_apply(heat, 1, &c->t, k, F, 0, U, 0, &w->rep, NULL);
     } else {
         for (q = 0; q < k; q++) source[q] = draw(&seed, n);
         row_name(w, symmetric ? "columns of k_t" : "columns of K_t");
-        hd_heat_columns(heat, c->t, (hd_kernel)c->kernel, k, source, U, 0, &w->rep);
+        hd_heat_columns(heat, (hd_kernel)c->kernel, 1, &c->t, k, source, U, 0, &w->rep, NULL);
     }
     if (!failed(w)) {
         filter_for(w, c->t, 0);
@@ -1799,7 +1806,8 @@ static void run_times(work *w, hd_heat *heat) {
         t[other] = keep;
     }
     row_name(w, by_column ? "times, column" : "times, field");
-    hd_heat_times(heat, m, t, (hd_kernel)c->kernel, source, by_column ? NULL : f, U, 0, &w->rep);
+    if (by_column) hd_heat_columns(heat, (hd_kernel)c->kernel, m, t, 1, &source, U, 0, &w->rep, NULL);
+    else hd_heat_apply(heat, m, t, 1, f, 0, U, 0, &w->rep, NULL);
     for (q = 0; q < m && !failed(w); q++) {
         filter_for(w, t[q], 0);
         if (by_column) want_column(w, source, symmetric, inert);
@@ -1829,10 +1837,10 @@ static void run_entries(work *w, hd_heat *heat) {
     memset(d, 0, sizeof d);
     if (c->query == QUERY_ENTRIES) {
         row_name(w, symmetric ? "entries of k_t" : "entries of K_t");
-        hd_heat_entries(heat, c->t, (hd_kernel)c->kernel, k, i, j, K, &w->rep);
+        hd_heat_entries(heat, (hd_kernel)c->kernel, 1, &c->t, k, i, j, K, &w->rep, NULL);
     } else {
         row_name(w, c->kind >= HD_DISTANCE_COMMUTE ? "pairs, no time" : "pairs, d");
-        hd_heat_pairs(heat, (hd_distance_kind)c->kind, c->t, k, i, j, K, d, &w->rep);
+        hd_heat_pairs(heat, (hd_distance_kind)c->kind, 1, &c->t, k, i, j, K, d, &w->rep, NULL);
     }
     if (failed(w)) return;
     if (c->query == QUERY_PAIRS) {
@@ -1867,7 +1875,7 @@ static void run_diagonal(work *w, hd_heat *heat) {
     row_name(w, symmetric        ? c->n_times > 1 ? "diagonal k_t, many" : "diagonal of k_t"
                 : c->n_times > 1 ? "diagonal K_t, many"
                                  : "diagonal of K_t");
-    hd_heat_diagonal(heat, c->n_times, t, (hd_kernel)c->kernel, D, 0, &w->rep);
+    hd_heat_diagonal(heat, (hd_kernel)c->kernel, c->n_times, t, D, 0, &w->rep, NULL);
     for (q = 0; q < c->n_times && !failed(w); q++) {
         filter_for(w, t[q], 0);
         for (v = 0; v < lap->n; v++) w->want[v] = want_entry(w, v, v, 0, !symmetric, !symmetric, w->off + v);
@@ -1883,7 +1891,7 @@ static void run_edges(work *w, hd_heat *heat) {
     int32_t i;
     int64_t p;
     row_name(w, "edges");
-    hd_heat_edges(heat, w->c->t, values, &w->rep);
+    hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, 1, &w->c->t, values, &w->rep, NULL);
     if (!failed(w)) {
         filter_for(w, w->c->t, 0);
         for (i = 0; i < lap->n_active; i++)
@@ -1914,7 +1922,7 @@ static void run_distance(work *w, hd_heat *heat) {
              m > 1 ? ", many" : "");
     name[18] = 0;
     row_name(w, name);
-    hd_heat_distance(heat, (hd_distance_kind)c->kind, m, t, k, source, D, 0, &w->rep);
+    hd_heat_distance(heat, (hd_distance_kind)c->kind, m, t, k, source, D, 0, &w->rep, NULL);
     for (r = 0; r < k && !failed(w); r++)
         for (q = 0; q < m; q++) {
             double *d = D + (r * m + q) * n;

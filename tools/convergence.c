@@ -283,7 +283,7 @@ static void errors(const shape_poly *s, int torus, const hd_laplacian *lap, doub
     const int exponential = lap->kind == HD_LAPLACIAN_EXP;                       /* tends to Laplacian/area, with masses of 1 for area/n */
     const double t = torus ? 0.3 : 0.1, slower = exponential ? lap->area : 1, thinner = exponential ? lap->n / lap->area : 1;
     int32_t source[SOURCES], i;
-    double lambda[COUNT], want[COUNT], *k = DENSE_NEW(double, SOURCES * s->n), *u = DENSE_NEW(double, SOURCES * s->n), top, sum = 0;
+    double lambda[COUNT], want[COUNT], *k = DENSE_NEW(double, SOURCES * s->n), *u = DENSE_NEW(double, SOURCES * s->n), top, sum = 0, t_of_heat;
     hd_heat_opts ho;
     hd_heat *heat = NULL;
     hd_report report;
@@ -292,7 +292,8 @@ static void errors(const shape_poly *s, int torus, const hd_laplacian *lap, doub
     ho.degree = lap->mesh.n_faces ? 14 : 0;      /* points are far from such digits */
     sources_on(s, torus, source);
     if (hd_heat_create(&heat, lap, &ho, &e) < 0) stop("heat", &e);
-    if (hd_heat_columns(heat, t * slower, HD_KERNEL_SYMMETRIC, SOURCES, source, u, 0, &report) < 0) stop("heat", &report.error);
+    t_of_heat = t * slower;
+    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t_of_heat, SOURCES, source, u, 0, &report, NULL) < 0) stop("heat", &report.error);
     if (torus) torus_kernel(s, t, source, k);
     else sphere_kernel(s, t, source, k);
     eigenvalues(lap, lambda);

@@ -1589,7 +1589,7 @@ static hd_status point_spacing(run *r, double *h, hd_error *err)
     memset(err, 0, sizeof *err);
     err->face = err->vertex = err->row = err->column = err->pole = -1;
     err->status = status;
-    if (near_ids && d2) status = hd_neighbours_nearest(near_ids, d2, r->mesh.xyz, n, NULL, n, k, &r->context, err);
+    if (near_ids && d2) status = hd_neighbours_nearest(r->mesh.xyz, n, NULL, n, k, near_ids, d2, &r->context, err);
     for (i = 0; status >= 0 && i < n; i++) {
         const double *d = d2 + (size_t)i * (size_t)k;
         if (d[0] == 0 && near_ids[(size_t)i * (size_t)k] != i) continue;        /* in the place of an earlier one */
@@ -1775,8 +1775,8 @@ static int solve_time(run *r, int k, int q)
     hd_report report;
     hd_status status;
     bar_part("time", k, r->n_times);
-    if (r->fields) status = hd_heat_apply(r->heat, r->times[k], count, r->fields + (size_t)q * n, n, column_of(r, q, k), stride, &report);
-    else status = hd_heat_columns(r->heat, r->times[k], (hd_kernel)r->o->kernel, count, r->sources + q, column_of(r, q, k), stride, &report);
+    if (r->fields) status = hd_heat_apply(r->heat, 1, &r->times[k], count, r->fields + (size_t)q * n, n, column_of(r, q, k), stride, &report, NULL);
+    else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, 1, &r->times[k], count, r->sources + q, column_of(r, q, k), stride, &report, NULL);
     if (status < 0) return fail_solve(r, &report, q);
     summary_add(&r->sum, &report, &k, 1);
     return DONE;
@@ -1799,7 +1799,8 @@ static int solve_input(run *r, const time_group *g, int q, hd_report *report)
     hd_status status;
     int i;
     bar_part(r->fields ? "field" : "source", q, r->n_inputs);
-    status = hd_heat_times(r->heat, g->n, g->t, (hd_kernel)r->o->kernel, f ? 0 : r->sources[q], f, out, n, report);
+    if (f) status = hd_heat_apply(r->heat, g->n, g->t, 1, f, n, out, n, report, NULL);
+    else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, g->n, g->t, 1, r->sources + q, out, n, report, NULL);
     if (status < 0) return fail_solve(r, report, q);
     for (i = 0; g->room && i < g->n; i++) memcpy(column_of(r, q, g->index[i]), g->room + (size_t)i * n, n * sizeof *out);
     if (q > 0 && report->method == HD_METHOD_KRYLOV) report->factor_flops = 0;   /* the factor of input 0 served again */
@@ -1904,8 +1905,8 @@ static int solve_inverse(run *r)
     hd_report report;
     hd_status status;
     int k;
-    if (o->command == CMD_HKS) status = hd_heat_diagonal(r->heat, r->n_times, r->times, (hd_kernel)o->kernel, r->values, 0, &report);
-    else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->sources, r->values, 0, &report);
+    if (o->command == CMD_HKS) status = hd_heat_diagonal(r->heat, (hd_kernel)o->kernel, r->n_times, r->times, r->values, 0, &report, NULL);
+    else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->sources, r->values, 0, &report, NULL);
     if (status < 0) return fail_solve(r, &report, 0);
     for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
     summary_add(&r->sum, &report, NULL, 0);
@@ -1921,17 +1922,16 @@ static int solve_pairs(run *r, int k)
     const int timeless = is_timeless(o), symmetric = o->kernel == HD_KERNEL_SYMMETRIC;
     double *K = timeless ? NULL : column_of(r, 0, 2 * k), *d = timeless ? r->values : K + r->rows;
     hd_report report;
-    int code = solved_time(r, k, hd_heat_pairs(r->heat, kind, r->times[k], r->rows, i, j, symmetric ? NULL : K, d, &report), &report);
+    int code = solved_time(r, k, hd_heat_pairs(r->heat, kind, 1, &r->times[k], r->rows, i, j, symmetric ? NULL : K, d, &report, NULL), &report);
     if (code || timeless || !symmetric) return code;
-    return solved_time(r, k, hd_heat_entries(r->heat, r->times[k], HD_KERNEL_SYMMETRIC, r->rows, i, j, K, &report), &report);
+    return solved_time(r, k, hd_heat_entries(r->heat, HD_KERNEL_SYMMETRIC, 1, &r->times[k], r->rows, i, j, K, &report, NULL), &report);
 }
 
 static int solve_sample(run *r)
 {
     const options *o = r->o;
     hd_report report;
-    const hd_status status = hd_heat_sample(r->heat, (hd_distance_kind)o->definition, r->times[0], (int32_t)o->count, (int32_t)r->n_inputs, r->sources,
-                                            r->values, &report);
+    const hd_status status = hd_heat_sample(r->heat, (hd_distance_kind)o->definition, r->times[0], (int32_t)o->count, (int32_t)r->n_inputs, r->sources, r->values, &report, NULL);
     return solved_time(r, 0, status, &report);
 }
 
@@ -1981,7 +1981,7 @@ static int solve_geodesic(run *r)
     opts.ordering = (hd_ordering)r->o->ordering;
     opts.context = &r->context;
     if (hd_geodesic_create(&r->geodesic, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, &err) < 0) return fail_laplacian(r, &err);
-    if (hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report) >= 0) return DONE;
+    if (hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL) >= 0) return DONE;
     return fail_library(r->mesh_name, &r->geodesic_report.error);
 }
 
@@ -2991,7 +2991,7 @@ static int demo_check(run *r, demo_checks *c)
     int32_t i;
     int code = DONE;
     interrupt.patient = 1;
-    if (hd_heat_entries(r->heat, r->times[r->n_times - 1], HD_KERNEL_SYMMETRIC, 2, from, to, pair, &report) < 0)
+    if (hd_heat_entries(r->heat, HD_KERNEL_SYMMETRIC, 1, r->times + r->n_times - 1, 2, from, to, pair, &report, NULL) < 0)
         code = fail_library("demo", &report.error);
     code = leave_computation(code);
     if (code) return code;
@@ -3091,8 +3091,8 @@ static int demo_inverse(const run *r, double *fields)
     const double *t = &r->times[r->n_times / 2];
     hd_report report;
     interrupt.patient = 1;
-    if (hd_heat_distance(r->heat, HD_DISTANCE_CLASSICAL, 1, t, 1, r->sources, fields, 0, &report) < 0 ||
-        hd_heat_diagonal(r->heat, 1, t, HD_KERNEL_SYMMETRIC, fields + r->mesh.n, 0, &report) < 0)
+    if (hd_heat_distance(r->heat, HD_DISTANCE_CLASSICAL, 1, t, 1, r->sources, fields, 0, &report, NULL) < 0 ||
+        hd_heat_diagonal(r->heat, HD_KERNEL_SYMMETRIC, 1, t, fields + r->mesh.n, 0, &report, NULL) < 0)
         return leave_computation(fail_library("demo", &report.error));
     return leave_computation(DONE);
 }

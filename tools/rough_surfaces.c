@@ -298,8 +298,8 @@ static answer solve(const method *m, const surface *f, double unit) {
     a.n = f->s.n;
     a.value = (double *)room(FIELDS * (int64_t)a.n, sizeof *a.value);
     if (hd_heat_create(&heat, lap, NULL, &e) < 0) stop(m->name, &e);
-    if (hd_heat_times(heat, TIMES, t, HD_KERNEL_SYMMETRIC, here, NULL, a.value, 0, &report) < 0) stop(m->name, &report.error);
-    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, &here, a.value + TIMES * (size_t)a.n, 0, &report) < 0) stop(m->name, &report.error);
+    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, TIMES, t, 1, &here, a.value, 0, &report, NULL) < 0) stop(m->name, &report.error);
+    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, &here, a.value + TIMES * (size_t)a.n, 0, &report, NULL) < 0) stop(m->name, &report.error);
     for (i = 0; i < TIMES * a.n; i++) a.value[i] *= scale;              /* k_t is 1/area, d_t is 1/length */
     for (; i < FIELDS * a.n; i++) a.value[i] *= sqrt(scale);
     hd_heat_free(heat);
@@ -452,7 +452,7 @@ static void print_lowest(const method *m, const shape *s) {
     for (q = 0; q < 4; q++)
         for (k = 0; k < SOURCES; k++) {
             double least = 0, top = 0;
-            if (hd_heat_column(heat, in_h2[q] * lap->h * lap->h, vertex[k], u, &report) < 0) stop(m->name, &report.error);
+            if (hd_heat_column(heat, HD_KERNEL_OPERATOR, in_h2[q] * lap->h * lap->h, vertex[k], u, &report, NULL) < 0) stop(m->name, &report.error);
             for (i = 0; i < s->n; i++) {
                 least = fmin(least, u[i]);
                 top = fmax(top, u[i]);
