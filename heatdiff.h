@@ -15321,7 +15321,8 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
         for (j = 0; j < m; j++) most[j] = hdi_max(most[j], fabs(hdi_dot(z->vectors + HDI_CAST(int64_t, j) * m, slope, m)));
     }
     for (j = 0; j < m; j++) {
-        const double step = root * hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]) + 4 * DBL_EPSILON * (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
+        const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, which makes the next right-hand side */
+        const double step = root * (hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]) + product) + 4 * DBL_EPSILON * (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
         sum += 1.5 * most[j] * step;
     }
     return z->f_norm[r] * sum + m * DBL_EPSILON * size;
