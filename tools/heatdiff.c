@@ -1107,7 +1107,8 @@ static void free_options(options *o)
 /* ---- help ---- */
 
 static const char INPUTS[] =
-    "Meshes: OBJ, OFF, PLY, STL; points: the same without faces, XYZ. - reads standard input.\n";
+    "MESH is a file in OBJ, OFF, PLY or STL format. Points come from XYZ files (.xyz, .pts, .txt or\n"
+    ".csv: x y z on each line), or from OBJ, OFF and PLY files without faces. - is standard input.\n";
 
 static void print_version(void)
 {
