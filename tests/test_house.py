@@ -257,6 +257,12 @@ class Check(unittest.TestCase):
         self.assertEqual(set(house.LIMITS), set(house.SUMMARY))
         self.assertEqual(set(house.LIMITS), set(of(HEADER).counts()))
 
+    def test_tighten_lowers_and_never_raises(self):
+        text = '    "lines": 20000,   # goal\n    "forward": 0,     # goal\n'
+        counts = {what: (limit, []) for what, limit in house.LIMITS.items()}
+        counts["lines"], counts["forward"] = (9000, []), (3, [])
+        self.assertEqual(house.tightened(text, counts), '    "lines": 9000,    # goal\n    "forward": 0,     # goal\n')
+
     def run_main(self, text, *args):
         with tempfile.TemporaryDirectory() as d:
             path = os.path.join(d, "small.h")
