@@ -251,7 +251,8 @@ static void parts_mesh(const char *name, const double *xyz, int32_t n, const int
 /* ==== the machine ==== */
 
 #if HDI_X86
-/* Independent sums: enough for the latency of the multiply-add, few enough for the registers. Flops. */
+/* Flops of independent sums: enough of them to hide the latency of the multiply-add, few enough for the
+ * registers. */
 HDI_AVX512 static double multiply_add_512(int64_t rounds, volatile double *sink) {
     const __m512d m = _mm512_set1_pd(0.999999999), a = _mm512_set1_pd(1e-9);
     __m512d s0 = a, s1 = a, s2 = a, s3 = a, s4 = a, s5 = a, s6 = a, s7 = a, s8 = a, s9 = a;
@@ -304,7 +305,7 @@ static void load_task(void *arg, int64_t index, int32_t worker) {
     (void)sink;
 }
 
-/* Best of a few: flops (simd > 0) or bytes a second, in thousand millions. */
+/* The best of a few runs, in GF/s (simd > 0) or GB/s. */
 static double load_speed(int threads, int simd, const double *x, int64_t n) {
     hd_context ctx;
     load_job j;
@@ -331,7 +332,7 @@ static double load_speed(int threads, int simd, const double *x, int64_t n) {
 
 enum { STAGE_OTHER, STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_INVERT, STAGE_SOLVE, STAGES };
 
-/* Stage times by the library's own progress reports. What follows the last one counts for its stage. */
+/* Stage times, from the library's progress calls. Time after the last call belongs to its stage. */
 typedef struct watch { const char *name; int stage; double since, seconds[STAGES]; } watch;
 
 static void watch_turn(watch *w, int stage) {
@@ -476,7 +477,7 @@ static void vertices_to_rows(const bench *b, double *U, int k) {
 
 static int many(const ask *a) { return a->n_times > 1 ? a->n_times : a->n_columns; }
 
-/* An array that has been written to: no page of it is fresh in what is timed. */
+/* An array that has been written to, so that no fresh page falls into the measured time. */
 static double *answers(const bench *b, int k) {
     const size_t bytes = (size_t)b->lap->n * (size_t)k * sizeof(double);
     double *u = (double *)malloc(bytes + 64);
@@ -521,8 +522,8 @@ static double *reference(const bench *b, const ask *a, int k) {
     return NULL;
 }
 
-/* The largest tol that reaches the target on a kept plan, then on a fresh one; untimed. 0 where tol has no
- * say. */
+/* The largest tol that reaches the target on a kept plan, then on a fresh one. Not timed. 0 where tol has no
+ * effect. */
 static double find_tol(const bench *b, const ask *a, const double *R, double *U) {
     enum { GRID = 88 };          /* 10^(-1 - q/8) */
     ask probe = *a;
@@ -573,7 +574,7 @@ static void row_clear(entry *r, const bench *b, const char *job, const char *par
     r->error = r->rival_error = -1;
 }
 
-/* A number in so many places, or a dash where there is none. */
+/* Prints a number with this many digits, or a dash if there is none. */
 static void cell(int width, const char *format, double x, int there) {
     char text[32];
     snprintf(text, sizeof text, format, x);
@@ -644,8 +645,8 @@ static void describe_ours(char *to, size_t size, const ask *a, const ours *o) {
     else snprintf(to, size, "%s%s %lld", asked, r->solver == HD_SOLVER_LANCZOS ? "lanczos" : "cocg", steps);
 }
 
-/* Our part of a row. GB/s where it is plain what a solve reads: one column by shift-invert Lanczos sweeps
- * twice over the factor a step. */
+/* Our part of a row. GB/s are given where it is clear what a solve reads: for one column, shift-and-invert
+ * Lanczos reads the factor twice in each step. */
 static void row_ours(entry *r, const ask *a, const ours *o) {
     const hd_report *rep = &o->report;
     const double solve = o->stage[STAGE_SOLVE], factor = o->stage[STAGE_FACTOR];
@@ -715,7 +716,7 @@ static opponent opponent_make(const bench *b, rival_kind kind, const ask *a, con
     return o;
 }
 
-/* The warm-up, in which a rival finds its best ordering, steps and windows; later runs are told. */
+/* The warm-up, in which a rival finds its best ordering, steps and windows. Later runs reuse them. */
 static void opponent_warm(opponent *o) {
     rival_result r;
     o->fine = rival_run(o, &r);
@@ -735,7 +736,7 @@ static void opponent_turn(opponent *o, int first) {
     if (first || rival_seconds(o, &r) < rival_seconds(o, &o->best)) o->best = r;
 }
 
-/* Threads of OpenMP and BLAS spin for a while after their last work: not in the other side's time. */
+/* Waits until the threads of OpenMP and BLAS stop spinning, so that they do not slow down the other side. */
 static void rest(void) {
 #if defined(CLOCK_MONOTONIC)
     struct timespec t = {0, 60000000};
@@ -743,13 +744,13 @@ static void rest(void) {
 #endif
 }
 
-/* Seven rounds, less when they take long, but two. */
+/* Seven rounds; fewer if they take long, but at least two. */
 static int round_wanted(const bench *b, int round, double start) {
     return round < 2 || (round < 7 && now() - start < b->set->seconds);
 }
 
-/* In turns after a warm-up. The best of ours by total time; its error is that of the last run (all are the
- * same). */
+/* Both sides in turns after a warm-up. Keeps our best run by total time, with the error of the last run (all
+ * runs have the same error). */
 static void contest(const bench *b, const ask *a, const double *R, int n_R, double *U, ours *best,
                     opponent *o, int n_o) {
     double start;
@@ -942,7 +943,7 @@ static void job_columns(bench *b) {
     free(U);
 }
 
-/* The quickest of the columns, one by one, on a plan that has its factors. */
+/* The fastest of the columns, one by one, on a plan that already has its factors. */
 static double further_columns(plan *p, ask a, double *U, ours *run) {
     const int32_t *v = a.vertices;
     double best = 1e30;
@@ -1023,7 +1024,7 @@ typedef struct stages {
     double best[STAGES], total, further, field, batch, flops, nnz, bytes, error;
 } stages;
 
-/* One dense field, and 24 columns at a time, with the factors at hand. */
+/* One dense field, and 24 columns at a time, on a plan that already has its factors. */
 static void stages_warm(plan *p, const ask *a, const double *F, double *U, stages *s) {
     ask more = *a;
     ours run;
@@ -1084,8 +1085,8 @@ static void stages_row(const bench *b, const char *part, const char *what, doubl
     row_print(&r, b);
 }
 
-/* A dense field reads every non-zero of four complex factors twice. What a column reads going forward depends
- * on where it is. */
+/* A dense field reads every non-zero of four complex factors twice. What a column reads in the forward sweep
+ * depends on its place in the elimination tree. */
 static void stages_print(const bench *b, const ask *a, const stages *s) {
     entry r;
     row_clear(&r, b, "stages", NULL, a->times[0] / b->hh);
@@ -1144,8 +1145,8 @@ typedef struct signature {
     int there;
 } signature;
 
-/* Of the whole process since it began: more telling than the clock when others are at work. Threads that wait
- * in a loop count. */
+/* Processor time of the process. It says more than the clock if other programs are running. It includes
+ * threads that spin while they wait. */
 static double processor(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 static void signature_open(signature *s, const bench *b) {
@@ -1246,7 +1247,7 @@ static double signature_error(const signature *s, const bench *b, int k, double 
                            diagonal_error(b, U + (n_times - 1) * rows, s->R[2])));
 }
 
-/* The best of ours, of the four poles by their factors alone. */
+/* Keeps our best run; for the four poles, the best by the time of their factors alone. */
 static void signature_ours(signature *s, const bench *b, int k, double *U, int first) {
     ours run, *best = s->best + k;
     double busy;
@@ -1322,7 +1323,7 @@ static void signature_stage(const bench *b, const char *part, double seconds, do
     row_print(&r, b);
 }
 
-/* Answer k as a multiple of a signature, which is wanted to be `goal` at most. */
+/* The time of answer k as a multiple of one signature. The goal is at most `goal`. */
 static void signature_multiple(const signature *s, const bench *b, int k, const char *part,
                                const char *goal) {
     const ours *o = s->best + k;
@@ -1336,7 +1337,7 @@ static void signature_multiple(const signature *s, const bench *b, int k, const 
     row_print(&r, b);
 }
 
-/* Four complex factors, of which a signature is wanted to take `goal` times as long at most. */
+/* Four complex factors. The goal is that a signature takes at most `goal` times as long. */
 static void signature_poles(const signature *s, const bench *b, const char *goal) {
     const ours *o = s->best + SIG_POLES;
     entry r;
@@ -1512,8 +1513,8 @@ enum { GEO_SOURCES = 9 };            /* the first, and as many as go side by sid
 
 typedef struct geo_run { int fine; double total, further, batch, bytes, nnz; } geo_run;
 
-/* From the mesh to the first distances, the best of further ones, and those eight at a time, each its share.
- * D [n x GEO_SOURCES]. */
+/* Times from the mesh to the first distances, the best time of further ones, and the time of each if eight
+ * are computed at once. D [n x GEO_SOURCES]. */
 static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run *r) {
     const size_t n = (size_t)b->surface->n;
     hd_geodesic_opts o;
@@ -1700,7 +1701,7 @@ static void bench_open(bench *b, const settings *set, const char *mesh, const ri
     b->pair.B = lap->B ? lap->B : b->own_B;
 }
 
-/* After a job on a large mesh: the next one has other sizes. */
+/* Returns freed memory after a job on a large mesh, because the next mesh has other sizes. */
 static void give_back(void) {
 #if defined(__GLIBC__)
     (void)malloc_trim(0);
@@ -1824,7 +1825,7 @@ static int parse_jobs(settings *set, const char *s) {
     return set->jobs != 0;
 }
 
-/* Peaks for each number of threads, printed. */
+/* Prints the machine's peaks for each number of threads. */
 static void measure_machine(const settings *set, double *peak) {
     const int64_t n = (int64_t)1 << 25;
     const int simd = HDI_X86 ? hdi_simd_best() : 0;
@@ -1921,8 +1922,8 @@ int main(int argc, char **argv) {
     if (!HAVE_RIVALS) printf("%sbuilt without rivals: times and errors of ours alone\n", set.csv ? "# " : "");
     measure_machine(&set, peak);
     if (set.csv)
-        printf("mesh,mass,rows,job,t_over_h2,threads,ours,seconds,rival,rival_seconds,ratio,error,rival_error,"
-               "gflops,peak_share,gbytes,nnz,bytes,"
+        printf("mesh,mass,rows,job,t_over_h2,threads,ours,seconds,rival,rival_seconds,ratio,error,"
+               "rival_error,gflops,peak_share,gbytes,nnz,bytes,"
                "bytes_per_64nnz,rival_nnz,rival_bytes\n");
     fflush(stdout);
     for (i = first; i < argc; i++) fine &= bench_file(&set, argv[i], peak);
