@@ -1,65 +1,114 @@
-/* heatdiff.h - heat diffusion kernels on surfaces, without a spectrum
+/* heatdiff.h - heat kernels and diffusion distances on surfaces, without eigenvectors
 
    ==== [A] opening ====
 
-   A surface is a pair of sparse matrices (L, B): L the stiffness matrix, symmetric positive semi-definite, B the mass
-   matrix, symmetric positive definite. Heat f diffuses as K_t f, with the heat kernel matrix K_t = exp(-t B^-1 L).
-   This file builds (L, B) from a mesh or from points and applies K_t through a rational approximation of the exponential,
+   A surface is a pair of sparse matrices (L, B). L is the stiffness matrix, symmetric positive semi-definite.
+   B is the mass matrix, symmetric positive definite. Heat f diffuses as K_t f with the heat kernel matrix
+   K_t = exp(-t B^-1 L). This file builds (L, B) from a mesh or from points, and applies K_t through a
+   rational approximation of the exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
-   a handful of sparse complex-symmetric systems. No eigenvectors are computed, none are left out, and every answer
-   comes with a bound of its error. The method is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel and
-   distance on surface meshes and point sets", Computers & Graphics 37, 2013.
+   which takes a handful of sparse complex-symmetric systems. No eigenvectors are computed and none are left
+   out. Every answer comes with a bound of its error. The method is that of G. Patane and M. Spagnuolo, "Heat
+   diffusion kernel and distance on surface meshes and point sets", Computers & Graphics 37, 2013, called the
+   paper below.
 
    In one C or C++ file:                             Everywhere else:
 
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. Two working calls make a heat kernel of a triangle mesh:
+   and link with -lm. Two calls make a heat kernel of a triangle mesh:
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, &err) < 0) return fail(&err);
        if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
-       hd_heat_column(heat, 100 * lap->h * lap->h, source, u, NULL);          u[n] = K_t e_source
+       hd_heat_column(heat, HD_KERNEL_OPERATOR, 100 * lap->h * lap->h, source, u, NULL, NULL);   u[n] = K_t e_source
        hd_heat_free(heat);  hd_laplacian_free(lap);
 
    Conventions
-     sign     L is positive semi-definite: minus the usual cotangent matrix of libigl. Its rows sum to zero.
-     units    L has no unit, B is an area, t an area (length squared), k_t = K_t B^-1 is 1/area. With B = I (kind `cot`)
-              t is a pure number. lap->h is the mean edge length: t = c h^2 is how times are usually chosen.
-              t below h^2 sees the mesh, not the surface.
-     kernels  K_t is not symmetric: column i diffuses the indicator of vertex i, of mass b_i. k_t = K_t B^-1 is the
-              symmetric pointwise heat kernel k_t(x,y), column i diffuses a unit of heat put at vertex i.
-     border   natural (Neumann): no heat leaves. Components that do not touch exchange none, exactly.
-     vertices that carry no mass (in no face, or only in faces of zero area) take no part: K_t leaves them alone.
-     norm     |f|_B = sqrt(f' B f). Errors are relative in this norm, or to the largest value, as each report field says.
+     sign     L is positive semi-definite. This is minus the usual cotangent matrix of libigl. The rows of L
+              sum to zero.
+     units    L has no unit. B is an area, and so is t (length squared). k_t = K_t B^-1 is 1/area. If B = I
+              (kind `cot`), t is a pure number.
+     t        lap->h is the mean edge length, and times are usually chosen as t = c h^2. Below t = h^2 heat
+              sees the mesh rather than the surface.
+     kernels  K_t is not symmetric. Its column i diffuses the indicator of vertex i, whose heat is the mass
+              b_i. k_t = K_t B^-1 is symmetric, the pointwise heat kernel k_t(x,y). Its column i diffuses one
+              unit of heat placed at vertex i.
+     border   natural (Neumann): no heat leaves through a border. Separate components exchange no heat at all.
+     mass     Vertices without mass (in no face, or only in faces of zero area) are inert: K_t leaves their
+              values as they are.
+     norm     |f|_B = sqrt(f' B f). Errors are relative in this norm or relative to the largest value; each
+              report field says which.
 
    Contents
-     declarations    [B] base  [C] options and reports  [D] functions
-     implementation  [00] platform  [01] scalar  [02] error  [03] memory  [04] context  [05] arrays  [06] dense
-                     [07] sparse  [08] spatial  [09] geometry  [10] operators  [11] symbolic  [12] direct  [13] selinv  [14] precond
-                     [15] krylov  [16] rational  [17] shifted  [18] heat  [19] distance  [21] api  [22] closing
-     Rooms are numbered from the bottom up; each calls only those above it in the file.
+     Declarations
+     [A] opening     what the library computes, conventions, options, limits
+     [B] base        version, linkage, status and error, context, sparse matrix
+     [C] options     option structs (zeros are defaults), report structs, the Laplacian
+     [D] functions   by task: matrices, operators, neighbours, pole sets, solvers, heat, geodesic distance
+
+     Implementation, from the bottom up: a room calls only rooms above it in the file
+     [00] platform   compilers, the C library, OpenMP, configuration macros
+     [01] scalar     minima and maxima, checked sizes, complex arithmetic
+     [02] error      filling hd_error
+     [03] memory     counted allocation and scopes that free work arrays
+     [04] context    progress, cancelling, parallel loops
+     [05] arrays     prefix sums, sorting, union-find
+     [06] vectors    dot products and norms, small dense eigenproblems and least squares
+     [07] kernels    dense fronts, real and in lanes of four complex matrices, for each instruction set
+     [08] sparse     compressed rows: build, check, transpose, multiply, renumber
+     [09] spatial    k-d tree: nearest neighbours and radius search
+     [10] geometry   triangles: checks, areas, cotangents, edges, defects
+     [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover
+     [12] operators  the pair (L, B) of triangles, polygons, points and the caller's own matrices
+     [13] degree     orderings by minimum degree, breadth-first orderings
+     [14] dissection nested dissection of meshes in space
+     [15] analysis   elimination tree, supernodes, plan of memory
+     [16] schedule   tasks of a factorisation and their order
+     [17] direct     multifrontal L D L' and triangular solves
+     [18] selinv     selected inversion: entries of the inverse, quadratic forms
+     [19] precond    Jacobi, SSOR and incomplete L D L'
+     [20] iterative  COCG, COCR, CS-MINRES
+     [21] rational   pole sets: tables, evaluation, sets shared by many times
+     [22] poles      the family t L + theta_i B for one right-hand side, error bounds
+     [23] lanczos    Lanczos for the exponential and shift-and-invert
+     [24] plan       hd_heat: choice of method, kept factors and bases, the ledger of errors
+     [25] kernel     fields, columns, entries, diagonals, edges
+     [26] diffusion  diffusion distances, pairs, sampling
+     [27] geodesic   the heat method
+     [28] api        argument checks, defaults, lifetimes, bodies of the public functions
+     [29] closing    end of the implementation, licence
 
    Options (macros)
-     HEATDIFF_IMPLEMENTATION   in one file only: compiles the implementation
-     HEATDIFF_STATIC           wherever the file is included: all functions are static (implies one user, one file)
-     HEATDIFF_API              beside the declarations and the implementation alike: your own linkage attribute
-     HEATDIFF_ASSERT(x)        beside the implementation: your own assert; without it, assert() unless NDEBUG
+     Beside the implementation only:
+     HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
+     HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
-                               beside the implementation: both or none; what contexts without an allocator use
-     HEATDIFF_NO_OPENMP        beside the implementation: no OpenMP even when compiled with it
-     HEATDIFF_NO_SIMD          beside the implementation: plain C only, no kernels for AVX2 and AVX-512
-     HEATDIFF_USE_BLAS         beside the implementation: dgemm of a BLAS (32-bit integers) for the large fronts of real factors where only plain C
-                               kernels are to be had (it is twice as fast there; those for AVX2 and AVX-512 are faster than OpenBLAS)
-     HEATDIFF_NO_LARGE_PAGES   beside the implementation: no madvise for large pages on Linux
+                               used by contexts without an allocator; define both or none
+     HEATDIFF_NO_OPENMP        no OpenMP, even if the compiler has it on
+     HEATDIFF_NO_SIMD          plain C only, no kernels for AVX2 and AVX-512
+     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, where only
+                               plain C kernels exist. It is twice as fast as those. The kernels for AVX2 and
+                               AVX-512 are faster than OpenBLAS and stay in use
+     HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
+     Wherever the file is included, the same everywhere:
+     HEATDIFF_STATIC           all functions are static, for a single file that uses them
+     HEATDIFF_API              your own linkage attribute
      No macro changes a public type or prototype.
 
    Limits
-     Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. No global or thread-local state: contexts and
-     objects that share none can be used from different threads. The library prints nothing, opens no file, never exits.
+     Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
+     no file and never exits.
+
+   Threads
+     There is no global or thread-local state. One object serves one thread at a time, and so does one
+     context, because it counts memory. Two threads may work at once if they share no object and no context.
+     One exception: plans read their Laplacian and never write to it. So several plans in several threads may
+     share one Laplacian if every plan has a context of its own (hd_heat_opts.context). Without one, a plan
+     uses the Laplacian's context. If you set allocators, they must allow calls from several threads.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -74,7 +123,7 @@
 #define HD_VERSION_MAJOR 0
 #define HD_VERSION_MINOR 1
 #define HD_VERSION_PATCH 0
-/* Comparable: HD_VERSION >= HD_MAKE_VERSION(0, 2, 0) */
+/* Versions compare as numbers: HD_VERSION >= HD_MAKE_VERSION(0, 2, 0). */
 #define HD_MAKE_VERSION(major, minor, patch) ((major) * 1000000 + (minor) * 1000 + (patch))
 #define HD_VERSION HD_MAKE_VERSION(HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH)
 
@@ -92,25 +141,27 @@
 extern "C" {
 #endif
 
-/* A complex number; same layout as C99 double complex and std::complex<double>. */
+/* A complex number. Same layout as C99 double complex and std::complex<double>. */
 typedef struct hd_c64 { double re, im; } hd_c64;
 
-/* Zero is success, negative an error, positive "usable, but read the report". One list makes codes and texts. */
-#define HD_STATUS_LIST(X)                                                                                              \
-    X(HD_OK, 0, "done")                                                                                                \
-    X(HD_WARN_ACCURACY, 1, "done, but the bound of the error is above the tolerance, or says little")                  \
-    X(HD_ERR_ARGUMENT, -1, "an argument or option is out of its range")                                                \
-    X(HD_ERR_MEMORY, -2, "out of memory")                                                                              \
-    X(HD_ERR_MEMORY_LIMIT, -3, "the byte or allocation limit of the context is reached")                               \
-    X(HD_ERR_TOO_LARGE, -4, "a size does not fit its integer type")                                                    \
-    X(HD_ERR_CANCELLED, -5, "cancelled by the progress callback")                                                      \
-    X(HD_ERR_NOT_CONVERGED, -6, "the iteration did not reach the tolerance")                                           \
-    X(HD_ERR_INDEX, -7, "an index is out of range")                                                                    \
-    X(HD_ERR_NOT_FINITE, -8, "a value is not finite")                                                                  \
-    X(HD_ERR_NOT_SYMMETRIC, -9, "a matrix is not symmetric")                                                           \
-    X(HD_ERR_NOT_POSITIVE, -10, "L is not positive semi-definite, or B is not positive definite")                      \
-    X(HD_ERR_STRUCTURE, -11, "a sparse matrix is not well formed")                                                     \
-    X(HD_ERR_EMPTY, -12, "nothing is left to compute on: no vertex has mass")                                          \
+/* Zero is success, negative is an error, positive means "usable, but read the report". One list makes codes
+ * and texts. */
+#define HD_STATUS_LIST(X)                                                                         \
+    X(HD_OK, 0, "done")                                                                           \
+    X(HD_WARN_ACCURACY, 1,                                                                        \
+      "done, but the bound of the error is above the tolerance, or says little")                  \
+    X(HD_ERR_ARGUMENT, -1, "an argument or option is out of its range")                           \
+    X(HD_ERR_MEMORY, -2, "out of memory")                                                         \
+    X(HD_ERR_MEMORY_LIMIT, -3, "the byte or allocation limit of the context is reached")          \
+    X(HD_ERR_TOO_LARGE, -4, "a size does not fit its integer type")                               \
+    X(HD_ERR_CANCELLED, -5, "cancelled by the progress callback")                                 \
+    X(HD_ERR_NOT_CONVERGED, -6, "the iteration did not reach the tolerance")                      \
+    X(HD_ERR_INDEX, -7, "an index is out of range")                                               \
+    X(HD_ERR_NOT_FINITE, -8, "a value is not finite")                                             \
+    X(HD_ERR_NOT_SYMMETRIC, -9, "a matrix is not symmetric")                                      \
+    X(HD_ERR_NOT_POSITIVE, -10, "L is not positive semi-definite, or B is not positive definite") \
+    X(HD_ERR_STRUCTURE, -11, "a sparse matrix is not well formed")                                \
+    X(HD_ERR_EMPTY, -12, "nothing is left to compute on: no vertex has mass")                     \
     X(HD_ERR_BREAKDOWN, -13, "the iteration broke down")
 
 typedef enum hd_status {
@@ -120,67 +171,79 @@ typedef enum hd_status {
     HD_STATUS_FORCE_INT = 0x7fffffff
 } hd_status;
 
-/* What went wrong and where in the caller's data. Places that do not apply are -1. */
+/* What went wrong, and where in the caller's data. Places that do not apply are -1. */
 typedef struct hd_error {
     hd_status status;
     char text[160];        /* one line for people, without the numbers below */
     int64_t face, vertex;  /* ids as the caller numbers them */
-    int64_t row, column;   /* of a matrix, or of a field */
-    int64_t pole;          /* index in the rational set */
-    double value;          /* the offending value; 0 when none */
+    int64_t row, column;   /* of a matrix or of a field */
+    int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
+    double value;          /* the offending value; 0 if there is none */
 } hd_error;
 
-/* What a progress callback returns. Neither is 0 or 1, so that a callback of the wrong type is noticed (anything else
- * than these two is HD_ERR_ARGUMENT). */
+/* What a progress callback returns. Any other value is HD_ERR_ARGUMENT. Neither value is 0 or 1, so that a
+ * callback of the wrong type is noticed. */
 typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x200 } hd_progress;
 
-/* Memory. alloc returns NULL when there is none; blocks must be aligned to 8 bytes. free receives the size the block had.
- * Nothing is ever resized, so there is no realloc to write. Called by the calling thread only. */
+/* Memory functions. alloc returns NULL if there is no memory; its blocks must be aligned to 8 bytes. free
+ * receives the size that the block was allocated with. Blocks are never resized, so there is no realloc. The
+ * library calls both functions from the calling thread only. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
     void *user;
 } hd_allocator;
 
-/* One task of a parallel loop. worker tells the thread: 0 is the one that called the library. */
+/* One task of a parallel loop. worker numbers the threads; 0 is the thread that called the library. */
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
-/* Instruction sets for the dense kernels, which are compiled in several versions (GCC and Clang on x86-64; elsewhere plain C serves all). Results agree to
- * rounding between them, and to the last bit for any number of threads within one. */
+/* Instruction sets of the dense kernels. GCC and Clang on x86-64 compile several versions; other compilers
+ * and processors use plain C. Results of two instruction sets agree up to rounding. Within one instruction
+ * set results are the same to the last bit for any number of threads. */
 typedef enum hd_simd {
-    HD_SIMD_AUTO = 0,           /* the best that the processor has */
+    HD_SIMD_AUTO = 0,           /* the best set that the processor has */
     HD_SIMD_NONE,               /* plain C */
     HD_SIMD_AVX2,               /* AVX2 with FMA, if the processor has it */
-    HD_SIMD_AVX512
+    HD_SIMD_AVX512              /* AVX-512, if the processor has it */
 } hd_simd;
 
-/* The surroundings of a computation. All zeros are good defaults: malloc, no limits, no progress, and OpenMP's threads
- * when compiled with OpenMP (serial otherwise). The context belongs to the caller and must outlive every object made
- * with it; wherever a function takes a context, NULL means one of these defaults. */
+/* Memory, progress and threads of a computation. All zeros are good defaults: malloc, no limits, no progress,
+ * and OpenMP's threads if compiled with OpenMP. The context belongs to the caller and must outlive every
+ * object made with it. Wherever a function takes a context, NULL means one with these defaults. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
     uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit */
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
-    /* Called now and then during long work, by the calling thread only. stage names the work, done runs from 0 to 1
-     * within it. Cancelling makes the running function return HD_ERR_CANCELLED with everything freed. */
+    /* Called now and then during long work, by the calling thread only. done runs from 0 to 1 within a stage.
+     * If it cancels, the running function frees everything and returns HD_ERR_CANCELLED. The stages:
+     *   "neighbours"    search of neighbours among points
+     *   "assemble"      building L and B
+     *   "flip edges"    intrinsic Delaunay triangulation
+     *   "order"         elimination order
+     *   "analyse"       symbolic analysis
+     *   "factor"        numerical factorisation
+     *   "invert"        selected inversion
+     *   "precondition"  preconditioners
+     *   "solve"         solves and iterations
+     *   "sample"        farthest points */
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
-    /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all are done. The calling
-     * thread is worker 0, others have numbers of their own. NULL: OpenMP if compiled with it, else serial. Results do
-     * not depend on it, nor on the number of threads. */
+    /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all tasks are
+     * done. The calling thread is worker 0; other threads have numbers of their own. NULL: OpenMP if compiled
+     * with it, else serial. Results depend neither on this function nor on the number of threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    int32_t threads;            /* for OpenMP: 0 all, 1 serial. Not looked at when parallel_for is given */
+    int32_t threads;            /* of OpenMP: 0 for all, 1 for serial; ignored if parallel_for is set */
     hd_simd simd;
 
     /* Filled by the library. */
     uint64_t bytes_in_use, bytes_peak, allocations;
 } hd_context;
 
-/* A sparse matrix by compressed rows. In every row the columns ascend and occur once. val may be NULL in a pattern.
- * Made by the library: free with hd_csr_free. Made of your own arrays: free those yourself. */
+/* A sparse matrix by compressed rows. In every row the columns ascend and occur once. val may be NULL in a
+ * pattern. Matrices made by the library are freed with hd_csr_free. Your own arrays stay yours. */
 typedef struct hd_csr {
     int32_t n_rows, n_cols;
     int64_t nnz;
@@ -190,126 +253,161 @@ typedef struct hd_csr {
 } hd_csr;
 
 /* ==== [C] options and reports ==== */
-/* Options are structs whose zeros mean the defaults; NULL means all defaults. begin_zero and end_zero must stay zero:
- * they tell a cleared struct from a forgotten one. */
+/* Options are structs whose zeros mean defaults; a NULL pointer means all defaults. begin_zero and end_zero
+ * must stay zero: they tell a cleared struct from an uninitialised one. */
 
 typedef enum hd_laplacian_kind {
-    HD_LAPLACIAN_DEFAULT = 0,   /* fem for triangles, polygon for polygons, voronoi-exp for points; hd_laplacian.kind tells which it was */
-    HD_LAPLACIAN_FEM,           /* cotangent L, linear finite-element B: area/6 on the diagonal, area/12 off it, per triangle */
-    HD_LAPLACIAN_VORONOI_COT,   /* cotangent L, B diagonal: mixed Voronoi areas (Meyer, Desbrun, Schroeder, Barr 2003) */
-    HD_LAPLACIAN_COT,           /* cotangent L, B = I (Pinkall, Polthier 1993) */
-    HD_LAPLACIAN_POLYGON,       /* faces of any number of corners, planar or not, and B diagonal: area/k to each corner (Alexa, Wardetzky 2011) */
-    HD_LAPLACIAN_VORONOI_EXP,   /* points: L_ij = -v_i v_j exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2), B = diag(v), v_i areas of Voronoi cells in the
-                                   tangent planes, s the bandwidth (Liu, Prabhakaran, Guo 2012) */
-    HD_LAPLACIAN_EXP,           /* points: L_ij = -exp(-|p_i - p_j|^2 / 4s) / (4 pi n s^2), B = I (Belkin, Niyogi 2008). For samples spread
-                                   evenly B^-1 L tends to Laplacian/area, so that t is an area times a squared length */
+    /* fem for triangles, polygon for polygons, voronoi-exp for points. hd_laplacian.kind tells which. */
+    HD_LAPLACIAN_DEFAULT = 0,
+    /* Cotangent L, linear finite-element B: each triangle adds area/6 on the diagonal, area/12 off it. */
+    HD_LAPLACIAN_FEM,
+    /* Cotangent L, B diagonal: mixed Voronoi areas (Meyer, Desbrun, Schroeder, Barr 2003). */
+    HD_LAPLACIAN_VORONOI_COT,
+    /* Cotangent L, B = I (Pinkall, Polthier 1993). */
+    HD_LAPLACIAN_COT,
+    /* Faces of any number of corners k, planar or not. B is diagonal: each face gives area/k to each of its
+     * corners (Alexa, Wardetzky 2011). */
+    HD_LAPLACIAN_POLYGON,
+    /* Points: L_ij = -v_i v_j exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2) and B = diag(v). v_i is the area of the
+     * Voronoi cell of point i in its tangent plane, s is the bandwidth (Liu, Prabhakaran, Guo 2012). */
+    HD_LAPLACIAN_VORONOI_EXP,
+    /* Points: L_ij = -exp(-|p_i - p_j|^2 / 4s) / (4 pi n s^2) and B = I (Belkin, Niyogi 2008). For evenly
+     * spread samples B^-1 L tends to Laplacian/area, so the unit of t is an area times a squared length. */
+    HD_LAPLACIAN_EXP,
     HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
 } hd_laplacian_kind;
 
 typedef struct hd_laplacian_opts {
     int32_t begin_zero;
-    hd_laplacian_kind kind;     /* not looked at by hd_laplacian_matrices */
+    hd_laplacian_kind kind;     /* ignored by hd_laplacian_matrices */
     hd_context *context;
-    double lambda;              /* polygon: weight of the part that tells apart what the gradients of a face cannot; default 1, at most 1e100.
-                                   Larger values stiffen faces of four corners and more, triangles do not feel it */
-    double bandwidth;           /* points: s of the exponential weights, a squared length; default: from the sampling, see hd_laplacian_points */
-    double weight_cut;          /* points: exponentials below this are left out, in (0, 1); default 1e-8 */
-    int32_t intrinsic_delaunay; /* triangles: 1: they are flipped, along the surface, until they are Delaunay: no cotangent weight is negative then but on
-                                   boundary edges opposite to an obtuse angle. Surfaces that are not manifold or have one side only are covered twice */
-    int32_t tufted;             /* triangles: 1: the same on the tufted cover, where the boundary is glued to the other sheet: no weight is negative on any mesh */
-    double mollify;             /* with these two: edges are lengthened by one small number, so that every triangle satisfies the triangle inequality with
-                                   mollify times the mean edge length to spare; default 1e-5, negative: not at all */
-    int32_t neighbours;         /* points: how many of the nearest ones say where the tangent plane and the cell or star is, 6..128; default 30 */
+    /* Polygons: weight of the stabilising term for face functions that the gradient cannot see. It has no
+     * effect on triangles; larger values stiffen faces with more corners. Default 1, at most 1e100. */
+    double lambda;
+    /* Points: s of the weights, a squared length. Default: from the sampling, see hd_laplacian_points. */
+    double bandwidth;
+    /* Points: exponentials below this value are left out, in (0, 1). Default 1e-8. */
+    double weight_cut;
+    /* Triangles: 1: edges are flipped along the surface until the triangulation is Delaunay. Then no
+     * cotangent weight is negative, except on boundary edges opposite to an obtuse angle. Surfaces that are
+     * not manifold or not orientable are covered twice. */
+    int32_t intrinsic_delaunay;
+    /* Triangles: 1: the same on the tufted cover, where a second sheet is glued to the boundary. Then no
+     * weight is negative on any mesh. */
+    int32_t tufted;
+    /* With intrinsic_delaunay or tufted: all edges are lengthened by one small number, so that every triangle
+     * satisfies the triangle inequality with a margin of mollify times the mean edge length. Default 1e-5; at
+     * most 1; negative: lengths stay as they are. */
+    double mollify;
+    /* Points: number of nearest neighbours that determine the tangent plane and the cell or star of a point,
+     * 6..128. Default 30. */
+    int32_t neighbours;
     int32_t end_zero;
 } hd_laplacian_opts;
 
-/* What was found in a mesh. Nothing here is an error: what is left out is counted. */
+/* What was found in a mesh. Nothing here is an error: faces that cannot be used are left out and counted. */
 typedef struct hd_mesh_report {
     int32_t n_faces;                 /* given */
     int32_t n_faces_used;            /* assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    int32_t n_zero_area;             /* left out: cross product of two edges exactly zero (or an area or cotangent that no double holds). polygon:
-                                        vector area zero (with more than three corners, up to the rounding of its sum), fewer than three corners */
-    int32_t n_repeated_face;         /* left out: same corners as an earlier face (polygon: in the same cyclic order, either way round) */
+    /* Left out: the cross product of two edges is exactly zero, or an area or cotangent overflows. Polygons:
+     * fewer than three corners, or a zero vector area (for more than three corners, up to rounding). */
+    int32_t n_zero_area;
+    /* Left out: same corners as an earlier face. Polygons: in the same cyclic order, in either direction. */
+    int32_t n_repeated_face;
     int64_t n_edges;                 /* distinct edges of the faces used */
     int64_t n_boundary_edges;        /* with one face */
-    int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed, nothing special */
-    int64_t n_misoriented_edges;     /* with two faces that run along it in the same direction */
+    int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed */
+    int64_t n_misoriented_edges;     /* with two faces that run along the edge in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass */
-    int64_t n_negative_weights;      /* edges whose cotangent weight is negative: legitimate, but no maximum principle. polygon: pairs of vertices, edges
-                                        or diagonals, whose entry of L is positive; nearly every face of four corners and more has some */
-    double smallest_angle;           /* over the faces used, in radians (polygon: of the corners that bend inwards) */
+    /* Edges whose cotangent weight is negative. They are legitimate, but the maximum principle does not hold
+     * then. Polygons: pairs of vertices, joined by edges or diagonals, whose entry of L is positive. Nearly
+     * every face with more than three corners has some. */
+    int64_t n_negative_weights;
+    double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
-    /* Of intrinsic_delaunay and tufted, zeros without. Everything above but n_negative_weights tells of the faces as they were given. */
-    int32_t n_sheets;                /* 1; 2: the surface was covered twice, to be manifold and of one orientation, or to close its boundary */
-    int32_t n_mollified;             /* faces that called for mollification */
-    double mollify_epsilon;          /* added to every edge's length */
+    /* With intrinsic_delaunay or tufted; else zero. All fields above, except n_negative_weights, describe the
+     * faces as they were given. */
+    int32_t n_sheets;                /* 1, or 2: the surface is covered twice */
+    int32_t n_mollified;             /* faces that needed mollification */
+    double mollify_epsilon;          /* added to the length of every edge */
     int64_t n_flips;                 /* on all sheets */
-    int64_t n_not_delaunay;          /* edges that rounding kept from being flipped */
-    int64_t n_self_edges;            /* edges that have come to join a vertex to itself; they carry no weight */
+    int64_t n_not_delaunay;          /* edges that could not be flipped because of rounding */
+    int64_t n_self_edges;            /* edges from a vertex to itself after the flips; weightless */
     double smallest_intrinsic_angle; /* after the flips, in radians */
 } hd_mesh_report;
 
-/* What was found in a point set, and chosen for it. Nothing here is an error. */
+/* What was found in a point set, and what was chosen for it. Nothing here is an error. A place is a position
+ * that holds one or more points. */
 typedef struct hd_point_report {
     double bandwidth;                /* s of the exponential weights */
-    double weight_cut, cut_radius;   /* exponentials below weight_cut are left out: those of points farther apart than cut_radius */
-    int32_t neighbours;              /* for tangent planes and cells */
-    int32_t n_coincident;            /* points in the place of an earlier one; points in one place share its cell in equal parts */
-    int32_t n_isolated;              /* points without any other one within cut_radius: components of their own */
+    double weight_cut, cut_radius;   /* exponentials below weight_cut, beyond cut_radius, are 0 */
+    int32_t neighbours;              /* used for tangent planes and cells */
+    int32_t n_coincident;            /* points at the place of an earlier point: they share its cell */
+    int32_t n_isolated;              /* points without another within cut_radius: own components */
     int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
-    int32_t n_border;                /* places whose cell ends where the neighbours do: at a border or beside a gap */
+    int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
     int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
-    int32_t n_not_flat;              /* places whose nearest neighbours spread across their plane more than
-                                        0.45 times as far as along it: at sharp creases, rims and tips, in
-                                        strong noise, and where two sheets of the surface are within about 1.5
-                                        spacings of each other. Planes are uncertain there, and heat may cross
-                                        to the other sheet */
+    /* Places whose nearest neighbours spread across their plane more than 0.45 times as far as along it. This
+     * happens at sharp creases, rims and tips, in strong noise, and where two sheets of the surface are
+     * closer than about 1.5 spacings. Planes are uncertain there, and heat may cross to the other sheet. */
+    int32_t n_not_flat;
 } hd_point_report;
 
-/* A discrete surface: the pair (L, B) on one pattern. Read it freely, change nothing; made and freed by the library.
- * Rows are the vertices that have mass, in the caller's order. */
+/* A discrete surface: the pair (L, B) on one pattern. The library makes and frees it. Read all fields freely,
+ * change none. Rows are the vertices that have mass, in the caller's order. */
 typedef struct hd_laplacian {
     int32_t n;                  /* vertices of the caller */
     int32_t n_active;           /* rows: vertices with mass */
     int32_t n_components;       /* connected components of the rows */
     hd_laplacian_kind kind;
-    double h;                   /* mean length of the distinct edges, before any flip; points: mean distance of a place to the nearest other one; 0 for
-                                   matrices */
-    double area;                /* of the faces used, before any flip; of the cells or stars of points, whatever B; 1'B1 for matrices */
-    hd_csr L;                   /* n_active x n_active, values of L, every diagonal entry present */
-    double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B is diagonal, B = diag(mass) */
-    double *mass;               /* [n_active] b = B 1, the vertices' masses */
-    double *b_diag;             /* [n_active] diagonal of B; the same array as mass when B is diagonal */
+    /* Mean length of the distinct edges, before any flip. Points: mean distance of a place to the nearest
+     * other place. Matrices: as the caller gave it. */
+    double h;
+    /* Area of the faces used, before any flip. Points: of their cells or stars. Matrices: 1'B1. */
+    double area;
+    hd_csr L;                   /* n_active x n_active, every diagonal entry present */
+    double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B = diag(mass) */
+    double *mass;               /* [n_active] b = B 1, the masses of the vertices */
+    double *b_diag;             /* [n_active] diagonal of B; the same array as mass if B is diagonal */
     int32_t *vertex;            /* [n_active] row -> vertex */
     int32_t *row;               /* [n] vertex -> row, -1 without mass */
-    int32_t *component;         /* [n_active] row -> component, numbered by their first vertex */
-    double *xyz;                /* [3 n_active] places of the rows; NULL for matrices */
+    int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
+    double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices */
     double *component_mass;     /* [n_components] sum of mass */
-    double b_ratio;             /* B >= b_ratio diag(B): 1 when B is diagonal, 1/2 for fem (0.42 with edges from a vertex to itself); matrices: proven by
-                                   Gershgorin's circles or by factorisations; 0 when not known */
-    int32_t conserves;          /* 1: L 1 = 0, so that heat is conserved (always so for meshes; matrices: up to 4 DBL_EPSILON sum_j |L_ij|).
-                                   What rounding left in the row sums then counts as zero: t may be as large as you like */
-    hd_mesh_report mesh;        /* zeros for matrices but n_inert; of points too, but when tufted: then of the stars' triangles */
-    hd_point_report points;     /* zeros for meshes and matrices; tufted: n_not_flat, and neighbours and
-                                   n_coincident, where neighbours were searched */
+    /* B >= b_ratio diag(B): 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to itself).
+     * Matrices: proven by Gershgorin's circles or by factorisations. 0: unknown. */
+    double b_ratio;
+    /* 1: L 1 = 0, so that heat is conserved. Always so for meshes and points. Matrices: up to 4 DBL_EPSILON
+     * sum_j |L_ij| in each row. Rounding in the row sums is then treated as zero, and t may be large. */
+    int32_t conserves;
+    /* Matrices and points: only n_inert. Tufted points: the triangles of their stars. */
+    hd_mesh_report mesh;
+    /* Zeros for meshes and matrices. Tufted points: n_not_flat; if neighbours were searched, also
+     * neighbours and n_coincident. */
+    hd_point_report points;
     hd_context *context;
 } hd_laplacian;
 
 typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
-    HD_POLES_UNIFORM,           /* best uniform (r,r) approximations, r = 1..14: smallest max |exp - c| on (-inf, 0] */
-    HD_POLES_KERNEL,            /* a0 = 0, c(0) = 1 exactly, smallest max (1 + |x|) |exp - c|, r = 2..14: the error is
-                                   relative to the kernel's own size, and heat is conserved to rounding */
+    /* Best uniform (r,r) approximations, r = 1..14: smallest max |exp - c| on (-inf, 0]. */
+    HD_POLES_UNIFORM,
+    /* a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c|, r = 2..14. The error is relative to the kernel's
+     * own size, and heat is conserved up to rounding. */
+    HD_POLES_KERNEL,
     HD_POLES_OWN,               /* the caller's */
-    HD_POLES_DIAGONAL           /* as kernel sets, with a weight that rises to five times (1 + |x|) far out: made for diagonals and distances */
+    /* r = 2..14, as kernel sets but with a weight that rises to five times (1 + |x|) at large |x|. Made for
+     * diagonals and distances. */
+    HD_POLES_DIAGONAL
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
 
-/* c(x) = a0 + sum_real a/(x - theta) + 2 Re sum_pairs a/(x - theta), for x = -t lambda <= 0. One of each conjugate pair is listed,
- * that with Im theta > 0; a pole with Im theta = 0 is real and counts once. No pole may lie on (-inf, 0]. */
+/* c(x) = a0 + sum_real a/(x - theta) + 2 Re sum_pairs a/(x - theta) for x = -t lambda <= 0. Of each conjugate
+ * pair only the pole with Im theta > 0 is listed. A pole with Im theta = 0 is real and counts once. No pole
+ * may lie on (-inf, 0]. */
 typedef struct hd_rational {
     hd_pole_kind kind;
     int32_t degree;             /* real poles + 2 pairs */
@@ -317,35 +415,38 @@ typedef struct hd_rational {
     double a0;
     hd_c64 theta[HD_MAX_POLES];
     hd_c64 a[HD_MAX_POLES];
+    /* In a set of your own, either error may be 0: unknown. If both are 0, bounds in reports are for c itself
+     * rather than for exp. */
     double max_error;           /* max |exp(x) - c(x)| on (-inf, 0] */
-    double max_weighted_error;  /* max (1 + |x|) |exp(x) - c(x)|; 0: not bounded or not known */
-    /* In a set of your own either may be 0: not known. Both 0: bounds in reports are for c itself, not for exp. */
+    double max_weighted_error;  /* max (1 + |x|) |exp(x) - c(x)|; 0: unbounded or unknown */
 } hd_rational;
 
 typedef enum hd_method {
-    HD_METHOD_AUTO = 0,         /* the one that costs least by a model of its flops and bytes, within the context's byte limit */
-    HD_METHOD_ITERATIVE,        /* a Krylov method per pole, or Lanczos */
-    HD_METHOD_DIRECT,           /* all poles factorised in one sweep: many fields or columns at one time */
-    HD_METHOD_KRYLOV            /* shift-and-invert Lanczos: one real factor for one or few fields, and for many times */
+    HD_METHOD_AUTO = 0,         /* the cheapest by a model of flops and bytes, within the byte limit */
+    HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
+    HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
+    HD_METHOD_KRYLOV            /* shift-and-invert Lanczos: one real factor, for few fields or many times */
 } hd_method;
 
 /* The order in which a factorisation eliminates rows. */
 typedef enum hd_ordering {
     HD_ORDERING_AUTO = 0,           /* nested dissection for large meshes, else minimum degree */
     HD_ORDERING_MINIMUM_DEGREE,     /* approximate minimum degree (Amestoy, Davis, Duff 1996) */
-    HD_ORDERING_NESTED_DISSECTION,  /* of the mesh in space, leaves by minimum degree; needs coordinates */
+    HD_ORDERING_NESTED_DISSECTION,  /* cuts the mesh in space; needs coordinates */
     HD_ORDERING_OWN                 /* the caller's permutation */
 } hd_ordering;
 
 typedef enum hd_solver {
-    HD_SOLVER_AUTO = 0,         /* Lanczos for small t where it costs less, else cocg */
-    HD_SOLVER_COCG,             /* conjugate orthogonal CG (van der Vorst, Melissen 1990); CG for real poles */
-    HD_SOLVER_COCR,             /* conjugate orthogonal conjugate residuals (Sogabe, Zhang 2007); CG for real poles */
-    HD_SOLVER_MINRES,           /* CS-MINRES (Choi 2013): MINRES on the Saunders process. Plain MINRES needs a Hermitian matrix,
-                                   which tL + theta B is not for complex theta: its Lanczos recurrence is then wrong and it
-                                   converges to something else. This one needs a real positive definite preconditioner, and
-                                   takes the one made for tL + |theta| B */
-    HD_SOLVER_LANCZOS           /* Lanczos for the exponential itself, no poles: about 1.1 sqrt(t lambda_max) steps */
+    HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
+    /* Conjugate orthogonal CG (van der Vorst, Melissen 1990); CG for real poles. */
+    HD_SOLVER_COCG,
+    /* Conjugate orthogonal conjugate residuals (Sogabe, Zhang 2007); CG for real poles. */
+    HD_SOLVER_COCR,
+    /* CS-MINRES (Choi 2013), which is MINRES on the Saunders process. Plain MINRES needs a Hermitian matrix.
+     * For complex theta, t L + theta B is not Hermitian, and plain MINRES converges to a wrong result.
+     * CS-MINRES needs a real positive definite preconditioner: here that of t L + |theta| B. */
+    HD_SOLVER_MINRES,
+    HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
 typedef enum hd_precond {
@@ -353,8 +454,8 @@ typedef enum hd_precond {
     HD_PRECOND_NONE,
     HD_PRECOND_JACOBI,          /* the diagonal */
     HD_PRECOND_SSOR,            /* symmetric successive over-relaxation, omega = 1 */
-    HD_PRECOND_ILDL,            /* incomplete LDL' on the pattern of L, no fill */
-    HD_PRECOND_MILDL            /* the same, 97 % of the dropped fill moved to the diagonal (modified; Gustafsson 1978) */
+    HD_PRECOND_ILDL,            /* incomplete L D L' on the pattern of L, no fill */
+    HD_PRECOND_MILDL            /* the same, 97 % of dropped fill goes to the diagonal (Gustafsson 1978) */
 } hd_precond;
 
 typedef struct hd_heat_opts {
@@ -363,14 +464,19 @@ typedef struct hd_heat_opts {
     hd_solver solver;
     hd_precond precond;
     hd_pole_kind poles;         /* default: kernel for columns and entries, uniform for fields */
-    int32_t degree;             /* default: chosen so that the rational error relative to the answer is below 1e-8 or so (direct: 3e-8, degree 9) */
-    const hd_rational *rational;/* a set of your own (any filter of the spectrum), copied; then poles and degree are not looked at
-                                   and Lanczos is not used */
-    double tol;                 /* solver's part of the error, |error|_B / |answer|_B; default 1e-9 */
+    /* Default: chosen so that the rational error relative to the answer is below about 1e-8 (direct: degree 9
+     * and 3e-8). */
+    int32_t degree;
+    /* A set of your own, for any filter of the spectrum. It is copied. poles and degree are then ignored, and
+     * Lanczos is not used. */
+    const hd_rational *rational;
+    double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    hd_ordering ordering;       /* for the methods that factorise */
-    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere; copied */
-    hd_context *context;        /* default: that of the Laplacian */
+    hd_ordering ordering;       /* of the methods that factorise */
+    /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th. Vertices without mass may stand
+     * anywhere. It is copied. */
+    const int32_t *perm;
+    hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
 } hd_heat_opts;
 
@@ -380,30 +486,36 @@ typedef enum hd_kernel {
 } hd_kernel;
 
 typedef enum hd_distance_kind {
-    HD_DISTANCE_CLASSICAL = 0,  /* d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006): intrinsic, what peers compute */
-    HD_DISTANCE_WEIGHTED,       /* d^2 = (e_i - e_j)' B K_2t (e_i - e_j): eq. (6) of the paper. Not intrinsic: tends to |b_i - b_j|/sqrt(area) for large t */
-    HD_DISTANCE_COMMUTE,        /* d^2 = sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance; no time, no poles */
-    HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
+    /* d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006). Intrinsic; the usual definition. */
+    HD_DISTANCE_CLASSICAL = 0,
+    /* d^2 = (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: for large t it tends to
+     * |b_i - b_j|/sqrt(area). */
+    HD_DISTANCE_WEIGHTED,
+    /* d^2 = sum_l (x_l(i) - x_l(j))^2 / lambda_l over the eigenpairs of (L, B) with lambda_l > 0: the
+     * effective resistance. It needs neither a time nor poles. */
+    HD_DISTANCE_COMMUTE,
+    /* The same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010). */
+    HD_DISTANCE_BIHARMONIC
 } hd_distance_kind;
 
-/* How a part of an error bound is known. The worst evidence of several answers is the largest of these numbers. */
+/* How a part of an error bound is known. For several answers the report holds the largest number. */
 typedef enum hd_evidence {
-    HD_EVIDENCE_NONE = 0,       /* the part does not apply to this query */
-    HD_EVIDENCE_PROVEN,         /* by a theorem, from norms and residuals of this very answer */
-    HD_EVIDENCE_MEASURED,       /* seen at some columns or solves of this answer, and taken for all of it */
-    HD_EVIDENCE_ESTIMATED       /* by a model of what rounding does */
+    HD_EVIDENCE_NONE = 0,       /* the part does not apply */
+    HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
+    HD_EVIDENCE_MEASURED,       /* measured at some columns or solves of this answer, assumed for all of it */
+    HD_EVIDENCE_ESTIMATED       /* a model of rounding */
 } hd_evidence;
 
-/* What happened, and how far off the answer can be. With several fields, columns or times, the worst of them.
+/* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
  *
- * The bound of the error has three parts: rational, of the approximation of exp; solver, of iterations that were
- * stopped; and rounding. error_bound is their sum: the largest error of any value returned, relative to the largest
- * |value| returned (of each field, column and time; of the whole list for entries and pairs). Each part says how it
- * is known; HD_EVIDENCE_NONE: it does not apply, and the other two are all there is.
- * A bound above 1e-2 says little: the status is HD_WARN_ACCURACY then. */
+ * The error bound has three parts: the rational approximation of exp, the iterative solver, and rounding.
+ * error_bound is their sum. It bounds the largest error of any value returned, relative to the largest
+ * |value| returned: of each field, column and time, or of the whole list for entries and pairs. Each part has
+ * its evidence. HD_EVIDENCE_NONE means that the part does not apply, and that the other parts are complete
+ * without it. If the bound is above 1e-2 it says little, and the status is HD_WARN_ACCURACY. */
 typedef struct hd_report {
     hd_status status;
-    hd_error error;             /* filled when status < 0 */
+    hd_error error;             /* filled if status < 0 */
     hd_method method;
     const char *reason;         /* why this method, in a few words */
     hd_solver solver;           /* HD_SOLVER_AUTO for direct, HD_SOLVER_LANCZOS for krylov */
@@ -411,24 +523,28 @@ typedef struct hd_report {
     hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos, which has none */
     int32_t degree;             /* 0 for Lanczos */
     int32_t n_poles;
-    int64_t iterations;         /* total over systems and fields (Lanczos: steps) */
+    int64_t iterations;         /* total over systems and fields; Lanczos: steps */
     int64_t pole_iterations[HD_MAX_POLES];  /* per pole, summed over the fields */
-    hd_ordering ordering;       /* of the factorisation; HD_ORDERING_AUTO when there is none */
-    int64_t factor_nnz;         /* non-zeros of L, diagonal included; 0 without a factorisation */
+    hd_ordering ordering;       /* of the factorisation; HD_ORDERING_AUTO without one */
+    int64_t factor_nnz;         /* non-zeros of the factor L, diagonal included; 0 without a factorisation */
     double factor_flops;        /* real floating-point operations of all factorisations that the plan holds */
-    double growth;              /* largest |pivot| over largest |diagonal entry|, see hd_ldl_report */
-    double residual;            /* largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1; computed, not recurred. 0 for Lanczos. With
-                                   HD_ERR_NOT_CONVERGED that of the system that failed (Lanczos: its bound of the relative error) */
+    double growth;              /* largest |pivot| / largest |diagonal entry|, see hd_ldl_report */
+    /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1, computed from x. 0 for Lanczos.
+     * After HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound of the relative error. */
+    double residual;
     double error_bound;         /* the sum of the next three */
     double error_rational, error_solver, error_rounding;
     hd_evidence evidence_rational, evidence_solver, evidence_rounding;
-    double error_bound_b;       /* fields and columns: bound of |error|_B / |answer|_B. HUGE_VAL where it does not apply */
-    hd_evidence evidence_b;     /* HD_EVIDENCE_NONE where it does not apply */
-    double error_relative;      /* diagonals, distances, pairs: bound of the largest error relative to the value itself. HUGE_VAL where it does
-                                   not apply, or a value is zero that need not be */
+    /* Fields and columns: bound of |error|_B / |answer|_B. Otherwise HUGE_VAL and HD_EVIDENCE_NONE. */
+    double error_bound_b;
+    hd_evidence evidence_b;
+    /* Diagonals, distances, pairs: bound of the largest error relative to the value itself. HUGE_VAL if it
+     * does not apply, or if a value is zero that need not be zero. */
+    double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
-    int64_t n_lost;             /* distances with less than a digit or so left, see hd_heat_distance */
-    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|, 0 when the pair does not conserve heat or the filter is the caller's */
+    int64_t n_lost;             /* distances with at most about one sure digit, see hd_heat_distance */
+    /* |1'B u - 1'B f| / 1'B|u|. 0 if L does not conserve heat or the filter is the caller's. */
+    double mass_drift;
 } hd_report;
 
 typedef enum hd_geodesic_mass {
@@ -438,31 +554,40 @@ typedef enum hd_geodesic_mass {
 
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
-    double t;                   /* how long heat flows, unit length^2; default h^2, h the mean edge length. Larger: smoother, less exact */
-    hd_geodesic_mass mass;      /* B, always diagonal: it says how fast heat fades, and has little influence */
+    /* How long heat flows, unit length^2. Larger values give smoother and less accurate distances. Default
+     * h^2, with h the mean edge length. */
+    double t;
+    /* The diagonal of B. It determines how fast heat fades, and has little influence on the distance. */
+    hd_geodesic_mass mass;
     hd_ordering ordering;       /* of both factorisations */
-    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere */
+    /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere. */
+    const int32_t *perm;
     hd_context *context;
     int32_t end_zero;
 } hd_geodesic_opts;
 
-/* Of a query; with several columns the worst of them. */
+/* What happened in a call. For several columns: the worst of them. */
 typedef struct hd_geodesic_report {
     hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
-    hd_error error;             /* filled when status < 0 */
+    hd_error error;             /* filled if status < 0 */
     double t, h;
     int32_t n_components;
-    int32_t n_stages;           /* solves of the heat equation for a column: more than one where heat faded below 1e-200 */
+    int32_t n_stages;           /* heat solves for a column: several where heat faded below 1e-200 */
     hd_ordering ordering;
     int64_t factor_nnz;         /* of each of the two factors, diagonal included */
     double factor_flops;        /* of both */
-    double residual_heat;       /* |b - A x| / |b| of (L + B/t) u, and of L phi: how well the systems are solved, not how near the distance is */
+    /* |b - A x| / |b| of (L + B/t) u and of L phi. They tell how well the systems are solved, and nothing
+     * about the error of the method itself. */
+    double residual_heat;
     double residual_distance;
 } hd_geodesic_report;
 
 /* ==== [D] functions ==== */
-/* Common to all: pointers to results come first. Functions return hd_status; on an error nothing is left allocated, *out is
- * left as it was, and the numbers in output arrays are unspecified. err and report may be NULL. */
+/* Common to all functions. Arguments come in this order: the object that is made, or that the function works
+ * on; what is asked for; the input; the output; report; err. A count stands before its array, but for meshes and
+ * points, which are xyz, n. Functions return hd_status. After an error nothing
+ * is left allocated, *out is unchanged, and output arrays hold unspecified numbers.
+ * err and report may be NULL. */
 
 /* ---- statuses ---- */
 
@@ -471,31 +596,42 @@ HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" *
 
 /* ---- sparse matrices ---- */
 
-/* A from triplets (i, j, v) in any order; those with the same place are summed in the order given. v may be NULL: a pattern.
- * Cost O(n_rows + n_cols + n_triplets). Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE (row: index of the
- * triplet; of a sum its row and column). */
-HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
-                                            const int32_t *j, const double *v, hd_context *ctx, hd_error *err);
+/* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given.
+ * v      [n_triplets], or NULL: a pattern
+ * Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE (row: index of the triplet; if a sum
+ *        overflows, its row and column)
+ * Cost   O(n_rows + n_cols + n_triplets) */
+HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols,
+                                            int64_t n_triplets, const int32_t *i,
+                                            const int32_t *j, const double *v,
+                                            hd_context *ctx, hd_error *err);
 
-/* Checks offsets, indices, order and finiteness; with symmetric = 1 also A = A' up to 1e-12 of the larger entry of the pair.
- * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC, with row and column. Cost O(nnz). */
-HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx, hd_error *err);
+/* Checks offsets, indices, their order, and that values are finite. symmetric = 1: also checks A = A' up to
+ * 1e-12 of the larger entry of each pair.
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC, with row and column
+ * Cost   O(nnz) */
+HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx,
+                                    hd_error *err);
 
 /* out = A'. Cost O(nnz). */
-HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *err);
+HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx,
+                                        hd_error *err);
 
-/* out = A B (Gustavson 1978). Errors HD_ERR_NOT_FINITE (row, column: an entry overflows). Cost O(flops +
- * sorting of the rows). */
-HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *err);
+/* out = A B (Gustavson 1978).
+ * Errors HD_ERR_NOT_FINITE (row, column: an entry overflows)
+ * Cost   O(flops), and sorting the rows */
+HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b,
+                                      hd_context *ctx, hd_error *err);
 
-/* out = P A P', a square A with rows and columns renumbered: row i of out is row perm[i] of A. Errors HD_ERR_INDEX when perm is not
- * a permutation. */
-HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx, hd_error *err);
+/* out = P A P' for a square A: row i of out is row perm[i] of A, and columns likewise.
+ * Errors HD_ERR_INDEX if perm is not a permutation */
+HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm,
+                                      hd_context *ctx, hd_error *err);
 
-/* y = A x. x [n_cols], y [n_rows], not overlapping. ctx is for its threads. Never fails on a checked matrix. */
+/* y = A x. x [n_cols] and y [n_rows] must not overlap. ctx is for threads. A checked matrix never fails. */
 HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx);
 
-/* Frees what the library allocated with the same ctx and clears the struct. */
+/* Frees what the library allocated with the same ctx, and clears the struct. */
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 
 /* ---- operators ---- */
@@ -503,108 +639,160 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 /* The Laplacian of a triangle mesh.
  * xyz    [3 n] coordinates, finite
  * tri    [3 n_tri] vertex ids in [0, n)
- * opts   kind of Laplacian, context; NULL: fem
- * Faces of zero area, with a repeated corner, or with the corners of an earlier face are left out and counted in out->mesh;
- * vertices without mass become inert. Non-manifold edges and several components are fine.
- * With opts->intrinsic_delaunay or opts->tufted L and B are those of an intrinsic Delaunay triangulation of the same surface (Bobenko, Springborn 2007;
- * Sharp, Crane 2020) on the same vertices: no off-diagonal entry of L is positive (see there for boundaries), so that with voronoi-cot or cot heat obeys
- * the maximum principle. Entries that only rounding made positive, below 1e-13 of the cotangents of the faces at the edge, are set to zero.
- * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY. Cost O(n + n_tri + flips). */
-HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
+ * opts   kind (fem, voronoi-cot, cot), intrinsic_delaunay, tufted, mollify, context; NULL: fem
+ * Faces of zero area, faces with a repeated corner, and faces with the corners of an earlier face are left
+ * out and counted in out->mesh. Vertices without mass become inert. Non-manifold edges and several components
+ * are allowed.
+ * intrinsic_delaunay and tufted give L and B of an intrinsic Delaunay triangulation of the same surface on
+ * the same vertices (Bobenko, Springborn 2007; Sharp, Crane 2020). Then no off-diagonal entry of L is
+ * positive (for boundaries see hd_laplacian_opts), and with voronoi-cot or cot heat obeys the maximum
+ * principle. Entries that only rounding made positive, below 1e-13 of the cotangents of the faces at the
+ * edge, are set to zero.
+ * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY,
+ *        HD_ERR_ARGUMENT, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost   O(n + n_tri + flips) */
+HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
+                                              const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err);
 
-/* The Laplacian of a mesh of polygons: any number of corners, planar or not, convex or not, triangles among them.
- * xyz    [3 n] coordinates, finite
- * face_ptr [n_faces + 1] from 0, not descending: the corners of face f are face_idx[face_ptr[f]] .. face_idx[face_ptr[f + 1] - 1]
+/* The Laplacian of a mesh of polygons. Faces may have any number of corners, and may be triangles, non-planar
+ * or non-convex.
+ * xyz      [3 n] coordinates, finite
+ * face_ptr [n_faces + 1] from 0, not descending. The corners of face f are face_idx[face_ptr[f]] ..
+ *          face_idx[face_ptr[f + 1] - 1]
  * face_idx [face_ptr[n_faces]] vertex ids in [0, n)
- * opts   kind, lambda, context; NULL: polygon with lambda 1. With fem, voronoi-cot or cot every face is split as a fan from its first corner, and
- *        all is as hd_laplacian_triangles has it of those triangles (counts in mesh are of triangles then; the face in errors is the polygon).
- *        intrinsic_delaunay and tufted are of triangles: with them the default is fem, and polygon is an error
- * On triangles polygon has L of the cotangents, whatever lambda. lap->h is the mean length of the polygons' own edges; the pattern of L holds the
- * diagonals of the faces too. What is left out is told at hd_mesh_report.
- * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_NOT_FINITE (vertex or face), HD_ERR_TOO_LARGE,
- * HD_ERR_EMPTY, HD_ERR_ARGUMENT.
- * Cost a face of k corners: k^2 entries of the matrix at most, and as much time; the work arrays are linear in k.
- * Source Alexa, Wardetzky 2011, the face matrices M_f with their combinatorial part; written out, with the differences, in room [10]. */
-HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
-                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err);
+ * opts     kind, lambda, context; NULL: polygon with lambda 1
+ * With fem, voronoi-cot or cot every face is split into a fan of triangles from its first corner, and the
+ * result is that of hd_laplacian_triangles. out->mesh then counts triangles, but errors name the polygon.
+ * intrinsic_delaunay and tufted work on these triangles: with them the default kind is fem, and polygon is an
+ * error.
+ * On triangles the kind polygon has the cotangent L for any lambda. lap->h is the polygons' mean edge length.
+ * The pattern of L contains the diagonals of the faces. hd_mesh_report says which faces are left out.
+ * Errors   HD_ERR_INDEX (face, value: the id), HD_ERR_STRUCTURE (face: face_ptr descends there),
+ *          HD_ERR_NOT_FINITE (vertex or face), HD_ERR_TOO_LARGE, HD_ERR_EMPTY, HD_ERR_ARGUMENT,
+ *          HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost     a face with k corners: at most k^2 entries of L and as much time; work arrays are linear in k
+ * Source   Alexa, Wardetzky 2011: L is the sum of D'M_f D over the faces, with their M_f, and with D the
+ *          differences along the edges. The combinatorial part of M_f has one weight lambda for all faces */
+HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n,
+                                             const int64_t *face_ptr, const int32_t *face_idx,
+                                             int32_t n_faces, const hd_laplacian_opts *opts,
+                                             hd_error *err);
 
 /* The Laplacian of points on a surface, given without faces.
  * xyz    [3 n] coordinates, finite
  * opts   kind voronoi-exp (default) or exp, bandwidth, weight_cut, neighbours, context
- * The bandwidth s trades the error of smoothing, which grows like s, for that of sampling, which falls like 1/s^2. By default it is m (m/h^2)/4, within
- * 0.3 m and 1 m, where m, the area that a point has, is the mean of pi r_k^2/k with r_k the distance of the k-th neighbour (values beyond nine
- * medians count as those): 0.36 m for blue noise, 1 m for points independent of each other. Weights reach as far as 8.6 sqrt(s), and a row has
- * about 230 s/m non-zeros, 80 and 230 for these two; a weight_cut of 1e-4 halves that and changes the operator by 0.1 %.
- * With s a multiple of m the error does not vanish as points become denser, it levels at 1 to 3 %: for more, let s/m grow, as theory asks for
- * (Belkin, Niyogi 2008; Singer 2006).
- * Points in one place share its cell; points without area are inert for voronoi-exp; those that no other point reaches are components of their
- * own. Cells at a border end at the hull of the neighbours. All is counted in lap->points.
- * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY (fewer than two places, or all on a line). Cost O(n log n + nnz). Source Liu,
- * Prabhakaran, Guo 2012; Belkin, Niyogi 2008; what differs from them is told in room [10]. */
-HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err);
+ * The bandwidth s balances two errors: the error of smoothing grows like s, the error of sampling falls like
+ * 1/s^2. Let r_k be the distance of the k-th neighbour, and m the mean of pi r_k^2/k, the area of a point
+ * (values above nine medians count as nine medians). The default is s = m (m/h^2)/4, but at least 0.3 m and
+ * at most 1 m. This is 0.36 m for blue noise and 1 m for independent random points. Weights reach as far as
+ * 8.6 sqrt(s). A row has about 230 s/m non-zeros: 80 and 230 for these two. weight_cut = 1e-4 halves that and
+ * changes the operator by 0.1 %.
+ * If s is a fixed multiple of m, the error levels off at 1 to 3 % as points become denser.
+ * To go below that, let s/m grow as points become denser (Belkin, Niyogi 2008; Singer 2006).
+ * Points at the same place share its cell. Points without area are inert for voronoi-exp. Points that no
+ * other point reaches become components of their own. Cells at a border end at the hull of the neighbours.
+ * lap->points counts each of these cases.
+ * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY (fewer than two places, or all on a line),
+ *        HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost   O(n log n + nnz)
+ * Source Liu, Prabhakaran, Guo 2012 (voronoi-exp); Belkin, Niyogi 2008 (exp). Differences: weights are cut by
+ *        distance, so that L is symmetric; neighbours more than 45 degrees off the tangent plane count with
+ *        their height, so that points of another sheet two spacings away do not cut a cell */
+HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n,
+                                           const hd_laplacian_opts *opts, hd_error *err);
 
-/* The tufted Laplacian of a point set on a surface (Sharp, Crane 2020, section 5.7): cotangent weights, none of them negative, 7 to 13 in a row.
+/* The tufted Laplacian of a point set on a surface: cotangent weights, none negative, 7 to 13 in a row.
  * xyz      [3 n] coordinates, finite
- * nbr_ptr  [n + 1] offsets into nbr; nbr_ptr[0] = 0. NULL, and nbr NULL: the opts->neighbours nearest points of each are searched; points in the place
- *          of an earlier one become inert then
- * nbr      ids of the neighbours of each point, in any order, at most 256 of a point; about 30 nearest ones suit. The point itself, points in its
- *          place and ids that come twice do no harm
- * opts     kind of masses (fem, voronoi-cot, cot), neighbours, mollify, context; NULL: fem. Always tufted
- * The Delaunay star of each point among its neighbours is found in their tangent plane; all stars together are a soup of triangles that counts a third.
- * lap->mesh tells of that soup. Points in no star become inert. Cost O(n log n + n_neighbours + flips).
- * Two sheets of a surface stay apart where about two spacings are between them (for points independent of
- * each other three). Closer ones are taken for a single rough sheet, or mix; lap->points.n_not_flat counts
- * such places.
+ * nbr_ptr  [n + 1] offsets into nbr; nbr_ptr[0] = 0. If nbr_ptr and nbr are NULL, the opts->neighbours
+ *          nearest points of each point are searched; points at the place of an earlier one are inert then
+ * nbr      ids of the neighbours of each point in any order, at most 256 of a point; about 30 nearest ones
+ *          suit. The point itself, points at its place and repeated ids do no harm
+ * opts     kind (fem, voronoi-cot, cot), neighbours, mollify, context; NULL: fem. tufted is always on
+ * Each point's Delaunay star among its neighbours is computed in their tangent plane. All stars together form
+ * a triangle soup in which each triangle counts a third. lap->mesh describes that soup. Points in no star are
+ * inert.
+ * Two sheets of a surface are kept separate if they are at least about two spacings apart (three for
+ * independent random points). Closer sheets are mixed or treated as one rough sheet; lap->points.n_not_flat
+ * counts such places.
  * HINT: if you know normals, leave neighbours whose normals point the other way out of nbr.
- * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row: the point), HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY. */
-HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+ * Errors   HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row: the point), HD_ERR_NOT_FINITE (vertex),
+ *          HD_ERR_ARGUMENT, HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost     O(n log n + n_neighbours + flips)
+ * Source   Sharp, Crane 2020, section 5.7 */
+HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n,
+                                                  const int64_t *nbr_ptr, const int32_t *nbr,
                                                   const hd_laplacian_opts *opts, hd_error *err);
 
-/* The pair of the caller's own matrices on any graph, copied.
- * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked: L_ii >= 0 and
- *        L_ij^2 <= L_ii L_jj. Rows need not sum to zero (then heat is not conserved)
- * B      n x n, symmetric positive definite; any pattern. Rows of B without any non-zero are inert vertices. Definiteness is
- *        checked on the diagonal, by factorising B where rows of it are not dominated by their diagonal, and
- *        where a solver meets it
- *        The pattern of the pair is that of both; explicit zeros stay where their mirror entry is stored too
- * h      unit length of the caller's mesh for lap->h; 0 if none
- * Errors as hd_csr_check, HD_ERR_NOT_POSITIVE (row, column, value), HD_ERR_EMPTY, HD_ERR_CANCELLED. Cost linear,
- *        but for factorising B. */
-HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
+/* The pair of the caller's own matrices, on any graph. Both are copied.
+ * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked are L_ii >= 0
+ *        and L_ij^2 <= L_ii L_jj. If its rows do not sum to zero, heat is not conserved
+ * B      n x n, symmetric positive definite, any pattern. Rows of B without non-zeros are inert vertices.
+ *        Definiteness is checked on the diagonal, by a factorisation if some row is not dominated by its
+ *        diagonal, and later by solvers
+ * h      unit length of the caller's mesh, for lap->h; 0 if there is none
+ * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
+ * Errors as hd_csr_check; HD_ERR_NOT_POSITIVE (row, column, value), HD_ERR_EMPTY, HD_ERR_MEMORY,
+ *        HD_ERR_CANCELLED
+ * Cost   linear, except for a factorisation of B */
+HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
+                                             double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
-/* y = (alpha L + beta B) x for a field on the vertices. x, y [n], not overlapping. y is 0 at vertices without mass. */
-HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y, hd_error *err);
+/* y = (alpha L + beta B) x for a field on the vertices. x and y [n] must not overlap. y is 0 at vertices
+ * without mass. Uses the Laplacian's context. */
+HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
+                                          const double *x, double *y, hd_error *err);
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
 
 /* ---- neighbours of points ---- */
 
-/* The k nearest points of every query.
- * index      [k m] by queries: ids of points, the nearest first, equally far ones by id; a point of the set finds itself too. -1 beyond n
- * distance2  [k m] their squared distances, infinite beyond n; NULL: not wanted
+/* The k nearest points of each query point.
+ * index      [k m] ids of points, k for each query, nearest first. Equally distant points are ordered by id.
+ *            A query that is a point of the set finds itself too. -1 beyond n
+ * distance2  [k m] squared distances, infinite beyond n; NULL: not wanted
  * xyz        [3 n] the points, finite
- * query      [3 m] where to look from; NULL: from all the points, m = n
- * Exact. Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex; the row for a query). Cost O((n + k m) log n). Source Friedman, Bentley, Finkel 1977. */
-HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m, int32_t k, int32_t *index,
+ * query      [3 m] the query points; NULL: all n points, m = n
+ * The result is exact.
+ * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or row for a query), HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost       O((n + k m) log n)
+ * Source     Friedman, Bentley, Finkel 1977 */
+HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query,
+                                             int32_t m, int32_t k, int32_t *index,
                                              double *distance2, hd_context *ctx, hd_error *err);
 
-/* All points within a radius of every query: row i of out, m x n, lists the points at a distance d with d^2 <= radius^2 by id, its values are d^2.
- * Arguments, errors as above; free out with hd_csr_free and the same ctx. */
-HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query, int32_t m, double radius, hd_context *ctx,
-                                            hd_error *err);
+/* All points within a radius of each query point. Row i of out, m x n, lists by id the points at distance d
+ * from query i with d^2 <= radius^2; its values are d^2. Arguments and errors as above. Free out with
+ * hd_csr_free and the same ctx. */
+HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n,
+                                            const double *query, int32_t m, double radius,
+                                            hd_context *ctx, hd_error *err);
 
 /* ---- rational approximations ---- */
 
-/* A built-in set: uniform r = 1..14, kernel r = 2..14. Errors HD_ERR_ARGUMENT. Constants by tools/poles.py. */
-HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *err);
+/* A built-in set: HD_POLES_UNIFORM of degree 1..14, HD_POLES_KERNEL of degree 2..14, or HD_POLES_DIAGONAL of
+ * degree 2..14. tools/poles.py computes and checks the constants.
+ * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
+ * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
+HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree,
+                                       hd_error *err);
 
-/* Kernel sets for many times at once: out [n_times], out[q] for t[q], in any order. The poles are shared: theta_i/t[q] is the same for all q, so that the factors
- * of L + (theta_i/t[q]) B serve every time, and only the weights differ. The fewest poles are taken, in fours, that keep max_weighted_error below tol for all:
- * 8 for a range of times of 10 at 1e-6, 12 for 100, 16 for 1000; see the table in [16]. ctx is for scratch memory. Cost: under a millisecond for a time.
- * Errors HD_ERR_ARGUMENT: a time that is not positive and finite (row), or no such set (value: the ratio of the times); HD_ERR_MEMORY. */
-HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol, hd_context *ctx, hd_error *err);
+/* Kernel sets for many times that share their poles.
+ * out    [n_times] out[q] is the set for t[q]
+ * t      [n_times] > 0, in any order
+ * tol    bound of max_weighted_error of every set
+ * ctx    for scratch memory
+ * theta_i/t[q] is the same for all q. So the factors of L + (theta_i/t[q]) B serve every time, and only the
+ * weights differ. The number of pole pairs is the smallest multiple of four that reaches tol for all times.
+ * At tol = 1e-6 it is 8 if the largest time is 10 times the smallest, 12 if it is 100 times, and 16 if it is
+ * 1000 times.
+ * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set
+ *        (value: the ratio of the times); HD_ERR_MEMORY
+ * Cost   under a millisecond for each time
+ * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles instead of poles on a hyperbola */
+HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
+                                          double tol, hd_context *ctx, hd_error *err);
 
 /* c(x) for real x <= 0. */
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
@@ -617,36 +805,43 @@ typedef struct hd_solve_opts {
     hd_precond precond;
     double tol;                 /* |b - A x| / |b| in the norm of diag(B)^-1; default 1e-10 */
     int32_t max_iterations;     /* default 20000 */
-    hd_context *context;        /* default: that of the Laplacian */
+    hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
 } hd_solve_opts;
 
 typedef struct hd_solve_report {
     int64_t iterations;
     double residual;            /* reached, computed from x, in the norm of diag(B)^-1 */
-    double error_b;             /* bound of |x - exact|_B / |x|_B; infinite when nothing is known about B */
+    double error_b;             /* bound of |x - exact|_B / |x|_B; infinite if nothing is known about B */
 } hd_solve_report;
 
-/* (t L + theta B) x = rhs, complex symmetric. rhs, x [n] on the vertices, may be the same array; 0 at vertices without mass.
- * theta not on (-inf, 0], t >= 0. The report is filled too when the status is HD_ERR_NOT_CONVERGED. Every call makes its own ordering and
- * preconditioner.
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row: of rhs, or of x when that overflows), HD_ERR_NOT_CONVERGED,
- * HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED. HD_WARN_ACCURACY. */
-HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
-                                        const hd_solve_opts *opts, hd_solve_report *report, hd_error *err);
+/* Solves (t L + theta B) x = rhs, a complex-symmetric system.
+ * t      >= 0
+ * theta  not on (-inf, 0]
+ * rhs, x [n] on the vertices; they may be the same array. x is 0 at vertices without mass
+ * report filled also if the status is HD_ERR_NOT_CONVERGED
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED,
+ *        HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ * Cost   every call makes its own ordering and preconditioner */
+HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta,
+                                        const hd_c64 *rhs, hd_c64 *x, const hd_solve_opts *opts,
+                                        hd_solve_report *report, hd_error *err);
 
 /* ---- direct solver ---- */
 
-/* The factorisation P A P' = L D L' of a symmetric matrix without pivoting, L unit lower triangular, D diagonal: for real matrices that are positive (or
- * otherwise strongly) definite or quasi-definite, and for complex-symmetric ones (A = A', never conjugated) whose real part is definite after a rotation,
- * such as t L + theta B. The analysis of a pattern serves any number of factorisations, which allocate nothing after the first of their kind. */
+/* The factorisation P A P' = L D L' of a symmetric matrix without pivoting. L is unit lower triangular, D is
+ * diagonal. It suits two classes of matrices: real matrices that are definite or quasi-definite, and
+ * complex-symmetric matrices (A = A', never conjugated) whose real part is definite after a rotation, such as
+ * t L + theta B. One analysis of a pattern serves any number of factorisations, and these allocate nothing
+ * after the first of their kind. One thread at a time. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
     int32_t begin_zero;
-    hd_ordering ordering;       /* default: nested dissection when coordinates are given and rows are many, else minimum degree */
+    /* Default: nested dissection if coordinates are given and there are many rows, else minimum degree. */
+    hd_ordering ordering;
     const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the row eliminated k-th */
-    const double *xyz;          /* [3 n] places of the rows; NULL: none */
+    const double *xyz;          /* [3 n] coordinates of the rows; NULL: none */
     hd_context *context;
     int32_t end_zero;
 } hd_ldl_opts;
@@ -655,49 +850,76 @@ typedef struct hd_ldl_report {
     hd_ordering ordering;
     int32_t n_supernodes;
     int32_t n_matrices;         /* in the factor; 0: only analysed */
-    int64_t factor_nnz;         /* of L, diagonal included, without what is stored beyond */
-    int64_t stored;             /* entries of an array of factors */
-    double factor_flops;        /* of a real factorisation: the sum of the squares of L's column counts. Complex: four times that, a matrix */
-    double growth;              /* largest |pivot| / largest |diagonal entry of A|: the price of not pivoting; at most 3.8 for uniform sets, 4.2 for kernel sets */
+    int64_t factor_nnz;         /* of L, diagonal included, without padding */
+    int64_t stored;             /* entries of an array of factors, padding included */
+    /* Of one real factorisation: the sum of the squares of L's column counts. A complex matrix takes four
+     * times as many. */
+    double factor_flops;
+    /* Largest |pivot| / largest |diagonal entry of A|: what is lost because there is no pivoting. At most 3.8
+     * for uniform sets and 4.2 for kernel sets. */
+    double growth;
     double smallest_pivot;      /* smallest |pivot| / largest |diagonal entry of A| */
-    int32_t n_negative;         /* real: pivots below zero, which is the number of negative eigenvalues */
+    int32_t n_negative;         /* real: negative pivots, which is the number of negative eigenvalues */
 } hd_ldl_report;
 
-/* Ordering, elimination tree, supernodes. a: n x n, symmetric pattern, its val is not looked at; diagonal entries may be missing.
- * Errors as hd_csr_check; HD_ERR_INDEX (row) when perm is not a permutation; HD_ERR_ARGUMENT. Cost nearly linear in the non-zeros of A and of the ordering. */
-HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts, hd_ldl_report *report, hd_error *err);
+/* Computes the ordering, the elimination tree and the supernodes.
+ * a      n x n with a symmetric pattern. Its values are ignored, and diagonal entries may be missing
+ * Errors as hd_csr_check; HD_ERR_INDEX (row) if perm is not a permutation; HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE,
+ *        HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost   nearly linear in the non-zeros of A, plus the ordering */
+HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
+                                      hd_ldl_report *report, hd_error *err);
 
-/* Factors a real matrix. val [nnz] in the order of the pattern analysed; one of each pair (i,j), (j,i) is read.
- * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot that cannot be divided by), HD_ERR_CANCELLED. */
-HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err);
+/* Factorises a real matrix.
+ * val    [nnz] in the order of the analysed pattern. Of each pair (i,j), (j,i) one entry is read
+ * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by),
+ *        HD_ERR_MEMORY, HD_ERR_CANCELLED */
+HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report,
+                                     hd_error *err);
 
-/* Factors k complex-symmetric matrices in one sweep, four at a time side by side: any k, but three and four cost the same. val [k nnz].
- * Errors as above, with the matrix in pole. */
-HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *report, hd_error *err);
+/* Factorises k complex-symmetric matrices in one sweep. Four at a time are stored side by side, so three cost
+ * as much as four.
+ * val    [k nnz], one matrix after the other
+ * Errors as above; pole is the index of the matrix */
+HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val,
+                                             hd_ldl_report *report, hd_error *err);
 
-/* A x = b for k real right-hand sides, columns ldb and ldx apart (0: n). x may be b. The first call of a kind allocates its work arrays. */
-HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x, size_t ldx, hd_error *err);
+/* Solves A x = b for k real right-hand sides. Columns are ldb and ldx apart (0: n). x may be b. The first
+ * call of a kind allocates its work arrays. */
+HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x,
+                                    size_t ldx, hd_error *err);
 
-/* A_q x_q = b_q for all matrices of the last complex factorisation: b_q = b + q ldb, x_q = x + q ldx (ldx 0: n; ldb 0: the same b for all). x may be b
- * when ldb = ldx or 0. */
-HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx, hd_error *err);
+/* Solves A_q x_q = b_q for all matrices of the last complex factorisation. The arrays are
+ * b_q = b + q ldb and x_q = x + q ldx. ldx = 0 means n. ldb = 0 means the same b for all. x may be b if
+ * ldb is ldx or 0. */
+HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x,
+                                            size_t ldx, hd_error *err);
 
-/* Entries of A^-1 by selected inversion, A the matrix of the last real factorisation, which stays.
- * values [nnz], on the pattern analysed and in its order, both of each pair; diag [n], diagonal entries missing in the pattern included. Each may be NULL.
- * Cost about twice the factorisation's flops (twice that for both, where diagonal entries are missing); work arrays live for the call.
- * Errors HD_ERR_ARGUMENT (the last factorisation was not a real one, or failed), HD_ERR_MEMORY, HD_ERR_CANCELLED.
- * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975. */
+/* Entries of A^-1 by selected inversion. A is the matrix of the last real factorisation, which is kept.
+ * values [nnz] on the analysed pattern and in its order, both of each pair; NULL: not wanted
+ * diag   [n] also where the pattern has no diagonal entry; NULL: not wanted
+ * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed), HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost   about twice the flops of the factorisation (four times if both are wanted and diagonal entries are
+ *        missing); work arrays live for the call
+ * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 */
 HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, hd_error *err);
 
-/* The same for all k matrices of the last complex factorisation (A^-1 is complex symmetric as A is): values [k nnz], diag [k n]. */
-HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag, hd_error *err);
+/* The same for all k matrices of the last complex factorisation: values [k nnz], diag [k n]. A^-1 is complex
+ * symmetric like A. */
+HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag,
+                                              hd_error *err);
 
-/* Single entries of A^-1: values[q] = (i[q], j[q]), for the last real factorisation; or for all k matrices of the last complex one, values [k n_entries].
- * For every distinct j a forward sweep from j up the elimination tree and a backward one down to the rows i: fronts off these paths are not touched. For entries
- * on the pattern hd_ldl_inverse is quicker from some hundred columns on.
- * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: which entry), HD_ERR_MEMORY. */
-HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i, const int32_t *j, double *values, hd_error *err);
-HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries, const int32_t *i, const int32_t *j, hd_c64 *values, hd_error *err);
+/* Single entries of A^-1: values[q] is the entry (i[q], j[q]).
+ * values [n_entries] for the last real factorisation, [k n_entries] for all matrices of the last complex one
+ * Each distinct j takes a forward sweep from j up the elimination tree and a backward sweep down to the
+ * rows i. Fronts off these paths are not touched. For entries on the pattern, hd_ldl_inverse is faster from
+ * some hundred columns on.
+ * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: which entry), HD_ERR_MEMORY */
+HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i,
+                                              const int32_t *j, double *values, hd_error *err);
+HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries,
+                                                      const int32_t *i, const int32_t *j,
+                                                      hd_c64 *values, hd_error *err);
 
 HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 
@@ -705,112 +927,180 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive it. What a method needs is made when it is first used, and kept from call to call: the pair renumbered for
- * it, the analysis, factors or preconditioners of the last pole set and time, work arrays. One thread at a time. */
-HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err);
+/* A plan for heat on lap, which must outlive the plan. Creating it is cheap: whatever a method needs is made
+ * at its first use. So the first column, field or diagonal at a time t carries the factorisation, and further
+ * ones at the same t are much faster. The plan keeps the renumbered pair, the analysis, work arrays, and the
+ * factors or preconditioners of the last pole set and time.
+ * One thread at a time for a plan. Plans with contexts of their own may share lap, see Threads at the top of
+ * the file.
+ * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: perm is not a permutation), HD_ERR_MEMORY */
+HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
+                                      const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 
-/* U = K_t F.
- * t      >= 0, unit length^2 (t = 0 copies F). However large: the answer tends to the mean of each component, and becomes it
- * F, U   n x k doubles, column-major, columns ldf and ldu apart (0: n); U may be F
- *        With a degree by default, all fields of a call share the largest that one of them needs
- * Cost   direct: a factorisation of all poles for every new t, then one sweep of the factors for eight fields at a time; krylov: one real factor, 15 to 30
- *        real solves a field; iterative: a solve a pole, each started from those before it, up to four fields in parallel
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN, HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY,
- *        HD_ERR_CANCELLED; details in report->error. HD_WARN_ACCURACY.
- * Source Patane, Spagnuolo 2013, eqs. (8), (9); signs as in the opening. */
-HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
-                                     double *U, size_t ldu, hd_report *report, hd_error *err);
+/* Common to all queries of a plan:
+ * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
+ * t      [n_times], n_times >= 1, in any order; unit length^2. One time: n_times = 1 and the address of t
+ * report NULL, or what happened; with several columns or times the worst of them
+ * err    NULL, or the error, which report->error has as well */
 
-/* u = K_t e_source: the heat that reaches each vertex from a unit at source (its own area's worth). u [n]. */
-HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u, hd_report *report,
-                                      hd_error *err);
-
-/* Several columns of K_t or of k_t = K_t B^-1. U n x k as above, column q for sources[q]. The column of a vertex without mass is
- * its unit vector for the operator, zero for the symmetric kernel. */
-HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int32_t k,
-                                       const int32_t *sources, double *U, size_t ldu, hd_report *report, hd_error *err);
-
-/* The diagonal of k_t (heat kernel signature, Sun et al. 2009; auto-diffusion function, Gebal et al. 2009) or of K_t at every vertex, exactly, by selected
- * inversion: no spectrum, no column. D n x n_times, column q for t[q] > 0, columns ldd apart (0: n). A vertex without mass has 0 (K_t: 1).
- * For a full B, k_t leaves a0 diag(B^-1) of a uniform set out, which is of the size of the set's error and counted in it.
- * Cost   for every t the factors of all poles and about twice as much again; many times, when neither poles nor a degree are asked for, share one set: 16 or
- *        100 over three decades cost four or five times as much as one
- * Errors HD_ERR_ARGUMENT (also for the methods iterative and krylov), HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED
- *        (also for n_times < 1)
- * Report The rational part is proven at every vertex. Rounding is measured at the vertices that suffer most, by solves whose
- *        residuals are known; of many times, at each of them. */
-HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *D, size_t ldd,
-                                        hd_report *report, hd_error *err);
-
-/* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion: values [L.nnz] on the pattern of the Laplacian's L (rows, not
- * vertices). For a full B without a0 B^-1, as above. By default the highest degree takes over where the rational part of the
- * bound is above 5e-7. Rounding is measured in the rows that suffer most. */
-HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *values,
+/* U = K_t F at each time.
+ * t      >= 0. t = 0 copies F. For large t the answer tends to the mean over each component; t may be
+ *        arbitrarily large
+ * F      n x k doubles, column-major, columns ldf apart (0: n)
+ * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
+ *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
+ *        them needs
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN,
+ *        HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ * Cost   direct: one factorisation of all poles for each new t, then one sweep through the factors for eight
+ *        fields at a time. krylov: one real factorisation, then 15 to 30 real solves for each field.
+ *        iterative: one solve for each pole, started from the solutions before it, up to four fields in
+ *        parallel. Many times: with krylov one factor and one basis serve all times within one or two
+ *        decades, so that they cost little more than one; other methods take the times one by one
+ * Source the paper, eqs. (8) and (9), with the signs given at the top of the file */
+HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                     const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
-/* Distances from each of k sources to every vertex, exactly: D n x (k n_times), column q n_times + m for source q and time m.
- * t      [n_times] > 0, n_times >= 1. Commute and biharmonic have no time: t is not looked at, and n_times is 0 or 1
- * Cost   a diagonal (at 2t, shared by all sources) and a column for each source. HD_DISTANCE_WEIGHTED with a full B: its diagonal, that of B K_2t, takes about
- *        twice as long. Commute: one real factorisation and its inversion; biharmonic: that, and those of one pole
- * Vertices without mass have f = 0. Between components commute and biharmonic are infinite (HUGE_VAL).
- *        With poles and degree by default the highest degree takes over where the bound of the error relative to the largest distance is above
- *        2.5e-6, or will be. Many times share one set of poles then, as in hd_heat_diagonal
- * Report error_bound and error_relative for d itself; n_lost counts distances of which less than a digit or so is sure: at times so large
- *        that all vertices look alike, or next to the source at small ones. Then the status is HD_WARN_ACCURACY. Never NaN.
- *        hd_heat_pairs loses nothing there */
-HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k,
-                                        const int32_t *sources, double *D, size_t ldd, hd_report *report, hd_error *err);
+/* Columns of the kernel. That of K_t for a source s is K_t e_s: the field at time t that starts as 1 at s and 0
+ * elsewhere; its total heat 1'B u is the mass of s.
+ * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
+ *        for K_t, and zero for k_t
+ * Errors and cost as above; HD_ERR_INDEX (vertex, column: which source). The first column at a time t carries
+ * the factorisation. */
+HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                       const double *t, int32_t k, const int32_t *sources,
+                                       double *U, size_t ldu, hd_report *report, hd_error *err);
 
-/* K_t(i[q],j[q]) and distances for listed pairs. K, d [n_pairs], each may be NULL; K is left alone by commute and biharmonic.
- * From columns at t of the vertices that occur, d = |K_t B^-1 (e_i - e_j)|_B without subtraction; when these columns would take more than half a GiB, from
- * entries and the diagonal at 2t, a column at a time: sort the pairs by i then. Commute and biharmonic always so; they need the direct method. */
-HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int64_t n_pairs,
-                                     const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report, hd_error *err);
+/* One column at one time. u [n]. */
+HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
+                                      double *u, hd_report *report, hd_error *err);
 
-/* Farthest points (Gonzalez 1985): each the farthest from those before it under the distance. vertex [count]: the first n_given are given; with none the
- * first vertex with mass begins. distance [count] or NULL: to those before (0 for the first). Cost a diagonal, and a column for each point. */
-HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given,
-                                      int32_t *vertex, double *distance, hd_report *report, hd_error *err);
+/* The diagonal of k_t or K_t at every vertex. That of k_t is the heat kernel signature (Sun et al. 2009),
+ * also called auto-diffusion function (Gebal et al. 2009). It comes from selected inversion, without
+ * eigenvectors and without columns.
+ * t      > 0
+ * D      n x n_times, column q for t[q], columns ldd apart (0: n). A vertex without mass has 0 (K_t: 1)
+ * report the rational part is proven at every vertex. Rounding is measured by solves whose residuals are
+ *        known, at the vertices where it is largest; with many times, at each time
+ * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set. It is as large as the set's
+ * error, and the bound includes it.
+ * Errors HD_ERR_ARGUMENT (also if n_times < 1, or if the method is iterative or krylov), HD_ERR_BREAKDOWN,
+ *        HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ * Cost   for each t the factors of all poles, and about twice as much again. Many times share one set of
+ *        poles if neither poles nor a degree are chosen: 16 or 100 times over three decades cost four or five
+ *        times as much as one */
+HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                        const double *t, double *D, size_t ldd, hd_report *report,
+                                        hd_error *err);
 
-/* Single entries: values[q] = (i[q], j[q]) of K_t or k_t. One column per distinct j is solved, n doubles at a time. The bound is
- * relative to the largest |value| in the list: far from the source, where the kernel is nearly zero, it may say nothing. */
-HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int64_t n_pairs,
-                                       const int32_t *i, const int32_t *j, double *values, hd_report *report, hd_error *err);
+/* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion.
+ * kernel HD_KERNEL_SYMMETRIC. (Entries of K_t = k_t B are not symmetric)
+ * t      > 0
+ * values [L.nnz n_times], time by time, on the pattern of the Laplacian's L; indices are rows, not vertices
+ * If B is not diagonal, a0 B^-1 is left out as above. With poles and degree by default, degree 14 takes over
+ * if the rational part of the bound is above 5e-7. Rounding is measured in the rows where it is largest.
+ * Errors and cost as above. */
+HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                     const double *t, double *values, hd_report *report,
+                                     hd_error *err);
+
+/* Diffusion distances from each of k sources to every vertex.
+ * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1
+ * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n)
+ * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
+ *        about one sure digit: at t so large that all vertices look alike, or next to the source at small t.
+ *        If there are any, the status is HD_WARN_ACCURACY. Nothing is ever NaN. hd_heat_pairs loses no
+ *        digits there
+ * Vertices without mass are treated as having a zero kernel row. Between components commute and biharmonic
+ * are infinite (HUGE_VAL). With poles and degree by default, degree 14 takes over if the error bound relative
+ * to the largest distance is, or will be, above 2.5e-6. Many times then share one set of poles.
+ * Errors as hd_heat_diagonal
+ * Cost   one diagonal at 2t, shared by all sources, and one column for each source. HD_DISTANCE_WEIGHTED with
+ *        a full B: the diagonal is that of B K_2t and takes about twice as long. Commute: one real
+ *        factorisation and its inversion; biharmonic: the same, and those of one pole */
+HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                        const double *t, int32_t k, const int32_t *sources,
+                                        double *D, size_t ldd, hd_report *report, hd_error *err);
+
+/* K_t(i[q],j[q]) and diffusion distances of listed pairs.
+ * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
+ * K, d   [n_pairs n_times], time by time; each may be NULL. K is not written for commute and biharmonic
+ * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
+ * cancellation. If these columns would take more than half a GiB, it comes from entries and the diagonal at
+ * 2t, one column at a time; then sort the pairs by i. Commute and biharmonic always work that way, and need
+ * the direct method. */
+HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                     const double *t, int64_t n_pairs, const int32_t *i,
+                                     const int32_t *j, double *K, double *d, hd_report *report,
+                                     hd_error *err);
+
+/* Farthest points: each is the vertex farthest from all points before it, under the given distance.
+ * vertex   [count] the first n_given are given. With n_given = 0 the first vertex with mass begins
+ * distance [count] or NULL: distance to the points before it (0 for the first)
+ * Cost     a diagonal, and one column for each point
+ * Source   Gonzalez 1985 */
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count,
+                                      int32_t n_given, int32_t *vertex, double *distance,
+                                      hd_report *report, hd_error *err);
+
+/* Single entries of K_t or k_t.
+ * t      >= 0
+ * values [n_pairs n_times], time by time: the entry (i[q], j[q])
+ * report the bound is relative to the largest |value| in the list. Far from the source, where the kernel is
+ *        nearly zero, it may say nothing about a single value
+ * Cost   one column for each distinct j, with n doubles of memory at a time */
+HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                       const double *t, int64_t n_pairs, const int32_t *i,
+                                       const int32_t *j, double *values, hd_report *report,
+                                       hd_error *err);
 
 /* ---- geodesic distance ---- */
 
 typedef struct hd_geodesic hd_geodesic;
 
-/* A plan for distances along the surface of a triangle mesh by the heat method.
- * xyz    [3 n] coordinates, finite; tri [3 n_tri] vertex ids in [0, n); neither is needed any more when the plan is made. Faces are left out as by
- *        hd_laplacian_triangles. Holes are walked around
+/* A plan for distances along the surface of a triangle mesh, by the heat method.
+ * xyz    [3 n] coordinates, finite
+ * tri    [3 n_tri] vertex ids in [0, n). Neither xyz nor tri is used after this call. Faces are left out as
+ *        in hd_laplacian_triangles. Paths lead around holes
  * opts   NULL: t = h^2, barycentric masses
- * Cost   assembly, one analysis, two real factorisations of one pattern. The plan keeps both: 16 bytes a non-zero of L, and some 430 a vertex
- * Errors as hd_laplacian_triangles; HD_ERR_ARGUMENT, HD_ERR_BREAKDOWN (vertex: a pivot that cannot be divided by), HD_ERR_MEMORY, HD_ERR_CANCELLED
- * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1; deviations in room [19]. */
-HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const hd_geodesic_opts *opts,
-                                          hd_error *err);
+ * Errors as hd_laplacian_triangles; HD_ERR_ARGUMENT, HD_ERR_BREAKDOWN (vertex: a pivot too small to
+ *        divide by)
+ * Cost   assembly, one analysis, two real factorisations on one pattern. The plan keeps both: 16 bytes for
+ *        each non-zero of L, and about 430 bytes for each vertex
+ * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1 */
+HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n,
+                                          const int32_t *tri, int32_t n_tri,
+                                          const hd_geodesic_opts *opts, hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
-/* d [n]: distance of every vertex to the nearest of the sources, in the unit of xyz: min |phi - phi_s| over the sources s of its component. Zero at the sources;
- * HUGE_VAL where no source can be reached, in components without one and at vertices without mass.
- * The method's own error is of the order of h and more: a few percent on coarse meshes, about one on fine ones, most where fronts meet. It is not a metric: d
- * from i to j and from j to i differ by so much, and what is near a source can be off by a good part of it.
- * sources  [n_sources] at least one; twice counts once
- * Cost     two solves and two passes over the faces; with a report two more passes. Where heat fades below 1e-200 of the source's, some 450 edges away at
- *          t = h^2, a solve more for every so many edges (report->n_stages), but only of the part of the
- *          mesh that it reaches. Only that (some 60 bytes a vertex for the time of the call) and more sources
- *          than in any call before allocate
- * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED, HD_ERR_BREAKDOWN (rounding left no number).
- *          HD_WARN_ACCURACY, with a report only. One thread at a time for a plan. */
-HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources, double *d, hd_geodesic_report *report,
-                                            hd_error *err);
+/* The distance of every vertex to the nearest source.
+ * d        [n] in the unit of xyz: min |phi - phi_s| over the sources s of the vertex' component. It is zero
+ *          at the sources. It is HUGE_VAL where no source can be reached: in components without one, and at
+ *          vertices without mass
+ * sources  [n_sources] at least one; repeated sources count once
+ * The method itself has an error of the order of h: a few percent on coarse meshes, about one percent on fine
+ * ones, and most where fronts meet. Near a source the relative error can be much larger. The result is not a
+ * metric: d from i to j and d from j to i differ by about that error.
+ * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED,
+ *          HD_ERR_BREAKDOWN (rounding left no number). HD_WARN_ACCURACY, only if a report is given
+ * Cost     two solves and two passes over the faces; with a report two more passes. Where heat fades below
+ *          1e-200 of the source's, which is about 450 edges away at t = h^2, another solve follows for each
+ *          such distance, on the part of the mesh that it reaches (report->n_stages). Such a solve allocates
+ *          about 60 bytes for each vertex, for the time of the call. A call with more sources than any before
+ *          allocates too; other calls do not
+ * One thread at a time for a plan. */
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources,
+                                            const int32_t *sources, double *d,
+                                            hd_geodesic_report *report, hd_error *err);
 
-/* The same for k sources, each for itself: column q of D, n x k, columns ldd apart (0: n), is the distance to sources[q]. Eight go side by side, in a third
- * of the time of eight calls. The first call with three or more makes room for that: some 150 bytes a vertex. */
-HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd,
-                                             hd_geodesic_report *report, hd_error *err);
+/* The same for k sources, each by itself. Column q of D, n x k, columns ldd apart (0: n), holds the distances
+ * to sources[q]. Eight sources are solved side by side, in a third of the time of eight calls. The first call
+ * with three sources or more allocates about 150 bytes for each vertex. */
+HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources,
+                                             double *D, size_t ldd, hd_geodesic_report *report,
+                                             hd_error *err);
 
 #ifdef __cplusplus
 }

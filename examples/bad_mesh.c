@@ -1,11 +1,15 @@
-/* bad_mesh.c - heat on a mesh of slivers: plain cotangent weights, and those of the surface's intrinsic Delaunay triangulation.
+/* bad_mesh.c - heat on a mesh of slivers, with cotangent weights and with an intrinsic Delaunay triangulation
 
-   Build and run from the project's folder:   cc -O2 examples/bad_mesh.c -o bad_mesh -lm && ./bad_mesh
+   Build and run from the project's folder:
 
-   Heat is never negative. Where two angles opposite to an edge sum to more than half a turn, the edge's cotangent weight is negative, and computed heat
-   may be negative too. The vertices of a torus are joined askew here, so that many edges are of that kind. With the option intrinsic_delaunay the same
-   vertices on the same surface get non-negative weights: edges are flipped, along the surface, before the Laplacian is assembled. The example prints the
-   smallest value of K_t e_i, relative to the largest, for some times and both Laplacians. */
+       cc -O2 examples/bad_mesh.c -o bad_mesh -lm && ./bad_mesh
+
+   Heat is never negative. But if the two angles opposite to an edge sum to more than 180 degrees, the
+   cotangent weight of the edge is negative, and the computed heat may be negative too. This example makes a
+   torus whose vertices are joined askew, so that many edges are of that kind. The option intrinsic_delaunay
+   flips edges along the surface before the Laplacian is assembled. Then no weight is negative, on the same
+   vertices and the same surface. The example prints the smallest value of K_t e_i relative to the largest,
+   for three times and both Laplacians. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -16,13 +20,15 @@
 
 enum { NU = 64, NV = 32, N = NU * NV, ASKEW = 3 };
 
-/* Row i of the grid is turned by i ASKEW steps around the tube; 64 x 3 steps are six whole turns, so that the rows close. */
+/* Row i of the grid is turned by i * ASKEW steps around the tube. NU * ASKEW steps are six whole turns, so
+ * that the last row meets the first. */
 static void make_torus(double *xyz, int32_t *tri) {
     int32_t i, j;
     for (i = 0; i < NU; i++) {
         for (j = 0; j < NV; j++) {
             const double u = 6.283185307179586 * i / NU, v = 6.283185307179586 * (j + ASKEW * i) / NV;
-            const int32_t a = i * NV + j, b = (i + 1) % NU * NV + j, c = (i + 1) % NU * NV + (j + 1) % NV, d = i * NV + (j + 1) % NV;
+            const int32_t next_i = (i + 1) % NU, next_j = (j + 1) % NV;
+            const int32_t a = i * NV + j, b = next_i * NV + j, c = next_i * NV + next_j, d = i * NV + next_j;
             double *p = xyz + 3 * a;
             int32_t *t = tri + 6 * a;
             p[0] = (2 + cos(v)) * cos(u);
@@ -35,7 +41,8 @@ static void make_torus(double *xyz, int32_t *tri) {
 }
 
 static int fail(const hd_error *e) {
-    fprintf(stderr, "bad_mesh: %s: %s (face %lld, vertex %lld)\n", hd_status_name(e->status), e->text, (long long)e->face, (long long)e->vertex);
+    fprintf(stderr, "bad_mesh: %s: %s (face %lld, vertex %lld)\n", hd_status_name(e->status), e->text,
+            (long long)e->face, (long long)e->vertex);
     return 1;
 }
 
@@ -69,12 +76,16 @@ int main(void) {
         double least = 0;
 
         memset(&opts, 0, sizeof opts);
-        opts.kind = HD_LAPLACIAN_VORONOI_COT;       /* a diagonal B: with a full one, as in fem, heat can be negative at small times whatever L is */
+        /* A diagonal B. With a full one, as in fem, heat can be negative at small times whatever L is. */
+        opts.kind = HD_LAPLACIAN_VORONOI_COT;
         opts.intrinsic_delaunay = intrinsic;
         if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, &opts, &err) < 0) return fail(&err);
-        printf("%s: %lld edges flipped, %lld of %lld weights negative, smallest angle %.2f degrees\n", intrinsic ? "intrinsic Delaunay" : "plain cotangents",
-               (long long)lap->mesh.n_flips, (long long)lap->mesh.n_negative_weights, (long long)lap->mesh.n_edges,
-               57.29577951308232 * (intrinsic ? lap->mesh.smallest_intrinsic_angle : lap->mesh.smallest_angle));
+        printf("%s: %lld edges flipped, %lld of %lld weights negative, smallest angle %.2f degrees\n",
+               intrinsic ? "intrinsic Delaunay" : "plain cotangents",
+               (long long)lap->mesh.n_flips, (long long)lap->mesh.n_negative_weights,
+               (long long)lap->mesh.n_edges,
+               57.29577951308232 * (intrinsic ? lap->mesh.smallest_intrinsic_angle
+                                    : lap->mesh.smallest_angle));
         if (hd_heat_create(&heat, lap, NULL, &err) < 0) {
             hd_laplacian_free(lap);
             return fail(&err);
@@ -85,7 +96,8 @@ int main(void) {
                 hd_laplacian_free(lap);
                 return fail(&report.error);
             }
-            printf("  t = %4.1f h^2: smallest value %9.1e of the largest, error at most %.1e of it\n", times[k], least, report.error_bound);
+            printf("  t = %4.1f h^2: smallest value %9.1e of the largest, error at most %.1e of it\n",
+                   times[k], least, report.error_bound);
         }
         hd_heat_free(heat);
         hd_laplacian_free(lap);

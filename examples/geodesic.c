@@ -1,10 +1,12 @@
-/* geodesic.c - distances along a surface by the heat method, and points spread over it as far from each other as can be.
+/* geodesic.c - distances along a surface by the heat method, and samples spread evenly over it
 
-   Build and run from the project's folder:   cc -O2 examples/geodesic.c -o geodesic -lm && ./geodesic
+   Build and run from the project's folder:
 
-   A torus is made in memory. One plan serves all queries: the first part compares the distance from a vertex with a curve whose length is known, round
-   the tube; the second chooses eight vertices, each the farthest from those before it, by distances to a growing set; the third measures from all of them
-   at once, and prints how far apart they are. */
+       cc -O2 examples/geodesic.c -o geodesic -lm && ./geodesic
+
+   A torus is made in memory, and one plan answers all questions. First, distances around the tube are
+   compared with the exact ones. Then eight vertices are chosen, each the farthest from those before it. At
+   last the distances from all eight are computed at once, to print how close the two nearest samples are. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -20,7 +22,8 @@ static void make_torus(double *xyz, int32_t *tri) {
     for (i = 0; i < NU; i++) {
         for (j = 0; j < NV; j++) {
             const double u = 6.283185307179586 * i / NU, v = 6.283185307179586 * j / NV;
-            const int32_t a = i * NV + j, b = (i + 1) % NU * NV + j, c = (i + 1) % NU * NV + (j + 1) % NV, d = i * NV + (j + 1) % NV;
+            const int32_t next_i = (i + 1) % NU, next_j = (j + 1) % NV;
+            const int32_t a = i * NV + j, b = next_i * NV + j, c = next_i * NV + next_j, d = i * NV + next_j;
             double *p = xyz + 3 * a;
             int32_t *t = tri + 6 * a;
             p[0] = (2 + cos(v)) * cos(u);
@@ -33,7 +36,8 @@ static void make_torus(double *xyz, int32_t *tri) {
 }
 
 static int fail(const hd_error *e, hd_geodesic *g) {
-    fprintf(stderr, "geodesic: %s: %s (face %lld, vertex %lld)\n", hd_status_name(e->status), e->text, (long long)e->face, (long long)e->vertex);
+    fprintf(stderr, "geodesic: %s: %s (face %lld, vertex %lld)\n", hd_status_name(e->status), e->text,
+            (long long)e->face, (long long)e->vertex);
     hd_geodesic_free(g);
     return 1;
 }
@@ -50,13 +54,15 @@ int main(void) {
     make_torus(xyz, tri);
     if (hd_geodesic_create(&g, xyz, N, tri, 2 * N, NULL, &err) < 0) return fail(&err, NULL);
 
-    /* Round the tube, from its outermost point: the circle of radius 1 is the shortest way. */
+    /* Around the tube, from its outermost point. The shortest way is a circle of radius 1. */
     if (hd_geodesic_distance(g, 1, sample, d, &report, NULL) < 0) return fail(&report.error, g);
-    printf("torus: %d vertices, mean edge length h = %.4f, heat flows for t = %.3g\n", (int)N, report.h, report.t);
+    printf("torus: %d vertices, mean edge length h = %.4f, heat flows for t = %.3g\n", (int)N, report.h,
+           report.t);
     for (i = NV / 8; i <= NV / 2; i += NV / 8)
-        printf("round the tube by %3d degrees: %.4f, in truth %.4f\n", 360 * (int)i / NV, d[i], 6.283185307179586 * i / NV);
+        printf("around the tube by %3d degrees: %.4f, exact %.4f\n", 360 * (int)i / NV, d[i],
+               6.283185307179586 * i / NV);
 
-    /* The farthest from the first k, k = 1, 2, ... */
+    /* Each new sample is the vertex farthest from the k samples before it. */
     for (k = 1; k < SAMPLES; k++) {
         if (hd_geodesic_distance(g, k, sample, d, &report, NULL) < 0) return fail(&report.error, g);
         for (i = 0; i < N; i++)
@@ -64,12 +70,13 @@ int main(void) {
         printf("sample %d: vertex %5d, %.3f from those before\n", (int)k, (int)sample[k], d[sample[k]]);
     }
 
-    /* All of them, each for itself: eight columns take little longer than two. */
+    /* Distances from each sample by itself. Eight columns take little longer than two. */
     if (hd_geodesic_distances(g, SAMPLES, sample, D, 0, &report, NULL) < 0) return fail(&report.error, g);
     for (k = 0; k < SAMPLES; k++)
         for (i = 0; i < SAMPLES; i++)
             if (i != k && D[k * N + sample[i]] < nearest) nearest = D[k * N + sample[i]];
-    printf("the two nearest samples are %.3f apart; residuals %.1e (heat) and %.1e (distance)\n", nearest, report.residual_heat, report.residual_distance);
+    printf("the two nearest samples are %.3f apart; residuals %.1e (heat) and %.1e (distance)\n", nearest,
+           report.residual_heat, report.residual_distance);
     hd_geodesic_free(g);
     return 0;
 }

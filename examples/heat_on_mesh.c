@@ -1,9 +1,12 @@
-/* heat_on_mesh.c - the heat kernel of a triangle mesh, and how far it can be off.
+/* heat_on_mesh.c - the heat kernel of a triangle mesh, with its error bound
 
-   Build and run from the project's folder:   cc -O2 examples/heat_on_mesh.c -o heat_on_mesh -lm && ./heat_on_mesh
+   Build and run from the project's folder:
 
-   A torus is made in memory; a unit of heat is put at one vertex and diffuses for three times. The example prints where the heat is after
-   each, how much of it there is in total (it is conserved), and the bound of the error that comes with the answer. */
+       cc -O2 examples/heat_on_mesh.c -o heat_on_mesh -lm && ./heat_on_mesh
+
+   A torus is made in memory. Heat starts at one vertex and diffuses for three times. For each time the
+   example prints how warm it is at the source and on the far side, the total heat (it is conserved), and the
+   bound of the error. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -19,7 +22,8 @@ static void make_torus(double *xyz, int32_t *tri) {
     for (i = 0; i < NU; i++) {
         for (j = 0; j < NV; j++) {
             const double u = 6.283185307179586 * i / NU, v = 6.283185307179586 * j / NV;
-            const int32_t a = i * NV + j, b = (i + 1) % NU * NV + j, c = (i + 1) % NU * NV + (j + 1) % NV, d = i * NV + (j + 1) % NV;
+            const int32_t next_i = (i + 1) % NU, next_j = (j + 1) % NV;
+            const int32_t a = i * NV + j, b = next_i * NV + j, c = next_i * NV + next_j, d = i * NV + next_j;
             double *p = xyz + 3 * a;
             int32_t *t = tri + 6 * a;
             p[0] = (2 + cos(v)) * cos(u);
@@ -32,7 +36,8 @@ static void make_torus(double *xyz, int32_t *tri) {
 }
 
 static int fail(const hd_error *e) {
-    fprintf(stderr, "heat_on_mesh: %s: %s (face %lld, vertex %lld)\n", hd_status_name(e->status), e->text, (long long)e->face, (long long)e->vertex);
+    fprintf(stderr, "heat_on_mesh: %s: %s (face %lld, vertex %lld)\n", hd_status_name(e->status), e->text,
+            (long long)e->face, (long long)e->vertex);
     return 1;
 }
 
@@ -49,7 +54,8 @@ int main(void) {
 
     make_torus(xyz, tri);
     if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, NULL, &err) < 0) return fail(&err);
-    printf("torus: %d vertices, area %.4f (smooth surface: %.4f), mean edge length h = %.4f\n", (int)lap->n, lap->area, 8 * 9.869604401089358, lap->h);
+    printf("torus: %d vertices, area %.4f (smooth surface: %.4f), mean edge length h = %.4f\n", (int)lap->n,
+           lap->area, 8 * 9.869604401089358, lap->h);
 
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) {
         hd_laplacian_free(lap);
@@ -65,7 +71,8 @@ int main(void) {
             return fail(&report.error);
         }
         for (i = 0; i < lap->n_active; i++) mass += lap->mass[i] * u[lap->vertex[i]];
-        printf("t = %4.0f h^2: at the source %.3e, on the far side %.3e, heat %.12f of what was put in, error at most %.1e of the largest value\n",
+        printf("t = %4.0f h^2: at the source %.3e, on the far side %.3e, total heat %.12f of the initial,"
+               " error at most %.1e of the largest value\n",
                times[k], u[source], u[opposite], mass / lap->mass[lap->row[source]], report.error_bound);
     }
     hd_heat_free(heat);

@@ -1,9 +1,13 @@
-/* own_allocator.c - a fixed piece of memory, a limit, progress, and a stop on demand.
+/* own_allocator.c - memory of your own, a memory limit, and cancelling
 
-   Build and run from the project's folder:   cc -O2 examples/own_allocator.c -o own_allocator -lm && ./own_allocator
+   Build and run from the project's folder:
 
-   Everything the library needs comes from a buffer of 8 MiB: a stack that counts what is out, and starts over when all has come back. Then the
-   same work with too small a limit, and cancelled half-way: ordinary statuses, with everything freed. */
+       cc -O2 examples/own_allocator.c -o own_allocator -lm && ./own_allocator
+
+   All memory that the library needs comes from a buffer of 32 MiB. The allocator is a stack: it counts the
+   bytes in use, and starts over when all blocks are freed. Then the same work runs with too low a limit, and
+   once more with a progress callback that cancels it. Both return an ordinary status, with everything
+   freed. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -25,7 +29,8 @@ static void *arena_alloc(void *user, size_t size) {
 static void arena_free(void *user, void *block, size_t size) {
     arena *a = (arena *)user;
     a->out -= size;
-    if ((unsigned char *)block + size == a->base + a->used) a->used -= size;   /* the last one goes back at once */
+    /* The last block is free at once. */
+    if ((unsigned char *)block + size == a->base + a->used) a->used -= size;
     if (a->out == 0) a->used = 0;
 }
 
@@ -83,19 +88,23 @@ int main(void) {
     ctx.allocator.user = &a;
 
     status = work(&ctx, xyz, tri, u);
-    printf("from a buffer: %s, value at the source %.4e, most in use %llu bytes in %llu allocations, still out: %llu\n", hd_status_text(status),
-           u[N / 2], (unsigned long long)ctx.bytes_peak, (unsigned long long)ctx.allocations, (unsigned long long)ctx.bytes_in_use);
+    printf("from a buffer: %s, value at the source %.4e, at most %llu bytes in %llu allocations,"
+           " not freed: %llu\n",
+           hd_status_text(status), u[N / 2], (unsigned long long)ctx.bytes_peak,
+           (unsigned long long)ctx.allocations, (unsigned long long)ctx.bytes_in_use);
     if (status < 0) return 1;
 
     ctx.byte_limit = ctx.bytes_peak / 16;
     status = work(&ctx, xyz, tri, u);
-    printf("with a sixteenth of that: %s; still out: %llu\n", hd_status_text(status), (unsigned long long)ctx.bytes_in_use);
+    printf("with a sixteenth of that: %s; not freed: %llu\n", hd_status_text(status),
+           (unsigned long long)ctx.bytes_in_use);
     if (status != HD_ERR_MEMORY_LIMIT) return 1;
 
     ctx.byte_limit = 0;
     ctx.progress = count_down;
     ctx.progress_user = &left;
     status = work(&ctx, xyz, tri, u);
-    printf("stopped after a few looks: %s; still out: %llu\n", hd_status_text(status), (unsigned long long)ctx.bytes_in_use);
+    printf("stopped after a few callbacks: %s; not freed: %llu\n", hd_status_text(status),
+           (unsigned long long)ctx.bytes_in_use);
     return status == HD_ERR_CANCELLED && ctx.bytes_in_use == 0 ? 0 : 1;
 }

@@ -1,10 +1,13 @@
-/* own_matrices.c - heat on any graph: bring your own L and B, and your own function of the spectrum.
+/* own_matrices.c - heat on any graph, from your own L and B, and a filter of your own
 
-   Build and run from the project's folder:   cc -O2 examples/own_matrices.c -o own_matrices -lm && ./own_matrices
+   Build and run from the project's folder:
 
-   A ring of n points with unit weights and unit masses: the heat kernel is known, K_t(j,0) = 1/n sum_k exp(-t (2 - 2 cos 2 pi k/n)) cos 2 pi j k/n.
-   Then one step of backward Euler, (B + t L)^-1 B f, is asked for as a rational function with one real pole: any filter of the spectrum that
-   has poles and weights goes the same way. */
+       cc -O2 examples/own_matrices.c -o own_matrices -lm && ./own_matrices
+
+   The graph is a ring of n points with unit weights and unit masses. Its heat kernel is known:
+   K_t(j,0) = 1/n sum_k exp(-t (2 - 2 cos 2 pi k/n)) cos 2 pi j k/n.
+   Then the example computes one step of backward Euler, (B + t L)^-1 B f, which is a rational function with
+   one real pole. Any other filter of the spectrum that has poles and weights works the same way. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -33,7 +36,8 @@ static double compare(const double *u, double t, int euler) {
 }
 
 static int fail(const hd_error *e) {
-    fprintf(stderr, "own_matrices: %s: %s (row %lld, column %lld)\n", hd_status_name(e->status), e->text, (long long)e->row, (long long)e->column);
+    fprintf(stderr, "own_matrices: %s: %s (row %lld, column %lld)\n", hd_status_name(e->status), e->text,
+            (long long)e->row, (long long)e->column);
     return 1;
 }
 
@@ -49,7 +53,7 @@ int main(void) {
     hd_error err;
     const double t = 50;
 
-    for (i = 0; i < N; i++) {                       /* the edge from i to its neighbour j: +1 on both diagonals, -1 off */
+    for (i = 0; i < N; i++) {                       /* the edge (i, j): +1 on both diagonals, -1 off */
         const int32_t j = (i + 1) % N;
         row[4 * i] = i;     col[4 * i] = i;     val[4 * i] = 1;
         row[4 * i + 1] = j; col[4 * i + 1] = j; val[4 * i + 1] = 1;
@@ -66,20 +70,24 @@ int main(void) {
     hd_csr_free(&L, NULL);                          /* the pair is copied */
     hd_csr_free(&B, NULL);
 
-    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 0, u, &report, NULL) < 0) return fail(heat ? &report.error : &err);
-    printf("heat kernel of a ring of %d points at t = %g: error %.1e, of a largest value %.3e; the bound says %.1e\n", N, t, compare(u, t, 0), u[0],
-           report.error_bound * u[0]);
+    if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
+    if (hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 0, u, &report, NULL) < 0) return fail(&report.error);
+    printf("heat kernel of a ring of %d points at t = %g: error %.1e, largest value %.3e, error bound %.1e\n",
+           N, t, compare(u, t, 0), u[0], report.error_bound * u[0]);
     hd_heat_free(heat);
     heat = NULL;
 
-    memset(&euler, 0, sizeof euler);                /* 1/(1 - x) = a/(x - theta) with theta = 1, a = -1; x = -t lambda */
+    /* 1/(1 - x) = a/(x - theta) with theta = 1 and a = -1, for x = -t lambda. */
+    memset(&euler, 0, sizeof euler);
     euler.degree = euler.n_poles = 1;
     euler.theta[0].re = 1;
     euler.a[0].re = -1;
     memset(&opts, 0, sizeof opts);
     opts.rational = &euler;
-    if (hd_heat_create(&heat, lap, &opts, &err) < 0 || hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 0, u, &report, NULL) < 0) return fail(heat ? &report.error : &err);
-    printf("a step of backward Euler: error %.1e, of a largest value %.3e, in %lld iterations\n", compare(u, t, 1), u[0], (long long)report.iterations);
+    if (hd_heat_create(&heat, lap, &opts, &err) < 0) return fail(&err);
+    if (hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 0, u, &report, NULL) < 0) return fail(&report.error);
+    printf("a step of backward Euler: error %.1e, largest value %.3e, in %lld iterations\n", compare(u, t, 1),
+           u[0], (long long)report.iterations);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     return 0;

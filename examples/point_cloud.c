@@ -1,11 +1,14 @@
-/* point_cloud.c - heat on a surface that is known by points only.
+/* point_cloud.c - heat on a surface that is given by points only
 
-   Build and run from the project's folder:   cc -O2 examples/point_cloud.c -o point_cloud -lm && ./point_cloud
+   Build and run from the project's folder:
 
-   Points are scattered over the unit sphere, without faces. The library finds tangent planes and cells, chooses the bandwidth of the exponential
-   weights, and heat diffuses from one point. On the sphere the heat kernel is known, so that the example can say how far the points are from the
-   smooth surface: some per cent with points thrown at random, less with points that keep their distance. The bound in the report is another one:
-   it is about the exponential of the matrices, not about the matrices. */
+       cc -O2 examples/point_cloud.c -o point_cloud -lm && ./point_cloud
+
+   Points lie on the unit sphere, without faces. The library finds tangent planes and cells, and chooses the
+   bandwidth of the exponential weights. Heat diffuses from one point. The heat kernel of the sphere is known,
+   so the example can print the difference from the smooth surface: some percent for random points, less for
+   evenly spread ones. The error bound in the report says something else. It is about the exponential of the
+   two matrices, and says nothing about how well the matrices represent the sphere. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -16,7 +19,7 @@
 
 enum { N = 4000 };
 
-/* At random, or along a spiral with equal areas in between (a Fibonacci lattice). */
+/* Points at random, or along a spiral with equal areas in between (a Fibonacci lattice). */
 static void make_sphere(double *xyz, int spiral) {
     int32_t i;
     srand(1);
@@ -43,7 +46,8 @@ static double exact(double t, double x) {
 }
 
 static int fail(const hd_error *e) {
-    fprintf(stderr, "point_cloud: %s: %s (vertex %lld)\n", hd_status_name(e->status), e->text, (long long)e->vertex);
+    fprintf(stderr, "point_cloud: %s: %s (vertex %lld)\n", hd_status_name(e->status), e->text,
+            (long long)e->vertex);
     return 1;
 }
 
@@ -60,17 +64,23 @@ static int show(const double *xyz, const char *what) {
     int32_t i;
     if (hd_laplacian_points(&lap, xyz, N, NULL, &err) < 0) return fail(&err);
     printf("%s: %d points, h = %.4f, area of the cells %.3f (sphere: 12.566)\n", what, N, lap->h, lap->area);
-    printf("  bandwidth %.2e = %.2f h^2, weights up to a distance of %.3f, %.0f in a row\n", lap->points.bandwidth,
-           lap->points.bandwidth / (lap->h * lap->h), lap->points.cut_radius, (double)lap->L.nnz / lap->n_active);
-    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) {
+    printf("  bandwidth %.2e = %.2f h^2, weights up to a distance of %.3f, %.0f in a row\n",
+           lap->points.bandwidth, lap->points.bandwidth / (lap->h * lap->h), lap->points.cut_radius,
+           (double)lap->L.nnz / lap->n_active);
+    if (hd_heat_create(&heat, lap, NULL, &err) < 0 ||
+        hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) {
         const hd_error *why = heat ? &report.error : &err;
         hd_heat_free(heat);
         hd_laplacian_free(lap);
         return fail(why);
     }
-    for (i = 0; i < N; i++) worst = fmax(worst, fabs(u[i] - exact(t, xyz[3 * i] * xyz[0] + xyz[3 * i + 1] * xyz[1] + xyz[3 * i + 2] * xyz[2])));
-    printf("  heat kernel at t = %g: %.4f at the source (sphere: %.4f), off by at most %.1f %% of that; the matrices' own bound is %.0e\n", t, u[source],
-           exact(t, 1), 100 * worst / exact(t, 1), report.error_bound);
+    for (i = 0; i < N; i++) {
+        const double *p = xyz + 3 * i, cosine = p[0] * xyz[0] + p[1] * xyz[1] + p[2] * xyz[2];
+        worst = fmax(worst, fabs(u[i] - exact(t, cosine)));
+    }
+    printf("  heat kernel at t = %g: %.4f at the source (sphere: %.4f), largest difference %.1f %% of that;"
+           " error bound for these matrices %.0e\n",
+           t, u[source], exact(t, 1), 100 * worst / exact(t, 1), report.error_bound);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     return 0;

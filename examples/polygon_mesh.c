@@ -1,10 +1,13 @@
-/* polygon_mesh.c - heat on faces that are no triangles.
+/* polygon_mesh.c - heat on a mesh of polygons
 
-   Build and run from the project's folder:   cc -O2 examples/polygon_mesh.c -o polygon_mesh -lm && ./polygon_mesh
+   Build and run from the project's folder:
 
-   A sphere of quadrilaterals with two polygons of 64 corners for caps is made in memory. Its Laplacian takes the faces as they are; splitting
-   them gives another operator, which depends on where the cuts run. On the unit sphere the heat of a unit put at a place is known, by the angle
-   from there: k_t = sum (2l+1)/(4 pi) exp(-l(l+1) t) P_l(cos). The example prints how far both are from it, for a vertex on the equator. */
+       cc -O2 examples/polygon_mesh.c -o polygon_mesh -lm && ./polygon_mesh
+
+   A sphere is made of quadrilaterals and of two caps with 64 corners each. The polygon Laplacian takes these
+   faces as they are. Splitting them into triangles gives another operator, which depends on the diagonals
+   chosen. The heat kernel of the unit sphere is known: k_t = sum (2l+1)/(4 pi) exp(-l(l+1) t) P_l(cos angle).
+   The example prints how far both operators are from it, for a source on the equator. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -13,7 +16,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { AROUND = 64, RINGS = 31, N = AROUND * RINGS, FACES = AROUND * (RINGS - 1) + 2, SOURCE = RINGS / 2 * AROUND };
+enum { AROUND = 64, RINGS = 31, N = AROUND * RINGS, FACES = AROUND * (RINGS - 1) + 2 };
+enum { SOURCE = RINGS / 2 * AROUND };   /* a vertex on the equator */
 
 static double xyz[3 * N], u[N];
 static int64_t face_ptr[FACES + 1];
@@ -41,7 +45,7 @@ static void make_sphere(void) {
             face_ptr[++f] = c;
         }
     }
-    for (i = 0; i < AROUND; i++) face_idx[c++] = AROUND - 1 - i;               /* the caps: two faces of many corners */
+    for (i = 0; i < AROUND; i++) face_idx[c++] = AROUND - 1 - i;     /* the caps: two faces of many corners */
     face_ptr[++f] = c;
     for (i = 0; i < AROUND; i++) face_idx[c++] = (RINGS - 1) * AROUND + i;
     face_ptr[++f] = c;
@@ -50,7 +54,7 @@ static void make_sphere(void) {
 static double exact(double t, double z) {
     double before = 1, now = z, sum = 1 + 3 * exp(-2 * t) * z;
     int l;
-    for (l = 2; l < 200; l++) {                                                /* Legendre polynomials by their recurrence */
+    for (l = 2; l < 200; l++) {                                      /* Legendre polynomials by recurrence */
         const double next = ((2 * l - 1) * z * now - (l - 1) * before) / l;
         before = now;
         now = next;
@@ -59,7 +63,8 @@ static double exact(double t, double z) {
     return sum / (4 * 3.14159265358979);
 }
 
-/* The symmetric kernel's column at time t against the sphere's, relative to the largest value; negative when something failed. */
+/* Largest difference of the symmetric kernel's column from the sphere's, relative to the largest value.
+ * Negative after an error. */
 static double error_of(hd_laplacian_kind kind, double t) {
     const int32_t source = SOURCE;
     hd_laplacian_opts opts;
@@ -75,9 +80,11 @@ static double error_of(hd_laplacian_kind kind, double t) {
         fprintf(stderr, "polygon_mesh: %s (face %lld)\n", err.text, (long long)err.face);
         return -1;
     }
-    if (hd_heat_create(&heat, lap, NULL, &err) < 0 || hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) worst = -1;
+    if (hd_heat_create(&heat, lap, NULL, &err) < 0 ||
+        hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) worst = -1;
     for (i = 0; i < N && worst >= 0; i++) {
-        const double *p = xyz + 3 * i, *q = xyz + 3 * SOURCE, cosine = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        const double *p = xyz + 3 * i, *q = xyz + 3 * SOURCE;
+        const double cosine = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         worst = fmax(worst, fabs(u[i] - exact(t, cosine)) / exact(t, 1));
     }
     hd_heat_free(heat);
@@ -91,9 +98,11 @@ int main(void) {
     make_sphere();
     printf("sphere: %d vertices, %d faces, two of them with %d corners\n", (int)N, (int)FACES, (int)AROUND);
     for (k = 0; k < 3; k++) {
-        const double polygon = error_of(HD_LAPLACIAN_POLYGON, times[k]), fans = error_of(HD_LAPLACIAN_VORONOI_COT, times[k]);
+        const double polygon = error_of(HD_LAPLACIAN_POLYGON, times[k]);
+        const double fans = error_of(HD_LAPLACIAN_VORONOI_COT, times[k]);
         if (polygon < 0 || fans < 0) return 1;
-        printf("t = %4.2f: off from the smooth sphere by %.1e of the largest value, split into triangles by %.1e\n", times[k], polygon, fans);
+        printf("t = %4.2f: error against the sphere %.1e of the largest value, split into triangles %.1e\n",
+               times[k], polygon, fans);
     }
     return 0;
 }

@@ -1,44 +1,59 @@
-/* bench.c - heatdiff.h against what a user would otherwise take, and what its parts cost beside what the machine could do.
+/* bench.c - the speed of heatdiff.h, compared with other libraries and with what the machine can do
 
-       bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv] [MESH ...]
+       bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv]
+             [MESH ...]
        bench parts [MESH ...]
 
    Build:  cc -O2 -fopenmp tools/bench.c -o bench -lm       (without -fopenmp: one thread only)
-   With the rivals (see bench_rivals.h; CMake does this by itself where it finds them):
+   With the rivals (see bench_rivals.h; CMake does this if it finds them):
        c++ -std=c++17 -O3 -march=native -DNDEBUG -fopenmp -I/usr/include/eigen3 -c tools/bench_rivals.cpp
-       cc -O2 -fopenmp -DHEATDIFF_BENCH_RIVALS tools/bench.c bench_rivals.o -o bench -lumfpack -lcholmod -lopenblas -lstdc++ -lm
-   and for the eigenpairs of the job signature -DHEATDIFF_BENCH_ARPACK in the first, -larpack in the second.
+       cc -O2 -fopenmp -DHEATDIFF_BENCH_RIVALS tools/bench.c bench_rivals.o -o bench \
+          -lumfpack -lcholmod -lopenblas -lstdc++ -lm
+   For the eigenpairs of the job signature, add -DHEATDIFF_BENCH_ARPACK to the first and -larpack to the
+   second.
 
    Jobs, by default all:
-       one      one column, t = 100 h^2, from (L, B) to the answer
-       small    the same for t = h^2 and 10 h^2, with the masses fem and voronoi-cot
-       columns  100 columns, t = 100 h^2
-       further  one more column once everything is factorised
-       times    one column at 16 times from 10 to 10^4 h^2
-       stages   ordering, analysis, four complex factors and their solves, on one thread and on all
-       geodesic distances by the heat method from one source and from further ones, each alone and eight at a time; CGAL's runs on one thread. Errors: largest
-                difference from CGAL's with its shift of 1e-8 turned down to 1e-14, relative to the largest distance
-       signature
-                heat kernel signature of every vertex, t = 10 h^2 and 100 h^2, from (L, B) to the answer, against the smallest 300 eigenpairs by ARPACK; its stages
-                at 100 h^2 (inversion beside the rival's Lanczos; the check of rounding is a column); what it is of four complex factors; 16 and 100 times from 10
-                to 10^4 h^2 and classical distances from one vertex to all at 100 h^2 as multiples of it. The rival above 60000 rows only when asked for
-       assembly (L, B) from the triangles, masses fem and voronoi-cot, against lists of triplets that Eigen makes two matrices of, on one thread. Ours finds
-                edges, components and all defects of the mesh on the way. Errors: largest difference between both, relative to the largest entry
-       eigen    Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU. Slow: above 60000 rows only when asked for
+       one        one column, t = 100 h^2, from (L, B) to the answer
+       small      the same for t = h^2 and 10 h^2, with the masses fem and voronoi-cot
+       columns    100 columns, t = 100 h^2
+       further    one more column after everything is factorised
+       times      one column at 16 times from 10 to 10^4 h^2
+       stages     ordering, analysis, four complex factors and their solves, on one thread and on all
+       geodesic   distances by the heat method from one source and from further ones, each alone and eight at
+                  a time. CGAL runs on one thread. Errors: largest difference from CGAL, with its shift of
+                  1e-8 reduced to 1e-14, relative to the largest distance
+       signature  heat kernel signature of every vertex, t = 10 h^2 and 100 h^2, from (L, B) to the answer.
+                  The rival computes the smallest 300 eigenpairs by ARPACK, above 60000 rows only on request.
+                  Also: the stages at 100 h^2 (the inversion beside the rival's Lanczos; the check of rounding
+                  is a column), the time as a multiple of four complex factors, 16 and 100 times from 10 to
+                  10^4 h^2, and classical distances from one vertex to all at 100 h^2 as multiples of one
+                  signature
+       assembly   (L, B) from the triangles, masses fem and voronoi-cot, on one thread. The rival is lists of
+                  triplets from which Eigen makes two matrices. Ours also finds edges, components and defects.
+                  Errors: largest difference between both, relative to the largest entry
+       eigen      Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU.
+                  Slow: above 60000 rows only on request
 
-   How it is measured. Both sides begin with the same two matrices in memory and run on the same number of threads. After a warm-up they take
-   turns, and the best run of each counts; only freeing is left out. Whatever has a knob for accuracy is set, untimed, to the least work that reaches
-   an error of 1e-7, relative to the largest value of a column: tol on our side, the number of Lanczos steps on theirs. UMFPACK and SparseLU get the
-   best uniform poles of degree 7: their error is what it is. Errors are against the direct method with kernel poles of degree 14, and for many times
-   against a rival's Lanczos with full reorthogonalisation; the two are compared with each other on the way. Those of signatures are the largest over the
-   vertices relative to the vertex's own value, at 10, 100 and 10^4 h^2; the 300 eigenpairs leave out what they leave out. A rival that takes more than ten
-   seconds for signatures runs once.
-   With the GNU library, memory that one run has freed stays in the process for the next: what a fresh page costs says more about the machine than
-   about either side, above all on virtual ones that hand back what is free for two seconds. --fresh leaves malloc as it is.
+   How it is measured. Both sides start with the same two matrices in memory and use the same number of
+   threads. After a warm-up they take turns, and the best run of each counts; only freeing is left out. A
+   rival that takes more than ten seconds for signatures runs once.
 
-   In the table: ms, the ratio rival's time / ours, errors; then of ours GF/s of the factorisation and their share of the machine's fused
-   multiply-adds, GB/s of factors read in solves, non-zeros of L, bytes held at most, and these over 64 bytes a non-zero, the least that four complex
-   factors need; last the rival's non-zeros and bytes. Stages are what the library's progress callback names. */
+   Accuracy. Every adjustable accuracy is set, outside the measured time, to the least work that reaches an
+   error of 1e-7 relative to the largest value of a column: tol for us, the number of Lanczos steps for them.
+   UMFPACK and SparseLU use the best uniform poles of degree 7, with the error that this gives. Errors are
+   differences from the direct method with kernel poles of degree 14; for many times, from a rival's Lanczos
+   with full reorthogonalisation. The two references are compared with each other. Errors of signatures are
+   the largest over the vertices, relative to the vertex's own value, at 10, 100 and 10^4 h^2. The 300
+   eigenpairs have the error of all that they leave out.
+
+   Memory. With the GNU library, memory freed by one run stays in the process for the next. Fresh pages cost
+   time that says more about the machine than about either side, above all on virtual machines. --fresh leaves
+   malloc as it is.
+
+   The table shows ms, the ratio rival's time / ours, and errors; then for us GF/s of the factorisation and
+   its share of the machine's fused multiply-adds, GB/s of factors read in solves, non-zeros of L, peak bytes,
+   and these bytes over 64 bytes for each non-zero, the least that four complex factors need; last the rival's
+   non-zeros and bytes. Stages are named by the library's progress callback. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -58,20 +73,32 @@ enum { HAVE_RIVALS = 1 };
 #else
 enum { HAVE_RIVALS = 0 };
 static int rival_absent(rival_result *r) { memset(r, 0, sizeof *r); return 0; }
-int rival_silan(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
-int rival_silan_block(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
-int rival_silan_times(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
-int rival_umfpack(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)p; return rival_silan(job, U, r); }
-int rival_eigen_lu(const rival_job *job, const rival_poles *p, double *U, rival_result *r) { (void)p; return rival_silan(job, U, r); }
-int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
-int rival_eigenpairs(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
-int rival_reference(const rival_job *job, double *U, rival_result *r) { (void)job; (void)U; return rival_absent(r); }
-int rival_assembly(const rival_mesh *mesh, int voronoi, const rival_pair *check, rival_result *r) { (void)mesh; (void)voronoi; (void)check; return rival_absent(r); }
-int rival_geodesic(const rival_mesh *mesh, double shift, int32_t k, const int32_t *s, double *D, rival_result *r) {
+int rival_silan(const rival_job *job, double *U,
+                rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_silan_block(const rival_job *job, double *U,
+                      rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_silan_times(const rival_job *job, double *U,
+                      rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_umfpack(const rival_job *job, const rival_poles *p, double *U,
+                  rival_result *r) { (void)p; return rival_silan(job, U, r); }
+int rival_eigen_lu(const rival_job *job, const rival_poles *p, double *U,
+                   rival_result *r) { (void)p; return rival_silan(job, U, r); }
+int rival_eigen_ldlt(const rival_job *job, double *U,
+                     rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_eigenpairs(const rival_job *job, double *U,
+                     rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_reference(const rival_job *job, double *U,
+                    rival_result *r) { (void)job; (void)U; return rival_absent(r); }
+int rival_assembly(const rival_mesh *mesh, int voronoi, const rival_pair *check,
+                   rival_result *r) { (void)mesh; (void)voronoi; (void)check; return rival_absent(r); }
+int rival_geodesic(const rival_mesh *mesh, double shift, int32_t k, const int32_t *s, double *D,
+                   rival_result *r) {
     (void)mesh; (void)shift; (void)k; (void)s; (void)D;
     return rival_absent(r);
 }
-void rival_machine(int32_t threads, rival_machine_result *r) { (void)threads; memset(r, 0, sizeof *r); r->simd = r->blas = ""; }
+void rival_machine(int32_t threads,
+                   rival_machine_result *r) { (void)threads; memset(r, 0, sizeof *r); r->simd = r->blas = "";
+                                              }
 #endif
 
 static double now(void) {
@@ -109,8 +136,8 @@ static double copy_speed(size_t bytes) {
 }
 
 static void line(const char *what, double seconds, double bytes, double speed) {
-    printf("  %-34s %9.3f ms   floor %8.3f ms   ratio %.2f   %.1f GB/s\n", what, 1e3 * seconds, 1e3 * bytes / speed, seconds * speed / bytes,
-           1e-9 * bytes / seconds);
+    printf("  %-34s %9.3f ms   floor %8.3f ms   ratio %.2f   %.1f GB/s\n", what, 1e3 * seconds,
+           1e3 * bytes / speed, seconds * speed / bytes, 1e-9 * bytes / seconds);
 }
 
 static double time_apply(const hd_csr *a, const double *x, double *y) {
@@ -161,7 +188,8 @@ static void parts_products(hd_heat *heat, double t) {
     a.t = t;
     a.theta = hdi_c(2.4, 2.4);
     bytes = (lap->B ? 20 : 12) * nnz + 8 * (dn + 1) + (lap->B ? 32 : 40) * dn;
-    line("(t L + theta B) x, complex", time_system(&a, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y), bytes, copy_speed((size_t)bytes));
+    line("(t L + theta B) x, complex", time_system(&a, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y), bytes,
+         copy_speed((size_t)bytes));
     bytes = 20 * (double)heat->up.ptr[n] + 8 * dn + 16 * dn + 32 * dn;
     if (heat->fam.filled) {
         const double seconds = time_precond(heat->fam.m, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y);
@@ -189,9 +217,10 @@ static void parts_solvers(const hd_laplacian *lap) {
             t1 = now();
             if (hd_heat_column(heat, HD_KERNEL_OPERATOR, taus[k] * lap->h * lap->h, lap->vertex[lap->n_active / 2], u, &rep, NULL) >= 0) {
                 t2 = now();
-                printf("  column, t = %4g h^2, %-8s plan %7.1f ms, solve %8.1f ms, %5lld steps, %.3f ms a step\n", taus[k],
-                       s == 0 ? "cocg" : "lanczos", 1e3 * (t1 - t0), 1e3 * (t2 - t1), (long long)rep.iterations,
-                       1e3 * (t2 - t1) / (double)rep.iterations);
+                printf("  column, t = %4g h^2, %-8s plan %7.1f ms, solve %8.1f ms, %5lld steps, %.3f ms a "
+                       "step\n", taus[k],
+                       s == 0 ? "cocg" : "lanczos", 1e3 * (t1 - t0), 1e3 * (t2 - t1),
+                       (long long)rep.iterations, 1e3 * (t2 - t1) / (double)rep.iterations);
             }
             if (s == 0 && k == 2) parts_products(heat, 100 * lap->h * lap->h);
             hd_heat_free(heat);
@@ -211,8 +240,8 @@ static void parts_mesh(const char *name, const double *xyz, int32_t n, const int
         o.kind = kinds[k];
         if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, NULL) < 0) return;
         t1 = now();
-        printf("%s, %s: %d vertices, %lld non-zeros, assembled in %.1f ms\n", name, k ? "fem" : "voronoi-cot", (int)n, (long long)lap->L.nnz,
-               1e3 * (t1 - t0));
+        printf("%s, %s: %d vertices, %lld non-zeros, assembled in %.1f ms\n", name, k ? "fem" : "voronoi-cot",
+               (int)n, (long long)lap->L.nnz, 1e3 * (t1 - t0));
         parts_solvers(lap);
         hd_laplacian_free(lap);
     }
@@ -221,17 +250,21 @@ static void parts_mesh(const char *name, const double *xyz, int32_t n, const int
 /* ==== the machine ==== */
 
 #if HDI_X86
-/* Independent sums: enough for the latency of the multiply-add, few enough for the registers. Flops. */
+/* Flops of independent sums: enough of them to hide the latency of the multiply-add, few enough for the
+ * registers. */
 HDI_AVX512 static double multiply_add_512(int64_t rounds, volatile double *sink) {
     const __m512d m = _mm512_set1_pd(0.999999999), a = _mm512_set1_pd(1e-9);
     __m512d s0 = a, s1 = a, s2 = a, s3 = a, s4 = a, s5 = a, s6 = a, s7 = a, s8 = a, s9 = a;
     int64_t k;
     for (k = 0; k < rounds; k++) {
-        s0 = _mm512_fmadd_pd(s0, m, a); s1 = _mm512_fmadd_pd(s1, m, a); s2 = _mm512_fmadd_pd(s2, m, a); s3 = _mm512_fmadd_pd(s3, m, a);
-        s4 = _mm512_fmadd_pd(s4, m, a); s5 = _mm512_fmadd_pd(s5, m, a); s6 = _mm512_fmadd_pd(s6, m, a); s7 = _mm512_fmadd_pd(s7, m, a);
+        s0 = _mm512_fmadd_pd(s0, m, a); s1 = _mm512_fmadd_pd(s1, m, a);
+        s2 = _mm512_fmadd_pd(s2, m, a); s3 = _mm512_fmadd_pd(s3, m, a);
+        s4 = _mm512_fmadd_pd(s4, m, a); s5 = _mm512_fmadd_pd(s5, m, a);
+        s6 = _mm512_fmadd_pd(s6, m, a); s7 = _mm512_fmadd_pd(s7, m, a);
         s8 = _mm512_fmadd_pd(s8, m, a); s9 = _mm512_fmadd_pd(s9, m, a);
     }
-    s0 = _mm512_add_pd(_mm512_add_pd(_mm512_add_pd(s0, s1), _mm512_add_pd(s2, s3)), _mm512_add_pd(_mm512_add_pd(s4, s5), _mm512_add_pd(s6, s7)));
+    s0 = _mm512_add_pd(_mm512_add_pd(_mm512_add_pd(s0, s1), _mm512_add_pd(s2, s3)),
+                       _mm512_add_pd(_mm512_add_pd(s4, s5), _mm512_add_pd(s6, s7)));
     *sink = _mm512_reduce_add_pd(_mm512_add_pd(s0, _mm512_add_pd(s8, s9)));
     return 160.0 * (double)rounds;
 }
@@ -242,11 +275,14 @@ HDI_AVX2 static double multiply_add_256(int64_t rounds, volatile double *sink) {
     double out[4];
     int64_t k;
     for (k = 0; k < rounds; k++) {
-        s0 = _mm256_fmadd_pd(s0, m, a); s1 = _mm256_fmadd_pd(s1, m, a); s2 = _mm256_fmadd_pd(s2, m, a); s3 = _mm256_fmadd_pd(s3, m, a);
-        s4 = _mm256_fmadd_pd(s4, m, a); s5 = _mm256_fmadd_pd(s5, m, a); s6 = _mm256_fmadd_pd(s6, m, a); s7 = _mm256_fmadd_pd(s7, m, a);
+        s0 = _mm256_fmadd_pd(s0, m, a); s1 = _mm256_fmadd_pd(s1, m, a);
+        s2 = _mm256_fmadd_pd(s2, m, a); s3 = _mm256_fmadd_pd(s3, m, a);
+        s4 = _mm256_fmadd_pd(s4, m, a); s5 = _mm256_fmadd_pd(s5, m, a);
+        s6 = _mm256_fmadd_pd(s6, m, a); s7 = _mm256_fmadd_pd(s7, m, a);
         s8 = _mm256_fmadd_pd(s8, m, a); s9 = _mm256_fmadd_pd(s9, m, a);
     }
-    s0 = _mm256_add_pd(_mm256_add_pd(_mm256_add_pd(s0, s1), _mm256_add_pd(s2, s3)), _mm256_add_pd(_mm256_add_pd(s4, s5), _mm256_add_pd(s6, s7)));
+    s0 = _mm256_add_pd(_mm256_add_pd(_mm256_add_pd(s0, s1), _mm256_add_pd(s2, s3)),
+                       _mm256_add_pd(_mm256_add_pd(s4, s5), _mm256_add_pd(s6, s7)));
     _mm256_storeu_pd(out, _mm256_add_pd(s0, _mm256_add_pd(s8, s9)));
     *sink = out[0];
     return 80.0 * (double)rounds;
@@ -261,13 +297,14 @@ static void load_task(void *arg, int64_t index, int32_t worker) {
     volatile double sink = 0;
     (void)worker;
 #if HDI_X86
-    if (j->simd) j->flops[index] = j->simd > 1 ? multiply_add_512(10000000, &sink) : multiply_add_256(10000000, &sink);
+    if (j->simd)
+        j->flops[index] = j->simd > 1 ? multiply_add_512(10000000, &sink) : multiply_add_256(10000000, &sink);
 #endif
     if (!j->simd) sink = hdi_dot(j->x + index * j->share, j->x + index * j->share, j->share);
     (void)sink;
 }
 
-/* Best of a few: flops (simd > 0) or bytes a second, in thousand millions. */
+/* The best of a few runs, in GF/s (simd > 0) or GB/s. */
 static double load_speed(int threads, int simd, const double *x, int64_t n) {
     hd_context ctx;
     load_job j;
@@ -294,7 +331,7 @@ static double load_speed(int threads, int simd, const double *x, int64_t n) {
 
 enum { STAGE_OTHER, STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_INVERT, STAGE_SOLVE, STAGES };
 
-/* Stage times by the library's own progress reports. What follows the last one counts for its stage. */
+/* Stage times, from the library's progress calls. Time after the last call belongs to its stage. */
 typedef struct watch { const char *name; int stage; double since, seconds[STAGES]; } watch;
 
 static void watch_turn(watch *w, int stage) {
@@ -340,7 +377,8 @@ typedef struct bench {
     rival_ordering ordering;     /* that suits shift-invert Lanczos best, once known */
 } bench;
 
-/* What to ask the library for: columns at times[0], or one at many times; the diagonal of k_t at all times; distances from the first vertex at times[0]. */
+/* What to ask the library for: columns at times[0], or one at many times; the diagonal of k_t at all times;
+ * distances from the first vertex at times[0]. */
 typedef enum query { COLUMNS, DIAGONAL, DISTANCES } query;
 
 typedef struct ask {
@@ -381,8 +419,10 @@ static hd_status plan_open(plan *p, const bench *b, const ask *a) {
 static void plan_close(plan *p) { hd_heat_free(p->heat); }
 
 static hd_status plan_call(hd_heat *heat, const ask *a, double *U, hd_report *r) {
-    if (a->what == DIAGONAL) return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, a->n_times, a->times, U, 0, r, NULL);
-    if (a->what == DISTANCES) return hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, a->times, 1, a->vertices, U, 0, r, NULL);
+    if (a->what == DIAGONAL)
+        return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, a->n_times, a->times, U, 0, r, NULL);
+    if (a->what == DISTANCES)
+        return hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, a->times, 1, a->vertices, U, 0, r, NULL);
     return hd_heat_columns(heat, HD_KERNEL_OPERATOR, a->n_times, a->times, a->n_columns, a->vertices, U, 0, r, NULL);
 }
 
@@ -434,7 +474,7 @@ static void vertices_to_rows(const bench *b, double *U, int k) {
 
 static int many(const ask *a) { return a->n_times > 1 ? a->n_times : a->n_columns; }
 
-/* An array that has been written to: no page of it is fresh in what is timed. */
+/* An array that has been written to, so that no fresh page falls into the measured time. */
 static double *answers(const bench *b, int k) {
     const size_t bytes = (size_t)b->lap->n * (size_t)k * sizeof(double);
     double *u = (double *)malloc(bytes + 64);
@@ -445,7 +485,8 @@ static double *answers(const bench *b, int k) {
 
 static const double TARGET = 1e-7;
 
-/* References for the first k columns (or all times) of what is asked for, by rows; NULL when there are none. */
+/* References for the first k columns (or all times) of what is asked for, by rows; NULL when there are
+ * none. */
 static double *reference(const bench *b, const ask *a, int k) {
     double *R = answers(b, k);
     ask exact = *a;
@@ -478,7 +519,8 @@ static double *reference(const bench *b, const ask *a, int k) {
     return NULL;
 }
 
-/* The largest tol that reaches the target on a kept plan, then on a fresh one; untimed. 0 where tol has no say. */
+/* The largest tol that reaches the target on a kept plan, then on a fresh one. Not timed. 0 where tol has no
+ * effect. */
 static double find_tol(const bench *b, const ask *a, const double *R, double *U) {
     enum { GRID = 88 };          /* 10^(-1 - q/8) */
     ask probe = *a;
@@ -529,7 +571,7 @@ static void row_clear(entry *r, const bench *b, const char *job, const char *par
     r->error = r->rival_error = -1;
 }
 
-/* A number in so many places, or a dash where there is none. */
+/* Prints a number with this many digits, or a dash if there is none. */
 static void cell(int width, const char *format, double x, int there) {
     char text[32];
     snprintf(text, sizeof text, format, x);
@@ -539,12 +581,15 @@ static void cell(int width, const char *format, double x, int there) {
 static double row_share(const entry *r, const bench *b) { return r->gflops / b->peak[r->threads > 1]; }
 
 static void row_csv(const entry *r, const bench *b) {
-    const double ratio = r->rival_seconds > 0 ? r->rival_seconds / r->seconds : 0, share = b->peak[0] > 0 ? row_share(r, b) : 0;
+    const double ratio = r->rival_seconds > 0 ? r->rival_seconds / r->seconds : 0, share = b->peak[0] > 0
+                         ? row_share(r, b) : 0;
     const double packs = r->packs && r->nnz > 0 ? r->bytes / (64 * r->nnz) : 0;
-    printf("%s,%s,%d,\"%s%s%s\",%g,", b->mesh, b->mass, (int)b->pair.n, r->job, r->part ? ": " : "", r->part ? r->part : "", r->tau);
-    printf("%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,", (int)r->threads, r->ours, r->seconds, r->rival, r->rival_seconds, ratio, r->error,
-           r->rival_error);
-    printf("%.4g,%.4g,%.4g,%.0f,%.0f,%.4g,%.0f,%.0f\n", r->gflops, share, r->gbytes, r->nnz, r->bytes, packs, r->rival_nnz, r->rival_bytes);
+    printf("%s,%s,%d,\"%s%s%s\",%g,", b->mesh, b->mass, (int)b->pair.n, r->job, r->part ? ": " : "",
+           r->part ? r->part : "", r->tau);
+    printf("%d,\"%s\",%.6g,\"%s\",%.6g,%.4g,%.3g,%.3g,", (int)r->threads, r->ours, r->seconds, r->rival,
+           r->rival_seconds, ratio, r->error, r->rival_error);
+    printf("%.4g,%.4g,%.4g,%.0f,%.0f,%.4g,%.0f,%.0f\n", r->gflops, share, r->gbytes, r->nnz, r->bytes, packs,
+           r->rival_nnz, r->rival_bytes);
 }
 
 static void row_print(const entry *r, const bench *b) {
@@ -575,13 +620,15 @@ static void row_print(const entry *r, const bench *b) {
 
 static void table_head(const bench *b) {
     if (b->set->csv) return;
-    printf("%-18s%6s%3s  %-22s%10s  %-22s%10s%7s%9s%9s", "job", "t/h2", "th", "ours", "ms", "rival", "ms", "ratio", "error", "rival's");
+    printf("%-18s%6s%3s  %-22s%10s  %-22s%10s%7s%9s%9s", "job", "t/h2", "th", "ours", "ms", "rival", "ms",
+           "ratio", "error", "rival's");
     printf("%8s%5s%6s%11s%8s%6s%11s%8s\n", "GF/s", "peak", "GB/s", "nnz(L)", "MB", "/64B", "rival nnz", "MB");
     fflush(stdout);
 }
 
 static const char *ordering_name(hd_ordering o) {
-    return o == HD_ORDERING_MINIMUM_DEGREE ? " md" : o == HD_ORDERING_NESTED_DISSECTION ? " nd" : o == HD_ORDERING_OWN ? " own" : "";
+    return o == HD_ORDERING_MINIMUM_DEGREE ? " md" : o == HD_ORDERING_NESTED_DISSECTION ? " nd"
+           : o == HD_ORDERING_OWN ? " own" : "";
 }
 
 static void describe_ours(char *to, size_t size, const ask *a, const ours *o) {
@@ -589,12 +636,14 @@ static void describe_ours(char *to, size_t size, const ask *a, const ours *o) {
     const char *asked = a->method == HD_METHOD_AUTO ? "auto: " : "", *order = ordering_name(r->ordering);
     const long long steps = (long long)r->iterations / a->n_times;   /* of many times: on average */
     if (!o->fine) snprintf(to, size, "failed");
-    else if (r->method == HD_METHOD_DIRECT) snprintf(to, size, "%sdirect r=%d%s", asked, (int)r->degree, order);
+    else if (r->method == HD_METHOD_DIRECT)
+        snprintf(to, size, "%sdirect r=%d%s", asked, (int)r->degree, order);
     else if (r->method == HD_METHOD_KRYLOV) snprintf(to, size, "%skrylov %lld%s", asked, steps, order);
     else snprintf(to, size, "%s%s %lld", asked, r->solver == HD_SOLVER_LANCZOS ? "lanczos" : "cocg", steps);
 }
 
-/* Our part of a row. GB/s where it is plain what a solve reads: one column by shift-invert Lanczos sweeps twice over the factor a step. */
+/* Our part of a row. GB/s are given where it is clear what a solve reads: for one column, shift-and-invert
+ * Lanczos reads the factor twice in each step. */
 static void row_ours(entry *r, const ask *a, const ours *o) {
     const hd_report *rep = &o->report;
     const double solve = o->stage[STAGE_SOLVE], factor = o->stage[STAGE_FACTOR];
@@ -605,7 +654,8 @@ static void row_ours(entry *r, const ask *a, const ours *o) {
     r->nnz = (double)rep->factor_nnz;
     r->bytes = o->bytes;
     r->packs = rep->method == HD_METHOD_DIRECT;
-    if (factor > 0 && a->n_times == 1 && rep->method != HD_METHOD_ITERATIVE) r->gflops = 1e-9 * rep->factor_flops / factor;
+    if (factor > 0 && a->n_times == 1 && rep->method != HD_METHOD_ITERATIVE)
+        r->gflops = 1e-9 * rep->factor_flops / factor;
     if (solve > 0 && rep->method == HD_METHOD_KRYLOV && a->n_columns == 1 && a->n_times == 1)
         r->gbytes = 16e-9 * r->nnz * (double)rep->iterations / solve;
 }
@@ -639,10 +689,13 @@ static int rival_run(const opponent *o, rival_result *r) {
     }
 }
 
-static double rival_seconds(const opponent *o, const rival_result *r) { return o->job.n_sources > 1 ? r->total_columns : r->total; }
+static double rival_seconds(const opponent *o, const rival_result *r) {
+    return o->job.n_sources > 1 ? r->total_columns : r->total;
+}
 
 /* The same job for a rival. rows [columns]: the sources, which must stay. */
-static opponent opponent_make(const bench *b, rival_kind kind, const ask *a, const int32_t *rows, const double *R, int n_R) {
+static opponent opponent_make(const bench *b, rival_kind kind, const ask *a, const int32_t *rows,
+                              const double *R, int n_R) {
     opponent o;
     memset(&o, 0, sizeof o);
     o.kind = kind;
@@ -660,7 +713,7 @@ static opponent opponent_make(const bench *b, rival_kind kind, const ask *a, con
     return o;
 }
 
-/* The warm-up, in which a rival finds its best ordering, steps and windows; later runs are told. */
+/* The warm-up, in which a rival finds its best ordering, steps and windows. Later runs reuse them. */
 static void opponent_warm(opponent *o) {
     rival_result r;
     o->fine = rival_run(o, &r);
@@ -680,7 +733,7 @@ static void opponent_turn(opponent *o, int first) {
     if (first || rival_seconds(o, &r) < rival_seconds(o, &o->best)) o->best = r;
 }
 
-/* Threads of OpenMP and BLAS spin for a while after their last work: not in the other side's time. */
+/* Waits until the threads of OpenMP and BLAS stop spinning, so that they do not slow down the other side. */
 static void rest(void) {
 #if defined(CLOCK_MONOTONIC)
     struct timespec t = {0, 60000000};
@@ -688,11 +741,15 @@ static void rest(void) {
 #endif
 }
 
-/* Seven rounds, less when they take long, but two. */
-static int round_wanted(const bench *b, int round, double start) { return round < 2 || (round < 7 && now() - start < b->set->seconds); }
+/* Seven rounds; fewer if they take long, but at least two. */
+static int round_wanted(const bench *b, int round, double start) {
+    return round < 2 || (round < 7 && now() - start < b->set->seconds);
+}
 
-/* In turns after a warm-up. The best of ours by total time; its error is that of the last run (all are the same). */
-static void contest(const bench *b, const ask *a, const double *R, int n_R, double *U, ours *best, opponent *o, int n_o) {
+/* Both sides in turns after a warm-up. Keeps our best run by total time, with the error of the last run (all
+ * runs have the same error). */
+static void contest(const bench *b, const ask *a, const double *R, int n_R, double *U, ours *best,
+                    opponent *o, int n_o) {
     double start;
     int k, round;
     run_cold(b, a, U, best);
@@ -717,7 +774,8 @@ static void describe_rival(char *to, size_t size, const opponent *o) {
     const char *order = o->kind == EIGEN_LU ? " colamd" : r->ordering == RIVAL_METIS ? " metis" : " amd";
     if (!o->fine) snprintf(to, size, "%s: %.20s", names[o->kind], r->note);
     else if (o->kind == UMFPACK || o->kind == EIGEN_LU) snprintf(to, size, "%s r=7%s", names[o->kind], order);
-    else if (o->kind == SILAN_BLOCK) snprintf(to, size, "%s %d x%d%s", names[o->kind], (int)r->steps, (int)r->width, order);
+    else if (o->kind == SILAN_BLOCK)
+        snprintf(to, size, "%s %d x%d%s", names[o->kind], (int)r->steps, (int)r->width, order);
     else snprintf(to, size, "%s %d%s", names[o->kind], (int)r->steps, order);
 }
 
@@ -730,7 +788,8 @@ static void row_rival(entry *r, const opponent *o) {
     r->rival_bytes = o->best.bytes;
 }
 
-static void contest_rows(const bench *b, const char *job, const ask *a, const ours *best, const opponent *o, int n_o) {
+static void contest_rows(const bench *b, const char *job, const ask *a, const ours *best, const opponent *o,
+                         int n_o) {
     int k = 0;
     do {
         entry r;
@@ -744,7 +803,8 @@ static void contest_rows(const bench *b, const char *job, const ask *a, const ou
 /* The stages of the two best runs. */
 static void stage_rows(const bench *b, const char *job, const ours *best, const opponent *o) {
     static const char *const names[] = {"order + analyse", "factor", "solve"};
-    const double *s = best->stage, mine[] = {s[STAGE_OTHER] + s[STAGE_ORDER] + s[STAGE_ANALYSE], s[STAGE_FACTOR], s[STAGE_SOLVE]};
+    const double *s = best->stage, mine[] = {s[STAGE_OTHER] + s[STAGE_ORDER] + s[STAGE_ANALYSE],
+                                             s[STAGE_FACTOR], s[STAGE_SOLVE]};
     const double theirs[] = {o->best.analyse, o->best.factor, o->best.first};
     int k;
     for (k = 0; k < 3; k++) {
@@ -771,7 +831,8 @@ static ask ask_column(hd_method method, const double *t, const int32_t *vertex) 
 static int32_t middle(const bench *b) { return b->pair.n / 2; }
 
 /* One column against shift-invert Lanczos, with the ordering that suits it remembered. Returns the method. */
-static hd_method one_column(bench *b, const char *job, hd_method method, double tau, const double *R, double *U, int stages) {
+static hd_method one_column(bench *b, const char *job, hd_method method, double tau, const double *R,
+                            double *U, int stages) {
     const double t = tau * b->hh;
     const int32_t row = middle(b), vertex = b->lap->vertex[row];
     ask a = ask_column(method, &t, &vertex);
@@ -804,7 +865,8 @@ static void compare_references(const bench *b, double t, const double *R) {
             e = hdi_max(e, fabs(S[i] - R[i]));
             m = hdi_max(m, fabs(R[i]));
         }
-        printf("%s  references: direct of degree 14 and reorthogonalised Lanczos differ by %.1e\n", b->set->csv ? "# " : "", e / m);
+        printf("%s  references: direct of degree 14 and reorthogonalised Lanczos differ by %.1e\n",
+               b->set->csv ? "# " : "", e / m);
     }
     free(S);
 }
@@ -815,7 +877,8 @@ static void job_one(bench *b) {
     const ask a = ask_column(HD_METHOD_AUTO, &t, &vertex);
     double *R = reference(b, &a, 1), *U = answers(b, 1);
     if (R && U) {
-        if (one_column(b, "one", HD_METHOD_AUTO, 100, R, U, 1) != HD_METHOD_KRYLOV) (void)one_column(b, "one", HD_METHOD_KRYLOV, 100, R, U, 1);
+        if (one_column(b, "one", HD_METHOD_AUTO, 100, R, U, 1) != HD_METHOD_KRYLOV)
+            (void)one_column(b, "one", HD_METHOD_KRYLOV, 100, R, U, 1);
         compare_references(b, t, R);
     }
     free(R);
@@ -830,7 +893,9 @@ static void job_small(bench *b) {
         const int32_t vertex = b->lap->vertex[middle(b)];
         const ask a = ask_column(HD_METHOD_AUTO, &t, &vertex);
         double *R = reference(b, &a, 1), *U = answers(b, 1);
-        if (R && U) (void)one_column(b, b->lap->B ? "small, fem" : "small, voronoi", HD_METHOD_AUTO, taus[k], R, U, 0);
+        if (R && U)
+            (void)one_column(b, b->lap->B ? "small, fem" : "small, voronoi", HD_METHOD_AUTO, taus[k], R, U,
+                             0);
         free(R);
         free(U);
     }
@@ -849,7 +914,9 @@ static int spread(const bench *b, int k, int32_t *rows, int32_t *vertices) {
 
 enum { MOST_COLUMNS = 1000, REFERENCES = 8, FURTHER = 9, UMFPACK_ROWS = 300000, EIGEN_ROWS = 60000 };
 
-static int umfpack_fits(const bench *b) { return HAVE_RIVALS && (b->pair.n <= UMFPACK_ROWS || b->set->umfpack); }
+static int umfpack_fits(const bench *b) {
+    return HAVE_RIVALS && (b->pair.n <= UMFPACK_ROWS || b->set->umfpack);
+}
 
 static void job_columns(bench *b) {
     const double t = 100 * b->hh;
@@ -873,7 +940,7 @@ static void job_columns(bench *b) {
     free(U);
 }
 
-/* The quickest of the columns, one by one, on a plan that has its factors. */
+/* The fastest of the columns, one by one, on a plan that already has its factors. */
 static double further_columns(plan *p, ask a, double *U, ours *run) {
     const int32_t *v = a.vertices;
     double best = 1e30;
@@ -954,7 +1021,7 @@ typedef struct stages {
     double best[STAGES], total, further, field, batch, flops, nnz, bytes, error;
 } stages;
 
-/* One dense field, and 24 columns at a time, with the factors at hand. */
+/* One dense field, and 24 columns at a time, on a plan that already has its factors. */
 static void stages_warm(plan *p, const ask *a, const double *F, double *U, stages *s) {
     ask more = *a;
     ours run;
@@ -962,7 +1029,8 @@ static void stages_warm(plan *p, const ask *a, const double *F, double *U, stage
     hd_report rep;
     memset(&run, 0, sizeof run);
     watch_start(&p->w);
-    if (hd_heat_apply(p->heat, 1, &a->times[0], 1, F, 0, U, 0, &rep, NULL) >= 0) s->field = hdi_min(s->field, now() - t0);
+    if (hd_heat_apply(p->heat, 1, &a->times[0], 1, F, 0, U, 0, &rep, NULL) >= 0)
+        s->field = hdi_min(s->field, now() - t0);
     watch_turn(&p->w, STAGE_OTHER);
     if (p->w.seconds[STAGE_FACTOR] > 0) fprintf(stderr, "bench: a field made new factors\n");
     p->w.name = NULL;
@@ -1002,7 +1070,8 @@ static int stages_run(const bench *b, const ask *a, const double *F, const doubl
     return 1;
 }
 
-static void stages_row(const bench *b, const char *part, const char *what, double seconds, double gflops, double gbytes) {
+static void stages_row(const bench *b, const char *part, const char *what, double seconds, double gflops,
+                       double gbytes) {
     entry r;
     if (!(seconds > 0) || seconds >= 1e30) return;
     row_clear(&r, b, "stages", part, 0);
@@ -1013,7 +1082,8 @@ static void stages_row(const bench *b, const char *part, const char *what, doubl
     row_print(&r, b);
 }
 
-/* A dense field reads every non-zero of four complex factors twice. What a column reads going forward depends on where it is. */
+/* A dense field reads every non-zero of four complex factors twice. What a column reads in the forward sweep
+ * depends on its place in the elimination tree. */
 static void stages_print(const bench *b, const ask *a, const stages *s) {
     entry r;
     row_clear(&r, b, "stages", NULL, a->times[0] / b->hh);
@@ -1026,7 +1096,8 @@ static void stages_print(const bench *b, const ask *a, const stages *s) {
     row_print(&r, b);
     stages_row(b, "order", "", s->best[STAGE_OTHER] + s->best[STAGE_ORDER], 0, 0);
     stages_row(b, "analyse", "", s->best[STAGE_ANALYSE], 0, 0);
-    stages_row(b, "factor", "four complex", s->best[STAGE_FACTOR], 1e-9 * s->flops / s->best[STAGE_FACTOR], 0);
+    stages_row(b, "factor", "four complex", s->best[STAGE_FACTOR], 1e-9 * s->flops / s->best[STAGE_FACTOR],
+               0);
     stages_row(b, "solve", "first column", s->best[STAGE_SOLVE], 0, 0);
     stages_row(b, "solve", "further column", s->further, 0, 0);
     stages_row(b, "solve", "dense field", s->field, 0, 128e-9 * s->nnz / s->field);
@@ -1055,7 +1126,8 @@ static void job_stages(bench *b) {
 
 /* ---- signature ---- */
 
-enum { SIG_10, SIG_100, SIG_POLES, SIG_16, SIG_MANY, SIG_DISTANCE, SIG_ASKS, SIG_TAUS = 3, SIG_CHECKS = 3, SIG_TIMES = 100, SIG_PAIRS = 300 };
+enum { SIG_10, SIG_100, SIG_POLES, SIG_16, SIG_MANY, SIG_DISTANCE, SIG_ASKS, SIG_TAUS = 3, SIG_CHECKS = 3,
+       SIG_TIMES = 100, SIG_PAIRS = 300 };
 
 static const double SIG_TAU[SIG_TAUS] = {10, 100, 10000};
 
@@ -1070,7 +1142,8 @@ typedef struct signature {
     int there;
 } signature;
 
-/* Of the whole process since it began: more telling than the clock when others are at work. Threads that wait in a loop count. */
+/* Processor time of the process. It says more than the clock if other programs are running. It includes
+ * threads that spin while they wait. */
 static double processor(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 static void signature_open(signature *s, const bench *b) {
@@ -1140,7 +1213,8 @@ static void signature_check(const signature *s, const bench *b) {
         }
     }
     if (fine)
-        printf("%s  references: diagonals of degree 14 and reorthogonalised Lanczos at %d vertices differ by %.1e, %.1e, %.1e at t = 10, 100, 10^4 h^2\n",
+        printf("%s  references: diagonals of degree 14 and reorthogonalised Lanczos at %d vertices differ "
+               "by %.1e, %.1e, %.1e at t = 10, 100, 10^4 h^2\n",
                b->set->csv ? "# " : "", n, e[0], e[1], e[2]);
     else fprintf(stderr, "bench: %s\n", r.note);
     free(S);
@@ -1157,7 +1231,8 @@ static double diagonal_error(const bench *b, const double *u, const double *r) {
     return worst;
 }
 
-/* Error of our answers to ask k, which get renumbered on the way: for many times at those of the references. */
+/* Error of our answers to ask k, which get renumbered on the way: for many times at those of the
+ * references. */
 static double signature_error(const signature *s, const bench *b, int k, double *U) {
     const size_t rows = (size_t)b->pair.n, n_times = (size_t)s->ask[k].n_times;
     if (k == SIG_DISTANCE) return error_of(b, U, s->distance, 1);
@@ -1165,10 +1240,11 @@ static double signature_error(const signature *s, const bench *b, int k, double 
     vertices_to_rows(b, U, s->ask[k].n_times);
     if (n_times == 1) return diagonal_error(b, U, s->R[k == SIG_100]);
     return hdi_max(diagonal_error(b, U, s->R[0]),
-                   hdi_max(diagonal_error(b, U + (n_times - 1) / 3 * rows, s->R[1]), diagonal_error(b, U + (n_times - 1) * rows, s->R[2])));
+                   hdi_max(diagonal_error(b, U + (n_times - 1) / 3 * rows, s->R[1]),
+                           diagonal_error(b, U + (n_times - 1) * rows, s->R[2])));
 }
 
-/* The best of ours, of the four poles by their factors alone. */
+/* Keeps our best run; for the four poles, the best by the time of their factors alone. */
 static void signature_ours(signature *s, const bench *b, int k, double *U, int first) {
     ours run, *best = s->best + k;
     double busy;
@@ -1178,7 +1254,9 @@ static void signature_ours(signature *s, const bench *b, int k, double *U, int f
     busy = processor() - busy;
     if (first || busy < s->busy[k]) s->busy[k] = busy;
     run.error = first && run.fine ? signature_error(s, b, k, U) : best->error;
-    if (first || (run.fine && (k == SIG_POLES ? run.stage[STAGE_FACTOR] < best->stage[STAGE_FACTOR] : run.total < best->total))) *best = run;
+    if (first || (run.fine && (k == SIG_POLES ? run.stage[STAGE_FACTOR] < best->stage[STAGE_FACTOR]
+                               : run.total < best->total)))
+        *best = run;
 }
 
 static void signature_rival(signature *s, const bench *b, double *U, int first) {
@@ -1192,7 +1270,8 @@ static void signature_rival(signature *s, const bench *b, double *U, int first) 
         s->job.ordering = s->theirs.ordering;
         s->rival_error[0] = s->there ? diagonal_error(b, U, s->R[0]) : -1;
         s->rival_error[1] = s->there ? diagonal_error(b, U + b->pair.n, s->R[1]) : -1;
-    } else if (s->there && s->theirs.total < 10 && rival_eigenpairs(&s->job, NULL, &r) && r.total < s->theirs.total) {
+    } else if (s->there && s->theirs.total < 10 && rival_eigenpairs(&s->job, NULL, &r) &&
+               r.total < s->theirs.total) {
         s->theirs = r;
     }
 }
@@ -1220,7 +1299,8 @@ static void signature_row(const signature *s, const bench *b, int k, int rival) 
     row_ours(&r, s->ask + k, s->best + k);
     r.packs = 0;
     if (rival && s->there) {
-        snprintf(r.rival, sizeof r.rival, "ARPACK %d pairs %s", (int)t->width, t->ordering == RIVAL_METIS ? "metis" : "amd");
+        snprintf(r.rival, sizeof r.rival, "ARPACK %d pairs %s", (int)t->width,
+                 t->ordering == RIVAL_METIS ? "metis" : "amd");
         r.rival_seconds = t->total;
         r.rival_error = s->rival_error[k];
         r.rival_nnz = t->nnz;
@@ -1240,8 +1320,9 @@ static void signature_stage(const bench *b, const char *part, double seconds, do
     row_print(&r, b);
 }
 
-/* Answer k as a multiple of a signature, which is wanted to be `goal` at most. */
-static void signature_multiple(const signature *s, const bench *b, int k, const char *part, const char *goal) {
+/* The time of answer k as a multiple of one signature. The goal is at most `goal`. */
+static void signature_multiple(const signature *s, const bench *b, int k, const char *part,
+                               const char *goal) {
     const ours *o = s->best + k;
     entry r;
     if (!o->fine) return;
@@ -1253,7 +1334,7 @@ static void signature_multiple(const signature *s, const bench *b, int k, const 
     row_print(&r, b);
 }
 
-/* Four complex factors, of which a signature is wanted to take `goal` times as long at most. */
+/* Four complex factors. The goal is that a signature takes at most `goal` times as long. */
 static void signature_poles(const signature *s, const bench *b, const char *goal) {
     const ours *o = s->best + SIG_POLES;
     entry r;
@@ -1271,8 +1352,10 @@ static void signature_print(const signature *s, const bench *b, int rival) {
     signature_row(s, b, 0, rival);
     signature_row(s, b, 1, rival);
     if (!one->fine || !s->best[SIG_POLES].fine) return;
-    signature_stage(b, "order + analyse", one->stage[STAGE_OTHER] + one->stage[STAGE_ORDER] + one->stage[STAGE_ANALYSE], t->analyse, 0);
-    signature_stage(b, "factor", one->stage[STAGE_FACTOR], t->factor, 1e-9 * one->report.factor_flops / one->stage[STAGE_FACTOR]);
+    signature_stage(b, "order + analyse", one->stage[STAGE_OTHER] + one->stage[STAGE_ORDER]
+                    + one->stage[STAGE_ANALYSE], t->analyse, 0);
+    signature_stage(b, "factor", one->stage[STAGE_FACTOR], t->factor,
+                    1e-9 * one->report.factor_flops / one->stage[STAGE_FACTOR]);
     signature_stage(b, "invert", one->stage[STAGE_INVERT], t->first - t->further, 0);
     signature_stage(b, "check", one->stage[STAGE_SOLVE], 0, 0);
     if (t->further > 0) signature_stage(b, "sum of squares", 0, t->further, 0);
@@ -1280,9 +1363,11 @@ static void signature_print(const signature *s, const bench *b, int rival) {
     signature_multiple(s, b, SIG_16, "16 times", "6");
     signature_multiple(s, b, SIG_MANY, "100 times", "8");
     signature_multiple(s, b, SIG_DISTANCE, "distances", "1.2");
-    printf("%s  seconds of all processors: signature %.2f, 16 times %.2f, 100 times %.2f, distances %.2f", b->set->csv ? "# " : "", s->busy[SIG_100], s->busy[SIG_16],
-           s->busy[SIG_MANY], s->busy[SIG_DISTANCE]);
-    if (s->there) printf("; rival %.1f, choice of its ordering included, for %d solves", s->rival_busy, (int)t->steps);
+    printf("%s  seconds of all processors: signature %.2f, 16 times %.2f, 100 times %.2f, distances %.2f",
+           b->set->csv ? "# " : "", s->busy[SIG_100], s->busy[SIG_16], s->busy[SIG_MANY],
+           s->busy[SIG_DISTANCE]);
+    if (s->there)
+        printf("; rival %.1f, choice of its ordering included, for %d solves", s->rival_busy, (int)t->steps);
     printf("\n");
 }
 
@@ -1364,7 +1449,8 @@ static void real_rows(const bench *b, const real_run *mine, const rival_result *
     }
 }
 
-/* Solving with B + 10 h^2 L; Eigen has one thread, so have we. The error is the difference between the two solutions. */
+/* Solving with B + 10 h^2 L; Eigen has one thread, so have we. The error is the difference between the two
+ * solutions. */
 static void eigen_real(bench *b) {
     const double t = 100 * b->hh, g = 0.1 * t;
     const int32_t row_of = middle(b), vertex = b->lap->vertex[row_of], all = b->threads;
@@ -1424,7 +1510,8 @@ enum { GEO_SOURCES = 9 };            /* the first, and as many as go side by sid
 
 typedef struct geo_run { int fine; double total, further, batch, bytes, nnz; } geo_run;
 
-/* From the mesh to the first distances, the best of further ones, and those eight at a time, each its share. D [n x GEO_SOURCES]. */
+/* Times from the mesh to the first distances, the best time of further ones, and the time of each if eight
+ * are computed at once. D [n x GEO_SOURCES]. */
 static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run *r) {
     const size_t n = (size_t)b->surface->n;
     hd_geodesic_opts o;
@@ -1438,7 +1525,8 @@ static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run 
     memset(r, 0, sizeof *r);
     ctx.threads = b->threads;
     o.context = &ctx;
-    r->fine = hd_geodesic_create(&g, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o, NULL) >= 0 &&
+    r->fine = hd_geodesic_create(&g, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o,
+                                 NULL) >= 0 &&
               hd_geodesic_distance(g, 1, sources, D, NULL, NULL) >= 0;
     r->total = now() - t0;
     for (q = 1; q < GEO_SOURCES && r->fine; q++) {
@@ -1467,15 +1555,17 @@ static double geo_error(const double *D, const double *R, size_t size) {
     double worst = 0, most = 0;
     size_t i;
     for (i = 0; i < size; i++) {
-        if (!(R[i] <= DBL_MAX) || !(D[i] <= DBL_MAX)) continue;     /* other components: CGAL has numbers there */
+        /* other components: CGAL has numbers there */
+        if (!(R[i] <= DBL_MAX) || !(D[i] <= DBL_MAX)) continue;
         worst = hdi_max(worst, fabs(D[i] - R[i]));
         most = hdi_max(most, D[i]);
     }
     return most > 0 ? worst / most : -1;
 }
 
-static void geo_row(const bench *b, const char *part, const char *what, double seconds, double rival, const geo_run *mine, const rival_result *theirs, int there,
-                    double error, double rival_error) {
+static void geo_row(const bench *b, const char *part, const char *what, double seconds, double rival,
+                    const geo_run *mine, const rival_result *theirs, int there, double error,
+                    double rival_error) {
     entry r;
     row_clear(&r, b, "geodesic", part, 1);
     snprintf(r.ours, sizeof r.ours, "%s", what);
@@ -1492,7 +1582,8 @@ static void geo_row(const bench *b, const char *part, const char *what, double s
 
 static void job_geodesic(bench *b) {
     const size_t n = (size_t)b->surface->n, size = GEO_SOURCES * n;
-    double *D = (double *)malloc(3 * size * sizeof *D), *E = D + size, *R = E + size, error = -1, rival_error = -1, start;
+    double *D = (double *)malloc(3 * size * sizeof *D), *E = D + size, *R = E + size, error = -1,
+        rival_error = -1, start;
     int32_t rows[GEO_SOURCES], sources[GEO_SOURCES];
     rival_result theirs, r;
     geo_run mine, run;
@@ -1516,7 +1607,8 @@ static void job_geodesic(bench *b) {
         }
         geo_row(b, NULL, "first source", mine.total, theirs.total, &mine, &theirs, there, error, rival_error);
         geo_row(b, "further", "one more", mine.further, theirs.further, &mine, &theirs, there, -1, -1);
-        geo_row(b, "further", "of eight at a time", mine.batch, theirs.further, &mine, &theirs, there, -1, -1);
+        geo_row(b, "further", "of eight at a time", mine.batch, theirs.further, &mine, &theirs, there, -1,
+                -1);
     }
     free(D);
 }
@@ -1544,7 +1636,9 @@ static void job_assembly(bench *b) {
         o.kind = voronoi ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
         rest();
         t = now();
-        if (hd_laplacian_triangles(&lap, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o, NULL) < 0) return;
+        if (hd_laplacian_triangles(&lap, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri,
+                                   &o, NULL) < 0)
+            return;
         t = now() - t;
         if (round < 2 || t < best) best = t;         /* the first run warms up */
         bytes = (double)ctx.bytes_peak;
@@ -1569,13 +1663,17 @@ static void job_assembly(bench *b) {
 
 /* ==== meshes ==== */
 
-enum { JOB_SMALL = 1, JOB_ASSEMBLY = 9, JOBS = 10, JOBS_OF_BOTH = 1 << JOB_SMALL | 1 << JOB_ASSEMBLY };   /* of both masses */
+/* of both masses */
+enum { JOB_SMALL = 1, JOB_ASSEMBLY = 9, JOBS = 10, JOBS_OF_BOTH = 1 << JOB_SMALL | 1 << JOB_ASSEMBLY };
 
 static const struct { const char *name; void (*run)(bench *); } jobs[JOBS] = {
-    {"one", job_one}, {"small", job_small}, {"columns", job_columns}, {"further", job_further}, {"times", job_times}, {"stages", job_stages},
-    {"geodesic", job_geodesic}, {"signature", job_signature}, {"eigen", job_eigen}, {"assembly", job_assembly}};
+    {"one", job_one}, {"small", job_small}, {"columns", job_columns}, {"further", job_further},
+    {"times", job_times}, {"stages", job_stages},
+    {"geodesic", job_geodesic}, {"signature", job_signature}, {"eigen", job_eigen},
+    {"assembly", job_assembly}};
 
-static void bench_open(bench *b, const settings *set, const char *mesh, const rival_mesh *surface, const hd_laplacian *lap, int32_t threads, const double *peak) {
+static void bench_open(bench *b, const settings *set, const char *mesh, const rival_mesh *surface,
+                       const hd_laplacian *lap, int32_t threads, const double *peak) {
     const hd_csr *L = &lap->L;
     int32_t i;
     int64_t p;
@@ -1600,20 +1698,21 @@ static void bench_open(bench *b, const settings *set, const char *mesh, const ri
     b->pair.B = lap->B ? lap->B : b->own_B;
 }
 
-/* After a job on a large mesh: the next one has other sizes. */
+/* Returns freed memory after a job on a large mesh, because the next mesh has other sizes. */
 static void give_back(void) {
 #if defined(__GLIBC__)
     (void)malloc_trim(0);
 #endif
 }
 
-static void bench_pair(const settings *set, const char *mesh, const rival_mesh *surface, const hd_laplacian *lap, int32_t threads, const double *peak) {
+static void bench_pair(const settings *set, const char *mesh, const rival_mesh *surface,
+                       const hd_laplacian *lap, int32_t threads, const double *peak) {
     bench b;
     int k;
     bench_open(&b, set, mesh, surface, lap, threads, peak);
     if (!set->csv) {
-        printf("\n%s, %s: %d rows, %lld non-zeros, %d thread%s\n", mesh, b.mass, (int)lap->n_active, (long long)lap->L.nnz, (int)threads,
-               threads > 1 ? "s" : "");
+        printf("\n%s, %s: %d rows, %lld non-zeros, %d thread%s\n", mesh, b.mass, (int)lap->n_active,
+               (long long)lap->L.nnz, (int)threads, threads > 1 ? "s" : "");
         table_head(&b);
     }
     for (k = 0; b.pair.B && k < JOBS; k++) {
@@ -1624,7 +1723,8 @@ static void bench_pair(const settings *set, const char *mesh, const rival_mesh *
     free(b.own_B);
 }
 
-static void bench_mesh(const settings *set, const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const double *peak) {
+static void bench_mesh(const settings *set, const char *name, const double *xyz, int32_t n,
+                       const int32_t *tri, int32_t n_tri, const double *peak) {
     static const hd_laplacian_kind kinds[] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT};
     rival_mesh surface;
     int k, q;
@@ -1643,7 +1743,8 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
             fprintf(stderr, "bench: %s: %s\n", name, e.text);
             return;
         }
-        for (q = 0; q < set->n_threads; q++) bench_pair(set, name, &surface, lap, set->threads[q], peak + 2 * q);
+        for (q = 0; q < set->n_threads; q++)
+            bench_pair(set, name, &surface, lap, set->threads[q], peak + 2 * q);
         hd_laplacian_free(lap);
     }
 }
@@ -1680,10 +1781,12 @@ static void bench_shape(const settings *set, const char *name, shape s, const do
 
 static int usage(const char *what) {
     if (what) fprintf(stderr, "bench: %s\n", what);
-    fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv] [MESH ...]\n"
+    fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] "
+                    "[--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
-                    "  --jobs LIST     of one,small,columns,further,times,stages,geodesic,signature,eigen,assembly; default: all\n"
+                    "  --jobs LIST     of "
+                    "one,small,columns,further,times,stages,geodesic,signature,eigen,assembly; default: all\n"
                     "  --columns K     columns of the job of that name, default 100\n"
                     "  --seconds S     rounds of a contest begin within S seconds, at least two; default 10\n"
                     "  --umfpack       UMFPACK also above 300000 rows\n"
@@ -1699,7 +1802,8 @@ static int parse_threads(settings *set, const char *s) {
         const long k = strtol(s, &end, 10);
         if (end == s || k < 1 || k > 256) return 0;
         set->threads[set->n_threads++] = HDI_OPENMP ? (int32_t)k : 1;
-        if (!HDI_OPENMP && k > 1) fprintf(stderr, "bench: compiled without OpenMP: one thread, for the rivals too\n");
+        if (!HDI_OPENMP && k > 1)
+            fprintf(stderr, "bench: compiled without OpenMP: one thread, for the rivals too\n");
         if (*end != ',') return *end == 0;
     }
     return 0;
@@ -1718,7 +1822,7 @@ static int parse_jobs(settings *set, const char *s) {
     return set->jobs != 0;
 }
 
-/* Peaks for each number of threads, printed. */
+/* Prints the machine's peaks for each number of threads. */
 static void measure_machine(const settings *set, double *peak) {
     const int64_t n = (int64_t)1 << 25;
     const int simd = HDI_X86 ? hdi_simd_best() : 0;
@@ -1741,8 +1845,8 @@ static void measure_machine(const settings *set, double *peak) {
         p[1] = hdi_max(p[1], m.peak_n);
         read[0] = hdi_max(read[0], m.read_1);
         read[1] = hdi_max(read[1], m.read_n);
-        printf("%smachine: %s, %.1f GF/s and %.1f GB/s read on 1 thread, %.1f and %.1f on %d", mark, simd_names[simd], p[0], read[0], p[1], read[1],
-               (int)set->threads[q]);
+        printf("%smachine: %s, %.1f GF/s and %.1f GB/s read on 1 thread, %.1f and %.1f on %d", mark,
+               simd_names[simd], p[0], read[0], p[1], read[1], (int)set->threads[q]);
         printf("%s%s\n", m.blas[0] ? "; OpenBLAS: " : "", m.blas);
     }
     free(x);
@@ -1750,7 +1854,8 @@ static void measure_machine(const settings *set, double *peak) {
     {
         double load;
         if (getloadavg(&load, 1) == 1 && load > 0.3)
-            printf("%sload average %.1f: others are at work, which shows in what follows, on many threads most of all\n", mark, load);
+            printf("%sload average %.1f: others are at work, which shows in what follows, on many threads "
+                   "most of all\n", mark, load);
     }
 #endif
 }
@@ -1764,7 +1869,8 @@ static int parse(settings *set, int argc, char **argv, int *first) {
         else if (!strcmp(s, "--fresh")) set->fresh = 1;
         else if (!strcmp(s, "--threads") && parse_threads(set, next)) i++;
         else if (!strcmp(s, "--jobs") && parse_jobs(set, next)) i++;
-        else if (!strcmp(s, "--columns") && (set->columns = atoi(next)) > 0 && set->columns <= MOST_COLUMNS) i++;
+        else if (!strcmp(s, "--columns") && (set->columns = atoi(next)) > 0 && set->columns <= MOST_COLUMNS)
+            i++;
         else if (!strcmp(s, "--seconds") && (set->seconds = atof(next)) > 0) i++;
         else return 0;
     }
@@ -1807,12 +1913,14 @@ int main(int argc, char **argv) {
 #else
     set.threads[0] = 1;
 #endif
-    if (!parse(&set, argc, argv, &first)) return usage(argc > 1 && strcmp(argv[1], "--help") ? "an argument is not understood" : NULL);
+    if (!parse(&set, argc, argv, &first))
+        return usage(argc > 1 && strcmp(argv[1], "--help") ? "an argument is not understood" : NULL);
     if (!set.fresh) keep_memory();
     if (!HAVE_RIVALS) printf("%sbuilt without rivals: times and errors of ours alone\n", set.csv ? "# " : "");
     measure_machine(&set, peak);
     if (set.csv)
-        printf("mesh,mass,rows,job,t_over_h2,threads,ours,seconds,rival,rival_seconds,ratio,error,rival_error,gflops,peak_share,gbytes,nnz,bytes,"
+        printf("mesh,mass,rows,job,t_over_h2,threads,ours,seconds,rival,rival_seconds,ratio,error,"
+               "rival_error,gflops,peak_share,gbytes,nnz,bytes,"
                "bytes_per_64nnz,rival_nnz,rival_bytes\n");
     fflush(stdout);
     for (i = first; i < argc; i++) fine &= bench_file(&set, argv[i], peak);

@@ -1,12 +1,17 @@
-/* convergence.c - how fast the Laplacians tend to those of the smooth surface, as a table in Markdown
+/* convergence.c - how fast the Laplacians approach those of the smooth surface, as tables in Markdown
 
        cc -O2 tools/convergence.c -o convergence -lm && ./convergence
 
-   Unit sphere and torus of revolution (R = 2, r = 0.7), meshes of four sizes; of each the first 20 eigenvalues and eight columns of the symmetric
-   heat kernel, against the smooth ones: in closed form on the sphere; on the torus, where u separates, from Fourier series in v of the
-   functions exp(imu) f(v). The order is that of the last step. "shaken" meshes have their vertices moved along the surface at random, by up to a
-   fifth of an edge: regular ones flatter. Then the same for sets of points, independent of each other (random) or at a distance (blue noise), with the
-   default bandwidth and with one that shrinks more slowly than the area of a point; and how well the areas of points sum up. Takes some minutes. */
+   The surfaces are the unit sphere and a torus of revolution (R = 2, r = 0.7), as meshes of four sizes. For
+   each mesh the program computes the first 20 eigenvalues and eight columns of the symmetric heat kernel, and
+   compares them with the smooth ones. Those are known in closed form on the sphere. On the torus u separates,
+   and functions exp(imu) f(v) come from Fourier series in v. The order printed is that of the last step.
+
+   The vertices of "shaken" meshes are moved along the surface at random by up to a fifth of an edge, because
+   regular meshes look better than typical ones. The same follows for point sets, either independent of each
+   other (random) or at a distance from each other (blue noise). They use the default bandwidth, and one that
+   shrinks more slowly than the area of a point. The last table compares the summed areas of points with the
+   area of the surface. The program takes some minutes. */
 
 #if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -34,16 +39,20 @@ static int ascending(const void *a, const void *b) {
 
 /* ---- the smooth surfaces ---- */
 
-/* Modes of the torus: cos(m u) or sin(m u) times a function of v, given by its coefficients of 1, cos v, sin v, cos 2v, .. */
+/* Modes of the torus: cos(m u) or sin(m u) times a function of v, given by its coefficients of 1, cos v, sin
+ * v, cos 2v, .. */
 typedef struct torus_mode { int m; double lambda, coef[2 * WAVES + 1]; } torus_mode;
 
 static torus_mode *modes;
 static int n_modes;
 
 static double wave(int k, double v) { return k % 2 ? cos((k + 1) / 2 * v) : k ? sin(k / 2 * v) : 1; }
-static double wave_slope(int k, double v) { return k % 2 ? -((k + 1) / 2) * sin((k + 1) / 2 * v) : k ? k / 2 * cos(k / 2 * v) : 0; }
+static double wave_slope(int k, double v) {
+    return k % 2 ? -((k + 1) / 2) * sin((k + 1) / 2 * v) : k ? k / 2 * cos(k / 2 * v) : 0;
+}
 
-/* Galerkin with w = R + r cos v: int (w/r) f'g' + (m^2 r/w) f g dv = lambda int r w f g dv. The trapezoidal rule is exact here but for rounding. */
+/* Galerkin with w = R + r cos v: int (w/r) f'g' + (m^2 r/w) f g dv = lambda int r w f g dv. The trapezoidal
+ * rule is exact here, up to rounding. */
 static void torus_modes(void) {
     enum { K = 2 * WAVES + 1 };
     int m, i, j, q;
@@ -55,7 +64,8 @@ static void torus_modes(void) {
             const double v = 2 * PI * q / NODES, w = R + r * cos(v), step = 2 * PI / NODES;
             for (i = 0; i < K; i++)
                 for (j = 0; j < K; j++) {
-                    A[i * K + j] += step * (w / r * wave_slope(i, v) * wave_slope(j, v) + m * m * r / w * wave(i, v) * wave(j, v));
+                    A[i * K + j] += step * (w / r * wave_slope(i, v) * wave_slope(j, v) + m * m * r / w
+                                            * wave(i, v) * wave(j, v));
                     B[i * K + j] += step * r * w * wave(i, v) * wave(j, v);
                 }
         }
@@ -121,7 +131,8 @@ static void torus_kernel(const shape_poly *s, double t, const int32_t *source, d
         if (modes[q].lambda * t > 36) continue;
         for (i = 0; i < s->n; i++) f[i] = dense_dot(modes[q].coef, at + K * i, K);
         for (c = 0; c < SOURCES; c++)
-            for (i = 0; i < s->n; i++) k[c * s->n + i] += fade * f[source[c]] * f[i] * cos(modes[q].m * (u[i] - u[source[c]]));
+            for (i = 0; i < s->n; i++)
+                k[c * s->n + i] += fade * f[source[c]] * f[i] * cos(modes[q].m * (u[i] - u[source[c]]));
     }
     free(at);
     free(u);
@@ -149,7 +160,8 @@ static shape_poly surface(int torus, faces kind, int level, int shaken) {
     const int32_t nv = (kind == HEXAGONS ? 8 : 10) << level;
     shape t = torus ? shape_torus(3 * nv, nv, R, r) : shape_icosphere(level + 2);
     shape_poly s = kind == TRIANGLES ? shape_poly_of(&t) : kind == HEXAGONS ? shape_dual(&t)
-                                     : torus ? shape_quad_torus(3 * nv, nv, R, r) : shape_quad_sphere(5 << level);
+                                     : torus ? shape_quad_torus(3 * nv, nv, R, r)
+                                     : shape_quad_sphere(5 << level);
     const double edge = sqrt((torus ? 4 * PI * PI * R * r : 4 * PI) / s.n);
     uint64_t seed = 5;
     int32_t i;
@@ -161,7 +173,7 @@ static shape_poly surface(int torus, faces kind, int level, int shaken) {
     return s;
 }
 
-/* A random point of this torus, evenly spread: the outside is met more often. */
+/* A random point of this torus, uniform by area: there are more points on the outside. */
 static void on_torus(uint64_t *seed, double p[3]) {
     const double u = 2 * PI * shape_uniform(seed);
     double v, q;
@@ -184,7 +196,7 @@ static shape_poly points_on(int torus, int32_t n, int blue) {
     return s;
 }
 
-/* The vertices nearest to places that are the same for all meshes. */
+/* The vertices nearest to eight places that are the same for all meshes. */
 static void sources_on(const shape_poly *s, int torus, int32_t *source) {
     uint64_t seed = 9;
     int32_t i;
@@ -203,7 +215,8 @@ static void sources_on(const shape_poly *s, int torus, int32_t *source) {
 /* X <- Ritz vectors of L, B on the space of the n x BLOCK columns of Y, by ascending Ritz value. */
 static void ritz(const hd_laplacian *lap, const double *Y, double *X, double *lambda) {
     const int32_t n = lap->n;
-    double *a = DENSE_NEW(double, BLOCK * BLOCK), *b = DENSE_NEW(double, BLOCK * BLOCK), *z = DENSE_NEW(double, n), sorted[BLOCK];
+    double *a = DENSE_NEW(double, BLOCK * BLOCK), *b = DENSE_NEW(double, BLOCK * BLOCK),
+        *z = DENSE_NEW(double, n), sorted[BLOCK];
     dense_pair p;
     int i, j, k;
     int32_t q;
@@ -217,7 +230,8 @@ static void ritz(const hd_laplacian *lap, const double *Y, double *X, double *la
     memcpy(sorted, p.lambda, sizeof sorted);
     qsort(sorted, BLOCK, sizeof *sorted, ascending);
     memcpy(lambda, sorted, COUNT * sizeof *lambda);
-    for (k = 0; k < BLOCK; k++)                  /* the order of the columns does not matter to the iteration */
+    /* the order of the columns does not matter to the iteration */
+    for (k = 0; k < BLOCK; k++)
         for (q = 0; q < n; q++) {
             double sum = 0;
             for (j = 0; j < BLOCK; j++) sum += p.x[k * BLOCK + j] * Y[(size_t)j * (size_t)n + (size_t)q];
@@ -230,7 +244,8 @@ static void ritz(const hd_laplacian *lap, const double *Y, double *X, double *la
 /* Subspace iteration with (L + B)^-1 B. */
 static void eigenvalues(const hd_laplacian *lap, double *lambda) {
     const size_t n = (size_t)lap->n;
-    double *val = DENSE_NEW(double, lap->L.nnz), *X = DENSE_NEW(double, BLOCK * lap->n), *Y = DENSE_NEW(double, BLOCK * lap->n), old[COUNT] = {0}, change = 1;
+    double *val = DENSE_NEW(double, lap->L.nnz), *X = DENSE_NEW(double, BLOCK * lap->n),
+        *Y = DENSE_NEW(double, BLOCK * lap->n), old[COUNT] = {0}, change = 1;
     hd_ldl_opts o;
     hd_ldl *f = NULL;
     hd_error e;
@@ -244,7 +259,8 @@ static void eigenvalues(const hd_laplacian *lap, double *lambda) {
     for (i = 0; i < n; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             val[p] = lap->L.val[p] + (lap->B ? lap->B[p] : (size_t)lap->L.col[p] == i ? lap->mass[i] : 0);
-    if (hd_ldl_analyse(&f, &lap->L, &o, NULL, &e) < 0 || hd_ldl_factor(f, val, NULL, &e) < 0) stop("factor", &e);
+    if (hd_ldl_analyse(&f, &lap->L, &o, NULL, &e) < 0 || hd_ldl_factor(f, val, NULL, &e) < 0)
+        stop("factor", &e);
     for (i = 0; i < BLOCK * n; i++) X[i] = dense_signed(&seed);
     for (step = 0; step < 100 && change > enough; step++) {
         for (i = 0; i < BLOCK; i++) hd_laplacian_apply(lap, 0, 1, X + i * n, Y + i * n, NULL);
@@ -259,8 +275,10 @@ static void eigenvalues(const hd_laplacian *lap, double *lambda) {
     free(Y);
 }
 
-/* What a row of a table is about. Points: bandwidth 0 is the default; p: the default's for the fewest points, then shrinking like h^p. */
-typedef struct operator_def { const char *name; hd_laplacian_kind kind; int points, tufted; double bandwidth; } operator_def;
+/* A row of a table. Points: bandwidth 0 is the default. p means the default for the fewest points, then
+ * shrinking like h^p. */
+typedef struct operator_def { const char *name; hd_laplacian_kind kind; int points, tufted; double bandwidth;
+                              } operator_def;
 
 static hd_laplacian *laplacian(const shape_poly *s, const operator_def *op, double bandwidth) {
     hd_laplacian_opts lo;
@@ -270,7 +288,8 @@ static hd_laplacian *laplacian(const shape_poly *s, const operator_def *op, doub
     memset(&lo, 0, sizeof lo);
     lo.kind = op->kind;
     lo.bandwidth = bandwidth;
-    if (op->points && op->tufted) status = hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &lo, &e);
+    if (op->points && op->tufted)
+        status = hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &lo, &e);
     else if (op->points) status = hd_laplacian_points(&lap, s->xyz, s->n, &lo, &e);
     else status = hd_laplacian_polygons(&lap, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &lo, &e);
     if (status < 0) stop("laplacian", &e);
@@ -278,12 +297,16 @@ static hd_laplacian *laplacian(const shape_poly *s, const operator_def *op, doub
     return lap;
 }
 
-/* Largest relative error of the eigenvalues 2 to COUNT, and of the kernel's columns, at a vertex and in the mean square, relative to their largest value. */
+/* Largest relative error of the eigenvalues 2 to COUNT, and of the kernel's columns, at a vertex and in the
+ * mean square, relative to their largest value. */
 static void errors(const shape_poly *s, int torus, const hd_laplacian *lap, double out[3]) {
-    const int exponential = lap->kind == HD_LAPLACIAN_EXP;                       /* tends to Laplacian/area, with masses of 1 for area/n */
-    const double t = torus ? 0.3 : 0.1, slower = exponential ? lap->area : 1, thinner = exponential ? lap->n / lap->area : 1;
+    /* tends to Laplacian/area, with masses of 1 for area/n */
+    const int exponential = lap->kind == HD_LAPLACIAN_EXP;
+    const double t = torus ? 0.3 : 0.1, slower = exponential ? lap->area : 1, thinner = exponential
+                     ? lap->n / lap->area : 1;
     int32_t source[SOURCES], i;
-    double lambda[COUNT], want[COUNT], *k = DENSE_NEW(double, SOURCES * s->n), *u = DENSE_NEW(double, SOURCES * s->n), top, sum = 0, t_of_heat;
+    double lambda[COUNT], want[COUNT], *k = DENSE_NEW(double, SOURCES * s->n),
+        *u = DENSE_NEW(double, SOURCES * s->n), top, sum = 0, t_of_heat;
     hd_heat_opts ho;
     hd_heat *heat = NULL;
     hd_report report;
@@ -293,7 +316,8 @@ static void errors(const shape_poly *s, int torus, const hd_laplacian *lap, doub
     sources_on(s, torus, source);
     if (hd_heat_create(&heat, lap, &ho, &e) < 0) stop("heat", &e);
     t_of_heat = t * slower;
-    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t_of_heat, SOURCES, source, u, 0, &report, NULL) < 0) stop("heat", &report.error);
+    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t_of_heat, SOURCES, source, u, 0, &report, NULL) < 0)
+        stop("heat", &report.error);
     if (torus) torus_kernel(s, t, source, k);
     else sphere_kernel(s, t, source, k);
     eigenvalues(lap, lambda);
@@ -317,7 +341,8 @@ static void print_row(const char *name, int32_t n, double (*e)[3], const double 
     int level, q;
     printf("| %s | %d |", name, (int)n);
     for (q = 0; q < 3; q++) {
-        for (level = 0; level < LEVELS; level++) printf(" %.1e%s", e[level][q], level + 1 < LEVELS ? "," : " |");
+        for (level = 0; level < LEVELS; level++)
+            printf(" %.1e%s", e[level][q], level + 1 < LEVELS ? "," : " |");
         printf(" %.2f |", log(e[LEVELS - 2][q] / e[LEVELS - 1][q]) / log(h[LEVELS - 2] / h[LEVELS - 1]));
     }
     printf("\n");
@@ -352,7 +377,8 @@ static void point_row(const operator_def *op, int torus, int blue) {
         shape_poly s = points_on(torus, n = POINTS[level], blue);
         hd_laplacian *lap;
         h[level] = sqrt(true_area(torus) / n);
-        lap = laplacian(&s, op, op->bandwidth > 0 && level > 0 ? first * pow(h[level] / h[0], op->bandwidth) : 0);
+        lap = laplacian(&s, op, op->bandwidth > 0 &&
+                        level > 0 ? first * pow(h[level] / h[0], op->bandwidth) : 0);
         if (level == 0) first = lap->points.bandwidth;
         errors(&s, torus, lap, e[level]);
         hd_laplacian_free(lap);
@@ -363,16 +389,18 @@ static void point_row(const operator_def *op, int torus, int blue) {
 }
 
 static void area_table(void) {
-    static const operator_def cells = {"", HD_LAPLACIAN_VORONOI_EXP, 1, 0, 0}, stars = {"", HD_LAPLACIAN_FEM, 1, 1, 0};
+    static const operator_def cells = {"", HD_LAPLACIAN_VORONOI_EXP, 1, 0, 0},
+        stars = {"", HD_LAPLACIAN_FEM, 1, 1, 0};
     enum { N = 10000 };
     int torus, blue;
-    printf("Areas of %d points, summed, over that of the surface, less 1\n\n| points | Voronoi cells | stars (tufted) |\n|---|---|---|\n", N);
+    printf("Areas of %d points, summed, over that of the surface, less 1\n\n"
+           "| points | Voronoi cells | stars (tufted) |\n|---|---|---|\n", N);
     for (torus = 0; torus < 2; torus++)
         for (blue = 0; blue < 2; blue++) {
             shape_poly s = points_on(torus, N, blue);
             hd_laplacian *lap = laplacian(&s, &cells, 0), *tufted = laplacian(&s, &stars, 0);
-            printf("| %s, %s | %+.2e | %+.2e |\n", torus ? "torus" : "sphere", blue ? "blue noise" : "random", lap->area / true_area(torus) - 1,
-                   tufted->area / true_area(torus) - 1);
+            printf("| %s, %s | %+.2e | %+.2e |\n", torus ? "torus" : "sphere", blue ? "blue noise" : "random",
+                   lap->area / true_area(torus) - 1, tufted->area / true_area(torus) - 1);
             hd_laplacian_free(lap);
             hd_laplacian_free(tufted);
             shape_poly_free(&s);
@@ -401,10 +429,13 @@ int main(void) {
     size_t q;
     torus_modes();
     for (torus = 0; torus < 2; torus++) {
-        printf("%s\n\n| operator | vertices | eigenvalues 2 to %d, largest relative error | order | k_t, largest error | order | k_t, mean square | order |\n"
+        printf("%s\n\n"
+               "| operator | vertices | eigenvalues 2 to %d, largest relative error | order | k_t, largest "
+               "error | order | k_t, mean square | order |\n"
                "|---|---|---|---|---|---|---|---|\n", torus ? "Torus, t = 0.3" : "Sphere, t = 0.1", COUNT);
         for (second = 0; second < 2; second++)
-            for (q = 0; q < sizeof MESHES / sizeof *MESHES; q++) mesh_row(&MESHES[q].op, torus, MESHES[q].mesh, second);
+            for (q = 0; q < sizeof MESHES / sizeof *MESHES; q++)
+                mesh_row(&MESHES[q].op, torus, MESHES[q].mesh, second);
         for (second = 0; second < 2; second++)
             for (q = 0; q < sizeof CLOUDS / sizeof *CLOUDS; q++) point_row(CLOUDS + q, torus, second);
         printf("\n");

@@ -1,13 +1,15 @@
-/* heatdiff.c - heat diffusion kernels on meshes, from the command line
+/* heatdiff.c - the command-line tool: heat kernels, signatures and distances on meshes and points
 
    Build from the top folder:   cc -O2 tools/heatdiff.c -o heatdiff -lm
    Use:                         heatdiff --help, heatdiff COMMAND --help, heatdiff demo
 
-   The file reads from bottom to top: what is used is defined above its use, and main is the last function. File formats
-   are in meshio.h, pictures in picture.h, the shape of the demo in shapes.h, all mathematics in heatdiff.h.
+   Read the file from bottom to top: everything is defined above its use, and main is the last function. File
+   formats are in meshio.h, pictures in picture.h, the demo's shape in shapes.h, all mathematics in
+   heatdiff.h.
 
-   Rules of the whole tool: results go to the output, everything meant for people to standard error. Functions that can
-   fail return an exit code (0 is success) after they have printed the one error line, by fail() and nowhere else.
+   Two rules hold for the whole tool. Results go to the output, and everything meant for people goes to
+   standard error. A function that can fail prints one error line with fail() and returns an exit code; 0 is
+   success.
 
    Licence: MIT or public domain, at your choice; see the end of heatdiff.h. */
 
@@ -103,7 +105,8 @@ static int make_folder(const char *path)
 
 enum { BAR_CELLS = 24, BAR_TEXT = 72 };
 
-static struct { int enabled, visible; double last; char part[48]; } bar;    /* part: "time 2 of 5", what of the whole is under way */
+/* part names the current part of the work, such as "time 2 of 5". */
+static struct { int enabled, visible; double last; char part[48]; } bar;
 
 static void bar_hide(void)
 {
@@ -113,7 +116,7 @@ static void bar_hide(void)
     bar.visible = 0;
 }
 
-/* Drawn at most ten times a second: a terminal is slower than the arithmetic. */
+/* Draws at most ten times a second, because terminals are slow. */
 static void bar_show(const char *stage, double done)
 {
     char cells[BAR_CELLS + 1], text[80];
@@ -131,7 +134,7 @@ static void bar_show(const char *stage, double done)
     bar.last = time;
 }
 
-/* The bar is about part i of n from now on, counted from 0; nothing is said where there is only one. */
+/* From now on the bar shows part i of n, counted from 0. With a single part it shows no number. */
 static void bar_part(const char *what, int64_t i, int64_t n)
 {
     if (n > 1) snprintf(bar.part, sizeof bar.part, "%.10s %ld of %ld", what, (long)i + 1, (long)n);
@@ -139,10 +142,14 @@ static void bar_part(const char *what, int64_t i, int64_t n)
 }
 
 /* ==== seconds of the stages ==== */
-/* The library has no clock, but its progress calls name the stage that begins. The time up to the next stage is that one's. */
+/* The library has no clock, but its progress calls name the current stage. The time until the next stage
+ * begins belongs to it. */
 
-enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_INVERT, STAGE_SOLVE, N_STAGES, STAGE_ASSEMBLE = N_STAGES, N_NAMES };
-static const char *const STAGE_NAMES[N_NAMES] = { "order", "analyse", "factor", "precondition", "invert", "solve", "assemble" };  /* the last is told apart */
+enum { STAGE_ORDER, STAGE_ANALYSE, STAGE_FACTOR, STAGE_PRECONDITION, STAGE_INVERT, STAGE_SOLVE, N_STAGES,
+       STAGE_ASSEMBLE = N_STAGES, N_NAMES };
+/* "assemble" is the last because it is reported separately. */
+static const char *const STAGE_NAMES[N_NAMES] = { "order", "analyse", "factor", "precondition", "invert",
+                                                  "solve", "assemble" };
 
 static struct { int running, stage; double since, spent[N_NAMES]; } stages;
 
@@ -200,9 +207,9 @@ static int fail_memory(const char *what)
 }
 
 /* ==== Ctrl-C ==== */
-/* During computation Ctrl-C raises a flag that the library's progress callback sees, and the run ends in order. During
- * loading and writing, and at the second Ctrl-C, there is nothing to wait for: the handler removes the unfinished file and
- * leaves at once. */
+/* During a computation Ctrl-C sets a flag. The progress callback sees it, and the run ends in order. During
+ * loading and writing, and at the second Ctrl-C, the handler removes the unfinished file and exits at
+ * once. */
 
 static struct {
     volatile sig_atomic_t asked;     /* Ctrl-C came */
@@ -244,7 +251,7 @@ static void catch_interrupts(void)
 #endif
 }
 
-/* Ends the computing part: from here on Ctrl-C acts at once. One that came just before counts too. */
+/* Ends the computing part: from here on Ctrl-C exits at once. A Ctrl-C that came just before counts too. */
 static int leave_computation(int code)
 {
     interrupt.patient = 0;
@@ -260,7 +267,7 @@ static hd_progress on_progress(void *user, const char *stage, double done)
     return HD_PROGRESS_CONTINUE;
 }
 
-/* What was printed on standard output has arrived, or the run failed. */
+/* Checks that everything printed on standard output has been written. */
 static int close_stdout(void)
 {
     errno = 0;
@@ -269,11 +276,13 @@ static int close_stdout(void)
 }
 
 /* ==== threads ==== */
-/* Where threads need no extra link flag (or the flag is given), a pool of them runs the library's parallel loops, so that
- * the plain build uses the whole machine. With OpenMP the library does it by itself; elsewhere all is serial. */
+/* If threads need no extra link flag, or if the flag is given, a pool of threads runs the library's parallel
+ * loops. So the plain build uses the whole machine. With OpenMP the library has its own threads; otherwise
+ * everything is serial. */
 
 #if defined(TOOL_POSIX) && !defined(_OPENMP)
-#if defined(_REENTRANT) || defined(__APPLE__) || (defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 34))
+#if defined(_REENTRANT) || defined(__APPLE__) || \
+    (defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 34))
 #define TOOL_THREADS 1
 #include <pthread.h>
 #endif
@@ -285,7 +294,8 @@ enum { MAX_THREADS = 256 };
 
 typedef struct pool_seat { struct pool *pool; int32_t worker; } pool_seat;
 
-/* One loop at a time. Sleeping workers wake when round changes, and take tasks by the next index until there are none. */
+/* One loop runs at a time. Sleeping workers wake when round changes, and take the next index until no task is
+ * left. */
 typedef struct pool {
     pthread_mutex_t lock;
     pthread_cond_t start, finish;
@@ -298,7 +308,7 @@ typedef struct pool {
     void *arg;
 } pool;
 
-/* Takes tasks until none is left. Called and left with the lock held. */
+/* Takes tasks until none is left. The lock is held on entry and on return. */
 static void pool_work(pool *p, int32_t worker)
 {
     while (p->next < p->n_tasks) {
@@ -342,7 +352,7 @@ static void pool_run(void *user, int64_t n_tasks, hd_task task, void *arg)
     pthread_mutex_unlock(&p->lock);
 }
 
-/* Signals stay with the main thread. Fewer threads than wished, or none, is no error. */
+/* The main thread keeps all signals. It is no error if fewer threads can be made than asked for. */
 static void pool_begin(pool *p, int n_threads)
 {
     sigset_t all, old;
@@ -382,7 +392,8 @@ static int processors(void)
 
 #endif
 
-/* Nine tenths of the machine's memory, 0 if it does not say. More would end in the system's killing this process, not in an error that can be read. */
+/* Nine tenths of the machine's memory, 0 if unknown. With more, the system might kill the process without a
+ * readable error. */
 static uint64_t machine_bytes(void)
 {
 #ifdef _SC_PHYS_PAGES
@@ -400,29 +411,35 @@ typedef struct word { const char *name; int value; } word;
 
 static const word LAPLACIANS[] = {
     { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT },
-    { "polygon", HD_LAPLACIAN_POLYGON }, { "voronoi-exp", HD_LAPLACIAN_VORONOI_EXP }, { "exp", HD_LAPLACIAN_EXP }, { NULL, 0 } };
+    { "polygon", HD_LAPLACIAN_POLYGON }, { "voronoi-exp", HD_LAPLACIAN_VORONOI_EXP },
+    { "exp", HD_LAPLACIAN_EXP }, { NULL, 0 } };
 static const word POLES[] = {
-    { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { "diagonal", HD_POLES_DIAGONAL }, { NULL, 0 } };
+    { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { "diagonal", HD_POLES_DIAGONAL },
+    { NULL, 0 } };
 static const word METHODS[] = {
-    { "auto", HD_METHOD_AUTO }, { "direct", HD_METHOD_DIRECT }, { "krylov", HD_METHOD_KRYLOV }, { "iterative", HD_METHOD_ITERATIVE },
-    { NULL, 0 } };
+    { "auto", HD_METHOD_AUTO }, { "direct", HD_METHOD_DIRECT }, { "krylov", HD_METHOD_KRYLOV },
+    { "iterative", HD_METHOD_ITERATIVE }, { NULL, 0 } };
 static const word ORDERINGS[] = {
-    { "auto", HD_ORDERING_AUTO }, { "amd", HD_ORDERING_MINIMUM_DEGREE }, { "dissection", HD_ORDERING_NESTED_DISSECTION }, { NULL, 0 } };
+    { "auto", HD_ORDERING_AUTO }, { "amd", HD_ORDERING_MINIMUM_DEGREE },
+    { "dissection", HD_ORDERING_NESTED_DISSECTION }, { NULL, 0 } };
 static const word SIMDS[] = {
-    { "auto", HD_SIMD_AUTO }, { "none", HD_SIMD_NONE }, { "avx2", HD_SIMD_AVX2 }, { "avx512", HD_SIMD_AVX512 }, { NULL, 0 } };
+    { "auto", HD_SIMD_AUTO }, { "none", HD_SIMD_NONE }, { "avx2", HD_SIMD_AVX2 },
+    { "avx512", HD_SIMD_AVX512 }, { NULL, 0 } };
 static const word SOLVERS[] = {
-    { "cocg", HD_SOLVER_COCG }, { "cocr", HD_SOLVER_COCR }, { "minres", HD_SOLVER_MINRES }, { "lanczos", HD_SOLVER_LANCZOS },
-    { NULL, 0 } };
+    { "cocg", HD_SOLVER_COCG }, { "cocr", HD_SOLVER_COCR }, { "minres", HD_SOLVER_MINRES },
+    { "lanczos", HD_SOLVER_LANCZOS }, { NULL, 0 } };
 static const word PRECONDS[] = {
-    { "none", HD_PRECOND_NONE }, { "jacobi", HD_PRECOND_JACOBI }, { "ssor", HD_PRECOND_SSOR }, { "ildl", HD_PRECOND_ILDL },
-    { "mildl", HD_PRECOND_MILDL }, { NULL, 0 } };
+    { "none", HD_PRECOND_NONE }, { "jacobi", HD_PRECOND_JACOBI }, { "ssor", HD_PRECOND_SSOR },
+    { "ildl", HD_PRECOND_ILDL }, { "mildl", HD_PRECOND_MILDL }, { NULL, 0 } };
 static const word DEFINITIONS[] = {
-    { "classical", HD_DISTANCE_CLASSICAL }, { "weighted", HD_DISTANCE_WEIGHTED }, { "commute", HD_DISTANCE_COMMUTE },
-    { "biharmonic", HD_DISTANCE_BIHARMONIC }, { NULL, 0 } };
-static const word KERNELS[] = { { "operator", HD_KERNEL_OPERATOR }, { "symmetric", HD_KERNEL_SYMMETRIC }, { NULL, 0 } };
+    { "classical", HD_DISTANCE_CLASSICAL }, { "weighted", HD_DISTANCE_WEIGHTED },
+    { "commute", HD_DISTANCE_COMMUTE }, { "biharmonic", HD_DISTANCE_BIHARMONIC }, { NULL, 0 } };
+static const word KERNELS[] = { { "operator", HD_KERNEL_OPERATOR }, { "symmetric", HD_KERNEL_SYMMETRIC },
+                                { NULL, 0 } };
 
 static const word COLORMAPS[] = {
-    { "ember", PIC_MAP_EMBER }, { "lagoon", PIC_MAP_LAGOON }, { "diverging", PIC_MAP_DIVERGING }, { "grey", PIC_MAP_GREY }, { NULL, 0 } };
+    { "ember", PIC_MAP_EMBER }, { "lagoon", PIC_MAP_LAGOON }, { "diverging", PIC_MAP_DIVERGING },
+    { "grey", PIC_MAP_GREY }, { NULL, 0 } };
 
 static const word *find_word(const word *words, const char *name)
 {
@@ -440,34 +457,38 @@ static const char *word_of(const word *words, int value)
 
 enum { FORMAT_PNG = 100 };           /* beside the formats of meshio.h */
 
-/* The format of an output by its name; MIO_UNKNOWN: none that there is. */
+/* The format of an output by its name, or MIO_UNKNOWN. */
 static int output_format(const char *path)
 {
     if (strcmp(path, "-") == 0) return MIO_TXT;
-    if (strncmp(path, "/dev/", 5) == 0 && !strchr(path, '.')) return MIO_TXT;       /* /dev/null, /dev/stdout */
+    /* /dev/null, /dev/stdout */
+    if (strncmp(path, "/dev/", 5) == 0 && !strchr(path, '.')) return MIO_TXT;
     return mio_has_extension(path, "png") ? FORMAT_PNG : mio_format_of(path);
 }
 
 /* ==== options ==== */
 
-enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32, CMD_HKS = 64, CMD_DISTANCE = 128,
-       CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_ALL = 1023,
+enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32,
+       CMD_HKS = 64, CMD_DISTANCE = 128, CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_ALL = 1023,
        CMD_TABLES = CMD_PAIRS | CMD_SAMPLE,
-       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE | CMD_TABLES, CMD_SOLVES = CMD_HEAT | CMD_GEODESIC,
-       CMD_FIELDS = CMD_SOLVES & ~CMD_TABLES,                               /* results have a row per vertex */
-       CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
-       CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE,                   /* by selected inversion, which only the direct method has */
+       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE | CMD_TABLES,
+       /* results have a row per vertex */
+       CMD_SOLVES = CMD_HEAT | CMD_GEODESIC, CMD_FIELDS = CMD_SOLVES & ~CMD_TABLES,
+       /* by selected inversion, which only the direct method has */
+       CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE, CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE,
        CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER };
 
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_AUTO } time_unit;
-typedef struct time_spec { time_unit unit; double value; } time_spec;   /* value: the number, or for auto how many */
+/* value is the number, or for auto the number of times. */
+typedef struct time_spec { time_unit unit; double value; } time_spec;
 
 enum { MAX_PANELS = 12 };            /* of a picture */
 
 typedef struct options {
     unsigned command;
     const char *mesh;
-    const char *inputs[MAX_PANELS], *meshes[MAX_PANELS];        /* of render: all of them; input and mesh are the first */
+    /* of render: all of them; input and mesh are the first */
+    const char *inputs[MAX_PANELS], *meshes[MAX_PANELS];
     int n_inputs, n_meshes;
     time_spec *times;                /* as written; absolute times are known once h is */
     int n_times;
@@ -507,7 +528,7 @@ typedef struct option_def {
 
 /* ---- parsing of values: all of the text or nothing, no white space, no hexadecimal ---- */
 
-/* Reads a finite number, *end is behind it. */
+/* Reads a finite number. *end points behind it. */
 static int read_number(const char *text, double *value, const char **end)
 {
     char *stop = NULL;
@@ -524,7 +545,7 @@ static int read_integer(const char *text, int64_t *value, const char **end)
     char *stop = NULL;
     const char *p = text + (*text == '-' || *text == '+');
     if (!isdigit((unsigned char)*p)) return 0;
-    *value = strtoll(text, &stop, 10);   /* beyond 64 bits it returns the nearest it has, which is out of every range */
+    *value = strtoll(text, &stop, 10);   /* beyond 64 bits: the nearest value, which is out of every range */
     *end = stop;
     return 1;
 }
@@ -611,7 +632,8 @@ static int parse_view(options *o, const option_def *def, const char *text)
 {
     (void)def;
     o->has_view = 1;
-    return read_pair(text, ',', &o->azimuth, &o->elevation) && fabs(o->azimuth) <= 3600 && fabs(o->elevation) <= 90;
+    return read_pair(text, ',', &o->azimuth, &o->elevation) && fabs(o->azimuth) <= 3600 &&
+           fabs(o->elevation) <= 90;
 }
 
 static int parse_size(options *o, const option_def *def, const char *text)
@@ -641,7 +663,7 @@ static int parse_bytes(options *o, const option_def *def, const char *text)
     return 1;
 }
 
-/* How many entries a comma list has at most, to allocate it at once. */
+/* An upper bound of the number of entries in a comma list. */
 static size_t count_items(const char *text)
 {
     size_t n = 1;
@@ -690,7 +712,8 @@ static int parse_bandwidth(options *o, const option_def *def, const char *text)
     const char *end;
     (void)def;
     o->has_bandwidth = 1;
-    return read_time(text, &o->bandwidth, &end) && *end == 0 && o->bandwidth.unit != TIME_AUTO && o->bandwidth.value > 0;
+    return read_time(text, &o->bandwidth, &end) && *end == 0 && o->bandwidth.unit != TIME_AUTO &&
+           o->bandwidth.value > 0;
 }
 
 static int parse_sources(options *o, const option_def *def, const char *text)
@@ -714,15 +737,18 @@ static int parse_sources(options *o, const option_def *def, const char *text)
 static const option_def OPTIONS[] = {
     { "t", 0, CMD_HEAT, 1, parse_times, 0, NULL, 0, 0, "T[,T..]",
       "times >= 0: numbers such as 0.01, multiples of h^2 such as 10h2, or auto:K for K of them",
-      "diffusion times: absolute (0.01), multiples of the squared\nmean edge length (10h2), or auto:K, K times that suit the area" },
-    { "t", 0, CMD_GEODESIC, 1, parse_times, 0, NULL, 0, 0, "T", "one time > 0: a number such as 0.01, or a multiple of h^2 such as 4h2",
-      "how long heat flows, absolute or in h2 (default: 1h2); longer\nmakes distances smoother and less exact" },
-    { "source", 0, CMD_GEODESIC, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
-      "vertices to measure from, counted from 0; a column for each" },
+      "diffusion times: absolute (0.01), multiples of the squared\n"
+      "mean edge length (10h2), or auto:K, K times that suit the area" },
+    { "t", 0, CMD_GEODESIC, 1, parse_times, 0, NULL, 0, 0, "T",
+      "one time > 0: a number such as 0.01, or a multiple of h^2 such as 4h2",
+      "how long heat flows, absolute or in h2 (default: 1h2); longer\n"
+      "makes distances smoother and less exact" },
+    { "source", 0, CMD_GEODESIC, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]",
+      "vertex ids from 0, such as 0,17", "vertices to measure from, counted from 0; a column for each" },
     { "source", 0, CMD_KERNEL, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
       "vertices where the heat starts, counted from 0" },
-    { "source", 0, CMD_DISTANCE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
-      "vertices from which distances are measured, counted from 0" },
+    { "source", 0, CMD_DISTANCE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]",
+      "vertex ids from 0, such as 0,17", "vertices from which distances are measured, counted from 0" },
     { "source", 0, CMD_SAMPLE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
       "vertices to begin with (default: the first that has mass)" },
     { "count", 0, CMD_SAMPLE, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
@@ -730,82 +756,112 @@ static const option_def OPTIONS[] = {
     { "input", 0, CMD_DIFFUSE, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
       "a field: a row per vertex, one or more columns, as text or .npy" },
     { "input", 0, CMD_RENDER, 0, parse_inputs, 0, NULL, 0, 0, "F", "a file name, up to twelve times",
-      "a field: a row per vertex, one or more columns, as text or .npy.\nGiven several times: pictures side by side in the same colours,\n"
+      "a field: a row per vertex, one or more columns, as text or .npy.\n"
+      "Given several times: pictures side by side in the same colours,\n"
       "of one mesh or of as many meshes" },
-    { "input", 0, CMD_PAIRS, 0, parse_text, AT(input), NULL, 0, 0, "P", "a file name", "pairs of vertices: two ids a line, as text or .npy" },
-    { "definition", 0, CMD_METRIC, 0, parse_words, AT(definition), DEFINITIONS, 0, 0, "NAME", "classical, weighted, commute or biharmonic",
-      "classical (default): d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j);\nweighted: d^2 = (e_i - e_j)' B K_2t (e_i - e_j); commute and\nbiharmonic: without --t" },
+    { "input", 0, CMD_PAIRS, 0, parse_text, AT(input), NULL, 0, 0, "P", "a file name",
+      "pairs of vertices: two ids a line, as text or .npy" },
+    { "definition", 0, CMD_METRIC, 0, parse_words, AT(definition), DEFINITIONS, 0, 0, "NAME",
+      "classical, weighted, commute or biharmonic",
+      "classical (default): d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j);\n"
+      "weighted: d^2 = (e_i - e_j)' B K_2t (e_i - e_j); commute and\nbiharmonic: without --t" },
     { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
       "fem, voronoi-cot, cot, polygon, voronoi-exp or exp",
-      "fem (default of triangles), voronoi-cot, cot: other faces are\nsplit; polygon (default of meshes with other faces); of points:\n"
+      "fem (default of triangles), voronoi-cot, cot: other faces are\n"
+      "split; polygon (default of meshes with other faces); of points:\n"
       "voronoi-exp (default) or exp, which take the vertices of a mesh\nas points" },
-    { "intrinsic-delaunay", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL, "no value",
-      "L and B of the surface's own Delaunay triangulation: for bad\ntriangles; with voronoi-cot heat is then never negative" },
+    { "intrinsic-delaunay", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL,
+      "no value",
+      "L and B of the surface's own Delaunay triangulation: for bad\n"
+      "triangles; with voronoi-cot heat is then never negative" },
     { "tufted", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
-      "the same for any triangles, also with borders and where\nthree and more faces meet; of points, with triangles made\nfrom their neighbours" },
+      "the same for any triangles, also with borders and where\n"
+      "three and more faces meet; of points, with triangles made\nfrom their neighbours" },
     { "lambda", 0, CMD_INFO | CMD_HEAT, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
       "of polygon: weight of its stabilising part (1)" },
-    { "bandwidth", 0, CMD_INFO | CMD_HEAT, 0, parse_bandwidth, 0, NULL, 0, 0, "S", "a positive number such as 0.001, or a multiple of h^2 such as 2h2",
-      "of points: time parameter of the exponential weights, absolute\nor in multiples of the squared mean distance of nearest\n"
+    { "bandwidth", 0, CMD_INFO | CMD_HEAT, 0, parse_bandwidth, 0, NULL, 0, 0, "S",
+      "a positive number such as 0.001, or a multiple of h^2 such as 2h2",
+      "of points: time parameter of the exponential weights, absolute\n"
+      "or in multiples of the squared mean distance of nearest\n"
       "neighbours (2h2); default: from the sampling" },
-    { "weight-cut", 0, CMD_INFO | CMD_HEAT, 0, parse_weight_cut, 0, NULL, 0, 0, "W", "a number between 0 and 1, such as 1e-4",
+    { "weight-cut", 0, CMD_INFO | CMD_HEAT, 0, parse_weight_cut, 0, NULL, 0, 0, "W",
+      "a number between 0 and 1, such as 1e-4",
       "of points: exponentials below W are left out (1e-8); 1e-4 has\nhalf as many non-zeros" },
-    { "kernel", 0, CMD_KERNEL | CMD_PAIRS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
-      "operator: K_t (default); symmetric: k_t = K_t B^-1" },
+    { "kernel", 0, CMD_KERNEL | CMD_PAIRS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME",
+      "operator or symmetric", "operator: K_t (default); symmetric: k_t = K_t B^-1" },
     { "kernel", 0, CMD_HKS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
       "symmetric: k_t(x,x) (default); operator: the diagonal of K_t" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
-      "degree of the rational approximation, 1..14 (default: by the\nerror); not for krylov, which has none" },
+      "degree of the rational approximation, 1..14 (default: by the\n"
+      "error); not for krylov, which has none" },
     { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform, kernel or diagonal",
-      "uniform (default of diffuse), kernel (of kernel and pairs) or\ndiagonal (of hks, distance and sample)" },
+      "uniform (default of diffuse), kernel (of kernel and pairs) or\n"
+      "diagonal (of hks, distance and sample)" },
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
       "relative error that iterative methods aim at (1e-9)" },
-    { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto, direct, krylov or iterative",
-      "auto or direct, which are the same here" },
-    { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", "auto, direct, krylov or iterative",
-      "direct: factors of all poles, for many sources or fields;\nkrylov: one factor for one source and for many times;\n"
+    { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
+      "auto, direct, krylov or iterative", "auto or direct, which are the same here" },
+    { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
+      "auto, direct, krylov or iterative",
+      "direct: factors of all poles, for many sources or fields;\n"
+      "krylov: one factor for one source and for many times;\n"
       "iterative: no factor; auto (default): what costs least" },
-    { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
+    { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
+      "auto, amd or dissection",
       "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
-    { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", "auto, amd or dissection",
-      "of direct and krylov: amd (minimum degree), dissection\n(nested, in space) or auto (default: by the size)" },
-    { "solver", 0, CMD_ANYHOW, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME", "cocg, cocr, minres or lanczos",
+    { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
+      "auto, amd or dissection",
+      "of direct and krylov: amd (minimum degree), dissection\n"
+      "(nested, in space) or auto (default: by the size)" },
+    { "solver", 0, CMD_ANYHOW, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME",
+      "cocg, cocr, minres or lanczos",
       "of iterative: cocg, cocr, minres or lanczos (default: by the\ntime)" },
-    { "precond", 0, CMD_ANYHOW, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME", "none, jacobi, ssor, ildl or mildl",
-      "of iterative: none, jacobi, ssor, ildl or mildl (default)" },
-    { "max-iterations", 0, CMD_ANYHOW, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N", "a number from 1",
-      "of iterative: limit of the iterations per system" },
-    { "threads", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N", "1..1024",
-      "worker threads (default: all)" },
-    { "simd", 0, CMD_SOLVES | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", "auto, none, avx2 or avx512",
-      "instruction set: none (plain C), avx2, avx512, as far as the\nprocessor has them, or auto (default: its best)" },
-    { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES", "bytes, also with K, M or G, such as 500M",
+    { "precond", 0, CMD_ANYHOW, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME",
+      "none, jacobi, ssor, ildl or mildl", "of iterative: none, jacobi, ssor, ildl or mildl (default)" },
+    { "max-iterations", 0, CMD_ANYHOW, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N",
+      "a number from 1", "of iterative: limit of the iterations per system" },
+    { "threads", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N",
+      "1..1024", "worker threads (default: all)" },
+    { "simd", 0, CMD_SOLVES | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME",
+      "auto, none, avx2 or avx512",
+      "instruction set: none (plain C), avx2, avx512, as far as the\n"
+      "processor has them, or auto (default: its best)" },
+    { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES",
+      "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
-      "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n- or nothing: standard output, as text" },
+      "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n"
+      "- or nothing: standard output, as text" },
     { "no-header", 0, CMD_SOLVES, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
       "of .csv: no first line with the names of the columns" },
     { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",
       "the .png, or - for standard output" },
     { "output", 'o', CMD_DEMO, 0, parse_text, AT(output), NULL, 0, 0, "FOLDER", "the name of a folder",
       "where the files go (heatdiff-demo)" },
-    { "json", 0, CMD_ALL, 0, parse_flag, AT(json), NULL, 0, 0, NULL, "no value", "the report as one JSON object" },
-    { "quiet", 0, CMD_ALL, 0, parse_flag, AT(quiet), NULL, 0, 0, NULL, "no value", "no report, no progress bar" },
-    { "column", 0, CMD_PICTURE, 0, parse_integer, AT(column), NULL, 0, 2000000000, "K", "a column number from 0",
-      "column that colours .png, .ply and .obj, counted from 0" },
-    { "log", 0, CMD_PICTURE, 0, parse_flag, AT(log_scale), NULL, 0, 0, NULL, "no value", "colours by the logarithm" },
+    { "json", 0, CMD_ALL, 0, parse_flag, AT(json), NULL, 0, 0, NULL, "no value",
+      "the report as one JSON object" },
+    { "quiet", 0, CMD_ALL, 0, parse_flag, AT(quiet), NULL, 0, 0, NULL, "no value",
+      "no report, no progress bar" },
+    { "column", 0, CMD_PICTURE, 0, parse_integer, AT(column), NULL, 0, 2000000000, "K",
+      "a column number from 0", "column that colours .png, .ply and .obj, counted from 0" },
+    { "log", 0, CMD_PICTURE, 0, parse_flag, AT(log_scale), NULL, 0, 0, NULL, "no value",
+      "colours by the logarithm" },
     { "isolines", 0, CMD_PICTURE, 0, parse_isolines, AT(isolines), NULL, 0, 200, "N", "0..200",
       "number of isolines, 0 for none (default: at round values)" },
     { "range", 0, CMD_PICTURE, 0, parse_range, 0, NULL, 0, 0, "LO,HI", "two numbers LO,HI with LO below HI",
       "values of the first and last colour (default: of the field)" },
-    { "view", 0, CMD_PICTURE, 0, parse_view, 0, NULL, 0, 0, "AZ,EL", "degrees AZ,EL, elevation within -90..90",
-      "direction of view in degrees: 0,0 looks at the front, 90,0 at\nthe right side (default: one that shows the warmest place)" },
-    { "colormap", 0, CMD_PICTURE | CMD_DEMO, 0, parse_words, AT(colormap), COLORMAPS, 0, 0, "NAME", "ember, lagoon, diverging or grey",
-      "ember (default), lagoon, diverging or grey" },
-    { "size", 0, CMD_PICTURE, 0, parse_size, 0, NULL, 64, 8192, "WxH", "WxH in pixels, each 64..8192", "size of the picture in pixels" },
-    { "title", 0, CMD_PICTURE, 0, parse_text, AT(title), NULL, 0, 0, "TEXT", "a text", "title of the picture" },
+    { "view", 0, CMD_PICTURE, 0, parse_view, 0, NULL, 0, 0, "AZ,EL",
+      "degrees AZ,EL, elevation within -90..90",
+      "direction of view in degrees: 0,0 looks at the front, 90,0 at\n"
+      "the right side (default: one that shows the warmest place)" },
+    { "colormap", 0, CMD_PICTURE | CMD_DEMO, 0, parse_words, AT(colormap), COLORMAPS, 0, 0, "NAME",
+      "ember, lagoon, diverging or grey", "ember (default), lagoon, diverging or grey" },
+    { "size", 0, CMD_PICTURE, 0, parse_size, 0, NULL, 64, 8192, "WxH", "WxH in pixels, each 64..8192",
+      "size of the picture in pixels" },
+    { "title", 0, CMD_PICTURE, 0, parse_text, AT(title), NULL, 0, 0, "TEXT", "a text",
+      "title of the picture" },
     { "help", 'h', CMD_ALL, 0, parse_flag, AT(help), NULL, 0, 0, NULL, "no value", "this help" },
     { "version", 0, CMD_ALL, 0, parse_flag, AT(version), NULL, 0, 0, NULL, "no value", "the version" },
 };
@@ -890,8 +946,8 @@ static void list_commands(unsigned mask, char *text, size_t size)
 
 /* ---- reading the command line ---- */
 
-/* The definition of an argument that is an option, that of the command before those of others, and where its value begins
- * behind '=' (NULL: none there). */
+/* The definition of an option argument, and where its value begins behind '=' (NULL: there is none). The
+ * definition for the current command takes precedence over those for others. */
 static const option_def *find_option(const char *arg, unsigned command, const char **value)
 {
     const option_def *other = NULL;
@@ -923,14 +979,16 @@ static int take_option(options *o, uint64_t *seen, int argc, char **argv, int *i
     const char *value, *arg = argv[*i];
     const option_def *def = find_option(arg, o->command, &value);
     char name[32], commands[120];
-    if (!def) return fail(USAGE, "%.80s is not an option; see heatdiff %s --help", arg, command_name(o->command));
+    if (!def)
+        return fail(USAGE, "%.80s is not an option; see heatdiff %s --help", arg, command_name(o->command));
     option_text(def, name, sizeof name);
     if (!(def->commands & o->command)) {
         list_commands(def->commands, commands, sizeof commands);
         return fail(USAGE, "%s is not an option of %s (but of %s)", name, command_name(o->command), commands);
     }
     if (!def->value && value) return fail(USAGE, "%s takes no value, but '%.80s' is given", name, value);
-    if (def->value && !value && ++*i >= argc) return fail(USAGE, "%s takes %s, but nothing follows it", name, def->takes);
+    if (def->value && !value && ++*i >= argc)
+        return fail(USAGE, "%s takes %s, but nothing follows it", name, def->takes);
     if (def->value && !value) value = argv[*i];
     if (def->is_list && (*seen >> (def - OPTIONS) & 1u))
         return fail(USAGE, "%s is given twice; it takes %s", name, def->takes);
@@ -941,10 +999,13 @@ static int take_option(options *o, uint64_t *seen, int argc, char **argv, int *i
 
 static int take_mesh(options *o, const char *arg)
 {
-    if (o->command == CMD_DEMO) return fail(USAGE, "demo makes its own mesh and takes none, but '%.200s' is given", arg);
+    if (o->command == CMD_DEMO)
+        return fail(USAGE, "demo makes its own mesh and takes none, but '%.200s' is given", arg);
     if (!*arg) return fail(USAGE, "the mesh takes a file name or - (standard input), not ''");
-    if (o->mesh && o->command != CMD_RENDER) return fail(USAGE, "one mesh at a time: '%.200s' and then '%.200s'", o->mesh, arg);
-    if (o->n_meshes == MAX_PANELS) return fail(USAGE, "render takes at most %d meshes, but '%.200s' is one more", MAX_PANELS, arg);
+    if (o->mesh && o->command != CMD_RENDER)
+        return fail(USAGE, "one mesh at a time: '%.200s' and then '%.200s'", o->mesh, arg);
+    if (o->n_meshes == MAX_PANELS)
+        return fail(USAGE, "render takes at most %d meshes, but '%.200s' is one more", MAX_PANELS, arg);
     if (!o->mesh) o->mesh = arg;
     o->meshes[o->n_meshes++] = arg;
     return DONE;
@@ -953,7 +1014,9 @@ static int take_mesh(options *o, const char *arg)
 static int check_output(const options *o)
 {
     if (o->command == CMD_RENDER) {
-        if (!o->output) return fail(USAGE, "render needs -o, which takes the file name of a .png (or - for standard output)");
+        if (!o->output)
+            return fail(USAGE,
+                        "render needs -o, which takes the file name of a .png (or - for standard output)");
         if (strcmp(o->output, "-") == 0 || output_format(o->output) == FORMAT_PNG) return DONE;
         return fail(USAGE, "-o takes a name that ends in .png here, not '%.200s'", o->output);
     }
@@ -964,7 +1027,9 @@ static int check_output(const options *o)
         return fail(USAGE, "-o takes a name that ends in .txt, .csv or .npy here, not '%.200s'", o->output);
     }
     if (output_format(o->output) != MIO_UNKNOWN) return DONE;
-    return fail(USAGE, "-o takes a name that ends in .txt, .csv, .npy, .ply, .obj, .vtu or .png, not '%.200s'", o->output);
+    return fail(USAGE,
+                "-o takes a name that ends in .txt, .csv, .npy, .ply, .obj, .vtu or .png, not '%.200s'",
+                o->output);
 }
 
 /* Which options belong to which method. */
@@ -972,110 +1037,140 @@ static int check_method(const options *o)
 {
     const char *name = word_of(METHODS, o->method), *iterating = o->solver ? "--solver" : "--precond";
     if ((o->command & CMD_INVERTS) && o->method != HD_METHOD_AUTO && o->method != HD_METHOD_DIRECT)
-        return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors", name, command_name(o->command));
+        return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors", name,
+                    command_name(o->command));
     if (o->method == HD_METHOD_KRYLOV && (o->degree || o->poles))
-        return fail(USAGE, "%s takes --method auto, direct or iterative: krylov has no poles", o->degree ? "--degree" : "--poles");
+        return fail(USAGE, "%s takes --method auto, direct or iterative: krylov has no poles",
+                    o->degree ? "--degree" : "--poles");
     if ((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
-        return fail(USAGE, "%s takes --method iterative or auto: %s does not iterate over systems", iterating, name);
+        return fail(USAGE, "%s takes --method iterative or auto: %s does not iterate over systems", iterating,
+                    name);
     if (o->ordering && o->method == HD_METHOD_ITERATIVE)
         return fail(USAGE, "--ordering takes --method auto, direct or krylov: iterative factorises nothing");
     if (o->ordering && (o->solver || o->precond))
-        return fail(USAGE, "--ordering takes no %s beside it: that asks for iterations, which factorise nothing", iterating);
+        return fail(USAGE,
+                    "--ordering takes no %s beside it: that asks for iterations, which factorise nothing",
+                    iterating);
     return DONE;
 }
 
 /* Distances without a time. */
-static int is_timeless(const options *o) { return o->definition == HD_DISTANCE_COMMUTE || o->definition == HD_DISTANCE_BIHARMONIC; }
+static int is_timeless(const options *o)
+{
+    return o->definition == HD_DISTANCE_COMMUTE || o->definition == HD_DISTANCE_BIHARMONIC;
+}
 
 static int check_times(const options *o)
 {
     const char *name = command_name(o->command);
     int i;
     if (is_timeless(o)) {
-        if (o->times) return fail(USAGE, "--t takes --definition classical or weighted: %s has no time", word_of(DEFINITIONS, o->definition));
+        if (o->times)
+            return fail(USAGE, "--t takes --definition classical or weighted: %s has no time",
+                        word_of(DEFINITIONS, o->definition));
         return DONE;
     }
     if ((o->command & CMD_HEAT) && !o->times)
         return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
     for (i = 0; i < o->n_times && (o->command & (CMD_HKS | CMD_METRIC)); i++)
         if (o->times[i].value == 0) return fail(USAGE, "--t takes times > 0 for %s", name);
-    if (o->command == CMD_SAMPLE && (o->n_times > 1 || (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
+    if (o->command == CMD_SAMPLE && (o->n_times > 1 ||
+                                     (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
         return fail(USAGE, "--t takes a single time for sample");
     return DONE;
 }
 
-/* Filters of the spectrum that are not the exponential bring their own poles, and are evaluated on factors. */
+/* Distances other than diffusion distances have poles of their own, and need the direct method. */
 static int check_definition(const options *o)
 {
     const char *name = word_of(DEFINITIONS, o->definition);
     if (!is_timeless(o)) return DONE;
     if (o->degree || o->poles)
-        return fail(USAGE, "%s takes --definition classical or weighted: %s has poles of its own", o->degree ? "--degree" : "--poles", name);
+        return fail(USAGE, "%s takes --definition classical or weighted: %s has poles of its own",
+                    o->degree ? "--degree" : "--poles", name);
     if (o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_ITERATIVE)
-        return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors", word_of(METHODS, o->method), name);
+        return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors",
+                    word_of(METHODS, o->method), name);
     if (o->solver || o->precond)
-        return fail(USAGE, "%s takes --definition classical or weighted: %s does not iterate", o->solver ? "--solver" : "--precond", name);
+        return fail(USAGE, "%s takes --definition classical or weighted: %s does not iterate",
+                    o->solver ? "--solver" : "--precond", name);
     return DONE;
 }
 
 static int check_sample(const options *o)
 {
     if (!o->count) return fail(USAGE, "sample needs --count, which takes a number from 1");
-    if (o->n_sources > o->count) return fail(USAGE, "--source takes at most --count vertices, which is %ld, not %d", o->count, o->n_sources);
+    if (o->n_sources > o->count)
+        return fail(USAGE, "--source takes at most --count vertices, which is %ld, not %d", o->count,
+                    o->n_sources);
     return DONE;
 }
 
-/* One time, and not zero: heat must have flowed to show the way. */
+/* Exactly one time, and not zero. */
 static int check_geodesic(const options *o)
 {
-    if (!o->sources) return fail(USAGE, "geodesic needs --source, which takes vertex ids from 0, such as 0,17");
-    if (o->times && (o->n_times != 1 || !(o->times[0].value > 0) || (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
+    if (!o->sources)
+        return fail(USAGE, "geodesic needs --source, which takes vertex ids from 0, such as 0,17");
+    if (o->times && (o->n_times != 1 || !(o->times[0].value > 0) ||
+                     (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
         return fail(USAGE, "--t takes one time above 0 here, such as 4h2");
     return DONE;
 }
 
-/* What single options cannot see: what is missing, what does not go together. */
+/* The checks below look at all options together: what is missing, and what excludes each other. */
+
 /* Triangulations go with the Laplacians of triangles. */
 static int check_intrinsic(const options *o)
 {
     const char *name = o->tufted ? "tufted" : "intrinsic-delaunay";
     if (!o->tufted && !o->intrinsic_delaunay) return DONE;
-    if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP || o->laplacian == HD_LAPLACIAN_EXP)
-        return fail(USAGE, "--%s takes --laplacian fem, voronoi-cot or cot: %s has no triangles", name, word_of(LAPLACIANS, o->laplacian));
+    if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP ||
+        o->laplacian == HD_LAPLACIAN_EXP)
+        return fail(USAGE, "--%s takes --laplacian fem, voronoi-cot or cot: %s has no triangles", name,
+                    word_of(LAPLACIANS, o->laplacian));
     if (o->lambda > 0) return fail(USAGE, "--%s is of triangles, --lambda of polygons", name);
     if (o->has_bandwidth || o->weight_cut > 0)
-        return fail(USAGE, "--%s is of triangles, --%s of exponential weights", name, o->has_bandwidth ? "bandwidth" : "weight-cut");
+        return fail(USAGE, "--%s is of triangles, --%s of exponential weights", name,
+                    o->has_bandwidth ? "bandwidth" : "weight-cut");
     return DONE;
 }
 
-/* One mesh for all fields, or one for each; and a stream can be read but once. */
+/* There is one mesh for all fields, or one for each. Standard input can be read only once. */
 static int check_render(const options *o)
 {
     int i, streams = 0;
     if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
-        return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes", o->n_inputs, o->n_meshes);
+        return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes",
+                    o->n_inputs, o->n_meshes);
     for (i = 0; i < o->n_inputs; i++) streams += strcmp(o->inputs[i], "-") == 0;
     for (i = 0; i < o->n_meshes; i++) streams += strcmp(o->meshes[i], "-") == 0;
-    return streams > 1 ? fail(USAGE, "--input takes a file name here: standard input can be read only once") : DONE;
+    return streams > 1 ? fail(USAGE, "--input takes a file name here: standard input can be read only once")
+           : DONE;
 }
 
 static int check_options(const options *o)
 {
     const char *name = command_name(o->command);
     int code;
-    if (!o->mesh && o->command != CMD_DEMO) return fail(USAGE, "%s needs a mesh: a file name or - (standard input)", name);
+    if (!o->mesh && o->command != CMD_DEMO)
+        return fail(USAGE, "%s needs a mesh: a file name or - (standard input)", name);
     if ((o->command & (CMD_KERNEL | CMD_DISTANCE)) && !o->sources)
         return fail(USAGE, "%s needs --source, which takes vertex ids from 0, such as 0,17", name);
     if ((o->command & (CMD_DIFFUSE | CMD_RENDER | CMD_PAIRS)) && !o->input)
-        return fail(USAGE, "%s needs --input, which takes the file of %s", name, o->command == CMD_PAIRS ? "vertex pairs" : "a field");
+        return fail(USAGE, "%s needs --input, which takes the file of %s", name,
+                    o->command == CMD_PAIRS ? "vertex pairs" : "a field");
     if (o->command == CMD_SAMPLE && (code = check_sample(o)) != DONE) return code;
     if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
     if (o->lambda > 0 && o->laplacian != HD_LAPLACIAN_DEFAULT && o->laplacian != HD_LAPLACIAN_POLYGON)
-        return fail(USAGE, "--lambda takes --laplacian polygon: %s has no such part", word_of(LAPLACIANS, o->laplacian));
+        return fail(USAGE, "--lambda takes --laplacian polygon: %s has no such part",
+                    word_of(LAPLACIANS, o->laplacian));
     if ((code = check_intrinsic(o)) != DONE) return code;
-    if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE || (code = check_method(o)) != DONE) return code;
+    if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE ||
+        (code = check_method(o)) != DONE)
+        return code;
     if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
-        return fail(USAGE, "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
+        return fail(USAGE,
+                    "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
     if (o->command == CMD_RENDER && (code = check_render(o)) != DONE) return code;
     if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
         return fail(USAGE, "--input takes a file name here: the mesh comes from standard input already");
@@ -1107,7 +1202,8 @@ static void free_options(options *o)
 /* ---- help ---- */
 
 static const char INPUTS[] =
-    "Meshes: OBJ, OFF, PLY, STL; points: the same without faces, XYZ. - reads standard input.\n";
+    "MESH is a file in OBJ, OFF, PLY or STL format. Points come from XYZ files (.xyz, .pts, .txt or\n"
+    ".csv: x y z on each line), or from OBJ, OFF and PLY files without faces. - is standard input.\n";
 
 static void print_version(void)
 {
@@ -1117,7 +1213,8 @@ static void print_version(void)
 static void print_help(void)
 {
     int i;
-    printf("heatdiff - heat diffusion kernels on meshes\n\nUse:  heatdiff COMMAND [OPTIONS] MESH\n\nCommands\n");
+    printf("heatdiff - heat diffusion kernels on meshes\n\nUse:  heatdiff COMMAND [OPTIONS] MESH\n\n"
+           "Commands\n");
     for (i = 0; i < N_COMMANDS; i++) printf("  %-9s %s\n", COMMANDS[i].name, COMMANDS[i].help);
     printf("\nOptions\n  heatdiff COMMAND --help lists those of a command; --version tells the version\n"
            "\nExamples\n"
@@ -1133,7 +1230,8 @@ static void print_help(void)
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
            "  heatdiff render --input a.npy --input b.npy a.obj b.obj -o pair.png\n"
            "\n%sVertices are counted from 0.\n"
-           "Results: .txt .csv .npy .ply .obj .vtu .png by the extension of -o; without -o text on standard output.\n"
+           "Results: .txt .csv .npy .ply .obj .vtu .png by the extension of -o; without -o text on "
+           "standard output.\n"
            "Exit codes: 0 done, 1 input or computation failed, 2 the command line is wrong, "
            "130 interrupted.\n", INPUTS);
 }
@@ -1143,8 +1241,8 @@ static void print_option(const option_def *def)
     char left[40];
     const char *line = def->help, *end;
     int width;
-    snprintf(left, sizeof left, def->letter ? "-%c, --%s %s" : "%c   --%s %s", def->letter ? def->letter : ' ', def->name,
-             def->value ? def->value : "");
+    snprintf(left, sizeof left, def->letter ? "-%c, --%s %s" : "%c   --%s %s",
+             def->letter ? def->letter : ' ', def->name, def->value ? def->value : "");
     for (;; line = end + 1) {
         end = strchr(line, '\n');
         width = end ? (int)(end - line) : (int)strlen(line);
@@ -1179,7 +1277,7 @@ static void print_command_help(const command_def *command)
 
 typedef struct json { FILE *out; int first; } json;
 
-/* Bytes of the UTF-8 sequence that begins at p, 0 when it is none (RFC 3629). */
+/* Length in bytes of the UTF-8 sequence that begins at p; 0 if it is not valid (RFC 3629). */
 static int utf8_length(const char *text)
 {
     const unsigned char *p = (const unsigned char *)text;
@@ -1188,11 +1286,12 @@ static int utf8_length(const char *text)
     for (i = 1; i < n; i++)
         if ((p[i] & 0xc0) != 0x80) return 0;
     if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xf0 && p[1] < 0x90)) return 0;    /* longer than needed */
-    if ((p[0] == 0xed && p[1] > 0x9f) || (p[0] == 0xf4 && p[1] > 0x8f)) return 0;    /* half a pair, beyond the last */
+    /* half a pair, beyond the last */
+    if ((p[0] == 0xed && p[1] > 0x9f) || (p[0] == 0xf4 && p[1] > 0x8f)) return 0;
     return n;
 }
 
-/* File names need not be UTF-8, JSON must be: strange bytes become the replacement character. */
+/* File names need not be UTF-8, but JSON must be: invalid bytes become the replacement character. */
 static void json_string(FILE *out, const char *text)
 {
     fputc('"', out);
@@ -1216,7 +1315,7 @@ static void json_key(json *j, const char *key)
     fprintf(j->out, ": ");
 }
 
-/* JSON knows neither NaN nor infinity. */
+/* JSON has neither NaN nor infinity: both become null. */
 static void json_value(FILE *out, double v)
 {
     if (isfinite(v)) fprintf(out, "%.17g", v);
@@ -1234,9 +1333,17 @@ static void json_close(json *j) { fputc('}', j->out); }
 
 static void json_number(json *j, const char *key, double v) { json_key(j, key); json_value(j->out, v); }
 
-static void json_integer(json *j, const char *key, int64_t v) { json_key(j, key); fprintf(j->out, "%lld", (long long)v); }
+static void json_integer(json *j, const char *key, int64_t v)
+{
+    json_key(j, key);
+    fprintf(j->out, "%lld", (long long)v);
+}
 
-static void json_text(json *j, const char *key, const char *text) { json_key(j, key); json_string(j->out, text); }
+static void json_text(json *j, const char *key, const char *text)
+{
+    json_key(j, key);
+    json_string(j->out, text);
+}
 
 static void json_numbers(json *j, const char *key, const double *v, int n)
 {
@@ -1280,7 +1387,8 @@ static void add_word(word_list *list, const char *separator, const char *name)
     const char *p;
     for (p = strstr(list->text, name); p; p = strstr(p + n, name))     /* as a whole word: ildl is in mildl */
         if ((p == list->text || p[-1] == ' ') && (p[n] == 0 || p[n] == separator[0])) return;
-    if (used + n + 3 < sizeof list->text) snprintf(list->text + used, sizeof list->text - used, "%s%s", used ? separator : "", name);
+    if (used + n + 3 < sizeof list->text)
+        snprintf(list->text + used, sizeof list->text - used, "%s%s", used ? separator : "", name);
 }
 
 static void keep_larger(double *largest, double v)
@@ -1288,19 +1396,23 @@ static void keep_larger(double *largest, double v)
     if (v > *largest || v != v) *largest = v;
 }
 
-/* Neither direct nor times of 0 have one. */
-static const char *solver_name(const hd_report *r) { return r->solver == HD_SOLVER_AUTO ? "none" : word_of(SOLVERS, (int)r->solver); }
+/* The direct method and times of 0 have no solver. */
+static const char *solver_name(const hd_report *r)
+{
+    return r->solver == HD_SOLVER_AUTO ? "none" : word_of(SOLVERS, (int)r->solver);
+}
 
-/* Lanczos has none. */
+/* Lanczos has no poles. */
 static const char *precond_name(const hd_report *r)
 {
     return r->precond == HD_PRECOND_AUTO ? "none" : word_of(PRECONDS, (int)r->precond);
 }
 
-/* Commute and biharmonic distances integrate over a circle. */
+/* Commute and biharmonic distances use poles on a circle. */
 static const char *poles_name(const hd_report *r)
 {
-    return r->poles == HD_POLES_DEFAULT ? "none" : r->poles == HD_POLES_OWN ? "circle" : word_of(POLES, (int)r->poles);
+    return r->poles == HD_POLES_DEFAULT ? "none" : r->poles == HD_POLES_OWN ? "circle"
+           : word_of(POLES, (int)r->poles);
 }
 
 static const char *ordering_name(const hd_report *r)
@@ -1308,7 +1420,7 @@ static const char *ordering_name(const hd_report *r)
     return r->ordering == HD_ORDERING_AUTO ? "none" : word_of(ORDERINGS, (int)r->ordering);
 }
 
-/* The worse of two, counts added, names from the later one. */
+/* Merges two reports: the worse bounds, the sum of the counts, the names of the later one. */
 static void report_merge(hd_report *all, const hd_report *one)
 {
     int p;
@@ -1338,17 +1450,19 @@ static void report_merge(hd_report *all, const hd_report *one)
     keep_larger(&all->error_bound, one->error_bound);
     keep_larger(&all->mass_drift, one->mass_drift);
     keep_larger(&all->error_relative, one->error_relative);
-    if (one->smallest > 0 && !(all->smallest > 0 && all->smallest < one->smallest)) all->smallest = one->smallest;
+    if (one->smallest > 0 && !(all->smallest > 0 && all->smallest < one->smallest))
+        all->smallest = one->smallest;
     all->n_lost += one->n_lost;
 }
 
-/* The report of one call, which was about the times index[0..n-1]. */
+/* Adds the report of one call for the times index[0..n-1]. */
 static void summary_add(summary *s, const hd_report *r, const int *index, int n)
 {
     int i;
     for (i = 0; i < n; i++) report_merge(&s->per_time[index[i]], r);
     report_merge(&s->worst, r);
-    if (r->iterations == 0 && r->n_poles == 0 && r->factor_nnz == 0) return;    /* t = 0: nothing was solved */
+    /* t = 0: nothing was solved */
+    if (r->iterations == 0 && r->n_poles == 0 && r->factor_nnz == 0) return;
     add_word(&s->method, ", ", word_of(METHODS, (int)r->method));
     add_word(&s->solver, ", ", solver_name(r));
     add_word(&s->precond, ", ", precond_name(r));
@@ -1359,9 +1473,15 @@ static void summary_add(summary *s, const hd_report *r, const int *index, int n)
 
 static const char *or_none(const word_list *list) { return list->text[0] ? list->text : "none"; }
 
-/* What was chosen when there was nothing to solve: t = 0, or nothing that has mass. */
-static const char *method_text(const summary *s) { return s->method.text[0] ? s->method.text : word_of(METHODS, (int)s->worst.method); }
-static const char *reason_text(const summary *s) { return s->reason.text[0] ? s->reason.text : s->worst.reason ? s->worst.reason : ""; }
+/* Fills in the choices if there was nothing to solve: t = 0, or no vertex with mass. */
+static const char *method_text(const summary *s)
+{
+    return s->method.text[0] ? s->method.text : word_of(METHODS, (int)s->worst.method);
+}
+static const char *reason_text(const summary *s)
+{
+    return s->reason.text[0] ? s->reason.text : s->worst.reason ? s->worst.reason : "";
+}
 
 /* ==== meshes and fields ==== */
 
@@ -1384,7 +1504,10 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-static int fail_file(int status, const mio_error *e) { return status == MIO_STOPPED ? INTERRUPTED : fail(FAILED, "%s", e->text); }
+static int fail_file(int status, const mio_error *e)
+{
+    return status == MIO_STOPPED ? INTERRUPTED : fail(FAILED, "%s", e->text);
+}
 
 static void mesh_free(mesh_data *m)
 {
@@ -1411,7 +1534,7 @@ static int mesh_load(mesh_data *m, const char *path)
     return status < 0 ? fail_file(status, &e) : mesh_finish(m);
 }
 
-/* A mesh from a shape made in memory, which is emptied. */
+/* Makes a mesh from a shape, and empties the shape. */
 static int mesh_of_shape(mesh_data *m, shape *s)
 {
     int32_t f;
@@ -1441,7 +1564,8 @@ static int field_load(field_data *field, const char *path, const char *mesh_name
     const int status = mio_load_table(&field->values, &rows, &field->columns, path, NULL, &e);
     if (status < 0) return fail_file(status, &e);
     if (rows != n)
-        return fail(FAILED, "%s: %lld rows, but %s has %ld vertices", display_name(path), (long long)rows, mesh_name, (long)n);
+        return fail(FAILED, "%s: %lld rows, but %s has %ld vertices", display_name(path), (long long)rows,
+                    mesh_name, (long)n);
     return DONE;
 }
 
@@ -1467,7 +1591,8 @@ typedef struct run {
     hd_geodesic_report geodesic_report;
     int32_t *pairs;                  /* pairs: [2 rows], first the i, then the j */
     int64_t rows;                    /* of the result: the vertices, the pairs or the points */
-    double *values;                  /* column-major, rows x n_columns; input q after time k is column q n_times + k */
+    /* column-major, rows x n_columns; input q after time k is column q n_times + k */
+    double *values;
     int64_t n_columns;
     char (*names)[NAME_SIZE];        /* of the columns, and pointers to them */
     const char **name_list;
@@ -1544,12 +1669,15 @@ static int fail_library(const char *file, const hd_error *e)
     char place[120] = "";
     if (e->status == HD_ERR_CANCELLED && interrupt.asked) return INTERRUPTED;
     if (e->status == HD_ERR_MEMORY_LIMIT && e->value > 0)
-        return fail(FAILED, "%s: %.4g MB more do not fit the memory limit (--memory-limit, by default nine tenths of the machine's memory)", file, 1e-6 * e->value);
+        return fail(FAILED, "%s: %.4g MB more do not fit the memory limit "
+                    "(--memory-limit, by default nine tenths of the machine's memory)",
+                    file, 1e-6 * e->value);
     if (e->face >= 0) snprintf(place, sizeof place, " face %lld:", (long long)e->face);
     else if (e->vertex >= 0) snprintf(place, sizeof place, " vertex %lld:", (long long)e->vertex);
     else if (e->row >= 0 && e->column >= 0)
         snprintf(place, sizeof place, " row %lld, column %lld:", (long long)e->row, (long long)e->column);
-    if (e->pole >= 0) snprintf(place + strlen(place), sizeof place - strlen(place), " pole %lld:", (long long)e->pole);
+    if (e->pole >= 0)
+        snprintf(place + strlen(place), sizeof place - strlen(place), " pole %lld:", (long long)e->pole);
     return fail(FAILED, "%s:%s %s", file, place, e->text[0] ? e->text : hd_status_text(e->status));
 }
 
@@ -1561,13 +1689,15 @@ static int run_load(run *r)
     return code;
 }
 
-/* That of the command line; without one by what it asks of triangles, and by the faces: none, other ones than triangles, triangles. */
+/* The Laplacian of the command line. By default it depends on the triangulation options, and on whether the
+ * mesh has no faces, other faces than triangles, or triangles only. */
 static hd_laplacian_kind laplacian_kind(const run *r)
 {
     if (r->o->laplacian != HD_LAPLACIAN_DEFAULT) return (hd_laplacian_kind)r->o->laplacian;
     if (r->o->intrinsic_delaunay || r->o->tufted) return HD_LAPLACIAN_FEM;
     if (r->mesh.n_tri == 0) return HD_LAPLACIAN_VORONOI_EXP;
-    return r->mesh.n_tri != r->mesh.n_faces ? HD_LAPLACIAN_POLYGON : HD_LAPLACIAN_FEM;    /* no face of the file has fewer than three corners */
+    /* no face of the file has fewer than three corners */
+    return r->mesh.n_tri != r->mesh.n_faces ? HD_LAPLACIAN_POLYGON : HD_LAPLACIAN_FEM;
 }
 
 static int has_exponentials(const run *r)
@@ -1578,7 +1708,8 @@ static int has_exponentials(const run *r)
 
 static int is_points(const run *r) { return r->mesh.n_tri == 0 || has_exponentials(r); }
 
-/* h of points, which the library knows only when all is done: the mean distance of different points to the nearest other one. */
+/* h of points: the mean distance of a point to the nearest other one. The library reports it only after
+ * assembling, but the bandwidth may be given in units of it. */
 static hd_status point_spacing(run *r, double *h, hd_error *err)
 {
     const int32_t n = r->mesh.n, k = n < 16 ? n : 16;
@@ -1589,10 +1720,12 @@ static hd_status point_spacing(run *r, double *h, hd_error *err)
     memset(err, 0, sizeof *err);
     err->face = err->vertex = err->row = err->column = err->pole = -1;
     err->status = status;
-    if (near_ids && d2) status = hd_neighbours_nearest(r->mesh.xyz, n, NULL, n, k, near_ids, d2, &r->context, err);
+    if (near_ids && d2)
+        status = hd_neighbours_nearest(r->mesh.xyz, n, NULL, n, k, near_ids, d2, &r->context, err);
     for (i = 0; status >= 0 && i < n; i++) {
         const double *d = d2 + (size_t)i * (size_t)k;
-        if (d[0] == 0 && near_ids[(size_t)i * (size_t)k] != i) continue;        /* in the place of an earlier one */
+        /* in the place of an earlier one */
+        if (d[0] == 0 && near_ids[(size_t)i * (size_t)k] != i) continue;
         for (j = 0; j < k && d[j] == 0; j++) { }
         if (j == k) continue;
         *h += sqrt(d[j]);
@@ -1608,7 +1741,8 @@ static hd_status run_points(run *r, hd_laplacian_opts *opts, hd_error *err)
 {
     const time_spec s = r->o->bandwidth;
     double h = 1;
-    if (opts->tufted) return hd_laplacian_tufted_points(&r->lap, r->mesh.xyz, r->mesh.n, NULL, NULL, opts, err);
+    if (opts->tufted)
+        return hd_laplacian_tufted_points(&r->lap, r->mesh.xyz, r->mesh.n, NULL, NULL, opts, err);
     if (s.unit == TIME_H2 && point_spacing(r, &h, err) < 0) return err->status;
     opts->bandwidth = s.value * h * h;
     opts->weight_cut = r->o->weight_cut;
@@ -1629,7 +1763,9 @@ static hd_status run_laplacian(run *r, hd_error *err)
     opts.tufted = r->o->tufted;
     interrupt.patient = 1;
     if (is_points(r)) status = run_points(r, &opts, err);
-    else if (opts.kind == HD_LAPLACIAN_POLYGON) status = hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces, &opts, err);
+    else if (opts.kind == HD_LAPLACIAN_POLYGON)
+        status = hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces,
+                                       &opts, err);
     else status = hd_laplacian_triangles(&r->lap, m->xyz, m->n, m->tri, m->n_tri, &opts, err);
     interrupt.patient = 0;
     r->sec.assemble = now() - start;
@@ -1638,7 +1774,8 @@ static hd_status run_laplacian(run *r, hd_error *err)
 
 static int fail_laplacian(const run *r, hd_error *err)
 {
-    if (err->face >= 0 && r->mesh.face_of && laplacian_kind(r) != HD_LAPLACIAN_POLYGON) err->face = r->mesh.face_of[err->face];
+    if (err->face >= 0 && r->mesh.face_of && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
+        err->face = r->mesh.face_of[err->face];
     return fail_library(r->mesh_name, err);
 }
 
@@ -1646,16 +1783,21 @@ static int fail_laplacian(const run *r, hd_error *err)
 static int check_laplacian(const run *r)
 {
     if (r->mesh.n_tri == 0 && r->o->intrinsic_delaunay && !r->o->tufted)
-        return fail(FAILED, "%s: --intrinsic-delaunay needs faces, and there are none; points take --tufted", r->mesh_name);
+        return fail(FAILED, "%s: --intrinsic-delaunay needs faces, and there are none; points take --tufted",
+                    r->mesh_name);
     if (r->mesh.n_tri == 0 && !has_exponentials(r) && !r->o->tufted)
-        return fail(FAILED, "%s: --laplacian %s needs faces, and there are none; points take voronoi-exp or exp, or --tufted with fem, voronoi-cot or cot",
+        return fail(FAILED, "%s: --laplacian %s needs faces, and there are none; "
+                    "points take voronoi-exp or exp, or --tufted with fem, voronoi-cot or cot",
                     r->mesh_name, word_of(LAPLACIANS, r->o->laplacian));
     if ((r->o->has_bandwidth || r->o->weight_cut > 0) && !has_exponentials(r))
-        return fail(FAILED, "%s: --%s is for points (--laplacian voronoi-exp or exp), and this file has faces", r->mesh_name,
-                    r->o->has_bandwidth ? "bandwidth" : "weight-cut");
-    if (r->o->lambda > 0 && is_points(r)) return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
+        return fail(FAILED,
+                    "%s: --%s is for points (--laplacian voronoi-exp or exp), and this file has faces",
+                    r->mesh_name, r->o->has_bandwidth ? "bandwidth" : "weight-cut");
+    if (r->o->lambda > 0 && is_points(r))
+        return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
     if (r->o->lambda > 0 && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
-        return fail(FAILED, "%s: --lambda is of --laplacian polygon, and triangles have %s by default; on triangles it changes nothing", r->mesh_name,
+        return fail(FAILED, "%s: --lambda is of --laplacian polygon, and triangles have %s by default; "
+                    "on triangles it changes nothing", r->mesh_name,
                     word_of(LAPLACIANS, (int)laplacian_kind(r)));
     return DONE;
 }
@@ -1671,8 +1813,9 @@ static int run_assemble(run *r)
 
 /* ---- times ---- */
 
-/* By Weyl's law eigenvalue number k of a surface is about 4 pi k / area. These two are where the 2nd and the 300th of them have
- * faded to a ten-thousandth: what lies between shows the shape from large to small. The area is that of B, 1'B1. */
+/* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k / area. At the longest time the 2nd of them
+ * has faded to a ten-thousandth, at the shortest time the 300th. Times in between show the shape from coarse
+ * to fine. The area is that of B, 1'B1. */
 static const double AUTO_SHORTEST = 0.0024, AUTO_LONGEST = 0.37;
 
 static double auto_time(const run *r, int i, int count)
@@ -1680,8 +1823,10 @@ static double auto_time(const run *r, int i, int count)
     double area = 0;
     int c;
     for (c = 0; c < r->lap->n_components; c++) area += r->lap->component_mass[c];
-    if (r->lap->kind == HD_LAPLACIAN_EXP) area = r->lap->area * r->lap->area;   /* B^-1 L tends to Laplacian/area */
-    return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST, count > 1 ? i / (double)(count - 1) : 0.5);
+    /* B^-1 L tends to Laplacian/area */
+    if (r->lap->kind == HD_LAPLACIAN_EXP) area = r->lap->area * r->lap->area;
+    return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST,
+                                      count > 1 ? i / (double)(count - 1) : 0.5);
 }
 
 static int run_times(run *r)
@@ -1698,7 +1843,8 @@ static int run_times(run *r)
     if (!r->times || !r->time_names || !r->sum.per_time) return fail_memory("the times");
     if (is_timeless(o)) {                /* a time in name only */
         r->times[0] = 0;
-        snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s", word_of(DEFINITIONS, o->definition));
+        snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s",
+                 word_of(DEFINITIONS, o->definition));
         return DONE;
     }
     for (i = 0; i < n_given; i++) {
@@ -1706,10 +1852,15 @@ static int run_times(run *r)
         const int count = s.unit == TIME_AUTO ? (int)s.value : 1;
         for (k = 0; k < count; k++, r->n_times++) {
             double *t = &r->times[r->n_times];
-            *t = s.unit == TIME_AUTO ? auto_time(r, k, count) : s.unit == TIME_H2 ? s.value * r->lap->h * r->lap->h : s.value;
-            if (!isfinite(*t)) return fail(FAILED, "%s: the time %gh2 is too large for h = %g", r->mesh_name, s.value, r->lap->h);
-            if (s.unit == TIME_H2) snprintf(r->time_names[r->n_times], sizeof *r->time_names, "%.9gh2", s.value);
-            else snprintf(r->time_names[r->n_times], sizeof *r->time_names, s.unit == TIME_AUTO ? "%.4g" : "%.9g", *t);
+            *t = s.unit == TIME_AUTO ? auto_time(r, k, count)
+               : s.unit == TIME_H2 ? s.value * r->lap->h * r->lap->h : s.value;
+            if (!isfinite(*t))
+                return fail(FAILED, "%s: the time %gh2 is too large for h = %g", r->mesh_name, s.value,
+                            r->lap->h);
+            if (s.unit == TIME_H2)
+                snprintf(r->time_names[r->n_times], sizeof *r->time_names, "%.9gh2", s.value);
+            else snprintf(r->time_names[r->n_times], sizeof *r->time_names,
+                          s.unit == TIME_AUTO ? "%.4g" : "%.9g", *t);
         }
     }
     return DONE;
@@ -1730,12 +1881,14 @@ static int run_sources(run *r)
     const options *o = r->o;
     int i;
     r->n_inputs = o->n_sources;
-    r->sources = (int32_t *)malloc((size_t)(o->command == CMD_SAMPLE ? o->count : o->n_sources) * sizeof *r->sources);
+    r->sources = (int32_t *)malloc((size_t)(o->command == CMD_SAMPLE ? o->count : o->n_sources)
+                                   * sizeof *r->sources);
     if (!r->sources) return fail_memory("the sources");
     for (i = 0; i < o->n_sources; i++) {
         if (o->sources[i] >= r->mesh.n)
-            return fail(FAILED, "%s: --source %lld is beyond the mesh, which has %ld vertices, numbered from 0", r->mesh_name,
-                        (long long)o->sources[i], (long)r->mesh.n);
+            return fail(FAILED,
+                        "%s: --source %lld is beyond the mesh, which has %ld vertices, numbered from 0",
+                        r->mesh_name, (long long)o->sources[i], (long)r->mesh.n);
         r->sources[i] = (int32_t)o->sources[i];
     }
     return DONE;
@@ -1759,15 +1912,19 @@ static int run_plan(run *r)
     return hd_heat_create(&r->heat, r->lap, &opts, &err) < 0 ? fail_library(r->mesh_name, &err) : DONE;
 }
 
-static double *column_of(const run *r, int q, int k) { return r->values + ((size_t)q * (size_t)r->n_times + (size_t)k) * (size_t)r->rows; }
+static double *column_of(const run *r, int q, int k)
+{
+    return r->values + ((size_t)q * (size_t)r->n_times + (size_t)k) * (size_t)r->rows;
+}
 
 static int fail_solve(const run *r, hd_report *report, int q)
 {
     if (report->error.row >= 0 && report->error.column >= 0) report->error.column += q;
-    return fail_library(report->status == HD_ERR_NOT_FINITE && r->fields ? r->field_name : r->mesh_name, &report->error);
+    return fail_library(report->status == HD_ERR_NOT_FINITE && r->fields ? r->field_name : r->mesh_name,
+                        &report->error);
 }
 
-/* Time k for the inputs from q on, together. */
+/* Solves time k for all inputs from q on. */
 static int solve_time(run *r, int k, int q)
 {
     const size_t n = (size_t)r->mesh.n, stride = n * (size_t)r->n_times;
@@ -1775,7 +1932,8 @@ static int solve_time(run *r, int k, int q)
     hd_report report;
     hd_status status;
     bar_part("time", k, r->n_times);
-    if (r->fields) status = hd_heat_apply(r->heat, 1, &r->times[k], count, r->fields + (size_t)q * n, n, column_of(r, q, k), stride, &report, NULL);
+    if (r->fields)
+        status = hd_heat_apply(r->heat, 1, &r->times[k], count, r->fields + (size_t)q * n, n, column_of(r, q, k), stride, &report, NULL);
     else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, 1, &r->times[k], count, r->sources + q, column_of(r, q, k), stride, &report, NULL);
     if (status < 0) return fail_solve(r, &report, q);
     summary_add(&r->sum, &report, &k, 1);
@@ -1787,10 +1945,11 @@ typedef struct time_group {
     int n;
     int *index;                      /* [n] numbers of the times */
     double *t;                       /* [n] */
-    double *room;                    /* mesh.n x n when their columns do not follow one another in the result, else NULL */
+    /* mesh.n x n when their columns do not follow one another in the result, else NULL */
+    double *room;
 } time_group;
 
-/* All times of the group for input q. */
+/* Solves all times of the group for input q. */
 static int solve_input(run *r, const time_group *g, int q, hd_report *report)
 {
     const size_t n = (size_t)r->mesh.n;
@@ -1802,15 +1961,18 @@ static int solve_input(run *r, const time_group *g, int q, hd_report *report)
     if (f) status = hd_heat_apply(r->heat, g->n, g->t, 1, f, n, out, n, report, NULL);
     else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, g->n, g->t, 1, r->sources + q, out, n, report, NULL);
     if (status < 0) return fail_solve(r, report, q);
-    for (i = 0; g->room && i < g->n; i++) memcpy(column_of(r, q, g->index[i]), g->room + (size_t)i * n, n * sizeof *out);
-    if (q > 0 && report->method == HD_METHOD_KRYLOV) report->factor_flops = 0;   /* the factor of input 0 served again */
+    for (i = 0; g->room && i < g->n; i++)
+        memcpy(column_of(r, q, g->index[i]), g->room + (size_t)i * n, n * sizeof *out);
+    /* the factor of input 0 served again */
+    if (q > 0 && report->method == HD_METHOD_KRYLOV) report->factor_flops = 0;
     summary_add(&r->sum, report, g->index, g->n);
     return DONE;
 }
 
-/* One input after the other, each at all times, is for the krylov method; all inputs together, one time after the other, for the others. Left
- * to choose, the factors of the poles, made anew for each time, cost less from about as many inputs as times on (meshes of 12K, 35K and 150K
- * vertices: from 2 to 5 inputs with 4 times, from 8 to 15 with 10), and never with many times. */
+/* The krylov method takes one input after the other, each at all times. Other methods take one time after the
+ * other, each with all inputs. If the method is free, new pole factors for each time cost less once there are
+ * about as many inputs as times, but never with many times. Measured on meshes of 12K, 35K and 150K vertices:
+ * from 2 to 5 inputs with 4 times, from 8 to 15 inputs with 10. */
 static int time_by_time(const run *r, int n_times)
 {
     const options *o = r->o;
@@ -1818,7 +1980,7 @@ static int time_by_time(const run *r, int n_times)
     return o->solver || o->precond || o->degree || o->poles || (n_times <= 16 && r->n_inputs >= n_times);
 }
 
-/* Where the library is left to choose, its choice for the first input tells how to go on with the others. */
+/* If the library chooses the method, its choice for the first input decides the order of the others. */
 static int solve_group(run *r, const time_group *g)
 {
     int code = DONE, i, q = 0, by_time = g->n == 1 || g->t[0] == 0 || time_by_time(r, g->n);
@@ -1831,11 +1993,12 @@ static int solve_group(run *r, const time_group *g)
     return code;
 }
 
-/* One group's factor and basis serve times up to this ratio. With one input the library divides them as it likes; with several, the groups come
- * outermost, so that no factor is made twice. */
+/* One factor and basis serve times up to this ratio: a group. With one input the library forms the groups.
+ * With several inputs the tool does, and completes one group for all inputs before the next, so that no
+ * factor is made twice. */
 static const double GROUP_RATIO = 1000;
 
-/* The smallest time above t, HUGE_VAL: none. */
+/* The smallest time above t; HUGE_VAL if there is none. */
 static double next_time(const run *r, double t)
 {
     double least = HUGE_VAL;
@@ -1862,7 +2025,7 @@ static int group_fill(const run *r, time_group *g, double from, double to)
     return g->room ? DONE : fail_memory("the result");
 }
 
-/* The times of 0, then groups of times upwards. */
+/* Solves the times 0 first, then groups of ascending times. */
 static int solve_groups(run *r, time_group *g)
 {
     const double ratio = r->n_inputs > 1 ? GROUP_RATIO : HUGE_VAL;
@@ -1889,7 +2052,7 @@ static int solve_all(run *r)
     return code;
 }
 
-/* What one call for time k returned, which is all that is known of that time. */
+/* Records the report of the only call for time k. */
 static int solved_time(run *r, int k, hd_status status, hd_report *report)
 {
     if (status < 0) return fail_solve(r, report, 0);
@@ -1897,15 +2060,16 @@ static int solved_time(run *r, int k, hd_status status, hd_report *report)
     return DONE;
 }
 
-/* The signature, or distances from all sources: all times together, because many share their factors and cost little more than one. What the
- * call returned is all that is known of any of them. */
+/* Signatures, or distances from all sources, at all times together: many times share their factors and cost
+ * little more than one. There is one report for all times. */
 static int solve_inverse(run *r)
 {
     const options *o = r->o;
     hd_report report;
     hd_status status;
     int k;
-    if (o->command == CMD_HKS) status = hd_heat_diagonal(r->heat, (hd_kernel)o->kernel, r->n_times, r->times, r->values, 0, &report, NULL);
+    if (o->command == CMD_HKS)
+        status = hd_heat_diagonal(r->heat, (hd_kernel)o->kernel, r->n_times, r->times, r->values, 0, &report, NULL);
     else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->sources, r->values, 0, &report, NULL);
     if (status < 0) return fail_solve(r, &report, 0);
     for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
@@ -1913,7 +2077,7 @@ static int solve_inverse(run *r)
     return DONE;
 }
 
-/* Kernel and distance of the pairs at time k, in two columns; without a time the distance alone. */
+/* Kernel and distance of the pairs at time k, in two columns. Distances without a time have one column. */
 static int solve_pairs(run *r, int k)
 {
     const options *o = r->o;
@@ -1955,17 +2119,20 @@ static void run_shape(run *r)
     const options *o = r->o;
     if (o->command == CMD_SAMPLE) r->rows = o->count;
     else if (o->command != CMD_PAIRS) r->rows = r->mesh.n;
-    r->n_columns = o->command == CMD_SAMPLE ? 1 : (int64_t)(o->command & (CMD_HKS | CMD_PAIRS) ? 1 : r->n_inputs) * r->n_times;
+    r->n_columns = o->command == CMD_SAMPLE ? 1
+                   : (int64_t)(o->command & (CMD_HKS | CMD_PAIRS) ? 1 : r->n_inputs) * r->n_times;
     if (o->command == CMD_PAIRS && !is_timeless(o)) r->n_columns *= 2;
 }
 
-/* Room for the result, and whether it has the column that is to be shown. */
+/* Allocates the result, and checks that it has the column to be shown. */
 static int run_columns(run *r)
 {
     run_shape(r);
-    if (r->n_columns > INT32_MAX / 2) return fail(FAILED, "%lld columns are too many", (long long)r->n_columns);
+    if (r->n_columns > INT32_MAX / 2)
+        return fail(FAILED, "%lld columns are too many", (long long)r->n_columns);
     if (r->o->column >= r->n_columns)
-        return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column, (long long)r->n_columns);
+        return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column,
+                    (long long)r->n_columns);
     r->values = new_columns(r->rows, r->n_columns);
     return r->values ? DONE : fail_memory("the result");
 }
@@ -1980,12 +2147,14 @@ static int solve_geodesic(run *r)
     opts.t = r->times[0];
     opts.ordering = (hd_ordering)r->o->ordering;
     opts.context = &r->context;
-    if (hd_geodesic_create(&r->geodesic, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, &err) < 0) return fail_laplacian(r, &err);
-    if (hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL) >= 0) return DONE;
+    if (hd_geodesic_create(&r->geodesic, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, &err) < 0)
+        return fail_laplacian(r, &err);
+    if (hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL) >= 0)
+        return DONE;
     return fail_library(r->mesh_name, &r->geodesic_report.error);
 }
 
-/* Leaves the plan in r->heat, for who has more to ask of it. */
+/* Leaves the plan in r->heat for further questions. */
 static int run_solve(run *r)
 {
     int code = run_columns(r);
@@ -2085,7 +2254,7 @@ static void json_laplacian(json *j, const hd_laplacian *lap)
     if (lap->points.neighbours) json_points(j, &lap->points);
 }
 
-/* The fill, the work and the safety of the factorisations; zeros without any. */
+/* Fill, flops and growth of the factorisations; zeros if there are none. */
 static void json_factor(json *j, const hd_report *p)
 {
     json_integer(j, "factor_nnz", p->factor_nnz);
@@ -2121,7 +2290,7 @@ static void json_values(json *j, const hd_report *p)
     json_integer(j, "lost", p->n_lost);
 }
 
-/* A time of NaN: the distance has none, and null is written. */
+/* A distance without a time has NaN as its time, which is written as null. */
 static void json_time(FILE *out, double t, const hd_report *p)
 {
     json j;
@@ -2147,7 +2316,8 @@ static void json_time(FILE *out, double t, const hd_report *p)
 static void json_query(json *j, const run *r)
 {
     const options *o = r->o;
-    if (o->command != CMD_DISTANCE && o->command != CMD_SAMPLE) json_text(j, "kernel", word_of(KERNELS, o->kernel));
+    if (o->command != CMD_DISTANCE && o->command != CMD_SAMPLE)
+        json_text(j, "kernel", word_of(KERNELS, o->kernel));
     if (o->command & CMD_METRIC) json_text(j, "definition", word_of(DEFINITIONS, o->definition));
     if (r->sources) json_integers(j, "sources", o->sources, o->n_sources);
     else if (o->input) json_text(j, "input", o->input);
@@ -2191,12 +2361,15 @@ static void print_method(const run *r)
 {
     const hd_report *w = &r->sum.worst;
     const char *reason = reason_text(&r->sum);
-    fprintf(stderr, "method %s%s%s%s\n", method_text(&r->sum), *reason ? " (" : "", reason, *reason ? ")" : "");
+    fprintf(stderr, "method %s%s%s%s\n", method_text(&r->sum), *reason ? " (" : "", reason,
+            *reason ? ")" : "");
     if (w->factor_nnz > 0)
-        fprintf(stderr, "factors: %.3g non-zeros, %.3g a row; %.3g flops, growth %.3g, ordering %s\n", (double)w->factor_nnz,
-                (double)w->factor_nnz / r->lap->n_active, w->factor_flops, w->growth, or_none(&r->sum.ordering));
-    fprintf(stderr, "solver %s, preconditioner %s, poles %s, degree %ld, %lld iterations\n", or_none(&r->sum.solver),
-            or_none(&r->sum.precond), or_none(&r->sum.poles), (long)w->degree, (long long)w->iterations);
+        fprintf(stderr, "factors: %.3g non-zeros, %.3g a row; %.3g flops, growth %.3g, ordering %s\n",
+                (double)w->factor_nnz, (double)w->factor_nnz / r->lap->n_active, w->factor_flops, w->growth,
+                or_none(&r->sum.ordering));
+    fprintf(stderr, "solver %s, preconditioner %s, poles %s, degree %ld, %lld iterations\n",
+            or_none(&r->sum.solver), or_none(&r->sum.precond), or_none(&r->sum.poles), (long)w->degree,
+            (long long)w->iterations);
 }
 
 static void print_seconds(const run *r)
@@ -2205,15 +2378,16 @@ static void print_seconds(const run *r)
     fprintf(stderr, "%.3g s: load %.3g, assemble %.3g", now() - r->started, r->sec.load, r->sec.assemble);
     for (i = 0; i < N_STAGES; i++)
         if (r->sec.stage[i] > 0) fprintf(stderr, ", %s %.3g", STAGE_NAMES[i], r->sec.stage[i]);
-    fprintf(stderr, ", write %.3g; %.1f MB, %d thread%s\n", r->sec.write, (double)r->context.bytes_peak / 1048576.0, threads_used(r),
-            plural(threads_used(r)));
+    fprintf(stderr, ", write %.3g; %.1f MB, %d thread%s\n", r->sec.write,
+            (double)r->context.bytes_peak / 1048576.0, threads_used(r), plural(threads_used(r)));
 }
 
 static void print_surface(const run *r)
 {
     const hd_laplacian *lap = r->lap;
-    fprintf(stderr, "%s: %ld vertices, %ld faces, %ld component%s, h = %.4g, area = %.4g", r->mesh_name, (long)r->mesh.n,
-            (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components), lap->h, lap->area);
+    fprintf(stderr, "%s: %ld vertices, %ld faces, %ld component%s, h = %.4g, area = %.4g", r->mesh_name,
+            (long)r->mesh.n, (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components),
+            lap->h, lap->area);
     if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
     fprintf(stderr, "\n");
 }
@@ -2223,11 +2397,15 @@ static void print_query(const run *r)
 {
     const options *o = r->o;
     fprintf(stderr, "%s: ", command_name(o->command));
-    if (o->command & CMD_TABLES) fprintf(stderr, "%lld %s%s, ", (long long)r->rows, o->command == CMD_PAIRS ? "pair" : "point", plural(r->rows));
-    else if (o->command != CMD_HKS) fprintf(stderr, "%d %s%s, ", r->n_inputs, r->sources ? "source" : "field", plural(r->n_inputs));
+    if (o->command & CMD_TABLES)
+        fprintf(stderr, "%lld %s%s, ", (long long)r->rows, o->command == CMD_PAIRS ? "pair" : "point",
+                plural(r->rows));
+    else if (o->command != CMD_HKS)
+        fprintf(stderr, "%d %s%s, ", r->n_inputs, r->sources ? "source" : "field", plural(r->n_inputs));
     if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
     if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
-    fprintf(stderr, "%s Laplacian%s\n", word_of(LAPLACIANS, (int)r->lap->kind), o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+    fprintf(stderr, "%s Laplacian%s\n", word_of(LAPLACIANS, (int)r->lap->kind),
+            o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
 }
 
 /* What the operator made of triangles or points. */
@@ -2235,25 +2413,31 @@ static void print_laplacian(const run *r)
 {
     const hd_laplacian *lap = r->lap;
     if (lap->mesh.n_sheets)
-        fprintf(stderr, "%lld edges flipped on %ld sheet%s, all lengthened by %.2g, %lld negative weights left\n", (long long)lap->mesh.n_flips,
-                (long)lap->mesh.n_sheets, plural(lap->mesh.n_sheets), lap->mesh.mollify_epsilon, (long long)lap->mesh.n_negative_weights);
+        fprintf(stderr,
+                "%lld edges flipped on %ld sheet%s, all lengthened by %.2g, %lld negative weights left\n",
+                (long long)lap->mesh.n_flips, (long)lap->mesh.n_sheets, plural(lap->mesh.n_sheets),
+                lap->mesh.mollify_epsilon, (long long)lap->mesh.n_negative_weights);
     if (lap->points.bandwidth > 0)
-        fprintf(stderr, "bandwidth %.4g (%.3gh2%s), weights up to a distance of %.4g, %.3g a row\n", lap->points.bandwidth,
-                lap->points.bandwidth / (lap->h * lap->h), r->o->has_bandwidth ? "" : ", from the sampling", lap->points.cut_radius,
-                (double)lap->L.nnz / lap->n_active);
+        fprintf(stderr, "bandwidth %.4g (%.3gh2%s), weights up to a distance of %.4g, %.3g a row\n",
+                lap->points.bandwidth,
+                lap->points.bandwidth / (lap->h * lap->h), r->o->has_bandwidth ? "" : ", from the sampling",
+                lap->points.cut_radius, (double)lap->L.nnz / lap->n_active);
 }
 
-/* Distances are told about by the size of what the error is of, columns by the heat they keep. */
+/* Distances get their relative error and smallest value; columns get the conservation of heat. */
 static void print_errors(const run *r)
 {
     const hd_report *w = &r->sum.worst;
     if (w->evidence_b == HD_EVIDENCE_NONE) {
-        fprintf(stderr, "error at most %.1e of the largest value, %.1e of each; the smallest is %.4g\n", w->error_bound, w->error_relative, w->smallest);
+        fprintf(stderr, "error at most %.1e of the largest value, %.1e of each; the smallest is %.4g\n",
+                w->error_bound, w->error_relative, w->smallest);
         if (w->n_lost)
-            fprintf(stderr, "note: %lld distances are error for the most part, far smaller than what they are the difference of; pairs finds them\n",
+            fprintf(stderr, "note: %lld distances are error for the most part, "
+                    "far smaller than what they are the difference of; pairs finds them\n",
                     (long long)w->n_lost);
-    } else fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n", w->error_bound, w->error_bound_b,
-                   w->mass_drift);
+    } else fprintf(stderr,
+                   "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n",
+                   w->error_bound, w->error_bound_b, w->mass_drift);
     if (w->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(w->status));
 }
 
@@ -2298,7 +2482,8 @@ static void json_geodesic(json *j, const run *r)
     json_text(j, "ordering", word_of(ORDERINGS, (int)g->ordering));
     json_integer(j, "factor_nnz", g->factor_nnz);
     json_number(j, "factor_flops", g->factor_flops);
-    json_number(j, "residual", g->residual_heat > g->residual_distance ? g->residual_heat : g->residual_distance);
+    json_number(j, "residual", g->residual_heat > g->residual_distance ? g->residual_heat
+                : g->residual_distance);
     json_number(j, "residual_heat", g->residual_heat);
     json_number(j, "residual_distance", g->residual_distance);
     json_integer(j, "stages", g->n_stages);
@@ -2311,11 +2496,15 @@ static void print_geodesic(const run *r)
     const hd_geodesic_report *g = &r->geodesic_report;
     const int64_t unreached = count_unreached(r);
     print_surface(r);
-    fprintf(stderr, "geodesic: %d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t, g->t / (g->h * g->h));
-    fprintf(stderr, "two factors: %.3g non-zeros each; %.3g flops, ordering %s\n", (double)g->factor_nnz, g->factor_flops,
-            word_of(ORDERINGS, (int)g->ordering));
-    fprintf(stderr, "residuals %.1e and %.1e, heat followed in %ld stage%s\n", g->residual_heat, g->residual_distance, (long)g->n_stages, plural(g->n_stages));
-    if (unreached) fprintf(stderr, "note: %lld distance%s infinite: nothing leads there\n", (long long)unreached, unreached == 1 ? " is" : "s are");
+    fprintf(stderr, "geodesic: %d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t,
+            g->t / (g->h * g->h));
+    fprintf(stderr, "two factors: %.3g non-zeros each; %.3g flops, ordering %s\n", (double)g->factor_nnz,
+            g->factor_flops, word_of(ORDERINGS, (int)g->ordering));
+    fprintf(stderr, "residuals %.1e and %.1e, heat followed in %ld stage%s\n", g->residual_heat,
+            g->residual_distance, (long)g->n_stages, plural(g->n_stages));
+    if (unreached)
+        fprintf(stderr, "note: %lld distance%s infinite: nothing leads there\n", (long long)unreached,
+                unreached == 1 ? " is" : "s are");
     if (g->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(g->status));
     print_seconds(r);
 }
@@ -2335,7 +2524,7 @@ static void report_geodesic(const run *r)
 
 enum { PICTURE_WIDTH = 1200, PICTURE_HEIGHT = 900, LOG_DECADES = 6 };
 
-/* The taste of the command line as the renderer's options. */
+/* The renderer's options from those of the command line. */
 static pic_opts picture_opts(const options *o)
 {
     pic_opts p;
@@ -2364,8 +2553,8 @@ static pic_panel picture_panel(const mesh_data *mesh, const double *field)
     return p;
 }
 
-/* Heat is never negative, computed heat can be, by rounding or a hair. Colours then begin at 0: else the isoline of 0 would run
- * through the noise. */
+/* Heat is never negative, but computed heat can be slightly negative because of rounding. Colours then begin
+ * at 0, because otherwise the isoline of 0 would run through noise. */
 static void picture_from_zero(pic_opts *opts, const pic_panel *panels, int n_panels)
 {
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -2416,7 +2605,10 @@ typedef struct result {
     int64_t colour;                  /* the column that colours .ply, .obj and .png */
 } result;
 
-static const double *result_column(const run *r, const result *res, int64_t c) { return res->values + (size_t)c * (size_t)r->mesh.n; }
+static const double *result_column(const run *r, const result *res, int64_t c)
+{
+    return res->values + (size_t)c * (size_t)r->mesh.n;
+}
 
 /* Colours by the same scale as pictures. rgb: three bytes per vertex. */
 static uint8_t *result_colours(const run *r, const result *res)
@@ -2428,7 +2620,8 @@ static uint8_t *result_colours(const run *r, const result *res)
     int32_t i;
     if (!rgb) return NULL;
     pic_scale_make(&scale, &panel, 0, 1, &opts);
-    for (i = 0; i < r->mesh.n; i++) pic_colormap(pic_scale_at(&scale, panel.field[i]), rgb + 3 * (size_t)i, opts.colormap);
+    for (i = 0; i < r->mesh.n; i++)
+        pic_colormap(pic_scale_at(&scale, panel.field[i]), rgb + 3 * (size_t)i, opts.colormap);
     return rgb;
 }
 
@@ -2454,12 +2647,14 @@ static int write_table(const char *path, int kind, const run *r, const result *r
 }
 
 /* The picture of one column, with the words that the command has for it. */
-static int write_png(const char *path, const run *r, const result *res, const char *title, const int32_t *marker)
+static int write_png(const char *path, const run *r, const result *res, const char *title,
+                     const int32_t *marker)
 {
     pic_panel panel = picture_panel(&r->mesh, result_column(r, res, res->colour));
     pic_opts opts = picture_opts(r->o);
     char subtitle[300];
-    snprintf(subtitle, sizeof subtitle, "%.200s, %ld %s", base_name(r->mesh_name), (long)r->mesh.n, r->mesh.n_tri ? "vertices" : "points");
+    snprintf(subtitle, sizeof subtitle, "%.200s, %ld %s", base_name(r->mesh_name), (long)r->mesh.n,
+             r->mesh.n_tri ? "vertices" : "points");
     opts.title = r->o->title ? r->o->title : title;
     opts.subtitle = subtitle;
     picture_from_zero(&opts, &panel, 1);
@@ -2480,8 +2675,9 @@ static int has_twice(const run *r)
     return 0;
 }
 
-/* "v8_10h2", "f0_10h2" or "hks_10h2": the source or the field, then the time; "K_10h2" and "d_10h2" of pairs.
- * With the same of them twice also the number of the column, because readers want names that differ. */
+/* "v8_10h2", "f0_10h2" or "hks_10h2": the source or the field, then the time; "K_10h2" and "d_10h2" for
+ * pairs. Repeated names also get the number of the column, because programs that read them need distinct
+ * names. */
 static int heat_names(run *r)
 {
     const int pairs = r->o->command == CMD_PAIRS, step = pairs && !is_timeless(r->o) ? 2 : 1;
@@ -2494,13 +2690,14 @@ static int heat_names(run *r)
         const int q = (int)(c / r->n_times);
         char number[12] = "";
         if (twice) snprintf(number, sizeof number, "_c%d", (int)(c % 1000000));
-        if (r->o->command == CMD_HKS) snprintf(r->names[c], NAME_SIZE, "hks_%.14s%s", r->time_names[c], number);
+        if (r->o->command == CMD_HKS)
+            snprintf(r->names[c], NAME_SIZE, "hks_%.14s%s", r->time_names[c], number);
         else if (r->o->command == CMD_SAMPLE) snprintf(r->names[c], NAME_SIZE, "distance");
         else if (pairs)
-            snprintf(r->names[c], NAME_SIZE, "%c_%.14s%s", c % step < step - 1 ? 'K' : 'd', r->time_names[c / step],
-                     number);
-        else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->sources ? 'v' : 'f', r->sources ? (long)r->sources[q] : (long)q,
-                      r->time_names[c % r->n_times], number);
+            snprintf(r->names[c], NAME_SIZE, "%c_%.14s%s", c % step < step - 1 ? 'K' : 'd',
+                     r->time_names[c / step], number);
+        else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->sources ? 'v' : 'f',
+                      r->sources ? (long)r->sources[q] : (long)q, r->time_names[c % r->n_times], number);
         r->name_list[c] = r->names[c];
     }
     return DONE;
@@ -2513,8 +2710,10 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
     time_text(r->time_names[c % r->n_times], when, sizeof when);
     if (is_timeless(r->o)) snprintf(when, sizeof when, "%s", r->time_names[0]);
     if (r->o->command == CMD_HKS) snprintf(title, size, "Heat kernel signature, %s", when);
-    else if (r->o->command == CMD_DISTANCE) snprintf(title, size, "Diffusion distance from vertex %ld, %s", (long)r->sources[q], when);
-    else if (r->o->command == CMD_GEODESIC) snprintf(title, size, "Geodesic distance from vertex %ld, %s", (long)r->sources[q], when);
+    else if (r->o->command == CMD_DISTANCE)
+        snprintf(title, size, "Diffusion distance from vertex %ld, %s", (long)r->sources[q], when);
+    else if (r->o->command == CMD_GEODESIC)
+        snprintf(title, size, "Geodesic distance from vertex %ld, %s", (long)r->sources[q], when);
     else if (r->sources) snprintf(title, size, "Heat from vertex %ld, %s", (long)r->sources[q], when);
     else snprintf(title, size, "Field %d diffused, %s", q, when);
 }
@@ -2634,23 +2833,25 @@ static void info_times(const hd_laplacian *lap)
 {
     const double area_h2 = lap->area / (lap->h * lap->h);
     if (lap->kind == HD_LAPLACIAN_EXP)
-        printf("%-22s %.3g to %.3g; --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area * lap->area,
-               AUTO_LONGEST * lap->area * lap->area);
+        printf("%-22s %.3g to %.3g; --t auto:K takes K of them\n", "meaningful times",
+               AUTO_SHORTEST * lap->area * lap->area, AUTO_LONGEST * lap->area * lap->area);
     else if (lap->area > 0)
-        printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times", AUTO_SHORTEST * lap->area,
-               AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2, AUTO_LONGEST * area_h2);
+        printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times",
+               AUTO_SHORTEST * lap->area, AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2,
+               AUTO_LONGEST * area_h2);
 }
 
 static void info_laplacian(const run *r, const hd_laplacian *lap)
 {
-    printf("%-22s %s%s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind), r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+    printf("%-22s %s%s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind),
+           r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
 }
 
 static void info_intrinsic(const hd_mesh_report *m)
 {
     if (!m->n_sheets) return;
-    printf("%-22s %ld%s\n%-22s %lld\n", "sheets", (long)m->n_sheets, m->n_sheets > 1 ? "  (the surface is covered twice)" : "", "edges flipped",
-           (long long)m->n_flips);
+    printf("%-22s %ld%s\n%-22s %lld\n", "sheets", (long)m->n_sheets,
+           m->n_sheets > 1 ? "  (the surface is covered twice)" : "", "edges flipped", (long long)m->n_flips);
     print_count("faces mollified", m->n_mollified, "all edges were lengthened a little");
     print_count("self-edges", m->n_self_edges, "from a vertex to itself, without weight");
     print_count("edges not Delaunay", m->n_not_delaunay, "rounding kept them");
@@ -2663,16 +2864,19 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
     printf("%-22s %s (%s)\n", "points", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
     info_laplacian(r, lap);
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "components", (long)lap->n_components);
-    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1], high[2] - low[2],
-           low[0], low[1], low[2]);
-    printf("%-22s %.9g\n%-22s %.9g  (mean distance to the nearest point)\n", r->o->tufted ? "area of the stars" : "area of the cells", lap->area, "spacing h", lap->h);
+    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1],
+           high[2] - low[2], low[0], low[1], low[2]);
+    printf("%-22s %.9g\n%-22s %.9g  (mean distance to the nearest point)\n",
+           r->o->tufted ? "area of the stars" : "area of the cells", lap->area, "spacing h", lap->h);
     if (p->bandwidth > 0 && lap->n_active > 0) {
         printf("%-22s %.9g  (%.4gh2%s)\n", "bandwidth", p->bandwidth, p->bandwidth / (lap->h * lap->h),
                r->o->has_bandwidth ? "" : ", from the sampling");
-        printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld\n", "weights reach", p->cut_radius, p->weight_cut,
-               (double)lap->L.nnz / lap->n_active, (long)p->most_in_row);
+        printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld\n", "weights reach",
+               p->cut_radius, p->weight_cut, (double)lap->L.nnz / lap->n_active, (long)p->most_in_row);
     }
-    print_count("coincident points", p->n_coincident, r->o->tufted ? "in the place of an earlier one, left out" : "in the place of an earlier one; they share its cell");
+    print_count("coincident points", p->n_coincident,
+                r->o->tufted ? "in the place of an earlier one, left out"
+                             : "in the place of an earlier one; they share its cell");
     print_count("isolated points", p->n_isolated, "no other one within reach");
     print_count("points without area", p->n_no_area, "their neighbours lie on a line");
     print_count("border points", p->n_border, "at an edge of the surface or a gap");
@@ -2688,29 +2892,33 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
     info_laplacian(r, lap);
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "faces", (long)r->mesh.n_faces);
-    if (m->n_faces != r->mesh.n_faces) printf("%-22s %ld  (polygons are split as fans)\n", "triangles", (long)m->n_faces);
-    printf("%-22s %lld\n%-22s %ld\n%-22s %ld\n", "edges", (long long)m->n_edges, "components", (long)lap->n_components, "boundary loops",
-           (long)m->n_boundary_loops);
+    if (m->n_faces != r->mesh.n_faces)
+        printf("%-22s %ld  (polygons are split as fans)\n", "triangles", (long)m->n_faces);
+    printf("%-22s %lld\n%-22s %ld\n%-22s %ld\n", "edges", (long long)m->n_edges, "components",
+           (long)lap->n_components, "boundary loops", (long)m->n_boundary_loops);
     print_count("boundary edges", m->n_boundary_edges, "");
-    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1], high[2] - low[2],
-           low[0], low[1], low[2]);
-    printf("%-22s %.9g\n%-22s %.9g\n%-22s %.4g degrees\n", "area", lap->area, "mean edge length h", lap->h, "smallest angle",
-           m->smallest_angle * DEGREES);
+    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1],
+           high[2] - low[2], low[0], low[1], low[2]);
+    printf("%-22s %.9g\n%-22s %.9g\n%-22s %.4g degrees\n", "area", lap->area, "mean edge length h", lap->h,
+           "smallest angle", m->smallest_angle * DEGREES);
     print_count("vertices without area", m->n_inert, "no heat reaches them");
     print_count("faces left out", r->mesh.file.n_small_faces, "fewer than three corners");
     print_count("faces left out", m->n_repeated_corner, "a corner twice");
     print_count("faces left out", m->n_zero_area, "area zero");
     print_count("faces left out", m->n_repeated_face, "repeat an earlier one");
-    print_count("non-manifold edges", m->n_nonmanifold_edges, "three faces or more; their weights are summed");
+    print_count("non-manifold edges", m->n_nonmanifold_edges,
+                "three faces or more; their weights are summed");
     print_count("misoriented edges", m->n_misoriented_edges, "their two faces disagree about the side");
-    print_count("negative weights", m->n_negative_weights, m->n_sheets ? "border edges opposite to obtuse angles" :
-                lap->kind == HD_LAPLACIAN_POLYGON ? "edges and diagonals of faces; fine, but values below 0 can occur" :
+    print_count("negative weights", m->n_negative_weights,
+                m->n_sheets ? "border edges opposite to obtuse angles" :
+                lap->kind == HD_LAPLACIAN_POLYGON ?
+                "edges and diagonals of faces; fine, but values below 0 can occur" :
                 "obtuse angles; fine, but values below 0 can occur");
     info_intrinsic(m);
     info_times(lap);
 }
 
-/* Meshes and point sets on which nothing can be computed are told about as well: with zeros for what they have not. */
+/* Also reports on meshes and point sets on which nothing can be computed. Missing values are zero. */
 static int command_info(run *r)
 {
     hd_laplacian none;
@@ -2759,9 +2967,12 @@ static int take_pair(run *r, const double *values, int64_t row, const int64_t *l
             r->pairs[c * r->rows + row] = (int32_t)id;
             continue;
         }
-        if (!lines) return fail(FAILED, "%s: row %lld: %.15g is not a vertex of %s, which has %ld, numbered from 0", display_name(file), (long long)row, id,
-                                r->mesh_name, (long)r->mesh.n);
-        mio_fail_at(&e, display_name(file), lines[row], "%.15g is not a vertex of %s, which has %ld, numbered from 0", id, r->mesh_name, (long)r->mesh.n);
+        if (!lines) return fail(FAILED,
+                                "%s: row %lld: %.15g is not a vertex of %s, which has %ld, numbered from 0",
+                                display_name(file), (long long)row, id, r->mesh_name, (long)r->mesh.n);
+        mio_fail_at(&e, display_name(file), lines[row],
+                    "%.15g is not a vertex of %s, which has %ld, numbered from 0", id, r->mesh_name,
+                    (long)r->mesh.n);
         return fail(FAILED, "%s", e.text);
     }
     return DONE;
@@ -2775,9 +2986,12 @@ static int run_pairs(run *r)
     int32_t columns = 0;
     const int status = mio_load_table_lines(&values, &r->rows, &columns, &lines, r->o->input, NULL, &e);
     int code = status < 0 ? fail_file(status, &e) : DONE;
-    if (!code && columns != 2) code = fail(FAILED, "%s: %ld columns; a pair has two ids", display_name(r->o->input), (long)columns);
-    if (!code && r->rows > INT32_MAX) code = fail(FAILED, "%s: %lld pairs are too many", display_name(r->o->input), (long long)r->rows);
-    if (!code && (r->pairs = (int32_t *)malloc((size_t)r->rows * 2 * sizeof *r->pairs)) == NULL) code = fail_memory("the pairs");
+    if (!code && columns != 2)
+        code = fail(FAILED, "%s: %ld columns; a pair has two ids", display_name(r->o->input), (long)columns);
+    if (!code && r->rows > INT32_MAX)
+        code = fail(FAILED, "%s: %lld pairs are too many", display_name(r->o->input), (long long)r->rows);
+    if (!code && (r->pairs = (int32_t *)malloc((size_t)r->rows * 2 * sizeof *r->pairs)) == NULL)
+        code = fail_memory("the pairs");
     for (row = 0; !code && row < r->rows; row++) code = take_pair(r, values, row, lines);
     free(values);
     free(lines);
@@ -2802,7 +3016,8 @@ static int command_sample(run *r)
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     if (!code && r->o->count > r->lap->n_active)
-        code = fail(FAILED, "%s: --count %ld is beyond the mesh, which has %ld vertices with mass", r->mesh_name, r->o->count, (long)r->lap->n_active);
+        code = fail(FAILED, "%s: --count %ld is beyond the mesh, which has %ld vertices with mass",
+                    r->mesh_name, r->o->count, (long)r->lap->n_active);
     if (!code) code = run_sources(r);
     if (!code) code = run_solve(r);
     if (!code) code = write_ids(r);
@@ -2843,7 +3058,8 @@ static int command_diffuse(run *r)
 }
 
 /* A field of render and the mesh it is on. */
-typedef struct view_data { mesh_data own; const mesh_data *mesh; const char *mesh_name; field_data field; } view_data;
+typedef struct view_data { mesh_data own; const mesh_data *mesh; const char *mesh_name; field_data field;
+                           } view_data;
 
 static void report_render(const run *r, const view_data *views)
 {
@@ -2857,10 +3073,12 @@ static void report_render(const run *r, const view_data *views)
         json_integer(&j, "panels", o->n_inputs);
         json_end(&j, r);
     } else if (!o->quiet && o->n_inputs > 1)
-        fprintf(stderr, "%d panels, column %ld of each field, %.3g s\n", o->n_inputs, o->column, now() - r->started);
+        fprintf(stderr, "%d panels, column %ld of each field, %.3g s\n", o->n_inputs, o->column,
+                now() - r->started);
     else if (!o->quiet)
-        fprintf(stderr, "%s: %ld vertices, column %ld of %ld from %s, %.3g s\n", r->mesh_name, (long)r->mesh.n, o->column,
-                (long)views->field.columns, display_name(o->input), now() - r->started);
+        fprintf(stderr, "%s: %ld vertices, column %ld of %ld from %s, %.3g s\n", r->mesh_name,
+                (long)r->mesh.n, o->column, (long)views->field.columns, display_name(o->input),
+                now() - r->started);
 }
 
 /* Field k, and its mesh unless that of the run serves all. */
@@ -2873,11 +3091,13 @@ static int view_load(const run *r, int k, view_data *v)
     v->mesh_name = own ? display_name(o->meshes[k]) : r->mesh_name;
     if (!code) code = field_load(&v->field, o->inputs[k], v->mesh_name, v->mesh->n);
     if (!code && o->column >= v->field.columns)
-        code = fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0", display_name(o->inputs[k]), o->column, (long)v->field.columns);
+        code = fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0",
+                    display_name(o->inputs[k]), o->column, (long)v->field.columns);
     return code;
 }
 
-/* Side by side, one range of colours and one view for all, each with the name of its mesh below, or of its field where the mesh is the same. */
+/* Pictures side by side, with one range of colours and one view. Each has the name of its mesh below, or of
+ * its field if all meshes are the same. */
 static int render_panels(const run *r, const view_data *views)
 {
     const options *o = r->o;
@@ -2887,7 +3107,8 @@ static int render_panels(const run *r, const view_data *views)
     char title[120];
     int k;
     for (k = 0; k < n; k++) {
-        panels[k] = picture_panel(views[k].mesh, views[k].field.values + (size_t)o->column * (size_t)views[k].mesh->n);
+        panels[k] = picture_panel(views[k].mesh,
+                                  views[k].field.values + (size_t)o->column * (size_t)views[k].mesh->n);
         panels[k].caption = base_name(o->n_meshes > 1 ? views[k].mesh_name : display_name(o->inputs[k]));
     }
     snprintf(title, sizeof title, "column %ld", o->column);
@@ -2936,7 +3157,7 @@ static const char *const DEMO_NAMES[DEMO_SOURCES] = { "trunk", "tail" };
 static const char DEMO_TIMES[] = "10h2,100h2,500h2,2000h2";
 static const char DEMO_FOLDER[] = "heatdiff-demo";
 
-/* What the demo looks at apart from the columns: properties that anyone can check. */
+/* Properties that the demo checks, apart from the columns. */
 typedef struct demo_checks {
     double mass_error;               /* |1'B K e_i - b_i| / b_i, the worst of all columns */
     double there, back;              /* k_t from trunk to tail and from tail to trunk, at the longest time */
@@ -3010,7 +3231,8 @@ static int demo_check(run *r, demo_checks *c)
 
 static const char *demo_folder(const run *r) { return r->o->output ? r->o->output : DEMO_FOLDER; }
 
-static int demo_path(const run *r, char *path, size_t size, const char *kind, const char *name, const char *extension)
+static int demo_path(const run *r, char *path, size_t size, const char *kind, const char *name,
+                     const char *extension)
 {
     const int n = snprintf(path, size, "%s/%s%s%s", demo_folder(r), kind, name, extension);
     bar_show("writing", 0);
@@ -3052,7 +3274,8 @@ static int demo_grid(const run *r, int q)
     opts.width = 1600;
     opts.height = 1150;
     opts.title = title;
-    opts.subtitle = "columns of the heat kernel K_t = exp(-t B^-1 L), logarithmic colours, one legend per time";
+    opts.subtitle = "columns of the heat kernel K_t = exp(-t B^-1 L), "
+                    "logarithmic colours, one legend per time";
     opts.own_scale = 1;
     opts.log_decades = 4;
     opts.isolines = 10;
@@ -3072,7 +3295,8 @@ static int demo_isolines(const run *r)
     panel.markers = &r->sources[0];
     panel.n_markers = 1;
     opts.title = title;
-    opts.subtitle = "colours and lines are logarithmic: from one line to the next the heat falls by the same factor";
+    opts.subtitle = "colours and lines are logarithmic: "
+                    "from one line to the next the heat falls by the same factor";
     opts.label = "K_t";
     opts.width = 1600;
     opts.height = 1200;
@@ -3083,9 +3307,11 @@ static int demo_isolines(const run *r)
 
 enum { DEMO_DISTANCE, DEMO_SIGNATURE, DEMO_FIELDS };
 static const char *const DEMO_FIELD_NAMES[DEMO_FIELDS] = { "distance", "signature" };
-static const char *const DEMO_FIELD_TITLES[DEMO_FIELDS] = { "Diffusion distance from the trunk", "Heat kernel signature" };
+static const char *const DEMO_FIELD_TITLES[DEMO_FIELDS] = {
+    "Diffusion distance from the trunk", "Heat kernel signature" };
 
-/* The distance from the first source to all vertices and the signature of all, at a middle time. fields: two columns. */
+/* The distance from the first source to all vertices, and the signature of all vertices, at a middle time.
+ * fields: two columns. */
 static int demo_inverse(const run *r, double *fields)
 {
     const double *t = &r->times[r->n_times / 2];
@@ -3123,7 +3349,8 @@ static int demo_fields(const run *r)
     char path[2048];
     result res;
     int f, code = values ? demo_inverse(r, values) : fail_memory("the demo's fields");
-    for (f = 0; f < DEMO_FIELDS && !code; f++) code = demo_field(r, f, values + (size_t)f * (size_t)r->mesh.n);
+    for (f = 0; f < DEMO_FIELDS && !code; f++)
+        code = demo_field(r, f, values + (size_t)f * (size_t)r->mesh.n);
     if (!code) code = demo_path(r, path, sizeof path, "distance-signature", "", ".ply");
     if (!code) {
         memset(&res, 0, sizeof res);
@@ -3155,26 +3382,30 @@ static void demo_print(const run *r, const demo_checks *c)
     double spent = 0;
     int q, k;
     for (k = 0; k < N_STAGES; k++) spent += r->sec.stage[k];
-    printf("A surface made in memory: %ld vertices, %ld triangles, area %.3f, mean edge h = %.4f.\n", (long)r->mesh.n, (long)r->mesh.n_tri,
-           lap->area, lap->h);
-    printf("Heat was put at two vertices, %s (%ld) and %s (%ld), and followed over", DEMO_NAMES[0], (long)r->sources[0],
-           DEMO_NAMES[1], (long)r->sources[1]);
+    printf("A surface made in memory: %ld vertices, %ld triangles, area %.3f, mean edge h = %.4f.\n",
+           (long)r->mesh.n, (long)r->mesh.n_tri, lap->area, lap->h);
+    printf("Heat was put at two vertices, %s (%ld) and %s (%ld), and followed over", DEMO_NAMES[0],
+           (long)r->sources[0], DEMO_NAMES[1], (long)r->sources[1]);
     for (k = 0; k < r->n_times; k++) printf("%s %s", k ? "," : "", r->time_names[k]);
     printf(".\n\n");
-    printf("  error         at most %.1e of the largest value (a bound, computed with the answer)\n", r->sum.worst.error_bound);
+    printf("  error         at most %.1e of the largest value (a bound, computed with the answer)\n",
+           r->sum.worst.error_bound);
     printf("  conservation  the heat on the surface stays what it was, to %.1e\n", c->mass_error);
-    printf("  symmetry      trunk to tail %.9g, tail to trunk %.9g, difference %.1e of it\n", c->there, c->back,
-           fabs(c->there - c->back) / fabs(c->there));
-    printf("  time          %.2g s for %ld columns, method %s, no eigenvectors; %.1f MB\n\n", spent, (long)r->n_columns,
-           method_text(&r->sum), (double)r->context.bytes_peak / 1048576.0);
+    printf("  symmetry      trunk to tail %.9g, tail to trunk %.9g, difference %.1e of it\n", c->there,
+           c->back, fabs(c->there - c->back) / fabs(c->there));
+    printf("  time          %.2g s for %ld columns, method %s, no eigenvectors; %.1f MB\n\n", spent,
+           (long)r->n_columns, method_text(&r->sum), (double)r->context.bytes_peak / 1048576.0);
     printf("Look at\n");
-    for (q = 0; q < DEMO_SOURCES; q++) printf("  %s/heat-%s.png  the four times side by side\n", folder, DEMO_NAMES[q]);
+    for (q = 0; q < DEMO_SOURCES; q++)
+        printf("  %s/heat-%s.png  the four times side by side\n", folder, DEMO_NAMES[q]);
     printf("  %s/isolines.png  one of them, large, with lines of equal heat\n", folder);
     printf("  %s/distance.png  the diffusion distance from the trunk to every vertex, exactly\n", folder);
-    printf("  %s/signature.png  the heat kernel signature: what the surface looks like from each vertex\n", folder);
+    printf("  %s/signature.png  the heat kernel signature: what the surface looks like from each vertex\n",
+           folder);
     printf("  %s/distance-signature.ply  the mesh with both\n", folder);
     for (q = 0; q < DEMO_SOURCES; q++)
-        printf("  %s/heat-%s.ply  the mesh with all values, for MeshLab, Blender or ParaView\n", folder, DEMO_NAMES[q]);
+        printf("  %s/heat-%s.ply  the mesh with all values, for MeshLab, Blender or ParaView\n", folder,
+               DEMO_NAMES[q]);
     printf("\nNext, on this mesh or one of your own\n");
     printf("  heatdiff info %s/heat-trunk.ply\n", folder);
     printf("  heatdiff kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", folder);
@@ -3245,7 +3476,7 @@ static int fail_command(const char *name)
     return fail(USAGE, "'%.80s' is not a command; there are %s", name, commands);
 }
 
-/* Help and version are answered wherever they stand, before anything is checked or read. */
+/* Help and version work anywhere on the command line, before anything is checked or read. */
 static int answer_questions(int argc, char **argv, const command_def *command)
 {
     int i;

@@ -1,14 +1,20 @@
-/* rough_surfaces.c - how much heat changes when a surface is noisy, has parts missing, or is sampled unevenly
+/* rough_surfaces.c - how much heat changes on a noisy, incomplete or unevenly sampled surface
 
-   Build and run from the project's folder:   cc -O2 tools/rough_surfaces.c -o rough_surfaces -lm && ./rough_surfaces
-   More:                                      ./rough_surfaces FOLDER, or ./rough_surfaces FOLDER MESH with a file of your own
+   Build and run from the project's folder:
 
-   Variants of one surface are made in memory: noise along the normals, holes, an end cut off, triangles a hundred times finer in some places than in
-   others. On each of them the heat kernel k_t(x, source) and the diffusion distance to the source are computed at three times, by
-   operators on meshes and on points, and compared with the same operator's answer on the original, at the vertices that both have. Printed are tables
-   in Markdown: the changes in per cent of the original's largest value, root of the mean square and largest. The last table is about the maximum
-   principle: how far below zero heat falls on bad triangles. Into the folder, which must exist, go pictures of the original beside its variants in the
-   same colours, and the meshes with both fields, for the tool and others to read. */
+       cc -O2 tools/rough_surfaces.c -o rough_surfaces -lm && ./rough_surfaces
+       ./rough_surfaces FOLDER           also writes pictures and meshes to FOLDER, which must exist
+       ./rough_surfaces FOLDER MESH      the same for a mesh of your own
+
+   Variants of one surface are made in memory: noise along the normals, holes, an end cut off, and triangles
+   that are a hundred times finer in some places than in others. On each variant the heat kernel k_t(x,
+   source) and the diffusion distance to the source are computed at three times, by operators on meshes and on
+   points. They are compared with the answer of the same operator on the original, at the vertices that both
+   have.
+
+   The tables, in Markdown, show the changes in percent of the original's largest value: root mean square and
+   largest. The last table is about the maximum principle: how far heat falls below zero on bad triangles. The
+   pictures show the original beside its variants in the same colours; the meshes carry both fields. */
 
 #if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -22,18 +28,20 @@
 
 enum { TIMES = 3, MIDDLE = 1, FIELDS = 2 * TIMES, SPOTS = 8, SOURCES = 8 };
 
-/* A variant, and which vertex of the original each of its vertices is (-1: none). */
+/* A variant. of[v] is the vertex of the original that vertex v is; -1: none. */
 typedef struct surface { shape s; int32_t *of; char name[64]; } surface;
 
-/* Heat kernel and distance on a surface: value[q n + i], the kernel's q = 0 .. TIMES - 1, then the distance's. */
+/* Heat kernel and distance on a surface: value[q n + i], first TIMES kernels, then TIMES distances. */
 typedef struct answer { int32_t n; double *value; } answer;
 
 typedef struct method { const char *name; hd_laplacian_kind kind; int points, delaunay, tufted; } method;
 
-static const method FEM = {"fem", HD_LAPLACIAN_FEM, 0, 0, 0}, PLAIN = {"voronoi-cot", HD_LAPLACIAN_VORONOI_COT, 0, 0, 0},
+static const method FEM = {"fem", HD_LAPLACIAN_FEM, 0, 0, 0},
+                    PLAIN = {"voronoi-cot", HD_LAPLACIAN_VORONOI_COT, 0, 0, 0},
                     DELAUNAY = {"voronoi-cot, Delaunay", HD_LAPLACIAN_VORONOI_COT, 0, 1, 0},
                     TUFTED = {"voronoi-cot, tufted", HD_LAPLACIAN_VORONOI_COT, 0, 0, 1},
-                    POINTS = {"points, voronoi-exp", HD_LAPLACIAN_VORONOI_EXP, 1, 0, 0}, STARS = {"points, tufted", HD_LAPLACIAN_VORONOI_COT, 1, 0, 1};
+                    POINTS = {"points, voronoi-exp", HD_LAPLACIAN_VORONOI_EXP, 1, 0, 0},
+                    STARS = {"points, tufted", HD_LAPLACIAN_VORONOI_COT, 1, 0, 1};
 
 enum { ORIGINAL, NOISE_1, NOISE_2, NOISE_3, HOLES_1, HOLES_2, CUT, UNEVEN, VARIANTS };
 static surface variant[VARIANTS];
@@ -81,7 +89,8 @@ static double size_of(const shape *s, double lo[3], double hi[3]) {
 static double mean_edge(const shape *s) {
     double sum = 0;
     int32_t i;
-    for (i = 0; i < 3 * s->n_tri; i++) sum += shape_distance(s->xyz + 3 * s->tri[i], s->xyz + 3 * s->tri[i % 3 == 2 ? i - 2 : i + 1]);
+    for (i = 0; i < 3 * s->n_tri; i++)
+        sum += shape_distance(s->xyz + 3 * s->tri[i], s->xyz + 3 * s->tri[i % 3 == 2 ? i - 2 : i + 1]);
     return sum / (3 * s->n_tri);
 }
 
@@ -100,15 +109,17 @@ static surface noisy(const shape *s, double sigma, const char *name) {
             for (c = 0; c < 3; c++) normal[3 * t[k] + c] += n[c];
     }
     for (i = 0; i < s->n; i++) {
-        const double gauss = sqrt(-2 * log(1 - shape_uniform(&seed))) * cos(6.283185307179586 * shape_uniform(&seed));
+        const double gauss = sqrt(-2 * log(1 - shape_uniform(&seed)))
+                           * cos(6.283185307179586 * shape_uniform(&seed));
         const double length = sqrt(shape_dot(normal + 3 * i, normal + 3 * i));
-        for (c = 0; c < 3 && length > 0; c++) f.s.xyz[3 * i + c] += sigma * gauss * normal[3 * i + c] / length;
+        for (c = 0; c < 3 && length > 0; c++)
+            f.s.xyz[3 * i + c] += sigma * gauss * normal[3 * i + c] / length;
     }
     free(normal);
     return f;
 }
 
-/* Takes out the faces that are marked and the vertices that no face is left of. */
+/* Removes the marked faces, and the vertices left without faces. */
 static void take_out(surface *f, const uint8_t *out) {
     int32_t *map = (int32_t *)room(f->s.n, sizeof *map), i, t = 0, n = 0;
     for (i = 0; i < f->s.n; i++) map[i] = -1;
@@ -136,7 +147,7 @@ static void centroid(const shape *s, int32_t face, double p[3]) {
     for (c = 0; c < 3; c++) p[c] = (s->xyz[3 * t[0] + c] + s->xyz[3 * t[1] + c] + s->xyz[3 * t[2] + c]) / 3;
 }
 
-/* Balls around vertices at random are cut out, away from the source, until this part of the faces is gone. */
+/* Cuts out balls around random vertices, away from the source, until this part of the faces is gone. */
 static surface holes(const shape *s, double part, const char *name) {
     surface f = begin(s, name);
     uint8_t *out = (uint8_t *)room(s->n_tri, 1);
@@ -160,7 +171,7 @@ static surface holes(const shape *s, double part, const char *name) {
     return f;
 }
 
-/* What lies in the first part of the extent along x is cut off. */
+/* Cuts off this first part of the extent along x. */
 static surface cut(const shape *s, double part, const char *name) {
     surface f = begin(s, name);
     uint8_t *out = (uint8_t *)room(s->n_tri, 1);
@@ -181,8 +192,9 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* How long edges may be at p: h far from the spots, h/fine in them. */
-static double wanted(const double *p, const shape *s, const int32_t *spot, double h, double fine, double reach) {
+/* The largest edge length at p: h far from the spots, h/fine in them. */
+static double wanted(const double *p, const shape *s, const int32_t *spot, double h, double fine,
+                     double reach) {
     double near_by = 1e300;
     int k;
     for (k = 0; k < SPOTS; k++) near_by = fmin(near_by, shape_distance(p, s->xyz + 3 * spot[k]));
@@ -196,21 +208,25 @@ static int32_t middle_of(const int64_t *key, int64_t n_key, int32_t n, int32_t a
     return found ? n + (int32_t)(found - key) : -1;
 }
 
-/* One face in one to four, by the new vertices m of its edges. Returns the number of faces. */
+/* Splits a face into one to four by the new vertices m of its edges. Returns the number of faces. */
 static int32_t split(shape *out, int32_t t, const int32_t *v, const int32_t *m) {
     const int count = (m[0] >= 0) + (m[1] >= 0) + (m[2] >= 0);
     const int k = count == 1 ? (m[1] >= 0) + 2 * (m[2] >= 0) : count == 2 ? (m[0] < 0) + 2 * (m[1] < 0) : 0;
-    const int32_t a = v[k], b = v[(k + 1) % 3], c = v[(k + 2) % 3], ab = m[k], bc = m[(k + 1) % 3], ca = m[(k + 2) % 3];
+    const int32_t a = v[k], b = v[(k + 1) % 3], c = v[(k + 2) % 3], ab = m[k], bc = m[(k + 1) % 3],
+        ca = m[(k + 2) % 3];
     if (count == 0) shape_put_triangle(out, t, a, b, c);
     if (count == 1) { shape_put_triangle(out, t, a, ab, c); shape_put_triangle(out, t + 1, ab, b, c); }
-    if (count > 1) { shape_put_triangle(out, t, ab, b, bc); shape_put_triangle(out, t + 1, a, ab, count == 2 ? bc : ca); }
+    if (count > 1) { shape_put_triangle(out, t, ab, b, bc);
+                     shape_put_triangle(out, t + 1, a, ab, count == 2 ? bc : ca); }
     if (count == 2) shape_put_triangle(out, t + 2, a, bc, c);
     if (count == 3) { shape_put_triangle(out, t + 2, ab, bc, ca); shape_put_triangle(out, t + 3, ca, bc, c); }
     return count + 1;
 }
 
-/* Splits the edges that are longer than wanted at their middles, once; middles go onto the animal's surface where it is the animal. */
-static shape refine(const shape *s, const shape *whole, const int32_t *spot, double h, double fine, double reach, int animal) {
+/* Splits all edges that are too long at their midpoints, once. On the animal, midpoints are projected onto
+ * its surface. */
+static shape refine(const shape *s, const shape *whole, const int32_t *spot, double h, double fine,
+                    double reach, int animal) {
     int64_t *key = (int64_t *)room(3 * (int64_t)s->n_tri, sizeof *key), n_key = 0, unique = 0, q;
     shape out;
     int32_t i, m[3], t = 0;
@@ -230,7 +246,8 @@ static shape refine(const shape *s, const shape *whole, const int32_t *spot, dou
     memcpy(out.xyz, s->xyz, 3 * (size_t)s->n * sizeof *s->xyz);
     for (q = 0; q < unique; q++) {
         double *p = out.xyz + 3 * (s->n + q);
-        for (c = 0; c < 3; c++) p[c] = (s->xyz[3 * (key[q] / s->n) + c] + s->xyz[3 * (key[q] % s->n) + c]) / 2;
+        for (c = 0; c < 3; c++)
+            p[c] = (s->xyz[3 * (key[q] / s->n) + c] + s->xyz[3 * (key[q] % s->n) + c]) / 2;
         if (animal) shape_animal_project(p, 2);
     }
     for (i = 0; i < s->n_tri; i++) {
@@ -242,7 +259,8 @@ static shape refine(const shape *s, const shape *whole, const int32_t *spot, dou
     return out;
 }
 
-/* The coarse surface, finer and finer towards some spots: edges down to a fine-th. The vertices of coarse are the first ones of the original. */
+/* Refines the coarse surface towards some spots, where edges are shorter by the factor fine. The vertices of
+ * coarse come first in the result. */
 static surface uneven(const shape *coarse, double fine, int animal, const char *name) {
     surface f = begin(coarse, name);
     const double h = mean_edge(coarse);
@@ -282,7 +300,7 @@ static hd_laplacian *laplacian(const method *m, const shape *s) {
     return lap;
 }
 
-/* unit: the area that times are to be scaled for, 0: they are taken as they are. With it all is as if the surface had that area. */
+/* With unit > 0, times and values are scaled as if the surface had this area. 0: no scaling. */
 static answer solve(const method *m, const surface *f, double unit) {
     answer a;
     hd_laplacian *lap = laplacian(m, &f->s);
@@ -298,8 +316,10 @@ static answer solve(const method *m, const surface *f, double unit) {
     a.n = f->s.n;
     a.value = (double *)room(FIELDS * (int64_t)a.n, sizeof *a.value);
     if (hd_heat_create(&heat, lap, NULL, &e) < 0) stop(m->name, &e);
-    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, TIMES, t, 1, &here, a.value, 0, &report, NULL) < 0) stop(m->name, &report.error);
-    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, &here, a.value + TIMES * (size_t)a.n, 0, &report, NULL) < 0) stop(m->name, &report.error);
+    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, TIMES, t, 1, &here, a.value, 0, &report, NULL) < 0)
+        stop(m->name, &report.error);
+    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, &here, a.value + TIMES * (size_t)a.n, 0, &report, NULL) < 0)
+        stop(m->name, &report.error);
     for (i = 0; i < TIMES * a.n; i++) a.value[i] *= scale;              /* k_t is 1/area, d_t is 1/length */
     for (; i < FIELDS * a.n; i++) a.value[i] *= sqrt(scale);
     hd_heat_free(heat);
@@ -309,7 +329,8 @@ static answer solve(const method *m, const surface *f, double unit) {
 
 /* ---- pictures and meshes ---- */
 
-static void picture(const char *folder, const char *name, int n, const int *which, const answer *a, int field) {
+static void picture(const char *folder, const char *name, int n, const int *which, const answer *a,
+                    int field) {
     pic_panel panel[4];
     pic_opts o;
     pic_image image;
@@ -320,7 +341,8 @@ static void picture(const char *folder, const char *name, int n, const int *whic
     for (k = 0; k < n; k++) {
         const int v = which[k];
         panel[k].n = a[v].n;
-        panel[k].n_tri = v == UNEVEN && n > 2 ? 0 : variant[v].s.n_tri;     /* as points, so that they are seen */
+        /* as points, so that they are seen */
+        panel[k].n_tri = v == UNEVEN && n > 2 ? 0 : variant[v].s.n_tri;
         panel[k].xyz = variant[v].s.xyz;
         panel[k].tri = variant[v].s.tri;
         panel[k].field = a[v].value + (size_t)field * (size_t)a[v].n;
@@ -335,12 +357,15 @@ static void picture(const char *folder, const char *name, int n, const int *whic
     o.elevation = 14;
     o.no_legend = n > 2;
     snprintf(path, sizeof path, "%.400s/%s.png", folder, name);
-    if (pic_render_grid(&image, panel, n, &o) != PIC_OK || pic_png_write(path, image.rgb, image.width, image.height) != PIC_OK) stop(path, NULL);
+    if (pic_render_grid(&image, panel, n, &o) != PIC_OK ||
+        pic_png_write(path, image.rgb, image.width, image.height) != PIC_OK)
+        stop(path, NULL);
     pic_image_free(&image);
 }
 
 static void mesh(const char *folder, const char *name, const surface *f, const answer *a) {
-    static const char *const names[FIELDS] = {"kernel_0", "kernel_1", "kernel_2", "distance_0", "distance_1", "distance_2"};
+    static const char *const names[FIELDS] = {"kernel_0", "kernel_1", "kernel_2", "distance_0", "distance_1",
+                                              "distance_2"};
     mio_mesh m;
     mio_output o;
     mio_error e;
@@ -364,7 +389,8 @@ static void mesh(const char *folder, const char *name, const surface *f, const a
 }
 
 static void show(const char *folder, const answer *a) {
-    static const int pairs[3][2] = {{ORIGINAL, NOISE_3}, {ORIGINAL, HOLES_2}, {ORIGINAL, UNEVEN}}, all[4] = {ORIGINAL, NOISE_3, HOLES_2, UNEVEN};
+    static const int pairs[3][2] = {{ORIGINAL, NOISE_3}, {ORIGINAL, HOLES_2}, {ORIGINAL, UNEVEN}},
+        all[4] = {ORIGINAL, NOISE_3, HOLES_2, UNEVEN};
     static const char *const names[VARIANTS] = {"original", "", "", "noise", "", "holes", "cut", "uneven"};
     int k;
     for (k = 0; k < 3; k++) picture(folder, names[pairs[k][1]], 2, pairs[k], a, TIMES + MIDDLE);
@@ -375,12 +401,13 @@ static void show(const char *folder, const answer *a) {
 
 /* ---- tables ---- */
 
-/* The change of every field against the original's, at the vertices in common, in per cent of its largest value. */
+/* The change of every field from the original, at common vertices, in percent of the largest value. */
 static void print_change(const surface *f, const answer *a, const answer *original) {
     int32_t i, n;
     int q;
     for (q = 0; q < FIELDS; q++) {
-        const double *u = a->value + (size_t)q * (size_t)a->n, *u0 = original->value + (size_t)q * (size_t)original->n;
+        const double *u = a->value + (size_t)q * (size_t)a->n,
+            *u0 = original->value + (size_t)q * (size_t)original->n;
         double top = 0, sum = 0, worst = 0;
         for (i = 0; i < original->n; i++) top = fmax(top, fabs(u0[i]));
         for (i = n = 0; i < a->n; i++) {
@@ -399,7 +426,8 @@ static void table(const method *m, const char *folder) {
     answer a[VARIANTS], scaled;
     hd_laplacian *lap = laplacian(m, &variant[ORIGINAL].s);
     int v;
-    printf("\n| %s | k_t, t = %.4g | t = %.4g | t = %.4g | d_t, t = %.4g | t = %.4g | t = %.4g |\n|---|---|---|---|---|---|---|\n", m->name, times[0], times[1],
+    printf("\n| %s | k_t, t = %.4g | t = %.4g | t = %.4g | d_t, t = %.4g | t = %.4g | t = %.4g |\n"
+           "|---|---|---|---|---|---|---|\n", m->name, times[0], times[1],
            times[2], times[0], times[1], times[2]);
     for (v = 0; v < VARIANTS; v++) {
         a[v] = solve(m, variant + v, 0);
@@ -417,7 +445,8 @@ static void table(const method *m, const char *folder) {
     hd_laplacian_free(lap);
 }
 
-/* Vertices whose neighbours cool most at first when they are heated: d/dt K_t(i,j) = -L_ij/b_i at t = 0. The rest is taken at random. */
+/* The sources most likely to make heat negative: d/dt K_t(i,j) = -L_ij/b_i at t = 0 is smallest there. The
+ * rest is random. */
 static void suspects(const hd_laplacian *lap, int32_t *vertex) {
     double cold[SOURCES] = {0};
     uint64_t seed = 5;
@@ -437,7 +466,8 @@ static void suspects(const hd_laplacian *lap, int32_t *vertex) {
         }
 }
 
-/* How far K_t e_i falls below zero, relative to its largest value, for several sources and times; and the largest bound on the error. */
+/* How far K_t e_i falls below zero, relative to its largest value, for several sources and times; and the
+ * largest bound on the error. */
 static void print_lowest(const method *m, const shape *s) {
     static const double in_h2[] = {0.01, 0.1, 1, 10};
     hd_laplacian *lap = laplacian(m, s);
@@ -452,7 +482,8 @@ static void print_lowest(const method *m, const shape *s) {
     for (q = 0; q < 4; q++)
         for (k = 0; k < SOURCES; k++) {
             double least = 0, top = 0;
-            if (hd_heat_column(heat, HD_KERNEL_OPERATOR, in_h2[q] * lap->h * lap->h, vertex[k], u, &report, NULL) < 0) stop(m->name, &report.error);
+            if (hd_heat_column(heat, HD_KERNEL_OPERATOR, in_h2[q] * lap->h * lap->h, vertex[k], u, &report, NULL) < 0)
+                stop(m->name, &report.error);
             for (i = 0; i < s->n; i++) {
                 least = fmin(least, u[i]);
                 top = fmax(top, u[i]);
@@ -471,7 +502,8 @@ static void maximum_principle(void) {
     const method *const methods[3] = {&PLAIN, &DELAUNAY, &TUFTED};
     int k, m;
     int32_t i;
-    printf("\n| least value of K_t e_i, t = 0.01 to 10 h^2 (bound of its error) | voronoi-cot: weights < 0 | least | Delaunay: weights < 0 | least | tufted: "
+    printf("\n| least value of K_t e_i, t = 0.01 to 10 h^2 (bound of its error) | voronoi-cot: weights < 0 "
+           "| least | Delaunay: weights < 0 | least | tufted: "
            "weights < 0 | least |\n|---|---|---|---|---|---|---|\n");
     for (k = 0; k < 6; k++) {
         surface f = begin(&variant[rows[k]].s, "needles");
@@ -492,7 +524,8 @@ static int less(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The area that a vertex has in the coarsest places over that in the finest, a hundredth of the vertices left out at either end. */
+/* The vertex area in the coarsest places over that in the finest, without the outermost hundredth of the
+ * vertices at either end. */
 static double unevenness(const shape *s) {
     hd_laplacian *lap = laplacian(&PLAIN, s);
     const int32_t n = lap->n_active;
@@ -534,7 +567,8 @@ static void make_variants(const char *file) {
     whole = file ? begin(&coarse, "").s : shape_subdivide(&coarse);
     if (!coarse.xyz || !whole.xyz) stop("shape", NULL);
     for (i = 0; !file && i < whole.n; i++) shape_animal_project(whole.xyz + 3 * i, 2);
-    for (i = source = 0; i < coarse.n; i++)                     /* where x is largest: the middle of the trunk */
+    /* where x is largest: the middle of the trunk */
+    for (i = source = 0; i < coarse.n; i++)
         if (coarse.xyz[3 * i] > coarse.xyz[3 * source]) source = i;
     h = mean_edge(&whole);
     size = size_of(&whole, lo, hi);
@@ -542,14 +576,16 @@ static void make_variants(const char *file) {
     for (k = 0; k < 3; k++) {
         static const double part[] = {0.05, 0.2, 0.5};
         char name[64];
-        snprintf(name, sizeof name, "noise of %.2g h (%.2g %% of the size)", part[k], 100 * part[k] * h / size);
+        snprintf(name, sizeof name, "noise of %.2g h (%.2g %% of the size)", part[k],
+                 100 * part[k] * h / size);
         variant[NOISE_1 + k] = noisy(&whole, part[k] * h, name);
     }
     variant[HOLES_1] = holes(&whole, 0.05, "5 % cut out in holes");
     variant[HOLES_2] = holes(&whole, 0.15, "15 % cut out in holes");
     variant[CUT] = cut(&whole, 0.25, "an end cut off");
     variant[UNEVEN] = uneven(&coarse, 10, !file, "");
-    snprintf(variant[UNEVEN].name, sizeof variant[UNEVEN].name, "areas of vertices 1 : %.0f", unevenness(&variant[UNEVEN].s));
+    snprintf(variant[UNEVEN].name, sizeof variant[UNEVEN].name, "areas of vertices 1 : %.0f",
+             unevenness(&variant[UNEVEN].s));
     shape_free(&coarse);
     shape_free(&whole);
     free(used.of);
@@ -562,8 +598,10 @@ int main(int argc, char **argv) {
     make_variants(file);
     lap = laplacian(&FEM, &variant[ORIGINAL].s);
     for (k = 0; k < TIMES; k++) times[k] = lap->area * 0.002 * pow(10, k);
-    printf("%d vertices, area %.4g, h = %.3g. Change of the heat kernel k_t(x, %d) and of the diffusion distance at t = 0.002, 0.02 and 0.2 of the area,\n"
-           "in per cent of the original's largest value: root of the mean square (largest).\n", (int)variant[ORIGINAL].s.n, lap->area, lap->h, (int)source);
+    printf("%d vertices, area %.4g, h = %.3g. Change of the heat kernel k_t(x, %d) and of the diffusion "
+           "distance at t = 0.002, 0.02 and 0.2 of the area,\n"
+           "in per cent of the original's largest value: root of the mean square (largest).\n",
+               (int)variant[ORIGINAL].s.n, lap->area, lap->h, (int)source);
     hd_laplacian_free(lap);
     table(&FEM, folder);
     table(&PLAIN, NULL);
