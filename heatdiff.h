@@ -1285,8 +1285,8 @@ static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
 }
 
 /* ==== [06] vectors ====
- * Dot products, norms and small dense work. May call [05]. Sums run in two or four fixed strands: quick without -ffast-math, and the same
- * on every run. */
+ * Dot products, norms and small dense work. May call [05]. Sums run in two or four fixed strands: quick
+ * without -ffast-math, and the same on every run. */
 
 static double hdi_dot(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y, int64_t n) {
     double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
@@ -1341,10 +1341,10 @@ static void hdi_axpy(double a, const double *HDI_RESTRICT x, double *HDI_RESTRIC
     for (i = 0; i < n; i++) y[i] += a * x[i];
 }
 
-/* Eigenvalues of the symmetric tridiagonal matrix with diagonal d [m] and off-diagonal e [m] (e[i] is between i and
- * i + 1, e[m - 1] is unused), by implicit QL with Wilkinson's shift (Bowdler, Martin, Reinsch, Wilkinson 1968).
- * z0, z1 [m] are two rows that go through the same rotations: put in rows of the identity, they come out as rows of
- * the eigenvectors. Overwrites all. 0 when it does not converge. */
+/* Eigenvalues of the symmetric tridiagonal matrix with diagonal d [m] and off-diagonal e [m] (e[i] is between
+ * i and i + 1, e[m - 1] is unused), by implicit QL with Wilkinson's shift (Bowdler, Martin, Reinsch,
+ * Wilkinson 1968). z0, z1 [m] are two rows that go through the same rotations: put in rows of the identity,
+ * they come out as rows of the eigenvectors. Overwrites all. 0 when it does not converge. */
 static int hdi_tridiag_eigen(double *d, double *e, double *z0, double *z1, int32_t m) {
     int32_t l, i, k, sweep;
     if (m > 0) e[m - 1] = 0;
@@ -1397,33 +1397,35 @@ static int hdi_tridiag_eigen(double *d, double *e, double *z0, double *z1, int32
 static int64_t hdi_triangle(int64_t u) { return u * (u + 1) / 2; }
 
 /* ==== [07] kernels ====
- * The dense parts of a sparse factorisation, each written once: fronts of real numbers, and of packs of four complex
- * ones. May call [06]. The room has three parts:
+ * The dense parts of a sparse factorisation, each written once: fronts of real numbers, and of packs of four
+ * complex ones. May call [06]. The room has three parts:
  *   what kernels are given, and the tables through which the rest of the file calls them
  *   the vectors of each instruction set, a layer of some forty short functions
  *   the kernels themselves, which are read once for each set, and at last the choice of the set
- * For AVX2 and AVX-512 the file includes itself with HDI_SET named anew: everything else in it is closed then. It finds
- * itself by the name that it was opened by, where the compiler tells it, or by HEATDIFF_FILENAME. Plain C is read in
- * place, and with HEATDIFF_NO_SIMD, or on other processors, nothing is included.
- * Within one set every entry goes through the same operations in the same order however rows are shared out: results
- * do not depend on threads. The optional BLAS is called here only.
+ * For AVX2 and AVX-512 the file includes itself with HDI_SET named anew: everything else in it is closed
+ * then. It finds itself by the name that it was opened by, where the compiler tells it, or by
+ * HEATDIFF_FILENAME. Plain C is read in place, and with HEATDIFF_NO_SIMD, or on other processors, nothing is
+ * included.
+ * Within one set every entry goes through the same operations in the same order however rows are shared out:
+ * results do not depend on threads. The optional BLAS is called here only.
  * KERNELS TRUST THEIR INPUT. No two arguments overlap unless said. */
 
 /* ---- real fronts ---- */
-/* A front is the dense part of a sparse LDL' factorisation that belongs to one supernode: m rows, of which the first p
- * are pivots, and u = m - p. Its panel P (column-major, m x p) becomes L, its update matrix U (u x u, lower triangle,
- * packed by columns) becomes U - L21 D L21' and goes to the parent. This work is based on
- *   I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric linear equations", ACM TOMS 9, 1983:
- *     fronts, packed updates;
- *   K. Goto, R. van de Geijn, "Anatomy of high-performance matrix multiplication", ACM TOMS 34, 2008: blocks for
- *     registers and caches;
- *   J. Dongarra, I. Duff, D. Sorensen, H. van der Vorst, "Numerical linear algebra for high-performance computers",
- *     1998: left-looking LDL'.
- * Ours: B = D L21' is copied into slices of nr columns, scaled on the way; A = L21 is read where it lies when the front
- * is small.
+/* A front is the dense part of a sparse LDL' factorisation that belongs to one supernode: m rows, of which
+ * the first p are pivots, and u = m - p. Its panel P (column-major, m x p) becomes L, its update matrix U (u
+ * x u, lower triangle, packed by columns) becomes U - L21 D L21' and goes to the parent. This work is based
+ * on
+ *   I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric linear equations", ACM TOMS
+ *     9, 1983: fronts, packed updates;
+ *   K. Goto, R. van de Geijn, "Anatomy of high-performance matrix multiplication", ACM TOMS 34, 2008: blocks
+ *     for registers and caches;
+ *   J. Dongarra, I. Duff, D. Sorensen, H. van der Vorst, "Numerical linear algebra for high-performance
+ *     computers", 1998: left-looking LDL'.
+ * Ours: B = D L21' is copied into slices of nr columns, scaled on the way; A = L21 is read where it lies when
+ * the front is small.
  *
- * Slices: a matrix B with kc rows and n columns is stored as slices of nr columns, slice c at B + c kc nr, its entry
- * (k,j) at [k nr + j]. Columns past the last are zero. */
+ * Slices: a matrix B with kc rows and n columns is stored as slices of nr columns, slice c at B + c kc nr,
+ * its entry (k,j) at [k nr + j]. Columns past the last are zero. */
 
 enum {
     HDI_REAL_KC = 128,  /* columns of L taken at a time: 24 rows of them stay in a 48 KB cache */
@@ -1433,49 +1435,53 @@ enum {
     HDI_REAL_NR = 8     /* largest nr */
 };
 
-/* One instruction set. mr x nr is the register tile. L, A, P point at the entry (first row, first column) named; ld is the
- * distance of columns. */
+/* One instruction set. mr x nr is the register tile. L, A, P point at the entry (first row, first column)
+ * named; ld is the distance of columns. */
 typedef struct hdi_real_ops {
     int32_t mr, nr;
     /* slices B = (L diag(d))': L has n rows and kc columns. */
     void (*pack)(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc);
     /* A = rows of L copied, mr apart, zeros past the last: n <= mr rows, kc columns. */
     void (*copy)(double *A, const double *L, int64_t ld, int32_t n, int32_t kc);
-    /* Pivots k..k+nc-1, nc <= nr, in their own rows and the n <= mr - nr rows that follow: a -= L B over the k columns
-     * before, B one slice; then LDL'. P at (k,0). d goes to the diagonal of P, 1/d to dinv[k..], and rows k.. of the
-     * slice B become D L' of the block. */
+    /* Pivots k..k+nc-1, nc <= nr, in their own rows and the n <= mr - nr rows that follow: a -= L B over the
+     * k columns before, B one slice; then LDL'. P at (k,0). d goes to the diagonal of P, 1/d to dinv[k..],
+     * and rows k.. of the slice B become D L' of the block. */
     void (*block)(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv);
-    /* n <= mr rows below pivots k..k+nb-1, from column k1 <= k: L(:,c) = (a - L(:,k1..c-1) B(k1..c-1,c)) dinv(c),
-     * c ascending. P at (row,0); B slices of kb rows. */
-    void (*rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb,
-                 const double *dinv);
+    /* n <= mr rows below pivots k..k+nb-1, from column k1 <= k: L(:,c) = (a - L(:,k1..c-1) B(k1..c-1,c))
+     * dinv(c), c ascending. P at (row,0); B slices of kb rows. */
+    void (*rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B,
+                 int32_t kb, const double *dinv);
     /* C -= A B: n <= mr rows, nb columns, ld apart, inner kc. Slices of kb rows. */
-    void (*gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb,
-                 int32_t kc);
-    /* U -= A B in rows i..i+n-1, n <= mr, columns j0..j1-1 as far as the triangle goes, j1 <= i + n. Slices begin at
-     * column j0. */
-    void (*update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda,
-                   const double *B, int32_t kc);
+    void (*gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B,
+                 int32_t kb, int32_t kc);
+    /* U -= A B in rows i..i+n-1, n <= mr, columns j0..j1-1 as far as the triangle goes, j1 <= i + n. Slices
+     * begin at column j0. */
+    void (*update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A,
+                   int64_t lda, const double *B, int32_t kc);
     /* y += x */
     void (*add)(double *y, const double *x, int64_t n);
-    /* b = L11^-1 b, y -= L b: nc <= 8 columns, L at (0,0) of L11; below it n1 rows whose y follows b, then n2 whose y is
-     * t. first: t is not read, t = -L b. */
-    void (*forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2, int first);
+    /* b = L11^-1 b, y -= L b: nc <= 8 columns, L at (0,0) of L11; below it n1 rows whose y follows b, then n2
+     * whose y is t. first: t is not read, t = -L b. */
+    void (*forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2,
+                    int first);
     /* b = L11^-T (b - L' y), the same rows. */
-    void (*backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t, int64_t n2);
+    void (*backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t,
+                     int64_t n2);
     /* t = x[idx] */
     void (*gather)(double *t, const double *x, const int32_t *idx, int64_t n);
-    /* For eight right-hand sides, rows of eight: y[i] -= L x, x[nc] -= L' y, y being y[idx[i]], or y[i] if idx is
-     * NULL. */
-    void (*gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc);
-    void (*dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc);
+    /* For eight right-hand sides, rows of eight: y[i] -= L x, x[nc] -= L' y, y being y[idx[i]], or y[i] if
+     * idx is NULL. */
+    void (*gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x,
+                  int32_t nc);
+    void (*dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx,
+                  int32_t nc);
     /* x = L^-1 x, x = L^-T x: unit lower L, nc <= 8. */
     void (*lower8)(double *x, const double *L, int64_t ld, int32_t nc);
     void (*upper8)(double *x, const double *L, int64_t ld, int32_t nc);
 } hdi_real_ops;
 
-/* C -= A B for n <= mr rows and nc <= nr columns; column j + 1 of C lies step - j dec after column j. Entries with row < j + diag are
- * left alone. A has kc columns, lda apart; B is one slice of kc rows. */
+/* C -= A B for n <= mr rows and nc <= nr columns; column j + 1 of C lies step - j dec after column j. Entries
+ * with row < j + diag are left alone. A has kc columns, lda apart; B is one slice of kc rows. */
 typedef struct hdi_real_tile {
     double *C;
     const double *A, *B;
@@ -1484,13 +1490,13 @@ typedef struct hdi_real_tile {
 } hdi_real_tile;
 
 /* ---- packs: four complex numbers side by side ---- */
-/* An entry of a pack matrix is re[4], im[4]: the same entry for four poles. Every operation on entries is one on vectors
- * without any shuffle. */
+/* An entry of a pack matrix is re[4], im[4]: the same entry for four poles. Every operation on entries is one
+ * on vectors without any shuffle. */
 enum { HDI_PACK = 8, HDI_PACK_ROWS = 48, HDI_PACK_DEPTH = 64, HDI_PACK_BLOCK = 16 };
 
-/* C(i,j) = or -= sum_k A(i,k) B(j,k), k in [0,depth), for i in [i0,i1), j in [j0,j1), with lower only j <= i. A(i,k) is at
- * a + i a_row + k a_col, all strides in doubles; C(i,j) at c + i c_row + 8 j, or, packed, at
- * c + 8 (i (i + 1)/2 + j). */
+/* C(i,j) = or -= sum_k A(i,k) B(j,k), k in [0,depth), for i in [i0,i1), j in [j0,j1), with lower only j <= i.
+ * A(i,k) is at a + i a_row + k a_col, all strides in doubles; C(i,j) at c + i c_row + 8 j, or, packed, at c +
+ * 8 (i (i + 1)/2 + j). */
 typedef struct hdi_pack_job {
     const double *a, *b;
     double *c;
@@ -1503,8 +1509,8 @@ static HDI_INLINE double *hdi_pack_row(const hdi_pack_job *g, int64_t i) {
     return g->c + (g->packed ? HDI_PACK * hdi_triangle(i) : i * g->c_row);
 }
 
-/* Rows [r0,r1) of a panel, columns [k0,k0+nb): l_ik = (a_ik - sum_{j in [k0,k)} l_ij s_kj) dinv_k, in place. s_kj is at
- * s + (k - k0) s_row + 8 (j - k0). */
+/* Rows [r0,r1) of a panel, columns [k0,k0+nb): l_ik = (a_ik - sum_{j in [k0,k)} l_ij s_kj) dinv_k, in place.
+ * s_kj is at s + (k - k0) s_row + 8 (j - k0). */
 typedef struct hdi_pack_rows {
     double *panel;
     int64_t row, first;          /* doubles from row to row; panel is row first */
@@ -1516,14 +1522,16 @@ typedef struct hdi_pack_rows {
 typedef struct hdi_pack_ops {
     void (*multiply)(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1);
     void (*solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1);
-    void (*scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s);
+    void (*scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1,
+                  const double *d, double *s);
     void (*add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off);
     void (*forward)(const double *l, int64_t u, int64_t p, const double *y, double *t);
     void (*backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x);
 } hdi_pack_ops;
 
 /* s = l d for an entry */
-static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double *HDI_RESTRICT d, double *HDI_RESTRICT s) {
+static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double *HDI_RESTRICT d,
+                                      double *HDI_RESTRICT s) {
     int q;
     for (q = 0; q < 4; q++) {
         s[q] = l[q] * d[q] - l[q + 4] * d[q + 4];
@@ -1532,102 +1540,99 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
 }
 
 /* ---- vectors of each instruction set ---- */
-/* What a set has to define, here by name_set; a port (NEON, WASM) adds one such layer, and one reading at the end of the kernels:
- *   vec               width doubles; width also stands in front of the reading, as HDI_WIDTH
- *   all(a)            a in every lane
- *   load, store       of width doubles anywhere in memory
- *   load_tail(p, n)   the first n lanes, zeros after them; n may be anything where masks is 1, else 0 < n < width
- *   load_some(p, n)   the same for any n; lanes from n on are not read
- *   rows, load_rows, store_rows   rows lo..hi-1 of a tile as a set, and lanes q.. of it: only these are read and written
- *   add, sub, mul, fma = a b + c, fnma = c - a b, fms = a b - c, fnma1 of single numbers
- *   cross_minus = a b - c d, cross_plus = a b + c d: by operators, which the compiler may or may not contract, as in plain C
- *   lane(v, k), low(v)            lane k everywhere, the lowest as a number
- *   sum(v), gather(x, idx)        when the set has kernels for a single right-hand side
- * and these constants:
- *   cols, regs        the tile of real kernels is regs vectors by cols columns; cols is a multiple of width
- *   fused             whether products of entries are summed with fma
- *   masks             whether load_tail costs no more than load
- *   apart             whether the sums of a backward step are closed between its two parts
- *   tile_rows, tile_cols, solve_rows, sweep_rows, sweep_cols      entries of packs that are held in registers */
+/* What a set has to define, here by name_set. A port (NEON, WASM SIMD) adds one such layer, and one more
+ * reading of the kernels where the set is chosen.
+ *   vec                  HDI_WIDTH doubles
+ *   all(a)               a in every lane
+ *   load, store          anywhere in memory
+ *   load_tail(p, n)      the first n lanes, then zeros; 0 < n < width, and n = width too where masks is 1
+ *   load_some(p, n)      the same for any n; lanes from n on are not read
+ *   rows, rows_of        rows lo..hi-1 of a tile as a set
+ *   load_rows, store_rows(.., g, q)  lanes for rows q.. of it; others are neither read nor written
+ *   add, sub, mul        and fma = a b + c, fnma = c - a b, fms = a b - c, fnma1 of single numbers
+ *   cross_minus          a b - c d; cross_plus: a b + c d. Contracted or not, as the compiler does with plain
+ *     C
+ *   lane(v, k), low(v)   lane k everywhere; the lowest as a number
+ *   sum(v), gather(x, idx)  when the set has kernels for a single right-hand side
+ * and as constants:
+ *   cols, regs           the tile of real kernels is regs vectors by cols columns, a multiple of width
+ *   fused                products of entries are summed with fma
+ *   masks                load_tail costs no more than load
+ *   apart                the sums of a backward step are closed between its two parts
+ *   tile_rows, tile_cols, solve_rows, sweep_rows, sweep_cols  entries of packs that are held in registers */
+#define HDI_IN2 static HDI_INLINE
+#define HDI_IN4 static HDI_AVX2 HDI_INLINE
+#define HDI_IN8 static HDI_AVX512 HDI_INLINE
 
 /* Two lanes, where the compiler has vectors; its own arithmetic serves every processor. */
 enum {
     hdi_cols_plain = 4, hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_masks_plain = 0, hdi_apart_plain = 1,
-    hdi_tile_rows_plain = 1, hdi_tile_cols_plain = 1, hdi_solve_rows_plain = 1, hdi_sweep_rows_plain = 1, hdi_sweep_cols_plain = 2
+    hdi_tile_rows_plain = 1, hdi_tile_cols_plain = 1, hdi_solve_rows_plain = 1, hdi_sweep_rows_plain = 1,
+    hdi_sweep_cols_plain = 2
 };
 #define HDI_TARGET_plain
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD)
-typedef double hdi_vec_plain __attribute__((vector_size(16)));
-typedef double hdi_vec_unaligned __attribute__((vector_size(16), aligned(8), may_alias));
-static HDI_INLINE hdi_vec_plain hdi_two_plain(double a, double b) { const hdi_vec_plain v = {a, b}; return v; }
-static HDI_INLINE hdi_vec_plain hdi_load_plain(const double *p) {
-    return *HDI_CAST(const hdi_vec_unaligned *, HDI_CAST(const void *, p));
+typedef double hdi_v2 __attribute__((vector_size(16)));
+typedef double hdi_v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
+HDI_IN2 hdi_v2 hdi_two(double a, double b) { const hdi_v2 v = {a, b}; return v; }
+HDI_IN2 hdi_v2 hdi_load_plain(const double *p) {
+    return *HDI_CAST(const hdi_v2_anywhere *, HDI_CAST(const void *, p));
 }
-static HDI_INLINE void hdi_store_plain(double *p, hdi_vec_plain v) {
-    *HDI_CAST(hdi_vec_unaligned *, HDI_CAST(void *, p)) = v;
-}
-static HDI_INLINE double hdi_low_plain(hdi_vec_plain v) { return v[0]; }
-static HDI_INLINE double hdi_high_plain(hdi_vec_plain v) { return v[1]; }
-static HDI_INLINE hdi_vec_plain hdi_add_plain(hdi_vec_plain a, hdi_vec_plain b) { return a + b; }
-static HDI_INLINE hdi_vec_plain hdi_sub_plain(hdi_vec_plain a, hdi_vec_plain b) { return a - b; }
-static HDI_INLINE hdi_vec_plain hdi_mul_plain(hdi_vec_plain a, hdi_vec_plain b) { return a * b; }
-static HDI_INLINE hdi_vec_plain hdi_fma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) { return a * b + c; }
-static HDI_INLINE hdi_vec_plain hdi_fnma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) { return c - a * b; }
-static HDI_INLINE hdi_vec_plain hdi_cross_minus_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c, hdi_vec_plain d) {
-    return a * b - c * d;
-}
-static HDI_INLINE hdi_vec_plain hdi_cross_plus_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c, hdi_vec_plain d) {
-    return a * b + c * d;
-}
+HDI_IN2 void hdi_store_plain(double *p, hdi_v2 v) { *HDI_CAST(hdi_v2_anywhere *, HDI_CAST(void *, p)) = v; }
+HDI_IN2 double hdi_low_plain(hdi_v2 v) { return v[0]; }
+HDI_IN2 double hdi_high_plain(hdi_v2 v) { return v[1]; }
+HDI_IN2 hdi_v2 hdi_add_plain(hdi_v2 a, hdi_v2 b) { return a + b; }
+HDI_IN2 hdi_v2 hdi_sub_plain(hdi_v2 a, hdi_v2 b) { return a - b; }
+HDI_IN2 hdi_v2 hdi_mul_plain(hdi_v2 a, hdi_v2 b) { return a * b; }
+HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return a * b + c; }
+HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return c - a * b; }
+HDI_IN2 hdi_v2 hdi_cross_minus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) { return a * b - c * d; }
+HDI_IN2 hdi_v2 hdi_cross_plus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) { return a * b + c * d; }
 #else
-typedef struct hdi_vec_plain { double a, b; } hdi_vec_plain;
-static HDI_INLINE hdi_vec_plain hdi_two_plain(double a, double b) { hdi_vec_plain v; v.a = a; v.b = b; return v; }
-static HDI_INLINE hdi_vec_plain hdi_load_plain(const double *p) { return hdi_two_plain(p[0], p[1]); }
-static HDI_INLINE void hdi_store_plain(double *p, hdi_vec_plain v) { p[0] = v.a; p[1] = v.b; }
-static HDI_INLINE double hdi_low_plain(hdi_vec_plain v) { return v.a; }
-static HDI_INLINE double hdi_high_plain(hdi_vec_plain v) { return v.b; }
-static HDI_INLINE hdi_vec_plain hdi_add_plain(hdi_vec_plain a, hdi_vec_plain b) { return hdi_two_plain(a.a + b.a, a.b + b.b); }
-static HDI_INLINE hdi_vec_plain hdi_sub_plain(hdi_vec_plain a, hdi_vec_plain b) { return hdi_two_plain(a.a - b.a, a.b - b.b); }
-static HDI_INLINE hdi_vec_plain hdi_mul_plain(hdi_vec_plain a, hdi_vec_plain b) { return hdi_two_plain(a.a * b.a, a.b * b.b); }
-static HDI_INLINE hdi_vec_plain hdi_fma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) {
-    return hdi_add_plain(hdi_mul_plain(a, b), c);
-}
-static HDI_INLINE hdi_vec_plain hdi_fnma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) {
-    return hdi_sub_plain(c, hdi_mul_plain(a, b));
-}
-static HDI_INLINE hdi_vec_plain hdi_cross_minus_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c, hdi_vec_plain d) {
+typedef struct hdi_v2 { double a, b; } hdi_v2;
+HDI_IN2 hdi_v2 hdi_two(double a, double b) { hdi_v2 v; v.a = a; v.b = b; return v; }
+HDI_IN2 hdi_v2 hdi_load_plain(const double *p) { return hdi_two(p[0], p[1]); }
+HDI_IN2 void hdi_store_plain(double *p, hdi_v2 v) { p[0] = v.a; p[1] = v.b; }
+HDI_IN2 double hdi_low_plain(hdi_v2 v) { return v.a; }
+HDI_IN2 double hdi_high_plain(hdi_v2 v) { return v.b; }
+HDI_IN2 hdi_v2 hdi_add_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a + b.a, a.b + b.b); }
+HDI_IN2 hdi_v2 hdi_sub_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a - b.a, a.b - b.b); }
+HDI_IN2 hdi_v2 hdi_mul_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a * b.a, a.b * b.b); }
+HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_add_plain(hdi_mul_plain(a, b), c); }
+HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_sub_plain(c, hdi_mul_plain(a, b)); }
+HDI_IN2 hdi_v2 hdi_cross_minus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) {
     return hdi_sub_plain(hdi_mul_plain(a, b), hdi_mul_plain(c, d));
 }
-static HDI_INLINE hdi_vec_plain hdi_cross_plus_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c, hdi_vec_plain d) {
+HDI_IN2 hdi_v2 hdi_cross_plus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) {
     return hdi_add_plain(hdi_mul_plain(a, b), hdi_mul_plain(c, d));
 }
 #endif
-typedef struct hdi_rows_plain { int32_t lo, hi; } hdi_rows_plain;
-static HDI_INLINE hdi_rows_plain hdi_rows_of_plain(int32_t lo, int32_t hi) {
-    hdi_rows_plain g;
+typedef hdi_v2 hdi_vec_plain;
+typedef struct hdi_span { int32_t lo, hi; } hdi_span;
+typedef hdi_span hdi_rows_plain;
+HDI_IN2 hdi_span hdi_rows_of_plain(int32_t lo, int32_t hi) {
+    hdi_span g;
     g.lo = lo;
     g.hi = hi;
     return g;
 }
-static HDI_INLINE hdi_vec_plain hdi_all_plain(double a) { return hdi_two_plain(a, a); }
-static HDI_INLINE hdi_vec_plain hdi_fms_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) {
-    return hdi_sub_plain(hdi_mul_plain(a, b), c);
-}
-static HDI_INLINE double hdi_fnma1_plain(double a, double b, double c) { return c - a * b; }
-static HDI_INLINE hdi_vec_plain hdi_lane_plain(hdi_vec_plain v, int k) {
+HDI_IN2 hdi_v2 hdi_all_plain(double a) { return hdi_two(a, a); }
+HDI_IN2 hdi_v2 hdi_fms_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_sub_plain(hdi_mul_plain(a, b), c); }
+HDI_IN2 double hdi_fnma1_plain(double a, double b, double c) { return c - a * b; }
+HDI_IN2 hdi_v2 hdi_lane_plain(hdi_v2 v, int k) {
     return hdi_all_plain(k ? hdi_high_plain(v) : hdi_low_plain(v));
 }
-static HDI_INLINE double hdi_sum_plain(hdi_vec_plain v) { return hdi_low_plain(v) + hdi_high_plain(v); }
-static HDI_INLINE hdi_vec_plain hdi_gather_plain(const double *x, const int32_t *idx) { return hdi_two_plain(x[idx[0]], x[idx[1]]); }
-static HDI_INLINE hdi_vec_plain hdi_load_tail_plain(const double *p, int64_t n) { (void)n; return hdi_two_plain(p[0], 0); }
-static HDI_INLINE hdi_vec_plain hdi_load_some_plain(const double *p, int64_t n) {
-    return n >= 2 ? hdi_load_plain(p) : hdi_two_plain(n > 0 ? p[0] : 0.0, 0);
+HDI_IN2 double hdi_sum_plain(hdi_v2 v) { return hdi_low_plain(v) + hdi_high_plain(v); }
+HDI_IN2 hdi_v2 hdi_gather_plain(const double *x, const int32_t *idx) { return hdi_two(x[idx[0]], x[idx[1]]); }
+HDI_IN2 hdi_v2 hdi_load_tail_plain(const double *p, int64_t n) { (void)n; return hdi_two(p[0], 0); }
+HDI_IN2 hdi_v2 hdi_load_some_plain(const double *p, int64_t n) {
+    return n >= 2 ? hdi_load_plain(p) : hdi_two(n > 0 ? p[0] : 0.0, 0);
 }
-static HDI_INLINE hdi_vec_plain hdi_load_rows_plain(const double *p, hdi_rows_plain g, int32_t q) {
+HDI_IN2 hdi_v2 hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
     const int first = g.lo <= q && g.hi > q, second = g.lo <= q + 1 && g.hi > q + 1;
-    return first && second ? hdi_load_plain(p) : hdi_two_plain(first ? p[0] : 0.0, second ? p[1] : 0.0);
+    return first && second ? hdi_load_plain(p) : hdi_two(first ? p[0] : 0.0, second ? p[1] : 0.0);
 }
-static HDI_INLINE void hdi_store_rows_plain(double *p, hdi_vec_plain v, hdi_rows_plain g, int32_t q) {
+HDI_IN2 void hdi_store_rows_plain(double *p, hdi_v2 v, hdi_span g, int32_t q) {
     const int first = g.lo <= q && g.hi > q, second = g.lo <= q + 1 && g.hi > q + 1;
     if (first && second) hdi_store_plain(p, v);
     else if (first) p[0] = hdi_low_plain(v);
@@ -1641,31 +1646,27 @@ typedef __m512d hdi_v8;
 /* AVX2 with FMA. Tiles of 12 x 4. */
 enum {
     hdi_cols_avx2 = 4, hdi_regs_avx2 = 3, hdi_fused_avx2 = 1, hdi_masks_avx2 = 0, hdi_apart_avx2 = 0,
-    hdi_tile_rows_avx2 = 2, hdi_tile_cols_avx2 = 2, hdi_solve_rows_avx2 = 2, hdi_sweep_rows_avx2 = 2, hdi_sweep_cols_avx2 = 4
+    hdi_tile_rows_avx2 = 2, hdi_tile_cols_avx2 = 2, hdi_solve_rows_avx2 = 2, hdi_sweep_rows_avx2 = 2,
+    hdi_sweep_cols_avx2 = 4
 };
 #define HDI_TARGET_avx2 HDI_AVX2
 typedef __m256d hdi_vec_avx2;
-typedef struct hdi_rows_avx2 { int32_t lo, hi; } hdi_rows_avx2;
-static HDI_AVX2 HDI_INLINE hdi_rows_avx2 hdi_rows_of_avx2(int32_t lo, int32_t hi) {
-    hdi_rows_avx2 g;
-    g.lo = lo;
-    g.hi = hi;
-    return g;
-}
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_all_avx2(double a) { return _mm256_set1_pd(a); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_load_avx2(const double *p) { return _mm256_loadu_pd(p); }
-static HDI_AVX2 HDI_INLINE void hdi_store_avx2(double *p, hdi_v4 v) { _mm256_storeu_pd(p, v); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_add_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_add_pd(a, b); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_sub_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_sub_pd(a, b); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_mul_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_mul_pd(a, b); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_fma_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fmadd_pd(a, b, c); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_fnma_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fnmadd_pd(a, b, c); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_fms_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fmsub_pd(a, b, c); }
-static HDI_AVX2 HDI_INLINE double hdi_fnma1_avx2(double a, double b, double c) { return __builtin_fma(-a, b, c); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_cross_minus_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c, hdi_v4 d) { return a * b - c * d; }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_cross_plus_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c, hdi_v4 d) { return a * b + c * d; }
-static HDI_AVX2 HDI_INLINE double hdi_low_avx2(hdi_v4 v) { return _mm256_cvtsd_f64(v); }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_lane_avx2(hdi_v4 v, int k) {
+typedef hdi_span hdi_rows_avx2;
+HDI_IN4 hdi_span hdi_rows_of_avx2(int32_t lo, int32_t hi) { return hdi_rows_of_plain(lo, hi); }
+HDI_IN4 hdi_v4 hdi_all_avx2(double a) { return _mm256_set1_pd(a); }
+HDI_IN4 hdi_v4 hdi_load_avx2(const double *p) { return _mm256_loadu_pd(p); }
+HDI_IN4 void hdi_store_avx2(double *p, hdi_v4 v) { _mm256_storeu_pd(p, v); }
+HDI_IN4 hdi_v4 hdi_add_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_add_pd(a, b); }
+HDI_IN4 hdi_v4 hdi_sub_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_sub_pd(a, b); }
+HDI_IN4 hdi_v4 hdi_mul_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_mul_pd(a, b); }
+HDI_IN4 hdi_v4 hdi_fma_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fmadd_pd(a, b, c); }
+HDI_IN4 hdi_v4 hdi_fnma_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fnmadd_pd(a, b, c); }
+HDI_IN4 hdi_v4 hdi_fms_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fmsub_pd(a, b, c); }
+HDI_IN4 double hdi_fnma1_avx2(double a, double b, double c) { return __builtin_fma(-a, b, c); }
+HDI_IN4 hdi_v4 hdi_cross_minus_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c, hdi_v4 d) { return a * b - c * d; }
+HDI_IN4 hdi_v4 hdi_cross_plus_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c, hdi_v4 d) { return a * b + c * d; }
+HDI_IN4 double hdi_low_avx2(hdi_v4 v) { return _mm256_cvtsd_f64(v); }
+HDI_IN4 hdi_v4 hdi_lane_avx2(hdi_v4 v, int k) {
     switch (k) {
         case 0: return _mm256_permute4x64_pd(v, 0x00);
         case 1: return _mm256_permute4x64_pd(v, 0x55);
@@ -1673,29 +1674,31 @@ static HDI_AVX2 HDI_INLINE hdi_v4 hdi_lane_avx2(hdi_v4 v, int k) {
         default: return _mm256_permute4x64_pd(v, 0xff);
     }
 }
-static HDI_AVX2 HDI_INLINE double hdi_sum_avx2(hdi_v4 v) {
+HDI_IN4 double hdi_sum_avx2(hdi_v4 v) {
     const __m256d pairs = _mm256_hadd_pd(v, v);
     return _mm_cvtsd_f64(_mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1)));
 }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_gather_avx2(const double *x, const int32_t *idx) {
+HDI_IN4 hdi_v4 hdi_gather_avx2(const double *x, const int32_t *idx) {
     return _mm256_i32gather_pd(x, _mm_loadu_si128(HDI_CAST(const __m128i *, HDI_CAST(const void *, idx))), 8);
 }
 /* lanes lo..hi-1 */
-static HDI_AVX2 HDI_INLINE __m256i hdi_lanes_avx2(int64_t lo, int64_t hi) {
+HDI_IN4 __m256i hdi_lanes_avx2(int64_t lo, int64_t hi) {
     const __m256i lane = _mm256_set_epi64x(3, 2, 1, 0);
-    return _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(hi), lane), _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(lo - 1)));
+    return _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(hi), lane),
+                            _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(lo - 1)));
 }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_load_tail_avx2(const double *p, int64_t n) {
+HDI_IN4 hdi_v4 hdi_load_tail_avx2(const double *p, int64_t n) {
     return _mm256_maskload_pd(p, hdi_lanes_avx2(0, n));
 }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_load_some_avx2(const double *p, int64_t n) {
+HDI_IN4 hdi_v4 hdi_load_some_avx2(const double *p, int64_t n) {
     return n >= 4 ? _mm256_loadu_pd(p) : hdi_load_tail_avx2(p, n);
 }
-static HDI_AVX2 HDI_INLINE hdi_v4 hdi_load_rows_avx2(const double *p, hdi_rows_avx2 g, int32_t q) {
-    return g.lo <= q && g.hi >= q + 4 ? _mm256_loadu_pd(p) : _mm256_maskload_pd(p, hdi_lanes_avx2(g.lo - q, g.hi - q));
+HDI_IN4 hdi_v4 hdi_load_rows_avx2(const double *p, hdi_span g, int32_t q) {
+    if (g.lo <= q && g.hi >= q + 4) return _mm256_loadu_pd(p);
+    return _mm256_maskload_pd(p, hdi_lanes_avx2(g.lo - q, g.hi - q));
 }
 /* By halves and singles: masked stores are slow on some processors. */
-static HDI_AVX2 HDI_INLINE void hdi_store_rows_avx2(double *p, hdi_v4 v, hdi_rows_avx2 g, int32_t q) {
+HDI_IN4 void hdi_store_rows_avx2(double *p, hdi_v4 v, hdi_span g, int32_t q) {
     const int32_t lo = g.lo - q, hi = g.hi - q;
     if (lo <= 0 && hi >= 4) _mm256_storeu_pd(p, v);
     else {
@@ -1718,33 +1721,33 @@ enum {
 #define HDI_TARGET_avx512 HDI_AVX512
 typedef __m512d hdi_vec_avx512;
 typedef uint32_t hdi_rows_avx512;                /* a bit for each */
-static HDI_AVX512 HDI_INLINE hdi_rows_avx512 hdi_rows_of_avx512(int32_t lo, int32_t hi) {
+HDI_IN8 uint32_t hdi_rows_of_avx512(int32_t lo, int32_t hi) {
     return ((1u << hi) - 1u) & ~0u << (lo > 0 ? lo : 0);
 }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_all_avx512(double a) { return _mm512_set1_pd(a); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_load_avx512(const double *p) { return _mm512_loadu_pd(p); }
-static HDI_AVX512 HDI_INLINE void hdi_store_avx512(double *p, hdi_v8 v) { _mm512_storeu_pd(p, v); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_add_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_add_pd(a, b); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_sub_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_sub_pd(a, b); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_mul_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_mul_pd(a, b); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_fma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fmadd_pd(a, b, c); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_fnma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fnmadd_pd(a, b, c); }
-static HDI_AVX512 HDI_INLINE double hdi_low_avx512(hdi_v8 v) { return _mm512_cvtsd_f64(v); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_lane_avx512(hdi_v8 v, int k) { return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_load_tail_avx512(const double *p, int64_t n) {
+HDI_IN8 hdi_v8 hdi_all_avx512(double a) { return _mm512_set1_pd(a); }
+HDI_IN8 hdi_v8 hdi_load_avx512(const double *p) { return _mm512_loadu_pd(p); }
+HDI_IN8 void hdi_store_avx512(double *p, hdi_v8 v) { _mm512_storeu_pd(p, v); }
+HDI_IN8 hdi_v8 hdi_add_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_add_pd(a, b); }
+HDI_IN8 hdi_v8 hdi_sub_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_sub_pd(a, b); }
+HDI_IN8 hdi_v8 hdi_mul_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_mul_pd(a, b); }
+HDI_IN8 hdi_v8 hdi_fma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fmadd_pd(a, b, c); }
+HDI_IN8 hdi_v8 hdi_fnma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fnmadd_pd(a, b, c); }
+HDI_IN8 double hdi_low_avx512(hdi_v8 v) { return _mm512_cvtsd_f64(v); }
+HDI_IN8 hdi_v8 hdi_lane_avx512(hdi_v8 v, int k) { return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v); }
+HDI_IN8 hdi_v8 hdi_load_tail_avx512(const double *p, int64_t n) {
     return _mm512_maskz_loadu_pd(HDI_CAST(__mmask8, n >= 8 ? 0xff : n > 0 ? (1u << n) - 1u : 0), p);
 }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_load_some_avx512(const double *p, int64_t n) { return hdi_load_tail_avx512(p, n); }
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_load_rows_avx512(const double *p, hdi_rows_avx512 g, int32_t q) {
+HDI_IN8 hdi_v8 hdi_load_some_avx512(const double *p, int64_t n) { return hdi_load_tail_avx512(p, n); }
+HDI_IN8 hdi_v8 hdi_load_rows_avx512(const double *p, uint32_t g, int32_t q) {
     return _mm512_maskz_loadu_pd(HDI_CAST(__mmask8, g >> q & 0xff), p);
 }
-static HDI_AVX512 HDI_INLINE void hdi_store_rows_avx512(double *p, hdi_v8 v, hdi_rows_avx512 g, int32_t q) {
+HDI_IN8 void hdi_store_rows_avx512(double *p, hdi_v8 v, uint32_t g, int32_t q) {
     _mm512_mask_storeu_pd(p, HDI_CAST(__mmask8, g >> q & 0xff), v);
 }
 /* (x, x) of four doubles */
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_twice512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
+HDI_IN8 hdi_v8 hdi_twice512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
 /* sum of products from its two halves: p - swap(q) below, p + swap(q) above */
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
+HDI_IN8 hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
     const hdi_v8 t = _mm512_shuffle_f64x2(q, q, 0x4e);
     return _mm512_mask_sub_pd(_mm512_add_pd(p, t), 0x0f, p, t);
 }
@@ -1757,8 +1760,9 @@ static HDI_AVX512 HDI_INLINE hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
 #endif /* HEATDIFF_IMPLEMENTED */
 
 /* ---- the kernels, once for each instruction set ---- */
-/* The text from here to the choice of the set is read once for each: the first time as part of this file, for plain C; then the file includes
- * itself with HDI_SET named anew, and all other parts of it closed. HDI_OF(name) is name_set. */
+/* The text from here to the choice of the set is read once for each: the first time as part of this file, for
+ * plain C; then the file includes itself with HDI_SET named anew, and all other parts of it closed.
+ * HDI_OF(name) is name_set. */
 
 #ifdef HDI_SET
 #ifndef HDI_OF
@@ -1768,6 +1772,8 @@ static HDI_AVX512 HDI_INLINE hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
 #define HDI_TARGET_OF(set) HDI_TARGET_NOW(set)
 #define HDI_OF(name) HDI_PASTE(name, HDI_SET)
 #define HDI_KERNEL static HDI_TARGET_OF(HDI_SET)
+#define HDI_PART HDI_KERNEL HDI_INLINE
+#define HDI_EACH(i, n) HDI_UNROLL for (i = 0; i < (n); i++)
 
 #define hdi_vec HDI_OF(vec)
 #define hdi_vall HDI_OF(all)
@@ -1785,7 +1791,8 @@ static HDI_AVX512 HDI_INLINE hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
 #endif
 
 /* B = (L diag(d))' in slices */
-HDI_KERNEL void HDI_OF(real_pack)(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc) {
+HDI_KERNEL void HDI_OF(real_pack)(double *B, const double *L, int64_t ld, const double *d, int32_t n,
+                                  int32_t kc) {
     int32_t k, q;
     for (; n > 0; n -= HDI_COLS, L += HDI_COLS) {
         const double *l = L;
@@ -1807,94 +1814,85 @@ HDI_KERNEL void HDI_OF(real_copy)(double *A, const double *L, int64_t ld, int32_
 }
 
 /* x(:,j) += a b_j for the columns of a slice */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_term)(hdi_vec (*x)[HDI_REGS], const int nv, const hdi_vec *a, const double *b) {
+HDI_PART void HDI_OF(real_term)(hdi_vec (*x)[HDI_REGS], const int nv, const hdi_vec *a, const double *b) {
     int j, v;
-    HDI_UNROLL
-    for (j = 0; j < HDI_COLS; j++) {
+    HDI_EACH(j, HDI_COLS) {
         const hdi_vec s = hdi_vall(b[j]);
-        HDI_UNROLL
-        for (v = 0; v < nv; v++) x[j][v] = hdi_vfma(a[v], s, x[j][v]);
+        HDI_EACH(v, nv) x[j][v] = hdi_vfma(a[v], s, x[j][v]);
     }
 }
 
-HDI_KERNEL HDI_INLINE void HDI_OF(real_zero)(hdi_vec (*x)[HDI_REGS], const int nv) {
+HDI_PART void HDI_OF(real_zero)(hdi_vec (*x)[HDI_REGS], const int nv) {
     int j, v;
-    HDI_UNROLL
-    for (j = 0; j < HDI_COLS; j++) {
-        HDI_UNROLL
-        for (v = 0; v < nv; v++) x[j][v] = hdi_vall(0);
-    }
+    HDI_EACH(j, HDI_COLS)
+        HDI_EACH(v, nv) x[j][v] = hdi_vall(0);
 }
 
 /* x = A B in nv vectors of rows: n of them, of which part is only a part of the last vector. */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_sum)(hdi_vec (*x)[HDI_REGS], const int nv, const int part, int32_t n, const double *A,
-                                            int64_t lda, const double *B, int32_t kc) {
+HDI_PART void HDI_OF(real_sum)(hdi_vec (*x)[HDI_REGS], const int nv, const int part, int32_t n,
+                               const double *A, int64_t lda, const double *B, int32_t kc) {
     const int32_t last = HDI_WIDTH * (nv - 1);
     int32_t k;
     int v;
     for (k = 0; k < kc; k++, A += lda, B += HDI_COLS) {
         hdi_vec a[HDI_REGS];
-        HDI_UNROLL
-        for (v = 0; v < nv; v++)
+        HDI_EACH(v, nv)
             a[v] = part && v == nv - 1 ? HDI_OF(load_tail)(A + last, n - last) : hdi_vload(A + HDI_WIDTH * v);
         HDI_OF(real_term)(x, nv, a, B);
     }
 }
 
-HDI_KERNEL HDI_INLINE void HDI_OF(real_product)(hdi_vec (*x)[HDI_REGS], const int nv, int32_t n, const double *A, int64_t lda,
-                                                const double *B, int32_t kc) {
+HDI_PART void HDI_OF(real_product)(hdi_vec (*x)[HDI_REGS], const int nv, int32_t n, const double *A,
+                                   int64_t lda, const double *B, int32_t kc) {
     HDI_OF(real_zero)(x, nv);
     if (!HDI_OF(masks) && n == HDI_WIDTH * nv) HDI_OF(real_sum)(x, nv, 0, n, A, lda, B, kc);
     else HDI_OF(real_sum)(x, nv, 1, n, A, lda, B, kc);
 }
 
 /* C -= A B for a tile whose n rows fill nv vectors, the last one perhaps in part. */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_tile)(const int nv, const hdi_real_tile *t) {
+HDI_PART void HDI_OF(real_tile)(const int nv, const hdi_real_tile *t) {
     hdi_vec x[HDI_COLS][HDI_REGS];
     double *C = t->C;
     int64_t step = t->step;
     int j, v;
     HDI_OF(real_product)(x, nv, t->n, t->A, t->lda, t->B, t->kc);
     if (t->n == HDI_WIDTH * nv && t->nc == HDI_COLS && t->diag <= 1 - HDI_COLS) {
-        HDI_UNROLL
-        for (j = 0; j < HDI_COLS; j++) {
-            HDI_UNROLL
-            for (v = 0; v < nv; v++) hdi_vstore(C + HDI_WIDTH * v, hdi_vsub(hdi_vload(C + HDI_WIDTH * v), x[j][v]));
+        HDI_EACH(j, HDI_COLS) {
+            HDI_EACH(v, nv) hdi_vstore(C + HDI_WIDTH * v, hdi_vsub(hdi_vload(C + HDI_WIDTH * v), x[j][v]));
             C += step;
             step -= t->dec;
         }
         return;
     }
-    /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and wait for it. */
-    HDI_UNROLL
-    for (j = 0; j < HDI_COLS; j++) {
+    /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and
+     * wait for it. */
+    HDI_EACH(j, HDI_COLS) {
         const HDI_OF(rows) g = HDI_OF(rows_of)(t->diag + j, t->n);
         if (j >= t->nc) continue;
-        HDI_UNROLL
-        for (v = 0; v < nv; v++)
+        HDI_EACH(v, nv)
             x[j][v] = hdi_vsub(HDI_OF(load_rows)(C + HDI_WIDTH * v, g, HDI_WIDTH * v), x[j][v]);
         C += step;
         step -= t->dec;
     }
     C = t->C;
     step = t->step;
-    HDI_UNROLL
-    for (j = 0; j < HDI_COLS; j++) {
+    HDI_EACH(j, HDI_COLS) {
         const HDI_OF(rows) g = HDI_OF(rows_of)(t->diag + j, t->n);
         if (j >= t->nc) continue;
-        HDI_UNROLL
-        for (v = 0; v < nv; v++) HDI_OF(store_rows)(C + HDI_WIDTH * v, x[j][v], g, HDI_WIDTH * v);
+        HDI_EACH(v, nv) HDI_OF(store_rows)(C + HDI_WIDTH * v, x[j][v], g, HDI_WIDTH * v);
         C += step;
         step -= t->dec;
     }
 }
 
-/* One row of tiles; next is the distance of slices, s the first column less the first row, which grows with packed columns only. */
+/* One row of tiles; next is the distance of slices, s the first column less the first row, which grows with
+ * packed columns only. */
 HDI_KERNEL void HDI_OF(real_tiles)(const hdi_real_tile *first, int64_t n_cols, int64_t next, int64_t s) {
     hdi_real_tile t = *first;
     double *C = first->C;
     for (; n_cols > 0; n_cols -= HDI_COLS) {
-        const int32_t up = s < HDI_WIDTH ? 0 : HDI_CAST(int32_t, s - s % HDI_WIDTH);  /* vectors wholly above the diagonal */
+        /* vectors wholly above the diagonal */
+        const int32_t up = s < HDI_WIDTH ? 0 : HDI_CAST(int32_t, s - s % HDI_WIDTH);
         t.C = C + up;
         t.A = first->A + up;
         t.n = first->n - up;
@@ -1910,31 +1908,30 @@ HDI_KERNEL void HDI_OF(real_tiles)(const hdi_real_tile *first, int64_t n_cols, i
     }
 }
 
-HDI_KERNEL void HDI_OF(real_gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B,
-                                  int32_t kb, int32_t kc) {
+HDI_KERNEL void HDI_OF(real_gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda,
+                                  const double *B, int32_t kb, int32_t kc) {
     const hdi_real_tile t = {C, A, B, ld, 0, lda, n, 0, 0, kc};
     HDI_OF(real_tiles)(&t, nb, HDI_CAST(int64_t, kb) * HDI_COLS, -HDI_COLS);
 }
 
-HDI_KERNEL void HDI_OF(real_update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda,
-                                    const double *B, int32_t kc) {
-    const hdi_real_tile t = {U + (j0 * u - j0 * (j0 - 1) / 2 - j0 + i), A, B, u - j0 - 1, 1, lda, n, 0, 0, kc};
+HDI_KERNEL void HDI_OF(real_update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1,
+                                    const double *A, int64_t lda, const double *B, int32_t kc) {
+    const hdi_real_tile t = {U + (j0 * u - j0 * (j0 - 1) / 2 - j0 + i), A, B, u - j0 - 1, 1, lda, n, 0, 0,
+                             kc};
     HDI_OF(real_tiles)(&t, j1 - j0, HDI_CAST(int64_t, kc) * HDI_COLS, j0 - i);
 }
 
 /* X = (C - A B) over kc columns, then X = X inv(D L') with the block's D L' in the rows of B that follow. */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_solve)(const int nv, const hdi_real_tile *t, const double *dinv) {
+HDI_PART void HDI_OF(real_solve)(const int nv, const hdi_real_tile *t, const double *dinv) {
     const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
     const double *B = t->B + HDI_CAST(int64_t, t->kc) * HDI_COLS;
     hdi_vec x[HDI_COLS][HDI_REGS];
     double *C = t->C;
     int j, k, v;
     HDI_OF(real_product)(x, nv, t->n, t->A, t->lda, t->B, t->kc);
-    HDI_UNROLL
-    for (j = 0; j < HDI_COLS; j++) {
+    HDI_EACH(j, HDI_COLS) {
         if (j >= t->nc) continue;
-        HDI_UNROLL
-        for (v = 0; v < nv; v++) {
+        HDI_EACH(v, nv) {
             const double *c = C + j * t->step + HDI_WIDTH * v;
             x[j][v] = hdi_vsub(v < nv - 1 ? hdi_vload(c) : HDI_OF(load_rows)(c, g, HDI_WIDTH * v), x[j][v]);
         }
@@ -1942,24 +1939,21 @@ HDI_KERNEL HDI_INLINE void HDI_OF(real_solve)(const int nv, const hdi_real_tile 
     HDI_UNROLL
     for (j = 0; j < HDI_COLS; j++, B += HDI_COLS, C += t->step) {
         if (j == t->nc) return;
-        HDI_UNROLL
-        for (v = 0; v < nv; v++) {
+        HDI_EACH(v, nv) {
             x[j][v] = hdi_vmul(x[j][v], hdi_vall(dinv[j]));
             if (v < nv - 1) hdi_vstore(C + HDI_WIDTH * v, x[j][v]);
             else HDI_OF(store_rows)(C + HDI_WIDTH * v, x[j][v], g, HDI_WIDTH * v);
         }
-        HDI_UNROLL
-        for (k = 0; k < HDI_COLS; k++) {
+        HDI_EACH(k, HDI_COLS) {
             const hdi_vec b = hdi_vall(B[k]);
             if (k <= j) continue;
-            HDI_UNROLL
-            for (v = 0; v < nv; v++) x[k][v] = hdi_vfnma(x[j][v], b, x[k][v]);
+            HDI_EACH(v, nv) x[k][v] = hdi_vfnma(x[j][v], b, x[k][v]);
         }
     }
 }
 
-HDI_KERNEL void HDI_OF(real_rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb,
-                                  const double *dinv) {
+HDI_KERNEL void HDI_OF(real_rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb,
+                                  const double *B, int32_t kb, const double *dinv) {
     hdi_real_tile t;
     t.C = P + k * ld;
     t.step = t.lda = ld;
@@ -1981,18 +1975,19 @@ HDI_KERNEL void HDI_OF(real_rows)(double *P, int64_t ld, int32_t n, int32_t k1, 
     }
 }
 
-/* Vectors of a block of pivots: the first hold the nc pivots' own rows, the others n rows that follow; rows of vector v, and how many. */
-HDI_KERNEL HDI_INLINE int32_t HDI_OF(real_first)(const int v, int32_t nc) {
+/* Vectors of a block of pivots: the first hold the nc pivots' own rows, the others n rows that follow; rows
+ * of vector v, and how many. */
+HDI_PART int32_t HDI_OF(real_first)(const int v, int32_t nc) {
     enum { top = HDI_COLS / HDI_WIDTH };
     return v < top ? HDI_WIDTH * v : nc + HDI_WIDTH * (v - top);
 }
-HDI_KERNEL HDI_INLINE int32_t HDI_OF(real_count)(const int v, int32_t nc, int32_t n) {
+HDI_PART int32_t HDI_OF(real_count)(const int v, int32_t nc, int32_t n) {
     return v < HDI_COLS / HDI_WIDTH ? nc - HDI_WIDTH * v : n - HDI_WIDTH * (v - HDI_COLS / HDI_WIDTH);
 }
 
 /* For the rows below the pivots the same operations as in real_solve. */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_pivots)(const int nv, double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n, double *S,
-                                               double *dinv) {
+HDI_PART void HDI_OF(real_pivots)(const int nv, double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n,
+                                  double *S, double *dinv) {
     enum { top = HDI_COLS / HDI_WIDTH };
     const double *row = P, *slice = S;
     double *C = P + kc * ld, *T = S + HDI_CAST(int64_t, kc) * HDI_COLS;
@@ -2001,15 +1996,13 @@ HDI_KERNEL HDI_INLINE void HDI_OF(real_pivots)(const int nv, double *P, int64_t 
     HDI_OF(real_zero)(x, nv);
     for (k = 0; k < kc; k++, row += ld, slice += HDI_COLS) {
         hdi_vec a[HDI_REGS];
-        HDI_UNROLL
-        for (v = 0; v < nv; v++) a[v] = HDI_OF(load_some)(row + HDI_OF(real_first)(v, nc), HDI_OF(real_count)(v, nc, n));
+        HDI_EACH(v, nv) a[v] = HDI_OF(load_some)(row + HDI_OF(real_first)(v, nc),
+                                                 HDI_OF(real_count)(v, nc, n));
         HDI_OF(real_term)(x, nv, a, slice);
     }
-    HDI_UNROLL
-    for (j = 0; j < HDI_COLS; j++) {
+    HDI_EACH(j, HDI_COLS) {
         if (j >= nc) continue;
-        HDI_UNROLL
-        for (v = 0; v < nv; v++) {
+        HDI_EACH(v, nv) {
             const double *c = C + j * ld + HDI_OF(real_first)(v, nc);
             x[j][v] = hdi_vsub(HDI_OF(load_some)(c, HDI_OF(real_count)(v, nc, n)), x[j][v]);
         }
@@ -2026,128 +2019,125 @@ HDI_KERNEL HDI_INLINE void HDI_OF(real_pivots)(const int nv, double *P, int64_t 
         }
         q = 1 / d;
         dinv[kc + j] = q;
-        HDI_UNROLL
-        for (v = 0; v < nv; v++) {
+        HDI_EACH(v, nv) {
             const int32_t first = v < top ? j + 1 - HDI_WIDTH * v : 0;
             l[v] = hdi_vmul(x[j][v], hdi_vall(q));
             if (v < top) hdi_vstore(T + HDI_WIDTH * v, x[j][v]);
-            HDI_OF(store_rows)(C + HDI_OF(real_first)(v, nc), l[v], HDI_OF(rows_of)(first, HDI_OF(real_count)(v, nc, n)), 0);
+            HDI_OF(store_rows)(C + HDI_OF(real_first)(v, nc), l[v],
+                               HDI_OF(rows_of)(first, HDI_OF(real_count)(v, nc, n)), 0);
         }
         C[j] = d;
-        HDI_UNROLL
-        for (k = 0; k < HDI_COLS; k++) {
+        HDI_EACH(k, HDI_COLS) {
             if (k <= j) continue;
-            HDI_UNROLL
-            for (v = 0; v < nv; v++) x[k][v] = hdi_vfnma(l[v], hdi_vlane(x[j][k / HDI_WIDTH], k % HDI_WIDTH), x[k][v]);
+            HDI_EACH(v, nv) x[k][v] = hdi_vfnma(l[v], hdi_vlane(x[j][k / HDI_WIDTH], k % HDI_WIDTH), x[k][v]);
         }
     }
 }
 
-HDI_KERNEL void HDI_OF(real_block)(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv) {
+HDI_KERNEL void HDI_OF(real_block)(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B,
+                                   double *dinv) {
     enum { top = HDI_COLS / HDI_WIDTH };
     if (top + 2 <= HDI_REGS && n > HDI_WIDTH) HDI_OF(real_pivots)(HDI_REGS, P, ld, k, nc, n, B, dinv);
     else if (top + 1 <= HDI_REGS && n > 0) HDI_OF(real_pivots)(top + 1, P, ld, k, nc, n, B, dinv);
     else HDI_OF(real_pivots)(top, P, ld, k, nc, n, B, dinv);
 }
 
-/* One right-hand side is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast or faster. */
+/* One right-hand side is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast
+ * or faster. */
 #if HDI_WIDTH <= 4
 HDI_KERNEL void HDI_OF(real_add)(double *y, const double *x, int64_t n) {
-    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, x += HDI_WIDTH, y += HDI_WIDTH) hdi_vstore(y, hdi_vadd(hdi_vload(y), hdi_vload(x)));
+    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, x += HDI_WIDTH, y += HDI_WIDTH)
+        hdi_vstore(y, hdi_vadd(hdi_vload(y), hdi_vload(x)));
     for (; n > 0; n--) *y++ += *x++;
 }
 
 HDI_KERNEL void HDI_OF(real_gather)(double *t, const double *x, const int32_t *idx, int64_t n) {
-    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, t += HDI_WIDTH, idx += HDI_WIDTH) hdi_vstore(t, HDI_OF(gather)(x, idx));
+    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, t += HDI_WIDTH, idx += HDI_WIDTH)
+        hdi_vstore(t, HDI_OF(gather)(x, idx));
     for (; n > 0; n--) *t++ = x[*idx++];
 }
 
 /* The eight columns from L on; missing ones are the last one again. */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_columns)(const double **l, const double *L, int64_t ld, int32_t nc) {
+HDI_PART void HDI_OF(real_columns)(const double **l, const double *L, int64_t ld, int32_t nc) {
     int j;
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) l[j] = L + (j < nc ? j : nc - 1) * ld;
+    HDI_EACH(j, 8) l[j] = L + (j < nc ? j : nc - 1) * ld;
 }
 
-/* Row i and its neighbours of y - L b, even columns summed apart from odd ones; wide: more than four columns. part is the number of rows
- * where they do not fill a vector, and else zero. */
-HDI_KERNEL HDI_INLINE hdi_vec HDI_OF(real_minus)(hdi_vec y, const double *const *l, int64_t i, const int part, int32_t rest,
-                                                 const hdi_vec *b, int wide) {
+/* Row i and its neighbours of y - L b, even columns summed apart from odd ones; wide: more than four columns.
+ * part is the number of rows where they do not fill a vector, and else zero. */
+HDI_PART hdi_vec HDI_OF(real_minus)(hdi_vec y, const double *const *l, int64_t i, const int part,
+                                    int32_t rest, const hdi_vec *b, int wide) {
     hdi_vec s[2];
     int j;
     s[0] = y;
     s[1] = hdi_vall(0);
-    HDI_UNROLL
-    for (j = 0; j < 8; j++)
-        if (j < 4 || wide) s[j % 2] = hdi_vfnma(part ? HDI_OF(load_tail)(l[j] + i, rest) : hdi_vload(l[j] + i), b[j], s[j % 2]);
+    HDI_EACH(j, 8)
+        if (j < 4 || wide) s[j % 2] = hdi_vfnma(part ? HDI_OF(load_tail)(l[j] + i,
+                                                                         rest) : hdi_vload(l[j] + i), b[j],
+                                                                             s[j % 2]);
     return hdi_vadd(s[0], s[1]);
 }
 
-HDI_KERNEL HDI_INLINE void HDI_OF(real_sweep)(double *y, const double *const *l, int64_t n, const hdi_vec *b, int wide, const int keep) {
+HDI_PART void HDI_OF(real_sweep)(double *y, const double *const *l, int64_t n, const hdi_vec *b, int wide,
+                                 const int keep) {
     int64_t i;
     for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH)
         hdi_vstore(y + i, HDI_OF(real_minus)(keep ? hdi_vload(y + i) : hdi_vall(0), l, i, 0, 0, b, wide));
     if (i < n) {
         const int32_t rest = HDI_CAST(int32_t, n - i);
         const hdi_vec from = keep ? HDI_OF(load_tail)(y + i, rest) : hdi_vall(0);
-        HDI_OF(store_rows)(y + i, HDI_OF(real_minus)(from, l, i, 1, rest, b, wide), HDI_OF(rows_of)(0, rest), 0);
+        HDI_OF(store_rows)(y + i, HDI_OF(real_minus)(from, l, i, 1, rest, b, wide), HDI_OF(rows_of)(0, rest),
+                           0);
     }
 }
 
-HDI_KERNEL void HDI_OF(real_forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2, int first) {
+HDI_KERNEL void HDI_OF(real_forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1,
+                                     double *t, int64_t n2, int first) {
     const double *l[8];
     double x[8];
     hdi_vec v[8];
     int j, k;
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) x[j] = j < nc ? b[j] : 0.0;
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) {
-        HDI_UNROLL
-        for (k = 0; k < 8; k++)
+    HDI_EACH(j, 8) x[j] = j < nc ? b[j] : 0.0;
+    HDI_EACH(j, 8) {
+        HDI_EACH(k, 8)
             if (k > j && k < nc) x[k] = HDI_OF(fnma1)(L[k + j * ld], x[j], x[k]);
     }
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) {
+    HDI_EACH(j, 8) {
         v[j] = hdi_vall(x[j]);
         if (j < nc) b[j] = x[j];
     }
     HDI_OF(real_columns)(l, L + nc, ld, nc);
     HDI_OF(real_sweep)(b + nc, l, n1, v, nc > 4, 1);
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) l[j] += n1;
+    HDI_EACH(j, 8) l[j] += n1;
     if (first) HDI_OF(real_sweep)(t, l, n2, v, nc > 4, 0);
     else HDI_OF(real_sweep)(t, l, n2, v, nc > 4, 1);
 }
 
 /* s += L' y */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_dots)(hdi_vec *s, const double *const *l, int64_t n, const double *y, int wide) {
+HDI_PART void HDI_OF(real_dots)(hdi_vec *s, const double *const *l, int64_t n, const double *y, int wide) {
     int64_t i;
     int j;
     for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH) {
         const hdi_vec v = hdi_vload(y + i);
-        HDI_UNROLL
-        for (j = 0; j < 8; j++)
+        HDI_EACH(j, 8)
             if (j < 4 || wide) s[j] = hdi_vfma(hdi_vload(l[j] + i), v, s[j]);
     }
     if (i < n) {
         const hdi_vec v = HDI_OF(load_tail)(y + i, n - i);
-        HDI_UNROLL
-        for (j = 0; j < 8; j++) s[j] = hdi_vfma(HDI_OF(load_tail)(l[j] + i, n - i), v, s[j]);
+        HDI_EACH(j, 8) s[j] = hdi_vfma(HDI_OF(load_tail)(l[j] + i, n - i), v, s[j]);
     }
 }
 
-HDI_KERNEL void HDI_OF(real_backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t, int64_t n2) {
+HDI_KERNEL void HDI_OF(real_backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1,
+                                      const double *t, int64_t n2) {
     const double *l[8];
     hdi_vec s[8];
     double x[8];
     int j, k;
     HDI_OF(real_columns)(l, L + nc, ld, nc);
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) s[j] = hdi_vall(0);
+    HDI_EACH(j, 8) s[j] = hdi_vall(0);
     HDI_OF(real_dots)(s, l, n1, b + nc, nc > 4);
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) {
+    HDI_EACH(j, 8) {
         l[j] += n1;
         x[j] = 0;
         if (!HDI_OF(apart)) continue;
@@ -2155,51 +2145,42 @@ HDI_KERNEL void HDI_OF(real_backward)(double *b, const double *L, int64_t ld, in
         s[j] = hdi_vall(0);
     }
     HDI_OF(real_dots)(s, l, n2, t, nc > 4);
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) x[j] = j < nc ? b[j] - (x[j] + HDI_OF(sum)(s[j])) : 0.0;
+    HDI_EACH(j, 8) x[j] = j < nc ? b[j] - (x[j] + HDI_OF(sum)(s[j])) : 0.0;
     HDI_UNROLL
     for (k = 7; k > 0; k--) {
-        HDI_UNROLL
-        for (j = 0; j < 8; j++)
+        HDI_EACH(j, 8)
             if (j < k && k < nc) x[j] = HDI_OF(fnma1)(L[k + j * ld], x[k], x[j]);
     }
-    HDI_UNROLL
-    for (j = 0; j < 8; j++)
+    HDI_EACH(j, 8)
         if (j < nc) b[j] = x[j];
 }
 #endif
 
 /* y -= L x in n_rows rows from i on: eight right-hand sides */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_gemv8_rows)(const int n_rows, double *y, const int32_t *idx, const double *l, int64_t ld,
-                                                   int64_t i, const double *x, int32_t nc) {
+HDI_PART void HDI_OF(real_gemv8_rows)(const int n_rows, double *y, const int32_t *idx, const double *l,
+                                      int64_t ld, int64_t i, const double *x, int32_t nc) {
     enum { n_vec = 8 / HDI_WIDTH };
     hdi_vec s[HDI_WIDTH][n_vec];
     int32_t k;
     int r, v;
-    HDI_UNROLL
-    for (r = 0; r < n_rows; r++) {
-        HDI_UNROLL
-        for (v = 0; v < n_vec; v++) s[r][v] = hdi_vall(0);
-    }
+    HDI_EACH(r, n_rows)
+        HDI_EACH(v, n_vec) s[r][v] = hdi_vall(0);
     l += i;
     for (k = 0; k < nc; k++, l += ld, x += 8) {
         if (n_rows > 2) HDI_PREFETCH(l + 32);
-        HDI_UNROLL
-        for (r = 0; r < n_rows; r++) {
+        HDI_EACH(r, n_rows) {
             const hdi_vec a = hdi_vall(l[r]);
-            HDI_UNROLL
-            for (v = 0; v < n_vec; v++) s[r][v] = hdi_vfma(hdi_vload(x + HDI_WIDTH * v), a, s[r][v]);
+            HDI_EACH(v, n_vec) s[r][v] = hdi_vfma(hdi_vload(x + HDI_WIDTH * v), a, s[r][v]);
         }
     }
-    HDI_UNROLL
-    for (r = 0; r < n_rows; r++) {
+    HDI_EACH(r, n_rows) {
         double *to = y + 8 * (idx ? HDI_CAST(int64_t, idx[i + r]) : i + r);
-        HDI_UNROLL
-        for (v = 0; v < n_vec; v++) hdi_vstore(to + HDI_WIDTH * v, hdi_vsub(hdi_vload(to + HDI_WIDTH * v), s[r][v]));
+        HDI_EACH(v, n_vec) hdi_vstore(to + HDI_WIDTH * v, hdi_vsub(hdi_vload(to + HDI_WIDTH * v), s[r][v]));
     }
 }
 
-HDI_KERNEL void HDI_OF(real_gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc) {
+HDI_KERNEL void HDI_OF(real_gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n,
+                                   const double *x, int32_t nc) {
     int64_t i = 0;
     for (; i + HDI_WIDTH <= n; i += HDI_WIDTH) HDI_OF(real_gemv8_rows)(HDI_WIDTH, y, idx, L, ld, i, x, nc);
     if (HDI_WIDTH > 2)
@@ -2208,37 +2189,33 @@ HDI_KERNEL void HDI_OF(real_gemv8)(double *y, const int32_t *idx, const double *
 }
 
 /* x -= L' y for nc <= n_cols columns */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_dots8_cols)(const int n_cols, double *x, const double *L, int64_t ld, int64_t n, const double *y,
-                                                   const int32_t *idx, int32_t nc) {
+HDI_PART void HDI_OF(real_dots8_cols)(const int n_cols, double *x, const double *L, int64_t ld, int64_t n,
+                                      const double *y, const int32_t *idx, int32_t nc) {
     enum { n_vec = 8 / HDI_WIDTH };
     const double *l[HDI_WIDTH];
     hdi_vec s[HDI_WIDTH][n_vec];
     int64_t i;
     int j, v;
-    HDI_UNROLL
-    for (j = 0; j < n_cols; j++) {
+    HDI_EACH(j, n_cols) {
         l[j] = L + (j < nc ? j : nc - 1) * ld;
-        HDI_UNROLL
-        for (v = 0; v < n_vec; v++) s[j][v] = hdi_vall(0);
+        HDI_EACH(v, n_vec) s[j][v] = hdi_vall(0);
     }
     for (i = 0; i < n; i++) {
         const double *from = y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : i);
-        HDI_UNROLL
-        for (j = 0; j < n_cols; j++) {
+        HDI_EACH(j, n_cols) {
             const hdi_vec a = hdi_vall(l[j][i]);
-            HDI_UNROLL
-            for (v = 0; v < n_vec; v++) s[j][v] = hdi_vfma(hdi_vload(from + HDI_WIDTH * v), a, s[j][v]);
+            HDI_EACH(v, n_vec) s[j][v] = hdi_vfma(hdi_vload(from + HDI_WIDTH * v), a, s[j][v]);
         }
     }
     HDI_UNROLL
     for (j = 0; j < n_cols; j++, x += 8) {
         if (j >= nc) continue;
-        HDI_UNROLL
-        for (v = 0; v < n_vec; v++) hdi_vstore(x + HDI_WIDTH * v, hdi_vsub(hdi_vload(x + HDI_WIDTH * v), s[j][v]));
+        HDI_EACH(v, n_vec) hdi_vstore(x + HDI_WIDTH * v, hdi_vsub(hdi_vload(x + HDI_WIDTH * v), s[j][v]));
     }
 }
 
-HDI_KERNEL void HDI_OF(real_dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc) {
+HDI_KERNEL void HDI_OF(real_dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y,
+                                   const int32_t *idx, int32_t nc) {
     for (; nc > HDI_WIDTH / 2; nc -= HDI_WIDTH, x += 8 * HDI_WIDTH, L += HDI_WIDTH * ld)
         HDI_OF(real_dots8_cols)(HDI_WIDTH, x, L, ld, n, y, idx, nc);
     if (nc > 0) HDI_OF(real_dots8_cols)(HDI_WIDTH / 2, x, L, ld, n, y, idx, nc);
@@ -2258,21 +2235,17 @@ HDI_KERNEL void HDI_OF(real_upper8)(double *x, const double *L, int64_t ld, int3
 }
 #else
 /* The solve with the triangle, whose row k and column j < k is at L[k + j ld], or its transpose. */
-HDI_KERNEL HDI_INLINE void HDI_OF(real_triangle8)(const int up, double *x, const double *L, int64_t ld, int32_t nc) {
+HDI_PART void HDI_OF(real_triangle8)(const int up, double *x, const double *L, int64_t ld, int32_t nc) {
     hdi_vec v[8];
     int32_t j, k;
-    HDI_UNROLL
-    for (j = 0; j < 8; j++) v[j] = j < nc ? hdi_vload(x + 8 * j) : hdi_vall(0);
-    HDI_UNROLL
-    for (k = 0; k < 8; k++) {
-        HDI_UNROLL
-        for (j = 0; j < 8; j++) {
+    HDI_EACH(j, 8) v[j] = j < nc ? hdi_vload(x + 8 * j) : hdi_vall(0);
+    HDI_EACH(k, 8) {
+        HDI_EACH(j, 8) {
             if (!up && j < k && k < nc) v[k] = hdi_vfnma(v[j], hdi_vall(L[k + j * ld]), v[k]);
             if (up && j < 7 - k && 7 - k < nc) v[j] = hdi_vfnma(v[7 - k], hdi_vall(L[7 - k + j * ld]), v[j]);
         }
     }
-    HDI_UNROLL
-    for (j = 0; j < 8; j++)
+    HDI_EACH(j, 8)
         if (j < nc) hdi_vstore(x + 8 * j, v[j]);
 }
 
@@ -2290,82 +2263,82 @@ HDI_KERNEL void HDI_OF(real_upper8)(double *x, const double *L, int64_t ld, int3
 /* ---- packs ---- */
 
 #if HDI_WIDTH == 8
-/* An entry is one register. A product with the factor (r, m) = ((re, re), (im, im)) is summed in two halves, and only the sums are brought
- * together: re = p.lo - q.hi, im = p.hi + q.lo. */
+/* An entry is one register. A product with the factor (r, m) = ((re, re), (im, im)) is summed in two halves,
+ * and only the sums are brought together: re = p.lo - q.hi, im = p.hi + q.lo. */
 typedef struct HDI_OF(entry) { hdi_vec v; } HDI_OF(entry);
 typedef struct HDI_OF(twice) { hdi_vec r, m; } HDI_OF(twice);
 typedef struct HDI_OF(total) { hdi_vec p, q; } HDI_OF(total);
 
-HDI_KERNEL HDI_INLINE void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) { x->v = hdi_vload(from); }
-HDI_KERNEL HDI_INLINE void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) { hdi_vstore(to, x->v); }
-HDI_KERNEL HDI_INLINE void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) {
+HDI_PART void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) { x->v = hdi_vload(from); }
+HDI_PART void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) { hdi_vstore(to, x->v); }
+HDI_PART void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) {
     f->r = hdi_twice512(from);
     f->m = hdi_twice512(from + 4);
 }
 /* s = x */
-HDI_KERNEL HDI_INLINE void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) {
+HDI_PART void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) {
     s->p = x->v;
     s->q = hdi_vall(0);
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(total_zero)(HDI_OF(total) *s) { s->p = s->q = hdi_vall(0); }
+HDI_PART void HDI_OF(total_zero)(HDI_OF(total) *s) { s->p = s->q = hdi_vall(0); }
 /* s += x f */
-HDI_KERNEL HDI_INLINE void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     s->p = hdi_vfma(x->v, f->r, s->p);
     s->q = hdi_vfma(x->v, f->m, s->q);
 }
 /* s -= x f */
-HDI_KERNEL HDI_INLINE void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     s->p = hdi_vfnma(x->v, f->r, s->p);
     s->q = hdi_vfnma(x->v, f->m, s->q);
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { x->v = hdi_join512(s->p, s->q); }
+HDI_PART void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { x->v = hdi_join512(s->p, s->q); }
 /* x = x f */
-HDI_KERNEL HDI_INLINE void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     x->v = hdi_join512(hdi_vmul(x->v, f->r), hdi_vmul(x->v, f->m));
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) { HDI_OF(entry_times)(x, f); }
+HDI_PART void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) { HDI_OF(entry_times)(x, f); }
 /* c = c - s, or -s */
-HDI_KERNEL HDI_INLINE void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
+HDI_PART void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
     hdi_vstore(c, hdi_vsub(store ? hdi_vall(0) : hdi_vload(c), hdi_join512(s->p, s->q)));
 }
 /* Sweeps: what is taken from y is summed apart. */
-HDI_KERNEL HDI_INLINE void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { (void)y; HDI_OF(total_zero)(s); }
-HDI_KERNEL HDI_INLINE void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { (void)y; HDI_OF(total_zero)(s); }
+HDI_PART void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     HDI_OF(total_add)(s, x, f);
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(total_put)(y, s, 0); }
+HDI_PART void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(total_put)(y, s, 0); }
 #else
 /* An entry is its real parts and its imaginary parts. */
 typedef struct HDI_OF(entry) { hdi_vec re[4 / HDI_WIDTH], im[4 / HDI_WIDTH]; } HDI_OF(entry);
 typedef HDI_OF(entry) HDI_OF(twice);
 typedef HDI_OF(entry) HDI_OF(total);
 #ifndef HDI_HALVES
-#define HDI_HALVES HDI_UNROLL for (h = 0; h < 4 / HDI_WIDTH; h++)
+#define HDI_HALVES HDI_EACH(h, 4 / HDI_WIDTH)
 #endif
 
-HDI_KERNEL HDI_INLINE void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) {
+HDI_PART void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) {
     int h;
     HDI_HALVES {
         x->re[h] = hdi_vload(from + HDI_WIDTH * h);
         x->im[h] = hdi_vload(from + 4 + HDI_WIDTH * h);
     }
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) {
+HDI_PART void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) {
     int h;
     HDI_HALVES {
         hdi_vstore(to + HDI_WIDTH * h, x->re[h]);
         hdi_vstore(to + 4 + HDI_WIDTH * h, x->im[h]);
     }
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) { HDI_OF(entry_load)(f, from); }
-HDI_KERNEL HDI_INLINE void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) { *s = *x; }
-HDI_KERNEL HDI_INLINE void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { *x = *s; }
-HDI_KERNEL HDI_INLINE void HDI_OF(total_zero)(HDI_OF(total) *s) {
+HDI_PART void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) { HDI_OF(entry_load)(f, from); }
+HDI_PART void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) { *s = *x; }
+HDI_PART void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { *x = *s; }
+HDI_PART void HDI_OF(total_zero)(HDI_OF(total) *s) {
     int h;
     HDI_HALVES s->re[h] = s->im[h] = hdi_vall(0);
 }
 /* s -= x f, summed as plain C does */
-HDI_KERNEL HDI_INLINE void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     int h;
     HDI_HALVES {
         s->re[h] = hdi_vsub(s->re[h], HDI_OF(cross_minus)(x->re[h], f->re[h], x->im[h], f->im[h]));
@@ -2373,7 +2346,7 @@ HDI_KERNEL HDI_INLINE void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(ent
     }
 }
 /* s += x f, s -= x f, by fma where the set has it */
-HDI_KERNEL HDI_INLINE void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     int h;
     HDI_HALVES {
         if (HDI_OF(fused)) {
@@ -2385,7 +2358,7 @@ HDI_KERNEL HDI_INLINE void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entr
         }
     }
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     int h;
     if (!HDI_OF(fused)) {
         HDI_OF(sweep_take)(s, x, f);
@@ -2397,7 +2370,7 @@ HDI_KERNEL HDI_INLINE void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(ent
     }
 }
 /* x = x f as plain C does, and by fma where the set has it */
-HDI_KERNEL HDI_INLINE void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     int h;
     HDI_HALVES {
         const hdi_vec re = x->re[h];
@@ -2405,7 +2378,7 @@ HDI_KERNEL HDI_INLINE void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(tw
         x->im[h] = HDI_OF(cross_plus)(re, f->im[h], x->im[h], f->re[h]);
     }
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+HDI_PART void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
     int h;
     if (!HDI_OF(fused)) {
         HDI_OF(entry_scale)(x, f);
@@ -2418,7 +2391,7 @@ HDI_KERNEL HDI_INLINE void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(tw
     }
 }
 /* c = c - s, or -s; of zero with the sign that the set has always given it */
-HDI_KERNEL HDI_INLINE void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
+HDI_PART void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
     const hdi_vec zero = hdi_vall(HDI_OF(fused) ? 0.0 : -0.0);
     int h;
     HDI_HALVES {
@@ -2427,44 +2400,36 @@ HDI_KERNEL HDI_INLINE void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, 
         hdi_vstore(to + 4, hdi_vsub(store ? zero : hdi_vload(to + 4), s->im[h]));
     }
 }
-HDI_KERNEL HDI_INLINE void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { HDI_OF(entry_load)(s, y); }
-HDI_KERNEL HDI_INLINE void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(entry_store)(y, s); }
+HDI_PART void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { HDI_OF(entry_load)(s, y); }
+HDI_PART void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(entry_store)(y, s); }
 #endif
 
 /* A tile of mr x nr entries. */
-HDI_KERNEL HDI_INLINE void HDI_OF(pack_tile)(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
+HDI_PART void HDI_OF(pack_tile)(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
     const double *a = g->a + i0 * g->a_row, *b = g->b + (j0 - g->b_first) * g->b_row;
     HDI_OF(total) s[HDI_OF(tile_rows)][HDI_OF(tile_cols)];
     int64_t k;
     int i, j;
-    HDI_UNROLL
-    for (i = 0; i < mr; i++) {
-        HDI_UNROLL
-        for (j = 0; j < nr; j++) HDI_OF(total_zero)(&s[i][j]);
-    }
+    HDI_EACH(i, mr)
+        HDI_EACH(j, nr) HDI_OF(total_zero)(&s[i][j]);
     for (k = g->depth; k > 0; k--, a += g->a_col, b += g->b_col) {
         HDI_OF(twice) f[HDI_OF(tile_cols)];
-        HDI_UNROLL
-        for (j = 0; j < nr; j++) HDI_OF(twice_load)(&f[j], b + j * g->b_row);
-        HDI_UNROLL
-        for (i = 0; i < mr; i++) {
+        HDI_EACH(j, nr) HDI_OF(twice_load)(&f[j], b + j * g->b_row);
+        HDI_EACH(i, mr) {
             HDI_OF(entry) x;
             HDI_OF(entry_load)(&x, a + i * g->a_row);
-            HDI_UNROLL
-            for (j = 0; j < nr; j++) HDI_OF(total_add)(&s[i][j], &x, &f[j]);
+            HDI_EACH(j, nr) HDI_OF(total_add)(&s[i][j], &x, &f[j]);
         }
     }
-    HDI_UNROLL
-    for (i = 0; i < mr; i++) {
+    HDI_EACH(i, mr) {
         double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * j0;
-        HDI_UNROLL
-        for (j = 0; j < nr; j++)
+        HDI_EACH(j, nr)
             if (!g->lower || j0 + j <= i0 + i) HDI_OF(total_put)(c + HDI_PACK * j, &s[i][j], g->store);
     }
 }
 
 /* Rows i..end-1 of nr columns. */
-HDI_KERNEL HDI_INLINE void HDI_OF(pack_columns)(const hdi_pack_job *g, const int nr, int64_t i, int64_t end, int64_t j) {
+HDI_PART void HDI_OF(pack_columns)(const hdi_pack_job *g, const int nr, int64_t i, int64_t end, int64_t j) {
     enum { mr = HDI_OF(tile_rows) };
     for (; i + mr <= end; i += mr) HDI_OF(pack_tile)(g, mr, nr, i, j);
     if (mr > 3 && end - i == 3) HDI_OF(pack_tile)(g, 3, nr, i, j);
@@ -2476,7 +2441,8 @@ HDI_KERNEL void HDI_OF(pack_multiply)(const hdi_pack_job *g, int64_t i0, int64_t
     enum { nr = HDI_OF(tile_cols) };
     int64_t ib, i, j;
     for (ib = i0; ib < i1; ib += HDI_PACK_ROWS) {
-        const int64_t ie = ib + HDI_PACK_ROWS < i1 ? ib + HDI_PACK_ROWS : i1, je = g->lower && ie < j1 ? ie : j1;
+        const int64_t ie = ib + HDI_PACK_ROWS < i1 ? ib + HDI_PACK_ROWS : i1,
+            je = g->lower && ie < j1 ? ie : j1;
         for (j = j0; j < je; j += nr) {
             i = g->lower && j > ib ? j : ib;
             if (je - j >= nr) HDI_OF(pack_columns)(g, nr, i, ie, j);
@@ -2487,7 +2453,7 @@ HDI_KERNEL void HDI_OF(pack_multiply)(const hdi_pack_job *g, int64_t i0, int64_t
 }
 
 /* mr rows at once, for independent chains of multiply-adds. */
-HDI_KERNEL HDI_INLINE void HDI_OF(pack_solve_tile)(const hdi_pack_rows *g, const int mr, double *x) {
+HDI_PART void HDI_OF(pack_solve_tile)(const hdi_pack_rows *g, const int mr, double *x) {
     int32_t k, j;
     int i;
     for (k = 0; k < g->nb; k++, x += HDI_PACK) {
@@ -2495,22 +2461,19 @@ HDI_KERNEL HDI_INLINE void HDI_OF(pack_solve_tile)(const hdi_pack_rows *g, const
         HDI_OF(total) t[HDI_OF(solve_rows)];
         HDI_OF(entry) y;
         HDI_OF(twice) f;
-        HDI_UNROLL
-        for (i = 0; i < mr; i++) {
+        HDI_EACH(i, mr) {
             HDI_OF(entry_load)(&y, x + i * g->row);
             HDI_OF(total_begin)(&t[i], &y);
         }
         for (j = -k; j < 0; j++, s += HDI_PACK) {
             HDI_OF(twice_load)(&f, s);
-            HDI_UNROLL
-            for (i = 0; i < mr; i++) {
+            HDI_EACH(i, mr) {
                 HDI_OF(entry_load)(&y, x + i * g->row + HDI_PACK * j);
                 HDI_OF(total_take)(&t[i], &y, &f);
             }
         }
         HDI_OF(twice_load)(&f, g->dinv + HDI_PACK * k);
-        HDI_UNROLL
-        for (i = 0; i < mr; i++) {
+        HDI_EACH(i, mr) {
             HDI_OF(total_end)(&y, &t[i]);
             HDI_OF(entry_times)(&y, &f);
             HDI_OF(entry_store)(x + i * g->row, &y);
@@ -2528,9 +2491,10 @@ HDI_KERNEL void HDI_OF(pack_solve_rows)(const hdi_pack_rows *g, int64_t r0, int6
     if (mr > 1 && i < r1) HDI_OF(pack_solve_tile)(g, 1, g->panel + i * g->row);
 }
 
-/* S(i,k) = l_ik d_k for rows [r0,r1), columns [k0,k1) of a panel; S by rows of k1 - k0 entries, row 0 being r0. */
-HDI_KERNEL void HDI_OF(pack_scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d,
-                                   double *s) {
+/* S(i,k) = l_ik d_k for rows [r0,r1), columns [k0,k1) of a panel; S by rows of k1 - k0 entries, row 0 being
+ * r0. */
+HDI_KERNEL void HDI_OF(pack_scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0,
+                                   int64_t k1, const double *d, double *s) {
     int64_t i, k;
     for (i = r0; i < r1; i++) {
         for (k = k0; k < k1; k++, s += HDI_PACK) {
@@ -2545,73 +2509,73 @@ HDI_KERNEL void HDI_OF(pack_scale)(const double *panel, int64_t row, int64_t r0,
 }
 
 /* to[rel_b] += from[b] for b in [b0,b1), entries; off is taken off rel. */
-HDI_KERNEL void HDI_OF(pack_add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
+HDI_KERNEL void HDI_OF(pack_add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1,
+                                 int64_t off) {
     int64_t b;
     int q;
     for (b = b0; b < b1; b++) {
         double *t = to + HDI_PACK * (rel[b] - off);
         const double *f = from + HDI_PACK * b;
         HDI_UNROLL
-        for (q = 0; q < HDI_PACK; q += HDI_WIDTH) hdi_vstore(t + q, hdi_vadd(hdi_vload(t + q), hdi_vload(f + q)));
+        for (q = 0; q < HDI_PACK; q += HDI_WIDTH)
+            hdi_vstore(t + q, hdi_vadd(hdi_vload(t + q), hdi_vload(f + q)));
     }
 }
 
 /* Sweeps of one right-hand side through u rows of a panel. Forward: t_i -= sum_k l_ik y_k. */
-HDI_KERNEL HDI_INLINE void HDI_OF(pack_forward_rows)(const int n_rows, const double *l, int64_t p, const double *y, double *t) {
+HDI_PART void HDI_OF(pack_forward_rows)(const int n_rows, const double *l, int64_t p, const double *y,
+                                        double *t) {
     HDI_OF(total) s[HDI_OF(sweep_rows)];
     int64_t k;
     int i;
-    HDI_UNROLL
-    for (i = 0; i < n_rows; i++) HDI_OF(sweep_begin)(&s[i], t + HDI_PACK * i);
+    HDI_EACH(i, n_rows) HDI_OF(sweep_begin)(&s[i], t + HDI_PACK * i);
     for (k = 0; k < p; k++, l += HDI_PACK) {
         HDI_OF(twice) f;
         HDI_OF(twice_load)(&f, y + HDI_PACK * k);
-        HDI_UNROLL
-        for (i = 0; i < n_rows; i++) {
+        HDI_EACH(i, n_rows) {
             HDI_OF(entry) x;
             HDI_OF(entry_load)(&x, l + HDI_PACK * p * i);
             HDI_OF(sweep_take)(&s[i], &x, &f);
         }
     }
-    HDI_UNROLL
-    for (i = 0; i < n_rows; i++) HDI_OF(sweep_end)(t + HDI_PACK * i, &s[i]);
+    HDI_EACH(i, n_rows) HDI_OF(sweep_end)(t + HDI_PACK * i, &s[i]);
 }
 
 HDI_KERNEL void HDI_OF(pack_forward)(const double *l, int64_t u, int64_t p, const double *y, double *t) {
     enum { n_rows = HDI_OF(sweep_rows) };
     int64_t i = 0;
-    for (; i + n_rows <= u; i += n_rows) HDI_OF(pack_forward_rows)(n_rows, l + HDI_PACK * p * i, p, y, t + HDI_PACK * i);
+    for (; i + n_rows <= u; i += n_rows)
+        HDI_OF(pack_forward_rows)(n_rows, l + HDI_PACK * p * i, p, y, t + HDI_PACK * i);
     if (n_rows > 1)
         for (; i < u; i++) HDI_OF(pack_forward_rows)(1, l + HDI_PACK * p * i, p, y, t + HDI_PACK * i);
 }
 
 /* Backward: y_k -= sum_i l_ik x[row_i] for n_cols pivots; row NULL: row_i = i. */
-HDI_KERNEL HDI_INLINE void HDI_OF(pack_backward_cols)(const int n_cols, const double *l, const int32_t *row, int64_t u, int64_t p,
-                                                      double *y, const double *x) {
+HDI_PART void HDI_OF(pack_backward_cols)(const int n_cols, const double *l, const int32_t *row, int64_t u,
+                                         int64_t p, double *y, const double *x) {
     HDI_OF(total) s[HDI_OF(sweep_cols)];
     int64_t i;
     int c;
-    HDI_UNROLL
-    for (c = 0; c < n_cols; c++) HDI_OF(sweep_begin)(&s[c], y + HDI_PACK * c);
+    HDI_EACH(c, n_cols) HDI_OF(sweep_begin)(&s[c], y + HDI_PACK * c);
     for (i = 0; i < u; i++, l += HDI_PACK * p) {
         HDI_OF(twice) f;
         HDI_PREFETCH(l + 1024);
         HDI_OF(twice_load)(&f, x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i));
-        HDI_UNROLL
-        for (c = 0; c < n_cols; c++) {
+        HDI_EACH(c, n_cols) {
             HDI_OF(entry) v;
             HDI_OF(entry_load)(&v, l + HDI_PACK * c);
             HDI_OF(sweep_take)(&s[c], &v, &f);
         }
     }
-    HDI_UNROLL
-    for (c = 0; c < n_cols; c++) HDI_OF(sweep_end)(y + HDI_PACK * c, &s[c]);
+    HDI_EACH(c, n_cols) HDI_OF(sweep_end)(y + HDI_PACK * c, &s[c]);
 }
 
-HDI_KERNEL void HDI_OF(pack_backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
+HDI_KERNEL void HDI_OF(pack_backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y,
+                                      const double *x) {
     enum { most = HDI_OF(sweep_cols) };
     int64_t k;
-    for (k = 0; k + most <= p; k += most) HDI_OF(pack_backward_cols)(most, l + HDI_PACK * k, row, u, p, y + HDI_PACK * k, x);
+    for (k = 0; k + most <= p; k += most)
+        HDI_OF(pack_backward_cols)(most, l + HDI_PACK * k, row, u, p, y + HDI_PACK * k, x);
     l += HDI_PACK * k;
     y += HDI_PACK * k;
     switch (p - k) {
@@ -2628,17 +2592,19 @@ HDI_KERNEL void HDI_OF(pack_backward)(const double *l, const int32_t *row, int64
 
 static const hdi_real_ops *HDI_OF(real_ops)(void) {
     static const hdi_real_ops hdi_ops = {
-        HDI_REGS * HDI_WIDTH, HDI_COLS, HDI_OF(real_pack), HDI_OF(real_copy), HDI_OF(real_block), HDI_OF(real_rows),
-        HDI_OF(real_gemm), HDI_OF(real_update), HDI_PASTE(real_add, HDI_SOLO), HDI_PASTE(real_forward, HDI_SOLO),
-        HDI_PASTE(real_backward, HDI_SOLO), HDI_PASTE(real_gather, HDI_SOLO), HDI_OF(real_gemv8), HDI_OF(real_dots8),
-        HDI_OF(real_lower8), HDI_OF(real_upper8)
+        HDI_REGS * HDI_WIDTH, HDI_COLS, HDI_OF(real_pack), HDI_OF(real_copy), HDI_OF(real_block),
+            HDI_OF(real_rows),
+        HDI_OF(real_gemm), HDI_OF(real_update), HDI_PASTE(real_add, HDI_SOLO),
+            HDI_PASTE(real_forward, HDI_SOLO),
+        HDI_PASTE(real_backward, HDI_SOLO), HDI_PASTE(real_gather, HDI_SOLO), HDI_OF(real_gemv8),
+            HDI_OF(real_dots8), HDI_OF(real_lower8), HDI_OF(real_upper8)
     };
     return &hdi_ops;
 }
 
 static const hdi_pack_ops *HDI_OF(pack_ops)(void) {
-    static const hdi_pack_ops hdi_ops = {HDI_OF(pack_multiply), HDI_OF(pack_solve_rows), HDI_OF(pack_scale), HDI_OF(pack_add),
-                                         HDI_OF(pack_forward), HDI_OF(pack_backward)};
+    static const hdi_pack_ops hdi_ops = {HDI_OF(pack_multiply), HDI_OF(pack_solve_rows), HDI_OF(pack_scale),
+                                         HDI_OF(pack_add), HDI_OF(pack_forward), HDI_OF(pack_backward)};
     return &hdi_ops;
 }
 
@@ -2673,7 +2639,8 @@ static const hdi_pack_ops *HDI_OF(pack_ops)(void) {
 #include HEATDIFF_FILENAME
 #endif
 
-/* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512. Never NULL: a level that was not compiled gives the plain kernels. */
+/* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512. Never NULL: a level that was not compiled gives the plain
+ * kernels. */
 static const hdi_real_ops *hdi_real_ops_get(int level) {
 #if HDI_X86
     if (level >= 2) return hdi_real_ops_avx512();
@@ -2699,9 +2666,12 @@ typedef struct hdi_real_pivots {
     int64_t negative;
 } hdi_real_pivots;
 
-/* Columns of L, and of U padded to slices, that are taken at a time in fronts of at most p pivots and u rows below. */
+/* Columns of L, and of U padded to slices, that are taken at a time in fronts of at most p pivots and u rows
+ * below. */
 static int64_t hdi_real_depth(int64_t p) { return hdi_least(p, HDI_REAL_KC); }
-static int64_t hdi_real_span(int64_t u) { return hdi_least((u + HDI_REAL_NR - 1) / HDI_REAL_NR * HDI_REAL_NR, HDI_REAL_NC); }
+static int64_t hdi_real_span(int64_t u) {
+    return hdi_least((u + HDI_REAL_NR - 1) / HDI_REAL_NR * HDI_REAL_NR, HDI_REAL_NC);
+}
 
 /* Work, in doubles: of one thread in hdi_real_update and hdi_real_rows for such fronts, and of S. */
 static int64_t hdi_real_work(int64_t u, int64_t p) {
@@ -2715,9 +2685,11 @@ static int64_t hdi_real_s_size(int64_t p) {
     return (p + HDI_REAL_NR) * (p < nb ? p + HDI_REAL_NR : nb);
 }
 
-/* Rows r0..r1-1 below pivots k0..k0+nb-1: L(r,K) = (P(r,K) - L(r,0..k0-1) S) inv(D L') for S as hdi_real_block left it; rows of S per slice: kb.
- * work [hdi_real_work(u, p)] is used only when k0 >= HDI_REAL_KC. */
-static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb, const double *S, int32_t kb, const double *dinv,
+/* Rows r0..r1-1 below pivots k0..k0+nb-1: L(r,K) = (P(r,K) - L(r,0..k0-1) S) inv(D L') for S as
+ * hdi_real_block left it; rows of S per slice: kb. work [hdi_real_work(u, p)] is used only when k0 >=
+ * HDI_REAL_KC. */
+static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
+                          const double *S, int32_t kb, const double *dinv,
                           int64_t r0, int64_t r1, double *work) {
     const int32_t k1 = k0 - k0 % HDI_REAL_KC, mr = o->mr, nr = o->nr;
     int64_t r;
@@ -2732,12 +2704,12 @@ static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k
     }
 }
 
-/* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as hdi_real_rows, to the last bit, below K.
- * nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m when k0 + nb <= HDI_REAL_KC.
- * S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the diagonal of P. work [hdi_real_work(u, p)].
- * Returns -1, or the first pivot that is zero or not finite. */
-static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb, int64_t end, double *S, double *dinv,
-                              hdi_real_pivots *pivots, double *work) {
+/* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as
+ * hdi_real_rows, to the last bit, below K. nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m
+ * when k0 + nb <= HDI_REAL_KC. S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the
+ * diagonal of P. work [hdi_real_work(u, p)]. Returns -1, or the first pivot that is zero or not finite. */
+static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
+                              int64_t end, double *S, double *dinv, hdi_real_pivots *pivots, double *work) {
     const int32_t nr = o->nr, kb = k0 + nb;
     int32_t k, j;
     for (k = k0; k < kb; k += nr, S += HDI_CAST(int64_t, kb) * nr) {
@@ -2766,11 +2738,13 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
 }
 
 #ifdef HEATDIFF_USE_BLAS
-/* hdi_real_update by the BLAS' dgemm, in blocks of 128 rows and 256 columns, for fronts that are worth the calls. Update of 1000 rows by 500 pivots on one core:
- * plain C 22 GF/s, OpenBLAS 0.3.21 40 (58 when told to use AVX-512), our AVX2 kernels 62, AVX-512 115: so only plain C gives way to it. */
+/* hdi_real_update by the BLAS' dgemm, in blocks of 128 rows and 256 columns, for fronts that are worth the
+ * calls. Update of 1000 rows by 500 pivots on one core: plain C 22 GF/s, OpenBLAS 0.3.21 40 (58 when told to
+ * use AVX-512), our AVX2 kernels 62, AVX-512 115: so only plain C gives way to it. */
 enum { HDI_BLAS_LEAST = 128, HDI_BLAS_ROWS = 128, HDI_BLAS_COLS = 256 };
 
-static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work, int64_t r0, int64_t r1) {
+static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work,
+                            int64_t r0, int64_t r1) {
     double *S = work, *C = work + HDI_BLAS_COLS * HDI_REAL_KC;
     const int ld = HDI_CAST(int, m), ld_s = HDI_BLAS_COLS, ld_c = HDI_BLAS_ROWS;
     const double one = 1, zero = 0;
@@ -2781,10 +2755,12 @@ static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, in
         for (k = 0; k < p; k += HDI_REAL_KC) {
             const int depth = p - k < HDI_REAL_KC ? p - k : HDI_REAL_KC;
             for (q = 0; q < depth; q++)
-                for (j = 0; j < cols; j++) S[j + q * HDI_BLAS_COLS] = P[p + g + j + (k + q) * m] * P[(k + q) * (m + 1)];
+                for (j = 0; j < cols; j++)
+                    S[j + q * HDI_BLAS_COLS] = P[p + g + j + (k + q) * m] * P[(k + q) * (m + 1)];
             for (r = r0 > g ? r0 : g; r < r1; r += HDI_BLAS_ROWS) {
                 const int rows = HDI_CAST(int, r1 - r < HDI_BLAS_ROWS ? r1 - r : HDI_BLAS_ROWS);
-                dgemm_("N", "T", &rows, &cols, &depth, &one, P + p + r + k * m, &ld, S, &ld_s, &zero, C, &ld_c);
+                dgemm_("N", "T", &rows, &cols, &depth, &one, P + p + r + k * m, &ld, S, &ld_s, &zero, C,
+                       &ld_c);
                 for (j = 0; j < cols; j++) {
                     const int64_t c = g + j;
                     double *to = U + (c * u - c * (c - 1) / 2 - c);
@@ -2797,10 +2773,11 @@ static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, in
 #endif
 
 /* Rows r0..r1-1 of U -= L21 D L21', columns as far as the diagonal. work [hdi_real_work(u, p)]. */
-static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work, int64_t r0,
-                            int64_t r1) {
+static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const double *P, int64_t m,
+                            int32_t p, double *work, int64_t r0, int64_t r1) {
     const int32_t mr = o->mr;
-    double *B = work, *copy = work + hdi_real_depth(p) * hdi_real_span(u), *d = copy + hdi_real_depth(p) * HDI_REAL_MR;
+    double *B = work, *copy = work + hdi_real_depth(p) * hdi_real_span(u),
+        *d = copy + hdi_real_depth(p) * HDI_REAL_MR;
     int64_t g, i;
     int32_t k, q;
 #ifdef HEATDIFF_USE_BLAS
@@ -2828,10 +2805,10 @@ static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const d
     }
 }
 
-/* The child's packed update, columns c0..c1-1, added to the parent's front: (i,j) goes to (rel[i], rel[j]), rel ascending. Different columns
- * of one child never meet. */
-static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t p, double *U, const double *child, int64_t uc,
-                            const int32_t *rel, int64_t c0, int64_t c1) {
+/* The child's packed update, columns c0..c1-1, added to the parent's front: (i,j) goes to (rel[i], rel[j]),
+ * rel ascending. Different columns of one child never meet. */
+static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t p, double *U,
+                            const double *child, int64_t uc, const int32_t *rel, int64_t c0, int64_t c1) {
     enum { n_runs = 64 };
     const int64_t u = m - p;
     int32_t run[n_runs + 1];  /* rows that go to consecutive places, from run[q] to run[q + 1] - 1 */
@@ -2863,7 +2840,8 @@ static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t
 /* ---- solves ---- */
 
 /* x1 = L11^-T (dinv x1 - L21' x[idx]). t [m - p]. dinv may be NULL: ones. */
-static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, const double *dinv, double *x1, const double *x,
+static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p,
+                              const double *dinv, double *x1, const double *x,
                               const int32_t *idx, double *t) {
     int32_t k;
     o->gather(t, x, idx, m - p);
@@ -2876,8 +2854,8 @@ static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m,
 }
 
 /* The same for eight right-hand sides, x row-major [.][8]. */
-static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, const double *dinv, double *x1, const double *x,
-                               const int32_t *idx) {
+static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p,
+                               const double *dinv, double *x1, const double *x, const int32_t *idx) {
     int32_t k, j;
     for (k = (p - 1) & ~7; k >= 0; k -= 8) {
         const int32_t nc = p - k < 8 ? p - k : 8;
