@@ -51,6 +51,8 @@
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                beside the implementation: both or none; what contexts without an allocator use
      HEATDIFF_NO_OPENMP        beside the implementation: no OpenMP even when compiled with it
+     HEATDIFF_FILENAME         beside the implementation: "name" of this file, which includes itself for AVX2 and AVX-512,
+                               where it is neither heatdiff.h nor told by the compiler as __FILE_NAME__
      HEATDIFF_NO_SIMD          beside the implementation: plain C only, no kernels for AVX2 and AVX-512
      HEATDIFF_USE_BLAS         beside the implementation: dgemm of a BLAS (32-bit integers) for the large fronts of real factors where only plain C
                                kernels are to be had (it is twice as fast there; those for AVX2 and AVX-512 are faster than OpenBLAS)
@@ -1402,13 +1404,12 @@ static int64_t hdi_triangle(int64_t u) { return u * (u + 1) / 2; }
  *   what kernels are given, and the tables through which the rest of the file calls them
  *   the vectors of each instruction set, a layer of some forty short functions
  *   the kernels themselves, which are read once for each set, and at last the choice of the set
- * For AVX2 and AVX-512 the file includes itself with HDI_SET named anew: everything else in it is closed
- * then. It finds itself by the name that it was opened by, where the compiler tells it, or by
- * HEATDIFF_FILENAME. Plain C is read in place, and with HEATDIFF_NO_SIMD, or on other processors, nothing is
- * included.
- * Within one set every entry goes through the same operations in the same order however rows are shared out:
- * results do not depend on threads. The optional BLAS is called here only.
- * KERNELS TRUST THEIR INPUT. No two arguments overlap unless said. */
+ * For AVX2 and AVX-512 the file includes itself with HDI_SET named anew; everything else in it is closed
+ * then. It knows its name from the compiler, or from HEATDIFF_FILENAME. Plain C is read in place: with
+ * HEATDIFF_NO_SIMD, and on other processors, nothing is included.
+ * Within one set every entry goes through the same operations in the same order however rows are shared out,
+ * so that results do not depend on threads. The optional BLAS is called here only.
+ * Kernels trust their input. No two arguments overlap unless said. */
 
 /* ---- real fronts ---- */
 /* A front is the dense part of a sparse LDL' factorisation that belongs to one supernode: m rows, of which
@@ -1760,9 +1761,9 @@ HDI_IN8 hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
 #endif /* HEATDIFF_IMPLEMENTED */
 
 /* ---- the kernels, once for each instruction set ---- */
-/* The text from here to the choice of the set is read once for each: the first time as part of this file, for
- * plain C; then the file includes itself with HDI_SET named anew, and all other parts of it closed.
- * HDI_OF(name) is name_set. */
+/* The text from here to the choice of the set is read once for each set. HDI_OF(name) is name_set, HDI_SOLO
+ * the set whose kernels for one right-hand side are taken. HDI_KERNEL begins what the tables hold, HDI_PART
+ * what is made part of it, with constants for the arguments that are const int. */
 
 #ifdef HDI_SET
 #ifndef HDI_OF
@@ -1916,8 +1917,8 @@ HDI_KERNEL void HDI_OF(real_gemm)(double *C, int64_t ld, int32_t n, int32_t nb, 
 
 HDI_KERNEL void HDI_OF(real_update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1,
                                     const double *A, int64_t lda, const double *B, int32_t kc) {
-    const hdi_real_tile t = {U + (j0 * u - j0 * (j0 - 1) / 2 - j0 + i), A, B, u - j0 - 1, 1, lda, n, 0, 0,
-                             kc};
+    double *C = U + (j0 * u - j0 * (j0 - 1) / 2 - j0 + i);
+    const hdi_real_tile t = {C, A, B, u - j0 - 1, 1, lda, n, 0, 0, kc};
     HDI_OF(real_tiles)(&t, j1 - j0, HDI_CAST(int64_t, kc) * HDI_COLS, j0 - i);
 }
 
@@ -2063,18 +2064,18 @@ HDI_PART void HDI_OF(real_columns)(const double **l, const double *L, int64_t ld
     HDI_EACH(j, 8) l[j] = L + (j < nc ? j : nc - 1) * ld;
 }
 
-/* Row i and its neighbours of y - L b, even columns summed apart from odd ones; wide: more than four columns.
- * part is the number of rows where they do not fill a vector, and else zero. */
+/* y - L b in the rows from i on that fill a vector, or, with part, in the rest of them. Even columns are
+ * summed apart from odd ones. wide: more than four columns. */
 HDI_PART hdi_vec HDI_OF(real_minus)(hdi_vec y, const double *const *l, int64_t i, const int part,
                                     int32_t rest, const hdi_vec *b, int wide) {
     hdi_vec s[2];
     int j;
     s[0] = y;
     s[1] = hdi_vall(0);
-    HDI_EACH(j, 8)
-        if (j < 4 || wide) s[j % 2] = hdi_vfnma(part ? HDI_OF(load_tail)(l[j] + i,
-                                                                         rest) : hdi_vload(l[j] + i), b[j],
-                                                                             s[j % 2]);
+    HDI_EACH(j, 8) {
+        if (j >= 4 && !wide) continue;
+        s[j % 2] = hdi_vfnma(part ? HDI_OF(load_tail)(l[j] + i, rest) : hdi_vload(l[j] + i), b[j], s[j % 2]);
+    }
     return hdi_vadd(s[0], s[1]);
 }
 
@@ -2086,8 +2087,8 @@ HDI_PART void HDI_OF(real_sweep)(double *y, const double *const *l, int64_t n, c
     if (i < n) {
         const int32_t rest = HDI_CAST(int32_t, n - i);
         const hdi_vec from = keep ? HDI_OF(load_tail)(y + i, rest) : hdi_vall(0);
-        HDI_OF(store_rows)(y + i, HDI_OF(real_minus)(from, l, i, 1, rest, b, wide), HDI_OF(rows_of)(0, rest),
-                           0);
+        const hdi_vec to = HDI_OF(real_minus)(from, l, i, 1, rest, b, wide);
+        HDI_OF(store_rows)(y + i, to, HDI_OF(rows_of)(0, rest), 0);
     }
 }
 
@@ -2098,10 +2099,9 @@ HDI_KERNEL void HDI_OF(real_forward)(double *b, const double *L, int64_t ld, int
     hdi_vec v[8];
     int j, k;
     HDI_EACH(j, 8) x[j] = j < nc ? b[j] : 0.0;
-    HDI_EACH(j, 8) {
+    HDI_EACH(j, 8)
         HDI_EACH(k, 8)
             if (k > j && k < nc) x[k] = HDI_OF(fnma1)(L[k + j * ld], x[j], x[k]);
-    }
     HDI_EACH(j, 8) {
         v[j] = hdi_vall(x[j]);
         if (j < nc) b[j] = x[j];
@@ -2441,8 +2441,7 @@ HDI_KERNEL void HDI_OF(pack_multiply)(const hdi_pack_job *g, int64_t i0, int64_t
     enum { nr = HDI_OF(tile_cols) };
     int64_t ib, i, j;
     for (ib = i0; ib < i1; ib += HDI_PACK_ROWS) {
-        const int64_t ie = ib + HDI_PACK_ROWS < i1 ? ib + HDI_PACK_ROWS : i1,
-            je = g->lower && ie < j1 ? ie : j1;
+        const int64_t ie = hdi_least(ib + HDI_PACK_ROWS, i1), je = g->lower ? hdi_least(ie, j1) : j1;
         for (j = j0; j < je; j += nr) {
             i = g->lower && j > ib ? j : ib;
             if (je - j >= nr) HDI_OF(pack_columns)(g, nr, i, ie, j);
@@ -2559,7 +2558,7 @@ HDI_PART void HDI_OF(pack_backward_cols)(const int n_cols, const double *l, cons
     HDI_EACH(c, n_cols) HDI_OF(sweep_begin)(&s[c], y + HDI_PACK * c);
     for (i = 0; i < u; i++, l += HDI_PACK * p) {
         HDI_OF(twice) f;
-        HDI_PREFETCH(l + 1024);
+        HDI_PREFETCH_AT(l, 1024);
         HDI_OF(twice_load)(&f, x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i));
         HDI_EACH(c, n_cols) {
             HDI_OF(entry) v;
@@ -2592,12 +2591,11 @@ HDI_KERNEL void HDI_OF(pack_backward)(const double *l, const int32_t *row, int64
 
 static const hdi_real_ops *HDI_OF(real_ops)(void) {
     static const hdi_real_ops hdi_ops = {
-        HDI_REGS * HDI_WIDTH, HDI_COLS, HDI_OF(real_pack), HDI_OF(real_copy), HDI_OF(real_block),
-            HDI_OF(real_rows),
-        HDI_OF(real_gemm), HDI_OF(real_update), HDI_PASTE(real_add, HDI_SOLO),
-            HDI_PASTE(real_forward, HDI_SOLO),
-        HDI_PASTE(real_backward, HDI_SOLO), HDI_PASTE(real_gather, HDI_SOLO), HDI_OF(real_gemv8),
-            HDI_OF(real_dots8), HDI_OF(real_lower8), HDI_OF(real_upper8)
+        HDI_REGS * HDI_WIDTH, HDI_COLS,
+        HDI_OF(real_pack), HDI_OF(real_copy), HDI_OF(real_block), HDI_OF(real_rows), HDI_OF(real_gemm),
+        HDI_OF(real_update), HDI_PASTE(real_add, HDI_SOLO), HDI_PASTE(real_forward, HDI_SOLO),
+        HDI_PASTE(real_backward, HDI_SOLO), HDI_PASTE(real_gather, HDI_SOLO),
+        HDI_OF(real_gemv8), HDI_OF(real_dots8), HDI_OF(real_lower8), HDI_OF(real_upper8)
     };
     return &hdi_ops;
 }
@@ -2621,7 +2619,7 @@ static const hdi_pack_ops *HDI_OF(pack_ops)(void) {
 #if HDI_X86
 #ifndef HEATDIFF_FILENAME
 #ifdef __FILE_NAME__
-#define HEATDIFF_FILENAME __FILE_NAME__
+#define HEATDIFF_FILENAME __FILE_NAME__          /* without folders: it is looked for beside itself */
 #else
 #define HEATDIFF_FILENAME "heatdiff.h"
 #endif
