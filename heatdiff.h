@@ -879,9 +879,10 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_PREFETCH_AT(p, i) ((void)0)
 #endif
 
-/* Instruction sets. A few kernels are compiled several times in this one file, with function-level targets, and chosen at run time, so that a plain
- * cc -O2 uses what the processor has. Plain C serves everything else. */
-/* GCC does not align the stack for AVX on Windows (its bug 54412), and clang for MSVC lacks __builtin_cpu_supports. */
+/* Instruction sets. The kernels of room [07] are compiled for each, with function-level targets, and chosen at run time,
+ * so that a plain cc -O2 uses what the processor has. Plain C serves everything else. GCC does not align the stack
+ * for AVX on Windows (its bug 54412), and __builtin_cpu_supports of clang for MSVC needs a library that is not
+ * linked there. */
 #if defined(__x86_64__) && (defined(__clang__) ? !defined(_MSC_VER) : defined(__GNUC__) && !defined(_WIN32)) && \
     !defined(HEATDIFF_NO_SIMD)
 #include <immintrin.h>
@@ -2620,7 +2621,12 @@ static const hdi_pack_ops *HDI_OF(pack_ops)(void) {
 #ifndef HEATDIFF_FILENAME
 #ifdef __FILE_NAME__
 #define HEATDIFF_FILENAME __FILE_NAME__          /* without folders: it is looked for beside itself */
-#else
+#elif defined(__has_include)
+#if __has_include(__FILE__)
+#define HEATDIFF_FILENAME __FILE__
+#endif
+#endif
+#ifndef HEATDIFF_FILENAME
 #define HEATDIFF_FILENAME "heatdiff.h"
 #endif
 #endif
@@ -13498,78 +13504,81 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
 }
 
 #if HDI_X86
-#define HDI_CHECK_DECLARE(r) hdi_v8 l##r, b##r, n##r = zero, f##r = zero, z##r = zero;
-#define HDI_CHECK_CLEAR(r) if (k > r) { l##r = zero; b##r = zero; if (!lap->B) b##r = _mm512_mul_pd(_mm512_set1_pd(lap->mass[i]), _mm512_loadu_pd(at + HDI_PACK * r)); }
-#define HDI_CHECK_ADD(r)                                                                                               \
-    if (k > r) {                                                                                                       \
-        const hdi_v8 v = _mm512_loadu_pd(from + HDI_PACK * r);                                                         \
-        l##r = _mm512_fmadd_pd(lx, v, l##r);                                                                           \
-        if (full) b##r = _mm512_fmadd_pd(bx, v, b##r);                                                                 \
-    }
-#define HDI_CHECK_ROW(r)                                                                                               \
-    if (k > r) {                                                                                                       \
-        const hdi_v8 v = _mm512_loadu_pd(at + HDI_PACK * r), coef = _mm512_loadu_pd(c[r]->coef);                       \
-        hdi_v8 res = _mm512_fnmadd_pd(t, l##r, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));                           \
-        res = _mm512_fnmadd_pd(tr, b##r, res);                                                                         \
-        res = _mm512_fnmadd_pd(ti, _mm512_shuffle_f64x2(b##r, b##r, 0x4e), res);                                       \
-        n##r = _mm512_fmadd_pd(_mm512_mul_pd(w, res), res, n##r);                                                      \
-        f##r = _mm512_fmadd_pd(v, b##r, f##r);                                                                         \
-        z##r = _mm512_fmadd_pd(_mm512_mul_pd(nz, v), v, z##r);                                                         \
-        c[r]->u[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, v));                                                    \
-        c[r]->bu[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, b##r));                                                \
-    }
-#define HDI_CHECK_END(r)                                                                                               \
-    if (k > r) {                                                                                                       \
-        double s[HDI_PACK];                                                                                            \
-        _mm512_storeu_pd(s, n##r);                                                                                     \
-        for (q = 0; q < 4; q++) c[r]->norm2[q] += s[q] + s[q + 4];                                                     \
-        _mm512_storeu_pd(s, z##r);                                                                                     \
-        for (q = 0; q < 4; q++) c[r]->size2[q] += s[q] + s[q + 4];                                                     \
-        _mm512_storeu_pd(s, f##r);                                                                                     \
-        c[r]->first2 += s[0] + s[4];                                                                                   \
-    }
-#define HDI_CHECK_EACH(M) M(0) M(1) M(2) M(3) M(4) M(5)
+/* What is summed for one right-hand side. */
+typedef struct hdi_check512 { hdi_v8 l, b, norm, first, size; } hdi_check512;
 
-/* k right-hand sides, at most 6, whose rows of x stand side by side. */
-static HDI_AVX512 HDI_INLINE void hdi_check_512_of(hdi_check *const *c, const int k) {
+/* Row i is complete: l and b hold its products with L and B. */
+static HDI_AVX512 HDI_INLINE void hdi_check512_row(hdi_check *h, hdi_check512 *s, int32_t i, const double *x) {
+    const hdi_v8 t = _mm512_set1_pd(h->t), re = hdi_twice512(h->theta), im = hdi_twice512(h->theta + 4);
+    const hdi_v8 turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
+    const hdi_v8 weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
+    const hdi_v8 v = _mm512_loadu_pd(x), coef = _mm512_loadu_pd(h->coef);
+    hdi_v8 r = _mm512_fnmadd_pd(t, s->l, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(h->rhs[i])));
+    r = _mm512_fnmadd_pd(re, s->b, r);
+    r = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(s->b, s->b, 0x4e), r);
+    s->norm = _mm512_fmadd_pd(_mm512_mul_pd(weight, r), r, s->norm);
+    s->first = _mm512_fmadd_pd(v, s->b, s->first);
+    s->size = _mm512_fmadd_pd(_mm512_mul_pd(noise, v), v, s->size);
+    h->u[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, v));
+    h->bu[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, s->b));
+}
+
+static HDI_AVX512 HDI_INLINE void hdi_check512_end(hdi_check *h, const hdi_check512 *s) {
+    double norm[HDI_PACK], size[HDI_PACK], first[HDI_PACK];
+    int q;
+    _mm512_storeu_pd(norm, s->norm);
+    _mm512_storeu_pd(size, s->size);
+    _mm512_storeu_pd(first, s->first);
+    for (q = 0; q < 4; q++) {
+        h->norm2[q] += norm[q] + norm[q + 4];
+        h->size2[q] += size[q] + size[q + 4];
+    }
+    h->first2 += first[0] + first[4];
+}
+
+/* n right-hand sides, whose rows of x stand side by side. */
+static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int n) {
     const hd_laplacian *lap = c[0]->lap;
-    const hdi_v8 zero = _mm512_setzero_pd(), t = _mm512_set1_pd(c[0]->t), tr = hdi_twice512(c[0]->theta);
-    const hdi_v8 im = hdi_twice512(c[0]->theta + 4), ti = _mm512_mask_sub_pd(im, 0x0f, zero, im);
-    const double *x = c[0]->x;
+    const hdi_v8 zero = _mm512_setzero_pd();
     const int64_t stride = c[0]->stride;
     const int full = lap->B != NULL;
+    hdi_check512 s[HDI_CHECK_MOST];
     int64_t p;
     int32_t i;
-    int q;
-    HDI_CHECK_EACH(HDI_CHECK_DECLARE)
+    int r;
+    HDI_UNROLL
+    for (r = 0; r < n; r++) s[r].norm = s[r].first = s[r].size = zero;
     for (i = 0; i < lap->n_active; i++) {
-        const double *at = x + stride * i;
-        const hdi_v8 w = _mm512_set1_pd(c[0]->weight[i]), nz = _mm512_set1_pd(c[0]->noise[i]);
-        HDI_CHECK_EACH(HDI_CHECK_CLEAR)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double *from = x + stride * lap->L.col[p];
-            const hdi_v8 lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
-            HDI_CHECK_EACH(HDI_CHECK_ADD)
+        const double *at = c[0]->x + stride * i;
+        HDI_UNROLL
+        for (r = 0; r < n; r++) {
+            s[r].l = s[r].b = zero;
+            if (full) continue;
+            s[r].b = _mm512_mul_pd(_mm512_set1_pd(lap->mass[i]), _mm512_loadu_pd(at + HDI_PACK * r));
         }
-        HDI_CHECK_EACH(HDI_CHECK_ROW)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const double *from = c[0]->x + stride * lap->L.col[p];
+            const hdi_v8 lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
+            HDI_UNROLL
+            for (r = 0; r < n; r++) {
+                const hdi_v8 v = _mm512_loadu_pd(from + HDI_PACK * r);
+                s[r].l = _mm512_fmadd_pd(lx, v, s[r].l);
+                if (full) s[r].b = _mm512_fmadd_pd(bx, v, s[r].b);
+            }
+        }
+        HDI_UNROLL
+        for (r = 0; r < n; r++) hdi_check512_row(c[r], &s[r], i, at + HDI_PACK * r);
     }
-    HDI_CHECK_EACH(HDI_CHECK_END)
+    HDI_UNROLL
+    for (r = 0; r < n; r++) hdi_check512_end(c[r], &s[r]);
 }
-#undef HDI_CHECK_DECLARE
-#undef HDI_CHECK_CLEAR
-#undef HDI_CHECK_ADD
-#undef HDI_CHECK_ROW
-#undef HDI_CHECK_END
-#undef HDI_CHECK_EACH
 
 static HDI_AVX512 void hdi_check_512(hdi_check *const *c, int32_t k) {
     switch (k) {
-        case 1: hdi_check_512_of(c, 1); break;
-        case 2: hdi_check_512_of(c, 2); break;
-        case 3: hdi_check_512_of(c, 3); break;
-        case 4: hdi_check_512_of(c, 4); break;
-        case 5: hdi_check_512_of(c, 5); break;
-        default: hdi_check_512_of(c, 6); break;
+        case 1: hdi_check512_of(c, 1); break;
+        case 2: hdi_check512_of(c, 2); break;
+        case 3: hdi_check512_of(c, 3); break;
+        default: hdi_check512_of(c, HDI_CHECK_MOST); break;
     }
 }
 #endif
