@@ -89,6 +89,9 @@
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
      HEATDIFF_NO_OPENMP        no OpenMP, even if the compiler has it on
+     HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. It is needed
+                               only where that is neither heatdiff.h nor what the compiler says
+                               (__FILE_NAME__)
      HEATDIFF_NO_SIMD          plain C only, no kernels for AVX2 and AVX-512
      HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, where only
                                plain C kernels exist. It is twice as fast as those. The kernels for AVX2 and
@@ -1166,9 +1169,12 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_PREFETCH_AT(p, i) ((void)0)
 #endif
 
-/* Instruction sets. A few kernels are compiled several times in this one file, with function-level targets, and chosen at run time, so that a plain
- * cc -O2 uses what the processor has. Plain C serves everything else. */
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD)
+/* Instruction sets. The kernels of room [07] are compiled for each, with function-level targets, and chosen at run time,
+ * so that a plain cc -O2 uses what the processor has. Plain C serves everything else. GCC does not align the stack
+ * for AVX on Windows (its bug 54412), and __builtin_cpu_supports of clang for MSVC needs a library that is not
+ * linked there. */
+#if defined(__x86_64__) && (defined(__clang__) ? !defined(_MSC_VER) : defined(__GNUC__) && !defined(_WIN32)) && \
+    !defined(HEATDIFF_NO_SIMD)
 #include <immintrin.h>
 #define HDI_X86 1
 #define HDI_AVX2 __attribute__((target("avx2,fma")))
@@ -1181,7 +1187,14 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #else
 #define HDI_INLINE inline
 #endif
-#define HDI_PACK_CLONE static HDI_INLINE   /* bodies that are compiled for several instruction sets */
+/* Loops of at most eight rounds over registers: without them the arrays would live in memory. */
+#if defined(__clang__)
+#define HDI_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define HDI_UNROLL _Pragma("GCC unroll 8")
+#else
+#define HDI_UNROLL
+#endif
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
@@ -1566,9 +1579,9 @@ static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
     else parent[a] = b;
 }
 
-/* ==== [06] dense ====
- * Vectors, and the dense parts of a sparse factorisation: fronts of real numbers, and of packs of four complex ones. May call [04]. Sums run in
- * four fixed strands: quick without -ffast-math, and the same on every run. */
+/* ==== [06] vectors ====
+ * Dot products, norms and small dense work. May call [05]. Sums run in two or four fixed strands: quick
+ * without -ffast-math, and the same on every run. */
 
 static double hdi_dot(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y, int64_t n) {
     double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
@@ -1623,9 +1636,10 @@ static void hdi_axpy(double a, const double *HDI_RESTRICT x, double *HDI_RESTRIC
     for (i = 0; i < n; i++) y[i] += a * x[i];
 }
 
-/* Eigenvalues of the symmetric tridiagonal matrix with diagonal d [m] and off-diagonal e [m] (e[i] between i and i + 1; e[m - 1] unused),
- * by implicit QL with Wilkinson's shift (Bowdler, Martin, Reinsch, Wilkinson 1968). z0, z1 [m] are two rows that go through the same
- * rotations: put in rows of the identity, they come out as rows of the eigenvectors. Overwrites all. 0 when it does not converge. */
+/* Eigenvalues of the symmetric tridiagonal matrix with diagonal d [m] and off-diagonal e [m] (e[i] is between
+ * i and i + 1, e[m - 1] is unused), by implicit QL with Wilkinson's shift (Bowdler, Martin, Reinsch,
+ * Wilkinson 1968). z0, z1 [m] are two rows that go through the same rotations: put in rows of the identity,
+ * they come out as rows of the eigenvectors. Overwrites all. 0 when it does not converge. */
 static int hdi_tridiag_eigen(double *d, double *e, double *z0, double *z1, int32_t m) {
     int32_t l, i, k, sweep;
     if (m > 0) e[m - 1] = 0;
@@ -1677,20 +1691,35 @@ static int hdi_tridiag_eigen(double *d, double *e, double *z0, double *z1, int32
 /* Entries of a packed triangle. */
 static int64_t hdi_triangle(int64_t u) { return u * (u + 1) / 2; }
 
+/* ==== [07] kernels ====
+ * The dense parts of a sparse factorisation, each written once: fronts of real numbers, and of packs of four
+ * complex ones. May call [06]. The room has three parts:
+ *   what kernels are given, and the tables through which the rest of the file calls them
+ *   the vectors of each instruction set, a layer of some forty short functions
+ *   the kernels themselves, which are read once for each set, and at last the choice of the set
+ * For AVX2 and AVX-512 the file includes itself with HDI_SET named anew; everything else in it is closed
+ * then. It knows its name from the compiler, or from HEATDIFF_FILENAME. Plain C is read in place: with
+ * HEATDIFF_NO_SIMD, and on other processors, nothing is included.
+ * Within one set every entry goes through the same operations in the same order however rows are shared out,
+ * so that results do not depend on threads. The optional BLAS is called here only.
+ * Kernels trust their input. No two arguments overlap unless said. */
+
 /* ---- real fronts ---- */
-/* A front is the dense part of a sparse LDL' factorisation that belongs to one supernode: m rows, of which the first p are pivots, and u = m - p.
- * Its panel P (column-major, m x p) becomes L, its update matrix U (u x u, lower triangle, packed by columns) becomes U - L21 D L21' and goes to
- * the parent. This work is based on
- *   I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric linear equations", ACM TOMS 9, 1983: fronts, packed updates;
- *   K. Goto, R. van de Geijn, "Anatomy of high-performance matrix multiplication", ACM TOMS 34, 2008: blocks for registers and caches;
- *   J. Dongarra, I. Duff, D. Sorensen, H. van der Vorst, "Numerical linear algebra for high-performance computers", 1998: left-looking LDL'.
- * Ours: B = D L21' is copied into slices of nr columns, scaled on the way; A = L21 is read where it lies when the front is small.
+/* A front is the dense part of a sparse LDL' factorisation that belongs to one supernode: m rows, of which
+ * the first p are pivots, and u = m - p. Its panel P (column-major, m x p) becomes L, its update matrix U (u
+ * x u, lower triangle, packed by columns) becomes U - L21 D L21' and goes to the parent. This work is based
+ * on
+ *   I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric linear equations", ACM TOMS
+ *     9, 1983: fronts, packed updates;
+ *   K. Goto, R. van de Geijn, "Anatomy of high-performance matrix multiplication", ACM TOMS 34, 2008: blocks
+ *     for registers and caches;
+ *   J. Dongarra, I. Duff, D. Sorensen, H. van der Vorst, "Numerical linear algebra for high-performance
+ *     computers", 1998: left-looking LDL'.
+ * Ours: B = D L21' is copied into slices of nr columns, scaled on the way; A = L21 is read where it lies when
+ * the front is small.
  *
- * The kernels exist for three instruction sets, chosen at run time: 0 plain C (two lanes where the compiler has them), 1 AVX2, 2 AVX-512.
- * Within one set every entry goes through the same operations in the same order however rows are shared out: results do not depend on threads.
- *
- * Slices: a matrix B with kc rows and n columns is stored as slices of nr columns, slice c at B + c kc nr, its entry (k,j) at [k nr + j]. Columns
- * past the last are zero. KERNELS TRUST THEIR INPUT. No two arguments overlap unless said. */
+ * Slices: a matrix B with kc rows and n columns is stored as slices of nr columns, slice c at B + c kc nr,
+ * its entry (k,j) at [k nr + j]. Columns past the last are zero. */
 
 enum {
     HDI_REAL_KC = 128,  /* columns of L taken at a time: 24 rows of them stay in a 48 KB cache */
@@ -1700,376 +1729,271 @@ enum {
     HDI_REAL_NR = 8     /* largest nr */
 };
 
-/* One instruction set. mr x nr is the register tile. L, A, P point at the entry (first row, first column) named; ld is the distance of columns. */
+/* One instruction set. mr x nr is the register tile. L, A, P point at the entry (first row, first column)
+ * named; ld is the distance of columns. */
 typedef struct hdi_real_ops {
     int32_t mr, nr;
     /* slices B = (L diag(d))': L has n rows and kc columns. */
     void (*pack)(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc);
     /* A = rows of L copied, mr apart, zeros past the last: n <= mr rows, kc columns. */
     void (*copy)(double *A, const double *L, int64_t ld, int32_t n, int32_t kc);
-    /* Pivots k..k+nc-1, nc <= nr, in their own rows and the n <= mr - nr rows that follow: a -= L B over the k columns before, B one slice; then
-     * LDL'. P at (k,0). d goes to the diagonal of P, 1/d to dinv[k..], and rows k.. of the slice B become D L' of the block. */
+    /* Pivots k..k+nc-1, nc <= nr, in their own rows and the n <= mr - nr rows that follow: a -= L B over the
+     * k columns before, B one slice; then LDL'. P at (k,0). d goes to the diagonal of P, 1/d to dinv[k..],
+     * and rows k.. of the slice B become D L' of the block. */
     void (*block)(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv);
-    /* n <= mr rows below pivots k..k+nb-1, from column k1 <= k: L(:,c) = (a - L(:,k1..c-1) B(k1..c-1,c)) dinv(c), c ascending. P at (row,0);
-     * B slices of kb rows. */
-    void (*rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb, const double *dinv);
+    /* n <= mr rows below pivots k..k+nb-1, from column k1 <= k: L(:,c) = (a - L(:,k1..c-1) B(k1..c-1,c))
+     * dinv(c), c ascending. P at (row,0); B slices of kb rows. */
+    void (*rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B,
+                 int32_t kb, const double *dinv);
     /* C -= A B: n <= mr rows, nb columns, ld apart, inner kc. Slices of kb rows. */
-    void (*gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb, int32_t kc);
-    /* U -= A B in rows i..i+n-1, n <= mr, columns j0..j1-1 as far as the triangle goes, j1 <= i + n. Slices begin at column j0. */
-    void (*update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda, const double *B, int32_t kc);
+    void (*gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B,
+                 int32_t kb, int32_t kc);
+    /* U -= A B in rows i..i+n-1, n <= mr, columns j0..j1-1 as far as the triangle goes, j1 <= i + n. Slices
+     * begin at column j0. */
+    void (*update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A,
+                   int64_t lda, const double *B, int32_t kc);
     /* y += x */
     void (*add)(double *y, const double *x, int64_t n);
-    /* b = L11^-1 b, y -= L b: nc <= 8 columns, L at (0,0) of L11; below it n1 rows whose y follows b, then n2 whose y is t.
-     * first: t is not read, t = -L b. */
-    void (*forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2, int first);
+    /* b = L11^-1 b, y -= L b: nc <= 8 columns, L at (0,0) of L11; below it n1 rows whose y follows b, then n2
+     * whose y is t. first: t is not read, t = -L b. */
+    void (*forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2,
+                    int first);
     /* b = L11^-T (b - L' y), the same rows. */
-    void (*backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t, int64_t n2);
+    void (*backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t,
+                     int64_t n2);
     /* t = x[idx] */
     void (*gather)(double *t, const double *x, const int32_t *idx, int64_t n);
-    /* For eight right-hand sides, rows of eight: y[i] -= L x, x[nc] -= L' y, y being y[idx[i]], or y[i] if idx is NULL. */
-    void (*gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc);
-    void (*dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc);
+    /* For eight right-hand sides, rows of eight: y[i] -= L x, x[nc] -= L' y, y being y[idx[i]], or y[i] if
+     * idx is NULL. */
+    void (*gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x,
+                  int32_t nc);
+    void (*dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx,
+                  int32_t nc);
     /* x = L^-1 x, x = L^-T x: unit lower L, nc <= 8. */
     void (*lower8)(double *x, const double *L, int64_t ld, int32_t nc);
     void (*upper8)(double *x, const double *L, int64_t ld, int32_t nc);
 } hdi_real_ops;
 
-/* ---- plain: tiles of 4 x 4 ---- */
+/* C -= A B for n <= mr rows and nc <= nr columns; column j + 1 of C lies step - j dec after column j. Entries
+ * with row < j + diag are left alone. A has kc columns, lda apart; B is one slice of kc rows. */
+typedef struct hdi_real_tile {
+    double *C;
+    const double *A, *B;
+    int64_t step, dec, lda;
+    int32_t n, nc, diag, kc;
+} hdi_real_tile;
 
-/* Two numbers; the low one alone at an odd end, so that every entry sees the same operations. */
+/* ---- packs: four complex numbers side by side ---- */
+/* An entry of a pack matrix is re[4], im[4]: the same entry for four poles. Every operation on entries is one
+ * on vectors without any shuffle. */
+enum { HDI_PACK = 8, HDI_PACK_ROWS = 48, HDI_PACK_DEPTH = 64, HDI_PACK_BLOCK = 16 };
+
+/* C(i,j) = or -= sum_k A(i,k) B(j,k), k in [0,depth), for i in [i0,i1), j in [j0,j1), with lower only j <= i.
+ * A(i,k) is at a + i a_row + k a_col, all strides in doubles; C(i,j) at c + i c_row + 8 j, or, packed, at c +
+ * 8 (i (i + 1)/2 + j). */
+typedef struct hdi_pack_job {
+    const double *a, *b;
+    double *c;
+    int64_t a_row, a_col, b_row, b_col, c_row;
+    int64_t depth, b_first;          /* b is row b_first of B */
+    int lower, packed, store;
+} hdi_pack_job;
+
+static HDI_INLINE double *hdi_pack_row(const hdi_pack_job *g, int64_t i) {
+    return g->c + (g->packed ? HDI_PACK * hdi_triangle(i) : i * g->c_row);
+}
+
+/* Rows [r0,r1) of a panel, columns [k0,k0+nb): l_ik = (a_ik - sum_{j in [k0,k)} l_ij s_kj) dinv_k, in place.
+ * s_kj is at s + (k - k0) s_row + 8 (j - k0). */
+typedef struct hdi_pack_rows {
+    double *panel;
+    int64_t row, first;          /* doubles from row to row; panel is row first */
+    const double *s, *dinv;
+    int64_t s_row;
+    int32_t nb;
+} hdi_pack_rows;
+
+typedef struct hdi_pack_ops {
+    void (*multiply)(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1);
+    void (*solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1);
+    void (*scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1,
+                  const double *d, double *s);
+    void (*add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off);
+    void (*forward)(const double *l, int64_t u, int64_t p, const double *y, double *t);
+    void (*backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x);
+} hdi_pack_ops;
+
+/* s = l d for an entry */
+static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double *HDI_RESTRICT d,
+                                      double *HDI_RESTRICT s) {
+    int q;
+    for (q = 0; q < 4; q++) {
+        s[q] = l[q] * d[q] - l[q + 4] * d[q + 4];
+        s[q + 4] = l[q] * d[q + 4] + l[q + 4] * d[q];
+    }
+}
+
+/* ---- vectors of each instruction set ---- */
+/* What a set has to define, here by name_set. A port (NEON, WASM SIMD) adds one such layer, and one more
+ * reading of the kernels where the set is chosen.
+ *   vec                  HDI_WIDTH doubles
+ *   all(a)               a in every lane
+ *   load, store          anywhere in memory
+ *   load_tail(p, n)      the first n lanes, then zeros; 0 < n < width, and n = width too where masks is 1
+ *   load_some(p, n)      the same for any n; lanes from n on are not read
+ *   rows, rows_of        rows lo..hi-1 of a tile as a set
+ *   load_rows, store_rows(.., g, q)  lanes for rows q.. of it; others are neither read nor written
+ *   add, sub, mul        and fma = a b + c, fnma = c - a b, fms = a b - c, fnma1 of single numbers
+ *   cross_minus          a b - c d; cross_plus: a b + c d. Contracted or not, as the compiler does with plain
+ *     C
+ *   lane(v, k), low(v)   lane k everywhere; the lowest as a number
+ *   sum(v), gather(x, idx)  when the set has kernels for a single right-hand side
+ * and as constants:
+ *   cols, regs           the tile of real kernels is regs vectors by cols columns, a multiple of width
+ *   fused                products of entries are summed with fma
+ *   masks                load_tail costs no more than load
+ *   apart                the sums of a backward step are closed between its two parts
+ *   tile_rows, tile_cols, solve_rows, sweep_rows, sweep_cols  entries of packs that are held in registers */
+#define HDI_IN2 static HDI_INLINE
+#define HDI_IN4 static HDI_AVX2 HDI_INLINE
+#define HDI_IN8 static HDI_AVX512 HDI_INLINE
+
+/* Two lanes, where the compiler has vectors; its own arithmetic serves every processor. */
+enum {
+    hdi_cols_plain = 4, hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_masks_plain = 0, hdi_apart_plain = 1,
+    hdi_tile_rows_plain = 1, hdi_tile_cols_plain = 1, hdi_solve_rows_plain = 1, hdi_sweep_rows_plain = 1,
+    hdi_sweep_cols_plain = 2
+};
+#define HDI_TARGET_plain
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD)
 typedef double hdi_v2 __attribute__((vector_size(16)));
-typedef double hdi_v2_u __attribute__((vector_size(16), aligned(8), may_alias));
-static HDI_INLINE hdi_v2 hdi_v2_set(double a, double b) { const hdi_v2 v = {a, b}; return v; }
-static HDI_INLINE hdi_v2 hdi_v2_load2(const double *p) { return *HDI_CAST(const hdi_v2_u *, HDI_CAST(const void *, p)); }
-static HDI_INLINE void hdi_v2_store2(double *p, hdi_v2 v) { *HDI_CAST(hdi_v2_u *, HDI_CAST(void *, p)) = v; }
-static HDI_INLINE double hdi_v2_low(hdi_v2 v) { return v[0]; }
-static HDI_INLINE double hdi_v2_high(hdi_v2 v) { return v[1]; }
-static HDI_INLINE hdi_v2 hdi_v2_fma(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return a * b + c; }
-static HDI_INLINE hdi_v2 hdi_v2_sub(hdi_v2 a, hdi_v2 b) { return a - b; }
-static HDI_INLINE hdi_v2 hdi_v2_mul(hdi_v2 a, hdi_v2 b) { return a * b; }
+typedef double hdi_v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
+HDI_IN2 hdi_v2 hdi_two(double a, double b) { const hdi_v2 v = {a, b}; return v; }
+HDI_IN2 hdi_v2 hdi_load_plain(const double *p) {
+    return *HDI_CAST(const hdi_v2_anywhere *, HDI_CAST(const void *, p));
+}
+HDI_IN2 void hdi_store_plain(double *p, hdi_v2 v) { *HDI_CAST(hdi_v2_anywhere *, HDI_CAST(void *, p)) = v; }
+HDI_IN2 double hdi_low_plain(hdi_v2 v) { return v[0]; }
+HDI_IN2 double hdi_high_plain(hdi_v2 v) { return v[1]; }
+HDI_IN2 hdi_v2 hdi_add_plain(hdi_v2 a, hdi_v2 b) { return a + b; }
+HDI_IN2 hdi_v2 hdi_sub_plain(hdi_v2 a, hdi_v2 b) { return a - b; }
+HDI_IN2 hdi_v2 hdi_mul_plain(hdi_v2 a, hdi_v2 b) { return a * b; }
+HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return a * b + c; }
+HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return c - a * b; }
+HDI_IN2 hdi_v2 hdi_cross_minus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) { return a * b - c * d; }
+HDI_IN2 hdi_v2 hdi_cross_plus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) { return a * b + c * d; }
 #else
 typedef struct hdi_v2 { double a, b; } hdi_v2;
-static HDI_INLINE hdi_v2 hdi_v2_set(double a, double b) { hdi_v2 v; v.a = a; v.b = b; return v; }
-static HDI_INLINE hdi_v2 hdi_v2_load2(const double *p) { return hdi_v2_set(p[0], p[1]); }
-static HDI_INLINE void hdi_v2_store2(double *p, hdi_v2 v) { p[0] = v.a; p[1] = v.b; }
-static HDI_INLINE double hdi_v2_low(hdi_v2 v) { return v.a; }
-static HDI_INLINE double hdi_v2_high(hdi_v2 v) { return v.b; }
-static HDI_INLINE hdi_v2 hdi_v2_fma(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_v2_set(a.a * b.a + c.a, a.b * b.b + c.b); }
-static HDI_INLINE hdi_v2 hdi_v2_sub(hdi_v2 a, hdi_v2 b) { return hdi_v2_set(a.a - b.a, a.b - b.b); }
-static HDI_INLINE hdi_v2 hdi_v2_mul(hdi_v2 a, hdi_v2 b) { return hdi_v2_set(a.a * b.a, a.b * b.b); }
+HDI_IN2 hdi_v2 hdi_two(double a, double b) { hdi_v2 v; v.a = a; v.b = b; return v; }
+HDI_IN2 hdi_v2 hdi_load_plain(const double *p) { return hdi_two(p[0], p[1]); }
+HDI_IN2 void hdi_store_plain(double *p, hdi_v2 v) { p[0] = v.a; p[1] = v.b; }
+HDI_IN2 double hdi_low_plain(hdi_v2 v) { return v.a; }
+HDI_IN2 double hdi_high_plain(hdi_v2 v) { return v.b; }
+HDI_IN2 hdi_v2 hdi_add_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a + b.a, a.b + b.b); }
+HDI_IN2 hdi_v2 hdi_sub_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a - b.a, a.b - b.b); }
+HDI_IN2 hdi_v2 hdi_mul_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a * b.a, a.b * b.b); }
+HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_add_plain(hdi_mul_plain(a, b), c); }
+HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_sub_plain(c, hdi_mul_plain(a, b)); }
+HDI_IN2 hdi_v2 hdi_cross_minus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) {
+    return hdi_sub_plain(hdi_mul_plain(a, b), hdi_mul_plain(c, d));
+}
+HDI_IN2 hdi_v2 hdi_cross_plus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) {
+    return hdi_add_plain(hdi_mul_plain(a, b), hdi_mul_plain(c, d));
+}
 #endif
-static HDI_INLINE hdi_v2 hdi_v2_all(double a) { return hdi_v2_set(a, a); }
-static HDI_INLINE hdi_v2 hdi_v2_load(const double *p, int64_t n) { return n >= 2 ? hdi_v2_load2(p) : hdi_v2_set(p[0], 0); }
-static HDI_INLINE void hdi_v2_store(double *p, hdi_v2 v, int64_t n) {
-    if (n >= 2) hdi_v2_store2(p, v);
-    else *p = hdi_v2_low(v);
+typedef hdi_v2 hdi_vec_plain;
+typedef struct hdi_span { int32_t lo, hi; } hdi_span;
+typedef hdi_span hdi_rows_plain;
+HDI_IN2 hdi_span hdi_rows_of_plain(int32_t lo, int32_t hi) {
+    hdi_span g;
+    g.lo = lo;
+    g.hi = hi;
+    return g;
 }
-
-static void hdi_r128_pack(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc) {
-    int32_t k, j;
-    for (; n > 0; n -= 4, L += 4)
-        for (k = 0; k < kc; k++, B += 4)
-            if (n >= 4) {
-                const hdi_v2 s = hdi_v2_all(d[k]);
-                hdi_v2_store2(B, hdi_v2_mul(hdi_v2_load2(L + k * ld), s));
-                hdi_v2_store2(B + 2, hdi_v2_mul(hdi_v2_load2(L + k * ld + 2), s));
-            } else
-                for (j = 0; j < 4; j++) B[j] = j < n ? L[k * ld + j] * d[k] : 0.0;
+HDI_IN2 hdi_v2 hdi_all_plain(double a) { return hdi_two(a, a); }
+HDI_IN2 hdi_v2 hdi_fms_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_sub_plain(hdi_mul_plain(a, b), c); }
+HDI_IN2 double hdi_fnma1_plain(double a, double b, double c) { return c - a * b; }
+HDI_IN2 hdi_v2 hdi_lane_plain(hdi_v2 v, int k) {
+    return hdi_all_plain(k ? hdi_high_plain(v) : hdi_low_plain(v));
 }
-
-static void hdi_r128_copy(double *A, const double *L, int64_t ld, int32_t n, int32_t kc) {
-    int32_t k, i;
-    for (k = 0; k < kc; k++, L += ld, A += 4)
-        for (i = 0; i < 4; i++) A[i] = i < n ? L[i] : 0.0;
+HDI_IN2 double hdi_sum_plain(hdi_v2 v) { return hdi_low_plain(v) + hdi_high_plain(v); }
+HDI_IN2 hdi_v2 hdi_gather_plain(const double *x, const int32_t *idx) { return hdi_two(x[idx[0]], x[idx[1]]); }
+HDI_IN2 hdi_v2 hdi_load_tail_plain(const double *p, int64_t n) { (void)n; return hdi_two(p[0], 0); }
+HDI_IN2 hdi_v2 hdi_load_some_plain(const double *p, int64_t n) {
+    return n >= 2 ? hdi_load_plain(p) : hdi_two(n > 0 ? p[0] : 0.0, 0);
 }
-
-/* x##j, y##j hold rows 0, 1 and 2, 3 of column j; n = 1, 2 or 4 rows, a constant where inlined. */
-#define HDI_R128_EACH(M) M(0) M(1) M(2) M(3)
-#define HDI_R128_ZERO(j) hdi_v2 x##j = hdi_v2_all(0), y##j = x##j;
-#define HDI_R128_FMA(j) {                                                                                                \
-        const hdi_v2 b = hdi_v2_all(B[j]);                                                                               \
-        x##j = hdi_v2_fma(a0, b, x##j);                                                                                  \
-        if (n > 2) y##j = hdi_v2_fma(a1, b, y##j);                                                                       \
-    }
-#define HDI_R128_PRODUCT                                                                                                 \
-    HDI_R128_EACH(HDI_R128_ZERO)                                                                                         \
-    for (k = 0; k < kc; k++, A += lda, B += 4) {                                                                         \
-        const hdi_v2 a0 = hdi_v2_load(A, n), a1 = n > 2 ? hdi_v2_load2(A + 2) : a0;                                      \
-        HDI_R128_EACH(HDI_R128_FMA)                                                                                      \
-        (void)a1;                                                                                                        \
-    }
-
-/* C(:,j) -= A B(:,j) for nc <= nr columns; column j + 1 lies step - j dec after column j. Entries with row < j + diag are left alone. */
-static HDI_INLINE void hdi_r128_tile(const int n, double *C, int64_t step, int64_t dec, int32_t diag, int32_t nc, const double *A, int64_t lda,
-                                     const double *B, int32_t kc) {
-    int32_t k;
-    HDI_R128_PRODUCT
-#define HDI_R128_SUB(j)                                                                                                  \
-    if (j < nc) {                                                                                                        \
-        if (diag + j <= 0) {                                                                                             \
-            hdi_v2_store(C, hdi_v2_sub(hdi_v2_load(C, n), x##j), n);                                                     \
-            if (n > 2) hdi_v2_store2(C + 2, hdi_v2_sub(hdi_v2_load2(C + 2), y##j));                                      \
-        } else {                                                                                                         \
-            if (n > 1 && diag + j <= 1) C[1] -= hdi_v2_high(x##j);                                                       \
-            if (n > 2 && diag + j <= 2) C[2] -= hdi_v2_low(y##j);                                                        \
-            if (n > 2 && diag + j <= 3) C[3] -= hdi_v2_high(y##j);                                                       \
-        }                                                                                                                \
-        C += step; step -= dec;                                                                                          \
-    }
-    HDI_R128_EACH(HDI_R128_SUB)
-#undef HDI_R128_SUB
+HDI_IN2 hdi_v2 hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
+    const int first = g.lo <= q && g.hi > q, second = g.lo <= q + 1 && g.hi > q + 1;
+    return first && second ? hdi_load_plain(p) : hdi_two(first ? p[0] : 0.0, second ? p[1] : 0.0);
 }
-
-static void hdi_r128_gemm(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb, int32_t kc) {
-    const int64_t slice = HDI_CAST(int64_t, kb) * 4;
-    for (; nb > 0; nb -= 4, C += 4 * ld, B += slice) {
-        const int32_t nc = nb < 4 ? nb : 4;
-        int32_t i = 0;
-        if (n == 4) hdi_r128_tile(4, C, ld, 0, -4, nc, A, lda, B, kc);
-        else {
-            if (n > 1) hdi_r128_tile(2, C, ld, 0, -4, nc, A, lda, B, kc), i = 2;
-            if (n > i) hdi_r128_tile(1, C + i, ld, 0, -4, nc, A + i, lda, B, kc);
-        }
-    }
+HDI_IN2 void hdi_store_rows_plain(double *p, hdi_v2 v, hdi_span g, int32_t q) {
+    const int first = g.lo <= q && g.hi > q, second = g.lo <= q + 1 && g.hi > q + 1;
+    if (first && second) hdi_store_plain(p, v);
+    else if (first) p[0] = hdi_low_plain(v);
+    else if (second) p[1] = hdi_high_plain(v);
 }
-
-static void hdi_r128_update(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda, const double *B,
-                            int32_t kc) {
-    int64_t j;
-    for (j = j0; j < j1; j += 4, B += HDI_CAST(int64_t, kc) * 4) {
-        const int64_t s = j - i;
-        const int32_t diag = s < -4 ? -4 : HDI_CAST(int32_t, s), nc = j1 - j < 4 ? HDI_CAST(int32_t, j1 - j) : 4;
-        double *C = U + (j * u - j * (j - 1) / 2 - j + i);
-        int32_t q = 0;
-        if (n == 4) hdi_r128_tile(4, C, u - j - 1, 1, diag, nc, A, lda, B, kc);
-        else {
-            if (n > 1) hdi_r128_tile(2, C, u - j - 1, 1, diag, nc, A, lda, B, kc), q = 2;
-            if (n > q) hdi_r128_tile(1, C + q, u - j - 1, 1, diag - q, nc, A + q, lda, B, kc);
-        }
-    }
-}
-
-#define HDI_R128_PAIRS(H, F) H(0) F(0, 1) F(0, 2) F(0, 3) H(1) F(1, 2) F(1, 3) H(2) F(2, 3) H(3)
-
-/* X = (C - A B) over kc columns, then X = X inv(D L') with the block's D L' in the rows of B that follow. */
-static HDI_INLINE void hdi_r128_solve(const int n, double *C, int64_t ld, int32_t nc, const double *A, const double *B, int32_t kc,
-                                      const double *dinv) {
-    const int64_t lda = ld;
-    int32_t k;
-    HDI_R128_PRODUCT
-#define HDI_R128_LOAD(j)                                                                                                 \
-    if (j < nc) {                                                                                                        \
-        x##j = hdi_v2_sub(hdi_v2_load(C + j * ld, n), x##j);                                                             \
-        if (n > 2) y##j = hdi_v2_sub(hdi_v2_load2(C + j * ld + 2), y##j);                                                \
-    }
-#define HDI_R128_SCALE(j) {                                                                                              \
-        const hdi_v2 b = hdi_v2_all(dinv[j]);                                                                            \
-        x##j = hdi_v2_mul(x##j, b);                                                                                      \
-        hdi_v2_store(C, x##j, n);                                                                                        \
-        if (n > 2) { y##j = hdi_v2_mul(y##j, b); hdi_v2_store2(C + 2, y##j); }                                           \
-        if (nc == j + 1) return;                                                                                         \
-        C += ld;                                                                                                         \
-    }
-#define HDI_R128_LATER(j, k) {                                                                                           \
-        const hdi_v2 b = hdi_v2_all(-B[4 * j + k]);                                                                      \
-        x##k = hdi_v2_fma(x##j, b, x##k);                                                                                \
-        if (n > 2) y##k = hdi_v2_fma(y##j, b, y##k);                                                                     \
-    }
-    HDI_R128_EACH(HDI_R128_LOAD)
-    HDI_R128_PAIRS(HDI_R128_SCALE, HDI_R128_LATER)
-#undef HDI_R128_LOAD
-#undef HDI_R128_SCALE
-#undef HDI_R128_LATER
-}
-
-static void hdi_r128_rows(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb, const double *dinv) {
-    const double *A = P + k1 * ld;
-    const int64_t slice = HDI_CAST(int64_t, kb) * 4;
-    double *C = P + k * ld;
-    B += k1 * 4;
-    dinv += k;
-    for (; nb > 0; nb -= 4, C += 4 * ld, B += slice, dinv += 4, k += 4) {
-        const int32_t nc = nb < 4 ? nb : 4;
-        int32_t i = 0;
-        if (n == 4) hdi_r128_solve(4, C, ld, nc, A, B, k - k1, dinv);
-        else {
-            if (n > 1) hdi_r128_solve(2, C, ld, nc, A, B, k - k1, dinv), i = 2;
-            if (n > i) hdi_r128_solve(1, C + i, ld, nc, A + i, B, k - k1, dinv);
-        }
-    }
-}
-
-static void hdi_r128_block(double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n, double *S, double *dinv) {
-    double *C = P + kc * ld, *T = S + kc * 4;
-    int32_t i, j, k;
-    (void)n;  /* mr = nr: no rows follow */
-    for (j = 0; j < nc; j++) {
-        double d, *c = C + j * ld;
-        for (i = j; i < nc; i++) {
-            double s = 0;
-            for (k = 0; k < kc; k++) s += P[i + k * ld] * S[4 * k + j];
-            s = c[i] - s;
-            for (k = 0; k < j; k++) s -= C[i + k * ld] * T[4 * k + j];
-            c[i] = s;
-        }
-        d = c[j];
-        if (d == 0) return;                      /* which hdi_real_block finds on the diagonal */
-        dinv[kc + j] = 1 / d;
-        for (i = 0; i < 4; i++) T[4 * j + i] = i > j && i < nc ? c[i] : 0.0;
-        for (i = j + 1; i < nc; i++) c[i] *= dinv[kc + j];
-    }
-}
-
-static void hdi_r128_add(double *y, const double *x, int64_t n) {
-    for (; n >= 2; n -= 2, x += 2, y += 2) hdi_v2_store2(y, hdi_v2_sub(hdi_v2_load2(y), hdi_v2_sub(hdi_v2_all(0), hdi_v2_load2(x))));
-    if (n) *y += *x;
-}
-
-static void hdi_r128_gather(double *t, const double *x, const int32_t *idx, int64_t n) {
-    int64_t i;
-    for (i = 0; i < n; i++) t[i] = x[idx[i]];
-}
-
-/* y -= L b, b and y being the arguments; missing columns are the last one again, times zero. */
-#define HDI_R128_EIGHT(M) M(0) M(1) M(2) M(3) M(4) M(5) M(6) M(7)
-static void hdi_r128_sweep(double *y, const double *L, int64_t ld, int64_t n, const double *b, int32_t nc, int first) {
-    int64_t i;
-#define HDI_R128_COLUMN(j) const double *l##j = L + (j < nc ? j : nc - 1) * ld; const hdi_v2 v##j = hdi_v2_all(j < nc ? -b[j] : 0.0);
-#define HDI_R128_MUL(j, s) s = hdi_v2_fma(hdi_v2_load(l##j + i, n - i), v##j, s);
-    HDI_R128_EIGHT(HDI_R128_COLUMN)
-    for (i = 0; i < n; i += 2) {
-        hdi_v2 r = first ? hdi_v2_all(0) : hdi_v2_load(y + i, n - i), s = hdi_v2_all(0);
-        HDI_R128_MUL(0, r) HDI_R128_MUL(1, s) HDI_R128_MUL(2, r) HDI_R128_MUL(3, s)
-        if (nc > 4) { HDI_R128_MUL(4, r) HDI_R128_MUL(5, s) HDI_R128_MUL(6, r) HDI_R128_MUL(7, s) }
-        hdi_v2_store(y + i, hdi_v2_sub(r, hdi_v2_sub(hdi_v2_all(0), s)), n - i);
-    }
-#undef HDI_R128_COLUMN
-#undef HDI_R128_MUL
-}
-
-/* s += L' y */
-static void hdi_r128_dots(double *s, const double *L, int64_t ld, int64_t n, const double *y, int32_t nc) {
-    int64_t i;
-#define HDI_R128_COLUMN(j) const double *l##j = L + (j < nc ? j : nc - 1) * ld; hdi_v2 s##j = hdi_v2_all(0);
-#define HDI_R128_DOT(j) s##j = hdi_v2_fma(hdi_v2_load(l##j + i, n - i), v, s##j);
-#define HDI_R128_OUT(j) s[j] += hdi_v2_low(s##j) + hdi_v2_high(s##j);
-    HDI_R128_EIGHT(HDI_R128_COLUMN)
-    for (i = 0; i < n; i += 2) {
-        const hdi_v2 v = hdi_v2_load(y + i, n - i);
-        HDI_R128_DOT(0) HDI_R128_DOT(1) HDI_R128_DOT(2) HDI_R128_DOT(3)
-        if (nc > 4) { HDI_R128_DOT(4) HDI_R128_DOT(5) HDI_R128_DOT(6) HDI_R128_DOT(7) }
-    }
-    HDI_R128_EIGHT(HDI_R128_OUT)
-#undef HDI_R128_COLUMN
-#undef HDI_R128_DOT
-#undef HDI_R128_OUT
-}
-
-static void hdi_r128_forward(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2, int first) {
-    int32_t i, j;
-    for (j = 0; j < nc; j++)
-        for (i = j + 1; i < nc; i++) b[i] -= L[i + j * ld] * b[j];
-    hdi_r128_sweep(b + nc, L + nc, ld, n1, b, nc, 0);
-    hdi_r128_sweep(t, L + nc + n1, ld, n2, b, nc, first);
-}
-
-static void hdi_r128_backward(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t, int64_t n2) {
-    double s[8] = {0, 0, 0, 0, 0, 0, 0, 0};
-    int32_t i, j;
-    hdi_r128_dots(s, L + nc, ld, n1, b + nc, nc);
-    hdi_r128_dots(s, L + nc + n1, ld, n2, t, nc);
-    for (j = 0; j < nc; j++) b[j] -= s[j];
-    for (i = nc - 1; i > 0; i--)
-        for (j = 0; j < i; j++) b[j] -= L[i + j * ld] * b[i];
-}
-
-#define HDI_R128_AT(i) (y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : (i)))
-
-/* Eight right-hand sides in four pairs, for two rows (or columns) at a time. */
-#define HDI_R128_SIDES(M) M(0) M(1) M(2) M(3)
-static void hdi_r128_gemv8(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc) {
-    int64_t i = 0;
-    int32_t k;
-#define HDI_R128_ZERO8(q) hdi_v2 s##q = hdi_v2_all(0), t##q = s##q;
-#define HDI_R128_MUL8(q) { const hdi_v2 v = hdi_v2_load2(x + 8 * k + 2 * q); s##q = hdi_v2_fma(v, a, s##q); if (two) t##q = hdi_v2_fma(v, c, t##q); }
-#define HDI_R128_OUT8(q)                                                                                                 \
-    hdi_v2_store2(u0 + 2 * q, hdi_v2_sub(hdi_v2_load2(u0 + 2 * q), s##q));                                               \
-    if (two) hdi_v2_store2(u1 + 2 * q, hdi_v2_sub(hdi_v2_load2(u1 + 2 * q), t##q));
-#define HDI_R128_ROWS8 {                                                                                                 \
-        double *u0 = HDI_R128_AT(i), *u1 = two ? HDI_R128_AT(i + 1) : u0;                                                \
-        const double *l = L + i;                                                                                         \
-        HDI_R128_SIDES(HDI_R128_ZERO8)                                                                                   \
-        for (k = 0; k < nc; k++, l += ld) {                                                                              \
-            const hdi_v2 a = hdi_v2_all(l[0]), c = two ? hdi_v2_all(l[1]) : a;                                           \
-            HDI_R128_SIDES(HDI_R128_MUL8)                                                                                \
-            (void)c;                                                                                                     \
-        }                                                                                                                \
-        HDI_R128_SIDES(HDI_R128_OUT8)                                                                                    \
-        (void)u1;                                                                                                        \
-    }
-    for (; i + 2 <= n; i += 2) { enum { two = 1 }; HDI_R128_ROWS8 }
-    if (i < n) { enum { two = 0 }; HDI_R128_ROWS8 }
-#undef HDI_R128_ZERO8
-#undef HDI_R128_MUL8
-#undef HDI_R128_OUT8
-#undef HDI_R128_ROWS8
-}
-
-static void hdi_r128_dots8(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc) {
-    int64_t i;
-#define HDI_R128_ZERO8(q) hdi_v2 s##q = hdi_v2_all(0), t##q = s##q;
-#define HDI_R128_MUL8(q) { const hdi_v2 w = hdi_v2_load2(v + 2 * q); s##q = hdi_v2_fma(w, a, s##q); t##q = hdi_v2_fma(w, c, t##q); }
-#define HDI_R128_OUT8(q)                                                                                                 \
-    hdi_v2_store2(x + 2 * q, hdi_v2_sub(hdi_v2_load2(x + 2 * q), s##q));                                                 \
-    if (nc > 1) hdi_v2_store2(x + 8 + 2 * q, hdi_v2_sub(hdi_v2_load2(x + 8 + 2 * q), t##q));
-    for (; nc > 0; nc -= 2, x += 16, L += 2 * ld) {
-        const double *l0 = L, *l1 = nc > 1 ? L + ld : L;
-        HDI_R128_SIDES(HDI_R128_ZERO8)
-        for (i = 0; i < n; i++) {
-            const double *v = HDI_R128_AT(i);
-            const hdi_v2 a = hdi_v2_all(l0[i]), c = hdi_v2_all(l1[i]);
-            HDI_R128_SIDES(HDI_R128_MUL8)
-        }
-        HDI_R128_SIDES(HDI_R128_OUT8)
-    }
-#undef HDI_R128_ZERO8
-#undef HDI_R128_MUL8
-#undef HDI_R128_OUT8
-}
-
-static void hdi_r128_lower8(double *x, const double *L, int64_t ld, int32_t nc) {
-    int32_t j;
-    for (j = 1; j < nc; j++) hdi_r128_gemv8(x + 8 * j, NULL, L + j, ld, 1, x, j);
-}
-
-static void hdi_r128_upper8(double *x, const double *L, int64_t ld, int32_t nc) {
-    int32_t j;
-    for (j = nc - 2; j >= 0; j--) hdi_r128_dots8(x + 8 * j, L + j + 1 + j * ld, ld, nc - 1 - j, x + 8 * (j + 1), NULL, 1);
-}
-#undef HDI_R128_EACH
-#undef HDI_R128_ZERO
-#undef HDI_R128_FMA
-#undef HDI_R128_PRODUCT
-#undef HDI_R128_PAIRS
-#undef HDI_R128_EIGHT
-#undef HDI_R128_AT
-#undef HDI_R128_SIDES
 
 #if HDI_X86
-/* ---- AVX2: tiles of 12 x 4 ---- */
+typedef __m256d hdi_v4;
+typedef __m512d hdi_v8;
 
+/* AVX2 with FMA. Tiles of 12 x 4. */
+enum {
+    hdi_cols_avx2 = 4, hdi_regs_avx2 = 3, hdi_fused_avx2 = 1, hdi_masks_avx2 = 0, hdi_apart_avx2 = 0,
+    hdi_tile_rows_avx2 = 2, hdi_tile_cols_avx2 = 2, hdi_solve_rows_avx2 = 2, hdi_sweep_rows_avx2 = 2,
+    hdi_sweep_cols_avx2 = 4
+};
+#define HDI_TARGET_avx2 HDI_AVX2
+typedef __m256d hdi_vec_avx2;
+typedef hdi_span hdi_rows_avx2;
+HDI_IN4 hdi_span hdi_rows_of_avx2(int32_t lo, int32_t hi) { return hdi_rows_of_plain(lo, hi); }
+HDI_IN4 hdi_v4 hdi_all_avx2(double a) { return _mm256_set1_pd(a); }
+HDI_IN4 hdi_v4 hdi_load_avx2(const double *p) { return _mm256_loadu_pd(p); }
+HDI_IN4 void hdi_store_avx2(double *p, hdi_v4 v) { _mm256_storeu_pd(p, v); }
+HDI_IN4 hdi_v4 hdi_add_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_add_pd(a, b); }
+HDI_IN4 hdi_v4 hdi_sub_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_sub_pd(a, b); }
+HDI_IN4 hdi_v4 hdi_mul_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_mul_pd(a, b); }
+HDI_IN4 hdi_v4 hdi_fma_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fmadd_pd(a, b, c); }
+HDI_IN4 hdi_v4 hdi_fnma_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fnmadd_pd(a, b, c); }
+HDI_IN4 hdi_v4 hdi_fms_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fmsub_pd(a, b, c); }
+HDI_IN4 double hdi_fnma1_avx2(double a, double b, double c) { return __builtin_fma(-a, b, c); }
+HDI_IN4 hdi_v4 hdi_cross_minus_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c, hdi_v4 d) { return a * b - c * d; }
+HDI_IN4 hdi_v4 hdi_cross_plus_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c, hdi_v4 d) { return a * b + c * d; }
+HDI_IN4 double hdi_low_avx2(hdi_v4 v) { return _mm256_cvtsd_f64(v); }
+HDI_IN4 hdi_v4 hdi_lane_avx2(hdi_v4 v, int k) {
+    switch (k) {
+        case 0: return _mm256_permute4x64_pd(v, 0x00);
+        case 1: return _mm256_permute4x64_pd(v, 0x55);
+        case 2: return _mm256_permute4x64_pd(v, 0xaa);
+        default: return _mm256_permute4x64_pd(v, 0xff);
+    }
+}
+HDI_IN4 double hdi_sum_avx2(hdi_v4 v) {
+    const __m256d pairs = _mm256_hadd_pd(v, v);
+    return _mm_cvtsd_f64(_mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1)));
+}
+HDI_IN4 hdi_v4 hdi_gather_avx2(const double *x, const int32_t *idx) {
+    return _mm256_i32gather_pd(x, _mm_loadu_si128(HDI_CAST(const __m128i *, HDI_CAST(const void *, idx))), 8);
+}
 /* lanes lo..hi-1 */
-static HDI_AVX2 HDI_INLINE __m256i hdi_r256_mask(int64_t lo, int64_t hi) {
+HDI_IN4 __m256i hdi_lanes_avx2(int64_t lo, int64_t hi) {
     const __m256i lane = _mm256_set_epi64x(3, 2, 1, 0);
-    return _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(hi), lane), _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(lo - 1)));
+    return _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(hi), lane),
+                            _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(lo - 1)));
 }
-/* n <= 0 loads and stores nothing, n >= 4 the whole register. */
-static HDI_AVX2 HDI_INLINE __m256d hdi_r256_load(const double *p, int64_t n) {
-    return n >= 4 ? _mm256_loadu_pd(p) : _mm256_maskload_pd(p, hdi_r256_mask(0, n));
+HDI_IN4 hdi_v4 hdi_load_tail_avx2(const double *p, int64_t n) {
+    return _mm256_maskload_pd(p, hdi_lanes_avx2(0, n));
 }
-/* Lanes lo..hi-1 by halves and singles: masked stores are slow on some processors. */
-static HDI_AVX2 HDI_INLINE void hdi_r256_store(double *p, __m256d v, int64_t lo, int64_t hi) {
+HDI_IN4 hdi_v4 hdi_load_some_avx2(const double *p, int64_t n) {
+    return n >= 4 ? _mm256_loadu_pd(p) : hdi_load_tail_avx2(p, n);
+}
+HDI_IN4 hdi_v4 hdi_load_rows_avx2(const double *p, hdi_span g, int32_t q) {
+    if (g.lo <= q && g.hi >= q + 4) return _mm256_loadu_pd(p);
+    return _mm256_maskload_pd(p, hdi_lanes_avx2(g.lo - q, g.hi - q));
+}
+/* By halves and singles: masked stores are slow on some processors. */
+HDI_IN4 void hdi_store_rows_avx2(double *p, hdi_v4 v, hdi_span g, int32_t q) {
+    const int32_t lo = g.lo - q, hi = g.hi - q;
     if (lo <= 0 && hi >= 4) _mm256_storeu_pd(p, v);
     else {
         const __m128d a = _mm256_castpd256_pd128(v), b = _mm256_extractf128_pd(v, 1);
@@ -2082,813 +2006,954 @@ static HDI_AVX2 HDI_INLINE void hdi_r256_store(double *p, __m256d v, int64_t lo,
     }
 }
 
-static HDI_AVX2 void hdi_r256_pack(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc) {
-    int32_t k;
-    for (; n > 0; n -= 4, L += 4) {
+/* AVX-512. Tiles of 24 x 8. */
+enum {
+    hdi_cols_avx512 = 8, hdi_regs_avx512 = 3, hdi_fused_avx512 = 1, hdi_masks_avx512 = 1,
+    hdi_tile_rows_avx512 = 4, hdi_tile_cols_avx512 = 3, hdi_solve_rows_avx512 = 6, hdi_sweep_rows_avx512 = 4,
+    hdi_sweep_cols_avx512 = 8
+};
+#define HDI_TARGET_avx512 HDI_AVX512
+typedef __m512d hdi_vec_avx512;
+typedef uint32_t hdi_rows_avx512;                /* a bit for each */
+HDI_IN8 uint32_t hdi_rows_of_avx512(int32_t lo, int32_t hi) {
+    return ((1u << hi) - 1u) & ~0u << (lo > 0 ? lo : 0);
+}
+HDI_IN8 hdi_v8 hdi_all_avx512(double a) { return _mm512_set1_pd(a); }
+HDI_IN8 hdi_v8 hdi_load_avx512(const double *p) { return _mm512_loadu_pd(p); }
+HDI_IN8 void hdi_store_avx512(double *p, hdi_v8 v) { _mm512_storeu_pd(p, v); }
+HDI_IN8 hdi_v8 hdi_add_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_add_pd(a, b); }
+HDI_IN8 hdi_v8 hdi_sub_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_sub_pd(a, b); }
+HDI_IN8 hdi_v8 hdi_mul_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_mul_pd(a, b); }
+HDI_IN8 hdi_v8 hdi_fma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fmadd_pd(a, b, c); }
+HDI_IN8 hdi_v8 hdi_fnma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fnmadd_pd(a, b, c); }
+HDI_IN8 double hdi_low_avx512(hdi_v8 v) { return _mm512_cvtsd_f64(v); }
+HDI_IN8 hdi_v8 hdi_lane_avx512(hdi_v8 v, int k) { return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v); }
+HDI_IN8 hdi_v8 hdi_load_tail_avx512(const double *p, int64_t n) {
+    return _mm512_maskz_loadu_pd(HDI_CAST(__mmask8, n >= 8 ? 0xff : n > 0 ? (1u << n) - 1u : 0), p);
+}
+HDI_IN8 hdi_v8 hdi_load_some_avx512(const double *p, int64_t n) { return hdi_load_tail_avx512(p, n); }
+HDI_IN8 hdi_v8 hdi_load_rows_avx512(const double *p, uint32_t g, int32_t q) {
+    return _mm512_maskz_loadu_pd(HDI_CAST(__mmask8, g >> q & 0xff), p);
+}
+HDI_IN8 void hdi_store_rows_avx512(double *p, hdi_v8 v, uint32_t g, int32_t q) {
+    _mm512_mask_storeu_pd(p, HDI_CAST(__mmask8, g >> q & 0xff), v);
+}
+/* (x, x) of four doubles */
+HDI_IN8 hdi_v8 hdi_twice512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
+/* sum of products from its two halves: p - swap(q) below, p + swap(q) above */
+HDI_IN8 hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
+    const hdi_v8 t = _mm512_shuffle_f64x2(q, q, 0x4e);
+    return _mm512_mask_sub_pd(_mm512_add_pd(p, t), 0x0f, p, t);
+}
+#endif
+
+/* Plain C comes first, where the file is read. */
+#define HDI_SET plain
+#define HDI_SOLO plain
+#define HDI_WIDTH 2
+#endif /* HEATDIFF_IMPLEMENTED */
+
+/* ---- the kernels, once for each instruction set ---- */
+/* The text from here to the choice of the set is read once for each set. HDI_OF(name) is name_set, HDI_SOLO
+ * the set whose kernels for one right-hand side are taken. HDI_KERNEL begins what the tables hold, HDI_PART
+ * what is made part of it, with constants for the arguments that are const int. */
+
+#ifdef HDI_SET
+#ifndef HDI_OF
+#define HDI_PASTE_NOW(name, set) hdi_##name##_##set
+#define HDI_PASTE(name, set) HDI_PASTE_NOW(name, set)
+#define HDI_TARGET_NOW(set) HDI_TARGET_##set
+#define HDI_TARGET_OF(set) HDI_TARGET_NOW(set)
+#define HDI_OF(name) HDI_PASTE(name, HDI_SET)
+#define HDI_KERNEL static HDI_TARGET_OF(HDI_SET)
+#define HDI_PART HDI_KERNEL HDI_INLINE
+#define HDI_EACH(i, n) HDI_UNROLL for (i = 0; i < (n); i++)
+
+#define hdi_vec HDI_OF(vec)
+#define hdi_vall HDI_OF(all)
+#define hdi_vload HDI_OF(load)
+#define hdi_vstore HDI_OF(store)
+#define hdi_vadd HDI_OF(add)
+#define hdi_vsub HDI_OF(sub)
+#define hdi_vmul HDI_OF(mul)
+#define hdi_vfma HDI_OF(fma)
+#define hdi_vfnma HDI_OF(fnma)
+#define hdi_vlane HDI_OF(lane)
+#define hdi_vlow HDI_OF(low)
+#define HDI_COLS HDI_CAST(int32_t, HDI_OF(cols))
+#define HDI_REGS HDI_CAST(int32_t, HDI_OF(regs))
+#endif
+
+/* B = (L diag(d))' in slices */
+HDI_KERNEL void HDI_OF(real_pack)(double *B, const double *L, int64_t ld, const double *d, int32_t n,
+                                  int32_t kc) {
+    int32_t k, q;
+    for (; n > 0; n -= HDI_COLS, L += HDI_COLS) {
         const double *l = L;
-        for (k = 0; k < kc; k++, l += ld, B += 4) _mm256_storeu_pd(B, _mm256_mul_pd(hdi_r256_load(l, n), _mm256_set1_pd(d[k])));
-    }
-}
-
-static HDI_AVX2 void hdi_r256_copy(double *A, const double *L, int64_t ld, int32_t n, int32_t kc) {
-    int32_t k;
-    for (k = 0; k < kc; k++, L += ld, A += 12) {
-        _mm256_storeu_pd(A, hdi_r256_load(L, n));
-        _mm256_storeu_pd(A + 4, hdi_r256_load(L + 4, n - 4));
-        _mm256_storeu_pd(A + 8, hdi_r256_load(L + 8, n - 8));
-    }
-}
-
-/* Registers x##j, y##j, w##j hold rows 0..3, 4..7, 8..11 of column j; nv of the three are in use (a constant where inlined). */
-#define HDI_R256_EACH(M) M(0) M(1) M(2) M(3)
-#define HDI_R256_ZERO(j) __m256d x##j = _mm256_setzero_pd(), y##j = _mm256_setzero_pd(), w##j = _mm256_setzero_pd();
-#define HDI_R256_UNUSED(j) (void)y##j; (void)w##j;
-#define HDI_R256_FMA(j) {                                                                                                \
-        const __m256d b = _mm256_set1_pd(B[j]);                                                                          \
-        x##j = _mm256_fmadd_pd(a0, b, x##j);                                                                             \
-        if (nv > 1) y##j = _mm256_fmadd_pd(a1, b, y##j);                                                                 \
-        if (nv > 2) w##j = _mm256_fmadd_pd(a2, b, w##j);                                                                 \
-    }
-#define HDI_R256_LOOP(LOAD)                                                                                              \
-    for (k = 0; k < kc; k++, A += lda, B += 4) {                                                                         \
-        const __m256d a0 = nv > 1 ? _mm256_loadu_pd(A) : LOAD(A);                                                        \
-        const __m256d a1 = nv > 2 ? _mm256_loadu_pd(A + 4) : nv > 1 ? LOAD(A + 4) : a0;                                  \
-        const __m256d a2 = nv > 2 ? LOAD(A + 8) : a0;                                                                    \
-        HDI_R256_EACH(HDI_R256_FMA)                                                                                      \
-        (void)a1; (void)a2;                                                                                              \
-    }
-#define HDI_R256_WHOLE(p) _mm256_loadu_pd(p)
-#define HDI_R256_TAIL(p) _mm256_maskload_pd(p, last)
-/* sum of the products, over kc columns of A; the last register of rows may be a part */
-#define HDI_R256_PRODUCT                                                                                                 \
-    HDI_R256_EACH(HDI_R256_ZERO)                                                                                         \
-    if (n == 4 * nv) HDI_R256_LOOP(HDI_R256_WHOLE)                                                                       \
-    else {                                                                                                               \
-        const __m256i last = hdi_r256_mask(0, n - 4 * (nv - 1));                                                         \
-        HDI_R256_LOOP(HDI_R256_TAIL)                                                                                     \
-    }
-
-/* As hdi_r128_tile, for n rows, 4 nv - 3 <= n <= 4 nv. */
-static HDI_AVX2 HDI_INLINE void hdi_r256_tile(const int nv, double *C, int64_t step, int64_t dec, int32_t n, int32_t diag, int32_t nc,
-                                              const double *A, int64_t lda, const double *B, int32_t kc) {
-    int32_t k;
-    HDI_R256_PRODUCT
-    if (n == 4 * nv && nc == 4 && diag <= -3) {
-#define HDI_R256_SUB(j)                                                                                                  \
-        _mm256_storeu_pd(C, _mm256_sub_pd(_mm256_loadu_pd(C), x##j));                                                    \
-        if (nv > 1) _mm256_storeu_pd(C + 4, _mm256_sub_pd(_mm256_loadu_pd(C + 4), y##j));                                \
-        if (nv > 2) _mm256_storeu_pd(C + 8, _mm256_sub_pd(_mm256_loadu_pd(C + 8), w##j));                                \
-        C += step; step -= dec;
-        HDI_R256_EACH(HDI_R256_SUB)
-#undef HDI_R256_SUB
-    } else {
-        double *c = C;
-        int64_t move = step;
-#define HDI_R256_BOTH(j, c, move, ACTION)                                                                                \
-        if (j < nc) {                                                                                                    \
-            ACTION(c, 0, x##j, diag + j)                                                                                 \
-            if (nv > 1) ACTION(c, 4, y##j, diag + j)                                                                     \
-            if (nv > 2) ACTION(c, 8, w##j, diag + j)                                                                     \
-            c += move; move -= dec;                                                                                      \
+        for (k = 0; k < kc; k++, l += ld, B += HDI_COLS) {
+            HDI_UNROLL
+            for (q = 0; q < HDI_COLS; q += HDI_WIDTH)
+                hdi_vstore(B + q, hdi_vmul(HDI_OF(load_some)(l + q, n - q), hdi_vall(d[k])));
         }
-#define HDI_R256_TAKE(c, q, v, lo)                                                                                       \
-        v = _mm256_sub_pd((lo) <= (q) && n >= (q) + 4 ? _mm256_loadu_pd(c + (q))                                         \
-                                                      : _mm256_maskload_pd(c + (q), hdi_r256_mask((lo) - (q), n - (q))), v);
-#define HDI_R256_GIVE(c, q, v, lo) hdi_r256_store(c + (q), v, (lo) - (q), n - (q));
-#define HDI_R256_LOAD(j) HDI_R256_BOTH(j, c, move, HDI_R256_TAKE)
-#define HDI_R256_STORE(j) HDI_R256_BOTH(j, C, step, HDI_R256_GIVE)
-        HDI_R256_EACH(HDI_R256_LOAD)
-        HDI_R256_EACH(HDI_R256_STORE)
-#undef HDI_R256_BOTH
-#undef HDI_R256_TAKE
-#undef HDI_R256_GIVE
-#undef HDI_R256_LOAD
-#undef HDI_R256_STORE
-    }
-    HDI_R256_EACH(HDI_R256_UNUSED)
-}
-
-static HDI_AVX2 void hdi_r256_gemm(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb,
-                                   int32_t kc) {
-    const int64_t slice = HDI_CAST(int64_t, kb) * 4;
-    for (; nb > 0; nb -= 4, C += 4 * ld, B += slice) {
-        const int32_t nc = nb < 4 ? nb : 4;
-        if (n > 8) hdi_r256_tile(3, C, ld, 0, n, -4, nc, A, lda, B, kc);
-        else if (n > 4) hdi_r256_tile(2, C, ld, 0, n, -4, nc, A, lda, B, kc);
-        else hdi_r256_tile(1, C, ld, 0, n, -4, nc, A, lda, B, kc);
     }
 }
 
-static HDI_AVX2 void hdi_r256_update(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda,
-                                     const double *B, int32_t kc) {
-    int64_t j;
-    for (j = j0; j < j1; j += 4, B += HDI_CAST(int64_t, kc) * 4) {
-        const int64_t s = j - i;
-        const int32_t up = s >= 4 ? HDI_CAST(int32_t, s & ~HDI_CAST(int64_t, 3)) : 0;
-        const int32_t nr = n - up, diag = s < -4 ? -4 : HDI_CAST(int32_t, s - up), nc = j1 - j < 4 ? HDI_CAST(int32_t, j1 - j) : 4;
-        double *C = U + (j * u - j * (j - 1) / 2 - j + i + up);
-        if (nr > 8) hdi_r256_tile(3, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
-        else if (nr > 4) hdi_r256_tile(2, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
-        else hdi_r256_tile(1, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
+HDI_KERNEL void HDI_OF(real_copy)(double *A, const double *L, int64_t ld, int32_t n, int32_t kc) {
+    enum { mr = HDI_REGS * HDI_WIDTH };
+    int32_t k, q;
+    for (k = 0; k < kc; k++, L += ld, A += mr) {
+        HDI_UNROLL
+        for (q = 0; q < mr; q += HDI_WIDTH) hdi_vstore(A + q, HDI_OF(load_some)(L + q, n - q));
     }
 }
 
-#define HDI_R256_PAIRS(H, F) H(0) F(0, 1) F(0, 2) F(0, 3) H(1) F(1, 2) F(1, 3) H(2) F(2, 3) H(3)
+/* x(:,j) += a b_j for the columns of a slice */
+HDI_PART void HDI_OF(real_term)(hdi_vec (*x)[HDI_REGS], const int nv, const hdi_vec *a, const double *b) {
+    int j, v;
+    HDI_EACH(j, HDI_COLS) {
+        const hdi_vec s = hdi_vall(b[j]);
+        HDI_EACH(v, nv) x[j][v] = hdi_vfma(a[v], s, x[j][v]);
+    }
+}
 
-/* As hdi_r128_solve. */
-static HDI_AVX2 HDI_INLINE void hdi_r256_solve(const int nv, double *C, int64_t ld, int32_t n, int32_t nc, const double *A, const double *B,
-                                               int32_t kc, const double *dinv) {
-    const int64_t lda = ld;
+HDI_PART void HDI_OF(real_zero)(hdi_vec (*x)[HDI_REGS], const int nv) {
+    int j, v;
+    HDI_EACH(j, HDI_COLS)
+        HDI_EACH(v, nv) x[j][v] = hdi_vall(0);
+}
+
+/* x = A B in nv vectors of rows: n of them, of which part is only a part of the last vector. */
+HDI_PART void HDI_OF(real_sum)(hdi_vec (*x)[HDI_REGS], const int nv, const int part, int32_t n,
+                               const double *A, int64_t lda, const double *B, int32_t kc) {
+    const int32_t last = HDI_WIDTH * (nv - 1);
     int32_t k;
-    HDI_R256_PRODUCT
-#define HDI_R256_LOAD(j)                                                                                                 \
-    if (j < nc) {                                                                                                        \
-        const double *c = C + j * ld;                                                                                    \
-        x##j = _mm256_sub_pd(hdi_r256_load(c, nv > 1 ? 4 : n), x##j);                                                    \
-        if (nv > 1) y##j = _mm256_sub_pd(hdi_r256_load(c + 4, nv > 2 ? 4 : n - 4), y##j);                                \
-        if (nv > 2) w##j = _mm256_sub_pd(hdi_r256_load(c + 8, n - 8), w##j);                                             \
+    int v;
+    for (k = 0; k < kc; k++, A += lda, B += HDI_COLS) {
+        hdi_vec a[HDI_REGS];
+        HDI_EACH(v, nv)
+            a[v] = part && v == nv - 1 ? HDI_OF(load_tail)(A + last, n - last) : hdi_vload(A + HDI_WIDTH * v);
+        HDI_OF(real_term)(x, nv, a, B);
     }
-#define HDI_R256_SCALE(j) {                                                                                              \
-        const __m256d b = _mm256_set1_pd(dinv[j]);                                                                       \
-        x##j = _mm256_mul_pd(x##j, b);                                                                                   \
-        hdi_r256_store(C, x##j, 0, nv > 1 ? 4 : n);                                                                      \
-        if (nv > 1) { y##j = _mm256_mul_pd(y##j, b); hdi_r256_store(C + 4, y##j, 0, nv > 2 ? 4 : n - 4); }               \
-        if (nv > 2) { w##j = _mm256_mul_pd(w##j, b); hdi_r256_store(C + 8, w##j, 0, n - 8); }                            \
-        if (nc == j + 1) return;                                                                                         \
-        C += ld;                                                                                                         \
-    }
-#define HDI_R256_LATER(j, k) {                                                                                           \
-        const __m256d b = _mm256_set1_pd(B[4 * j + k]);                                                                  \
-        x##k = _mm256_fnmadd_pd(x##j, b, x##k);                                                                          \
-        if (nv > 1) y##k = _mm256_fnmadd_pd(y##j, b, y##k);                                                              \
-        if (nv > 2) w##k = _mm256_fnmadd_pd(w##j, b, w##k);                                                              \
-    }
-    HDI_R256_EACH(HDI_R256_LOAD)
-    HDI_R256_PAIRS(HDI_R256_SCALE, HDI_R256_LATER)
-#undef HDI_R256_LOAD
-#undef HDI_R256_SCALE
-#undef HDI_R256_LATER
-    HDI_R256_EACH(HDI_R256_UNUSED)
 }
 
-static HDI_AVX2 void hdi_r256_rows(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb,
-                                   const double *dinv) {
-    const double *A = P + k1 * ld;
-    const int64_t slice = HDI_CAST(int64_t, kb) * 4;
-    double *C = P + k * ld;
-    B += k1 * 4;
+HDI_PART void HDI_OF(real_product)(hdi_vec (*x)[HDI_REGS], const int nv, int32_t n, const double *A,
+                                   int64_t lda, const double *B, int32_t kc) {
+    HDI_OF(real_zero)(x, nv);
+    if (!HDI_OF(masks) && n == HDI_WIDTH * nv) HDI_OF(real_sum)(x, nv, 0, n, A, lda, B, kc);
+    else HDI_OF(real_sum)(x, nv, 1, n, A, lda, B, kc);
+}
+
+/* C -= A B for a tile whose n rows fill nv vectors, the last one perhaps in part. */
+HDI_PART void HDI_OF(real_tile)(const int nv, const hdi_real_tile *t) {
+    hdi_vec x[HDI_COLS][HDI_REGS];
+    double *C = t->C;
+    int64_t step = t->step;
+    int j, v;
+    HDI_OF(real_product)(x, nv, t->n, t->A, t->lda, t->B, t->kc);
+    if (t->n == HDI_WIDTH * nv && t->nc == HDI_COLS && t->diag <= 1 - HDI_COLS) {
+        HDI_EACH(j, HDI_COLS) {
+            HDI_EACH(v, nv) hdi_vstore(C + HDI_WIDTH * v, hdi_vsub(hdi_vload(C + HDI_WIDTH * v), x[j][v]));
+            C += step;
+            step -= t->dec;
+        }
+        return;
+    }
+    /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and
+     * wait for it. */
+    HDI_EACH(j, HDI_COLS) {
+        const HDI_OF(rows) g = HDI_OF(rows_of)(t->diag + j, t->n);
+        if (j >= t->nc) continue;
+        HDI_EACH(v, nv)
+            x[j][v] = hdi_vsub(HDI_OF(load_rows)(C + HDI_WIDTH * v, g, HDI_WIDTH * v), x[j][v]);
+        C += step;
+        step -= t->dec;
+    }
+    C = t->C;
+    step = t->step;
+    HDI_EACH(j, HDI_COLS) {
+        const HDI_OF(rows) g = HDI_OF(rows_of)(t->diag + j, t->n);
+        if (j >= t->nc) continue;
+        HDI_EACH(v, nv) HDI_OF(store_rows)(C + HDI_WIDTH * v, x[j][v], g, HDI_WIDTH * v);
+        C += step;
+        step -= t->dec;
+    }
+}
+
+/* One row of tiles; next is the distance of slices, s the first column less the first row, which grows with
+ * packed columns only. */
+HDI_KERNEL void HDI_OF(real_tiles)(const hdi_real_tile *first, int64_t n_cols, int64_t next, int64_t s) {
+    hdi_real_tile t = *first;
+    double *C = first->C;
+    for (; n_cols > 0; n_cols -= HDI_COLS) {
+        /* vectors wholly above the diagonal */
+        const int32_t up = s < HDI_WIDTH ? 0 : HDI_CAST(int32_t, s - s % HDI_WIDTH);
+        t.C = C + up;
+        t.A = first->A + up;
+        t.n = first->n - up;
+        t.diag = s < -HDI_COLS ? -HDI_COLS : HDI_CAST(int32_t, s - up);
+        t.nc = n_cols < HDI_COLS ? HDI_CAST(int32_t, n_cols) : HDI_COLS;
+        if (t.n > HDI_WIDTH * (HDI_REGS - 1)) HDI_OF(real_tile)(HDI_REGS, &t);
+        else if (HDI_REGS > 2 && t.n > HDI_WIDTH) HDI_OF(real_tile)(2, &t);
+        else HDI_OF(real_tile)(1, &t);
+        t.B += next;
+        C += HDI_COLS * t.step - t.dec * (HDI_COLS * (HDI_COLS - 1) / 2);
+        t.step -= t.dec * HDI_COLS;
+        s += t.dec * HDI_COLS;
+    }
+}
+
+HDI_KERNEL void HDI_OF(real_gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda,
+                                  const double *B, int32_t kb, int32_t kc) {
+    const hdi_real_tile t = {C, A, B, ld, 0, lda, n, 0, 0, kc};
+    HDI_OF(real_tiles)(&t, nb, HDI_CAST(int64_t, kb) * HDI_COLS, -HDI_COLS);
+}
+
+HDI_KERNEL void HDI_OF(real_update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1,
+                                    const double *A, int64_t lda, const double *B, int32_t kc) {
+    double *C = U + (j0 * u - j0 * (j0 - 1) / 2 - j0 + i);
+    const hdi_real_tile t = {C, A, B, u - j0 - 1, 1, lda, n, 0, 0, kc};
+    HDI_OF(real_tiles)(&t, j1 - j0, HDI_CAST(int64_t, kc) * HDI_COLS, j0 - i);
+}
+
+/* X = (C - A B) over kc columns, then X = X inv(D L') with the block's D L' in the rows of B that follow. */
+HDI_PART void HDI_OF(real_solve)(const int nv, const hdi_real_tile *t, const double *dinv) {
+    const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
+    const double *B = t->B + HDI_CAST(int64_t, t->kc) * HDI_COLS;
+    hdi_vec x[HDI_COLS][HDI_REGS];
+    double *C = t->C;
+    int j, k, v;
+    HDI_OF(real_product)(x, nv, t->n, t->A, t->lda, t->B, t->kc);
+    HDI_EACH(j, HDI_COLS) {
+        if (j >= t->nc) continue;
+        HDI_EACH(v, nv) {
+            const double *c = C + j * t->step + HDI_WIDTH * v;
+            x[j][v] = hdi_vsub(v < nv - 1 ? hdi_vload(c) : HDI_OF(load_rows)(c, g, HDI_WIDTH * v), x[j][v]);
+        }
+    }
+    HDI_UNROLL
+    for (j = 0; j < HDI_COLS; j++, B += HDI_COLS, C += t->step) {
+        if (j == t->nc) return;
+        HDI_EACH(v, nv) {
+            x[j][v] = hdi_vmul(x[j][v], hdi_vall(dinv[j]));
+            if (v < nv - 1) hdi_vstore(C + HDI_WIDTH * v, x[j][v]);
+            else HDI_OF(store_rows)(C + HDI_WIDTH * v, x[j][v], g, HDI_WIDTH * v);
+        }
+        HDI_EACH(k, HDI_COLS) {
+            const hdi_vec b = hdi_vall(B[k]);
+            if (k <= j) continue;
+            HDI_EACH(v, nv) x[k][v] = hdi_vfnma(x[j][v], b, x[k][v]);
+        }
+    }
+}
+
+HDI_KERNEL void HDI_OF(real_rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb,
+                                  const double *B, int32_t kb, const double *dinv) {
+    hdi_real_tile t;
+    t.C = P + k * ld;
+    t.step = t.lda = ld;
+    t.dec = 0;
+    t.n = n;
+    t.diag = -HDI_COLS;
+    t.A = P + k1 * ld;
+    t.B = B + HDI_CAST(int64_t, k1) * HDI_COLS;
+    t.kc = k - k1;
     dinv += k;
-    for (; nb > 0; nb -= 4, C += 4 * ld, B += slice, dinv += 4, k += 4) {
-        const int32_t nc = nb < 4 ? nb : 4;
-        if (n > 8) hdi_r256_solve(3, C, ld, n, nc, A, B, k - k1, dinv);
-        else if (n > 4) hdi_r256_solve(2, C, ld, n, nc, A, B, k - k1, dinv);
-        else hdi_r256_solve(1, C, ld, n, nc, A, B, k - k1, dinv);
+    for (; nb > 0; nb -= HDI_COLS, dinv += HDI_COLS) {
+        t.nc = nb < HDI_COLS ? nb : HDI_COLS;
+        if (n > HDI_WIDTH * (HDI_REGS - 1)) HDI_OF(real_solve)(HDI_REGS, &t, dinv);
+        else if (HDI_REGS > 2 && n > HDI_WIDTH) HDI_OF(real_solve)(2, &t, dinv);
+        else HDI_OF(real_solve)(1, &t, dinv);
+        t.C += HDI_COLS * ld;
+        t.B += HDI_CAST(int64_t, kb) * HDI_COLS;
+        t.kc += HDI_COLS;
     }
 }
 
-/* The pivots in registers x, n more rows in y and w: for these the same operations as in hdi_r256_solve. */
-static HDI_AVX2 HDI_INLINE void hdi_r256_pivots(const int nv, double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n, double *S, double *dinv) {
-    const int32_t n1 = nv > 2 ? 4 : n, n2 = n - 4;
+/* Vectors of a block of pivots: the first hold the nc pivots' own rows, the others n rows that follow; rows
+ * of vector v, and how many. */
+HDI_PART int32_t HDI_OF(real_first)(const int v, int32_t nc) {
+    enum { top = HDI_COLS / HDI_WIDTH };
+    return v < top ? HDI_WIDTH * v : nc + HDI_WIDTH * (v - top);
+}
+HDI_PART int32_t HDI_OF(real_count)(const int v, int32_t nc, int32_t n) {
+    return v < HDI_COLS / HDI_WIDTH ? nc - HDI_WIDTH * v : n - HDI_WIDTH * (v - HDI_COLS / HDI_WIDTH);
+}
+
+/* For the rows below the pivots the same operations as in real_solve. */
+HDI_PART void HDI_OF(real_pivots)(const int nv, double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n,
+                                  double *S, double *dinv) {
+    enum { top = HDI_COLS / HDI_WIDTH };
     const double *row = P, *slice = S;
-    double *C = P + kc * ld, *T = S + kc * 4;
-    int32_t k;
-    HDI_R256_EACH(HDI_R256_ZERO)
-    for (k = 0; k < kc; k++, row += ld, slice += 4) {
-        const __m256d a0 = hdi_r256_load(row, nc), a1 = nv > 1 ? hdi_r256_load(row + nc, n1) : a0;
-        const __m256d a2 = nv > 2 ? hdi_r256_load(row + nc + 4, n2) : a0;
-        const double *B = slice;
-        HDI_R256_EACH(HDI_R256_FMA)
-        (void)a1; (void)a2;
+    double *C = P + kc * ld, *T = S + HDI_CAST(int64_t, kc) * HDI_COLS;
+    hdi_vec x[HDI_COLS][HDI_REGS];
+    int j, k, v;
+    HDI_OF(real_zero)(x, nv);
+    for (k = 0; k < kc; k++, row += ld, slice += HDI_COLS) {
+        hdi_vec a[HDI_REGS];
+        HDI_EACH(v, nv) a[v] = HDI_OF(load_some)(row + HDI_OF(real_first)(v, nc),
+                                                 HDI_OF(real_count)(v, nc, n));
+        HDI_OF(real_term)(x, nv, a, slice);
     }
-#define HDI_R256_LOAD(j)                                                                                                 \
-    if (j < nc) {                                                                                                        \
-        const double *c = C + j * ld;                                                                                    \
-        x##j = _mm256_sub_pd(hdi_r256_load(c, nc), x##j);                                                                \
-        if (nv > 1) y##j = _mm256_sub_pd(hdi_r256_load(c + nc, n1), y##j);                                               \
-        if (nv > 2) w##j = _mm256_sub_pd(hdi_r256_load(c + nc + 4, n2), w##j);                                           \
+    HDI_EACH(j, HDI_COLS) {
+        if (j >= nc) continue;
+        HDI_EACH(v, nv) {
+            const double *c = C + j * ld + HDI_OF(real_first)(v, nc);
+            x[j][v] = hdi_vsub(HDI_OF(load_some)(c, HDI_OF(real_count)(v, nc, n)), x[j][v]);
+        }
     }
-#define HDI_R256_LANE(v, k) _mm256_permute4x64_pd(v, 0x55 * k)
-#define HDI_R256_PIVOT(j)                                                                                                \
-        const __m128d d##j = _mm256_castpd256_pd128(HDI_R256_LANE(x##j, j));                                             \
-        if (_mm_ucomieq_sd(d##j, _mm_setzero_pd())) { _mm_store_sd(C + j, d##j); return; }                               \
-        const __m128d q##j = _mm_div_sd(_mm_set_sd(1.0), d##j);                                                          \
-        const __m256d r##j = _mm256_broadcastsd_pd(q##j), l##j = _mm256_mul_pd(x##j, r##j);                              \
-        _mm256_storeu_pd(T + 4 * j, x##j);                                                                               \
-        _mm_store_sd(dinv + j, q##j);                                                                                    \
-        hdi_r256_store(C, l##j, j + 1, nc);                                                                              \
-        _mm_store_sd(C + j, d##j);                                                                                       \
-        if (nv > 1) { y##j = _mm256_mul_pd(y##j, r##j); hdi_r256_store(C + nc, y##j, 0, n1); }                           \
-        if (nv > 2) { w##j = _mm256_mul_pd(w##j, r##j); hdi_r256_store(C + nc + 4, w##j, 0, n2); }                       \
-        if (nc == j + 1) return;                                                                                         \
-        C += ld;
-#define HDI_R256_LATER(j, k) {                                                                                           \
-        const __m256d s = HDI_R256_LANE(x##j, k);                                                                        \
-        x##k = _mm256_fnmadd_pd(l##j, s, x##k);                                                                          \
-        if (nv > 1) y##k = _mm256_fnmadd_pd(y##j, s, y##k);                                                              \
-        if (nv > 2) w##k = _mm256_fnmadd_pd(w##j, s, w##k);                                                              \
+    HDI_UNROLL
+    for (j = 0; j < HDI_COLS; j++, C += ld, T += HDI_COLS) {
+        hdi_vec l[HDI_REGS];
+        double d, q;
+        if (j == nc) return;
+        d = hdi_vlow(hdi_vlane(x[j][j / HDI_WIDTH], j % HDI_WIDTH));
+        if (d == 0) {                            /* which hdi_real_block finds on the diagonal */
+            C[j] = d;
+            return;
+        }
+        q = 1 / d;
+        dinv[kc + j] = q;
+        HDI_EACH(v, nv) {
+            const int32_t first = v < top ? j + 1 - HDI_WIDTH * v : 0;
+            l[v] = hdi_vmul(x[j][v], hdi_vall(q));
+            if (v < top) hdi_vstore(T + HDI_WIDTH * v, x[j][v]);
+            HDI_OF(store_rows)(C + HDI_OF(real_first)(v, nc), l[v],
+                               HDI_OF(rows_of)(first, HDI_OF(real_count)(v, nc, n)), 0);
+        }
+        C[j] = d;
+        HDI_EACH(k, HDI_COLS) {
+            if (k <= j) continue;
+            HDI_EACH(v, nv) x[k][v] = hdi_vfnma(l[v], hdi_vlane(x[j][k / HDI_WIDTH], k % HDI_WIDTH), x[k][v]);
+        }
     }
-    dinv += kc;
-    HDI_R256_EACH(HDI_R256_LOAD)
-    HDI_R256_PAIRS(HDI_R256_PIVOT, HDI_R256_LATER)
-#undef HDI_R256_LOAD
-#undef HDI_R256_LANE
-#undef HDI_R256_PIVOT
-#undef HDI_R256_LATER
-    HDI_R256_EACH(HDI_R256_UNUSED)
-    (void)n1; (void)n2;
 }
 
-static HDI_AVX2 void hdi_r256_block(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv) {
-    if (n > 4) hdi_r256_pivots(3, P, ld, k, nc, n, B, dinv);
-    else if (n > 0) hdi_r256_pivots(2, P, ld, k, nc, n, B, dinv);
-    else hdi_r256_pivots(1, P, ld, k, nc, n, B, dinv);
+HDI_KERNEL void HDI_OF(real_block)(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B,
+                                   double *dinv) {
+    enum { top = HDI_COLS / HDI_WIDTH };
+    if (top + 2 <= HDI_REGS && n > HDI_WIDTH) HDI_OF(real_pivots)(HDI_REGS, P, ld, k, nc, n, B, dinv);
+    else if (top + 1 <= HDI_REGS && n > 0) HDI_OF(real_pivots)(top + 1, P, ld, k, nc, n, B, dinv);
+    else HDI_OF(real_pivots)(top, P, ld, k, nc, n, B, dinv);
 }
 
-static HDI_AVX2 void hdi_r256_add(double *y, const double *x, int64_t n) {
-    for (; n >= 4; n -= 4, x += 4, y += 4) _mm256_storeu_pd(y, _mm256_add_pd(_mm256_loadu_pd(y), _mm256_loadu_pd(x)));
+/* One right-hand side is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast
+ * or faster. */
+#if HDI_WIDTH <= 4
+HDI_KERNEL void HDI_OF(real_add)(double *y, const double *x, int64_t n) {
+    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, x += HDI_WIDTH, y += HDI_WIDTH)
+        hdi_vstore(y, hdi_vadd(hdi_vload(y), hdi_vload(x)));
     for (; n > 0; n--) *y++ += *x++;
 }
 
-static HDI_AVX2 void hdi_r256_gather(double *t, const double *x, const int32_t *idx, int64_t n) {
-    for (; n >= 4; n -= 4, t += 4, idx += 4)
-        _mm256_storeu_pd(t, _mm256_i32gather_pd(x, _mm_loadu_si128(HDI_CAST(const __m128i *, HDI_CAST(const void *, idx))), 8));
+HDI_KERNEL void HDI_OF(real_gather)(double *t, const double *x, const int32_t *idx, int64_t n) {
+    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, t += HDI_WIDTH, idx += HDI_WIDTH)
+        hdi_vstore(t, HDI_OF(gather)(x, idx));
     for (; n > 0; n--) *t++ = x[*idx++];
 }
 
-#define HDI_R256_EIGHT(M) M(0) M(1) M(2) M(3) M(4) M(5) M(6) M(7)
-#define HDI_R256_LOWER(ROW)                                                                                              \
-    ROW(1, 0)                                                                                                            \
-    ROW(2, 0) ROW(2, 1)                                                                                                  \
-    ROW(3, 0) ROW(3, 1) ROW(3, 2)                                                                                        \
-    ROW(4, 0) ROW(4, 1) ROW(4, 2) ROW(4, 3)                                                                              \
-    ROW(5, 0) ROW(5, 1) ROW(5, 2) ROW(5, 3) ROW(5, 4)                                                                    \
-    ROW(6, 0) ROW(6, 1) ROW(6, 2) ROW(6, 3) ROW(6, 4) ROW(6, 5)                                                          \
-    ROW(7, 0) ROW(7, 1) ROW(7, 2) ROW(7, 3) ROW(7, 4) ROW(7, 5) ROW(7, 6)
-#define HDI_R256_UPPER(ROW)                                                                                              \
-    ROW(7, 6) ROW(7, 5) ROW(7, 4) ROW(7, 3) ROW(7, 2) ROW(7, 1) ROW(7, 0)                                                \
-    ROW(6, 5) ROW(6, 4) ROW(6, 3) ROW(6, 2) ROW(6, 1) ROW(6, 0)                                                          \
-    ROW(5, 4) ROW(5, 3) ROW(5, 2) ROW(5, 1) ROW(5, 0)                                                                    \
-    ROW(4, 3) ROW(4, 2) ROW(4, 1) ROW(4, 0)                                                                              \
-    ROW(3, 2) ROW(3, 1) ROW(3, 0)                                                                                        \
-    ROW(2, 1) ROW(2, 0)                                                                                                  \
-    ROW(1, 0)
+/* The eight columns from L on; missing ones are the last one again. */
+HDI_PART void HDI_OF(real_columns)(const double **l, const double *L, int64_t ld, int32_t nc) {
+    int j;
+    HDI_EACH(j, 8) l[j] = L + (j < nc ? j : nc - 1) * ld;
+}
 
-static HDI_AVX2 void hdi_r256_forward(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2, int first) {
+/* y - L b in the rows from i on that fill a vector, or, with part, in the rest of them. Even columns are
+ * summed apart from odd ones. wide: more than four columns. */
+HDI_PART hdi_vec HDI_OF(real_minus)(hdi_vec y, const double *const *l, int64_t i, const int part,
+                                    int32_t rest, const hdi_vec *b, int wide) {
+    hdi_vec s[2];
+    int j;
+    s[0] = y;
+    s[1] = hdi_vall(0);
+    HDI_EACH(j, 8) {
+        if (j >= 4 && !wide) continue;
+        s[j % 2] = hdi_vfnma(part ? HDI_OF(load_tail)(l[j] + i, rest) : hdi_vload(l[j] + i), b[j], s[j % 2]);
+    }
+    return hdi_vadd(s[0], s[1]);
+}
+
+HDI_PART void HDI_OF(real_sweep)(double *y, const double *const *l, int64_t n, const hdi_vec *b, int wide,
+                                 const int keep) {
     int64_t i;
-#define HDI_R256_TAKE(j) double b##j = j < nc ? b[j] : 0.0;
-#define HDI_R256_ROW(k, j) if (k < nc) b##k = __builtin_fma(-L[k + j * ld], b##j, b##k);
-#define HDI_R256_COLUMN(j)                                                                                               \
-    const double *l##j = L + nc + (j < nc ? j : nc - 1) * ld;                                                            \
-    const __m256d v##j = _mm256_set1_pd(b##j);                                                                           \
-    if (j < nc) b[j] = b##j;
-#define HDI_R256_MUL(j, s) s = _mm256_fnmadd_pd(_mm256_loadu_pd(l##j + i), v##j, s);
-#define HDI_R256_END(j, s) s = __builtin_fma(-l##j[i], b##j, s);
-#define HDI_R256_NEXT(j) l##j += n1;
-#define HDI_R256_SWEEP(n, y, keep)                                                                                       \
-    for (i = 0; i + 4 <= n; i += 4) {                                                                                    \
-        __m256d r = keep ? _mm256_loadu_pd(y + i) : _mm256_setzero_pd(), s = _mm256_setzero_pd();                        \
-        HDI_R256_MUL(0, r) HDI_R256_MUL(1, s) HDI_R256_MUL(2, r) HDI_R256_MUL(3, s)                                      \
-        if (nc > 4) { HDI_R256_MUL(4, r) HDI_R256_MUL(5, s) HDI_R256_MUL(6, r) HDI_R256_MUL(7, s) }                      \
-        _mm256_storeu_pd(y + i, _mm256_add_pd(r, s));                                                                    \
-    }                                                                                                                    \
-    for (; i < n; i++) {                                                                                                 \
-        double r = keep ? y[i] : 0.0, s = 0;                                                                             \
-        HDI_R256_END(0, r) HDI_R256_END(1, s) HDI_R256_END(2, r) HDI_R256_END(3, s)                                      \
-        if (nc > 4) { HDI_R256_END(4, r) HDI_R256_END(5, s) HDI_R256_END(6, r) HDI_R256_END(7, s) }                      \
-        y[i] = r + s;                                                                                                    \
+    for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH)
+        hdi_vstore(y + i, HDI_OF(real_minus)(keep ? hdi_vload(y + i) : hdi_vall(0), l, i, 0, 0, b, wide));
+    if (i < n) {
+        const int32_t rest = HDI_CAST(int32_t, n - i);
+        const hdi_vec from = keep ? HDI_OF(load_tail)(y + i, rest) : hdi_vall(0);
+        const hdi_vec to = HDI_OF(real_minus)(from, l, i, 1, rest, b, wide);
+        HDI_OF(store_rows)(y + i, to, HDI_OF(rows_of)(0, rest), 0);
     }
-    HDI_R256_EIGHT(HDI_R256_TAKE)
-    HDI_R256_LOWER(HDI_R256_ROW)
-    {
-        HDI_R256_EIGHT(HDI_R256_COLUMN)
-        b += nc;
-        HDI_R256_SWEEP(n1, b, 1)
-        HDI_R256_EIGHT(HDI_R256_NEXT)
-        if (first) { HDI_R256_SWEEP(n2, t, 0) }
-        else { HDI_R256_SWEEP(n2, t, 1) }
-    }
-#undef HDI_R256_TAKE
-#undef HDI_R256_ROW
-#undef HDI_R256_COLUMN
-#undef HDI_R256_MUL
-#undef HDI_R256_END
-#undef HDI_R256_NEXT
-#undef HDI_R256_SWEEP
 }
 
-static HDI_AVX2 HDI_INLINE __m256d hdi_r256_sums(__m256d a, __m256d b, __m256d c, __m256d d) {
-    const __m256d ab = _mm256_hadd_pd(a, b), cd = _mm256_hadd_pd(c, d);
-    return _mm256_add_pd(_mm256_permute2f128_pd(ab, cd, 0x20), _mm256_permute2f128_pd(ab, cd, 0x31));
+HDI_KERNEL void HDI_OF(real_forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1,
+                                     double *t, int64_t n2, int first) {
+    const double *l[8];
+    double x[8];
+    hdi_vec v[8];
+    int j, k;
+    HDI_EACH(j, 8) x[j] = j < nc ? b[j] : 0.0;
+    HDI_EACH(j, 8)
+        HDI_EACH(k, 8)
+            if (k > j && k < nc) x[k] = HDI_OF(fnma1)(L[k + j * ld], x[j], x[k]);
+    HDI_EACH(j, 8) {
+        v[j] = hdi_vall(x[j]);
+        if (j < nc) b[j] = x[j];
+    }
+    HDI_OF(real_columns)(l, L + nc, ld, nc);
+    HDI_OF(real_sweep)(b + nc, l, n1, v, nc > 4, 1);
+    HDI_EACH(j, 8) l[j] += n1;
+    if (first) HDI_OF(real_sweep)(t, l, n2, v, nc > 4, 0);
+    else HDI_OF(real_sweep)(t, l, n2, v, nc > 4, 1);
 }
 
-static HDI_AVX2 void hdi_r256_backward(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t, int64_t n2) {
-    const double *y = b + nc;
-    double s[8];
+/* s += L' y */
+HDI_PART void HDI_OF(real_dots)(hdi_vec *s, const double *const *l, int64_t n, const double *y, int wide) {
     int64_t i;
-#define HDI_R256_COLUMN(j) const double *l##j = L + nc + (j < nc ? j : nc - 1) * ld; __m256d s##j = _mm256_setzero_pd();
-#define HDI_R256_DOT(j) s##j = _mm256_fmadd_pd(_mm256_loadu_pd(l##j + i), v, s##j);
-#define HDI_R256_END(j) s##j = _mm256_fmadd_pd(_mm256_maskload_pd(l##j + i, h), v, s##j);
-#define HDI_R256_NEXT(j) l##j += n1;
-#define HDI_R256_SWEEP(n, y)                                                                                             \
-    for (i = 0; i + 4 <= n; i += 4) {                                                                                    \
-        const __m256d v = _mm256_loadu_pd(y + i);                                                                        \
-        HDI_R256_DOT(0) HDI_R256_DOT(1) HDI_R256_DOT(2) HDI_R256_DOT(3)                                                  \
-        if (nc > 4) { HDI_R256_DOT(4) HDI_R256_DOT(5) HDI_R256_DOT(6) HDI_R256_DOT(7) }                                  \
-    }                                                                                                                    \
-    if (i < n) {                                                                                                         \
-        const __m256i h = hdi_r256_mask(0, n - i);                                                                       \
-        const __m256d v = _mm256_maskload_pd(y + i, h);                                                                  \
-        HDI_R256_EIGHT(HDI_R256_END)                                                                                     \
-    }
-#define HDI_R256_TAKE(j) double b##j = j < nc ? b[j] - s[j] : 0.0;
-#define HDI_R256_ROW(k, j) if (k < nc) b##j = __builtin_fma(-L[k + j * ld], b##k, b##j);
-#define HDI_R256_GIVE(j) if (j < nc) b[j] = b##j;
-    HDI_R256_EIGHT(HDI_R256_COLUMN)
-    HDI_R256_SWEEP(n1, y)
-    HDI_R256_EIGHT(HDI_R256_NEXT)
-    HDI_R256_SWEEP(n2, t)
-    _mm256_storeu_pd(s, hdi_r256_sums(s0, s1, s2, s3));
-    _mm256_storeu_pd(s + 4, hdi_r256_sums(s4, s5, s6, s7));
-    HDI_R256_EIGHT(HDI_R256_TAKE)
-    HDI_R256_UPPER(HDI_R256_ROW)
-    HDI_R256_EIGHT(HDI_R256_GIVE)
-#undef HDI_R256_COLUMN
-#undef HDI_R256_DOT
-#undef HDI_R256_END
-#undef HDI_R256_NEXT
-#undef HDI_R256_SWEEP
-#undef HDI_R256_TAKE
-#undef HDI_R256_ROW
-#undef HDI_R256_GIVE
-}
-
-#define HDI_R256_AT(i) (y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : (i)))
-
-static HDI_AVX2 void hdi_r256_gemv8(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc) {
-    int64_t i = 0;
-    int32_t k;
-#define HDI_R256_ZERO8(j) __m256d x##j = _mm256_setzero_pd(), y##j = _mm256_setzero_pd();
-#define HDI_R256_MUL8(j) {                                                                                               \
-        const __m256d b = _mm256_set1_pd(l[j]);                                                                          \
-        x##j = _mm256_fmadd_pd(v0, b, x##j);                                                                             \
-        y##j = _mm256_fmadd_pd(v1, b, y##j);                                                                             \
-    }
-#define HDI_R256_OUT8(j) {                                                                                               \
-        double *q = HDI_R256_AT(i + j);                                                                                  \
-        _mm256_storeu_pd(q, _mm256_sub_pd(_mm256_loadu_pd(q), x##j));                                                    \
-        _mm256_storeu_pd(q + 4, _mm256_sub_pd(_mm256_loadu_pd(q + 4), y##j));                                            \
-    }
-    for (; i + 4 <= n; i += 4) {
-        const double *l = L + i;
-        HDI_R256_EACH(HDI_R256_ZERO8)
-        for (k = 0; k < nc; k++, l += ld) {
-            const __m256d v0 = _mm256_loadu_pd(x + 8 * k), v1 = _mm256_loadu_pd(x + 8 * k + 4);
-            HDI_PREFETCH(l + 32);
-            HDI_R256_EACH(HDI_R256_MUL8)
-        }
-        HDI_R256_EACH(HDI_R256_OUT8)
-    }
-    for (; i < n; i++) {
-        const double *l = L + i;
-        HDI_R256_ZERO8(0)
-        for (k = 0; k < nc; k++, l += ld) {
-            const __m256d v0 = _mm256_loadu_pd(x + 8 * k), v1 = _mm256_loadu_pd(x + 8 * k + 4);
-            HDI_R256_MUL8(0)
-        }
-        HDI_R256_OUT8(0)
-    }
-#undef HDI_R256_MUL8
-#undef HDI_R256_OUT8
-}
-
-static HDI_AVX2 void hdi_r256_dots8(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc) {
-    int64_t i;
-#define HDI_R256_COLUMN(j) const double *l##j = L + (j < nc ? j : nc - 1) * ld;
-#define HDI_R256_MUL8(j) {                                                                                               \
-        const __m256d b = _mm256_set1_pd(l##j[i]);                                                                       \
-        x##j = _mm256_fmadd_pd(v0, b, x##j);                                                                             \
-        y##j = _mm256_fmadd_pd(v1, b, y##j);                                                                             \
-    }
-#define HDI_R256_OUT8(j) if (j < nc) {                                                                                   \
-        double *q = x + 8 * j;                                                                                           \
-        _mm256_storeu_pd(q, _mm256_sub_pd(_mm256_loadu_pd(q), x##j));                                                    \
-        _mm256_storeu_pd(q + 4, _mm256_sub_pd(_mm256_loadu_pd(q + 4), y##j));                                            \
-    }
-    for (; nc > 0; nc -= 4, x += 32, L += 4 * ld) {  /* four columns at a time: sixteen registers */
-        HDI_R256_EACH(HDI_R256_COLUMN)
-        HDI_R256_EACH(HDI_R256_ZERO8)
-        for (i = 0; i < n; i++) {
-            const double *q = HDI_R256_AT(i);
-            const __m256d v0 = _mm256_loadu_pd(q), v1 = _mm256_loadu_pd(q + 4);
-            HDI_R256_EACH(HDI_R256_MUL8)
-        }
-        HDI_R256_EACH(HDI_R256_OUT8)
-    }
-#undef HDI_R256_COLUMN
-#undef HDI_R256_MUL8
-#undef HDI_R256_OUT8
-#undef HDI_R256_ZERO8
-}
-
-#define HDI_R256_IN8(j) __m256d x##j = j < nc ? _mm256_loadu_pd(x + 8 * j) : _mm256_setzero_pd();
-#define HDI_R256_OUT8(j) if (j < nc) _mm256_storeu_pd(x + 8 * j, x##j);
-
-static HDI_AVX2 void hdi_r256_lower8(double *x, const double *L, int64_t ld, int32_t nc) {
-    int half;
-#define HDI_R256_ROW(k, j) if (k < nc) x##k = _mm256_fnmadd_pd(x##j, _mm256_set1_pd(L[k + j * ld]), x##k);
-    for (half = 0; half < 2; half++, x += 4) {
-        HDI_R256_EIGHT(HDI_R256_IN8)
-        HDI_R256_LOWER(HDI_R256_ROW)
-        HDI_R256_EIGHT(HDI_R256_OUT8)
-    }
-#undef HDI_R256_ROW
-}
-
-static HDI_AVX2 void hdi_r256_upper8(double *x, const double *L, int64_t ld, int32_t nc) {
-    int half;
-#define HDI_R256_ROW(k, j) if (k < nc) x##j = _mm256_fnmadd_pd(x##k, _mm256_set1_pd(L[k + j * ld]), x##j);
-    for (half = 0; half < 2; half++, x += 4) {
-        HDI_R256_EIGHT(HDI_R256_IN8)
-        HDI_R256_UPPER(HDI_R256_ROW)
-        HDI_R256_EIGHT(HDI_R256_OUT8)
-    }
-#undef HDI_R256_ROW
-}
-#undef HDI_R256_IN8
-#undef HDI_R256_OUT8
-#undef HDI_R256_AT
-#undef HDI_R256_EIGHT
-#undef HDI_R256_LOWER
-#undef HDI_R256_UPPER
-#undef HDI_R256_EACH
-#undef HDI_R256_ZERO
-#undef HDI_R256_UNUSED
-#undef HDI_R256_FMA
-#undef HDI_R256_LOOP
-#undef HDI_R256_WHOLE
-#undef HDI_R256_TAIL
-#undef HDI_R256_PRODUCT
-#undef HDI_R256_PAIRS
-
-/* ---- AVX-512: tiles of 24 x 8 ---- */
-
-static HDI_AVX512 __mmask8 hdi_r512_mask(int64_t n) { return HDI_CAST(__mmask8, n >= 8 ? 0xff : (1u << n) - 1u); }
-
-static HDI_AVX512 void hdi_r512_pack(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc) {
-    int32_t k;
-    for (; n > 0; n -= 8, L += 8) {
-        const __mmask8 rows = hdi_r512_mask(n);
-        const double *l = L;
-        for (k = 0; k < kc; k++, l += ld, B += 8) _mm512_storeu_pd(B, _mm512_mul_pd(_mm512_maskz_loadu_pd(rows, l), _mm512_set1_pd(d[k])));
-    }
-}
-
-static HDI_AVX512 void hdi_r512_copy(double *A, const double *L, int64_t ld, int32_t n, int32_t kc) {
-    const __mmask8 m0 = hdi_r512_mask(n), m1 = hdi_r512_mask(n > 8 ? n - 8 : 0), m2 = hdi_r512_mask(n > 16 ? n - 16 : 0);
-    int32_t k;
-    for (k = 0; k < kc; k++, L += ld, A += 24) {
-        _mm512_storeu_pd(A, _mm512_maskz_loadu_pd(m0, L));
-        _mm512_storeu_pd(A + 8, _mm512_maskz_loadu_pd(m1, L + 8));
-        _mm512_storeu_pd(A + 16, _mm512_maskz_loadu_pd(m2, L + 16));
-    }
-}
-
-/* Registers x##j, y##j, w##j hold rows 0..7, 8..15, 16..23 of column j; nv of the three are in use (a constant where inlined). */
-#define HDI_R512_EACH(M) M(0) M(1) M(2) M(3) M(4) M(5) M(6) M(7)
-#define HDI_R512_ZERO(j) __m512d x##j = _mm512_setzero_pd(), y##j = _mm512_setzero_pd(), w##j = _mm512_setzero_pd();
-#define HDI_R512_FMA(j) {                                                                                                \
-        const __m512d b = _mm512_set1_pd(B[j]);                                                                          \
-        x##j = _mm512_fmadd_pd(a0, b, x##j);                                                                             \
-        if (nv > 1) y##j = _mm512_fmadd_pd(a1, b, y##j);                                                                 \
-        if (nv > 2) w##j = _mm512_fmadd_pd(a2, b, w##j);                                                                 \
-    }
-/* sum of the products, over kc columns of A; last masks the last register of rows */
-#define HDI_R512_PRODUCT                                                                                                 \
-    HDI_R512_EACH(HDI_R512_ZERO)                                                                                         \
-    for (k = 0; k < kc; k++, A += lda, B += 8) {                                                                         \
-        const __m512d a0 = nv > 1 ? _mm512_loadu_pd(A) : _mm512_maskz_loadu_pd(last, A);                                 \
-        const __m512d a1 = nv > 2 ? _mm512_loadu_pd(A + 8) : nv > 1 ? _mm512_maskz_loadu_pd(last, A + 8) : a0;           \
-        const __m512d a2 = nv > 2 ? _mm512_maskz_loadu_pd(last, A + 16) : a0;                                            \
-        HDI_R512_EACH(HDI_R512_FMA)                                                                                      \
-        (void)a1; (void)a2;                                                                                              \
-    }
-#define HDI_R512_UNUSED(j) (void)y##j; (void)w##j;
-
-/* As hdi_r128_tile, for n rows, 8 nv - 7 <= n <= 8 nv. */
-static HDI_AVX512 HDI_INLINE void hdi_r512_tile(const int nv, double *C, int64_t step, int64_t dec, int32_t n, int32_t diag, int32_t nc,
-                                                const double *A, int64_t lda, const double *B, int32_t kc) {
-    const __mmask8 last = hdi_r512_mask(n - 8 * (nv - 1));
-    int32_t k;
-    HDI_R512_PRODUCT
-    if (n == 8 * nv && nc == 8 && diag <= -7) {
-#define HDI_R512_SUB(j)                                                                                                  \
-        _mm512_storeu_pd(C, _mm512_sub_pd(_mm512_loadu_pd(C), x##j));                                                    \
-        if (nv > 1) _mm512_storeu_pd(C + 8, _mm512_sub_pd(_mm512_loadu_pd(C + 8), y##j));                                \
-        if (nv > 2) _mm512_storeu_pd(C + 16, _mm512_sub_pd(_mm512_loadu_pd(C + 16), w##j));                              \
-        C += step; step -= dec;
-        HDI_R512_EACH(HDI_R512_SUB)
-#undef HDI_R512_SUB
-    } else {
-        /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and wait for it. */
-        const uint32_t rows = (1u << n) - 1u;
-        double *c = C;
-        int64_t move = step;
-#define HDI_R512_PART(q) HDI_CAST(__mmask8, g >> (q) & 0xff)
-#define HDI_R512_BOTH(j, c, move, ACTION)                                                                                \
-        if (j < nc) {                                                                                                    \
-            const uint32_t g = diag + j > 0 ? rows & ~0u << (diag + j) : rows;                                           \
-            ACTION(c, 0, x##j)                                                                                           \
-            if (nv > 1) ACTION(c, 8, y##j)                                                                               \
-            if (nv > 2) ACTION(c, 16, w##j)                                                                              \
-            c += move; move -= dec;                                                                                      \
-        }
-#define HDI_R512_TAKE(c, q, v) v = _mm512_sub_pd(_mm512_maskz_loadu_pd(HDI_R512_PART(q), c + (q)), v);
-#define HDI_R512_GIVE(c, q, v) _mm512_mask_storeu_pd(c + (q), HDI_R512_PART(q), v);
-#define HDI_R512_LOAD(j) HDI_R512_BOTH(j, c, move, HDI_R512_TAKE)
-#define HDI_R512_STORE(j) HDI_R512_BOTH(j, C, step, HDI_R512_GIVE)
-        HDI_R512_EACH(HDI_R512_LOAD)
-        HDI_R512_EACH(HDI_R512_STORE)
-#undef HDI_R512_PART
-#undef HDI_R512_BOTH
-#undef HDI_R512_TAKE
-#undef HDI_R512_GIVE
-#undef HDI_R512_LOAD
-#undef HDI_R512_STORE
-    }
-    HDI_R512_EACH(HDI_R512_UNUSED)
-}
-
-static HDI_AVX512 void hdi_r512_gemm(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B, int32_t kb,
-                                     int32_t kc) {
-    const int64_t slice = HDI_CAST(int64_t, kb) * 8;
-    for (; nb > 0; nb -= 8, C += 8 * ld, B += slice) {
-        const int32_t nc = nb < 8 ? nb : 8;
-        if (n > 16) hdi_r512_tile(3, C, ld, 0, n, -8, nc, A, lda, B, kc);
-        else if (n > 8) hdi_r512_tile(2, C, ld, 0, n, -8, nc, A, lda, B, kc);
-        else hdi_r512_tile(1, C, ld, 0, n, -8, nc, A, lda, B, kc);
-    }
-}
-
-static HDI_AVX512 void hdi_r512_update(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A, int64_t lda,
-                                       const double *B, int32_t kc) {
-    int64_t j;
-    for (j = j0; j < j1; j += 8, B += HDI_CAST(int64_t, kc) * 8) {
-        const int64_t s = j - i;
-        const int32_t up = s >= 8 ? HDI_CAST(int32_t, s & ~HDI_CAST(int64_t, 7)) : 0;  /* registers wholly above the diagonal */
-        const int32_t nr = n - up, diag = s < -8 ? -8 : HDI_CAST(int32_t, s - up), nc = j1 - j < 8 ? HDI_CAST(int32_t, j1 - j) : 8;
-        double *C = U + (j * u - j * (j - 1) / 2 - j + i + up);
-        if (nr > 16) hdi_r512_tile(3, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
-        else if (nr > 8) hdi_r512_tile(2, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
-        else hdi_r512_tile(1, C, u - j - 1, 1, nr, diag, nc, A + up, lda, B, kc);
-    }
-}
-
-/* All pairs of a column j and a later one k, with what to do before the pairs of j. */
-#define HDI_R512_PAIRS(H, F)                                                                                             \
-    H(0) F(0, 1) F(0, 2) F(0, 3) F(0, 4) F(0, 5) F(0, 6) F(0, 7)                                                         \
-    H(1) F(1, 2) F(1, 3) F(1, 4) F(1, 5) F(1, 6) F(1, 7)                                                                 \
-    H(2) F(2, 3) F(2, 4) F(2, 5) F(2, 6) F(2, 7)                                                                         \
-    H(3) F(3, 4) F(3, 5) F(3, 6) F(3, 7)                                                                                 \
-    H(4) F(4, 5) F(4, 6) F(4, 7)                                                                                         \
-    H(5) F(5, 6) F(5, 7)                                                                                                 \
-    H(6) F(6, 7)                                                                                                         \
-    H(7)
-
-/* As hdi_r128_solve. */
-static HDI_AVX512 HDI_INLINE void hdi_r512_solve(const int nv, double *C, int64_t ld, int32_t n, int32_t nc, const double *A, const double *B,
-                                                 int32_t kc, const double *dinv) {
-    const __mmask8 last = hdi_r512_mask(n - 8 * (nv - 1));
-    const int64_t lda = ld;
-    int32_t k;
-    HDI_R512_PRODUCT
-#define HDI_R512_LOAD(j)                                                                                                 \
-    if (j < nc) {                                                                                                        \
-        const double *c = C + j * ld;                                                                                    \
-        x##j = _mm512_sub_pd(nv > 1 ? _mm512_loadu_pd(c) : _mm512_maskz_loadu_pd(last, c), x##j);                        \
-        if (nv > 1) y##j = _mm512_sub_pd(nv > 2 ? _mm512_loadu_pd(c + 8) : _mm512_maskz_loadu_pd(last, c + 8), y##j);    \
-        if (nv > 2) w##j = _mm512_sub_pd(_mm512_maskz_loadu_pd(last, c + 16), w##j);                                     \
-    }
-#define HDI_R512_SCALE(j) {                                                                                              \
-        const __m512d b = _mm512_set1_pd(dinv[j]);                                                                       \
-        x##j = _mm512_mul_pd(x##j, b);                                                                                   \
-        if (nv > 1) _mm512_storeu_pd(C, x##j); else _mm512_mask_storeu_pd(C, last, x##j);                                \
-        if (nv > 1) y##j = _mm512_mul_pd(y##j, b);                                                                       \
-        if (nv > 2) _mm512_storeu_pd(C + 8, y##j); else if (nv > 1) _mm512_mask_storeu_pd(C + 8, last, y##j);            \
-        if (nv > 2) w##j = _mm512_mul_pd(w##j, b);                                                                       \
-        if (nv > 2) _mm512_mask_storeu_pd(C + 16, last, w##j);                                                           \
-        if (nc == j + 1) return;                                                                                         \
-        C += ld;                                                                                                         \
-    }
-#define HDI_R512_LATER(j, k) {                                                                                           \
-        const __m512d b = _mm512_set1_pd(B[8 * j + k]);                                                                  \
-        x##k = _mm512_fnmadd_pd(x##j, b, x##k);                                                                          \
-        if (nv > 1) y##k = _mm512_fnmadd_pd(y##j, b, y##k);                                                              \
-        if (nv > 2) w##k = _mm512_fnmadd_pd(w##j, b, w##k);                                                              \
-    }
-    HDI_R512_EACH(HDI_R512_LOAD)
-    HDI_R512_PAIRS(HDI_R512_SCALE, HDI_R512_LATER)
-#undef HDI_R512_LOAD
-#undef HDI_R512_SCALE
-#undef HDI_R512_LATER
-    HDI_R512_EACH(HDI_R512_UNUSED)
-}
-
-static HDI_AVX512 void hdi_r512_rows(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B, int32_t kb,
-                                     const double *dinv) {
-    const double *A = P + k1 * ld;
-    const int64_t slice = HDI_CAST(int64_t, kb) * 8;
-    double *C = P + k * ld;
-    B += k1 * 8;
-    dinv += k;
-    for (; nb > 0; nb -= 8, C += 8 * ld, B += slice, dinv += 8, k += 8) {
-        const int32_t nc = nb < 8 ? nb : 8;
-        if (n > 16) hdi_r512_solve(3, C, ld, n, nc, A, B, k - k1, dinv);
-        else if (n > 8) hdi_r512_solve(2, C, ld, n, nc, A, B, k - k1, dinv);
-        else hdi_r512_solve(1, C, ld, n, nc, A, B, k - k1, dinv);
-    }
-}
-
-/* As hdi_r256_pivots. */
-static HDI_AVX512 HDI_INLINE void hdi_r512_pivots(const int nv, double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n, double *S, double *dinv) {
-    const __mmask8 top = hdi_r512_mask(nc), last = nv > 1 ? hdi_r512_mask(n - 8 * (nv - 2)) : top;
-    const double *row = P, *slice = S;
-    double *C = P + kc * ld, *T = S + kc * 8;
-    int32_t k;
-    HDI_R512_EACH(HDI_R512_ZERO)
-    for (k = 0; k < kc; k++, row += ld, slice += 8) {
-        const __m512d a0 = _mm512_maskz_loadu_pd(top, row), a1 = nv > 1 ? _mm512_maskz_loadu_pd(nv > 2 ? 0xff : last, row + nc) : a0;
-        const __m512d a2 = nv > 2 ? _mm512_maskz_loadu_pd(last, row + nc + 8) : a0;
-        const double *B = slice;
-        HDI_R512_EACH(HDI_R512_FMA)
-        (void)a1; (void)a2;
-    }
-#define HDI_R512_LOAD(j)                                                                                                 \
-    if (j < nc) {                                                                                                        \
-        const double *c = C + j * ld;                                                                                    \
-        x##j = _mm512_sub_pd(_mm512_maskz_loadu_pd(top, c), x##j);                                                       \
-        if (nv > 1) y##j = _mm512_sub_pd(_mm512_maskz_loadu_pd(nv > 2 ? 0xff : last, c + nc), y##j);                     \
-        if (nv > 2) w##j = _mm512_sub_pd(_mm512_maskz_loadu_pd(last, c + nc + 8), w##j);                                 \
-    }
-#define HDI_R512_PIVOT(j)                                                                                                \
-        const __m128d d##j = _mm512_castpd512_pd128(_mm512_permutexvar_pd(_mm512_set1_epi64(j), x##j));                  \
-        if (_mm_ucomieq_sd(d##j, _mm_setzero_pd())) { _mm_store_sd(C + j, d##j); return; }                               \
-        const __m128d q##j = _mm_div_sd(_mm_set_sd(1.0), d##j);                                                          \
-        const __m512d r##j = _mm512_broadcastsd_pd(q##j), l##j = _mm512_mul_pd(x##j, r##j);                              \
-        _mm512_storeu_pd(T + 8 * j, x##j);                                                                               \
-        _mm_store_sd(dinv + j, q##j);                                                                                    \
-        _mm512_mask_storeu_pd(C, HDI_CAST(__mmask8, top & 0xfe << j), l##j);                                             \
-        _mm_store_sd(C + j, d##j);                                                                                       \
-        if (nv > 1) {                                                                                                    \
-            y##j = _mm512_mul_pd(y##j, r##j);                                                                            \
-            if (nv > 2) _mm512_storeu_pd(C + nc, y##j); else _mm512_mask_storeu_pd(C + nc, last, y##j);                  \
-        }                                                                                                                \
-        if (nv > 2) { w##j = _mm512_mul_pd(w##j, r##j); _mm512_mask_storeu_pd(C + nc + 8, last, w##j); }                 \
-        if (nc == j + 1) return;                                                                                         \
-        C += ld;
-#define HDI_R512_LATER(j, k) {                                                                                           \
-        const __m512d s = _mm512_permutexvar_pd(_mm512_set1_epi64(k), x##j);                                             \
-        x##k = _mm512_fnmadd_pd(l##j, s, x##k);                                                                          \
-        if (nv > 1) y##k = _mm512_fnmadd_pd(y##j, s, y##k);                                                              \
-        if (nv > 2) w##k = _mm512_fnmadd_pd(w##j, s, w##k);                                                              \
-    }
-    dinv += kc;
-    HDI_R512_EACH(HDI_R512_LOAD)
-    HDI_R512_PAIRS(HDI_R512_PIVOT, HDI_R512_LATER)
-#undef HDI_R512_LOAD
-#undef HDI_R512_PIVOT
-#undef HDI_R512_LATER
-    HDI_R512_EACH(HDI_R512_UNUSED)
-}
-
-static HDI_AVX512 void hdi_r512_block(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv) {
-    if (n > 8) hdi_r512_pivots(3, P, ld, k, nc, n, B, dinv);
-    else if (n > 0) hdi_r512_pivots(2, P, ld, k, nc, n, B, dinv);
-    else hdi_r512_pivots(1, P, ld, k, nc, n, B, dinv);
-}
-
-#define HDI_R512_AT(i) (y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : (i)))
-
-static HDI_AVX512 void hdi_r512_gemv8(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x, int32_t nc) {
-    int64_t i = 0;
-    int32_t k;
-#define HDI_R512_ZERO8(j) __m512d s##j = _mm512_setzero_pd();
-#define HDI_R512_MUL8(j) s##j = _mm512_fmadd_pd(v, _mm512_set1_pd(l[j]), s##j);
-#define HDI_R512_OUT8(j) { double *q = HDI_R512_AT(i + j); _mm512_storeu_pd(q, _mm512_sub_pd(_mm512_loadu_pd(q), s##j)); }
-    for (; i + 8 <= n; i += 8) {
-        const double *l = L + i;
-        HDI_R512_EACH(HDI_R512_ZERO8)
-        for (k = 0; k < nc; k++, l += ld) {
-            const __m512d v = _mm512_loadu_pd(x + 8 * k);
-            HDI_PREFETCH(l + 32);
-            HDI_R512_EACH(HDI_R512_MUL8)
-        }
-        HDI_R512_EACH(HDI_R512_OUT8)
-    }
-    for (; i + 2 <= n; i += 2) {
-        const double *l = L + i;
-        HDI_R512_ZERO8(0) HDI_R512_ZERO8(1)
-        for (k = 0; k < nc; k++, l += ld) {
-            const __m512d v = _mm512_loadu_pd(x + 8 * k);
-            HDI_R512_MUL8(0) HDI_R512_MUL8(1)
-        }
-        HDI_R512_OUT8(0) HDI_R512_OUT8(1)
+    int j;
+    for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH) {
+        const hdi_vec v = hdi_vload(y + i);
+        HDI_EACH(j, 8)
+            if (j < 4 || wide) s[j] = hdi_vfma(hdi_vload(l[j] + i), v, s[j]);
     }
     if (i < n) {
-        const double *l = L + i;
-        HDI_R512_ZERO8(0)
-        for (k = 0; k < nc; k++, l += ld) {
-            const __m512d v = _mm512_loadu_pd(x + 8 * k);
-            HDI_R512_MUL8(0)
+        const hdi_vec v = HDI_OF(load_tail)(y + i, n - i);
+        HDI_EACH(j, 8) s[j] = hdi_vfma(HDI_OF(load_tail)(l[j] + i, n - i), v, s[j]);
+    }
+}
+
+HDI_KERNEL void HDI_OF(real_backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1,
+                                      const double *t, int64_t n2) {
+    const double *l[8];
+    hdi_vec s[8];
+    double x[8];
+    int j, k;
+    HDI_OF(real_columns)(l, L + nc, ld, nc);
+    HDI_EACH(j, 8) s[j] = hdi_vall(0);
+    HDI_OF(real_dots)(s, l, n1, b + nc, nc > 4);
+    HDI_EACH(j, 8) {
+        l[j] += n1;
+        x[j] = 0;
+        if (!HDI_OF(apart)) continue;
+        x[j] = HDI_OF(sum)(s[j]);
+        s[j] = hdi_vall(0);
+    }
+    HDI_OF(real_dots)(s, l, n2, t, nc > 4);
+    HDI_EACH(j, 8) x[j] = j < nc ? b[j] - (x[j] + HDI_OF(sum)(s[j])) : 0.0;
+    HDI_UNROLL
+    for (k = 7; k > 0; k--) {
+        HDI_EACH(j, 8)
+            if (j < k && k < nc) x[j] = HDI_OF(fnma1)(L[k + j * ld], x[k], x[j]);
+    }
+    HDI_EACH(j, 8)
+        if (j < nc) b[j] = x[j];
+}
+#endif
+
+/* y -= L x in n_rows rows from i on: eight right-hand sides */
+HDI_PART void HDI_OF(real_gemv8_rows)(const int n_rows, double *y, const int32_t *idx, const double *l,
+                                      int64_t ld, int64_t i, const double *x, int32_t nc) {
+    enum { n_vec = 8 / HDI_WIDTH };
+    hdi_vec s[HDI_WIDTH][n_vec];
+    int32_t k;
+    int r, v;
+    HDI_EACH(r, n_rows)
+        HDI_EACH(v, n_vec) s[r][v] = hdi_vall(0);
+    l += i;
+    for (k = 0; k < nc; k++, l += ld, x += 8) {
+        if (n_rows > 2) HDI_PREFETCH(l + 32);
+        HDI_EACH(r, n_rows) {
+            const hdi_vec a = hdi_vall(l[r]);
+            HDI_EACH(v, n_vec) s[r][v] = hdi_vfma(hdi_vload(x + HDI_WIDTH * v), a, s[r][v]);
         }
-        HDI_R512_OUT8(0)
     }
-#undef HDI_R512_MUL8
-#undef HDI_R512_OUT8
+    HDI_EACH(r, n_rows) {
+        double *to = y + 8 * (idx ? HDI_CAST(int64_t, idx[i + r]) : i + r);
+        HDI_EACH(v, n_vec) hdi_vstore(to + HDI_WIDTH * v, hdi_vsub(hdi_vload(to + HDI_WIDTH * v), s[r][v]));
+    }
 }
 
-static HDI_AVX512 void hdi_r512_dots8(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx, int32_t nc) {
+HDI_KERNEL void HDI_OF(real_gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n,
+                                   const double *x, int32_t nc) {
+    int64_t i = 0;
+    for (; i + HDI_WIDTH <= n; i += HDI_WIDTH) HDI_OF(real_gemv8_rows)(HDI_WIDTH, y, idx, L, ld, i, x, nc);
+    if (HDI_WIDTH > 2)
+        for (; i + 2 <= n; i += 2) HDI_OF(real_gemv8_rows)(2, y, idx, L, ld, i, x, nc);
+    if (i < n) HDI_OF(real_gemv8_rows)(1, y, idx, L, ld, i, x, nc);
+}
+
+/* x -= L' y for nc <= n_cols columns */
+HDI_PART void HDI_OF(real_dots8_cols)(const int n_cols, double *x, const double *L, int64_t ld, int64_t n,
+                                      const double *y, const int32_t *idx, int32_t nc) {
+    enum { n_vec = 8 / HDI_WIDTH };
+    const double *l[HDI_WIDTH];
+    hdi_vec s[HDI_WIDTH][n_vec];
     int64_t i;
-#define HDI_R512_COLUMN(j) const double *l##j = L + (j < nc ? j : nc - 1) * ld;
-#define HDI_R512_MUL8(j) s##j = _mm512_fmadd_pd(v, _mm512_set1_pd(l##j[i]), s##j);
-#define HDI_R512_OUT8(j) if (j < nc) _mm512_storeu_pd(x + 8 * j, _mm512_sub_pd(_mm512_loadu_pd(x + 8 * j), s##j));
-    HDI_R512_EACH(HDI_R512_COLUMN)
-    HDI_R512_EACH(HDI_R512_ZERO8)
-    for (i = 0; i < n; i++) {
-        const __m512d v = _mm512_loadu_pd(HDI_R512_AT(i));
-        HDI_R512_MUL8(0) HDI_R512_MUL8(1) HDI_R512_MUL8(2) HDI_R512_MUL8(3)
-        if (nc > 4) { HDI_R512_MUL8(4) HDI_R512_MUL8(5) HDI_R512_MUL8(6) HDI_R512_MUL8(7) }
+    int j, v;
+    HDI_EACH(j, n_cols) {
+        l[j] = L + (j < nc ? j : nc - 1) * ld;
+        HDI_EACH(v, n_vec) s[j][v] = hdi_vall(0);
     }
-    HDI_R512_EACH(HDI_R512_OUT8)
-#undef HDI_R512_COLUMN
-#undef HDI_R512_MUL8
-#undef HDI_R512_OUT8
-#undef HDI_R512_ZERO8
+    for (i = 0; i < n; i++) {
+        const double *from = y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : i);
+        HDI_EACH(j, n_cols) {
+            const hdi_vec a = hdi_vall(l[j][i]);
+            HDI_EACH(v, n_vec) s[j][v] = hdi_vfma(hdi_vload(from + HDI_WIDTH * v), a, s[j][v]);
+        }
+    }
+    HDI_UNROLL
+    for (j = 0; j < n_cols; j++, x += 8) {
+        if (j >= nc) continue;
+        HDI_EACH(v, n_vec) hdi_vstore(x + HDI_WIDTH * v, hdi_vsub(hdi_vload(x + HDI_WIDTH * v), s[j][v]));
+    }
 }
 
-#define HDI_R512_IN8(j) __m512d x##j = j < nc ? _mm512_loadu_pd(x + 8 * j) : _mm512_setzero_pd();
-#define HDI_R512_OUT8(j) if (j < nc) _mm512_storeu_pd(x + 8 * j, x##j);
-
-static HDI_AVX512 void hdi_r512_lower8(double *x, const double *L, int64_t ld, int32_t nc) {
-#define HDI_R512_NONE(j)
-#define HDI_R512_LATER(j, k) if (k < nc) x##k = _mm512_fnmadd_pd(x##j, _mm512_set1_pd(L[k + j * ld]), x##k);
-    HDI_R512_EACH(HDI_R512_IN8)
-    HDI_R512_PAIRS(HDI_R512_NONE, HDI_R512_LATER)
-    HDI_R512_EACH(HDI_R512_OUT8)
-#undef HDI_R512_LATER
+HDI_KERNEL void HDI_OF(real_dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y,
+                                   const int32_t *idx, int32_t nc) {
+    for (; nc > HDI_WIDTH / 2; nc -= HDI_WIDTH, x += 8 * HDI_WIDTH, L += HDI_WIDTH * ld)
+        HDI_OF(real_dots8_cols)(HDI_WIDTH, x, L, ld, n, y, idx, nc);
+    if (nc > 0) HDI_OF(real_dots8_cols)(HDI_WIDTH / 2, x, L, ld, n, y, idx, nc);
 }
 
-#define HDI_R512_UPPER(ROW)                                                                                              \
-    ROW(7, 6) ROW(7, 5) ROW(7, 4) ROW(7, 3) ROW(7, 2) ROW(7, 1) ROW(7, 0)                                                \
-    ROW(6, 5) ROW(6, 4) ROW(6, 3) ROW(6, 2) ROW(6, 1) ROW(6, 0)                                                          \
-    ROW(5, 4) ROW(5, 3) ROW(5, 2) ROW(5, 1) ROW(5, 0)                                                                    \
-    ROW(4, 3) ROW(4, 2) ROW(4, 1) ROW(4, 0)                                                                              \
-    ROW(3, 2) ROW(3, 1) ROW(3, 0)                                                                                        \
-    ROW(2, 1) ROW(2, 0)                                                                                                  \
-    ROW(1, 0)
-
-static HDI_AVX512 void hdi_r512_upper8(double *x, const double *L, int64_t ld, int32_t nc) {
-#define HDI_R512_ROW(k, j) if (k < nc) x##j = _mm512_fnmadd_pd(x##k, _mm512_set1_pd(L[k + j * ld]), x##j);
-    HDI_R512_EACH(HDI_R512_IN8)
-    HDI_R512_UPPER(HDI_R512_ROW)
-    HDI_R512_EACH(HDI_R512_OUT8)
-#undef HDI_R512_ROW
+#if HDI_WIDTH == 2
+/* Sums first, then the difference: eight rows do not fit into the registers. */
+HDI_KERNEL void HDI_OF(real_lower8)(double *x, const double *L, int64_t ld, int32_t nc) {
+    int32_t j;
+    for (j = 1; j < nc; j++) HDI_OF(real_gemv8)(x + 8 * j, NULL, L + j, ld, 1, x, j);
 }
-#undef HDI_R512_IN8
-#undef HDI_R512_OUT8
-#undef HDI_R512_NONE
-#undef HDI_R512_AT
-#undef HDI_R512_EACH
-#undef HDI_R512_ZERO
-#undef HDI_R512_FMA
-#undef HDI_R512_PRODUCT
-#undef HDI_R512_UNUSED
-#undef HDI_R512_PAIRS
-#undef HDI_R512_UPPER
-#endif /* HDI_X86 */
+
+HDI_KERNEL void HDI_OF(real_upper8)(double *x, const double *L, int64_t ld, int32_t nc) {
+    int32_t j;
+    for (j = nc - 2; j >= 0; j--)
+        HDI_OF(real_dots8)(x + 8 * j, L + j + 1 + j * ld, ld, nc - 1 - j, x + 8 * (j + 1), NULL, 1);
+}
+#else
+/* The solve with the triangle, whose row k and column j < k is at L[k + j ld], or its transpose. */
+HDI_PART void HDI_OF(real_triangle8)(const int up, double *x, const double *L, int64_t ld, int32_t nc) {
+    hdi_vec v[8];
+    int32_t j, k;
+    HDI_EACH(j, 8) v[j] = j < nc ? hdi_vload(x + 8 * j) : hdi_vall(0);
+    HDI_EACH(k, 8) {
+        HDI_EACH(j, 8) {
+            if (!up && j < k && k < nc) v[k] = hdi_vfnma(v[j], hdi_vall(L[k + j * ld]), v[k]);
+            if (up && j < 7 - k && 7 - k < nc) v[j] = hdi_vfnma(v[7 - k], hdi_vall(L[7 - k + j * ld]), v[j]);
+        }
+    }
+    HDI_EACH(j, 8)
+        if (j < nc) hdi_vstore(x + 8 * j, v[j]);
+}
+
+HDI_KERNEL void HDI_OF(real_lower8)(double *x, const double *L, int64_t ld, int32_t nc) {
+    int v;
+    for (v = 0; v < 8; v += HDI_WIDTH) HDI_OF(real_triangle8)(0, x + v, L, ld, nc);
+}
+
+HDI_KERNEL void HDI_OF(real_upper8)(double *x, const double *L, int64_t ld, int32_t nc) {
+    int v;
+    for (v = 0; v < 8; v += HDI_WIDTH) HDI_OF(real_triangle8)(1, x + v, L, ld, nc);
+}
+#endif
+
+/* ---- packs ---- */
+
+#if HDI_WIDTH == 8
+/* An entry is one register. A product with the factor (r, m) = ((re, re), (im, im)) is summed in two halves,
+ * and only the sums are brought together: re = p.lo - q.hi, im = p.hi + q.lo. */
+typedef struct HDI_OF(entry) { hdi_vec v; } HDI_OF(entry);
+typedef struct HDI_OF(twice) { hdi_vec r, m; } HDI_OF(twice);
+typedef struct HDI_OF(total) { hdi_vec p, q; } HDI_OF(total);
+
+HDI_PART void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) { x->v = hdi_vload(from); }
+HDI_PART void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) { hdi_vstore(to, x->v); }
+HDI_PART void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) {
+    f->r = hdi_twice512(from);
+    f->m = hdi_twice512(from + 4);
+}
+/* s = x */
+HDI_PART void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) {
+    s->p = x->v;
+    s->q = hdi_vall(0);
+}
+HDI_PART void HDI_OF(total_zero)(HDI_OF(total) *s) { s->p = s->q = hdi_vall(0); }
+/* s += x f */
+HDI_PART void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    s->p = hdi_vfma(x->v, f->r, s->p);
+    s->q = hdi_vfma(x->v, f->m, s->q);
+}
+/* s -= x f */
+HDI_PART void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    s->p = hdi_vfnma(x->v, f->r, s->p);
+    s->q = hdi_vfnma(x->v, f->m, s->q);
+}
+HDI_PART void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { x->v = hdi_join512(s->p, s->q); }
+/* x = x f */
+HDI_PART void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    x->v = hdi_join512(hdi_vmul(x->v, f->r), hdi_vmul(x->v, f->m));
+}
+HDI_PART void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) { HDI_OF(entry_times)(x, f); }
+/* c = c - s, or -s */
+HDI_PART void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
+    hdi_vstore(c, hdi_vsub(store ? hdi_vall(0) : hdi_vload(c), hdi_join512(s->p, s->q)));
+}
+/* Sweeps: what is taken from y is summed apart. */
+HDI_PART void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { (void)y; HDI_OF(total_zero)(s); }
+HDI_PART void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    HDI_OF(total_add)(s, x, f);
+}
+HDI_PART void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(total_put)(y, s, 0); }
+#else
+/* An entry is its real parts and its imaginary parts. */
+typedef struct HDI_OF(entry) { hdi_vec re[4 / HDI_WIDTH], im[4 / HDI_WIDTH]; } HDI_OF(entry);
+typedef HDI_OF(entry) HDI_OF(twice);
+typedef HDI_OF(entry) HDI_OF(total);
+#ifndef HDI_HALVES
+#define HDI_HALVES HDI_EACH(h, 4 / HDI_WIDTH)
+#endif
+
+HDI_PART void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) {
+    int h;
+    HDI_HALVES {
+        x->re[h] = hdi_vload(from + HDI_WIDTH * h);
+        x->im[h] = hdi_vload(from + 4 + HDI_WIDTH * h);
+    }
+}
+HDI_PART void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) {
+    int h;
+    HDI_HALVES {
+        hdi_vstore(to + HDI_WIDTH * h, x->re[h]);
+        hdi_vstore(to + 4 + HDI_WIDTH * h, x->im[h]);
+    }
+}
+HDI_PART void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) { HDI_OF(entry_load)(f, from); }
+HDI_PART void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) { *s = *x; }
+HDI_PART void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { *x = *s; }
+HDI_PART void HDI_OF(total_zero)(HDI_OF(total) *s) {
+    int h;
+    HDI_HALVES s->re[h] = s->im[h] = hdi_vall(0);
+}
+/* s -= x f, summed as plain C does */
+HDI_PART void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    int h;
+    HDI_HALVES {
+        s->re[h] = hdi_vsub(s->re[h], HDI_OF(cross_minus)(x->re[h], f->re[h], x->im[h], f->im[h]));
+        s->im[h] = hdi_vsub(s->im[h], HDI_OF(cross_plus)(x->im[h], f->re[h], x->re[h], f->im[h]));
+    }
+}
+/* s += x f, s -= x f, by fma where the set has it */
+HDI_PART void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    int h;
+    HDI_HALVES {
+        if (HDI_OF(fused)) {
+            s->re[h] = hdi_vfnma(x->im[h], f->im[h], hdi_vfma(x->re[h], f->re[h], s->re[h]));
+            s->im[h] = hdi_vfma(x->re[h], f->im[h], hdi_vfma(x->im[h], f->re[h], s->im[h]));
+        } else {
+            s->re[h] = hdi_vadd(s->re[h], HDI_OF(cross_minus)(x->re[h], f->re[h], x->im[h], f->im[h]));
+            s->im[h] = hdi_vadd(s->im[h], HDI_OF(cross_plus)(x->im[h], f->re[h], x->re[h], f->im[h]));
+        }
+    }
+}
+HDI_PART void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    int h;
+    if (!HDI_OF(fused)) {
+        HDI_OF(sweep_take)(s, x, f);
+        return;
+    }
+    HDI_HALVES {
+        s->re[h] = hdi_vfma(x->im[h], f->im[h], hdi_vfnma(x->re[h], f->re[h], s->re[h]));
+        s->im[h] = hdi_vfnma(x->re[h], f->im[h], hdi_vfnma(x->im[h], f->re[h], s->im[h]));
+    }
+}
+/* x = x f as plain C does, and by fma where the set has it */
+HDI_PART void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    int h;
+    HDI_HALVES {
+        const hdi_vec re = x->re[h];
+        x->re[h] = HDI_OF(cross_minus)(re, f->re[h], x->im[h], f->im[h]);
+        x->im[h] = HDI_OF(cross_plus)(re, f->im[h], x->im[h], f->re[h]);
+    }
+}
+HDI_PART void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
+    int h;
+    if (!HDI_OF(fused)) {
+        HDI_OF(entry_scale)(x, f);
+        return;
+    }
+    HDI_HALVES {
+        const hdi_vec re = x->re[h];
+        x->re[h] = HDI_OF(fms)(re, f->re[h], hdi_vmul(x->im[h], f->im[h]));
+        x->im[h] = hdi_vfma(re, f->im[h], hdi_vmul(x->im[h], f->re[h]));
+    }
+}
+/* c = c - s, or -s; of zero with the sign that the set has always given it */
+HDI_PART void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
+    const hdi_vec zero = hdi_vall(HDI_OF(fused) ? 0.0 : -0.0);
+    int h;
+    HDI_HALVES {
+        double *to = c + HDI_WIDTH * h;
+        hdi_vstore(to, hdi_vsub(store ? zero : hdi_vload(to), s->re[h]));
+        hdi_vstore(to + 4, hdi_vsub(store ? zero : hdi_vload(to + 4), s->im[h]));
+    }
+}
+HDI_PART void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { HDI_OF(entry_load)(s, y); }
+HDI_PART void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(entry_store)(y, s); }
+#endif
+
+/* A tile of mr x nr entries. */
+HDI_PART void HDI_OF(pack_tile)(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
+    const double *a = g->a + i0 * g->a_row, *b = g->b + (j0 - g->b_first) * g->b_row;
+    HDI_OF(total) s[HDI_OF(tile_rows)][HDI_OF(tile_cols)];
+    int64_t k;
+    int i, j;
+    HDI_EACH(i, mr)
+        HDI_EACH(j, nr) HDI_OF(total_zero)(&s[i][j]);
+    for (k = g->depth; k > 0; k--, a += g->a_col, b += g->b_col) {
+        HDI_OF(twice) f[HDI_OF(tile_cols)];
+        HDI_EACH(j, nr) HDI_OF(twice_load)(&f[j], b + j * g->b_row);
+        HDI_EACH(i, mr) {
+            HDI_OF(entry) x;
+            HDI_OF(entry_load)(&x, a + i * g->a_row);
+            HDI_EACH(j, nr) HDI_OF(total_add)(&s[i][j], &x, &f[j]);
+        }
+    }
+    HDI_EACH(i, mr) {
+        double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * j0;
+        HDI_EACH(j, nr)
+            if (!g->lower || j0 + j <= i0 + i) HDI_OF(total_put)(c + HDI_PACK * j, &s[i][j], g->store);
+    }
+}
+
+/* Rows i..end-1 of nr columns. */
+HDI_PART void HDI_OF(pack_columns)(const hdi_pack_job *g, const int nr, int64_t i, int64_t end, int64_t j) {
+    enum { mr = HDI_OF(tile_rows) };
+    for (; i + mr <= end; i += mr) HDI_OF(pack_tile)(g, mr, nr, i, j);
+    if (mr > 3 && end - i == 3) HDI_OF(pack_tile)(g, 3, nr, i, j);
+    else if (mr > 2 && end - i == 2) HDI_OF(pack_tile)(g, 2, nr, i, j);
+    else if (mr > 1 && end - i == 1) HDI_OF(pack_tile)(g, 1, nr, i, j);
+}
+
+HDI_KERNEL void HDI_OF(pack_multiply)(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1) {
+    enum { nr = HDI_OF(tile_cols) };
+    int64_t ib, i, j;
+    for (ib = i0; ib < i1; ib += HDI_PACK_ROWS) {
+        const int64_t ie = hdi_least(ib + HDI_PACK_ROWS, i1), je = g->lower ? hdi_least(ie, j1) : j1;
+        for (j = j0; j < je; j += nr) {
+            i = g->lower && j > ib ? j : ib;
+            if (je - j >= nr) HDI_OF(pack_columns)(g, nr, i, ie, j);
+            else if (nr > 2 && je - j == 2) HDI_OF(pack_columns)(g, 2, i, ie, j);
+            else if (nr > 1) HDI_OF(pack_columns)(g, 1, i, ie, j);
+        }
+    }
+}
+
+/* mr rows at once, for independent chains of multiply-adds. */
+HDI_PART void HDI_OF(pack_solve_tile)(const hdi_pack_rows *g, const int mr, double *x) {
+    int32_t k, j;
+    int i;
+    for (k = 0; k < g->nb; k++, x += HDI_PACK) {
+        const double *s = g->s + k * g->s_row;
+        HDI_OF(total) t[HDI_OF(solve_rows)];
+        HDI_OF(entry) y;
+        HDI_OF(twice) f;
+        HDI_EACH(i, mr) {
+            HDI_OF(entry_load)(&y, x + i * g->row);
+            HDI_OF(total_begin)(&t[i], &y);
+        }
+        for (j = -k; j < 0; j++, s += HDI_PACK) {
+            HDI_OF(twice_load)(&f, s);
+            HDI_EACH(i, mr) {
+                HDI_OF(entry_load)(&y, x + i * g->row + HDI_PACK * j);
+                HDI_OF(total_take)(&t[i], &y, &f);
+            }
+        }
+        HDI_OF(twice_load)(&f, g->dinv + HDI_PACK * k);
+        HDI_EACH(i, mr) {
+            HDI_OF(total_end)(&y, &t[i]);
+            HDI_OF(entry_times)(&y, &f);
+            HDI_OF(entry_store)(x + i * g->row, &y);
+        }
+    }
+}
+
+HDI_KERNEL void HDI_OF(pack_solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
+    enum { mr = HDI_OF(solve_rows) };
+    int64_t i = r0 - g->first;
+    r1 -= g->first;
+    for (; i + mr <= r1; i += mr) HDI_OF(pack_solve_tile)(g, mr, g->panel + i * g->row);
+    if (mr > 2)
+        for (; i + 2 <= r1; i += 2) HDI_OF(pack_solve_tile)(g, 2, g->panel + i * g->row);
+    if (mr > 1 && i < r1) HDI_OF(pack_solve_tile)(g, 1, g->panel + i * g->row);
+}
+
+/* S(i,k) = l_ik d_k for rows [r0,r1), columns [k0,k1) of a panel; S by rows of k1 - k0 entries, row 0 being
+ * r0. */
+HDI_KERNEL void HDI_OF(pack_scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0,
+                                   int64_t k1, const double *d, double *s) {
+    int64_t i, k;
+    for (i = r0; i < r1; i++) {
+        for (k = k0; k < k1; k++, s += HDI_PACK) {
+            HDI_OF(entry) x;
+            HDI_OF(twice) f;
+            HDI_OF(entry_load)(&x, panel + i * row + HDI_PACK * k);
+            HDI_OF(twice_load)(&f, d + HDI_PACK * k);
+            HDI_OF(entry_scale)(&x, &f);
+            HDI_OF(entry_store)(s, &x);
+        }
+    }
+}
+
+/* to[rel_b] += from[b] for b in [b0,b1), entries; off is taken off rel. */
+HDI_KERNEL void HDI_OF(pack_add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1,
+                                 int64_t off) {
+    int64_t b;
+    int q;
+    for (b = b0; b < b1; b++) {
+        double *t = to + HDI_PACK * (rel[b] - off);
+        const double *f = from + HDI_PACK * b;
+        HDI_UNROLL
+        for (q = 0; q < HDI_PACK; q += HDI_WIDTH)
+            hdi_vstore(t + q, hdi_vadd(hdi_vload(t + q), hdi_vload(f + q)));
+    }
+}
+
+/* Sweeps of one right-hand side through u rows of a panel. Forward: t_i -= sum_k l_ik y_k. */
+HDI_PART void HDI_OF(pack_forward_rows)(const int n_rows, const double *l, int64_t p, const double *y,
+                                        double *t) {
+    HDI_OF(total) s[HDI_OF(sweep_rows)];
+    int64_t k;
+    int i;
+    HDI_EACH(i, n_rows) HDI_OF(sweep_begin)(&s[i], t + HDI_PACK * i);
+    for (k = 0; k < p; k++, l += HDI_PACK) {
+        HDI_OF(twice) f;
+        HDI_OF(twice_load)(&f, y + HDI_PACK * k);
+        HDI_EACH(i, n_rows) {
+            HDI_OF(entry) x;
+            HDI_OF(entry_load)(&x, l + HDI_PACK * p * i);
+            HDI_OF(sweep_take)(&s[i], &x, &f);
+        }
+    }
+    HDI_EACH(i, n_rows) HDI_OF(sweep_end)(t + HDI_PACK * i, &s[i]);
+}
+
+HDI_KERNEL void HDI_OF(pack_forward)(const double *l, int64_t u, int64_t p, const double *y, double *t) {
+    enum { n_rows = HDI_OF(sweep_rows) };
+    int64_t i = 0;
+    for (; i + n_rows <= u; i += n_rows)
+        HDI_OF(pack_forward_rows)(n_rows, l + HDI_PACK * p * i, p, y, t + HDI_PACK * i);
+    if (n_rows > 1)
+        for (; i < u; i++) HDI_OF(pack_forward_rows)(1, l + HDI_PACK * p * i, p, y, t + HDI_PACK * i);
+}
+
+/* Backward: y_k -= sum_i l_ik x[row_i] for n_cols pivots; row NULL: row_i = i. */
+HDI_PART void HDI_OF(pack_backward_cols)(const int n_cols, const double *l, const int32_t *row, int64_t u,
+                                         int64_t p, double *y, const double *x) {
+    HDI_OF(total) s[HDI_OF(sweep_cols)];
+    int64_t i;
+    int c;
+    HDI_EACH(c, n_cols) HDI_OF(sweep_begin)(&s[c], y + HDI_PACK * c);
+    for (i = 0; i < u; i++, l += HDI_PACK * p) {
+        HDI_OF(twice) f;
+        HDI_PREFETCH_AT(l, 1024);
+        HDI_OF(twice_load)(&f, x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i));
+        HDI_EACH(c, n_cols) {
+            HDI_OF(entry) v;
+            HDI_OF(entry_load)(&v, l + HDI_PACK * c);
+            HDI_OF(sweep_take)(&s[c], &v, &f);
+        }
+    }
+    HDI_EACH(c, n_cols) HDI_OF(sweep_end)(y + HDI_PACK * c, &s[c]);
+}
+
+HDI_KERNEL void HDI_OF(pack_backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y,
+                                      const double *x) {
+    enum { most = HDI_OF(sweep_cols) };
+    int64_t k;
+    for (k = 0; k + most <= p; k += most)
+        HDI_OF(pack_backward_cols)(most, l + HDI_PACK * k, row, u, p, y + HDI_PACK * k, x);
+    l += HDI_PACK * k;
+    y += HDI_PACK * k;
+    switch (p - k) {
+        case 1: if (most > 1) HDI_OF(pack_backward_cols)(1, l, row, u, p, y, x); break;
+        case 2: if (most > 2) HDI_OF(pack_backward_cols)(2, l, row, u, p, y, x); break;
+        case 3: if (most > 3) HDI_OF(pack_backward_cols)(3, l, row, u, p, y, x); break;
+        case 4: if (most > 4) HDI_OF(pack_backward_cols)(4, l, row, u, p, y, x); break;
+        case 5: if (most > 5) HDI_OF(pack_backward_cols)(5, l, row, u, p, y, x); break;
+        case 6: if (most > 6) HDI_OF(pack_backward_cols)(6, l, row, u, p, y, x); break;
+        case 7: if (most > 7) HDI_OF(pack_backward_cols)(7, l, row, u, p, y, x); break;
+        default: break;
+    }
+}
+
+static const hdi_real_ops *HDI_OF(real_ops)(void) {
+    static const hdi_real_ops hdi_ops = {
+        HDI_REGS * HDI_WIDTH, HDI_COLS,
+        HDI_OF(real_pack), HDI_OF(real_copy), HDI_OF(real_block), HDI_OF(real_rows), HDI_OF(real_gemm),
+        HDI_OF(real_update), HDI_PASTE(real_add, HDI_SOLO), HDI_PASTE(real_forward, HDI_SOLO),
+        HDI_PASTE(real_backward, HDI_SOLO), HDI_PASTE(real_gather, HDI_SOLO),
+        HDI_OF(real_gemv8), HDI_OF(real_dots8), HDI_OF(real_lower8), HDI_OF(real_upper8)
+    };
+    return &hdi_ops;
+}
+
+static const hdi_pack_ops *HDI_OF(pack_ops)(void) {
+    static const hdi_pack_ops hdi_ops = {HDI_OF(pack_multiply), HDI_OF(pack_solve_rows), HDI_OF(pack_scale),
+                                         HDI_OF(pack_add), HDI_OF(pack_forward), HDI_OF(pack_backward)};
+    return &hdi_ops;
+}
+
+#undef HDI_SET
+#undef HDI_SOLO
+#undef HDI_WIDTH
+#endif /* HDI_SET */
+
+#ifndef HDI_KERNELS_READ
+#define HDI_KERNELS_READ
 
 /* ---- choice of the instruction set ---- */
 
-static const hdi_real_ops *hdi_real_ops_plain(void) {
-    static const hdi_real_ops hdi_plain_ops = {4, 4, hdi_r128_pack, hdi_r128_copy, hdi_r128_block, hdi_r128_rows, hdi_r128_gemm, hdi_r128_update,
-        hdi_r128_add, hdi_r128_forward, hdi_r128_backward, hdi_r128_gather, hdi_r128_gemv8, hdi_r128_dots8, hdi_r128_lower8, hdi_r128_upper8};
-    return &hdi_plain_ops;
-}
+#if HDI_X86
+#ifndef HEATDIFF_FILENAME
+#ifdef __FILE_NAME__
+#define HEATDIFF_FILENAME __FILE_NAME__          /* without folders: it is looked for beside itself */
+#elif defined(__has_include)
+#if __has_include(__FILE__)
+#define HEATDIFF_FILENAME __FILE__
+#endif
+#endif
+#ifndef HEATDIFF_FILENAME
+#define HEATDIFF_FILENAME "heatdiff.h"
+#endif
+#endif
+#define HDI_SET avx2
+#define HDI_SOLO avx2
+#define HDI_WIDTH 4
+#include HEATDIFF_FILENAME
+#ifdef HDI_SET
+#error "heatdiff.h: HEATDIFF_FILENAME is not the name of this file, which has to include itself"
+#endif
+#define HDI_SET avx512
+#define HDI_SOLO avx2
+#define HDI_WIDTH 8
+#include HEATDIFF_FILENAME
+#endif
 
-/* Never NULL: a level that was not compiled gives the plain kernels. */
+/* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512. Never NULL: a level that was not compiled gives the plain
+ * kernels. */
 static const hdi_real_ops *hdi_real_ops_get(int level) {
 #if HDI_X86
-    static const hdi_real_ops hdi_avx2_ops = {12, 4, hdi_r256_pack, hdi_r256_copy, hdi_r256_block, hdi_r256_rows, hdi_r256_gemm, hdi_r256_update,
-        hdi_r256_add, hdi_r256_forward, hdi_r256_backward, hdi_r256_gather, hdi_r256_gemv8, hdi_r256_dots8, hdi_r256_lower8, hdi_r256_upper8};
-    /* One right-hand side is bound by memory, and runs are short: four lanes were measured as fast as eight, or faster. */
-    static const hdi_real_ops hdi_avx512_ops = {24, 8, hdi_r512_pack, hdi_r512_copy, hdi_r512_block, hdi_r512_rows, hdi_r512_gemm, hdi_r512_update,
-        hdi_r256_add, hdi_r256_forward, hdi_r256_backward, hdi_r256_gather, hdi_r512_gemv8, hdi_r512_dots8, hdi_r512_lower8, hdi_r512_upper8};
-    if (level >= 2) return &hdi_avx512_ops;
-    if (level == 1) return &hdi_avx2_ops;
+    if (level >= 2) return hdi_real_ops_avx512();
+    if (level == 1) return hdi_real_ops_avx2();
 #endif
     (void)level;
     return hdi_real_ops_plain();
 }
 
+static const hdi_pack_ops *hdi_pack_ops_get(int level) {
+#if HDI_X86
+    if (level >= 2) return hdi_pack_ops_avx512();
+    if (level == 1) return hdi_pack_ops_avx2();
+#endif
+    (void)level;
+    return hdi_pack_ops_plain();
+}
 
 /* ---- factorisation ---- */
 
@@ -2897,9 +2962,12 @@ typedef struct hdi_real_pivots {
     int64_t negative;
 } hdi_real_pivots;
 
-/* Columns of L, and of U padded to slices, that are taken at a time in fronts of at most p pivots and u rows below. */
+/* Columns of L, and of U padded to slices, that are taken at a time in fronts of at most p pivots and u rows
+ * below. */
 static int64_t hdi_real_depth(int64_t p) { return hdi_least(p, HDI_REAL_KC); }
-static int64_t hdi_real_span(int64_t u) { return hdi_least((u + HDI_REAL_NR - 1) / HDI_REAL_NR * HDI_REAL_NR, HDI_REAL_NC); }
+static int64_t hdi_real_span(int64_t u) {
+    return hdi_least((u + HDI_REAL_NR - 1) / HDI_REAL_NR * HDI_REAL_NR, HDI_REAL_NC);
+}
 
 /* Work, in doubles: of one thread in hdi_real_update and hdi_real_rows for such fronts, and of S. */
 static int64_t hdi_real_work(int64_t u, int64_t p) {
@@ -2913,9 +2981,11 @@ static int64_t hdi_real_s_size(int64_t p) {
     return (p + HDI_REAL_NR) * (p < nb ? p + HDI_REAL_NR : nb);
 }
 
-/* Rows r0..r1-1 below pivots k0..k0+nb-1: L(r,K) = (P(r,K) - L(r,0..k0-1) S) inv(D L') for S as hdi_real_block left it; rows of S per slice: kb.
- * work [hdi_real_work(u, p)] is used only when k0 >= HDI_REAL_KC. */
-static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb, const double *S, int32_t kb, const double *dinv,
+/* Rows r0..r1-1 below pivots k0..k0+nb-1: L(r,K) = (P(r,K) - L(r,0..k0-1) S) inv(D L') for S as
+ * hdi_real_block left it; rows of S per slice: kb. work [hdi_real_work(u, p)] is used only when k0 >=
+ * HDI_REAL_KC. */
+static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
+                          const double *S, int32_t kb, const double *dinv,
                           int64_t r0, int64_t r1, double *work) {
     const int32_t k1 = k0 - k0 % HDI_REAL_KC, mr = o->mr, nr = o->nr;
     int64_t r;
@@ -2930,12 +3000,12 @@ static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k
     }
 }
 
-/* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as hdi_real_rows, to the last bit, below K.
- * nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m when k0 + nb <= HDI_REAL_KC.
- * S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the diagonal of P. work [hdi_real_work(u, p)].
- * Returns -1, or the first pivot that is zero or not finite. */
-static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb, int64_t end, double *S, double *dinv,
-                              hdi_real_pivots *pivots, double *work) {
+/* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as
+ * hdi_real_rows, to the last bit, below K. nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m
+ * when k0 + nb <= HDI_REAL_KC. S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the
+ * diagonal of P. work [hdi_real_work(u, p)]. Returns -1, or the first pivot that is zero or not finite. */
+static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
+                              int64_t end, double *S, double *dinv, hdi_real_pivots *pivots, double *work) {
     const int32_t nr = o->nr, kb = k0 + nb;
     int32_t k, j;
     for (k = k0; k < kb; k += nr, S += HDI_CAST(int64_t, kb) * nr) {
@@ -2964,11 +3034,13 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
 }
 
 #ifdef HEATDIFF_USE_BLAS
-/* hdi_real_update by the BLAS' dgemm, in blocks of 128 rows and 256 columns, for fronts that are worth the calls. Update of 1000 rows by 500 pivots on one core:
- * plain C 22 GF/s, OpenBLAS 0.3.21 40 (58 when told to use AVX-512), our AVX2 kernels 62, AVX-512 115: so only plain C gives way to it. */
+/* hdi_real_update by the BLAS' dgemm, in blocks of 128 rows and 256 columns, for fronts that are worth the
+ * calls. Update of 1000 rows by 500 pivots on one core: plain C 22 GF/s, OpenBLAS 0.3.21 40 (58 when told to
+ * use AVX-512), our AVX2 kernels 62, AVX-512 115: so only plain C gives way to it. */
 enum { HDI_BLAS_LEAST = 128, HDI_BLAS_ROWS = 128, HDI_BLAS_COLS = 256 };
 
-static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work, int64_t r0, int64_t r1) {
+static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work,
+                            int64_t r0, int64_t r1) {
     double *S = work, *C = work + HDI_BLAS_COLS * HDI_REAL_KC;
     const int ld = HDI_CAST(int, m), ld_s = HDI_BLAS_COLS, ld_c = HDI_BLAS_ROWS;
     const double one = 1, zero = 0;
@@ -2979,10 +3051,12 @@ static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, in
         for (k = 0; k < p; k += HDI_REAL_KC) {
             const int depth = p - k < HDI_REAL_KC ? p - k : HDI_REAL_KC;
             for (q = 0; q < depth; q++)
-                for (j = 0; j < cols; j++) S[j + q * HDI_BLAS_COLS] = P[p + g + j + (k + q) * m] * P[(k + q) * (m + 1)];
+                for (j = 0; j < cols; j++)
+                    S[j + q * HDI_BLAS_COLS] = P[p + g + j + (k + q) * m] * P[(k + q) * (m + 1)];
             for (r = r0 > g ? r0 : g; r < r1; r += HDI_BLAS_ROWS) {
                 const int rows = HDI_CAST(int, r1 - r < HDI_BLAS_ROWS ? r1 - r : HDI_BLAS_ROWS);
-                dgemm_("N", "T", &rows, &cols, &depth, &one, P + p + r + k * m, &ld, S, &ld_s, &zero, C, &ld_c);
+                dgemm_("N", "T", &rows, &cols, &depth, &one, P + p + r + k * m, &ld, S, &ld_s, &zero, C,
+                       &ld_c);
                 for (j = 0; j < cols; j++) {
                     const int64_t c = g + j;
                     double *to = U + (c * u - c * (c - 1) / 2 - c);
@@ -2995,10 +3069,11 @@ static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, in
 #endif
 
 /* Rows r0..r1-1 of U -= L21 D L21', columns as far as the diagonal. work [hdi_real_work(u, p)]. */
-static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work, int64_t r0,
-                            int64_t r1) {
+static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const double *P, int64_t m,
+                            int32_t p, double *work, int64_t r0, int64_t r1) {
     const int32_t mr = o->mr;
-    double *B = work, *copy = work + hdi_real_depth(p) * hdi_real_span(u), *d = copy + hdi_real_depth(p) * HDI_REAL_MR;
+    double *B = work, *copy = work + hdi_real_depth(p) * hdi_real_span(u),
+        *d = copy + hdi_real_depth(p) * HDI_REAL_MR;
     int64_t g, i;
     int32_t k, q;
 #ifdef HEATDIFF_USE_BLAS
@@ -3026,10 +3101,10 @@ static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const d
     }
 }
 
-/* The child's packed update, columns c0..c1-1, added to the parent's front: (i,j) goes to (rel[i], rel[j]), rel ascending. Different columns
- * of one child never meet. */
-static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t p, double *U, const double *child, int64_t uc,
-                            const int32_t *rel, int64_t c0, int64_t c1) {
+/* The child's packed update, columns c0..c1-1, added to the parent's front: (i,j) goes to (rel[i], rel[j]),
+ * rel ascending. Different columns of one child never meet. */
+static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t p, double *U,
+                            const double *child, int64_t uc, const int32_t *rel, int64_t c0, int64_t c1) {
     enum { n_runs = 64 };
     const int64_t u = m - p;
     int32_t run[n_runs + 1];  /* rows that go to consecutive places, from run[q] to run[q + 1] - 1 */
@@ -3061,7 +3136,8 @@ static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t
 /* ---- solves ---- */
 
 /* x1 = L11^-T (dinv x1 - L21' x[idx]). t [m - p]. dinv may be NULL: ones. */
-static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, const double *dinv, double *x1, const double *x,
+static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p,
+                              const double *dinv, double *x1, const double *x,
                               const int32_t *idx, double *t) {
     int32_t k;
     o->gather(t, x, idx, m - p);
@@ -3074,8 +3150,8 @@ static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m,
 }
 
 /* The same for eight right-hand sides, x row-major [.][8]. */
-static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p, const double *dinv, double *x1, const double *x,
-                               const int32_t *idx) {
+static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p,
+                               const double *dinv, double *x1, const double *x, const int32_t *idx) {
     int32_t k, j;
     for (k = (p - 1) & ~7; k >= 0; k -= 8) {
         const int32_t nc = p - k < 8 ? p - k : 8;
@@ -3086,550 +3162,6 @@ static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m
         if (k + nc < p) o->dots8(b, P + k + nc + k * m, m, p - k - nc, b + 8 * nc, NULL, nc);
         o->upper8(b, P + k + k * m, m, nc);
     }
-}
-
-/* ---- packs: four complex numbers side by side ---- */
-/* An entry of a pack matrix is re[4], im[4]: the same entry for four poles. Every operation on entries is one on vectors without any shuffle. With
- * AVX-512 an entry is one register: a b is a * (br, br) and a * (bi, bi), summed apart, and only the sums are brought together, re = p.lo - q.hi,
- * im = p.hi + q.lo. */
-enum { HDI_PACK = 8, HDI_PACK_ROWS = 48, HDI_PACK_DEPTH = 64, HDI_PACK_BLOCK = 16 };
-
-/* C(i,j) = or -= sum_k A(i,k) B(j,k), k in [0,depth), for i in [i0,i1), j in [j0,j1), with lower only j <= i. A(i,k) stands at a + i a_row + k a_col, all
- * strides in doubles; C(i,j) at c + i c_row + 8 j, or, packed, at c + 8 (i (i + 1)/2 + j). */
-typedef struct hdi_pack_job {
-    const double *a, *b;
-    double *c;
-    int64_t a_row, a_col, b_row, b_col, c_row;
-    int64_t depth, b_first;          /* b is row b_first of B */
-    int lower, packed, store;
-} hdi_pack_job;
-
-static HDI_INLINE double *hdi_pack_row(const hdi_pack_job *g, int64_t i) {
-    return g->c + (g->packed ? HDI_PACK * hdi_triangle(i) : i * g->c_row);
-}
-
-static void hdi_pack_multiply_c(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1) {
-    int64_t i, j, k;
-    int q;
-    for (i = i0; i < i1; i++) {
-        for (j = j0; j < j1 && (!g->lower || j <= i); j++) {
-            const double *a = g->a + i * g->a_row, *b = g->b + (j - g->b_first) * g->b_row;
-            double *c = hdi_pack_row(g, i) + HDI_PACK * j, re[4], im[4];
-            for (q = 0; q < 4; q++) re[q] = im[q] = 0;
-            for (k = 0; k < g->depth; k++, a += g->a_col, b += g->b_col) {
-                for (q = 0; q < 4; q++) {
-                    re[q] += a[q] * b[q] - a[q + 4] * b[q + 4];
-                    im[q] += a[q + 4] * b[q] + a[q] * b[q + 4];
-                }
-            }
-            for (q = 0; q < 4; q++) {
-                c[q] = g->store ? -re[q] : c[q] - re[q];
-                c[q + 4] = g->store ? -im[q] : c[q + 4] - im[q];
-            }
-        }
-    }
-}
-
-/* Rows [r0,r1) of a panel, columns [k0,k0+nb): l_ik = (a_ik - sum_{j in [k0,k)} l_ij s_kj) dinv_k, in place; s at s + (k - k0) s_row + 8 (j - k0). */
-typedef struct hdi_pack_rows {
-    double *panel;
-    int64_t row, first;          /* doubles from row to row; panel is row first */
-    const double *s, *dinv;
-    int64_t s_row;
-    int32_t nb;
-} hdi_pack_rows;
-
-static HDI_INLINE void hdi_pack_row_c(const hdi_pack_rows *g, double *x) {
-    int32_t k, j;
-    int q;
-    for (k = 0; k < g->nb; k++) {
-        const double *d = g->dinv + HDI_PACK * k, *s = g->s + k * g->s_row;
-        double re[4], im[4], *y = x + HDI_PACK * k;
-        for (q = 0; q < 4; q++) {
-            re[q] = y[q];
-            im[q] = y[q + 4];
-        }
-        for (j = 0; j < k; j++) {
-            for (q = 0; q < 4; q++) {
-                re[q] -= x[HDI_PACK * j + q] * s[HDI_PACK * j + q] - x[HDI_PACK * j + q + 4] * s[HDI_PACK * j + q + 4];
-                im[q] -= x[HDI_PACK * j + q + 4] * s[HDI_PACK * j + q] + x[HDI_PACK * j + q] * s[HDI_PACK * j + q + 4];
-            }
-        }
-        for (q = 0; q < 4; q++) {
-            y[q] = re[q] * d[q] - im[q] * d[q + 4];
-            y[q + 4] = re[q] * d[q + 4] + im[q] * d[q];
-        }
-    }
-}
-
-static void hdi_pack_solve_rows_c(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
-    int64_t i;
-    for (i = r0 - g->first; i < r1 - g->first; i++) hdi_pack_row_c(g, g->panel + i * g->row);
-}
-
-/* s = l d for an entry */
-static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double *HDI_RESTRICT d, double *HDI_RESTRICT s) {
-    int q;
-    for (q = 0; q < 4; q++) {
-        s[q] = l[q] * d[q] - l[q + 4] * d[q + 4];
-        s[q + 4] = l[q] * d[q + 4] + l[q + 4] * d[q];
-    }
-}
-
-/* S(i,k) = l_ik d_k for rows [r0,r1), columns [k0,k1) of a panel; S by rows of k1 - k0 entries, row 0 being r0. */
-static HDI_INLINE void hdi_pack_scale_body(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s) {
-    int64_t i, k;
-    for (i = r0; i < r1; i++)
-        for (k = k0; k < k1; k++, s += HDI_PACK) hdi_pack_times(panel + i * row + HDI_PACK * k, d + HDI_PACK * k, s);
-}
-
-/* to[rel_b] += from[b] for b in [b0,b1), entries; off is taken off rel. */
-static HDI_INLINE void hdi_pack_add_body(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
-    int64_t b;
-    int q;
-    for (b = b0; b < b1; b++) {
-        double *HDI_RESTRICT t = to + HDI_PACK * (rel[b] - off);
-        const double *HDI_RESTRICT f = from + HDI_PACK * b;
-        for (q = 0; q < HDI_PACK; q++) t[q] += f[q];
-    }
-}
-
-/* Sweeps of one right-hand side through u rows of a panel. Forward: t_i -= sum_k l_ik y_k. Backward: y_k -= sum_i l_ik x[row_i], row NULL: row_i = i. */
-static HDI_INLINE void hdi_pack_forward_body(const double *l, int64_t u, int64_t p, const double *y, double *x) {
-    int64_t i, k;
-    int q;
-    for (i = 0; i < u; i++) {
-        double *t = x + HDI_PACK * i, re[4], im[4];
-        for (q = 0; q < 4; q++) {
-            re[q] = t[q];
-            im[q] = t[q + 4];
-        }
-        for (k = 0; k < p; k++, l += HDI_PACK) {
-            for (q = 0; q < 4; q++) {
-                re[q] -= l[q] * y[HDI_PACK * k + q] - l[q + 4] * y[HDI_PACK * k + q + 4];
-                im[q] -= l[q + 4] * y[HDI_PACK * k + q] + l[q] * y[HDI_PACK * k + q + 4];
-            }
-        }
-        for (q = 0; q < 4; q++) {
-            t[q] = re[q];
-            t[q + 4] = im[q];
-        }
-    }
-}
-
-static HDI_INLINE void hdi_pack_backward_body(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
-    int64_t i, k;
-    int q;
-    for (i = 0; i < u; i++) {
-        const double *HDI_RESTRICT t = x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i);
-        for (k = 0; k < p; k++, l += HDI_PACK) {
-            double *HDI_RESTRICT z = y + HDI_PACK * k;
-            for (q = 0; q < 4; q++) {
-                z[q] -= l[q] * t[q] - l[q + 4] * t[q + 4];
-                z[q + 4] -= l[q + 4] * t[q] + l[q] * t[q + 4];
-            }
-        }
-    }
-}
-
-static void hdi_pack_scale_c(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s) {
-    hdi_pack_scale_body(panel, row, r0, r1, k0, k1, d, s);
-}
-static void hdi_pack_add_c(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
-    hdi_pack_add_body(to, from, rel, b0, b1, off);
-}
-static void hdi_pack_forward_c(const double *l, int64_t u, int64_t p, const double *y, double *t) {
-    hdi_pack_forward_body(l, u, p, y, t);
-}
-static void hdi_pack_backward_c(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
-    hdi_pack_backward_body(l, row, u, p, y, x);
-}
-
-#if HDI_X86
-/* ---- AVX-512: an entry is a register ---- */
-
-typedef __m512d hdi_v8;
-typedef __m256d hdi_v4;
-
-/* (x, x) of four doubles */
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_twice512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
-
-/* sum of products from its two halves: p - swap(q) below, p + swap(q) above */
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
-    const hdi_v8 t = _mm512_shuffle_f64x2(q, q, 0x4e);
-    return _mm512_mask_sub_pd(_mm512_add_pd(p, t), 0x0f, p, t);
-}
-
-static HDI_AVX512 HDI_INLINE void hdi_put512(double *c, hdi_v8 p, hdi_v8 q, int store) {
-    const hdi_v8 r = hdi_join512(p, q);
-    _mm512_storeu_pd(c, store ? _mm512_sub_pd(_mm512_setzero_pd(), r) : _mm512_sub_pd(_mm512_loadu_pd(c), r));
-}
-
-#define HDI_TILE_ROW(i)                                                                                                \
-    if (mr > i) {                                                                                                      \
-        const hdi_v8 x = _mm512_loadu_pd(a + i * g->a_row);                                                            \
-        p##i##0 = _mm512_fmadd_pd(x, r0, p##i##0);                                                                     \
-        q##i##0 = _mm512_fmadd_pd(x, m0, q##i##0);                                                                     \
-        if (nr > 1) p##i##1 = _mm512_fmadd_pd(x, r1, p##i##1);                                                         \
-        if (nr > 1) q##i##1 = _mm512_fmadd_pd(x, m1, q##i##1);                                                         \
-        if (nr > 2) p##i##2 = _mm512_fmadd_pd(x, r2, p##i##2);                                                         \
-        if (nr > 2) q##i##2 = _mm512_fmadd_pd(x, m2, q##i##2);                                                         \
-    }
-#define HDI_TILE_PUT(i)                                                                                                \
-    if (mr > i) {                                                                                                      \
-        double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * j0;                                                           \
-        const int64_t last = g->lower ? i0 + i - j0 : 2;                                                               \
-        if (last >= 0) hdi_put512(c, p##i##0, q##i##0, g->store);                                                      \
-        if (nr > 1 && last >= 1) hdi_put512(c + 8, p##i##1, q##i##1, g->store);                                        \
-        if (nr > 2 && last >= 2) hdi_put512(c + 16, p##i##2, q##i##2, g->store);                                       \
-    }
-
-/* A tile of mr x nr entries, mr <= 4, nr <= 3: 24 sums, 6 factors of B, one of A: all 32 registers. */
-static HDI_AVX512 HDI_INLINE void hdi_pack_tile512(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
-    const double *a = g->a + i0 * g->a_row, *b = g->b + (j0 - g->b_first) * g->b_row;
-    const hdi_v8 zero = _mm512_setzero_pd();
-    hdi_v8 p00 = zero, q00 = zero, p01 = zero, q01 = zero, p02 = zero, q02 = zero, p10 = zero, q10 = zero, p11 = zero, q11 = zero, p12 = zero, q12 = zero;
-    hdi_v8 p20 = zero, q20 = zero, p21 = zero, q21 = zero, p22 = zero, q22 = zero, p30 = zero, q30 = zero, p31 = zero, q31 = zero, p32 = zero, q32 = zero;
-    int64_t k;
-    for (k = g->depth; k > 0; k--, a += g->a_col, b += g->b_col) {
-        const hdi_v8 r0 = hdi_twice512(b), m0 = hdi_twice512(b + 4);
-        const hdi_v8 r1 = nr > 1 ? hdi_twice512(b + g->b_row) : zero, m1 = nr > 1 ? hdi_twice512(b + g->b_row + 4) : zero;
-        const hdi_v8 r2 = nr > 2 ? hdi_twice512(b + 2 * g->b_row) : zero, m2 = nr > 2 ? hdi_twice512(b + 2 * g->b_row + 4) : zero;
-        HDI_TILE_ROW(0)
-        HDI_TILE_ROW(1)
-        HDI_TILE_ROW(2)
-        HDI_TILE_ROW(3)
-    }
-    HDI_TILE_PUT(0)
-    HDI_TILE_PUT(1)
-    HDI_TILE_PUT(2)
-    HDI_TILE_PUT(3)
-}
-#undef HDI_TILE_ROW
-#undef HDI_TILE_PUT
-
-static HDI_AVX512 void hdi_pack_tile512_any(const hdi_pack_job *g, int mr, int nr, int64_t i0, int64_t j0) {
-    switch (4 * nr + mr) {
-        case 5: hdi_pack_tile512(g, 1, 1, i0, j0); break;
-        case 6: hdi_pack_tile512(g, 2, 1, i0, j0); break;
-        case 7: hdi_pack_tile512(g, 3, 1, i0, j0); break;
-        case 8: hdi_pack_tile512(g, 4, 1, i0, j0); break;
-        case 9: hdi_pack_tile512(g, 1, 2, i0, j0); break;
-        case 10: hdi_pack_tile512(g, 2, 2, i0, j0); break;
-        case 11: hdi_pack_tile512(g, 3, 2, i0, j0); break;
-        case 12: hdi_pack_tile512(g, 4, 2, i0, j0); break;
-        case 13: hdi_pack_tile512(g, 1, 3, i0, j0); break;
-        case 14: hdi_pack_tile512(g, 2, 3, i0, j0); break;
-        default: hdi_pack_tile512(g, 3, 3, i0, j0); break;
-    }
-}
-
-static HDI_AVX512 void hdi_pack_multiply_512(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1) {
-    int64_t ib, i, j;
-    for (ib = i0; ib < i1; ib += HDI_PACK_ROWS) {
-        const int64_t ie = ib + HDI_PACK_ROWS < i1 ? ib + HDI_PACK_ROWS : i1, je = g->lower && ie < j1 ? ie : j1;
-        for (j = j0; j < je; j += 3) {
-            const int nr = je - j < 3 ? HDI_CAST(int, je - j) : 3;
-            i = g->lower && j > ib ? j : ib;
-            if (nr == 3)
-                for (; i + 4 <= ie; i += 4) hdi_pack_tile512(g, 4, 3, i, j);
-            for (; i < ie; i += 4) hdi_pack_tile512_any(g, ie - i < 4 ? HDI_CAST(int, ie - i) : 4, nr, i, j);
-        }
-    }
-}
-
-#define HDI_SOLVE_INIT(i) hdi_v8 p##i = mr > i ? _mm512_loadu_pd(x + i * g->row + HDI_PACK * k) : zero, q##i = zero;
-#define HDI_SOLVE_ROW(i)                                                                                               \
-    if (mr > i) {                                                                                                      \
-        const hdi_v8 y = _mm512_loadu_pd(x + i * g->row + HDI_PACK * j);                                               \
-        p##i = _mm512_fnmadd_pd(y, r, p##i);                                                                           \
-        q##i = _mm512_fnmadd_pd(y, m, q##i);                                                                           \
-    }
-#define HDI_SOLVE_PUT(i)                                                                                               \
-    if (mr > i) {                                                                                                      \
-        const hdi_v8 y = hdi_join512(p##i, q##i);                                                                      \
-        _mm512_storeu_pd(x + i * g->row + HDI_PACK * k, hdi_join512(_mm512_mul_pd(y, dr), _mm512_mul_pd(y, dm)));      \
-    }
-
-/* mr rows at once, mr <= 6, for independent chains of multiply-adds. */
-static HDI_AVX512 HDI_INLINE void hdi_pack_solve_tile512(const hdi_pack_rows *g, const int mr, double *x) {
-    const hdi_v8 zero = _mm512_setzero_pd();
-    int32_t k, j;
-    for (k = 0; k < g->nb; k++) {
-        const double *s = g->s + k * g->s_row;
-        const hdi_v8 dr = hdi_twice512(g->dinv + HDI_PACK * k), dm = hdi_twice512(g->dinv + HDI_PACK * k + 4);
-        HDI_SOLVE_INIT(0)
-        HDI_SOLVE_INIT(1)
-        HDI_SOLVE_INIT(2)
-        HDI_SOLVE_INIT(3)
-        HDI_SOLVE_INIT(4)
-        HDI_SOLVE_INIT(5)
-        for (j = 0; j < k; j++, s += HDI_PACK) {
-            const hdi_v8 r = hdi_twice512(s), m = hdi_twice512(s + 4);
-            HDI_SOLVE_ROW(0)
-            HDI_SOLVE_ROW(1)
-            HDI_SOLVE_ROW(2)
-            HDI_SOLVE_ROW(3)
-            HDI_SOLVE_ROW(4)
-            HDI_SOLVE_ROW(5)
-        }
-        HDI_SOLVE_PUT(0)
-        HDI_SOLVE_PUT(1)
-        HDI_SOLVE_PUT(2)
-        HDI_SOLVE_PUT(3)
-        HDI_SOLVE_PUT(4)
-        HDI_SOLVE_PUT(5)
-    }
-}
-#undef HDI_SOLVE_INIT
-#undef HDI_SOLVE_ROW
-#undef HDI_SOLVE_PUT
-
-static HDI_AVX512 void hdi_pack_solve_rows_512(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
-    int64_t i;
-    r0 -= g->first;
-    r1 -= g->first;
-    for (i = r0; i + 6 <= r1; i += 6) hdi_pack_solve_tile512(g, 6, g->panel + i * g->row);
-    for (; i + 2 <= r1; i += 2) hdi_pack_solve_tile512(g, 2, g->panel + i * g->row);
-    for (; i < r1; i++) hdi_pack_solve_tile512(g, 1, g->panel + i * g->row);
-}
-
-static HDI_AVX512 void hdi_pack_scale_512(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s) {
-    int64_t i, k;
-    for (i = r0; i < r1; i++)
-        for (k = k0; k < k1; k++, s += HDI_PACK) {
-            const hdi_v8 l = _mm512_loadu_pd(panel + i * row + HDI_PACK * k);
-            _mm512_storeu_pd(s, hdi_join512(_mm512_mul_pd(l, hdi_twice512(d + HDI_PACK * k)), _mm512_mul_pd(l, hdi_twice512(d + HDI_PACK * k + 4))));
-        }
-}
-
-static HDI_AVX512 void hdi_pack_add_512(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
-    int64_t b;
-    for (b = b0; b < b1; b++) {
-        double *t = to + HDI_PACK * (rel[b] - off);
-        _mm512_storeu_pd(t, _mm512_add_pd(_mm512_loadu_pd(t), _mm512_loadu_pd(from + HDI_PACK * b)));
-    }
-}
-
-/* Four rows at once. */
-static HDI_AVX512 void hdi_pack_forward_512(const double *l, int64_t u, int64_t p, const double *y, double *t) {
-    const hdi_v8 zero = _mm512_setzero_pd();
-    int64_t i, k;
-    for (i = 0; i + 4 <= u; i += 4, l += 4 * HDI_PACK * p) {
-        hdi_v8 p0 = zero, p1 = zero, p2 = zero, p3 = zero, q0 = zero, q1 = zero, q2 = zero, q3 = zero;
-        for (k = 0; k < p; k++) {
-            const hdi_v8 r = hdi_twice512(y + HDI_PACK * k), m = hdi_twice512(y + HDI_PACK * k + 4);
-            const hdi_v8 l0 = _mm512_loadu_pd(l + HDI_PACK * k), l1 = _mm512_loadu_pd(l + HDI_PACK * (p + k));
-            const hdi_v8 l2 = _mm512_loadu_pd(l + HDI_PACK * (2 * p + k)), l3 = _mm512_loadu_pd(l + HDI_PACK * (3 * p + k));
-            p0 = _mm512_fmadd_pd(l0, r, p0);
-            q0 = _mm512_fmadd_pd(l0, m, q0);
-            p1 = _mm512_fmadd_pd(l1, r, p1);
-            q1 = _mm512_fmadd_pd(l1, m, q1);
-            p2 = _mm512_fmadd_pd(l2, r, p2);
-            q2 = _mm512_fmadd_pd(l2, m, q2);
-            p3 = _mm512_fmadd_pd(l3, r, p3);
-            q3 = _mm512_fmadd_pd(l3, m, q3);
-        }
-        hdi_put512(t + HDI_PACK * i, p0, q0, 0);
-        hdi_put512(t + HDI_PACK * (i + 1), p1, q1, 0);
-        hdi_put512(t + HDI_PACK * (i + 2), p2, q2, 0);
-        hdi_put512(t + HDI_PACK * (i + 3), p3, q3, 0);
-    }
-    for (; i < u; i++, l += HDI_PACK * p) {
-        hdi_v8 p0 = zero, q0 = zero;
-        for (k = 0; k < p; k++) {
-            const hdi_v8 l0 = _mm512_loadu_pd(l + HDI_PACK * k);
-            p0 = _mm512_fmadd_pd(l0, hdi_twice512(y + HDI_PACK * k), p0);
-            q0 = _mm512_fmadd_pd(l0, hdi_twice512(y + HDI_PACK * k + 4), q0);
-        }
-        hdi_put512(t + HDI_PACK * i, p0, q0, 0);
-    }
-}
-
-#define HDI_BACK(c)                                                                                                    \
-    if (kr > c) {                                                                                                      \
-        const hdi_v8 v = _mm512_loadu_pd(t + HDI_PACK * c);                                                            \
-        p##c = _mm512_fmadd_pd(v, r, p##c);                                                                            \
-        q##c = _mm512_fmadd_pd(v, m, q##c);                                                                            \
-    }
-static HDI_AVX512 HDI_INLINE void hdi_pack_back_tile512(const int kr, const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
-    const hdi_v8 zero = _mm512_setzero_pd();
-    hdi_v8 p0 = zero, p1 = zero, p2 = zero, p3 = zero, p4 = zero, p5 = zero, p6 = zero, p7 = zero;
-    hdi_v8 q0 = zero, q1 = zero, q2 = zero, q3 = zero, q4 = zero, q5 = zero, q6 = zero, q7 = zero;
-    const double *t = l;
-    int64_t i;
-    for (i = 0; i < u; i++, t += HDI_PACK * p) {
-        const double *z = x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i);
-        const hdi_v8 r = hdi_twice512(z), m = hdi_twice512(z + 4);
-        HDI_PREFETCH(t + 1024);
-        HDI_BACK(0)
-        HDI_BACK(1)
-        HDI_BACK(2)
-        HDI_BACK(3)
-        HDI_BACK(4)
-        HDI_BACK(5)
-        HDI_BACK(6)
-        HDI_BACK(7)
-    }
-    hdi_put512(y, p0, q0, 0);
-    if (kr > 1) hdi_put512(y + 8, p1, q1, 0);
-    if (kr > 2) hdi_put512(y + 16, p2, q2, 0);
-    if (kr > 3) hdi_put512(y + 24, p3, q3, 0);
-    if (kr > 4) hdi_put512(y + 32, p4, q4, 0);
-    if (kr > 5) hdi_put512(y + 40, p5, q5, 0);
-    if (kr > 6) hdi_put512(y + 48, p6, q6, 0);
-    if (kr > 7) hdi_put512(y + 56, p7, q7, 0);
-}
-#undef HDI_BACK
-
-/* Up to eight pivots at once. */
-static HDI_AVX512 void hdi_pack_backward_512(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
-    int64_t k;
-    for (k = 0; k + 8 <= p; k += 8) hdi_pack_back_tile512(8, l + HDI_PACK * k, row, u, p, y + HDI_PACK * k, x);
-    l += HDI_PACK * k;
-    y += HDI_PACK * k;
-    switch (p - k) {
-        case 1: hdi_pack_back_tile512(1, l, row, u, p, y, x); break;
-        case 2: hdi_pack_back_tile512(2, l, row, u, p, y, x); break;
-        case 3: hdi_pack_back_tile512(3, l, row, u, p, y, x); break;
-        case 4: hdi_pack_back_tile512(4, l, row, u, p, y, x); break;
-        case 5: hdi_pack_back_tile512(5, l, row, u, p, y, x); break;
-        case 6: hdi_pack_back_tile512(6, l, row, u, p, y, x); break;
-        case 7: hdi_pack_back_tile512(7, l, row, u, p, y, x); break;
-        default: break;
-    }
-}
-
-/* ---- AVX2: an entry is two registers ---- */
-
-#define HDI_TILE_TERM(i, j)                                                                                            \
-    p##i##j = _mm256_fmadd_pd(x##i, r##j, p##i##j);                                                                    \
-    q##i##j = _mm256_fmadd_pd(z##i, r##j, q##i##j);                                                                    \
-    p##i##j = _mm256_fnmadd_pd(z##i, m##j, p##i##j);                                                                   \
-    q##i##j = _mm256_fmadd_pd(x##i, m##j, q##i##j);
-#define HDI_TILE_PUT(i, j)                                                                                             \
-    if (mr > i && nr > j && (!g->lower || j0 + j <= i0 + i)) {                                                         \
-        double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * (j0 + j);                                                     \
-        _mm256_storeu_pd(c, _mm256_sub_pd(g->store ? zero : _mm256_loadu_pd(c), p##i##j));                             \
-        _mm256_storeu_pd(c + 4, _mm256_sub_pd(g->store ? zero : _mm256_loadu_pd(c + 4), q##i##j));                     \
-    }
-static HDI_AVX2 HDI_INLINE void hdi_pack_tile2(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
-    const double *a = g->a + i0 * g->a_row, *b = g->b + (j0 - g->b_first) * g->b_row;
-    const hdi_v4 zero = _mm256_setzero_pd();
-    hdi_v4 p00 = zero, q00 = zero, p01 = zero, q01 = zero, p10 = zero, q10 = zero, p11 = zero, q11 = zero;
-    int64_t k;
-    for (k = g->depth; k > 0; k--, a += g->a_col, b += g->b_col) {
-        const hdi_v4 x0 = _mm256_loadu_pd(a), z0 = _mm256_loadu_pd(a + 4), r0 = _mm256_loadu_pd(b), m0 = _mm256_loadu_pd(b + 4);
-        HDI_TILE_TERM(0, 0)
-        if (mr > 1) {
-            const hdi_v4 x1 = _mm256_loadu_pd(a + g->a_row), z1 = _mm256_loadu_pd(a + g->a_row + 4);
-            HDI_TILE_TERM(1, 0)
-            if (nr > 1) {
-                const hdi_v4 r1 = _mm256_loadu_pd(b + g->b_row), m1 = _mm256_loadu_pd(b + g->b_row + 4);
-                HDI_TILE_TERM(0, 1)
-                HDI_TILE_TERM(1, 1)
-            }
-        } else if (nr > 1) {
-            const hdi_v4 r1 = _mm256_loadu_pd(b + g->b_row), m1 = _mm256_loadu_pd(b + g->b_row + 4);
-            HDI_TILE_TERM(0, 1)
-        }
-    }
-    HDI_TILE_PUT(0, 0)
-    HDI_TILE_PUT(0, 1)
-    HDI_TILE_PUT(1, 0)
-    HDI_TILE_PUT(1, 1)
-}
-#undef HDI_TILE_TERM
-#undef HDI_TILE_PUT
-
-static HDI_AVX2 void hdi_pack_multiply_2(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1) {
-    int64_t ib, i, j;
-    for (ib = i0; ib < i1; ib += HDI_PACK_ROWS) {
-        const int64_t ie = ib + HDI_PACK_ROWS < i1 ? ib + HDI_PACK_ROWS : i1, je = g->lower && ie < j1 ? ie : j1;
-        for (j = j0; j < je; j += 2) {
-            i = g->lower && j > ib ? j : ib;
-            if (je - j >= 2) {
-                for (; i + 2 <= ie; i += 2) hdi_pack_tile2(g, 2, 2, i, j);
-                if (i < ie) hdi_pack_tile2(g, 1, 2, i, j);
-            } else {
-                for (; i + 2 <= ie; i += 2) hdi_pack_tile2(g, 2, 1, i, j);
-                if (i < ie) hdi_pack_tile2(g, 1, 1, i, j);
-            }
-        }
-    }
-}
-
-/* The same rows, two at a time: four chains of two each. */
-static HDI_AVX2 HDI_INLINE void hdi_pack_solve_tile2(const hdi_pack_rows *g, const int mr, double *x) {
-    double *x1 = x + (mr > 1 ? g->row : 0);
-    int32_t k, j;
-    for (k = 0; k < g->nb; k++) {
-        const double *s = g->s + k * g->s_row, *d = g->dinv + HDI_PACK * k;
-        const hdi_v4 dr = _mm256_loadu_pd(d), dm = _mm256_loadu_pd(d + 4);
-        hdi_v4 p0 = _mm256_loadu_pd(x + HDI_PACK * k), q0 = _mm256_loadu_pd(x + HDI_PACK * k + 4), p1 = _mm256_loadu_pd(x1 + HDI_PACK * k);
-        hdi_v4 q1 = _mm256_loadu_pd(x1 + HDI_PACK * k + 4);
-        for (j = 0; j < k; j++, s += HDI_PACK) {
-            const hdi_v4 r = _mm256_loadu_pd(s), m = _mm256_loadu_pd(s + 4), a = _mm256_loadu_pd(x + HDI_PACK * j), b = _mm256_loadu_pd(x + HDI_PACK * j + 4);
-            p0 = _mm256_fnmadd_pd(a, r, p0);
-            q0 = _mm256_fnmadd_pd(b, r, q0);
-            p0 = _mm256_fmadd_pd(b, m, p0);
-            q0 = _mm256_fnmadd_pd(a, m, q0);
-            if (mr > 1) {
-                const hdi_v4 c = _mm256_loadu_pd(x1 + HDI_PACK * j), e = _mm256_loadu_pd(x1 + HDI_PACK * j + 4);
-                p1 = _mm256_fnmadd_pd(c, r, p1);
-                q1 = _mm256_fnmadd_pd(e, r, q1);
-                p1 = _mm256_fmadd_pd(e, m, p1);
-                q1 = _mm256_fnmadd_pd(c, m, q1);
-            }
-        }
-        _mm256_storeu_pd(x + HDI_PACK * k, _mm256_fmsub_pd(p0, dr, _mm256_mul_pd(q0, dm)));
-        _mm256_storeu_pd(x + HDI_PACK * k + 4, _mm256_fmadd_pd(p0, dm, _mm256_mul_pd(q0, dr)));
-        if (mr > 1) _mm256_storeu_pd(x1 + HDI_PACK * k, _mm256_fmsub_pd(p1, dr, _mm256_mul_pd(q1, dm)));
-        if (mr > 1) _mm256_storeu_pd(x1 + HDI_PACK * k + 4, _mm256_fmadd_pd(p1, dm, _mm256_mul_pd(q1, dr)));
-    }
-}
-
-static HDI_AVX2 void hdi_pack_solve_rows_2(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
-    int64_t i;
-    r0 -= g->first;
-    r1 -= g->first;
-    for (i = r0; i + 2 <= r1; i += 2) hdi_pack_solve_tile2(g, 2, g->panel + i * g->row);
-    if (i < r1) hdi_pack_solve_tile2(g, 1, g->panel + i * g->row);
-}
-static HDI_AVX2 void hdi_pack_scale_2(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s) {
-    hdi_pack_scale_body(panel, row, r0, r1, k0, k1, d, s);
-}
-static HDI_AVX2 void hdi_pack_add_2(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off) {
-    hdi_pack_add_body(to, from, rel, b0, b1, off);
-}
-static HDI_AVX2 void hdi_pack_forward_2(const double *l, int64_t u, int64_t p, const double *y, double *t) {
-    hdi_pack_forward_body(l, u, p, y, t);
-}
-static HDI_AVX2 void hdi_pack_backward_2(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x) {
-    hdi_pack_backward_body(l, row, u, p, y, x);
-}
-#endif
-
-typedef struct hdi_pack_ops {
-    void (*multiply)(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1);
-    void (*solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1);
-    void (*scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1, const double *d, double *s);
-    void (*add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off);
-    void (*forward)(const double *l, int64_t u, int64_t p, const double *y, double *t);
-    void (*backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x);
-} hdi_pack_ops;
-
-/* level 0: plain C, 1: AVX2, 2: AVX-512 */
-static const hdi_pack_ops *hdi_pack_ops_get(int level) {
-    static const hdi_pack_ops hdi_plain_ops = {hdi_pack_multiply_c, hdi_pack_solve_rows_c, hdi_pack_scale_c, hdi_pack_add_c, hdi_pack_forward_c, hdi_pack_backward_c};
-#if HDI_X86
-    static const hdi_pack_ops hdi_avx2_ops = {hdi_pack_multiply_2, hdi_pack_solve_rows_2, hdi_pack_scale_2, hdi_pack_add_2, hdi_pack_forward_2, hdi_pack_backward_2};
-    static const hdi_pack_ops hdi_avx512_ops = {hdi_pack_multiply_512, hdi_pack_solve_rows_512, hdi_pack_scale_512, hdi_pack_add_512, hdi_pack_forward_512, hdi_pack_backward_512};
-    if (level > 1) return &hdi_avx512_ops;
-    if (level == 1) return &hdi_avx2_ops;
-#endif
-    (void)level;
-    return &hdi_plain_ops;
 }
 
 /* ==== [07] sparse ====
@@ -14275,78 +13807,81 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
 }
 
 #if HDI_X86
-#define HDI_CHECK_DECLARE(r) hdi_v8 l##r, b##r, n##r = zero, f##r = zero, z##r = zero;
-#define HDI_CHECK_CLEAR(r) if (k > r) { l##r = zero; b##r = zero; if (!lap->B) b##r = _mm512_mul_pd(_mm512_set1_pd(lap->mass[i]), _mm512_loadu_pd(at + HDI_PACK * r)); }
-#define HDI_CHECK_ADD(r)                                                                                               \
-    if (k > r) {                                                                                                       \
-        const hdi_v8 v = _mm512_loadu_pd(from + HDI_PACK * r);                                                         \
-        l##r = _mm512_fmadd_pd(lx, v, l##r);                                                                           \
-        if (full) b##r = _mm512_fmadd_pd(bx, v, b##r);                                                                 \
-    }
-#define HDI_CHECK_ROW(r)                                                                                               \
-    if (k > r) {                                                                                                       \
-        const hdi_v8 v = _mm512_loadu_pd(at + HDI_PACK * r), coef = _mm512_loadu_pd(c[r]->coef);                       \
-        hdi_v8 res = _mm512_fnmadd_pd(t, l##r, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));                           \
-        res = _mm512_fnmadd_pd(tr, b##r, res);                                                                         \
-        res = _mm512_fnmadd_pd(ti, _mm512_shuffle_f64x2(b##r, b##r, 0x4e), res);                                       \
-        n##r = _mm512_fmadd_pd(_mm512_mul_pd(w, res), res, n##r);                                                      \
-        f##r = _mm512_fmadd_pd(v, b##r, f##r);                                                                         \
-        z##r = _mm512_fmadd_pd(_mm512_mul_pd(nz, v), v, z##r);                                                         \
-        c[r]->u[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, v));                                                    \
-        c[r]->bu[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, b##r));                                                \
-    }
-#define HDI_CHECK_END(r)                                                                                               \
-    if (k > r) {                                                                                                       \
-        double s[HDI_PACK];                                                                                            \
-        _mm512_storeu_pd(s, n##r);                                                                                     \
-        for (q = 0; q < 4; q++) c[r]->norm2[q] += s[q] + s[q + 4];                                                     \
-        _mm512_storeu_pd(s, z##r);                                                                                     \
-        for (q = 0; q < 4; q++) c[r]->size2[q] += s[q] + s[q + 4];                                                     \
-        _mm512_storeu_pd(s, f##r);                                                                                     \
-        c[r]->first2 += s[0] + s[4];                                                                                   \
-    }
-#define HDI_CHECK_EACH(M) M(0) M(1) M(2) M(3) M(4) M(5)
+/* What is summed for one right-hand side. */
+typedef struct hdi_check512 { hdi_v8 l, b, norm, first, size; } hdi_check512;
 
-/* k right-hand sides, at most 6, whose rows of x stand side by side. */
-static HDI_AVX512 HDI_INLINE void hdi_check_512_of(hdi_check *const *c, const int k) {
+/* Row i is complete: l and b hold its products with L and B. */
+static HDI_AVX512 HDI_INLINE void hdi_check512_row(hdi_check *h, hdi_check512 *s, int32_t i, const double *x) {
+    const hdi_v8 t = _mm512_set1_pd(h->t), re = hdi_twice512(h->theta), im = hdi_twice512(h->theta + 4);
+    const hdi_v8 turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
+    const hdi_v8 weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
+    const hdi_v8 v = _mm512_loadu_pd(x), coef = _mm512_loadu_pd(h->coef);
+    hdi_v8 r = _mm512_fnmadd_pd(t, s->l, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(h->rhs[i])));
+    r = _mm512_fnmadd_pd(re, s->b, r);
+    r = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(s->b, s->b, 0x4e), r);
+    s->norm = _mm512_fmadd_pd(_mm512_mul_pd(weight, r), r, s->norm);
+    s->first = _mm512_fmadd_pd(v, s->b, s->first);
+    s->size = _mm512_fmadd_pd(_mm512_mul_pd(noise, v), v, s->size);
+    h->u[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, v));
+    h->bu[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, s->b));
+}
+
+static HDI_AVX512 HDI_INLINE void hdi_check512_end(hdi_check *h, const hdi_check512 *s) {
+    double norm[HDI_PACK], size[HDI_PACK], first[HDI_PACK];
+    int q;
+    _mm512_storeu_pd(norm, s->norm);
+    _mm512_storeu_pd(size, s->size);
+    _mm512_storeu_pd(first, s->first);
+    for (q = 0; q < 4; q++) {
+        h->norm2[q] += norm[q] + norm[q + 4];
+        h->size2[q] += size[q] + size[q + 4];
+    }
+    h->first2 += first[0] + first[4];
+}
+
+/* n right-hand sides, whose rows of x stand side by side. */
+static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int n) {
     const hd_laplacian *lap = c[0]->lap;
-    const hdi_v8 zero = _mm512_setzero_pd(), t = _mm512_set1_pd(c[0]->t), tr = hdi_twice512(c[0]->theta);
-    const hdi_v8 im = hdi_twice512(c[0]->theta + 4), ti = _mm512_mask_sub_pd(im, 0x0f, zero, im);
-    const double *x = c[0]->x;
+    const hdi_v8 zero = _mm512_setzero_pd();
     const int64_t stride = c[0]->stride;
     const int full = lap->B != NULL;
+    hdi_check512 s[HDI_CHECK_MOST];
     int64_t p;
     int32_t i;
-    int q;
-    HDI_CHECK_EACH(HDI_CHECK_DECLARE)
+    int r;
+    HDI_UNROLL
+    for (r = 0; r < n; r++) s[r].norm = s[r].first = s[r].size = zero;
     for (i = 0; i < lap->n_active; i++) {
-        const double *at = x + stride * i;
-        const hdi_v8 w = _mm512_set1_pd(c[0]->weight[i]), nz = _mm512_set1_pd(c[0]->noise[i]);
-        HDI_CHECK_EACH(HDI_CHECK_CLEAR)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double *from = x + stride * lap->L.col[p];
-            const hdi_v8 lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
-            HDI_CHECK_EACH(HDI_CHECK_ADD)
+        const double *at = c[0]->x + stride * i;
+        HDI_UNROLL
+        for (r = 0; r < n; r++) {
+            s[r].l = s[r].b = zero;
+            if (full) continue;
+            s[r].b = _mm512_mul_pd(_mm512_set1_pd(lap->mass[i]), _mm512_loadu_pd(at + HDI_PACK * r));
         }
-        HDI_CHECK_EACH(HDI_CHECK_ROW)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const double *from = c[0]->x + stride * lap->L.col[p];
+            const hdi_v8 lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
+            HDI_UNROLL
+            for (r = 0; r < n; r++) {
+                const hdi_v8 v = _mm512_loadu_pd(from + HDI_PACK * r);
+                s[r].l = _mm512_fmadd_pd(lx, v, s[r].l);
+                if (full) s[r].b = _mm512_fmadd_pd(bx, v, s[r].b);
+            }
+        }
+        HDI_UNROLL
+        for (r = 0; r < n; r++) hdi_check512_row(c[r], &s[r], i, at + HDI_PACK * r);
     }
-    HDI_CHECK_EACH(HDI_CHECK_END)
+    HDI_UNROLL
+    for (r = 0; r < n; r++) hdi_check512_end(c[r], &s[r]);
 }
-#undef HDI_CHECK_DECLARE
-#undef HDI_CHECK_CLEAR
-#undef HDI_CHECK_ADD
-#undef HDI_CHECK_ROW
-#undef HDI_CHECK_END
-#undef HDI_CHECK_EACH
 
 static HDI_AVX512 void hdi_check_512(hdi_check *const *c, int32_t k) {
     switch (k) {
-        case 1: hdi_check_512_of(c, 1); break;
-        case 2: hdi_check_512_of(c, 2); break;
-        case 3: hdi_check_512_of(c, 3); break;
-        case 4: hdi_check_512_of(c, 4); break;
-        case 5: hdi_check_512_of(c, 5); break;
-        default: hdi_check_512_of(c, 6); break;
+        case 1: hdi_check512_of(c, 1); break;
+        case 2: hdi_check512_of(c, 2); break;
+        case 3: hdi_check512_of(c, 3); break;
+        default: hdi_check512_of(c, HDI_CHECK_MOST); break;
     }
 }
 #endif
@@ -15302,7 +14837,7 @@ static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
 }
 
 /* y = B x for wide right-hand sides side by side. */
-HDI_PACK_CLONE void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const double *HDI_RESTRICT x, double *HDI_RESTRICT y, int32_t begin, int32_t end) {
+static void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const double *HDI_RESTRICT x, double *HDI_RESTRICT y, int32_t begin, int32_t end) {
     int32_t i, r;
     int64_t p;
     for (i = begin; i < end; i++) {
@@ -20540,7 +20075,7 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #pragma GCC diagnostic pop
 #endif
 
-#endif /* HEATDIFF_IMPLEMENTED */
+#endif /* HDI_KERNELS_READ */
 #endif /* HEATDIFF_IMPLEMENTATION */
 
 /* Two licences, take the one you like better.

@@ -122,6 +122,19 @@ if echo 'int main(void) { return 0; }' | gcc -m32 -x c - -o "$work/small" 2>/dev
 else
   echo "not here: gcc -m32"
 fi
+# the header includes itself for the instruction sets: under another name, found by a path or in a folder of -I, and with a wrong name told
+mkdir -p "$work/far/own"
+cp "$top/heatdiff.h" "$work/far/own/renamed.hpp"
+printf '#define HEATDIFF_IMPLEMENTATION\n#include "far/own/renamed.hpp"\nint main(void) { return hdi_real_ops_get(2)->mr < 4; }\n' >"$work/path.c"
+printf '#define HEATDIFF_IMPLEMENTATION\n#include <own/renamed.hpp>\nint main(void) { return hdi_real_ops_get(2)->mr < 4; }\n' >"$work/folder.c"
+printf '#define HEATDIFF_IMPLEMENTATION\n#define HEATDIFF_FILENAME <stddef.h>\n#include "heatdiff.h"\n' >"$work/wrong.c"
+for c in "gcc -x c" "g++ -x c++" "clang -x c" "clang++ -x c++"; do
+  command -v "${c%% *}" >/dev/null && ${c%% *} -fsyntax-only ${c#* } /dev/null 2>/dev/null || { echo "not here: $c"; continue; }
+  (cd "$work" && $c path.c -o path -lm && ./path && $c -Ifar folder.c -o folder -lm && ./folder)
+  if [ "$(uname -m)" = x86_64 ] && $c -fsyntax-only -I"$top" "$work/wrong.c" 2>"$work/wrong.txt"; then echo "a wrong HEATDIFF_FILENAME passes"; exit 1; fi
+  $c -fsyntax-only -DHEATDIFF_NO_SIMD -I"$top" "$work/wrong.c"
+  echo "ok: renamed, $c"
+done
 # names: everything the implementation exports begins with hd_
 gcc -std=c99 -I"$top" -c "$work/impl.c" -o "$work/impl.o"
 foreign=$(nm -g --defined-only "$work/impl.o" | awk '{print $3}' | grep -v '^hd_' || true)

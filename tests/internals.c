@@ -750,7 +750,7 @@ static void int_lanczos_bound(void) {
     dense_pair_free(&whole);
 }
 
-/* ---- [06] dense: kernels of packs ---- */
+/* ---- [07] kernels: packs ---- */
 
 static double int_off(const double *a, const double *b, int64_t n) {
     return dense_max_diff(a, b, n) / (1 + dense_max_abs(b, n));
@@ -763,6 +763,7 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
 
 /* Products of all shapes about the tiles' sizes, whole, lower triangles, packed, stored or subtracted, columns from somewhere in the middle. */
 static void int_pack_multiply(const hdi_pack_ops *ops, int level) {
+    const hdi_pack_ops *plain = hdi_pack_ops_get(0);
     enum { ROWS = 53, COLS = 11, DEPTH = 9, SIZE = HDI_PACK * ROWS * (ROWS + 1) };
     double *a = DENSE_NEW(double, SIZE), *b = DENSE_NEW(double, SIZE), *c = DENSE_NEW(double, SIZE), *d = DENSE_NEW(double, SIZE),
         *start = DENSE_NEW(double, SIZE);
@@ -796,7 +797,7 @@ static void int_pack_multiply(const hdi_pack_ops *ops, int level) {
         g.c = c;
         ops->multiply(&g, i0, i1, j0, j1);
         g.c = d;
-        hdi_pack_multiply_c(&g, i0, i1, j0, j1);
+        plain->multiply(&g, i0, i1, j0, j1);
         if (dense_max_diff(c, d, SIZE) > 1e-13) {
             CHECK_MSG(0, "level %d: rows %d..%d, columns %d..%d, depth %d, lower %d, packed %d: off by %g", level, (int)i0, (int)i1, (int)j0,
                 (int)j1, (int)g.depth,
@@ -813,6 +814,7 @@ static void int_pack_multiply(const hdi_pack_ops *ops, int level) {
 }
 
 static void int_pack_others(const hdi_pack_ops *ops, int level) {
+    const hdi_pack_ops *plain = hdi_pack_ops_get(0);
     enum { ROWS = 23, COLS = 17, SIZE = HDI_PACK * ROWS * COLS };
     static double a[SIZE], x[SIZE], y[SIZE], s[SIZE], d[SIZE], e[SIZE];
     int32_t row[ROWS];
@@ -839,21 +841,21 @@ static void int_pack_others(const hdi_pack_ops *ops, int level) {
             g.panel = x;
             ops->solve_rows(&g, 5, 5 + n);
             g.panel = y;
-            hdi_pack_solve_rows_c(&g, 5, 5 + n);
+            plain->solve_rows(&g, 5, 5 + n);
             CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: solve_rows %d x %d off by %g", level, (int)n, (int)p, int_off(x, y, most));
             ops->scale(a, HDI_PACK * COLS, 2, 2 + n, p / 3, p, d, x);
-            hdi_pack_scale_c(a, HDI_PACK * COLS, 2, 2 + n, p / 3, p, d, y);
+            plain->scale(a, HDI_PACK * COLS, 2, 2 + n, p / 3, p, d, y);
             CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: scale %d x %d off by %g", level, (int)n, (int)p, int_off(x, y, most));
             ops->add(x, a, row, p / 4, n, -1);
-            hdi_pack_add_c(y, a, row, p / 4, n, -1);
+            plain->add(y, a, row, p / 4, n, -1);
             CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: add %d..%d off by %g", level, (int)(p / 4), (int)n, int_off(x, y, most));
             ops->forward(a, n, p, e, x);
-            hdi_pack_forward_c(a, n, p, e, y);
+            plain->forward(a, n, p, e, y);
             CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: forward %d x %d off by %g", level, (int)n, (int)p, int_off(x, y, most));
             ops->backward(a, NULL, n, p, x, e);
-            hdi_pack_backward_c(a, NULL, n, p, y, e);
+            plain->backward(a, NULL, n, p, y, e);
             ops->backward(a, row, n, p, x, e);
-            hdi_pack_backward_c(a, row, n, p, y, e);
+            plain->backward(a, row, n, p, y, e);
             CHECK_MSG(int_off(x, y, most) < 1e-13, "level %d: backward %d x %d off by %g", level, (int)n, (int)p, int_off(x, y, most));
         }
     }
