@@ -1328,7 +1328,7 @@ static void int_checks(void) {
         hd_laplacian *lap = int_mesh(kind / 2, kind % 2 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
         const int32_t n = lap->n_active;
         uint64_t seed = 9;
-        for (k = 1; k <= 6; k++) {
+        for (k = 1; k <= HDI_CHECK_MOST; k++) {
             double *x = DENSE_NEW(double, HDI_PACK * 6 * n), *weight = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, 6 * n),
                 *u = DENSE_NEW(double, 24 * n);
             hdi_check a[6], b[6], *la[6], *lb[6];
