@@ -306,7 +306,7 @@ static void all_neighbours(void) {
     int32_t i;
     memset(&o, 0, sizeof o);
     o.neighbours = K;
-    CHECK(hd_neighbours_nearest(NULL, N, K + 1, nbr, NULL, s.xyz, N, NULL, &e) == HD_OK);
+    CHECK(hd_neighbours_nearest(s.xyz, N, NULL, N, K + 1, nbr, NULL, NULL, &e) == HD_OK);
     for (i = 0; i <= N; i++) ptr[i] = (int64_t)i * (K + 1);
     CHECK_MSG(hd_laplacian_tufted_points(&found, s.xyz, N, NULL, NULL, &o, &e) == HD_OK, "%s", e.text);
     CHECK(hd_laplacian_tufted_points(&given, s.xyz, N, ptr, nbr, &o, &e) == HD_OK);

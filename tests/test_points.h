@@ -97,10 +97,10 @@ static void pts_nearest(void) {
             for (b = 0; b < sizeof ks / sizeof *ks; b++) {
                 const int32_t k = ks[b];
                 int32_t bad = 0;
-                CHECK(hd_neighbours_nearest(NULL, n, k, id, d2, xyz, n, NULL, &e) == HD_OK);
+                CHECK(hd_neighbours_nearest(xyz, n, NULL, n, k, id, d2, NULL, &e) == HD_OK);
                 for (i = 0; i < n; i++) bad += !pts_row(xyz, n, xyz + 3 * (size_t)i, k, id + (size_t)i * (size_t)k, d2 + (size_t)i * (size_t)k, exact);
                 CHECK_MSG(bad == 0, "%s: n %d, k %d: %d rows wrong", what, (int)n, (int)k, (int)bad);
-                CHECK(hd_neighbours_nearest(query, 60, k, id, d2, xyz, n, NULL, &e) == HD_OK);
+                CHECK(hd_neighbours_nearest(xyz, n, query, 60, k, id, d2, NULL, &e) == HD_OK);
                 for (i = 0, bad = 0; i < 60; i++) bad += !pts_row(xyz, n, query + 3 * i, k, id + i * k, d2 + i * k, exact && i < 30);
                 CHECK_MSG(bad == 0, "%s: n %d, k %d: %d queries wrong", what, (int)n, (int)k, (int)bad);
             }
@@ -178,23 +178,23 @@ static void pts_neighbour_errors(void) {
     hd_error e;
     memset(&a, 0x5a, sizeof a);
     before = a;
-    CHECK(hd_neighbours_nearest(NULL, 3, 0, id, d2, xyz, 3, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_neighbours_nearest(NULL, 3, 1, NULL, d2, xyz, 3, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_neighbours_nearest(NULL, 3, 1, id, NULL, NULL, 3, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_neighbours_nearest(NULL, 3, 1, id, NULL, xyz, -1, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_neighbours_nearest(query, -2, 1, id, NULL, xyz, 3, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_neighbours_nearest(query, 2, 1, id, NULL, xyz, 3, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 1 && e.column == 2);
+    CHECK(hd_neighbours_nearest(xyz, 3, NULL, 3, 0, id, d2, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_neighbours_nearest(xyz, 3, NULL, 3, 1, NULL, d2, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_neighbours_nearest(NULL, 3, NULL, 3, 1, id, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_neighbours_nearest(xyz, -1, NULL, 3, 1, id, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_neighbours_nearest(xyz, 3, query, -2, 1, id, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_neighbours_nearest(xyz, 3, query, 2, 1, id, NULL, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 1 && e.column == 2);
     CHECK(hd_neighbours_radius(&a, xyz, 3, NULL, 0, -1, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_neighbours_radius(&a, xyz, 3, NULL, 0, NAN, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_neighbours_radius(NULL, xyz, 3, NULL, 0, 1, NULL, &e) == HD_ERR_ARGUMENT);
     xyz[4] = INFINITY;
     CHECK(hd_neighbours_radius(&a, xyz, 3, NULL, 0, 1, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 1);
     xyz[4] = 1e200;
-    CHECK(hd_neighbours_nearest(NULL, 0, 1, id, NULL, xyz, 3, NULL, &e) == HD_ERR_NOT_FINITE);
+    CHECK(hd_neighbours_nearest(xyz, 3, NULL, 0, 1, id, NULL, NULL, &e) == HD_ERR_NOT_FINITE);
     CHECK(memcmp(&a, &before, sizeof a) == 0);
     xyz[4] = 0;
-    CHECK(hd_neighbours_nearest(NULL, 0, 2, id, NULL, xyz, 3, NULL, NULL) == HD_OK && id[0] == 0 && id[1] == 1 && id[2] == 1);
-    CHECK(hd_neighbours_nearest(query, 1, 2, id, d2, NULL, 0, NULL, &e) == HD_OK && id[0] == -1 && id[1] == -1);   /* no points */
+    CHECK(hd_neighbours_nearest(xyz, 3, NULL, 0, 2, id, NULL, NULL, NULL) == HD_OK && id[0] == 0 && id[1] == 1 && id[2] == 1);
+    CHECK(hd_neighbours_nearest(NULL, 0, query, 1, 2, id, d2, NULL, &e) == HD_OK && id[0] == -1 && id[1] == -1);   /* no points */
     CHECK(hd_neighbours_radius(&a, NULL, 0, query, 1, 1, NULL, &e) == HD_OK && a.n_rows == 1 && a.nnz == 0);
     hd_csr_free(&a, NULL);
     CHECK(hd_neighbours_radius(&a, xyz, 3, query, 1, 1e300, NULL, &e) == HD_OK && a.nnz == 3);
@@ -336,7 +336,7 @@ static void pts_plane(void) {
     }
     s = shape_points(N, shape_on_square, 1, 0, 3);
     lap = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0);
-    CHECK(hd_neighbours_nearest(query, FINE * FINE, 1, id, NULL, s.xyz, N, NULL, NULL) == HD_OK);
+    CHECK(hd_neighbours_nearest(s.xyz, N, query, FINE * FINE, 1, id, NULL, NULL, NULL) == HD_OK);
     for (i = 0; i < FINE * FINE; i++) count[id[i]] += 1.0 / (FINE * FINE);
     for (i = 0; i < N; i++) {
         const double *p = s.xyz + 3 * i;
@@ -800,7 +800,7 @@ static hd_status pts_robust(hd_context *ctx, int variant) {
         st = hd_laplacian_points(&lap, s.xyz, s.n, &o, &e);
         CHECK((st >= 0) == (lap != (hd_laplacian *)&test_passed));
         if (st >= 0) hd_laplacian_free(lap);
-    } else if (variant == 2) st = hd_neighbours_nearest(NULL, 0, 4, id, d2, s.xyz, 60, ctx, &e);
+    } else if (variant == 2) st = hd_neighbours_nearest(s.xyz, 60, NULL, 0, 4, id, d2, ctx, &e);
     else if (variant == 4) {
         st = hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, NULL, &e);
         hd_laplacian_free(st >= 0 ? lap : NULL);
