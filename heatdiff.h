@@ -15130,8 +15130,9 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
 
 /* What rounding does to the answer of right-hand side r after m steps, relative to |f|_B: with S V = V T + ... + errors Phi_j
  * of the steps, it is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, divided differences as in hdi_silan_bound. A solve's
- * residual is an error no larger in the B norm. y: the answer's coefficients. T's eigenvectors are there. */
-static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y) {
+ * residual is an error no larger in the B norm. y: the answer's coefficients. given: what the right-hand side is off by
+ * from B f, which is an error of the first step. T's eigenvectors are there. */
+static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y, double given) {
     double f[HDI_SILAN_MAX], most[HDI_SILAN_MAX], slope[HDI_SILAN_MAX], sum = 0, size = 0;
     const double tau = t / z->g, root = hdi_ratio_root(z->m->lap);
     int32_t i, j, k;
@@ -15150,7 +15151,7 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
         const double step = root * (hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]) + product) + 4 * DBL_EPSILON * (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
         sum += 1.5 * most[j] * step;
     }
-    return z->f_norm[r] * sum + m * DBL_EPSILON * size;
+    return z->f_norm[r] * sum + 1.5 * most[0] * given + m * DBL_EPSILON * size;
 }
 
 /* The answer of right-hand side r at time t into its lane: constants and the basis' part. */
@@ -15175,7 +15176,7 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
             }
         }
         lane->off.solver = bound * z->f_norm[r];
-        lane->off.rounding = hdi_silan_rounding(z, r, m, t, y);
+        lane->off.rounding = hdi_silan_rounding(z, r, m, t, y, lane->rhs_off);
     }
     hdi_conserve_sums(lap, lane);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
