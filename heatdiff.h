@@ -13898,12 +13898,12 @@ typedef struct hdi_elim {
     double *reach;               /* [n] bound of diag((B + tL)^-1) for reach_t, or NULL */
     double reach_t;
     hdi_symbolic sym;
-    hdi_factor pack[HD_MAX_POLES / 4], real;
+    hdi_factor pack[HD_MAX_POLES / 4], real, shifted;
     int32_t n_packs, filled;     /* packs that have room; 1: they hold set and t */
     int32_t lone;                /* pole in the real factor, -1 none */
     hd_rational set;
     double t;
-    double shift;                /* the real factor is that of B + shift L; 0: of something else */
+    double shift;                /* shifted is the factor of B + shift L */
 } hdi_elim;
 
 static void hdi_elim_free(hdi_elim *m) {
@@ -13911,6 +13911,7 @@ static void hdi_elim_free(hdi_elim *m) {
     if (!m->ctx) return;
     for (i = 0; i < m->n_packs; i++) hdi_factor_free(m->pack + i);
     hdi_factor_free(&m->real);
+    hdi_factor_free(&m->shifted);
     hdi_symbolic_free(m->ctx, &m->sym);
     hdi_free(m->ctx, m->weight);
     hdi_free(m->ctx, m->reach);
@@ -13978,22 +13979,22 @@ static double hdi_elim_diagonal(const hd_laplacian *lap, double t, const hd_c64 
     return sqrt(most);
 }
 
-static hd_status hdi_elim_real(hdi_elim *m, double t, double theta, hd_error *e) {
+/* The real factor f of t L + theta B. */
+static hd_status hdi_elim_real(hdi_elim *m, hdi_factor *f, double t, double theta, hd_error *e) {
     const hd_c64 real = hdi_c(theta, 0);
     hdi_values v = hdi_elim_values(m, t);
     v.theta[0] = hdi_cscale(m->scale, real);
-    m->shift = 0;
-    if (!m->real.ctx && hdi_factor_make(&m->real, &m->sym, 1, m->ctx, e) < 0) return e->status;
-    m->real.largest_entry = hdi_elim_diagonal(m->lap, t, &real, 1);
-    return hdi_factor_run(&m->real, &v, e);
+    if (!f->ctx && hdi_factor_make(f, &m->sym, 1, m->ctx, e) < 0) return e->status;
+    f->largest_entry = hdi_elim_diagonal(m->lap, t, &real, 1);
+    return hdi_factor_run(f, &v, e);
 }
 
 /* The factor of B + g L. */
 static hd_status hdi_elim_shift(hdi_elim *m, double g, hd_error *e) {
-    if (m->shift == g && m->real.ready) return HD_OK;
-    if (m->lone >= 0) m->filled = 0;
-    if (hdi_elim_real(m, g, 1, e) < 0) return e->status;
-    if (m->real.all.negative) return hdi_fail(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite, or B not positive definite: B + g L has a negative pivot");
+    if (m->shift == g && m->shifted.ready) return HD_OK;
+    if (hdi_elim_real(m, &m->shifted, g, 1, e) < 0) return e->status;
+    if (m->shifted.all.negative)
+        return hdi_fail(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite, or B not positive definite: B + g L has a negative pivot");
     hdi_noise_weights(m->lap, g, 1, m->noise_shift, m->noise_shift + m->lap->n_active);
     m->shift = g;
     return HD_OK;
@@ -14026,7 +14027,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     n_packs = hdi_elim_packs(set, &m->lone);
     for (; m->n_packs < n_packs; m->n_packs++)
         if (hdi_factor_make(m->pack + m->n_packs, &m->sym, HDI_PACK, m->ctx, e) < 0) return e->status;
-    if (m->lone >= 0 && hdi_elim_real(m, t, set->theta[0].re, e) < 0) return e->status;
+    if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < n_packs; i++) {
         hd_c64 theta[4];
         for (q = 0; q < 4; q++) {
@@ -14532,7 +14533,7 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     int32_t i;
     if (m->reach && m->reach_t == m->t) return HD_OK;
     if (!m->reach) m->reach = HDI_CAST(double *, hdi_alloc(m->ctx, n, sizeof(double), e));
-    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, m->t, theta, e) >= 0) && hdi_inverse_make(&z, &m->sym, 1, m->ctx, e) >= 0) {
+    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, &m->real, m->t, theta, e) >= 0) && hdi_inverse_make(&z, &m->sym, 1, m->ctx, e) >= 0) {
         memset(m->reach, 0, n * sizeof *m->reach);
         z.coef = &factor;
         z.n_sets = 1;
@@ -14967,7 +14968,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     if (!z->v[j + 1]) z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(double), e));
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
-    s = hdi_sweep_open(&z->m->real, wide, w, z->work, 1);
+    s = hdi_sweep_open(&z->m->shifted, wide, w, z->work, 1);
     hdi_sweep_run(&s, ctx);
     hdi_wide_norms(w, z->m->noise_shift, n, wide, z->noise[j]);
     if (j == 0 || j == 3) hdi_silan_probe(z);
@@ -16344,10 +16345,13 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* A shift for times [from, to]; that of the factor at hand when it will do. Not so large that B drowns beside g L. */
-static double hdi_krylov_shift(const hdi_elim *m, double from, double to, double lambda_max) {
-    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL), have = m->real.ready ? m->shift : 0;
-    return have > 0 && best <= 3 * have && have <= 3 * best && to / from < 10 ? have : best;
+/* A shift for times [from, to]: about a tenth of their mean, and a power of four, so that times near each other share the
+ * factor whichever came first. Not so large that B drowns beside g L. */
+static double hdi_krylov_shift(double from, double to, double lambda_max) {
+    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL);
+    int exponent;
+    (void)frexp(best, &exponent);                /* 2^(exponent - 1) <= best < 2^exponent */
+    return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
 }
 
 /* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
@@ -16382,7 +16386,7 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
     hd_status status;
     int32_t i, q;
     int64_t c;
-    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(&heat->elim, h->times[q0], h->times[q1 - 1], heat->lambda_max), h->e) < 0) return h->e->status;
+    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(h->times[q0], h->times[q1 - 1], heat->lambda_max), h->e) < 0) return h->e->status;
     z->g = heat->elim.shift;
     z->k = n;
     if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
@@ -16429,7 +16433,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
         }
     }
     h->rep->factor_flops = heat->elim.sym.flops;
-    h->rep->growth = heat->elim.real.largest_entry > 0 ? heat->elim.real.all.largest / heat->elim.real.largest_entry : 0;
+    h->rep->growth = heat->elim.shifted.largest_entry > 0 ? heat->elim.shifted.all.largest / heat->elim.shifted.largest_entry : 0;
     return h->e->status;
 }
 
