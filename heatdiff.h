@@ -914,7 +914,12 @@ void dgemm_(const char *ta, const char *tb, const int *m, const int *n, const in
 #endif
 
 /* ==== [01] scalar ====
- * Numbers: complex arithmetic without the language's care for NaN, checked sizes. May call [00]. */
+ * Numbers: complex arithmetic without the language's care for NaN, vectors of three, checked sizes.
+ * May call [00]. */
+
+#define HDI_PI 3.141592653589793
+#define HDI_TURN 6.283185307179586           /* 2 pi */
+#define HDI_QUARTER_INV_PI 0.07957747154594767   /* 1 / (4 pi) */
 
 static hd_c64 hdi_c(double re, double im) { hd_c64 z; z.re = re; z.im = im; return z; }
 static hd_c64 hdi_cadd(hd_c64 a, hd_c64 b) { return hdi_c(a.re + b.re, a.im + b.im); }
@@ -958,6 +963,60 @@ static double hdi_pythag(double a, double b) {
 static double hdi_max(double a, double b) { return a > b ? a : b; }
 static double hdi_min(double a, double b) { return a < b ? a : b; }
 static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
+
+/* By value, so that no branch has to be guessed. */
+static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
+static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
+
+/* Three numbers for each of n things; where those of thing number n begin. */
+static HDI_INLINE int64_t hdi_triple(int32_t n) { return 3 * HDI_CAST(int64_t, n); }
+static HDI_INLINE const double *hdi_at3(const double *xyz, int64_t i) { return xyz + 3 * i; }
+
+static HDI_INLINE void hdi_copy3(double *to, const double *from) { memcpy(to, from, 3 * sizeof *to); }
+
+static void hdi_sub3(const double *a, const double *b, double *out) {
+    out[0] = a[0] - b[0];
+    out[1] = a[1] - b[1];
+    out[2] = a[2] - b[2];
+}
+
+static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the
+ * rounding of one product where exactly zero is right. A result that small is computed again in steps that
+ * cannot be fused. */
+static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
+    const double x = a * b - c * d;
+    volatile double p, q;
+    if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
+    p = a * b;
+    q = c * d;
+    return p - q;
+}
+
+static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
+    out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
+    out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
+    out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
+}
+
+/* Length without squares that underflow or overflow. */
+static HDI_INLINE double hdi_norm3(const double *a) {
+    const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
+    double b[3];
+    if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
+    b[0] = a[0] / m;
+    b[1] = a[1] / m;
+    b[2] = a[2] / m;
+    return m * sqrt(hdi_dot3(b, b));
+}
+
+/* The distance from point i to point j. */
+static HDI_INLINE double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
+    double edge[3];
+    hdi_sub3(hdi_at3(xyz, j), hdi_at3(xyz, i), edge);
+    return hdi_norm3(edge);
+}
 
 /* A sum with what its additions rounded away (Knuth): sums that cancel keep their digits. */
 typedef struct hdi_sum { double high, low; } hdi_sum;
@@ -1125,6 +1184,9 @@ static hd_status hdi_scope_end(hdi_scope *s) {
     return s->e->status;
 }
 
+/* [count] elements that outlive their maker. */
+#define HDI_NEW(ctx, type, count, e) HDI_CAST(type *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(type), e))
+
 #define HDI_TAKE(scope, type, count) HDI_CAST(type *, hdi_take(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 #define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 
@@ -1190,7 +1252,17 @@ static int hdi_simd_level(const hd_context *ctx) {
 }
 
 /* ==== [05] arrays ====
- * Sorting, prefix sums, union-find. May call [04]. */
+ * Sorting, selection, prefix sums and buckets, union-find. May call [04]. */
+
+static void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
+    int64_t i;
+    for (i = 0; i < n; i++) a[i] = value;
+}
+
+static void hdi_fill_own(int32_t *a, int32_t n) {
+    int32_t i;
+    for (i = 0; i < n; i++) a[i] = i;
+}
 
 /* count[i] becomes the sum of those before it, count[n] the sum of all. */
 static int64_t hdi_prefix_sum(int64_t *count, int64_t n) {
@@ -1203,6 +1275,22 @@ static int64_t hdi_prefix_sum(int64_t *count, int64_t n) {
     count[n] = sum;
     return sum;
 }
+
+/* Buckets are filled through their offsets: ptr[b] moves on with every item. This moves them back. */
+static void hdi_rewind(int64_t *ptr, int64_t n) {
+    memmove(ptr + 1, ptr, HDI_CAST(size_t, n) * sizeof *ptr);
+    ptr[0] = 0;
+}
+
+/* The size of the fullest of n buckets, at least 1. */
+static int64_t hdi_fullest(const int64_t *ptr, int64_t n) {
+    int64_t i, most = 1;
+    for (i = 0; i < n; i++)
+        if (ptr[i + 1] - ptr[i] > most) most = ptr[i + 1] - ptr[i];
+    return most;
+}
+
+enum { HDI_SHORT_LIST = 24 };    /* lists up to here are sorted by insertion; meshes are full of them */
 
 /* A key with a payload; ordered by both, so that sorting is stable where payloads ascend. */
 typedef struct hdi_pair { uint64_t key; int64_t id; } hdi_pair;
@@ -1221,10 +1309,10 @@ static void hdi_sift_down(hdi_pair *a, int64_t i, int64_t n) {
     a[i] = x;
 }
 
-/* Insertion sort for the short lists that meshes are full of, heapsort for the rest: never quadratic. */
+/* Insertion sort for short lists, heapsort for the rest: never quadratic. */
 static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
     int64_t i, j;
-    if (n <= 24) {
+    if (n <= HDI_SHORT_LIST) {
         for (i = 1; i < n; i++) {
             const hdi_pair x = a[i];
             for (j = i; j > 0 && hdi_pair_less(&x, a + j - 1); j--) a[j] = a[j - 1];
@@ -1241,23 +1329,65 @@ static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
     }
 }
 
-/* Sorts n indices; work [n] for long lists. */
-static void hdi_sort_indices(int32_t *a, int64_t n, hdi_pair *work) {
-    int64_t i, j;
-    if (n <= 24) {
-        for (i = 1; i < n; i++) {
-            const int32_t x = a[i];
-            for (j = i; j > 0 && x < a[j - 1]; j--) a[j] = a[j - 1];
-            a[j] = x;
+/* Sorts keys; work [n]. Short lists by insertion, long ones by merging runs of eight. */
+static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
+    const int64_t first = n <= HDI_SHORT_LIST ? 32 : 8;
+    uint64_t *from = a, *to = work;
+    int64_t i, j, run;
+    for (i = 1; i < n; i++) {
+        const uint64_t x = a[i];
+        for (j = i; j & (first - 1) && x < a[j - 1]; j--) a[j] = a[j - 1];
+        a[j] = x;
+    }
+    for (run = first; run < n; run *= 2) {
+        uint64_t *swap = from;
+        for (i = 0; i < n; i += 2 * run) {
+            const int64_t middle = hdi_least(i + run, n), end = hdi_least(i + 2 * run, n);
+            int64_t p = i, q = middle, out = i;
+            while (p < middle && q < end) {
+                const int second = from[q] < from[p];
+                to[out++] = second ? from[q] : from[p];
+                q += second;
+                p += !second;
+            }
+            while (p < middle) to[out++] = from[p++];
+            while (q < end) to[out++] = from[q++];
         }
-        return;
+        from = to;
+        to = swap;
     }
-    for (i = 0; i < n; i++) {
-        work[i].key = HDI_CAST(uint64_t, a[i]);
-        work[i].id = 0;
+    if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
+}
+
+/* Sorts n indices; work [2 n]. */
+static void hdi_sort_indices(int32_t *a, int64_t n, uint64_t *work) {
+    int64_t i;
+    for (i = 0; i < n; i++) work[i] = HDI_CAST(uint64_t, a[i]);
+    hdi_sort_keys(work, n, work + n);
+    for (i = 0; i < n; i++) a[i] = HDI_CAST(int32_t, work[i]);
+}
+
+/* The number-k smallest of a, which is rearranged (Hoare 1961). */
+static double hdi_kth(double *a, int64_t n, int64_t k) {
+    int64_t lo = 0, hi = n - 1;
+    while (lo < hi) {
+        const double low = hdi_min(a[lo], a[hi]), high = hdi_max(a[lo], a[hi]);
+        const double pivot = hdi_max(low, hdi_min(high, a[lo + (hi - lo) / 2]));
+        int64_t i = lo, j = hi;
+        while (i <= j) {
+            while (a[i] < pivot) i++;
+            while (a[j] > pivot) j--;
+            if (i <= j) {
+                const double swap = a[i];
+                a[i++] = a[j];
+                a[j--] = swap;
+            }
+        }
+        if (k <= j) hi = j;
+        else if (k >= i) lo = i;
+        else break;
     }
-    hdi_sort_pairs(work, n);
-    for (i = 0; i < n; i++) a[i] = HDI_CAST(int32_t, work[i].key);
+    return a[k];
 }
 
 /* Union-find with path halving; the smaller id is always the root, so roots do not depend on the order of the calls. */
@@ -1273,6 +1403,19 @@ static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
     const int32_t a = hdi_find(parent, i), b = hdi_find(parent, j);
     if (a < b) parent[b] = a;
     else parent[a] = b;
+}
+
+/* How many connected sets are united in parent [n], which is overwritten; single members are no set. */
+static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
+    int32_t i, count = 0;
+    for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
+    for (i = 0; i < n; i++) {                    /* a set is a root with another member */
+        const int32_t root = parent[i];
+        if (root == i || root < 0 || parent[root] != root) continue;
+        parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
+        count++;
+    }
+    return count;
 }
 
 /* ==== [06] dense ====
@@ -3341,7 +3484,7 @@ static const hdi_pack_ops *hdi_pack_ops_get(int level) {
     return &hdi_plain_ops;
 }
 
-/* ==== [07] sparse ====
+/* ==== [08] sparse ====
  * Compressed rows: build, check, transpose, multiply, renumber. May call [06]. */
 
 static void hdi_csr_free(hd_context *ctx, hd_csr *a) {
@@ -3383,8 +3526,7 @@ static void hdi_csr_transpose_into(const hd_csr *a, hd_csr *t) {
             if (t->val) t->val[q] = a->val[p];
         }
     }
-    for (i = t->n_rows; i > 0; i--) t->row_ptr[i] = t->row_ptr[i - 1];
-    t->row_ptr[0] = 0;
+    hdi_rewind(t->row_ptr, t->n_rows);
 }
 
 /* Sums entries with the same place, in their order. */
@@ -3440,8 +3582,7 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
         t.col[p] = ti[q];
         if (tv) t.val[p] = tv[q];
     }
-    for (q = n_cols; q > 0; q--) t.row_ptr[q] = t.row_ptr[q - 1];
-    t.row_ptr[0] = 0;
+    hdi_rewind(t.row_ptr, n_cols);
     hdi_csr_transpose_into(&t, &a);
     hdi_csr_merge(&a);
     if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0)
@@ -3536,17 +3677,12 @@ static int64_t hdi_product_row(const hd_csr *a, const hd_csr *b, int32_t i, int3
     return n;
 }
 
-static void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
-    int64_t i;
-    for (i = 0; i < n; i++) a[i] = value;
-}
-
 static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int values = a->val && b->val;
     int32_t *mark = HDI_TAKE(&s, int32_t, b->n_cols);
     double *sum = HDI_TAKE(&s, double, b->n_cols);
-    hdi_pair *work = HDI_TAKE(&s, hdi_pair, b->n_cols);
+    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * HDI_CAST(int64_t, b->n_cols));
     int64_t nnz = 0, p, q;
     hd_csr c;
     int32_t i;
@@ -3645,8 +3781,8 @@ static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_contex
     hdi_parallel(ctx, (HDI_CAST(int64_t, a->n_rows) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK, hdi_apply_task, &job);
 }
 
-/* ==== [08] spatial ====
- * A k-d tree over points in space: the k nearest, and all within a radius. Exact. May call [07].
+/* ==== [09] spatial ====
+ * A k-d tree over points in space: the k nearest, and all within a radius. Exact. May call [05].
  * This work is based on
  *   J. Friedman, J. Bentley, R. Finkel, An algorithm for finding best matches in logarithmic expected time, 1977 (medians, buckets)
  * Deviations: every leaf holds HDI_LEAF points (the last one is padded), so that nodes need no pointers, and distances to a leaf's points are one
@@ -3995,35 +4131,6 @@ static hd_status hdi_nearest(const hdi_tree *t, const double *xyz, const double 
     return hdi_scope_end(&s);
 }
 
-/* Sorts keys; work [n]. Runs of eight by insertion, then merged. */
-static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
-    uint64_t *from = a, *to = work;
-    int64_t i, j, run;
-    for (i = 1; i < n; i++) {
-        const uint64_t x = a[i];
-        for (j = i; j & 7 && x < a[j - 1]; j--) a[j] = a[j - 1];
-        a[j] = x;
-    }
-    for (run = 8; run < n; run *= 2) {
-        uint64_t *swap = from;
-        for (i = 0; i < n; i += 2 * run) {
-            const int64_t middle = hdi_least(i + run, n), end = hdi_least(i + 2 * run, n);
-            int64_t p = i, q = middle, out = i;
-            while (p < middle && q < end) {
-                const int second = from[q] < from[p];
-                to[out++] = second ? from[q] : from[p];
-                q += second;
-                p += !second;
-            }
-            while (p < middle) to[out++] = from[p++];
-            while (q < end) to[out++] = from[q++];
-        }
-        from = to;
-        to = swap;
-    }
-    if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
-}
-
 /* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise
  * than those of the other. */
 static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
@@ -4123,8 +4230,9 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, c
     return hdi_scope_end(&s);
 }
 
-/* ==== [09] geometry ====
- * Triangles: checks, corner cotangents, which faces are left out, edges, and who meets at a vertex. May call [08]. */
+/* ==== [10] geometry ====
+ * What is known of faces and points before there is an operator: checks, areas and cotangents, which faces are left out,
+ * edges and masses of triangle meshes; polygons; cells and tangent planes of points. May call [09]. */
 
 typedef struct hdi_mesh {
     const double *xyz;
@@ -4133,44 +4241,14 @@ typedef struct hdi_mesh {
     int32_t n, m;
     double *cot;        /* [3 m] cotangent at each corner */
     double *area;       /* [m] 0: the face is left out */
-    int64_t *corner_ptr;/* [n + 1] corners at each vertex, as indices into tri, faces ascending */
-    int32_t *corner;    /* [3 m]; corners of faces left out are not listed */
 } hdi_mesh;
 
-static void hdi_sub3(const double *a, const double *b, double *out) {
-    out[0] = a[0] - b[0];
-    out[1] = a[1] - b[1];
-    out[2] = a[2] - b[2];
-}
-
-static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the rounding of one product
- * where exactly zero is right; when the result is that small it is computed again in steps that cannot be fused. */
-static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
-    const double x = a * b - c * d;
-    volatile double p, q;
-    if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
-    p = a * b;
-    q = c * d;
-    return p - q;
-}
-
-static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
-    out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
-    out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
-    out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
-}
-
-/* Length without squares that underflow or overflow. */
-static HDI_INLINE double hdi_norm3(const double *a) {
-    const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
-    double b[3];
-    if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
-    b[0] = a[0] / m;
-    b[1] = a[1] / m;
-    b[2] = a[2] / m;
-    return m * sqrt(hdi_dot3(b, b));
+static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m) {
+    memset(mesh, 0, sizeof *mesh);
+    mesh->xyz = xyz;
+    mesh->tri = tri;
+    mesh->n = n;
+    mesh->m = m;
 }
 
 static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_error *e) {
@@ -4196,9 +4274,9 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, doubl
         tally->n_repeated_corner++;
         return 0;
     }
-    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[2]), mesh->xyz + 3 * HDI_CAST(int64_t, v[1]), edge[0]);   /* edge q runs opposite to corner q */
-    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[0]), mesh->xyz + 3 * HDI_CAST(int64_t, v[2]), edge[1]);
-    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[1]), mesh->xyz + 3 * HDI_CAST(int64_t, v[0]), edge[2]);
+    hdi_sub3(hdi_at3(mesh->xyz, v[2]), hdi_at3(mesh->xyz, v[1]), edge[0]);   /* edge q runs opposite to corner q */
+    hdi_sub3(hdi_at3(mesh->xyz, v[0]), hdi_at3(mesh->xyz, v[2]), edge[1]);
+    hdi_sub3(hdi_at3(mesh->xyz, v[1]), hdi_at3(mesh->xyz, v[0]), edge[2]);
     hdi_cross3(edge[2], edge[0], cross);
     twice = hdi_norm3(cross);
     if (!hdi_finite(twice)) {
@@ -4251,7 +4329,17 @@ static hd_status hdi_tally_report(const hdi_face_tally *tally, int32_t m, hd_mes
     return HD_OK;
 }
 
-enum { HDI_FACES_PER_TASK = 8192, HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };   /* how far ahead memory is asked for what will be needed */
+enum { HDI_FACES_PER_TASK = 8192 };                         /* some 0.2 ms of work */
+enum { HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };       /* what will be needed is asked for so early: three misses of memory */
+
+/* Asks for the corners of face f. */
+static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
+    const int32_t *ahead = mesh->tri + 3 * f;
+    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[0]));
+    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[1]));
+    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[2]));
+    (void)ahead;
+}
 
 typedef struct hdi_measure_job { const hdi_mesh *mesh; hdi_face_tally *tally; } hdi_measure_job;
 
@@ -4263,10 +4351,7 @@ static void hdi_measure_task(void *arg, int64_t index, int32_t worker) {
     (void)worker;
     hdi_tally_clear(&tally);
     for (f = begin; f < end; f++) {
-        const int32_t *ahead = job->mesh->tri + 3 * hdi_least(f + HDI_FACES_AHEAD, end - 1);
-        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[0]));
-        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[1]));
-        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[2]));
+        hdi_face_ahead(job->mesh, hdi_least(f + HDI_FACES_AHEAD, end - 1));
         job->mesh->area[f] = hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), job->mesh->cot + 3 * f, &tally);
     }
     job->tally[index] = tally;
@@ -4289,35 +4374,15 @@ static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hd
     return hdi_scope_end(&own);
 }
 
-/* Corner lists of all vertices, over the faces that have an area. */
-static void hdi_mesh_corners(hdi_mesh *mesh) {
-    const int64_t n_corners = 3 * HDI_CAST(int64_t, mesh->m);
-    int64_t c;
-    int32_t i;
-    memset(mesh->corner_ptr, 0, (HDI_CAST(size_t, mesh->n) + 1) * sizeof *mesh->corner_ptr);
-    for (c = 0; c < n_corners; c++)
-        if (mesh->area[c / 3] > 0) mesh->corner_ptr[mesh->tri[c]]++;
-    hdi_prefix_sum(mesh->corner_ptr, mesh->n);
-    for (c = 0; c < n_corners; c++)
-        if (mesh->area[c / 3] > 0) mesh->corner[mesh->corner_ptr[mesh->tri[c]]++] = HDI_CAST(int32_t, c);
-    for (i = mesh->n; i > 0; i--) mesh->corner_ptr[i] = mesh->corner_ptr[i - 1];
-    mesh->corner_ptr[0] = 0;
-}
-
-static int64_t hdi_most_corners(const hdi_mesh *mesh) {
-    int64_t most = 1;
-    int32_t i;
-    for (i = 0; i < mesh->n; i++)
-        if (mesh->corner_ptr[i + 1] - mesh->corner_ptr[i] > most) most = mesh->corner_ptr[i + 1] - mesh->corner_ptr[i];
-    return most;
-}
-
 /* ---- sides ----
- * The sides of all faces with area, gathered by the smaller of their two vertices and sorted by the larger one, then by face: an edge is a run. */
+ * The sides of all faces with area, gathered by the smaller of their two vertices and sorted by the larger one, then by face:
+ * an edge is a run of sides. */
+
 typedef struct hdi_sides {
-    int32_t *ptr;               /* [n + 1] runs at a vertex */
+    int32_t *ptr;               /* [n + 1] where those of a vertex begin */
+    int32_t most;               /* sides of the busiest vertex, at least 1 */
     uint64_t *key;              /* [3 m] larger vertex << 32 | 4 face + corner where the side begins */
-    uint64_t *work;             /* [2 busiest vertex] */
+    uint64_t *work;             /* [most] */
 } hdi_sides;
 
 static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
@@ -4325,85 +4390,88 @@ static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
 static int32_t hdi_key_face(uint64_t key) { return HDI_CAST(int32_t, (key & 0xffffffffu) >> 2); }
 static int hdi_key_corner(uint64_t key) { return HDI_CAST(int, key & 3); }
 static int32_t hdi_key_vertex(uint64_t key) { return HDI_CAST(int32_t, key >> 32); }
-/* The corner opposite to the side. */
-static int64_t hdi_key_opposite(uint64_t key) { return 3 * HDI_CAST(int64_t, hdi_key_face(key)) + hdi_prev3[hdi_key_corner(key)]; }
+/* Where the side begins, and the corner opposite to it. */
+static int64_t hdi_key_side(uint64_t key) { return hdi_triple(hdi_key_face(key)) + hdi_key_corner(key); }
+static int64_t hdi_key_opposite(uint64_t key) { return hdi_triple(hdi_key_face(key)) + hdi_prev3[hdi_key_corner(key)]; }
+
+/* The end of the run of side p, which is before end. */
+static HDI_INLINE int32_t hdi_sides_run(const hdi_sides *g, int32_t p, int32_t end) {
+    const int32_t j = hdi_key_vertex(g->key[p]);
+    while (++p < end && hdi_key_vertex(g->key[p]) == j) {}
+    return p;
+}
 
 static void hdi_sides_gather(const hdi_mesh *mesh, hdi_sides *g) {
     const int32_t *v = mesh->tri;
-    int32_t f, i, sum = 0, *at = g->ptr;
+    int32_t f, i, q, sum = 0, *at = g->ptr;
+    g->most = 1;
     memset(at, 0, (HDI_CAST(size_t, mesh->n) + 1) * sizeof *at);
     for (f = 0; f < mesh->m; f++, v += 3) {
         if (!(mesh->area[f] > 0)) continue;
-        at[v[0] < v[1] ? v[0] : v[1]]++;
-        at[v[1] < v[2] ? v[1] : v[2]]++;
-        at[v[2] < v[0] ? v[2] : v[0]]++;
+        at[hdi_low32(v[0], v[1])]++;
+        at[hdi_low32(v[1], v[2])]++;
+        at[hdi_low32(v[2], v[0])]++;
     }
     for (i = 0; i < mesh->n; i++) {
         const int32_t count = at[i];
         at[i] = sum;
         sum += count;
+        g->most = hdi_high32(g->most, count);
     }
     for (f = 0, v = mesh->tri; f < mesh->m; f++, v += 3) {
-        const uint64_t low = HDI_CAST(uint64_t, f) << 2;
-        const uint32_t a = HDI_CAST(uint32_t, v[0]), b = HDI_CAST(uint32_t, v[1]), c = HDI_CAST(uint32_t, v[2]);
         if (!(mesh->area[f] > 0)) continue;
-        g->key[at[a < b ? a : b]++] = HDI_CAST(uint64_t, a < b ? b : a) << 32 | low;
-        g->key[at[b < c ? b : c]++] = HDI_CAST(uint64_t, b < c ? c : b) << 32 | (low + 1);
-        g->key[at[c < a ? c : a]++] = HDI_CAST(uint64_t, c < a ? a : c) << 32 | (low + 2);
+        for (q = 0; q < 3; q++) {
+            const int32_t a = v[q], b = v[hdi_next3[q]];
+            g->key[at[hdi_low32(a, b)]++] = HDI_CAST(uint64_t, hdi_high32(a, b)) << 32
+                                          | (HDI_CAST(uint64_t, f) << 2) | HDI_CAST(uint64_t, q);
+        }
     }
     memmove(at + 1, at, HDI_CAST(size_t, mesh->n) * sizeof *at);
     at[0] = 0;
 }
 
-/* Sorts the sides at vertex i. Most lists are short. */
-static void hdi_sides_sort(hdi_sides *g, int32_t i) {
-    uint64_t *a = g->key + g->ptr[i];
-    const int64_t n = g->ptr[i + 1] - g->ptr[i];
-    int64_t p, q;
-    if (n > 24) {
-        hdi_sort_keys(a, n, g->work);
-        return;
-    }
-    for (p = 1; p < n; p++) {
-        const uint64_t x = a[p];
-        for (q = p; q > 0 && x < a[q - 1]; q--) a[q] = a[q - 1];
-        a[q] = x;
-    }
-}
+static void hdi_sides_sort(hdi_sides *g, int32_t i) { hdi_sort_keys(g->key + g->ptr[i], g->ptr[i + 1] - g->ptr[i], g->work); }
 
-static HDI_INLINE double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
-    double edge[3];
-    hdi_sub3(xyz + 3 * HDI_CAST(int64_t, j), xyz + 3 * HDI_CAST(int64_t, i), edge);
-    return hdi_norm3(edge);
-}
-
-/* Gathers the sides; g->work has room to sort those of the busiest vertex. */
+/* Gathers the sides, in s; sorting them is left to the caller. */
 static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s) {
-    int32_t i, most = 1;
     g->ptr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
-    g->key = HDI_TAKE(s, uint64_t, 3 * HDI_CAST(int64_t, mesh->m));
+    g->key = HDI_TAKE(s, uint64_t, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
     hdi_sides_gather(mesh, g);
-    for (i = 0; i < mesh->n; i++)
-        if (g->ptr[i + 1] - g->ptr[i] > most) most = g->ptr[i + 1] - g->ptr[i];
-    g->work = HDI_TAKE(s, uint64_t, 2 * HDI_CAST(int64_t, most));
+    g->work = HDI_TAKE(s, uint64_t, g->most);
     return s->e->status;
 }
 
-/* How many connected sets of vertices are united in parent [n], which is overwritten; single vertices are none. */
-static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
-    int32_t i, count = 0;
-    for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
-    for (i = 0; i < n; i++) {                    /* a set is a root with another vertex */
-        const int32_t root = parent[i];
-        if (root == i || root < 0 || parent[root] != root) continue;
-        parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
-        count++;
-    }
-    return count;
+/* ---- edges ---- */
+
+/* What is counted of edges, and the sum of their lengths. */
+typedef struct hdi_edge_tally { int32_t n_edges, n_boundary, n_nonmanifold, n_misoriented; double length; } hdi_edge_tally;
+
+/* An edge of so many faces, of which forward run from its smaller vertex to the larger one. */
+static HDI_INLINE void hdi_edge_count(hdi_edge_tally *t, int64_t faces, int64_t forward, double length) {
+    t->n_edges++;
+    t->n_boundary += faces == 1;
+    t->n_nonmanifold += faces > 2;
+    t->n_misoriented += (faces == 2) & (forward != 1);
+    t->length += length;
 }
 
-/* ---- edges ---- */
+static void hdi_edge_tally_add(hdi_edge_tally *all, const hdi_edge_tally *t) {
+    all->n_edges += t->n_edges;
+    all->n_boundary += t->n_boundary;
+    all->n_nonmanifold += t->n_nonmanifold;
+    all->n_misoriented += t->n_misoriented;
+    all->length += t->length;
+}
+
+/* border [n] unites boundary edges; it is overwritten. */
+static void hdi_edge_report(const hdi_edge_tally *t, int32_t *border, int32_t n, hd_mesh_report *rep) {
+    rep->n_edges = t->n_edges;
+    rep->n_boundary_edges = t->n_boundary;
+    rep->n_nonmanifold_edges = t->n_nonmanifold;
+    rep->n_misoriented_edges = t->n_misoriented;
+    rep->n_boundary_loops = t->n_boundary ? hdi_count_sets(border, n) : 0;
+}
 
 /* The edges of a mesh from each vertex to later ones, in order. */
 typedef struct hdi_edges {
@@ -4419,7 +4487,6 @@ typedef struct hdi_edges {
 
 /* Room for the edges of m faces; room 0: for counts only. */
 static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int full, hdi_scope *s) {
-    int32_t i;
     memset(g, 0, sizeof *g);
     g->shift = 31;
     g->first = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, n) + 1);
@@ -4430,7 +4497,7 @@ static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int full,
     g->smaller = HDI_TAKE_ZERO(s, int32_t, n);
     g->larger = HDI_TAKE_ZERO(s, int32_t, n);
     g->parent = HDI_TAKE(s, int32_t, n);
-    for (i = 0; i < n && s->e->status >= 0; i++) g->parent[i] = i;
+    if (s->e->status >= 0) hdi_fill_own(g->parent, n);
     return s->e->status;
 }
 
@@ -4455,18 +4522,20 @@ static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int6
  * zero when they are below 1e-13 of the cotangents that they are made of. */
 static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hdi_scope *s) {
     hdi_sides sides;
-    int32_t i, p, q, end, n_edges = 0;
-    if (hdi_edges_take(g, mesh->n, 3 * HDI_CAST(int64_t, mesh->m), full, s) < 0 || hdi_sides_make(&sides, mesh, s) < 0) return s->e->status;
+    int32_t i, p, q, r, n_edges = 0;
+    if (hdi_edges_take(g, mesh->n, hdi_triple(mesh->m), full, s) < 0) return s->e->status;
+    if (hdi_sides_make(&sides, mesh, s) < 0) return s->e->status;
     for (i = 0; i < mesh->n; i++) {
         g->first[i] = n_edges;
         hdi_sides_sort(&sides, i);
-        for (p = sides.ptr[i], end = sides.ptr[i + 1]; p < end; p = q, n_edges++) {
+        for (p = sides.ptr[i]; p < sides.ptr[i + 1]; p = q, n_edges++) {
             const uint64_t *key = sides.key;
             const int32_t j = hdi_key_vertex(key[p]);
             double w = 0, b = 0;
-            for (q = p; q < end && hdi_key_vertex(key[q]) == j; q++) {
-                w -= mesh->cot[hdi_key_opposite(key[q])] / 2;
-                b += mesh->area[hdi_key_face(key[q])];
+            q = hdi_sides_run(&sides, p, sides.ptr[i + 1]);
+            for (r = p; r < q; r++) {
+                w -= mesh->cot[hdi_key_opposite(key[r])] / 2;
+                b += mesh->area[hdi_key_face(key[r])];
             }
             if (w > 0 && w <= 1e-13 * hdi_run_cotangents(mesh, key + p, q - p)) w = 0;
             g->to[n_edges] = j;
@@ -4518,12 +4587,13 @@ static void hdi_mesh_masses(const hdi_mesh *mesh, hdi_lump lump, double *mass) {
 }
 
 /* ---- one pass over a mesh ----
- * Vertices in their order, each with the faces whose smallest corner it is: these are measured, and their two sides at the vertex join those that wait there,
- * which were opposite to still smaller corners; then all its sides to later vertices are known, are sorted, and runs of them are its edges. What a face
- * needs is read once, and near what was read before.
- * Blocks of vertices are worked on at a time, after what faces give to vertices behind their block is there: few faces do, as neighbours tend to have numbers
- * close to each other, so these are measured twice. Where they do not, and for one thread, there is one block. All sums are taken in the same order, however
- * many blocks there are. */
+ * Vertices in their order, each with the faces whose smallest corner it is. These faces are measured, and their two sides at
+ * the vertex join those that wait there, which were opposite to still smaller corners. Then all sides from the vertex to
+ * later ones are known; they are sorted, and runs of them are its edges. What a face needs is read once, and near what was
+ * read before. @MEASURED@
+ * Blocks of vertices are worked on at a time. What faces give to vertices behind their block is computed before: few faces
+ * do, as neighbours tend to have numbers close to each other, so these are measured twice. Where they do not, and for one
+ * thread, there is one block. All sums are taken in the same order, however many blocks there are. */
 
 typedef struct hdi_side { int32_t to; uint32_t turn; double cot, area; } hdi_side;     /* turn: 1 if it runs to the later vertex */
 
@@ -4531,8 +4601,9 @@ typedef struct hdi_side { int32_t to; uint32_t turn; double cot, area; } hdi_sid
 typedef struct hdi_pass_block {
     int32_t begin, end;         /* its vertices */
     int32_t from, to;           /* the vertices it gives masses and sides to */
-    int32_t n_edges, n_boundary, n_nonmanifold, n_misoriented, n_repeated;
-    double length;              /* of its edges since it was last noted */
+    int32_t room;               /* for the sides of its busiest vertex */
+    int32_t n_repeated;
+    hdi_edge_tally edges;       /* length: since it was last noted */
     hdi_face_tally tally;
     hdi_side *side;             /* [busiest vertex] its sides, and work arrays */
     double *cot;                /* [3 busiest] */
@@ -4563,14 +4634,10 @@ static int32_t hdi_block_shift(int32_t n) {
     return shift;
 }
 
-/* By value, so that no branch has to be guessed. */
-static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
-static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
-
 /* Faces of vertex i that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
 static void hdi_pass_repeats(const hdi_pass *s, hdi_pass_block *k, int32_t i, void *room) {
     const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1];
-    const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, begin);
+    const int32_t *v = s->mesh->tri + hdi_triple(begin);
     hdi_pair *pair = HDI_CAST(hdi_pair *, room);
     int64_t n = 0, p, q;
     int32_t f;
@@ -4580,7 +4647,7 @@ static void hdi_pass_repeats(const hdi_pass *s, hdi_pass_block *k, int32_t i, vo
         const uint64_t most = HDI_CAST(uint64_t, hdi_high32(hdi_high32(v[0], v[1]), v[2]));
         k->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* the sum of the two others and the larger say it all; no sum is 0 */
     }
-    if (n <= 24) {
+    if (n <= HDI_SHORT_LIST) {
         for (p = 1; p < n; p++) {
             for (q = 0; q < p && k->key[q] != k->key[p]; q++) {}
             if (q == p) continue;
@@ -4611,48 +4678,35 @@ static void hdi_pass_masses(const hdi_pass *s, const hdi_pass_block *k, const in
         if (v[q] >= k->from && v[q] < k->to) s->mass[v[q]] = s->lump == HDI_LUMP_ONES ? 1 : s->mass[v[q]] + share[q];
 }
 
-/* Measures the faces of vertex i; their sides are added to the n that k->side has, or wait at the vertex where they begin. Returns the number of sides. */
+static HDI_INLINE void hdi_side_set(hdi_side *side, int32_t to, uint32_t turn, double cot, double area) {
+    side->to = to;
+    side->turn = turn;
+    side->cot = cot;
+    side->area = area;
+}
+
+/* Measures the faces of vertex i; their sides are added to the n that k->side has, or wait at the vertex where they begin.
+ * Returns the number of sides. */
 static int32_t hdi_pass_faces(const hdi_pass *s, hdi_pass_block *k, int32_t i, int32_t n) {
-    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1], *tri = s->mesh->tri;
-    const double *xyz = s->mesh->xyz;
+    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1];
     double *area = s->mesh->area;
     int32_t f;
     for (f = begin; f < end; f++) {
-        const int32_t *ahead = tri + 3 * HDI_CAST(int64_t, f + HDI_FACES_AHEAD < s->mesh->m ? f + HDI_FACES_AHEAD : f);
-        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[0]));
-        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[1]));
-        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[2]));
+        hdi_face_ahead(s->mesh, f + HDI_FACES_AHEAD < s->mesh->m ? f + HDI_FACES_AHEAD : f);
         area[f] = hdi_face_measure(s->mesh, f, k->cot + 3 * (f - begin), &k->tally);
     }
     if (end - begin > 1) hdi_pass_repeats(s, k, i, k->side + n);
     for (f = begin; f < end; f++) {
-        const int32_t *v = tri + 3 * HDI_CAST(int64_t, f);
+        const int32_t *v = s->mesh->tri + hdi_triple(f), q = (v[1] == i) + 2 * (v[2] == i);      /* the corner at i */
+        const int32_t r = hdi_next3[q], t = hdi_prev3[q], b = v[r], c = v[t], low = hdi_low32(b, c);
         const double *cot = k->cot + 3 * (f - begin);
-        hdi_side *side = k->side + n;
-        int32_t q, r, t, b, c, low;
         if (!(area[f] > 0)) continue;
-        q = (v[1] == i) + 2 * (v[2] == i);       /* the corner at i */
-        r = hdi_next3[q];
-        t = hdi_prev3[q];
-        b = v[r];
-        c = v[t];
         if (s->mass && k->from == 0 && hdi_high32(b, c) < k->to) hdi_face_masses(s->mass, v, cot, area[f], s->lump);
         else if (s->mass) hdi_pass_masses(s, k, v, cot, area[f]);
-        side[0].to = b;
-        side[0].turn = 1;
-        side[0].cot = cot[t];
-        side[1].to = c;
-        side[1].turn = 0;
-        side[1].cot = cot[r];
-        side[0].area = side[1].area = area[f];
-        n += 2;
-        low = hdi_low32(b, c);
+        hdi_side_set(k->side + n++, b, 1, cot[t], area[f]);
+        hdi_side_set(k->side + n++, c, 0, cot[r], area[f]);
         if (low < k->from || low >= k->to) continue;
-        side = s->waiting + s->waits[low]++;
-        side->to = hdi_high32(b, c);
-        side->turn = b < c;
-        side->cot = cot[q];
-        side->area = area[f];
+        hdi_side_set(s->waiting + s->waits[low]++, hdi_high32(b, c), b < c, cot[q], area[f]);
     }
     return n;
 }
@@ -4680,10 +4734,10 @@ static HDI_INLINE void hdi_pass_order(hdi_pass_block *k, int32_t n) {
  * the number of the next edge. */
 static int32_t hdi_pass_edges(const hdi_pass *s, hdi_pass_block *k, int32_t i, int32_t n, int32_t at) {
     hdi_edges *g = s->edges;
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
     const uint64_t *key;
     const int32_t begin = at, end = k->end;
-    int32_t p, q, n_boundary = 0, n_nonmanifold = 0, n_misoriented = 0;
-    double length = 0;
+    int32_t p, q;
     hdi_pass_order(k, n);
     key = k->key;
     for (p = 0; p < n; p = q, at++) {
@@ -4704,19 +4758,13 @@ static int32_t hdi_pass_edges(const hdi_pass *s, hdi_pass_block *k, int32_t i, i
             g->w[at] = w;
             if (g->b) g->b[at] = b / 12;
         }
-        length += hdi_edge_length(s->mesh->xyz, i, j);
-        n_boundary += boundary;
-        n_nonmanifold += q - p > 2;
-        n_misoriented += (q - p == 2) & (turns != 1);
+        hdi_edge_count(&tally, q - p, turns, hdi_edge_length(s->mesh->xyz, i, j));
         if (j >= end) continue;
         hdi_edges_join(g, i, j);
         if (boundary) hdi_unite(s->border, i, j);
     }
     g->larger[i] = at - begin;
-    k->length += length;
-    k->n_boundary += n_boundary;
-    k->n_nonmanifold += n_nonmanifold;
-    k->n_misoriented += n_misoriented;
+    hdi_edge_tally_add(&k->edges, &tally);
     return at;
 }
 
@@ -4729,7 +4777,7 @@ static void hdi_pass_leaving(const hdi_pass *s) {
         k.from = k.end;
         k.to = s->mesh->n;
         for (f = s->face_ptr[k.begin]; f < end; f++) {
-            const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, f);
+            const int32_t *v = s->mesh->tri + hdi_triple(f);
             if (hdi_high32(v[0], hdi_high32(v[1], v[2])) < k.end) continue;
             i = hdi_low32(v[0], hdi_low32(v[1], v[2]));
             (void)hdi_pass_faces(s, &k, i, 0);
@@ -4778,7 +4826,7 @@ static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
     s->wait_ptr[n] = wait_sum;
     for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
         const int32_t at = faces[hdi_low32(hdi_low32(v[0], v[1]), v[2])]++;
-        memcpy(tri + 3 * HDI_CAST(int64_t, at), v, 3 * sizeof *v);
+        memcpy(tri + hdi_triple(at), v, 3 * sizeof *v);
         face[at] = f;
     }
     memmove(faces + 1, faces, HDI_CAST(size_t, n) * sizeof *faces);
@@ -4814,8 +4862,8 @@ static hd_status hdi_pass_blocks(hdi_pass *p, hdi_scope *own) {
     p->block = HDI_TAKE(own, hdi_pass_block, p->n_blocks);
     if (!p->block) return own->e->status;
     for (b = 0; b < p->n_blocks; b++) {
-        p->block[b].n_edges = hdi_pass_extent(p, p->block + b, b);
-        sum += p->block[b].n_edges;
+        p->block[b].room = hdi_pass_extent(p, p->block + b, b);
+        sum += p->block[b].room;
     }
     side = HDI_TAKE(own, hdi_side, sum);
     cot = HDI_TAKE(own, double, 3 * sum);
@@ -4823,8 +4871,7 @@ static hd_status hdi_pass_blocks(hdi_pass *p, hdi_scope *own) {
     work = HDI_TAKE(own, uint64_t, sum);
     if (own->e->status < 0) return own->e->status;
     for (b = p->n_blocks; b-- > 0;) {
-        sum -= p->block[b].n_edges;
-        p->block[b].n_edges = 0;
+        sum -= p->block[b].room;
         p->block[b].side = side + sum;
         p->block[b].cot = cot + 3 * sum;
         p->block[b].key = key + sum;
@@ -4836,7 +4883,7 @@ static hd_status hdi_pass_blocks(hdi_pass *p, hdi_scope *own) {
 /* Room of the pass; the faces of the mesh and their areas live in s, the rest in own. */
 static hd_status hdi_pass_begin(hdi_pass *p, hdi_scope *own, hdi_scope *s) {
     const int32_t n = p->mesh->n;
-    int32_t *tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, p->mesh->m)), *face = HDI_TAKE(s, int32_t, p->mesh->m);
+    int32_t *tri = HDI_TAKE(s, int32_t, hdi_triple(p->mesh->m)), *face = HDI_TAKE(s, int32_t, p->mesh->m);
     p->mesh->area = HDI_TAKE(s, double, p->mesh->m);
     if (p->edges->w) p->edges->last = HDI_TAKE(s, int32_t, n);
     p->face_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
@@ -4857,8 +4904,8 @@ static hd_status hdi_pass_begin(hdi_pass *p, hdi_scope *own, hdi_scope *s) {
 static void hdi_pass_task(void *arg, int64_t index, int32_t worker) {
     const hdi_pass *p = HDI_CAST(const hdi_pass *, arg);
     hdi_pass_block *all = p->block + index, k = *all;
-    const int32_t begin = 2 * p->face_ptr[k.begin] + p->wait_ptr[k.begin], shift = hdi_block_shift(p->mesh->n);
-    int32_t i, n, at = begin;
+    const int32_t shift = hdi_block_shift(p->mesh->n);
+    int32_t i, n, at = 2 * p->face_ptr[k.begin] + p->wait_ptr[k.begin];
     (void)worker;
     for (i = k.begin; i < k.end; i++) {
         p->edges->first[i] = at;
@@ -4868,16 +4915,16 @@ static void hdi_pass_task(void *arg, int64_t index, int32_t worker) {
         at = hdi_pass_edges(p, &k, i, n, at);
         p->edges->last[i] = at;
         if (i + 1 < k.end && (i + 1) >> shift == i >> shift) continue;
-        p->length[i >> shift] = k.length;
-        k.length = 0;
+        p->length[i >> shift] = k.edges.length;
+        k.edges.length = 0;
     }
-    k.n_edges = at - begin;
     *all = k;
 }
 
 static hd_status hdi_pass_run(hdi_pass *p, hdi_scope *s) {
     hd_mesh_report *rep = p->rep;
     hdi_face_tally tally;
+    hdi_edge_tally edges = {0, 0, 0, 0, 0};
     int32_t b;
     hdi_tally_clear(&tally);
     hdi_pass_leaving(p);
@@ -4887,15 +4934,12 @@ static hd_status hdi_pass_run(hdi_pass *p, hdi_scope *s) {
         if (b + 1 < p->n_blocks) hdi_pass_crossing(p, k);
         hdi_tally_add(&tally, &k->tally);
         rep->n_repeated_face += k->n_repeated;
-        rep->n_edges += k->n_edges;
-        rep->n_boundary_edges += k->n_boundary;
-        rep->n_nonmanifold_edges += k->n_nonmanifold;
-        rep->n_misoriented_edges += k->n_misoriented;
+        hdi_edge_tally_add(&edges, &k->edges);
     }
     for (b = 0; b < HDI_BLOCKS_MOST; b++) p->edges->length += p->length[b];
     if (hdi_tally_report(&tally, p->mesh->m, rep, s->e) < 0) return s->e->status;
     rep->n_faces_used -= rep->n_repeated_face;
-    rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(p->border, p->mesh->n) : 0;
+    hdi_edge_report(&edges, p->border, p->mesh->n, rep);
     return HD_OK;
 }
 
@@ -4911,31 +4955,11 @@ static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, int full, doub
     pass.lump = lump;
     pass.rep = rep;
     rep->n_faces = mesh->m;
-    if (3 * HDI_CAST(int64_t, mesh->m) > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (hdi_triple(mesh->m) > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
     if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0) return hdi_scope_end(&own);
-    if (hdi_edges_take(edges, mesh->n, full < 0 ? 0 : 3 * HDI_CAST(int64_t, mesh->m), full > 0, s) < 0) return hdi_scope_end(&own);
+    if (hdi_edges_take(edges, mesh->n, full < 0 ? 0 : hdi_triple(mesh->m), full > 0, s) < 0) return hdi_scope_end(&own);
     if (hdi_pass_begin(&pass, &own, s) >= 0) (void)hdi_pass_run(&pass, s);
     return hdi_scope_end(&own);
-}
-
-static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m) {
-    memset(mesh, 0, sizeof *mesh);
-    mesh->xyz = xyz;
-    mesh->tri = tri;
-    mesh->n = n;
-    mesh->m = m;
-}
-
-/* The same with corner lists, for those who need no edges. */
-static hd_status hdi_mesh_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep, hdi_scope *s) {
-    hdi_edges edges;
-    hdi_mesh_clear(mesh, xyz, n, tri, m);
-    if (hdi_mesh_faces(mesh, &edges, -1, NULL, HDI_LUMP_THIRDS, rep, s) < 0) return s->e->status;
-    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
-    mesh->corner = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m));
-    if (s->e->status < 0) return s->e->status;
-    hdi_mesh_corners(mesh);
-    return HD_OK;
 }
 
 /* ---- polygons ---- */
@@ -5118,15 +5142,13 @@ static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark
 static void hdi_poly_corners(hdi_poly *poly) {
     const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
     int64_t c;
-    int32_t i;
     memset(poly->corner_ptr, 0, (HDI_CAST(size_t, poly->n) + 1) * sizeof *poly->corner_ptr);
     for (c = 0; c < n_corners; c++)
         if (poly->area[poly->face[c]] > 0) poly->corner_ptr[poly->idx[c]]++;
     hdi_prefix_sum(poly->corner_ptr, poly->n);
     for (c = 0; c < n_corners; c++)
         if (poly->area[poly->face[c]] > 0) poly->corner[poly->corner_ptr[poly->idx[c]]++] = HDI_CAST(int32_t, c);
-    for (i = poly->n; i > 0; i--) poly->corner_ptr[i] = poly->corner_ptr[i - 1];
-    poly->corner_ptr[0] = 0;
+    hdi_rewind(poly->corner_ptr, poly->n);
 }
 
 /* From a face's smallest corner towards the smaller of its neighbours: the way in which faces with the same corners in the same cyclic order are
@@ -5188,16 +5210,7 @@ static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_
     }
 }
 
-/* The most corners at a vertex, at least 1. */
-static int64_t hdi_poly_busiest(const hdi_poly *poly) {
-    int64_t most = 1;
-    int32_t i;
-    for (i = 0; i < poly->n; i++)
-        if (poly->corner_ptr[i + 1] - poly->corner_ptr[i] > most) most = poly->corner_ptr[i + 1] - poly->corner_ptr[i];
-    return most;
-}
-
-/* As hdi_mesh_make. The input must have passed hdi_poly_check. */
+/* As hdi_mesh_faces. The input must have passed hdi_poly_check. */
 static hd_status hdi_poly_make(hdi_poly *poly, hd_mesh_report *rep, hdi_scope *s) {
     const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
     const int32_t m = poly->m;
@@ -5220,7 +5233,7 @@ static hd_status hdi_poly_make(hdi_poly *poly, hd_mesh_report *rep, hdi_scope *s
     for (f = 0; f < m; f++)
         if (hdi_poly_measure(poly, f, mark, rep, s->e) < 0) return s->e->status;
     hdi_poly_corners(poly);
-    work = HDI_TAKE(s, hdi_pair, hdi_poly_busiest(poly));
+    work = HDI_TAKE(s, hdi_pair, hdi_fullest(poly->corner_ptr, poly->n));
     if (!work) return s->e->status;
     hdi_poly_repeats(poly, mark, work, rep);
     if (rep->n_repeated_face) hdi_poly_corners(poly);
@@ -5255,33 +5268,27 @@ static int32_t hdi_poly_face_of(const int64_t *ptr, int32_t m, int64_t t) {
     return -1;
 }
 
-/* ---- intrinsic triangulations ----
- * Triangles that are known by the lengths of their sides and by which side is glued to which: what flips of edges need, and all that the operators
- * need. An edge may join a vertex to itself, two vertices may share several edges, a triangle may be glued to itself.
+/* ==== [11] intrinsic ====
+ * Triangles that are known by the lengths of their sides and by which side is glued to which: that is what flips of
+ * edges need, and all that the operators need. An edge may join a vertex to itself, two vertices may share several
+ * edges, and a triangle may be glued to itself. May call [10].
  * This work is based on
- *   A. Bobenko, B. Springborn, A discrete Laplace-Beltrami operator for simplicial surfaces, 2007 (intrinsic Delaunay, non-negative weights)
- *   M. Fisher, B. Springborn, P. Schroeder, A. Bobenko, An algorithm for the construction of intrinsic Delaunay triangulations, 2007 (flips)
+ *   A. Bobenko, B. Springborn, A discrete Laplace-Beltrami operator for simplicial surfaces, 2007 (intrinsic Delaunay
+ *      triangulations have no negative weights)
+ *   M. Fisher, B. Springborn, P. Schroeder, A. Bobenko, An algorithm for the construction of intrinsic Delaunay
+ *      triangulations, 2007 (flips)
  *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (mollification, the tufted cover)
  *   W. Kahan, Miscalculating area and angles of a needle-like triangle, 2014 (areas from lengths)
- * Deviations: sheets around an edge of three faces or more follow each other by their angle in space, and copies of a face lie in layers (the paper takes
- * any order); an orientable manifold without boundary is its own cover, half of it is not stored; flips must also lower the sum of the six cotangents,
- * which in exact arithmetic they always do (Rippa 1990), so that rounding cannot make them run in circles. Zero-area faces are left out before.
- * Lengths are in units of the mean edge length: nothing overflows, and results do not depend on the unit of the coordinates. */
-
-typedef struct hdi_intrinsic {
-    int32_t n_sides;    /* three per face */
-    int32_t n_sheets;   /* how often the surface is covered */
-    double unit;        /* mean edge length of the input */
-    int32_t *vert;      /* [n_sides] where side s begins; it runs to where the next side of its face begins */
-    int32_t *twin;      /* [n_sides] the side glued to it, which runs the other way; -1: boundary */
-    double *len;        /* [n_sides] length / unit, the same on both sides of an edge */
-    double *area;       /* [n_sides / 3] area / unit^2; 0: these lengths make no triangle, the face contributes nothing */
-} hdi_intrinsic;
+ * Deviations: the sheets around an edge of three faces or more follow each other by their angle in space, and copies of a
+ * face lie in layers (the paper takes any order). An orientable manifold without boundary is its own cover: half of it is
+ * not stored. A flip must also lower the sum of the six cotangents. In exact arithmetic it always does (Rippa 1990), and
+ * so rounding cannot make flips run in circles. Zero-area faces are left out before. Lengths are in units of the mean
+ * edge length: nothing overflows, and results do not depend on the unit of the coordinates. */
 
 static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
 static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
 
-/* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none. */
+/* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none (Kahan 2014). */
 static double hdi_length_area(double a, double b, double c) {
     double t;
     if (a < b) { t = a; a = b; b = t; }
@@ -5291,63 +5298,447 @@ static double hdi_length_area(double a, double b, double c) {
     return t > 0 ? 0.25 * sqrt((a + (b + c)) * t * (c + (a - b)) * (a + (b - c))) : 0;
 }
 
-static void hdi_intrinsic_area(hdi_intrinsic *t, int32_t f) {
-    const double *len = t->len + 3 * HDI_CAST(int64_t, f);
-    t->area[f] = hdi_length_area(len[0], len[1], len[2]);
+/* Cotangents at the corners of a triangle with sides len: side q runs from corner q to the next one. */
+static void hdi_length_cots(const double *len, double area, double *cot) {
+    int q;
+    for (q = 0; q < 3; q++) {
+        const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
+        cot[q] = (b * b + c * c - a * a) / (4 * area);
+    }
 }
 
-/* Cotangent of the angle opposite to side s, of a face with area. */
-static double hdi_side_cot(const hdi_intrinsic *t, int32_t s) {
-    const double a = t->len[s], b = t->len[hdi_side_next(s)], c = t->len[hdi_side_prev(s)];
-    return (b * b + c * c - a * a) / (4 * t->area[s / 3]);
+/* ---- soups ----
+ * Different faces, each of which comes once, as in meshes, or several times, as in the stars of points, where a triangle
+ * comes from all its three corners if these agree. */
+
+typedef struct hdi_soup {
+    hdi_mesh mesh;      /* each face once; area is that in space, cot comes from the lengths */
+    hdi_sides sides;
+    int32_t *tri;       /* [3 m] of stars, corners ascending; NULL: the triangles of a mesh */
+    int32_t *copies;    /* [m] how often a face comes; NULL: once */
+    int32_t *odd;       /* [m] how many of its copies had their corners in odd order */
+    double *len;        /* [3 m] in units of the mean edge length */
+    double *area;       /* [m] of the triangle with these sides; 0: there is none */
+    double unit;        /* mean edge length */
+    double total;       /* area of all copies, in space */
+    double share;       /* a copy counts 1 / share */
+} hdi_soup;
+
+static int32_t hdi_soup_copies(const hdi_soup *soup, int32_t f) { return soup->copies ? soup->copies[f] : 1; }
+
+/* Faces of a bucket: its keys, sorted, second corner << 32 | third corner << 1 | odd, become faces from number m on.
+ * Returns how many there are; with soup NULL they are only counted. */
+static int64_t hdi_soup_bucket(hdi_soup *soup, int64_t m, int32_t i, const uint64_t *key, int64_t n) {
+    int64_t p, q, count = 0;
+    for (p = 0; p < n; p = q, count++) {
+        int32_t odd = 0;
+        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += HDI_CAST(int32_t, key[q] & 1);
+        if (!soup) continue;
+        soup->tri[3 * (m + count)] = i;
+        soup->tri[3 * (m + count) + 1] = hdi_key_vertex(key[p]);
+        soup->tri[3 * (m + count) + 2] = HDI_CAST(int32_t, (key[p] & 0xffffffffu) >> 1);
+        soup->copies[m + count] = HDI_CAST(int32_t, q - p);
+        soup->odd[m + count] = odd;
+    }
+    return count;
 }
 
-/* Sides from v to later vertices (of faces with area), sorted by the other vertex, then by side: edges are runs of the same key. */
-static int64_t hdi_sides_at(const hdi_mesh *mesh, int32_t v, hdi_pair *list) {
-    int64_t p, n = 0;
-    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
-        const int32_t c = mesh->corner[p], before = hdi_side_prev(c), to = mesh->tri[hdi_side_next(c)], from = mesh->tri[before];
-        if (to > v) {
-            list[n].key = HDI_CAST(uint64_t, to);
-            list[n++].id = c;
+/* Gathers the m triangles tri by their smallest corners: keys as above, bucket i from ptr[i] on. ptr [n + 1] zeros. */
+static void hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *ptr, uint64_t *key) {
+    int64_t f;
+    for (f = 0; f < m; f++) ptr[hdi_low32(tri[3 * f], hdi_low32(tri[3 * f + 1], tri[3 * f + 2]))]++;
+    hdi_prefix_sum(ptr, n);
+    for (f = 0; f < m; f++) {
+        const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
+        const int32_t first = hdi_low32(a, hdi_low32(b, c)), last = hdi_high32(a, hdi_high32(b, c));
+        const int64_t middle = HDI_CAST(int64_t, a) + b + c - first - last, odd = ((a > b) + (b > c) + (a > c)) & 1;
+        key[ptr[first]++] = HDI_CAST(uint64_t, middle << 32 | HDI_CAST(int64_t, last) << 1 | odd);
+    }
+    hdi_rewind(ptr, n);
+}
+
+/* Different faces of the m triangles tri, into soup in s. */
+static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, HDI_CAST(int64_t, n) + 1), f = 0, count = 0;
+    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work;
+    int32_t i;
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    hdi_soup_gather(tri, m, n, ptr, key);
+    work = HDI_TAKE(&own, uint64_t, hdi_fullest(ptr, n));
+    if (!work) return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) {
+        hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i], work);
+        count += hdi_soup_bucket(NULL, 0, i, key + ptr[i], ptr[i + 1] - ptr[i]);
+    }
+    soup->tri = HDI_TAKE(s, int32_t, 3 * count);
+    soup->copies = HDI_TAKE(s, int32_t, count);
+    soup->odd = HDI_TAKE(s, int32_t, count);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) f += hdi_soup_bucket(soup, f, i, key + ptr[i], ptr[i + 1] - ptr[i]);
+    soup->mesh.tri = soup->tri;
+    soup->mesh.n = n;
+    soup->mesh.m = HDI_CAST(int32_t, count);
+    return hdi_scope_end(&own);
+}
+
+/* Sorts the sides at all vertices and counts the edges; all copies count. border [n] unites the vertices of boundary edges. */
+static hdi_edge_tally hdi_soup_edges(hdi_soup *soup, int32_t *border) {
+    const hdi_mesh *mesh = &soup->mesh;
+    hdi_sides *g = &soup->sides;
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    int32_t i, p, q;
+    hdi_fill_own(border, mesh->n);
+    for (i = 0; i < mesh->n; i++) {
+        hdi_sides_sort(g, i);
+        for (p = g->ptr[i]; p < g->ptr[i + 1]; p = q) {
+            const int32_t j = hdi_key_vertex(g->key[p]), end = hdi_sides_run(g, p, g->ptr[i + 1]);
+            int64_t copies = 0, forward = 0;
+            for (q = p; q < end; q++) {
+                const int32_t f = hdi_key_face(g->key[q]), odd = soup->odd ? soup->odd[f] : 0, all = hdi_soup_copies(soup, f);
+                copies += all;
+                forward += hdi_key_corner(g->key[q]) < 2 ? all - odd : odd;
+            }
+            hdi_edge_count(&tally, copies, forward, hdi_edge_length(mesh->xyz, i, j));
+            if (copies == 1) hdi_unite(border, i, j);
         }
-        if (from > v) {
-            list[n].key = HDI_CAST(uint64_t, from);
-            list[n++].id = before;
-        }
+    }
+    return tally;
+}
+
+/* A job on blocks of faces. add and n_short are of a block: what its worst face lacks to satisfy the triangle inequality
+ * with delta to spare, and how many faces lack anything. */
+typedef struct hdi_soup_job {
+    hdi_soup *soup;
+    double delta, *add, most_add;
+    int64_t *n_short;
+} hdi_soup_job;
+
+static void hdi_soup_length_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
+    hdi_soup *soup = job->soup;
+    const hdi_mesh *mesh = &soup->mesh;
+    const int64_t end = hdi_least(mesh->m, (index + 1) * HDI_FACES_PER_TASK);
+    double add = 0;
+    int64_t f, n_short = 0;
+    int q;
+    (void)worker;
+    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
+        const int32_t *v = mesh->tri + 3 * f;
+        double *len = soup->len + 3 * f, spare;
+        if (!(mesh->area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] = hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]]) / soup->unit;
+        spare = hdi_min(len[0] + len[1] - len[2], hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
+        if (job->delta < 0) continue;
+        if (spare < job->delta) n_short += hdi_soup_copies(soup, HDI_CAST(int32_t, f));
+        add = hdi_max(add, job->delta - spare);
+    }
+    job->add[index] = add;
+    job->n_short[index] = n_short;
+}
+
+static void hdi_soup_cot_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
+    hdi_soup *soup = job->soup;
+    const int64_t end = hdi_least(soup->mesh.m, (index + 1) * HDI_FACES_PER_TASK);
+    int64_t f;
+    int q;
+    (void)worker;
+    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
+        double *len = soup->len + 3 * f, *cot = soup->mesh.cot + 3 * f;
+        cot[0] = cot[1] = cot[2] = soup->area[f] = 0;
+        if (!(soup->mesh.area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] += job->most_add;
+        soup->area[f] = hdi_length_area(len[0], len[1], len[2]);
+        if (soup->area[f] > 0) hdi_length_cots(len, soup->area[f], cot);
+    }
+}
+
+/* Lengths, mollified, with their areas and cotangents. Mollification (Sharp, Crane 2020, section 4.5) adds to all sides the
+ * smallest length that makes every triangle satisfy the triangle inequality with delta to spare; delta < 0: none. */
+static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
+    const int64_t m = soup->mesh.m, n_tasks = (m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
+    hdi_soup_job job;
+    int64_t i, n_short = 0;
+    soup->mesh.cot = soup->mesh.cot ? soup->mesh.cot : HDI_TAKE(s, double, 3 * m);
+    soup->area = HDI_TAKE(s, double, m);
+    soup->len = HDI_TAKE(s, double, 3 * m);
+    job.soup = soup;
+    job.delta = delta;
+    job.most_add = 0;
+    job.add = HDI_TAKE(s, double, n_tasks);
+    job.n_short = HDI_TAKE(s, int64_t, n_tasks);
+    if (s->e->status < 0) return s->e->status;
+    hdi_parallel(s->ctx, n_tasks, hdi_soup_length_task, &job);
+    for (i = 0; i < n_tasks; i++) {
+        job.most_add = hdi_max(job.most_add, job.add[i]);
+        n_short += job.n_short[i];
+    }
+    hdi_parallel(s->ctx, n_tasks, hdi_soup_cot_task, &job);
+    rep->n_mollified = HDI_CAST(int32_t, n_short);
+    rep->mollify_epsilon = job.most_add * soup->unit;
+    return HD_OK;
+}
+
+/* Edges and lengths of a soup whose faces have their area. edges NULL: not wanted; border [n] as in hdi_soup_edges. */
+static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *rep, int32_t *border, hdi_scope *s) {
+    const hdi_mesh *mesh = &soup->mesh;
+    hdi_edge_tally tally;
+    int32_t f;
+    for (f = 0; f < mesh->m; f++) soup->total += mesh->area[f] * hdi_soup_copies(soup, f);
+    if (!border || hdi_sides_make(&soup->sides, mesh, s) < 0) return s->e->status;
+    tally = hdi_soup_edges(soup, border);
+    if (soup->copies) hdi_edge_report(&tally, border, mesh->n, rep);   /* of a mesh it is known */
+    soup->unit = tally.length / HDI_CAST(double, tally.n_edges > 0 ? tally.n_edges : 1);
+    return hdi_soup_lengths(soup, delta, rep, s);
+}
+
+/* The soup of the m triangles tri among n points, lengths mollified by delta, in s. Each triangle counts a third. */
+static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, const int32_t *tri, int64_t m, double delta,
+                               hd_mesh_report *rep, hdi_scope *s) {
+    hd_mesh_report faces;
+    int32_t f;
+    memset(soup, 0, sizeof *soup);
+    memset(&faces, 0, sizeof faces);
+    soup->share = 3;
+    if (hdi_soup_faces(soup, tri, m, n, s) < 0) return s->e->status;
+    soup->mesh.xyz = xyz;
+    soup->mesh.cot = HDI_TAKE(s, double, hdi_triple(soup->mesh.m));
+    soup->mesh.area = HDI_TAKE(s, double, soup->mesh.m);
+    if (s->e->status < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0) return s->e->status;
+    rep->smallest_angle = faces.smallest_angle;
+    for (f = 0; f < soup->mesh.m; f++) {
+        rep->n_faces += soup->copies[f];
+        *(soup->mesh.area[f] > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
+    }
+    return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, n), s);
+}
+
+/* The soup of a mesh, which hdi_mesh_faces has measured, in s. */
+static hd_status hdi_soup_of_mesh(hdi_soup *soup, const hdi_mesh *mesh, double delta, hd_mesh_report *rep, hdi_scope *s) {
+    memset(soup, 0, sizeof *soup);
+    soup->mesh = *mesh;
+    soup->share = 1;
+    return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, mesh->n), s);
+}
+
+/* ---- covers ----
+ * The intrinsic triangulation of a soup: of itself where all its faces can be turned to one side, else of its two-sheeted
+ * cover. A face has copies on it, front and back in turn. Meshes are unfolded as a whole. Of the stars of points only a part
+ * is unfolded: what matters are the lengths of all faces, which are those in space unless they are flipped, and the gluing
+ * of those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides of their own (all
+ * copies, front and back) when one of their edges is glued, and an edge is glued, all its sides at once, when it is looked at. */
+
+enum { HDI_SIDE_OPEN = -1, HDI_SIDE_LOOSE = -2 };    /* instead of a twin: boundary; not glued yet */
+enum { HDI_FLIPS_PER_SIDE = 64 };    /* flips stop after so many, which no mesh has ever come near to; what is left is counted */
+
+typedef struct hdi_cover {
+    const hdi_soup *soup;
+    hd_context *ctx;
+    hd_error *e;
+    int32_t n_sheets;
+    int32_t in_parts;   /* 1: faces are unfolded when they are needed */
+    int32_t n, room;    /* faces that are unfolded, and those that there is room for */
+    int32_t *vert;      /* [3 n] where side s begins; it runs to where the next side of its face begins */
+    int32_t *twin;      /* [3 n] the side glued to it, which runs the other way; or see above */
+    double *len;        /* [3 n] the same on both sides of an edge */
+    double *area;       /* [n] 0: these lengths make no triangle, the face contributes nothing */
+    int32_t *first;     /* [m] the first copy of a face; -1: none yet */
+    int32_t step;       /* from there to the next copy */
+    int32_t *stack;     /* [3 room] sides to look at */
+    int32_t depth;
+    signed char *waits; /* [3 room] 1: on the stack */
+    signed char *glued; /* [3 m] at the first side of an edge */
+    hdi_pair *list;     /* [most faces at an edge] */
+    int64_t most_flips, work;
+} hdi_cover;
+
+static void hdi_cover_free(hdi_cover *c) {
+    hdi_free(c->ctx, c->vert);
+    hdi_free(c->ctx, c->twin);
+    hdi_free(c->ctx, c->len);
+    hdi_free(c->ctx, c->area);
+    hdi_free(c->ctx, c->stack);
+    hdi_free(c->ctx, c->waits);
+}
+
+/* old with n elements in a block of room elements; NULL, old freed, when there is none. */
+static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
+    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(uint64_t, room), size, c->e);
+    if (block && n > 0) memcpy(block, old, HDI_CAST(size_t, n) * size);
+    hdi_free(c->ctx, old);
+    return block;
+}
+
+/* Room for more faces: at least twice as many as before, if they come in parts. */
+static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
+    const int64_t n = c->n, need = n + more, twice = 2 * HDI_CAST(int64_t, c->room);
+    const int64_t room = !c->in_parts ? need : need > twice ? need + 1024 : twice;
+    if (need <= c->room) return HD_OK;
+    if (3 * room > INT32_MAX) return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
+    c->vert = HDI_CAST(int32_t *, hdi_regrow(c, c->vert, 3 * n, 3 * room, sizeof(int32_t)));
+    c->twin = HDI_CAST(int32_t *, hdi_regrow(c, c->twin, 3 * n, 3 * room, sizeof(int32_t)));
+    c->len = HDI_CAST(double *, hdi_regrow(c, c->len, 3 * n, 3 * room, sizeof(double)));
+    c->area = HDI_CAST(double *, hdi_regrow(c, c->area, n, room, sizeof(double)));
+    c->stack = HDI_CAST(int32_t *, hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t)));
+    c->waits = HDI_CAST(signed char *, hdi_regrow(c, c->waits, 3 * n, 3 * room, 1));
+    if (c->e->status >= 0) c->room = HDI_CAST(int32_t, room);
+    return c->e->status;
+}
+
+static hd_status hdi_cover_begin(hdi_cover *c, const hdi_soup *soup, int in_parts, hdi_scope *s) {
+    memset(c, 0, sizeof *c);
+    c->soup = soup;
+    c->ctx = s->ctx;
+    c->e = s->e;
+    c->n_sheets = 2;
+    c->in_parts = in_parts;
+    c->step = 1;
+    c->first = HDI_TAKE(s, int32_t, soup->mesh.m);
+    c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(soup->mesh.m));
+    c->list = HDI_TAKE(s, hdi_pair, soup->sides.most);
+    if (s->e->status >= 0) hdi_fill_i32(c->first, soup->mesh.m, -1);
+    return s->e->status;
+}
+
+/* Side s of the soup where face number at of the cover is a copy of its face; the back runs the other way round. */
+static int32_t hdi_sheet_side(int32_t at, int32_t s, int back) { return 3 * at + (back ? 2 - s % 3 : s % 3); }
+
+/* That side on copy k, front or back. */
+static int32_t hdi_cover_side(const hdi_cover *c, int32_t s, int32_t k, int back) {
+    return hdi_sheet_side(c->first[s / 3] + (2 * k + back) * c->step, s, back);
+}
+
+/* A copy of face f becomes face number at. */
+static void hdi_cover_put(hdi_cover *c, int32_t f, int32_t at, int back) {
+    const hdi_soup *soup = c->soup;
+    int32_t q;
+    for (q = 0; q < 3; q++) {
+        const int32_t s = 3 * f + q, to = hdi_sheet_side(at, s, back);
+        c->vert[to] = soup->mesh.tri[back ? hdi_side_next(s) : s];
+        c->len[to] = soup->len[s];
+        c->twin[to] = c->in_parts ? HDI_SIDE_LOOSE : HDI_SIDE_OPEN;
+        c->waits[to] = 0;
+    }
+    c->area[at] = soup->area[f];
+}
+
+/* Unfolds face f: all its copies. */
+static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
+    const int64_t copies = 2 * HDI_CAST(int64_t, hdi_soup_copies(c->soup, f));
+    int32_t k;
+    if (c->first[f] >= 0) return HD_OK;
+    if (hdi_cover_room(c, copies) < 0) return c->e->status;
+    c->first[f] = c->n;
+    for (k = 0; k < copies; k++) hdi_cover_put(c, f, c->n++, k & 1);
+    return HD_OK;
+}
+
+static void hdi_glue(hdi_cover *c, int32_t a, int32_t b) {
+    c->twin[a] = b;
+    c->twin[b] = a;
+}
+
+static void hdi_cover_push(hdi_cover *c, int32_t side) {
+    if (c->twin[side] < 0 || c->waits[side]) return;
+    c->stack[c->depth++] = side;
+    c->waits[side] = 1;
+}
+
+static void hdi_unit3(const double *from, const double *to, double *out) {
+    double norm;
+    int k;
+    hdi_sub3(to, from, out);
+    norm = hdi_norm3(out);
+    for (k = 0; k < 3; k++) out[k] /= norm;
+}
+
+/* Sorts the n sides of an edge in list by the angles of their faces in space, from the first side's face on,
+ * counterclockwise as seen against the direction from the smaller vertex to the larger one. */
+static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pair *list, int64_t n) {
+    const double *p = hdi_at3(mesh->xyz, lo), steps = 8796093022208.0;    /* 2^43 angles are told apart */
+    double axis[3], first[3], up[3], u[3];
+    int64_t k;
+    hdi_unit3(p, hdi_at3(mesh->xyz, hi), axis);
+    hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[0].id))]), first);
+    hdi_cross3(axis, first, up);
+    hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
+    for (k = 0; k < n; k++) {
+        double angle;
+        hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[k].id))]), u);
+        angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
+        if (angle < 0) angle += HDI_TURN;
+        list[k].key = HDI_CAST(uint64_t, hdi_min(angle / HDI_TURN, 1) * steps);
     }
     hdi_sort_pairs(list, n);
-    return n;
 }
 
-static double hdi_side_length(const hdi_mesh *mesh, int32_t s) {
-    double edge[3];
-    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_next(s)]), mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[s]), edge);
-    return hdi_norm3(edge);
-}
-
-/* mate [3 m]: the other side of edges with two faces, -1 elsewhere. Returns the sum of the edges' lengths. list: twice as many pairs as the busiest vertex
- * has corners. */
-static double hdi_mesh_mates(const hdi_mesh *mesh, int32_t *mate, hdi_pair *list) {
-    double length = 0;
-    int64_t p, q, n;
-    int32_t v;
-    for (p = 0; p < 3 * HDI_CAST(int64_t, mesh->m); p++) mate[p] = -1;
-    for (v = 0; v < mesh->n; v++) {
-        n = hdi_sides_at(mesh, v, list);
-        for (p = 0; p < n; p = q) {
-            const int32_t s = HDI_CAST(int32_t, list[p].id);
-            for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
-            length += hdi_side_length(mesh, s);
-            if (q - p != 2) continue;
-            mate[s] = HDI_CAST(int32_t, list[p + 1].id);
-            mate[mate[s]] = s;
+/* Glues the edge whose sides are keys [p, q) at vertex v: in layers of copies, in each by angle, around the edge the side of
+ * a face that looks counterclockwise to the side of the next one that looks back at it. A single face at the boundary is
+ * glued front to back. If faces are unfolded in parts, the edge goes on the stack. */
+static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
+    const hdi_mesh *mesh = &c->soup->mesh;
+    const uint64_t *key = c->soup->sides.key;
+    const int32_t n = q - p;
+    int32_t i, layer, most = 0, first = -1, last = -1;
+    if (c->glued[p]) return HD_OK;
+    c->glued[p] = 1;
+    for (i = 0; i < n; i++) {
+        const int32_t f = hdi_key_face(key[p + i]);
+        if (hdi_cover_face(c, f) < 0) return c->e->status;
+        c->list[i].key = HDI_CAST(uint64_t, i);
+        c->list[i].id = hdi_triple(f) + hdi_key_corner(key[p + i]);
+        most = hdi_high32(most, hdi_soup_copies(c->soup, f));
+    }
+    if (n > 2) hdi_sort_around(mesh, v, hdi_key_vertex(key[p]), c->list, n);
+    for (layer = 0; layer < most; layer++) {
+        for (i = 0; i < n; i++) {                /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
+            const int32_t side = HDI_CAST(int32_t, c->list[i].id), back = mesh->tri[side] != v;
+            int32_t clock;
+            if (layer >= hdi_soup_copies(c->soup, side / 3)) continue;
+            clock = hdi_cover_side(c, side, layer, !back);
+            if (last >= 0) hdi_glue(c, last, clock);
+            else first = clock;
+            if (last >= 0 && c->in_parts) hdi_cover_push(c, clock);
+            last = hdi_cover_side(c, side, layer, back);
         }
     }
-    return length;
+    hdi_glue(c, last, first);
+    if (c->in_parts) hdi_cover_push(c, first);
+    return HD_OK;
 }
 
-/* turned[f] = 1 for faces that have to be turned over so that all mates run opposite ways; 0 if the surface has only one side. queue [m]. */
+/* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
+static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
+    const hdi_sides *g = &c->soup->sides;
+    const int32_t i = c->vert[s], j = c->vert[hdi_side_next(s)], lo = hdi_low32(i, j), hi = hdi_high32(i, j);
+    const int32_t end = g->ptr[lo + 1];
+    int32_t p = g->ptr[lo], q = end;
+    if (c->twin[s] != HDI_SIDE_LOOSE) return HD_OK;
+    while (p < q) {                              /* the first key of hi */
+        const int32_t middle = p + (q - p) / 2;
+        if (hdi_key_vertex(g->key[middle]) < hi) p = middle + 1;
+        else q = middle;
+    }
+    return hdi_cover_glue(c, lo, p, hdi_sides_run(g, p, end));
+}
+
+/* mate [3 m]: the other side of edges with two faces, -1 elsewhere. */
+static void hdi_mesh_mates(const hdi_mesh *mesh, const hdi_sides *g, int32_t *mate) {
+    int32_t v, p, q;
+    hdi_fill_i32(mate, hdi_triple(mesh->m), -1);
+    for (v = 0; v < mesh->n; v++) {
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
+            q = hdi_sides_run(g, p, g->ptr[v + 1]);
+            if (q - p != 2) continue;
+            mate[hdi_key_side(g->key[p])] = HDI_CAST(int32_t, hdi_key_side(g->key[p + 1]));
+            mate[hdi_key_side(g->key[p + 1])] = HDI_CAST(int32_t, hdi_key_side(g->key[p]));
+        }
+    }
+}
+
+/* turned[f] = 1 for faces that have to be turned over so that all mates run opposite ways; 0 if the surface has only one
+ * side. queue [m]. */
 static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed char *turned, int32_t *queue) {
     int32_t start, head, tail, q;
     memset(turned, -1, HDI_CAST(size_t, mesh->m));
@@ -5371,155 +5762,91 @@ static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed cha
     return 1;
 }
 
-static void hdi_unit3(const double *from, const double *to, double *out) {
-    double norm;
-    int k;
-    hdi_sub3(to, from, out);
-    norm = hdi_norm3(out);
-    for (k = 0; k < 3; k++) out[k] /= norm;
-}
-
-/* Faces around an edge, its n sides in list: sorted by angle in space from the first side's face, counterclockwise as seen against the direction from
- * the smaller vertex to the larger one. */
-static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pair *list, int64_t n) {
-    const double *p = mesh->xyz + 3 * HDI_CAST(int64_t, lo), turn = 6.283185307179586;
-    double axis[3], first[3], up[3], u[3];
-    int64_t k;
-    hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, hi), axis);
-    hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[0].id))]), first);
-    hdi_cross3(axis, first, up);
-    hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
-    for (k = 0; k < n; k++) {
-        double angle;
-        hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[k].id))]), u);
-        angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
-        if (angle < 0) angle += turn;
-        list[k].key = HDI_CAST(uint64_t, hdi_min(angle / turn, 1) * 8796093022208.0);
+/* Glues the mates of a mesh that is its own cover. */
+static void hdi_cover_glue_mates(hdi_cover *c, const int32_t *mate, const signed char *turned) {
+    int32_t s;
+    for (s = 0; s < 3 * c->soup->mesh.m; s++) {
+        const int32_t t = mate[s];
+        if (t < 0 || t > s) continue;
+        hdi_glue(c, hdi_sheet_side(c->first[s / 3], s, turned[s / 3]), hdi_sheet_side(c->first[t / 3], t, turned[t / 3]));
     }
-    hdi_sort_pairs(list, n);
 }
 
-/* Side s of the mesh on a sheet: place[face] is the number of the face there; the back runs through the face the other way round. */
-static int32_t hdi_sheet_side(const int32_t *place, int32_t s, int back) { return 3 * place[s / 3] + (back ? 2 - s % 3 : s % 3); }
-
-static void hdi_glue(hdi_intrinsic *t, int32_t a, int32_t b) {
-    t->twin[a] = b;
-    t->twin[b] = a;
-}
-
-/* The cover of two sheets: front of face f at place front[f], its back at back[f]. Around each edge the side of a face that looks counterclockwise is
- * glued to the side of the next face that looks back at it; so a single face at the boundary, front to back, if it is not to stay open. */
-static void hdi_glue_cover(hdi_intrinsic *t, const hdi_mesh *mesh, const int32_t *front, const int32_t *back, int close, hdi_pair *list) {
-    int64_t p, q, k, n;
-    int32_t v;
-    for (v = 0; v < mesh->n; v++) {
-        n = hdi_sides_at(mesh, v, list);
-        for (p = 0; p < n; p = q) {
-            const int32_t other = HDI_CAST(int32_t, list[p].key);
-            for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
-            if (q - p == 1 && !close) continue;
-            if (q - p > 2) hdi_sort_around(mesh, v, other, list + p, q - p);
-            for (k = p; k < q; k++) {            /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
-                const int32_t a = HDI_CAST(int32_t, list[k].id), b = HDI_CAST(int32_t, list[k + 1 < q ? k + 1 : p].id);
-                const int back_a = mesh->tri[a] != v, back_b = mesh->tri[b] == v;
-                hdi_glue(t, hdi_sheet_side(back_a ? back : front, a, back_a), hdi_sheet_side(back_b ? back : front, b, back_b));
-            }
+/* Glues all edges of a cover of two sheets. With close the boundary is glued to the other sheet, else it stays open. */
+static hd_status hdi_cover_glue_all(hdi_cover *c, int close) {
+    const hdi_sides *g = &c->soup->sides;
+    int32_t v, p, q;
+    for (v = 0; v < c->soup->mesh.n; v++) {
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
+            q = hdi_sides_run(g, p, g->ptr[v + 1]);
+            if ((q - p > 1 || close) && hdi_cover_glue(c, v, p, q) < 0) return c->e->status;
         }
     }
-}
-
-/* The faces with area at their places, their lengths and vertices. */
-static void hdi_put_face(hdi_intrinsic *t, const hdi_mesh *mesh, int32_t f, const int32_t *place, int back) {
-    int32_t q;
-    for (q = 0; q < 3; q++) {
-        const int32_t s = 3 * f + q, at = hdi_sheet_side(place, s, back);
-        t->vert[at] = mesh->tri[back ? hdi_side_next(s) : s];
-        t->len[at] = hdi_side_length(mesh, s) / t->unit;
-        t->twin[at] = -1;
-    }
-}
-
-/* The intrinsic triangulation of a mesh, in s: of itself where all its faces can be turned to one side, else of its two-sheeted cover. With close the
- * boundary is glued to the other sheet (the tufted cover), so that no boundary is left. */
-static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int close, hd_mesh_report *rep, hdi_scope *s) {
-    const int64_t n_sides = 3 * HDI_CAST(int64_t, mesh->m);
-    int32_t *mate = HDI_TAKE(s, int32_t, n_sides);
-    int32_t *front = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
-    int32_t *back = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
-    int32_t f, q, used = 0;
-    signed char *turned = HDI_TAKE(s, signed char, mesh->m);
-    hdi_pair *list = HDI_TAKE(s, hdi_pair, 2 * hdi_most_corners(mesh));
-    int single;
-    memset(t, 0, sizeof *t);
-    if (s->e->status < 0) return s->e->status;
-    t->unit = hdi_mesh_mates(mesh, mate, list) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
-    single = rep->n_nonmanifold_edges == 0 && !(close && rep->n_boundary_edges) && hdi_mesh_orient(mesh, mate, turned, back);
-    t->n_sheets = single ? 1 : 2;
-    for (f = 0; f < mesh->m; f++) front[f] = mesh->area[f] > 0 ? used++ : 0;
-    for (f = 0; f < mesh->m; f++) back[f] = front[f] + used;
-    if (!single && used > INT32_MAX / 6) return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    t->n_sides = 3 * used * t->n_sheets;
-    t->vert = HDI_TAKE(s, int32_t, t->n_sides);
-    t->twin = HDI_TAKE(s, int32_t, t->n_sides);
-    t->len = HDI_TAKE(s, double, t->n_sides);
-    t->area = HDI_TAKE(s, double, t->n_sides / 3);
-    if (s->e->status < 0) return s->e->status;
-    for (f = 0; f < mesh->m; f++) {
-        if (!(mesh->area[f] > 0)) continue;
-        hdi_put_face(t, mesh, f, front, single && turned[f]);
-        if (!single) hdi_put_face(t, mesh, f, back, 1);
-        for (q = 3 * f; single && q < 3 * f + 3; q++)
-            if (mate[q] >= 0 && mate[q] < q) hdi_glue(t, hdi_sheet_side(front, q, turned[f]), hdi_sheet_side(front, mate[q], turned[mate[q] / 3]));
-    }
-    if (single) return HD_OK;
-    hdi_glue_cover(t, mesh, front, back, close, list);
     return HD_OK;
 }
 
-/* Mollification (Sharp, Crane 2020, section 4.5): the smallest length that, added to all sides, makes every triangle satisfy the triangle inequality
- * with delta to spare. delta < 0: nothing is added. */
-static void hdi_mollify(hdi_intrinsic *t, double delta, hd_mesh_report *rep) {
-    double add = 0;
-    int32_t s, k, short_faces = 0;
-    for (s = 0; s < t->n_sides && delta >= 0; s += 3) {
-        double spare = t->len[s] + t->len[s + 1] - t->len[s + 2];
-        for (k = 0; k < 2; k++) spare = hdi_min(spare, t->len[s + 2] + t->len[s + k] - t->len[s + 1 - k]);
-        short_faces += spare < delta;
-        add = hdi_max(add, delta - spare);
+/* Unfolds and glues a whole mesh: all fronts come first, then all backs. With close the cover has no boundary (the tufted
+ * cover). rep knows the edges of the mesh. */
+static hd_status hdi_cover_whole(hdi_cover *c, int close, const hd_mesh_report *rep, hdi_scope *s) {
+    const hdi_mesh *mesh = &c->soup->mesh;
+    int32_t *mate = HDI_TAKE(s, int32_t, hdi_triple(mesh->m)), *queue = HDI_TAKE(s, int32_t, mesh->m), f, used = 0;
+    signed char *turned = HDI_TAKE(s, signed char, mesh->m);
+    int one;
+    if (s->e->status < 0) return s->e->status;
+    hdi_mesh_mates(mesh, &c->soup->sides, mate);
+    one = !rep->n_nonmanifold_edges && !(close && rep->n_boundary_edges) && hdi_mesh_orient(mesh, mate, turned, queue);
+    c->n_sheets = one ? 1 : 2;
+    for (f = 0; f < mesh->m; f++)
+        if (mesh->area[f] > 0) c->first[f] = used++;
+    if (hdi_cover_room(c, HDI_CAST(int64_t, used) * c->n_sheets) < 0) return c->e->status;
+    c->step = used;
+    c->n = used * c->n_sheets;
+    c->most_flips = HDI_FLIPS_PER_SIDE * hdi_triple(c->n);
+    for (f = 0; f < mesh->m; f++) {
+        if (c->first[f] < 0) continue;
+        hdi_cover_put(c, f, c->first[f], one && turned[f]);
+        if (!one) hdi_cover_put(c, f, c->first[f] + used, 1);
     }
-    for (s = 0; s < t->n_sides; s++) t->len[s] += add;
-    for (s = 0; s < t->n_sides / 3; s++) hdi_intrinsic_area(t, s);
-    rep->n_mollified = short_faces / t->n_sheets;
-    rep->mollify_epsilon = add * t->unit;
+    if (one) hdi_cover_glue_mates(c, mate, turned);
+    return one ? HD_OK : hdi_cover_glue_all(c, close);
+}
+
+/* ---- flips ---- */
+
+/* Cotangent of the angle opposite to side s, of a face with area. */
+static double hdi_side_cot(const hdi_cover *t, int32_t s) {
+    const double a = t->len[s], b = t->len[hdi_side_next(s)], c = t->len[hdi_side_prev(s)];
+    return (b * b + c * c - a * a) / (4 * t->area[s / 3]);
 }
 
 /* Four times the sum of the cotangents of a triangle; also what their rounding errors are relative to. */
 static double hdi_harmonic(double a, double b, double c, double area) { return (a * a + b * b + c * c) / area; }
 
-/* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of all cotangents of its two faces. */
+/* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of all cotangents of
+ * its two faces: some fifty roundings. */
 #define HDI_DELAUNAY_TOL 1e-14
 
-static int hdi_not_delaunay(const hdi_intrinsic *t, int32_t a) {
+static int hdi_not_delaunay(const hdi_cover *t, int32_t a) {
     const int32_t b = t->twin[a], f = a / 3, g = b / 3;
-    const double *p = t->len + 3 * HDI_CAST(int64_t, f), *q = t->len + 3 * HDI_CAST(int64_t, b < 0 ? 0 : g);
+    const double *p = t->len + hdi_triple(f), *q = t->len + hdi_triple(b < 0 ? 0 : g);
     double sum;
-    if (b < 0 || f == g || !(t->area[f] > 0) || !(t->area[g] > 0)) return 0;   /* where a face is glued to itself the two sides are equal: Delaunay */
+    if (b < 0 || f == g) return 0;               /* where a face is glued to itself the two sides are equal: Delaunay */
+    if (!(t->area[f] > 0) || !(t->area[g] > 0)) return 0;
     sum = hdi_side_cot(t, a) + hdi_side_cot(t, b);
-    return sum < 0 && sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) + hdi_harmonic(q[0], q[1], q[2], t->area[g]));
+    if (sum >= 0) return 0;
+    return sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) + hdi_harmonic(q[0], q[1], q[2], t->area[g]));
 }
 
-/* Flips the edge of side a, from i to j: side a comes to run from l to k, corners that were opposite to it. Returns 0 if it is fine as it is. The outer
- * sides move with it, a2 to a1, b1 to a2, b2 to b1, a1 to b2:
- *   before  a = ij, a1 = jk, a2 = ki    b = ji, b1 = il, b2 = lj        after  a = lk, a1 = ki, a2 = il    b = kl, b1 = lj, b2 = jk */
-static int hdi_flip(hdi_intrinsic *t, int32_t a) {
-    const int32_t b = t->twin[a], a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = b < 0 ? 0 : hdi_side_next(b), b2 = b < 0 ? 0 : hdi_side_prev(b);
-    int32_t from[4], to[4], twin[4], vert[4], k, q;
-    double len[4], x, y, d, area_f, area_g, before;
-    if (!hdi_not_delaunay(t, a)) return 0;
-    from[0] = to[1] = a2;
-    from[1] = to[2] = b1;
-    from[2] = to[3] = b2;
-    from[3] = to[0] = a1;
+/* Flips the edge of side a, from i to j, which is not Delaunay: side a comes to run from l to k, the corners that were
+ * opposite to it. Returns 0 if that would not lower the sum of the cotangents. The outer sides move with it, a2 to a1, b1 to
+ * a2, b2 to b1, a1 to b2:
+ *   before  a = ij, a1 = jk, a2 = ki    b = ji, b1 = il, b2 = lj
+ *   after   a = lk, a1 = ki, a2 = il    b = kl, b1 = lj, b2 = jk */
+static int hdi_flip(hdi_cover *t, int32_t a) {
+    const int32_t b = t->twin[a], a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = hdi_side_next(b), b2 = hdi_side_prev(b);
+    const int32_t from[4] = {a2, b1, b2, a1}, to[4] = {a1, a2, b1, b2};
+    int32_t twin[4], vert[4], k, q;
+    double len[4], x, y, d, area_f, area_g, before, after;
     for (k = 0; k < 4; k++) {
         len[k] = t->len[from[k]];
         vert[k] = t->vert[from[k]];
@@ -5536,8 +5863,10 @@ static int hdi_flip(hdi_intrinsic *t, int32_t a) {
     d = sqrt(x * x + y * y);
     area_f = hdi_length_area(d, len[0], len[1]);
     area_g = hdi_length_area(d, len[2], len[3]);
+    if (!(area_f > 0 && area_g > 0)) return 0;
     before = hdi_harmonic(t->len[a], len[0], len[3], t->area[a / 3]) + hdi_harmonic(t->len[a], len[1], len[2], t->area[b / 3]);
-    if (!(area_f > 0 && area_g > 0 && hdi_harmonic(d, len[0], len[1], area_f) + hdi_harmonic(d, len[2], len[3], area_g) < before)) return 0;
+    after = hdi_harmonic(d, len[0], len[1], area_f) + hdi_harmonic(d, len[2], len[3], area_g);
+    if (!(after < before)) return 0;
     t->vert[a] = vert[2];                        /* l, where b2 begins */
     t->vert[b] = vert[0];                        /* k, where a2 begins */
     t->len[a] = t->len[b] = d;
@@ -5552,467 +5881,100 @@ static int hdi_flip(hdi_intrinsic *t, int32_t a) {
     return 1;
 }
 
-/* Flips until every edge is Delaunay: edges by their first side, after each flip the four around it, last come first served. The order depends on
- * nothing but the mesh. Stops after 64 flips per side, which no mesh has ever come near to; what is left is counted. */
-static hd_status hdi_flip_all(hdi_intrinsic *t, hd_mesh_report *rep, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int32_t *stack = HDI_TAKE(&s, int32_t, t->n_sides), seed, depth = 0, k;
-    signed char *waits = HDI_TAKE_ZERO(&s, signed char, t->n_sides);
-    const int64_t most = 64 * HDI_CAST(int64_t, t->n_sides);
-    int64_t work = 0;
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (seed = 0; seed < t->n_sides; seed++) {
-        if (t->twin[seed] < seed) continue;      /* boundary, or done as its other side: who moves is put on the stack */
-        stack[depth++] = seed;
-        waits[seed] = 1;
-        while (depth > 0) {
-            const int32_t a = stack[--depth];
-            waits[a] = 0;
-            if (!(++work & 0xfffff) && hdi_progress(ctx, "flip edges", HDI_CAST(double, seed) / t->n_sides, e) < 0) return hdi_scope_end(&s);
-            if (rep->n_flips >= most || !hdi_flip(t, a)) continue;
-            rep->n_flips++;
-            for (k = 0; k < 4; k++) {
-                const int32_t b = t->twin[a], out = k == 0 ? hdi_side_prev(b) : k == 1 ? hdi_side_next(b) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a);
-                if (t->twin[out] < 0 || waits[out]) continue;
-                stack[depth++] = out;
-                waits[out] = 1;
-            }
-        }
-    }
-    for (seed = 0; seed < t->n_sides; seed++) {
-        rep->n_not_delaunay += t->twin[seed] > seed && hdi_not_delaunay(t, seed);
-        rep->n_self_edges += t->twin[seed] > seed && t->vert[seed] == t->vert[hdi_side_next(seed)];
-    }
-    return hdi_scope_end(&s);
+/* The four sides around the edge of side a. */
+static int32_t hdi_side_around(const hdi_cover *c, int32_t a, int k) {
+    const int32_t side = k < 2 ? c->twin[a] : a;
+    return k & 1 ? hdi_side_next(side) : hdi_side_prev(side);
 }
 
-/* The intrinsic triangles as a mesh for the operators, with areas and cotangents times weight; no coordinates. Corners of the same vertex come first
- * in their face: then sums come in the same order in both rows of an edge. */
-static hd_status hdi_intrinsic_mesh(hdi_mesh *mesh, hdi_intrinsic *t, int32_t n, double weight, hd_mesh_report *rep, hdi_scope *s) {
-    int32_t f, q;
-    memset(mesh, 0, sizeof *mesh);
-    mesh->tri = t->vert;
-    mesh->n = n;
-    mesh->m = t->n_sides / 3;
-    mesh->area = t->area;
-    mesh->cot = HDI_TAKE_ZERO(s, double, t->n_sides);
-    if (s->e->status < 0) return s->e->status;
-    rep->smallest_intrinsic_angle = mesh->m > 0 ? 4 : 0;
-    for (f = 0; f < mesh->m; f++) {
-        int32_t *v = t->vert + 3 * HDI_CAST(int64_t, f);
-        double *len = t->len + 3 * HDI_CAST(int64_t, f), *cot = mesh->cot + 3 * HDI_CAST(int64_t, f), last = len[2];
-        if (v[0] == v[2] && v[0] != v[1]) {      /* turned by one corner */
-            v[2] = v[1];
-            v[1] = v[0];
-            len[2] = len[1];
-            len[1] = len[0];
-            len[0] = last;
-        }
-        if (!(t->area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) {                /* the angle at corner q is opposite to the side that begins at the next */
-            cot[q] = hdi_side_cot(t, 3 * f + (q + 1) % 3);
-            if (!hdi_finite(cot[q])) t->area[f] = 0;
-        }
-        if (!(t->area[f] > 0)) continue;
-        rep->smallest_intrinsic_angle = hdi_min(rep->smallest_intrinsic_angle, atan2(1, hdi_max(cot[0], hdi_max(cot[1], cot[2]))));
-        for (q = 0; q < 3; q++) cot[q] *= weight;
-        t->area[f] *= weight * t->unit * t->unit;
-        if (t->area[f] / 12 < DBL_MIN) t->area[f] = 0;
+/* Flips until every edge on the stack, and whatever a flip changes, is Delaunay: after each flip the four edges around it,
+ * last come first served. done: for the progress. */
+static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) {
+    int k;
+    while (c->depth > 0) {
+        const int32_t a = c->stack[--c->depth];
+        c->waits[a] = 0;
+        if (!(++c->work & 0xfffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
+        if (rep->n_flips >= c->most_flips || !hdi_not_delaunay(c, a)) continue;
+        for (k = 0; k < 4; k++)
+            if (hdi_cover_need(c, hdi_side_around(c, a, k)) < 0) return c->e->status;
+        if (!hdi_flip(c, a)) continue;
+        rep->n_flips++;
+        for (k = 0; k < 4; k++) hdi_cover_push(c, hdi_side_around(c, a, k));
     }
     return HD_OK;
 }
 
-/* ---- soups ----
- * Triangles that come several times each: the stars of points, where every triangle comes from all its three corners if these agree. Their tufted cover is
- * that of Sharp and Crane with copies of a face in layers, one sheet upon the other. It is not stored: what matters are the lengths of all faces, which are
- * those in space unless they are flipped, and the gluing of those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides of
- * their own (all copies, front and back) when one of their edges is glued, and an edge is glued, all its sides at once, when it is looked at. */
-
-typedef struct hdi_soup {
-    hdi_mesh mesh;      /* each face once, its corners ascending; cot and area are those of lengths, unit 1 the mean edge length */
-    hdi_sides sides;
-    int32_t *tri;       /* [3 m] */
-    int32_t *copies;    /* [m] how often a face came */
-    int32_t *odd;       /* [m] how many of these had their corners in odd order */
-    double *len;        /* [3 m] */
-    double unit, add;   /* add: what is added to each length */
-    double area;        /* of all copies, in space */
-} hdi_soup;
-
-/* Faces of a bucket: its keys, sorted, second corner << 32 | third corner << 1 | odd, become faces. Returns how many; with soup NULL they are only counted. */
-static int64_t hdi_soup_bucket(hdi_soup *soup, int64_t m, int32_t i, const uint64_t *key, int64_t n) {
-    int64_t p, q, count = 0;
-    for (p = 0; p < n; p = q, count++) {
-        int32_t odd = 0;
-        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += HDI_CAST(int32_t, key[q] & 1);
-        if (!soup) continue;
-        soup->tri[3 * (m + count)] = i;
-        soup->tri[3 * (m + count) + 1] = HDI_CAST(int32_t, key[p] >> 32);
-        soup->tri[3 * (m + count) + 2] = HDI_CAST(int32_t, (key[p] & 0xffffffffu) >> 1);
-        soup->copies[m + count] = HDI_CAST(int32_t, q - p);
-        soup->odd[m + count] = odd;
+/* All edges, by their first side: the order depends on nothing but the mesh. */
+static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
+    const int32_t n_sides = 3 * c->n;
+    int32_t seed;
+    for (seed = 0; seed < n_sides; seed++) {
+        if (c->twin[seed] < seed) continue;      /* boundary, or done as its other side: who moves is put on the stack */
+        hdi_cover_push(c, seed);
+        if (hdi_cover_flip(c, HDI_CAST(double, seed) / n_sides, rep) < 0) return c->e->status;
     }
-    return count;
-}
-
-/* Different faces of the m triangles tri, into soup in s. */
-static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, HDI_CAST(int64_t, n) + 1), f, count = 0;
-    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work = HDI_TAKE(&own, uint64_t, m < 4096 ? m : 4096), *large = work;
-    int32_t i;
-    int pass;
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (pass = 0; pass < 2; pass++) {           /* by their smallest corner: counted, then put there */
-        for (f = 0; f < m; f++) {
-            const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
-            const int32_t first = a < b ? (a < c ? a : c) : b < c ? b : c, last = a > b ? (a > c ? a : c) : b > c ? b : c;
-            const int64_t middle = HDI_CAST(int64_t, a) + b + c - first - last;
-            const int odd = ((a > b) + (b > c) + (a > c)) & 1;
-            if (pass) key[ptr[first]++] = HDI_CAST(uint64_t, middle) << 32 | HDI_CAST(uint64_t, last) << 1 | HDI_CAST(uint64_t, odd);
-            else ptr[first]++;
-        }
-        if (!pass) hdi_prefix_sum(ptr, n);
-    }
-    for (i = n; i > 0; i--) ptr[i] = ptr[i - 1];
-    ptr[0] = 0;
-    for (i = 0; i < n; i++) {
-        const int64_t begin = ptr[i], size = ptr[i + 1] - begin;
-        if (size > 4096 && large == work) large = HDI_TAKE(&own, uint64_t, m);
-        if (!large) return hdi_scope_end(&own);
-        hdi_sort_keys(key + begin, size, large);
-        count += hdi_soup_bucket(NULL, 0, i, key + begin, size);
-    }
-    soup->tri = HDI_TAKE(s, int32_t, 3 * count);
-    soup->copies = HDI_TAKE(s, int32_t, count);
-    soup->odd = HDI_TAKE(s, int32_t, count);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (i = 0, f = 0; i < n; i++) f += hdi_soup_bucket(soup, f, i, key + ptr[i], ptr[i + 1] - ptr[i]);
-    soup->mesh.tri = soup->tri;
-    soup->mesh.n = n;
-    soup->mesh.m = HDI_CAST(int32_t, count);
-    return hdi_scope_end(&own);
-}
-
-/* Edges of the soup, and the report: all copies count. border [n] unites the vertices of boundary edges. Returns the sum of the edges' lengths. */
-static double hdi_soup_edges(hdi_soup *soup, int32_t *border, hd_mesh_report *rep) {
-    const hdi_mesh *mesh = &soup->mesh;
-    hdi_sides *g = &soup->sides;
-    double length = 0;
-    int32_t i, p, q;
-    for (i = 0; i < mesh->n; i++) border[i] = i;
-    for (i = 0; i < mesh->n; i++) {
-        const int32_t end = g->ptr[i + 1];
-        hdi_sides_sort(g, i);
-        for (p = g->ptr[i]; p < end; p = q) {
-            const int32_t j = hdi_key_vertex(g->key[p]);
-            int64_t copies = 0, forward = 0;
-            for (q = p; q < end && hdi_key_vertex(g->key[q]) == j; q++) {
-                const int32_t f = hdi_key_face(g->key[q]), odd = soup->odd[f];
-                copies += soup->copies[f];
-                forward += hdi_key_corner(g->key[q]) < 2 ? soup->copies[f] - odd : odd;
-            }
-            length += hdi_edge_length(mesh->xyz, i, j);
-            rep->n_edges++;
-            rep->n_boundary_edges += copies == 1;
-            rep->n_nonmanifold_edges += copies > 2;
-            rep->n_misoriented_edges += copies == 2 && forward != 1;
-            if (copies == 1) hdi_unite(border, i, j);
-        }
-    }
-    return length;
-}
-
-/* Lengths of the faces in units of the mean one; how much the worst of a block lacks to satisfy the triangle inequality with delta to spare. */
-typedef struct hdi_soup_job { hdi_soup *soup; double delta, *add, *steepest; int64_t *n_short; } hdi_soup_job;
-
-static void hdi_soup_length_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
-    hdi_soup *soup = job->soup;
-    const int64_t end = hdi_least(soup->mesh.m, (index + 1) * HDI_FACES_PER_TASK);
-    double add = 0;
-    int64_t f, n_short = 0;
-    int q;
-    (void)worker;
-    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
-        double *len = soup->len + 3 * f, spare;
-        if (!(soup->mesh.area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) len[q] = hdi_edge_length(soup->mesh.xyz, soup->tri[3 * f + q], soup->tri[3 * f + hdi_next3[q]]) / soup->unit;
-        spare = hdi_min(len[0] + len[1] - len[2], hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
-        if (spare < job->delta) n_short += soup->copies[f];
-        if (job->delta >= 0) add = hdi_max(add, job->delta - spare);
-    }
-    job->add[index] = add;
-    job->n_short[index] = n_short;
-}
-
-static void hdi_soup_cot_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
-    hdi_soup *soup = job->soup;
-    const int64_t end = hdi_least(soup->mesh.m, (index + 1) * HDI_FACES_PER_TASK);
-    int64_t f;
-    int q;
-    (void)worker;
-    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
-        double *len = soup->len + 3 * f, *cot = soup->mesh.cot + 3 * f, area;
-        cot[0] = cot[1] = cot[2] = 0;
-        if (!(soup->mesh.area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) len[q] += soup->add;
-        soup->mesh.area[f] = area = hdi_length_area(len[0], len[1], len[2]);
-        for (q = 0; q < 3 && area > 0; q++) {
-            const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
-            cot[q] = (b * b + c * c - a * a) / (4 * area);
-        }
-    }
-}
-
-/* The soup of the m triangles tri among n points: faces, edges, lengths mollified by delta (see hdi_mollify), in s. */
-static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, const int32_t *tri, int64_t m, double delta, hd_mesh_report *rep, hdi_scope *s) {
-    hd_mesh_report faces;
-    hdi_soup_job job;
-    int64_t n_tasks, i, n_short = 0;
-    int32_t f, *border;
-    memset(soup, 0, sizeof *soup);
-    memset(&faces, 0, sizeof faces);
-    if (hdi_soup_faces(soup, tri, m, n, s) < 0) return s->e->status;
-    soup->mesh.xyz = xyz;
-    m = soup->mesh.m;
-    n_tasks = (m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
-    soup->mesh.cot = HDI_TAKE(s, double, 3 * m);
-    soup->mesh.area = HDI_TAKE(s, double, m);
-    soup->len = HDI_TAKE(s, double, 3 * m);
-    job.soup = soup;
-    job.delta = delta;
-    job.add = HDI_TAKE(s, double, n_tasks);
-    job.n_short = HDI_TAKE(s, int64_t, n_tasks);
-    border = HDI_TAKE(s, int32_t, n);
-    if (s->e->status < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0) return s->e->status;
-    rep->smallest_angle = faces.smallest_angle;
-    for (f = 0; f < m; f++) {
-        const double area = soup->mesh.area[f];
-        rep->n_faces += soup->copies[f];
-        *(area > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
-        soup->area += area * soup->copies[f];
-    }
-    if (hdi_sides_make(&soup->sides, &soup->mesh, s) < 0) return s->e->status;
-    soup->unit = hdi_soup_edges(soup, border, rep) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
-    rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(border, n) : 0;
-    hdi_parallel(s->ctx, n_tasks, hdi_soup_length_task, &job);
-    for (i = 0; i < n_tasks; i++) {
-        soup->add = hdi_max(soup->add, job.add[i]);
-        n_short += job.n_short[i];
-    }
-    rep->n_mollified = delta >= 0 ? HDI_CAST(int32_t, n_short) : 0;
-    rep->mollify_epsilon = soup->add * soup->unit;
-    hdi_parallel(s->ctx, n_tasks, hdi_soup_cot_task, &job);
     return HD_OK;
 }
 
-/* What of a soup's cover has been unfolded. */
-typedef struct hdi_cover {
-    const hdi_soup *soup;
-    hd_context *ctx;
-    hd_error *e;
-    hdi_intrinsic t;    /* twin -2: not glued yet */
-    int32_t n, room;    /* faces of t, and those that there is room for */
-    int32_t *first;     /* [m] where the copies of a face begin, front and back in turn; -1: not here */
-    int32_t *origin;    /* [room] the face that a face of t is a copy of */
-    int32_t *stack;     /* [3 room] sides to look at */
-    signed char *waits; /* [3 room] 1: on the stack */
-    signed char *glued; /* [3 m] at the first side of an edge */
-    hdi_pair *list;     /* [most faces at an edge] */
-    int32_t depth;
-} hdi_cover;
-
-static void hdi_cover_free(hdi_cover *c) {
-    hdi_free(c->ctx, c->t.vert);
-    hdi_free(c->ctx, c->t.twin);
-    hdi_free(c->ctx, c->t.len);
-    hdi_free(c->ctx, c->t.area);
-    hdi_free(c->ctx, c->origin);
-    hdi_free(c->ctx, c->stack);
-    hdi_free(c->ctx, c->waits);
-}
-
-/* old with n elements in a block of room elements; NULL, old freed, when there is none. */
-static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
-    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(uint64_t, room), size, c->e);
-    if (block && n > 0) memcpy(block, old, HDI_CAST(size_t, n) * size);
-    hdi_free(c->ctx, old);
-    return block;
-}
-
-static hd_status hdi_cover_room(hdi_cover *c, int32_t more) {
-    const int64_t n = c->n, need = n + more, room = need > 2 * HDI_CAST(int64_t, c->room) ? need + 1024 : 2 * HDI_CAST(int64_t, c->room);
-    if (need <= c->room) return HD_OK;
-    if (3 * room > INT32_MAX) return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->t.vert = HDI_CAST(int32_t *, hdi_regrow(c, c->t.vert, 3 * n, 3 * room, sizeof(int32_t)));
-    c->t.twin = HDI_CAST(int32_t *, hdi_regrow(c, c->t.twin, 3 * n, 3 * room, sizeof(int32_t)));
-    c->t.len = HDI_CAST(double *, hdi_regrow(c, c->t.len, 3 * n, 3 * room, sizeof(double)));
-    c->t.area = HDI_CAST(double *, hdi_regrow(c, c->t.area, n, room, sizeof(double)));
-    c->origin = HDI_CAST(int32_t *, hdi_regrow(c, c->origin, n, room, sizeof(int32_t)));
-    c->stack = HDI_CAST(int32_t *, hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t)));
-    c->waits = HDI_CAST(signed char *, hdi_regrow(c, c->waits, 3 * n, 3 * room, 1));
-    if (c->e->status >= 0) c->room = HDI_CAST(int32_t, room);
-    return c->e->status;
-}
-
-/* Unfolds face f: all its copies. */
-static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
-    const hdi_soup *soup = c->soup;
-    int32_t k, q;
-    if (c->first[f] >= 0) return HD_OK;
-    if (soup->copies[f] > INT32_MAX / 6 || hdi_cover_room(c, 2 * soup->copies[f]) < 0)
-        return c->e->status < 0 ? c->e->status : hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->first[f] = c->n;
-    for (k = 0; k < 2 * soup->copies[f]; k++, c->n++) {
-        for (q = 0; q < 3; q++) {                /* a back runs through the face the other way round */
-            const int32_t at = 3 * c->n + (k & 1 ? 2 - q : q);
-            c->t.vert[at] = soup->tri[3 * HDI_CAST(int64_t, f) + (k & 1 ? hdi_next3[q] : q)];
-            c->t.len[at] = soup->len[3 * HDI_CAST(int64_t, f) + q];
-            c->t.twin[at] = -2;
-            c->waits[at] = 0;
-        }
-        c->t.area[c->n] = soup->mesh.area[f];
-        c->origin[c->n] = f;
-    }
-    c->t.n_sides = 3 * c->n;
-    return HD_OK;
-}
-
-static void hdi_cover_push(hdi_cover *c, int32_t side) {
-    if (c->t.twin[side] < 0 || c->waits[side]) return;
-    c->stack[c->depth++] = side;
-    c->waits[side] = 1;
-}
-
-/* The side of a soup's face f that begins at its corner q, on copy k, front or back. */
-static int32_t hdi_cover_side(const hdi_cover *c, int32_t f, int32_t q, int32_t k, int back) {
-    return 3 * (c->first[f] + 2 * k + back) + (back ? 2 - q : q);
-}
-
-/* Glues the edge whose sides are keys [p, q) at vertex v, and puts it on the stack: in layers of copies, in each by angle, around the edge the side of a face
- * that looks counterclockwise to the side of the next one that looks back at it. */
-static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
-    const hdi_soup *soup = c->soup;
-    const uint64_t *key = soup->sides.key;
-    const int32_t n = q - p;
-    int32_t i, layer, most = 0, first = -1, last = -1;
-    if (c->glued[p]) return HD_OK;
-    c->glued[p] = 1;
-    for (i = 0; i < n; i++) {
-        const int32_t f = hdi_key_face(key[p + i]);
-        if (hdi_cover_face(c, f) < 0) return c->e->status;
-        c->list[i].key = HDI_CAST(uint64_t, i);
-        c->list[i].id = 3 * HDI_CAST(int64_t, f) + hdi_key_corner(key[p + i]);
-        most = soup->copies[f] > most ? soup->copies[f] : most;
-    }
-    if (n > 2) hdi_sort_around(&soup->mesh, v, hdi_key_vertex(key[p]), c->list, n);
-    for (layer = 0; layer < most; layer++) {
-        for (i = 0; i < n; i++) {                /* corners ascend in a face: its front looks counterclockwise unless it is the side from last to first */
-            const int32_t side = HDI_CAST(int32_t, c->list[i].id), f = side / 3, back = side % 3 == 2;
-            int32_t counter, clock;
-            if (layer >= soup->copies[f]) continue;
-            counter = hdi_cover_side(c, f, side % 3, layer, back);
-            clock = hdi_cover_side(c, f, side % 3, layer, !back);
-            if (last >= 0) hdi_glue(&c->t, last, clock);
-            else first = clock;
-            if (last >= 0) hdi_cover_push(c, clock);
-            last = counter;
-        }
-    }
-    hdi_glue(&c->t, last, first);
-    hdi_cover_push(c, first);
-    return HD_OK;
-}
-
-/* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
-static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
-    const hdi_sides *g = &c->soup->sides;
-    const int32_t i = c->t.vert[s], j = c->t.vert[hdi_side_next(s)], lo = i < j ? i : j, hi = i < j ? j : i;
-    int32_t p = g->ptr[lo], end = g->ptr[lo + 1], q = end;
-    if (c->t.twin[s] != -2) return HD_OK;
-    while (p < q) {                              /* the first key of hi */
-        const int32_t middle = p + (q - p) / 2;
-        if (hdi_key_vertex(g->key[middle]) < hi) p = middle + 1;
-        else q = middle;
-    }
-    for (q = p; q < end && hdi_key_vertex(g->key[q]) == hi;) q++;
-    return hdi_cover_glue(c, lo, p, q);
-}
-
-/* Whether the edge of keys [p, q) may have to be flipped, however its faces are glued. Two faces that come equally often always follow each other. */
+/* Whether the edge of keys [p, q) may have to be flipped, however its faces are glued: whether the two smallest cotangents
+ * opposite to it sum to less than zero. Two faces that come equally often always follow each other. */
 static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
     const uint64_t *key = soup->sides.key;
     double least = HUGE_VAL, next = HUGE_VAL;
     int64_t copies = 0;
     int32_t i;
     for (i = p; i < q; i++) {
-        const int32_t f = hdi_key_face(key[i]);
+        const int32_t here = hdi_soup_copies(soup, hdi_key_face(key[i]));
+        const int alone = q - p == 2 && here == hdi_soup_copies(soup, hdi_key_face(key[p + q - 1 - i]));
         const double cot = soup->mesh.cot[hdi_key_opposite(key[i])];
-        if (cot < least) {
-            next = least;
-            least = cot;
-        } else {
-            next = hdi_min(next, cot);
-        }
-        if (soup->copies[f] > 1 && !(q - p == 2 && soup->copies[f] == soup->copies[hdi_key_face(key[p + q - 1 - i])])) next = hdi_min(next, cot);
-        copies += soup->copies[f];
+        next = hdi_min(next, hdi_max(cot, least));
+        least = hdi_min(least, cot);
+        if (here > 1 && !alone) next = hdi_min(next, cot);
+        copies += here;
     }
     return !(least + (copies == 1 ? least : next) >= 0);
 }
 
-/* Flips until every edge is Delaunay, as hdi_flip_all: edges by their vertices, after each flip the four around it. */
-static hd_status hdi_cover_flip(hdi_cover *c, int64_t most, hd_mesh_report *rep) {
-    hdi_intrinsic *t = &c->t;
-    int32_t k, side;
-    while (c->depth > 0) {
-        const int32_t a = c->stack[--c->depth], b = t->twin[a];
-        c->waits[a] = 0;
-        if (rep->n_flips >= most || !hdi_not_delaunay(t, a)) continue;
-        for (k = 0; k < 4; k++)
-            if (hdi_cover_need(c, k == 0 ? hdi_side_prev(b) : k == 1 ? hdi_side_next(b) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a)) < 0) return c->e->status;
-        if (!hdi_flip(t, a)) continue;
-        rep->n_flips++;
-        for (k = 0; k < 4; k++) {
-            side = t->twin[a];
-            hdi_cover_push(c, k == 0 ? hdi_side_prev(side) : k == 1 ? hdi_side_next(side) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a));
-        }
-    }
-    return HD_OK;
-}
-
-static hd_status hdi_cover_run(hdi_cover *c, hd_mesh_report *rep) {
+/* Edges by their vertices, of those that may have to be flipped. */
+static hd_status hdi_cover_flip_parts(hdi_cover *c, hd_mesh_report *rep) {
     const hdi_soup *soup = c->soup;
     const hdi_sides *g = &soup->sides;
-    int64_t most = 0;
-    int32_t v, p, q, end, side;
-    for (v = 0; v < soup->mesh.m; v++) most += 64 * 6 * HDI_CAST(int64_t, soup->copies[v]);
+    int32_t v, p, q;
+    for (v = 0; v < soup->mesh.m; v++)
+        c->most_flips += 6 * HDI_FLIPS_PER_SIDE * HDI_CAST(int64_t, hdi_soup_copies(soup, v));
     for (v = 0; v < soup->mesh.n; v++) {
-        for (p = g->ptr[v], end = g->ptr[v + 1]; p < end; p = q) {
-            for (q = p + 1; q < end && hdi_key_vertex(g->key[q]) == hdi_key_vertex(g->key[p]);) q++;
+        const double done = HDI_CAST(double, v) / soup->mesh.n;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
+            q = hdi_sides_run(g, p, g->ptr[v + 1]);
             if (c->glued[p] || !hdi_soup_suspect(soup, p, q)) continue;
-            if (hdi_cover_glue(c, v, p, q) < 0 || hdi_cover_flip(c, most, rep) < 0) return c->e->status;
+            if (hdi_cover_glue(c, v, p, q) < 0 || hdi_cover_flip(c, done, rep) < 0) return c->e->status;
         }
-        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", HDI_CAST(double, v) / soup->mesh.n, c->e) < 0) return c->e->status;
-    }
-    for (side = 0; side < c->t.n_sides; side++) {
-        rep->n_not_delaunay += c->t.twin[side] > side && hdi_not_delaunay(&c->t, side);
-        rep->n_self_edges += c->t.twin[side] > side && c->t.vert[side] == c->t.vert[hdi_side_next(side)];
+        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
     }
     return HD_OK;
 }
 
-/* One face of the flat mesh, from its lengths: area and cotangents times weight. */
-static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double area, double unit, double weight, double *steepest) {
-    double *cot = flat->cot + 3 * HDI_CAST(int64_t, at);
+static void hdi_cover_count(const hdi_cover *c, hd_mesh_report *rep) {
+    int32_t side;
+    for (side = 0; side < 3 * c->n; side++) {
+        if (c->twin[side] < side) continue;
+        rep->n_not_delaunay += hdi_not_delaunay(c, side);
+        rep->n_self_edges += c->vert[side] == c->vert[hdi_side_next(side)];
+    }
+    rep->n_sheets = c->n_sheets;
+}
+
+/* ---- the result as a mesh ---- */
+
+/* Face number at of the flat mesh, from its lengths: area and cotangents times weight. */
+static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double area, double unit, double weight,
+                          double *steepest) {
+    double *cot = flat->cot + hdi_triple(at);
     int q;
     flat->area[at] = 0;
     if (!(area > 0)) return;
-    for (q = 0; q < 3; q++) {
-        const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
-        cot[q] = (b * b + c * c - a * a) / (4 * area);
-    }
+    hdi_length_cots(len, area, cot);
     if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
     *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
     for (q = 0; q < 3; q++) cot[q] *= weight;
@@ -6020,56 +5982,74 @@ static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double 
     flat->area[at] = area / 12 < DBL_MIN ? 0 : area;
 }
 
-/* The intrinsic Delaunay triangulation of a soup's cover as a mesh for the operators (no coordinates), in s: faces that were not unfolded as often as they
- * come, the others one by one; all with a third of their weight for a sheet, of which there are two. */
-static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, hd_mesh_report *rep, hdi_scope *s) {
-    const int32_t m = soup->mesh.m;
-    double steepest = -HUGE_VAL;
-    hdi_cover c;
-    int32_t f, i, most = 1, *tri;
-    memset(&c, 0, sizeof c);
-    memset(flat, 0, sizeof *flat);
-    c.soup = soup;
-    c.ctx = s->ctx;
-    c.e = s->e;
-    c.t.unit = soup->unit;
-    for (i = 0; i < soup->mesh.n; i++) most = soup->sides.ptr[i + 1] - soup->sides.ptr[i] > most ? soup->sides.ptr[i + 1] - soup->sides.ptr[i] : most;
-    c.first = HDI_TAKE(s, int32_t, m);
-    c.glued = HDI_TAKE_ZERO(s, signed char, 3 * HDI_CAST(int64_t, m));
-    c.list = HDI_TAKE(s, hdi_pair, most);
-    if (s->e->status >= 0) {
-        hdi_fill_i32(c.first, m, -1);
-        (void)hdi_cover_run(&c, rep);
-    }
-    flat->n = soup->mesh.n;
-    flat->m = m + c.n;
-    flat->tri = tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, flat->m));
-    flat->cot = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, flat->m));
-    flat->area = HDI_TAKE(s, double, flat->m);
-    if (s->e->status >= 0) {
-        memcpy(tri, soup->tri, 3 * HDI_CAST(size_t, m) * sizeof *tri);
-        if (c.n) memcpy(tri + 3 * HDI_CAST(int64_t, m), c.t.vert, 3 * HDI_CAST(size_t, c.n) * sizeof *tri);
-        for (f = 0; f < m; f++)
-            hdi_flat_face(flat, f, soup->len + 3 * HDI_CAST(int64_t, f), c.first[f] < 0 ? soup->mesh.area[f] : 0, soup->unit, soup->copies[f] / 3.0, &steepest);
-        for (i = 0; i < c.n; i++) hdi_flat_face(flat, m + i, c.t.len + 3 * HDI_CAST(int64_t, i), c.t.area[i], soup->unit, 1.0 / 6, &steepest);
-        rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
-        rep->n_sheets = 2;
-    }
-    hdi_cover_free(&c);
-    return s->e->status;
+/* A triangle whose first and last corner are the same vertex is turned by one corner: equal ones come first. */
+static void hdi_flat_turn(int32_t *v, double *len) {
+    const double last = len[2];
+    if (v[0] != v[2] || v[0] == v[1]) return;
+    v[2] = v[1];
+    v[1] = v[0];
+    len[2] = len[1];
+    len[1] = len[0];
+    len[0] = last;
 }
 
-/* ==== [10] operators ====
- * The pair (L, B) on one pattern. May call [09], [08] and [07].
+/* The triangles of a cover as a mesh for the operators (no coordinates), in s: in parts, first the faces that were not
+ * unfolded, as often as they come, then the others one by one. A copy weighs its share, divided among the sheets. */
+static hd_status hdi_cover_flat(hdi_mesh *flat, const hdi_cover *c, hd_mesh_report *rep, hdi_scope *s) {
+    const hdi_soup *soup = c->soup;
+    const int32_t m = c->in_parts ? soup->mesh.m : 0;
+    const int64_t n_corners = hdi_triple(m) + hdi_triple(c->n);
+    double steepest = -HUGE_VAL;
+    int32_t f, i, *tri = HDI_TAKE(s, int32_t, n_corners);
+    memset(flat, 0, sizeof *flat);
+    flat->n = soup->mesh.n;
+    flat->m = m + c->n;
+    flat->tri = tri;
+    flat->cot = HDI_TAKE(s, double, n_corners);
+    flat->area = HDI_TAKE(s, double, flat->m);
+    if (s->e->status < 0) return s->e->status;
+    if (m) memcpy(tri, soup->mesh.tri, HDI_CAST(size_t, hdi_triple(m)) * sizeof *tri);
+    for (f = 0; f < m; f++)
+        hdi_flat_face(flat, f, soup->len + hdi_triple(f), c->first[f] < 0 ? soup->area[f] : 0, soup->unit,
+                      hdi_soup_copies(soup, f) / soup->share, &steepest);
+    for (i = 0; i < c->n; i++) {
+        double *len = c->len + hdi_triple(i);
+        if (!c->in_parts) hdi_flat_turn(c->vert + hdi_triple(i), len);
+        hdi_flat_face(flat, m + i, len, c->area[i], soup->unit, 1 / (soup->share * c->n_sheets), &steepest);
+    }
+    if (c->n) memcpy(tri + hdi_triple(m), c->vert, HDI_CAST(size_t, hdi_triple(c->n)) * sizeof *tri);
+    rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
+    return HD_OK;
+}
+
+/* The intrinsic Delaunay triangulation of a soup as a mesh for the operators: of a mesh, with close without boundary; or of
+ * the tufted cover of stars. */
+static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int close, hd_mesh_report *rep, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_cover c;
+    hd_status status = hdi_cover_begin(&c, soup, soup->copies != NULL, &own);
+    if (status >= 0 && !c.in_parts) status = hdi_cover_whole(&c, close, rep, &own);
+    if (status >= 0 && !c.in_parts) status = hdi_progress(s->ctx, "flip edges", 0, s->e);
+    if (status >= 0) status = c.in_parts ? hdi_cover_flip_parts(&c, rep) : hdi_cover_flip_all(&c, rep);
+    if (status >= 0) hdi_cover_count(&c, rep);
+    if (status >= 0) (void)hdi_cover_flat(flat, &c, rep, s);
+    hdi_cover_free(&c);
+    return hdi_scope_end(&own);
+}
+
+/* ==== [12] operators ====
+ * The pair (L, B) on one pattern, made of what geometry and intrinsic triangulations know, or of the caller's matrices;
+ * its products, and pairs renumbered. May call [11].
  * This work is based on
  *   U. Pinkall, K. Polthier, Computing discrete minimal surfaces and their conjugates, 1993 (cotangent weights)
- *   M. Meyer, M. Desbrun, P. Schroeder, A. Barr, Discrete differential-geometry operators for triangulated 2-manifolds, 2003 (mixed areas)
+ *   M. Meyer, M. Desbrun, P. Schroeder, A. Barr, Discrete differential-geometry operators for triangulated 2-manifolds,
+ *      2003 (mixed areas)
  *   M. Alexa, M. Wardetzky, Discrete Laplacians on general polygonal meshes, 2011 (polygons)
- *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (tufted points; the cover itself is in [09])
+ *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (tufted points; the cover itself is in [11])
  *   J.-D. Boissonnat, A. Ghosh, Manifold reconstruction using tangential Delaunay complexes, 2014 (stars)
  * and, of point sets, on what is named there.
- * Deviations: the paper cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas go negative on obtuse triangles. Those of
- * polygons and point sets are listed there. */
+ * Deviations: the paper of the heat kernel cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas
+ * go negative on obtuse triangles. Deviations of polygons and point sets are listed there. */
 
 static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     if (!lap) return;
@@ -6093,14 +6073,14 @@ static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
 static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
     int32_t v, k = 0;
     hd_context *ctx = lap->context;
-    lap->row = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), e));
+    lap->row = HDI_NEW(ctx, int32_t, lap->n, e);
     if (!lap->row) return e->status;
     for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : -1;
     lap->n_active = k;
     lap->mesh.n_inert = lap->n - k;
     if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
-    lap->vertex = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(uint64_t, k), sizeof(int32_t), e));
-    if (lap->vertex) lap->mass = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, k), sizeof(double), e));
+    lap->vertex = HDI_NEW(ctx, int32_t, k, e);
+    if (lap->vertex) lap->mass = HDI_NEW(ctx, double, k, e);
     if (e->status < 0) return e->status;
     lap->b_diag = lap->mass;
     for (v = 0; v < lap->n; v++) {
@@ -6111,42 +6091,34 @@ static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_e
     return HD_OK;
 }
 
-/* Components over the pattern of L, numbered by their first row, and their masses. */
-static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int32_t *parent = HDI_TAKE(&s, int32_t, lap->n_active), i;
-    int64_t p;
-    if (!parent) return hdi_scope_end(&s);
-    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_active), sizeof(int32_t), e));
-    if (!lap->component) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) parent[i] = i;
-    for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) hdi_unite(parent, i, lap->L.col[p]);
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t root = hdi_find(parent, i);    /* roots are smallest members, so they have their number already */
-        lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
-    }
-    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_components), sizeof(double), e));
-    if (!lap->component_mass) return hdi_scope_end(&s);
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
-    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
-    return hdi_scope_end(&s);
-}
-
-/* Components from the vertices that edges unite, parent [n], as hdi_lap_components has them from the pattern. */
+/* Components from the vertices that are united in parent [n], numbered by their first row, and their masses. */
 static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e) {
     int32_t i;
-    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_active), sizeof(int32_t), e));
+    lap->component = HDI_NEW(lap->context, int32_t, lap->n_active, e);
     if (!lap->component) return e->status;
     for (i = 0; i < lap->n_active; i++) {
-        const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];
+        const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];     /* the smallest: it has its number already */
         lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
     }
-    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_components), sizeof(double), e));
+    lap->component_mass = HDI_NEW(lap->context, double, lap->n_components, e);
     if (!lap->component_mass) return e->status;
     memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
     return HD_OK;
+}
+
+/* The same over the pattern of L. */
+static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int32_t *parent = HDI_TAKE(&s, int32_t, lap->n), i;
+    int64_t p;
+    if (!parent) return hdi_scope_end(&s);
+    hdi_fill_own(parent, lap->n);
+    for (i = 0; i < lap->n_active; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++)
+            hdi_unite(parent, lap->vertex[i], lap->vertex[lap->L.col[p]]);
+    (void)hdi_lap_united(lap, parent, e);
+    return hdi_scope_end(&s);
 }
 
 typedef struct hdi_lap_job {
@@ -6271,57 +6243,12 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_erro
     return hdi_scope_end(&s);
 }
 
-/* Statistics of the edges of row i, and the union of boundary edges in parent [n_active]. Returns the sum of the edges' lengths. An entry of L with
- * a count of no faces is a diagonal of polygons. */
-static double hdi_edge_report(hd_laplacian *lap, const double *xyz, int32_t i, const int32_t *count, const int32_t *turn, int32_t *parent) {
-    const int64_t begin = lap->L.row_ptr[i];
-    hd_mesh_report *rep = &lap->mesh;
-    double sum = 0, edge[3];
-    int64_t p;
-    for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
-        const int32_t j = lap->L.col[p], faces = count[p - begin];
-        if (j <= i) continue;
-        rep->n_negative_weights += lap->L.val[p] > 0;
-        if (faces == 0) continue;
-        hdi_sub3(xyz + 3 * HDI_CAST(int64_t, lap->vertex[j]), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), edge);
-        sum += hdi_norm3(edge);
-        rep->n_edges++;
-        rep->n_nonmanifold_edges += faces > 2;
-        rep->n_misoriented_edges += faces == 2 && turn[p - begin] != 0;
-        if (faces != 1) continue;
-        rep->n_boundary_edges++;
-        hdi_unite(parent, i, j);
-    }
-    return sum;
-}
-
-/* Counts the sets of hdi_edge_report: a loop is a root with another vertex in its set. seen [n_active] is overwritten. */
-static void hdi_boundary_loops(hd_laplacian *lap, int32_t *parent, int64_t *seen) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) seen[i] = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t root = hdi_find(parent, i);
-        if (root == i || seen[root]) continue;
-        seen[root] = 1;
-        lap->mesh.n_boundary_loops++;
-    }
-}
-
-/* The entries of the longest row, at least 1. */
-static int64_t hdi_widest_row(const hd_csr *a) {
-    int64_t widest = 1;
-    int32_t i;
-    for (i = 0; i < a->n_rows; i++)
-        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
-    return widest;
-}
-
 /* Copies the places of the rows. */
 static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
     int32_t i;
-    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
+    lap->xyz = HDI_NEW(lap->context, double, hdi_triple(lap->n_active), e);
     if (!lap->xyz) return e->status;
-    for (i = 0; i < lap->n_active; i++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), 3 * sizeof *xyz);
+    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
     return HD_OK;
 }
 
@@ -6388,7 +6315,7 @@ static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int3
 static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32_t *mark, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
-    hdi_pair *work = HDI_TAKE(&s, hdi_pair, lap->n_active);
+    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * HDI_CAST(int64_t, lap->n_active));
     int64_t nnz = 0;
     if (e->status < 0) return hdi_scope_end(&s);
     hdi_fill_i32(mark, lap->n_active, -1);
@@ -6409,49 +6336,76 @@ static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32
     return hdi_scope_end(&s);
 }
 
-/* Values of row i, and the faces along each of its edges: how many, and in which direction. Both rows of a pair add in the order of the faces, so that L is
- * symmetric to the last bit. place [n_active]: where a column stands in this row. */
-static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i, int64_t *place, int32_t *count, int32_t *turn) {
+/* Work arrays of a row: of each entry its place, how many faces it is an edge of, and in how many of them the edge runs
+ * from the row's vertex to the other one. */
+typedef struct hdi_poly_work {
+    int64_t *place;             /* [n_active] where a column stands in this row */
+    int32_t *count, *forward;   /* [widest row] */
+} hdi_poly_work;
+
+/* Values of row i, and the faces along each of its edges. Both rows of a pair add in the order of the faces, so that L is
+ * symmetric to the last bit. */
+static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i, const hdi_poly_work *work) {
     const int32_t v = lap->vertex[i];
     const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
     double *L = lap->L.val + begin, sum = 0;
     int64_t p, d;
     for (p = 0; p < n; p++) {
-        place[lap->L.col[begin + p]] = p;
+        work->place[lap->L.col[begin + p]] = p;
         L[p] = 0;
-        count[p] = turn[p] = 0;
+        work->count[p] = work->forward[p] = 0;
     }
     for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
         const int64_t c = poly->corner[p], before = hdi_poly_before(poly, c), after = hdi_poly_after(poly, c);
         const int32_t f = poly->face[c];
         for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
-            const int64_t at = place[lap->row[poly->idx[d]]];
+            const int64_t at = work->place[lap->row[poly->idx[d]]];
             const int beside = d == before || d == after;
             if (d == c) continue;
             L[at] += hdi_poly_entry(poly, c, d, poly->ptr[f + 1] - poly->ptr[f], beside);
-            count[at] += beside;
-            turn[at] += (d == after) - (d == before);
+            work->count[at] += beside;
+            work->forward[at] += d == after;
         }
     }
     for (p = 0; p < n; p++)
         if (lap->L.col[begin + p] != i) sum += L[p];
-    L[place[i]] = -sum;
+    L[work->place[i]] = -sum;
 }
 
-static hd_status hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, int32_t *parent, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
-    const int64_t widest = hdi_widest_row(&lap->L);
-    int32_t *count = HDI_TAKE(&s, int32_t, widest), *turn = HDI_TAKE(&s, int32_t, widest), i;
-    double length = 0;
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) parent[i] = i;
-    for (i = 0; i < lap->n_active; i++) {
-        hdi_poly_row(lap, poly, i, place, count, turn);
-        length += hdi_edge_report(lap, poly->xyz, i, count, turn, parent);
+/* Counts the edges of row i; boundary edges are united in border. An entry without a face is a diagonal of polygons. */
+static void hdi_poly_row_edges(hd_laplacian *lap, const double *xyz, int32_t i, const hdi_poly_work *work,
+                               hdi_edge_tally *all, int32_t *border) {
+    const int64_t begin = lap->L.row_ptr[i];
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    int64_t p;
+    for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
+        const int32_t j = lap->L.col[p], faces = work->count[p - begin];
+        if (j <= i) continue;
+        lap->mesh.n_negative_weights += lap->L.val[p] > 0;
+        if (faces == 0) continue;
+        hdi_edge_count(&tally, faces, work->forward[p - begin], hdi_edge_length(xyz, lap->vertex[i], lap->vertex[j]));
+        if (faces == 1) hdi_unite(border, i, j);
     }
-    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
-    hdi_boundary_loops(lap, parent, place);
+    hdi_edge_tally_add(all, &tally);
+}
+
+static hd_status hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, int32_t *border, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int64_t widest = hdi_fullest(lap->L.row_ptr, lap->n_active);
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    hdi_poly_work work;
+    int32_t i;
+    work.place = HDI_TAKE(&s, int64_t, lap->n_active);
+    work.count = HDI_TAKE(&s, int32_t, widest);
+    work.forward = HDI_TAKE(&s, int32_t, widest);
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_own(border, lap->n_active);
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_poly_row(lap, poly, i, &work);
+        hdi_poly_row_edges(lap, poly->xyz, i, &work, &tally, border);
+    }
+    hdi_edge_report(&tally, border, lap->n_active, &lap->mesh);
+    lap->h = tally.length / HDI_CAST(double, tally.n_edges);
     return hdi_scope_end(&s);
 }
 
@@ -6505,45 +6459,37 @@ static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope
     vertex_mass = HDI_TAKE(s, double, flat->n);
     if (!vertex_mass) return e->status;
     hdi_mesh_masses(flat, hdi_lap_lump(lap->kind), vertex_mass);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0) return e->status;
-    lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;    /* element of corners v, v, w: 1/2, 1/6; 1/6, 1/6 */
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0) return e->status;
+    if (hdi_lap_united(lap, edges.parent, e) < 0) return e->status;
+    /* The smallest eigenvalue of the element 1/2, 1/6; 1/6, 1/6 of corners v, v, w, and of that of three corners. */
+    lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
     return hdi_lap_assemble(lap, &edges, e);
 }
 
-/* (L, B) of the intrinsic Delaunay triangulation of mesh, or of its cover: each sheet counts half. */
-static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_intrinsic_task *task, hdi_scope *s) {
-    hd_error *e = s->e;
-    hd_context *ctx = lap->context;
-    hdi_intrinsic t;
-    hdi_mesh flat;
-    double weight;
-    int32_t f;
-    if (hdi_intrinsic_make(&t, mesh, task->close, &lap->mesh, s) < 0) return e->status;
-    hdi_mollify(&t, task->delta, &lap->mesh);
-    if (hdi_progress(ctx, "flip edges", 0, e) < 0 || hdi_flip_all(&t, &lap->mesh, ctx, e) < 0) return e->status;
-    weight = 1.0 / t.n_sheets;
-    if (hdi_intrinsic_mesh(&flat, &t, lap->n, weight, &lap->mesh, s) < 0) return e->status;
-    if (hdi_lap_flat(lap, &flat, s) < 0 || hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_progress(ctx, "assemble", 0.8, e) < 0) return e->status;
-    for (f = 0; f < mesh->m; f++) lap->area += mesh->area[f];
-    lap->h = t.unit;
-    lap->mesh.n_sheets = t.n_sheets;
-    lap->conserves = 1;
-    return HD_OK;
-}
-
-static hd_status hdi_lap_triangles_intrinsic(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task,
-                                             hd_error *e) {
+/* (L, B) of the intrinsic Delaunay triangulation of a mesh, or of its cover: each sheet counts half. */
+static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m,
+                                   const hdi_intrinsic_task *task, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh;
-    if (hdi_mesh_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
-    if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
-    else hdi_lap_intrinsic(lap, &mesh, task, &s);
+    hd_mesh_report *rep = &lap->mesh;
+    hdi_mesh mesh, flat;
+    hdi_edges edges;
+    hdi_soup soup;
+    hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
+    if (hdi_mesh_faces(&mesh, &edges, -1, NULL, HDI_LUMP_THIRDS, rep, &s) < 0) return hdi_scope_end(&s);
+    if (rep->n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    if (e->status < 0 || hdi_soup_of_mesh(&soup, &mesh, task->delta, rep, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_soup_delaunay(&flat, &soup, task->close, rep, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_flat(lap, &flat, &s) < 0 || hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
+    if (hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
+    lap->area = soup.total;
+    lap->h = soup.unit;
+    lap->conserves = 1;
     return hdi_scope_end(&s);
 }
 
 /* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
 static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task, hd_error *e) {
-    return task ? hdi_lap_triangles_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, e);
+    return task ? hdi_lap_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, e);
 }
 
 /* The faces split as fans, for the operators of triangles. */
@@ -6969,13 +6915,9 @@ static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
 static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
     double s[HDI_MOST_NEIGHBOURS + 1];
     const int32_t *nbr = cloud->nbr + HDI_CAST(int64_t, i) * cloud->k;
-    int32_t j, k;
-    for (k = 0; k < cloud->k; k++) {
-        const double x = cloud->spacing2[nbr[k]];
-        for (j = k; j > 0 && x < s[j - 1]; j--) s[j] = s[j - 1];
-        s[j] = x;
-    }
-    return s[cloud->k / 2];
+    int32_t k;
+    for (k = 0; k < cloud->k; k++) s[k] = cloud->spacing2[nbr[k]];
+    return hdi_kth(s, cloud->k, cloud->k / 2);
 }
 
 /* Area of the cell of place i in its tangent plane; 0 where neighbours lie on a line. Lengths are in units of the distance of the last neighbour. */
@@ -7020,28 +6962,6 @@ static void hdi_cell_task(void *arg, int64_t index, int32_t worker) {
     int64_t i;
     (void)worker;
     for (i = index * HDI_CELLS_PER_TASK; i < end; i++) hdi_cell_area(cloud, HDI_CAST(int32_t, i));
-}
-
-/* The number-k smallest of a, which is rearranged. */
-static double hdi_kth(double *a, int64_t n, int64_t k) {
-    int64_t lo = 0, hi = n - 1;
-    while (lo < hi) {
-        const double pivot = hdi_max(hdi_min(a[lo], a[hi]), hdi_min(hdi_max(a[lo], a[hi]), a[lo + (hi - lo) / 2]));
-        int64_t i = lo, j = hi;
-        while (i <= j) {
-            while (a[i] < pivot) i++;
-            while (a[j] > pivot) j--;
-            if (i <= j) {
-                const double swap = a[i];
-                a[i++] = a[j];
-                a[j--] = swap;
-            }
-        }
-        if (k <= j) hi = j;
-        else if (k >= i) lo = i;
-        else break;
-    }
-    return a[k];
 }
 
 static uint64_t hdi_place_hash(const double *p) {
@@ -7105,11 +7025,11 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
             return hdi_scope_end(&own);
         }
         sum += sqrt(d2[1]);
-        cloud->spacing2[i] = 3.141592653589793 * d2[k - 1] / HDI_CAST(double, k - 1);
+        cloud->spacing2[i] = HDI_PI * d2[k - 1] / HDI_CAST(double, k - 1);
     }
     lap->h = sum / HDI_CAST(double, n);
     for (i = 0; i < HDI_CELL_SIDES; i++) {
-        const double step = 6.283185307179586 / HDI_CAST(double, HDI_CELL_SIDES), r = 1 / cos(step / 2);
+        const double step = HDI_TURN / HDI_CAST(double, HDI_CELL_SIDES), r = 1 / cos(step / 2);
         cloud->start[i][0] = r * cos(step * i);
         cloud->start[i][1] = r * sin(step * i);
     }
@@ -7161,7 +7081,7 @@ static void hdi_weights_task(void *arg, int64_t index, int32_t worker) {
                 diagonal = value;
                 continue;
             }
-            *value = -exp(*value * quarter) * (voronoi ? (lap->mass[i] / job->bandwidth) * (lap->mass[j] / job->bandwidth) * 0.07957747154594767 : job->scale);
+            *value = -exp(*value * quarter) * (voronoi ? (lap->mass[i] / job->bandwidth) * (lap->mass[j] / job->bandwidth) * HDI_QUARTER_INV_PI : job->scale);
             sum += *value;
         }
         *diagonal = -sum;
@@ -7180,7 +7100,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
     if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
     job.lap = lap;
     job.bandwidth = rep->bandwidth;
-    job.scale = 0.07957747154594767 / job.bandwidth / job.bandwidth / lap->n_active;
+    job.scale = HDI_QUARTER_INV_PI / job.bandwidth / job.bandwidth / lap->n_active;
     hdi_parallel(lap->context, (HDI_CAST(int64_t, lap->n_active) + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_weights_task, &job);
     for (i = 0; i < lap->n_active; i++) {
         const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
@@ -7566,7 +7486,7 @@ static void hdi_renumber_task(void *arg, int64_t index, int32_t worker) {
 static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, const int32_t *name, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int32_t rows = from->n_active;
-    const int64_t widest = hdi_widest_row(&from->L);
+    const int64_t widest = hdi_fullest(from->L.row_ptr, rows);
     int32_t *to = HDI_TAKE(&s, int32_t, rows), *number = HDI_TAKE(&s, int32_t, from->n_components), *component = HDI_TAKE(&s, int32_t, rows), r, i;
     double *mass = HDI_TAKE_ZERO(&s, double, lap->n), *component_mass = HDI_TAKE(&s, double, from->n_components), *B = NULL, *b_diag = NULL;
     uint64_t *key = HDI_TAKE(&s, uint64_t, 2 * widest);
@@ -7649,7 +7569,7 @@ static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const i
     hdi_mesh flat;
     if (hdi_star_soup(&soup, &job, lap, xyz, nbr_ptr, nbr, delta, &s) < 0) return hdi_scope_end(&s);
     if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
-    if (e->status >= 0 && hdi_soup_delaunay(&flat, &soup, &lap->mesh, &s) >= 0) inner = HDI_CAST(hd_laplacian *, hdi_alloc(lap->context, 1, sizeof *inner, e));
+    if (e->status >= 0 && hdi_soup_delaunay(&flat, &soup, 0, &lap->mesh, &s) >= 0) inner = HDI_CAST(hd_laplacian *, hdi_alloc(lap->context, 1, sizeof *inner, e));
     if (!inner) return hdi_scope_end(&s);
     memset(inner, 0, sizeof *inner);
     inner->n = job.n;
@@ -7658,7 +7578,7 @@ static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const i
     inner->mesh = lap->mesh;
     if (hdi_lap_flat(inner, &flat, &s) >= 0) {
         lap->mesh = inner->mesh;
-        lap->area = soup.area / 3;
+        lap->area = soup.total / soup.share;
         lap->b_ratio = inner->b_ratio;
         lap->conserves = 1;
         if (hdi_lap_renumber(lap, inner, job.name, e) >= 0 && hdi_lap_places(lap, xyz, e) >= 0) (void)hdi_progress(lap->context, "assemble", 0.8, e);
