@@ -1236,6 +1236,26 @@ static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *a
     for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
 
+/* The same for [0, n) in ranges of per_task; the last one may be shorter. */
+typedef void (*hdi_range_task)(void *arg, int64_t begin, int64_t end);
+typedef struct hdi_range_job { int64_t n, per_task; hdi_range_task task; void *arg; } hdi_range_job;
+
+static void hdi_range_run(void *arg, int64_t index, int32_t worker) {
+    const hdi_range_job *job = HDI_CAST(const hdi_range_job *, arg);
+    const int64_t begin = index * job->per_task, rest = job->n - begin;
+    (void)worker;
+    job->task(job->arg, begin, begin + (rest < job->per_task ? rest : job->per_task));
+}
+
+static void hdi_parallel_ranges(hd_context *ctx, int64_t n, int64_t per_task, hdi_range_task task, void *arg) {
+    hdi_range_job job;
+    job.n = n;
+    job.per_task = per_task;
+    job.task = task;
+    job.arg = arg;
+    if (n > 0) hdi_parallel(ctx, (n + per_task - 1) / per_task, hdi_range_run, &job);
+}
+
 /* Instruction sets of the kernels: 0 plain C, 1 AVX2 with FMA, 2 AVX-512. The best one that this processor and system can run. */
 static int hdi_simd_best(void) {
 #if HDI_X86
@@ -3562,19 +3582,21 @@ static hd_status hdi_csr_check_finite(const hd_csr *a, const char *text, hd_erro
     return HD_OK;
 }
 
-static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n, const int32_t *ti, const int32_t *tj,
-                                       const double *tv, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
+/* Work arrays in s. */
+static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n, const int32_t *ti,
+                                       const int32_t *tj, const double *tv, hdi_scope *s) {
+    hd_error *e = s->e;
     hd_csr t, a;
     int64_t q;
     for (q = 0; q < n; q++) {
-        if (ti[q] < 0 || ti[q] >= n_rows || tj[q] < 0 || tj[q] >= n_cols)
-            return hdi_fail_row(e, HD_ERR_INDEX, "triplet: row or column out of range", q, -1, ti[q] < 0 || ti[q] >= n_rows ? ti[q] : tj[q]);
+        const int bad_row = ti[q] < 0 || ti[q] >= n_rows;
+        if (bad_row || tj[q] < 0 || tj[q] >= n_cols)
+            return hdi_fail_row(e, HD_ERR_INDEX, "triplet: row or column out of range", q, -1, bad_row ? ti[q] : tj[q]);
         if (tv && !hdi_finite(tv[q])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "triplet: value not finite", q, -1, tv[q]);
     }
-    t = hdi_csr_take(&s, n_cols, n_rows, n, tv != NULL);   /* by columns, in the order given; its transpose has sorted rows */
-    a = hdi_csr_take(&s, n_rows, n_cols, n, tv != NULL);
-    if (e->status < 0) return hdi_scope_end(&s);
+    t = hdi_csr_take(s, n_cols, n_rows, n, tv != NULL);   /* by columns, in the order given; its transpose has sorted rows */
+    a = hdi_csr_take(s, n_rows, n_cols, n, tv != NULL);
+    if (e->status < 0) return e->status;
     for (q = 0; q < n; q++) t.row_ptr[tj[q]]++;
     hdi_prefix_sum(t.row_ptr, n_cols);
     for (q = 0; q < n; q++) {
@@ -3586,8 +3608,8 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     hdi_csr_transpose_into(&t, &a);
     hdi_csr_merge(&a);
     if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0)
-        *out = hdi_csr_keep(&s, a);
-    return hdi_scope_end(&s);
+        *out = hdi_csr_keep(s, a);
+    return e->status;
 }
 
 /* Whether a stores the entry (i,j), zero or not. */
@@ -3603,27 +3625,34 @@ static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) {
 }
 
 static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
+    const int64_t *ptr = a->row_ptr;
     int32_t i;
     int64_t p;
-    if (a->n_rows < 0 || a->n_cols < 0 || a->nnz < 0 || !a->row_ptr || (a->nnz && !a->col))
+    if (a->n_rows < 0 || a->n_cols < 0 || a->nnz < 0 || !ptr || (a->nnz && !a->col))
         return hdi_fail(e, HD_ERR_STRUCTURE, "matrix: negative size or missing array");
-    if (a->row_ptr[0] != 0) return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not begin with 0", 0, -1, 0);
+    if (ptr[0] != 0) return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not begin with 0", 0, -1, 0);
     for (i = 0; i < a->n_rows; i++)
-        if (a->row_ptr[i + 1] < a->row_ptr[i] || a->row_ptr[i + 1] > a->nnz)
-            return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr descends or exceeds nnz", i, -1, HDI_CAST(double, a->row_ptr[i + 1]));
-    if (a->row_ptr[a->n_rows] != a->nnz)
-        return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not end with nnz", a->n_rows, -1, HDI_CAST(double, a->row_ptr[a->n_rows]));
+        if (ptr[i + 1] < ptr[i] || ptr[i + 1] > a->nnz)
+            return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr descends or exceeds nnz", i, -1,
+                                HDI_CAST(double, ptr[i + 1]));
+    if (ptr[a->n_rows] != a->nnz)
+        return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not end with nnz", a->n_rows, -1,
+                            HDI_CAST(double, ptr[a->n_rows]));
     for (i = 0; i < a->n_rows; i++) {
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
-            if (a->col[p] < 0 || a->col[p] >= a->n_cols)
-                return hdi_fail_row(e, HD_ERR_INDEX, "matrix: column out of range", i, a->col[p], a->col[p]);
-            if (p > a->row_ptr[i] && a->col[p] <= a->col[p - 1])
-                return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: columns do not ascend in a row", i, a->col[p], a->col[p]);
-            if (a->val && !hdi_finite(a->val[p])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "matrix: value not finite", i, a->col[p], a->val[p]);
+        for (p = ptr[i]; p < ptr[i + 1]; p++) {
+            const int32_t j = a->col[p];
+            if (j < 0 || j >= a->n_cols) return hdi_fail_row(e, HD_ERR_INDEX, "matrix: column out of range", i, j, j);
+            if (p > ptr[i] && j <= a->col[p - 1])
+                return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: columns do not ascend in a row", i, j, j);
+            if (a->val && !hdi_finite(a->val[p]))
+                return hdi_fail_row(e, HD_ERR_NOT_FINITE, "matrix: value not finite", i, j, a->val[p]);
         }
     }
     return HD_OK;
 }
+
+/* Entries of a pair may differ by so much of the larger one: sums in another order, or ten digits of a file. */
+#define HDI_SYMMETRY_TOL 1e-12
 
 static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
@@ -3638,8 +3667,8 @@ static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_context *ctx, hd_er
         const int64_t p_end = a->row_ptr[i + 1], q_end = t.row_ptr[i + 1];
         while ((p < p_end || q < q_end) && !e->status) {
             const int32_t cp = p < p_end ? a->col[p] : INT32_MAX, cq = q < q_end ? t.col[q] : INT32_MAX;
-            const double x = a->val ? (cp <= cq ? a->val[p] : 0) : cp <= cq, y = a->val ? (cq <= cp ? t.val[q] : 0) : cq <= cp;
-            if (fabs(x - y) > 1e-12 * hdi_max(fabs(x), fabs(y)))
+            const double x = cp > cq ? 0 : a->val ? a->val[p] : 1, y = cq > cp ? 0 : a->val ? t.val[q] : 1;
+            if (fabs(x - y) > HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)))
                 hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", i, cp <= cq ? cp : cq, x - y);
             p += cp <= cq;
             q += cq <= cp;
@@ -3740,8 +3769,9 @@ static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *pe
     return hdi_scope_end(&s);
 }
 
-/* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own prefetching stops at page borders: with
- * this, L x runs at the speed of memory, 37 GB/s instead of 20 on the machine it was tuned on (7 entries a row, 130 MB). */
+/* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own prefetching stops at page
+ * borders: with this, L x runs at the speed of memory, 37 GB/s instead of 20 on the machine it was tuned on (7 entries a
+ * row, 130 MB). */
 enum { HDI_AHEAD = 512 };
 
 /* y = A x for rows [begin, end). */
@@ -3766,11 +3796,9 @@ enum { HDI_ROWS_PER_TASK = 16384 };
 
 typedef struct hdi_apply_job { const hd_csr *a; const double *x; double *y; } hdi_apply_job;
 
-static void hdi_apply_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_apply_task(void *arg, int64_t begin, int64_t end) {
     const hdi_apply_job *job = HDI_CAST(const hdi_apply_job *, arg);
-    const int64_t begin = index * HDI_ROWS_PER_TASK, end = begin + HDI_ROWS_PER_TASK;
-    (void)worker;
-    hdi_csr_apply_rows(job->a, job->x, job->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end < job->a->n_rows ? end : job->a->n_rows));
+    hdi_csr_apply_rows(job->a, job->x, job->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end));
 }
 
 static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
@@ -3778,17 +3806,22 @@ static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_contex
     job.a = a;
     job.x = x;
     job.y = y;
-    hdi_parallel(ctx, (HDI_CAST(int64_t, a->n_rows) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK, hdi_apply_task, &job);
+    hdi_parallel_ranges(ctx, a->n_rows, HDI_ROWS_PER_TASK, hdi_apply_task, &job);
 }
 
 /* ==== [09] spatial ====
- * A k-d tree over points in space: the k nearest, and all within a radius. Exact. May call [05].
+ * A k-d tree over points in space: the k nearest, and all within a radius. Exact. May call [08].
  * This work is based on
- *   J. Friedman, J. Bentley, R. Finkel, An algorithm for finding best matches in logarithmic expected time, 1977 (medians, buckets)
- * Deviations: every leaf holds HDI_LEAF points (the last one is padded), so that nodes need no pointers, and distances to a leaf's points are one
- * loop of fixed length, which compilers vectorise; nodes have boxes that fit tightly, as a surface fills little of its cells; candidates are only
- * gathered, and sorted at the end by buckets, as squared distances on a surface are spread evenly; and a query takes its first bound from the one
- * before it, its neighbour in the order of the leaves: no k-th neighbour is farther than the other's k-th neighbour by way of the other. */
+ *   J. Friedman, J. Bentley, R. Finkel, An algorithm for finding best matches in logarithmic expected time, 1977 (medians,
+ *      buckets)
+ * Deviations: every leaf holds HDI_LEAF points (the last one is padded), so that nodes need no pointers, and distances to a
+ * leaf's points are one loop of fixed length, which compilers vectorise. Nodes have boxes that fit tightly, as a surface
+ * fills little of its cells. Candidates are only gathered; they are sorted at the end by buckets, as squared distances on a
+ * surface are spread evenly. A query takes its first bound from the one before it, its neighbour in the order of the leaves:
+ * its k-th neighbour is no farther than that query and from there on to the k-th neighbour of that query. */
+
+#define HDI_LARGEST_EXTENT 1e150     /* of points: sums of three squares are below 1e301 */
+#define HDI_NO_BOUND 1e305           /* larger than any squared distance */
 
 enum {
     HDI_LEAF = 16,             /* of 4, 8, 16, 32 the quickest for the 30 nearest on surfaces */
@@ -3804,6 +3837,7 @@ typedef struct hdi_cell {
 
 /* Nodes in preorder: the left child follows its parent, the right one comes after the left one's 2 count - 1 nodes. */
 typedef struct hdi_tree {
+    const double *xyz;         /* [3 n] the points */
     int32_t n, n_leaves;
     hdi_cell *node;            /* [2 n_leaves - 1] */
     double *x;                 /* [3 HDI_LEAF n_leaves] leaf by leaf: all x, all y, all z */
@@ -3863,7 +3897,8 @@ static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
     t->node[0].count = t->n_leaves;
     for (v = 0; v < 2 * t->n_leaves - 1; v++) {   /* parents come first */
         hdi_cell *node = t->node + v;
-        const int64_t begin = HDI_CAST(int64_t, node->first) * HDI_LEAF, end = hdi_least(t->n, begin + HDI_CAST(int64_t, node->count) * HDI_LEAF);
+        const int64_t begin = HDI_CAST(int64_t, node->first) * HDI_LEAF, size = HDI_CAST(int64_t, node->count) * HDI_LEAF;
+        const int64_t end = hdi_least(t->n, begin + size);
         const int axis = hdi_cell_box(node, a + begin, end - begin);
         const int32_t left = node->count / 2;
         if (!left) continue;
@@ -3882,21 +3917,17 @@ static hd_status hdi_points_check(const double *xyz, int32_t n, const double *qu
     int pass, c;
     for (pass = 0; pass < 2; pass++) {
         const double *x = pass ? query : xyz;
-        for (i = 0; i < 3 * HDI_CAST(int64_t, pass ? m : n) && x; i++) {
-            if (!hdi_finite(x[i]) && pass) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite", i / 3, i % 3, x[i]);
-            if (!hdi_finite(x[i])) {
-                hdi_fail(e, HD_ERR_NOT_FINITE, "a coordinate is not finite");
-                e->vertex = i / 3;
-                e->value = x[i];
-                return e->status;
-            }
+        for (i = 0; i < hdi_triple(pass ? m : n) && x; i++) {
+            if (!hdi_finite(x[i]))
+                return pass ? hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite", i / 3, i % 3, x[i])
+                            : hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, x[i]);
             lo[i % 3] = hdi_min(lo[i % 3], x[i]);
             hi[i % 3] = hdi_max(hi[i % 3], x[i]);
         }
     }
     for (c = 0; c < 3; c++) size = hdi_max(size, hi[c] - lo[c]);
-    if (!(size < 1e150)) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "points: squared distances are not finite", -1, -1, size);
-    return HD_OK;
+    if (size < HDI_LARGEST_EXTENT) return HD_OK;
+    return hdi_fail_row(e, HD_ERR_NOT_FINITE, "points: squared distances are not finite", -1, -1, size);
 }
 
 /* The tree of finite points, in s. id of point i: i. Cost O(n log n). */
@@ -3906,6 +3937,7 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     hdi_point *a = HDI_TAKE(&own, hdi_point, n);
     int64_t i;
     int c;
+    t->xyz = xyz;
     t->n = n;
     t->n_leaves = HDI_CAST(int32_t, n_leaves);
     t->node = HDI_TAKE(s, hdi_cell, 2 * n_leaves - 1);
@@ -3913,7 +3945,7 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     t->id = HDI_TAKE(s, int32_t, HDI_LEAF * n_leaves);
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (i = 0; i < n; i++) {
-        for (c = 0; c < 3; c++) a[i].x[c] = xyz[3 * i + c];
+        hdi_copy3(a[i].x, hdi_at3(xyz, i));
         a[i].id = HDI_CAST(int32_t, i);
     }
     hdi_tree_split(t, a);
@@ -3939,8 +3971,15 @@ typedef struct hdi_found {
 enum { HDI_COUNT = -1 };
 
 static void hdi_found_bound(hdi_found *f, double bound) {
-    f->bound = hdi_min(bound, 1e305);            /* hdi_points_check keeps squared distances below 1e301 */
+    f->bound = hdi_min(bound, HDI_NO_BOUND);
     f->prune = f->bound * (1 + 8 * DBL_EPSILON);
+}
+
+/* The bits of doubles that are not negative are in order: they serve as keys. */
+static double hdi_key_square(const hdi_pair *a) {
+    double d;
+    memcpy(&d, &a->key, sizeof d);
+    return d;
 }
 
 /* The min(k, m) smallest pairs (distance, id) into f->sorted, ascending; returns how many. */
@@ -3955,7 +3994,7 @@ static int64_t hdi_found_sort(hdi_found *f) {
     hdi_prefix_sum(end, HDI_BUCKETS);
     for (i = 0; i < f->m; i++) {
         hdi_pair *to = f->sorted + end[HDI_CAST(int32_t, f->d[i] * scale)]++;
-        memcpy(&to->key, f->d + i, sizeof to->key);   /* the bits of doubles that are not negative are in order */
+        to->key = hdi_bits(f->d[i]);
         to->id = f->id[i];
     }
     for (b = 0; b < HDI_BUCKETS && from < want; b++) {
@@ -3975,7 +4014,7 @@ static void hdi_found_shrink(hdi_found *f) {
     }
     f->m = hdi_found_sort(f);
     for (i = 0; i < f->m; i++) {
-        memcpy(f->d + i, &f->sorted[i].key, sizeof *f->d);
+        f->d[i] = hdi_key_square(f->sorted + i);
         f->id[i] = HDI_CAST(int32_t, f->sorted[i].id);
     }
     hdi_found_bound(f, f->d[f->m - 1]);
@@ -4037,6 +4076,11 @@ static void hdi_search(const hdi_tree *t, const double *q, hdi_found *f) {
     }
 }
 
+static double hdi_distance2(const double *a, const double *b) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
 /* Many queries, in blocks that do not depend on the threads; a task has work arrays of its own. */
 typedef struct hdi_search_job {
     const hdi_tree *t;
@@ -4047,106 +4091,77 @@ typedef struct hdi_search_job {
     double *distance2;         /* NULL: not wanted */
     double radius2;            /* all within a radius: counts first, then columns and distances */
     hd_csr *out;
-    int32_t *kept;             /* [n_queries] entries of the rows */
+    int32_t *kept;             /* [n_queries] entries of the rows; NULL: they are still counted */
     hdi_found *found;          /* [tasks] */
 } hdi_search_job;
 
-static int64_t hdi_search_tasks(hdi_search_job *job, int64_t room) {
-    const int64_t blocks = (job->n_queries + 255) / 256, fit = 1 + (HDI_CAST(int64_t, 64) << 20) / (28 * (room + HDI_LEAF));
-    const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
-    job->per_task = tasks ? (job->n_queries + tasks - 1) / tasks : 0;
-    return tasks;
+/* query NULL: the tree's own points. */
+static void hdi_search_begin(hdi_search_job *job, const hdi_tree *t, const double *query, int64_t n_queries) {
+    memset(job, 0, sizeof *job);
+    job->t = t;
+    job->query = query ? query : t->xyz;
+    job->order = query ? NULL : t->id;
+    job->n_queries = n_queries;
 }
 
-/* Work arrays for candidates of every task. */
-static void hdi_search_take(hdi_search_job *job, int64_t tasks, int64_t room, hdi_scope *s) {
-    const int64_t size = room + HDI_LEAF;
+/* Tasks, and work arrays for the candidates of each, in s. Together these stay below 64 MiB (28 bytes a candidate). */
+static hd_status hdi_search_take(hdi_search_job *job, int64_t room, hdi_scope *s) {
+    const int64_t size = room + HDI_LEAF, blocks = (job->n_queries + 255) / 256, fit = 1 + (HDI_CAST(int64_t, 64) << 20) / (28 * size);
+    const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
     double *d = HDI_TAKE(s, double, tasks * size);
     hdi_pair *sorted = HDI_TAKE(s, hdi_pair, tasks * size);
     int32_t *id = HDI_TAKE(s, int32_t, tasks * size);
     int64_t i;
     job->found = HDI_TAKE_ZERO(s, hdi_found, tasks);
-    if (s->e->status < 0) return;
+    if (s->e->status < 0) return s->e->status;
+    job->per_task = tasks ? (job->n_queries + tasks - 1) / tasks : 1;
     for (i = 0; i < tasks; i++) {
         job->found[i].room = room;
         job->found[i].d = d + i * size;
         job->found[i].id = id + i * size;
         job->found[i].sorted = sorted + i * size;
     }
+    return HD_OK;
 }
 
-static double hdi_distance2(const double *a, const double *b) {
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
+/* Bounds of squares of rounded sums grow by so much: then nothing that belongs within is left out. */
+static double hdi_raise(double x) { return x * (1 + 16 * DBL_EPSILON); }
 
-static void hdi_nearest_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
-    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
-    hdi_found *f = job->found + index;
+    hdi_found *f = job->found + begin / job->per_task;
     const double *before = NULL;
+    const int64_t k = job->k;
     double reach = 0;                            /* distance of its k-th neighbour */
     int64_t i, p;
-    (void)worker;
     f->k = job->k;
     for (i = begin; i < end; i++) {
-        const int64_t v = job->order ? job->order[i] : i, k = job->k;
-        const double *q = job->query + 3 * v;
-        const double limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
+        const int64_t v = job->order ? job->order[i] : i;
+        const double *q = hdi_at3(job->query, v), limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
         int64_t m;
-        hdi_found_bound(f, before ? limit * limit * (1 + 16 * DBL_EPSILON) : 1e305);
+        hdi_found_bound(f, before ? hdi_raise(limit * limit) : HDI_NO_BOUND);
         hdi_search(job->t, q, f);
         m = hdi_found_sort(f);
         for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? HDI_CAST(int32_t, f->sorted[p].id) : -1;
-        for (p = 0; job->distance2 && p < k; p++) {
-            if (p < m) memcpy(job->distance2 + v * k + p, &f->sorted[p].key, sizeof(double));
-            else job->distance2[v * k + p] = HUGE_VAL;
-        }
+        for (p = 0; job->distance2 && p < k; p++) job->distance2[v * k + p] = p < m ? hdi_key_square(f->sorted + p) : HUGE_VAL;
         before = m == k ? q : NULL;
-        if (!before) continue;
-        memcpy(&reach, &f->sorted[k - 1].key, sizeof reach);
-        reach = sqrt(reach);
+        if (before) reach = sqrt(hdi_key_square(f->sorted + k - 1));
     }
 }
 
-/* index [k n_queries] and distance2 (or NULL) by queries: neighbours ascend by distance, equally far ones by id; -1 where there are no more.
- * queries NULL: the points xyz of the tree. */
-static hd_status hdi_nearest(const hdi_tree *t, const double *xyz, const double *query, int64_t n_queries, int32_t k, int32_t *index,
+/* index [k n_queries] and distance2 (or NULL) by queries: neighbours ascend by distance, equally far ones by id; -1 where
+ * there are no more. queries NULL: the points of the tree. */
+static hd_status hdi_nearest(const hdi_tree *t, const double *query, int64_t n_queries, int32_t k, int32_t *index,
                              double *distance2, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    const int64_t room = 2 * HDI_CAST(int64_t, k) + 32;
     hdi_search_job job;
-    int64_t tasks;
-    memset(&job, 0, sizeof job);
-    job.t = t;
-    job.query = query ? query : xyz;
-    job.order = query ? NULL : t->id;
-    job.n_queries = n_queries;
+    hdi_search_begin(&job, t, query, n_queries);
     job.k = k;
     job.index = index;
     job.distance2 = distance2;
-    tasks = hdi_search_tasks(&job, room);
-    hdi_search_take(&job, tasks, room, &s);
-    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_nearest_task, &job);
+    if (hdi_search_take(&job, 2 * HDI_CAST(int64_t, k) + 32, &s) >= 0)
+        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_nearest_task, &job);
     return hdi_scope_end(&s);
-}
-
-/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise
- * than those of the other. */
-static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
-    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
-    hdi_found *f = job->found + index;
-    int64_t i;
-    (void)worker;
-    f->k = HDI_COUNT;
-    for (i = begin; i < end; i++) {
-        const int64_t v = job->order ? job->order[i] : i;
-        f->counted = 0;
-        hdi_found_bound(f, job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN);
-        hdi_search(job->t, job->query + 3 * v, f);
-        job->out->row_ptr[v] = f->counted + f->m;
-    }
 }
 
 /* One row: columns ascending. What was gathered is sorted by id with its place as a payload. */
@@ -4161,25 +4176,29 @@ static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
     }
 }
 
-static void hdi_within_task(void *arg, int64_t index, int32_t worker) {
+/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise than those of the
+ * other. */
+static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
-    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
-    hdi_found *f = job->found + index;
+    const double bound = job->kept ? job->radius2 : job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN;
+    hdi_found *f = job->found + begin / job->per_task;
     hd_csr *out = job->out;
     int64_t i;
-    (void)worker;
-    f->k = 0;
+    f->k = job->kept ? 0 : HDI_COUNT;
     for (i = begin; i < end; i++) {
         const int64_t v = job->order ? job->order[i] : i;
-        hdi_found_bound(f, job->radius2);
-        hdi_search(job->t, job->query + 3 * v, f);
-        hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
-        job->kept[v] = HDI_CAST(int32_t, f->m);
+        f->counted = 0;
+        hdi_found_bound(f, bound);
+        hdi_search(job->t, hdi_at3(job->query, v), f);
+        if (job->kept) {
+            hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
+            job->kept[v] = HDI_CAST(int32_t, f->m);
+        } else {
+            out->row_ptr[v] = f->counted + f->m;
+        }
     }
 }
 
-/* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values are these. Counted in a first pass, written
- * in a second one. Other arguments as in hdi_nearest. */
 /* Closes the gaps that rows with fewer entries than were counted leave. */
 static void hdi_within_close(hd_csr *a, const int32_t *kept) {
     int64_t to = 0;
@@ -4196,37 +4215,30 @@ static void hdi_within_close(hd_csr *a, const int32_t *kept) {
     a->nnz = a->row_ptr[a->n_rows] = to;
 }
 
-static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, const double *query, int32_t n_queries, double radius2, hd_context *ctx,
-                            hd_error *e) {
+/* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values are these. Counted
+ * in a first pass, written in a second one. */
+static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query, int32_t n_queries, double radius2,
+                            hd_context *ctx, hd_error *e) {
+    enum { ROOM = 256 };       /* of the first pass, which keeps no candidates */
     hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
     hdi_search_job job;
-    hd_csr a;
-    int64_t tasks, widest = 0, i;
-    memset(&job, 0, sizeof job);
-    a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
-    job.t = t;
-    job.query = query ? query : xyz;
-    job.order = query ? NULL : t->id;
-    job.n_queries = n_queries;
+    hd_csr a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
+    int64_t widest = 0, i;
+    hdi_search_begin(&job, t, query, n_queries);
     job.radius2 = radius2;
     job.out = &a;
-    tasks = hdi_search_tasks(&job, 256);
-    hdi_search_take(&job, tasks, 256, &passes);
-    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_count_task, &job);
+    if (hdi_search_take(&job, ROOM, &passes) >= 0) hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_within_task, &job);
     if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
     for (i = 0; i < n_queries; i++) widest = a.row_ptr[i] > widest ? a.row_ptr[i] : widest;
     a.nnz = hdi_prefix_sum(a.row_ptr, n_queries);
     a.col = HDI_TAKE(&s, int32_t, a.nnz);
     a.val = HDI_TAKE(&s, double, a.nnz);
-    tasks = hdi_search_tasks(&job, widest);
-    hdi_search_take(&job, tasks, widest, &passes);
     job.kept = HDI_TAKE(&passes, int32_t, n_queries);
-    if (e->status >= 0) {
-        hdi_parallel(ctx, tasks, hdi_within_task, &job);
+    if (hdi_search_take(&job, widest, &passes) >= 0) {
+        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_within_task, &job);
         hdi_within_close(&a, job.kept);
     }
-    if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
-    *out = hdi_csr_keep(&s, a);
+    if (hdi_scope_end(&passes) >= 0) *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
 }
 
@@ -4262,7 +4274,8 @@ static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri
 
 /* What a block of faces adds to the report. */
 typedef struct hdi_face_tally {
-    int32_t n_repeated_corner, n_zero_area, bad, bad_vertex;   /* bad: the first face whose area is not finite, or -1 */
+    int32_t n_repeated_corner, n_repeated_face, n_zero_area;
+    int32_t bad, bad_vertex;                       /* bad: the first face whose area is not finite, or -1 */
     double steepest, bad_area;                     /* steepest: the largest cotangent, of the smallest angle */
 } hdi_face_tally;
 
@@ -4309,6 +4322,7 @@ static void hdi_tally_clear(hdi_face_tally *tally) {
 
 static void hdi_tally_add(hdi_face_tally *all, const hdi_face_tally *t) {
     all->n_repeated_corner += t->n_repeated_corner;
+    all->n_repeated_face += t->n_repeated_face;
     all->n_zero_area += t->n_zero_area;
     all->steepest = hdi_max(all->steepest, t->steepest);
     if (t->bad < 0 || (all->bad >= 0 && all->bad < t->bad)) return;
@@ -4323,8 +4337,9 @@ static hd_status hdi_tally_report(const hdi_face_tally *tally, int32_t m, hd_mes
         return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", tally->bad, tally->bad_vertex, tally->bad_area);
     rep->n_faces = m;
     rep->n_repeated_corner = tally->n_repeated_corner;
+    rep->n_repeated_face = tally->n_repeated_face;
     rep->n_zero_area = tally->n_zero_area;
-    rep->n_faces_used = m - tally->n_repeated_corner - tally->n_zero_area;
+    rep->n_faces_used = m - tally->n_repeated_corner - tally->n_repeated_face - tally->n_zero_area;
     rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, tally->steepest) : 0;
     return HD_OK;
 }
@@ -4485,15 +4500,15 @@ typedef struct hdi_edges {
     int32_t shift;              /* 2^shift vertices a block, which few edges leave */
 } hdi_edges;
 
-/* Room for the edges of m faces; room 0: for counts only. */
-static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int full, hdi_scope *s) {
+/* Room for so many edges, with weights and areas if they are wanted. */
+static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int weights, int areas, hdi_scope *s) {
     memset(g, 0, sizeof *g);
     g->shift = 31;
     g->first = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, n) + 1);
     if (g->first) g->last = g->first + 1;
-    if (room) g->to = HDI_TAKE(s, int32_t, room);
-    if (room) g->w = HDI_TAKE(s, double, room);
-    if (room && full) g->b = HDI_TAKE(s, double, room);
+    g->to = HDI_TAKE(s, int32_t, room);
+    if (weights) g->w = HDI_TAKE(s, double, room);
+    if (areas) g->b = HDI_TAKE(s, double, room);
     g->smaller = HDI_TAKE_ZERO(s, int32_t, n);
     g->larger = HDI_TAKE_ZERO(s, int32_t, n);
     g->parent = HDI_TAKE(s, int32_t, n);
@@ -4523,7 +4538,7 @@ static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int6
 static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hdi_scope *s) {
     hdi_sides sides;
     int32_t i, p, q, r, n_edges = 0;
-    if (hdi_edges_take(g, mesh->n, hdi_triple(mesh->m), full, s) < 0) return s->e->status;
+    if (hdi_edges_take(g, mesh->n, hdi_triple(mesh->m), 1, full, s) < 0) return s->e->status;
     if (hdi_sides_make(&sides, mesh, s) < 0) return s->e->status;
     for (i = 0; i < mesh->n; i++) {
         g->first[i] = n_edges;
@@ -4586,46 +4601,13 @@ static void hdi_mesh_masses(const hdi_mesh *mesh, hdi_lump lump, double *mass) {
         if (mesh->area[f] > 0) hdi_face_masses(mass, mesh->tri + 3 * f, mesh->cot + 3 * f, mesh->area[f], lump);
 }
 
-/* ---- one pass over a mesh ----
- * Vertices in their order, each with the faces whose smallest corner it is. These faces are measured, and their two sides at
- * the vertex join those that wait there, which were opposite to still smaller corners. Then all sides from the vertex to
- * later ones are known; they are sorted, and runs of them are its edges. What a face needs is read once, and near what was
- * read before. @MEASURED@
- * Blocks of vertices are worked on at a time. What faces give to vertices behind their block is computed before: few faces
- * do, as neighbours tend to have numbers close to each other, so these are measured twice. Where they do not, and for one
- * thread, there is one block. All sums are taken in the same order, however many blocks there are. */
+/* ---- edges of a triangle mesh ----
+ * Faces are put in the order of their smallest corners, so that what meets is near in memory. Then blocks of vertices are
+ * worked on in parallel: their faces are measured, and, when all sides are gathered, their edges to later vertices are runs
+ * of sides. Only what has to be summed in the order of the faces, or unites blocks, is done by one thread. All sums are
+ * taken in the same order, however many threads there are. */
 
-typedef struct hdi_side { int32_t to; uint32_t turn; double cot, area; } hdi_side;     /* turn: 1 if it runs to the later vertex */
-
-/* A block of vertices: what it found, and its work arrays. */
-typedef struct hdi_pass_block {
-    int32_t begin, end;         /* its vertices */
-    int32_t from, to;           /* the vertices it gives masses and sides to */
-    int32_t room;               /* for the sides of its busiest vertex */
-    int32_t n_repeated;
-    hdi_edge_tally edges;       /* length: since it was last noted */
-    hdi_face_tally tally;
-    hdi_side *side;             /* [busiest vertex] its sides, and work arrays */
-    double *cot;                /* [3 busiest] */
-    uint64_t *key, *work;       /* [busiest] */
-} hdi_pass_block;
-
-typedef struct hdi_pass {
-    hdi_mesh *mesh;
-    hdi_edges *edges;
-    double *mass;               /* [n] or NULL: not wanted */
-    hdi_lump lump;
-    hd_mesh_report *rep;
-    int32_t *face_ptr;          /* [n + 1] faces by their smallest corner */
-    int32_t *wait_ptr, *waits;  /* [n + 1], [n] where the sides of a vertex wait, and where the next one comes */
-    hdi_side *waiting;          /* [m] */
-    int32_t *border;            /* [n] vertices united along boundary edges */
-    double *length;             /* [HDI_BLOCKS_MOST] of edges, by blocks of a size that threads have no part in */
-    hdi_pass_block *block;      /* [n_blocks] of 2^edges->shift vertices */
-    int32_t n_blocks;
-} hdi_pass;
-
-enum { HDI_BLOCK_SHIFT = 14, HDI_BLOCKS_MOST = 64 };    /* larger: fewer faces leave; smaller: more threads have work */
+enum { HDI_BLOCK_SHIFT = 14, HDI_BLOCKS_MOST = 64 };    /* larger: fewer edges leave a block; smaller: more threads have work */
 
 /* Blocks of n vertices: the size as a power of two. */
 static int32_t hdi_block_shift(int32_t n) {
@@ -4634,331 +4616,209 @@ static int32_t hdi_block_shift(int32_t n) {
     return shift;
 }
 
-/* Faces of vertex i that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
-static void hdi_pass_repeats(const hdi_pass *s, hdi_pass_block *k, int32_t i, void *room) {
-    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1];
-    const int32_t *v = s->mesh->tri + hdi_triple(begin);
-    hdi_pair *pair = HDI_CAST(hdi_pair *, room);
-    int64_t n = 0, p, q;
-    int32_t f;
-    double *area = s->mesh->area;
-    for (f = begin; f < end; f++, v += 3) {
-        const uint64_t sum = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - i), no = HDI_CAST(uint64_t, f - begin);
+typedef struct hdi_pass {
+    hdi_mesh *mesh;
+    hdi_edges *edges;
+    hdi_sides sides;
+    int32_t *face_ptr;          /* [n + 1] faces by their smallest corner */
+    int32_t shift;              /* 2^shift vertices a block */
+    struct {
+        hdi_face_tally faces;
+        hdi_edge_tally edges;
+    } block[HDI_BLOCKS_MOST];
+} hdi_pass;
+
+/* The m faces of the mesh, in the order of their smallest corners, into tri and face. Returns how many of them leave their
+ * block of 2^shift vertices. */
+static int32_t hdi_pass_sort(hdi_pass *s, int32_t shift, int32_t *tri, int32_t *face) {
+    const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
+    int32_t *HDI_RESTRICT at = s->face_ptr, f, i, sum = 0, leaving = 0;
+    memset(at, 0, (HDI_CAST(size_t, n) + 1) * sizeof *at);
+    for (f = 0; f < m; f++, v += 3) {
+        const int32_t low = hdi_low32(hdi_low32(v[0], v[1]), v[2]), high = hdi_high32(hdi_high32(v[0], v[1]), v[2]);
+        at[low]++;
+        leaving += (low ^ high) >> shift != 0;
+    }
+    for (i = 0; i < n; i++) {
+        const int32_t count = at[i];
+        at[i] = sum;
+        sum += count;
+    }
+    for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
+        const int32_t to = at[hdi_low32(hdi_low32(v[0], v[1]), v[2])]++;
+        memcpy(tri + hdi_triple(to), v, 3 * sizeof *v);
+        face[to] = f;
+    }
+    memmove(at + 1, at, HDI_CAST(size_t, n) * sizeof *at);
+    at[0] = 0;
+    s->mesh->tri = tri;
+    s->mesh->face = face;
+    return leaving;
+}
+
+/* Faces of vertex i that have the same corners as an earlier one get area 0. pair: work for long lists. */
+static void hdi_pass_repeats(const hdi_pass *s, int32_t i, hdi_face_tally *tally, hdi_pair *pair) {
+    const int32_t begin = s->face_ptr[i], n = s->face_ptr[i + 1] - begin, *v = s->mesh->tri + hdi_triple(begin);
+    double *area = s->mesh->area + begin;
+    hdi_pair few[HDI_SHORT_LIST];
+    int32_t p;
+    if (n > HDI_SHORT_LIST && !pair) return;
+    if (n <= HDI_SHORT_LIST) pair = few;
+    for (p = 0; p < n; p++, v += 3) {            /* the sum of the two others and the larger say it all; no sum is 0 */
+        const uint64_t sum = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - i);
         const uint64_t most = HDI_CAST(uint64_t, hdi_high32(hdi_high32(v[0], v[1]), v[2]));
-        k->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* the sum of the two others and the larger say it all; no sum is 0 */
-    }
-    if (n <= HDI_SHORT_LIST) {
-        for (p = 1; p < n; p++) {
-            for (q = 0; q < p && k->key[q] != k->key[p]; q++) {}
-            if (q == p) continue;
-            area[begin + p] = 0;
-            k->n_repeated++;
-        }
-        return;
-    }
-    for (p = 0; p < n; p++) {                    /* many: sorted with their places */
-        pair[p].key = k->key[p];
+        pair[p].key = area[p] > 0 ? sum << 31 | most : HDI_CAST(uint64_t, p);
         pair[p].id = p;
     }
     hdi_sort_pairs(pair, n);
     for (p = 1; p < n; p++) {
         if (pair[p].key != pair[p - 1].key) continue;
-        area[begin + pair[p].id] = 0;
-        k->n_repeated++;
+        area[pair[p].id] = 0;
+        tally->n_repeated_face++;
     }
 }
 
-/* The shares of face v to those of its corners that the block gives to. */
-static void hdi_pass_masses(const hdi_pass *s, const hdi_pass_block *k, const int32_t *v, const double *cot, double area) {
-    static const int32_t hdi_three[3] = {0, 1, 2};
-    double share[3] = {0, 0, 0};
-    int q;
-    hdi_face_masses(share, hdi_three, cot, area, s->lump);
-    for (q = 0; q < 3; q++)
-        if (v[q] >= k->from && v[q] < k->to) s->mass[v[q]] = s->lump == HDI_LUMP_ONES ? 1 : s->mass[v[q]] + share[q];
-}
-
-static HDI_INLINE void hdi_side_set(hdi_side *side, int32_t to, uint32_t turn, double cot, double area) {
-    side->to = to;
-    side->turn = turn;
-    side->cot = cot;
-    side->area = area;
-}
-
-/* Measures the faces of vertex i; their sides are added to the n that k->side has, or wait at the vertex where they begin.
- * Returns the number of sides. */
-static int32_t hdi_pass_faces(const hdi_pass *s, hdi_pass_block *k, int32_t i, int32_t n) {
-    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1];
-    double *area = s->mesh->area;
-    int32_t f;
-    for (f = begin; f < end; f++) {
-        hdi_face_ahead(s->mesh, f + HDI_FACES_AHEAD < s->mesh->m ? f + HDI_FACES_AHEAD : f);
-        area[f] = hdi_face_measure(s->mesh, f, k->cot + 3 * (f - begin), &k->tally);
-    }
-    if (end - begin > 1) hdi_pass_repeats(s, k, i, k->side + n);
-    for (f = begin; f < end; f++) {
-        const int32_t *v = s->mesh->tri + hdi_triple(f), q = (v[1] == i) + 2 * (v[2] == i);      /* the corner at i */
-        const int32_t r = hdi_next3[q], t = hdi_prev3[q], b = v[r], c = v[t], low = hdi_low32(b, c);
-        const double *cot = k->cot + 3 * (f - begin);
-        if (!(area[f] > 0)) continue;
-        if (s->mass && k->from == 0 && hdi_high32(b, c) < k->to) hdi_face_masses(s->mass, v, cot, area[f], s->lump);
-        else if (s->mass) hdi_pass_masses(s, k, v, cot, area[f]);
-        hdi_side_set(k->side + n++, b, 1, cot[t], area[f]);
-        hdi_side_set(k->side + n++, c, 0, cot[r], area[f]);
-        if (low < k->from || low >= k->to) continue;
-        hdi_side_set(s->waiting + s->waits[low]++, hdi_high32(b, c), b < c, cot[q], area[f]);
-    }
-    return n;
-}
-
-/* The keys of n sides in ascending order, into k->key. */
-static HDI_INLINE void hdi_pass_order(hdi_pass_block *k, int32_t n) {
-    uint64_t *key = k->key, *work = k->work;
-    int32_t p, q;
-    for (p = 0; p < n; p++) key[p] = HDI_CAST(uint64_t, k->side[p].to) << 32 | HDI_CAST(uint64_t, p);
-    if (n > 16) {
-        hdi_sort_keys(key, n, work);
-        return;
-    }
-    for (p = 0; p < n; p++) {                    /* by counting who is smaller: no branch to be guessed */
-        const uint64_t x = key[p];
-        int32_t rank = 0;
-        for (q = 0; q < n; q++) rank += key[q] < x;
-        work[rank] = x;
-    }
-    k->key = work;
-    k->work = key;
-}
-
-/* The edges from vertex i to later ones, from its n sides. Those that leave the block are not joined yet; boundary edges among them are marked by ~. Returns
- * the number of the next edge. */
-static int32_t hdi_pass_edges(const hdi_pass *s, hdi_pass_block *k, int32_t i, int32_t n, int32_t at) {
-    hdi_edges *g = s->edges;
-    hdi_edge_tally tally = {0, 0, 0, 0, 0};
-    const uint64_t *key;
-    const int32_t begin = at, end = k->end;
-    int32_t p, q;
-    hdi_pass_order(k, n);
-    key = k->key;
-    for (p = 0; p < n; p = q, at++) {
-        const hdi_side *side = k->side + (key[p] & 0xffffffffu);
-        const int32_t j = side->to;
-        double w = -side->cot / 2, b = side->area;
-        uint32_t turns = side->turn;
-        int boundary;
-        for (q = p + 1; q < n && HDI_CAST(int32_t, key[q] >> 32) == j; q++) {
-            const hdi_side *other = k->side + (key[q] & 0xffffffffu);
-            w -= other->cot / 2;
-            b += other->area;
-            turns += other->turn;
-        }
-        boundary = q - p == 1;
-        if (g->w) {
-            g->to[at] = j >= end && boundary ? ~j : j;
-            g->w[at] = w;
-            if (g->b) g->b[at] = b / 12;
-        }
-        hdi_edge_count(&tally, q - p, turns, hdi_edge_length(s->mesh->xyz, i, j));
-        if (j >= end) continue;
-        hdi_edges_join(g, i, j);
-        if (boundary) hdi_unite(s->border, i, j);
-    }
-    g->larger[i] = at - begin;
-    hdi_edge_tally_add(&k->edges, &tally);
-    return at;
-}
-
-/* What the faces give to vertices behind their block: masses, and sides that wait there. */
-static void hdi_pass_leaving(const hdi_pass *s) {
-    int32_t i, b, f;
-    for (b = 0; b + 1 < s->n_blocks; b++) {
-        hdi_pass_block k = s->block[b];
-        const int32_t end = s->face_ptr[k.end];
-        k.from = k.end;
-        k.to = s->mesh->n;
-        for (f = s->face_ptr[k.begin]; f < end; f++) {
-            const int32_t *v = s->mesh->tri + hdi_triple(f);
-            if (hdi_high32(v[0], hdi_high32(v[1], v[2])) < k.end) continue;
-            i = hdi_low32(v[0], hdi_low32(v[1], v[2]));
-            (void)hdi_pass_faces(s, &k, i, 0);
-            f = s->face_ptr[i + 1] - 1;          /* all faces of the vertex are done */
-        }
-    }
-}
-
-/* The edges that leave block k. */
-static void hdi_pass_crossing(const hdi_pass *s, const hdi_pass_block *k) {
-    hdi_edges *g = s->edges;
-    int32_t i, p;
-    for (i = k->begin; i < k->end; i++) {
-        for (p = g->last[i] - 1; p >= g->first[i]; p--) {
-            const int boundary = g->to[p] < 0;
-            const int32_t j = boundary ? ~g->to[p] : g->to[p];
-            if (j < k->end) break;
-            g->to[p] = j;
-            hdi_edges_join(g, i, j);
-            if (boundary) hdi_unite(s->border, i, j);
-        }
-    }
-}
-
-/* Numbers of faces and waiting sides at each vertex, as offsets; the faces of the mesh in the order of their smallest corners. */
-static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
-    const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
-    int32_t *HDI_RESTRICT faces = s->face_ptr, *HDI_RESTRICT waits = s->waits, f, i, sum = 0, wait_sum = 0, leaving = 0;
-    const int32_t shift = s->edges->shift;
-    memset(faces, 0, (HDI_CAST(size_t, n) + 1) * sizeof *faces);
-    memset(waits, 0, HDI_CAST(size_t, n) * sizeof *waits);
-    for (f = 0; f < m; f++, v += 3) {
-        const int32_t lo = hdi_low32(v[0], v[1]), hi = hdi_high32(v[0], v[1]), low = hdi_low32(lo, v[2]);
-        faces[low]++;
-        waits[hdi_high32(lo, hdi_low32(hi, v[2]))]++;
-        leaving += (low ^ hdi_high32(hi, v[2])) >> shift != 0;
-    }
-    if (leaving > m / 4) s->edges->shift = 31;
-    for (i = 0; i < n; i++) {
-        const int32_t count = faces[i], wait = waits[i];
-        faces[i] = sum;
-        waits[i] = s->wait_ptr[i] = wait_sum;
-        sum += count;
-        wait_sum += wait;
-    }
-    s->wait_ptr[n] = wait_sum;
-    for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
-        const int32_t at = faces[hdi_low32(hdi_low32(v[0], v[1]), v[2])]++;
-        memcpy(tri + hdi_triple(at), v, 3 * sizeof *v);
-        face[at] = f;
-    }
-    memmove(faces + 1, faces, HDI_CAST(size_t, n) * sizeof *faces);
-    faces[0] = 0;
-    s->mesh->tri = tri;
-    s->mesh->face = face;
-}
-
-/* Vertices of block k. Returns room for the sides of its busiest vertex, in whole cache lines that no other block writes to. */
-static int32_t hdi_pass_extent(const hdi_pass *p, hdi_pass_block *k, int32_t b) {
-    const int64_t step = HDI_CAST(int64_t, 1) << p->edges->shift;
-    int32_t i, most = 1;
-    memset(k, 0, sizeof *k);
-    hdi_tally_clear(&k->tally);
-    k->begin = HDI_CAST(int32_t, b * step);
-    k->end = k->to = HDI_CAST(int32_t, hdi_least(p->mesh->n, (b + 1) * step));
-    for (i = k->begin; i < k->end; i++) {
-        const int32_t sides = 2 * (p->face_ptr[i + 1] - p->face_ptr[i]) + p->wait_ptr[i + 1] - p->wait_ptr[i];
-        if (sides > most) most = sides;
-        p->border[i] = i;
-    }
-    return (most + 31) & ~15;
-}
-
-/* The blocks and their work arrays. */
-static hd_status hdi_pass_blocks(hdi_pass *p, hdi_scope *own) {
-    int32_t b;
-    int64_t sum = 0;
-    hdi_side *side;
-    double *cot;
-    uint64_t *key, *work;
-    p->n_blocks = ((p->mesh->n - 1) >> p->edges->shift) + 1;
-    p->block = HDI_TAKE(own, hdi_pass_block, p->n_blocks);
-    if (!p->block) return own->e->status;
-    for (b = 0; b < p->n_blocks; b++) {
-        p->block[b].room = hdi_pass_extent(p, p->block + b, b);
-        sum += p->block[b].room;
-    }
-    side = HDI_TAKE(own, hdi_side, sum);
-    cot = HDI_TAKE(own, double, 3 * sum);
-    key = HDI_TAKE(own, uint64_t, sum);
-    work = HDI_TAKE(own, uint64_t, sum);
-    if (own->e->status < 0) return own->e->status;
-    for (b = p->n_blocks; b-- > 0;) {
-        sum -= p->block[b].room;
-        p->block[b].side = side + sum;
-        p->block[b].cot = cot + 3 * sum;
-        p->block[b].key = key + sum;
-        p->block[b].work = work + sum;
-    }
-    return HD_OK;
-}
-
-/* Room of the pass; the faces of the mesh and their areas live in s, the rest in own. */
-static hd_status hdi_pass_begin(hdi_pass *p, hdi_scope *own, hdi_scope *s) {
-    const int32_t n = p->mesh->n;
-    int32_t *tri = HDI_TAKE(s, int32_t, hdi_triple(p->mesh->m)), *face = HDI_TAKE(s, int32_t, p->mesh->m);
-    p->mesh->area = HDI_TAKE(s, double, p->mesh->m);
-    if (p->edges->w) p->edges->last = HDI_TAKE(s, int32_t, n);
-    p->face_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
-    p->wait_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
-    p->waits = HDI_TAKE(own, int32_t, n);
-    p->border = HDI_TAKE(own, int32_t, n);
-    p->waiting = HDI_TAKE(own, hdi_side, p->mesh->m);
-    p->length = HDI_TAKE_ZERO(own, double, HDI_BLOCKS_MOST);
-    if (s->e->status < 0) return s->e->status;
-    /* One block if nobody gains by more, or if edges are only counted: then nobody knows which leave their block. */
-    p->edges->shift = p->edges->w && !hdi_is_serial(s->ctx) ? hdi_block_shift(n) : 31;
-    hdi_pass_sort(p, tri, face);
-    if (p->mass) memset(p->mass, 0, HDI_CAST(size_t, n) * sizeof *p->mass);
-    return hdi_pass_blocks(p, own);
-}
-
-/* A block of vertices. Its edges begin where there would be room for one edge of each side before it. */
-static void hdi_pass_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_pass *p = HDI_CAST(const hdi_pass *, arg);
-    hdi_pass_block *all = p->block + index, k = *all;
-    const int32_t shift = hdi_block_shift(p->mesh->n);
-    int32_t i, n, at = 2 * p->face_ptr[k.begin] + p->wait_ptr[k.begin];
-    (void)worker;
-    for (i = k.begin; i < k.end; i++) {
-        p->edges->first[i] = at;
-        n = p->waits[i] - p->wait_ptr[i];
-        memcpy(k.side, p->waiting + p->wait_ptr[i], HDI_CAST(size_t, n) * sizeof *k.side);
-        n = hdi_pass_faces(p, &k, i, n);
-        at = hdi_pass_edges(p, &k, i, n, at);
-        p->edges->last[i] = at;
-        if (i + 1 < k.end && (i + 1) >> shift == i >> shift) continue;
-        p->length[i >> shift] = k.edges.length;
-        k.edges.length = 0;
-    }
-    *all = k;
-}
-
-static hd_status hdi_pass_run(hdi_pass *p, hdi_scope *s) {
-    hd_mesh_report *rep = p->rep;
+static void hdi_pass_measure(void *arg, int64_t begin, int64_t end) {
+    const hdi_pass *s = HDI_CAST(const hdi_pass *, arg);
+    const hdi_mesh *mesh = s->mesh;
     hdi_face_tally tally;
-    hdi_edge_tally edges = {0, 0, 0, 0, 0};
-    int32_t b;
+    int64_t i;
+    int32_t f;
     hdi_tally_clear(&tally);
-    hdi_pass_leaving(p);
-    hdi_parallel(s->ctx, p->n_blocks, hdi_pass_task, p);
-    for (b = 0; b < p->n_blocks; b++) {
-        const hdi_pass_block *k = p->block + b;
-        if (b + 1 < p->n_blocks) hdi_pass_crossing(p, k);
-        hdi_tally_add(&tally, &k->tally);
-        rep->n_repeated_face += k->n_repeated;
-        hdi_edge_tally_add(&edges, &k->edges);
+    for (f = s->face_ptr[begin]; f < s->face_ptr[end]; f++) {
+        hdi_face_ahead(mesh, f + HDI_FACES_AHEAD < mesh->m ? f + HDI_FACES_AHEAD : f);
+        mesh->area[f] = hdi_face_measure(mesh, f, mesh->cot + hdi_triple(f), &tally);
     }
-    for (b = 0; b < HDI_BLOCKS_MOST; b++) p->edges->length += p->length[b];
-    if (hdi_tally_report(&tally, p->mesh->m, rep, s->e) < 0) return s->e->status;
-    rep->n_faces_used -= rep->n_repeated_face;
-    hdi_edge_report(&edges, p->border, p->mesh->n, rep);
+    for (i = begin; i < end; i++)
+        if (s->face_ptr[i + 1] - s->face_ptr[i] > 1) hdi_pass_repeats(s, HDI_CAST(int32_t, i), &tally, NULL);
+    HDI_CAST(hdi_pass *, arg)->block[begin >> s->shift].faces = tally;
+}
+
+/* The edges of the run of sides [p, q), into place at of the edges if these are wanted. */
+static HDI_INLINE void hdi_pass_edge(const hdi_pass *s, int32_t p, int32_t q, int32_t i, int32_t at, hdi_edge_tally *tally) {
+    const uint64_t *key = s->sides.key;
+    const hdi_mesh *mesh = s->mesh;
+    const int32_t j = hdi_key_vertex(key[p]), n = q - p;
+    hdi_edges *g = s->edges;
+    double w = -mesh->cot[hdi_key_opposite(key[p])] / 2, b = mesh->area[hdi_key_face(key[p])];
+    int32_t forward = mesh->tri[hdi_key_side(key[p])] == i;
+    while (++p < q) {
+        forward += mesh->tri[hdi_key_side(key[p])] == i;
+        w -= mesh->cot[hdi_key_opposite(key[p])] / 2;
+        b += mesh->area[hdi_key_face(key[p])];
+    }
+    g->to[at] = n == 1 ? ~j : j;
+    if (g->w) g->w[at] = w;
+    if (g->b) g->b[at] = b / 12;
+    hdi_edge_count(tally, n, forward, hdi_edge_length(mesh->xyz, i, j));
+}
+
+/* The edges of a block of vertices; boundary edges are marked by ~. */
+static void hdi_pass_edges(void *arg, int64_t begin, int64_t end) {
+    hdi_pass *s = HDI_CAST(hdi_pass *, arg);
+    hdi_edges *g = s->edges;
+    hdi_edge_tally *block = &s->block[begin >> s->shift].edges;
+    int32_t at = s->sides.ptr[begin], i, p, q;
+    for (i = HDI_CAST(int32_t, begin); i < end; i++) {
+        hdi_edge_tally tally = {0, 0, 0, 0, 0};
+        const int32_t last = s->sides.ptr[i + 1];
+        if (last - s->sides.ptr[i] <= HDI_SHORT_LIST) hdi_sides_sort(&s->sides, i);
+        g->first[i] = at;
+        for (p = s->sides.ptr[i]; p < last; p = q) {
+            q = hdi_sides_run(&s->sides, p, last);
+            hdi_pass_edge(s, p, q, i, at++, &tally);
+        }
+        g->last[i] = at;
+        g->larger[i] = tally.n_edges;
+        hdi_edge_tally_add(block, &tally);
+    }
+}
+
+/* Joins the vertices of all edges, in border those of boundary edges, whose marks are taken away. */
+static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border) {
+    int32_t i, p;
+    hdi_fill_own(border, n);
+    for (i = 0; i < n; i++) {
+        for (p = g->first[i]; p < g->last[i]; p++) {
+            if (g->to[p] < 0) {
+                g->to[p] = ~g->to[p];
+                hdi_unite(border, i, g->to[p]);
+            }
+            hdi_edges_join(g, i, g->to[p]);
+        }
+    }
+}
+
+/* Areas and cotangents of all faces; those that contribute nothing get area 0. */
+static hd_status hdi_pass_faces(hdi_pass *pass, hd_mesh_report *rep, hdi_scope *own) {
+    const hdi_mesh *mesh = pass->mesh;
+    const int32_t n = mesh->n, step = 1 << pass->shift;
+    hdi_face_tally tally;
+    int64_t most = 0;
+    int32_t i;
+    hdi_pair *work;
+    hdi_tally_clear(&tally);
+    hdi_parallel_ranges(own->ctx, n, step, hdi_pass_measure, pass);
+    for (i = 0; i < HDI_BLOCKS_MOST && i <= (n - 1) >> pass->shift; i++) hdi_tally_add(&tally, &pass->block[i].faces);
+    for (i = 0; i < n; i++) most = hdi_high32(HDI_CAST(int32_t, most), pass->face_ptr[i + 1] - pass->face_ptr[i]);
+    if (most > HDI_SHORT_LIST) {
+        work = HDI_TAKE(own, hdi_pair, most);
+        for (i = 0; i < n && work; i++)
+            if (pass->face_ptr[i + 1] - pass->face_ptr[i] > HDI_SHORT_LIST) hdi_pass_repeats(pass, i, &tally, work);
+    }
+    return own->e->status < 0 ? own->e->status : hdi_tally_report(&tally, mesh->m, rep, own->e);
+}
+
+/* What a mesh is asked for besides its areas. */
+typedef struct hdi_mesh_wants {
+    int weights, areas;         /* of edges: cotangents, and areas for a full B */
+    hdi_lump lump;
+    double *mass;               /* [n] masses of the vertices; NULL: not wanted */
+} hdi_mesh_wants;
+
+static hd_status hdi_pass_run(hdi_pass *pass, const hdi_mesh_wants *want, hd_mesh_report *rep, hdi_scope *own) {
+    hdi_mesh *mesh = pass->mesh;
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    int32_t i, *border = HDI_TAKE(own, int32_t, mesh->n);
+    if (!border || hdi_pass_faces(pass, rep, own) < 0) return own->e->status;
+    if (want->mass) hdi_mesh_masses(mesh, want->lump, want->mass);
+    if (hdi_sides_make(&pass->sides, mesh, own) < 0) return own->e->status;
+    for (i = 0; i < mesh->n; i++)                /* short ones need no work array */
+        if (pass->sides.ptr[i + 1] - pass->sides.ptr[i] > HDI_SHORT_LIST) hdi_sides_sort(&pass->sides, i);
+    hdi_parallel_ranges(own->ctx, mesh->n, HDI_CAST(int64_t, 1) << pass->shift, hdi_pass_edges, pass);
+    for (i = 0; i < HDI_BLOCKS_MOST; i++) hdi_edge_tally_add(&tally, &pass->block[i].edges);
+    hdi_pass_join(pass->edges, mesh->n, border);
+    pass->edges->length = tally.length;
+    hdi_edge_report(&tally, border, mesh->n, rep);
     return HD_OK;
 }
 
-/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing. The arrays live in s. The faces of the mesh are in an
- * order of their own, without cotangents and corner lists. full -1: the edges are only counted; 1: with areas. mass [n] or NULL. */
-static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, int full, double *mass, hdi_lump lump, hd_mesh_report *rep, hdi_scope *s) {
+/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing. The arrays live in
+ * s. The faces of the mesh are in an order of their own then, without cotangents. */
+static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, const hdi_mesh_wants *want, hd_mesh_report *rep, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    const int64_t n_corners = hdi_triple(mesh->m);
+    int32_t *tri, *face, leaving;
     hdi_pass pass;
     memset(&pass, 0, sizeof pass);
     pass.mesh = mesh;
     pass.edges = edges;
-    pass.mass = mass;
-    pass.lump = lump;
-    pass.rep = rep;
+    pass.shift = hdi_block_shift(mesh->n);
     rep->n_faces = mesh->m;
-    if (hdi_triple(mesh->m) > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (n_corners > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
     if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0) return hdi_scope_end(&own);
-    if (hdi_edges_take(edges, mesh->n, full < 0 ? 0 : hdi_triple(mesh->m), full > 0, s) < 0) return hdi_scope_end(&own);
-    if (hdi_pass_begin(&pass, &own, s) >= 0) (void)hdi_pass_run(&pass, s);
+    if (hdi_edges_take(edges, mesh->n, n_corners, want->weights, want->areas, s) < 0) return hdi_scope_end(&own);
+    edges->last = HDI_TAKE(s, int32_t, mesh->n);
+    tri = HDI_TAKE(s, int32_t, n_corners);
+    face = HDI_TAKE(s, int32_t, mesh->m);
+    mesh->area = HDI_TAKE(s, double, mesh->m);
+    mesh->cot = HDI_TAKE(&own, double, n_corners);
+    pass.face_ptr = HDI_TAKE(&own, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    leaving = hdi_pass_sort(&pass, pass.shift, tri, face);
+    (void)hdi_pass_run(&pass, want, rep, &own);
+    edges->shift = leaving <= mesh->m / 4 && !hdi_is_serial(s->ctx) ? pass.shift : 31;
+    mesh->cot = NULL;
     return hdi_scope_end(&own);
 }
 
@@ -6258,8 +6118,12 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_s
     double *vertex_mass = HDI_TAKE(&own, double, lap->n);
     hd_error *e = s->e;
     hdi_edges edges;
-    if (!vertex_mass) return hdi_scope_end(&own);
-    if (hdi_mesh_faces(mesh, &edges, full && lap->kind == HD_LAPLACIAN_FEM, vertex_mass, hdi_lap_lump(lap->kind), &lap->mesh, s) < 0) return hdi_scope_end(&own);
+    hdi_mesh_wants want;
+    want.weights = 1;
+    want.areas = full && lap->kind == HD_LAPLACIAN_FEM;
+    want.lump = hdi_lap_lump(lap->kind);
+    want.mass = vertex_mass;
+    if (!vertex_mass || hdi_mesh_faces(mesh, &edges, &want, &lap->mesh, s) < 0) return hdi_scope_end(&own);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&own);
     if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0) return hdi_scope_end(&own);
     if (hdi_lap_assemble(lap, &edges, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&own);
@@ -6473,9 +6337,11 @@ static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const double *xyz, const i
     hd_mesh_report *rep = &lap->mesh;
     hdi_mesh mesh, flat;
     hdi_edges edges;
+    hdi_mesh_wants want;
     hdi_soup soup;
+    memset(&want, 0, sizeof want);
     hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
-    if (hdi_mesh_faces(&mesh, &edges, -1, NULL, HDI_LUMP_THIRDS, rep, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_mesh_faces(&mesh, &edges, &want, rep, &s) < 0) return hdi_scope_end(&s);
     if (rep->n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
     if (e->status < 0 || hdi_soup_of_mesh(&soup, &mesh, task->delta, rep, &s) < 0) return hdi_scope_end(&s);
     if (hdi_soup_delaunay(&flat, &soup, task->close, rep, &s) < 0) return hdi_scope_end(&s);
@@ -7017,7 +6883,7 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
     cloud->nbr = HDI_TAKE(s, int32_t, k * n);
     cloud->d2 = HDI_TAKE(s, double, k * n);
     if (s->e->status < 0 || hdi_tree_make(&tree, cloud->xyz, cloud->n, &own) < 0) return hdi_scope_end(&own);
-    if (hdi_nearest(&tree, cloud->xyz, NULL, n, cloud->k, cloud->nbr, cloud->d2, s->ctx, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_nearest(&tree, NULL, n, cloud->k, cloud->nbr, cloud->d2, s->ctx, s->e) < 0) return hdi_scope_end(&own);
     for (i = 0; i < n; i++) {
         const double *d2 = cloud->d2 + i * k;
         if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
@@ -7096,7 +6962,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
     hdi_tree tree;
     int32_t i;
     if (hdi_tree_make(&tree, lap->xyz, lap->n_active, &s) < 0) return hdi_scope_end(&s);
-    if (hdi_within(&lap->L, &tree, lap->xyz, NULL, lap->n_active, cut2, lap->context, e) < 0) return hdi_scope_end(&s);
+    if (hdi_within(&lap->L, &tree, NULL, lap->n_active, cut2, lap->context, e) < 0) return hdi_scope_end(&s);
     if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
     job.lap = lap;
     job.bandwidth = rep->bandwidth;
@@ -7370,7 +7236,7 @@ static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (v = 0; v < n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
     if (hdi_tree_make(&tree, places, n, &own) < 0) return hdi_scope_end(&own);
-    job->xyz = hdi_star_order(&tree, places, keep);
+    job->xyz = tree.xyz = hdi_star_order(&tree, places, keep);
     if (!job->xyz) return hdi_scope_end(&own);
     for (v = 0; v < n; v++) {
         name[v] = first[tree.id[v]];
@@ -7382,7 +7248,7 @@ static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n
     job->name = name;
     job->ptr = ptr;
     job->nbr = nbr;
-    (void)hdi_nearest(&tree, job->xyz, NULL, n, k, nbr, NULL, s->ctx, s->e);
+    (void)hdi_nearest(&tree, NULL, n, k, nbr, NULL, s->ctx, s->e);
     return hdi_scope_end(&own);
 }
 
@@ -16374,10 +16240,13 @@ static hd_status hdi_missing(hd_error *e) { return hdi_fail(e, HD_ERR_ARGUMENT, 
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
                                             const int32_t *j, const double *v, hd_context *ctx, hd_error *err) {
     hdi_call c;
+    hdi_scope s;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     if (!out || (n_triplets > 0 && (!i || !j))) return hdi_missing(c.e);
     if (n_rows < 0 || n_cols < 0 || n_triplets < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "triplets: a size is negative");
-    return hdi_csr_from_triplets(out, n_rows, n_cols, n_triplets, i, j, v, c.ctx, c.e);
+    s = hdi_scope_begin(c.ctx, c.e);
+    (void)hdi_csr_from_triplets(out, n_rows, n_cols, n_triplets, i, j, v, &s);
+    return hdi_scope_end(&s);
 }
 
 HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx, hd_error *err) {
@@ -16667,7 +16536,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(int32_t *index, double *distance2, 
     if (m > 0 && !index) return hdi_missing(c.e);
     s = hdi_scope_begin(c.ctx, c.e);
     if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
-        (void)hdi_nearest(&tree, xyz, query, m, k, index, distance2, c.ctx, c.e);
+        (void)hdi_nearest(&tree, query, m, k, index, distance2, c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
@@ -16681,7 +16550,7 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     if (hdi_nan(radius) || radius < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
     s = hdi_scope_begin(c.ctx, c.e);
     if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
-        (void)hdi_within(out, &tree, xyz, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
+        (void)hdi_within(out, &tree, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 

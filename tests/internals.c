@@ -1872,6 +1872,7 @@ static void int_flips(void) {
             hdi_scope scope = hdi_scope_begin(&ctx, &e);
             hd_mesh_report rep;
             hdi_mesh mesh, flat;
+            hdi_mesh_wants want;
             hdi_edges edges;
             hdi_soup soup;
             hdi_cover t;
@@ -1883,7 +1884,8 @@ static void int_flips(void) {
             for (i = 0; k == 3 && i < s.n_tri; i++)
                 if (s.tri[3 * i] % 3 == 0) s.tri[3 * i] = 4;     /* any triangles */
             hdi_mesh_clear(&mesh, s.xyz, s.n, s.tri, s.n_tri);
-            CHECK(hdi_mesh_faces(&mesh, &edges, -1, NULL, HDI_LUMP_THIRDS, &rep, &scope) == HD_OK);
+            memset(&want, 0, sizeof want);
+            CHECK(hdi_mesh_faces(&mesh, &edges, &want, &rep, &scope) == HD_OK);
             CHECK(hdi_soup_of_mesh(&soup, &mesh, 1e-5, &rep, &scope) == HD_OK);
             CHECK(hdi_cover_begin(&t, &soup, 0, &scope) == HD_OK && hdi_cover_whole(&t, close, &rep, &scope) == HD_OK);
             CHECK(t.n_sheets == (k == 0 || k == 2 || (k == 1 && !close) ? 1 : 2) && (k < 3 || rep.n_nonmanifold_edges > 5));
