@@ -1349,7 +1349,7 @@ static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
     }
 }
 
-/* Sorts keys; work [n]. Short lists by insertion, long ones by merging runs of eight. */
+/* Sorts keys; work [n], which short lists do not need: they are sorted by insertion, long ones in runs of eight, merged. */
 static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
     const int64_t first = n <= HDI_SHORT_LIST ? 32 : 8;
     uint64_t *from = a, *to = work;
@@ -4358,18 +4358,16 @@ static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
 
 typedef struct hdi_measure_job { const hdi_mesh *mesh; hdi_face_tally *tally; } hdi_measure_job;
 
-static void hdi_measure_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
     const hdi_measure_job *job = HDI_CAST(const hdi_measure_job *, arg);
-    const int64_t begin = index * HDI_FACES_PER_TASK, end = hdi_least(job->mesh->m, begin + HDI_FACES_PER_TASK);
     hdi_face_tally tally;
     int64_t f;
-    (void)worker;
     hdi_tally_clear(&tally);
     for (f = begin; f < end; f++) {
         hdi_face_ahead(job->mesh, hdi_least(f + HDI_FACES_AHEAD, end - 1));
         job->mesh->area[f] = hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), job->mesh->cot + 3 * f, &tally);
     }
-    job->tally[index] = tally;
+    job->tally[begin / HDI_FACES_PER_TASK] = tally;
 }
 
 /* All faces of a mesh whose indices are fine: cot and area. */
@@ -4383,7 +4381,7 @@ static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hd
     job.mesh = mesh;
     job.tally = HDI_TAKE(&own, hdi_face_tally, n_tasks);
     if (!job.tally) return hdi_scope_end(&own);
-    hdi_parallel(s->ctx, n_tasks, hdi_measure_task, &job);
+    hdi_parallel_ranges(s->ctx, mesh->m, HDI_FACES_PER_TASK, hdi_measure_task, &job);
     for (i = 0; i < n_tasks; i++) hdi_tally_add(&all, job.tally + i);
     (void)hdi_tally_report(&all, mesh->m, rep, s->e);
     return hdi_scope_end(&own);
@@ -5274,16 +5272,14 @@ typedef struct hdi_soup_job {
     int64_t *n_short;
 } hdi_soup_job;
 
-static void hdi_soup_length_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_soup_length_task(void *arg, int64_t begin, int64_t end) {
     const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
     hdi_soup *soup = job->soup;
     const hdi_mesh *mesh = &soup->mesh;
-    const int64_t end = hdi_least(mesh->m, (index + 1) * HDI_FACES_PER_TASK);
     double add = 0;
     int64_t f, n_short = 0;
     int q;
-    (void)worker;
-    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
+    for (f = begin; f < end; f++) {
         const int32_t *v = mesh->tri + 3 * f;
         double *len = soup->len + 3 * f, spare;
         if (!(mesh->area[f] > 0)) continue;
@@ -5293,18 +5289,16 @@ static void hdi_soup_length_task(void *arg, int64_t index, int32_t worker) {
         if (spare < job->delta) n_short += hdi_soup_copies(soup, HDI_CAST(int32_t, f));
         add = hdi_max(add, job->delta - spare);
     }
-    job->add[index] = add;
-    job->n_short[index] = n_short;
+    job->add[begin / HDI_FACES_PER_TASK] = add;
+    job->n_short[begin / HDI_FACES_PER_TASK] = n_short;
 }
 
-static void hdi_soup_cot_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_soup_cot_task(void *arg, int64_t begin, int64_t end) {
     const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
     hdi_soup *soup = job->soup;
-    const int64_t end = hdi_least(soup->mesh.m, (index + 1) * HDI_FACES_PER_TASK);
     int64_t f;
     int q;
-    (void)worker;
-    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
+    for (f = begin; f < end; f++) {
         double *len = soup->len + 3 * f, *cot = soup->mesh.cot + 3 * f;
         cot[0] = cot[1] = cot[2] = soup->area[f] = 0;
         if (!(soup->mesh.area[f] > 0)) continue;
@@ -5329,12 +5323,12 @@ static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *
     job.add = HDI_TAKE(s, double, n_tasks);
     job.n_short = HDI_TAKE(s, int64_t, n_tasks);
     if (s->e->status < 0) return s->e->status;
-    hdi_parallel(s->ctx, n_tasks, hdi_soup_length_task, &job);
+    hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_length_task, &job);
     for (i = 0; i < n_tasks; i++) {
         job.most_add = hdi_max(job.most_add, job.add[i]);
         n_short += job.n_short[i];
     }
-    hdi_parallel(s->ctx, n_tasks, hdi_soup_cot_task, &job);
+    hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_cot_task, &job);
     rep->n_mollified = HDI_CAST(int32_t, n_short);
     rep->mollify_epsilon = job.most_add * soup->unit;
     return HD_OK;
@@ -6590,6 +6584,109 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     return hdi_scope_end(&s);
 }
 
+/* ---- pairs renumbered ---- */
+
+static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
+    void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
+    if (to && count > 0) memcpy(to, from, HDI_CAST(size_t, count) * size);
+    return to;
+}
+
+enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
+
+/* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row
+ * ascending. */
+static hd_status hdi_pair_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
+    const int32_t n = lap->n_active;
+    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, nnz = HDI_CAST(uint64_t, lap->L.nnz);
+    hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
+    int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
+    int64_t *fill = HDI_TAKE(&s, int64_t, n1), p;
+    double *B = NULL;
+    hd_csr a = lap->L;
+    a.row_ptr = HDI_TAKE(&keep, int64_t, n1);
+    a.col = HDI_TAKE(&keep, int32_t, nnz);
+    a.val = HDI_TAKE(&keep, double, nnz);
+    if (lap->B) B = HDI_TAKE(&keep, double, nnz);
+    if (e->status < 0) {
+        hdi_scope_end(&s);
+        return hdi_scope_end(&keep);
+    }
+    a.row_ptr[0] = 0;
+    for (i = 0; i < n; i++) {
+        inv[perm[i]] = i;
+        fill[i] = a.row_ptr[i];
+        a.row_ptr[i + 1] = a.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
+    }
+    for (i = 0; i < n; i++) {
+        if (i + HDI_ROWS_AHEAD < n) {
+            const int64_t ahead = lap->L.row_ptr[perm[i + HDI_ROWS_AHEAD]];
+            HDI_PREFETCH(lap->L.col + ahead);
+            HDI_PREFETCH(lap->L.val + ahead);
+            if (B) HDI_PREFETCH(lap->B + ahead);
+        }
+        for (p = lap->L.row_ptr[perm[i]]; p < lap->L.row_ptr[perm[i] + 1]; p++) {
+            const int64_t q = fill[inv[lap->L.col[p]]]++;
+            a.col[q] = i;
+            a.val[q] = lap->L.val[p];
+            if (B) B[q] = lap->B[p];
+        }
+    }
+    out->L = a;
+    out->B = B;
+    keep.n = 0;                                  /* all of it is the caller's now */
+    return hdi_scope_end(&s);
+}
+
+/* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
+static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
+    const size_t n = HDI_CAST(size_t, lap->n_active);
+    hd_laplacian *out;
+    int32_t i;
+    hdi_error_clear(e);
+    out = HDI_CAST(hd_laplacian *, hdi_copy(lap, 1, sizeof *lap, ctx, e));
+    if (!out) return NULL;
+    memset(&out->L, 0, sizeof out->L);
+    out->context = ctx;
+    out->B = NULL;
+    out->xyz = NULL;                             /* an order has been found */
+    out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
+    out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
+    out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
+    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
+    out->component_mass = HDI_CAST(double *, hdi_copy(lap->component_mass, HDI_CAST(uint64_t, lap->n_components), sizeof(double), ctx, e));
+    out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
+    if (e->status < 0 || hdi_pair_permute(out, lap, perm, ctx, e) < 0) {
+        hdi_laplacian_free(out, ctx);
+        return NULL;
+    }
+    for (i = 0; i < lap->n_active; i++) {
+        out->mass[i] = lap->mass[perm[i]];
+        out->b_diag[i] = lap->b_diag[perm[i]];
+        out->component[i] = lap->component[perm[i]];
+        out->vertex[i] = lap->vertex[perm[i]];
+        out->row[out->vertex[i]] = i;
+    }
+    return out;
+}
+
+/* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t B^-1 L) is the same with t multiplied
+ * alike, to the last bit, and squares of areas neither underflow nor overflow whatever the unit of length. */
+static double hdi_pair_scale(hd_laplacian *lap) {
+    double largest = 0, scale;
+    int32_t i;
+    int64_t p;
+    int exponent;
+    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
+    frexp(largest, &exponent);
+    scale = ldexp(1, -2 * (exponent / 2));       /* even: norms scale exactly too */
+    for (i = 0; i < lap->n_active; i++) lap->mass[i] *= scale;
+    for (i = 0; i < lap->n_active && lap->B; i++) lap->b_diag[i] *= scale;
+    for (p = 0; p < lap->L.nnz && lap->B; p++) lap->B[p] *= scale;
+    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] *= scale;
+    return scale;
+}
+
 /* ---- point sets ---- */
 /* This work is based on
  *   M. Belkin, P. Niyogi, Towards a theoretical foundation for Laplacian-based manifold methods, 2008 (exponential weights, `exp`)
@@ -6789,13 +6886,13 @@ static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
 /* Area of the cell of place i in its tangent plane; 0 where neighbours lie on a line. Lengths are in units of the distance of the last neighbour. */
 static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
     const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
-    const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = cloud->xyz + 3 * HDI_CAST(int64_t, i);
+    const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = hdi_at3(cloud->xyz, i);
     double x[HDI_MOST_NEIGHBOURS + 1][2], rel[3 * (HDI_MOST_NEIGHBOURS + 1)], radius, outer2, area;
     hdi_plane plane;
     hdi_polygon g;
     int32_t k, v;
     for (k = 0; k < cloud->k; k++) {
-        hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, rel + 3 * k);
+        hdi_sub3(hdi_at3(cloud->xyz, cloud->nbr[at + k]), p, rel + 3 * k);
         for (v = 0; v < 3; v++) rel[3 * k + v] *= unit;
     }
     plane = hdi_tangent_plane(rel + 3, cloud->k - 1);   /* the first one is the place itself */
@@ -6822,12 +6919,10 @@ static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
     cloud->area[i] = area > 1e-12 * radius * radius ? area * reach * reach : 0;
 }
 
-static void hdi_cell_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_cell_task(void *arg, int64_t begin, int64_t end) {
     hdi_cloud *cloud = HDI_CAST(hdi_cloud *, arg);
-    const int64_t end = hdi_least(cloud->n, (index + 1) * HDI_CELLS_PER_TASK);
     int64_t i;
-    (void)worker;
-    for (i = index * HDI_CELLS_PER_TASK; i < end; i++) hdi_cell_area(cloud, HDI_CAST(int32_t, i));
+    for (i = begin; i < end; i++) hdi_cell_area(cloud, HDI_CAST(int32_t, i));
 }
 
 static uint64_t hdi_place_hash(const double *p) {
@@ -6842,31 +6937,40 @@ static uint64_t hdi_place_hash(const double *p) {
     return h;
 }
 
-/* place[v]: number of the place where point v is, places numbered by their first point, first[q]: that point. Returns how many. */
-static int32_t hdi_places(const double *xyz, int32_t n, int32_t *place, int32_t *first, hdi_scope *s) {
+/* Different places of points. */
+typedef struct hdi_places {
+    int32_t n;
+    int32_t *place;             /* [points] the place where a point is; numbered by their first points */
+    int32_t *first;             /* [n] that point */
+    double *xyz;                /* [3 n] */
+} hdi_places;
+
+/* Of n checked points, in s. */
+static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, hdi_scope *s) {
     const int64_t slots = 2 * HDI_CAST(int64_t, n) + 1;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *table = HDI_TAKE(&own, int32_t, slots), v, count = 0;
-    if (!table) {
-        hdi_scope_end(&own);
-        return 0;
-    }
+    int32_t *table = HDI_TAKE(&own, int32_t, slots), v;
+    out->n = 0;
+    out->place = HDI_TAKE(s, int32_t, n);
+    out->first = HDI_TAKE(s, int32_t, n);
+    if (s->e->status < 0) return hdi_scope_end(&own);
     hdi_fill_i32(table, slots, -1);
     for (v = 0; v < n; v++) {
-        const double *p = xyz + 3 * HDI_CAST(int64_t, v);
+        const double *p = hdi_at3(xyz, v);
         int64_t at = HDI_CAST(int64_t, hdi_place_hash(p) % HDI_CAST(uint64_t, slots));
         for (; table[at] >= 0; at = at + 1 < slots ? at + 1 : 0) {
-            const double *q = xyz + 3 * HDI_CAST(int64_t, first[table[at]]);
+            const double *q = hdi_at3(xyz, out->first[table[at]]);
             if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) break;
         }
         if (table[at] < 0) {
-            first[count] = v;
-            table[at] = count++;
+            out->first[out->n] = v;
+            table[at] = out->n++;
         }
-        place[v] = table[at];
+        out->place[v] = table[at];
     }
-    hdi_scope_end(&own);
-    return count;
+    out->xyz = HDI_TAKE(s, double, hdi_triple(out->n));
+    for (v = 0; v < out->n && out->xyz; v++) hdi_copy3(out->xyz + hdi_triple(v), hdi_at3(xyz, out->first[v]));
+    return hdi_scope_end(&own);
 }
 
 /* Neighbours, spacings, h and cells of the places. */
@@ -6899,7 +7003,7 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
         cloud->start[i][0] = r * cos(step * i);
         cloud->start[i][1] = r * sin(step * i);
     }
-    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) >= 0) hdi_parallel(s->ctx, (n + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
+    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) >= 0) hdi_parallel_ranges(s->ctx, n, HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
     return hdi_scope_end(&own);
 }
 
@@ -6928,26 +7032,22 @@ typedef struct hdi_weights {
 } hdi_weights;
 
 /* Squared distances of some rows become entries of L. Products commute, so that L is symmetric to the last bit. */
-static void hdi_weights_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_weights_task(void *arg, int64_t begin, int64_t end) {
     const hdi_weights *job = HDI_CAST(const hdi_weights *, arg);
     hd_laplacian *lap = job->lap;
-    const int32_t begin = HDI_CAST(int32_t, index * HDI_CELLS_PER_TASK);
-    const int32_t end = HDI_CAST(int32_t, hdi_least(lap->n_active, (index + 1) * HDI_CELLS_PER_TASK));
-    const double quarter = -0.25 / job->bandwidth;
-    const int voronoi = lap->kind == HD_LAPLACIAN_VORONOI_EXP;
-    int32_t i;
-    (void)worker;
+    const double quarter = -0.25 / job->bandwidth, *mass = lap->kind == HD_LAPLACIAN_VORONOI_EXP ? lap->mass : NULL;
+    int64_t i, p;
     for (i = begin; i < end; i++) {
         double sum = 0, *diagonal = NULL;
-        int64_t p;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const int32_t j = lap->L.col[p];
-            double *value = lap->L.val + p;
+            double *value = lap->L.val + p, scale = job->scale;
             if (j == i) {
                 diagonal = value;
                 continue;
             }
-            *value = -exp(*value * quarter) * (voronoi ? (lap->mass[i] / job->bandwidth) * (lap->mass[j] / job->bandwidth) * HDI_QUARTER_INV_PI : job->scale);
+            if (mass) scale = (mass[i] / job->bandwidth) * (mass[j] / job->bandwidth) * HDI_QUARTER_INV_PI;
+            *value = -exp(*value * quarter) * scale;
             sum += *value;
         }
         *diagonal = -sum;
@@ -6967,7 +7067,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
     job.lap = lap;
     job.bandwidth = rep->bandwidth;
     job.scale = HDI_QUARTER_INV_PI / job.bandwidth / job.bandwidth / lap->n_active;
-    hdi_parallel(lap->context, (HDI_CAST(int64_t, lap->n_active) + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_weights_task, &job);
+    hdi_parallel_ranges(lap->context, lap->n_active, HDI_CELLS_PER_TASK, hdi_weights_task, &job);
     for (i = 0; i < lap->n_active; i++) {
         const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
         rep->n_isolated += count == 1;
@@ -6999,23 +7099,23 @@ static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const in
 static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hd_point_report *rep = &lap->points;
-    int32_t *place = HDI_TAKE(&s, int32_t, lap->n), *first = HDI_TAKE(&s, int32_t, lap->n), v;
-    double *work = HDI_TAKE(&s, double, lap->n), *places;
+    hdi_places places;
     hdi_cloud cloud;
+    double *work;
     memset(&cloud, 0, sizeof cloud);
-    if (e->status < 0 || hdi_points_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
-    cloud.n = hdi_places(xyz, lap->n, place, first, &s);
-    if (e->status >= 0 && cloud.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
-    places = HDI_TAKE(&s, double, 3 * HDI_CAST(int64_t, cloud.n));
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (v = 0; v < cloud.n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
-    cloud.xyz = places;
-    cloud.first = first;
+    if (hdi_points_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
+    if (hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
+    if (places.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
+    work = HDI_TAKE(&s, double, lap->n);
+    if (!work) return hdi_scope_end(&s);
+    cloud.n = places.n;
+    cloud.xyz = places.xyz;
+    cloud.first = places.first;
     cloud.k = HDI_CAST(int32_t, hdi_least(cloud.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
     if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
     if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
-    hdi_cloud_masses(&cloud, lap, place, first, work);
+    hdi_cloud_masses(&cloud, lap, places.place, places.first, work);
     if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);
     if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
     if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
@@ -7132,17 +7232,13 @@ typedef struct hdi_star_job {
     int8_t *not_flat;   /* [n] see hdi_plane */
 } hdi_star_job;
 
-static void hdi_star_unit_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_star_unit_task(void *arg, int64_t begin, int64_t end) {
     const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
-    const int64_t end = hdi_least((index + 1) * HDI_STAR_POINTS, job->n);
     int64_t i, p;
-    (void)worker;
-    for (i = index * HDI_STAR_POINTS; i < end; i++) {
-        double least = 0, d[3];
+    for (i = begin; i < end; i++) {
+        double least = 0;
         for (p = job->ptr[i]; p < job->ptr[i + 1]; p++) {
-            double r;
-            hdi_sub3(job->xyz + 3 * HDI_CAST(int64_t, job->nbr[p]), job->xyz + 3 * i, d);
-            r = hdi_norm3(d);
+            const double r = hdi_edge_length(job->xyz, HDI_CAST(int32_t, i), job->nbr[p]);
             if (r > 0 && (least == 0 || r < least)) least = r;
         }
         job->nearest[i] = least;
@@ -7162,7 +7258,7 @@ static void hdi_point_star(const hdi_star_job *job, int32_t i) {
     job->not_flat[i] = 0;
     for (q = job->ptr[i]; q < job->ptr[i + 1] && unit > 0; q++) {
         double *d = rel + 3 * n;
-        hdi_sub3(job->xyz + 3 * HDI_CAST(int64_t, job->nbr[q]), job->xyz + 3 * HDI_CAST(int64_t, i), d);
+        hdi_sub3(hdi_at3(job->xyz, job->nbr[q]), hdi_at3(job->xyz, i), d);
         for (k = 0; k < 3; k++) d[k] /= unit;
         id[n] = job->nbr[q];
         n += hdi_dot3(d, d) > 0;                 /* the point itself and others in its place do not count */
@@ -7187,12 +7283,10 @@ static void hdi_point_star(const hdi_star_job *job, int32_t i) {
     job->size[i] = closed ? m : -m;
 }
 
-static void hdi_star_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_star_task(void *arg, int64_t begin, int64_t end) {
     const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
-    const int64_t end = hdi_least((index + 1) * HDI_STAR_POINTS, job->n);
     int64_t i;
-    (void)worker;
-    for (i = index * HDI_STAR_POINTS; i < end; i++) hdi_point_star(job, HDI_CAST(int32_t, i));
+    for (i = begin; i < end; i++) hdi_point_star(job, HDI_CAST(int32_t, i));
 }
 
 static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
@@ -7209,88 +7303,78 @@ static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t 
     return HD_OK;
 }
 
-/* From here on points are numbered in the order of the tree's leaves, whatever their order was: neighbours are near in memory too. points [3 n] in the order of
- * id; the tree's own ids become these numbers. NULL: no memory. */
-static double *hdi_star_order(hdi_tree *tree, const double *xyz, hdi_scope *s) {
-    double *points = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, tree->n));
-    int32_t i;
-    for (i = 0; i < tree->n && points; i++) memcpy(points + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, tree->id[i]), 3 * sizeof *points);
-    return points;
-}
-
-/* Neighbours for points that come without: the nearest other places. Of several points in one place only the first takes part. xyz and name live in keep. */
-static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n_points, hd_point_report *rep, hdi_scope *s, hdi_scope *keep) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *place = HDI_TAKE(&own, int32_t, n_points), *first = HDI_TAKE(&own, int32_t, n_points), *name, *nbr, n, k, v;
-    int64_t *ptr;
-    double *places;
-    hdi_tree tree;
-    if (s->e->status < 0 || hdi_points_check(xyz, n_points, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
-    n = hdi_places(xyz, n_points, place, first, &own);
-    k = HDI_CAST(int32_t, hdi_least(n, 1 + HDI_CAST(int64_t, rep->neighbours)));
-    rep->n_coincident = n_points - n;
-    places = HDI_TAKE(&own, double, 3 * HDI_CAST(int64_t, n));
-    ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
-    nbr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, k) * n);
-    name = HDI_TAKE(keep, int32_t, n);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (v = 0; v < n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
-    if (hdi_tree_make(&tree, places, n, &own) < 0) return hdi_scope_end(&own);
-    job->xyz = tree.xyz = hdi_star_order(&tree, places, keep);
-    if (!job->xyz) return hdi_scope_end(&own);
+/* The tree of n points, and the job's points in the order of its leaves: neighbours are near in memory then. first [n]: the
+ * caller's numbers of the points; NULL: their own. xyz and name of the job live in keep. */
+static hd_status hdi_star_order(hdi_star_job *job, hdi_tree *tree, const double *xyz, int32_t n, const int32_t *first,
+                                hdi_scope *own, hdi_scope *keep) {
+    double *points = HDI_TAKE(keep, double, hdi_triple(n));
+    int32_t *name = HDI_TAKE(keep, int32_t, n), v;
+    if (own->e->status < 0 || hdi_tree_make(tree, xyz, n, own) < 0) return own->e->status;
     for (v = 0; v < n; v++) {
-        name[v] = first[tree.id[v]];
-        tree.id[v] = v;
-        ptr[v] = HDI_CAST(int64_t, v) * k;
+        name[v] = first ? first[tree->id[v]] : tree->id[v];
+        hdi_copy3(points + hdi_triple(v), hdi_at3(xyz, tree->id[v]));
+        tree->id[v] = v;
     }
-    ptr[n] = HDI_CAST(int64_t, n) * k;
     job->n = n;
     job->name = name;
-    job->ptr = ptr;
-    job->nbr = nbr;
-    (void)hdi_nearest(&tree, NULL, n, k, nbr, NULL, s->ctx, s->e);
+    job->xyz = tree->xyz = points;
+    return HD_OK;
+}
+
+/* Neighbours for points that come without: the nearest other places. Of several points in one place only the first takes
+ * part. xyz and name live in keep. */
+static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n_points, hd_point_report *rep, hdi_scope *s,
+                                 hdi_scope *keep) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t k, v;
+    int64_t *ptr;
+    hdi_places places;
+    hdi_tree tree;
+    if (hdi_points_check(xyz, n_points, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_places_make(&places, xyz, n_points, &own) < 0) return hdi_scope_end(&own);
+    if (hdi_star_order(job, &tree, places.xyz, places.n, places.first, &own, keep) < 0) return hdi_scope_end(&own);
+    k = HDI_CAST(int32_t, hdi_least(places.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    rep->n_coincident = n_points - places.n;
+    job->ptr = ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, places.n) + 1);
+    job->nbr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, k) * places.n);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (v = 0; v <= places.n; v++) ptr[v] = HDI_CAST(int64_t, v) * k;
+    (void)hdi_nearest(&tree, NULL, places.n, k, job->nbr, NULL, s->ctx, s->e);
     return hdi_scope_end(&own);
 }
 
 /* The caller's neighbours, points and lists renumbered. */
-static hd_status hdi_star_given(hdi_star_job *job, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr, hdi_scope *s, hdi_scope *keep) {
+static hd_status hdi_star_given(hdi_star_job *job, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+                                hdi_scope *s, hdi_scope *keep) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *inverse = HDI_TAKE(&own, int32_t, n), *name = HDI_TAKE(keep, int32_t, n), *list, v;
-    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1), p, q;
+    int32_t *inverse = HDI_TAKE(&own, int32_t, n), v;
+    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1), p, q = 0;
     hdi_tree tree;
-    if (s->e->status < 0 || hdi_mesh_check(xyz, n, NULL, 0, s->e) < 0 || hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
-    list = HDI_TAKE(s, int32_t, nbr_ptr[n]);
-    if (s->e->status < 0 || hdi_tree_make(&tree, xyz, n, &own) < 0) return hdi_scope_end(&own);
-    job->xyz = hdi_star_order(&tree, xyz, keep);
-    if (!job->xyz) return hdi_scope_end(&own);
+    if (s->e->status < 0 || hdi_mesh_check(xyz, n, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
+    job->ptr = ptr;
+    job->nbr = HDI_TAKE(s, int32_t, nbr_ptr[n]);
+    if (hdi_star_order(job, &tree, xyz, n, NULL, &own, keep) < 0) return hdi_scope_end(&own);
+    for (v = 0; v < n; v++) inverse[job->name[v]] = v;
     for (v = 0; v < n; v++) {
-        name[v] = tree.id[v];
-        inverse[name[v]] = v;
-    }
-    for (v = 0, q = 0; v < n; v++) {
         ptr[v] = q;
-        for (p = nbr_ptr[name[v]]; p < nbr_ptr[name[v] + 1]; p++) list[q++] = inverse[nbr[p]];
+        for (p = nbr_ptr[job->name[v]]; p < nbr_ptr[job->name[v] + 1]; p++) job->nbr[q++] = inverse[nbr[p]];
     }
     ptr[n] = q;
-    job->n = n;
-    job->name = name;
-    job->ptr = ptr;
-    job->nbr = list;
     return hdi_scope_end(&own);
 }
 
 /* All triangles of all stars, a third each in the end: tri in s, counted in *m. Fills lap->h, the mean
  * distance to the nearest, and lap->points.n_not_flat. */
 static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_scope *s) {
-    const int64_t n_tasks = (HDI_CAST(int64_t, job->n) + HDI_STAR_POINTS - 1) / HDI_STAR_POINTS;
     int32_t *tri, i, k, n_near = 0;
     int64_t count = 0;
     job->nearest = HDI_TAKE(s, double, job->n);
     job->size = HDI_TAKE(s, int32_t, job->n);
     job->not_flat = HDI_TAKE(s, int8_t, job->n);
     if (s->e->status < 0) return NULL;
-    hdi_parallel(s->ctx, n_tasks, hdi_star_unit_task, job);
-    hdi_parallel(s->ctx, n_tasks, hdi_star_task, job);
+    hdi_parallel_ranges(s->ctx, job->n, HDI_STAR_POINTS, hdi_star_unit_task, job);
+    hdi_parallel_ranges(s->ctx, job->n, HDI_STAR_POINTS, hdi_star_task, job);
     for (i = 0; i < job->n; i++) {
         count += job->size[i] < 0 ? -job->size[i] - 1 : job->size[i];
         n_near += job->nearest[i] > 0;
@@ -7314,83 +7398,31 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
     return tri;
 }
 
-typedef struct hdi_renumber_job {
-    hd_laplacian *lap;
-    const hd_laplacian *from;
-    const int32_t *to;  /* [rows] */
-} hdi_renumber_job;
-
-/* Row r of the pair, its entries in key and work (each as long as the row), into its new place. */
-static void hdi_renumber_row(const hdi_renumber_job *job, int32_t r, uint64_t *key, uint64_t *work) {
-    const hd_laplacian *from = job->from;
-    hd_laplacian *lap = job->lap;
-    const int64_t begin = from->L.row_ptr[r], n = from->L.row_ptr[r + 1] - begin, at = lap->L.row_ptr[job->to[r]];
-    int64_t p;
-    for (p = 0; p < n; p++) key[p] = HDI_CAST(uint64_t, job->to[from->L.col[begin + p]]) << 32 | HDI_CAST(uint64_t, p);
-    hdi_sort_keys(key, n, work);
-    for (p = 0; p < n; p++) {
-        const int64_t q = begin + HDI_CAST(int64_t, key[p] & 0xffffffffu);
-        lap->L.col[at + p] = hdi_key_vertex(key[p]);
-        lap->L.val[at + p] = from->L.val[q];
-        if (lap->B) lap->B[at + p] = from->B[q];
-    }
-}
-
-enum { HDI_RENUMBER_ROWS = 4096, HDI_RENUMBER_WIDTH = 64 };
-
-static void hdi_renumber_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_renumber_job *job = HDI_CAST(const hdi_renumber_job *, arg);
-    const int64_t *ptr = job->from->L.row_ptr, end = hdi_least((index + 1) * HDI_RENUMBER_ROWS, job->from->n_active);
-    uint64_t key[HDI_RENUMBER_WIDTH], work[HDI_RENUMBER_WIDTH];
-    int64_t r;
-    (void)worker;
-    for (r = index * HDI_RENUMBER_ROWS; r < end; r++)
-        if (ptr[r + 1] - ptr[r] <= HDI_RENUMBER_WIDTH) hdi_renumber_row(job, HDI_CAST(int32_t, r), key, work);
-}
-
 /* Rows, components and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's vertices. */
 static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, const int32_t *name, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int32_t rows = from->n_active;
-    const int64_t widest = hdi_fullest(from->L.row_ptr, rows);
-    int32_t *to = HDI_TAKE(&s, int32_t, rows), *number = HDI_TAKE(&s, int32_t, from->n_components), *component = HDI_TAKE(&s, int32_t, rows), r, i;
-    double *mass = HDI_TAKE_ZERO(&s, double, lap->n), *component_mass = HDI_TAKE(&s, double, from->n_components), *B = NULL, *b_diag = NULL;
-    uint64_t *key = HDI_TAKE(&s, uint64_t, 2 * widest);
-    hdi_renumber_job job;
-    hd_csr L = hdi_csr_take(&s, rows, rows, from->L.nnz, 1);
-    if (from->B) B = HDI_TAKE(&s, double, from->L.nnz);
-    if (from->B) b_diag = HDI_TAKE(&s, double, rows);
+    int32_t *perm = HDI_TAKE(&s, int32_t, rows), *number = HDI_TAKE(&s, int32_t, from->n_components), r, i;
+    double *mass = HDI_TAKE_ZERO(&s, double, lap->n);
     if (e->status < 0) return hdi_scope_end(&s);
     for (r = 0; r < rows; r++) mass[name[from->vertex[r]]] = from->mass[r];
     if (hdi_lap_rows(lap, mass, e) < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, L);
-    if (from->B) {
-        lap->B = HDI_CAST(double *, hdi_keep(&s, B));
-        lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
-    }
-    lap->component = HDI_CAST(int32_t *, hdi_keep(&s, component));
-    lap->component_mass = HDI_CAST(double *, hdi_keep(&s, component_mass));
-    for (r = 0; r < rows; r++) {
-        to[r] = i = lap->row[name[from->vertex[r]]];
-        L.row_ptr[i + 1] = from->L.row_ptr[r + 1] - from->L.row_ptr[r];
-        component[i] = from->component[r];
-        if (B) b_diag[i] = from->b_diag[r];
-    }
-    for (i = 0; i < rows; i++) L.row_ptr[i + 1] += L.row_ptr[i];
+    for (r = 0; r < rows; r++) perm[lap->row[name[from->vertex[r]]]] = r;
+    if (hdi_pair_permute(lap, from, perm, lap->context, e) < 0) return hdi_scope_end(&s);
+    if (from->B) lap->b_diag = HDI_NEW(lap->context, double, rows, e);
+    if (e->status >= 0) lap->component = HDI_NEW(lap->context, int32_t, rows, e);
+    if (e->status >= 0) lap->component_mass = HDI_NEW(lap->context, double, from->n_components, e);
+    if (e->status < 0) return hdi_scope_end(&s);
     hdi_fill_i32(number, from->n_components, -1);
-    for (i = 0; i < rows; i++) {                 /* numbered by their first row, as always */
-        if (number[component[i]] < 0) {
-            component_mass[lap->n_components] = from->component_mass[component[i]];
-            number[component[i]] = lap->n_components++;
+    for (i = 0; i < rows; i++) {                 /* components are numbered by their first row, as always */
+        const int32_t c = from->component[perm[i]];
+        if (number[c] < 0) {
+            lap->component_mass[lap->n_components] = from->component_mass[c];
+            number[c] = lap->n_components++;
         }
-        component[i] = number[component[i]];
+        lap->component[i] = number[c];
+        lap->b_diag[i] = from->b_diag[perm[i]];
     }
-    job.lap = lap;
-    job.from = from;
-    job.to = to;
-    hdi_parallel(lap->context, (HDI_CAST(int64_t, rows) + HDI_RENUMBER_ROWS - 1) / HDI_RENUMBER_ROWS, hdi_renumber_task, &job);
-    for (r = 0; r < rows && widest > HDI_RENUMBER_WIDTH; r++)
-        if (from->L.row_ptr[r + 1] - from->L.row_ptr[r] > HDI_RENUMBER_WIDTH) hdi_renumber_row(&job, r, key, key + widest);
     return hdi_scope_end(&s);
 }
 
@@ -7495,11 +7527,7 @@ static hd_status hdi_sym_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_contex
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
     int32_t *seen = HDI_TAKE(&s, int32_t, n), i, k, count, last, depth, deeper, start, done = 0, stamp = 0;
-    int64_t widest = 1;
-    hdi_pair *work;
-    for (i = 0; i < n; i++)
-        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
-    work = HDI_TAKE(&s, hdi_pair, widest);
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, hdi_fullest(a->row_ptr, n));
     if (e->status < 0) return hdi_scope_end(&s);
     hdi_fill_i32(seen, n, -1);
     for (i = 0; i < n; i++) {
@@ -7517,113 +7545,12 @@ static hd_status hdi_sym_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_contex
     return hdi_scope_end(&s);
 }
 
-static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
-    void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
-    if (to && count > 0) memcpy(to, from, HDI_CAST(size_t, count) * size);
-    return to;
-}
-
-enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
-
-/* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row
- * ascending. */
-static hd_status hdi_sym_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
-    const int32_t n = lap->n_active;
-    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, nnz = HDI_CAST(uint64_t, lap->L.nnz);
-    hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
-    int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
-    int64_t *fill = HDI_TAKE(&s, int64_t, n1), p;
-    double *B = NULL;
-    hd_csr a = lap->L;
-    a.row_ptr = HDI_TAKE(&keep, int64_t, n1);
-    a.col = HDI_TAKE(&keep, int32_t, nnz);
-    a.val = HDI_TAKE(&keep, double, nnz);
-    if (lap->B) B = HDI_TAKE(&keep, double, nnz);
-    if (e->status < 0) {
-        hdi_scope_end(&s);
-        return hdi_scope_end(&keep);
-    }
-    a.row_ptr[0] = 0;
-    for (i = 0; i < n; i++) {
-        inv[perm[i]] = i;
-        fill[i] = a.row_ptr[i];
-        a.row_ptr[i + 1] = a.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
-    }
-    for (i = 0; i < n; i++) {
-        if (i + HDI_ROWS_AHEAD < n) {
-            const int64_t ahead = lap->L.row_ptr[perm[i + HDI_ROWS_AHEAD]];
-            HDI_PREFETCH(lap->L.col + ahead);
-            HDI_PREFETCH(lap->L.val + ahead);
-            if (B) HDI_PREFETCH(lap->B + ahead);
-        }
-        for (p = lap->L.row_ptr[perm[i]]; p < lap->L.row_ptr[perm[i] + 1]; p++) {
-            const int64_t q = fill[inv[lap->L.col[p]]]++;
-            a.col[q] = i;
-            a.val[q] = lap->L.val[p];
-            if (B) B[q] = lap->B[p];
-        }
-    }
-    out->L = a;
-    out->B = B;
-    keep.n = 0;                                  /* all of it is the caller's now */
-    return hdi_scope_end(&s);
-}
-
-/* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
-static hd_laplacian *hdi_sym_renumber(const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, lap->n_active);
-    hd_laplacian *out;
-    int32_t i;
-    hdi_error_clear(e);
-    out = HDI_CAST(hd_laplacian *, hdi_copy(lap, 1, sizeof *lap, ctx, e));
-    if (!out) return NULL;
-    memset(&out->L, 0, sizeof out->L);
-    out->context = ctx;
-    out->B = NULL;
-    out->xyz = NULL;                             /* an order has been found */
-    out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
-    out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
-    out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
-    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
-    out->component_mass = HDI_CAST(double *, hdi_copy(lap->component_mass, HDI_CAST(uint64_t, lap->n_components), sizeof(double), ctx, e));
-    out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
-    if (e->status < 0 || hdi_sym_permute(out, lap, perm, ctx, e) < 0) {
-        hdi_laplacian_free(out, ctx);
-        return NULL;
-    }
-    for (i = 0; i < lap->n_active; i++) {
-        out->mass[i] = lap->mass[perm[i]];
-        out->b_diag[i] = lap->b_diag[perm[i]];
-        out->component[i] = lap->component[perm[i]];
-        out->vertex[i] = lap->vertex[perm[i]];
-        out->row[out->vertex[i]] = i;
-    }
-    return out;
-}
-
-/* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t B^-1 L) is the same with t multiplied
- * alike, to the last bit, and squares of areas neither underflow nor overflow whatever the unit of length. */
-static double hdi_sym_scale(hd_laplacian *lap) {
-    double largest = 0, scale;
-    int32_t i;
-    int64_t p;
-    int exponent;
-    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    frexp(largest, &exponent);
-    scale = ldexp(1, -2 * (exponent / 2));       /* even: norms scale exactly too */
-    for (i = 0; i < lap->n_active; i++) lap->mass[i] *= scale;
-    for (i = 0; i < lap->n_active && lap->B; i++) lap->b_diag[i] *= scale;
-    for (p = 0; p < lap->L.nnz && lap->B; p++) lap->B[p] *= scale;
-    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] *= scale;
-    return scale;
-}
-
 /* The same pair in an order that iterations like. */
 static hd_laplacian *hdi_sym_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active);
     hd_laplacian *out = NULL;
-    if (perm && hdi_sym_cuthill_mckee(&lap->L, perm, ctx, e) >= 0) out = hdi_sym_renumber(lap, perm, ctx, e);
+    if (perm && hdi_sym_cuthill_mckee(&lap->L, perm, ctx, e) >= 0) out = hdi_pair_renumber(lap, perm, ctx, e);
     hdi_scope_end(&s);
     return out;
 }
@@ -13887,11 +13814,11 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     if (e->status >= 0 && hdi_sym_order(&lap->L, lap->xyz, ordering, dissect_from, own ? rows : NULL, perm, &chosen, ctx, e) >= 0) {
         if (hdi_progress(ctx, "analyse", 0, e) >= 0 && hdi_symbolic_make(&m->sym, &lap->L, perm, ctx, e) >= 0) {
             m->sym.ordering = HDI_CAST(hd_ordering, chosen);
-            m->lap = hdi_sym_renumber(lap, m->sym.perm, ctx, e);
+            m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
         }
     }
     if (m->lap) {
-        (void)hdi_sym_scale(m->lap);
+        (void)hdi_pair_scale(m->lap);
         m->weight = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
         m->noise = m->weight ? m->weight + lap->n_active : NULL;
         m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
@@ -17074,7 +17001,7 @@ static hd_status hdi_heat_drift(const hd_laplacian *lap, double *drift, hd_conte
     return hdi_scope_end(&s);
 }
 
-/* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
+/* The power of four that brings the largest diagonal entry of B near one, see hdi_pair_scale. */
 static double hdi_heat_scale(const hd_laplacian *lap) {
     double largest = 0;
     int32_t i;
@@ -17157,7 +17084,7 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
         if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
         heat->lap = hdi_sym_ordered(heat->source, heat->ctx, e);
         if (!heat->lap) return e->status;
-        (void)hdi_sym_scale(heat->lap);
+        (void)hdi_pair_scale(heat->lap);
     }
     if (!heat->up.ptr && hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
     heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
