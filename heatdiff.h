@@ -1315,7 +1315,9 @@ enum { HDI_SHORT_LIST = 24 };    /* lists up to here are sorted by insertion; me
 /* A key with a payload; ordered by both, so that sorting is stable where payloads ascend. */
 typedef struct hdi_pair { uint64_t key; int64_t id; } hdi_pair;
 
-static int hdi_pair_less(const hdi_pair *a, const hdi_pair *b) { return a->key != b->key ? a->key < b->key : a->id < b->id; }
+static int hdi_pair_less(const hdi_pair *a, const hdi_pair *b) {
+    return a->key != b->key ? a->key < b->key : a->id < b->id;
+}
 
 static void hdi_sift_down(hdi_pair *a, int64_t i, int64_t n) {
     const hdi_pair x = a[i];
@@ -1349,7 +1351,8 @@ static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
     }
 }
 
-/* Sorts keys; work [n], which short lists do not need: they are sorted by insertion, long ones in runs of eight, merged. */
+/* Sorts keys; work [n], which short lists do not need: they are sorted by insertion, long ones in runs of
+ * eight, merged. */
 static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
     const int64_t first = n <= HDI_SHORT_LIST ? 32 : 8;
     uint64_t *from = a, *to = work;
@@ -1410,7 +1413,8 @@ static double hdi_kth(double *a, int64_t n, int64_t k) {
     return a[k];
 }
 
-/* Union-find with path halving; the smaller id is always the root, so roots do not depend on the order of the calls. */
+/* Union-find with path halving; the smaller id is always the root, so roots do not depend on the order of
+ * the calls. */
 static int32_t hdi_find(int32_t *parent, int32_t i) {
     while (parent[i] != i) {
         parent[i] = parent[parent[i]];
@@ -1432,7 +1436,8 @@ static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
     for (i = 0; i < n; i++) {                    /* a set is a root with another member */
         const int32_t root = parent[i];
         if (root == i || root < 0 || parent[root] != root) continue;
-        parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
+        /* counted; it is the smallest of its set, so it has been passed */
+        parent[root] = -1;
         count++;
     }
     return count;
@@ -4823,25 +4828,18 @@ static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border) {
 
 /* Areas and cotangents of all faces; those that contribute nothing get area 0. */
 static hd_status hdi_pass_faces(hdi_pass *pass, hd_mesh_report *rep, hdi_scope *own) {
-    const hdi_mesh *mesh = pass->mesh;
-    const int32_t n = mesh->n, step = 1 << pass->shift;
+    const int32_t n = pass->mesh->n, *ptr = pass->face_ptr;
     hdi_face_tally tally;
-    int64_t most = 0;
-    int32_t i;
-    hdi_pair *work;
+    hdi_pair *work = NULL;
+    int32_t i, most = 0;
     hdi_tally_clear(&tally);
-    hdi_parallel_ranges(own->ctx, n, step, hdi_pass_measure, pass);
-    for (i = 0; i < HDI_BLOCKS_MOST && i <= (n - 1) >> pass->shift; i++)
-        hdi_tally_add(&tally, &pass->block[i].faces);
-    for (i = 0; i < n; i++)
-        most = hdi_high32(HDI_CAST(int32_t, most), pass->face_ptr[i + 1] - pass->face_ptr[i]);
-    if (most > HDI_SHORT_LIST) {
-        work = HDI_TAKE(own, hdi_pair, most);
-        for (i = 0; i < n && work; i++)
-            if (pass->face_ptr[i + 1] - pass->face_ptr[i] > HDI_SHORT_LIST)
-                hdi_pass_repeats(pass, i, &tally, work);
-    }
-    return own->e->status < 0 ? own->e->status : hdi_tally_report(&tally, mesh->m, rep, own->e);
+    hdi_parallel_ranges(own->ctx, n, HDI_CAST(int64_t, 1) << pass->shift, hdi_pass_measure, pass);
+    for (i = 0; i <= (n - 1) >> pass->shift; i++) hdi_tally_add(&tally, &pass->block[i].faces);
+    for (i = 0; i < n; i++) most = hdi_high32(most, ptr[i + 1] - ptr[i]);
+    if (most > HDI_SHORT_LIST) work = HDI_TAKE(own, hdi_pair, most);
+    for (i = 0; i < n && work; i++)
+        if (ptr[i + 1] - ptr[i] > HDI_SHORT_LIST) hdi_pass_repeats(pass, i, &tally, work);
+    return own->e->status < 0 ? own->e->status : hdi_tally_report(&tally, pass->mesh->m, rep, own->e);
 }
 
 /* What a mesh is asked for besides its areas. */
@@ -5110,8 +5108,8 @@ static void hdi_poly_corners(hdi_poly *poly) {
     hdi_rewind(poly->corner_ptr, poly->n);
 }
 
-/* From a face's smallest corner towards the smaller of its neighbours: the way in which faces with the
- * same corners in the same cyclic order are all read alike. One step from c, which is *forward or not. */
+/* A face is read from its smallest corner towards the smaller of its neighbours: faces with the same corners
+ * in the same cyclic order are all read alike. One step of that from c, and whether it goes forward. */
 static int64_t hdi_poly_step(const hdi_poly *poly, int64_t c, int forward) {
     return forward ? hdi_poly_after(poly, c) : hdi_poly_before(poly, c);
 }
@@ -5767,8 +5765,7 @@ static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *
     return HD_OK;
 }
 
-/* Edges and lengths of a soup whose faces have their area. edges NULL: not wanted; border [n] as in
- * hdi_soup_edges. */
+/* Edges and lengths of a soup whose faces have their area. border [n] as in hdi_soup_edges. */
 static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *rep, int32_t *border,
                                  hdi_scope *s) {
     const hdi_mesh *mesh = &soup->mesh;
@@ -6293,8 +6290,8 @@ static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double 
     flat->area[at] = area / 12 < DBL_MIN ? 0 : area;
 }
 
-/* A triangle whose first and last corner are the same vertex is turned by one corner: equal ones come
- * first. */
+/* A triangle whose first and last corner are the same vertex is turned by one corner: equal ones come first,
+ * and the mass of the vertex is summed in that order. */
 static void hdi_flat_turn(int32_t *v, double *len) {
     const double last = len[2];
     if (v[0] != v[2] || v[0] == v[1]) return;
