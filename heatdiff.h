@@ -1216,7 +1216,12 @@ void dgemm_(const char *ta, const char *tb, const int *m, const int *n, const in
 #endif
 
 /* ==== [01] scalar ====
- * Numbers: complex arithmetic without the language's care for NaN, checked sizes. May call [00]. */
+ * Numbers: complex arithmetic without the language's care for NaN, vectors of three, checked sizes.
+ * May call [00]. */
+
+#define HDI_PI 3.141592653589793
+#define HDI_TURN 6.283185307179586           /* 2 pi */
+#define HDI_QUARTER_INV_PI 0.07957747154594767   /* 1 / (4 pi) */
 
 static hd_c64 hdi_c(double re, double im) { hd_c64 z; z.re = re; z.im = im; return z; }
 static hd_c64 hdi_cadd(hd_c64 a, hd_c64 b) { return hdi_c(a.re + b.re, a.im + b.im); }
@@ -1260,6 +1265,60 @@ static double hdi_pythag(double a, double b) {
 static double hdi_max(double a, double b) { return a > b ? a : b; }
 static double hdi_min(double a, double b) { return a < b ? a : b; }
 static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
+
+/* By value, so that no branch has to be guessed. */
+static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
+static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
+
+/* Three numbers for each of n things; where those of thing number n begin. */
+static HDI_INLINE int64_t hdi_triple(int32_t n) { return 3 * HDI_CAST(int64_t, n); }
+static HDI_INLINE const double *hdi_at3(const double *xyz, int64_t i) { return xyz + 3 * i; }
+
+static HDI_INLINE void hdi_copy3(double *to, const double *from) { memcpy(to, from, 3 * sizeof *to); }
+
+static void hdi_sub3(const double *a, const double *b, double *out) {
+    out[0] = a[0] - b[0];
+    out[1] = a[1] - b[1];
+    out[2] = a[2] - b[2];
+}
+
+static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the
+ * rounding of one product where exactly zero is right. A result that small is computed again in steps that
+ * cannot be fused. */
+static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
+    const double x = a * b - c * d;
+    volatile double p, q;
+    if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
+    p = a * b;
+    q = c * d;
+    return p - q;
+}
+
+static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
+    out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
+    out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
+    out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
+}
+
+/* Length without squares that underflow or overflow. */
+static HDI_INLINE double hdi_norm3(const double *a) {
+    const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
+    double b[3];
+    if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
+    b[0] = a[0] / m;
+    b[1] = a[1] / m;
+    b[2] = a[2] / m;
+    return m * sqrt(hdi_dot3(b, b));
+}
+
+/* The distance from point i to point j. */
+static HDI_INLINE double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
+    double edge[3];
+    hdi_sub3(hdi_at3(xyz, j), hdi_at3(xyz, i), edge);
+    return hdi_norm3(edge);
+}
 
 /* A sum with what its additions rounded away (Knuth): sums that cancel keep their digits. */
 typedef struct hdi_sum { double high, low; } hdi_sum;
@@ -1429,6 +1488,9 @@ static hd_status hdi_scope_end(hdi_scope *s) {
     return s->e->status;
 }
 
+/* [count] elements that outlive their maker. */
+#define HDI_NEW(ctx, type, count, e) HDI_CAST(type *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(type), e))
+
 #define HDI_TAKE(scope, type, count) HDI_CAST(type *, hdi_take(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 #define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 
@@ -1478,6 +1540,26 @@ static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *a
     for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
 
+/* The same for [0, n) in ranges of per_task; the last one may be shorter. */
+typedef void (*hdi_range_task)(void *arg, int64_t begin, int64_t end);
+typedef struct hdi_range_job { int64_t n, per_task; hdi_range_task task; void *arg; } hdi_range_job;
+
+static void hdi_range_run(void *arg, int64_t index, int32_t worker) {
+    const hdi_range_job *job = HDI_CAST(const hdi_range_job *, arg);
+    const int64_t begin = index * job->per_task, rest = job->n - begin;
+    (void)worker;
+    job->task(job->arg, begin, begin + (rest < job->per_task ? rest : job->per_task));
+}
+
+static void hdi_parallel_ranges(hd_context *ctx, int64_t n, int64_t per_task, hdi_range_task task, void *arg) {
+    hdi_range_job job;
+    job.n = n;
+    job.per_task = per_task;
+    job.task = task;
+    job.arg = arg;
+    if (n > 0) hdi_parallel(ctx, (n + per_task - 1) / per_task, hdi_range_run, &job);
+}
+
 /* Instruction sets of the kernels: 0 plain C, 1 AVX2 with FMA, 2 AVX-512. The best one that this processor and system can run. */
 static int hdi_simd_best(void) {
 #if HDI_X86
@@ -1494,7 +1576,17 @@ static int hdi_simd_level(const hd_context *ctx) {
 }
 
 /* ==== [05] arrays ====
- * Sorting, prefix sums, union-find. May call [04]. */
+ * Sorting, selection, prefix sums and buckets, union-find. May call [04]. */
+
+static void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
+    int64_t i;
+    for (i = 0; i < n; i++) a[i] = value;
+}
+
+static void hdi_fill_own(int32_t *a, int32_t n) {
+    int32_t i;
+    for (i = 0; i < n; i++) a[i] = i;
+}
 
 /* count[i] becomes the sum of those before it, count[n] the sum of all. */
 static int64_t hdi_prefix_sum(int64_t *count, int64_t n) {
@@ -1508,10 +1600,28 @@ static int64_t hdi_prefix_sum(int64_t *count, int64_t n) {
     return sum;
 }
 
+/* Buckets are filled through their offsets: ptr[b] moves on with every item. This moves them back. */
+static void hdi_rewind(int64_t *ptr, int64_t n) {
+    memmove(ptr + 1, ptr, HDI_CAST(size_t, n) * sizeof *ptr);
+    ptr[0] = 0;
+}
+
+/* The size of the fullest of n buckets, at least 1. */
+static int64_t hdi_fullest(const int64_t *ptr, int64_t n) {
+    int64_t i, most = 1;
+    for (i = 0; i < n; i++)
+        if (ptr[i + 1] - ptr[i] > most) most = ptr[i + 1] - ptr[i];
+    return most;
+}
+
+enum { HDI_SHORT_LIST = 24 };    /* lists up to here are sorted by insertion; meshes are full of them */
+
 /* A key with a payload; ordered by both, so that sorting is stable where payloads ascend. */
 typedef struct hdi_pair { uint64_t key; int64_t id; } hdi_pair;
 
-static int hdi_pair_less(const hdi_pair *a, const hdi_pair *b) { return a->key != b->key ? a->key < b->key : a->id < b->id; }
+static int hdi_pair_less(const hdi_pair *a, const hdi_pair *b) {
+    return a->key != b->key ? a->key < b->key : a->id < b->id;
+}
 
 static void hdi_sift_down(hdi_pair *a, int64_t i, int64_t n) {
     const hdi_pair x = a[i];
@@ -1525,10 +1635,10 @@ static void hdi_sift_down(hdi_pair *a, int64_t i, int64_t n) {
     a[i] = x;
 }
 
-/* Insertion sort for the short lists that meshes are full of, heapsort for the rest: never quadratic. */
+/* Insertion sort for short lists, heapsort for the rest: never quadratic. */
 static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
     int64_t i, j;
-    if (n <= 24) {
+    if (n <= HDI_SHORT_LIST) {
         for (i = 1; i < n; i++) {
             const hdi_pair x = a[i];
             for (j = i; j > 0 && hdi_pair_less(&x, a + j - 1); j--) a[j] = a[j - 1];
@@ -1545,26 +1655,70 @@ static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
     }
 }
 
-/* Sorts n indices; work [n] for long lists. */
-static void hdi_sort_indices(int32_t *a, int64_t n, hdi_pair *work) {
-    int64_t i, j;
-    if (n <= 24) {
-        for (i = 1; i < n; i++) {
-            const int32_t x = a[i];
-            for (j = i; j > 0 && x < a[j - 1]; j--) a[j] = a[j - 1];
-            a[j] = x;
+/* Sorts keys; work [n], which short lists do not need: they are sorted by insertion, long ones in runs of
+ * eight, merged. */
+static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
+    const int64_t first = n <= HDI_SHORT_LIST ? 32 : 8;
+    uint64_t *from = a, *to = work;
+    int64_t i, j, run;
+    for (i = 1; i < n; i++) {
+        const uint64_t x = a[i];
+        for (j = i; j & (first - 1) && x < a[j - 1]; j--) a[j] = a[j - 1];
+        a[j] = x;
+    }
+    for (run = first; run < n; run *= 2) {
+        uint64_t *swap = from;
+        for (i = 0; i < n; i += 2 * run) {
+            const int64_t middle = hdi_least(i + run, n), end = hdi_least(i + 2 * run, n);
+            int64_t p = i, q = middle, out = i;
+            while (p < middle && q < end) {
+                const int second = from[q] < from[p];
+                to[out++] = second ? from[q] : from[p];
+                q += second;
+                p += !second;
+            }
+            while (p < middle) to[out++] = from[p++];
+            while (q < end) to[out++] = from[q++];
         }
-        return;
+        from = to;
+        to = swap;
     }
-    for (i = 0; i < n; i++) {
-        work[i].key = HDI_CAST(uint64_t, a[i]);
-        work[i].id = 0;
-    }
-    hdi_sort_pairs(work, n);
-    for (i = 0; i < n; i++) a[i] = HDI_CAST(int32_t, work[i].key);
+    if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
 }
 
-/* Union-find with path halving; the smaller id is always the root, so roots do not depend on the order of the calls. */
+/* Sorts n indices; work [2 n]. */
+static void hdi_sort_indices(int32_t *a, int64_t n, uint64_t *work) {
+    int64_t i;
+    for (i = 0; i < n; i++) work[i] = HDI_CAST(uint64_t, a[i]);
+    hdi_sort_keys(work, n, work + n);
+    for (i = 0; i < n; i++) a[i] = HDI_CAST(int32_t, work[i]);
+}
+
+/* The number-k smallest of a, which is rearranged (Hoare 1961). */
+static double hdi_kth(double *a, int64_t n, int64_t k) {
+    int64_t lo = 0, hi = n - 1;
+    while (lo < hi) {
+        const double low = hdi_min(a[lo], a[hi]), high = hdi_max(a[lo], a[hi]);
+        const double pivot = hdi_max(low, hdi_min(high, a[lo + (hi - lo) / 2]));
+        int64_t i = lo, j = hi;
+        while (i <= j) {
+            while (a[i] < pivot) i++;
+            while (a[j] > pivot) j--;
+            if (i <= j) {
+                const double swap = a[i];
+                a[i++] = a[j];
+                a[j--] = swap;
+            }
+        }
+        if (k <= j) hi = j;
+        else if (k >= i) lo = i;
+        else break;
+    }
+    return a[k];
+}
+
+/* Union-find with path halving; the smaller id is always the root, so roots do not depend on the order of
+ * the calls. */
 static int32_t hdi_find(int32_t *parent, int32_t i) {
     while (parent[i] != i) {
         parent[i] = parent[parent[i]];
@@ -1577,6 +1731,20 @@ static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
     const int32_t a = hdi_find(parent, i), b = hdi_find(parent, j);
     if (a < b) parent[b] = a;
     else parent[a] = b;
+}
+
+/* How many connected sets are united in parent [n], which is overwritten; single members are no set. */
+static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
+    int32_t i, count = 0;
+    for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
+    for (i = 0; i < n; i++) {                    /* a set is a root with another member */
+        const int32_t root = parent[i];
+        if (root == i || root < 0 || parent[root] != root) continue;
+        /* counted; it is the smallest of its set, so it has been passed */
+        parent[root] = -1;
+        count++;
+    }
+    return count;
 }
 
 /* ==== [06] vectors ====
@@ -3164,7 +3332,7 @@ static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m
     }
 }
 
-/* ==== [07] sparse ====
+/* ==== [08] sparse ====
  * Compressed rows: build, check, transpose, multiply, renumber. May call [06]. */
 
 static void hdi_csr_free(hd_context *ctx, hd_csr *a) {
@@ -3206,8 +3374,7 @@ static void hdi_csr_transpose_into(const hd_csr *a, hd_csr *t) {
             if (t->val) t->val[q] = a->val[p];
         }
     }
-    for (i = t->n_rows; i > 0; i--) t->row_ptr[i] = t->row_ptr[i - 1];
-    t->row_ptr[0] = 0;
+    hdi_rewind(t->row_ptr, t->n_rows);
 }
 
 /* Sums entries with the same place, in their order. */
@@ -3243,19 +3410,25 @@ static hd_status hdi_csr_check_finite(const hd_csr *a, const char *text, hd_erro
     return HD_OK;
 }
 
-static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n, const int32_t *ti, const int32_t *tj,
-                                       const double *tv, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
+/* Work arrays in s. */
+static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n,
+                                       const int32_t *ti, const int32_t *tj, const double *tv,
+                                       hdi_scope *s) {
+    hd_error *e = s->e;
     hd_csr t, a;
     int64_t q;
     for (q = 0; q < n; q++) {
-        if (ti[q] < 0 || ti[q] >= n_rows || tj[q] < 0 || tj[q] >= n_cols)
-            return hdi_fail_row(e, HD_ERR_INDEX, "triplet: row or column out of range", q, -1, ti[q] < 0 || ti[q] >= n_rows ? ti[q] : tj[q]);
-        if (tv && !hdi_finite(tv[q])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "triplet: value not finite", q, -1, tv[q]);
+        const int bad_row = ti[q] < 0 || ti[q] >= n_rows;
+        if (bad_row || tj[q] < 0 || tj[q] >= n_cols)
+            return hdi_fail_row(e, HD_ERR_INDEX, "triplet: row or column out of range", q, -1,
+                                bad_row ? ti[q] : tj[q]);
+        if (tv && !hdi_finite(tv[q]))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "triplet: value not finite", q, -1, tv[q]);
     }
-    t = hdi_csr_take(&s, n_cols, n_rows, n, tv != NULL);   /* by columns, in the order given; its transpose has sorted rows */
-    a = hdi_csr_take(&s, n_rows, n_cols, n, tv != NULL);
-    if (e->status < 0) return hdi_scope_end(&s);
+    /* by columns, in the order given; its transpose has sorted rows */
+    t = hdi_csr_take(s, n_cols, n_rows, n, tv != NULL);
+    a = hdi_csr_take(s, n_rows, n_cols, n, tv != NULL);
+    if (e->status < 0) return e->status;
     for (q = 0; q < n; q++) t.row_ptr[tj[q]]++;
     hdi_prefix_sum(t.row_ptr, n_cols);
     for (q = 0; q < n; q++) {
@@ -3263,13 +3436,12 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
         t.col[p] = ti[q];
         if (tv) t.val[p] = tv[q];
     }
-    for (q = n_cols; q > 0; q--) t.row_ptr[q] = t.row_ptr[q - 1];
-    t.row_ptr[0] = 0;
+    hdi_rewind(t.row_ptr, n_cols);
     hdi_csr_transpose_into(&t, &a);
     hdi_csr_merge(&a);
     if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0)
-        *out = hdi_csr_keep(&s, a);
-    return hdi_scope_end(&s);
+        *out = hdi_csr_keep(s, a);
+    return e->status;
 }
 
 /* Whether a stores the entry (i,j), zero or not. */
@@ -3285,33 +3457,44 @@ static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) {
 }
 
 static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
+    const int64_t *ptr = a->row_ptr;
     int32_t i;
     int64_t p;
-    if (a->n_rows < 0 || a->n_cols < 0 || a->nnz < 0 || !a->row_ptr || (a->nnz && !a->col))
+    if (a->n_rows < 0 || a->n_cols < 0 || a->nnz < 0 || !ptr || (a->nnz && !a->col))
         return hdi_fail(e, HD_ERR_STRUCTURE, "matrix: negative size or missing array");
-    if (a->row_ptr[0] != 0) return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not begin with 0", 0, -1, 0);
+    if (ptr[0] != 0)
+        return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not begin with 0", 0, -1, 0);
     for (i = 0; i < a->n_rows; i++)
-        if (a->row_ptr[i + 1] < a->row_ptr[i] || a->row_ptr[i + 1] > a->nnz)
-            return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr descends or exceeds nnz", i, -1, HDI_CAST(double, a->row_ptr[i + 1]));
-    if (a->row_ptr[a->n_rows] != a->nnz)
-        return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not end with nnz", a->n_rows, -1, HDI_CAST(double, a->row_ptr[a->n_rows]));
+        if (ptr[i + 1] < ptr[i] || ptr[i + 1] > a->nnz)
+            return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr descends or exceeds nnz", i, -1,
+                                HDI_CAST(double, ptr[i + 1]));
+    if (ptr[a->n_rows] != a->nnz)
+        return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not end with nnz", a->n_rows, -1,
+                            HDI_CAST(double, ptr[a->n_rows]));
     for (i = 0; i < a->n_rows; i++) {
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
-            if (a->col[p] < 0 || a->col[p] >= a->n_cols)
-                return hdi_fail_row(e, HD_ERR_INDEX, "matrix: column out of range", i, a->col[p], a->col[p]);
-            if (p > a->row_ptr[i] && a->col[p] <= a->col[p - 1])
-                return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: columns do not ascend in a row", i, a->col[p], a->col[p]);
-            if (a->val && !hdi_finite(a->val[p])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "matrix: value not finite", i, a->col[p], a->val[p]);
+        for (p = ptr[i]; p < ptr[i + 1]; p++) {
+            const int32_t j = a->col[p];
+            if (j < 0 || j >= a->n_cols)
+                return hdi_fail_row(e, HD_ERR_INDEX, "matrix: column out of range", i, j, j);
+            if (p > ptr[i] && j <= a->col[p - 1])
+                return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: columns do not ascend in a row", i, j, j);
+            if (a->val && !hdi_finite(a->val[p]))
+                return hdi_fail_row(e, HD_ERR_NOT_FINITE, "matrix: value not finite", i, j, a->val[p]);
         }
     }
     return HD_OK;
 }
 
+/* Entries of a pair may differ by so much of the larger one: sums in another order, or ten digits of a
+ * file. */
+#define HDI_SYMMETRY_TOL 1e-12
+
 static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     hd_csr t;
     int32_t i;
-    if (a->n_rows != a->n_cols) return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not square", a->n_rows, a->n_cols, 0);
+    if (a->n_rows != a->n_cols)
+        return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not square", a->n_rows, a->n_cols, 0);
     t = hdi_csr_take(&s, a->n_cols, a->n_rows, a->nnz, a->val != NULL);
     if (e->status < 0) return hdi_scope_end(&s);
     hdi_csr_transpose_into(a, &t);
@@ -3320,8 +3503,8 @@ static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_context *ctx, hd_er
         const int64_t p_end = a->row_ptr[i + 1], q_end = t.row_ptr[i + 1];
         while ((p < p_end || q < q_end) && !e->status) {
             const int32_t cp = p < p_end ? a->col[p] : INT32_MAX, cq = q < q_end ? t.col[q] : INT32_MAX;
-            const double x = a->val ? (cp <= cq ? a->val[p] : 0) : cp <= cq, y = a->val ? (cq <= cp ? t.val[q] : 0) : cq <= cp;
-            if (fabs(x - y) > 1e-12 * hdi_max(fabs(x), fabs(y)))
+            const double x = cp > cq ? 0 : a->val ? a->val[p] : 1, y = cq > cp ? 0 : a->val ? t.val[q] : 1;
+            if (fabs(x - y) > HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)))
                 hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", i, cp <= cq ? cp : cq, x - y);
             p += cp <= cq;
             q += cq <= cp;
@@ -3344,8 +3527,10 @@ static hd_status hdi_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx
     return hdi_scope_end(&s);
 }
 
-/* Columns of row i of A B, unsorted, into col (NULL: counted only). mark [b->n_cols] holds the last row that saw a column. */
-static int64_t hdi_product_row(const hd_csr *a, const hd_csr *b, int32_t i, int32_t *mark, int32_t *col) {
+/* Columns of row i of A B, unsorted, into col (NULL: counted only). mark [b->n_cols] holds the last row
+ * that saw a column. */
+static int64_t hdi_product_row(const hd_csr *a, const hd_csr *b, int32_t i, int32_t *mark,
+                               int32_t *col) {
     int64_t p, q, n = 0;
     for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
         const int32_t k = a->col[p];
@@ -3359,17 +3544,13 @@ static int64_t hdi_product_row(const hd_csr *a, const hd_csr *b, int32_t i, int3
     return n;
 }
 
-static void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
-    int64_t i;
-    for (i = 0; i < n; i++) a[i] = value;
-}
-
-static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *e) {
+static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx,
+                                 hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int values = a->val && b->val;
     int32_t *mark = HDI_TAKE(&s, int32_t, b->n_cols);
     double *sum = HDI_TAKE(&s, double, b->n_cols);
-    hdi_pair *work = HDI_TAKE(&s, hdi_pair, b->n_cols);
+    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * HDI_CAST(int64_t, b->n_cols));
     int64_t nnz = 0, p, q;
     hd_csr c;
     int32_t i;
@@ -3387,14 +3568,16 @@ static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, 
         if (!values) continue;
         for (p = 0; p < n; p++) sum[col[p]] = 0;
         for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
-            for (q = b->row_ptr[a->col[p]]; q < b->row_ptr[a->col[p] + 1]; q++) sum[b->col[q]] += a->val[p] * b->val[q];
+            for (q = b->row_ptr[a->col[p]]; q < b->row_ptr[a->col[p] + 1]; q++)
+                sum[b->col[q]] += a->val[p] * b->val[q];
         for (p = 0; p < n; p++) c.val[c.row_ptr[i] + p] = sum[col[p]];
     }
     if (hdi_csr_check_finite(&c, "product: an entry is not finite", e) >= 0) *out = hdi_csr_keep(&s, c);
     return hdi_scope_end(&s);
 }
 
-static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx, hd_error *e) {
+static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx,
+                                 hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *inverse = HDI_TAKE(&s, int32_t, a->n_rows);
     hd_csr b, t;
@@ -3404,12 +3587,14 @@ static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *pe
     hdi_fill_i32(inverse, a->n_rows, -1);
     for (i = 0; i < a->n_rows; i++) {
         if (perm[i] < 0 || perm[i] >= a->n_rows || inverse[perm[i]] >= 0) {
-            hdi_fail_row(e, HD_ERR_INDEX, "permutation: an index is out of range or occurs twice", i, -1, perm[i]);
+            hdi_fail_row(e, HD_ERR_INDEX, "permutation: an index is out of range or occurs twice", i, -1,
+                         perm[i]);
             return hdi_scope_end(&s);
         }
         inverse[perm[i]] = i;
     }
-    t = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);   /* (P A P')', rows in the old order of columns */
+    /* (P A P')', rows in the old order of columns */
+    t = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);
     b = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < a->n_rows; i++) {
@@ -3427,12 +3612,14 @@ static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *pe
     return hdi_scope_end(&s);
 }
 
-/* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own prefetching stops at page borders: with
- * this, L x runs at the speed of memory, 37 GB/s instead of 20 on the machine it was tuned on (7 entries a row, 130 MB). */
+/* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own
+ * prefetching stops at page borders: with this, L x runs at the speed of memory, 37 GB/s instead of 20 on
+ * the machine it was tuned on (7 entries a row, 130 MB). */
 enum { HDI_AHEAD = 512 };
 
 /* y = A x for rows [begin, end). */
-static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x, double *HDI_RESTRICT y, int32_t begin, int32_t end) {
+static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x,
+                               double *HDI_RESTRICT y, int32_t begin, int32_t end) {
     const int64_t *HDI_RESTRICT Ap = a->row_ptr;
     const int32_t *HDI_RESTRICT Aj = a->col;
     const double *HDI_RESTRICT Ax = a->val;
@@ -3453,11 +3640,9 @@ enum { HDI_ROWS_PER_TASK = 16384 };
 
 typedef struct hdi_apply_job { const hd_csr *a; const double *x; double *y; } hdi_apply_job;
 
-static void hdi_apply_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_apply_task(void *arg, int64_t begin, int64_t end) {
     const hdi_apply_job *job = HDI_CAST(const hdi_apply_job *, arg);
-    const int64_t begin = index * HDI_ROWS_PER_TASK, end = begin + HDI_ROWS_PER_TASK;
-    (void)worker;
-    hdi_csr_apply_rows(job->a, job->x, job->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end < job->a->n_rows ? end : job->a->n_rows));
+    hdi_csr_apply_rows(job->a, job->x, job->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end));
 }
 
 static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
@@ -3465,17 +3650,23 @@ static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_contex
     job.a = a;
     job.x = x;
     job.y = y;
-    hdi_parallel(ctx, (HDI_CAST(int64_t, a->n_rows) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK, hdi_apply_task, &job);
+    hdi_parallel_ranges(ctx, a->n_rows, HDI_ROWS_PER_TASK, hdi_apply_task, &job);
 }
 
-/* ==== [08] spatial ====
- * A k-d tree over points in space: the k nearest, and all within a radius. Exact. May call [07].
+/* ==== [09] spatial ====
+ * A k-d tree over points in space: the k nearest, and all within a radius. Exact. May call [08].
  * This work is based on
- *   J. Friedman, J. Bentley, R. Finkel, An algorithm for finding best matches in logarithmic expected time, 1977 (medians, buckets)
- * Deviations: every leaf holds HDI_LEAF points (the last one is padded), so that nodes need no pointers, and distances to a leaf's points are one
- * loop of fixed length, which compilers vectorise; nodes have boxes that fit tightly, as a surface fills little of its cells; candidates are only
- * gathered, and sorted at the end by buckets, as squared distances on a surface are spread evenly; and a query takes its first bound from the one
- * before it, its neighbour in the order of the leaves: no k-th neighbour is farther than the other's k-th neighbour by way of the other. */
+ *   J. Friedman, J. Bentley, R. Finkel, An algorithm for finding best matches in logarithmic expected time,
+ *      1977 (medians, buckets)
+ * Deviations: every leaf holds HDI_LEAF points (the last one is padded), so that nodes need no pointers,
+ * and distances to a leaf's points are one loop of fixed length, which compilers vectorise. Nodes have
+ * boxes that fit tightly, as a surface fills little of its cells. Candidates are only gathered; they are
+ * sorted at the end by buckets, as squared distances on a surface are spread evenly. A query takes its
+ * first bound from the one before it, its neighbour in the order of the leaves: the k neighbours of that one
+ * are near this one too, by way of it. */
+
+#define HDI_LARGEST_EXTENT 1e150     /* of points: sums of three squares are below 1e301 */
+#define HDI_NO_BOUND 1e305           /* larger than any squared distance */
 
 enum {
     HDI_LEAF = 16,             /* of 4, 8, 16, 32 the quickest for the 30 nearest on surfaces */
@@ -3489,8 +3680,10 @@ typedef struct hdi_cell {
     int32_t first, count;      /* its leaves */
 } hdi_cell;
 
-/* Nodes in preorder: the left child follows its parent, the right one comes after the left one's 2 count - 1 nodes. */
+/* Nodes in preorder: the left child follows its parent, the right one comes after the left one's 2 count
+ * - 1 nodes. */
 typedef struct hdi_tree {
+    const double *xyz;         /* [3 n] the points */
     int32_t n, n_leaves;
     hdi_cell *node;            /* [2 n_leaves - 1] */
     double *x;                 /* [3 HDI_LEAF n_leaves] leaf by leaf: all x, all y, all z */
@@ -3499,8 +3692,9 @@ typedef struct hdi_tree {
 
 typedef struct hdi_point { double x[3]; int32_t id; } hdi_point;
 
-/* Puts the point that is k-th along axis in its place, smaller ones before it, larger ones behind (Hoare 1961). Pivots are medians of three
- * places drawn by a fixed generator: linear whatever the order of the file, also for equal points. */
+/* Puts the point that is k-th along axis in its place, smaller ones before it, larger ones behind (Hoare
+ * 1961). Pivots are medians of three places drawn by a fixed generator: linear whatever the order of the
+ * file, also for equal points. */
 static void hdi_select_point(hdi_point *a, int64_t n, int64_t k, int axis) {
     int64_t lo = 0, hi = n - 1;
     uint64_t seed = 12345;
@@ -3550,7 +3744,9 @@ static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
     t->node[0].count = t->n_leaves;
     for (v = 0; v < 2 * t->n_leaves - 1; v++) {   /* parents come first */
         hdi_cell *node = t->node + v;
-        const int64_t begin = HDI_CAST(int64_t, node->first) * HDI_LEAF, end = hdi_least(t->n, begin + HDI_CAST(int64_t, node->count) * HDI_LEAF);
+        const int64_t begin = HDI_CAST(int64_t, node->first) * HDI_LEAF,
+                      size = HDI_CAST(int64_t, node->count) * HDI_LEAF;
+        const int64_t end = hdi_least(t->n, begin + size);
         const int axis = hdi_cell_box(node, a + begin, end - begin);
         const int32_t left = node->count / 2;
         if (!left) continue;
@@ -3563,36 +3759,37 @@ static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
 }
 
 /* Finite points and queries, whose squared distances are finite too. */
-static hd_status hdi_points_check(const double *xyz, int32_t n, const double *query, int32_t m, hd_error *e) {
+static hd_status hdi_points_check(const double *xyz, int32_t n, const double *query, int32_t m,
+                                  hd_error *e) {
     double lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, size = 0;
     int64_t i;
     int pass, c;
     for (pass = 0; pass < 2; pass++) {
         const double *x = pass ? query : xyz;
-        for (i = 0; i < 3 * HDI_CAST(int64_t, pass ? m : n) && x; i++) {
-            if (!hdi_finite(x[i]) && pass) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite", i / 3, i % 3, x[i]);
-            if (!hdi_finite(x[i])) {
-                hdi_fail(e, HD_ERR_NOT_FINITE, "a coordinate is not finite");
-                e->vertex = i / 3;
-                e->value = x[i];
-                return e->status;
-            }
+        for (i = 0; i < hdi_triple(pass ? m : n) && x; i++) {
+            if (!hdi_finite(x[i]))
+                return pass ? hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite",
+                                           i / 3, i % 3, x[i])
+                            : hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3,
+                                            x[i]);
             lo[i % 3] = hdi_min(lo[i % 3], x[i]);
             hi[i % 3] = hdi_max(hi[i % 3], x[i]);
         }
     }
     for (c = 0; c < 3; c++) size = hdi_max(size, hi[c] - lo[c]);
-    if (!(size < 1e150)) return hdi_fail_row(e, HD_ERR_NOT_FINITE, "points: squared distances are not finite", -1, -1, size);
-    return HD_OK;
+    if (size < HDI_LARGEST_EXTENT) return HD_OK;
+    return hdi_fail_row(e, HD_ERR_NOT_FINITE, "points: squared distances are not finite", -1, -1, size);
 }
 
 /* The tree of finite points, in s. id of point i: i. Cost O(n log n). */
 static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_scope *s) {
-    const int64_t n_leaves = n > 0 ? (HDI_CAST(int64_t, n) + HDI_LEAF - 1) / HDI_LEAF : 1;   /* none: one leaf that is all padding */
+    /* none: one leaf that is all padding */
+    const int64_t n_leaves = n > 0 ? (HDI_CAST(int64_t, n) + HDI_LEAF - 1) / HDI_LEAF : 1;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     hdi_point *a = HDI_TAKE(&own, hdi_point, n);
     int64_t i;
     int c;
+    t->xyz = xyz;
     t->n = n;
     t->n_leaves = HDI_CAST(int32_t, n_leaves);
     t->node = HDI_TAKE(s, hdi_cell, 2 * n_leaves - 1);
@@ -3600,13 +3797,14 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     t->id = HDI_TAKE(s, int32_t, HDI_LEAF * n_leaves);
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (i = 0; i < n; i++) {
-        for (c = 0; c < 3; c++) a[i].x[c] = xyz[3 * i + c];
+        hdi_copy3(a[i].x, hdi_at3(xyz, i));
         a[i].id = HDI_CAST(int32_t, i);
     }
     hdi_tree_split(t, a);
     for (i = 0; i < HDI_LEAF * n_leaves; i++) {
         double *x = t->x + 3 * HDI_LEAF * (i / HDI_LEAF) + i % HDI_LEAF;
-        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[i].x[c] : HUGE_VAL;   /* infinitely far: in no result */
+        /* infinitely far: in no result */
+        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[i].x[c] : HUGE_VAL;
         t->id[i] = i < n ? a[i].id : -1;
     }
     return hdi_scope_end(&own);
@@ -3614,7 +3812,8 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
 
 /* What a search has found so far: candidates no farther than bound. */
 typedef struct hdi_found {
-    double bound, prune;       /* squared; boxes farther than prune are left out. It is a little larger, whatever a compiler fuses */
+    /* squared; boxes farther than prune are left out. It is a little larger, whatever a compiler fuses */
+    double bound, prune;
     int32_t k;                 /* > 0: the k nearest are wanted; 0: all, and HDI_COUNT: only how many */
     int64_t m, room;           /* candidates; when there are more than room, something is done about it */
     int64_t counted;
@@ -3626,8 +3825,15 @@ typedef struct hdi_found {
 enum { HDI_COUNT = -1 };
 
 static void hdi_found_bound(hdi_found *f, double bound) {
-    f->bound = hdi_min(bound, 1e305);            /* hdi_points_check keeps squared distances below 1e301 */
+    f->bound = hdi_min(bound, HDI_NO_BOUND);
     f->prune = f->bound * (1 + 8 * DBL_EPSILON);
+}
+
+/* The bits of doubles that are not negative are in order: they serve as keys. */
+static double hdi_key_square(const hdi_pair *a) {
+    double d;
+    memcpy(&d, &a->key, sizeof d);
+    return d;
 }
 
 /* The min(k, m) smallest pairs (distance, id) into f->sorted, ascending; returns how many. */
@@ -3642,7 +3848,7 @@ static int64_t hdi_found_sort(hdi_found *f) {
     hdi_prefix_sum(end, HDI_BUCKETS);
     for (i = 0; i < f->m; i++) {
         hdi_pair *to = f->sorted + end[HDI_CAST(int32_t, f->d[i] * scale)]++;
-        memcpy(&to->key, f->d + i, sizeof to->key);   /* the bits of doubles that are not negative are in order */
+        to->key = hdi_bits(f->d[i]);
         to->id = f->id[i];
     }
     for (b = 0; b < HDI_BUCKETS && from < want; b++) {
@@ -3662,14 +3868,15 @@ static void hdi_found_shrink(hdi_found *f) {
     }
     f->m = hdi_found_sort(f);
     for (i = 0; i < f->m; i++) {
-        memcpy(f->d + i, &f->sorted[i].key, sizeof *f->d);
+        f->d[i] = hdi_key_square(f->sorted + i);
         f->id[i] = HDI_CAST(int32_t, f->sorted[i].id);
     }
     hdi_found_bound(f, f->d[f->m - 1]);
 }
 
 static void hdi_scan_leaf(const hdi_tree *t, int32_t leaf, const double *q, hdi_found *f) {
-    const double *HDI_RESTRICT x = t->x + 3 * HDI_LEAF * HDI_CAST(int64_t, leaf), q0 = q[0], q1 = q[1], q2 = q[2], bound = f->bound;
+    const double *HDI_RESTRICT x = t->x + 3 * HDI_LEAF * HDI_CAST(int64_t, leaf), q0 = q[0], q1 = q[1],
+                               q2 = q[2], bound = f->bound;
     const int32_t *HDI_RESTRICT id = t->id + HDI_LEAF * HDI_CAST(int64_t, leaf);
     double *HDI_RESTRICT d = f->d + f->m, r[HDI_LEAF];
     int32_t *HDI_RESTRICT found = f->id + f->m;
@@ -3724,150 +3931,103 @@ static void hdi_search(const hdi_tree *t, const double *q, hdi_found *f) {
     }
 }
 
+static double hdi_distance2(const double *a, const double *b) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
 /* Many queries, in blocks that do not depend on the threads; a task has work arrays of its own. */
 typedef struct hdi_search_job {
     const hdi_tree *t;
     const double *query;       /* [3 n_queries] */
-    const int32_t *order;      /* [n_queries] queries in an order that keeps near ones together; NULL: as they come */
+    /* [n_queries] queries in an order that keeps near ones together; NULL: as they come */
+    const int32_t *order;
     int64_t n_queries, per_task;
     int32_t k, *index;         /* k nearest: [k n_queries] */
     double *distance2;         /* NULL: not wanted */
     double radius2;            /* all within a radius: counts first, then columns and distances */
     hd_csr *out;
-    int32_t *kept;             /* [n_queries] entries of the rows */
+    int32_t *kept;             /* [n_queries] entries of the rows; NULL: they are still counted */
     hdi_found *found;          /* [tasks] */
 } hdi_search_job;
 
-static int64_t hdi_search_tasks(hdi_search_job *job, int64_t room) {
-    const int64_t blocks = (job->n_queries + 255) / 256, fit = 1 + (HDI_CAST(int64_t, 64) << 20) / (28 * (room + HDI_LEAF));
-    const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
-    job->per_task = tasks ? (job->n_queries + tasks - 1) / tasks : 0;
-    return tasks;
+/* query NULL: the tree's own points. */
+static void hdi_search_begin(hdi_search_job *job, const hdi_tree *t, const double *query,
+                             int64_t n_queries) {
+    memset(job, 0, sizeof *job);
+    job->t = t;
+    job->query = query ? query : t->xyz;
+    job->order = query ? NULL : t->id;
+    job->n_queries = n_queries;
 }
 
-/* Work arrays for candidates of every task. */
-static void hdi_search_take(hdi_search_job *job, int64_t tasks, int64_t room, hdi_scope *s) {
-    const int64_t size = room + HDI_LEAF;
+/* Tasks, and work arrays for the candidates of each, in s. Together these stay below 64 MiB (28 bytes a
+ * candidate). */
+static hd_status hdi_search_take(hdi_search_job *job, int64_t room, hdi_scope *s) {
+    const int64_t size = room + HDI_LEAF, blocks = (job->n_queries + 255) / 256,
+                  fit = 1 + (HDI_CAST(int64_t, 64) << 20) / (28 * size);
+    const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
     double *d = HDI_TAKE(s, double, tasks * size);
     hdi_pair *sorted = HDI_TAKE(s, hdi_pair, tasks * size);
     int32_t *id = HDI_TAKE(s, int32_t, tasks * size);
     int64_t i;
     job->found = HDI_TAKE_ZERO(s, hdi_found, tasks);
-    if (s->e->status < 0) return;
+    if (s->e->status < 0) return s->e->status;
+    job->per_task = tasks ? (job->n_queries + tasks - 1) / tasks : 1;
     for (i = 0; i < tasks; i++) {
         job->found[i].room = room;
         job->found[i].d = d + i * size;
         job->found[i].id = id + i * size;
         job->found[i].sorted = sorted + i * size;
     }
+    return HD_OK;
 }
 
-static double hdi_distance2(const double *a, const double *b) {
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
+/* Bounds of squares of rounded sums grow by so much: then nothing that belongs within is left out. */
+static double hdi_raise(double x) { return x * (1 + 16 * DBL_EPSILON); }
 
-static void hdi_nearest_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
-    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
-    hdi_found *f = job->found + index;
+    hdi_found *f = job->found + begin / job->per_task;
     const double *before = NULL;
+    const int64_t k = job->k;
     double reach = 0;                            /* distance of its k-th neighbour */
     int64_t i, p;
-    (void)worker;
     f->k = job->k;
     for (i = begin; i < end; i++) {
-        const int64_t v = job->order ? job->order[i] : i, k = job->k;
-        const double *q = job->query + 3 * v;
-        const double limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
+        const int64_t v = job->order ? job->order[i] : i;
+        const double *q = hdi_at3(job->query, v), limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
         int64_t m;
-        hdi_found_bound(f, before ? limit * limit * (1 + 16 * DBL_EPSILON) : 1e305);
+        hdi_found_bound(f, before ? hdi_raise(limit * limit) : HDI_NO_BOUND);
         hdi_search(job->t, q, f);
         m = hdi_found_sort(f);
         for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? HDI_CAST(int32_t, f->sorted[p].id) : -1;
-        for (p = 0; job->distance2 && p < k; p++) {
-            if (p < m) memcpy(job->distance2 + v * k + p, &f->sorted[p].key, sizeof(double));
-            else job->distance2[v * k + p] = HUGE_VAL;
-        }
+        for (p = 0; job->distance2 && p < k; p++)
+            job->distance2[v * k + p] = p < m ? hdi_key_square(f->sorted + p) : HUGE_VAL;
         before = m == k ? q : NULL;
-        if (!before) continue;
-        memcpy(&reach, &f->sorted[k - 1].key, sizeof reach);
-        reach = sqrt(reach);
+        if (before) reach = sqrt(hdi_key_square(f->sorted + k - 1));
     }
 }
 
-/* index [k n_queries] and distance2 (or NULL) by queries: neighbours ascend by distance, equally far ones by id; -1 where there are no more.
- * queries NULL: the points xyz of the tree. */
-static hd_status hdi_nearest(const hdi_tree *t, const double *xyz, const double *query, int64_t n_queries, int32_t k, int32_t *index,
-                             double *distance2, hd_context *ctx, hd_error *e) {
+/* index [k n_queries] and distance2 (or NULL) by queries: neighbours ascend by distance, equally far ones
+ * by id; -1 where there are no more. queries NULL: the points of the tree. */
+static hd_status hdi_nearest(const hdi_tree *t, const double *query, int64_t n_queries, int32_t k,
+                             int32_t *index, double *distance2, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    const int64_t room = 2 * HDI_CAST(int64_t, k) + 32;
     hdi_search_job job;
-    int64_t tasks;
-    memset(&job, 0, sizeof job);
-    job.t = t;
-    job.query = query ? query : xyz;
-    job.order = query ? NULL : t->id;
-    job.n_queries = n_queries;
+    hdi_search_begin(&job, t, query, n_queries);
     job.k = k;
     job.index = index;
     job.distance2 = distance2;
-    tasks = hdi_search_tasks(&job, room);
-    hdi_search_take(&job, tasks, room, &s);
-    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_nearest_task, &job);
+    if (hdi_search_take(&job, 2 * HDI_CAST(int64_t, k) + 32, &s) >= 0)
+        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_nearest_task, &job);
     return hdi_scope_end(&s);
-}
-
-/* Sorts keys; work [n]. Runs of eight by insertion, then merged. */
-static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
-    uint64_t *from = a, *to = work;
-    int64_t i, j, run;
-    for (i = 1; i < n; i++) {
-        const uint64_t x = a[i];
-        for (j = i; j & 7 && x < a[j - 1]; j--) a[j] = a[j - 1];
-        a[j] = x;
-    }
-    for (run = 8; run < n; run *= 2) {
-        uint64_t *swap = from;
-        for (i = 0; i < n; i += 2 * run) {
-            const int64_t middle = hdi_least(i + run, n), end = hdi_least(i + 2 * run, n);
-            int64_t p = i, q = middle, out = i;
-            while (p < middle && q < end) {
-                const int second = from[q] < from[p];
-                to[out++] = second ? from[q] : from[p];
-                q += second;
-                p += !second;
-            }
-            while (p < middle) to[out++] = from[p++];
-            while (q < end) to[out++] = from[q++];
-        }
-        from = to;
-        to = swap;
-    }
-    if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
-}
-
-/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise
- * than those of the other. */
-static void hdi_count_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
-    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
-    hdi_found *f = job->found + index;
-    int64_t i;
-    (void)worker;
-    f->k = HDI_COUNT;
-    for (i = begin; i < end; i++) {
-        const int64_t v = job->order ? job->order[i] : i;
-        f->counted = 0;
-        hdi_found_bound(f, job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN);
-        hdi_search(job->t, job->query + 3 * v, f);
-        job->out->row_ptr[v] = f->counted + f->m;
-    }
 }
 
 /* One row: columns ascending. What was gathered is sorted by id with its place as a payload. */
 static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
-    uint64_t *key = HDI_CAST(uint64_t *, HDI_CAST(void *, f->sorted)), *work = key + f->m;   /* room for twice as many */
+    /* room for twice as many */
+    uint64_t *key = HDI_CAST(uint64_t *, HDI_CAST(void *, f->sorted)), *work = key + f->m;
     int64_t p;
     for (p = 0; p < f->m; p++) key[p] = HDI_CAST(uint64_t, f->id[p]) << 32 | HDI_CAST(uint64_t, p);
     hdi_sort_keys(key, f->m, work);
@@ -3877,25 +4037,29 @@ static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
     }
 }
 
-static void hdi_within_task(void *arg, int64_t index, int32_t worker) {
+/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise
+ * than those of the other. */
+static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
-    const int64_t begin = index * job->per_task, end = hdi_least(job->n_queries, begin + job->per_task);
-    hdi_found *f = job->found + index;
+    const double bound = job->kept ? job->radius2 : job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN;
+    hdi_found *f = job->found + begin / job->per_task;
     hd_csr *out = job->out;
     int64_t i;
-    (void)worker;
-    f->k = 0;
+    f->k = job->kept ? 0 : HDI_COUNT;
     for (i = begin; i < end; i++) {
         const int64_t v = job->order ? job->order[i] : i;
-        hdi_found_bound(f, job->radius2);
-        hdi_search(job->t, job->query + 3 * v, f);
-        hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
-        job->kept[v] = HDI_CAST(int32_t, f->m);
+        f->counted = 0;
+        hdi_found_bound(f, bound);
+        hdi_search(job->t, hdi_at3(job->query, v), f);
+        if (job->kept) {
+            hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
+            job->kept[v] = HDI_CAST(int32_t, f->m);
+        } else {
+            out->row_ptr[v] = f->counted + f->m;
+        }
     }
 }
 
-/* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values are these. Counted in a first pass, written
- * in a second one. Other arguments as in hdi_nearest. */
 /* Closes the gaps that rows with fewer entries than were counted leave. */
 static void hdi_within_close(hd_csr *a, const int32_t *kept) {
     int64_t to = 0;
@@ -3912,42 +4076,38 @@ static void hdi_within_close(hd_csr *a, const int32_t *kept) {
     a->nnz = a->row_ptr[a->n_rows] = to;
 }
 
-static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *xyz, const double *query, int32_t n_queries, double radius2, hd_context *ctx,
-                            hd_error *e) {
+/* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values
+ * are these. Counted in a first pass, written in a second one. */
+static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query, int32_t n_queries,
+                            double radius2, hd_context *ctx, hd_error *e) {
+    enum { ROOM = 256 };       /* of the first pass, which keeps no candidates */
     hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
     hdi_search_job job;
-    hd_csr a;
-    int64_t tasks, widest = 0, i;
-    memset(&job, 0, sizeof job);
-    a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
-    job.t = t;
-    job.query = query ? query : xyz;
-    job.order = query ? NULL : t->id;
-    job.n_queries = n_queries;
+    hd_csr a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
+    int64_t widest = 0, i;
+    hdi_search_begin(&job, t, query, n_queries);
     job.radius2 = radius2;
     job.out = &a;
-    tasks = hdi_search_tasks(&job, 256);
-    hdi_search_take(&job, tasks, 256, &passes);
-    if (e->status >= 0) hdi_parallel(ctx, tasks, hdi_count_task, &job);
+    if (hdi_search_take(&job, ROOM, &passes) >= 0)
+        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_within_task, &job);
     if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
     for (i = 0; i < n_queries; i++) widest = a.row_ptr[i] > widest ? a.row_ptr[i] : widest;
     a.nnz = hdi_prefix_sum(a.row_ptr, n_queries);
     a.col = HDI_TAKE(&s, int32_t, a.nnz);
     a.val = HDI_TAKE(&s, double, a.nnz);
-    tasks = hdi_search_tasks(&job, widest);
-    hdi_search_take(&job, tasks, widest, &passes);
     job.kept = HDI_TAKE(&passes, int32_t, n_queries);
-    if (e->status >= 0) {
-        hdi_parallel(ctx, tasks, hdi_within_task, &job);
+    if (hdi_search_take(&job, widest, &passes) >= 0) {
+        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_within_task, &job);
         hdi_within_close(&a, job.kept);
     }
-    if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
-    *out = hdi_csr_keep(&s, a);
+    if (hdi_scope_end(&passes) >= 0) *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
 }
 
-/* ==== [09] geometry ====
- * Triangles: checks, corner cotangents, which faces are left out, edges, and who meets at a vertex. May call [08]. */
+/* ==== [10] geometry ====
+ * What is known of faces and points before there is an operator: checks, areas and cotangents, which
+ * faces are left out, edges and masses of triangle meshes; polygons; cells and tangent planes of points.
+ * May call [09]. */
 
 typedef struct hdi_mesh {
     const double *xyz;
@@ -3956,72 +4116,51 @@ typedef struct hdi_mesh {
     int32_t n, m;
     double *cot;        /* [3 m] cotangent at each corner */
     double *area;       /* [m] 0: the face is left out */
-    int64_t *corner_ptr;/* [n + 1] corners at each vertex, as indices into tri, faces ascending */
-    int32_t *corner;    /* [3 m]; corners of faces left out are not listed */
 } hdi_mesh;
 
-static void hdi_sub3(const double *a, const double *b, double *out) {
-    out[0] = a[0] - b[0];
-    out[1] = a[1] - b[1];
-    out[2] = a[2] - b[2];
+static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri,
+                           int32_t m) {
+    memset(mesh, 0, sizeof *mesh);
+    mesh->xyz = xyz;
+    mesh->tri = tri;
+    mesh->n = n;
+    mesh->m = m;
 }
 
-static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the rounding of one product
- * where exactly zero is right; when the result is that small it is computed again in steps that cannot be fused. */
-static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
-    const double x = a * b - c * d;
-    volatile double p, q;
-    if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
-    p = a * b;
-    q = c * d;
-    return p - q;
-}
-
-static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
-    out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
-    out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
-    out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
-}
-
-/* Length without squares that underflow or overflow. */
-static HDI_INLINE double hdi_norm3(const double *a) {
-    const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
-    double b[3];
-    if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
-    b[0] = a[0] / m;
-    b[1] = a[1] / m;
-    b[2] = a[2] / m;
-    return m * sqrt(hdi_dot3(b, b));
-}
-
-static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_error *e) {
+static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri, int32_t m,
+                                hd_error *e) {
     int64_t i;
     for (i = 0; i < 3 * HDI_CAST(int64_t, n); i++)
-        if (!hdi_finite(xyz[i])) return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, xyz[i]);
+        if (!hdi_finite(xyz[i]))
+            return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, xyz[i]);
     for (i = 0; i < 3 * HDI_CAST(int64_t, m); i++)
-        if (tri[i] < 0 || tri[i] >= n) return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1, tri[i]);
+        if (tri[i] < 0 || tri[i] >= n)
+            return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1,
+                                 tri[i]);
     return HD_OK;
 }
 
 /* What a block of faces adds to the report. */
 typedef struct hdi_face_tally {
-    int32_t n_repeated_corner, n_zero_area, bad, bad_vertex;   /* bad: the first face whose area is not finite, or -1 */
-    double steepest, bad_area;                     /* steepest: the largest cotangent, of the smallest angle */
+    int32_t n_repeated_corner, n_repeated_face, n_zero_area;
+    int32_t bad, bad_vertex;                       /* bad: the first face whose area is not finite, or -1 */
+    /* steepest: the largest cotangent, of the smallest angle */
+    double steepest, bad_area;
 } hdi_face_tally;
 
 /* Area of face f, and its cotangents; 0 where it has none or where a cotangent would not be finite. */
-static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot, hdi_face_tally *tally) {
+static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot,
+                                          hdi_face_tally *tally) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
     double edge[3][3], cross[3], twice;
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
         tally->n_repeated_corner++;
         return 0;
     }
-    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[2]), mesh->xyz + 3 * HDI_CAST(int64_t, v[1]), edge[0]);   /* edge q runs opposite to corner q */
-    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[0]), mesh->xyz + 3 * HDI_CAST(int64_t, v[2]), edge[1]);
-    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[1]), mesh->xyz + 3 * HDI_CAST(int64_t, v[0]), edge[2]);
+    /* edge q runs opposite to corner q */
+    hdi_sub3(hdi_at3(mesh->xyz, v[2]), hdi_at3(mesh->xyz, v[1]), edge[0]);
+    hdi_sub3(hdi_at3(mesh->xyz, v[0]), hdi_at3(mesh->xyz, v[2]), edge[1]);
+    hdi_sub3(hdi_at3(mesh->xyz, v[1]), hdi_at3(mesh->xyz, v[0]), edge[2]);
     hdi_cross3(edge[2], edge[0], cross);
     twice = hdi_norm3(cross);
     if (!hdi_finite(twice)) {
@@ -4054,6 +4193,7 @@ static void hdi_tally_clear(hdi_face_tally *tally) {
 
 static void hdi_tally_add(hdi_face_tally *all, const hdi_face_tally *t) {
     all->n_repeated_corner += t->n_repeated_corner;
+    all->n_repeated_face += t->n_repeated_face;
     all->n_zero_area += t->n_zero_area;
     all->steepest = hdi_max(all->steepest, t->steepest);
     if (t->bad < 0 || (all->bad >= 0 && all->bad < t->bad)) return;
@@ -4063,36 +4203,46 @@ static void hdi_tally_add(hdi_face_tally *all, const hdi_face_tally *t) {
 }
 
 /* What the report says of faces one by one. */
-static hd_status hdi_tally_report(const hdi_face_tally *tally, int32_t m, hd_mesh_report *rep, hd_error *e) {
+static hd_status hdi_tally_report(const hdi_face_tally *tally, int32_t m, hd_mesh_report *rep,
+                                  hd_error *e) {
     if (tally->bad >= 0)
-        return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", tally->bad, tally->bad_vertex, tally->bad_area);
+        return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", tally->bad,
+                             tally->bad_vertex, tally->bad_area);
     rep->n_faces = m;
     rep->n_repeated_corner = tally->n_repeated_corner;
+    rep->n_repeated_face = tally->n_repeated_face;
     rep->n_zero_area = tally->n_zero_area;
-    rep->n_faces_used = m - tally->n_repeated_corner - tally->n_zero_area;
+    rep->n_faces_used = m - tally->n_repeated_corner - tally->n_repeated_face - tally->n_zero_area;
     rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, tally->steepest) : 0;
     return HD_OK;
 }
 
-enum { HDI_FACES_PER_TASK = 8192, HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };   /* how far ahead memory is asked for what will be needed */
+enum { HDI_FACES_PER_TASK = 8192 };                         /* some 0.2 ms of work */
+/* what will be needed is asked for so early: three misses of memory */
+enum { HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };
+
+/* Asks for the corners of face f. */
+static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
+    const int32_t *ahead = mesh->tri + 3 * f;
+    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[0]));
+    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[1]));
+    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[2]));
+    (void)ahead;
+}
 
 typedef struct hdi_measure_job { const hdi_mesh *mesh; hdi_face_tally *tally; } hdi_measure_job;
 
-static void hdi_measure_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
     const hdi_measure_job *job = HDI_CAST(const hdi_measure_job *, arg);
-    const int64_t begin = index * HDI_FACES_PER_TASK, end = hdi_least(job->mesh->m, begin + HDI_FACES_PER_TASK);
     hdi_face_tally tally;
     int64_t f;
-    (void)worker;
     hdi_tally_clear(&tally);
     for (f = begin; f < end; f++) {
-        const int32_t *ahead = job->mesh->tri + 3 * hdi_least(f + HDI_FACES_AHEAD, end - 1);
-        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[0]));
-        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[1]));
-        HDI_PREFETCH(job->mesh->xyz + 3 * HDI_CAST(int64_t, ahead[2]));
-        job->mesh->area[f] = hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), job->mesh->cot + 3 * f, &tally);
+        hdi_face_ahead(job->mesh, hdi_least(f + HDI_FACES_AHEAD, end - 1));
+        job->mesh->area[f] = hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), job->mesh->cot + 3 * f,
+                                              &tally);
     }
-    job->tally[index] = tally;
+    job->tally[begin / HDI_FACES_PER_TASK] = tally;
 }
 
 /* All faces of a mesh whose indices are fine: cot and area. */
@@ -4106,41 +4256,21 @@ static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hd
     job.mesh = mesh;
     job.tally = HDI_TAKE(&own, hdi_face_tally, n_tasks);
     if (!job.tally) return hdi_scope_end(&own);
-    hdi_parallel(s->ctx, n_tasks, hdi_measure_task, &job);
+    hdi_parallel_ranges(s->ctx, mesh->m, HDI_FACES_PER_TASK, hdi_measure_task, &job);
     for (i = 0; i < n_tasks; i++) hdi_tally_add(&all, job.tally + i);
     (void)hdi_tally_report(&all, mesh->m, rep, s->e);
     return hdi_scope_end(&own);
 }
 
-/* Corner lists of all vertices, over the faces that have an area. */
-static void hdi_mesh_corners(hdi_mesh *mesh) {
-    const int64_t n_corners = 3 * HDI_CAST(int64_t, mesh->m);
-    int64_t c;
-    int32_t i;
-    memset(mesh->corner_ptr, 0, (HDI_CAST(size_t, mesh->n) + 1) * sizeof *mesh->corner_ptr);
-    for (c = 0; c < n_corners; c++)
-        if (mesh->area[c / 3] > 0) mesh->corner_ptr[mesh->tri[c]]++;
-    hdi_prefix_sum(mesh->corner_ptr, mesh->n);
-    for (c = 0; c < n_corners; c++)
-        if (mesh->area[c / 3] > 0) mesh->corner[mesh->corner_ptr[mesh->tri[c]]++] = HDI_CAST(int32_t, c);
-    for (i = mesh->n; i > 0; i--) mesh->corner_ptr[i] = mesh->corner_ptr[i - 1];
-    mesh->corner_ptr[0] = 0;
-}
-
-static int64_t hdi_most_corners(const hdi_mesh *mesh) {
-    int64_t most = 1;
-    int32_t i;
-    for (i = 0; i < mesh->n; i++)
-        if (mesh->corner_ptr[i + 1] - mesh->corner_ptr[i] > most) most = mesh->corner_ptr[i + 1] - mesh->corner_ptr[i];
-    return most;
-}
-
 /* ---- sides ----
- * The sides of all faces with area, gathered by the smaller of their two vertices and sorted by the larger one, then by face: an edge is a run. */
+ * The sides of all faces with area, gathered by the smaller of their two vertices and sorted by the
+ * larger one, then by face: an edge is a run of sides. */
+
 typedef struct hdi_sides {
-    int32_t *ptr;               /* [n + 1] runs at a vertex */
+    int32_t *ptr;               /* [n + 1] where those of a vertex begin */
+    int32_t most;               /* sides of the busiest vertex, at least 1 */
     uint64_t *key;              /* [3 m] larger vertex << 32 | 4 face + corner where the side begins */
-    uint64_t *work;             /* [2 busiest vertex] */
+    uint64_t *work;             /* [most] */
 } hdi_sides;
 
 static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
@@ -4148,89 +4278,103 @@ static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
 static int32_t hdi_key_face(uint64_t key) { return HDI_CAST(int32_t, (key & 0xffffffffu) >> 2); }
 static int hdi_key_corner(uint64_t key) { return HDI_CAST(int, key & 3); }
 static int32_t hdi_key_vertex(uint64_t key) { return HDI_CAST(int32_t, key >> 32); }
-/* The corner opposite to the side. */
-static int64_t hdi_key_opposite(uint64_t key) { return 3 * HDI_CAST(int64_t, hdi_key_face(key)) + hdi_prev3[hdi_key_corner(key)]; }
+/* Where the side begins, and the corner opposite to it. */
+static int64_t hdi_key_side(uint64_t key) { return hdi_triple(hdi_key_face(key)) + hdi_key_corner(key); }
+static int64_t hdi_key_opposite(uint64_t key) {
+    return hdi_triple(hdi_key_face(key)) + hdi_prev3[hdi_key_corner(key)];
+}
+
+/* The end of the run of side p, which is before end. */
+static HDI_INLINE int32_t hdi_sides_run(const hdi_sides *g, int32_t p, int32_t end) {
+    const int32_t j = hdi_key_vertex(g->key[p]);
+    while (++p < end && hdi_key_vertex(g->key[p]) == j) {}
+    return p;
+}
 
 static void hdi_sides_gather(const hdi_mesh *mesh, hdi_sides *g) {
     const int32_t *v = mesh->tri;
-    int32_t f, i, sum = 0, *at = g->ptr;
+    int32_t f, i, q, sum = 0, *at = g->ptr;
+    g->most = 1;
     memset(at, 0, (HDI_CAST(size_t, mesh->n) + 1) * sizeof *at);
     for (f = 0; f < mesh->m; f++, v += 3) {
         if (!(mesh->area[f] > 0)) continue;
-        at[v[0] < v[1] ? v[0] : v[1]]++;
-        at[v[1] < v[2] ? v[1] : v[2]]++;
-        at[v[2] < v[0] ? v[2] : v[0]]++;
+        at[hdi_low32(v[0], v[1])]++;
+        at[hdi_low32(v[1], v[2])]++;
+        at[hdi_low32(v[2], v[0])]++;
     }
     for (i = 0; i < mesh->n; i++) {
         const int32_t count = at[i];
         at[i] = sum;
         sum += count;
+        g->most = hdi_high32(g->most, count);
     }
     for (f = 0, v = mesh->tri; f < mesh->m; f++, v += 3) {
-        const uint64_t low = HDI_CAST(uint64_t, f) << 2;
-        const uint32_t a = HDI_CAST(uint32_t, v[0]), b = HDI_CAST(uint32_t, v[1]), c = HDI_CAST(uint32_t, v[2]);
         if (!(mesh->area[f] > 0)) continue;
-        g->key[at[a < b ? a : b]++] = HDI_CAST(uint64_t, a < b ? b : a) << 32 | low;
-        g->key[at[b < c ? b : c]++] = HDI_CAST(uint64_t, b < c ? c : b) << 32 | (low + 1);
-        g->key[at[c < a ? c : a]++] = HDI_CAST(uint64_t, c < a ? a : c) << 32 | (low + 2);
+        for (q = 0; q < 3; q++) {
+            const int32_t a = v[q], b = v[hdi_next3[q]];
+            g->key[at[hdi_low32(a, b)]++] = HDI_CAST(uint64_t, hdi_high32(a, b)) << 32
+                                          | (HDI_CAST(uint64_t, f) << 2) | HDI_CAST(uint64_t, q);
+        }
     }
     memmove(at + 1, at, HDI_CAST(size_t, mesh->n) * sizeof *at);
     at[0] = 0;
 }
 
-/* Sorts the sides at vertex i. Most lists are short. */
 static void hdi_sides_sort(hdi_sides *g, int32_t i) {
-    uint64_t *a = g->key + g->ptr[i];
-    const int64_t n = g->ptr[i + 1] - g->ptr[i];
-    int64_t p, q;
-    if (n > 24) {
-        hdi_sort_keys(a, n, g->work);
-        return;
-    }
-    for (p = 1; p < n; p++) {
-        const uint64_t x = a[p];
-        for (q = p; q > 0 && x < a[q - 1]; q--) a[q] = a[q - 1];
-        a[q] = x;
-    }
+    hdi_sort_keys(g->key + g->ptr[i], g->ptr[i + 1] - g->ptr[i], g->work);
 }
 
-static HDI_INLINE double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
-    double edge[3];
-    hdi_sub3(xyz + 3 * HDI_CAST(int64_t, j), xyz + 3 * HDI_CAST(int64_t, i), edge);
-    return hdi_norm3(edge);
-}
-
-/* Gathers the sides; g->work has room to sort those of the busiest vertex. */
+/* Gathers the sides, in s; sorting them is left to the caller. */
 static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s) {
-    int32_t i, most = 1;
     g->ptr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
-    g->key = HDI_TAKE(s, uint64_t, 3 * HDI_CAST(int64_t, mesh->m));
+    g->key = HDI_TAKE(s, uint64_t, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
     hdi_sides_gather(mesh, g);
-    for (i = 0; i < mesh->n; i++)
-        if (g->ptr[i + 1] - g->ptr[i] > most) most = g->ptr[i + 1] - g->ptr[i];
-    g->work = HDI_TAKE(s, uint64_t, 2 * HDI_CAST(int64_t, most));
+    g->work = HDI_TAKE(s, uint64_t, g->most);
     return s->e->status;
-}
-
-/* How many connected sets of vertices are united in parent [n], which is overwritten; single vertices are none. */
-static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
-    int32_t i, count = 0;
-    for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
-    for (i = 0; i < n; i++) {                    /* a set is a root with another vertex */
-        const int32_t root = parent[i];
-        if (root == i || root < 0 || parent[root] != root) continue;
-        parent[root] = -1;                       /* counted; it is the smallest of its set, so it has been passed */
-        count++;
-    }
-    return count;
 }
 
 /* ---- edges ---- */
 
+/* What is counted of edges, and the sum of their lengths. */
+typedef struct hdi_edge_tally {
+    int32_t n_edges, n_boundary, n_nonmanifold, n_misoriented;
+    double length;
+} hdi_edge_tally;
+
+/* An edge of so many faces, of which forward run from its smaller vertex to the larger one. */
+static HDI_INLINE void hdi_edge_count(hdi_edge_tally *t, int64_t faces, int64_t forward,
+                                      double length) {
+    t->n_edges++;
+    t->n_boundary += faces == 1;
+    t->n_nonmanifold += faces > 2;
+    t->n_misoriented += (faces == 2) & (forward != 1);
+    t->length += length;
+}
+
+static void hdi_edge_tally_add(hdi_edge_tally *all, const hdi_edge_tally *t) {
+    all->n_edges += t->n_edges;
+    all->n_boundary += t->n_boundary;
+    all->n_nonmanifold += t->n_nonmanifold;
+    all->n_misoriented += t->n_misoriented;
+    all->length += t->length;
+}
+
+/* border [n] unites boundary edges; it is overwritten. */
+static void hdi_edge_report(const hdi_edge_tally *t, int32_t *border, int32_t n,
+                            hd_mesh_report *rep) {
+    rep->n_edges = t->n_edges;
+    rep->n_boundary_edges = t->n_boundary;
+    rep->n_nonmanifold_edges = t->n_nonmanifold;
+    rep->n_misoriented_edges = t->n_misoriented;
+    rep->n_boundary_loops = t->n_boundary ? hdi_count_sets(border, n) : 0;
+}
+
 /* The edges of a mesh from each vertex to later ones, in order. */
 typedef struct hdi_edges {
-    int32_t *first, *last;      /* [n + 1], [n] those of a vertex: from its first on, before its last; in between there may be unused ones */
+    /* [n + 1], [n] those of a vertex: from its first on, before its last; in between there may be unused
+     * ones */
+    int32_t *first, *last;
     int32_t *to;                /* the later vertex; in intrinsic triangulations also the vertex itself */
     double *w;                  /* minus half the cotangents opposite to it */
     double *b;                  /* a twelfth of the areas of its faces; NULL: not wanted */
@@ -4240,20 +4384,20 @@ typedef struct hdi_edges {
     int32_t shift;              /* 2^shift vertices a block, which few edges leave */
 } hdi_edges;
 
-/* Room for the edges of m faces; room 0: for counts only. */
-static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int full, hdi_scope *s) {
-    int32_t i;
+/* Room for so many edges, with weights and areas if they are wanted. */
+static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int weights, int areas,
+                                hdi_scope *s) {
     memset(g, 0, sizeof *g);
     g->shift = 31;
     g->first = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, n) + 1);
     if (g->first) g->last = g->first + 1;
-    if (room) g->to = HDI_TAKE(s, int32_t, room);
-    if (room) g->w = HDI_TAKE(s, double, room);
-    if (room && full) g->b = HDI_TAKE(s, double, room);
+    g->to = HDI_TAKE(s, int32_t, room);
+    if (weights) g->w = HDI_TAKE(s, double, room);
+    if (areas) g->b = HDI_TAKE(s, double, room);
     g->smaller = HDI_TAKE_ZERO(s, int32_t, n);
     g->larger = HDI_TAKE_ZERO(s, int32_t, n);
     g->parent = HDI_TAKE(s, int32_t, n);
-    for (i = 0; i < n && s->e->status >= 0; i++) g->parent[i] = i;
+    if (s->e->status >= 0) hdi_fill_own(g->parent, n);
     return s->e->status;
 }
 
@@ -4263,7 +4407,8 @@ static HDI_INLINE void hdi_edges_join(hdi_edges *g, int32_t i, int32_t j) {
     if (g->parent[i] != g->parent[j]) hdi_unite(g->parent, i, j);
 }
 
-/* All cotangents of the faces of a run of sides: what the rounding error of their edge's weight is relative to. */
+/* All cotangents of the faces of a run of sides: what the rounding error of their edge's weight is
+ * relative to. */
 static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int64_t n) {
     double sum = 0;
     int64_t p;
@@ -4274,22 +4419,25 @@ static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int6
     return sum;
 }
 
-/* The edges of Delaunay triangles without coordinates, which may run from a vertex to itself. Weights above zero, which are there by rounding only, become
- * zero when they are below 1e-13 of the cotangents that they are made of. */
+/* The edges of Delaunay triangles without coordinates, which may run from a vertex to itself. Weights
+ * above zero, which are there by rounding only, become zero when they are below 1e-13 of the cotangents
+ * that they are made of. */
 static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hdi_scope *s) {
     hdi_sides sides;
-    int32_t i, p, q, end, n_edges = 0;
-    if (hdi_edges_take(g, mesh->n, 3 * HDI_CAST(int64_t, mesh->m), full, s) < 0 || hdi_sides_make(&sides, mesh, s) < 0) return s->e->status;
+    int32_t i, p, q, r, n_edges = 0;
+    if (hdi_edges_take(g, mesh->n, hdi_triple(mesh->m), 1, full, s) < 0) return s->e->status;
+    if (hdi_sides_make(&sides, mesh, s) < 0) return s->e->status;
     for (i = 0; i < mesh->n; i++) {
         g->first[i] = n_edges;
         hdi_sides_sort(&sides, i);
-        for (p = sides.ptr[i], end = sides.ptr[i + 1]; p < end; p = q, n_edges++) {
+        for (p = sides.ptr[i]; p < sides.ptr[i + 1]; p = q, n_edges++) {
             const uint64_t *key = sides.key;
             const int32_t j = hdi_key_vertex(key[p]);
             double w = 0, b = 0;
-            for (q = p; q < end && hdi_key_vertex(key[q]) == j; q++) {
-                w -= mesh->cot[hdi_key_opposite(key[q])] / 2;
-                b += mesh->area[hdi_key_face(key[q])];
+            q = hdi_sides_run(&sides, p, sides.ptr[i + 1]);
+            for (r = p; r < q; r++) {
+                w -= mesh->cot[hdi_key_opposite(key[r])] / 2;
+                b += mesh->area[hdi_key_face(key[r])];
             }
             if (w > 0 && w <= 1e-13 * hdi_run_cotangents(mesh, key + p, q - p)) w = 0;
             g->to[n_edges] = j;
@@ -4307,10 +4455,12 @@ static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hd
 /* How masses are lumped. */
 typedef enum hdi_lump { HDI_LUMP_THIRDS, HDI_LUMP_MIXED, HDI_LUMP_ONES } hdi_lump;
 
-/* Adds the shares of a face. The mixed rule of a face without obtuse angle, (|ab|^2 cot c + |ac|^2 cot b) / 8 at a, is area/4 (1 + cot b cot c) there, as
- * |ab|^2 = 2 area (cot a + cot b) and the three products of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the
- * area whatever rounding does, and cotangents may carry a factor. */
-static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const double *cot, double area, hdi_lump lump) {
+/* Adds the shares of a face. The mixed rule of a face without obtuse angle, (|ab|^2 cot c + |ac|^2 cot b)
+ * / 8 at a, is area/4 (1 + cot b cot c) there, as |ab|^2 = 2 area (cot a + cot b) and the three products
+ * of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the area
+ * whatever rounding does, and cotangents may carry a factor. */
+static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const double *cot,
+                                       double area, hdi_lump lump) {
     if (lump == HDI_LUMP_THIRDS) {
         mass[v[0]] += area / 3;
         mass[v[1]] += area / 3;
@@ -4318,17 +4468,21 @@ static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const dou
     } else if (lump == HDI_LUMP_ONES) {
         mass[v[0]] = mass[v[1]] = mass[v[2]] = 1;
     } else {
-        const double x[3] = {cot[1] * cot[2], cot[2] * cot[0], cot[0] * cot[1]}, sum = x[0] + x[1] + x[2], quarter = area / 4;
-        const double obtuse = hdi_min(cot[0], hdi_min(cot[1], cot[2])) < 0, most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
+        const double x[3] = {cot[1] * cot[2], cot[2] * cot[0], cot[0] * cot[1]}, sum = x[0] + x[1] + x[2],
+                     quarter = area / 4;
+        const double obtuse = hdi_min(cot[0], hdi_min(cot[1], cot[2])) < 0,
+                     most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
         const int round = hdi_finite(sum) && sum > 1e-100;
         const double flat = quarter * obtuse, scale = quarter / (round ? sum : 1) * (1 - obtuse);
         int q;
-        if (round) {                             /* without branches: which angle is obtuse is anyone's guess */
+        /* without branches: which angle is obtuse is anyone's guess */
+        if (round) {
             mass[v[0]] += quarter + (flat * (cot[0] < 0) + scale * x[0]);
             mass[v[1]] += quarter + (flat * (cot[1] < 0) + scale * x[1]);
             mass[v[2]] += quarter + (flat * (cot[2] < 0) + scale * x[2]);
-        } else {                                 /* a needle: its tip, which has the smallest angle, a quarter */
-            for (q = 0; q < 3; q++) mass[v[q]] += quarter + (obtuse > 0 ? flat * (cot[q] < 0) : cot[q] < most ? quarter / 2 : 0);
+        } else { /* a needle: its tip, which has the smallest angle, a quarter */
+            for (q = 0; q < 3; q++)
+                mass[v[q]] += quarter + (obtuse > 0 ? flat * (cot[q] < 0) : cot[q] < most ? quarter / 2 : 0);
         }
     }
 }
@@ -4337,47 +4491,19 @@ static void hdi_mesh_masses(const hdi_mesh *mesh, hdi_lump lump, double *mass) {
     int64_t f;
     memset(mass, 0, HDI_CAST(size_t, mesh->n) * sizeof *mass);
     for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0) hdi_face_masses(mass, mesh->tri + 3 * f, mesh->cot + 3 * f, mesh->area[f], lump);
+        if (mesh->area[f] > 0)
+            hdi_face_masses(mass, mesh->tri + 3 * f, mesh->cot + 3 * f, mesh->area[f], lump);
 }
 
-/* ---- one pass over a mesh ----
- * Vertices in their order, each with the faces whose smallest corner it is: these are measured, and their two sides at the vertex join those that wait there,
- * which were opposite to still smaller corners; then all its sides to later vertices are known, are sorted, and runs of them are its edges. What a face
- * needs is read once, and near what was read before.
- * Blocks of vertices are worked on at a time, after what faces give to vertices behind their block is there: few faces do, as neighbours tend to have numbers
- * close to each other, so these are measured twice. Where they do not, and for one thread, there is one block. All sums are taken in the same order, however
- * many blocks there are. */
+/* ---- edges of a triangle mesh ----
+ * Faces are put in the order of their smallest corners, so that what meets is near in memory. Then blocks
+ * of vertices are worked on in parallel: their faces are measured, and, when all sides are gathered,
+ * their edges to later vertices are runs of sides. Only what has to be summed in the order of the faces,
+ * or unites blocks, is done by one thread. All sums are taken in the same order, however many threads
+ * there are. */
 
-typedef struct hdi_side { int32_t to; uint32_t turn; double cot, area; } hdi_side;     /* turn: 1 if it runs to the later vertex */
-
-/* A block of vertices: what it found, and its work arrays. */
-typedef struct hdi_pass_block {
-    int32_t begin, end;         /* its vertices */
-    int32_t from, to;           /* the vertices it gives masses and sides to */
-    int32_t n_edges, n_boundary, n_nonmanifold, n_misoriented, n_repeated;
-    double length;              /* of its edges since it was last noted */
-    hdi_face_tally tally;
-    hdi_side *side;             /* [busiest vertex] its sides, and work arrays */
-    double *cot;                /* [3 busiest] */
-    uint64_t *key, *work;       /* [busiest] */
-} hdi_pass_block;
-
-typedef struct hdi_pass {
-    hdi_mesh *mesh;
-    hdi_edges *edges;
-    double *mass;               /* [n] or NULL: not wanted */
-    hdi_lump lump;
-    hd_mesh_report *rep;
-    int32_t *face_ptr;          /* [n + 1] faces by their smallest corner */
-    int32_t *wait_ptr, *waits;  /* [n + 1], [n] where the sides of a vertex wait, and where the next one comes */
-    hdi_side *waiting;          /* [m] */
-    int32_t *border;            /* [n] vertices united along boundary edges */
-    double *length;             /* [HDI_BLOCKS_MOST] of edges, by blocks of a size that threads have no part in */
-    hdi_pass_block *block;      /* [n_blocks] of 2^edges->shift vertices */
-    int32_t n_blocks;
-} hdi_pass;
-
-enum { HDI_BLOCK_SHIFT = 14, HDI_BLOCKS_MOST = 64 };    /* larger: fewer faces leave; smaller: more threads have work */
+/* larger: fewer edges leave a block; smaller: more threads have work */
+enum { HDI_BLOCK_SHIFT = 14, HDI_BLOCKS_MOST = 64 };
 
 /* Blocks of n vertices: the size as a power of two. */
 static int32_t hdi_block_shift(int32_t n) {
@@ -4386,379 +4512,214 @@ static int32_t hdi_block_shift(int32_t n) {
     return shift;
 }
 
-/* By value, so that no branch has to be guessed. */
-static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
-static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
+typedef struct hdi_pass {
+    hdi_mesh *mesh;
+    hdi_edges *edges;
+    hdi_sides sides;
+    int32_t *face_ptr;          /* [n + 1] faces by their smallest corner */
+    int32_t shift;              /* 2^shift vertices a block */
+    struct {
+        hdi_face_tally faces;
+        hdi_edge_tally edges;
+    } block[HDI_BLOCKS_MOST];
+} hdi_pass;
 
-/* Faces of vertex i that have the same corners as an earlier one get area 0. room: as large as two sides a face. */
-static void hdi_pass_repeats(const hdi_pass *s, hdi_pass_block *k, int32_t i, void *room) {
-    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1];
-    const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, begin);
-    hdi_pair *pair = HDI_CAST(hdi_pair *, room);
-    int64_t n = 0, p, q;
-    int32_t f;
-    double *area = s->mesh->area;
-    for (f = begin; f < end; f++, v += 3) {
-        const uint64_t sum = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - i), no = HDI_CAST(uint64_t, f - begin);
+/* The m faces of the mesh, in the order of their smallest corners, into tri and face. Returns how many of
+ * them leave their block of 2^shift vertices. */
+static int32_t hdi_pass_sort(hdi_pass *s, int32_t shift, int32_t *tri, int32_t *face) {
+    const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
+    int32_t *HDI_RESTRICT at = s->face_ptr, f, i, sum = 0, leaving = 0;
+    memset(at, 0, (HDI_CAST(size_t, n) + 1) * sizeof *at);
+    for (f = 0; f < m; f++, v += 3) {
+        const int32_t low = hdi_low32(hdi_low32(v[0], v[1]), v[2]),
+                      high = hdi_high32(hdi_high32(v[0], v[1]), v[2]);
+        at[low]++;
+        leaving += (low ^ high) >> shift != 0;
+    }
+    for (i = 0; i < n; i++) {
+        const int32_t count = at[i];
+        at[i] = sum;
+        sum += count;
+    }
+    for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
+        const int32_t to = at[hdi_low32(hdi_low32(v[0], v[1]), v[2])]++;
+        memcpy(tri + hdi_triple(to), v, 3 * sizeof *v);
+        face[to] = f;
+    }
+    memmove(at + 1, at, HDI_CAST(size_t, n) * sizeof *at);
+    at[0] = 0;
+    s->mesh->tri = tri;
+    s->mesh->face = face;
+    return leaving;
+}
+
+/* Faces of vertex i that have the same corners as an earlier one get area 0. pair: work for long lists. */
+static void hdi_pass_repeats(const hdi_pass *s, int32_t i, hdi_face_tally *tally, hdi_pair *pair) {
+    const int32_t begin = s->face_ptr[i], n = s->face_ptr[i + 1] - begin,
+                  *v = s->mesh->tri + hdi_triple(begin);
+    double *area = s->mesh->area + begin;
+    hdi_pair few[HDI_SHORT_LIST];
+    int32_t p;
+    if (n > HDI_SHORT_LIST && !pair) return;
+    if (n <= HDI_SHORT_LIST) pair = few;
+    /* the sum of the two others and the larger say it all; no sum is 0 */
+    for (p = 0; p < n; p++, v += 3) {
+        const uint64_t sum = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - i);
         const uint64_t most = HDI_CAST(uint64_t, hdi_high32(hdi_high32(v[0], v[1]), v[2]));
-        k->key[n++] = area[f] > 0 ? sum << 31 | most : no;     /* the sum of the two others and the larger say it all; no sum is 0 */
-    }
-    if (n <= 24) {
-        for (p = 1; p < n; p++) {
-            for (q = 0; q < p && k->key[q] != k->key[p]; q++) {}
-            if (q == p) continue;
-            area[begin + p] = 0;
-            k->n_repeated++;
-        }
-        return;
-    }
-    for (p = 0; p < n; p++) {                    /* many: sorted with their places */
-        pair[p].key = k->key[p];
+        pair[p].key = area[p] > 0 ? sum << 31 | most : HDI_CAST(uint64_t, p);
         pair[p].id = p;
     }
     hdi_sort_pairs(pair, n);
     for (p = 1; p < n; p++) {
         if (pair[p].key != pair[p - 1].key) continue;
-        area[begin + pair[p].id] = 0;
-        k->n_repeated++;
+        area[pair[p].id] = 0;
+        tally->n_repeated_face++;
     }
 }
 
-/* The shares of face v to those of its corners that the block gives to. */
-static void hdi_pass_masses(const hdi_pass *s, const hdi_pass_block *k, const int32_t *v, const double *cot, double area) {
-    static const int32_t hdi_three[3] = {0, 1, 2};
-    double share[3] = {0, 0, 0};
-    int q;
-    hdi_face_masses(share, hdi_three, cot, area, s->lump);
-    for (q = 0; q < 3; q++)
-        if (v[q] >= k->from && v[q] < k->to) s->mass[v[q]] = s->lump == HDI_LUMP_ONES ? 1 : s->mass[v[q]] + share[q];
-}
-
-/* Measures the faces of vertex i; their sides are added to the n that k->side has, or wait at the vertex where they begin. Returns the number of sides. */
-static int32_t hdi_pass_faces(const hdi_pass *s, hdi_pass_block *k, int32_t i, int32_t n) {
-    const int32_t begin = s->face_ptr[i], end = s->face_ptr[i + 1], *tri = s->mesh->tri;
-    const double *xyz = s->mesh->xyz;
-    double *area = s->mesh->area;
-    int32_t f;
-    for (f = begin; f < end; f++) {
-        const int32_t *ahead = tri + 3 * HDI_CAST(int64_t, f + HDI_FACES_AHEAD < s->mesh->m ? f + HDI_FACES_AHEAD : f);
-        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[0]));
-        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[1]));
-        HDI_PREFETCH(xyz + 3 * HDI_CAST(int64_t, ahead[2]));
-        area[f] = hdi_face_measure(s->mesh, f, k->cot + 3 * (f - begin), &k->tally);
-    }
-    if (end - begin > 1) hdi_pass_repeats(s, k, i, k->side + n);
-    for (f = begin; f < end; f++) {
-        const int32_t *v = tri + 3 * HDI_CAST(int64_t, f);
-        const double *cot = k->cot + 3 * (f - begin);
-        hdi_side *side = k->side + n;
-        int32_t q, r, t, b, c, low;
-        if (!(area[f] > 0)) continue;
-        q = (v[1] == i) + 2 * (v[2] == i);       /* the corner at i */
-        r = hdi_next3[q];
-        t = hdi_prev3[q];
-        b = v[r];
-        c = v[t];
-        if (s->mass && k->from == 0 && hdi_high32(b, c) < k->to) hdi_face_masses(s->mass, v, cot, area[f], s->lump);
-        else if (s->mass) hdi_pass_masses(s, k, v, cot, area[f]);
-        side[0].to = b;
-        side[0].turn = 1;
-        side[0].cot = cot[t];
-        side[1].to = c;
-        side[1].turn = 0;
-        side[1].cot = cot[r];
-        side[0].area = side[1].area = area[f];
-        n += 2;
-        low = hdi_low32(b, c);
-        if (low < k->from || low >= k->to) continue;
-        side = s->waiting + s->waits[low]++;
-        side->to = hdi_high32(b, c);
-        side->turn = b < c;
-        side->cot = cot[q];
-        side->area = area[f];
-    }
-    return n;
-}
-
-/* The keys of n sides in ascending order, into k->key. */
-static HDI_INLINE void hdi_pass_order(hdi_pass_block *k, int32_t n) {
-    uint64_t *key = k->key, *work = k->work;
-    int32_t p, q;
-    for (p = 0; p < n; p++) key[p] = HDI_CAST(uint64_t, k->side[p].to) << 32 | HDI_CAST(uint64_t, p);
-    if (n > 16) {
-        hdi_sort_keys(key, n, work);
-        return;
-    }
-    for (p = 0; p < n; p++) {                    /* by counting who is smaller: no branch to be guessed */
-        const uint64_t x = key[p];
-        int32_t rank = 0;
-        for (q = 0; q < n; q++) rank += key[q] < x;
-        work[rank] = x;
-    }
-    k->key = work;
-    k->work = key;
-}
-
-/* The edges from vertex i to later ones, from its n sides. Those that leave the block are not joined yet; boundary edges among them are marked by ~. Returns
- * the number of the next edge. */
-static int32_t hdi_pass_edges(const hdi_pass *s, hdi_pass_block *k, int32_t i, int32_t n, int32_t at) {
-    hdi_edges *g = s->edges;
-    const uint64_t *key;
-    const int32_t begin = at, end = k->end;
-    int32_t p, q, n_boundary = 0, n_nonmanifold = 0, n_misoriented = 0;
-    double length = 0;
-    hdi_pass_order(k, n);
-    key = k->key;
-    for (p = 0; p < n; p = q, at++) {
-        const hdi_side *side = k->side + (key[p] & 0xffffffffu);
-        const int32_t j = side->to;
-        double w = -side->cot / 2, b = side->area;
-        uint32_t turns = side->turn;
-        int boundary;
-        for (q = p + 1; q < n && HDI_CAST(int32_t, key[q] >> 32) == j; q++) {
-            const hdi_side *other = k->side + (key[q] & 0xffffffffu);
-            w -= other->cot / 2;
-            b += other->area;
-            turns += other->turn;
-        }
-        boundary = q - p == 1;
-        if (g->w) {
-            g->to[at] = j >= end && boundary ? ~j : j;
-            g->w[at] = w;
-            if (g->b) g->b[at] = b / 12;
-        }
-        length += hdi_edge_length(s->mesh->xyz, i, j);
-        n_boundary += boundary;
-        n_nonmanifold += q - p > 2;
-        n_misoriented += (q - p == 2) & (turns != 1);
-        if (j >= end) continue;
-        hdi_edges_join(g, i, j);
-        if (boundary) hdi_unite(s->border, i, j);
-    }
-    g->larger[i] = at - begin;
-    k->length += length;
-    k->n_boundary += n_boundary;
-    k->n_nonmanifold += n_nonmanifold;
-    k->n_misoriented += n_misoriented;
-    return at;
-}
-
-/* What the faces give to vertices behind their block: masses, and sides that wait there. */
-static void hdi_pass_leaving(const hdi_pass *s) {
-    int32_t i, b, f;
-    for (b = 0; b + 1 < s->n_blocks; b++) {
-        hdi_pass_block k = s->block[b];
-        const int32_t end = s->face_ptr[k.end];
-        k.from = k.end;
-        k.to = s->mesh->n;
-        for (f = s->face_ptr[k.begin]; f < end; f++) {
-            const int32_t *v = s->mesh->tri + 3 * HDI_CAST(int64_t, f);
-            if (hdi_high32(v[0], hdi_high32(v[1], v[2])) < k.end) continue;
-            i = hdi_low32(v[0], hdi_low32(v[1], v[2]));
-            (void)hdi_pass_faces(s, &k, i, 0);
-            f = s->face_ptr[i + 1] - 1;          /* all faces of the vertex are done */
-        }
-    }
-}
-
-/* The edges that leave block k. */
-static void hdi_pass_crossing(const hdi_pass *s, const hdi_pass_block *k) {
-    hdi_edges *g = s->edges;
-    int32_t i, p;
-    for (i = k->begin; i < k->end; i++) {
-        for (p = g->last[i] - 1; p >= g->first[i]; p--) {
-            const int boundary = g->to[p] < 0;
-            const int32_t j = boundary ? ~g->to[p] : g->to[p];
-            if (j < k->end) break;
-            g->to[p] = j;
-            hdi_edges_join(g, i, j);
-            if (boundary) hdi_unite(s->border, i, j);
-        }
-    }
-}
-
-/* Numbers of faces and waiting sides at each vertex, as offsets; the faces of the mesh in the order of their smallest corners. */
-static void hdi_pass_sort(hdi_pass *s, int32_t *tri, int32_t *face) {
-    const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
-    int32_t *HDI_RESTRICT faces = s->face_ptr, *HDI_RESTRICT waits = s->waits, f, i, sum = 0, wait_sum = 0, leaving = 0;
-    const int32_t shift = s->edges->shift;
-    memset(faces, 0, (HDI_CAST(size_t, n) + 1) * sizeof *faces);
-    memset(waits, 0, HDI_CAST(size_t, n) * sizeof *waits);
-    for (f = 0; f < m; f++, v += 3) {
-        const int32_t lo = hdi_low32(v[0], v[1]), hi = hdi_high32(v[0], v[1]), low = hdi_low32(lo, v[2]);
-        faces[low]++;
-        waits[hdi_high32(lo, hdi_low32(hi, v[2]))]++;
-        leaving += (low ^ hdi_high32(hi, v[2])) >> shift != 0;
-    }
-    if (leaving > m / 4) s->edges->shift = 31;
-    for (i = 0; i < n; i++) {
-        const int32_t count = faces[i], wait = waits[i];
-        faces[i] = sum;
-        waits[i] = s->wait_ptr[i] = wait_sum;
-        sum += count;
-        wait_sum += wait;
-    }
-    s->wait_ptr[n] = wait_sum;
-    for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
-        const int32_t at = faces[hdi_low32(hdi_low32(v[0], v[1]), v[2])]++;
-        memcpy(tri + 3 * HDI_CAST(int64_t, at), v, 3 * sizeof *v);
-        face[at] = f;
-    }
-    memmove(faces + 1, faces, HDI_CAST(size_t, n) * sizeof *faces);
-    faces[0] = 0;
-    s->mesh->tri = tri;
-    s->mesh->face = face;
-}
-
-/* Vertices of block k. Returns room for the sides of its busiest vertex, in whole cache lines that no other block writes to. */
-static int32_t hdi_pass_extent(const hdi_pass *p, hdi_pass_block *k, int32_t b) {
-    const int64_t step = HDI_CAST(int64_t, 1) << p->edges->shift;
-    int32_t i, most = 1;
-    memset(k, 0, sizeof *k);
-    hdi_tally_clear(&k->tally);
-    k->begin = HDI_CAST(int32_t, b * step);
-    k->end = k->to = HDI_CAST(int32_t, hdi_least(p->mesh->n, (b + 1) * step));
-    for (i = k->begin; i < k->end; i++) {
-        const int32_t sides = 2 * (p->face_ptr[i + 1] - p->face_ptr[i]) + p->wait_ptr[i + 1] - p->wait_ptr[i];
-        if (sides > most) most = sides;
-        p->border[i] = i;
-    }
-    return (most + 31) & ~15;
-}
-
-/* The blocks and their work arrays. */
-static hd_status hdi_pass_blocks(hdi_pass *p, hdi_scope *own) {
-    int32_t b;
-    int64_t sum = 0;
-    hdi_side *side;
-    double *cot;
-    uint64_t *key, *work;
-    p->n_blocks = ((p->mesh->n - 1) >> p->edges->shift) + 1;
-    p->block = HDI_TAKE(own, hdi_pass_block, p->n_blocks);
-    if (!p->block) return own->e->status;
-    for (b = 0; b < p->n_blocks; b++) {
-        p->block[b].n_edges = hdi_pass_extent(p, p->block + b, b);
-        sum += p->block[b].n_edges;
-    }
-    side = HDI_TAKE(own, hdi_side, sum);
-    cot = HDI_TAKE(own, double, 3 * sum);
-    key = HDI_TAKE(own, uint64_t, sum);
-    work = HDI_TAKE(own, uint64_t, sum);
-    if (own->e->status < 0) return own->e->status;
-    for (b = p->n_blocks; b-- > 0;) {
-        sum -= p->block[b].n_edges;
-        p->block[b].n_edges = 0;
-        p->block[b].side = side + sum;
-        p->block[b].cot = cot + 3 * sum;
-        p->block[b].key = key + sum;
-        p->block[b].work = work + sum;
-    }
-    return HD_OK;
-}
-
-/* Room of the pass; the faces of the mesh and their areas live in s, the rest in own. */
-static hd_status hdi_pass_begin(hdi_pass *p, hdi_scope *own, hdi_scope *s) {
-    const int32_t n = p->mesh->n;
-    int32_t *tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, p->mesh->m)), *face = HDI_TAKE(s, int32_t, p->mesh->m);
-    p->mesh->area = HDI_TAKE(s, double, p->mesh->m);
-    if (p->edges->w) p->edges->last = HDI_TAKE(s, int32_t, n);
-    p->face_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
-    p->wait_ptr = HDI_TAKE(own, int32_t, HDI_CAST(int64_t, n) + 1);
-    p->waits = HDI_TAKE(own, int32_t, n);
-    p->border = HDI_TAKE(own, int32_t, n);
-    p->waiting = HDI_TAKE(own, hdi_side, p->mesh->m);
-    p->length = HDI_TAKE_ZERO(own, double, HDI_BLOCKS_MOST);
-    if (s->e->status < 0) return s->e->status;
-    /* One block if nobody gains by more, or if edges are only counted: then nobody knows which leave their block. */
-    p->edges->shift = p->edges->w && !hdi_is_serial(s->ctx) ? hdi_block_shift(n) : 31;
-    hdi_pass_sort(p, tri, face);
-    if (p->mass) memset(p->mass, 0, HDI_CAST(size_t, n) * sizeof *p->mass);
-    return hdi_pass_blocks(p, own);
-}
-
-/* A block of vertices. Its edges begin where there would be room for one edge of each side before it. */
-static void hdi_pass_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_pass *p = HDI_CAST(const hdi_pass *, arg);
-    hdi_pass_block *all = p->block + index, k = *all;
-    const int32_t begin = 2 * p->face_ptr[k.begin] + p->wait_ptr[k.begin], shift = hdi_block_shift(p->mesh->n);
-    int32_t i, n, at = begin;
-    (void)worker;
-    for (i = k.begin; i < k.end; i++) {
-        p->edges->first[i] = at;
-        n = p->waits[i] - p->wait_ptr[i];
-        memcpy(k.side, p->waiting + p->wait_ptr[i], HDI_CAST(size_t, n) * sizeof *k.side);
-        n = hdi_pass_faces(p, &k, i, n);
-        at = hdi_pass_edges(p, &k, i, n, at);
-        p->edges->last[i] = at;
-        if (i + 1 < k.end && (i + 1) >> shift == i >> shift) continue;
-        p->length[i >> shift] = k.length;
-        k.length = 0;
-    }
-    k.n_edges = at - begin;
-    *all = k;
-}
-
-static hd_status hdi_pass_run(hdi_pass *p, hdi_scope *s) {
-    hd_mesh_report *rep = p->rep;
+static void hdi_pass_measure(void *arg, int64_t begin, int64_t end) {
+    const hdi_pass *s = HDI_CAST(const hdi_pass *, arg);
+    const hdi_mesh *mesh = s->mesh;
     hdi_face_tally tally;
-    int32_t b;
+    int64_t i;
+    int32_t f;
     hdi_tally_clear(&tally);
-    hdi_pass_leaving(p);
-    hdi_parallel(s->ctx, p->n_blocks, hdi_pass_task, p);
-    for (b = 0; b < p->n_blocks; b++) {
-        const hdi_pass_block *k = p->block + b;
-        if (b + 1 < p->n_blocks) hdi_pass_crossing(p, k);
-        hdi_tally_add(&tally, &k->tally);
-        rep->n_repeated_face += k->n_repeated;
-        rep->n_edges += k->n_edges;
-        rep->n_boundary_edges += k->n_boundary;
-        rep->n_nonmanifold_edges += k->n_nonmanifold;
-        rep->n_misoriented_edges += k->n_misoriented;
+    for (f = s->face_ptr[begin]; f < s->face_ptr[end]; f++) {
+        hdi_face_ahead(mesh, f + HDI_FACES_AHEAD < mesh->m ? f + HDI_FACES_AHEAD : f);
+        mesh->area[f] = hdi_face_measure(mesh, f, mesh->cot + hdi_triple(f), &tally);
     }
-    for (b = 0; b < HDI_BLOCKS_MOST; b++) p->edges->length += p->length[b];
-    if (hdi_tally_report(&tally, p->mesh->m, rep, s->e) < 0) return s->e->status;
-    rep->n_faces_used -= rep->n_repeated_face;
-    rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(p->border, p->mesh->n) : 0;
+    for (i = begin; i < end; i++)
+        if (s->face_ptr[i + 1] - s->face_ptr[i] > 1) hdi_pass_repeats(s, HDI_CAST(int32_t, i), &tally, NULL);
+    HDI_CAST(hdi_pass *, arg)->block[begin >> s->shift].faces = tally;
+}
+
+/* The edges of the run of sides [p, q), into place at of the edges if these are wanted. */
+static HDI_INLINE void hdi_pass_edge(const hdi_pass *s, int32_t p, int32_t q, int32_t i, int32_t at,
+                                     hdi_edge_tally *tally) {
+    const uint64_t *key = s->sides.key;
+    const hdi_mesh *mesh = s->mesh;
+    const int32_t j = hdi_key_vertex(key[p]), n = q - p;
+    hdi_edges *g = s->edges;
+    double w = -mesh->cot[hdi_key_opposite(key[p])] / 2, b = mesh->area[hdi_key_face(key[p])];
+    int32_t forward = mesh->tri[hdi_key_side(key[p])] == i;
+    while (++p < q) {
+        forward += mesh->tri[hdi_key_side(key[p])] == i;
+        w -= mesh->cot[hdi_key_opposite(key[p])] / 2;
+        b += mesh->area[hdi_key_face(key[p])];
+    }
+    g->to[at] = n == 1 ? ~j : j;
+    if (g->w) g->w[at] = w;
+    if (g->b) g->b[at] = b / 12;
+    hdi_edge_count(tally, n, forward, hdi_edge_length(mesh->xyz, i, j));
+}
+
+/* The edges of a block of vertices; boundary edges are marked by ~. */
+static void hdi_pass_edges(void *arg, int64_t begin, int64_t end) {
+    hdi_pass *s = HDI_CAST(hdi_pass *, arg);
+    hdi_edges *g = s->edges;
+    hdi_edge_tally *block = &s->block[begin >> s->shift].edges;
+    int32_t at = s->sides.ptr[begin], i, p, q;
+    for (i = HDI_CAST(int32_t, begin); i < end; i++) {
+        hdi_edge_tally tally = {0, 0, 0, 0, 0};
+        const int32_t last = s->sides.ptr[i + 1];
+        if (last - s->sides.ptr[i] <= HDI_SHORT_LIST) hdi_sides_sort(&s->sides, i);
+        g->first[i] = at;
+        for (p = s->sides.ptr[i]; p < last; p = q) {
+            q = hdi_sides_run(&s->sides, p, last);
+            hdi_pass_edge(s, p, q, i, at++, &tally);
+        }
+        g->last[i] = at;
+        g->larger[i] = tally.n_edges;
+        hdi_edge_tally_add(block, &tally);
+    }
+}
+
+/* Joins the vertices of all edges, in border those of boundary edges, whose marks are taken away. */
+static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border) {
+    int32_t i, p;
+    hdi_fill_own(border, n);
+    for (i = 0; i < n; i++) {
+        for (p = g->first[i]; p < g->last[i]; p++) {
+            if (g->to[p] < 0) {
+                g->to[p] = ~g->to[p];
+                hdi_unite(border, i, g->to[p]);
+            }
+            hdi_edges_join(g, i, g->to[p]);
+        }
+    }
+}
+
+/* Areas and cotangents of all faces; those that contribute nothing get area 0. */
+static hd_status hdi_pass_faces(hdi_pass *pass, hd_mesh_report *rep, hdi_scope *own) {
+    const int32_t n = pass->mesh->n, *ptr = pass->face_ptr;
+    hdi_face_tally tally;
+    hdi_pair *work = NULL;
+    int32_t i, most = 0;
+    hdi_tally_clear(&tally);
+    hdi_parallel_ranges(own->ctx, n, HDI_CAST(int64_t, 1) << pass->shift, hdi_pass_measure, pass);
+    for (i = 0; i <= (n - 1) >> pass->shift; i++) hdi_tally_add(&tally, &pass->block[i].faces);
+    for (i = 0; i < n; i++) most = hdi_high32(most, ptr[i + 1] - ptr[i]);
+    if (most > HDI_SHORT_LIST) work = HDI_TAKE(own, hdi_pair, most);
+    for (i = 0; i < n && work; i++)
+        if (ptr[i + 1] - ptr[i] > HDI_SHORT_LIST) hdi_pass_repeats(pass, i, &tally, work);
+    return own->e->status < 0 ? own->e->status : hdi_tally_report(&tally, pass->mesh->m, rep, own->e);
+}
+
+/* What a mesh is asked for besides its areas. */
+typedef struct hdi_mesh_wants {
+    int weights, areas;         /* of edges: cotangents, and areas for a full B */
+    hdi_lump lump;
+    double *mass;               /* [n] masses of the vertices; NULL: not wanted */
+} hdi_mesh_wants;
+
+static hd_status hdi_pass_run(hdi_pass *pass, const hdi_mesh_wants *want, hd_mesh_report *rep,
+                              hdi_scope *own) {
+    hdi_mesh *mesh = pass->mesh;
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    int32_t i, *border = HDI_TAKE(own, int32_t, mesh->n);
+    if (!border || hdi_pass_faces(pass, rep, own) < 0) return own->e->status;
+    if (want->mass) hdi_mesh_masses(mesh, want->lump, want->mass);
+    if (hdi_sides_make(&pass->sides, mesh, own) < 0) return own->e->status;
+    for (i = 0; i < mesh->n; i++)                /* short ones need no work array */
+        if (pass->sides.ptr[i + 1] - pass->sides.ptr[i] > HDI_SHORT_LIST) hdi_sides_sort(&pass->sides, i);
+    hdi_parallel_ranges(own->ctx, mesh->n, HDI_CAST(int64_t, 1) << pass->shift, hdi_pass_edges, pass);
+    for (i = 0; i < HDI_BLOCKS_MOST; i++) hdi_edge_tally_add(&tally, &pass->block[i].edges);
+    hdi_pass_join(pass->edges, mesh->n, border);
+    pass->edges->length = tally.length;
+    hdi_edge_report(&tally, border, mesh->n, rep);
     return HD_OK;
 }
 
-/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing. The arrays live in s. The faces of the mesh are in an
- * order of their own, without cotangents and corner lists. full -1: the edges are only counted; 1: with areas. mass [n] or NULL. */
-static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, int full, double *mass, hdi_lump lump, hd_mesh_report *rep, hdi_scope *s) {
+/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing.
+ * The arrays live in s. The faces of the mesh are in an order of their own then, without cotangents. */
+static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, const hdi_mesh_wants *want,
+                                hd_mesh_report *rep, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    const int64_t n_corners = hdi_triple(mesh->m);
+    int32_t *tri, *face, leaving;
     hdi_pass pass;
     memset(&pass, 0, sizeof pass);
     pass.mesh = mesh;
     pass.edges = edges;
-    pass.mass = mass;
-    pass.lump = lump;
-    pass.rep = rep;
+    pass.shift = hdi_block_shift(mesh->n);
     rep->n_faces = mesh->m;
-    if (3 * HDI_CAST(int64_t, mesh->m) > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0) return hdi_scope_end(&own);
-    if (hdi_edges_take(edges, mesh->n, full < 0 ? 0 : 3 * HDI_CAST(int64_t, mesh->m), full > 0, s) < 0) return hdi_scope_end(&own);
-    if (hdi_pass_begin(&pass, &own, s) >= 0) (void)hdi_pass_run(&pass, s);
+    if (n_corners > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0)
+        return hdi_scope_end(&own);
+    if (hdi_edges_take(edges, mesh->n, n_corners, want->weights, want->areas, s) < 0)
+        return hdi_scope_end(&own);
+    edges->last = HDI_TAKE(s, int32_t, mesh->n);
+    tri = HDI_TAKE(s, int32_t, n_corners);
+    face = HDI_TAKE(s, int32_t, mesh->m);
+    mesh->area = HDI_TAKE(s, double, mesh->m);
+    mesh->cot = HDI_TAKE(&own, double, n_corners);
+    pass.face_ptr = HDI_TAKE(&own, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    leaving = hdi_pass_sort(&pass, pass.shift, tri, face);
+    (void)hdi_pass_run(&pass, want, rep, &own);
+    edges->shift = leaving <= mesh->m / 4 && !hdi_is_serial(s->ctx) ? pass.shift : 31;
+    mesh->cot = NULL;
     return hdi_scope_end(&own);
-}
-
-static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m) {
-    memset(mesh, 0, sizeof *mesh);
-    mesh->xyz = xyz;
-    mesh->tri = tri;
-    mesh->n = n;
-    mesh->m = m;
-}
-
-/* The same with corner lists, for those who need no edges. */
-static hd_status hdi_mesh_make(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri, int32_t m, hd_mesh_report *rep, hdi_scope *s) {
-    hdi_edges edges;
-    hdi_mesh_clear(mesh, xyz, n, tri, m);
-    if (hdi_mesh_faces(mesh, &edges, -1, NULL, HDI_LUMP_THIRDS, rep, s) < 0) return s->e->status;
-    mesh->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
-    mesh->corner = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, m));
-    if (s->e->status < 0) return s->e->status;
-    hdi_mesh_corners(mesh);
-    return HD_OK;
 }
 
 /* ---- polygons ---- */
@@ -4778,22 +4739,32 @@ typedef struct hdi_poly {
     int32_t *corner;     /* [corners]; corners of faces left out are not listed */
 } hdi_poly;
 
-static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr, const int32_t *idx, int32_t m, hd_error *e) {
+static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr,
+                                const int32_t *idx, int32_t m, hd_error *e) {
     int64_t c;
     int32_t f;
     if (hdi_mesh_check(xyz, n, NULL, 0, e) < 0) return e->status;
-    if (m > 0 && ptr[0] != 0) return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, HDI_CAST(double, ptr[0]));
+    if (m > 0 && ptr[0] != 0)
+        return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1,
+                             HDI_CAST(double, ptr[0]));
     for (f = 0; f < m; f++)
-        if (ptr[f + 1] < ptr[f]) return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, HDI_CAST(double, ptr[f + 1]));
+        if (ptr[f + 1] < ptr[f])
+            return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1,
+                                 HDI_CAST(double, ptr[f + 1]));
     if (m > 0 && ptr[m] > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if (m > 0 && ptr[m] > 0 && !idx) return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
+    if (m > 0 && ptr[m] > 0 && !idx)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
     for (f = 0; f < m; f++)
         for (c = ptr[f]; c < ptr[f + 1]; c++)
-            if (idx[c] < 0 || idx[c] >= n) return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1, idx[c]);
+            if (idx[c] < 0 || idx[c] >= n)
+                return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1,
+                                     idx[c]);
     return HD_OK;
 }
 
-static const double *hdi_poly_at(const hdi_poly *poly, int64_t corner) { return poly->xyz + 3 * HDI_CAST(int64_t, poly->idx[corner]); }
+static const double *hdi_poly_at(const hdi_poly *poly, int64_t corner) {
+    return poly->xyz + 3 * HDI_CAST(int64_t, poly->idx[corner]);
+}
 
 /* The corners of the same face before and after c. */
 static int64_t hdi_poly_before(const hdi_poly *poly, int64_t c) {
@@ -4811,8 +4782,9 @@ static void hdi_poly_edge(const hdi_poly *poly, int64_t c, double *edge) {
     hdi_sub3(hdi_poly_at(poly, hdi_poly_after(poly, c)), hdi_poly_at(poly, c), edge);
 }
 
-/* Twice the vector area of face f, as a fan from its first corner. Returns its length, or 0 when nothing but the rounding of the sum is left of
- * it, as in a bow tie. A triangle is one cross product of two edges: 0 only if that is exactly zero. */
+/* Twice the vector area of face f, as a fan from its first corner. Returns its length, or 0 when nothing
+ * but the rounding of the sum is left of it, as in a bow tie. A triangle is one cross product of two
+ * edges: 0 only if that is exactly zero. */
 static double hdi_poly_area(const hdi_poly *poly, int32_t f, double *twice) {
     const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
     double spoke[3], edge[3], cross[3], length, sum = 0;
@@ -4831,8 +4803,10 @@ static double hdi_poly_area(const hdi_poly *poly, int32_t f, double *twice) {
     return length <= 4 * DBL_EPSILON * HDI_CAST(double, end - begin - 2) * sum ? 0 : length;
 }
 
-/* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the longest edge as projected into it. Returns its length. */
-static double hdi_poly_axes(const hdi_poly *poly, int32_t f, const double *normal, double frame[2][3]) {
+/* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the
+ * longest edge as projected into it. Returns its length. */
+static double hdi_poly_axes(const hdi_poly *poly, int32_t f, const double *normal,
+                            double frame[2][3]) {
     double longest = 0, edge[3], length, along;
     int64_t c;
     int q;
@@ -4849,8 +4823,9 @@ static double hdi_poly_axes(const hdi_poly *poly, int32_t f, const double *norma
     return longest;
 }
 
-/* The projector on the kernel of the transposed projected edges is I - Q Q', Q [k x 2] an orthonormal basis of their range: Gram and Schmidt,
- * orthogonalised twice. What is kept are the rows of w = D'Q, D the difference along the edges. 0 when the face has no plane. */
+/* The projector on the kernel of the transposed projected edges is I - Q Q', Q [k x 2] an orthonormal
+ * basis of their range: Gram and Schmidt, orthogonalised twice. What is kept are the rows of w = D'Q, D
+ * the difference along the edges. 0 when the face has no plane. */
 static int hdi_poly_frame(const hdi_poly *poly, int32_t f, const double *normal) {
     const int64_t begin = poly->ptr[f], k = poly->ptr[f + 1] - begin;
     double *q = poly->w + 2 * begin, frame[2][3], edge[3], dot, norm, last[2];
@@ -4871,7 +4846,8 @@ static int hdi_poly_frame(const hdi_poly *poly, int32_t f, const double *normal)
     }
     for (p = 0, norm = 0; p < k; p++) norm += q[2 * p + 1] * q[2 * p + 1];
     norm = sqrt(norm);
-    for (p = 0; p < k; p++) q[2 * p + 1] = norm > 1e-12 ? q[2 * p + 1] / norm : 0;   /* narrower than that: its direction is rounding */
+    /* narrower than that: its direction is rounding */
+    for (p = 0; p < k; p++) q[2 * p + 1] = norm > 1e-12 ? q[2 * p + 1] / norm : 0;
     last[0] = q[2 * k - 2];
     last[1] = q[2 * k - 1];
     for (p = k - 1; p >= 0; p--) {
@@ -4908,7 +4884,8 @@ static int hdi_poly_gradients(const hdi_poly *poly, int32_t f, double area) {
 }
 
 /* Everything about face f. mark [n] holds the last face that saw a vertex. */
-static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark, hd_mesh_report *rep, hd_error *e) {
+static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark,
+                                  hd_mesh_report *rep, hd_error *e) {
     const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
     double normal[3], twice;
     int64_t c;
@@ -4922,8 +4899,11 @@ static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark
         mark[poly->idx[c]] = f;
     }
     twice = end - begin < 3 ? 0 : hdi_poly_area(poly, f, normal);
-    if (!hdi_finite(twice)) return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f, poly->idx[begin], twice);
-    if (twice == 0 || twice / (8 * HDI_CAST(double, end - begin)) < DBL_MIN || !hdi_poly_gradients(poly, f, twice / 2)) {
+    if (!hdi_finite(twice))
+        return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f,
+                             poly->idx[begin], twice);
+    if (twice == 0 || twice / (8 * HDI_CAST(double, end - begin)) < DBL_MIN ||
+        !hdi_poly_gradients(poly, f, twice / 2)) {
         rep->n_zero_area++;
         return HD_OK;
     }
@@ -4941,24 +4921,28 @@ static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark
 static void hdi_poly_corners(hdi_poly *poly) {
     const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
     int64_t c;
-    int32_t i;
     memset(poly->corner_ptr, 0, (HDI_CAST(size_t, poly->n) + 1) * sizeof *poly->corner_ptr);
     for (c = 0; c < n_corners; c++)
         if (poly->area[poly->face[c]] > 0) poly->corner_ptr[poly->idx[c]]++;
     hdi_prefix_sum(poly->corner_ptr, poly->n);
     for (c = 0; c < n_corners; c++)
-        if (poly->area[poly->face[c]] > 0) poly->corner[poly->corner_ptr[poly->idx[c]]++] = HDI_CAST(int32_t, c);
-    for (i = poly->n; i > 0; i--) poly->corner_ptr[i] = poly->corner_ptr[i - 1];
-    poly->corner_ptr[0] = 0;
+        if (poly->area[poly->face[c]] > 0)
+            poly->corner[poly->corner_ptr[poly->idx[c]]++] = HDI_CAST(int32_t, c);
+    hdi_rewind(poly->corner_ptr, poly->n);
 }
 
-/* From a face's smallest corner towards the smaller of its neighbours: the way in which faces with the same corners in the same cyclic order are
- * all read alike. One step from c, which is *forward or not. */
-static int64_t hdi_poly_step(const hdi_poly *poly, int64_t c, int forward) { return forward ? hdi_poly_after(poly, c) : hdi_poly_before(poly, c); }
+/* A face is read from its smallest corner towards the smaller of its neighbours: faces with the same corners
+ * in the same cyclic order are all read alike. One step of that from c, and whether it goes forward. */
+static int64_t hdi_poly_step(const hdi_poly *poly, int64_t c, int forward) {
+    return forward ? hdi_poly_after(poly, c) : hdi_poly_before(poly, c);
+}
 
-static int hdi_poly_way(const hdi_poly *poly, int64_t c) { return poly->idx[hdi_poly_after(poly, c)] < poly->idx[hdi_poly_before(poly, c)]; }
+static int hdi_poly_way(const hdi_poly *poly, int64_t c) {
+    return poly->idx[hdi_poly_after(poly, c)] < poly->idx[hdi_poly_before(poly, c)];
+}
 
-/* A number for the corners of the face in the order from its smallest corner c (the hash of Fowler, Noll and Vo, a vertex at a time). */
+/* A number for the corners of the face in the order from its smallest corner c (the hash of Fowler, Noll
+ * and Vo, a vertex at a time). */
 static uint64_t hdi_poly_key(const hdi_poly *poly, int64_t c) {
     const int forward = hdi_poly_way(poly, c);
     uint64_t key = 14695981039346656037u;
@@ -4981,8 +4965,9 @@ static int hdi_poly_same(const hdi_poly *poly, int64_t c, int64_t d) {
     return a == c && b == d;
 }
 
-/* Gives faces that repeat an earlier one area 0: around each vertex, the faces in which it is the smallest corner are sorted by their keys.
- * least [m] the smallest corner of each face; work: as many pairs as the busiest vertex has corners. */
+/* Gives faces that repeat an earlier one area 0: around each vertex, the faces in which it is the
+ * smallest corner are sorted by their keys. least [m] the smallest corner of each face; work: as many
+ * pairs as the busiest vertex has corners. */
 static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_mesh_report *rep) {
     const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
     int64_t c, p, n, first;
@@ -5011,16 +4996,7 @@ static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_
     }
 }
 
-/* The most corners at a vertex, at least 1. */
-static int64_t hdi_poly_busiest(const hdi_poly *poly) {
-    int64_t most = 1;
-    int32_t i;
-    for (i = 0; i < poly->n; i++)
-        if (poly->corner_ptr[i + 1] - poly->corner_ptr[i] > most) most = poly->corner_ptr[i + 1] - poly->corner_ptr[i];
-    return most;
-}
-
-/* As hdi_mesh_make. The input must have passed hdi_poly_check. */
+/* As hdi_mesh_faces. The input must have passed hdi_poly_check. */
 static hd_status hdi_poly_make(hdi_poly *poly, hd_mesh_report *rep, hdi_scope *s) {
     const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
     const int32_t m = poly->m;
@@ -5043,7 +5019,7 @@ static hd_status hdi_poly_make(hdi_poly *poly, hd_mesh_report *rep, hdi_scope *s
     for (f = 0; f < m; f++)
         if (hdi_poly_measure(poly, f, mark, rep, s->e) < 0) return s->e->status;
     hdi_poly_corners(poly);
-    work = HDI_TAKE(s, hdi_pair, hdi_poly_busiest(poly));
+    work = HDI_TAKE(s, hdi_pair, hdi_fullest(poly->corner_ptr, poly->n));
     if (!work) return s->e->status;
     hdi_poly_repeats(poly, mark, work, rep);
     if (rep->n_repeated_face) hdi_poly_corners(poly);
@@ -5078,1558 +5054,67 @@ static int32_t hdi_poly_face_of(const int64_t *ptr, int32_t m, int64_t t) {
     return -1;
 }
 
-/* ---- intrinsic triangulations ----
- * Triangles that are known by the lengths of their sides and by which side is glued to which: what flips of edges need, and all that the operators
- * need. An edge may join a vertex to itself, two vertices may share several edges, a triangle may be glued to itself.
- * This work is based on
- *   A. Bobenko, B. Springborn, A discrete Laplace-Beltrami operator for simplicial surfaces, 2007 (intrinsic Delaunay, non-negative weights)
- *   M. Fisher, B. Springborn, P. Schroeder, A. Bobenko, An algorithm for the construction of intrinsic Delaunay triangulations, 2007 (flips)
- *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (mollification, the tufted cover)
- *   W. Kahan, Miscalculating area and angles of a needle-like triangle, 2014 (areas from lengths)
- * Deviations: sheets around an edge of three faces or more follow each other by their angle in space, and copies of a face lie in layers (the paper takes
- * any order); an orientable manifold without boundary is its own cover, half of it is not stored; flips must also lower the sum of the six cotangents,
- * which in exact arithmetic they always do (Rippa 1990), so that rounding cannot make them run in circles. Zero-area faces are left out before.
- * Lengths are in units of the mean edge length: nothing overflows, and results do not depend on the unit of the coordinates. */
-
-typedef struct hdi_intrinsic {
-    int32_t n_sides;    /* three per face */
-    int32_t n_sheets;   /* how often the surface is covered */
-    double unit;        /* mean edge length of the input */
-    int32_t *vert;      /* [n_sides] where side s begins; it runs to where the next side of its face begins */
-    int32_t *twin;      /* [n_sides] the side glued to it, which runs the other way; -1: boundary */
-    double *len;        /* [n_sides] length / unit, the same on both sides of an edge */
-    double *area;       /* [n_sides / 3] area / unit^2; 0: these lengths make no triangle, the face contributes nothing */
-} hdi_intrinsic;
-
-static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
-static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
-
-/* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none. */
-static double hdi_length_area(double a, double b, double c) {
-    double t;
-    if (a < b) { t = a; a = b; b = t; }
-    if (b < c) { t = b; b = c; c = t; }
-    if (a < b) { t = a; a = b; b = t; }
-    t = c - (a - b);
-    return t > 0 ? 0.25 * sqrt((a + (b + c)) * t * (c + (a - b)) * (a + (b - c))) : 0;
-}
-
-static void hdi_intrinsic_area(hdi_intrinsic *t, int32_t f) {
-    const double *len = t->len + 3 * HDI_CAST(int64_t, f);
-    t->area[f] = hdi_length_area(len[0], len[1], len[2]);
-}
-
-/* Cotangent of the angle opposite to side s, of a face with area. */
-static double hdi_side_cot(const hdi_intrinsic *t, int32_t s) {
-    const double a = t->len[s], b = t->len[hdi_side_next(s)], c = t->len[hdi_side_prev(s)];
-    return (b * b + c * c - a * a) / (4 * t->area[s / 3]);
-}
-
-/* Sides from v to later vertices (of faces with area), sorted by the other vertex, then by side: edges are runs of the same key. */
-static int64_t hdi_sides_at(const hdi_mesh *mesh, int32_t v, hdi_pair *list) {
-    int64_t p, n = 0;
-    for (p = mesh->corner_ptr[v]; p < mesh->corner_ptr[v + 1]; p++) {
-        const int32_t c = mesh->corner[p], before = hdi_side_prev(c), to = mesh->tri[hdi_side_next(c)], from = mesh->tri[before];
-        if (to > v) {
-            list[n].key = HDI_CAST(uint64_t, to);
-            list[n++].id = c;
-        }
-        if (from > v) {
-            list[n].key = HDI_CAST(uint64_t, from);
-            list[n++].id = before;
-        }
-    }
-    hdi_sort_pairs(list, n);
-    return n;
-}
-
-static double hdi_side_length(const hdi_mesh *mesh, int32_t s) {
-    double edge[3];
-    hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_next(s)]), mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[s]), edge);
-    return hdi_norm3(edge);
-}
-
-/* mate [3 m]: the other side of edges with two faces, -1 elsewhere. Returns the sum of the edges' lengths. list: twice as many pairs as the busiest vertex
- * has corners. */
-static double hdi_mesh_mates(const hdi_mesh *mesh, int32_t *mate, hdi_pair *list) {
-    double length = 0;
-    int64_t p, q, n;
-    int32_t v;
-    for (p = 0; p < 3 * HDI_CAST(int64_t, mesh->m); p++) mate[p] = -1;
-    for (v = 0; v < mesh->n; v++) {
-        n = hdi_sides_at(mesh, v, list);
-        for (p = 0; p < n; p = q) {
-            const int32_t s = HDI_CAST(int32_t, list[p].id);
-            for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
-            length += hdi_side_length(mesh, s);
-            if (q - p != 2) continue;
-            mate[s] = HDI_CAST(int32_t, list[p + 1].id);
-            mate[mate[s]] = s;
-        }
-    }
-    return length;
-}
-
-/* turned[f] = 1 for faces that have to be turned over so that all mates run opposite ways; 0 if the surface has only one side. queue [m]. */
-static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed char *turned, int32_t *queue) {
-    int32_t start, head, tail, q;
-    memset(turned, -1, HDI_CAST(size_t, mesh->m));
-    for (start = 0; start < mesh->m; start++) {
-        if (turned[start] >= 0 || !(mesh->area[start] > 0)) continue;
-        turned[start] = 0;
-        queue[0] = start;
-        for (head = 0, tail = 1; head < tail; head++) {
-            for (q = 0; q < 3; q++) {
-                const int32_t s = 3 * queue[head] + q, t = mate[s], f = t / 3;
-                int want;
-                if (t < 0) continue;
-                want = turned[queue[head]] ^ (mesh->tri[s] == mesh->tri[t]);
-                if (turned[f] >= 0 && turned[f] != want) return 0;
-                if (turned[f] >= 0) continue;
-                turned[f] = HDI_CAST(signed char, want);
-                queue[tail++] = f;
-            }
-        }
-    }
-    return 1;
-}
-
-static void hdi_unit3(const double *from, const double *to, double *out) {
-    double norm;
-    int k;
-    hdi_sub3(to, from, out);
-    norm = hdi_norm3(out);
-    for (k = 0; k < 3; k++) out[k] /= norm;
-}
-
-/* Faces around an edge, its n sides in list: sorted by angle in space from the first side's face, counterclockwise as seen against the direction from
- * the smaller vertex to the larger one. */
-static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pair *list, int64_t n) {
-    const double *p = mesh->xyz + 3 * HDI_CAST(int64_t, lo), turn = 6.283185307179586;
-    double axis[3], first[3], up[3], u[3];
-    int64_t k;
-    hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, hi), axis);
-    hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[0].id))]), first);
-    hdi_cross3(axis, first, up);
-    hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
-    for (k = 0; k < n; k++) {
-        double angle;
-        hdi_unit3(p, mesh->xyz + 3 * HDI_CAST(int64_t, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[k].id))]), u);
-        angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
-        if (angle < 0) angle += turn;
-        list[k].key = HDI_CAST(uint64_t, hdi_min(angle / turn, 1) * 8796093022208.0);
-    }
-    hdi_sort_pairs(list, n);
-}
-
-/* Side s of the mesh on a sheet: place[face] is the number of the face there; the back runs through the face the other way round. */
-static int32_t hdi_sheet_side(const int32_t *place, int32_t s, int back) { return 3 * place[s / 3] + (back ? 2 - s % 3 : s % 3); }
-
-static void hdi_glue(hdi_intrinsic *t, int32_t a, int32_t b) {
-    t->twin[a] = b;
-    t->twin[b] = a;
-}
-
-/* The cover of two sheets: front of face f at place front[f], its back at back[f]. Around each edge the side of a face that looks counterclockwise is
- * glued to the side of the next face that looks back at it; so a single face at the boundary, front to back, if it is not to stay open. */
-static void hdi_glue_cover(hdi_intrinsic *t, const hdi_mesh *mesh, const int32_t *front, const int32_t *back, int close, hdi_pair *list) {
-    int64_t p, q, k, n;
-    int32_t v;
-    for (v = 0; v < mesh->n; v++) {
-        n = hdi_sides_at(mesh, v, list);
-        for (p = 0; p < n; p = q) {
-            const int32_t other = HDI_CAST(int32_t, list[p].key);
-            for (q = p + 1; q < n && list[q].key == list[p].key;) q++;
-            if (q - p == 1 && !close) continue;
-            if (q - p > 2) hdi_sort_around(mesh, v, other, list + p, q - p);
-            for (k = p; k < q; k++) {            /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
-                const int32_t a = HDI_CAST(int32_t, list[k].id), b = HDI_CAST(int32_t, list[k + 1 < q ? k + 1 : p].id);
-                const int back_a = mesh->tri[a] != v, back_b = mesh->tri[b] == v;
-                hdi_glue(t, hdi_sheet_side(back_a ? back : front, a, back_a), hdi_sheet_side(back_b ? back : front, b, back_b));
-            }
-        }
-    }
-}
-
-/* The faces with area at their places, their lengths and vertices. */
-static void hdi_put_face(hdi_intrinsic *t, const hdi_mesh *mesh, int32_t f, const int32_t *place, int back) {
-    int32_t q;
-    for (q = 0; q < 3; q++) {
-        const int32_t s = 3 * f + q, at = hdi_sheet_side(place, s, back);
-        t->vert[at] = mesh->tri[back ? hdi_side_next(s) : s];
-        t->len[at] = hdi_side_length(mesh, s) / t->unit;
-        t->twin[at] = -1;
-    }
-}
-
-/* The intrinsic triangulation of a mesh, in s: of itself where all its faces can be turned to one side, else of its two-sheeted cover. With close the
- * boundary is glued to the other sheet (the tufted cover), so that no boundary is left. */
-static hd_status hdi_intrinsic_make(hdi_intrinsic *t, const hdi_mesh *mesh, int close, hd_mesh_report *rep, hdi_scope *s) {
-    const int64_t n_sides = 3 * HDI_CAST(int64_t, mesh->m);
-    int32_t *mate = HDI_TAKE(s, int32_t, n_sides);
-    int32_t *front = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
-    int32_t *back = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->m) + 1);
-    int32_t f, q, used = 0;
-    signed char *turned = HDI_TAKE(s, signed char, mesh->m);
-    hdi_pair *list = HDI_TAKE(s, hdi_pair, 2 * hdi_most_corners(mesh));
-    int single;
-    memset(t, 0, sizeof *t);
-    if (s->e->status < 0) return s->e->status;
-    t->unit = hdi_mesh_mates(mesh, mate, list) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
-    single = rep->n_nonmanifold_edges == 0 && !(close && rep->n_boundary_edges) && hdi_mesh_orient(mesh, mate, turned, back);
-    t->n_sheets = single ? 1 : 2;
-    for (f = 0; f < mesh->m; f++) front[f] = mesh->area[f] > 0 ? used++ : 0;
-    for (f = 0; f < mesh->m; f++) back[f] = front[f] + used;
-    if (!single && used > INT32_MAX / 6) return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    t->n_sides = 3 * used * t->n_sheets;
-    t->vert = HDI_TAKE(s, int32_t, t->n_sides);
-    t->twin = HDI_TAKE(s, int32_t, t->n_sides);
-    t->len = HDI_TAKE(s, double, t->n_sides);
-    t->area = HDI_TAKE(s, double, t->n_sides / 3);
-    if (s->e->status < 0) return s->e->status;
-    for (f = 0; f < mesh->m; f++) {
-        if (!(mesh->area[f] > 0)) continue;
-        hdi_put_face(t, mesh, f, front, single && turned[f]);
-        if (!single) hdi_put_face(t, mesh, f, back, 1);
-        for (q = 3 * f; single && q < 3 * f + 3; q++)
-            if (mate[q] >= 0 && mate[q] < q) hdi_glue(t, hdi_sheet_side(front, q, turned[f]), hdi_sheet_side(front, mate[q], turned[mate[q] / 3]));
-    }
-    if (single) return HD_OK;
-    hdi_glue_cover(t, mesh, front, back, close, list);
-    return HD_OK;
-}
-
-/* Mollification (Sharp, Crane 2020, section 4.5): the smallest length that, added to all sides, makes every triangle satisfy the triangle inequality
- * with delta to spare. delta < 0: nothing is added. */
-static void hdi_mollify(hdi_intrinsic *t, double delta, hd_mesh_report *rep) {
-    double add = 0;
-    int32_t s, k, short_faces = 0;
-    for (s = 0; s < t->n_sides && delta >= 0; s += 3) {
-        double spare = t->len[s] + t->len[s + 1] - t->len[s + 2];
-        for (k = 0; k < 2; k++) spare = hdi_min(spare, t->len[s + 2] + t->len[s + k] - t->len[s + 1 - k]);
-        short_faces += spare < delta;
-        add = hdi_max(add, delta - spare);
-    }
-    for (s = 0; s < t->n_sides; s++) t->len[s] += add;
-    for (s = 0; s < t->n_sides / 3; s++) hdi_intrinsic_area(t, s);
-    rep->n_mollified = short_faces / t->n_sheets;
-    rep->mollify_epsilon = add * t->unit;
-}
-
-/* Four times the sum of the cotangents of a triangle; also what their rounding errors are relative to. */
-static double hdi_harmonic(double a, double b, double c, double area) { return (a * a + b * b + c * c) / area; }
-
-/* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of all cotangents of its two faces. */
-#define HDI_DELAUNAY_TOL 1e-14
-
-static int hdi_not_delaunay(const hdi_intrinsic *t, int32_t a) {
-    const int32_t b = t->twin[a], f = a / 3, g = b / 3;
-    const double *p = t->len + 3 * HDI_CAST(int64_t, f), *q = t->len + 3 * HDI_CAST(int64_t, b < 0 ? 0 : g);
-    double sum;
-    if (b < 0 || f == g || !(t->area[f] > 0) || !(t->area[g] > 0)) return 0;   /* where a face is glued to itself the two sides are equal: Delaunay */
-    sum = hdi_side_cot(t, a) + hdi_side_cot(t, b);
-    return sum < 0 && sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) + hdi_harmonic(q[0], q[1], q[2], t->area[g]));
-}
-
-/* Flips the edge of side a, from i to j: side a comes to run from l to k, corners that were opposite to it. Returns 0 if it is fine as it is. The outer
- * sides move with it, a2 to a1, b1 to a2, b2 to b1, a1 to b2:
- *   before  a = ij, a1 = jk, a2 = ki    b = ji, b1 = il, b2 = lj        after  a = lk, a1 = ki, a2 = il    b = kl, b1 = lj, b2 = jk */
-static int hdi_flip(hdi_intrinsic *t, int32_t a) {
-    const int32_t b = t->twin[a], a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = b < 0 ? 0 : hdi_side_next(b), b2 = b < 0 ? 0 : hdi_side_prev(b);
-    int32_t from[4], to[4], twin[4], vert[4], k, q;
-    double len[4], x, y, d, area_f, area_g, before;
-    if (!hdi_not_delaunay(t, a)) return 0;
-    from[0] = to[1] = a2;
-    from[1] = to[2] = b1;
-    from[2] = to[3] = b2;
-    from[3] = to[0] = a1;
-    for (k = 0; k < 4; k++) {
-        len[k] = t->len[from[k]];
-        vert[k] = t->vert[from[k]];
-        twin[k] = t->twin[from[k]];
-        for (q = 0; q < 4; q++) {
-            if (twin[k] != from[q]) continue;    /* outer sides that are glued to each other */
-            twin[k] = to[q];
-            break;
-        }
-    }
-    /* The two triangles laid out in the plane, the edge along x: k and l are d apart. */
-    x = ((len[0] - len[3]) * (len[0] + len[3]) + (len[2] - len[1]) * (len[2] + len[1])) / (2 * t->len[a]);
-    y = 2 * (t->area[a / 3] + t->area[b / 3]) / t->len[a];
-    d = sqrt(x * x + y * y);
-    area_f = hdi_length_area(d, len[0], len[1]);
-    area_g = hdi_length_area(d, len[2], len[3]);
-    before = hdi_harmonic(t->len[a], len[0], len[3], t->area[a / 3]) + hdi_harmonic(t->len[a], len[1], len[2], t->area[b / 3]);
-    if (!(area_f > 0 && area_g > 0 && hdi_harmonic(d, len[0], len[1], area_f) + hdi_harmonic(d, len[2], len[3], area_g) < before)) return 0;
-    t->vert[a] = vert[2];                        /* l, where b2 begins */
-    t->vert[b] = vert[0];                        /* k, where a2 begins */
-    t->len[a] = t->len[b] = d;
-    for (k = 0; k < 4; k++) {
-        t->len[to[k]] = len[k];
-        t->vert[to[k]] = vert[k];
-        t->twin[to[k]] = twin[k];
-        if (twin[k] >= 0) t->twin[twin[k]] = to[k];
-    }
-    t->area[a / 3] = area_f;
-    t->area[b / 3] = area_g;
-    return 1;
-}
-
-/* Flips until every edge is Delaunay: edges by their first side, after each flip the four around it, last come first served. The order depends on
- * nothing but the mesh. Stops after 64 flips per side, which no mesh has ever come near to; what is left is counted. */
-static hd_status hdi_flip_all(hdi_intrinsic *t, hd_mesh_report *rep, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int32_t *stack = HDI_TAKE(&s, int32_t, t->n_sides), seed, depth = 0, k;
-    signed char *waits = HDI_TAKE_ZERO(&s, signed char, t->n_sides);
-    const int64_t most = 64 * HDI_CAST(int64_t, t->n_sides);
-    int64_t work = 0;
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (seed = 0; seed < t->n_sides; seed++) {
-        if (t->twin[seed] < seed) continue;      /* boundary, or done as its other side: who moves is put on the stack */
-        stack[depth++] = seed;
-        waits[seed] = 1;
-        while (depth > 0) {
-            const int32_t a = stack[--depth];
-            waits[a] = 0;
-            if (!(++work & 0xfffff) && hdi_progress(ctx, "flip edges", HDI_CAST(double, seed) / t->n_sides, e) < 0) return hdi_scope_end(&s);
-            if (rep->n_flips >= most || !hdi_flip(t, a)) continue;
-            rep->n_flips++;
-            for (k = 0; k < 4; k++) {
-                const int32_t b = t->twin[a], out = k == 0 ? hdi_side_prev(b) : k == 1 ? hdi_side_next(b) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a);
-                if (t->twin[out] < 0 || waits[out]) continue;
-                stack[depth++] = out;
-                waits[out] = 1;
-            }
-        }
-    }
-    for (seed = 0; seed < t->n_sides; seed++) {
-        rep->n_not_delaunay += t->twin[seed] > seed && hdi_not_delaunay(t, seed);
-        rep->n_self_edges += t->twin[seed] > seed && t->vert[seed] == t->vert[hdi_side_next(seed)];
-    }
-    return hdi_scope_end(&s);
-}
-
-/* The intrinsic triangles as a mesh for the operators, with areas and cotangents times weight; no coordinates. Corners of the same vertex come first
- * in their face: then sums come in the same order in both rows of an edge. */
-static hd_status hdi_intrinsic_mesh(hdi_mesh *mesh, hdi_intrinsic *t, int32_t n, double weight, hd_mesh_report *rep, hdi_scope *s) {
-    int32_t f, q;
-    memset(mesh, 0, sizeof *mesh);
-    mesh->tri = t->vert;
-    mesh->n = n;
-    mesh->m = t->n_sides / 3;
-    mesh->area = t->area;
-    mesh->cot = HDI_TAKE_ZERO(s, double, t->n_sides);
-    if (s->e->status < 0) return s->e->status;
-    rep->smallest_intrinsic_angle = mesh->m > 0 ? 4 : 0;
-    for (f = 0; f < mesh->m; f++) {
-        int32_t *v = t->vert + 3 * HDI_CAST(int64_t, f);
-        double *len = t->len + 3 * HDI_CAST(int64_t, f), *cot = mesh->cot + 3 * HDI_CAST(int64_t, f), last = len[2];
-        if (v[0] == v[2] && v[0] != v[1]) {      /* turned by one corner */
-            v[2] = v[1];
-            v[1] = v[0];
-            len[2] = len[1];
-            len[1] = len[0];
-            len[0] = last;
-        }
-        if (!(t->area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) {                /* the angle at corner q is opposite to the side that begins at the next */
-            cot[q] = hdi_side_cot(t, 3 * f + (q + 1) % 3);
-            if (!hdi_finite(cot[q])) t->area[f] = 0;
-        }
-        if (!(t->area[f] > 0)) continue;
-        rep->smallest_intrinsic_angle = hdi_min(rep->smallest_intrinsic_angle, atan2(1, hdi_max(cot[0], hdi_max(cot[1], cot[2]))));
-        for (q = 0; q < 3; q++) cot[q] *= weight;
-        t->area[f] *= weight * t->unit * t->unit;
-        if (t->area[f] / 12 < DBL_MIN) t->area[f] = 0;
-    }
-    return HD_OK;
-}
-
-/* ---- soups ----
- * Triangles that come several times each: the stars of points, where every triangle comes from all its three corners if these agree. Their tufted cover is
- * that of Sharp and Crane with copies of a face in layers, one sheet upon the other. It is not stored: what matters are the lengths of all faces, which are
- * those in space unless they are flipped, and the gluing of those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides of
- * their own (all copies, front and back) when one of their edges is glued, and an edge is glued, all its sides at once, when it is looked at. */
-
-typedef struct hdi_soup {
-    hdi_mesh mesh;      /* each face once, its corners ascending; cot and area are those of lengths, unit 1 the mean edge length */
-    hdi_sides sides;
-    int32_t *tri;       /* [3 m] */
-    int32_t *copies;    /* [m] how often a face came */
-    int32_t *odd;       /* [m] how many of these had their corners in odd order */
-    double *len;        /* [3 m] */
-    double unit, add;   /* add: what is added to each length */
-    double area;        /* of all copies, in space */
-} hdi_soup;
-
-/* Faces of a bucket: its keys, sorted, second corner << 32 | third corner << 1 | odd, become faces. Returns how many; with soup NULL they are only counted. */
-static int64_t hdi_soup_bucket(hdi_soup *soup, int64_t m, int32_t i, const uint64_t *key, int64_t n) {
-    int64_t p, q, count = 0;
-    for (p = 0; p < n; p = q, count++) {
-        int32_t odd = 0;
-        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += HDI_CAST(int32_t, key[q] & 1);
-        if (!soup) continue;
-        soup->tri[3 * (m + count)] = i;
-        soup->tri[3 * (m + count) + 1] = HDI_CAST(int32_t, key[p] >> 32);
-        soup->tri[3 * (m + count) + 2] = HDI_CAST(int32_t, (key[p] & 0xffffffffu) >> 1);
-        soup->copies[m + count] = HDI_CAST(int32_t, q - p);
-        soup->odd[m + count] = odd;
-    }
-    return count;
-}
-
-/* Different faces of the m triangles tri, into soup in s. */
-static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, HDI_CAST(int64_t, n) + 1), f, count = 0;
-    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work = HDI_TAKE(&own, uint64_t, m < 4096 ? m : 4096), *large = work;
-    int32_t i;
-    int pass;
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (pass = 0; pass < 2; pass++) {           /* by their smallest corner: counted, then put there */
-        for (f = 0; f < m; f++) {
-            const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
-            const int32_t first = a < b ? (a < c ? a : c) : b < c ? b : c, last = a > b ? (a > c ? a : c) : b > c ? b : c;
-            const int64_t middle = HDI_CAST(int64_t, a) + b + c - first - last;
-            const int odd = ((a > b) + (b > c) + (a > c)) & 1;
-            if (pass) key[ptr[first]++] = HDI_CAST(uint64_t, middle) << 32 | HDI_CAST(uint64_t, last) << 1 | HDI_CAST(uint64_t, odd);
-            else ptr[first]++;
-        }
-        if (!pass) hdi_prefix_sum(ptr, n);
-    }
-    for (i = n; i > 0; i--) ptr[i] = ptr[i - 1];
-    ptr[0] = 0;
-    for (i = 0; i < n; i++) {
-        const int64_t begin = ptr[i], size = ptr[i + 1] - begin;
-        if (size > 4096 && large == work) large = HDI_TAKE(&own, uint64_t, m);
-        if (!large) return hdi_scope_end(&own);
-        hdi_sort_keys(key + begin, size, large);
-        count += hdi_soup_bucket(NULL, 0, i, key + begin, size);
-    }
-    soup->tri = HDI_TAKE(s, int32_t, 3 * count);
-    soup->copies = HDI_TAKE(s, int32_t, count);
-    soup->odd = HDI_TAKE(s, int32_t, count);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (i = 0, f = 0; i < n; i++) f += hdi_soup_bucket(soup, f, i, key + ptr[i], ptr[i + 1] - ptr[i]);
-    soup->mesh.tri = soup->tri;
-    soup->mesh.n = n;
-    soup->mesh.m = HDI_CAST(int32_t, count);
-    return hdi_scope_end(&own);
-}
-
-/* Edges of the soup, and the report: all copies count. border [n] unites the vertices of boundary edges. Returns the sum of the edges' lengths. */
-static double hdi_soup_edges(hdi_soup *soup, int32_t *border, hd_mesh_report *rep) {
-    const hdi_mesh *mesh = &soup->mesh;
-    hdi_sides *g = &soup->sides;
-    double length = 0;
-    int32_t i, p, q;
-    for (i = 0; i < mesh->n; i++) border[i] = i;
-    for (i = 0; i < mesh->n; i++) {
-        const int32_t end = g->ptr[i + 1];
-        hdi_sides_sort(g, i);
-        for (p = g->ptr[i]; p < end; p = q) {
-            const int32_t j = hdi_key_vertex(g->key[p]);
-            int64_t copies = 0, forward = 0;
-            for (q = p; q < end && hdi_key_vertex(g->key[q]) == j; q++) {
-                const int32_t f = hdi_key_face(g->key[q]), odd = soup->odd[f];
-                copies += soup->copies[f];
-                forward += hdi_key_corner(g->key[q]) < 2 ? soup->copies[f] - odd : odd;
-            }
-            length += hdi_edge_length(mesh->xyz, i, j);
-            rep->n_edges++;
-            rep->n_boundary_edges += copies == 1;
-            rep->n_nonmanifold_edges += copies > 2;
-            rep->n_misoriented_edges += copies == 2 && forward != 1;
-            if (copies == 1) hdi_unite(border, i, j);
-        }
-    }
-    return length;
-}
-
-/* Lengths of the faces in units of the mean one; how much the worst of a block lacks to satisfy the triangle inequality with delta to spare. */
-typedef struct hdi_soup_job { hdi_soup *soup; double delta, *add, *steepest; int64_t *n_short; } hdi_soup_job;
-
-static void hdi_soup_length_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
-    hdi_soup *soup = job->soup;
-    const int64_t end = hdi_least(soup->mesh.m, (index + 1) * HDI_FACES_PER_TASK);
-    double add = 0;
-    int64_t f, n_short = 0;
-    int q;
-    (void)worker;
-    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
-        double *len = soup->len + 3 * f, spare;
-        if (!(soup->mesh.area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) len[q] = hdi_edge_length(soup->mesh.xyz, soup->tri[3 * f + q], soup->tri[3 * f + hdi_next3[q]]) / soup->unit;
-        spare = hdi_min(len[0] + len[1] - len[2], hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
-        if (spare < job->delta) n_short += soup->copies[f];
-        if (job->delta >= 0) add = hdi_max(add, job->delta - spare);
-    }
-    job->add[index] = add;
-    job->n_short[index] = n_short;
-}
-
-static void hdi_soup_cot_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
-    hdi_soup *soup = job->soup;
-    const int64_t end = hdi_least(soup->mesh.m, (index + 1) * HDI_FACES_PER_TASK);
-    int64_t f;
-    int q;
-    (void)worker;
-    for (f = index * HDI_FACES_PER_TASK; f < end; f++) {
-        double *len = soup->len + 3 * f, *cot = soup->mesh.cot + 3 * f, area;
-        cot[0] = cot[1] = cot[2] = 0;
-        if (!(soup->mesh.area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) len[q] += soup->add;
-        soup->mesh.area[f] = area = hdi_length_area(len[0], len[1], len[2]);
-        for (q = 0; q < 3 && area > 0; q++) {
-            const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
-            cot[q] = (b * b + c * c - a * a) / (4 * area);
-        }
-    }
-}
-
-/* The soup of the m triangles tri among n points: faces, edges, lengths mollified by delta (see hdi_mollify), in s. */
-static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, const int32_t *tri, int64_t m, double delta, hd_mesh_report *rep, hdi_scope *s) {
-    hd_mesh_report faces;
-    hdi_soup_job job;
-    int64_t n_tasks, i, n_short = 0;
-    int32_t f, *border;
-    memset(soup, 0, sizeof *soup);
-    memset(&faces, 0, sizeof faces);
-    if (hdi_soup_faces(soup, tri, m, n, s) < 0) return s->e->status;
-    soup->mesh.xyz = xyz;
-    m = soup->mesh.m;
-    n_tasks = (m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
-    soup->mesh.cot = HDI_TAKE(s, double, 3 * m);
-    soup->mesh.area = HDI_TAKE(s, double, m);
-    soup->len = HDI_TAKE(s, double, 3 * m);
-    job.soup = soup;
-    job.delta = delta;
-    job.add = HDI_TAKE(s, double, n_tasks);
-    job.n_short = HDI_TAKE(s, int64_t, n_tasks);
-    border = HDI_TAKE(s, int32_t, n);
-    if (s->e->status < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0) return s->e->status;
-    rep->smallest_angle = faces.smallest_angle;
-    for (f = 0; f < m; f++) {
-        const double area = soup->mesh.area[f];
-        rep->n_faces += soup->copies[f];
-        *(area > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
-        soup->area += area * soup->copies[f];
-    }
-    if (hdi_sides_make(&soup->sides, &soup->mesh, s) < 0) return s->e->status;
-    soup->unit = hdi_soup_edges(soup, border, rep) / HDI_CAST(double, rep->n_edges > 0 ? rep->n_edges : 1);
-    rep->n_boundary_loops = rep->n_boundary_edges ? hdi_count_sets(border, n) : 0;
-    hdi_parallel(s->ctx, n_tasks, hdi_soup_length_task, &job);
-    for (i = 0; i < n_tasks; i++) {
-        soup->add = hdi_max(soup->add, job.add[i]);
-        n_short += job.n_short[i];
-    }
-    rep->n_mollified = delta >= 0 ? HDI_CAST(int32_t, n_short) : 0;
-    rep->mollify_epsilon = soup->add * soup->unit;
-    hdi_parallel(s->ctx, n_tasks, hdi_soup_cot_task, &job);
-    return HD_OK;
-}
-
-/* What of a soup's cover has been unfolded. */
-typedef struct hdi_cover {
-    const hdi_soup *soup;
-    hd_context *ctx;
-    hd_error *e;
-    hdi_intrinsic t;    /* twin -2: not glued yet */
-    int32_t n, room;    /* faces of t, and those that there is room for */
-    int32_t *first;     /* [m] where the copies of a face begin, front and back in turn; -1: not here */
-    int32_t *origin;    /* [room] the face that a face of t is a copy of */
-    int32_t *stack;     /* [3 room] sides to look at */
-    signed char *waits; /* [3 room] 1: on the stack */
-    signed char *glued; /* [3 m] at the first side of an edge */
-    hdi_pair *list;     /* [most faces at an edge] */
-    int32_t depth;
-} hdi_cover;
-
-static void hdi_cover_free(hdi_cover *c) {
-    hdi_free(c->ctx, c->t.vert);
-    hdi_free(c->ctx, c->t.twin);
-    hdi_free(c->ctx, c->t.len);
-    hdi_free(c->ctx, c->t.area);
-    hdi_free(c->ctx, c->origin);
-    hdi_free(c->ctx, c->stack);
-    hdi_free(c->ctx, c->waits);
-}
-
-/* old with n elements in a block of room elements; NULL, old freed, when there is none. */
-static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
-    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(uint64_t, room), size, c->e);
-    if (block && n > 0) memcpy(block, old, HDI_CAST(size_t, n) * size);
-    hdi_free(c->ctx, old);
-    return block;
-}
-
-static hd_status hdi_cover_room(hdi_cover *c, int32_t more) {
-    const int64_t n = c->n, need = n + more, room = need > 2 * HDI_CAST(int64_t, c->room) ? need + 1024 : 2 * HDI_CAST(int64_t, c->room);
-    if (need <= c->room) return HD_OK;
-    if (3 * room > INT32_MAX) return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->t.vert = HDI_CAST(int32_t *, hdi_regrow(c, c->t.vert, 3 * n, 3 * room, sizeof(int32_t)));
-    c->t.twin = HDI_CAST(int32_t *, hdi_regrow(c, c->t.twin, 3 * n, 3 * room, sizeof(int32_t)));
-    c->t.len = HDI_CAST(double *, hdi_regrow(c, c->t.len, 3 * n, 3 * room, sizeof(double)));
-    c->t.area = HDI_CAST(double *, hdi_regrow(c, c->t.area, n, room, sizeof(double)));
-    c->origin = HDI_CAST(int32_t *, hdi_regrow(c, c->origin, n, room, sizeof(int32_t)));
-    c->stack = HDI_CAST(int32_t *, hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t)));
-    c->waits = HDI_CAST(signed char *, hdi_regrow(c, c->waits, 3 * n, 3 * room, 1));
-    if (c->e->status >= 0) c->room = HDI_CAST(int32_t, room);
-    return c->e->status;
-}
-
-/* Unfolds face f: all its copies. */
-static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
-    const hdi_soup *soup = c->soup;
-    int32_t k, q;
-    if (c->first[f] >= 0) return HD_OK;
-    if (soup->copies[f] > INT32_MAX / 6 || hdi_cover_room(c, 2 * soup->copies[f]) < 0)
-        return c->e->status < 0 ? c->e->status : hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->first[f] = c->n;
-    for (k = 0; k < 2 * soup->copies[f]; k++, c->n++) {
-        for (q = 0; q < 3; q++) {                /* a back runs through the face the other way round */
-            const int32_t at = 3 * c->n + (k & 1 ? 2 - q : q);
-            c->t.vert[at] = soup->tri[3 * HDI_CAST(int64_t, f) + (k & 1 ? hdi_next3[q] : q)];
-            c->t.len[at] = soup->len[3 * HDI_CAST(int64_t, f) + q];
-            c->t.twin[at] = -2;
-            c->waits[at] = 0;
-        }
-        c->t.area[c->n] = soup->mesh.area[f];
-        c->origin[c->n] = f;
-    }
-    c->t.n_sides = 3 * c->n;
-    return HD_OK;
-}
-
-static void hdi_cover_push(hdi_cover *c, int32_t side) {
-    if (c->t.twin[side] < 0 || c->waits[side]) return;
-    c->stack[c->depth++] = side;
-    c->waits[side] = 1;
-}
-
-/* The side of a soup's face f that begins at its corner q, on copy k, front or back. */
-static int32_t hdi_cover_side(const hdi_cover *c, int32_t f, int32_t q, int32_t k, int back) {
-    return 3 * (c->first[f] + 2 * k + back) + (back ? 2 - q : q);
-}
-
-/* Glues the edge whose sides are keys [p, q) at vertex v, and puts it on the stack: in layers of copies, in each by angle, around the edge the side of a face
- * that looks counterclockwise to the side of the next one that looks back at it. */
-static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
-    const hdi_soup *soup = c->soup;
-    const uint64_t *key = soup->sides.key;
-    const int32_t n = q - p;
-    int32_t i, layer, most = 0, first = -1, last = -1;
-    if (c->glued[p]) return HD_OK;
-    c->glued[p] = 1;
-    for (i = 0; i < n; i++) {
-        const int32_t f = hdi_key_face(key[p + i]);
-        if (hdi_cover_face(c, f) < 0) return c->e->status;
-        c->list[i].key = HDI_CAST(uint64_t, i);
-        c->list[i].id = 3 * HDI_CAST(int64_t, f) + hdi_key_corner(key[p + i]);
-        most = soup->copies[f] > most ? soup->copies[f] : most;
-    }
-    if (n > 2) hdi_sort_around(&soup->mesh, v, hdi_key_vertex(key[p]), c->list, n);
-    for (layer = 0; layer < most; layer++) {
-        for (i = 0; i < n; i++) {                /* corners ascend in a face: its front looks counterclockwise unless it is the side from last to first */
-            const int32_t side = HDI_CAST(int32_t, c->list[i].id), f = side / 3, back = side % 3 == 2;
-            int32_t counter, clock;
-            if (layer >= soup->copies[f]) continue;
-            counter = hdi_cover_side(c, f, side % 3, layer, back);
-            clock = hdi_cover_side(c, f, side % 3, layer, !back);
-            if (last >= 0) hdi_glue(&c->t, last, clock);
-            else first = clock;
-            if (last >= 0) hdi_cover_push(c, clock);
-            last = counter;
-        }
-    }
-    hdi_glue(&c->t, last, first);
-    hdi_cover_push(c, first);
-    return HD_OK;
-}
-
-/* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
-static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
-    const hdi_sides *g = &c->soup->sides;
-    const int32_t i = c->t.vert[s], j = c->t.vert[hdi_side_next(s)], lo = i < j ? i : j, hi = i < j ? j : i;
-    int32_t p = g->ptr[lo], end = g->ptr[lo + 1], q = end;
-    if (c->t.twin[s] != -2) return HD_OK;
-    while (p < q) {                              /* the first key of hi */
-        const int32_t middle = p + (q - p) / 2;
-        if (hdi_key_vertex(g->key[middle]) < hi) p = middle + 1;
-        else q = middle;
-    }
-    for (q = p; q < end && hdi_key_vertex(g->key[q]) == hi;) q++;
-    return hdi_cover_glue(c, lo, p, q);
-}
-
-/* Whether the edge of keys [p, q) may have to be flipped, however its faces are glued. Two faces that come equally often always follow each other. */
-static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
-    const uint64_t *key = soup->sides.key;
-    double least = HUGE_VAL, next = HUGE_VAL;
-    int64_t copies = 0;
-    int32_t i;
-    for (i = p; i < q; i++) {
-        const int32_t f = hdi_key_face(key[i]);
-        const double cot = soup->mesh.cot[hdi_key_opposite(key[i])];
-        if (cot < least) {
-            next = least;
-            least = cot;
-        } else {
-            next = hdi_min(next, cot);
-        }
-        if (soup->copies[f] > 1 && !(q - p == 2 && soup->copies[f] == soup->copies[hdi_key_face(key[p + q - 1 - i])])) next = hdi_min(next, cot);
-        copies += soup->copies[f];
-    }
-    return !(least + (copies == 1 ? least : next) >= 0);
-}
-
-/* Flips until every edge is Delaunay, as hdi_flip_all: edges by their vertices, after each flip the four around it. */
-static hd_status hdi_cover_flip(hdi_cover *c, int64_t most, hd_mesh_report *rep) {
-    hdi_intrinsic *t = &c->t;
-    int32_t k, side;
-    while (c->depth > 0) {
-        const int32_t a = c->stack[--c->depth], b = t->twin[a];
-        c->waits[a] = 0;
-        if (rep->n_flips >= most || !hdi_not_delaunay(t, a)) continue;
-        for (k = 0; k < 4; k++)
-            if (hdi_cover_need(c, k == 0 ? hdi_side_prev(b) : k == 1 ? hdi_side_next(b) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a)) < 0) return c->e->status;
-        if (!hdi_flip(t, a)) continue;
-        rep->n_flips++;
-        for (k = 0; k < 4; k++) {
-            side = t->twin[a];
-            hdi_cover_push(c, k == 0 ? hdi_side_prev(side) : k == 1 ? hdi_side_next(side) : k == 2 ? hdi_side_prev(a) : hdi_side_next(a));
-        }
-    }
-    return HD_OK;
-}
-
-static hd_status hdi_cover_run(hdi_cover *c, hd_mesh_report *rep) {
-    const hdi_soup *soup = c->soup;
-    const hdi_sides *g = &soup->sides;
-    int64_t most = 0;
-    int32_t v, p, q, end, side;
-    for (v = 0; v < soup->mesh.m; v++) most += 64 * 6 * HDI_CAST(int64_t, soup->copies[v]);
-    for (v = 0; v < soup->mesh.n; v++) {
-        for (p = g->ptr[v], end = g->ptr[v + 1]; p < end; p = q) {
-            for (q = p + 1; q < end && hdi_key_vertex(g->key[q]) == hdi_key_vertex(g->key[p]);) q++;
-            if (c->glued[p] || !hdi_soup_suspect(soup, p, q)) continue;
-            if (hdi_cover_glue(c, v, p, q) < 0 || hdi_cover_flip(c, most, rep) < 0) return c->e->status;
-        }
-        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", HDI_CAST(double, v) / soup->mesh.n, c->e) < 0) return c->e->status;
-    }
-    for (side = 0; side < c->t.n_sides; side++) {
-        rep->n_not_delaunay += c->t.twin[side] > side && hdi_not_delaunay(&c->t, side);
-        rep->n_self_edges += c->t.twin[side] > side && c->t.vert[side] == c->t.vert[hdi_side_next(side)];
-    }
-    return HD_OK;
-}
-
-/* One face of the flat mesh, from its lengths: area and cotangents times weight. */
-static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double area, double unit, double weight, double *steepest) {
-    double *cot = flat->cot + 3 * HDI_CAST(int64_t, at);
-    int q;
-    flat->area[at] = 0;
-    if (!(area > 0)) return;
-    for (q = 0; q < 3; q++) {
-        const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
-        cot[q] = (b * b + c * c - a * a) / (4 * area);
-    }
-    if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
-    *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
-    for (q = 0; q < 3; q++) cot[q] *= weight;
-    area *= weight * unit * unit;
-    flat->area[at] = area / 12 < DBL_MIN ? 0 : area;
-}
-
-/* The intrinsic Delaunay triangulation of a soup's cover as a mesh for the operators (no coordinates), in s: faces that were not unfolded as often as they
- * come, the others one by one; all with a third of their weight for a sheet, of which there are two. */
-static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, hd_mesh_report *rep, hdi_scope *s) {
-    const int32_t m = soup->mesh.m;
-    double steepest = -HUGE_VAL;
-    hdi_cover c;
-    int32_t f, i, most = 1, *tri;
-    memset(&c, 0, sizeof c);
-    memset(flat, 0, sizeof *flat);
-    c.soup = soup;
-    c.ctx = s->ctx;
-    c.e = s->e;
-    c.t.unit = soup->unit;
-    for (i = 0; i < soup->mesh.n; i++) most = soup->sides.ptr[i + 1] - soup->sides.ptr[i] > most ? soup->sides.ptr[i + 1] - soup->sides.ptr[i] : most;
-    c.first = HDI_TAKE(s, int32_t, m);
-    c.glued = HDI_TAKE_ZERO(s, signed char, 3 * HDI_CAST(int64_t, m));
-    c.list = HDI_TAKE(s, hdi_pair, most);
-    if (s->e->status >= 0) {
-        hdi_fill_i32(c.first, m, -1);
-        (void)hdi_cover_run(&c, rep);
-    }
-    flat->n = soup->mesh.n;
-    flat->m = m + c.n;
-    flat->tri = tri = HDI_TAKE(s, int32_t, 3 * HDI_CAST(int64_t, flat->m));
-    flat->cot = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, flat->m));
-    flat->area = HDI_TAKE(s, double, flat->m);
-    if (s->e->status >= 0) {
-        memcpy(tri, soup->tri, 3 * HDI_CAST(size_t, m) * sizeof *tri);
-        if (c.n) memcpy(tri + 3 * HDI_CAST(int64_t, m), c.t.vert, 3 * HDI_CAST(size_t, c.n) * sizeof *tri);
-        for (f = 0; f < m; f++)
-            hdi_flat_face(flat, f, soup->len + 3 * HDI_CAST(int64_t, f), c.first[f] < 0 ? soup->mesh.area[f] : 0, soup->unit, soup->copies[f] / 3.0, &steepest);
-        for (i = 0; i < c.n; i++) hdi_flat_face(flat, m + i, c.t.len + 3 * HDI_CAST(int64_t, i), c.t.area[i], soup->unit, 1.0 / 6, &steepest);
-        rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
-        rep->n_sheets = 2;
-    }
-    hdi_cover_free(&c);
-    return s->e->status;
-}
-
-/* ==== [10] operators ====
- * The pair (L, B) on one pattern. May call [09], [08] and [07].
- * This work is based on
- *   U. Pinkall, K. Polthier, Computing discrete minimal surfaces and their conjugates, 1993 (cotangent weights)
- *   M. Meyer, M. Desbrun, P. Schroeder, A. Barr, Discrete differential-geometry operators for triangulated 2-manifolds, 2003 (mixed areas)
- *   M. Alexa, M. Wardetzky, Discrete Laplacians on general polygonal meshes, 2011 (polygons)
- *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (tufted points; the cover itself is in [09])
- *   J.-D. Boissonnat, A. Ghosh, Manifold reconstruction using tangential Delaunay complexes, 2014 (stars)
- * and, of point sets, on what is named there.
- * Deviations: the paper cites Desbrun 1999 for Voronoi areas, which lumps by thirds; pure Voronoi areas go negative on obtuse triangles. Those of
- * polygons and point sets are listed there. */
-
-static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
-    if (!lap) return;
-    hdi_csr_free(ctx, &lap->L);
-    if (lap->b_diag != lap->mass) hdi_free(ctx, lap->b_diag);
-    hdi_free(ctx, lap->B);
-    hdi_free(ctx, lap->mass);
-    hdi_free(ctx, lap->vertex);
-    hdi_free(ctx, lap->row);
-    hdi_free(ctx, lap->component);
-    hdi_free(ctx, lap->xyz);
-    hdi_free(ctx, lap->component_mass);
-    hdi_free(ctx, lap);
-}
-
-static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
-    return kind == HD_LAPLACIAN_FEM ? HDI_LUMP_THIRDS : kind == HD_LAPLACIAN_COT ? HDI_LUMP_ONES : HDI_LUMP_MIXED;
-}
-
-/* Numbers the rows: vertices with mass in their order. Fills row, vertex, mass, b_diag, n_active. */
-static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
-    int32_t v, k = 0;
-    hd_context *ctx = lap->context;
-    lap->row = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), e));
-    if (!lap->row) return e->status;
-    for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : -1;
-    lap->n_active = k;
-    lap->mesh.n_inert = lap->n - k;
-    if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
-    lap->vertex = HDI_CAST(int32_t *, hdi_alloc(ctx, HDI_CAST(uint64_t, k), sizeof(int32_t), e));
-    if (lap->vertex) lap->mass = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, k), sizeof(double), e));
-    if (e->status < 0) return e->status;
-    lap->b_diag = lap->mass;
-    for (v = 0; v < lap->n; v++) {
-        if (lap->row[v] < 0) continue;
-        lap->vertex[lap->row[v]] = v;
-        lap->mass[lap->row[v]] = vertex_mass[v];
-    }
-    return HD_OK;
-}
-
-/* Components over the pattern of L, numbered by their first row, and their masses. */
-static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int32_t *parent = HDI_TAKE(&s, int32_t, lap->n_active), i;
-    int64_t p;
-    if (!parent) return hdi_scope_end(&s);
-    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_active), sizeof(int32_t), e));
-    if (!lap->component) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) parent[i] = i;
-    for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) hdi_unite(parent, i, lap->L.col[p]);
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t root = hdi_find(parent, i);    /* roots are smallest members, so they have their number already */
-        lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
-    }
-    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_components), sizeof(double), e));
-    if (!lap->component_mass) return hdi_scope_end(&s);
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
-    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
-    return hdi_scope_end(&s);
-}
-
-/* Components from the vertices that edges unite, parent [n], as hdi_lap_components has them from the pattern. */
-static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e) {
-    int32_t i;
-    lap->component = HDI_CAST(int32_t *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_active), sizeof(int32_t), e));
-    if (!lap->component) return e->status;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];
-        lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
-    }
-    lap->component_mass = HDI_CAST(double *, hdi_alloc(lap->context, HDI_CAST(uint64_t, lap->n_components), sizeof(double), e));
-    if (!lap->component_mass) return e->status;
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
-    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
-    return HD_OK;
-}
-
-typedef struct hdi_lap_job {
-    hd_laplacian *lap;
-    const hdi_edges *g;
-    int64_t *next;              /* [n_active] where each row goes on */
-    int64_t *negative;          /* [blocks of 2^g->shift rows] edges with a weight above zero */
-} hdi_lap_job;
-
-/* The edge with number p from row i to a later row j, into that row. */
-static HDI_INLINE void hdi_lap_mirror(const hdi_lap_job *job, int32_t i, int32_t j, int32_t p) {
-    const int64_t at = job->next[j]++;
-    job->lap->L.col[at] = i;
-    job->lap->L.val[at] = job->g->w[p];
-    if (job->lap->B) job->lap->B[at] = job->g->b[p];
-}
-
-/* Row i from its diagonal on; what it has before was written by those rows: each edge goes into both its rows, so that L and B are symmetric to the last
- * bit. Rows from end on have their part already. Returns the number of weights above zero. */
-static HDI_INLINE int64_t hdi_lap_row(const hdi_lap_job *job, int32_t i, int32_t end) {
-    hd_laplacian *lap = job->lap;
-    const hdi_edges *g = job->g;
-    const int32_t v = lap->vertex[i], last = g->last[v], *row = lap->row;
-    const int64_t diagonal = job->next[i];
-    double *L = lap->L.val, *B = lap->B, sum = 0, loops = 0;
-    int32_t *col = lap->L.col, p;
-    int64_t at, negative = 0;
-    for (at = lap->L.row_ptr[i]; at < diagonal; at++) sum += L[at];
-    for (p = g->first[v]; p < last; p++) {
-        const int32_t j = row[g->to[p]];
-        const double w = g->w[p];
-        if (j == i) {                            /* an edge from the vertex to itself: no weight, and twice in its B */
-            loops += B ? 2 * g->b[p] : 0;
-            continue;
-        }
-        negative += w > 0;
-        sum += w;
-        col[++at] = j;
-        L[at] = w;
-        if (B) B[at] = g->b[p];
-        if (j < end) hdi_lap_mirror(job, i, j, p);
-    }
-    col[diagonal] = i;
-    L[diagonal] = -sum;
-    if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + loops;    /* a sixth of the areas that the mass has thirds of */
-    return negative;
-}
-
-/* The row behind the block of row i. */
-static int32_t hdi_lap_block_end(const hdi_lap_job *job, int64_t block) {
-    return HDI_CAST(int32_t, hdi_least(job->lap->n_active, (block + 1) << job->g->shift));
-}
-
-static void hdi_lap_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_lap_job *job = HDI_CAST(const hdi_lap_job *, arg);
-    const hd_laplacian *lap = job->lap;
-    const hdi_edges *g = job->g;
-    const int32_t end = hdi_lap_block_end(job, index);
-    int32_t i;
-    int64_t negative = 0;
-    (void)worker;
-    for (i = HDI_CAST(int32_t, index << g->shift); i < end; i++) {
-        const int32_t v = lap->vertex[i + HDI_VERTICES_AHEAD < end ? i + HDI_VERTICES_AHEAD : i];
-        if (g->last[v] > g->first[v]) {          /* the farthest neighbour: its row is new to the caches, those of others are in use */
-            const int32_t far_row = lap->row[g->to[g->last[v] - 1]];
-            const int64_t at = lap->L.row_ptr[far_row];
-            HDI_PREFETCH(lap->L.col + at);
-            HDI_PREFETCH(lap->L.val + at);
-            HDI_PREFETCH(lap->B ? lap->B + at : lap->L.val + at);
-        }
-        negative += hdi_lap_row(job, i, end);
-    }
-    job->negative[index] = negative;
-}
-
-/* Block by block, the edges that leave it, into their later rows, where they come first. */
-static void hdi_lap_crossing(const hdi_lap_job *job, int64_t n_blocks) {
-    const hdi_edges *g = job->g;
-    const hd_laplacian *lap = job->lap;
-    int64_t b;
-    int32_t i = 0, p;
-    for (b = 0; b + 1 < n_blocks; b++) {
-        const int32_t end = hdi_lap_block_end(job, b), behind = lap->vertex[end];
-        for (; i < end; i++) {
-            const int32_t v = lap->vertex[i], last = g->last[v];
-            for (p = last; p > g->first[v] && g->to[p - 1] >= behind; p--) {}
-            for (; p < last; p++) hdi_lap_mirror(job, i, lap->row[g->to[p]], p);
-        }
-    }
-}
-
-/* Pattern and values of L and, if the edges have areas, of a full B. */
-static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int full = g->b != NULL;
-    int64_t nnz = 0, n_blocks, b;
-    double *B = NULL, *b_diag = NULL;
-    hdi_lap_job job;
-    hd_csr L;
-    int32_t i;
-    job.lap = lap;
-    job.g = g;
-    job.next = HDI_TAKE(&s, int64_t, lap->n_active);
-    job.negative = HDI_TAKE(&s, int64_t, HDI_BLOCKS_MOST);
-    for (i = 0; i < lap->n_active; i++) nnz += 1 + g->smaller[lap->vertex[i]] + g->larger[lap->vertex[i]];
-    L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    if (full) B = HDI_TAKE(&s, double, nnz);
-    if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
-    if (e->status < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, L);
-    lap->B = HDI_CAST(double *, hdi_keep(&s, B));
-    if (full) lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t v = lap->vertex[i];
-        job.next[i] = L.row_ptr[i];
-        L.row_ptr[i + 1] = L.row_ptr[i] + 1 + g->smaller[v] + g->larger[v];
-    }
-    n_blocks = ((lap->n_active - 1) >> g->shift) + 1;
-    hdi_lap_crossing(&job, n_blocks);
-    hdi_parallel(lap->context, n_blocks, hdi_lap_task, &job);
-    for (b = 0; b < n_blocks; b++) lap->mesh.n_negative_weights += job.negative[b];
-    return hdi_scope_end(&s);
-}
-
-/* Statistics of the edges of row i, and the union of boundary edges in parent [n_active]. Returns the sum of the edges' lengths. An entry of L with
- * a count of no faces is a diagonal of polygons. */
-static double hdi_edge_report(hd_laplacian *lap, const double *xyz, int32_t i, const int32_t *count, const int32_t *turn, int32_t *parent) {
-    const int64_t begin = lap->L.row_ptr[i];
-    hd_mesh_report *rep = &lap->mesh;
-    double sum = 0, edge[3];
-    int64_t p;
-    for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
-        const int32_t j = lap->L.col[p], faces = count[p - begin];
-        if (j <= i) continue;
-        rep->n_negative_weights += lap->L.val[p] > 0;
-        if (faces == 0) continue;
-        hdi_sub3(xyz + 3 * HDI_CAST(int64_t, lap->vertex[j]), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), edge);
-        sum += hdi_norm3(edge);
-        rep->n_edges++;
-        rep->n_nonmanifold_edges += faces > 2;
-        rep->n_misoriented_edges += faces == 2 && turn[p - begin] != 0;
-        if (faces != 1) continue;
-        rep->n_boundary_edges++;
-        hdi_unite(parent, i, j);
-    }
-    return sum;
-}
-
-/* Counts the sets of hdi_edge_report: a loop is a root with another vertex in its set. seen [n_active] is overwritten. */
-static void hdi_boundary_loops(hd_laplacian *lap, int32_t *parent, int64_t *seen) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) seen[i] = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t root = hdi_find(parent, i);
-        if (root == i || seen[root]) continue;
-        seen[root] = 1;
-        lap->mesh.n_boundary_loops++;
-    }
-}
-
-/* The entries of the longest row, at least 1. */
-static int64_t hdi_widest_row(const hd_csr *a) {
-    int64_t widest = 1;
-    int32_t i;
-    for (i = 0; i < a->n_rows; i++)
-        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
-    return widest;
-}
-
-/* Copies the places of the rows. */
-static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
-    int32_t i;
-    lap->xyz = HDI_CAST(double *, hdi_alloc(lap->context, 3 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
-    if (!lap->xyz) return e->status;
-    for (i = 0; i < lap->n_active; i++) memcpy(lap->xyz + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, lap->vertex[i]), 3 * sizeof *xyz);
-    return HD_OK;
-}
-
-/* (L, B), places, components and h of the mesh, whose arrays come to live in s. full: B is, if its kind is. */
-static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(lap->context, s->e);
-    double *vertex_mass = HDI_TAKE(&own, double, lap->n);
-    hd_error *e = s->e;
-    hdi_edges edges;
-    if (!vertex_mass) return hdi_scope_end(&own);
-    if (hdi_mesh_faces(mesh, &edges, full && lap->kind == HD_LAPLACIAN_FEM, vertex_mass, hdi_lap_lump(lap->kind), &lap->mesh, s) < 0) return hdi_scope_end(&own);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&own);
-    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0) return hdi_scope_end(&own);
-    if (hdi_lap_assemble(lap, &edges, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&own);
-    lap->h = edges.length / HDI_CAST(double, lap->mesh.n_edges);
-    return hdi_scope_end(&own);
-}
-
-static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh;
-    int32_t f;
-    hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
-    if (hdi_lap_mesh(lap, &mesh, 1, &s) < 0) return hdi_scope_end(&s);
-    for (f = 0; f < m; f++) lap->area += mesh.area[f];
-    lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;   /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
-    lap->conserves = 1;
-    return hdi_scope_end(&s);
-}
-
-/* ---- polygons ----
- * Of a face with k corners X [k x 3], edges E, middles of edges B_f, the difference D along the edges and the vector area of length |f|,
- *     L_f = D'(B_f B_f'/|f| + lambda C C') D,        C an orthonormal basis of the kernel of the transposed edges projected along the vector area.
- * Deviations from Alexa and Wardetzky, all of form: D'B_f is half the differences of next but one corners, g sqrt(|f|) here, which knows no origin;
- * C C' = I - Q Q' with Q two columns, so that L_f = g g' + lambda (D'D - w w') costs a few products an entry, no k x k block is ever made,
- * and faces of hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one number for all faces.
- * On triangles the second part is zero, and is not computed. */
-
-/* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The same to the last bit for (d, c). */
-static double hdi_poly_entry(const hdi_poly *poly, int64_t c, int64_t d, int64_t k, int beside) {
-    const double *u = poly->w + 2 * c, *v = poly->w + 2 * d, first = hdi_dot3(poly->g + 3 * c, poly->g + 3 * d);
-    return k == 3 ? first : first - poly->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
-}
-
-/* Distinct vertices of the faces at v, v itself first, as rows of lap, unsorted, into col. mark [n_active] as in hdi_product_row. Returns how many. */
-static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int32_t v, int32_t *mark, int32_t *col) {
-    const int32_t i = lap->row[v];
-    int64_t p, d, n = 1;
-    mark[i] = i;
-    col[0] = i;
-    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
-        const int32_t f = poly->face[poly->corner[p]];
-        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
-            const int32_t j = lap->row[poly->idx[d]];
-            if (mark[j] == i) continue;
-            mark[j] = i;
-            col[n++] = j;
-        }
-    }
-    return n;
-}
-
-/* The pattern of L, columns ascending. mark [n_active]; col [n_active], work [n_active] serve rows of any length. */
-static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32_t *mark, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
-    hdi_pair *work = HDI_TAKE(&s, hdi_pair, lap->n_active);
-    int64_t nnz = 0;
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(mark, lap->n_active, -1);
-    for (i = 0; i < lap->n_active; i++) nnz += hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
-    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    if (e->status < 0) {
-        memset(&lap->L, 0, sizeof lap->L);
-        return hdi_scope_end(&s);
-    }
-    hdi_fill_i32(mark, lap->n_active, -1);
-    for (i = 0; i < lap->n_active; i++) {
-        const int64_t begin = lap->L.row_ptr[i], n = hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
-        hdi_sort_indices(col, n, work);
-        memcpy(lap->L.col + begin, col, HDI_CAST(size_t, n) * sizeof *col);
-        lap->L.row_ptr[i + 1] = begin + n;
-    }
-    lap->L = hdi_csr_keep(&s, lap->L);
-    return hdi_scope_end(&s);
-}
-
-/* Values of row i, and the faces along each of its edges: how many, and in which direction. Both rows of a pair add in the order of the faces, so that L is
- * symmetric to the last bit. place [n_active]: where a column stands in this row. */
-static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i, int64_t *place, int32_t *count, int32_t *turn) {
-    const int32_t v = lap->vertex[i];
-    const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
-    double *L = lap->L.val + begin, sum = 0;
-    int64_t p, d;
-    for (p = 0; p < n; p++) {
-        place[lap->L.col[begin + p]] = p;
-        L[p] = 0;
-        count[p] = turn[p] = 0;
-    }
-    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
-        const int64_t c = poly->corner[p], before = hdi_poly_before(poly, c), after = hdi_poly_after(poly, c);
-        const int32_t f = poly->face[c];
-        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
-            const int64_t at = place[lap->row[poly->idx[d]]];
-            const int beside = d == before || d == after;
-            if (d == c) continue;
-            L[at] += hdi_poly_entry(poly, c, d, poly->ptr[f + 1] - poly->ptr[f], beside);
-            count[at] += beside;
-            turn[at] += (d == after) - (d == before);
-        }
-    }
-    for (p = 0; p < n; p++)
-        if (lap->L.col[begin + p] != i) sum += L[p];
-    L[place[i]] = -sum;
-}
-
-static hd_status hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, int32_t *parent, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int64_t *place = HDI_TAKE(&s, int64_t, lap->n_active);
-    const int64_t widest = hdi_widest_row(&lap->L);
-    int32_t *count = HDI_TAKE(&s, int32_t, widest), *turn = HDI_TAKE(&s, int32_t, widest), i;
-    double length = 0;
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) parent[i] = i;
-    for (i = 0; i < lap->n_active; i++) {
-        hdi_poly_row(lap, poly, i, place, count, turn);
-        length += hdi_edge_report(lap, poly->xyz, i, count, turn, parent);
-    }
-    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
-    hdi_boundary_loops(lap, parent, place);
-    return hdi_scope_end(&s);
-}
-
-/* Area of each face to its corners in equal parts. */
-static double hdi_poly_mass(const hdi_poly *poly, int32_t v) {
-    double sum = 0;
-    int64_t p;
-    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
-        const int32_t f = poly->face[poly->corner[p]];
-        sum += poly->area[f] / HDI_CAST(double, poly->ptr[f + 1] - poly->ptr[f]);
-    }
-    return sum;
-}
-
-/* poly: xyz, ptr, idx, n, m and lambda set, the input checked. */
-static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *vertex_mass;
-    int32_t *mark, v, f;
-    if (hdi_poly_make(poly, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
-    vertex_mass = HDI_TAKE(&s, double, lap->n);
-    if (!vertex_mass) return hdi_scope_end(&s);
-    for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_poly_mass(poly, v);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0) return hdi_scope_end(&s);
-    if (hdi_lap_places(lap, poly->xyz, e) < 0) return hdi_scope_end(&s);
-    mark = HDI_TAKE(&s, int32_t, lap->n_active);
-    if (!mark || hdi_poly_pattern(lap, poly, mark, e) < 0) return hdi_scope_end(&s);
-    if (hdi_poly_values(lap, poly, mark, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
-    for (f = 0; f < poly->m; f++) lap->area += poly->area[f];
-    lap->b_ratio = 1;
-    lap->conserves = 1;
-    hdi_lap_components(lap, e);
-    return hdi_scope_end(&s);
-}
-
-/* ---- intrinsic triangulations: Delaunay and tufted ---- */
-
-/* What the intrinsic Laplacians are asked for. */
-typedef struct hdi_intrinsic_task {
-    int close;          /* tufted: the boundary is glued to the other sheet */
-    double delta;       /* of mollification, relative to the mean edge length; negative: none */
-} hdi_intrinsic_task;
-
-/* Rows, components, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without coordinates. */
-static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope *s) {
-    const int full = lap->kind == HD_LAPLACIAN_FEM;
-    hd_error *e = s->e;
-    hdi_edges edges;
-    double *vertex_mass;
-    if (hdi_edges_flat(&edges, flat, full, s) < 0) return e->status;
-    vertex_mass = HDI_TAKE(s, double, flat->n);
-    if (!vertex_mass) return e->status;
-    hdi_mesh_masses(flat, hdi_lap_lump(lap->kind), vertex_mass);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0) return e->status;
-    lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;    /* element of corners v, v, w: 1/2, 1/6; 1/6, 1/6 */
-    return hdi_lap_assemble(lap, &edges, e);
-}
-
-/* (L, B) of the intrinsic Delaunay triangulation of mesh, or of its cover: each sheet counts half. */
-static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_intrinsic_task *task, hdi_scope *s) {
-    hd_error *e = s->e;
-    hd_context *ctx = lap->context;
-    hdi_intrinsic t;
-    hdi_mesh flat;
-    double weight;
-    int32_t f;
-    if (hdi_intrinsic_make(&t, mesh, task->close, &lap->mesh, s) < 0) return e->status;
-    hdi_mollify(&t, task->delta, &lap->mesh);
-    if (hdi_progress(ctx, "flip edges", 0, e) < 0 || hdi_flip_all(&t, &lap->mesh, ctx, e) < 0) return e->status;
-    weight = 1.0 / t.n_sheets;
-    if (hdi_intrinsic_mesh(&flat, &t, lap->n, weight, &lap->mesh, s) < 0) return e->status;
-    if (hdi_lap_flat(lap, &flat, s) < 0 || hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_progress(ctx, "assemble", 0.8, e) < 0) return e->status;
-    for (f = 0; f < mesh->m; f++) lap->area += mesh->area[f];
-    lap->h = t.unit;
-    lap->mesh.n_sheets = t.n_sheets;
-    lap->conserves = 1;
-    return HD_OK;
-}
-
-static hd_status hdi_lap_triangles_intrinsic(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task,
-                                             hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh;
-    if (hdi_mesh_make(&mesh, xyz, lap->n, tri, m, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
-    if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
-    else hdi_lap_intrinsic(lap, &mesh, task, &s);
-    return hdi_scope_end(&s);
-}
-
-/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
-static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m, const hdi_intrinsic_task *task, hd_error *e) {
-    return task ? hdi_lap_triangles_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, e);
-}
-
-/* The faces split as fans, for the operators of triangles. */
-static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly, const hdi_intrinsic_task *task, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int64_t m = hdi_poly_fans(poly->ptr, poly->idx, poly->m, NULL);
-    int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
-    if (!tri) return hdi_scope_end(&s);
-    hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
-    if (hdi_lap_faces(lap, poly->xyz, tri, HDI_CAST(int32_t, m), task, e) < 0 && e->face >= 0) e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
-    return hdi_scope_end(&s);
-}
-
-/* y = (alpha L + beta B) x on rows. */
-static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta, const double *HDI_RESTRICT x, double *HDI_RESTRICT y) {
-    const int64_t *HDI_RESTRICT Ap = lap->L.row_ptr;
-    const int32_t *HDI_RESTRICT Aj = lap->L.col;
-    const double *HDI_RESTRICT Lx = lap->L.val, *HDI_RESTRICT Bx = lap->B;
-    int32_t i;
-    int64_t p = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        double l = 0, b = 0;
-        HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
-        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
-        if (Bx) {
-            HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
-            for (; p < Ap[i + 1]; p++) {
-                l += Lx[p] * x[Aj[p]];
-                b += Bx[p] * x[Aj[p]];
-            }
-        } else {
-            for (; p < Ap[i + 1]; p++) l += Lx[p] * x[Aj[p]];
-            b = lap->mass[i] * x[i];
-        }
-        y[i] = alpha * l + beta * b;
-    }
-}
-
-/* |x|_B^2; work [n_active] is used when B is not diagonal. */
-static double hdi_b_norm2(const hd_laplacian *lap, const double *x, double *work) {
-    if (!lap->B) return hdi_norm2w(x, lap->mass, lap->n_active);
-    hdi_pair_apply(lap, 0, 1, x, work);
-    return hdi_dot(x, work, lap->n_active);
-}
-
-/* Means over the components in the B inner product, of a functional b'x: out[c] = sum over c of weight_i x_i. */
-static void hdi_component_sums(const hd_laplacian *lap, const double *weight, const double *x, double *out) {
-    int32_t i;
-    if (lap->n_components == 1) {
-        out[0] = weight ? hdi_dot(weight, x, lap->n_active) : 0;
-        for (i = 0; !weight && i < lap->n_active; i++) out[0] += x[i];
-        return;
-    }
-    memset(out, 0, HDI_CAST(size_t, lap->n_components) * sizeof *out);
-    for (i = 0; i < lap->n_active; i++) out[lap->component[i]] += weight ? weight[i] * x[i] : x[i];
-}
-
-/* x_i += value[component of i] */
-static void hdi_component_add(const hd_laplacian *lap, const double *value, double *x) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) x[i] += value[lap->component[i]];
-}
-
-/* ---- the caller's own matrices ---- */
-
-/* Merges row v of L and B (both over vertices) on the active columns, the diagonal always there. An explicit
- * zero whose mirror entry neither matrix stores is left out: the pattern becomes symmetric. col NULL: counts
- * only. */
-static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v, int32_t *col, double *Lx, double *Bx) {
-    int64_t p = L->row_ptr[v], q = B->row_ptr[v], n = 0;
-    const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
-    int diagonal = 0;
-    while (p < p_end || q < q_end || !diagonal) {
-        const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX, cd = diagonal ? INT32_MAX : v;
-        const int32_t c = cp < cq ? (cp < cd ? cp : cd) : (cq < cd ? cq : cd);
-        const double l = cp == c ? L->val[p] : 0, b = cq == c ? B->val[q] : 0;
-        const int kept = l != 0 || b != 0 || c == v || hdi_csr_stores(L, c, v) || hdi_csr_stores(B, c, v);
-        if (lap->row[c] >= 0 && kept) {
-            if (col) {
-                col[n] = lap->row[c];
-                Lx[n] = l;
-                Bx[n] = b;
-            }
-            n++;
-        }
-        p += cp == c;
-        q += cq == c;
-        diagonal |= cd == c;
-    }
-    return n;
-}
-
-/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the
- * rounding of its entries. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry
- * leaves open. */
-static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal, hd_error *e) {
-    int32_t i;
-    int64_t p;
-    *diagonal = 1;
-    lap->conserves = 1;
-    lap->b_ratio = 1;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t v = lap->vertex[i];
-        hdi_sum l_sum = {0, 0}, b_off = {0, 0};
-        double l_abs = 0, l_diag = 0, b_sum = 0, b_diag = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            hdi_sum_add(&l_sum, lap->L.val[p]);
-            l_abs += fabs(lap->L.val[p]);
-            b_sum += lap->B[p];
-            if (lap->L.col[p] != i) {
-                hdi_sum_add(&b_off, fabs(lap->B[p]));
-                continue;
-            }
-            l_diag = lap->L.val[p];
-            b_diag = lap->B[p];
-        }
-        if (!(b_diag > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
-        if (l_diag + 1e-12 * l_abs < 0)
-            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L has a negative diagonal entry: L is positive semi-definite "
-                                "here, minus the cotangent matrix of libigl", v, v, l_diag);
-        root[i] = sqrt(l_diag + 1e-12 * l_abs);
-        if (fabs(l_sum.high + l_sum.low) > 4 * DBL_EPSILON * l_abs) lap->conserves = 0;
-        if (b_off.high > 0) {                    /* Gershgorin */
-            *diagonal = 0;
-            b_off.high = (b_diag - b_off.high) - b_off.low;
-            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * b_off.high / b_diag);
-        }
-        lap->mass[i] = b_sum;
-        lap->b_diag[i] = b_diag;
-        lap->area += b_sum;
-    }
-    return HD_OK;
-}
-
-/* What every positive semi-definite L satisfies: L_ij^2 <= L_ii L_jj. root as above. */
-static hd_status hdi_pair_semidefinite(const hd_laplacian *lap, const double *root, hd_error *e) {
-    int32_t i, j;
-    int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            j = lap->L.col[p];
-            if (j <= i || fabs(lap->L.val[p]) <= (1 + 1e-10) * root[i] * root[j]) continue;
-            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite: an entry is larger than the "
-                                "diagonal entries of its row and column allow", lap->vertex[i], lap->vertex[j], lap->L.val[p]);
-        }
-    }
-    return HD_OK;
-}
-
-/* Where rows of B are not dominated by their diagonal, as in finite elements: the smallest eigenvalue of D^-1 B, D = diag(B), by 40 Lanczos
- * steps. An estimate from above, to be proven: see hdi_lap_ratio. work [4 n]. */
-static hd_status hdi_pair_ratio(const hd_laplacian *lap, double *work, double *ratio, hd_error *e) {
-    enum { STEPS = 40 };
-    const int32_t n = lap->n_active;
-    double *v = work, *v_old = v + n, *w = v_old + n, *s = w + n, d[STEPS], off[STEPS], z[2 * STEPS], beta = 0, norm = 0, least;
-    int32_t i, m = 0, k;
-    for (i = 0; i < n; i++) {                    /* B in the scaling D^-1/2 B D^-1/2; an uneven start, the same every time */
-        s[i] = 1 / sqrt(lap->b_diag[i]);
-        v[i] = 1 + 0.5 * sin(1.7 * i);
-        v_old[i] = 0;
-        norm += v[i] * v[i];
-    }
-    for (i = 0; i < n; i++) v[i] /= sqrt(norm);
-    while (m < STEPS && m < n) {
-        double alpha = 0;
-        norm = 0;
-        for (i = 0; i < n; i++) v[i] *= s[i];
-        hdi_pair_apply(lap, 0, 1, v, w);
-        for (i = 0; i < n; i++) {
-            v[i] /= s[i];
-            w[i] = w[i] * s[i] - beta * v_old[i];
-            alpha += v[i] * w[i];
-        }
-        for (i = 0; i < n; i++) {
-            w[i] -= alpha * v[i];
-            norm += w[i] * w[i];
-        }
-        d[m] = alpha;
-        beta = sqrt(norm);
-        off[m++] = beta;
-        if (beta < 1e-14) break;
-        for (i = 0; i < n; i++) {
-            v_old[i] = v[i];
-            v[i] = w[i] / beta;
-        }
-    }
-    for (k = 0; k < 2 * STEPS; k++) z[k] = 0;
-    if (!hdi_tridiag_eigen(d, off, z, z + STEPS, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "B: the estimate of its smallest eigenvalue did not converge");
-    for (least = d[0], k = 1; k < m; k++) least = hdi_min(least, d[k]);
-    if (!(least > 1e-12) && !(lap->b_ratio > 0)) return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B is not positive definite", -1, -1, least);
-    *ratio = least;
-    return HD_OK;
-}
-
-static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag, *root;
-    int64_t nnz = 0, p;
-    int32_t i;
-    int diagonal;
-    if (!present) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n; i++)
-        for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++)
-            if (B->val[p] != 0) present[i] = 1;
-    if (hdi_lap_rows(lap, present, e) < 0) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_row(lap, L, B, lap->vertex[i], NULL, NULL, NULL);
-    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    lap->B = HDI_TAKE(&s, double, nnz);
-    b_diag = HDI_TAKE(&s, double, lap->n_active);
-    root = HDI_TAKE(&s, double, lap->n_active);
-    if (e->status < 0) {
-        memset(&lap->L, 0, sizeof lap->L);
-        lap->B = NULL;
-        return hdi_scope_end(&s);
-    }
-    lap->L = hdi_csr_keep(&s, lap->L);
-    lap->B = HDI_CAST(double *, hdi_keep(&s, lap->B));
-    lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
-    for (i = 0; i < lap->n_active; i++) {
-        p = lap->L.row_ptr[i];
-        lap->L.row_ptr[i + 1] = p + hdi_pair_row(lap, L, B, lap->vertex[i], lap->L.col + p, lap->L.val + p, lap->B + p);
-    }
-    if (hdi_pair_measure(lap, root, &diagonal, e) < 0) return hdi_scope_end(&s);
-    if (hdi_pair_semidefinite(lap, root, e) < 0) return hdi_scope_end(&s);
-    if (diagonal) {
-        hdi_free(lap->context, lap->B);
-        hdi_free(lap->context, lap->b_diag);
-        lap->B = NULL;
-        lap->b_diag = lap->mass;
-    }
-    hdi_lap_components(lap, e);
-    return hdi_scope_end(&s);
-}
-
-/* ---- point sets ---- */
-/* This work is based on
- *   M. Belkin, P. Niyogi, Towards a theoretical foundation for Laplacian-based manifold methods, 2008 (exponential weights, `exp`)
- *   Y. Liu, B. Prabhakaran, X. Guo, Point-based manifold harmonics, 2012 (the same with Voronoi areas: symmetric L and diagonal B, `voronoi-exp`)
- * Deviations: the exponential is cut where it is small, by distance, so that the pattern is symmetric. Neighbours that stand off the tangent plane by
- * more than 45 degrees count with their height instead of their projection, so that points of another sheet two spacings away do not cut a cell. At a
- * border cells end at the convex hull of the neighbours. The papers leave coincident points, borders and the bandwidth to the reader. */
+/* ---- points: places, tangent planes, convex polygons, stars ---- */
 
 enum {
-    HDI_CELL_SIDES = 12,       /* of the polygon that a cell is cut from */
-    HDI_MOST_NEIGHBOURS = 128,
-    HDI_CELLS_PER_TASK = 256
+    HDI_CELL_SIDES = 12,       /* of the polygon that the cell of a point is cut from */
+    HDI_MOST_NEIGHBOURS = 128, /* of a point, for its cell */
+    HDI_STAR_MOST = 256        /* of a point, for its star */
 };
 
-/* A set of different places, with the k nearest of each (the first is the place itself). */
-typedef struct hdi_cloud {
-    int32_t n, k;
-    const double *xyz;
-    const int32_t *first;      /* [n] the point that a place is named by */
-    int32_t *nbr;             /* [k n] */
-    double *d2;                /* [k n] */
-    double *spacing2;          /* [n] area for each point nearby, by the disc to the last neighbour */
-    double *area;              /* [n] of the cells */
-    int8_t *border;            /* [n] 1: the cell ends where the neighbours do */
-    int8_t *not_flat;          /* [n] see hdi_plane */
-    double start[HDI_CELL_SIDES][2];   /* a regular polygon around the unit circle */
-} hdi_cloud;
+/* 2^64 / golden ratio: multiplied by it, numbers spread evenly (Knuth) */
+#define HDI_GOLDEN 0x9e3779b97f4a7c15u
 
-/* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix a, which is overwritten: Jacobi's rotations. */
+static uint64_t hdi_place_hash(const double *p) {
+    uint64_t h = 0, bits;
+    int c;
+    for (c = 0; c < 3; c++) {
+        const double x = p[c] + 0.0;             /* -0 is 0 */
+        memcpy(&bits, &x, sizeof bits);
+        h = (h ^ bits) * HDI_GOLDEN;
+        h ^= h >> 29;
+    }
+    return h;
+}
+
+/* Different places of points. */
+typedef struct hdi_places {
+    int32_t n;
+    int32_t *place;             /* [points] the place where a point is; numbered by their first points */
+    int32_t *first;             /* [n] that point */
+    double *xyz;                /* [3 n] */
+} hdi_places;
+
+/* Of n checked points, in s. */
+static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, hdi_scope *s) {
+    const int64_t slots = 2 * HDI_CAST(int64_t, n) + 1;
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *table = HDI_TAKE(&own, int32_t, slots), v;
+    out->n = 0;
+    out->place = HDI_TAKE(s, int32_t, n);
+    out->first = HDI_TAKE(s, int32_t, n);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    hdi_fill_i32(table, slots, -1);
+    for (v = 0; v < n; v++) {
+        const double *p = hdi_at3(xyz, v);
+        int64_t at = HDI_CAST(int64_t, hdi_place_hash(p) % HDI_CAST(uint64_t, slots));
+        for (; table[at] >= 0; at = at + 1 < slots ? at + 1 : 0) {
+            const double *q = hdi_at3(xyz, out->first[table[at]]);
+            if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) break;
+        }
+        if (table[at] < 0) {
+            out->first[out->n] = v;
+            table[at] = out->n++;
+        }
+        out->place[v] = table[at];
+    }
+    out->xyz = HDI_TAKE(s, double, hdi_triple(out->n));
+    for (v = 0; v < out->n && out->xyz; v++) hdi_copy3(out->xyz + hdi_triple(v), hdi_at3(xyz, out->first[v]));
+    return hdi_scope_end(&own);
+}
+
+/* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix a, which is
+ * overwritten: Jacobi's rotations. */
 static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
     int sweep, p, q, i, c;
     for (p = 0; p < 3; p++)
@@ -6690,7 +5175,8 @@ static hdi_plane hdi_tangent_plane(const double *rel, int32_t n) {
     memset(cov, 0, sizeof cov);
     for (k = 0; k < n; k++) reach2 = hdi_max(reach2, hdi_dot3(rel + 3 * k, rel + 3 * k));
     for (k = 0; k < n; k++) {
-        const double *d = rel + 3 * k, near2 = 1.05 - hdi_dot3(d, d) / reach2, weight = near2 * near2 * near2 * near2 * near2 * near2;
+        const double *d = rel + 3 * k, near2 = 1.05 - hdi_dot3(d, d) / reach2,
+                     weight = near2 * near2 * near2 * near2 * near2 * near2;
         sum += weight;
         for (r = 0; r < 3; r++) {
             mean[r] += weight * d[r];
@@ -6762,14 +5248,16 @@ static double hdi_turn(const double *a, const double *b, const double *c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* Clips g to the convex hull of the n points x, which are sorted here (Andrew 1979); says whether that cut anything. */
+/* Clips g to the convex hull of the n points x, which are sorted here (Andrew 1979); says whether that
+ * cut anything. */
 static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
     double hull[2 * HDI_MOST_NEIGHBOURS + 4][2];
     int32_t i, j, m = 0, base = 0;
     int pass, cut = 0;
     for (i = 1; i < n; i++) {
         const double a = x[i][0], b = x[i][1];
-        for (j = i; j > 0 && (a < x[j - 1][0] || (a == x[j - 1][0] && b < x[j - 1][1])); j--) memcpy(x[j], x[j - 1], sizeof *x);
+        for (j = i; j > 0 && (a < x[j - 1][0] || (a == x[j - 1][0] && b < x[j - 1][1])); j--)
+            memcpy(x[j], x[j - 1], sizeof *x);
         x[j][0] = a;
         x[j][1] = b;
     }
@@ -6788,308 +5276,26 @@ static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
     return cut;
 }
 
-/* The middle one of the spacings around place i: an outlier has those of the surface. */
-static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
-    double s[HDI_MOST_NEIGHBOURS + 1];
-    const int32_t *nbr = cloud->nbr + HDI_CAST(int64_t, i) * cloud->k;
-    int32_t j, k;
-    for (k = 0; k < cloud->k; k++) {
-        const double x = cloud->spacing2[nbr[k]];
-        for (j = k; j > 0 && x < s[j - 1]; j--) s[j] = s[j - 1];
-        s[j] = x;
-    }
-    return s[cloud->k / 2];
-}
-
-/* Area of the cell of place i in its tangent plane; 0 where neighbours lie on a line. Lengths are in units of the distance of the last neighbour. */
-static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
-    const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
-    const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = cloud->xyz + 3 * HDI_CAST(int64_t, i);
-    double x[HDI_MOST_NEIGHBOURS + 1][2], rel[3 * (HDI_MOST_NEIGHBOURS + 1)], radius, outer2, area;
-    hdi_plane plane;
-    hdi_polygon g;
-    int32_t k, v;
-    for (k = 0; k < cloud->k; k++) {
-        hdi_sub3(cloud->xyz + 3 * HDI_CAST(int64_t, cloud->nbr[at + k]), p, rel + 3 * k);
-        for (v = 0; v < 3; v++) rel[3 * k + v] *= unit;
-    }
-    plane = hdi_tangent_plane(rel + 3, cloud->k - 1);   /* the first one is the place itself */
-    radius = 2 * sqrt(hdi_cell_spacing2(cloud, i)) * unit;   /* random points leave a circle so large empty once in 3e5 times */
-    g.n = HDI_CELL_SIDES;
-    for (v = 0; v < g.n; v++) {
-        g.x[v][0] = radius * cloud->start[v][0];
-        g.x[v][1] = radius * cloud->start[v][1];
-    }
-    outer2 = 1.2 * radius * radius;
-    for (k = 0; k < cloud->k; k++) {
-        const double l2 = cloud->d2[at + k] * unit * unit;   /* and q2 the square in the plane */
-        double q2;
-        x[k][0] = hdi_dot3(plane.axis[0], rel + 3 * k);
-        x[k][1] = hdi_dot3(plane.axis[1], rel + 3 * k);
-        q2 = x[k][0] * x[k][0] + x[k][1] * x[k][1];
-        if (k == 0 || l2 > 8 * outer2) continue;   /* max(q2, l2 - q2) is at least l2/2: the bisector is beyond all corners */
-        if (!hdi_polygon_clip(&g, x[k][0], x[k][1], hdi_max(q2, l2 - q2) / 2)) continue;
-        for (v = 0, outer2 = 0; v < g.n; v++) outer2 = hdi_max(outer2, g.x[v][0] * g.x[v][0] + g.x[v][1] * g.x[v][1]);
-    }
-    cloud->not_flat[i] = plane.not_flat;
-    cloud->border[i] = HDI_CAST(int8_t, hdi_polygon_clip_hull(&g, x, cloud->k) || outer2 >= radius * radius);
-    area = hdi_polygon_area(&g);
-    cloud->area[i] = area > 1e-12 * radius * radius ? area * reach * reach : 0;
-}
-
-static void hdi_cell_task(void *arg, int64_t index, int32_t worker) {
-    hdi_cloud *cloud = HDI_CAST(hdi_cloud *, arg);
-    const int64_t end = hdi_least(cloud->n, (index + 1) * HDI_CELLS_PER_TASK);
-    int64_t i;
-    (void)worker;
-    for (i = index * HDI_CELLS_PER_TASK; i < end; i++) hdi_cell_area(cloud, HDI_CAST(int32_t, i));
-}
-
-/* The number-k smallest of a, which is rearranged. */
-static double hdi_kth(double *a, int64_t n, int64_t k) {
-    int64_t lo = 0, hi = n - 1;
-    while (lo < hi) {
-        const double pivot = hdi_max(hdi_min(a[lo], a[hi]), hdi_min(hdi_max(a[lo], a[hi]), a[lo + (hi - lo) / 2]));
-        int64_t i = lo, j = hi;
-        while (i <= j) {
-            while (a[i] < pivot) i++;
-            while (a[j] > pivot) j--;
-            if (i <= j) {
-                const double swap = a[i];
-                a[i++] = a[j];
-                a[j--] = swap;
-            }
-        }
-        if (k <= j) hi = j;
-        else if (k >= i) lo = i;
-        else break;
-    }
-    return a[k];
-}
-
-static uint64_t hdi_place_hash(const double *p) {
-    uint64_t h = 0, bits;
-    int c;
-    for (c = 0; c < 3; c++) {
-        const double x = p[c] + 0.0;             /* -0 is 0 */
-        memcpy(&bits, &x, sizeof bits);
-        h = (h ^ bits) * 0x9e3779b97f4a7c15u;
-        h ^= h >> 29;
-    }
-    return h;
-}
-
-/* place[v]: number of the place where point v is, places numbered by their first point, first[q]: that point. Returns how many. */
-static int32_t hdi_places(const double *xyz, int32_t n, int32_t *place, int32_t *first, hdi_scope *s) {
-    const int64_t slots = 2 * HDI_CAST(int64_t, n) + 1;
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *table = HDI_TAKE(&own, int32_t, slots), v, count = 0;
-    if (!table) {
-        hdi_scope_end(&own);
-        return 0;
-    }
-    hdi_fill_i32(table, slots, -1);
-    for (v = 0; v < n; v++) {
-        const double *p = xyz + 3 * HDI_CAST(int64_t, v);
-        int64_t at = HDI_CAST(int64_t, hdi_place_hash(p) % HDI_CAST(uint64_t, slots));
-        for (; table[at] >= 0; at = at + 1 < slots ? at + 1 : 0) {
-            const double *q = xyz + 3 * HDI_CAST(int64_t, first[table[at]]);
-            if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) break;
-        }
-        if (table[at] < 0) {
-            first[count] = v;
-            table[at] = count++;
-        }
-        place[v] = table[at];
-    }
-    hdi_scope_end(&own);
-    return count;
-}
-
-/* Neighbours, spacings, h and cells of the places. */
-static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scope *s) {
-    hdi_tree tree;
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    double sum = 0;
-    int32_t i;
-    const int64_t n = cloud->n, k = cloud->k;
-    cloud->spacing2 = HDI_TAKE(s, double, n);
-    cloud->area = HDI_TAKE(s, double, n);
-    cloud->border = HDI_TAKE(s, int8_t, n);
-    cloud->not_flat = HDI_TAKE(s, int8_t, n);
-    cloud->nbr = HDI_TAKE(s, int32_t, k * n);
-    cloud->d2 = HDI_TAKE(s, double, k * n);
-    if (s->e->status < 0 || hdi_tree_make(&tree, cloud->xyz, cloud->n, &own) < 0) return hdi_scope_end(&own);
-    if (hdi_nearest(&tree, cloud->xyz, NULL, n, cloud->k, cloud->nbr, cloud->d2, s->ctx, s->e) < 0) return hdi_scope_end(&own);
-    for (i = 0; i < n; i++) {
-        const double *d2 = cloud->d2 + i * k;
-        if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
-            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two points are too close together: the square of their distance is no normal number", -1, cloud->first[i], d2[1]);
-            return hdi_scope_end(&own);
-        }
-        sum += sqrt(d2[1]);
-        cloud->spacing2[i] = 3.141592653589793 * d2[k - 1] / HDI_CAST(double, k - 1);
-    }
-    lap->h = sum / HDI_CAST(double, n);
-    for (i = 0; i < HDI_CELL_SIDES; i++) {
-        const double step = 6.283185307179586 / HDI_CAST(double, HDI_CELL_SIDES), r = 1 / cos(step / 2);
-        cloud->start[i][0] = r * cos(step * i);
-        cloud->start[i][1] = r * sin(step * i);
-    }
-    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) >= 0) hdi_parallel(s->ctx, (n + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
-    return hdi_scope_end(&own);
-}
-
-/* Bandwidth from the sampling: a multiple of m, the area that a point has, which is the mean of pi r_k^2 / k over the points, r_k the distance of the
- * k-th neighbour, and of h, the mean distance of the nearest one; no square counts more than nine medians of the former, so that outliers do not
- * matter. The multiple is that which balances the two errors on spheres and tori: smoothing takes lambda s/2 off an eigenvalue lambda, sampling about
- * 0.02 (m/s)^2 of all of them with points independent of each other, where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence
- * s = m (m/h^2)/4, between 0.3 and 1 m. */
-static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
-    double median, mean = 0, h = 0;
-    int32_t i;
-    memcpy(work, cloud->spacing2, HDI_CAST(size_t, cloud->n) * sizeof *work);
-    median = hdi_kth(work, cloud->n, cloud->n / 2);
-    for (i = 0; i < cloud->n; i++) {
-        mean += hdi_min(cloud->spacing2[i], 9 * median);
-        h += sqrt(hdi_min(cloud->d2[HDI_CAST(int64_t, i) * cloud->k + 1], 9 * median));
-    }
-    mean /= cloud->n;
-    h /= cloud->n;
-    return hdi_max(0.3, hdi_min(1, 0.25 * mean / (h * h))) * mean;
-}
-
-typedef struct hdi_weights {
-    hd_laplacian *lap;
-    double bandwidth, scale;   /* exp: of all weights */
-} hdi_weights;
-
-/* Squared distances of some rows become entries of L. Products commute, so that L is symmetric to the last bit. */
-static void hdi_weights_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_weights *job = HDI_CAST(const hdi_weights *, arg);
-    hd_laplacian *lap = job->lap;
-    const int32_t begin = HDI_CAST(int32_t, index * HDI_CELLS_PER_TASK);
-    const int32_t end = HDI_CAST(int32_t, hdi_least(lap->n_active, (index + 1) * HDI_CELLS_PER_TASK));
-    const double quarter = -0.25 / job->bandwidth;
-    const int voronoi = lap->kind == HD_LAPLACIAN_VORONOI_EXP;
-    int32_t i;
-    (void)worker;
-    for (i = begin; i < end; i++) {
-        double sum = 0, *diagonal = NULL;
-        int64_t p;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t j = lap->L.col[p];
-            double *value = lap->L.val + p;
-            if (j == i) {
-                diagonal = value;
-                continue;
-            }
-            *value = -exp(*value * quarter) * (voronoi ? (lap->mass[i] / job->bandwidth) * (lap->mass[j] / job->bandwidth) * 0.07957747154594767 : job->scale);
-            sum += *value;
-        }
-        *diagonal = -sum;
-    }
-}
-
-/* The pattern by a radius search over the rows, then the values in its place. */
-static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hd_point_report *rep = &lap->points;
-    hdi_weights job;
-    hdi_tree tree;
-    int32_t i;
-    if (hdi_tree_make(&tree, lap->xyz, lap->n_active, &s) < 0) return hdi_scope_end(&s);
-    if (hdi_within(&lap->L, &tree, lap->xyz, NULL, lap->n_active, cut2, lap->context, e) < 0) return hdi_scope_end(&s);
-    if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
-    job.lap = lap;
-    job.bandwidth = rep->bandwidth;
-    job.scale = 0.07957747154594767 / job.bandwidth / job.bandwidth / lap->n_active;
-    hdi_parallel(lap->context, (HDI_CAST(int64_t, lap->n_active) + HDI_CELLS_PER_TASK - 1) / HDI_CELLS_PER_TASK, hdi_weights_task, &job);
-    for (i = 0; i < lap->n_active; i++) {
-        const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
-        rep->n_isolated += count == 1;
-        if (!hdi_finite(lap->L.val[lap->L.row_ptr[i]])) {
-            hdi_fail_face(e, HD_ERR_NOT_FINITE, "points: a weight is not finite; the bandwidth is too small for these lengths", -1, lap->vertex[i], rep->bandwidth);
-            break;
-        }
-        rep->most_in_row = count > rep->most_in_row ? HDI_CAST(int32_t, count) : rep->most_in_row;
-    }
-    return hdi_scope_end(&s);
-}
-
-/* Masses of the points: equal shares of their place's cell, or 1; and what there is to report about them. */
-static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const int32_t *place, int32_t *copies, double *mass) {
-    hd_point_report *rep = &lap->points;
-    int32_t i;
-    for (i = 0; i < cloud->n; i++) copies[i] = 0;
-    for (i = 0; i < lap->n; i++) copies[place[i]]++;
-    for (i = 0; i < lap->n; i++) mass[i] = lap->kind == HD_LAPLACIAN_EXP ? 1 : cloud->area[place[i]] / copies[place[i]];
-    for (i = 0; i < cloud->n; i++) {
-        lap->area += cloud->area[i];
-        rep->n_border += cloud->border[i];
-        rep->n_not_flat += cloud->not_flat[i];
-        rep->n_no_area += cloud->area[i] > 0 ? 0 : copies[i];
-    }
-    rep->n_coincident = lap->n - cloud->n;
-}
-
-static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hd_point_report *rep = &lap->points;
-    int32_t *place = HDI_TAKE(&s, int32_t, lap->n), *first = HDI_TAKE(&s, int32_t, lap->n), v;
-    double *work = HDI_TAKE(&s, double, lap->n), *places;
-    hdi_cloud cloud;
-    memset(&cloud, 0, sizeof cloud);
-    if (e->status < 0 || hdi_points_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
-    cloud.n = hdi_places(xyz, lap->n, place, first, &s);
-    if (e->status >= 0 && cloud.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
-    places = HDI_TAKE(&s, double, 3 * HDI_CAST(int64_t, cloud.n));
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (v = 0; v < cloud.n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
-    cloud.xyz = places;
-    cloud.first = first;
-    cloud.k = HDI_CAST(int32_t, hdi_least(cloud.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
-    if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
-    if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
-    rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
-    hdi_cloud_masses(&cloud, lap, place, first, work);
-    if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0) return hdi_scope_end(&s);
-    if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
-    if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
-    lap->b_ratio = 1;
-    lap->conserves = 1;
-    hdi_lap_components(lap, e);
-    return hdi_scope_end(&s);
-}
-
-/* ---- point sets: the tufted Laplacian of the points' stars ---- */
-
-enum { HDI_STAR_MOST = 256, HDI_STAR_POINTS = 1024 };   /* neighbours of a point that its star can be made of; points per task */
-
-/* A number in [0, 1) for each point: which of four cocircular points are joined must be the same in the stars of all four, on a grid for instance. */
-static double hdi_point_chance(int32_t i) {
-    uint64_t x = (HDI_CAST(uint64_t, i) + 1) * 0x9e3779b97f4a7c15u;
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-    x ^= x >> 27;
-    return HDI_CAST(double, x >> 11) / 9007199254740992.0;
-}
-
 typedef struct hdi_star_point { double x, y, angle; int32_t id; } hdi_star_point;
 
-/* An angle that needs no arc tangent: 0 along x, 1 along y, a turn is 4, half a turn 2 between any two opposite directions. */
+/* An angle that needs no arc tangent: 0 along x, 1 along y, a turn is 4, half a turn 2 between any two
+ * opposite directions. */
 static double hdi_star_angle(double x, double y) {
     const double sum = fabs(x) + fabs(y), q = sum > 0 ? y / sum : 0;
     return x < 0 ? 2 - q : y < 0 ? 4 + q : q;
 }
 
 /* c is to the left of the line from a to b. */
-static int hdi_star_left(const hdi_star_point *a, const hdi_star_point *b, const hdi_star_point *c) {
+static int hdi_star_left(const hdi_star_point *a, const hdi_star_point *b,
+                         const hdi_star_point *c) {
     return hdi_det2(b->x - a->x, c->y - b->y, b->y - a->y, c->x - b->x) > 0;
 }
 
-#define HDI_STAR_SAME 1e-6   /* directions within this hdi_star_angle are the same one; opposite ones likewise */
+/* directions within this hdi_star_angle are the same one; opposite ones likewise */
+#define HDI_STAR_SAME 1e-6
 
-/* p, n by angle: of those in the same direction only the nearest, which has the longest dual, stays. Returns how many are left. */
+/* p, n by angle: of those in the same direction only the nearest, which has the longest dual, stays.
+ * Returns how many are left. */
 static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
     const double turn = 4;
     int32_t i, m = 0;
@@ -7101,7 +5307,8 @@ static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
             p[m++] = x;
         }
     }
-    if (m > 1 && p[0].angle + turn - p[m - 1].angle < HDI_STAR_SAME) {       /* the last is in the direction of the first */
+    /* the last is in the direction of the first */
+    if (m > 1 && p[0].angle + turn - p[m - 1].angle < HDI_STAR_SAME) {
         if (p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y > p[0].x * p[0].x + p[0].y * p[0].y) {
             p[0] = p[m - 1];
             p[0].angle -= turn;
@@ -7126,9 +5333,11 @@ static void hdi_star_sort(hdi_star_point *p, int32_t n) {
     for (i = 0; i < n; i++) p[i] = from[key[i] & 255];
 }
 
-/* The star of the origin in the Delaunay triangulation of it and p[0..n), which are duals: the neighbour q stands at 2 q / |q|^2, so that the line
- * between the nearer and the farther half plane is its polar. The neighbours that bound the Voronoi cell are then the corners of the convex hull, found
- * by walking around it (Graham 1972). Where neighbours are a half turn apart the cell is open. Leaves them in p by angle; returns their number. */
+/* The star of the origin in the Delaunay triangulation of it and p[0..n), which are duals: the neighbour
+ * q stands at 2 q / |q|^2, so that the line between the nearer and the farther half plane is its polar.
+ * The neighbours that bound the Voronoi cell are then the corners of the convex hull, found by walking
+ * around it (Graham 1972). Where neighbours are a half turn apart the cell is open. Leaves them in p by
+ * angle; returns their number. */
 static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
     const double half = 2, open_gap = half - HDI_STAR_SAME;
     hdi_star_point hull[HDI_STAR_MOST + 2], origin;
@@ -7137,8 +5346,10 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
     hdi_star_sort(p, n);
     n = hdi_star_directions(p, n);
     *closed = 1;
-    for (i = 0; i < n; i++) {                    /* begin behind a gap of a half turn, else at the nearest neighbour, which is a corner */
-        const double r = p[i].x * p[i].x + p[i].y * p[i].y, gap = i ? p[i].angle - p[i - 1].angle : p[0].angle - p[n - 1].angle + 2 * half;
+    /* begin behind a gap of a half turn, else at the nearest neighbour, which is a corner */
+    for (i = 0; i < n; i++) {
+        const double r = p[i].x * p[i].x + p[i].y * p[i].y,
+                     gap = i ? p[i].angle - p[i - 1].angle : p[0].angle - p[n - 1].angle + 2 * half;
         if (gap >= open_gap) *closed = 0;
         if (gap >= open_gap || (*closed && r > far_away)) first = i;
         far_away = hdi_max(far_away, r);
@@ -7149,7 +5360,8 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
         while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, p + at)) top--;
         hull[top++] = p[at];
     }
-    {                                            /* once around: from the nearest to itself, or from the origin, a corner now, to itself */
+    /* once around: from the nearest to itself, or from the origin, a corner now, to itself */
+    {
         const hdi_star_point last = *closed ? p[first] : origin;
         while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, &last)) top--;
     }
@@ -7158,28 +5370,1943 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
     return top;
 }
 
+/* ==== [11] intrinsic ====
+ * Triangles that are known by the lengths of their sides and by which side is glued to which: that is what
+ * flips of edges need, and all that the operators need. An edge may join a vertex to itself, two vertices may
+ * share several edges, and a triangle may be glued to itself. May call [10].
+ * This work is based on
+ *   A. Bobenko, B. Springborn, A discrete Laplace-Beltrami operator for simplicial surfaces, 2007 (intrinsic
+ *      Delaunay triangulations have no negative weights)
+ *   M. Fisher, B. Springborn, P. Schroeder, A. Bobenko, An algorithm for the construction of intrinsic
+ *      Delaunay triangulations, 2007 (flips)
+ *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (mollification, the tufted cover)
+ *   W. Kahan, Miscalculating area and angles of a needle-like triangle, 2014 (areas from lengths)
+ * Deviations: the sheets around an edge of three faces or more follow each other by their angle in space, and
+ * copies of a face lie in layers (the paper takes any order). An orientable manifold without boundary is its
+ * own cover: half of it is not stored. A flip must also lower the sum of the six cotangents. In exact
+ * arithmetic it always does (Rippa 1990), and so rounding cannot make flips run in circles. Zero-area faces
+ * are left out before. Lengths are in units of the mean edge length: nothing overflows, and results do not
+ * depend on the unit of the coordinates. */
+
+static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
+static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
+
+/* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none (Kahan
+ * 2014). */
+static double hdi_length_area(double a, double b, double c) {
+    double t;
+    if (a < b) { t = a; a = b; b = t; }
+    if (b < c) { t = b; b = c; c = t; }
+    if (a < b) { t = a; a = b; b = t; }
+    t = c - (a - b);
+    return t > 0 ? 0.25 * sqrt((a + (b + c)) * t * (c + (a - b)) * (a + (b - c))) : 0;
+}
+
+/* Cotangents at the corners of a triangle with sides len: side q runs from corner q to the next one. */
+static void hdi_length_cots(const double *len, double area, double *cot) {
+    int q;
+    for (q = 0; q < 3; q++) {
+        const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
+        cot[q] = (b * b + c * c - a * a) / (4 * area);
+    }
+}
+
+/* ---- soups ----
+ * Different faces, each of which comes once, as in meshes, or several times, as in the stars of points,
+ * where a triangle comes from all its three corners if these agree. */
+
+typedef struct hdi_soup {
+    hdi_mesh mesh;      /* each face once; area is that in space, cot comes from the lengths */
+    hdi_sides sides;
+    int32_t *tri;       /* [3 m] of stars, corners ascending; NULL: the triangles of a mesh */
+    int32_t *copies;    /* [m] how often a face comes; NULL: once */
+    int32_t *odd;       /* [m] how many of its copies had their corners in odd order */
+    double *len;        /* [3 m] in units of the mean edge length */
+    double *area;       /* [m] of the triangle with these sides; 0: there is none */
+    double unit;        /* mean edge length */
+    double total;       /* area of all copies, in space */
+    double share;       /* a copy counts 1 / share */
+} hdi_soup;
+
+static int32_t hdi_soup_copies(const hdi_soup *soup, int32_t f) { return soup->copies ? soup->copies[f] : 1; }
+
+/* Faces of a bucket: its keys, sorted, second corner << 32 | third corner << 1 | odd, become faces from
+ * number m on. Returns how many there are; with soup NULL they are only counted. */
+static int64_t hdi_soup_bucket(hdi_soup *soup, int64_t m, int32_t i, const uint64_t *key,
+                               int64_t n) {
+    int64_t p, q, count = 0;
+    for (p = 0; p < n; p = q, count++) {
+        int32_t odd = 0;
+        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += HDI_CAST(int32_t, key[q] & 1);
+        if (!soup) continue;
+        soup->tri[3 * (m + count)] = i;
+        soup->tri[3 * (m + count) + 1] = hdi_key_vertex(key[p]);
+        soup->tri[3 * (m + count) + 2] = HDI_CAST(int32_t, (key[p] & 0xffffffffu) >> 1);
+        soup->copies[m + count] = HDI_CAST(int32_t, q - p);
+        soup->odd[m + count] = odd;
+    }
+    return count;
+}
+
+/* Gathers the m triangles tri by their smallest corners: keys as above, bucket i from ptr[i] on. ptr [n +
+ * 1] zeros. */
+static void hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *ptr, uint64_t *key) {
+    int64_t f;
+    for (f = 0; f < m; f++) ptr[hdi_low32(tri[3 * f], hdi_low32(tri[3 * f + 1], tri[3 * f + 2]))]++;
+    hdi_prefix_sum(ptr, n);
+    for (f = 0; f < m; f++) {
+        const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
+        const int32_t first = hdi_low32(a, hdi_low32(b, c)), last = hdi_high32(a, hdi_high32(b, c));
+        const int64_t middle = HDI_CAST(int64_t, a) + b + c - first - last,
+                      odd = ((a > b) + (b > c) + (a > c)) & 1;
+        key[ptr[first]++] = HDI_CAST(uint64_t, middle << 32 | HDI_CAST(int64_t, last) << 1 | odd);
+    }
+    hdi_rewind(ptr, n);
+}
+
+/* Different faces of the m triangles tri, into soup in s. */
+static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n,
+                                hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, HDI_CAST(int64_t, n) + 1), f = 0, count = 0;
+    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work;
+    int32_t i;
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    hdi_soup_gather(tri, m, n, ptr, key);
+    work = HDI_TAKE(&own, uint64_t, hdi_fullest(ptr, n));
+    if (!work) return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) {
+        hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i], work);
+        count += hdi_soup_bucket(NULL, 0, i, key + ptr[i], ptr[i + 1] - ptr[i]);
+    }
+    soup->tri = HDI_TAKE(s, int32_t, 3 * count);
+    soup->copies = HDI_TAKE(s, int32_t, count);
+    soup->odd = HDI_TAKE(s, int32_t, count);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) f += hdi_soup_bucket(soup, f, i, key + ptr[i], ptr[i + 1] - ptr[i]);
+    soup->mesh.tri = soup->tri;
+    soup->mesh.n = n;
+    soup->mesh.m = HDI_CAST(int32_t, count);
+    return hdi_scope_end(&own);
+}
+
+/* Sorts the sides at all vertices and counts the edges; all copies count. border [n] unites the vertices
+ * of boundary edges. */
+static hdi_edge_tally hdi_soup_edges(hdi_soup *soup, int32_t *border) {
+    const hdi_mesh *mesh = &soup->mesh;
+    hdi_sides *g = &soup->sides;
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    int32_t i, p, q;
+    hdi_fill_own(border, mesh->n);
+    for (i = 0; i < mesh->n; i++) {
+        hdi_sides_sort(g, i);
+        for (p = g->ptr[i]; p < g->ptr[i + 1]; p = q) {
+            const int32_t j = hdi_key_vertex(g->key[p]), end = hdi_sides_run(g, p, g->ptr[i + 1]);
+            int64_t copies = 0, forward = 0;
+            for (q = p; q < end; q++) {
+                const int32_t f = hdi_key_face(g->key[q]), odd = soup->odd ? soup->odd[f] : 0,
+                              all = hdi_soup_copies(soup, f);
+                copies += all;
+                forward += hdi_key_corner(g->key[q]) < 2 ? all - odd : odd;
+            }
+            hdi_edge_count(&tally, copies, forward, hdi_edge_length(mesh->xyz, i, j));
+            if (copies == 1) hdi_unite(border, i, j);
+        }
+    }
+    return tally;
+}
+
+/* A job on blocks of faces. add and n_short are of a block: what its worst face lacks to satisfy the
+ * triangle inequality with delta to spare, and how many faces lack anything. */
+typedef struct hdi_soup_job {
+    hdi_soup *soup;
+    double delta, *add, most_add;
+    int64_t *n_short;
+} hdi_soup_job;
+
+static void hdi_soup_length_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
+    hdi_soup *soup = job->soup;
+    const hdi_mesh *mesh = &soup->mesh;
+    double add = 0;
+    int64_t f, n_short = 0;
+    int q;
+    for (f = begin; f < end; f++) {
+        const int32_t *v = mesh->tri + 3 * f;
+        double *len = soup->len + 3 * f, spare;
+        if (!(mesh->area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] = hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]]) / soup->unit;
+        spare = hdi_min(len[0] + len[1] - len[2],
+                        hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
+        if (job->delta < 0) continue;
+        if (spare < job->delta) n_short += hdi_soup_copies(soup, HDI_CAST(int32_t, f));
+        add = hdi_max(add, job->delta - spare);
+    }
+    job->add[begin / HDI_FACES_PER_TASK] = add;
+    job->n_short[begin / HDI_FACES_PER_TASK] = n_short;
+}
+
+static void hdi_soup_cot_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
+    hdi_soup *soup = job->soup;
+    int64_t f;
+    int q;
+    for (f = begin; f < end; f++) {
+        double *len = soup->len + 3 * f, *cot = soup->mesh.cot + 3 * f;
+        cot[0] = cot[1] = cot[2] = soup->area[f] = 0;
+        if (!(soup->mesh.area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] += job->most_add;
+        soup->area[f] = hdi_length_area(len[0], len[1], len[2]);
+        if (soup->area[f] > 0) hdi_length_cots(len, soup->area[f], cot);
+    }
+}
+
+/* Lengths, mollified, with their areas and cotangents. Mollification (Sharp, Crane 2020, section 4.5)
+ * adds to all sides the smallest length that makes every triangle satisfy the triangle inequality with
+ * delta to spare; delta < 0: none. */
+static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
+    const int64_t m = soup->mesh.m, n_tasks = (m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
+    hdi_soup_job job;
+    int64_t i, n_short = 0;
+    soup->mesh.cot = soup->mesh.cot ? soup->mesh.cot : HDI_TAKE(s, double, 3 * m);
+    soup->area = HDI_TAKE(s, double, m);
+    soup->len = HDI_TAKE(s, double, 3 * m);
+    job.soup = soup;
+    job.delta = delta;
+    job.most_add = 0;
+    job.add = HDI_TAKE(s, double, n_tasks);
+    job.n_short = HDI_TAKE(s, int64_t, n_tasks);
+    if (s->e->status < 0) return s->e->status;
+    hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_length_task, &job);
+    for (i = 0; i < n_tasks; i++) {
+        job.most_add = hdi_max(job.most_add, job.add[i]);
+        n_short += job.n_short[i];
+    }
+    hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_cot_task, &job);
+    rep->n_mollified = HDI_CAST(int32_t, n_short);
+    rep->mollify_epsilon = job.most_add * soup->unit;
+    return HD_OK;
+}
+
+/* Edges and lengths of a soup whose faces have their area. border [n] as in hdi_soup_edges. */
+static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *rep, int32_t *border,
+                                 hdi_scope *s) {
+    const hdi_mesh *mesh = &soup->mesh;
+    hdi_edge_tally tally;
+    int32_t f;
+    for (f = 0; f < mesh->m; f++) soup->total += mesh->area[f] * hdi_soup_copies(soup, f);
+    if (!border || hdi_sides_make(&soup->sides, mesh, s) < 0) return s->e->status;
+    tally = hdi_soup_edges(soup, border);
+    if (soup->copies) hdi_edge_report(&tally, border, mesh->n, rep);   /* of a mesh it is known */
+    soup->unit = tally.length / HDI_CAST(double, tally.n_edges > 0 ? tally.n_edges : 1);
+    return hdi_soup_lengths(soup, delta, rep, s);
+}
+
+/* The soup of the m triangles tri among n points, lengths mollified by delta, in s. Each triangle counts
+ * a third. */
+static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, const int32_t *tri,
+                               int64_t m, double delta, hd_mesh_report *rep, hdi_scope *s) {
+    hd_mesh_report faces;
+    int32_t f;
+    memset(soup, 0, sizeof *soup);
+    memset(&faces, 0, sizeof faces);
+    soup->share = 3;
+    if (hdi_soup_faces(soup, tri, m, n, s) < 0) return s->e->status;
+    soup->mesh.xyz = xyz;
+    soup->mesh.cot = HDI_TAKE(s, double, hdi_triple(soup->mesh.m));
+    soup->mesh.area = HDI_TAKE(s, double, soup->mesh.m);
+    if (s->e->status < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0) return s->e->status;
+    rep->smallest_angle = faces.smallest_angle;
+    for (f = 0; f < soup->mesh.m; f++) {
+        rep->n_faces += soup->copies[f];
+        *(soup->mesh.area[f] > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
+    }
+    return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, n), s);
+}
+
+/* The soup of a mesh, which hdi_mesh_faces has measured, in s. */
+static hd_status hdi_soup_of_mesh(hdi_soup *soup, const hdi_mesh *mesh, double delta,
+                                  hd_mesh_report *rep, hdi_scope *s) {
+    memset(soup, 0, sizeof *soup);
+    soup->mesh = *mesh;
+    soup->share = 1;
+    return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, mesh->n), s);
+}
+
+/* ---- covers ----
+ * The intrinsic triangulation of a soup: of itself where all its faces can be turned to one side, else of
+ * its two-sheeted cover. A face has copies on it, front and back in turn. Meshes are unfolded as a whole.
+ * Of the stars of points only a part is unfolded: what matters are the lengths of all faces, which are
+ * those in space unless they are flipped, and the gluing of those few edges that may not be Delaunay and
+ * of what comes to lie beside them. Faces get sides of their own (all copies, front and back) when one of
+ * their edges is glued, and an edge is glued, all its sides at once, when it is looked at. */
+
+enum { HDI_SIDE_OPEN = -1, HDI_SIDE_LOOSE = -2 };    /* instead of a twin: boundary; not glued yet */
+/* flips stop after so many, which no mesh has ever come near to; what is left is counted */
+enum { HDI_FLIPS_PER_SIDE = 64 };
+
+typedef struct hdi_cover {
+    const hdi_soup *soup;
+    hd_context *ctx;
+    hd_error *e;
+    int32_t n_sheets;
+    int32_t in_parts;   /* 1: faces are unfolded when they are needed */
+    int32_t n, room;    /* faces that are unfolded, and those that there is room for */
+    int32_t *vert;      /* [3 n] where side s begins; it runs to where the next side of its face begins */
+    int32_t *twin;      /* [3 n] the side glued to it, which runs the other way; or see above */
+    double *len;        /* [3 n] the same on both sides of an edge */
+    double *area;       /* [n] 0: these lengths make no triangle, the face contributes nothing */
+    int32_t *first;     /* [m] the first copy of a face; -1: none yet */
+    int32_t step;       /* from there to the next copy */
+    int32_t *stack;     /* [3 room] sides to look at */
+    int32_t depth;
+    signed char *waits; /* [3 room] 1: on the stack */
+    signed char *glued; /* [3 m] at the first side of an edge */
+    hdi_pair *list;     /* [most faces at an edge] */
+    int64_t most_flips, work;
+} hdi_cover;
+
+static void hdi_cover_free(hdi_cover *c) {
+    hdi_free(c->ctx, c->vert);
+    hdi_free(c->ctx, c->twin);
+    hdi_free(c->ctx, c->len);
+    hdi_free(c->ctx, c->area);
+    hdi_free(c->ctx, c->stack);
+    hdi_free(c->ctx, c->waits);
+}
+
+/* old with n elements in a block of room elements; NULL, old freed, when there is none. */
+static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
+    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(uint64_t, room), size, c->e);
+    if (block && n > 0) memcpy(block, old, HDI_CAST(size_t, n) * size);
+    hdi_free(c->ctx, old);
+    return block;
+}
+
+/* Room for more faces: at least twice as many as before, if they come in parts. */
+static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
+    const int64_t n = c->n, need = n + more, twice = 2 * HDI_CAST(int64_t, c->room);
+    const int64_t room = !c->in_parts ? need : need > twice ? need + 1024 : twice;
+    if (need <= c->room) return HD_OK;
+    if (3 * room > INT32_MAX)
+        return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
+    c->vert = HDI_CAST(int32_t *, hdi_regrow(c, c->vert, 3 * n, 3 * room, sizeof(int32_t)));
+    c->twin = HDI_CAST(int32_t *, hdi_regrow(c, c->twin, 3 * n, 3 * room, sizeof(int32_t)));
+    c->len = HDI_CAST(double *, hdi_regrow(c, c->len, 3 * n, 3 * room, sizeof(double)));
+    c->area = HDI_CAST(double *, hdi_regrow(c, c->area, n, room, sizeof(double)));
+    c->stack = HDI_CAST(int32_t *, hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t)));
+    c->waits = HDI_CAST(signed char *, hdi_regrow(c, c->waits, 3 * n, 3 * room, 1));
+    if (c->e->status >= 0) c->room = HDI_CAST(int32_t, room);
+    return c->e->status;
+}
+
+static hd_status hdi_cover_begin(hdi_cover *c, const hdi_soup *soup, int in_parts, hdi_scope *s) {
+    memset(c, 0, sizeof *c);
+    c->soup = soup;
+    c->ctx = s->ctx;
+    c->e = s->e;
+    c->n_sheets = 2;
+    c->in_parts = in_parts;
+    c->step = 1;
+    c->first = HDI_TAKE(s, int32_t, soup->mesh.m);
+    c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(soup->mesh.m));
+    c->list = HDI_TAKE(s, hdi_pair, soup->sides.most);
+    if (s->e->status >= 0) hdi_fill_i32(c->first, soup->mesh.m, -1);
+    return s->e->status;
+}
+
+/* Side s of the soup where face number at of the cover is a copy of its face; the back runs the other way
+ * round. */
+static int32_t hdi_sheet_side(int32_t at, int32_t s, int back) { return 3 * at + (back ? 2 - s % 3 : s % 3); }
+
+/* That side on copy k, front or back. */
+static int32_t hdi_cover_side(const hdi_cover *c, int32_t s, int32_t k, int back) {
+    return hdi_sheet_side(c->first[s / 3] + (2 * k + back) * c->step, s, back);
+}
+
+/* A copy of face f becomes face number at. */
+static void hdi_cover_put(hdi_cover *c, int32_t f, int32_t at, int back) {
+    const hdi_soup *soup = c->soup;
+    int32_t q;
+    for (q = 0; q < 3; q++) {
+        const int32_t s = 3 * f + q, to = hdi_sheet_side(at, s, back);
+        c->vert[to] = soup->mesh.tri[back ? hdi_side_next(s) : s];
+        c->len[to] = soup->len[s];
+        c->twin[to] = c->in_parts ? HDI_SIDE_LOOSE : HDI_SIDE_OPEN;
+        c->waits[to] = 0;
+    }
+    c->area[at] = soup->area[f];
+}
+
+/* Unfolds face f: all its copies. */
+static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
+    const int64_t copies = 2 * HDI_CAST(int64_t, hdi_soup_copies(c->soup, f));
+    int32_t k;
+    if (c->first[f] >= 0) return HD_OK;
+    if (hdi_cover_room(c, copies) < 0) return c->e->status;
+    c->first[f] = c->n;
+    for (k = 0; k < copies; k++) hdi_cover_put(c, f, c->n++, k & 1);
+    return HD_OK;
+}
+
+static void hdi_glue(hdi_cover *c, int32_t a, int32_t b) {
+    c->twin[a] = b;
+    c->twin[b] = a;
+}
+
+static void hdi_cover_push(hdi_cover *c, int32_t side) {
+    if (c->twin[side] < 0 || c->waits[side]) return;
+    c->stack[c->depth++] = side;
+    c->waits[side] = 1;
+}
+
+static void hdi_unit3(const double *from, const double *to, double *out) {
+    double norm;
+    int k;
+    hdi_sub3(to, from, out);
+    norm = hdi_norm3(out);
+    for (k = 0; k < 3; k++) out[k] /= norm;
+}
+
+/* Sorts the n sides of an edge in list by the angles of their faces in space, from the first side's face on,
+ * counterclockwise as seen against the direction from the smaller vertex to the larger one. */
+static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pair *list,
+                            int64_t n) {
+    const double *p = hdi_at3(mesh->xyz, lo), steps = 8796093022208.0;    /* 2^43 angles are told apart */
+    double axis[3], first[3], up[3], u[3];
+    int64_t k;
+    hdi_unit3(p, hdi_at3(mesh->xyz, hi), axis);
+    hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[0].id))]), first);
+    hdi_cross3(axis, first, up);
+    hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
+    for (k = 0; k < n; k++) {
+        double angle;
+        hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[k].id))]), u);
+        angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
+        if (angle < 0) angle += HDI_TURN;
+        list[k].key = HDI_CAST(uint64_t, hdi_min(angle / HDI_TURN, 1) * steps);
+    }
+    hdi_sort_pairs(list, n);
+}
+
+/* Glues the edge whose sides are keys [p, q) at vertex v: in layers of copies, in each by angle, around
+ * the edge the side of a face that looks counterclockwise to the side of the next one that looks back at
+ * it. A single face at the boundary is glued front to back. If faces are unfolded in parts, the edge goes
+ * on the stack. */
+static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
+    const hdi_mesh *mesh = &c->soup->mesh;
+    const uint64_t *key = c->soup->sides.key;
+    const int32_t n = q - p;
+    int32_t i, layer, most = 0, first = -1, last = -1;
+    if (c->glued[p]) return HD_OK;
+    c->glued[p] = 1;
+    for (i = 0; i < n; i++) {
+        const int32_t f = hdi_key_face(key[p + i]);
+        if (hdi_cover_face(c, f) < 0) return c->e->status;
+        c->list[i].key = HDI_CAST(uint64_t, i);
+        c->list[i].id = hdi_triple(f) + hdi_key_corner(key[p + i]);
+        most = hdi_high32(most, hdi_soup_copies(c->soup, f));
+    }
+    if (n > 2) hdi_sort_around(mesh, v, hdi_key_vertex(key[p]), c->list, n);
+    for (layer = 0; layer < most; layer++) {
+        /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
+        for (i = 0; i < n; i++) {
+            const int32_t side = HDI_CAST(int32_t, c->list[i].id), back = mesh->tri[side] != v;
+            int32_t clock;
+            if (layer >= hdi_soup_copies(c->soup, side / 3)) continue;
+            clock = hdi_cover_side(c, side, layer, !back);
+            if (last >= 0) hdi_glue(c, last, clock);
+            else first = clock;
+            if (last >= 0 && c->in_parts) hdi_cover_push(c, clock);
+            last = hdi_cover_side(c, side, layer, back);
+        }
+    }
+    hdi_glue(c, last, first);
+    if (c->in_parts) hdi_cover_push(c, first);
+    return HD_OK;
+}
+
+/* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
+static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
+    const hdi_sides *g = &c->soup->sides;
+    const int32_t i = c->vert[s], j = c->vert[hdi_side_next(s)], lo = hdi_low32(i, j), hi = hdi_high32(i, j);
+    const int32_t end = g->ptr[lo + 1];
+    int32_t p = g->ptr[lo], q = end;
+    if (c->twin[s] != HDI_SIDE_LOOSE) return HD_OK;
+    while (p < q) {                              /* the first key of hi */
+        const int32_t middle = p + (q - p) / 2;
+        if (hdi_key_vertex(g->key[middle]) < hi) p = middle + 1;
+        else q = middle;
+    }
+    return hdi_cover_glue(c, lo, p, hdi_sides_run(g, p, end));
+}
+
+/* mate [3 m]: the other side of edges with two faces, -1 elsewhere. */
+static void hdi_mesh_mates(const hdi_mesh *mesh, const hdi_sides *g, int32_t *mate) {
+    int32_t v, p, q;
+    hdi_fill_i32(mate, hdi_triple(mesh->m), -1);
+    for (v = 0; v < mesh->n; v++) {
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
+            q = hdi_sides_run(g, p, g->ptr[v + 1]);
+            if (q - p != 2) continue;
+            mate[hdi_key_side(g->key[p])] = HDI_CAST(int32_t, hdi_key_side(g->key[p + 1]));
+            mate[hdi_key_side(g->key[p + 1])] = HDI_CAST(int32_t, hdi_key_side(g->key[p]));
+        }
+    }
+}
+
+/* turned[f] = 1 for faces that have to be turned over so that all mates run opposite ways; 0 if the
+ * surface has only one side. queue [m]. */
+static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed char *turned,
+                           int32_t *queue) {
+    int32_t start, head, tail, q;
+    memset(turned, -1, HDI_CAST(size_t, mesh->m));
+    for (start = 0; start < mesh->m; start++) {
+        if (turned[start] >= 0 || !(mesh->area[start] > 0)) continue;
+        turned[start] = 0;
+        queue[0] = start;
+        for (head = 0, tail = 1; head < tail; head++) {
+            for (q = 0; q < 3; q++) {
+                const int32_t s = 3 * queue[head] + q, t = mate[s], f = t / 3;
+                int want;
+                if (t < 0) continue;
+                want = turned[queue[head]] ^ (mesh->tri[s] == mesh->tri[t]);
+                if (turned[f] >= 0 && turned[f] != want) return 0;
+                if (turned[f] >= 0) continue;
+                turned[f] = HDI_CAST(signed char, want);
+                queue[tail++] = f;
+            }
+        }
+    }
+    return 1;
+}
+
+/* Glues the mates of a mesh that is its own cover. */
+static void hdi_cover_glue_mates(hdi_cover *c, const int32_t *mate, const signed char *turned) {
+    int32_t s;
+    for (s = 0; s < 3 * c->soup->mesh.m; s++) {
+        const int32_t t = mate[s];
+        if (t < 0 || t > s) continue;
+        hdi_glue(c, hdi_sheet_side(c->first[s / 3], s, turned[s / 3]),
+                 hdi_sheet_side(c->first[t / 3], t, turned[t / 3]));
+    }
+}
+
+/* Glues all edges of a cover of two sheets. With close the boundary is glued to the other sheet, else it
+ * stays open. */
+static hd_status hdi_cover_glue_all(hdi_cover *c, int close) {
+    const hdi_sides *g = &c->soup->sides;
+    int32_t v, p, q;
+    for (v = 0; v < c->soup->mesh.n; v++) {
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
+            q = hdi_sides_run(g, p, g->ptr[v + 1]);
+            if ((q - p > 1 || close) && hdi_cover_glue(c, v, p, q) < 0) return c->e->status;
+        }
+    }
+    return HD_OK;
+}
+
+/* Unfolds and glues a whole mesh: all fronts come first, then all backs. With close the cover has no
+ * boundary (the tufted cover). rep knows the edges of the mesh. */
+static hd_status hdi_cover_whole(hdi_cover *c, int close, const hd_mesh_report *rep, hdi_scope *s) {
+    const hdi_mesh *mesh = &c->soup->mesh;
+    int32_t *mate = HDI_TAKE(s, int32_t, hdi_triple(mesh->m)), *queue = HDI_TAKE(s, int32_t, mesh->m), f,
+            used = 0;
+    signed char *turned = HDI_TAKE(s, signed char, mesh->m);
+    int one;
+    if (s->e->status < 0) return s->e->status;
+    hdi_mesh_mates(mesh, &c->soup->sides, mate);
+    one = !rep->n_nonmanifold_edges && !(close && rep->n_boundary_edges) &&
+          hdi_mesh_orient(mesh, mate, turned, queue);
+    c->n_sheets = one ? 1 : 2;
+    for (f = 0; f < mesh->m; f++)
+        if (mesh->area[f] > 0) c->first[f] = used++;
+    if (hdi_cover_room(c, HDI_CAST(int64_t, used) * c->n_sheets) < 0) return c->e->status;
+    c->step = used;
+    c->n = used * c->n_sheets;
+    c->most_flips = HDI_FLIPS_PER_SIDE * hdi_triple(c->n);
+    for (f = 0; f < mesh->m; f++) {
+        if (c->first[f] < 0) continue;
+        hdi_cover_put(c, f, c->first[f], one && turned[f]);
+        if (!one) hdi_cover_put(c, f, c->first[f] + used, 1);
+    }
+    if (one) hdi_cover_glue_mates(c, mate, turned);
+    return one ? HD_OK : hdi_cover_glue_all(c, close);
+}
+
+/* ---- flips ---- */
+
+/* Cotangent of the angle opposite to side s, of a face with area. */
+static double hdi_side_cot(const hdi_cover *t, int32_t s) {
+    const double a = t->len[s], b = t->len[hdi_side_next(s)], c = t->len[hdi_side_prev(s)];
+    return (b * b + c * c - a * a) / (4 * t->area[s / 3]);
+}
+
+/* Four times the sum of the cotangents of a triangle; also what their rounding errors are relative to. */
+static double hdi_harmonic(double a, double b, double c, double area) {
+    return (a * a + b * b + c * c) / area;
+}
+
+/* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of
+ * all cotangents of its two faces: some fifty roundings. */
+#define HDI_DELAUNAY_TOL 1e-14
+
+static int hdi_not_delaunay(const hdi_cover *t, int32_t a) {
+    const int32_t b = t->twin[a], f = a / 3, g = b / 3;
+    const double *p = t->len + hdi_triple(f), *q = t->len + hdi_triple(b < 0 ? 0 : g);
+    double sum;
+    /* where a face is glued to itself the two sides are equal: Delaunay */
+    if (b < 0 || f == g) return 0;
+    if (!(t->area[f] > 0) || !(t->area[g] > 0)) return 0;
+    sum = hdi_side_cot(t, a) + hdi_side_cot(t, b);
+    if (sum >= 0) return 0;
+    return sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) +
+                                      hdi_harmonic(q[0], q[1], q[2], t->area[g]));
+}
+
+/* Flips the edge of side a, from i to j, which is not Delaunay: side a comes to run from l to k, the
+ * corners that were opposite to it. Returns 0 if that would not lower the sum of the cotangents. The
+ * outer sides move with it, a2 to a1, b1 to a2, b2 to b1, a1 to b2:
+ *   before  a = ij, a1 = jk, a2 = ki    b = ji, b1 = il, b2 = lj
+ *   after   a = lk, a1 = ki, a2 = il    b = kl, b1 = lj, b2 = jk */
+static int hdi_flip(hdi_cover *t, int32_t a) {
+    const int32_t b = t->twin[a], a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = hdi_side_next(b),
+                  b2 = hdi_side_prev(b);
+    const int32_t from[4] = {a2, b1, b2, a1}, to[4] = {a1, a2, b1, b2};
+    int32_t twin[4], vert[4], k, q;
+    double len[4], x, y, d, area_f, area_g, before, after;
+    for (k = 0; k < 4; k++) {
+        len[k] = t->len[from[k]];
+        vert[k] = t->vert[from[k]];
+        twin[k] = t->twin[from[k]];
+        for (q = 0; q < 4; q++) {
+            if (twin[k] != from[q]) continue;    /* outer sides that are glued to each other */
+            twin[k] = to[q];
+            break;
+        }
+    }
+    /* The two triangles laid out in the plane, the edge along x: k and l are d apart. */
+    x = ((len[0] - len[3]) * (len[0] + len[3]) + (len[2] - len[1]) * (len[2] + len[1])) / (2 * t->len[a]);
+    y = 2 * (t->area[a / 3] + t->area[b / 3]) / t->len[a];
+    d = sqrt(x * x + y * y);
+    area_f = hdi_length_area(d, len[0], len[1]);
+    area_g = hdi_length_area(d, len[2], len[3]);
+    if (!(area_f > 0 && area_g > 0)) return 0;
+    before = hdi_harmonic(t->len[a], len[0], len[3], t->area[a / 3]) +
+             hdi_harmonic(t->len[a], len[1], len[2], t->area[b / 3]);
+    after = hdi_harmonic(d, len[0], len[1], area_f) + hdi_harmonic(d, len[2], len[3], area_g);
+    if (!(after < before)) return 0;
+    t->vert[a] = vert[2];                        /* l, where b2 begins */
+    t->vert[b] = vert[0];                        /* k, where a2 begins */
+    t->len[a] = t->len[b] = d;
+    for (k = 0; k < 4; k++) {
+        t->len[to[k]] = len[k];
+        t->vert[to[k]] = vert[k];
+        t->twin[to[k]] = twin[k];
+        if (twin[k] >= 0) t->twin[twin[k]] = to[k];
+    }
+    t->area[a / 3] = area_f;
+    t->area[b / 3] = area_g;
+    return 1;
+}
+
+/* The four sides around the edge of side a. */
+static int32_t hdi_side_around(const hdi_cover *c, int32_t a, int k) {
+    const int32_t side = k < 2 ? c->twin[a] : a;
+    return k & 1 ? hdi_side_next(side) : hdi_side_prev(side);
+}
+
+/* Flips until every edge on the stack, and whatever a flip changes, is Delaunay: after each flip the four
+ * edges around it, last come first served. done: for the progress. */
+static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) {
+    int k;
+    while (c->depth > 0) {
+        const int32_t a = c->stack[--c->depth];
+        c->waits[a] = 0;
+        if (!(++c->work & 0xfffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
+        if (rep->n_flips >= c->most_flips || !hdi_not_delaunay(c, a)) continue;
+        for (k = 0; k < 4; k++)
+            if (hdi_cover_need(c, hdi_side_around(c, a, k)) < 0) return c->e->status;
+        if (!hdi_flip(c, a)) continue;
+        rep->n_flips++;
+        for (k = 0; k < 4; k++) hdi_cover_push(c, hdi_side_around(c, a, k));
+    }
+    return HD_OK;
+}
+
+/* All edges, by their first side: the order depends on nothing but the mesh. */
+static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
+    const int32_t n_sides = 3 * c->n;
+    int32_t seed;
+    for (seed = 0; seed < n_sides; seed++) {
+        /* boundary, or done as its other side: who moves is put on the stack */
+        if (c->twin[seed] < seed) continue;
+        hdi_cover_push(c, seed);
+        if (hdi_cover_flip(c, HDI_CAST(double, seed) / n_sides, rep) < 0) return c->e->status;
+    }
+    return HD_OK;
+}
+
+/* Whether the edge of keys [p, q) may have to be flipped, however its faces are glued: whether the two
+ * smallest cotangents opposite to it sum to less than zero. Two faces that come equally often always
+ * follow each other. */
+static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
+    const uint64_t *key = soup->sides.key;
+    double least = HUGE_VAL, next = HUGE_VAL;
+    int64_t copies = 0;
+    int32_t i;
+    for (i = p; i < q; i++) {
+        const int32_t here = hdi_soup_copies(soup, hdi_key_face(key[i]));
+        const int alone = q - p == 2 && here == hdi_soup_copies(soup, hdi_key_face(key[p + q - 1 - i]));
+        const double cot = soup->mesh.cot[hdi_key_opposite(key[i])];
+        next = hdi_min(next, hdi_max(cot, least));
+        least = hdi_min(least, cot);
+        if (here > 1 && !alone) next = hdi_min(next, cot);
+        copies += here;
+    }
+    return !(least + (copies == 1 ? least : next) >= 0);
+}
+
+/* Edges by their vertices, of those that may have to be flipped. */
+static hd_status hdi_cover_flip_parts(hdi_cover *c, hd_mesh_report *rep) {
+    const hdi_soup *soup = c->soup;
+    const hdi_sides *g = &soup->sides;
+    int32_t v, p, q;
+    for (v = 0; v < soup->mesh.m; v++)
+        c->most_flips += 6 * HDI_FLIPS_PER_SIDE * HDI_CAST(int64_t, hdi_soup_copies(soup, v));
+    for (v = 0; v < soup->mesh.n; v++) {
+        const double done = HDI_CAST(double, v) / soup->mesh.n;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
+            q = hdi_sides_run(g, p, g->ptr[v + 1]);
+            if (c->glued[p] || !hdi_soup_suspect(soup, p, q)) continue;
+            if (hdi_cover_glue(c, v, p, q) < 0 || hdi_cover_flip(c, done, rep) < 0) return c->e->status;
+        }
+        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
+    }
+    return HD_OK;
+}
+
+static void hdi_cover_count(const hdi_cover *c, hd_mesh_report *rep) {
+    int32_t side;
+    for (side = 0; side < 3 * c->n; side++) {
+        if (c->twin[side] < side) continue;
+        rep->n_not_delaunay += hdi_not_delaunay(c, side);
+        rep->n_self_edges += c->vert[side] == c->vert[hdi_side_next(side)];
+    }
+    rep->n_sheets = c->n_sheets;
+}
+
+/* ---- the result as a mesh ---- */
+
+/* Face number at of the flat mesh, from its lengths: area and cotangents times weight. */
+static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double area, double unit,
+                          double weight, double *steepest) {
+    double *cot = flat->cot + hdi_triple(at);
+    int q;
+    flat->area[at] = 0;
+    if (!(area > 0)) return;
+    hdi_length_cots(len, area, cot);
+    if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
+    *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
+    for (q = 0; q < 3; q++) cot[q] *= weight;
+    area *= weight * unit * unit;
+    flat->area[at] = area / 12 < DBL_MIN ? 0 : area;
+}
+
+/* A triangle whose first and last corner are the same vertex is turned by one corner: equal ones come first,
+ * and the mass of the vertex is summed in that order. */
+static void hdi_flat_turn(int32_t *v, double *len) {
+    const double last = len[2];
+    if (v[0] != v[2] || v[0] == v[1]) return;
+    v[2] = v[1];
+    v[1] = v[0];
+    len[2] = len[1];
+    len[1] = len[0];
+    len[0] = last;
+}
+
+/* The triangles of a cover as a mesh for the operators (no coordinates), in s: in parts, first the faces
+ * that were not unfolded, as often as they come, then the others one by one. A copy weighs its share,
+ * divided among the sheets. */
+static hd_status hdi_cover_flat(hdi_mesh *flat, const hdi_cover *c, hd_mesh_report *rep,
+                                hdi_scope *s) {
+    const hdi_soup *soup = c->soup;
+    const int32_t m = c->in_parts ? soup->mesh.m : 0;
+    const int64_t n_corners = hdi_triple(m) + hdi_triple(c->n);
+    double steepest = -HUGE_VAL;
+    int32_t f, i, *tri = HDI_TAKE(s, int32_t, n_corners);
+    memset(flat, 0, sizeof *flat);
+    flat->n = soup->mesh.n;
+    flat->m = m + c->n;
+    flat->tri = tri;
+    flat->cot = HDI_TAKE(s, double, n_corners);
+    flat->area = HDI_TAKE(s, double, flat->m);
+    if (s->e->status < 0) return s->e->status;
+    if (m) memcpy(tri, soup->mesh.tri, HDI_CAST(size_t, hdi_triple(m)) * sizeof *tri);
+    for (f = 0; f < m; f++)
+        hdi_flat_face(flat, f, soup->len + hdi_triple(f), c->first[f] < 0 ? soup->area[f] : 0, soup->unit,
+                      hdi_soup_copies(soup, f) / soup->share, &steepest);
+    for (i = 0; i < c->n; i++) {
+        double *len = c->len + hdi_triple(i);
+        if (!c->in_parts) hdi_flat_turn(c->vert + hdi_triple(i), len);
+        hdi_flat_face(flat, m + i, len, c->area[i], soup->unit, 1 / (soup->share * c->n_sheets), &steepest);
+    }
+    if (c->n) memcpy(tri + hdi_triple(m), c->vert, HDI_CAST(size_t, hdi_triple(c->n)) * sizeof *tri);
+    rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
+    return HD_OK;
+}
+
+/* The intrinsic Delaunay triangulation of a soup as a mesh for the operators: of a mesh, with close
+ * without boundary; or of the tufted cover of stars. */
+static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int close,
+                                   hd_mesh_report *rep, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_cover c;
+    hd_status status = hdi_cover_begin(&c, soup, soup->copies != NULL, &own);
+    if (status >= 0 && !c.in_parts) status = hdi_cover_whole(&c, close, rep, &own);
+    if (status >= 0 && !c.in_parts) status = hdi_progress(s->ctx, "flip edges", 0, s->e);
+    if (status >= 0) status = c.in_parts ? hdi_cover_flip_parts(&c, rep) : hdi_cover_flip_all(&c, rep);
+    if (status >= 0) hdi_cover_count(&c, rep);
+    if (status >= 0) (void)hdi_cover_flat(flat, &c, rep, s);
+    hdi_cover_free(&c);
+    return hdi_scope_end(&own);
+}
+
+/* ==== [12] operators ====
+ * The pair (L, B) on one pattern, made of what geometry and intrinsic triangulations know, or of the caller's
+ * matrices; its products, and pairs renumbered. May call [11].
+ * This work is based on
+ *   U. Pinkall, K. Polthier, Computing discrete minimal surfaces and their conjugates, 1993 (cotangents)
+ *   M. Meyer, M. Desbrun, P. Schroeder, A. Barr, Discrete differential-geometry operators for triangulated
+ *      2-manifolds, 2003 (mixed areas)
+ *   M. Alexa, M. Wardetzky, Discrete Laplacians on general polygonal meshes, 2011 (polygons)
+ *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (tufted points)
+ *   J.-D. Boissonnat, A. Ghosh, Manifold reconstruction using tangential Delaunay complexes, 2014 (stars)
+ * and, of point sets, on what is named there.
+ * Deviations: the paper of the heat kernel cites Desbrun 1999 for Voronoi areas, which lumps by thirds. Pure
+ * Voronoi areas go negative on obtuse triangles; mixed ones do not. Deviations of polygons and point sets are
+ * listed there. */
+
+static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
+    if (!lap) return;
+    hdi_csr_free(ctx, &lap->L);
+    if (lap->b_diag != lap->mass) hdi_free(ctx, lap->b_diag);
+    hdi_free(ctx, lap->B);
+    hdi_free(ctx, lap->mass);
+    hdi_free(ctx, lap->vertex);
+    hdi_free(ctx, lap->row);
+    hdi_free(ctx, lap->component);
+    hdi_free(ctx, lap->xyz);
+    hdi_free(ctx, lap->component_mass);
+    hdi_free(ctx, lap);
+}
+
+static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
+    return kind == HD_LAPLACIAN_FEM   ? HDI_LUMP_THIRDS
+           : kind == HD_LAPLACIAN_COT ? HDI_LUMP_ONES
+                                      : HDI_LUMP_MIXED;
+}
+
+/* Numbers the rows: vertices with mass in their order. Fills row, vertex, mass, b_diag, n_active. */
+static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
+    int32_t v, k = 0;
+    hd_context *ctx = lap->context;
+    lap->row = HDI_NEW(ctx, int32_t, lap->n, e);
+    if (!lap->row) return e->status;
+    for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : -1;
+    lap->n_active = k;
+    lap->mesh.n_inert = lap->n - k;
+    if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    lap->vertex = HDI_NEW(ctx, int32_t, k, e);
+    if (lap->vertex) lap->mass = HDI_NEW(ctx, double, k, e);
+    if (e->status < 0) return e->status;
+    lap->b_diag = lap->mass;
+    for (v = 0; v < lap->n; v++) {
+        if (lap->row[v] < 0) continue;
+        lap->vertex[lap->row[v]] = v;
+        lap->mass[lap->row[v]] = vertex_mass[v];
+    }
+    return HD_OK;
+}
+
+/* Components from the vertices that are united in parent [n], numbered by their first row, and their
+ * masses. */
+static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e) {
+    int32_t i;
+    lap->component = HDI_NEW(lap->context, int32_t, lap->n_active, e);
+    if (!lap->component) return e->status;
+    for (i = 0; i < lap->n_active; i++) {
+        /* the smallest: it has its number already */
+        const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];
+        lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
+    }
+    lap->component_mass = HDI_NEW(lap->context, double, lap->n_components, e);
+    if (!lap->component_mass) return e->status;
+    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
+    return HD_OK;
+}
+
+/* The same over the pattern of L. */
+static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int32_t *parent = HDI_TAKE(&s, int32_t, lap->n), i;
+    int64_t p;
+    if (!parent) return hdi_scope_end(&s);
+    hdi_fill_own(parent, lap->n);
+    for (i = 0; i < lap->n_active; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++)
+            hdi_unite(parent, lap->vertex[i], lap->vertex[lap->L.col[p]]);
+    (void)hdi_lap_united(lap, parent, e);
+    return hdi_scope_end(&s);
+}
+
+typedef struct hdi_lap_job {
+    hd_laplacian *lap;
+    const hdi_edges *g;
+    int64_t *next;              /* [n_active] where each row goes on */
+    int64_t *negative;          /* [blocks of 2^g->shift rows] edges with a weight above zero */
+} hdi_lap_job;
+
+/* The edge with number p from row i to a later row j, into that row. */
+static HDI_INLINE void hdi_lap_mirror(const hdi_lap_job *job, int32_t i, int32_t j, int32_t p) {
+    const int64_t at = job->next[j]++;
+    job->lap->L.col[at] = i;
+    job->lap->L.val[at] = job->g->w[p];
+    if (job->lap->B) job->lap->B[at] = job->g->b[p];
+}
+
+/* Row i from its diagonal on; what it has before was written by those rows: each edge goes into both its
+ * rows, so that L and B are symmetric to the last bit. Rows from end on have their part already. Returns
+ * the number of weights above zero. */
+static HDI_INLINE int64_t hdi_lap_row(const hdi_lap_job *job, int32_t i, int32_t end) {
+    hd_laplacian *lap = job->lap;
+    const hdi_edges *g = job->g;
+    const int32_t v = lap->vertex[i], last = g->last[v], *row = lap->row;
+    const int64_t diagonal = job->next[i];
+    double *L = lap->L.val, *B = lap->B, sum = 0, loops = 0;
+    int32_t *col = lap->L.col, p;
+    int64_t at, negative = 0;
+    for (at = lap->L.row_ptr[i]; at < diagonal; at++) sum += L[at];
+    for (p = g->first[v]; p < last; p++) {
+        const int32_t j = row[g->to[p]];
+        const double w = g->w[p];
+        /* an edge from the vertex to itself: no weight, and twice in its B */
+        if (j == i) {
+            loops += B ? 2 * g->b[p] : 0;
+            continue;
+        }
+        negative += w > 0;
+        sum += w;
+        col[++at] = j;
+        L[at] = w;
+        if (B) B[at] = g->b[p];
+        if (j < end) hdi_lap_mirror(job, i, j, p);
+    }
+    col[diagonal] = i;
+    L[diagonal] = -sum;
+    /* a sixth of the areas that the mass has thirds of */
+    if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + loops;
+    return negative;
+}
+
+/* The row behind the block of row i. */
+static int32_t hdi_lap_block_end(const hdi_lap_job *job, int64_t block) {
+    return HDI_CAST(int32_t, hdi_least(job->lap->n_active, (block + 1) << job->g->shift));
+}
+
+static void hdi_lap_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_lap_job *job = HDI_CAST(const hdi_lap_job *, arg);
+    const hd_laplacian *lap = job->lap;
+    const hdi_edges *g = job->g;
+    const int32_t end = hdi_lap_block_end(job, index);
+    int32_t i;
+    int64_t negative = 0;
+    (void)worker;
+    for (i = HDI_CAST(int32_t, index << g->shift); i < end; i++) {
+        const int32_t v = lap->vertex[i + HDI_VERTICES_AHEAD < end ? i + HDI_VERTICES_AHEAD : i];
+        /* the farthest neighbour: its row is new to the caches, those of others are in use */
+        if (g->last[v] > g->first[v]) {
+            const int32_t far_row = lap->row[g->to[g->last[v] - 1]];
+            const int64_t at = lap->L.row_ptr[far_row];
+            HDI_PREFETCH(lap->L.col + at);
+            HDI_PREFETCH(lap->L.val + at);
+            HDI_PREFETCH(lap->B ? lap->B + at : lap->L.val + at);
+        }
+        negative += hdi_lap_row(job, i, end);
+    }
+    job->negative[index] = negative;
+}
+
+/* Block by block, the edges that leave it, into their later rows, where they come first. */
+static void hdi_lap_crossing(const hdi_lap_job *job, int64_t n_blocks) {
+    const hdi_edges *g = job->g;
+    const hd_laplacian *lap = job->lap;
+    int64_t b;
+    int32_t i = 0, p;
+    for (b = 0; b + 1 < n_blocks; b++) {
+        const int32_t end = hdi_lap_block_end(job, b), behind = lap->vertex[end];
+        for (; i < end; i++) {
+            const int32_t v = lap->vertex[i], last = g->last[v];
+            for (p = last; p > g->first[v] && g->to[p - 1] >= behind; p--) {}
+            for (; p < last; p++) hdi_lap_mirror(job, i, lap->row[g->to[p]], p);
+        }
+    }
+}
+
+/* Pattern and values of L and, if the edges have areas, of a full B. */
+static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int full = g->b != NULL;
+    int64_t nnz = 0, n_blocks, b;
+    double *B = NULL, *b_diag = NULL;
+    hdi_lap_job job;
+    hd_csr L;
+    int32_t i;
+    job.lap = lap;
+    job.g = g;
+    job.next = HDI_TAKE(&s, int64_t, lap->n_active);
+    job.negative = HDI_TAKE(&s, int64_t, HDI_BLOCKS_MOST);
+    for (i = 0; i < lap->n_active; i++) nnz += 1 + g->smaller[lap->vertex[i]] + g->larger[lap->vertex[i]];
+    L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    if (full) B = HDI_TAKE(&s, double, nnz);
+    if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
+    if (e->status < 0) return hdi_scope_end(&s);
+    lap->L = hdi_csr_keep(&s, L);
+    lap->B = HDI_CAST(double *, hdi_keep(&s, B));
+    if (full) lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t v = lap->vertex[i];
+        job.next[i] = L.row_ptr[i];
+        L.row_ptr[i + 1] = L.row_ptr[i] + 1 + g->smaller[v] + g->larger[v];
+    }
+    n_blocks = ((lap->n_active - 1) >> g->shift) + 1;
+    hdi_lap_crossing(&job, n_blocks);
+    hdi_parallel(lap->context, n_blocks, hdi_lap_task, &job);
+    for (b = 0; b < n_blocks; b++) lap->mesh.n_negative_weights += job.negative[b];
+    return hdi_scope_end(&s);
+}
+
+/* Copies the places of the rows. */
+static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    int32_t i;
+    lap->xyz = HDI_NEW(lap->context, double, hdi_triple(lap->n_active), e);
+    if (!lap->xyz) return e->status;
+    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
+    return HD_OK;
+}
+
+/* (L, B), places, components and h of the mesh, whose arrays come to live in s. full: B is, if its kind
+ * is. */
+static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(lap->context, s->e);
+    double *vertex_mass = HDI_TAKE(&own, double, lap->n);
+    hd_error *e = s->e;
+    hdi_edges edges;
+    hdi_mesh_wants want;
+    want.weights = 1;
+    want.areas = full && lap->kind == HD_LAPLACIAN_FEM;
+    want.lump = hdi_lap_lump(lap->kind);
+    want.mass = vertex_mass;
+    if (!vertex_mass || hdi_mesh_faces(mesh, &edges, &want, &lap->mesh, s) < 0) return hdi_scope_end(&own);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
+        return hdi_scope_end(&own);
+    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0)
+        return hdi_scope_end(&own);
+    if (hdi_lap_assemble(lap, &edges, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0)
+        return hdi_scope_end(&own);
+    lap->h = edges.length / HDI_CAST(double, lap->mesh.n_edges);
+    return hdi_scope_end(&own);
+}
+
+static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri,
+                                   int32_t m, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hdi_mesh mesh;
+    int32_t f;
+    hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
+    if (hdi_lap_mesh(lap, &mesh, 1, &s) < 0) return hdi_scope_end(&s);
+    for (f = 0; f < m; f++) lap->area += mesh.area[f];
+    /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
+    lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;
+    lap->conserves = 1;
+    return hdi_scope_end(&s);
+}
+
+/* ---- polygons ----
+ * Of a face with k corners X [k x 3], edges E, middles of edges B_f, the difference D along the edges and
+ * the vector area of length |f|,
+ *     L_f = D'(B_f B_f'/|f| + lambda C C') D,
+ * where C is an orthonormal basis of the kernel of the transposed edges projected along the vector area.
+ * Deviations from Alexa and Wardetzky, all of form: D'B_f is half the differences of next but one
+ * corners, g sqrt(|f|) here, which knows no origin; C C' = I - Q Q' with Q two columns, so that L_f = g
+ * g' + lambda (D'D - w w') costs a few products an entry, no k x k block is ever made, and faces of
+ * hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one
+ * number for all faces. On triangles the second part is zero, and is not computed. */
+
+/* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The
+ * same to the last bit for (d, c). */
+static double hdi_poly_entry(const hdi_poly *poly, int64_t c, int64_t d, int64_t k, int beside) {
+    const double *u = poly->w + 2 * c, *v = poly->w + 2 * d,
+                 first = hdi_dot3(poly->g + 3 * c, poly->g + 3 * d);
+    return k == 3 ? first : first - poly->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
+}
+
+/* Distinct vertices of the faces at v, v itself first, as rows of lap, unsorted, into col. mark
+ * [n_active] as in hdi_product_row. Returns how many. */
+static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int32_t v,
+                             int32_t *mark, int32_t *col) {
+    const int32_t i = lap->row[v];
+    int64_t p, d, n = 1;
+    mark[i] = i;
+    col[0] = i;
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int32_t f = poly->face[poly->corner[p]];
+        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
+            const int32_t j = lap->row[poly->idx[d]];
+            if (mark[j] == i) continue;
+            mark[j] = i;
+            col[n++] = j;
+        }
+    }
+    return n;
+}
+
+/* The pattern of L, columns ascending. mark [n_active]; col [n_active], work [n_active] serve rows of any
+ * length. */
+static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32_t *mark,
+                                  hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
+    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * HDI_CAST(int64_t, lap->n_active));
+    int64_t nnz = 0;
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_i32(mark, lap->n_active, -1);
+    for (i = 0; i < lap->n_active; i++) nnz += hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
+    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    if (e->status < 0) {
+        memset(&lap->L, 0, sizeof lap->L);
+        return hdi_scope_end(&s);
+    }
+    hdi_fill_i32(mark, lap->n_active, -1);
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t begin = lap->L.row_ptr[i], n = hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
+        hdi_sort_indices(col, n, work);
+        memcpy(lap->L.col + begin, col, HDI_CAST(size_t, n) * sizeof *col);
+        lap->L.row_ptr[i + 1] = begin + n;
+    }
+    lap->L = hdi_csr_keep(&s, lap->L);
+    return hdi_scope_end(&s);
+}
+
+/* Work arrays of a row: of each entry its place, how many faces it is an edge of, and in how many of them
+ * the edge runs from the row's vertex to the other one. */
+typedef struct hdi_poly_work {
+    int64_t *place;             /* [n_active] where a column stands in this row */
+    int32_t *count, *forward;   /* [widest row] */
+} hdi_poly_work;
+
+/* Values of row i, and the faces along each of its edges. Both rows of a pair add in the order of the
+ * faces, so that L is symmetric to the last bit. */
+static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i,
+                         const hdi_poly_work *work) {
+    const int32_t v = lap->vertex[i];
+    const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
+    double *L = lap->L.val + begin, sum = 0;
+    int64_t p, d;
+    for (p = 0; p < n; p++) {
+        work->place[lap->L.col[begin + p]] = p;
+        L[p] = 0;
+        work->count[p] = work->forward[p] = 0;
+    }
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int64_t c = poly->corner[p], before = hdi_poly_before(poly, c), after = hdi_poly_after(poly, c);
+        const int32_t f = poly->face[c];
+        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
+            const int64_t at = work->place[lap->row[poly->idx[d]]];
+            const int beside = d == before || d == after;
+            if (d == c) continue;
+            L[at] += hdi_poly_entry(poly, c, d, poly->ptr[f + 1] - poly->ptr[f], beside);
+            work->count[at] += beside;
+            work->forward[at] += d == after;
+        }
+    }
+    for (p = 0; p < n; p++)
+        if (lap->L.col[begin + p] != i) sum += L[p];
+    L[work->place[i]] = -sum;
+}
+
+/* Counts the edges of row i; boundary edges are united in border. An entry without a face is a diagonal
+ * of polygons. */
+static void hdi_poly_row_edges(hd_laplacian *lap, const double *xyz, int32_t i,
+                               const hdi_poly_work *work, hdi_edge_tally *all, int32_t *border) {
+    const int64_t begin = lap->L.row_ptr[i];
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    int64_t p;
+    for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
+        const int32_t j = lap->L.col[p], faces = work->count[p - begin];
+        if (j <= i) continue;
+        lap->mesh.n_negative_weights += lap->L.val[p] > 0;
+        if (faces == 0) continue;
+        hdi_edge_count(&tally, faces, work->forward[p - begin],
+                       hdi_edge_length(xyz, lap->vertex[i], lap->vertex[j]));
+        if (faces == 1) hdi_unite(border, i, j);
+    }
+    hdi_edge_tally_add(all, &tally);
+}
+
+static hd_status hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, int32_t *border,
+                                 hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int64_t widest = hdi_fullest(lap->L.row_ptr, lap->n_active);
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    hdi_poly_work work;
+    int32_t i;
+    work.place = HDI_TAKE(&s, int64_t, lap->n_active);
+    work.count = HDI_TAKE(&s, int32_t, widest);
+    work.forward = HDI_TAKE(&s, int32_t, widest);
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_fill_own(border, lap->n_active);
+    for (i = 0; i < lap->n_active; i++) {
+        hdi_poly_row(lap, poly, i, &work);
+        hdi_poly_row_edges(lap, poly->xyz, i, &work, &tally, border);
+    }
+    hdi_edge_report(&tally, border, lap->n_active, &lap->mesh);
+    lap->h = tally.length / HDI_CAST(double, tally.n_edges);
+    return hdi_scope_end(&s);
+}
+
+/* Area of each face to its corners in equal parts. */
+static double hdi_poly_mass(const hdi_poly *poly, int32_t v) {
+    double sum = 0;
+    int64_t p;
+    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
+        const int32_t f = poly->face[poly->corner[p]];
+        sum += poly->area[f] / HDI_CAST(double, poly->ptr[f + 1] - poly->ptr[f]);
+    }
+    return sum;
+}
+
+/* poly: xyz, ptr, idx, n, m and lambda set, the input checked. */
+static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *vertex_mass;
+    int32_t *mark, v, f;
+    if (hdi_poly_make(poly, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
+    vertex_mass = HDI_TAKE(&s, double, lap->n);
+    if (!vertex_mass) return hdi_scope_end(&s);
+    for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_poly_mass(poly, v);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0)
+        return hdi_scope_end(&s);
+    if (hdi_lap_places(lap, poly->xyz, e) < 0) return hdi_scope_end(&s);
+    mark = HDI_TAKE(&s, int32_t, lap->n_active);
+    if (!mark || hdi_poly_pattern(lap, poly, mark, e) < 0) return hdi_scope_end(&s);
+    if (hdi_poly_values(lap, poly, mark, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0)
+        return hdi_scope_end(&s);
+    for (f = 0; f < poly->m; f++) lap->area += poly->area[f];
+    lap->b_ratio = 1;
+    lap->conserves = 1;
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- intrinsic triangulations: Delaunay and tufted ---- */
+
+/* What the intrinsic Laplacians are asked for. */
+typedef struct hdi_intrinsic_task {
+    int close;          /* tufted: the boundary is glued to the other sheet */
+    double delta;       /* of mollification, relative to the mean edge length; negative: none */
+} hdi_intrinsic_task;
+
+/* Rows, components, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but
+ * without coordinates. */
+static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope *s) {
+    const int full = lap->kind == HD_LAPLACIAN_FEM;
+    hd_error *e = s->e;
+    hdi_edges edges;
+    double *vertex_mass;
+    if (hdi_edges_flat(&edges, flat, full, s) < 0) return e->status;
+    vertex_mass = HDI_TAKE(s, double, flat->n);
+    if (!vertex_mass) return e->status;
+    hdi_mesh_masses(flat, hdi_lap_lump(lap->kind), vertex_mass);
+    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0)
+        return e->status;
+    if (hdi_lap_united(lap, edges.parent, e) < 0) return e->status;
+    /* The smallest eigenvalue of the element 1/2, 1/6; 1/6, 1/6 of corners v, v, w, and of that of three
+     * corners. */
+    lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
+    return hdi_lap_assemble(lap, &edges, e);
+}
+
+/* (L, B) of the intrinsic Delaunay triangulation of a mesh, or of its cover: each sheet counts half. */
+static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const double *xyz, const int32_t *tri,
+                                   int32_t m, const hdi_intrinsic_task *task, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_mesh_report *rep = &lap->mesh;
+    hdi_mesh mesh, flat;
+    hdi_edges edges;
+    hdi_mesh_wants want;
+    hdi_soup soup;
+    memset(&want, 0, sizeof want);
+    hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
+    if (hdi_mesh_faces(&mesh, &edges, &want, rep, &s) < 0) return hdi_scope_end(&s);
+    if (rep->n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    if (e->status < 0 || hdi_soup_of_mesh(&soup, &mesh, task->delta, rep, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_soup_delaunay(&flat, &soup, task->close, rep, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_flat(lap, &flat, &s) < 0 || hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
+    if (hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
+    lap->area = soup.total;
+    lap->h = soup.unit;
+    lap->conserves = 1;
+    return hdi_scope_end(&s);
+}
+
+/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
+static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m,
+                               const hdi_intrinsic_task *task, hd_error *e) {
+    return task ? hdi_lap_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, e);
+}
+
+/* The faces split as fans, for the operators of triangles. */
+static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly,
+                              const hdi_intrinsic_task *task, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int64_t m = hdi_poly_fans(poly->ptr, poly->idx, poly->m, NULL);
+    int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
+    if (!tri) return hdi_scope_end(&s);
+    hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
+    if (hdi_lap_faces(lap, poly->xyz, tri, HDI_CAST(int32_t, m), task, e) < 0 && e->face >= 0)
+        e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
+    return hdi_scope_end(&s);
+}
+
+/* y = (alpha L + beta B) x on rows. */
+static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta,
+                           const double *HDI_RESTRICT x, double *HDI_RESTRICT y) {
+    const int64_t *HDI_RESTRICT Ap = lap->L.row_ptr;
+    const int32_t *HDI_RESTRICT Aj = lap->L.col;
+    const double *HDI_RESTRICT Lx = lap->L.val, *HDI_RESTRICT Bx = lap->B;
+    int32_t i;
+    int64_t p = 0;
+    for (i = 0; i < lap->n_active; i++) {
+        double l = 0, b = 0;
+        HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
+        if (Bx) {
+            HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
+            for (; p < Ap[i + 1]; p++) {
+                l += Lx[p] * x[Aj[p]];
+                b += Bx[p] * x[Aj[p]];
+            }
+        } else {
+            for (; p < Ap[i + 1]; p++) l += Lx[p] * x[Aj[p]];
+            b = lap->mass[i] * x[i];
+        }
+        y[i] = alpha * l + beta * b;
+    }
+}
+
+/* |x|_B^2; work [n_active] is used when B is not diagonal. */
+static double hdi_b_norm2(const hd_laplacian *lap, const double *x, double *work) {
+    if (!lap->B) return hdi_norm2w(x, lap->mass, lap->n_active);
+    hdi_pair_apply(lap, 0, 1, x, work);
+    return hdi_dot(x, work, lap->n_active);
+}
+
+/* Means over the components in the B inner product, of a functional b'x: out[c] = sum over c of weight_i
+ * x_i. */
+static void hdi_component_sums(const hd_laplacian *lap, const double *weight, const double *x,
+                               double *out) {
+    int32_t i;
+    if (lap->n_components == 1) {
+        out[0] = weight ? hdi_dot(weight, x, lap->n_active) : 0;
+        for (i = 0; !weight && i < lap->n_active; i++) out[0] += x[i];
+        return;
+    }
+    memset(out, 0, HDI_CAST(size_t, lap->n_components) * sizeof *out);
+    for (i = 0; i < lap->n_active; i++) out[lap->component[i]] += weight ? weight[i] * x[i] : x[i];
+}
+
+/* x_i += value[component of i] */
+static void hdi_component_add(const hd_laplacian *lap, const double *value, double *x) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) x[i] += value[lap->component[i]];
+}
+
+/* ---- the caller's own matrices ---- */
+
+/* Merges row v of L and B (both over vertices) on the active columns, the diagonal always there. An explicit
+ * zero whose mirror entry neither matrix stores is left out: the pattern becomes symmetric. col NULL: counts
+ * only. */
+static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v,
+                            int32_t *col, double *Lx, double *Bx) {
+    int64_t p = L->row_ptr[v], q = B->row_ptr[v], n = 0;
+    const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
+    int diagonal = 0;
+    while (p < p_end || q < q_end || !diagonal) {
+        const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX,
+                      cd = diagonal ? INT32_MAX : v;
+        const int32_t c = cp < cq ? (cp < cd ? cp : cd) : (cq < cd ? cq : cd);
+        const double l = cp == c ? L->val[p] : 0, b = cq == c ? B->val[q] : 0;
+        const int kept = l != 0 || b != 0 || c == v || hdi_csr_stores(L, c, v) || hdi_csr_stores(B, c, v);
+        if (lap->row[c] >= 0 && kept) {
+            if (col) {
+                col[n] = lap->row[c];
+                Lx[n] = l;
+                Bx[n] = b;
+            }
+            n++;
+        }
+        p += cp == c;
+        q += cq == c;
+        diagonal |= cd == c;
+    }
+    return n;
+}
+
+/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the
+ * rounding of its entries. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry
+ * leaves open. */
+static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    *diagonal = 1;
+    lap->conserves = 1;
+    lap->b_ratio = 1;
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t v = lap->vertex[i];
+        hdi_sum l_sum = {0, 0}, b_off = {0, 0};
+        double l_abs = 0, l_diag = 0, b_sum = 0, b_diag = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            hdi_sum_add(&l_sum, lap->L.val[p]);
+            l_abs += fabs(lap->L.val[p]);
+            b_sum += lap->B[p];
+            if (lap->L.col[p] != i) {
+                hdi_sum_add(&b_off, fabs(lap->B[p]));
+                continue;
+            }
+            l_diag = lap->L.val[p];
+            b_diag = lap->B[p];
+        }
+        if (!(b_diag > 0))
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
+        if (l_diag + 1e-12 * l_abs < 0)
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
+                                "L has a negative diagonal entry: L is positive semi-definite "
+                                "here, minus the cotangent matrix of libigl",
+                                v, v, l_diag);
+        root[i] = sqrt(l_diag + 1e-12 * l_abs);
+        if (fabs(l_sum.high + l_sum.low) > 4 * DBL_EPSILON * l_abs) lap->conserves = 0;
+        if (b_off.high > 0) {                    /* Gershgorin */
+            *diagonal = 0;
+            b_off.high = (b_diag - b_off.high) - b_off.low;
+            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * b_off.high / b_diag);
+        }
+        lap->mass[i] = b_sum;
+        lap->b_diag[i] = b_diag;
+        lap->area += b_sum;
+    }
+    return HD_OK;
+}
+
+/* What every positive semi-definite L satisfies: L_ij^2 <= L_ii L_jj. root as above. */
+static hd_status hdi_pair_semidefinite(const hd_laplacian *lap, const double *root, hd_error *e) {
+    int32_t i, j;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            j = lap->L.col[p];
+            if (j <= i || fabs(lap->L.val[p]) <= (1 + 1e-10) * root[i] * root[j]) continue;
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
+                                "L is not positive semi-definite: an entry is larger than the "
+                                "diagonal entries of its row and column allow",
+                                lap->vertex[i], lap->vertex[j], lap->L.val[p]);
+        }
+    }
+    return HD_OK;
+}
+
+/* Where rows of B are not dominated by their diagonal, as in finite elements: the smallest eigenvalue of
+ * D^-1 B, D = diag(B), by 40 Lanczos steps. An estimate from above, to be proven: see hdi_lap_ratio. work
+ * [4 n]. */
+static hd_status hdi_pair_ratio(const hd_laplacian *lap, double *work, double *ratio, hd_error *e) {
+    enum { STEPS = 40 };
+    const int32_t n = lap->n_active;
+    double *v = work, *v_old = v + n, *w = v_old + n, *s = w + n, d[STEPS], off[STEPS], z[2 * STEPS],
+           beta = 0, norm = 0, least;
+    int32_t i, m = 0, k;
+    /* B in the scaling D^-1/2 B D^-1/2; an uneven start, the same every time */
+    for (i = 0; i < n; i++) {
+        s[i] = 1 / sqrt(lap->b_diag[i]);
+        v[i] = 1 + 0.5 * sin(1.7 * i);
+        v_old[i] = 0;
+        norm += v[i] * v[i];
+    }
+    for (i = 0; i < n; i++) v[i] /= sqrt(norm);
+    while (m < STEPS && m < n) {
+        double alpha = 0;
+        norm = 0;
+        for (i = 0; i < n; i++) v[i] *= s[i];
+        hdi_pair_apply(lap, 0, 1, v, w);
+        for (i = 0; i < n; i++) {
+            v[i] /= s[i];
+            w[i] = w[i] * s[i] - beta * v_old[i];
+            alpha += v[i] * w[i];
+        }
+        for (i = 0; i < n; i++) {
+            w[i] -= alpha * v[i];
+            norm += w[i] * w[i];
+        }
+        d[m] = alpha;
+        beta = sqrt(norm);
+        off[m++] = beta;
+        if (beta < 1e-14) break;
+        for (i = 0; i < n; i++) {
+            v_old[i] = v[i];
+            v[i] = w[i] / beta;
+        }
+    }
+    for (k = 0; k < 2 * STEPS; k++) z[k] = 0;
+    if (!hdi_tridiag_eigen(d, off, z, z + STEPS, m))
+        return hdi_fail(e, HD_ERR_BREAKDOWN, "B: the estimate of its smallest eigenvalue did not converge");
+    for (least = d[0], k = 1; k < m; k++) least = hdi_min(least, d[k]);
+    if (!(least > 1e-12) && !(lap->b_ratio > 0))
+        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B is not positive definite", -1, -1, least);
+    *ratio = least;
+    return HD_OK;
+}
+
+static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
+                                  hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag, *root;
+    int64_t nnz = 0, p;
+    int32_t i;
+    int diagonal;
+    if (!present) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n; i++)
+        for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++)
+            if (B->val[p] != 0) present[i] = 1;
+    if (hdi_lap_rows(lap, present, e) < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_row(lap, L, B, lap->vertex[i], NULL, NULL, NULL);
+    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    lap->B = HDI_TAKE(&s, double, nnz);
+    b_diag = HDI_TAKE(&s, double, lap->n_active);
+    root = HDI_TAKE(&s, double, lap->n_active);
+    if (e->status < 0) {
+        memset(&lap->L, 0, sizeof lap->L);
+        lap->B = NULL;
+        return hdi_scope_end(&s);
+    }
+    lap->L = hdi_csr_keep(&s, lap->L);
+    lap->B = HDI_CAST(double *, hdi_keep(&s, lap->B));
+    lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    for (i = 0; i < lap->n_active; i++) {
+        p = lap->L.row_ptr[i];
+        lap->L.row_ptr[i + 1] = p + hdi_pair_row(lap, L, B, lap->vertex[i], lap->L.col + p, lap->L.val + p,
+                                                 lap->B + p);
+    }
+    if (hdi_pair_measure(lap, root, &diagonal, e) < 0) return hdi_scope_end(&s);
+    if (hdi_pair_semidefinite(lap, root, e) < 0) return hdi_scope_end(&s);
+    if (diagonal) {
+        hdi_free(lap->context, lap->B);
+        hdi_free(lap->context, lap->b_diag);
+        lap->B = NULL;
+        lap->b_diag = lap->mass;
+    }
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- pairs renumbered ---- */
+
+static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
+    void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
+    if (to && count > 0) memcpy(to, from, HDI_CAST(size_t, count) * size);
+    return to;
+}
+
+enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
+
+/* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which
+ * is the same and leaves the columns of every row ascending. */
+static hd_status hdi_pair_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm,
+                                  hd_context *ctx, hd_error *e) {
+    const int32_t n = lap->n_active;
+    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, nnz = HDI_CAST(uint64_t, lap->L.nnz);
+    hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
+    int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
+    int64_t *fill = HDI_TAKE(&s, int64_t, n1), p;
+    double *B = NULL;
+    hd_csr a = lap->L;
+    a.row_ptr = HDI_TAKE(&keep, int64_t, n1);
+    a.col = HDI_TAKE(&keep, int32_t, nnz);
+    a.val = HDI_TAKE(&keep, double, nnz);
+    if (lap->B) B = HDI_TAKE(&keep, double, nnz);
+    if (e->status < 0) {
+        hdi_scope_end(&s);
+        return hdi_scope_end(&keep);
+    }
+    a.row_ptr[0] = 0;
+    for (i = 0; i < n; i++) {
+        inv[perm[i]] = i;
+        fill[i] = a.row_ptr[i];
+        a.row_ptr[i + 1] = a.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
+    }
+    for (i = 0; i < n; i++) {
+        if (i + HDI_ROWS_AHEAD < n) {
+            const int64_t ahead = lap->L.row_ptr[perm[i + HDI_ROWS_AHEAD]];
+            HDI_PREFETCH(lap->L.col + ahead);
+            HDI_PREFETCH(lap->L.val + ahead);
+            if (B) HDI_PREFETCH(lap->B + ahead);
+        }
+        for (p = lap->L.row_ptr[perm[i]]; p < lap->L.row_ptr[perm[i] + 1]; p++) {
+            const int64_t q = fill[inv[lap->L.col[p]]]++;
+            a.col[q] = i;
+            a.val[q] = lap->L.val[p];
+            if (B) B[q] = lap->B[p];
+        }
+    }
+    out->L = a;
+    out->B = B;
+    keep.n = 0;                                  /* all of it is the caller's now */
+    return hdi_scope_end(&s);
+}
+
+/* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
+static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *perm,
+                                       hd_context *ctx, hd_error *e) {
+    const size_t n = HDI_CAST(size_t, lap->n_active);
+    hd_laplacian *out;
+    int32_t i;
+    hdi_error_clear(e);
+    out = HDI_CAST(hd_laplacian *, hdi_copy(lap, 1, sizeof *lap, ctx, e));
+    if (!out) return NULL;
+    memset(&out->L, 0, sizeof out->L);
+    out->context = ctx;
+    out->B = NULL;
+    out->xyz = NULL;                             /* an order has been found */
+    out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
+    out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
+    out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
+    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
+    out->component_mass = HDI_CAST(
+        double *,
+        hdi_copy(lap->component_mass, HDI_CAST(uint64_t, lap->n_components), sizeof(double), ctx, e));
+    out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
+    if (e->status < 0 || hdi_pair_permute(out, lap, perm, ctx, e) < 0) {
+        hdi_laplacian_free(out, ctx);
+        return NULL;
+    }
+    for (i = 0; i < lap->n_active; i++) {
+        out->mass[i] = lap->mass[perm[i]];
+        out->b_diag[i] = lap->b_diag[perm[i]];
+        out->component[i] = lap->component[perm[i]];
+        out->vertex[i] = lap->vertex[perm[i]];
+        out->row[out->vertex[i]] = i;
+    }
+    return out;
+}
+
+/* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t
+ * B^-1 L) is the same with t multiplied alike, to the last bit, and squares of areas neither underflow
+ * nor overflow whatever the unit of length. */
+static double hdi_pair_scale(hd_laplacian *lap) {
+    double largest = 0, scale;
+    int32_t i;
+    int64_t p;
+    int exponent;
+    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
+    frexp(largest, &exponent);
+    scale = ldexp(1, -2 * (exponent / 2));       /* even: norms scale exactly too */
+    for (i = 0; i < lap->n_active; i++) lap->mass[i] *= scale;
+    for (i = 0; i < lap->n_active && lap->B; i++) lap->b_diag[i] *= scale;
+    for (p = 0; p < lap->L.nnz && lap->B; p++) lap->B[p] *= scale;
+    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] *= scale;
+    return scale;
+}
+
+/* ---- point sets ---- */
+/* This work is based on
+ *   M. Belkin, P. Niyogi, Towards a theoretical foundation for Laplacian-based manifold methods, 2008
+ *      (exponential weights, `exp`)
+ *   Y. Liu, B. Prabhakaran, X. Guo, Point-based manifold harmonics, 2012 (the same with Voronoi areas:
+ *      symmetric L and diagonal B, `voronoi-exp`)
+ * Deviations: the exponential is cut where it is small, by distance, so that the pattern is symmetric.
+ * Neighbours that stand off the tangent plane by more than 45 degrees count with their height instead of
+ * their projection, so that points of another sheet two spacings away do not cut a cell. At a border
+ * cells end at the convex hull of the neighbours. The papers leave coincident points, borders and the
+ * bandwidth to the reader. */
+
+enum { HDI_CELLS_PER_TASK = 256 };     /* some ms of work */
+
+/* A set of different places, with the k nearest of each (the first is the place itself). */
+typedef struct hdi_cloud {
+    int32_t n, k;
+    const double *xyz;
+    const int32_t *first;      /* [n] the point that a place is named by */
+    int32_t *nbr;             /* [k n] */
+    double *d2;                /* [k n] */
+    double *spacing2;          /* [n] area for each point nearby, by the disc to the last neighbour */
+    double *area;              /* [n] of the cells */
+    int8_t *border;            /* [n] 1: the cell ends where the neighbours do */
+    int8_t *not_flat;          /* [n] see hdi_plane */
+    double start[HDI_CELL_SIDES][2];   /* a regular polygon around the unit circle */
+} hdi_cloud;
+
+/* The middle one of the spacings around place i: an outlier has those of the surface. */
+static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
+    double s[HDI_MOST_NEIGHBOURS + 1];
+    const int32_t *nbr = cloud->nbr + HDI_CAST(int64_t, i) * cloud->k;
+    int32_t k;
+    for (k = 0; k < cloud->k; k++) s[k] = cloud->spacing2[nbr[k]];
+    return hdi_kth(s, cloud->k, cloud->k / 2);
+}
+
+/* Area of the cell of place i in its tangent plane; 0 where neighbours lie on a line. Lengths are in
+ * units of the distance of the last neighbour. */
+static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
+    const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
+    const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = hdi_at3(cloud->xyz, i);
+    double x[HDI_MOST_NEIGHBOURS + 1][2], rel[3 * (HDI_MOST_NEIGHBOURS + 1)], radius, outer2, area;
+    hdi_plane plane;
+    hdi_polygon g;
+    int32_t k, v;
+    for (k = 0; k < cloud->k; k++) {
+        hdi_sub3(hdi_at3(cloud->xyz, cloud->nbr[at + k]), p, rel + 3 * k);
+        for (v = 0; v < 3; v++) rel[3 * k + v] *= unit;
+    }
+    plane = hdi_tangent_plane(rel + 3, cloud->k - 1);   /* the first one is the place itself */
+    /* random points leave a circle so large empty once in 3e5 times */
+    radius = 2 * sqrt(hdi_cell_spacing2(cloud, i)) * unit;
+    g.n = HDI_CELL_SIDES;
+    for (v = 0; v < g.n; v++) {
+        g.x[v][0] = radius * cloud->start[v][0];
+        g.x[v][1] = radius * cloud->start[v][1];
+    }
+    outer2 = 1.2 * radius * radius;
+    for (k = 0; k < cloud->k; k++) {
+        const double l2 = cloud->d2[at + k] * unit * unit;   /* and q2 the square in the plane */
+        double q2;
+        x[k][0] = hdi_dot3(plane.axis[0], rel + 3 * k);
+        x[k][1] = hdi_dot3(plane.axis[1], rel + 3 * k);
+        q2 = x[k][0] * x[k][0] + x[k][1] * x[k][1];
+        /* max(q2, l2 - q2) is at least l2/2: the bisector is beyond all corners */
+        if (k == 0 || l2 > 8 * outer2) continue;
+        if (!hdi_polygon_clip(&g, x[k][0], x[k][1], hdi_max(q2, l2 - q2) / 2)) continue;
+        for (v = 0, outer2 = 0; v < g.n; v++)
+            outer2 = hdi_max(outer2, g.x[v][0] * g.x[v][0] + g.x[v][1] * g.x[v][1]);
+    }
+    cloud->not_flat[i] = plane.not_flat;
+    cloud->border[i] = HDI_CAST(int8_t, hdi_polygon_clip_hull(&g, x, cloud->k) || outer2 >= radius * radius);
+    area = hdi_polygon_area(&g);
+    cloud->area[i] = area > 1e-12 * radius * radius ? area * reach * reach : 0;
+}
+
+static void hdi_cell_task(void *arg, int64_t begin, int64_t end) {
+    hdi_cloud *cloud = HDI_CAST(hdi_cloud *, arg);
+    int64_t i;
+    for (i = begin; i < end; i++) hdi_cell_area(cloud, HDI_CAST(int32_t, i));
+}
+
+/* Neighbours, spacings, h and cells of the places. */
+static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scope *s) {
+    hdi_tree tree;
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    double sum = 0;
+    int32_t i;
+    const int64_t n = cloud->n, k = cloud->k;
+    cloud->spacing2 = HDI_TAKE(s, double, n);
+    cloud->area = HDI_TAKE(s, double, n);
+    cloud->border = HDI_TAKE(s, int8_t, n);
+    cloud->not_flat = HDI_TAKE(s, int8_t, n);
+    cloud->nbr = HDI_TAKE(s, int32_t, k * n);
+    cloud->d2 = HDI_TAKE(s, double, k * n);
+    if (s->e->status < 0 || hdi_tree_make(&tree, cloud->xyz, cloud->n, &own) < 0) return hdi_scope_end(&own);
+    if (hdi_nearest(&tree, NULL, n, cloud->k, cloud->nbr, cloud->d2, s->ctx, s->e) < 0)
+        return hdi_scope_end(&own);
+    for (i = 0; i < n; i++) {
+        const double *d2 = cloud->d2 + i * k;
+        if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
+            hdi_fail_face(
+                s->e, HD_ERR_ARGUMENT,
+                "two points are too close together: the square of their distance is no normal number", -1,
+                cloud->first[i], d2[1]);
+            return hdi_scope_end(&own);
+        }
+        sum += sqrt(d2[1]);
+        cloud->spacing2[i] = HDI_PI * d2[k - 1] / HDI_CAST(double, k - 1);
+    }
+    lap->h = sum / HDI_CAST(double, n);
+    for (i = 0; i < HDI_CELL_SIDES; i++) {
+        const double step = HDI_TURN / HDI_CAST(double, HDI_CELL_SIDES), r = 1 / cos(step / 2);
+        cloud->start[i][0] = r * cos(step * i);
+        cloud->start[i][1] = r * sin(step * i);
+    }
+    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) >= 0)
+        hdi_parallel_ranges(s->ctx, n, HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
+    return hdi_scope_end(&own);
+}
+
+/* Bandwidth from the sampling: a multiple of m, the area that a point has, which is the mean of pi r_k^2
+ * / k over the points, r_k the distance of the k-th neighbour, and of h, the mean distance of the nearest
+ * one; no square counts more than nine medians of the former, so that outliers do not matter. The
+ * multiple is that which balances the two errors on spheres and tori: smoothing takes lambda s/2 off an
+ * eigenvalue lambda, sampling about 0.02 (m/s)^2 of all of them with points independent of each other,
+ * where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence s = m (m/h^2)/4, between
+ * 0.3 and 1 m. */
+static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
+    double median, mean = 0, h = 0;
+    int32_t i;
+    memcpy(work, cloud->spacing2, HDI_CAST(size_t, cloud->n) * sizeof *work);
+    median = hdi_kth(work, cloud->n, cloud->n / 2);
+    for (i = 0; i < cloud->n; i++) {
+        mean += hdi_min(cloud->spacing2[i], 9 * median);
+        h += sqrt(hdi_min(cloud->d2[HDI_CAST(int64_t, i) * cloud->k + 1], 9 * median));
+    }
+    mean /= cloud->n;
+    h /= cloud->n;
+    return hdi_max(0.3, hdi_min(1, 0.25 * mean / (h * h))) * mean;
+}
+
+typedef struct hdi_weights {
+    hd_laplacian *lap;
+    double bandwidth, scale;   /* exp: of all weights */
+} hdi_weights;
+
+/* Squared distances of some rows become entries of L. Products commute, so that L is symmetric to the
+ * last bit. */
+static void hdi_weights_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_weights *job = HDI_CAST(const hdi_weights *, arg);
+    hd_laplacian *lap = job->lap;
+    const double quarter = -0.25 / job->bandwidth,
+                 *mass = lap->kind == HD_LAPLACIAN_VORONOI_EXP ? lap->mass : NULL;
+    int64_t i, p;
+    for (i = begin; i < end; i++) {
+        double sum = 0, *diagonal = NULL;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t j = lap->L.col[p];
+            double *value = lap->L.val + p, scale = job->scale;
+            if (j == i) {
+                diagonal = value;
+                continue;
+            }
+            if (mass) scale = (mass[i] / job->bandwidth) * (mass[j] / job->bandwidth) * HDI_QUARTER_INV_PI;
+            *value = -exp(*value * quarter) * scale;
+            sum += *value;
+        }
+        *diagonal = -sum;
+    }
+}
+
+/* The pattern by a radius search over the rows, then the values in its place. */
+static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_point_report *rep = &lap->points;
+    hdi_weights job;
+    hdi_tree tree;
+    int32_t i;
+    if (hdi_tree_make(&tree, lap->xyz, lap->n_active, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_within(&lap->L, &tree, NULL, lap->n_active, cut2, lap->context, e) < 0) return hdi_scope_end(&s);
+    if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
+    job.lap = lap;
+    job.bandwidth = rep->bandwidth;
+    job.scale = HDI_QUARTER_INV_PI / job.bandwidth / job.bandwidth / lap->n_active;
+    hdi_parallel_ranges(lap->context, lap->n_active, HDI_CELLS_PER_TASK, hdi_weights_task, &job);
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
+        rep->n_isolated += count == 1;
+        if (!hdi_finite(lap->L.val[lap->L.row_ptr[i]])) {
+            hdi_fail_face(e, HD_ERR_NOT_FINITE,
+                          "points: a weight is not finite; the bandwidth is too small for these lengths", -1,
+                          lap->vertex[i], rep->bandwidth);
+            break;
+        }
+        rep->most_in_row = count > rep->most_in_row ? HDI_CAST(int32_t, count) : rep->most_in_row;
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Masses of the points: equal shares of their place's cell, or 1; and what there is to report about them. */
+static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const int32_t *place,
+                             int32_t *copies, double *mass) {
+    hd_point_report *rep = &lap->points;
+    int32_t i;
+    for (i = 0; i < cloud->n; i++) copies[i] = 0;
+    for (i = 0; i < lap->n; i++) copies[place[i]]++;
+    for (i = 0; i < lap->n; i++)
+        mass[i] = lap->kind == HD_LAPLACIAN_EXP ? 1 : cloud->area[place[i]] / copies[place[i]];
+    for (i = 0; i < cloud->n; i++) {
+        lap->area += cloud->area[i];
+        rep->n_border += cloud->border[i];
+        rep->n_not_flat += cloud->not_flat[i];
+        rep->n_no_area += cloud->area[i] > 0 ? 0 : copies[i];
+    }
+    rep->n_coincident = lap->n - cloud->n;
+}
+
+static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_point_report *rep = &lap->points;
+    hdi_places places;
+    hdi_cloud cloud;
+    double *work;
+    memset(&cloud, 0, sizeof cloud);
+    if (hdi_points_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
+    if (hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
+    if (places.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
+    work = HDI_TAKE(&s, double, lap->n);
+    if (!work) return hdi_scope_end(&s);
+    cloud.n = places.n;
+    cloud.xyz = places.xyz;
+    cloud.first = places.first;
+    cloud.k = HDI_CAST(int32_t, hdi_least(cloud.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
+    if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
+    rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
+    hdi_cloud_masses(&cloud, lap, places.place, places.first, work);
+    if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
+        return hdi_scope_end(&s);
+    if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
+    if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
+    lap->b_ratio = 1;
+    lap->conserves = 1;
+    hdi_lap_components(lap, e);
+    return hdi_scope_end(&s);
+}
+
+/* ---- point sets: the tufted Laplacian of the points' stars ---- */
+
+enum { HDI_STAR_POINTS = 1024 };        /* points per task */
+
+/* A number in [0, 1) for each point: which of four cocircular points are joined must be the same in the
+ * stars of all four, on a grid for instance. */
+static double hdi_point_chance(int32_t i) {
+    uint64_t x = (HDI_CAST(uint64_t, i) + 1) * HDI_GOLDEN;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x ^= x >> 27;
+    return HDI_CAST(double, x >> 11) / 9007199254740992.0;
+}
+
 typedef struct hdi_star_job {
     const double *xyz;
     const int32_t *name;/* [n] the caller's number of a point */
     int32_t n;
     const int64_t *ptr;
-    int32_t *nbr;       /* [ptr[n]] neighbours of point i from ptr[i] on; then its star, counterclockwise in its plane */
+    /* [ptr[n]] neighbours of point i from ptr[i] on; then its star, counterclockwise in its plane */
+    int32_t *nbr;
     double *nearest;    /* [n] distance to the nearest neighbour in another place; 0: none */
     int32_t *size;      /* [n] corners of the star; negative: it is open between the last and the first */
     int8_t *not_flat;   /* [n] see hdi_plane */
 } hdi_star_job;
 
-static void hdi_star_unit_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_star_unit_task(void *arg, int64_t begin, int64_t end) {
     const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
-    const int64_t end = hdi_least((index + 1) * HDI_STAR_POINTS, job->n);
     int64_t i, p;
-    (void)worker;
-    for (i = index * HDI_STAR_POINTS; i < end; i++) {
-        double least = 0, d[3];
+    for (i = begin; i < end; i++) {
+        double least = 0;
         for (p = job->ptr[i]; p < job->ptr[i + 1]; p++) {
-            double r;
-            hdi_sub3(job->xyz + 3 * HDI_CAST(int64_t, job->nbr[p]), job->xyz + 3 * i, d);
-            r = hdi_norm3(d);
+            const double r = hdi_edge_length(job->xyz, HDI_CAST(int32_t, i), job->nbr[p]);
             if (r > 0 && (least == 0 || r < least)) least = r;
         }
         job->nearest[i] = least;
@@ -7199,7 +7326,7 @@ static void hdi_point_star(const hdi_star_job *job, int32_t i) {
     job->not_flat[i] = 0;
     for (q = job->ptr[i]; q < job->ptr[i + 1] && unit > 0; q++) {
         double *d = rel + 3 * n;
-        hdi_sub3(job->xyz + 3 * HDI_CAST(int64_t, job->nbr[q]), job->xyz + 3 * HDI_CAST(int64_t, i), d);
+        hdi_sub3(hdi_at3(job->xyz, job->nbr[q]), hdi_at3(job->xyz, i), d);
         for (k = 0; k < 3; k++) d[k] /= unit;
         id[n] = job->nbr[q];
         n += hdi_dot3(d, d) > 0;                 /* the point itself and others in its place do not count */
@@ -7224,110 +7351,107 @@ static void hdi_point_star(const hdi_star_job *job, int32_t i) {
     job->size[i] = closed ? m : -m;
 }
 
-static void hdi_star_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_star_task(void *arg, int64_t begin, int64_t end) {
     const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
-    const int64_t end = hdi_least((index + 1) * HDI_STAR_POINTS, job->n);
     int64_t i;
-    (void)worker;
-    for (i = index * HDI_STAR_POINTS; i < end; i++) hdi_point_star(job, HDI_CAST(int32_t, i));
+    for (i = begin; i < end; i++) hdi_point_star(job, HDI_CAST(int32_t, i));
 }
 
 static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
     int32_t i;
     int64_t p;
-    if (ptr[0] != 0) return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets do not begin with 0", 0, -1, HDI_CAST(double, ptr[0]));
+    if (ptr[0] != 0)
+        return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets do not begin with 0", 0, -1,
+                            HDI_CAST(double, ptr[0]));
     for (i = 0; i < n; i++) {
-        if (ptr[i + 1] < ptr[i]) return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets descend", i, -1, HDI_CAST(double, ptr[i + 1]));
+        if (ptr[i + 1] < ptr[i])
+            return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets descend", i, -1,
+                                HDI_CAST(double, ptr[i + 1]));
         if (ptr[i + 1] - ptr[i] > HDI_STAR_MOST)
-            return hdi_fail_row(e, HD_ERR_TOO_LARGE, "neighbours: a point has more than 256", i, -1, HDI_CAST(double, ptr[i + 1] - ptr[i]));
+            return hdi_fail_row(e, HD_ERR_TOO_LARGE, "neighbours: a point has more than 256", i, -1,
+                                HDI_CAST(double, ptr[i + 1] - ptr[i]));
         for (p = ptr[i]; p < ptr[i + 1]; p++)
-            if (nbr[p] < 0 || nbr[p] >= n) return hdi_fail_row(e, HD_ERR_INDEX, "neighbours: an id is out of range", i, -1, nbr[p]);
+            if (nbr[p] < 0 || nbr[p] >= n)
+                return hdi_fail_row(e, HD_ERR_INDEX, "neighbours: an id is out of range", i, -1, nbr[p]);
     }
     return HD_OK;
 }
 
-/* From here on points are numbered in the order of the tree's leaves, whatever their order was: neighbours are near in memory too. points [3 n] in the order of
- * id; the tree's own ids become these numbers. NULL: no memory. */
-static double *hdi_star_order(hdi_tree *tree, const double *xyz, hdi_scope *s) {
-    double *points = HDI_TAKE(s, double, 3 * HDI_CAST(int64_t, tree->n));
-    int32_t i;
-    for (i = 0; i < tree->n && points; i++) memcpy(points + 3 * HDI_CAST(int64_t, i), xyz + 3 * HDI_CAST(int64_t, tree->id[i]), 3 * sizeof *points);
-    return points;
-}
-
-/* Neighbours for points that come without: the nearest other places. Of several points in one place only the first takes part. xyz and name live in keep. */
-static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n_points, hd_point_report *rep, hdi_scope *s, hdi_scope *keep) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *place = HDI_TAKE(&own, int32_t, n_points), *first = HDI_TAKE(&own, int32_t, n_points), *name, *nbr, n, k, v;
-    int64_t *ptr;
-    double *places;
-    hdi_tree tree;
-    if (s->e->status < 0 || hdi_points_check(xyz, n_points, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
-    n = hdi_places(xyz, n_points, place, first, &own);
-    k = HDI_CAST(int32_t, hdi_least(n, 1 + HDI_CAST(int64_t, rep->neighbours)));
-    rep->n_coincident = n_points - n;
-    places = HDI_TAKE(&own, double, 3 * HDI_CAST(int64_t, n));
-    ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1);
-    nbr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, k) * n);
-    name = HDI_TAKE(keep, int32_t, n);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (v = 0; v < n; v++) memcpy(places + 3 * HDI_CAST(int64_t, v), xyz + 3 * HDI_CAST(int64_t, first[v]), 3 * sizeof *places);
-    if (hdi_tree_make(&tree, places, n, &own) < 0) return hdi_scope_end(&own);
-    job->xyz = hdi_star_order(&tree, places, keep);
-    if (!job->xyz) return hdi_scope_end(&own);
+/* The tree of n points, and the job's points in the order of its leaves: neighbours are near in memory
+ * then. first [n]: the caller's numbers of the points; NULL: their own. xyz and name of the job live in
+ * keep. */
+static hd_status hdi_star_order(hdi_star_job *job, hdi_tree *tree, const double *xyz, int32_t n,
+                                const int32_t *first, hdi_scope *own, hdi_scope *keep) {
+    double *points = HDI_TAKE(keep, double, hdi_triple(n));
+    int32_t *name = HDI_TAKE(keep, int32_t, n), v;
+    if (own->e->status < 0 || hdi_tree_make(tree, xyz, n, own) < 0) return own->e->status;
     for (v = 0; v < n; v++) {
-        name[v] = first[tree.id[v]];
-        tree.id[v] = v;
-        ptr[v] = HDI_CAST(int64_t, v) * k;
+        name[v] = first ? first[tree->id[v]] : tree->id[v];
+        hdi_copy3(points + hdi_triple(v), hdi_at3(xyz, tree->id[v]));
+        tree->id[v] = v;
     }
-    ptr[n] = HDI_CAST(int64_t, n) * k;
     job->n = n;
     job->name = name;
-    job->ptr = ptr;
-    job->nbr = nbr;
-    (void)hdi_nearest(&tree, job->xyz, NULL, n, k, nbr, NULL, s->ctx, s->e);
+    job->xyz = tree->xyz = points;
+    return HD_OK;
+}
+
+/* Neighbours for points that come without: the nearest other places. Of several points in one place only
+ * the first takes part. xyz and name live in keep. */
+static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n_points,
+                                 hd_point_report *rep, hdi_scope *s, hdi_scope *keep) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t k, v;
+    int64_t *ptr;
+    hdi_places places;
+    hdi_tree tree;
+    if (hdi_points_check(xyz, n_points, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_places_make(&places, xyz, n_points, &own) < 0) return hdi_scope_end(&own);
+    if (hdi_star_order(job, &tree, places.xyz, places.n, places.first, &own, keep) < 0)
+        return hdi_scope_end(&own);
+    k = HDI_CAST(int32_t, hdi_least(places.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    rep->n_coincident = n_points - places.n;
+    job->ptr = ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, places.n) + 1);
+    job->nbr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, k) * places.n);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (v = 0; v <= places.n; v++) ptr[v] = HDI_CAST(int64_t, v) * k;
+    (void)hdi_nearest(&tree, NULL, places.n, k, job->nbr, NULL, s->ctx, s->e);
     return hdi_scope_end(&own);
 }
 
 /* The caller's neighbours, points and lists renumbered. */
-static hd_status hdi_star_given(hdi_star_job *job, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr, hdi_scope *s, hdi_scope *keep) {
+static hd_status hdi_star_given(hdi_star_job *job, const double *xyz, int32_t n,
+                                const int64_t *nbr_ptr, const int32_t *nbr, hdi_scope *s,
+                                hdi_scope *keep) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *inverse = HDI_TAKE(&own, int32_t, n), *name = HDI_TAKE(keep, int32_t, n), *list, v;
-    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1), p, q;
+    int32_t *inverse = HDI_TAKE(&own, int32_t, n), v;
+    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1), p, q = 0;
     hdi_tree tree;
-    if (s->e->status < 0 || hdi_mesh_check(xyz, n, NULL, 0, s->e) < 0 || hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
-    list = HDI_TAKE(s, int32_t, nbr_ptr[n]);
-    if (s->e->status < 0 || hdi_tree_make(&tree, xyz, n, &own) < 0) return hdi_scope_end(&own);
-    job->xyz = hdi_star_order(&tree, xyz, keep);
-    if (!job->xyz) return hdi_scope_end(&own);
+    if (s->e->status < 0 || hdi_mesh_check(xyz, n, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
+    job->ptr = ptr;
+    job->nbr = HDI_TAKE(s, int32_t, nbr_ptr[n]);
+    if (hdi_star_order(job, &tree, xyz, n, NULL, &own, keep) < 0) return hdi_scope_end(&own);
+    for (v = 0; v < n; v++) inverse[job->name[v]] = v;
     for (v = 0; v < n; v++) {
-        name[v] = tree.id[v];
-        inverse[name[v]] = v;
-    }
-    for (v = 0, q = 0; v < n; v++) {
         ptr[v] = q;
-        for (p = nbr_ptr[name[v]]; p < nbr_ptr[name[v] + 1]; p++) list[q++] = inverse[nbr[p]];
+        for (p = nbr_ptr[job->name[v]]; p < nbr_ptr[job->name[v] + 1]; p++) job->nbr[q++] = inverse[nbr[p]];
     }
     ptr[n] = q;
-    job->n = n;
-    job->name = name;
-    job->ptr = ptr;
-    job->nbr = list;
     return hdi_scope_end(&own);
 }
 
 /* All triangles of all stars, a third each in the end: tri in s, counted in *m. Fills lap->h, the mean
  * distance to the nearest, and lap->points.n_not_flat. */
 static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_scope *s) {
-    const int64_t n_tasks = (HDI_CAST(int64_t, job->n) + HDI_STAR_POINTS - 1) / HDI_STAR_POINTS;
     int32_t *tri, i, k, n_near = 0;
     int64_t count = 0;
     job->nearest = HDI_TAKE(s, double, job->n);
     job->size = HDI_TAKE(s, int32_t, job->n);
     job->not_flat = HDI_TAKE(s, int8_t, job->n);
     if (s->e->status < 0) return NULL;
-    hdi_parallel(s->ctx, n_tasks, hdi_star_unit_task, job);
-    hdi_parallel(s->ctx, n_tasks, hdi_star_task, job);
+    hdi_parallel_ranges(s->ctx, job->n, HDI_STAR_POINTS, hdi_star_unit_task, job);
+    hdi_parallel_ranges(s->ctx, job->n, HDI_STAR_POINTS, hdi_star_task, job);
     for (i = 0; i < job->n; i++) {
         count += job->size[i] < 0 ? -job->size[i] - 1 : job->size[i];
         n_near += job->nearest[i] > 0;
@@ -7335,13 +7459,15 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
         lap->points.n_not_flat += job->not_flat[i];
     }
     lap->h /= n_near > 0 ? n_near : 1;
-    if (3 * count > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 corners of triangles in the points' stars");
+    if (3 * count > INT32_MAX)
+        hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 corners of triangles in the points' stars");
     tri = HDI_TAKE(s, int32_t, 3 * count);
     if (!tri) return NULL;
     *m = HDI_CAST(int32_t, count);
     count = 0;
     for (i = 0; i < job->n; i++) {
-        const int32_t *star = job->nbr + job->ptr[i], size = job->size[i] < 0 ? -job->size[i] : job->size[i], last = size - (job->size[i] < 0);
+        const int32_t *star = job->nbr + job->ptr[i], size = job->size[i] < 0 ? -job->size[i] : job->size[i],
+                      last = size - (job->size[i] < 0);
         for (k = 0; k < last; k++) {
             tri[count++] = i;
             tri[count++] = star[k];
@@ -7351,120 +7477,75 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
     return tri;
 }
 
-typedef struct hdi_renumber_job {
-    hd_laplacian *lap;
-    const hd_laplacian *from;
-    const int32_t *to;  /* [rows] */
-} hdi_renumber_job;
-
-/* Row r of the pair, its entries in key and work (each as long as the row), into its new place. */
-static void hdi_renumber_row(const hdi_renumber_job *job, int32_t r, uint64_t *key, uint64_t *work) {
-    const hd_laplacian *from = job->from;
-    hd_laplacian *lap = job->lap;
-    const int64_t begin = from->L.row_ptr[r], n = from->L.row_ptr[r + 1] - begin, at = lap->L.row_ptr[job->to[r]];
-    int64_t p;
-    for (p = 0; p < n; p++) key[p] = HDI_CAST(uint64_t, job->to[from->L.col[begin + p]]) << 32 | HDI_CAST(uint64_t, p);
-    hdi_sort_keys(key, n, work);
-    for (p = 0; p < n; p++) {
-        const int64_t q = begin + HDI_CAST(int64_t, key[p] & 0xffffffffu);
-        lap->L.col[at + p] = hdi_key_vertex(key[p]);
-        lap->L.val[at + p] = from->L.val[q];
-        if (lap->B) lap->B[at + p] = from->B[q];
-    }
-}
-
-enum { HDI_RENUMBER_ROWS = 4096, HDI_RENUMBER_WIDTH = 64 };
-
-static void hdi_renumber_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_renumber_job *job = HDI_CAST(const hdi_renumber_job *, arg);
-    const int64_t *ptr = job->from->L.row_ptr, end = hdi_least((index + 1) * HDI_RENUMBER_ROWS, job->from->n_active);
-    uint64_t key[HDI_RENUMBER_WIDTH], work[HDI_RENUMBER_WIDTH];
-    int64_t r;
-    (void)worker;
-    for (r = index * HDI_RENUMBER_ROWS; r < end; r++)
-        if (ptr[r + 1] - ptr[r] <= HDI_RENUMBER_WIDTH) hdi_renumber_row(job, HDI_CAST(int32_t, r), key, work);
-}
-
-/* Rows, components and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's vertices. */
-static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, const int32_t *name, hd_error *e) {
+/* Rows, components and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's
+ * vertices. */
+static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, const int32_t *name,
+                                  hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int32_t rows = from->n_active;
-    const int64_t widest = hdi_widest_row(&from->L);
-    int32_t *to = HDI_TAKE(&s, int32_t, rows), *number = HDI_TAKE(&s, int32_t, from->n_components), *component = HDI_TAKE(&s, int32_t, rows), r, i;
-    double *mass = HDI_TAKE_ZERO(&s, double, lap->n), *component_mass = HDI_TAKE(&s, double, from->n_components), *B = NULL, *b_diag = NULL;
-    uint64_t *key = HDI_TAKE(&s, uint64_t, 2 * widest);
-    hdi_renumber_job job;
-    hd_csr L = hdi_csr_take(&s, rows, rows, from->L.nnz, 1);
-    if (from->B) B = HDI_TAKE(&s, double, from->L.nnz);
-    if (from->B) b_diag = HDI_TAKE(&s, double, rows);
+    int32_t *perm = HDI_TAKE(&s, int32_t, rows), *number = HDI_TAKE(&s, int32_t, from->n_components), r, i;
+    double *mass = HDI_TAKE_ZERO(&s, double, lap->n);
     if (e->status < 0) return hdi_scope_end(&s);
     for (r = 0; r < rows; r++) mass[name[from->vertex[r]]] = from->mass[r];
     if (hdi_lap_rows(lap, mass, e) < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, L);
-    if (from->B) {
-        lap->B = HDI_CAST(double *, hdi_keep(&s, B));
-        lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
-    }
-    lap->component = HDI_CAST(int32_t *, hdi_keep(&s, component));
-    lap->component_mass = HDI_CAST(double *, hdi_keep(&s, component_mass));
-    for (r = 0; r < rows; r++) {
-        to[r] = i = lap->row[name[from->vertex[r]]];
-        L.row_ptr[i + 1] = from->L.row_ptr[r + 1] - from->L.row_ptr[r];
-        component[i] = from->component[r];
-        if (B) b_diag[i] = from->b_diag[r];
-    }
-    for (i = 0; i < rows; i++) L.row_ptr[i + 1] += L.row_ptr[i];
+    for (r = 0; r < rows; r++) perm[lap->row[name[from->vertex[r]]]] = r;
+    if (hdi_pair_permute(lap, from, perm, lap->context, e) < 0) return hdi_scope_end(&s);
+    if (from->B) lap->b_diag = HDI_NEW(lap->context, double, rows, e);
+    if (e->status >= 0) lap->component = HDI_NEW(lap->context, int32_t, rows, e);
+    if (e->status >= 0) lap->component_mass = HDI_NEW(lap->context, double, from->n_components, e);
+    if (e->status < 0) return hdi_scope_end(&s);
     hdi_fill_i32(number, from->n_components, -1);
-    for (i = 0; i < rows; i++) {                 /* numbered by their first row, as always */
-        if (number[component[i]] < 0) {
-            component_mass[lap->n_components] = from->component_mass[component[i]];
-            number[component[i]] = lap->n_components++;
+    for (i = 0; i < rows; i++) {                 /* components are numbered by their first row, as always */
+        const int32_t c = from->component[perm[i]];
+        if (number[c] < 0) {
+            lap->component_mass[lap->n_components] = from->component_mass[c];
+            number[c] = lap->n_components++;
         }
-        component[i] = number[component[i]];
+        lap->component[i] = number[c];
+        lap->b_diag[i] = from->b_diag[perm[i]];
     }
-    job.lap = lap;
-    job.from = from;
-    job.to = to;
-    hdi_parallel(lap->context, (HDI_CAST(int64_t, rows) + HDI_RENUMBER_ROWS - 1) / HDI_RENUMBER_ROWS, hdi_renumber_task, &job);
-    for (r = 0; r < rows && widest > HDI_RENUMBER_WIDTH; r++)
-        if (from->L.row_ptr[r + 1] - from->L.row_ptr[r] > HDI_RENUMBER_WIDTH) hdi_renumber_row(&job, r, key, key + widest);
     return hdi_scope_end(&s);
 }
 
-/* The soup of the stars of all points. xyz and name live in s, nothing else is left of neighbours and stars. */
-static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr, const int32_t *nbr, double delta,
-                               hdi_scope *s) {
+/* The soup of the stars of all points. xyz and name live in s, nothing else is left of neighbours and
+ * stars. */
+static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *lap,
+                               const double *xyz, const int64_t *nbr_ptr, const int32_t *nbr,
+                               double delta, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int32_t *tri, m = 0;
     memset(job, 0, sizeof *job);
-    if ((nbr_ptr ? hdi_star_given(job, xyz, lap->n, nbr_ptr, nbr, &own, s) : hdi_star_search(job, xyz, lap->n, &lap->points, &own, s)) < 0)
+    if ((nbr_ptr ? hdi_star_given(job, xyz, lap->n, nbr_ptr, nbr, &own, s)
+                 : hdi_star_search(job, xyz, lap->n, &lap->points, &own, s)) < 0)
         return hdi_scope_end(&own);
     tri = hdi_stars(job, &m, lap, &own);
     if (!tri || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
     if (hdi_soup_make(soup, job->xyz, job->n, tri, m, delta, &lap->mesh, s) < 0) {
-        if (s->e->face >= 0) s->e->vertex = job->name[soup->tri[3 * s->e->face]];    /* the caller knows no faces */
+        /* the caller knows no faces */
+        if (s->e->face >= 0) s->e->vertex = job->name[soup->tri[3 * s->e->face]];
         s->e->face = -1;
     }
     return hdi_scope_end(&own);
 }
 
-/* The tufted Laplacian of a point set (Sharp, Crane 2020, section 5.7): every point's star in the Delaunay triangulation of its neighbourhood, in the
- * tangent plane by principal components, goes into one soup with the weight 1/3, since where neighbours agree each triangle comes three times.
- * Deviations:
+/* The tufted Laplacian of a point set (Sharp, Crane 2020, section 5.7): every point's star in the
+ * Delaunay triangulation of its neighbourhood, in the tangent plane by principal components, goes into
+ * one soup with the weight 1/3, since where neighbours agree each triangle comes three times. Deviations:
  * 1. Cocircular points, which every grid is full of, are told apart by heights of at most 1e-9, else the
  *    stars would not agree.
- * 2. Neighbours off the plane count as farther away than their projections, so that the other sheet of a thin
- *    part does not cut the star. An arc of a circle that leaves the point along the plane and ends r away at
- *    height h is s = r + 2/3 h^2/r long, to this order: the bisector stands at s/2 instead of r/2. In noise
- *    the point itself is off the plane of its neighbourhood; so h^2 is the square of the neighbour's height
- *    above that plane less the square of the point's own, as where the plane cuts the Voronoi diagram of
- *    space. Bisectors keep at least a quarter of their distance, as a point may be farther off than its
- *    neighbours are away. (Boissonnat, Ghosh 2014 take the tangent plane and 1 for 2/3. Measured against the
- *    smooth kernel, the largest error as a mean of 6 to 10 sets, fem: on spheres, tori, noise and shells 2/3
- *    from the plane is better than projections alone or within 5 %; 1, or heights from the point, are worse
- *    on undersampled tori or in noise. Known loss: voronoi-cot, 500 to 1250 random points on a torus, 12 to
- *    36 % more error.) */
-static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr, const int32_t *nbr, double delta, hd_error *e) {
+ * 2. Neighbours off the plane count as farther away than their projections, so that the other sheet of a
+ *    thin part does not cut the star. An arc of a circle that leaves the point along the plane and ends r
+ *    away at height h is s = r + 2/3 h^2/r long, to this order: the bisector stands at s/2 instead of
+ *    r/2. In noise the point itself is off the plane of its neighbourhood; so h^2 is the square of the
+ *    neighbour's height above that plane less the square of the point's own, as where the plane cuts the
+ *    Voronoi diagram of space. Bisectors keep at least a quarter of their distance, as a point may be
+ *    farther off than its neighbours are away. (Boissonnat, Ghosh 2014 take the tangent plane and 1 for
+ *    2/3. Measured against the smooth kernel, the largest error as a mean of 6 to 10 sets, fem: on
+ *    spheres, tori, noise and shells 2/3 from the plane is better than projections alone or within 5 %;
+ *    1, or heights from the point, are worse on undersampled tori or in noise. Known loss: voronoi-cot,
+ *    500 to 1250 random points on a torus, 12 to 36 % more error.) */
+static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr,
+                                   const int32_t *nbr, double delta, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hd_laplacian *inner = NULL;
     hdi_star_job job;
@@ -7472,7 +7553,8 @@ static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const i
     hdi_mesh flat;
     if (hdi_star_soup(&soup, &job, lap, xyz, nbr_ptr, nbr, delta, &s) < 0) return hdi_scope_end(&s);
     if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
-    if (e->status >= 0 && hdi_soup_delaunay(&flat, &soup, &lap->mesh, &s) >= 0) inner = HDI_CAST(hd_laplacian *, hdi_alloc(lap->context, 1, sizeof *inner, e));
+    if (e->status >= 0 && hdi_soup_delaunay(&flat, &soup, 0, &lap->mesh, &s) >= 0)
+        inner = HDI_CAST(hd_laplacian *, hdi_alloc(lap->context, 1, sizeof *inner, e));
     if (!inner) return hdi_scope_end(&s);
     memset(inner, 0, sizeof *inner);
     inner->n = job.n;
@@ -7481,10 +7563,11 @@ static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const i
     inner->mesh = lap->mesh;
     if (hdi_lap_flat(inner, &flat, &s) >= 0) {
         lap->mesh = inner->mesh;
-        lap->area = soup.area / 3;
+        lap->area = soup.total / soup.share;
         lap->b_ratio = inner->b_ratio;
         lap->conserves = 1;
-        if (hdi_lap_renumber(lap, inner, job.name, e) >= 0 && hdi_lap_places(lap, xyz, e) >= 0) (void)hdi_progress(lap->context, "assemble", 0.8, e);
+        if (hdi_lap_renumber(lap, inner, job.name, e) >= 0 && hdi_lap_places(lap, xyz, e) >= 0)
+            (void)hdi_progress(lap->context, "assemble", 0.8, e);
     }
     hdi_laplacian_free(inner, lap->context);
     return hdi_scope_end(&s);
@@ -7532,11 +7615,7 @@ static hd_status hdi_sym_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_contex
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
     int32_t *seen = HDI_TAKE(&s, int32_t, n), i, k, count, last, depth, deeper, start, done = 0, stamp = 0;
-    int64_t widest = 1;
-    hdi_pair *work;
-    for (i = 0; i < n; i++)
-        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
-    work = HDI_TAKE(&s, hdi_pair, widest);
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, hdi_fullest(a->row_ptr, n));
     if (e->status < 0) return hdi_scope_end(&s);
     hdi_fill_i32(seen, n, -1);
     for (i = 0; i < n; i++) {
@@ -7554,113 +7633,12 @@ static hd_status hdi_sym_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_contex
     return hdi_scope_end(&s);
 }
 
-static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
-    void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
-    if (to && count > 0) memcpy(to, from, HDI_CAST(size_t, count) * size);
-    return to;
-}
-
-enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
-
-/* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row
- * ascending. */
-static hd_status hdi_sym_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
-    const int32_t n = lap->n_active;
-    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, nnz = HDI_CAST(uint64_t, lap->L.nnz);
-    hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
-    int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
-    int64_t *fill = HDI_TAKE(&s, int64_t, n1), p;
-    double *B = NULL;
-    hd_csr a = lap->L;
-    a.row_ptr = HDI_TAKE(&keep, int64_t, n1);
-    a.col = HDI_TAKE(&keep, int32_t, nnz);
-    a.val = HDI_TAKE(&keep, double, nnz);
-    if (lap->B) B = HDI_TAKE(&keep, double, nnz);
-    if (e->status < 0) {
-        hdi_scope_end(&s);
-        return hdi_scope_end(&keep);
-    }
-    a.row_ptr[0] = 0;
-    for (i = 0; i < n; i++) {
-        inv[perm[i]] = i;
-        fill[i] = a.row_ptr[i];
-        a.row_ptr[i + 1] = a.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
-    }
-    for (i = 0; i < n; i++) {
-        if (i + HDI_ROWS_AHEAD < n) {
-            const int64_t ahead = lap->L.row_ptr[perm[i + HDI_ROWS_AHEAD]];
-            HDI_PREFETCH(lap->L.col + ahead);
-            HDI_PREFETCH(lap->L.val + ahead);
-            if (B) HDI_PREFETCH(lap->B + ahead);
-        }
-        for (p = lap->L.row_ptr[perm[i]]; p < lap->L.row_ptr[perm[i] + 1]; p++) {
-            const int64_t q = fill[inv[lap->L.col[p]]]++;
-            a.col[q] = i;
-            a.val[q] = lap->L.val[p];
-            if (B) B[q] = lap->B[p];
-        }
-    }
-    out->L = a;
-    out->B = B;
-    keep.n = 0;                                  /* all of it is the caller's now */
-    return hdi_scope_end(&s);
-}
-
-/* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
-static hd_laplacian *hdi_sym_renumber(const hd_laplacian *lap, const int32_t *perm, hd_context *ctx, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, lap->n_active);
-    hd_laplacian *out;
-    int32_t i;
-    hdi_error_clear(e);
-    out = HDI_CAST(hd_laplacian *, hdi_copy(lap, 1, sizeof *lap, ctx, e));
-    if (!out) return NULL;
-    memset(&out->L, 0, sizeof out->L);
-    out->context = ctx;
-    out->B = NULL;
-    out->xyz = NULL;                             /* an order has been found */
-    out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
-    out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
-    out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
-    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
-    out->component_mass = HDI_CAST(double *, hdi_copy(lap->component_mass, HDI_CAST(uint64_t, lap->n_components), sizeof(double), ctx, e));
-    out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
-    if (e->status < 0 || hdi_sym_permute(out, lap, perm, ctx, e) < 0) {
-        hdi_laplacian_free(out, ctx);
-        return NULL;
-    }
-    for (i = 0; i < lap->n_active; i++) {
-        out->mass[i] = lap->mass[perm[i]];
-        out->b_diag[i] = lap->b_diag[perm[i]];
-        out->component[i] = lap->component[perm[i]];
-        out->vertex[i] = lap->vertex[perm[i]];
-        out->row[out->vertex[i]] = i;
-    }
-    return out;
-}
-
-/* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t B^-1 L) is the same with t multiplied
- * alike, to the last bit, and squares of areas neither underflow nor overflow whatever the unit of length. */
-static double hdi_sym_scale(hd_laplacian *lap) {
-    double largest = 0, scale;
-    int32_t i;
-    int64_t p;
-    int exponent;
-    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    frexp(largest, &exponent);
-    scale = ldexp(1, -2 * (exponent / 2));       /* even: norms scale exactly too */
-    for (i = 0; i < lap->n_active; i++) lap->mass[i] *= scale;
-    for (i = 0; i < lap->n_active && lap->B; i++) lap->b_diag[i] *= scale;
-    for (p = 0; p < lap->L.nnz && lap->B; p++) lap->B[p] *= scale;
-    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] *= scale;
-    return scale;
-}
-
 /* The same pair in an order that iterations like. */
 static hd_laplacian *hdi_sym_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active);
     hd_laplacian *out = NULL;
-    if (perm && hdi_sym_cuthill_mckee(&lap->L, perm, ctx, e) >= 0) out = hdi_sym_renumber(lap, perm, ctx, e);
+    if (perm && hdi_sym_cuthill_mckee(&lap->L, perm, ctx, e) >= 0) out = hdi_pair_renumber(lap, perm, ctx, e);
     hdi_scope_end(&s);
     return out;
 }
@@ -13939,11 +13917,11 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     if (e->status >= 0 && hdi_sym_order(&lap->L, lap->xyz, ordering, dissect_from, own ? rows : NULL, perm, &chosen, ctx, e) >= 0) {
         if (hdi_progress(ctx, "analyse", 0, e) >= 0 && hdi_symbolic_make(&m->sym, &lap->L, perm, ctx, e) >= 0) {
             m->sym.ordering = HDI_CAST(hd_ordering, chosen);
-            m->lap = hdi_sym_renumber(lap, m->sym.perm, ctx, e);
+            m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
         }
     }
     if (m->lap) {
-        (void)hdi_sym_scale(m->lap);
+        (void)hdi_pair_scale(m->lap);
         m->weight = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
         m->noise = m->weight ? m->weight + lap->n_active : NULL;
         m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
@@ -15564,7 +15542,7 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
         if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
         heat->lap = hdi_sym_ordered(heat->source, heat->ctx, e);
         if (!heat->lap) return e->status;
-        (void)hdi_sym_scale(heat->lap);
+        (void)hdi_pair_scale(heat->lap);
     }
     if (!heat->up.ptr && hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
     heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
@@ -19027,10 +19005,13 @@ static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
                                             const int32_t *j, const double *v, hd_context *ctx, hd_error *err) {
     hdi_call c;
+    hdi_scope s;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     if (!out || (n_triplets > 0 && (!i || !j))) return hdi_missing(c.e);
     if (n_rows < 0 || n_cols < 0 || n_triplets < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "triplets: a size is negative");
-    return hdi_csr_from_triplets(out, n_rows, n_cols, n_triplets, i, j, v, c.ctx, c.e);
+    s = hdi_scope_begin(c.ctx, c.e);
+    (void)hdi_csr_from_triplets(out, n_rows, n_cols, n_triplets, i, j, v, &s);
+    return hdi_scope_end(&s);
 }
 
 HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx, hd_error *err) {
@@ -19247,7 +19228,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
     if (m > 0 && !index) return hdi_missing(c.e);
     s = hdi_scope_begin(c.ctx, c.e);
     if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
-        (void)hdi_nearest(&tree, xyz, query, m, k, index, distance2, c.ctx, c.e);
+        (void)hdi_nearest(&tree, query, m, k, index, distance2, c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
@@ -19261,7 +19242,7 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     if (hdi_nan(radius) || radius < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
     s = hdi_scope_begin(c.ctx, c.e);
     if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
-        (void)hdi_within(out, &tree, xyz, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
+        (void)hdi_within(out, &tree, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 

@@ -185,13 +185,14 @@ static void int_sorting(void) {
     for (k = 0; k < 14; k++) {
         for (form = 0; form < 7; form++) {
             const int64_t n = sizes[k];
-            hdi_pair *a = DENSE_NEW(hdi_pair, n), *b = DENSE_NEW(hdi_pair, n), *work = DENSE_NEW(hdi_pair, n);
+            hdi_pair *a = DENSE_NEW(hdi_pair, n), *b = DENSE_NEW(hdi_pair, n);
+            uint64_t *work = DENSE_NEW(uint64_t, 2 * n);
             int32_t *x = DENSE_NEW(int32_t, n);
             for (i = 0; i < n; i++) {
                 a[i].key = b[i].key = int_key(form, i, n, &seed);
                 a[i].id = b[i].id = n - i;
                 x[i] = (int32_t)(a[i].key % 100003);
-                work[i].key = 0;
+                work[i] = 0;
             }
             hdi_sort_pairs(a, n);
             qsort(b, (size_t)n, sizeof *b, int_compare);
@@ -201,7 +202,7 @@ static void int_sorting(void) {
                 b[i].id = 0;
             }
             qsort(b, (size_t)n, sizeof *b, int_compare);
-            hdi_sort_indices(x, n, n > 24 ? work : NULL);
+            hdi_sort_indices(x, n, work);
             for (i = 0; i < n && (uint64_t)x[i] == b[i].key; i++) {}
             CHECK_MSG(i == n, "%d indices of form %d are not sorted", (int)n, form);
             free(a);
@@ -1833,7 +1834,7 @@ static void int_pairs_by_entries(void) {
     }
 }
 
-/* ---- [09] intrinsic triangulations ---- */
+/* ---- [11] intrinsic ---- */
 
 /* The area of a needle with sides 1, 1 and x, and of triangles of integer sides. */
 static void int_length_area(void) {
@@ -1847,11 +1848,11 @@ static void int_length_area(void) {
 }
 
 /* Sides glued to each other have the same length and run opposite ways; the sum of the angles around each vertex is left in angle [n]. */
-static void int_intrinsic_state(const hdi_intrinsic *t, double *angle, int32_t n, double *area) {
+static void int_cover_state(const hdi_cover *t, double *angle, int32_t n, double *area) {
     int32_t s, wrong = 0;
     for (s = 0; s < n; s++) angle[s] = 0;
     *area = 0;
-    for (s = 0; s < t->n_sides; s++) {
+    for (s = 0; s < 3 * t->n; s++) {
         const int32_t b = t->twin[s], next = hdi_side_next(s);
         CHECK(hdi_side_prev(next) == s && next / 3 == s / 3);
         angle[t->vert[s]] += atan2(1, hdi_side_cot(t, next));
@@ -1874,7 +1875,10 @@ static void int_flips(void) {
             hdi_scope scope = hdi_scope_begin(&ctx, &e);
             hd_mesh_report rep;
             hdi_mesh mesh, flat;
-            hdi_intrinsic t;
+            hdi_mesh_wants want;
+            hdi_edges edges;
+            hdi_soup soup;
+            hdi_cover t;
             int open = 0;
             double *before = DENSE_NEW(double, s.n), *after = DENSE_NEW(double, s.n), area_before, area_after, worst = 0;
             int32_t i;
@@ -1882,21 +1886,26 @@ static void int_flips(void) {
             for (i = 0; i < s.n; i++) s.xyz[3 * i] *= 6;
             for (i = 0; k == 3 && i < s.n_tri; i++)
                 if (s.tri[3 * i] % 3 == 0) s.tri[3 * i] = 4;     /* any triangles */
-            CHECK(hdi_mesh_make(&mesh, s.xyz, s.n, s.tri, s.n_tri, &rep, &scope) == HD_OK);
-            CHECK(hdi_intrinsic_make(&t, &mesh, close, &rep, &scope) == HD_OK);
+            hdi_mesh_clear(&mesh, s.xyz, s.n, s.tri, s.n_tri);
+            memset(&want, 0, sizeof want);
+            CHECK(hdi_mesh_faces(&mesh, &edges, &want, &rep, &scope) == HD_OK);
+            CHECK(hdi_soup_of_mesh(&soup, &mesh, 1e-5, &rep, &scope) == HD_OK);
+            CHECK(hdi_cover_begin(&t, &soup, 0, &scope) == HD_OK && hdi_cover_whole(&t, close, &rep, &scope) == HD_OK);
             CHECK(t.n_sheets == (k == 0 || k == 2 || (k == 1 && !close) ? 1 : 2) && (k < 3 || rep.n_nonmanifold_edges > 5));
-            hdi_mollify(&t, 1e-5, &rep);
-            int_intrinsic_state(&t, before, s.n, &area_before);
-            CHECK_MSG(hdi_flip_all(&t, &rep, &ctx, &e) == HD_OK && rep.n_flips > 20 && rep.n_not_delaunay == 0,
-                      "shape %d: %d flips, %d edges left", k, (int)rep.n_flips, (int)rep.n_not_delaunay);
-            int_intrinsic_state(&t, after, s.n, &area_after);
+            int_cover_state(&t, before, s.n, &area_before);
+            CHECK(hdi_cover_flip_all(&t, &rep) == HD_OK);
+            hdi_cover_count(&t, &rep);
+            CHECK_MSG(rep.n_flips > 20 && rep.n_not_delaunay == 0, "shape %d: %d flips, %d edges left", k, (int)rep.n_flips,
+                      (int)rep.n_not_delaunay);
+            int_cover_state(&t, after, s.n, &area_after);
             for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(before[i] - after[i]));
             CHECK_MSG(worst < 1e-9, "shape %d: an angle around a vertex changed by %g", k, worst);
             CHECK_MSG(fabs(area_after / area_before - 1) < 1e-12, "shape %d: area %g not %g", k, area_after, area_before);
-            for (i = 0; i < t.n_sides; i++) open += t.twin[i] < 0;
+            for (i = 0; i < 3 * t.n; i++) open += t.twin[i] < 0;
             CHECK_MSG(open == (close ? 0 : t.n_sheets * (int)rep.n_boundary_edges), "shape %d: %d open sides", k, open);
-            CHECK(hdi_intrinsic_mesh(&flat, &t, s.n, 1, &rep, &scope) == HD_OK);
-            for (i = 0; i < t.n_sides; i += 3) CHECK(flat.tri[i] != flat.tri[i + 2] || flat.tri[i] == flat.tri[i + 1]);
+            CHECK(hdi_cover_flat(&flat, &t, &rep, &scope) == HD_OK);
+            for (i = 0; i < 3 * t.n; i += 3) CHECK(flat.tri[i] != flat.tri[i + 2] || flat.tri[i] == flat.tri[i + 1]);
+            hdi_cover_free(&t);
             loops += (int)rep.n_self_edges;
             hdi_scope_end(&scope);
             free(before);
@@ -1974,20 +1983,11 @@ static hd_laplacian *int_soup_pair(const double *xyz, int32_t n, const int32_t *
     lap->kind = HD_LAPLACIAN_FEM;
     CHECK(hdi_soup_make(&soup, xyz, n, tri, m, 1e-5, rep, &s) == HD_OK);
     if (!everything) {
-        CHECK(hdi_soup_delaunay(&flat, &soup, rep, &s) == HD_OK);
+        CHECK(hdi_soup_delaunay(&flat, &soup, 0, rep, &s) == HD_OK);
     } else {
         hdi_cover c;
         int32_t v, p, q;
-        memset(&c, 0, sizeof c);
-        c.soup = &soup;
-        c.ctx = ctx;
-        c.e = &e;
-        c.t.unit = soup.unit;
-        c.t.n_sheets = 2;
-        c.first = HDI_TAKE(&s, int32_t, soup.mesh.m);
-        c.glued = HDI_TAKE_ZERO(&s, signed char, 3 * soup.mesh.m);
-        c.list = HDI_TAKE(&s, hdi_pair, 3 * soup.mesh.m);
-        for (v = 0; v < soup.mesh.m; v++) c.first[v] = -1;
+        CHECK(hdi_cover_begin(&c, &soup, 1, &s) == HD_OK);
         for (v = 0; v < n; v++) {
             for (p = soup.sides.ptr[v]; p < soup.sides.ptr[v + 1]; p = q) {
                 for (q = p + 1; q < soup.sides.ptr[v + 1] && soup.sides.key[q] >> 32 == soup.sides.key[p] >> 32;) q++;
@@ -1995,12 +1995,15 @@ static hd_laplacian *int_soup_pair(const double *xyz, int32_t n, const int32_t *
             }
         }
         CHECK(c.n == 2 * m);
-        for (p = 0; p < c.t.n_sides; p++) {      /* closed: each side has another one, which runs the other way */
-            const int32_t t = c.t.twin[p];
-            CHECK(t >= 0 && t != p && c.t.twin[t] == p && c.t.vert[p] == c.t.vert[hdi_side_next(t)] && c.t.len[p] == c.t.len[t]);
+        for (p = 0; p < 3 * c.n; p++) {          /* closed: each side has another one, which runs the other way */
+            const int32_t t = c.twin[p];
+            CHECK(t >= 0 && t != p && c.twin[t] == p && c.vert[p] == c.vert[hdi_side_next(t)] && c.len[p] == c.len[t]);
         }
-        CHECK(hdi_flip_all(&c.t, rep, ctx, &e) == HD_OK);
-        CHECK(hdi_intrinsic_mesh(&flat, &c.t, n, 1.0 / 6, rep, &s) == HD_OK);
+        for (c.depth = 0, p = 0; p < 3 * c.n; p++) c.waits[p] = 0;
+        c.most_flips = INT64_MAX;
+        CHECK(hdi_cover_flip_all(&c, rep) == HD_OK);
+        hdi_cover_count(&c, rep);
+        CHECK(hdi_cover_flat(&flat, &c, rep, &s) == HD_OK);
         CHECK(hdi_lap_flat(lap, &flat, &s) == HD_OK);
         hdi_cover_free(&c);
     }
