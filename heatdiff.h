@@ -8419,28 +8419,31 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
     return n;
 }
 
+/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
+ * keys are left out. ptr [n_keys + 1]. */
+static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
+    int32_t i;
+    hdi_fill_i32(ptr, HDI_CAST(int64_t, n_keys) + 1, 0);
+    for (i = 0; i < n; i++)
+        if (key[i] >= 0) ptr[key[i]]++;
+    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
+    for (i = n; i-- > 0;)
+        if (key[i] >= 0) list[--ptr[key[i]]] = i;
+}
+
 /* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for
  * space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. 0 if the room is too small. */
 static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space, int32_t *member,
                            int32_t *start, int32_t *mark) {
     const int32_t *map = g->map, *ew = g->ew;
-    int32_t v, i, p, z = 0, *adj = c->adj, *sum = c->ew;
-    memset(start, 0, HDI_CAST(size_t, c->n + 1) * sizeof *start);
-    for (v = 0; v < g->n; v++) start[g->map[v]]++;
-    for (i = 0, z = 0; i < c->n; i++) {
-        z += start[i];
-        start[i] = z;
-        mark[i] = -1;
-    }
-    start[c->n] = z;
-    for (v = g->n; v-- > 0;) member[--start[g->map[v]]] = v;
-    for (i = 0, z = 0; i < c->n; i++) {
-        int32_t m;
+    int32_t v, i, m, p, z = 0, *adj = c->adj, *sum = c->ew;
+    hdi_group(map, g->n, c->n, start, member);
+    hdi_fill_i32(mark, c->n, -1);
+    for (i = 0; i < c->n; i++) {
         const int32_t row = z;
         c->ptr[i] = z;
         c->id[i] = g->id[member[start[i]]];
-        /* where edges inside the cluster go, to be forgotten */
-        mark[i] = space - 1;
+        mark[i] = space - 1;                     /* where edges inside the cluster go, to be forgotten */
         sum[space - 1] = 0;
         for (m = start[i]; m < start[i + 1]; m++) {
             v = member[m];
@@ -8449,9 +8452,8 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
                 const int32_t u = g->adj[p], e = ew ? ew[p] : 1;
                 int32_t d, at, fresh;
                 if (u < 0) continue;
-                d = map[u];
+                d = map[u];                      /* no branches from here on: they would be unpredictable */
                 at = mark[d];
-                /* no branches from here on: they would be unpredictable */
                 fresh = at < row;
                 at = fresh ? z : at;
                 mark[d] = at;
@@ -9462,6 +9464,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
  *   C. Ashcraft, R. Grimes, The influence of relaxed supernode partitions on the multifrontal method, 1989
  * A front is a dense lower triangle over the rows of a supernode: its p pivots, then u rows below. Its first
  * p columns become columns of L (the panel, m = p + u rows), the rest is the update matrix for its parent. */
+
 enum { HDI_PANEL = 128, HDI_SYM_BLOCKS = 10 };
 
 typedef struct hdi_symbolic {
@@ -9852,17 +9855,6 @@ static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w, const int32_t
 
 /* ---- fronts ---- */
 
-/* Children lists of the supernodes. */
-static void hdi_sym_kids(hdi_symbolic *s) {
-    int32_t v;
-    memset(s->kid_ptr, 0, (HDI_CAST(size_t, s->n_super) + 1) * sizeof *s->kid_ptr);
-    for (v = 0; v < s->n_super; v++)
-        if (s->parent[v] >= 0) s->kid_ptr[s->parent[v]]++;
-    for (v = 0; v < s->n_super; v++) s->kid_ptr[v + 1] += s->kid_ptr[v];
-    for (v = s->n_super; v-- > 0;)
-        if (s->parent[v] >= 0) s->kid[--s->kid_ptr[s->parent[v]]] = v;
-}
-
 /* Places of the rows of v in its parent's front: two ascending lists. */
 static void hdi_sym_relative(hdi_symbolic *s, int32_t v) {
     const int32_t up = s->parent[v];
@@ -9978,7 +9970,7 @@ static hd_status hdi_sym_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, h
         hdi_sym_triangle(a, s->perm, &w, s);
         hdi_sym_rows(s, &w);
         hdi_sym_entries(s, w.mark);
-        hdi_sym_kids(s);
+        hdi_group(s->parent, s->n_super, s->n_super, s->kid_ptr, s->kid);
     }
     return hdi_scope_end(&scope);
 }
@@ -10415,12 +10407,11 @@ static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch)
     return w;
 }
 
-/* Entry `from` of A, for one matrix or four. row: of A, when the entry is on the diagonal. */
-static void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int diagonal, int32_t row,
-                          double *to) {
+/* Entry `from` of A, for one matrix or four. row: of a diagonal entry, else -1. */
+static void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int32_t row, double *to) {
     int q;
     if (a->l) {
-        const double l = a->t * a->l[from], b = a->b ? a->b[from] : diagonal ? a->b_diag[row] : 0;
+        const double l = a->t * a->l[from], b = a->b ? a->b[from] : row >= 0 ? a->b_diag[row] : 0;
         for (q = 0; q < (width == 1 ? 1 : HDI_PACK_LANES); q++) to[q] = l + a->theta[q].re * b;
         for (; q < width; q++) to[q] = a->theta[q - HDI_PACK_LANES].im * b;
     } else if (width == 1) {
@@ -10431,6 +10422,11 @@ static void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int 
             to[q + HDI_PACK_LANES] = a->z[q][from].im;
         }
     }
+}
+
+/* Row of A of entry (i,j) of the front when it is on the diagonal, else -1. */
+static int32_t hdi_front_row(const hdi_front *w, int64_t i, int64_t j) {
+    return i == j ? w->f->sym->perm[w->f->sym->super[w->v] + j] : -1;
 }
 
 /* ---- fronts of packs ---- */
@@ -10495,7 +10491,7 @@ static void hdi_front_assemble_pack(const hdi_front *w, int64_t r0, int64_t r1) 
         const int64_t i = s->a_row[q], j = s->a_col[q];
         if (i >= r0 && i < r1) {
             const hdi_block b = hdi_block_of(w->panel, w->m, w->p, j / HDI_PANEL);
-            hdi_values_at(w->f->values, HDI_PACK, s->a_from[q], i == j, s->perm[s->super[w->v] + j],
+            hdi_values_at(w->f->values, HDI_PACK, s->a_from[q], hdi_front_row(w, i, j),
                           hdi_block_at(&b, i, j));
         }
     }
@@ -10639,8 +10635,7 @@ static void hdi_front_assemble_real(const hdi_front *w) {
     memset(w->update, 0, HDI_CAST(size_t, hdi_triangle(w->u)) * sizeof *w->update);
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
-        hdi_values_at(w->f->values, 1, s->a_from[q], i == j, s->perm[s->super[w->v] + j],
-                      w->panel + i + j * w->m);
+        hdi_values_at(w->f->values, 1, s->a_from[q], hdi_front_row(w, i, j), w->panel + i + j * w->m);
     }
 }
 
@@ -10667,7 +10662,8 @@ static int hdi_front_pivots_real(const hdi_front *w, int64_t end, hdi_pivots *no
 typedef enum hdi_front_stage { HDI_FRONT_ASSEMBLE, HDI_FRONT_COLUMNS, HDI_FRONT_UPDATE } hdi_front_stage;
 
 /* Rows [r0,r1) of the front's panel or update matrix; but assembling real numbers, columns of w->child's. */
-static void hdi_front_part(const hdi_front *w, hdi_front_stage stage, int64_t r0, int64_t r1, double *work) {
+static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1, double *work) {
+    const hdi_front *w = HDI_CAST(const hdi_front *, front);
     const hdi_factor *f = w->f;
     const hdi_symbolic *s = f->sym;
     const int32_t p = HDI_CAST(int32_t, w->p), k0 = HDI_CAST(int32_t, w->k0), c = w->child;
@@ -10692,35 +10688,44 @@ static void hdi_front_part(const hdi_front *w, hdi_front_stage stage, int64_t r0
     }
 }
 
-/* A stage of a large front, in chunks of rows shared by all threads. */
-typedef struct hdi_front_share {
-    const hdi_front *w;
-    hdi_front_stage stage;
-    int64_t begin, end, n_chunks;
-} hdi_front_share;
+/* Rows [begin,end) of a stage of a large front, in chunks that all threads share. Each has a part of work. */
+typedef struct hdi_chunks {
+    void (*run)(const void *front, int stage, int64_t r0, int64_t r1, double *work);
+    const void *front;
+    int stage;
+    int64_t begin, end, rows, n; /* rows of a chunk; chunks */
+    double *work;                /* [n][work_size] */
+    uint64_t work_size;
+} hdi_chunks;
 
-static void hdi_front_share_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_front_share *h = HDI_CAST(const hdi_front_share *, arg);
-    const int64_t chunk = h->n_chunks - 1 - index;       /* the last rows of a triangle are the longest */
-    const int64_t r0 = h->begin + chunk * HDI_FRONT_CHUNK;
+static void hdi_chunks_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_chunks *h = HDI_CAST(const hdi_chunks *, arg);
+    /* the last rows of a triangle are longest */
+    const int64_t chunk = h->n - 1 - index, r0 = h->begin + chunk * h->rows;
     (void)worker;
-    hdi_front_part(h->w, h->stage, r0, hdi_least(r0 + HDI_FRONT_CHUNK, h->end),
-                   h->w->f->chunk_scratch + h->w->f->chunk_size * HDI_CAST(size_t, chunk));
+    h->run(h->front, h->stage, r0, hdi_least(r0 + h->rows, h->end),
+           h->work + h->work_size * HDI_CAST(size_t, chunk));
+}
+
+/* h->rows, h->work and h->work_size are set. */
+static void hdi_chunks_run(hdi_chunks *h, int64_t begin, int64_t end, hd_context *ctx) {
+    h->begin = begin;
+    h->end = end;
+    h->n = (end - begin + h->rows - 1) / h->rows;
+    hdi_parallel(ctx, h->n, hdi_chunks_task, h);
 }
 
 static void hdi_front_run(const hdi_front *w, int shared, hdi_front_stage stage, int64_t begin, int64_t end) {
-    hdi_front_share h;
-    if (end <= begin) return;
-    if (!shared) {
-        hdi_front_part(w, stage, begin, end, w->work);
-        return;
-    }
-    h.w = w;
+    hdi_chunks h;
+    if (end > begin && !shared) hdi_front_part(w, stage, begin, end, w->work);
+    if (end <= begin || !shared) return;
+    h.run = hdi_front_part;
+    h.front = w;
     h.stage = stage;
-    h.begin = begin;
-    h.end = end;
-    h.n_chunks = (end - begin + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK;
-    hdi_parallel(w->f->ctx, h.n_chunks, hdi_front_share_task, &h);
+    h.rows = HDI_FRONT_CHUNK;
+    h.work = w->f->chunk_scratch;
+    h.work_size = w->f->chunk_size;
+    hdi_chunks_run(&h, begin, end, w->f->ctx);
 }
 
 /* Front v, by this thread or shared by all. 0 when a pivot cannot be divided by. */
@@ -10835,6 +10840,7 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
 static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
     const hdi_symbolic *s = f->sym;
     const int32_t n_parts = s->n_tasks + 1;
+    double *scratch = hdi_factor_scratch(f, s->n_tasks);
     int32_t i;
     f->ready = f->stop = 0;
     f->values = values;
@@ -10845,9 +10851,7 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
     for (i = 0; i < s->n_top && !f->stop; i++) {
         const int shared = hdi_front_rows(s, s->top[i]) >= 2 * HDI_FRONT_CHUNK;
         if (hdi_progress(f->ctx, "factor", 0.5 + 0.5 * i / s->n_top, &f->error) < 0) break;
-        if (!hdi_front_factor(f, s->top[i], hdi_factor_scratch(f, s->n_tasks), f->pivots + s->n_tasks,
-                              shared))
-            break;
+        if (!hdi_front_factor(f, s->top[i], scratch, f->pivots + s->n_tasks, shared)) break;
     }
     f->values = NULL;
     if (hdi_factor_collect(f, n_parts, e) < 0) return e->status;
@@ -10977,6 +10981,7 @@ static void hdi_sweep_divide_pack(const hdi_sweep *z, int32_t v, double *y, doub
 static void hdi_sweep_backward_pack(const hdi_sweep *z, int32_t v, double *y, double *gather) {
     const hdi_factor *f = z->f;
     const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v), row = HDI_PACK * z->k;
+    const int32_t *idx = f->sym->row + f->sym->row_ptr[v];
     hdi_pack_job g;
     int64_t i, q;
     hdi_sweep_divide_pack(z, v, y, gather);
@@ -10987,8 +10992,7 @@ static void hdi_sweep_backward_pack(const hdi_sweep *z, int32_t v, double *y, do
         const hdi_block b = hdi_block_of(f->panel + HDI_PACK * f->panel_at[v], p + u, p, q);
         double *l = b.at, *w = y + row * b.begin;
         if (z->k == 1) {
-            f->pack->backward(l + (p - b.begin) * b.row, f->sym->row + f->sym->row_ptr[v], u, b.width, w,
-                              z->x);
+            f->pack->backward(l + (p - b.begin) * b.row, idx, u, b.width, w, z->x);
             f->pack->backward(l + b.width * b.row, NULL, p - b.begin - b.width, b.width, w, w + b.row);
             for (i = b.width - 1; i > 0; i--)
                 f->pack->backward(l + i * b.row, NULL, 1, i, w, w + HDI_PACK * i);
@@ -11305,22 +11309,28 @@ enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_
  * its diagonal, or the quadratic forms x_j' Z x_j. */
 typedef enum hdi_wanted { HDI_WANT_ENTRIES, HDI_WANT_DIAGONAL, HDI_WANT_FORMS } hdi_wanted;
 
+/* Places where blocks of columns are worked on: one for each subtree, or one for each block under way in a
+ * front of the top. Of each: columns [pivots] and room [aside, then the rest of size]. */
+typedef struct hdi_form_places {
+    int64_t n, pivots;
+    uint64_t aside, size;        /* doubles: rows of a child; all */
+} hdi_form_places;
+
 /* The x_j of quadratic forms, columns of a symmetric matrix X on the pattern that was analysed, and room for
- * them. Places to work in: one for each subtree, then one for each block of columns under way in a front of
- * the top. */
+ * them. */
 typedef struct hdi_forms {
     const hd_csr *a;             /* the pattern */
     const double *x;             /* X by its entries */
     int32_t *inv;                /* [n] pivot of a row of A */
     int32_t cols, n_slots;       /* columns of a block at most; blocks of a front of the top at the same
                                     time */
-    uint64_t *active;            /* [1 + n_slots][n_super], all subtrees share the first: which columns of the
-                                    block have come to a front. 0 between blocks */
-    int32_t *column;             /* [n_tasks][task_pivots], [n_slots][largest_pivots] place in the block of a
-                                    pivot's column, -1: not in it */
+    hdi_form_places place[2];    /* of subtrees, of the top */
+    uint64_t *active;            /* [1 + n_slots][n_super],
+        all subtrees share the first: which columns of the block have
+                                    come to a front. 0 between blocks */
+    int32_t *column;             /* by places: place in the block of a pivot's column, -1: not in it */
     hdi_pair *order;             /* [n_tasks][task_pivots], [largest_pivots] */
-    double *room;                /* [n_tasks][task_size], [n_slots][slot_size] */
-    uint64_t task_size, slot_size, aside_task, aside_slot;
+    double *room;                /* by places */
 } hdi_forms;
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry or form (four complex ones
@@ -11623,7 +11633,8 @@ typedef struct hdi_inverse_cross {
 } hdi_inverse_cross;
 
 /* The columns [i0,i1) of X. */
-static void hdi_inverse_cross_real(const hdi_inverse_front *w, const hdi_inverse_cross *g, int64_t i0, int64_t i1,
+static void hdi_inverse_cross_real(const hdi_inverse_front *w, const hdi_inverse_cross *g, int64_t i0,
+                                   int64_t i1,
                                    double *buffer) {
     const hdi_real_ops *o = w->f->real;
     const int32_t n = HDI_CAST(int32_t, g->n), depth = HDI_CAST(int32_t, g->depth);
@@ -11728,7 +11739,8 @@ typedef enum hdi_inverse_stage {
 } hdi_inverse_stage;
 
 /* One stage for rows [r0,r1). */
-static void hdi_inverse_part(const hdi_inverse_front *w, hdi_inverse_stage stage, int64_t r0, int64_t r1, double *buffer) {
+static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_inverse_front *w = HDI_CAST(const hdi_inverse_front *, front);
     const int real = w->f->width == 1;
     if (stage == HDI_INVERSE_M) {
         if (real) hdi_inverse_m_real(w, r0, r1, buffer);
@@ -11745,38 +11757,19 @@ static void hdi_inverse_part(const hdi_inverse_front *w, hdi_inverse_stage stage
     }
 }
 
-/* A stage of a large front, in chunks of rows shared by all threads. */
-typedef struct hdi_inverse_share {
-    const hdi_inverse *all;
-    const hdi_inverse_front *w;
-    hdi_inverse_stage stage;
-    int64_t begin, end, chunk;
-} hdi_inverse_share;
-
-static void hdi_inverse_share_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_inverse_share *h = HDI_CAST(const hdi_inverse_share *, arg);
-    const int64_t r0 = h->begin + index * h->chunk;
-    (void)worker;
-    hdi_inverse_part(h->w, h->stage, r0, hdi_least(r0 + h->chunk, h->end),
-                     h->all->chunk + h->all->chunk_size * HDI_CAST(size_t, index));
-}
-
 /* Rows [begin,end) of a stage: at once, or with z as chunks. */
 static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front *w, hdi_inverse_stage stage,
                                   int64_t begin, int64_t end) {
-    hdi_inverse_share h;
-    if (end <= begin) return;
-    if (!z) {
-        hdi_inverse_part(w, stage, begin, end, w->buffer);
-        return;
-    }
-    h.all = z;
-    h.w = w;
+    hdi_chunks h;
+    if (end > begin && !z) hdi_inverse_part(w, stage, begin, end, w->buffer);
+    if (end <= begin || !z) return;
+    h.run = hdi_inverse_part;
+    h.front = w;
     h.stage = stage;
-    h.begin = begin;
-    h.end = end;
-    h.chunk = stage == HDI_INVERSE_CORNER ? HDI_CAST(int64_t, HDI_REAL_MR) : HDI_CAST(int64_t, HDI_INV_CHUNK);
-    hdi_parallel(w->f->ctx, (end - begin + h.chunk - 1) / h.chunk, hdi_inverse_share_task, &h);
+    h.rows = stage == HDI_INVERSE_CORNER ? HDI_CAST(int64_t, HDI_REAL_MR) : HDI_CAST(int64_t, HDI_INV_CHUNK);
+    h.work = z->chunk;
+    h.work_size = z->chunk_size;
+    hdi_chunks_run(&h, begin, end, w->f->ctx);
 }
 
 /* Entry (i,j) of Z, j <= i. */
@@ -11860,7 +11853,7 @@ static int32_t hdi_form_row(int32_t width, int32_t k) {
 /* Adds x to an entry. */
 static void hdi_form_add(int32_t width, double x, double *to) {
     int32_t q;
-    for (q = 0; q < (width == 1 ? 1 : 4); q++) to[q] += x;
+    for (q = 0; q < (width == 1 ? 1 : HDI_PACK_LANES); q++) to[q] += x;
 }
 
 /* Where pivot i of the matrix stands in the front. */
@@ -12144,8 +12137,10 @@ static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
     const hdi_forms *q = job->z->forms;
     const hdi_symbolic *s = job->z->f->sym;
     const int64_t at = job->begin + index, from = at * job->n / job->n_blocks, task = s->task_of[job->w->v];
-    double *room = q->room + q->task_size * HDI_CAST(size_t, task >= 0 ? task : s->n_tasks) +
-        (task >= 0 ? 0 : q->slot_size * HDI_CAST(size_t, index));
+    const hdi_form_places *places = q->place + (task < 0), *before = q->place;
+    const int64_t number = task >= 0 ? task : index, n_before = task >= 0 ? 0 : before->n;
+    double *room = q->room + before->size * HDI_CAST(size_t, n_before) +
+        places->size * HDI_CAST(size_t, number);
     hdi_form_block b;
     (void)worker;
     b.q = q;
@@ -12153,11 +12148,10 @@ static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
     b.list = job->list + from;
     b.k = HDI_CAST(int32_t, (at + 1) * job->n / job->n_blocks - from);
     b.active = q->active + (task >= 0 ? 0 : (1 + index) * s->n_super);
-    b.column = q->column + (task >= 0 ? task * s->task_pivots
-                            : HDI_CAST(int64_t, s->n_tasks) * s->task_pivots + index * s->largest_pivots);
-    b.end = room + (task >= 0 ? q->task_size : q->slot_size);
+    b.column = q->column + before->pivots * n_before + places->pivots * number;
+    b.end = room + places->size;
     b.aside = room;
-    b.work = room + (task >= 0 ? q->aside_task : q->aside_slot);
+    b.work = room + places->aside;
     b.top = b.work + hdi_form_work(job->z->f->width, q->cols);
     hdi_form_run(job->z, &b);
 }
@@ -12216,49 +12210,62 @@ static void hdi_forms_free(hdi_forms *q, hd_context *ctx) {
     memset(q, 0, sizeof *q);
 }
 
-/* Room for the forms of x on the pattern of a, with factors of the given width. Blocks are narrower where the
- * room for all that go on at the same time would be more than half of the factor: on trees on which stacks
- * grow high. */
-static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a,
-                                const double *x, hd_context *ctx, hd_error *e) {
-    hdi_scope keep = hdi_scope_begin(ctx, e);
-    const uint64_t n_tasks = HDI_CAST(uint64_t, s->n_tasks), n_super = HDI_CAST(uint64_t, s->n_super);
-    const uint64_t w = HDI_CAST(uint64_t, width);
-    const int64_t stored = width == 1 ? s->panel[n_super] : s->stored;
-    int64_t *need = HDI_TAKE(&keep, int64_t, n_super + 1), in_tasks, in_all;
-    uint64_t columns, work, i;
-    memset(q, 0, sizeof *q);
-    if (e->status < 0) return hdi_scope_end(&keep);
+/* Sizes of n places with so many pivots, rows of a child and rows on the stack. */
+static hdi_form_places hdi_form_places_of(int64_t n, int64_t pivots, int64_t below, int64_t rows,
+                                          int32_t width, int32_t cols) {
+    const uint64_t row = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, cols);
+    hdi_form_places p;
+    p.n = n;
+    p.pivots = pivots;
+    p.aside = HDI_CAST(uint64_t, below) * row;
+    p.size = p.aside + hdi_form_work(width, cols) + HDI_CAST(uint64_t, rows) * row;
+    return p;
+}
+
+enum { HDI_FORM_SMALL = 65536 };     /* doubles of room that are never too many */
+
+/* How many columns a block has. Fewer where the room for all blocks that go on at the same time would be more
+ * than half of the factor: on trees on which stacks grow high. */
+static void hdi_forms_size(hdi_forms *q, const hdi_symbolic *s, int32_t width, int64_t *need) {
+    const int64_t stored = width == 1 ? s->panel[s->n_super] : s->stored;
+    int64_t in_tasks, in_all;
     hdi_form_rows(s, need, &in_tasks, &in_all);
-    q->a = a;
-    q->x = x;
     q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
     q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
-    while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 + 65536)
+    while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 +
+           HDI_FORM_SMALL)
         q->cols = width == 1 ? 1 : q->cols / 2;
-    work = hdi_form_work(width, q->cols);
-    q->aside_task = HDI_CAST(uint64_t, s->task_update) * HDI_CAST(uint64_t, q->cols) * w;
-    q->aside_slot = HDI_CAST(uint64_t, s->largest_update) * HDI_CAST(uint64_t, q->cols) * w;
-    q->task_size = q->aside_task + work + HDI_CAST(uint64_t, in_tasks) * HDI_CAST(uint64_t, q->cols) * w;
-    q->slot_size = q->aside_slot + work + HDI_CAST(uint64_t, in_all) * HDI_CAST(uint64_t, q->cols) * w;
-    columns = n_tasks * HDI_CAST(uint64_t, s->task_pivots) +
-        HDI_CAST(uint64_t, q->n_slots) * HDI_CAST(uint64_t, s->largest_pivots);
-    q->inv = HDI_TAKE(&keep, int32_t, s->n);
-    q->active = HDI_CAST(uint64_t *, hdi_take_zero(&keep, (1 + HDI_CAST(uint64_t, q->n_slots)) * n_super,
-                                                   sizeof(uint64_t)));
-    q->column = HDI_TAKE(&keep, int32_t, columns);
-    q->order = HDI_TAKE(&keep, hdi_pair, n_tasks * HDI_CAST(uint64_t, s->task_pivots) +
-                        HDI_CAST(uint64_t, s->largest_pivots));
-    q->room = HDI_TAKE(&keep, double, n_tasks * q->task_size + HDI_CAST(uint64_t, q->n_slots) * q->slot_size);
-    if (e->status >= 0) {
-        for (i = 0; i < HDI_CAST(uint64_t, s->n); i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
-        for (i = 0; i < columns; i++) q->column[i] = -1;
-        hdi_free(ctx, need);
-        keep.n = 0;
-        return HD_OK;
-    }
+    q->place[0] = hdi_form_places_of(s->n_tasks, s->task_pivots, s->task_update, in_tasks, width, q->cols);
+    q->place[1] = hdi_form_places_of(q->n_slots, s->largest_pivots, s->largest_update, in_all, width,
+                                     q->cols);
+}
+
+/* Room for the forms of x on the pattern of a, with factors of the given width. */
+static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a,
+                                const double *x, hd_context *ctx, hd_error *e) {
+    hdi_scope temp = hdi_scope_begin(ctx, e), keep = temp;
+    int64_t *need = HDI_TAKE(&temp, int64_t, HDI_CAST(int64_t, s->n_super) + 1), columns, i;
+    hdi_form_places *p = q->place;
     memset(q, 0, sizeof *q);
-    return hdi_scope_end(&keep);
+    if (e->status < 0) return hdi_scope_end(&temp);
+    q->a = a;
+    q->x = x;
+    hdi_forms_size(q, s, width, need);
+    columns = p[0].n * p[0].pivots + p[1].n * p[1].pivots;
+    q->inv = HDI_TAKE(&keep, int32_t, s->n);
+    q->active = HDI_TAKE_ZERO(&keep, uint64_t, (1 + HDI_CAST(int64_t, q->n_slots)) * s->n_super);
+    q->column = HDI_TAKE(&keep, int32_t, columns);
+    q->order = HDI_TAKE(&keep, hdi_pair, p[0].n * p[0].pivots + s->largest_pivots);
+    q->room = HDI_TAKE(&keep, double, HDI_CAST(uint64_t, p[0].n) * p[0].size +
+                       HDI_CAST(uint64_t, p[1].n) * p[1].size);
+    if (e->status < 0) {
+        memset(q, 0, sizeof *q);
+        hdi_scope_end(&keep);
+        return hdi_scope_end(&temp);
+    }
+    for (i = 0; i < s->n; i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
+    hdi_fill_i32(q->column, columns, -1);
+    return hdi_scope_end(&temp);                 /* what keep holds is q's own now */
 }
 
 /* ---- the run ---- */
@@ -12659,8 +12666,8 @@ static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u
     }
 }
 
-#define HDI_ILDL_LEAST 1e-3      /* share of its diagonal entry that a pivot must keep */
-#define HDI_MILDL_KEPT 0.97      /* share of the dropped fill that goes to the diagonal; 1: pivots may vanish */
+#define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
+#define HDI_MILDL_KEPT 0.97   /* share of the dropped fill that goes to the diagonal; with 1 pivots may vanish */
 
 /* A pivot that lost nearly all of its diagonal entry, or turned away from it, is replaced by that entry: an
  * incomplete factorisation may break down where the complete one cannot. */
@@ -12696,14 +12703,13 @@ static void hdi_ildl(const hdi_upper *up, hd_c64 *u, hd_c64 *d, const hd_c64 *di
         }
         for (p = begin; p < end; p++) {
             const int32_t i = up->col[p];
-            const int64_t row_len = up->ptr[i + 1] - up->ptr[i];
+            const int64_t row = up->ptr[i], row_len = up->ptr[i + 1] - row;
             const hd_c64 w = hdi_cmul(u[p], d[k]);
             hd_c64 kept = hdi_c(0, 0);
             if (row_len > 8 * (end - p)) {     /* look up the columns of k in the longer row i */
                 for (q = p + 1; q < end; q++) {
-                    const int64_t at = up->ptr[i] + hdi_lower_bound(up->col + up->ptr[i], row_len,
-                                                                    up->col[q]);
-                    if (at == up->ptr[i + 1] || up->col[at] != up->col[q]) continue;
+                    const int64_t at = row + hdi_lower_bound(up->col + row, row_len, up->col[q]);
+                    if (at == row + row_len || up->col[at] != up->col[q]) continue;
                     hdi_ildl_entry(u + at, d + up->col[q], keep, w, u[q]);
                     kept = hdi_cadd(kept, u[q]);
                 }
