@@ -8000,7 +8000,7 @@ static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     g->flag += stamped;
 }
 
-/* Twins all over L_me: they meet in the chains of the hash table, which is left empty. */
+/* Merges all twins within L_me: they are in the same chains of the hash table, which is left empty. */
 static void hdi_amd_merge(hdi_amd *g, const hdi_amd_node *me) {
     int32_t p, i, *head;
     for (p = me->at; p < me->at + me->len; p++) {
@@ -8013,7 +8013,7 @@ static void hdi_amd_merge(hdi_amd *g, const hdi_amd_node *me) {
     }
 }
 
-/* Strikes from L_me what is gone; the others get their degrees. */
+/* Removes from L_me the vertices that are gone; the others get their degrees. */
 static void hdi_amd_restore(hdi_amd *g, hdi_amd_node *me) {
     int32_t p, q = me->at, end = me->at + me->len;
     for (p = q; p < end; p++) {
@@ -8031,7 +8031,7 @@ static void hdi_amd_restore(hdi_amd *g, hdi_amd_node *me) {
     if (me->len == 0) me->mark = 0;
 }
 
-/* New marks must be above all old ones; once in a long while they begin anew. */
+/* Marks of the next step must be above all old ones. Before the numbers run out they begin anew. */
 static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     int32_t i;
     if (g->flag < INT32_MAX - 2 * step - g->n) {
@@ -8096,7 +8096,7 @@ static void hdi_amd_begin(hdi_amd *g, int32_t n, int32_t inner, int32_t *work, i
     }
 }
 
-/* Rows longer than this would be in most lists, and are eliminated last whatever happens. */
+/* Rows longer than this (as in AMD) would be in most lists, and are eliminated last whatever happens. */
 static int32_t hdi_amd_dense(int32_t n) {
     const double d = 10 * sqrt(HDI_CAST(double, n));
     return d < 16 ? 16 : HDI_CAST(int32_t, d);
@@ -8109,8 +8109,9 @@ static void hdi_amd_drop(hdi_amd *g, int32_t i) {
     g->left--;
 }
 
-/* All lists are there: rows without neighbours come first in the order, those dropped as dense last, the
- * others into the list of their degree. Returns how many the order holds without the dense ones. */
+/* Called when all lists are there: rows without neighbours come first in the order, those dropped as dense
+ * last, the others go into the list of their degree. Returns how many the order holds without the dense ones.
+ * */
 static int32_t hdi_amd_start(hdi_amd *g) {
     int32_t i, last = g->inner, count;
     for (i = 0; i < g->inner; i++) last -= g->v[i].weight == 0;
@@ -8261,6 +8262,8 @@ enum {
     HDI_ND_BUCKETS = 128,   /* gains that are told apart, for each side */
     HDI_ND_TASKS = 64,      /* parts that are ordered in parallel */
     HDI_ND_BLOCK = 8192,    /* rows that are read by a task */
+    HDI_ND_LARGE = 20000,   /* parts of more vertices are swept in 11 ways, */
+    HDI_ND_MIDDLING = 3000, /* those of more than this in 5, others in 2 */
     HDI_ND_PASSES = 3,      /* of exchanges on each copy */
     HDI_ND_PATIENCE = 200,  /* most moves without a better cut before a pass ends */
     HDI_ND_BAND = 12,       /* a band has at most this share of a part's vertices on each side */
@@ -8306,7 +8309,8 @@ typedef struct hdi_nd {
     hdi_nd_part *part, *child;       /* of the running loop: part i halves into child[2 i], child[2 i + 1] */
 } hdi_nd;
 
-/* Work space left to a task; taken from its front, given back by forgetting the copy that was taken from. */
+/* Work space left to a task. A step takes from its front; the space is given back when the copy of this
+ * struct that the step worked with is dropped. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
 /* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes
@@ -8364,19 +8368,26 @@ static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit
     }
 }
 
+/* count[i] becomes the sum of those before it. Returns the sum of all. */
+static int32_t hdi_nd_sums(int32_t *count, int32_t n) {
+    int32_t i, sum = 0;
+    for (i = 0; i < n; i++) {
+        const int32_t c = count[i];
+        count[i] = sum;
+        sum += c;
+    }
+    return sum;
+}
+
 /* order = the rows by ascending key: three passes of ten bits. spare [n], count [1024]. */
 static void hdi_nd_sort(const uint32_t *key, int32_t n, int32_t *order, int32_t *spare, int32_t *count) {
     int32_t i, shift, *from = spare, *to = order;
     for (i = 0; i < n; i++) from[i] = i;
     for (shift = 0; shift < 30; shift += 10) {
-        int32_t sum = 0, *t;
+        int32_t *t;
         memset(count, 0, 1024 * sizeof *count);
         for (i = 0; i < n; i++) count[key[i] >> shift & 1023u]++;
-        for (i = 0; i < 1024; i++) {
-            const int32_t c = count[i];
-            count[i] = sum;
-            sum += c;
-        }
+        hdi_nd_sums(count, 1024);
         for (i = 0; i < n; i++) to[count[key[from[i]] >> shift & 1023u]++] = from[i];
         t = from;
         from = to;
@@ -8386,9 +8397,9 @@ static void hdi_nd_sort(const uint32_t *key, int32_t n, int32_t *order, int32_t 
 
 /* ---- coarse copies ---- */
 
-/* Clusters of neighbours: each vertex still free takes its free neighbours, to at most limit of weight. One
- * that finds none joins a neighbour's cluster; without any, one left alone before. weight [n]. Returns their
- * number. */
+/* Makes clusters of neighbours: each vertex still free takes its free neighbours, up to a weight of limit. A
+ * vertex that finds none joins the cluster of a neighbour, or, where none has room, the last vertex that was
+ * left alone. weight [n]: of the clusters. Returns their number. */
 static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *weight) {
     int32_t v, p, n = 0, single = -1, *map = g->map;
     for (v = 0; v < g->n; v++) map[v] = -1;
@@ -8627,8 +8638,8 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     }
 }
 
-/* The vertex to move next: of largest gain, where the side it goes to stays below most or below the side it
- * leaves. -1: none. */
+/* The vertex to move next: the one of largest gain, where the side that it goes to stays below `most` or
+ * below the side that it leaves. -1: there is none. */
 static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     int32_t s, best = -1, gain = 0;
     for (s = 0; s < 2; s++) {
@@ -8645,8 +8656,8 @@ static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     return best;
 }
 
-/* Fiduccia-Mattheyses: moves the best vertex, even at a loss, each once in a pass; goes back to the best cut
- * seen. */
+/* Passes of Fiduccia and Mattheyses: each moves the best vertex again and again, even at a loss, no vertex
+ * twice, and then goes back to the best cut seen. */
 static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes) {
     const int64_t patience = hdi_least(20 + m->g->n / 20, HDI_ND_PATIENCE);
     while (passes-- > 0) {
@@ -8727,8 +8738,9 @@ static uint64_t hdi_nd_key(double x) {
     return u >> 63 ? ~u : u | 0x8000000000000000u;
 }
 
-/* Values along which the vertices are swept, as keys to sort by: 0 the longest straight line, 1 graph
- * distance, others fixed directions. 0 if all are equal. work [3 g->n]. */
+/* The values along which the vertices are swept, as keys to sort by. kind 0: places along the longest
+ * straight line; 1: graph distances; others: places along fixed directions. Returns 0 if all values are
+ * equal. work [3 g->n]. */
 static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                              int32_t *work) {
     static const signed char directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
@@ -8759,7 +8771,7 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
 }
 
 /* The sides that the best place in the order of key gives. */
-static double hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
+static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
     double weight = 0, cut = 0, best = DBL_MAX;
     int32_t i, p, keep = 0;
     memset(g->side, 1, HDI_CAST(size_t, g->n));
@@ -8781,20 +8793,18 @@ static double hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double to
         }
     }
     for (i = keep; i < g->n; i++) g->side[key[i].id] = 1;
-    return best;
 }
 
 /* Cuts the coarsest copy: the best of several sweeps, each refined. */
-static hdi_nd_cut hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t total, hdi_nd_space s) {
-    const int32_t tries = total > 20000 ? 11 : total > 3000 ? 5 : 2;
+static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t total, hdi_nd_space s) {
+    const int32_t tries = total > HDI_ND_LARGE ? 11 : total > HDI_ND_MIDDLING ? 5 : 2;
     int32_t t, any = 0, *work;
     double best = DBL_MAX;
     hdi_pair *key;
     int8_t *side;
     hdi_nd_mover m = hdi_nd_mover_make(g, &s);
-    hdi_nd_cut cut, kept;
+    hdi_nd_cut cut;
     cut.most = HDI_ND_HEAVIER * total;
-    kept = cut;
     side = hdi_nd_take_bytes(&s, g->n);
     work = hdi_nd_take(&s, 3 * HDI_CAST(int64_t, g->n));
     if (HDI_RECAST(uintptr_t, s.at) % sizeof(uint64_t)) hdi_nd_take(&s, 1);
@@ -8804,23 +8814,21 @@ static hdi_nd_cut hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int3
         if (!hdi_nd_sweep_keys(nd, g, t, key, work) && (any || t + 1 < tries)) continue;
         any = 1;
         hdi_sort_pairs(key, g->n);
-        cost = hdi_nd_sweep(g, key, total);
+        hdi_nd_sweep(g, key, total);
         hdi_nd_refine_edges(&m, &cut, HDI_ND_PASSES);
         cost = hdi_nd_cost(cut.cut, cut.weight[0], cut.weight[1]);
         if (cost >= best) continue;
         best = cost;
-        kept = cut;
         memcpy(side, g->side, HDI_CAST(size_t, g->n));
     }
     memcpy(g->side, side, HDI_CAST(size_t, g->n));
-    return kept;
 }
 
 /* ---- smallest separator in a band ---- */
 
-/* Vertex-disjoint paths through the band around a separator, from what lies beyond it on the side from to
- * what lies beyond on the other. As many as there can be are as many as a separator must have (Menger). A
- * path enters v at state 2 v and leaves it at 2 v + 1. */
+/* Vertex-disjoint paths through the band around a separator, from what lies beyond it on side `from` to what
+ * lies beyond it on the other side. The largest number of such paths is the smallest number of vertices that
+ * a separator has (Menger). A path enters v at state 2 v and leaves it at 2 v + 1. */
 typedef struct hdi_nd_flow {
     const hdi_nd_graph *g;
     int32_t *band, n_band;      /* its vertices, by distance from the separator */
@@ -8833,8 +8841,8 @@ typedef struct hdi_nd_flow {
                                    minus on side from */
 } hdi_nd_flow;
 
-/* The band: the separator (band[0..n)) and what is near it, at most most vertices of each side and layers
- * steps away. */
+/* The band consists of the separator, band[0..n), and of the vertices at most `layers` steps away from it, no
+ * more than `most` on each side. */
 static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     const hdi_nd_graph *g = f->g;
     int32_t i, p, begin = 0, room[2];
@@ -8863,7 +8871,8 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
     f->stamp = 0;
 }
 
-/* A path from state: changes the paths there are along it. */
+/* A path that ends in this state has been found: joins it to the others, which give up the steps that it
+ * takes back. */
 static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     int32_t up;
     f->next[state >> 1] = -1;
@@ -8879,7 +8888,7 @@ static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     f->prev[state >> 1] = -1;
 }
 
-/* State to comes after state from: among those of its layer. */
+/* Notes that state `to` can be reached from state `from`, in the list of its layer. */
 static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     const int32_t layer = f->inside[to >> 1];
     f->seen[to] = f->stamp;
@@ -8890,8 +8899,9 @@ static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     if (layer > f->top) f->top = layer;
 }
 
-/* Searches from vertex v, always on from a state in the layer farthest on. 1: one path more. What a failed
- * search has seen leads nowhere for good. */
+/* Searches one more path from vertex v; goes on from the state that is farthest towards the other side.
+ * Returns 1 when there is one. What a failed search has seen cannot be part of any path, and is dead from
+ * then on. */
 static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p, i;
@@ -9005,15 +9015,11 @@ static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph
     memcpy(level[1].id, temp[n].id, HDI_CAST(size_t, temp[n].n) * sizeof(int32_t));
 }
 
-/* near_cut[v] = v touches the other side. */
-static void hdi_nd_near(const hdi_nd_graph *g, int8_t *near_cut) {
-    int32_t v, p;
-    for (v = 0; v < g->n; v++) {
-        int8_t other = 0;
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            other = HDI_CAST(int8_t, other | (g->side[g->adj[p]] ^ g->side[v]));
-        near_cut[v] = other;
-    }
+static int hdi_nd_touches(const hdi_nd_graph *g, int32_t v) {
+    int32_t p;
+    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+        if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) return 1;
+    return 0;
 }
 
 /* The sides of level[0]: cuts the coarsest copy and takes the cut down. Returns in list the vertices that
@@ -9041,17 +9047,13 @@ static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hd
     hdi_nd_descend(level, l, part->n, s);
     if (l > 0) {
         near_cut = hdi_nd_take_bytes(&s, level[1].n);
-        hdi_nd_near(level + 1, near_cut);
+        for (v = 0; v < level[1].n; v++) near_cut[v] = HDI_CAST(int8_t, hdi_nd_touches(level + 1, v));
         for (v = 0; v < g->n; v++) g->side[v] = level[1].side[g->map[v]];
     }
     for (v = 0; v < g->n; v++) {
-        if (near_cut && !near_cut[g->map[v]]) continue;
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) {
-                touch[g->side[v]]++;
-                list[n++] = v;
-                break;
-            }
+        if ((near_cut && !near_cut[g->map[v]]) || !hdi_nd_touches(g, v)) continue;
+        touch[g->side[v]]++;
+        list[n++] = v;
     }
     for (p = 0; p < n; p++)
         if (g->side[list[p]] == (touch[1] < touch[0])) list[kept++] = list[p];
@@ -9060,10 +9062,10 @@ static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hd
 
 /* Weighs the sides of g. 0 if they differ too much, or the separator is most of it. */
 static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
-    int32_t v, count[3] = {0, 0, 0};
-    for (v = 0; v < g->n; v++) count[g->side[v]]++;
-    for (v = 0; v < 3; v++) size[v] = count[v];
-    return count[0] <= g->n - g->n / 5 && count[1] <= g->n - g->n / 5 && count[2] <= g->n / 2;
+    int32_t v;
+    size[0] = size[1] = size[2] = 0;
+    for (v = 0; v < g->n; v++) size[g->side[v]]++;
+    return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
 /* Sides by number, for graphs on which all else failed. */
@@ -9103,13 +9105,16 @@ static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_grap
     return hdi_nd_measure(level, size);
 }
 
+/* Words of work space for so many vertices, entries and tasks. */
+static size_t hdi_nd_words(int32_t n, int32_t n_edges, int64_t tasks) {
+    return HDI_ND_WORDS * HDI_CAST(size_t, n) + 2 * HDI_CAST(size_t, n_edges) +
+        HDI_ND_SLACK * HDI_CAST(size_t, tasks);
+}
+
 static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, const hdi_nd_part *p, int64_t index) {
     hdi_nd_space s;
-    s.at = nd->work + HDI_CAST(size_t, HDI_ND_WORDS) * HDI_CAST(size_t, p->first) +
-        2 * HDI_CAST(size_t, p->edge) +
-           HDI_CAST(size_t, HDI_ND_SLACK) * HDI_CAST(size_t, index);
-    s.end = s.at + HDI_CAST(size_t, HDI_ND_WORDS) * HDI_CAST(size_t, p->n) +
-        2 * HDI_CAST(size_t, p->n_edges) + HDI_ND_SLACK;
+    s.at = nd->work + hdi_nd_words(p->first, p->edge, index);
+    s.end = s.at + hdi_nd_words(p->n, p->n_edges, 1);
     return s;
 }
 
@@ -9211,12 +9216,10 @@ static void hdi_nd_bare(hdi_nd_graph *g) {
 
 /* Orders a part by minimum degree, separators around it as halo, if there is space for that. Its graph is
  * changed in place. */
-static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
-    hdi_nd_graph g[2];
+static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *g, hdi_nd_space s) {
     hdi_amd_graph rows;
     int32_t v, halo, *local = nd->perm + part->first;
     if (!part->n) return;
-    hdi_nd_graphs_of(nd, part, g);
     halo = hdi_nd_halo(part, g->adj, s);
     if (hdi_amd_part_words(part->n, halo, part->n_edges) > s.end - s.at) {
         hdi_nd_bare(g);
@@ -9244,7 +9247,7 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     hdi_nd_graphs_of(nd, part, level);
     level->side = hdi_nd_take_bytes(&rest, part->n);
     if (small || !hdi_nd_dissect(nd, part, level, rest, size)) {
-        hdi_nd_leaf(nd, part, s);
+        hdi_nd_leaf(nd, part, level, s);
         return;
     }
     last = part->first + part->n - size[2];
@@ -9316,28 +9319,30 @@ typedef struct hdi_nd_load_job {
     const hdi_nd *nd;
     const hd_csr *a;
     const int32_t *order, *inv;
-    const float *unit;
+    const float *unit;         /* [3 a->n_rows] places of the rows */
     int32_t n, *from, *to;     /* of block i: its place in the second buffer; its place in the first,
                                   [n_blocks + 1] */
 } hdi_nd_load_job;
 
 static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
     const hdi_nd_load_job *job = HDI_CAST(const hdi_nd_load_job *, arg);
+    const hd_csr *a = job->a;
+    const hdi_nd_buffer *b = job->nd->buffer;
     const int32_t first = HDI_CAST(int32_t, index) * HDI_ND_BLOCK;
-    const int32_t last = first + HDI_ND_BLOCK < job->n ? first + HDI_ND_BLOCK : job->n;
-    int32_t k, z = 0, *ptr = job->nd->buffer[0].ptr, *adj = job->nd->buffer[1].adj + job->from[index];
+    const int32_t last = HDI_CAST(int32_t, hdi_least(first + HDI_ND_BLOCK, job->n));
+    int32_t k, z = 0, *adj = b[1].adj + job->from[index];
     int64_t p;
     (void)worker;
     for (k = first; k < last; k++) {
         const int32_t r = job->order[k];
-        if (k + 8 < last) HDI_PREFETCH(job->a->col + job->a->row_ptr[job->order[k + 8]]);
+        if (k + HDI_ROWS_AHEAD < last) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
         memcpy(job->nd->xyz + 3 * HDI_CAST(size_t, k), job->unit + 3 * HDI_CAST(size_t, r),
                3 * sizeof(float));
-        ptr[k] = z;
-        job->nd->buffer[0].id[k] = k;
-        for (p = job->a->row_ptr[r]; p < job->a->row_ptr[r + 1]; p++) {
-            adj[z] = job->inv[job->a->col[p]];
-            z += job->a->col[p] != r && adj[z] >= 0;
+        b->ptr[k] = z;
+        b->id[k] = k;
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
+            adj[z] = job->inv[a->col[p]];
+            z += a->col[p] != r && adj[z] >= 0;
         }
     }
     job->to[index] = z;
@@ -9345,48 +9350,33 @@ static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
 
 static void hdi_nd_move_task(void *arg, int64_t index, int32_t worker) {
     const hdi_nd_load_job *job = HDI_CAST(const hdi_nd_load_job *, arg);
-    const int32_t first = HDI_CAST(int32_t, index) * HDI_ND_BLOCK;
-    const int32_t last = first + HDI_ND_BLOCK < job->n ? first + HDI_ND_BLOCK : job->n;
-    const int32_t to = job->to[index], count = job->to[index + 1] - to;
-    int32_t k, *ptr = job->nd->buffer[0].ptr;
+    const hdi_nd_buffer *b = job->nd->buffer;
+    const int32_t first = HDI_CAST(int32_t, index) * HDI_ND_BLOCK, to = job->to[index];
+    const int32_t last = HDI_CAST(int32_t, hdi_least(first + HDI_ND_BLOCK, job->n));
+    int32_t k;
     (void)worker;
-    for (k = first; k < last; k++) ptr[k] += to;
-    memcpy(job->nd->buffer[0].adj + to, job->nd->buffer[1].adj + job->from[index],
-           HDI_CAST(size_t, count) * sizeof(int32_t));
+    for (k = first; k < last; k++) b->ptr[k] += to;
+    memcpy(b->adj + to, b[1].adj + job->from[index], HDI_CAST(size_t,
+                                                              job->to[index + 1] - to) * sizeof(int32_t));
 }
 
-/* The whole matrix as a part, its n rows numbered by order. unit [3 a->n_rows]: places of the rows. work [2
- * blocks + 2]. */
-static hdi_nd_part hdi_nd_load(const hdi_nd *nd, const hd_csr *a, const int32_t *order, const int32_t *inv,
-                               int32_t n, const float *unit, int32_t *work, hd_context *ctx) {
-    const int32_t n_blocks = (n + HDI_ND_BLOCK - 1) / HDI_ND_BLOCK;
-    hdi_nd_load_job job;
+/* Reads the whole matrix as one part, its n rows numbered by order. work [2 blocks + 2] becomes job->from and
+ * job->to. */
+static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t *work, hd_context *ctx) {
+    const int32_t n = job->n, n_blocks = (n + HDI_ND_BLOCK - 1) / HDI_ND_BLOCK;
     hdi_nd_part part;
-    int32_t i, k, z = 0;
-    job.nd = nd;
-    job.a = a;
-    job.order = order;
-    job.inv = inv;
-    job.unit = unit;
-    job.n = n;
-    job.from = work;
-    job.to = work + n_blocks;
+    int32_t k, z = 0;
+    job->from = work;
+    job->to = work + n_blocks;
     for (k = 0; k < n; k++) {
-        if (k % HDI_ND_BLOCK == 0) job.from[k / HDI_ND_BLOCK] = z;
-        z += HDI_CAST(int32_t, a->row_ptr[order[k] + 1] - a->row_ptr[order[k]]);
+        if (k % HDI_ND_BLOCK == 0) job->from[k / HDI_ND_BLOCK] = z;
+        z += HDI_CAST(int32_t, job->a->row_ptr[job->order[k] + 1] - job->a->row_ptr[job->order[k]]);
     }
-    hdi_parallel(ctx, n_blocks, hdi_nd_load_task, &job);
-    for (i = 0, z = 0; i < n_blocks; i++) {
-        const int32_t count = job.to[i];
-        job.to[i] = z;
-        z += count;
-    }
-    job.to[n_blocks] = z;
-    hdi_parallel(ctx, n_blocks, hdi_nd_move_task, &job);
-    nd->buffer[0].ptr[n] = z;
+    hdi_parallel(ctx, n_blocks, hdi_nd_load_task, job);
     memset(&part, 0, sizeof part);
     part.n = n;
-    part.n_edges = z;
+    part.n_edges = job->to[n_blocks] = job->nd->buffer->ptr[n] = hdi_nd_sums(job->to, n_blocks);
+    hdi_parallel(ctx, n_blocks, hdi_nd_move_task, job);
     return part;
 }
 
@@ -9427,6 +9417,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = HDI_CAST(uint64_t, a->n_rows);
+    hdi_nd_load_job job;
     hdi_nd nd;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
     int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
@@ -9437,8 +9428,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     memset(&nd, 0, sizeof nd);
     nd.perm = perm;
     nd.xyz = HDI_TAKE(&s, float, 3 * n + 1);
-    nd.work = HDI_TAKE(&s, int32_t, HDI_ND_WORDS * n + 2 * HDI_CAST(uint64_t, a->nnz) +
-                       HDI_ND_SLACK * HDI_ND_TASKS);
+    nd.work = HDI_TAKE(&s, int32_t, hdi_nd_words(a->n_rows, HDI_CAST(int32_t, a->nnz), HDI_ND_TASKS));
     nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
     nd.child = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
     hdi_nd_buffer_make(nd.buffer, a, &s);
@@ -9446,7 +9436,13 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     if (e->status < 0) return hdi_scope_end(&s);
     hdi_nd_keys(xyz, a->n_rows, key, unit);
     k = hdi_nd_number(a, key, order, inv, count);
-    nd.part[0] = hdi_nd_load(&nd, a, order, inv, k, unit, count, ctx);
+    job.nd = &nd;
+    job.a = a;
+    job.order = order;
+    job.inv = inv;
+    job.unit = unit;
+    job.n = k;
+    nd.part[0] = hdi_nd_load(&job, count, ctx);
     hdi_nd_run(&nd, ctx, e);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < k; i++) perm[i] = order[perm[i]];
@@ -10812,7 +10808,7 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     return HD_OK;
 }
 
-/* Collects what the parts saw; the failure of the lowest pivot is the one to tell. */
+/* Collects what the parts saw. Of several failures that of the lowest pivot is reported. */
 static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e) {
     int32_t i;
     hdi_pivots_clear(&f->all);
@@ -10860,9 +10856,9 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
 }
 
 /* ---- solves ---- */
-/* x [n] entries in elimination order. Forward, a front hands its parent a vector, as it does update matrices,
- * so that subtrees are independent both ways. Right-hand sides with few non-zeros touch few fronts: active
- * [n_super] tells which (NULL: all), closed towards the roots. */
+/* x has n entries in elimination order. On the way up a front hands a vector to its parent, as it does with
+ * update matrices, so that subtrees are independent both ways. Right-hand sides with few non-zeros touch few
+ * fronts: active [n_super] marks them, closed towards the roots; NULL: all. */
 typedef struct hdi_sweep {
     const hdi_factor *f;
     double *x, *vec;             /* [n][k], [vector_size][k] entries */
@@ -11322,12 +11318,10 @@ typedef struct hdi_forms {
     const hd_csr *a;             /* the pattern */
     const double *x;             /* X by its entries */
     int32_t *inv;                /* [n] pivot of a row of A */
-    int32_t cols, n_slots;       /* columns of a block at most; blocks of a front of the top at the same
-                                    time */
+    int32_t cols, n_slots;       /* columns of a block at most; blocks at the same time in a top front */
     hdi_form_places place[2];    /* of subtrees, of the top */
-    uint64_t *active;            /* [1 + n_slots][n_super],
-        all subtrees share the first: which columns of the block have
-                                    come to a front. 0 between blocks */
+    uint64_t *active;            /* [1 + n_slots][n_super], subtrees share the first: which columns of the
+                                    block have come to a front. 0 between blocks */
     int32_t *column;             /* by places: place in the block of a pivot's column, -1: not in it */
     hdi_pair *order;             /* [n_tasks][task_pivots], [largest_pivots] */
     double *room;                /* by places */
@@ -11368,8 +11362,8 @@ static uint64_t hdi_inverse_buffer(int32_t width) {
 
 static uint64_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
     const int64_t w = hdi_least(p, HDI_PANEL), slices = width == 1 ? (m + w) * (w + HDI_REAL_NR) : 0;
-    return HDI_CAST(uint64_t, width * (stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS) +
-                    slices) + hdi_inverse_buffer(width) + 64;
+    const int64_t entries = stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS;
+    return HDI_CAST(uint64_t, width * entries + slices) + hdi_inverse_buffer(width) + 64;
 }
 
 static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
@@ -11809,10 +11803,11 @@ static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at
 enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_NEAR = 32 };
 #define HDI_FORM_OPEN (HDI_CAST(uint64_t, 1) << 63)   /* of active: the front's rows are on the stack */
 
-/* A block of columns of front J under way. Rows of fronts stand on a stack: a front's come when the first of
- * its children that is touched is done, or it has none, and are added to its parent's; so that there are
- * never others than those of the front under way and of some of its ancestors. A row has the entries of the
- * columns that have come, and with a real factor those of eight, or of one. */
+/* A block of columns of front J under way. The rows of fronts stand on a stack. Those of a front are put
+ * there when the first of its children that is touched is done, or when it has none; when the front is done
+ * they are added to those of its parent. So the stack only ever holds the front under way and some of its
+ * ancestors. A row has entries for the columns that have come to the front; with a real factor for eight
+ * columns, or for one. */
 typedef struct hdi_form_block {
     const hdi_forms *q;
     const hdi_inverse_front *w;  /* J */
@@ -11841,8 +11836,8 @@ static int32_t hdi_form_count(uint64_t set) {
 
 /* Doubles that Z r works with, for blocks of so many columns. */
 static uint64_t hdi_form_work(int32_t width, int32_t cols) {
-    return width == 1 ? 0 : HDI_CAST(uint64_t, width) * HDI_INV_ROWS * HDI_CAST(uint64_t, cols) +
-        hdi_inverse_buffer(width);
+    if (width == 1) return 0;
+    return HDI_CAST(uint64_t, width) * HDI_INV_ROWS * HDI_CAST(uint64_t, cols) + hdi_inverse_buffer(width);
 }
 
 /* Doubles of a row of k columns. */
@@ -12156,9 +12151,9 @@ static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
     hdi_form_run(job->z, &b);
 }
 
-/* The forms of a front's pivots, one by one where that is possible, the others in blocks that do not depend
- * on who works on them: at the top all threads do. Columns that begin close to each other share more of their
- * ways. */
+/* The forms of a front's pivots: one by one where that is possible, the others in blocks. The blocks do not
+ * depend on who works on them; in the top all threads do. They are sorted by the fronts where they begin,
+ * because columns that begin close to each other share more of their ways. */
 static void hdi_forms_front(const hdi_inverse *z, const hdi_inverse_front *w) {
     const hdi_forms *q = z->forms;
     const hdi_symbolic *s = w->f->sym;
@@ -12190,7 +12185,7 @@ static void hdi_form_rows(const hdi_symbolic *s, int64_t *need, int64_t *in_task
     int32_t v, k;
     *in_tasks = *in_all = 0;
     for (v = 0; v < s->n_super; v++) {
-        const int64_t m = hdi_front_pivots(s, v) + hdi_front_below(s, v);
+        const int64_t m = hdi_front_rows(s, v);
         need[v] = m;
         for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {   /* v's rows come after the first child */
             const int64_t sum = need[s->kid[k]] + (k > s->kid_ptr[v] ? m : 0);
@@ -12210,15 +12205,14 @@ static void hdi_forms_free(hdi_forms *q, hd_context *ctx) {
     memset(q, 0, sizeof *q);
 }
 
-/* Sizes of n places with so many pivots, rows of a child and rows on the stack. */
+/* Sizes of n places with so many pivots, rows of a child and rows on the stack, each of `row` doubles. */
 static hdi_form_places hdi_form_places_of(int64_t n, int64_t pivots, int64_t below, int64_t rows,
-                                          int32_t width, int32_t cols) {
-    const uint64_t row = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, cols);
+                                          uint64_t row) {
     hdi_form_places p;
     p.n = n;
     p.pivots = pivots;
     p.aside = HDI_CAST(uint64_t, below) * row;
-    p.size = p.aside + hdi_form_work(width, cols) + HDI_CAST(uint64_t, rows) * row;
+    p.size = p.aside + HDI_CAST(uint64_t, rows) * row;
     return p;
 }
 
@@ -12229,15 +12223,18 @@ enum { HDI_FORM_SMALL = 65536 };     /* doubles of room that are never too many 
 static void hdi_forms_size(hdi_forms *q, const hdi_symbolic *s, int32_t width, int64_t *need) {
     const int64_t stored = width == 1 ? s->panel[s->n_super] : s->stored;
     int64_t in_tasks, in_all;
+    uint64_t row;
+    int k;
     hdi_form_rows(s, need, &in_tasks, &in_all);
     q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
     q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
     while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 +
            HDI_FORM_SMALL)
         q->cols = width == 1 ? 1 : q->cols / 2;
-    q->place[0] = hdi_form_places_of(s->n_tasks, s->task_pivots, s->task_update, in_tasks, width, q->cols);
-    q->place[1] = hdi_form_places_of(q->n_slots, s->largest_pivots, s->largest_update, in_all, width,
-                                     q->cols);
+    row = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, q->cols);
+    q->place[0] = hdi_form_places_of(s->n_tasks, s->task_pivots, s->task_update, in_tasks, row);
+    q->place[1] = hdi_form_places_of(q->n_slots, s->largest_pivots, s->largest_update, in_all, row);
+    for (k = 0; k < 2; k++) q->place[k].size += hdi_form_work(width, q->cols);
 }
 
 /* Room for the forms of x on the pattern of a, with factors of the given width. */
@@ -12288,20 +12285,21 @@ static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scrat
     const hdi_symbolic *s = z->f->sym;
     const hdi_inverse *all = shared ? z : NULL;
     const int real = z->f->width == 1;
+    const int32_t nr = z->f->real->nr;
     hdi_inverse_front w = hdi_inverse_open(z->f, v, scratch);
+    int64_t u;
     int32_t k;
     hdi_factor_fetch(z->f, v, 1);
     for (w.k0 = (w.p - 1) / HDI_PANEL * HDI_PANEL; w.k0 >= 0; w.k0 -= HDI_PANEL) {
         w.k1 = hdi_least(w.k0 + HDI_PANEL, w.p);
+        u = w.m - w.k1;
         if (real) hdi_inverse_pivots_real(&w);
         else hdi_inverse_pivots_pack(&w);
         if (w.k1 == w.m) continue;
         hdi_inverse_stage_run(all, &w, HDI_INVERSE_M, w.k1, w.m);
-        if (real) hdi_inverse_slices_real(w.slices, z->f->real->nr, w.M, w.m - w.k1, w.m - w.k1, w.k1 - w.k0);
+        if (real) hdi_inverse_slices_real(w.slices, nr, w.M, u, u, w.k1 - w.k0);
         hdi_inverse_stage_run(all, &w, HDI_INVERSE_BELOW, w.k1, w.m);
-        if (real)
-            hdi_inverse_slices_real(w.slices, z->f->real->nr, w.z + w.k1 + w.k0 * w.m, w.m, w.m - w.k1,
-                                    w.k1 - w.k0);
+        if (real) hdi_inverse_slices_real(w.slices, nr, w.z + w.k1 + w.k0 * w.m, w.m, u, w.k1 - w.k0);
         hdi_inverse_stage_run(all, &w, HDI_INVERSE_CORNER, 0, w.k1 - w.k0);
     }
     hdi_inverse_emit(z, &w);
@@ -12333,41 +12331,38 @@ static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
 static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hd_context *ctx,
                                   hd_error *e) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
-    const int32_t n_chunks = s->largest_front / HDI_INV_CHUNK + HDI_CAST(int32_t, HDI_PANEL) / HDI_REAL_MR +
-        2;
+    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_CAST(int32_t, HDI_REAL_MR) + 2;
+    hdi_scope keep = hdi_scope_begin(ctx, e);
     int32_t v;
     memset(z, 0, sizeof *z);
     for (v = 0; v < s->n_super; v++) {
-        const int64_t p = hdi_front_pivots(s, v), m = p + hdi_front_below(s, v);
-        const uint64_t size = hdi_inverse_scratch(m, p, at[v + 1] - at[v], width);
+        const int64_t m = hdi_front_rows(s, v);
+        const uint64_t size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), at[v + 1] - at[v], width);
         if (size > z->top_size) z->top_size = size;
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
     z->chunk_size = hdi_inverse_buffer(width);
-    z->scratch = HDI_CAST(double *, hdi_alloc(ctx, z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) +
-                                              z->top_size, sizeof(double), e));
-    if (z->scratch)
-        z->chunk = HDI_CAST(double *, hdi_alloc(ctx, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, n_chunks)
-                                                : 1, sizeof(double), e));
-    if (!z->chunk) hdi_inverse_free(z, ctx);
-    return e->status;
+    z->scratch = HDI_TAKE(&keep, double, z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size);
+    z->chunk = HDI_TAKE(&keep, double, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, chunks) : 1);
+    if (e->status >= 0) return HD_OK;            /* the blocks are z's own */
+    z->scratch = z->chunk = NULL;
+    return hdi_scope_end(&keep);
 }
 
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
  * the factor's update matrices. */
 static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     const hdi_symbolic *s = f->sym;
+    double *scratch = z->scratch + z->scratch_size * HDI_CAST(size_t, s->n_tasks);
     int32_t i;
     z->f = f;
     z->stop = 0;
     z->done = s->n_top > 0 ? 0.5 : 0;
     hdi_error_clear(&z->error);
     for (i = s->n_top; i-- > 0 && !z->stop;) {
-        const int32_t v = s->top[i];
-        const int64_t m = hdi_front_pivots(s, v) + hdi_front_below(s, v);
+        const int shared = hdi_front_rows(s, s->top[i]) >= 2 * HDI_INV_CHUNK;
         if (hdi_progress(f->ctx, "invert", 0.5 * (s->n_top - 1 - i) / s->n_top, &z->error) < 0) z->stop = 1;
-        else hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * HDI_CAST(size_t, s->n_tasks),
-                                   m >= 2 * HDI_INV_CHUNK);
+        else hdi_inverse_front_run(z, s->top[i], scratch, shared);
     }
     if (!z->stop) hdi_parallel(f->ctx, s->n_tasks, hdi_inverse_task, z);
     if (z->error.status < 0) *e = z->error;
@@ -12667,7 +12662,7 @@ static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u
 }
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
-#define HDI_MILDL_KEPT 0.97   /* share of the dropped fill that goes to the diagonal; with 1 pivots may vanish */
+#define HDI_MILDL_KEPT 0.97   /* share of the dropped fill that goes to the diagonal; 1: pivots may vanish */
 
 /* A pivot that lost nearly all of its diagonal entry, or turned away from it, is replaced by that entry: an
  * incomplete factorisation may break down where the complete one cannot. */
