@@ -10404,7 +10404,8 @@ static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch)
 }
 
 /* Entry `from` of A, for one matrix or four. row: of a diagonal entry, else -1. */
-static void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int32_t row, double *to) {
+static HDI_INLINE void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int32_t row,
+                                     double *to) {
     int q;
     if (a->l) {
         const double l = a->t * a->l[from], b = a->b ? a->b[from] : row >= 0 ? a->b_diag[row] : 0;
