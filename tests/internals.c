@@ -352,7 +352,7 @@ static void int_cuthill_mckee(void) {
     seen = DENSE_NEW(int32_t, both.n);
     dense_shuffle(perm, both.n, &seed);
     CHECK(hd_csr_permute(&shuffled, &lap->L, perm, NULL, &e) == HD_OK);
-    CHECK(hdi_sym_cuthill_mckee(&shuffled, perm, &ctx, &e) == HD_OK);
+    CHECK(hdi_precond_cuthill_mckee(&shuffled, perm, &ctx, &e) == HD_OK);
     for (i = 0; i < both.n; i++)
         if (perm[i] >= 0 && perm[i] < both.n) seen[perm[i]]++;
     for (i = 0; i < both.n; i++) missing += seen[i] != 1;
@@ -1070,19 +1070,25 @@ static void int_symbolic_one(const hd_csr *a, int32_t *perm, int dense, const ch
 /* The tree and the counts of columns by their definitions. */
 static void int_tree_one(const hd_csr *a, const int32_t *order, const char *what) {
     const int32_t n = a->n_rows, n1 = n + 1;
-    int32_t *perm = DENSE_NEW(int32_t, n1), *parent = DENSE_NEW(int32_t, n1), *count = DENSE_NEW(int32_t, n1), *low = DENSE_NEW(int32_t, a->nnz + 1);
-    int32_t *up = DENSE_NEW(int32_t, a->nnz + 1), *w = DENSE_NEW(int32_t, 7 * n1), *plain = DENSE_NEW(int32_t, n1), i, j, k;
-    int64_t *ptr = DENSE_NEW(int64_t, n1), *up_ptr = DENSE_NEW(int64_t, n1);
+    int32_t *perm = DENSE_NEW(int32_t, n1), *plain = DENSE_NEW(int32_t, n1), i, j, k;
     char *l = int_fill(a, order);
+    hdi_sym_work w;
+    hd_context ctx;
+    hd_error e;
+    hdi_scope s;
+    memset(&ctx, 0, sizeof ctx);
+    s = hdi_scope_begin(&ctx, &e);
+    hdi_sym_work_take(&w, a, &s);
+    CHECK(e.status == HD_OK);
     memcpy(perm, order, (size_t)n * sizeof *perm);
-    hdi_sym_lower(a, perm, w, ptr, low);
-    hdi_sym_etree(n, ptr, low, plain, w);
+    hdi_sym_triangle(a, perm, &w, NULL);
+    hdi_sym_etree(n, w.lower_ptr, w.lower, plain, w.head);
     for (j = 0; j < n; j++) {
         for (i = j + 1; i < n && !l[i * n + j]; i++) {}
         CHECK_MSG(plain[j] == (i < n ? i : -1), "%s: parent of %d is %d", what, (int)j, (int)plain[j]);
     }
     free(l);
-    hdi_sym_tree(a, perm, parent, count, ptr, low, up_ptr, up, w);
+    hdi_sym_tree(a, perm, &w);
     l = int_fill(a, perm);
     for (j = 0; j < n; j++) {
         int32_t first = -1;
@@ -1090,19 +1096,13 @@ static void int_tree_one(const hd_csr *a, const int32_t *order, const char *what
             k += l[i * n + j];
             if (i > j && l[i * n + j] && first < 0) first = i;
         }
-        CHECK_MSG(count[j] == k, "%s: column %d has %d entries, not %d", what, (int)j, (int)k, (int)count[j]);
-        CHECK_MSG(parent[j] == first, "%s: postordered, the parent of %d is %d, not %d", what, (int)j, (int)first, (int)parent[j]);
-        CHECK(j == 0 || parent[j - 1] == -1 || parent[j - 1] >= j);
+        CHECK_MSG(w.count[j] == k, "%s: column %d has %d entries, not %d", what, (int)j, (int)k, (int)w.count[j]);
+        CHECK_MSG(w.parent[j] == first, "%s: postordered, the parent of %d is %d, not %d", what, (int)j, (int)first, (int)w.parent[j]);
+        CHECK(j == 0 || w.parent[j - 1] == -1 || w.parent[j - 1] >= j);
     }
+    hdi_scope_end(&s);
     free(perm);
-    free(parent);
-    free(count);
-    free(low);
-    free(up);
-    free(w);
     free(plain);
-    free(ptr);
-    free(up_ptr);
     free(l);
 }
 
@@ -1118,7 +1118,7 @@ static void int_symbolic(void) {
         hd_csr a = int_pattern(kind, 5);
         int32_t *perm = DENSE_NEW(int32_t, a.n_rows);
         for (q = 0; q < 3; q++) {
-            if (q == 0) CHECK(hdi_sym_minimum_degree(&a, perm, &ctx, &e) == HD_OK);
+            if (q == 0) CHECK(hdi_amd_order(&a, perm, &ctx, &e) == HD_OK);
             else dense_shuffle(perm, a.n_rows, &seed);
             int_tree_one(&a, perm, names[kind]);
             int_symbolic_one(&a, perm, 1, names[kind]);
@@ -1146,8 +1146,8 @@ static void int_symbolic_large(void) {
         int32_t *perm = DENSE_NEW(int32_t, shapes[q]->n);
         CHECK(hd_laplacian_triangles(&lap, shapes[q]->xyz, shapes[q]->n, shapes[q]->tri, shapes[q]->n_tri, NULL, &e) == HD_OK);
         for (k = 0; k < 2; k++) {
-            if (k) CHECK(hdi_sym_nested_dissection(&lap->L, lap->xyz, perm, &ctx, &e) == HD_OK);
-            else CHECK(hdi_sym_minimum_degree(&lap->L, perm, &ctx, &e) == HD_OK);
+            if (k) CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_OK);
+            else CHECK(hdi_amd_order(&lap->L, perm, &ctx, &e) == HD_OK);
             int_symbolic_one(&lap->L, perm, 0, q == 0 ? "ball" : q == 1 ? "grid" : "both");
         }
         free(perm);
@@ -1163,13 +1163,13 @@ static void int_gaps(void) {
     enum { MOST = 60, SIZE = 100000 };
     int way, step, k;
     for (way = 0; way < 2; way++) {
-        int64_t at[64], size[64], places[MOST], sizes[MOST];
+        int64_t places[MOST], sizes[MOST];
+        hdi_gap gap[64];
         uint64_t seed = 11;
         int_space m;
         hdi_gaps g;
         memset(&g, 0, sizeof g);
-        g.at = at;
-        g.size = size;
+        g.gap = gap;
         g.room = way ? 3 : 64;
         m.size = SIZE;
         m.owner = DENSE_NEW(int32_t, SIZE);
@@ -1187,8 +1187,8 @@ static void int_gaps(void) {
                 places[k] = -1;
             }
             for (k = 0; k < g.n; k++) {
-                CHECK(g.size[k] > 0 && g.at[k] + g.size[k] < (k + 1 < g.n ? g.at[k + 1] : g.end));    /* ascending, coalesced */
-                CHECK(m.owner[g.at[k]] == -1 && m.owner[g.at[k] + g.size[k] - 1] == -1);
+                CHECK(gap[k].size > 0 && gap[k].at + gap[k].size < (k + 1 < g.n ? gap[k + 1].at : g.end));    /* ascending, coalesced */
+                CHECK(m.owner[gap[k].at] == -1 && m.owner[gap[k].at + gap[k].size - 1] == -1);
             }
             CHECK(g.n <= g.room && g.end <= SIZE);
             if (int_failed > 20) break;

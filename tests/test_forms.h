@@ -189,7 +189,7 @@ static void forms_small(const hd_csr *a, uint64_t seed, const char *what, int32_
                 ctx.simd = level == 0 ? HD_SIMD_NONE : level == 1 ? HD_SIMD_AVX2 : HD_SIMD_AVX512;
                 for (i = 0; i < n; i++) perm[i] = i;
                 if (order == 1) dense_shuffle(perm, n, &state);
-                if (order == 2) CHECK(hdi_sym_minimum_degree(a, perm, &ctx, &e) == HD_OK);
+                if (order == 2) CHECK(hdi_amd_order(a, perm, &ctx, &e) == HD_OK);
                 CHECK(hdi_symbolic_make(&s, a, perm, &ctx, &e) == HD_OK);
                 if (top) forms_all_top(&s);
                 *deep += forms_deep(a, &s, &far);
@@ -266,8 +266,8 @@ static void forms_mesh(const hd_csr *a, const double *xyz, int32_t picked, const
             hd_error e;
             hdi_error_clear(&e);
             ldl_way_begin(w, way, HD_SIMD_AUTO);
-            if (xyz) CHECK(hdi_sym_nested_dissection(a, xyz, perm, &w->ctx, &e) == HD_OK);
-            else CHECK(hdi_sym_minimum_degree(a, perm, &w->ctx, &e) == HD_OK);
+            if (xyz) CHECK(hdi_nd_order(a, xyz, perm, &w->ctx, &e) == HD_OK);
+            else CHECK(hdi_amd_order(a, perm, &w->ctx, &e) == HD_OK);
             CHECK(hdi_symbolic_make(&s, a, perm, &w->ctx, &e) == HD_OK && s.n_tasks > 1 && s.n_top > 0);
             memset(got, 0, (size_t)HDI_PACK * (size_t)n * sizeof *got);
             forms_run(&c, &s, &w->ctx, got, what);
