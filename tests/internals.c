@@ -1217,7 +1217,7 @@ static hd_laplacian *int_mesh(int kind, hd_laplacian_kind form) {
 static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     memset(m, 0, sizeof *m);
     hdi_error_clear(e);
-    return hdi_elim_make(m, lap, HD_ORDERING_AUTO, HDI_DISSECT_FROM, NULL, hdi_heat_scale(lap), ctx, e);
+    return hdi_elim_make(m, lap, HD_ORDERING_AUTO, NULL, hdi_heat_scale(lap), ctx, e);
 }
 
 /* Right-hand sides side by side are solved as each by itself; fronts that are told to be out of it make no difference; and A x = b. */
@@ -1522,7 +1522,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     }
     CHECK(dense_pair_solve(&pair, L, B, n));
     lane = int_lanes(m.lap, k, &ctx);
-    CHECK(hdi_elim_shift(&m, hdi_krylov_shift(&m, t, t, 0), &e) == HD_OK && fabs(m.shift / t - 0.1) < 1e-12);
+    CHECK(hdi_elim_shift(&m, hdi_krylov_shift(t, t, 0), &e) == HD_OK && m.shift / t > 0.05 && m.shift / t <= 0.2);
     z->wide = wide;
     z->m = &m;
     z->k = k;
