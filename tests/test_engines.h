@@ -861,6 +861,7 @@ static int eng_same_report(const hd_report *a, const hd_report *b) {
 static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts o, const char *what) {
     const int64_t size = 75 * (int64_t)s->n;
     double *top = DENSE_NEW(double, size), *first = DENSE_NEW(double, size), *other = DENSE_NEW(double, size);
+    const double limit = o.method == HD_METHOD_KRYLOV ? 1e-10 : 1e-12;   /* krylov may stop a step later: its tolerance is 1e-9 */
     hd_report rep[5], rep2[5];
     int64_t calls = 0, part;
     int level, way, k;
@@ -869,7 +870,7 @@ static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts 
         if (level == 0) memcpy(top, first, (size_t)size * sizeof *top);
         for (part = 0; part < size; part += s->n) {
             const double most = dense_max_abs(top + part, s->n), off = dense_max_diff(first + part, top + part, s->n);
-            CHECK_MSG(off <= 1e-12 * most, "%s: level %d is off by %g in column %lld", what, level, off / most, (long long)(part / s->n));
+            CHECK_MSG(off <= limit * most, "%s: level %d is off by %g in column %lld", what, level, off / most, (long long)(part / s->n));
         }
         for (way = 1; way < LDL_WAYS; way++) {
             if (way < 4 && (level > 0 || !eng_openmp)) continue;
