@@ -73,14 +73,15 @@
      [19] precond    Jacobi, SSOR and incomplete L D L'
      [20] iterative  COCG, COCR, CS-MINRES
      [21] rational   pole sets: tables, evaluation, sets shared by many times
-     [22] poles      the family t L + theta_i B for one right-hand side, error bounds
-     [23] lanczos    Lanczos for the exponential and shift-and-invert
-     [24] plan       hd_heat: choice of method, kept factors and bases, the ledger of errors
-     [25] kernel     fields, columns, entries, diagonals, edges
-     [26] diffusion  diffusion distances, pairs, sampling
-     [27] geodesic   the heat method
-     [28] api        argument checks, defaults, lifetimes, bodies of the public functions
-     [29] closing    end of the implementation, licence
+     [22] poles      the family t L + theta_i B: its factors or preconditioners, answers through them, error bounds
+     [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
+     [24] ground     L with one vertex of each component held: distances without a time
+     [25] plan       hd_heat: choice of method, kept factors and bases, the run of a request, its report
+     [26] kernel     diagonals and edges, by selected inversion
+     [27] diffusion  diffusion distances, pairs, sampling
+     [28] geodesic   the heat method
+     [29] api        argument checks, defaults, lifetimes, bodies of the public functions
+     [30] closing    end of the implementation, licence
 
    Options (macros)
      Beside the implementation only:
