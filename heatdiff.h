@@ -306,6 +306,9 @@ typedef struct hd_laplacian_opts {
     /* Points: number of nearest neighbours that determine the tangent plane and the cell or star of a point,
      * 6..128. Default 30. */
     int32_t neighbours;
+    /* Triangles, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called. Takes 100 bytes
+     * more for each face. */
+    int32_t updatable;
     int32_t end_zero;
 } hd_laplacian_opts;
 
@@ -392,6 +395,8 @@ typedef struct hd_laplacian {
      * neighbours and n_coincident. */
     hd_point_report points;
     hd_context *context;
+    int64_t version;            /* number of updates */
+    struct hdi_moving *moving;  /* private: what hd_laplacian_update needs, or NULL */
 } hd_laplacian;
 
 typedef enum hd_pole_kind {
@@ -747,6 +752,16 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
  * without mass. Uses the Laplacian's context. */
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
+
+/* New coordinates for the same faces, of a Laplacian made by hd_laplacian_triangles with the option updatable.
+ * Plans notice: their next query computes with the new values, on the ordering and analysis that they have.
+ * xyz    [3 n] finite
+ * Faces that were left out stay left out. Faces that lose their area are counted in lap->mesh and add
+ * nothing. L, B and the report are those of a new Laplacian, up to rounding in the order of sums.
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large); HD_ERR_EMPTY (vertex: none of its
+ *        faces has an area any more). After an error nothing has changed
+ * Cost   one pass over faces and entries; allocates nothing. Not while a plan on lap is at work */
+HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err);
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
 
@@ -1746,6 +1761,21 @@ static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
         count++;
     }
     return count;
+}
+
+/* First place in the ascending rel[0..n) that is at least x. */
+static int64_t hdi_lower_bound(const int32_t *rel, int64_t n, int64_t x) {
+    int64_t lo = 0;
+    while (n > 0) {
+        const int64_t half = n / 2;
+        if (rel[lo + half] < x) {
+            lo += half + 1;
+            n -= half + 1;
+        } else {
+            n = half;
+        }
+    }
+    return lo;
 }
 
 /* ==== [06] vectors ====
@@ -6188,8 +6218,30 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int clo
  * Voronoi areas go negative on obtuse triangles; mixed ones do not. Deviations of polygons and point sets are
  * listed there. */
 
+/* What an update needs of a triangle mesh: the faces that have an area, in the order in which they were summed. */
+typedef struct hdi_moving {
+    int32_t m;
+    int32_t *tri;               /* [3 m] */
+    int32_t *face;              /* [m] the caller's numbers */
+    int64_t *place;             /* [6 m] entries of L: (a,b) and (b,a) of the sides ab, bc, ca */
+    double *cot, *area;         /* [3 m], [m] */
+    double *mass;               /* [n] by vertices */
+} hdi_moving;
+
+static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
+    if (!x) return;
+    hdi_free(ctx, x->tri);
+    hdi_free(ctx, x->face);
+    hdi_free(ctx, x->place);
+    hdi_free(ctx, x->cot);
+    hdi_free(ctx, x->area);
+    hdi_free(ctx, x->mass);
+    hdi_free(ctx, x);
+}
+
 static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     if (!lap) return;
+    hdi_moving_free(lap->moving, ctx);
     hdi_csr_free(ctx, &lap->L);
     if (lap->b_diag != lap->mass) hdi_free(ctx, lap->b_diag);
     hdi_free(ctx, lap->B);
@@ -6420,14 +6472,138 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_s
     return hdi_scope_end(&own);
 }
 
+/* ---- meshes that move ---- */
+
+/* The entry (i,j) of L, which is there. */
+static int64_t hdi_lap_entry(const hd_laplacian *lap, int32_t i, int32_t j) {
+    const int64_t begin = lap->L.row_ptr[i];
+    return begin + hdi_lower_bound(lap->L.col + begin, lap->L.row_ptr[i + 1] - begin, j);
+}
+
+static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
+    hd_context *ctx = lap->context;
+    const uint64_t m = HDI_CAST(uint64_t, lap->mesh.n_faces_used);
+    hdi_moving *x = HDI_NEW(ctx, hdi_moving, 1, e);
+    int32_t f, q;
+    if (!x) return e->status;
+    memset(x, 0, sizeof *x);
+    lap->moving = x;                             /* freed with the Laplacian, whatever comes */
+    x->tri = HDI_NEW(ctx, int32_t, 3 * m, e);
+    if (x->tri) x->face = HDI_NEW(ctx, int32_t, m, e);
+    if (x->face) x->place = HDI_NEW(ctx, int64_t, 6 * m, e);
+    if (x->place) x->cot = HDI_NEW(ctx, double, 3 * m, e);
+    if (x->cot) x->area = HDI_NEW(ctx, double, m, e);
+    if (x->area) x->mass = HDI_NEW(ctx, double, lap->n, e);
+    for (f = 0; f < mesh->m && e->status >= 0; f++) {
+        int32_t *v = x->tri + hdi_triple(x->m);
+        if (!(mesh->area[f] > 0)) continue;
+        memcpy(v, mesh->tri + hdi_triple(f), 3 * sizeof *v);
+        x->face[x->m] = mesh->face ? mesh->face[f] : f;
+        for (q = 0; q < 3; q++) {
+            const int32_t i = lap->row[v[q]], j = lap->row[v[hdi_next3[q]]];
+            x->place[2 * (hdi_triple(x->m) + q)] = hdi_lap_entry(lap, i, j);
+            x->place[2 * (hdi_triple(x->m) + q) + 1] = hdi_lap_entry(lap, j, i);
+        }
+        x->m++;
+    }
+    return e->status;
+}
+
+/* Measures the faces anew, and the masses of vertices. Nothing of the Laplacian changes. */
+static hd_status hdi_moving_measure(const hd_laplacian *lap, const double *xyz, hd_mesh_report *rep, hd_error *e) {
+    hdi_moving *x = lap->moving;
+    hdi_face_tally tally;
+    hdi_mesh mesh;
+    int32_t f, i;
+    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return e->status;
+    hdi_mesh_clear(&mesh, xyz, lap->n, x->tri, x->m);
+    mesh.face = x->face;
+    mesh.cot = x->cot;
+    mesh.area = x->area;
+    hdi_tally_clear(&tally);
+    for (f = 0; f < x->m; f++) x->area[f] = hdi_face_measure(&mesh, f, x->cot + hdi_triple(f), &tally);
+    if (hdi_tally_report(&tally, x->m, rep, e) < 0) return e->status;
+    hdi_mesh_masses(&mesh, hdi_lap_lump(lap->kind), x->mass);
+    for (i = 0; i < lap->n_active; i++)
+        if (!(x->mass[lap->vertex[i]] > 0))
+            return hdi_fail_face(e, HD_ERR_EMPTY, "update: no face at the vertex has an area any more", -1,
+                                 lap->vertex[i], x->mass[lap->vertex[i]]);
+    return HD_OK;
+}
+
+/* Off-diagonal entries from the faces, in the order of the assembly. */
+static void hdi_moving_sides(hd_laplacian *lap) {
+    const hdi_moving *x = lap->moving;
+    double *L = lap->L.val, *B = lap->B;
+    int32_t f, q;
+    memset(L, 0, HDI_CAST(size_t, lap->L.nnz) * sizeof *L);
+    if (B) memset(B, 0, HDI_CAST(size_t, lap->L.nnz) * sizeof *B);
+    lap->area = 0;
+    for (f = 0; f < x->m; f++) {
+        if (!(x->area[f] > 0)) continue;
+        lap->area += x->area[f];
+        for (q = 0; q < 3; q++) {                /* side q is opposite to corner q + 2 */
+            const int64_t *at = x->place + 2 * (hdi_triple(f) + q);
+            L[at[0]] -= x->cot[hdi_triple(f) + hdi_prev3[q]] / 2;
+            if (B) B[at[0]] += x->area[f];
+            L[at[1]] = L[at[0]];
+            if (B) B[at[1]] = B[at[0]];
+        }
+    }
+}
+
+/* Diagonals, masses and lengths from that and the places of the rows. */
+static void hdi_moving_rows(hd_laplacian *lap) {
+    double *L = lap->L.val, *B = lap->B, length = 0;
+    int32_t i;
+    int64_t p, diagonal = 0;
+    lap->mesh.n_negative_weights = 0;
+    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    for (i = 0; i < lap->n_active; i++) {
+        double sum = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t j = lap->L.col[p];
+            if (j == i) diagonal = p;
+            if (j == i) continue;
+            sum += L[p];
+            if (B) B[p] /= 12;
+            if (j < i) continue;
+            lap->mesh.n_negative_weights += L[p] > 0;
+            length += sqrt(hdi_distance2(lap->xyz + hdi_triple(i), lap->xyz + hdi_triple(j)));
+        }
+        L[diagonal] = -sum;
+        lap->mass[i] = lap->moving->mass[lap->vertex[i]];
+        if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2;
+        lap->component_mass[lap->component[i]] += lap->mass[i];
+    }
+    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
+}
+
+static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    const int32_t unused = lap->mesh.n_faces - lap->moving->m;   /* left out from the start */
+    hd_mesh_report rep;
+    int32_t i;
+    memset(&rep, 0, sizeof rep);
+    if (hdi_moving_measure(lap, xyz, &rep, e) < 0) return e->status;
+    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
+    hdi_moving_sides(lap);
+    hdi_moving_rows(lap);
+    lap->mesh.n_zero_area = unused - lap->mesh.n_repeated_corner - lap->mesh.n_repeated_face + rep.n_zero_area;
+    lap->mesh.n_faces_used = rep.n_faces_used;
+    lap->mesh.smallest_angle = rep.smallest_angle;
+    lap->version++;
+    return HD_OK;
+}
+
 static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri,
-                                   int32_t m, hd_error *e) {
+                                   int32_t m, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hdi_mesh mesh;
     int32_t f;
     hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
     if (hdi_lap_mesh(lap, &mesh, 1, &s) < 0) return hdi_scope_end(&s);
     for (f = 0; f < m; f++) lap->area += mesh.area[f];
+    if (updatable && hdi_moving_make(lap, &mesh, e) < 0) return hdi_scope_end(&s);
     /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;
     lap->conserves = 1;
@@ -6665,7 +6841,7 @@ static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const double *xyz, const i
 /* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
 static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m,
                                const hdi_intrinsic_task *task, hd_error *e) {
-    return task ? hdi_lap_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, e);
+    return task ? hdi_lap_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, 0, e);
 }
 
 /* The faces split as fans, for the operators of triangles. */
@@ -6987,6 +7163,7 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     out->context = ctx;
     out->B = NULL;
     out->xyz = NULL;                             /* an order has been found */
+    out->moving = NULL;
     out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
     out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
     out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
@@ -7007,6 +7184,28 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
         out->row[out->vertex[i]] = i;
     }
     return out;
+}
+
+/* The values of lap, which have changed, into its copy in another order. fill [n_active]. */
+static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t *fill) {
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < out->n_active; i++) {
+        const int32_t from = lap->row[out->vertex[i]];
+        fill[i] = out->L.row_ptr[i];
+        out->mass[i] = lap->mass[from];
+        out->b_diag[i] = lap->b_diag[from];
+    }
+    for (i = 0; i < out->n_active; i++) {        /* as in hdi_pair_permute: row i of one is column i of the other */
+        const int32_t from = lap->row[out->vertex[i]];
+        for (p = lap->L.row_ptr[from]; p < lap->L.row_ptr[from + 1]; p++) {
+            const int64_t q = fill[out->row[lap->vertex[lap->L.col[p]]]]++;
+            out->L.val[q] = lap->L.val[p];
+            if (lap->B) out->B[q] = lap->B[p];
+        }
+    }
+    memcpy(out->component_mass, lap->component_mass, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    out->h = lap->h;
 }
 
 /* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t
@@ -10137,21 +10336,6 @@ typedef struct hdi_factor {
     double share;
     hd_error error;
 } hdi_factor;
-
-/* First place in the ascending rel[0..n) that is at least x. */
-static int64_t hdi_lower_bound(const int32_t *rel, int64_t n, int64_t x) {
-    int64_t lo = 0;
-    while (n > 0) {
-        const int64_t half = n / 2;
-        if (rel[lo + half] < x) {
-            lo += half + 1;
-            n -= half + 1;
-        } else {
-            n = half;
-        }
-    }
-    return lo;
-}
 
 static void hdi_pivots_clear(hdi_pivots *q) {
     memset(q, 0, sizeof *q);
@@ -16144,6 +16328,9 @@ struct hd_heat {
     double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
     double drift;                /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
+    int64_t version;             /* of the Laplacian that all this is made of */
+    int64_t *fill;               /* [n_active] work of a renewal, made at the first */
+    double *sums;                /* [2 n_components] work */
 };
 
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm, and by that of
@@ -16204,15 +16391,13 @@ static double hdi_lambda_bound(const hd_laplacian *lap) {
     return most / hdi_max(lap->b_ratio, 1e-12);
 }
 
-/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of (Neumaier 1974). */
-static hd_status hdi_heat_drift(const hd_laplacian *lap, double *drift, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    double *sum = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, lap->n_components)), *rest;
+/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of (Neumaier 1974).
+ * sum [2 n_components]: work. */
+static double hdi_heat_drift(const hd_laplacian *lap, double *sum) {
+    double *rest = sum + lap->n_components, drift = 0;
     int64_t p;
     int32_t i;
-    if (!sum) return hdi_scope_end(&s);
-    rest = sum + lap->n_components;
-    *drift = 0;
+    memset(sum, 0, 2 * HDI_CAST(size_t, lap->n_components) * sizeof *sum);
     for (i = 0; i < lap->n_active && lap->conserves; i++) {
         const int32_t c = lap->component[i];
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
@@ -16221,8 +16406,9 @@ static hd_status hdi_heat_drift(const hd_laplacian *lap, double *drift, hd_conte
             sum[c] = t;
         }
     }
-    for (i = 0; i < lap->n_components && lap->conserves; i++) *drift = hdi_max(*drift, fabs(sum[i] + rest[i]) / lap->component_mass[i]);
-    return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_components && lap->conserves; i++)
+        drift = hdi_max(drift, fabs(sum[i] + rest[i]) / lap->component_mass[i]);
+    return drift;
 }
 
 /* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
@@ -16416,6 +16602,45 @@ static double hdi_heat_scaled(const hd_heat *heat, double t) {
     return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
 }
 
+/* What the plan keeps of the pair as a whole. */
+static void hdi_heat_measure_pair(hd_heat *heat) {
+    const hd_laplacian *lap = heat->source;
+    heat->version = lap->version;
+    heat->scale = hdi_heat_scale(lap);
+    heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
+    heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
+}
+
+/* Brings the copies of the pair up to date after an update of the Laplacian. Orderings, analyses and all room stay; what
+ * depends on values is made again when it is needed. */
+static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
+    const hd_laplacian *lap = heat->source;
+    hdi_elim *m = &heat->elim;
+    int32_t i;
+    if (heat->version == lap->version) return HD_OK;
+    if (!heat->fill) heat->fill = HDI_CAST(int64_t *, hdi_alloc(heat->ctx, HDI_CAST(uint64_t, lap->n_active), sizeof(int64_t), e));
+    if (!heat->fill) return e->status;
+    hdi_heat_measure_pair(heat);
+    if (m->ctx) {
+        hdi_pair_refresh(m->lap, lap, heat->fill);
+        m->scale = hdi_pair_scale(m->lap);
+        for (i = 0; i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
+        m->filled = m->shifted.ready = 0;
+        m->reach_t = -1;
+        if (heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+    }
+    if (heat->lap) {
+        hdi_pair_refresh(heat->lap, lap, heat->fill);
+        (void)hdi_pair_scale(heat->lap);
+    }
+    if (heat->weight) {
+        for (i = 0; i < lap->n_active; i++) heat->weight[i] = 1 / heat->lap->b_diag[i];
+        hdi_noise_weights(heat->lap, 1, 0, heat->noise, heat->fam.noise_work);
+        heat->fam.filled = 0;
+    }
+    return HD_OK;
+}
+
 static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, hd_report *report, hd_error *err) {
     memset(h, 0, sizeof *h);
     h->rep = report ? report : &h->own_report;
@@ -16432,7 +16657,7 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->rep->reason = "nothing was asked for";
     h->lap = heat->source;
     h->lane = heat->lane;
-    return HD_OK;
+    return hdi_heat_renew(heat, h->e);
 }
 
 /* ---- choice of the method ---- */
@@ -19826,7 +20051,10 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
         return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: the kind is fem, voronoi-cot or cot"));
     intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
     if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, hdi_lap_faces(lap, xyz, tri, n_tri, intrinsic ? &task : NULL, c.e));
+    if (intrinsic && opts->updatable)
+        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: an intrinsic triangulation is not updatable, its flips depend on the lengths"));
+    if (intrinsic) return hdi_lap_done(out, lap, hdi_lap_intrinsic(lap, xyz, tri, n_tri, &task, c.e));
+    return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, opts && opts->updatable, c.e));
 }
 
 HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
@@ -19969,6 +20197,14 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
     hdi_pair_apply(lap, alpha, beta, in, out);
     for (v = 0; v < lap->n; v++) y[v] = lap->row[v] >= 0 ? out[lap->row[v]] : 0;
     return hdi_scope_end(&s);
+}
+
+HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (!lap || !xyz) return hdi_missing(c.e);
+    if (!lap->moving) return hdi_fail(c.e, HD_ERR_ARGUMENT, "update: the Laplacian was not made with the option updatable");
+    return hdi_lap_update(lap, xyz, c.e);
 }
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) {
@@ -20239,8 +20475,12 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     heat->limit = heat->opts.tol > 0 ? heat->opts.tol : HDI_ROUNDING_LIMIT;
     heat->opts.tol = heat->opts.tol > 0 ? heat->opts.tol : 1e-9;
     heat->opts.max_iterations = heat->opts.max_iterations ? heat->opts.max_iterations : 20000;
-    heat->scale = hdi_heat_scale(lap);
-    heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
+    heat->sums = HDI_CAST(double *, hdi_alloc(c.ctx, 2 * HDI_CAST(uint64_t, lap->n_components), sizeof(double), c.e));
+    if (!heat->sums) {
+        hd_heat_free(heat);
+        return c.e->status;
+    }
+    hdi_heat_measure_pair(heat);
     if (heat->opts.ordering == HD_ORDERING_OWN) {
         if (hdi_order_check(heat->opts.perm, lap->n, c.ctx, c.e) >= 0)
             heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
@@ -20250,11 +20490,6 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
         }
     }
     heat->opts.perm = heat->perm;
-    if (hdi_heat_drift(lap, &heat->drift, c.ctx, c.e) < 0) {
-        hd_heat_free(heat);
-        return c.e->status;
-    }
-    heat->drift /= heat->scale;
     *out = heat;
     return HD_OK;
 }
@@ -20275,6 +20510,8 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_free(ctx, heat->silan);
     hdi_free(ctx, heat->batch_room);
     hdi_free(ctx, heat->perm);
+    hdi_free(ctx, heat->fill);
+    hdi_free(ctx, heat->sums);
     hdi_free(ctx, heat);
 }
 

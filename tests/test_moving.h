@@ -1,0 +1,140 @@
+/* Meshes that move: an updated Laplacian and the plans on it are as good as new ones. */
+
+/* The shape bent and stretched, vertex by vertex. */
+static void mov_bend(const shape *s, double how, double *xyz) {
+    int32_t i;
+    for (i = 0; i < s->n; i++) {
+        const double *p = s->xyz + 3 * i;
+        xyz[3 * i] = p[0] * (1 + 0.3 * how) + 0.1 * how * sin(3 * p[1]);
+        xyz[3 * i + 1] = p[1] + 0.2 * how * p[0] * p[0];
+        xyz[3 * i + 2] = p[2] - 0.4 * how * cos(2 * p[0] + p[1]);
+    }
+}
+
+static hd_laplacian *mov_make(const shape *s, const double *xyz, hd_laplacian_kind kind, int updatable, hd_context *ctx) {
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    memset(&o, 0, sizeof o);
+    o.kind = kind;
+    o.updatable = updatable;
+    o.context = ctx;
+    CHECK(hd_laplacian_triangles(&lap, xyz, s->n, s->tri, s->n_tri, &o, NULL) == HD_OK);
+    return lap;
+}
+
+static void mov_same_laplacian(const hd_laplacian *a, const hd_laplacian *b, const char *what) {
+    const double top = dense_max_abs(b->L.val, b->L.nnz);
+    CHECK_MSG(a->n_active == b->n_active && a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, (size_t)b->L.nnz * sizeof(int32_t)) == 0,
+              "%s: another pattern", what);
+    CHECK_MSG(dense_max_diff(a->L.val, b->L.val, b->L.nnz) <= 1e-14 * top, "%s: L is off by %g", what,
+              dense_max_diff(a->L.val, b->L.val, b->L.nnz) / top);
+    if (b->B) CHECK_MSG(dense_max_diff(a->B, b->B, b->L.nnz) <= 1e-14 * dense_max_abs(b->B, b->L.nnz), "%s: B", what);
+    CHECK_MSG(dense_max_diff(a->mass, b->mass, b->n_active) <= 1e-14 * dense_max_abs(b->mass, b->n_active), "%s: masses", what);
+    CHECK_MSG(dense_max_diff(a->b_diag, b->b_diag, b->n_active) <= 1e-14 * dense_max_abs(b->mass, b->n_active), "%s: diag(B)", what);
+    CHECK_MSG(dense_max_diff(a->component_mass, b->component_mass, b->n_components) <= 1e-13 * b->area + 1e-13 * b->n, "%s: components", what);
+    CHECK_MSG(fabs(a->area - b->area) <= 1e-13 * b->area && fabs(a->h - b->h) <= 1e-13 * b->h, "%s: area or h", what);
+    CHECK_MSG(memcmp(a->xyz, b->xyz, 3 * (size_t)b->n_active * sizeof(double)) == 0, "%s: places", what);
+    CHECK_MSG(a->mesh.n_faces_used == b->mesh.n_faces_used && a->mesh.n_zero_area == b->mesh.n_zero_area &&
+              a->mesh.n_negative_weights == b->mesh.n_negative_weights &&
+              fabs(a->mesh.smallest_angle - b->mesh.smallest_angle) <= 1e-12, "%s: report", what);
+}
+
+/* Every frame: the Laplacian, and columns, a diagonal and distances of plans that have been used before. */
+static void mov_frames(const shape *s, hd_laplacian_kind kind, const char *what) {
+    static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
+    double *xyz = DENSE_NEW(double, 3 * s->n), *u = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    hd_laplacian *lap = mov_make(s, s->xyz, kind, 1, &ctx), *fresh;
+    hd_heat *plan[3], *other;
+    int k, frame;
+    int32_t i;
+    for (k = 0; k < 3; k++) {
+        const hd_heat_opts o = eng_opts(methods[k]);
+        plan[k] = eng_create(lap, &o);
+    }
+    for (frame = 0; frame < 4; frame++) {
+        int64_t calls;
+        hd_error e;
+        mov_bend(s, 0.3 * frame, xyz);
+        calls = m.calls;
+        CHECK_MSG(hd_laplacian_update(lap, xyz, &e) == HD_OK, "%s: %s", what, e.text);
+        CHECK_MSG(m.calls == calls && lap->version == frame + 1, "%s: the update allocates", what);
+        fresh = mov_make(s, xyz, kind, 0, NULL);
+        mov_same_laplacian(lap, fresh, what);
+        for (k = 0; k < 3; k++) {
+            const hd_heat_opts o = eng_opts(methods[k]);
+            const int32_t source = lap->vertex[(frame * 37) % lap->n_active];
+            const double t = (frame == 3 ? 1e9 : 20) * fresh->h * fresh->h;
+            hd_report rep, rep2;
+            other = eng_create(fresh, &o);
+            CHECK(eng_ok(heat_column(plan[k], t, source, u, &rep), &rep, what) && eng_ok(heat_column(other, t, source, want, &rep2), &rep2, what));
+            CHECK_MSG(dense_max_diff(u, want, s->n) <= (rep.error_bound + rep2.error_bound) * dense_max_abs(want, s->n),
+                      "%s: frame %d, %s: off by %g", what, frame, eng_name(methods[k]), dense_max_diff(u, want, s->n));
+            if (k == 0) {
+                CHECK(eng_ok(heat_diagonal(plan[0], 1, &t, HD_KERNEL_SYMMETRIC, u, 0, &rep), &rep, what));
+                CHECK(eng_ok(heat_diagonal(other, 1, &t, HD_KERNEL_SYMMETRIC, want, 0, &rep2), &rep2, what));
+                CHECK_MSG(dense_max_diff(u, want, s->n) <= (rep.error_bound + rep2.error_bound) * dense_max_abs(want, s->n), "%s: diagonal", what);
+                CHECK(eng_ok(heat_distance(plan[0], HD_DISTANCE_COMMUTE, 1, &t, 1, &source, u, 0, &rep), &rep, what));
+                CHECK(eng_ok(heat_distance(other, HD_DISTANCE_COMMUTE, 1, &t, 1, &source, want, 0, &rep2), &rep2, what));
+                for (i = 0; i < s->n; i++) CHECK(u[i] == want[i] || fabs(u[i] - want[i]) <= 1e-9 * want[i]);
+            }
+            hd_heat_free(other);
+        }
+        hd_laplacian_free(fresh);
+    }
+    for (k = 0; k < 3; k++) hd_heat_free(plan[k]);
+    hd_laplacian_free(lap);
+    test_memory_done(&m, &ctx, what);
+    free(xyz);
+    free(u);
+    free(want);
+}
+
+/* What cannot be taken leaves everything as it was. */
+static void mov_errors(void) {
+    shape s = shape_grid(6, 5, 0);
+    double *xyz = DENSE_NEW(double, 3 * s.n), *before;
+    hd_laplacian *lap = mov_make(&s, s.xyz, HD_LAPLACIAN_FEM, 1, NULL), *plain = mov_make(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL);
+    hd_laplacian_opts o;
+    hd_laplacian *none = NULL;
+    hd_error e;
+    int32_t i;
+    before = DENSE_NEW(double, lap->L.nnz);
+    memcpy(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before);
+    memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
+    xyz[7] = NAN;
+    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_ERR_NOT_FINITE && e.vertex == 2);
+    for (i = 0; i < 3 * s.n; i++) xyz[i] = 1;
+    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_ERR_EMPTY && e.vertex == lap->vertex[0]);
+    for (i = 0; i < 3 * s.n; i++) xyz[i] = 1e200 * s.xyz[i];
+    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_ERR_NOT_FINITE && e.face >= 0);
+    CHECK(hd_laplacian_update(plain, s.xyz, &e) == HD_ERR_ARGUMENT && hd_laplacian_update(NULL, s.xyz, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_update(lap, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(lap->version == 0 && memcmp(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before) == 0);
+    memset(&o, 0, sizeof o);
+    o.updatable = o.tufted = 1;
+    CHECK(hd_laplacian_triangles(&none, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_ERR_ARGUMENT && none == NULL);
+    /* one face of many loses its area */
+    memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
+    memcpy(xyz + 3 * s.tri[0], s.xyz + 3 * s.tri[1], 3 * sizeof *xyz);
+    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK && lap->mesh.n_zero_area >= 1 && lap->mesh.n_faces_used + lap->mesh.n_zero_area == s.n_tri);
+    CHECK(hd_laplacian_update(lap, s.xyz, &e) == HD_OK && memcmp(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before) == 0 && lap->mesh.n_zero_area == 0);
+    hd_laplacian_free(lap);
+    hd_laplacian_free(plain);
+    shape_free(&s);
+    free(xyz);
+    free(before);
+}
+
+static void test_moving(void) {
+    shape ball = shape_bumpy(3, 5), sheet = shape_grid(13, 11, 0.3), soup = eng_soup(300, 500, 9);
+    mov_frames(&ball, HD_LAPLACIAN_FEM, "ball, fem");
+    mov_frames(&ball, HD_LAPLACIAN_COT, "ball, cot");
+    mov_frames(&sheet, HD_LAPLACIAN_VORONOI_COT, "sheet, voronoi-cot");
+    mov_frames(&soup, HD_LAPLACIAN_FEM, "soup, fem");
+    mov_errors();
+    shape_free(&ball);
+    shape_free(&sheet);
+    shape_free(&soup);
+}
