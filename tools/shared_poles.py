@@ -381,14 +381,14 @@ def worth_it(one):
 def table_text(sets):
     lines = [BEGIN,
              '/* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of times, the',
-             ' * number of pairs, the largest weighted error over all times (with rounding) and the largest sum 2 |a_i|/distance.',
-             ' * Then come Re theta, Im theta of one pole of each pair, by ascending |theta|. Sets ascend by the number of pairs,',
-             ' * then by the ratio. */',
+             ' * number of pairs, the largest weighted error over all times (with rounding), the largest sum 2 |a_i|/distance.',
+             ' * Then come Re theta, Im theta of one pole of each pair, by ascending |theta|. Sets ascend by the number of',
+             ' * pairs, then by the ratio. */',
              DECLARATION]
     for one in sets:
         lines.append('    %g, %d, %.3g, %.3g,' % (one.lam, one.pairs, one.error, one.amplification))
         numbers = ['%.*g,\xa0%.*g' % (DIGITS, z.real, DIGITS, z.imag) for z in one.theta]
-        rows = textwrap.wrap(', '.join(numbers) + ',', 110, initial_indent=' '*8, subsequent_indent=' '*8)
+        rows = textwrap.wrap(', '.join(numbers) + ',', 110, initial_indent=' '*6, subsequent_indent=' '*6)
         lines += [row.replace('\xa0', ' ') for row in rows]      # a pole stays on one line
     return '\n'.join(lines + ['};', END])
 
