@@ -12323,9 +12323,9 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
  * Efficient solution of parabolic equations by Krylov approximation methods, 1992, whose order-14 table is wrong in its last digits. */
 
 /* poles.py: begin */
-/* Computed by tools/poles.py, which also checks these digits. Each set begins with a0, max |e| and max W|e|
- * (0 for uniform sets, where it would be the same). Then come Re theta, Im theta, Re a, Im a of each pole: the
- * real pole first (odd r), then one of each conjugate pair by ascending Im theta. */
+/* Computed by tools/poles.py, which also checks these digits. Each set begins with a0, max |e| and max
+ * W|e| (0 for uniform sets, where it would be the same). Then come Re theta, Im theta, Re a, Im a of each
+ * pole: the real pole first (odd r), then one of each conjugate pair by ascending Im theta. */
 static const double hdi_rat_table[] = {
     /* uniform r = 1 */
     -0.066831042161850457, 0.066831042161850457, 0,
@@ -12653,10 +12653,10 @@ static double hdi_pole_distance(hd_c64 theta) { return theta.re >= 0 ? hdi_cabs(
  * also checks it. */
 
 /* shared_poles.py: begin */
-/* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of times,
- * the number of pairs, the largest weighted error over all times (with rounding) and the largest sum of
- * 2 |a_i|/distance. Then come Re theta, Im theta of one pole of each pair, by ascending |theta|. Sets ascend by
- * the number of pairs, then by the ratio. */
+/* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of
+ * times, the number of pairs, the largest weighted error over all times (with rounding) and the largest
+ * sum of 2 |a_i|/distance. Then come Re theta, Im theta of one pole of each pair, by ascending |theta|.
+ * Sets ascend by the number of pairs, then by the ratio. */
 static const double hdi_shared_table[] = {
     1.8, 8, 9.79e-11, 24.3,
       2.50109297, 0.637058254, 2.17122959, 1.9179449, 1.49504902, 3.22060516, 0.436050967, 4.5644826,

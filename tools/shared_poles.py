@@ -380,10 +380,10 @@ def worth_it(one):
 
 def table_text(sets):
     lines = [BEGIN,
-             '/* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of times,',
-             ' * the number of pairs, the largest weighted error over all times (with rounding) and the largest sum of',
-             ' * 2 |a_i|/distance. Then come Re theta, Im theta of one pole of each pair, by ascending |theta|. Sets ascend by',
-             ' * the number of pairs, then by the ratio. */',
+             '/* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of',
+             ' * times, the number of pairs, the largest weighted error over all times (with rounding) and the largest',
+             ' * sum of 2 |a_i|/distance. Then come Re theta, Im theta of one pole of each pair, by ascending |theta|.',
+             ' * Sets ascend by the number of pairs, then by the ratio. */',
              DECLARATION]
     for one in sets:
         lines.append('    %g, %d, %.3g, %.3g,' % (one.lam, one.pairs, one.error, one.amplification))
