@@ -11895,23 +11895,28 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     }
 }
 
-/* ==== [15] krylov ====
- * Iterative solvers for (t L + theta B) x = b, complex symmetric: every inner product is x'y without conjugate, unless it is a norm.
- * For real theta and b every number stays real and cocg is the conjugate gradient method. May call [14].
+/* ==== [20] iterative ====
+ * Owns the iterative solvers of A x = b, A = t L + theta B, and conjugate gradients for B u = w. A is
+ * complex symmetric: every inner product is x'y without conjugation, except inside norms. For real theta
+ * and real b all numbers stay real, and cocg is the conjugate gradient method. May call [19].
  * This work is based on
- *   H. van der Vorst, J. Melissen, A Petrov-Galerkin type method for solving Ax = b, where A is symmetric complex, 1990 (cocg)
+ *   H. van der Vorst, J. Melissen, A Petrov-Galerkin type method for solving Ax = b, where A is symmetric
+ *     complex, 1990 (cocg)
  *   T. Sogabe, S.-L. Zhang, A COCR method for solving complex symmetric linear systems, 2007 (cocr)
- *   S.-C. Choi, Minimal residual methods for complex symmetric, skew symmetric, and skew Hermitian systems, 2013 (minres)
- *   Y. Saad, M. Yeung, J. Erhel, F. Guyomarc'h, A deflated version of the conjugate gradient algorithm, 2000 (deflation)
- * Where L 1 = 0, the constants W of the components are known eigenvectors: A W = theta B W. Right-hand sides come without them (1'b = 0
- * per component), and they are kept out of all directions: that takes the smallest eigenvalue out of the iteration, and the caller, who
- * knows their part of the solution exactly, conserves heat. */
+ *   S.-C. Choi, Minimal residual methods for complex symmetric, skew symmetric, and skew Hermitian systems,
+ *     2013 (minres)
+ *   Y. Saad, M. Yeung, J. Erhel, F. Guyomarc'h, A deflated version of the conjugate gradient algorithm, 2000
+ * Deviation: if L 1 = 0, the constants W of the components are known eigenvectors, A W = theta B W. The
+ * caller takes them out of the right-hand side (1'b = 0 for each component), and the solvers keep them out
+ * of all directions. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
+ * the solution, which is known exactly, and heat is conserved. */
 
 /* y = A x on rows; returns x'y. */
 static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
     const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
     const int32_t *HDI_RESTRICT Aj = a->lap->L.col;
-    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B, *HDI_RESTRICT b = a->lap->mass;
+    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B;
+    const double *HDI_RESTRICT b = a->lap->mass;
     const double t = a->t;
     const hd_c64 theta = a->theta;
     hd_c64 dot = hdi_c(0, 0);
@@ -11947,7 +11952,7 @@ static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x
     return dot;
 }
 
-/* Takes the B-mean of every component out of z. sums [n_components]. */
+/* Subtracts from z its B-mean on every component, if L 1 = 0. sums [n_components] is work. */
 static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
     const double *b = lap->mass;
     const int32_t *comp = lap->component;
@@ -11970,7 +11975,16 @@ static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
     for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], sums[comp[i]]);
 }
 
-enum { HDI_KRYLOV_VECTORS = 8 };
+/* Limits of an iteration, set by hand. They only matter where rounding stops the residual from falling. */
+/* |r|/|b|: below it, the level that rounding allows is computed and watched */
+#define HDI_KRYLOV_NEAR 1e-9
+#define HDI_KRYLOV_USABLE 1e-7   /* |r|/|b|: a solution at most this bad is handed out, with a warning */
+#define HDI_KRYLOV_ASTRAY 1e3    /* a recurrence that grows by this from its best has lost its way */
+enum {
+    HDI_KRYLOV_VECTORS = 8,
+    HDI_KRYLOV_PATIENCE = 50,    /* steps without halving the residual, besides as many as the best took */
+    HDI_KRYLOV_LOOK = 16         /* steps between looks at the progress callback */
+};
 
 /* One system under solution. It can be stopped and taken up again. */
 typedef struct hdi_krylov {
@@ -11979,7 +11993,7 @@ typedef struct hdi_krylov {
     hd_solver solver;
     const double *weight;                /* [n] 1/diag(B): the residual's norm */
     hd_c64 *sums;                        /* [n_components] */
-    hd_c64 *spare;                       /* [n] the best x so far, when a round may spoil it */
+    hd_c64 *spare;                       /* [n] the best x so far, kept while a round may spoil it */
     hd_c64 *x, *r;                       /* [n] solution and residual */
     hd_c64 *v[HDI_KRYLOV_VECTORS - 2];   /* [n] each, as many as the solver needs */
     double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
@@ -11989,15 +12003,18 @@ typedef struct hdi_krylov {
     double beta, beta_old, c1, c2;
 } hdi_krylov;
 
-/* Vectors of a system's own, x and r among them; one more after them is work within a step. */
-static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7; }
+/* Vectors that a system owns, x and r included. One more after them is work within a step. */
+static int hdi_krylov_vectors(hd_solver solver) {
+    return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7;
+}
 
+/* z = M^-1 r without its constants. */
 static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
     hdi_precond_apply(&k->m, r, z);
     hdi_deflate(k->a.lap, z, k->sums);
 }
 
-/* r = b - A x from x, and its norm: the truth that recurrences drift away from. */
+/* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. */
 static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
     const int32_t n = k->a.lap->n_active;
     int32_t i;
@@ -12007,7 +12024,8 @@ static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
     k->ready = 0;
 }
 
-/* What rounding contributes to the residual of x at most, in the same norm; in practice less than half of it. */
+/* A bound of what rounding contributes to the residual of x, in the same norm. Usually less than half of
+ * it is seen. */
 static double hdi_krylov_noise(const hdi_krylov *k) {
     const hd_laplacian *lap = k->a.lap;
     const double theta = hdi_cabs(k->a.theta);
@@ -12023,7 +12041,8 @@ static double hdi_krylov_noise(const hdi_krylov *k) {
 }
 
 /* x += alpha p, r -= alpha q; returns the new norm of r. */
-static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RESTRICT p, const hd_c64 *HDI_RESTRICT q) {
+static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RESTRICT p,
+                              const hd_c64 *HDI_RESTRICT q) {
     hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
     const double *HDI_RESTRICT w = k->weight;
     const int32_t n = k->a.lap->n_active;
@@ -12037,7 +12056,8 @@ static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RES
     return sqrt(norm);
 }
 
-/* z = M^-1 r without its constants taken out: their B-means go to k->sums instead. Returns r'z, which constants do not change (1'r = 0). */
+/* z = M^-1 r with its constants left in; k->sums receives their B-means. Returns r'z, which the constants do
+ * not change, since 1'r = 0. */
 static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const hd_laplacian *lap = k->a.lap;
     const double *HDI_RESTRICT b = lap->mass;
@@ -12052,25 +12072,29 @@ static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r
         else mean = hdi_cadd(mean, hdi_cscale(b[i], z[i]));
     }
     if (!comp) sums[0] = mean;
-    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(lap->conserves ? 1 / lap->component_mass[i] : 0, sums[i]);
+    for (i = 0; i < lap->n_components; i++)
+        sums[i] = hdi_cscale(lap->conserves ? 1 / lap->component_mass[i] : 0, sums[i]);
     return dot;
 }
 
-/* p = z - its B-means + beta p */
-static void hdi_krylov_deflated_direction(const hdi_krylov *k, hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p) {
+/* p = z - its B-means in k->sums + beta p */
+static void hdi_krylov_deflated_direction(const hdi_krylov *k, hd_c64 beta, const hd_c64 *HDI_RESTRICT z,
+                                          hd_c64 *HDI_RESTRICT p) {
     const int32_t n = k->a.lap->n_active, *comp = k->a.lap->n_components > 1 ? k->a.lap->component : NULL;
     const hd_c64 mean = k->sums[0];
     int32_t i;
-    for (i = 0; i < n; i++) p[i] = hdi_cadd(hdi_csub(z[i], comp ? k->sums[comp[i]] : mean), hdi_cmul(beta, p[i]));
+    for (i = 0; i < n; i++)
+        p[i] = hdi_cadd(hdi_csub(z[i], comp ? k->sums[comp[i]] : mean), hdi_cmul(beta, p[i]));
 }
 
 /* p = z + beta p */
-static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p, int32_t n) {
+static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p,
+                                 int32_t n) {
     int32_t i;
     for (i = 0; i < n; i++) p[i] = hdi_cadd(z[i], hdi_cmul(beta, p[i]));
 }
 
-/* A quotient of the recurrence; marks the method as broken when it is none. */
+/* A quotient of the recurrence. The method is marked as broken if it is not finite. */
 static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
     const hd_c64 q = hdi_cdiv(a, b);
     if (!hdi_cfinite(q)) k->broken = 1;
@@ -12114,7 +12138,7 @@ static void hdi_cocr_step(hdi_krylov *k) {
     k->rho = rho;
 }
 
-/* sqrt of y^* M y for y = M^-1 w, by w^* y; M is real and positive definite. */
+/* The square root of y^* M y = w^* y, where y = M^-1 w. M is real and positive definite. */
 static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
     const int32_t n = k->a.lap->n_active;
     double s = 0;
@@ -12124,27 +12148,30 @@ static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
     return s > 0 ? sqrt(s) : 0;
 }
 
-/* The Saunders process A conj(V_k) = V_(k+1) T_k, with unitary V (in the M geometry) and a complex-symmetric tridiagonal T whose
- * off-diagonals are real, and the QR factorisation of T by rotations [c s; -conj(s) c]. */
-static void hdi_minres_step(hdi_krylov *k) {
+/* MINRES on the Saunders process A conj(V_k) = V_(k+1) T_k: V is unitary in the geometry of M, T is complex
+ * symmetric and tridiagonal with real off-diagonals. */
+static void hdi_minres_start(hdi_krylov *k) {
     const int32_t n = k->a.lap->n_active;
-    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4], *v = k->v[5];
-    hd_c64 alpha, eps, dbar, delta, gbar, gamma, phi, s;
-    double beta, size, c;
+    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4];
     int32_t i;
-    if (!k->ready) {
-        memcpy(w, k->r, HDI_CAST(size_t, n) * sizeof *w);
-        hdi_krylov_precond(k, w, y);
-        k->beta = hdi_minres_beta(k, w, y);
-        k->beta_old = 1;
-        k->phibar = hdi_c(k->beta, 0);
-        k->c1 = k->c2 = 1;
-        k->s1 = k->s2 = hdi_c(0, 0);
-        for (i = 0; i < n; i++) w_old[i] = d[i] = d_old[i] = hdi_c(0, 0);
-        if (k->beta == 0) k->broken = 1;
-    }
-    if (k->broken) return;
-    beta = k->beta;
+    memcpy(w, k->r, HDI_CAST(size_t, n) * sizeof *w);
+    hdi_krylov_precond(k, w, y);
+    k->beta = hdi_minres_beta(k, w, y);
+    k->beta_old = k->c1 = 1;
+    k->phibar = hdi_c(k->beta, 0);
+    k->c2 = 0;                                   /* T has no entry above its first diagonal one */
+    k->s1 = k->s2 = hdi_c(0, 0);
+    for (i = 0; i < n; i++) w_old[i] = d[i] = d_old[i] = hdi_c(0, 0);
+    if (k->beta == 0) k->broken = 1;
+}
+
+/* One step of the process: the direction v = conj(y)/beta goes to v[5], the next w to v[1], the next y =
+ * M^-1 w to v[2]. Returns the diagonal entry v'Av of T. */
+static hd_c64 hdi_minres_extend(hdi_krylov *k) {
+    const int32_t n = k->a.lap->n_active;
+    const double beta = k->beta;
+    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *v = k->v[5], alpha;
+    int32_t i;
     for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(y[i]));
     alpha = hdi_system_apply(&k->a, v, y);
     for (i = 0; i < n; i++) {                    /* w_old becomes the new w */
@@ -12156,12 +12183,23 @@ static void hdi_minres_step(hdi_krylov *k) {
     hdi_krylov_precond(k, w_old, y);
     k->beta_old = beta;
     k->beta = hdi_minres_beta(k, w_old, y);
-    /* column of T: (eps) (delta) gamma below the two old rotations */
-    eps = hdi_cscale(beta, k->s2);
-    dbar = hdi_c(k->c2 * beta, 0);
-    if (!k->ready) eps = dbar = hdi_c(0, 0);
-    delta = hdi_cadd(hdi_cscale(k->c1, dbar), hdi_cmul(k->s1, alpha));
-    gbar = hdi_csub(hdi_cscale(k->c1, alpha), hdi_cmul(hdi_cconj(k->s1), dbar));
+    return alpha;
+}
+
+/* T is factorised as Q R by rotations [c s; -conj(s) c]. Its new column is (eps delta gamma) in R. */
+static void hdi_minres_step(hdi_krylov *k) {
+    const int32_t n = k->a.lap->n_active;
+    const hd_c64 *v = k->v[5];
+    hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, gamma, phi, s;
+    double dbar, size, c;
+    int32_t i;
+    if (!k->ready) hdi_minres_start(k);
+    if (k->broken) return;
+    alpha = hdi_minres_extend(k);
+    eps = hdi_cscale(k->beta_old, k->s2);        /* the two old rotations */
+    dbar = k->c2 * k->beta_old;
+    delta = hdi_cadd(hdi_c(k->c1 * dbar, 0), hdi_cmul(k->s1, alpha));
+    gbar = hdi_csub(hdi_cscale(k->c1, alpha), hdi_cscale(dbar, hdi_cconj(k->s1)));
     size = hypot(hdi_cabs(gbar), k->beta);
     if (size == 0) {
         k->broken = 1;
@@ -12180,7 +12218,8 @@ static void hdi_minres_step(hdi_krylov *k) {
     k->v[3] = d_old;
     k->v[4] = d;
     phi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
-    for (i = 0; i < n; i++) k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, w_old[i]));
+    for (i = 0; i < n; i++)
+        k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, k->v[1][i]));
     k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
     k->c2 = k->c1;
     k->s2 = k->s1;
@@ -12188,7 +12227,7 @@ static void hdi_minres_step(hdi_krylov *k) {
     k->s1 = s;
 }
 
-/* From x = 0. b_norm: what the residual is reported against. */
+/* Begins at x = 0. The residual is reported against b_norm. */
 static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
     const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
     memset(k->x, 0, bytes);
@@ -12199,37 +12238,44 @@ static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
     k->broken = k->ready = 0;
 }
 
-/* What a solver is told and tells while it runs. */
+/* How a running solver reports progress and learns that it shall stop. */
 typedef struct hdi_watch {
-    hd_context *ctx;             /* for progress; NULL: not the calling thread */
-    int32_t *stop;               /* set by any thread that failed, read by all */
+    hd_context *ctx;             /* for progress; NULL: this is not the calling thread */
+    int32_t *stop;               /* any thread that fails sets it, all threads read it */
     double from, share;          /* of the progress bar */
     const char *stage;
 } hdi_watch;
 
 static hd_status hdi_watch_look(const hdi_watch *w, double done, hd_error *e) {
-    if (w->stop && HDI_LOAD(w->stop)) return hdi_fail(e, HD_ERR_CANCELLED, "stopped because another task failed or was cancelled");
+    if (w->stop && HDI_LOAD(w->stop))
+        return hdi_fail(e, HD_ERR_CANCELLED, "stopped because another task failed or was cancelled");
     if (!w->ctx) return HD_OK;
     return hdi_progress(w->ctx, w->stage, w->from + w->share * hdi_min(1, hdi_max(0, done)), e);
 }
 
+/* The share of the work that is done when a residual has come from start down to now, on a logarithmic
+ * scale. */
 static double hdi_krylov_done(double start, double now, double target) {
     if (!(now > target) || !(start > target)) return 1;
     return target > 0 ? log(start / now) / log(start / target) : 0;
 }
 
-/* Iterates until the residual norm by the recurrence is at most target, or gains nothing more. Near rounding it ends at floor_share of what that may
- * contribute: below, recurrences go astray. left: steps allowed, counted down. */
-static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start, int64_t *left, const hdi_watch *watch, hd_error *e) {
+/* Iterates until the recurrence says |r| <= target, or until it gains no more. Near the level of rounding it
+ * ends at floor_share times hdi_krylov_noise, since recurrences go astray below. start: |r| at the beginning,
+ * for progress. left: steps allowed, counted down. */
+static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start,
+                                  int64_t *left,
+                                  const hdi_watch *watch, hd_error *e) {
     double best = k->r_norm, least = target;
     int64_t step, best_step = 0;
     int near_rounding = 0;
     for (step = 1; k->r_norm > least && !k->broken && *left > 0; step++, --*left) {
-        if (!near_rounding && k->r_norm < 1e-9 * k->b_norm) {
+        if (!near_rounding && k->r_norm < HDI_KRYLOV_NEAR * k->b_norm) {
             near_rounding = 1;
             least = hdi_max(target, floor_share * hdi_krylov_noise(k));
         }
-        if (step % 16 == 1 && hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
+        if (step % HDI_KRYLOV_LOOK == 1 &&
+            hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
         if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
         else if (k->solver == HD_SOLVER_COCR) hdi_cocr_step(k);
         else hdi_minres_step(k);
@@ -12239,16 +12285,19 @@ static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_sha
         if (k->r_norm < best / 2) {
             best = k->r_norm;
             best_step = step;
-        } else if (best < 1e-7 * k->b_norm && (step - best_step > 50 + best_step || k->r_norm > 1e3 * best)) {
+        } else if (best < HDI_KRYLOV_USABLE * k->b_norm &&
+                   (step - best_step > HDI_KRYLOV_PATIENCE + best_step ||
+                    k->r_norm > HDI_KRYLOV_ASTRAY * best)) {
             break;
         }
     }
     return HD_OK;
 }
 
-/* Solves until the residual norm, computed from x, is at most target. Rounding may keep it above: then it stops where another round no longer
- * halves it, with the best x and HD_WARN_ACCURACY. */
-static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations, const hdi_watch *watch, hd_error *e) {
+/* Solves until |b - A x|, computed from x, is at most target. Rounding may keep it above. Then the solver
+ * stops when another round does not halve it, and returns the best x with HD_WARN_ACCURACY. */
+static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations,
+                                const hdi_watch *watch, hd_error *e) {
     const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
     const double start = k->r_norm;
     double before = k->r_norm, floor_share = 0.5;
@@ -12256,16 +12305,19 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
     while (k->r_norm > target) {
         memcpy(k->spare, k->x, bytes);
         if (hdi_krylov_round(k, target, floor_share, start, &left, watch, e) < 0) return e->status;
-        hdi_krylov_residual(k, b);               /* the recurrence says done: believe x alone */
+        hdi_krylov_residual(k, b);               /* the recurrence says done: only x itself can confirm it */
         if (k->r_norm <= target) return HD_OK;
-        if (left <= 0) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "the iteration did not reach the tolerance in max_iterations steps");
+        if (left <= 0)
+            return hdi_fail(e, HD_ERR_NOT_CONVERGED,
+                            "the iteration did not reach the tolerance in max_iterations steps");
         if (!(k->r_norm <= before / 2)) {
             if (!(k->r_norm <= before)) {
                 memcpy(k->x, k->spare, bytes);
                 hdi_krylov_residual(k, b);
             }
-            if (k->r_norm <= 1e-7 * k->b_norm) return HD_WARN_ACCURACY;
-            return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: no step brings the residual down");
+            if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
+            return hdi_fail(e, HD_ERR_BREAKDOWN,
+                            "the iteration broke down: no step brings the residual down");
         }
         before = k->r_norm;
         floor_share /= 4;
@@ -12276,11 +12328,17 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
 
 /* ---- conjugate gradients for B u = w, with the diagonal as preconditioner ---- */
 
-/* Error in the B norm, relative to u and times 1/sqrt(b_ratio), as seen. The recurrence stops at a tenth of it. */
+/* The error of u in the B norm, relative to u and times sqrt(b_ratio), as measured. The recurrence stops when
+ * r'z has come down by HDI_MASS_STOP, the square of a tenth of it. */
 #define HDI_MASS_TOL 1e-14
+#define HDI_MASS_STOP 1e-30
+#define HDI_MASS_FAILED 1e-24    /* of r'z after HDI_MASS_STEPS: not converged */
+enum { HDI_MASS_STEPS = 1000 };
 
-/* Condition of diag(B)^-1 B is at most 4 for linear elements: about 30 steps to rounding. work [3 n]. */
-static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double *u, double *work, hd_error *e) {
+/* B u = w. For linear elements the condition number of diag(B)^-1 B is at most 4, and some 30 steps lead
+ * to the level of rounding. work [3 n]. */
+static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double *u, double *work,
+                                hd_error *e) {
     const int32_t n = lap->n_active;
     double *r = work, *p = work + n, *q = work + 2 * HDI_CAST(int64_t, n), rho = 0, rho_new, start;
     int32_t i, step;
@@ -12295,11 +12353,13 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
         rho += r[i] * p[i];
     }
     start = rho;
-    for (step = 0; step < 1000 && rho > 1e-30 * start; step++) {
+    for (step = 0; step < HDI_MASS_STEPS && rho > HDI_MASS_STOP * start; step++) {
         double alpha, mu;
         hdi_pair_apply(lap, 0, 1, p, q);
         mu = hdi_dot(p, q, n);
-        if (!(mu > 0)) return hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: a vector with x'Bx <= 0 was met");
+        if (!(mu > 0))
+            return hdi_fail(e, HD_ERR_NOT_POSITIVE,
+                            "B is not positive definite: a vector with x'Bx <= 0 was met");
         alpha = rho / mu;
         rho_new = 0;
         for (i = 0; i < n; i++) {
@@ -12310,17 +12370,22 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
         for (i = 0; i < n; i++) p[i] = r[i] / lap->b_diag[i] + rho_new / rho * p[i];
         rho = rho_new;
     }
-    if (rho > 1e-24 * start) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
+    if (rho > HDI_MASS_FAILED * start)
+        return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
     return HD_OK;
 }
 
-/* ==== [16] rational ====
- * Pole sets: the constants, evaluation, lookup; sets for many times, and their weights by least squares. May call [06].
+/* ==== [21] rational ====
+ * Owns pole sets: their tables, lookup and evaluation; sets that serve many times, and the fit of their
+ * weights. May call [06].
  * This work is based on
  *   W. Cody, G. Meinardus, R. Varga, Chebyshev rational approximations to e^-x in [0, inf), 1969
- *   A. Carpenter, A. Ruttan, R. Varga, Extended numerical computations on the "1/9" conjecture, 1984 (the errors, to many digits)
- * The table is printed by tools/poles.py, which also checks it. Deviation: the paper takes coefficients from E. Gallopoulos and Y. Saad,
- * Efficient solution of parabolic equations by Krylov approximation methods, 1992, whose order-14 table is wrong in its last digits. */
+ *   A. Carpenter, A. Ruttan, R. Varga, Extended numerical computations on the "1/9" conjecture, 1984: the
+ *     errors, to many digits
+ * tools/poles.py prints the table and checks it.
+ * Deviation: the paper takes the coefficients from E. Gallopoulos, Y. Saad, Efficient solution of
+ * parabolic equations by Krylov approximation methods, 1992. The order-14 table there is wrong in its last
+ * digits. */
 
 /* poles.py: begin */
 /* Computed by tools/poles.py, which also checks these digits. Each set begins with a0, max |e| and max
@@ -12576,29 +12641,42 @@ static const double hdi_rat_table[] = {
 };
 /* poles.py: end */
 
+/* Kernel and diagonal sets have the same degrees. */
 enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };   /* diagonal sets too */
 
+/* Doubles that the table spends on a set. */
 static int32_t hdi_rat_size(int32_t degree) { return 3 + 4 * ((degree + 1) / 2); }
 
-static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
+/* Where the set begins in the table: uniform sets come first, then kernel, then diagonal ones. */
+static const double *hdi_rat_row(hd_pole_kind kind, int32_t degree) {
+    const int32_t n_whole = kind == HD_POLES_UNIFORM ? 0 : kind == HD_POLES_KERNEL ? 1 : 2;
     const double *row = hdi_rat_table;
-    int32_t r, i;
+    int32_t r, q;
+    for (q = 0; q < n_whole; q++)
+        for (r = q == 0 ? 1 : HDI_RAT_KERNEL_MIN; r <= HDI_RAT_UNIFORM_MAX; r++) row += hdi_rat_size(r);
+    for (r = n_whole == 0 ? 1 : HDI_RAT_KERNEL_MIN; r < degree; r++) row += hdi_rat_size(r);
+    return row;
+}
+
+static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
+    const double *row;
+    int32_t i;
     if (kind != HD_POLES_UNIFORM && kind != HD_POLES_KERNEL && kind != HD_POLES_DIAGONAL)
         return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform, kernel or diagonal");
     if (kind == HD_POLES_UNIFORM && (degree < 1 || degree > HDI_RAT_UNIFORM_MAX))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: uniform sets have degrees 1 to 14", -1, -1, degree);
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: uniform sets have degrees 1 to 14", -1, -1,
+                            degree);
     if (kind != HD_POLES_UNIFORM && (degree < HDI_RAT_KERNEL_MIN || degree > HDI_RAT_KERNEL_MAX))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel and diagonal sets have degrees 2 to 14", -1, -1, degree);
-    for (r = 1; r < (kind == HD_POLES_UNIFORM ? degree : HDI_RAT_UNIFORM_MAX + 1); r++) row += hdi_rat_size(r);
-    for (r = HDI_RAT_KERNEL_MIN; kind == HD_POLES_DIAGONAL && r <= HDI_RAT_KERNEL_MAX; r++) row += hdi_rat_size(r);
-    for (r = HDI_RAT_KERNEL_MIN; kind != HD_POLES_UNIFORM && r < degree; r++) row += hdi_rat_size(r);
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel and diagonal sets have degrees 2 to 14", -1,
+                            -1, degree);
+    row = hdi_rat_row(kind, degree);
     memset(out, 0, sizeof *out);
     out->kind = kind;
     out->degree = degree;
     out->n_poles = (degree + 1) / 2;
     out->a0 = row[0];
-    /* The table's errors are the exact optimum; its numbers, rounded to double, lose up to 7 % of that at degree 14, and the sum of
-     * a dozen terms of size 1e4 some more. */
+    /* The errors in the table are those of the exact optimum. Its numbers are rounded to double, which
+     * costs up to 7 % of that at degree 14; a sum of a dozen terms of size 1e4 costs some more. */
     out->max_error = 1.1 * row[1] + 1e-14;
     out->max_weighted_error = row[2] > 0 ? 1.1 * row[2] + 1e-14 : 0;
     for (i = 0; i < out->n_poles; i++) {
@@ -12621,13 +12699,15 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
 
 static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     int32_t i;
-    if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES) return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
+    if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
     if (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 ||
         hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0)
         return hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
     for (i = 0; i < set->n_poles; i++) {
         const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
-        const char *text = bad ? "own pole set: a pole or weight is not finite" : "own pole set: theta needs Im > 0, or Im = 0 and Re > 0";
+        const char *text = bad ? "own pole set: a pole or weight is not finite"
+            : "own pole set: theta needs Im > 0, or Im = 0 and Re > 0";
         if (!bad && (set->theta[i].im > 0 || (set->theta[i].im == 0 && set->theta[i].re > 0))) continue;
         hdi_fail(e, bad ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT, text);
         e->pole = i;
@@ -12636,21 +12716,26 @@ static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     return HD_OK;
 }
 
-/* min |x - theta| over x <= 0, i.e. min |t lambda + theta|: how far A stays from singular, in the B geometry. */
+/* min |x - theta| over x <= 0, which is min |t lambda + theta|: the distance of A from a singular matrix,
+ * in the B geometry. */
 static double hdi_pole_distance(hd_c64 theta) { return theta.re >= 0 ? hdi_cabs(theta) : fabs(theta.im); }
 
 /* ---- shared sets ---- */
-/* Poles that serve all times t in [t0, lambda t0], with weights of their own for each: t0 L + theta_i B is factorised once. With tau = t/t0 and the eigenvalue
- * of t0 B^-1 L called y = -x,
- *     exp(-tau y) ~ c(x) = 2 Re sum_i a_i(tau)/(x - theta_i),   a0 = 0, c(0) = 1,   error measured as (1 + tau y)|e|,
- * which is the measure of the kernel sets, for every tau. As a set for the time t itself, in hd_rational's terms, it reads tau theta_i, tau a_i.
+/* Poles that serve all times t in [t0, lambda t0], with weights of their own for each time: t0 L + theta_i
+ * B is factorised once. Let tau = t/t0, and let y = -x be an eigenvalue of t0 B^-1 L. Then
+ *     exp(-tau y) ~ c(x) = 2 Re sum_i a_i(tau)/(x - theta_i),   a0 = 0, c(0) = 1.
+ * The error is measured as (1 + tau y)|e|, for every tau. This is the measure of the kernel sets. As a set
+ * for the time t itself, in the terms of hd_rational, it is tau theta_i, tau a_i.
  * This work is based on
- *   M. Lopez-Fernandez, C. Palencia, A. Schaedle, A spectral order method for inverting sectorial Laplace transforms, 2006: one contour for many times
- *   G. Golub, V. Pereyra, The differentiation of pseudo-inverses and nonlinear least squares problems whose variables separate, 1973 (in the script)
- *   C. Lawson, Contributions to the theory of linear least maximum approximation, 1961: least squares whose weights follow the error
+ *   M. Lopez-Fernandez, C. Palencia, A. Schaedle, A spectral order method for inverting sectorial Laplace
+ *     transforms, 2006: one contour for many times
+ *   G. Golub, V. Pereyra, The differentiation of pseudo-inverses and nonlinear least squares problems
+ *     whose variables separate, 1973 (in the script)
+ *   C. Lawson, Contributions to the theory of linear least maximum approximation, 1961: least squares
+ *     whose weights follow the error
  *   H. Ehlich, K. Zeller, Schwankung von Polynomen zwischen Gitterpunkten, 1964: the bound between points
- * Deviation: the poles are free, not on a hyperbola, which needs twice as many. The table is printed by tools/shared_poles.py (about 15 minutes), which
- * also checks it. */
+ * Deviation: the poles are free rather than on a hyperbola, which needs twice as many.
+ * tools/shared_poles.py prints the table (in about 15 minutes) and checks it. */
 
 /* shared_poles.py: begin */
 /* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of
@@ -12964,25 +13049,29 @@ static const double hdi_shared_table[] = {
 
 enum {
     HDI_SHARED_FEWEST = 4,       /* pairs: poles are factorised in packs of four */
-    HDI_SHARED_LAWSON = 3,       /* steps: they gain a third of the error, more gain nothing to speak of */
+    HDI_SHARED_LAWSON = 3,       /* steps: they take a third off the error; more steps gain almost nothing */
     HDI_SHARED_MOST = 64         /* largest degree of a polynomial in the bound */
 };
+#define HDI_SHARED_PROVEN 1.25   /* what hdi_shared_bound proves for any time, over the error in the table */
 
-/* The fewest poles that hold the weighted error below target for all times within a factor lambda: 1, or 0 when none do (then split the times; out is as it was).
- * For one time, lambda <= 1, that is a kernel set. Else weights are 0 until hdi_shared_fit fills them in, and the errors are what it is known to reach: recorded
- * are the errors on dense times with what rounding can add, and a quarter more is proven for any time. */
+/* The set with the fewest poles whose weighted error is below target for all times within a factor lambda.
+ * Returns 0, and leaves out as it is, if there is none: then the times must be split. For one time, lambda
+ * <= 1, it is a kernel set. Else its weights are 0 until hdi_shared_fit fills them in, and its errors are
+ * what the fit is known to reach: the table records the errors at many times with what rounding can add,
+ * and HDI_SHARED_PROVEN of it is proven for any time. */
 static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
     const int32_t size = HDI_CAST(int32_t, sizeof hdi_shared_table / sizeof *hdi_shared_table);
     hd_rational set;
     hd_error e;
     int32_t k, i, n;
     for (k = 2 * HDI_SHARED_FEWEST; lambda <= 1 && k <= HDI_RAT_KERNEL_MAX; k += 2) {
-        if (hdi_rational_get(&set, HD_POLES_KERNEL, k, &e) < 0 || !(set.max_weighted_error <= target)) continue;
+        if (hdi_rational_get(&set, HD_POLES_KERNEL, k, &e) < 0 || !(set.max_weighted_error <= target))
+            continue;
         *out = set;
         return 1;
     }
     for (k = 0; k < size; k += 4 + 2 * n) {
-        const double *row = hdi_shared_table + k, error = 1.25 * row[2];
+        const double *row = hdi_shared_table + k, error = HDI_SHARED_PROVEN * row[2];
         n = HDI_CAST(int32_t, row[1]);
         if (!(lambda <= row[0] && error <= target)) continue;
         memset(out, 0, sizeof *out);
@@ -12996,8 +13085,9 @@ static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
     return 0;
 }
 
-/* x with the smallest |A x - b|, by Householder reflections: A rows x cols of full rank, column-major, rows >= cols. x comes in b; A is overwritten. Without full
- * rank x is finite, and no more. */
+/* The x with the smallest |A x - b|, by Householder reflections. A is rows x cols of full rank, column-
+ * major, rows >= cols; it is overwritten. x replaces the beginning of b. If A has no full rank, x is
+ * finite, but no more can be said. */
 static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) {
     int64_t j, k;
     for (k = 0; k < cols; k++) {
@@ -13006,7 +13096,8 @@ static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) 
         const double norm = sqrt(hdi_dot(v, v, m)), head = v[0] > 0 ? -norm : norm;
         if (norm == 0) continue;
         v[0] -= head;                            /* I - v v'/(-head v0) takes the column to (head, 0, ..) */
-        for (j = k + 1; j < cols; j++) hdi_axpy(hdi_dot(v, v + (j - k) * rows, m) / (head * v[0]), v, v + (j - k) * rows, m);
+        for (j = k + 1; j < cols; j++)
+            hdi_axpy(hdi_dot(v, v + (j - k) * rows, m) / (head * v[0]), v, v + (j - k) * rows, m);
         hdi_axpy(hdi_dot(v, b + k, m) / (head * v[0]), v, b + k, m);
         v[0] = head;
     }
@@ -13016,12 +13107,13 @@ static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) 
     }
 }
 
-/* (1 + tau y)(exp(-tau y) - c(-y)) at y = p/q, q = 0 being infinity. size receives the sum of the moduli of what is summed. */
+/* (1 + tau y)(exp(-tau y) - c(-y)) at y = p/q, where q = 0 means infinity. size receives the sum of the
+ * moduli of all terms. */
 static double hdi_shared_error(const hd_rational *set, double tau, double p, double q, double *size) {
     const double s = p < 745 / tau * q ? tau * p / q : 745, first = (1 + s) * exp(-s), top = q + tau * p;
     double sum = first;
     int32_t i;
-    *size = (1 + s) * first;                     /* s is off by half an ulp */
+    *size = (1 + s) * first;                     /* s is off by half an ulp; exp(-745) is the last above 0 */
     for (i = 0; i < set->n_poles; i++) {
         const hd_c64 a = set->a[i], d = hdi_c(p + q * set->theta[i].re, q * set->theta[i].im);
         const double inv = 1 / hdi_cabs2(d);
@@ -13031,8 +13123,20 @@ static double hdi_shared_error(const hd_rational *set, double tau, double p, dou
     return sum;
 }
 
-/* The fit: points y_k, k < points, and infinity as the last row. The unknowns are Re a, Im a, scaled and then reflected by I - v v' so that c(0) = 1 fixes the
- * first of them. */
+/* The smallest and the largest modulus of the poles. */
+static void hdi_shared_range(const hd_rational *set, double *least, double *most) {
+    int32_t i;
+    *least = HUGE_VAL;
+    *most = 0;
+    for (i = 0; i < set->n_poles; i++) {
+        *least = hdi_min(*least, hdi_cabs(set->theta[i]));
+        *most = hdi_max(*most, hdi_cabs(set->theta[i]));
+    }
+}
+
+/* The least squares problem of the fit. Its rows are the points y_k, k < points, and infinity. Its
+ * unknowns are Re a, Im a, scaled and then reflected by I - v v', so that c(0) = 1 fixes the first of
+ * them. */
 typedef struct hdi_shared_work {
     int32_t n, points;
     int64_t rows;                /* points + 1 */
@@ -13047,7 +13151,8 @@ static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 96; }
 
 /* Doubles that hdi_shared_fit works in. */
 static uint64_t hdi_shared_room(int32_t n_poles) {
-    const uint64_t n = HDI_CAST(uint64_t, 2 * n_poles), rows = HDI_CAST(uint64_t, hdi_shared_points(n_poles)) + 1;
+    const uint64_t n = HDI_CAST(uint64_t, 2 * n_poles);
+    const uint64_t rows = HDI_CAST(uint64_t, hdi_shared_points(n_poles)) + 1;
     return rows * n + rows + (rows + n) * n + 2 * rows + 3 * n;
 }
 
@@ -13070,26 +13175,26 @@ static hdi_shared_work hdi_shared_begin(int32_t n_poles, double *room) {
     return k;
 }
 
-/* A, b: the weighted problem, columns scaled to a norm near 1. */
+/* A, b: the weighted problem, with columns scaled to a norm near 1. Points are spaced evenly in log y,
+ * from 0.02 times the smallest |theta| to 15 times the largest, as in tools/shared_poles.py. */
 static void hdi_shared_matrix(hdi_shared_work *k, const hd_rational *set, double tau) {
-    double least = HUGE_VAL, most = 0;
+    double least, most;
     int64_t r;
     int32_t i;
-    for (i = 0; i < k->n; i++) {
-        least = hdi_min(least, hdi_cabs(set->theta[i]));
-        most = hdi_max(most, hdi_cabs(set->theta[i]));
-    }
+    hdi_shared_range(set, &least, &most);
     for (r = 0; r < k->rows; r++) {
         const int last = r == k->points;
-        const double part = HDI_CAST(double, r) / (k->points - 1), q = last ? 0 : 1, p = last ? 1 : 0.02 * least * exp(part * log(750 * most / least));
+        const double part = HDI_CAST(double, r) / (k->points - 1), q = last ? 0 : 1;
+        const double p = last ? 1 : 0.02 * least * exp(part * log(750 * most / least));
         k->b[r] = last ? 0 : (1 + tau * p) * exp(-tau * p);
         for (i = 0; i < k->n; i++) {             /* -2 Re a/(p + theta q): x = -y */
-            const hd_c64 f = hdi_cdiv(hdi_c(-2 * (q + tau * p), 0), hdi_c(p + q * set->theta[i].re, q * set->theta[i].im));
+            const hd_c64 d = hdi_c(p + q * set->theta[i].re, q * set->theta[i].im);
+            const hd_c64 f = hdi_cdiv(hdi_c(-2 * (q + tau * p), 0), d);
             k->A[i * k->rows + r] = f.re;
             k->A[(k->n + i) * k->rows + r] = -f.im;
         }
     }
-    for (i = 0; i < k->n; i++) {                 /* both parts alike */
+    for (i = 0; i < k->n; i++) {                 /* one scale for both parts */
         double *re = k->A + i * k->rows, *im = re + k->n * k->rows;
         const double s = 1 / sqrt(hdi_dot(re, re, k->rows) + hdi_dot(im, im, k->rows));
         for (r = 0; r < k->rows; r++) {
@@ -13100,7 +13205,7 @@ static void hdi_shared_matrix(hdi_shared_work *k, const hd_rational *set, double
     }
 }
 
-/* A becomes A (I - v v'), after which c(0) = 1 says x_0 = first. */
+/* Replaces A by A (I - v v'). After that, c(0) = 1 means x_0 = first. */
 static void hdi_shared_condition(hdi_shared_work *k, const hd_rational *set) {
     const int32_t n = 2 * k->n;
     double norm, head;
@@ -13121,8 +13226,9 @@ static void hdi_shared_condition(hdi_shared_work *k, const hd_rational *set) {
     for (i = 0; i < n; i++) hdi_axpy(-k->v[i], k->e, k->A + i * k->rows, k->rows);
 }
 
-/* One weighted least squares problem: x [2n], and the errors e at the points; returns the largest. A touch of damping, of the size of rounding, keeps weights
- * small where the error does not care. */
+/* One weighted least squares problem. Sets x [2n] and the errors e at the points, and returns the largest.
+ * A little damping, of the size of rounding, keeps the weights small in directions that the error does not
+ * feel. */
 static double hdi_shared_step(hdi_shared_work *k) {
     const int32_t n = 2 * k->n;
     const int64_t ld = k->rows + n - 1;
@@ -13146,7 +13252,7 @@ static double hdi_shared_step(hdi_shared_work *k) {
     return worst;
 }
 
-/* The weights a of the last step: undo reflection and scaling. */
+/* The weights a of the last step, with reflection and scaling undone. */
 static void hdi_shared_take(const hdi_shared_work *k, double *a) {
     const int32_t n = 2 * k->n;
     double dot;
@@ -13157,28 +13263,34 @@ static void hdi_shared_take(const hdi_shared_work *k, double *a) {
     for (i = 0; i < n; i++) a[i] = k->scale[i] * (a[i] - dot * k->v[i]);
 }
 
-/* How far exp's part of the weighted error is from a polynomial of degree m on y in [c - w, c + w]: Bernstein's bound 2 M rho^-m/(rho - 1) on an ellipse, or
- * what is left of it altogether. */
+/* How far the exponential part of the weighted error is from a polynomial of degree m on y in [c - w, c +
+ * w]: the smaller of Bernstein's bound 2 M rho^-m/(rho - 1) on an ellipse and the largest value of the
+ * part itself. */
 static double hdi_shared_exp_rest(double tau, double c, double w, int32_t m) {
     const double rho = hdi_min(hdi_max(2 * m / (tau * w), 1.3), 1e6), half = w * (rho + 1 / rho) / 2;
     const double M = (1 + tau * (c + half)) * exp(-tau * (c - half));
     return hdi_min(2 * M * pow(rho, -m) / (rho - 1), (1 + tau * (c - w)) * exp(-tau * (c - w)));
 }
 
-/* A bound of the weighted error on y in [lo, hi], or on [lo, inf) when hi is 0, that holds between points too.
- * In u, y = c + w u (or 1/y = c + w u), a fraction (1 + tau y)/(y + theta) is a constant and g/(u - z), and the Chebyshev coefficients of 1/(u - z) are known:
- * |b_j| = 2 rho^-j/|sqrt(z^2 - 1)|, rho + 1/rho = |z - 1| + |z + 1|. So the error is a polynomial of degree m and a rest that is bounded; m is taken so that the
- * rest is small against goal. A polynomial of degree m is at most 1/cos(m pi/2n) times its largest value at n Chebyshev points (Ehlich, Zeller). Rounding of
- * the evaluation is allowed for. */
+/* A bound of the weighted error on y in [lo, hi], or on [lo, inf) if hi is 0. It holds between the points
+ * too. In u, where y = c + w u (or 1/y = c + w u), a fraction (1 + tau y)/(y + theta) is a constant and
+ * g/(u - z). The Chebyshev coefficients of 1/(u - z) are known: |b_j| = 2 rho^-j/|sqrt(z^2 - 1)| with rho
+ * + 1/rho = |z - 1| + |z + 1|. So the error is a polynomial of degree m and a rest that is bounded. m is
+ * chosen so that the rest is small against goal. A polynomial of degree m is at most 1/cos(m pi/2n) times
+ * its largest value at n Chebyshev points (Ehlich, Zeller). The bound includes the rounding of the
+ * evaluation. */
 static double hdi_shared_panel(const hd_rational *set, double tau, double lo, double hi, double goal) {
-    const double pi = 3.141592653589793238, c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
+    const double pi = 3.141592653589793238;
+    const double c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
     double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, size, largest = 0;
     int32_t i, j, m;
     for (i = 0; i < set->n_poles; i++) {
-        const hd_c64 theta = set->theta[i], pole = hi > 0 ? hdi_c(-theta.re, -theta.im) : hdi_cdiv(hdi_c(-1, 0), theta);
+        const hd_c64 theta = set->theta[i];
+        const hd_c64 pole = hi > 0 ? hdi_c(-theta.re, -theta.im) : hdi_cdiv(hdi_c(-1, 0), theta);
         const hd_c64 z = hdi_c((pole.re - c) / w, pole.im / w);
-        const double left = hypot(z.re + 1, z.im), right = hypot(z.re - 1, z.im), s = (left + right) / 2, rho = s + sqrt(hdi_max(s * s - 1, 0));
-        const double g = 2 * hdi_cabs(set->a[i]) * hypot(1 - tau * theta.re, tau * theta.im) / (w * (hi > 0 ? 1 : hdi_cabs2(theta)));
+        const double left = hypot(z.re + 1, z.im), right = hypot(z.re - 1, z.im), s = (left + right) / 2;
+        const double rho = s + sqrt(hdi_max(s * s - 1, 0)), stretch = w * (hi > 0 ? 1 : hdi_cabs2(theta));
+        const double g = 2 * hdi_cabs(set->a[i]) * hypot(1 - tau * theta.re, tau * theta.im) / stretch;
         inv[i] = 1 / rho;
         part[i] = 2 * g / (sqrt(left * right) * (rho - 1));
     }
@@ -13188,35 +13300,31 @@ static double hdi_shared_panel(const hd_rational *set, double tau, double lo, do
         if (rest <= 0.02 * goal || m == HDI_SHARED_MOST) break;
     }
     for (j = 0; j < 4 * m; j++) {
-        const double u = c + w * cos(pi * (j + 0.5) / (4 * m)), e = hi > 0 ? hdi_shared_error(set, tau, u, 1, &size) : hdi_shared_error(set, tau, 1, u, &size);
-        most = hdi_max(most, fabs(e));
+        const double u = c + w * cos(pi * (j + 0.5) / (4 * m));
+        most = hdi_max(most, fabs(hdi_shared_error(set, tau, hi > 0 ? u : 1, hi > 0 ? 1 : u, &size)));
         largest = hdi_max(largest, size);
     }
     return (most + rest + 4 * DBL_EPSILON * largest) / cos(pi / 8) + rest;
 }
 
-/* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length, away from the poles; the last is [lo, inf). */
+/* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length away from the
+ * poles, until exp(-tau y) has come down to 1e-19; the last is [lo, inf). */
 static void hdi_shared_bound(hd_rational *set, double tau, double goal) {
-    double least = HUGE_VAL, most = 0, lo = 0, hi;
-    int32_t i;
-    for (i = 0; i < set->n_poles; i++) {
-        least = hdi_min(least, hdi_cabs(set->theta[i]));
-        most = hdi_max(most, hdi_cabs(set->theta[i]));
-    }
+    double least, most, lo = 0, hi;
+    hdi_shared_range(set, &least, &most);
     set->max_error = set->max_weighted_error = 0;
-    for (hi = least / 8; hi > 0; lo = hi, hi = lo < 2 * most || tau * lo < 45 ? 2 * lo : 0) {
+    for (hi = least / 8;; lo = hi, hi = lo < 2 * most || tau * lo < 45 ? 2 * lo : 0) {
         const double e = hdi_shared_panel(set, tau, lo, hi, goal);
         set->max_weighted_error = hdi_max(set->max_weighted_error, e);
         set->max_error = hdi_max(set->max_error, e / (1 + tau * lo));
+        if (!(hi > 0)) return;
     }
-    hi = hdi_shared_panel(set, tau, lo, 0, goal);
-    set->max_weighted_error = hdi_max(set->max_weighted_error, hi);
-    set->max_error = hdi_max(set->max_error, hi / (1 + tau * lo));
 }
 
-/* The weights of a shared set for the time tau t0, tau > 0, and their errors: near the smallest largest (1 + tau y)|e|, by least squares and Lawson's steps. Both
- * errors are bounds for all y >= 0, for any tau; small ones for tau in [1, lambda] of the pick. room: hdi_shared_room doubles. THE SET IS TRUSTED: pairs only,
- * Im theta > 0. */
+/* The weights of a shared set for the time tau t0, tau > 0, and their errors. Least squares and Lawson's
+ * steps bring the largest (1 + tau y)|e| near its minimum. Both errors are bounds for all y >= 0 and for
+ * any tau; they are small for tau in [1, lambda] of the pick. room: hdi_shared_room doubles. THE SET IS
+ * TRUSTED: only pairs, Im theta > 0. */
 static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
     hdi_shared_work k = hdi_shared_begin(set->n_poles, room);
     double lowest = HUGE_VAL;
@@ -13243,24 +13351,31 @@ static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
     hdi_shared_bound(set, tau, lowest);
 }
 
-/* Sets for n_times times, each in terms of its own time: theta_i/t is the same for all. */
-static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol, hd_context *ctx, hd_error *e) {
+/* Sets for n_times times, each in terms of its own time: theta_i/t is the same for all of them. */
+static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
+                                     hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     double least = HUGE_VAL, most = 0, *room;
     hd_rational set;
     int32_t q, i;
-    if (n_times < 1 || !(tol > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: no times, or tol is not positive", -1, -1, n_times < 1 ? n_times : tol);
+    if (n_times < 1 || !(tol > 0))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: no times, or tol is not positive", -1, -1,
+                            n_times < 1 ? n_times : tol);
     for (q = 0; q < n_times; q++) {
-        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: a time is not positive or not finite", q, -1, t[q]);
+        if (!hdi_finite(t[q]) || !(t[q] > 0))
+            return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: a time is not positive or not finite", q,
+                                -1, t[q]);
         least = hdi_min(least, t[q]);
         most = hdi_max(most, t[q]);
     }
     if (!hdi_shared_pick(&set, most / least, tol))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: no set is that exact over so wide a range of times", -1, -1, most / least);
+        return hdi_fail_row(e, HD_ERR_ARGUMENT,
+                            "shared poles: no set is that exact over so wide a range of times", -1, -1,
+                                most / least);
     room = HDI_TAKE(&s, double, hdi_shared_room(set.n_poles));
     for (q = 0; room && q < n_times; q++) {
         const double tau = t[q] / least;
-        if (least < most) hdi_shared_fit(&set, tau, room);    /* a single time has its weights */
+        if (least < most) hdi_shared_fit(&set, tau, room);    /* the set for a single time has its weights */
         out[q] = set;
         for (i = 0; i < set.n_poles; i++) {
             out[q].theta[i] = hdi_cscale(tau, set.theta[i]);
@@ -20082,7 +20197,7 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
     }
     if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
     if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
-    hdi_geo_tell_plan(g, rep);
+    if (rep) hdi_geo_tell_plan(g, rep);
     for (q = 0; q < k; q++) {
         if (sources[q] >= 0 && sources[q] < g->n) continue;
         hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q], sources[q]);
