@@ -13308,7 +13308,7 @@ static double hdi_shared_panel(const hd_rational *set, double tau, double lo, do
 }
 
 /* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length away from the
- * poles, until exp(-tau y) has come down to 1e-19; the last is [lo, inf). */
+ * poles, until tau y reaches 45, where the exponential part is near 1e-18. The last is [lo, inf). */
 static void hdi_shared_bound(hd_rational *set, double tau, double goal) {
     double least, most, lo = 0, hi;
     hdi_shared_range(set, &least, &most);
@@ -18302,42 +18302,61 @@ static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double 
 }
 
 /* ==== [28] geodesic ====
- * Geodesic distance by the heat method on triangle meshes. May call [18].
+ * Owns geodesic distances on triangle meshes by the heat method: two real factors, and everything a query
+ * does with them. May call [18].
  * This work is based on
- *   K. Crane, C. Weischedel, M. Wardetzky, Geodesics in heat: a new approach to computing distance based on heat flow, 2013
- * Three steps: (B + t L) u = the indicator of the sources; X = -grad u / |grad u| on every face; L phi = div X, where phi is the distance but for a constant.
+ *   K. Crane, C. Weischedel, M. Wardetzky, Geodesics in heat: a new approach to computing distance based
+ *     on heat flow, 2013
+ * There are three steps: (B + t L) u = the indicator of the sources; X = -grad u / |grad u| on every face;
+ * L phi = div X, where phi is the distance up to a constant.
  * Deviations:
- *   L has one row taken out for each component, which is exact, instead of a small number added to its diagonal, which tilts phi on large meshes.
- *   X follows |u|. Where cotangents are negative u can be so too, here and there far from the sources, and with its sign would point the wrong way.
- *   Heat far away is smaller than any double. What has faded is solved for again from where it still could be told (hdi_geo_further), so that
- *   distances do not end where u underflows.
- *   A face is kept as its triangle in the plane: corners (0,0), (2l,0), (2p,2q), and everything is written in l, p, q: no cotangents, no cancellation. */
+ *   One row of L is taken out for each component. This is exact. The paper adds a small number to the
+ *     diagonal, which tilts phi on large meshes.
+ *   X follows |u|. Where cotangents are negative, u can be negative too at some places far from the
+ *     sources, and X would point the wrong way there.
+ *   Far from the sources u is smaller than any double. Where it has faded, it is solved for again from the
+ *     border of the region where it is known (hdi_geo_further). So distances do not end where u
+ *     underflows.
+ *   A face is stored as its triangle in the plane with corners (0,0), (2l,0), (2p,2q). Everything is
+ *     written in l, p and q: there are no cotangents and no cancellation. */
 
-typedef struct hdi_geo_face { double l, p, q; int32_t v[3], spare; } hdi_geo_face;   /* lengths in units of h; v in elimination order, the longest edge first */
+/* Lengths are in units of h. v is in elimination order and begins with the longest edge. */
+typedef struct hdi_geo_face {
+    double l, p, q;
+    int32_t v[3], spare;
+} hdi_geo_face;
 
+/* Columns of a batch, and the fewest that are worth one. A batch always costs as much as a full one. */
 enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3 };
+
+/* |u| over its largest: below, u is taken as unknown, since underflow is near */
+#define HDI_GEO_FAINT 1e-200
+/* |grad u|^2 over (|u|/edge)^2: below, rounding would choose the direction */
+#define HDI_GEO_FLAT 1e-26
+#define HDI_GEO_RESIDUAL 1e-6    /* a larger relative residual is reported as HD_WARN_ACCURACY */
 
 struct hd_geodesic {
     hd_context *ctx, context;
     int32_t n, n_active, n_faces, n_components;
     double h, t;
     hdi_symbolic sym;
-    hdi_factor heat, poisson;    /* of L + B/t, and of L with the rows pin replaced by those of the identity */
-    hdi_geo_face *face;          /* [n_faces] in elimination order of their first corner to go */
-    double *mass;                /* [n_active] diagonal of B/t, from here on all in elimination order */
+    /* of L + B/t, and of L with the rows pin replaced by those of the identity */
+    hdi_factor heat, poisson;
+    hdi_geo_face *face;          /* [n_faces] ordered by the corner that is eliminated first */
+    double *mass;                /* [n_active] diagonal of B/t. This and all below is in elimination order */
     int32_t *row;                /* [n] vertex -> row, -1 without mass */
     int32_t *component;          /* [n_active] */
     int32_t *pin;                /* [n_components] the last row of each */
     char *active;                /* [n_super] fronts that the sources touch */
     char *reached;               /* [n_components] has a source */
-    char *mark;                  /* [n_active] sources; how far the heat could be told */
+    char *mark;                  /* [n_active] sources; or how far u is known */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
-    double *wide_x, *wide_b, *wide_work;   /* the same for eight columns side by side, made when they are first needed */
+    double *wide_x, *wide_b, *wide_work;   /* the same for a batch, made when first needed */
     int64_t *value_ptr;          /* [n_components + 1] */
-    double *value;               /* [value_size] of phi at the sources, by component, ascending */
+    double *value;               /* [value_size] phi at the sources, by component, ascending */
     hdi_pair *sorted;            /* [value_size] */
     int32_t value_size;
-    int64_t n_staged;            /* fronts that all stages after the first ones went to, so far */
+    int64_t n_staged;            /* fronts visited so far by all stages after the first ones */
 };
 
 /* ---- making ---- */
@@ -18373,14 +18392,33 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_free(ctx, g);
 }
 
-/* Face f in its plane, the longest edge on the axis: the height is then as small as it gets, and loses nothing. */
+/* Allocates unless something failed before: a list of arrays needs one check at its end. */
+static void *hdi_geo_alloc(hd_geodesic *g, int64_t count, size_t size, hd_error *e) {
+    return e->status < 0 ? NULL : hdi_alloc(g->ctx, HDI_CAST(uint64_t, count), size, e);
+}
+
+static double *hdi_geo_doubles(hd_geodesic *g, int64_t count, hd_error *e) {
+    return HDI_CAST(double *, hdi_geo_alloc(g, count, sizeof(double), e));
+}
+
+static int32_t *hdi_geo_ints(hd_geodesic *g, int64_t count, hd_error *e) {
+    return HDI_CAST(int32_t *, hdi_geo_alloc(g, count, sizeof(int32_t), e));
+}
+
+static char *hdi_geo_bytes(hd_geodesic *g, int64_t count, hd_error *e) {
+    return HDI_CAST(char *, hdi_geo_alloc(g, count, 1, e));
+}
+
+/* Face f in its plane with the longest edge on the axis. The height is then as small as it can be and
+ * keeps its relative precision. */
 static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
     double edge[3][3], length[3];
     hdi_geo_face out;
     int i, q, k = 0;
     for (q = 0; q < 3; q++) {                    /* edge q leaves corner q */
-        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[q]), edge[q]);
+        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[q]),
+                 edge[q]);
         for (i = 0; i < 3; i++) edge[q][i] /= h;
         length[q] = hdi_norm3(edge[q]);
         if (length[q] > length[k]) k = q;
@@ -18393,33 +18431,37 @@ static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t
     return out;
 }
 
-static int32_t hdi_geo_first(const int32_t *v, const int32_t *row) {
+/* The first of a face's corners to be eliminated. */
+static int32_t hdi_geo_first(const hdi_mesh *mesh, int32_t f, const int32_t *row) {
+    const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
     const int32_t a = row[v[0]], b = row[v[1]], c = row[v[2]], d = a < b ? a : b;
     return c < d ? c : d;
 }
 
-/* The faces with an area, sorted by the first of their corners to be eliminated, so that passes over them run through the vectors once. */
+/* The faces that have an area, sorted by the corner that is eliminated first. Passes over them then run
+ * through the vectors once. */
 static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int64_t *at = HDI_TAKE_ZERO(&s, int64_t, HDI_CAST(int64_t, g->n_active) + 1);
     int32_t f;
-    g->face = HDI_CAST(hdi_geo_face *, at ? hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_faces), sizeof *g->face, e) : NULL);
+    g->face = HDI_CAST(hdi_geo_face *, hdi_geo_alloc(g, g->n_faces, sizeof *g->face, e));
     if (!g->face) return hdi_scope_end(&s);
     for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0) at[hdi_geo_first(mesh->tri + 3 * HDI_CAST(int64_t, f), g->row)]++;
+        if (mesh->area[f] > 0) at[hdi_geo_first(mesh, f, g->row)]++;
     hdi_prefix_sum(at, g->n_active);
     for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0) g->face[at[hdi_geo_first(mesh->tri + 3 * HDI_CAST(int64_t, f), g->row)]++] = hdi_geo_frame(mesh, f, g->row, g->h);
+        if (mesh->area[f] > 0)
+            g->face[at[hdi_geo_first(mesh, f, g->row)]++] = hdi_geo_frame(mesh, f, g->row, g->h);
     return hdi_scope_end(&s);
 }
 
-/* What is per row, in elimination order. */
+/* The arrays over rows, in elimination order. */
 static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     int32_t i, v;
-    g->mass = HDI_CAST(double *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_active), sizeof(double), e));
-    if (g->mass) g->row = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n), sizeof(int32_t), e));
-    if (g->row) g->component = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_active), sizeof(int32_t), e));
-    if (g->component) g->pin = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components), sizeof(int32_t), e));
+    g->mass = hdi_geo_doubles(g, g->n_active, e);
+    g->row = hdi_geo_ints(g, g->n, e);
+    g->component = hdi_geo_ints(g, g->n_active, e);
+    g->pin = hdi_geo_ints(g, g->n_components, e);
     if (e->status < 0) return e->status;
     for (v = 0; v < g->n; v++) g->row[v] = -1;
     for (i = 0; i < g->n_active; i++) {
@@ -18428,13 +18470,16 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error 
         g->component[i] = lap->component[from];
         g->pin[g->component[i]] = i;
         g->mass[i] = lap->mass[from] / g->t;
-        if (!hdi_finite(g->mass[i])) return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1, lap->vertex[from], g->t);
+        if (!hdi_finite(g->mass[i]))
+            return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1,
+                                 lap->vertex[from], g->t);
     }
     return HD_OK;
 }
 
-/* Factors the matrix val; what only factoring needs is given back. */
-static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacian *lap, const double *val, hd_error *e) {
+/* Factors the matrix val, and frees what only factoring needs. */
+static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacian *lap, const double *val,
+                                hd_error *e) {
     hdi_values v;
     memset(&v, 0, sizeof v);
     v.real = val;
@@ -18451,7 +18496,8 @@ static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacia
     return HD_OK;
 }
 
-/* L + B/t, then L with the row and column of one vertex of each component replaced by those of the identity: phi is zero there. */
+/* L + B/t; then L with the row and column of one vertex of each component replaced by those of the
+ * identity, where phi is zero. */
 static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     double *val = HDI_TAKE(&s, double, lap->L.nnz);
@@ -18459,7 +18505,8 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     int64_t p;
     if (!val) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) val[p] = lap->L.val[p] + (lap->L.col[p] == i ? lap->mass[i] / g->t : 0);
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            val[p] = lap->L.val[p] + (lap->L.col[p] == i ? lap->mass[i] / g->t : 0);
     if (hdi_geo_factor(g, &g->heat, lap, val, e) < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) {
         const int32_t row = g->row[lap->vertex[i]], pin = g->pin[lap->component[i]];
@@ -18472,32 +18519,38 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     return hdi_scope_end(&s);
 }
 
+/* Work of the queries. */
 static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, g->n_active);
-    g->active = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->sym.n_super), 1, e));
-    if (g->active) g->reached = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components), 1, e));
-    if (g->reached) g->mark = HDI_CAST(char *, hdi_alloc(g->ctx, n, 1, e));
-    if (g->mark) g->value_ptr = HDI_CAST(int64_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components) + 1, sizeof(int64_t), e));
-    if (g->value_ptr) g->x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->x) g->b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->b) g->r = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->r) g->work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, 1, 1), sizeof(double), e));
+    g->active = hdi_geo_bytes(g, g->sym.n_super, e);
+    g->reached = hdi_geo_bytes(g, g->n_components, e);
+    g->mark = hdi_geo_bytes(g, g->n_active, e);
+    g->value_ptr = HDI_CAST(int64_t *,
+                            hdi_geo_alloc(g, HDI_CAST(int64_t, g->n_components) + 1, sizeof(int64_t), e));
+    g->x = hdi_geo_doubles(g, g->n_active, e);
+    g->b = hdi_geo_doubles(g, g->n_active, e);
+    g->r = hdi_geo_doubles(g, g->n_active, e);
+    g->work = hdi_geo_doubles(g, HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, 1, 1)), e);
     return e->status;
 }
 
 /* Ordering, analysis and both factors. */
-static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const hd_geodesic_opts *o, hd_error *e) {
+static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const hd_geodesic_opts *o,
+                                 hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), *own = HDI_TAKE(&s, int32_t, lap->n_active), chosen = 0;
+    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active), *own = HDI_TAKE(&s, int32_t, lap->n_active);
+    int32_t chosen = 0;
     if (e->status < 0) return hdi_scope_end(&s);
     if (o->ordering == HD_ORDERING_OWN) hdi_elim_own(lap, o->perm, own);
-    if (hdi_sym_order(&lap->L, lap->xyz, o->ordering, HDI_DISSECT_FROM, own, perm, &chosen, g->ctx, e) < 0) return hdi_scope_end(&s);
-    if (hdi_progress(g->ctx, "analyse", 0, e) >= 0) (void)hdi_symbolic_make(&g->sym, &lap->L, perm, g->ctx, e);
+    if (hdi_sym_order(&lap->L, lap->xyz, o->ordering, HDI_DISSECT_FROM, own, perm, &chosen, g->ctx, e) < 0)
+        return hdi_scope_end(&s);
+    if (hdi_progress(g->ctx, "analyse", 0, e) >= 0)
+        (void)hdi_symbolic_make(&g->sym, &lap->L, perm, g->ctx, e);
     g->sym.ordering = HDI_CAST(hd_ordering, chosen);
     return hdi_scope_end(&s);
 }
 
-static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *tri, int32_t m, const hd_geodesic_opts *o, hd_error *e) {
+static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *tri, int32_t m,
+                              const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     hd_laplacian *lap = HDI_CAST(hd_laplacian *, hdi_alloc(g->ctx, 1, sizeof *lap, e));
     hdi_mesh mesh;
@@ -18505,17 +18558,21 @@ static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *
     hdi_mesh_clear(&mesh, xyz, g->n, tri, m);
     memset(lap, 0, sizeof *lap);
     lap->n = g->n;
-    lap->context = g->ctx;
-    lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;   /* the row sums of fem are the lumped mass */
+    lap->context = g->ctx;                       /* the row sums of fem are the lumped mass */
+    lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
     if (hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_mesh(lap, &mesh, 0, &s) >= 0) {
         g->n_active = lap->n_active;
         g->n_components = lap->n_components;
         g->n_faces = lap->mesh.n_faces_used;
         g->h = lap->h;
         g->t = o->t > 0 ? o->t : lap->h * lap->h;
-        if (!hdi_finite(g->t) || !(g->t > 0)) hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: the square of the mean edge length is no number to compute with", -1, -1, lap->h);
+        if (!hdi_finite(g->t) || !(g->t > 0))
+            hdi_fail_row(e, HD_ERR_ARGUMENT,
+                         "geodesic: the square of the mean edge length is no number to compute with",
+                         -1, -1, lap->h);
     }
-    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 && hdi_geo_faces(g, &mesh, e) >= 0) {
+    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 &&
+        hdi_geo_faces(g, &mesh, e) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
         if (hdi_geo_factors(g, lap, e) >= 0) (void)hdi_geo_room(g, e);
     }
@@ -18525,21 +18582,33 @@ static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *
 
 /* ---- passes over the faces ---- */
 
-/* What -grad |u| / |grad |u|| of a face adds to div X: g[1], g[2] at corners 1 and 2, minus their sum at corner 0. Without heat above least, or without a slope
- * beyond rounding (where fronts of symmetric meshes meet, rounding would choose a side), nothing. Returns the largest |u|, by which u is normalised before
- * anything is squared. */
-static HDI_INLINE double hdi_geo_flow(const hdi_geo_face *f, double u0, double u1, double u2, double least, double *g) {
-    const double a0 = fabs(u0), a1 = fabs(u1), a2 = fabs(u2), m = hdi_max(hdi_max(a0, a1), a2), s = m >= least ? 1 / m : 0;
+/* What X = -grad |u| / |grad |u|| of a face adds to div X: g[1], g[2] at corners 1 and 2, minus their sum
+ * at corner 0. Nothing is added if no |u| reaches least, or if the slope is within rounding: where fronts
+ * of symmetric meshes meet, rounding would choose a side. u is normalised by its largest modulus on the
+ * face before anything is squared. Returns that modulus. */
+static HDI_INLINE double hdi_geo_flow(const hdi_geo_face *f, double u0, double u1, double u2, double least,
+                                      double *g) {
+    const double a0 = fabs(u0), a1 = fabs(u1), a2 = fabs(u2);
+    const double m = hdi_max(hdi_max(a0, a1), a2), s = m >= least ? 1 / m : 0;
     const double d1 = (a1 - a0) * s, d2 = (a2 - a0) * s;
     const double x = f->q * d1, y = f->l * d2 - f->p * d1;   /* grad u times the area */
-    const double norm2 = x * x + y * y, w = norm2 > 1e-26 * f->l * f->l ? -1 / sqrt(norm2) : 0;
+    const double norm2 = x * x + y * y, w = norm2 > HDI_GEO_FLAT * f->l * f->l ? -1 / sqrt(norm2) : 0;
     g[1] = (f->q * x - f->p * y) * w;
     g[2] = f->l * y * w;
     return m;
 }
 
-/* b = div X, integrated against the hat functions: the right-hand side of L phi = b. Returns how many faces have some heat, but less than least. */
-static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRICT u, double least, double *HDI_RESTRICT b) {
+/* b += what hdi_geo_flow says of the face. */
+static HDI_INLINE void hdi_geo_add(const hdi_geo_face *f, const double *g, double *b) {
+    b[f->v[0]] -= g[1] + g[2];
+    b[f->v[1]] += g[1];
+    b[f->v[2]] += g[2];
+}
+
+/* b = div X, integrated against the hat functions: the right-hand side of L phi = b. Returns how many
+ * faces have heat, but all of it below least. */
+static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRICT u, double least,
+                                  double *HDI_RESTRICT b) {
     int64_t faint = 0;
     int32_t f;
     memset(b, 0, HDI_CAST(size_t, g->n_active) * sizeof *b);
@@ -18548,20 +18617,23 @@ static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRI
         double d[3];
         const double m = hdi_geo_flow(a, u[a->v[0]], u[a->v[1]], u[a->v[2]], least, d);
         faint += m < least && m > 0;
-        b[a->v[0]] -= d[1] + d[2];
-        b[a->v[1]] += d[1];
-        b[a->v[2]] += d[2];
+        hdi_geo_add(a, d, b);
     }
     return faint;
 }
 
-/* The same for eight columns side by side. Returns the columns with faint faces as bits. */
-static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RESTRICT u, const double *HDI_RESTRICT least, double *HDI_RESTRICT b) {
+/* Where corner q of a face lies in a batch of columns. */
+static HDI_INLINE int64_t hdi_geo_at(const hdi_geo_face *f,
+                                     int q) { return HDI_GEO_WIDE * HDI_CAST(int64_t, f->v[q]); }
+
+/* The same for a batch. Returns the columns with faint faces as bits. */
+static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RESTRICT u,
+                                     const double *HDI_RESTRICT least, double *HDI_RESTRICT b) {
     int32_t f, c;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
         for (c = 0; c < HDI_GEO_WIDE; c++) {
             double d[3];
             const double m = hdi_geo_flow(a, u[i + c], u[j + c], u[k + c], least[c], d);
@@ -18575,26 +18647,34 @@ static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RES
 }
 
 #if HDI_X86
-/* hdi_geo_flow, four or eight columns at a time. */
-static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *u, const double *least, double *b) {
-    const hdi_v4 zero = _mm256_setzero_pd(), one = _mm256_set1_pd(1), minus = _mm256_set1_pd(-1), sign = _mm256_set1_pd(-0.0);
+/* hdi_geo_flow for four columns at a time. */
+static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *u, const double *least,
+                                            double *b) {
+    const hdi_v4 zero = _mm256_setzero_pd(), one = _mm256_set1_pd(1), minus = _mm256_set1_pd(-1);
+    const hdi_v4 sign = _mm256_set1_pd(-0.0);
     int32_t f, c;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
-        const hdi_v4 l = _mm256_set1_pd(a->l), p = _mm256_set1_pd(a->p), q = _mm256_set1_pd(a->q), flat = _mm256_set1_pd(1e-26 * a->l * a->l);
+        const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
+        const hdi_v4 l = _mm256_set1_pd(a->l), p = _mm256_set1_pd(a->p), q = _mm256_set1_pd(a->q);
+        const hdi_v4 flat = _mm256_set1_pd(HDI_GEO_FLAT * a->l * a->l);
         for (c = 0; c < HDI_GEO_WIDE; c += 4) {
-            const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c)), u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
-            const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c)), m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
+            const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c));
+            const hdi_v4 u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
+            const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c));
+            const hdi_v4 m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
             const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ);
             const hdi_v4 s = _mm256_and_pd(lit, _mm256_div_pd(one, _mm256_blendv_pd(one, m, lit)));
-            const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s), d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
-            const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1)), norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
+            const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s);
+            const hdi_v4 d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
+            const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1));
+            const hdi_v4 norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
             const hdi_v4 slope = _mm256_cmp_pd(norm2, flat, _CMP_GT_OQ);
             const hdi_v4 length = _mm256_sqrt_pd(_mm256_blendv_pd(one, norm2, slope));
             const hdi_v4 w = _mm256_and_pd(slope, _mm256_div_pd(minus, length));
-            const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w), g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
+            const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w);
+            const hdi_v4 g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
             faint |= (_mm256_movemask_pd(_mm256_cmp_pd(m, zero, _CMP_GT_OQ)) & ~_mm256_movemask_pd(lit)) << c;
             _mm256_storeu_pd(b + i + c, _mm256_sub_pd(_mm256_loadu_pd(b + i + c), _mm256_add_pd(g1, g2)));
             _mm256_storeu_pd(b + j + c, _mm256_add_pd(_mm256_loadu_pd(b + j + c), g1));
@@ -18604,23 +18684,31 @@ static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *
     return faint;
 }
 
-static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double *u, const double *least, double *b) {
-    const hdi_v8 zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1), minus = _mm512_set1_pd(-1), sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
+static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double *u, const double *least,
+                                              double *b) {
+    const hdi_v8 zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1), minus = _mm512_set1_pd(-1);
+    const hdi_v8 sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
     int32_t f;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
         const hdi_v8 l = _mm512_set1_pd(a->l), p = _mm512_set1_pd(a->p), q = _mm512_set1_pd(a->q);
-        const hdi_v8 u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i)), u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
-        const hdi_v8 u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k)), m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
+        const hdi_v8 u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i));
+        const hdi_v8 u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
+        const hdi_v8 u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k));
+        const hdi_v8 m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
         const __mmask8 lit = _mm512_cmp_pd_mask(m, low, _CMP_GE_OQ);
         const hdi_v8 s = _mm512_maskz_div_pd(lit, one, m);
-        const hdi_v8 d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s), d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
-        const hdi_v8 x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1)), norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
-        const __mmask8 slope = _mm512_cmp_pd_mask(norm2, _mm512_set1_pd(1e-26 * a->l * a->l), _CMP_GT_OQ);
+        const hdi_v8 d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s);
+        const hdi_v8 d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
+        const hdi_v8 x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1));
+        const hdi_v8 norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
+        const __mmask8 slope = _mm512_cmp_pd_mask(norm2, _mm512_set1_pd(HDI_GEO_FLAT * a->l * a->l),
+                                                  _CMP_GT_OQ);
         const hdi_v8 w = _mm512_maskz_div_pd(slope, minus, _mm512_sqrt_pd(norm2));
-        const hdi_v8 g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w), g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
+        const hdi_v8 g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w);
+        const hdi_v8 g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
         faint |= _mm512_cmp_pd_mask(m, zero, _CMP_GT_OQ) & ~lit;
         _mm512_storeu_pd(b + i, _mm512_sub_pd(_mm512_loadu_pd(b + i), _mm512_add_pd(g1, g2)));
         _mm512_storeu_pd(b + j, _mm512_add_pd(_mm512_loadu_pd(b + j), g1));
@@ -18656,18 +18744,19 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
 }
 
 /* ---- heat beyond what a double can hold ---- */
-/* u falls by about a factor of e over a distance of sqrt(t), and at t = h^2 it is gone after some 700 edges. Let S be where it could be told, and u' = u
- * beyond S, 0 on it. Then A u' = f, A = L + B/t, is zero but for the rows along the border of S, and there it is known: f_i = sum over j beyond of A_ij u_j for i in
- * S, f_j = -sum over i in S of A_ij u_i beyond. Solved with f scaled to one, the same u goes on, as far again as before. Only directions are wanted,
- * so that the scale is of no interest. A face belongs to the first stage that tells one of its corners.
- * A stage costs what it touches, so that a long strip costs in proportion to its length: the faces around the
- * rows just told; forward, the fronts on the ways from the border towards the root, as far as they have
- * something to hand on; backward, those that heat beyond S comes to from above. u' is 0 on S, and fades. */
+/* u falls by about a factor of e over a distance of sqrt(t). At t = h^2 it underflows after some 700
+ * edges. Let S be the rows where it is known, and u' = u beyond S and 0 on S. Then f = A u', A = L + B/t,
+ * is zero except in the rows along the border of S, and is known there: f_i = sum over j beyond of A_ij
+ * u_j for i in S, f_j = -sum over i in S of A_ij u_i for j beyond. f is scaled to one, and solving A u' =
+ * f continues u as far again as before. The scale does not matter, because only directions are used. A
+ * face belongs to the first stage that reaches one of its corners. A stage costs what it touches, so a
+ * long strip costs in proportion to its length. A stage visits the faces around the rows that became known
+ * last; forward, the fronts on the ways from the border towards the root, as long as they have something
+ * to hand on; backward, the fronts that heat beyond S reaches from above. u' is 0 on S, and it fades. */
 
-static const double hdi_geo_faint = 1e-200;      /* of the largest u: below, doubles are soon at their end */
 enum { HDI_GEO_BEYOND = 0, HDI_GEO_EARLIER = 1, HDI_GEO_NOW = 2 };
 
-/* g->x is zero but for the pivots of front, g->r is zero between stages, and so is g->active. */
+/* g->x is zero except for the pivots of front. Between stages g->r and g->active are zero. */
 typedef struct hdi_geo_far {
     hd_geodesic *g;
     int64_t *around_ptr;         /* [n_active + 1] */
@@ -18707,7 +18796,7 @@ static hd_status hdi_geo_far_begin(hdi_geo_far *w, hd_geodesic *g, hdi_scope *s)
     return HD_OK;
 }
 
-/* Marks what u tells, of the rows beyond. */
+/* Marks the rows beyond at which u is now known, |u| >= least. */
 static void hdi_geo_tell(hdi_geo_far *w, double least) {
     const hd_geodesic *g = w->g;
     int32_t k, i;
@@ -18731,14 +18820,15 @@ static double hdi_geo_largest(const hdi_geo_far *w) {
     return most;
 }
 
-/* Whether row i is the first corner of a face that is told now: each face is visited from one corner. */
+/* Whether row i is the first corner of the face that became known now. So each face is visited from one
+ * corner. */
 static int hdi_geo_visit(const hd_geodesic *g, const hdi_geo_face *a, int32_t i) {
     int q = 0;
     while (g->mark[a->v[q]] != HDI_GEO_NOW) q++;
     return a->v[q] == i;
 }
 
-/* Forward, tasks come before the top: the vectors of its fronts take the room that theirs leave. */
+/* Opens a front. Forward, tasks come before the top, because the vectors of its fronts reuse their memory. */
 static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
     const hdi_symbolic *s = &w->g->sym;
     const uint64_t place = HDI_CAST(uint64_t, v) + (s->task_of[v] < 0 ? HDI_CAST(uint64_t, s->n_super) : 0);
@@ -18753,7 +18843,7 @@ static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
     w->open[i] = x;
 }
 
-/* f along the border of what is told, into g->r, with its fronts opened. */
+/* Puts f along the border of what is known into g->r, and opens the fronts there. */
 static void hdi_geo_border(hdi_geo_far *w) {
     const hd_geodesic *g = w->g;
     int64_t p;
@@ -18780,7 +18870,7 @@ static void hdi_geo_border(hdi_geo_far *w) {
         }
 }
 
-/* The largest |f|, which then becomes 1. 0: there is no border, or none with numbers to compute with. */
+/* Scales f so that its largest modulus is 1. Returns 0 if there is no border, or no usable number on it. */
 static int hdi_geo_scale(const hdi_geo_far *w) {
     const hd_geodesic *g = w->g;
     double most = 0;
@@ -18794,7 +18884,7 @@ static int hdi_geo_scale(const hdi_geo_far *w) {
     return 1;
 }
 
-/* From the open fronts upwards, as long as a front has something to hand on. */
+/* Goes upwards from the open fronts, as long as a front has something to hand on. */
 static void hdi_geo_forward(hdi_geo_far *w, const hdi_sweep *z) {
     const hdi_symbolic *s = &w->g->sym;
     w->n_ends = 0;
@@ -18812,7 +18902,7 @@ static void hdi_geo_forward(hdi_geo_far *w, const hdi_sweep *z) {
     }
 }
 
-/* Whether a front that nothing came to forward has heat: from its rows above, of those beyond. */
+/* Whether a front that the forward sweep did not visit receives heat from its rows above, of those beyond. */
 static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
     int64_t p;
     for (p = g->sym.row_ptr[v]; p < g->sym.row_ptr[v + 1]; p++)
@@ -18820,8 +18910,8 @@ static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
     return 0;
 }
 
-/* From the ends of the way up down again, the highest first: an end with another one above it may have got
- * heat from there, by fronts that nothing came to forward. */
+/* Goes down again from the ends of the way up, the highest first. An end below another one may have
+ * received heat from there, through fronts that the forward sweep did not visit. */
 static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
     const hdi_symbolic *s = &w->g->sym;
     int32_t k;
@@ -18843,7 +18933,7 @@ static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
     }
 }
 
-/* g->x = A^-1 f, f in g->r, where it matters. What was in g->x goes. */
+/* g->x = A^-1 f where it matters, with f in g->r. The old content of g->x is lost. */
 static void hdi_geo_stage(hdi_geo_far *w) {
     hd_geodesic *g = w->g;
     const int32_t *super = g->sym.super;
@@ -18865,7 +18955,7 @@ static void hdi_geo_stage(hdi_geo_far *w) {
     g->n_staged += w->n_fronts;
 }
 
-/* div X of the faces of which nothing was told before this stage. */
+/* Adds div X of the faces that no earlier stage reached. */
 static void hdi_geo_divergence_now(const hdi_geo_far *w, double least) {
     const hd_geodesic *g = w->g;
     int32_t n;
@@ -18878,19 +18968,20 @@ static void hdi_geo_divergence_now(const hdi_geo_far *w, double least) {
             if (g->mark[i] == HDI_GEO_EARLIER || g->mark[j] == HDI_GEO_EARLIER) continue;
             if (g->mark[k] == HDI_GEO_EARLIER || !hdi_geo_visit(g, a, w->told[n])) continue;
             (void)hdi_geo_flow(a, g->x[i], g->x[j], g->x[k], least, d);
-            g->b[i] -= d[1] + d[2];
-            g->b[j] += d[1];
-            g->b[k] += d[2];
+            hdi_geo_add(a, d, g->b);
         }
 }
 
-static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, double *x, const char *active) {
+/* x = the inverse times x for k columns side by side, 1 or a batch. */
+static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, double *x,
+                          const char *active) {
     hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work, 1);
     z.active = active;
     hdi_sweep_run(&z, g->ctx);
 }
 
-/* Adds to b what lies beyond u >= least, stage by stage. u is in g->x. Where heat ends for good (no more of the component, weights of zero), the rest has no direction. */
+/* Adds to b what lies beyond |u| >= least, stage by stage, with u in g->x. Where heat ends for good (the
+ * component ends, or weights are zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     hdi_geo_far w;
@@ -18901,7 +18992,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
         if (!hdi_geo_scale(&w) || hdi_progress(g->ctx, "solve", 0.5, e) < 0) break;
         hdi_geo_stage(&w);
         ++*n_stages;
-        least = hdi_geo_largest(&w) * hdi_geo_faint;
+        least = hdi_geo_largest(&w) * HDI_GEO_FAINT;
         if (!(least > DBL_MIN)) break;
         hdi_geo_tell(&w, least);
         hdi_geo_divergence_now(&w, least);
@@ -18911,7 +19002,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
 
 /* ---- queries ---- */
 
-/* Indicator of the sources into x, with the fronts that it touches. Sources twice count once. */
+/* The indicator of the sources into x, and the fronts that it touches. A source named twice counts once. */
 static void hdi_geo_start(hd_geodesic *g, const int32_t *sources, int32_t k) {
     int32_t q;
     memset(g->x, 0, HDI_CAST(size_t, g->n_active) * sizeof *g->x);
@@ -18926,17 +19017,20 @@ static void hdi_geo_start(hd_geodesic *g, const int32_t *sources, int32_t k) {
     }
 }
 
-/* What u has to have to be told from nothing: relative to what the sources have. */
-static double hdi_geo_least(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u, int64_t stride) {
+/* The |u| from which on u counts as known, relative to its size at the sources. */
+static double hdi_geo_least(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u,
+                            int64_t stride) {
     double most = 0;
     int32_t q;
     for (q = 0; q < k; q++)
         if (g->row[sources[q]] >= 0) most = hdi_max(most, fabs(u[stride * g->row[sources[q]]]));
-    return hdi_max(most * hdi_geo_faint, DBL_MIN);
+    return hdi_max(most * HDI_GEO_FAINT, DBL_MIN);
 }
 
-/* |r| / |b| of the heat equation, r = b - A u, b the indicator of the sources; work r [n_active]. */
-static double hdi_geo_heat_residual(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u, double *r) {
+/* |r| / |b| of the heat equation, where r = b - A u and b is the indicator of the sources. r [n_active] is
+ * work. */
+static double hdi_geo_heat_residual(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u,
+                                    double *r) {
     double b2 = 0, r2 = 0;
     int32_t i, q;
     memset(r, 0, HDI_CAST(size_t, g->n_active) * sizeof *r);
@@ -18951,7 +19045,7 @@ static double hdi_geo_heat_residual(const hd_geodesic *g, const int32_t *sources
     return b2 > 0 ? sqrt(r2 / b2) : 0;
 }
 
-/* |b - L phi| / |b|; b in g->r, which is used up. */
+/* |b - L phi| / |b|, with b in g->r, which is overwritten. */
 static double hdi_geo_residual(const hd_geodesic *g, const double *phi) {
     double b2 = 0, r2 = 0;
     int32_t i;
@@ -18961,17 +19055,16 @@ static double hdi_geo_residual(const hd_geodesic *g, const double *phi) {
     return b2 > 0 ? sqrt(r2 / b2) : 0;
 }
 
-/* Room for phi at k sources. */
+/* Memory for phi at k sources. */
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t k, hd_error *e) {
-    const uint64_t most = HDI_CAST(uint64_t, k < g->n_active ? k : g->n_active);
-    if (HDI_CAST(size_t, g->value_size) >= most) return HD_OK;
+    const int32_t most = k < g->n_active ? k : g->n_active;
+    if (g->value_size >= most) return HD_OK;
     hdi_free(g->ctx, g->value);
     hdi_free(g->ctx, g->sorted);
     g->value_size = 0;
-    g->sorted = NULL;
-    g->value = HDI_CAST(double *, hdi_alloc(g->ctx, most, sizeof(double), e));
-    if (g->value) g->sorted = HDI_CAST(hdi_pair *, hdi_alloc(g->ctx, most, sizeof(hdi_pair), e));
-    if (g->sorted) g->value_size = HDI_CAST(int32_t, most);
+    g->value = hdi_geo_doubles(g, most, e);
+    g->sorted = HDI_CAST(hdi_pair *, hdi_geo_alloc(g, most, sizeof(hdi_pair), e));
+    if (g->sorted) g->value_size = most;
     return e->status;
 }
 
@@ -18986,7 +19079,8 @@ static void hdi_geo_values(hd_geodesic *g, const int32_t *sources, int32_t k, co
         if (i < 0 || g->mark[i]) continue;
         g->mark[i] = 1;
         memcpy(&bits, phi + i, sizeof bits);
-        g->sorted[n].key = bits >> 63 ? ~bits : bits | HDI_CAST(uint64_t, 1) << 63;   /* in the order of the doubles */
+        /* in the order of the doubles */
+        g->sorted[n].key = bits >> 63 ? ~bits : bits | HDI_CAST(uint64_t, 1) << 63;
         g->sorted[n++].id = i;
         g->value_ptr[g->component[i]]++;
     }
@@ -19009,7 +19103,8 @@ static double hdi_geo_nearest(const double *value, int64_t n, double phi) {
     return lo < n ? hdi_min(value[lo] - phi, phi - value[lo - 1]) : phi - value[n - 1];
 }
 
-/* phi to distances: zero at the sources, infinite where none is. Returns whether all is finite that should be. */
+/* From phi to distances: zero at the sources, infinite on components without one. Returns whether all
+ * distances that should be finite are. */
 static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d) {
     int fine = 1;
     int32_t v;
@@ -19017,7 +19112,8 @@ static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d)
         const int32_t i = g->row[v], c = i < 0 ? -1 : g->component[i];
         d[v] = HUGE_VAL;
         if (i < 0 || !g->reached[c]) continue;
-        d[v] = g->h * hdi_geo_nearest(g->value + g->value_ptr[c], g->value_ptr[c + 1] - g->value_ptr[c], phi[i]);
+        d[v] = g->h * hdi_geo_nearest(g->value + g->value_ptr[c], g->value_ptr[c + 1] - g->value_ptr[c],
+                                      phi[i]);
         fine &= hdi_finite(d[v]);
     }
     return fine;
@@ -19026,17 +19122,19 @@ static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d)
 static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance) {
     rep->residual_heat = hdi_max(rep->residual_heat, heat);
     rep->residual_distance = hdi_max(rep->residual_distance, distance);
-    if (!(heat <= 1e-6) || !(distance <= 1e-6)) rep->status = HD_WARN_ACCURACY;
+    if (!(heat <= HDI_GEO_RESIDUAL) || !(distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
 }
 
 static hd_status hdi_geo_not_finite(hd_error *e, int32_t column) {
-    hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding has eaten the answer: the mesh has faces that are too thin");
+    hdi_fail(e, HD_ERR_BREAKDOWN,
+             "geodesic: rounding has eaten the answer: the mesh has faces that are too thin");
     e->column = column;
     return e->status;
 }
 
 /* Distance to the set of sources. */
-static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, hd_geodesic_report *rep, hd_error *e) {
+static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, double *d,
+                             hd_geodesic_report *rep, hd_error *e) {
     double least, heat = 0;
     int32_t i, n_stages = 1;
     if (hdi_geo_values_room(g, k, e) < 0) return e->status;
@@ -19044,7 +19142,8 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
     hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
     if (rep) heat = hdi_geo_heat_residual(g, sources, k, g->x, g->r);
     least = hdi_geo_least(g, sources, k, g->x, 1);
-    if (hdi_geo_divergence(g, g->x, least, g->b) && hdi_geo_further(g, least, &n_stages, e) < 0) return e->status;
+    if (hdi_geo_divergence(g, g->x, least, g->b) && hdi_geo_further(g, least, &n_stages, e) < 0)
+        return e->status;
     if (rep) memcpy(g->r, g->b, HDI_CAST(size_t, g->n_active) * sizeof *g->r);
     for (i = 0; i < g->n_components; i++) g->b[g->pin[i]] = 0;
     hdi_geo_sweep(g, &g->poisson, 1, g->b, NULL);
@@ -19058,20 +19157,24 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
 }
 
 static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
-    const uint64_t n = HDI_GEO_WIDE * HDI_CAST(uint64_t, g->n_active);
-    if (!g->wide_x) g->wide_x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->wide_x && !g->wide_b) g->wide_b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->wide_b && !g->wide_work) g->wide_work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1), sizeof(double), e));
+    const int64_t n = HDI_GEO_WIDE * HDI_CAST(int64_t, g->n_active);
+    const int64_t n_work = HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1));
+    if (!g->wide_x) g->wide_x = hdi_geo_doubles(g, n, e);
+    if (!g->wide_b) g->wide_b = hdi_geo_doubles(g, n, e);
+    if (!g->wide_work) g->wide_work = hdi_geo_doubles(g, n_work, e);
     return e->status;
 }
 
+/* Column c of a batch. */
 static void hdi_geo_column(const hd_geodesic *g, const double *wide, int32_t c, double *x) {
     int32_t i;
     for (i = 0; i < g->n_active; i++) x[i] = wide[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c];
 }
 
-/* phi of up to eight single sources to distances, the columns in d; those with a bit in skip need not be finite. */
-static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, int32_t k, int skip, double *d, size_t ldd) {
+/* From phi of up to eight single sources to distances, in the columns of d. Columns with a bit in skip
+ * need not be finite. */
+static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, int32_t k, int skip,
+                                  double *d, size_t ldd) {
     double at[HDI_GEO_WIDE];
     int32_t component[HDI_GEO_WIDE], v, c, fine = 1;
     for (c = 0; c < k; c++) {
@@ -19093,7 +19196,7 @@ static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, 
     return fine;
 }
 
-/* Residuals of the heat equation of eight columns; then, with u gone, those of phi. */
+/* Residuals of the heat equation for a batch; then, when u is gone, those of phi. */
 static void hdi_geo_wide_heat(hd_geodesic *g, const int32_t *sources, int32_t k, double *heat) {
     int32_t c;
     for (c = 0; c < k; c++) {
@@ -19102,7 +19205,8 @@ static void hdi_geo_wide_heat(hd_geodesic *g, const int32_t *sources, int32_t k,
     }
 }
 
-static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double *heat, hd_geodesic_report *rep) {
+static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double *heat,
+                               hd_geodesic_report *rep) {
     int32_t c;
     for (c = 0; c < k; c++) {
         if (skip >> c & 1) continue;
@@ -19113,8 +19217,10 @@ static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double
     }
 }
 
-/* Distances to up to eight sources, each for itself, side by side. Columns whose heat fades out are done again alone. */
-static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, size_t ldd, hd_geodesic_report *rep, hd_error *e) {
+/* Distances to up to eight sources, each for itself, as a batch. Columns whose heat fades out are computed
+ * again alone. */
+static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, size_t ldd,
+                              hd_geodesic_report *rep, hd_error *e) {
     const size_t size = HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof(double);
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, i;
@@ -19128,17 +19234,45 @@ static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k,
         hdi_sweep_touch(&g->sym, g->row[sources[c]], g->active);
     }
     hdi_geo_sweep(g, &g->heat, HDI_GEO_WIDE, g->wide_x, g->active);
-    for (c = 0; c < HDI_GEO_WIDE; c++) least[c] = c < k ? hdi_geo_least(g, sources + c, 1, g->wide_x + c, HDI_GEO_WIDE) : DBL_MIN;
+    for (c = 0; c < HDI_GEO_WIDE; c++)
+        least[c] = c < k ? hdi_geo_least(g, sources + c, 1, g->wide_x + c, HDI_GEO_WIDE) : DBL_MIN;
     faint = hdi_geo_divergence8(g, g->wide_x, least, g->wide_b);
     if (rep) hdi_geo_wide_heat(g, sources, k, heat);
     if (rep) memcpy(g->wide_x, g->wide_b, size);
-    for (i = 0; i < g->n_components; i++) memset(g->wide_b + HDI_GEO_WIDE * HDI_CAST(int64_t, g->pin[i]), 0, HDI_GEO_WIDE * sizeof(double));
+    for (i = 0; i < g->n_components; i++)
+        memset(g->wide_b + HDI_GEO_WIDE * HDI_CAST(int64_t, g->pin[i]), 0, HDI_GEO_WIDE * sizeof(double));
     hdi_geo_sweep(g, &g->poisson, HDI_GEO_WIDE, g->wide_b, NULL);
     if (!hdi_geo_wide_distances(g, sources, k, faint, d, ldd)) return hdi_geo_not_finite(e, -1);
     if (rep) hdi_geo_wide_judge(g, k, faint, heat, rep);
     for (c = 0; c < k; c++)
-        if (faint >> c & 1 && hdi_geo_one(g, sources + c, 1, d + HDI_CAST(size_t, c) * ldd, rep, e) < 0) return e->status;
+        if (faint >> c & 1 && hdi_geo_one(g, sources + c, 1, d + HDI_CAST(size_t, c) * ldd, rep, e) < 0)
+            return e->status;
     return HD_OK;
+}
+
+/* Distances to k sources, each for itself. */
+static hd_status hdi_geo_all(hd_geodesic *g, const int32_t *sources, int32_t k, double *D, size_t ldd,
+                             hd_geodesic_report *rep, hd_error *e) {
+    int32_t q, n_cols;
+    for (q = 0; q < k && e->status >= 0; q += n_cols) {
+        const int32_t wide = k - q >= HDI_GEO_WIDE_FROM;
+        double *to = D + HDI_CAST(size_t, q) * ldd;
+        n_cols = !wide ? 1 : k - q < HDI_GEO_WIDE ? k - q : HDI_GEO_WIDE;
+        if (hdi_progress(g->ctx, "solve", HDI_CAST(double, q) / k, e) < 0) break;
+        if (wide) (void)hdi_geo_wide(g, sources + q, n_cols, to, ldd, rep, e);
+        else (void)hdi_geo_one(g, sources + q, 1, to, rep, e);
+    }
+    return e->status;
+}
+
+/* What a report says before anything is solved. */
+static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
+    rep->t = g->t;
+    rep->h = g->h;
+    rep->n_components = g->n_components;
+    rep->ordering = g->sym.ordering;
+    rep->factor_nnz = g->sym.nnz;
+    rep->factor_flops = 2 * g->sym.flops;
 }
 
 /* ==== [29] api ====
@@ -20168,16 +20302,6 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
 }
 
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { hdi_geo_free(g); }
-
-static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
-    if (!rep) return;
-    rep->t = g->t;
-    rep->h = g->h;
-    rep->n_components = g->n_components;
-    rep->ordering = g->sym.ordering;
-    rep->factor_nnz = g->sym.nnz;
-    rep->factor_flops = 2 * g->sym.flops;
-}
 
 static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
     if (rep && e->status < 0) {
