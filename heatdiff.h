@@ -19276,13 +19276,14 @@ static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
 }
 
 /* ==== [29] api ====
- * Argument checks, defaults, lifetimes; the bodies of the public functions. May call everything. */
+ * Owns argument checks, defaults and lifetimes, and the bodies of the public functions. May call
+ * everything. */
 
 HEATDIFF_API const char *hd_status_name(hd_status status) {
     switch (status) {
-#define HD_STATUS_NAME(name, value, text) case name: return #name;
-        HD_STATUS_LIST(HD_STATUS_NAME)
-#undef HD_STATUS_NAME
+#define HDI_STATUS_NAME(name, value, text) case name: return #name;
+        HD_STATUS_LIST(HDI_STATUS_NAME)
+#undef HDI_STATUS_NAME
         case HD_STATUS_FORCE_INT: break;
     }
     return "HD_UNKNOWN_STATUS";
@@ -19290,15 +19291,16 @@ HEATDIFF_API const char *hd_status_name(hd_status status) {
 
 HEATDIFF_API const char *hd_status_text(hd_status status) {
     switch (status) {
-#define HD_STATUS_TEXT(name, value, text) case name: return text;
-        HD_STATUS_LIST(HD_STATUS_TEXT)
-#undef HD_STATUS_TEXT
+#define HDI_STATUS_TEXT(name, value, text) case name: return text;
+        HD_STATUS_LIST(HDI_STATUS_TEXT)
+#undef HDI_STATUS_TEXT
         case HD_STATUS_FORCE_INT: break;
     }
     return "unknown status";
 }
 
-/* What a public function works with: an error and a context that are there, whatever the caller gave. */
+/* An error and a context for the body of a public function: the caller's, or own ones if the caller gave
+ * none. */
 typedef struct hdi_call {
     hd_error error;
     hd_error *e;
@@ -19316,19 +19318,43 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
 
 #define HDI_CLEARED(opts) (!(opts)->begin_zero && !(opts)->end_zero)
 
-/* The same where options may name the context. Those that were not cleared are an error, and nothing in them
- * is followed. */
+/* The same where options may name the context. Options that were not cleared are an error, and nothing in
+ * them is used. */
 static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
     if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
 }
 
-HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
-                                            const int32_t *j, const double *v, hd_context *ctx, hd_error *err) {
+/* The context of an object that outlives the call: the caller's, or own, to which the counts so far move. */
+static hd_context *hdi_enter_keep(hdi_call *c, hd_context *own) {
+    if (c->ctx != &c->context) return c->ctx;
+    *own = c->context;
+    return c->ctx = own;
+}
+
+/* Refuses the call if an argument is bad. Of several refusals the first one stays. */
+static void hdi_refuse(int bad, const char *text, hd_error *e) {
+    if (bad && e->status >= 0) (void)hdi_fail(e, HD_ERR_ARGUMENT, text);
+}
+
+static void hdi_refuse_value(int bad, const char *text, double value, hd_error *e) {
+    if (bad && e->status >= 0) (void)hdi_fail_row(e, HD_ERR_ARGUMENT, text, -1, -1, value);
+}
+
+static void hdi_refuse_ordering(hd_ordering ordering, const int32_t *perm, const char *text, hd_error *e) {
+    hdi_refuse(ordering < HD_ORDERING_AUTO || ordering > HD_ORDERING_OWN, text, e);
+    hdi_refuse(ordering == HD_ORDERING_OWN && !perm, "ordering: own, but no permutation is given", e);
+}
+
+HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets,
+                                            const int32_t *i,
+                                            const int32_t *j, const double *v, hd_context *ctx,
+                                                hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     if (!out || (n_triplets > 0 && (!i || !j))) return hdi_missing(c.e);
-    if (n_rows < 0 || n_cols < 0 || n_triplets < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "triplets: a size is negative");
+    if (n_rows < 0 || n_cols < 0 || n_triplets < 0)
+        return hdi_fail(c.e, HD_ERR_ARGUMENT, "triplets: a size is negative");
     return hdi_csr_from_triplets(out, n_rows, n_cols, n_triplets, i, j, v, c.ctx, c.e);
 }
 
@@ -19345,21 +19371,26 @@ HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context
     return hdi_csr_check_rows(a, c.e) < 0 ? c.e->status : hdi_csr_transpose(out, a, c.ctx, c.e);
 }
 
-HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *err) {
+HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx,
+                                      hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     if (!out || !a || !b) return hdi_missing(c.e);
     if (hdi_csr_check_rows(a, c.e) < 0 || hdi_csr_check_rows(b, c.e) < 0) return c.e->status;
-    if (a->n_cols != b->n_rows) return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "product: the inner sizes differ", a->n_cols, b->n_rows, 0);
+    if (a->n_cols != b->n_rows)
+        return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "product: the inner sizes differ", a->n_cols, b->n_rows, 0);
     return hdi_csr_product(out, a, b, c.ctx, c.e);
 }
 
-HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx, hd_error *err) {
+HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx,
+                                      hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     if (!out || !a || (a->n_rows > 0 && !perm)) return hdi_missing(c.e);
     if (hdi_csr_check_rows(a, c.e) < 0) return c.e->status;
-    if (a->n_rows != a->n_cols) return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "permute: the matrix is not square", a->n_rows, a->n_cols, 0);
+    if (a->n_rows != a->n_cols)
+        return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "permute: the matrix is not square", a->n_rows, a->n_cols,
+                            0);
     return hdi_csr_permute(out, a, perm, c.ctx, c.e);
 }
 
@@ -19377,34 +19408,58 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
 
 /* ---- operators ---- */
 
-/* A Laplacian without content, with a context that lives as long as it does. A context of the library's own sits behind the struct. */
-typedef struct hdi_laplacian { hd_laplacian lap; hd_context context; } hdi_laplacian;
+/* Defaults of options, as their declarations state. */
+#define HDI_MOLLIFY_DELTA 1e-5
+#define HDI_WEIGHT_CUT 1e-8
+#define HDI_TOL_HEAT 1e-9
+#define HDI_TOL_SOLVE 1e-10
+enum { HDI_NEIGHBOURS = 30, HDI_MAX_ITERATIONS = 20000 };
+/* a smaller b_ratio by Gershgorin's circles is worth a proof by factorisations */
+#define HDI_RATIO_POOR 0.01
 
-static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind, hd_error *err, hdi_call *c) {
+/* A Laplacian with a context that lives as long. */
+typedef struct hdi_laplacian {
+    hd_laplacian lap;
+    hd_context context;
+} hdi_laplacian;
+
+/* A Laplacian without content. */
+static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind,
+                                 hd_error *err,
+                                 hdi_call *c) {
     hdi_laplacian *shell;
     if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
                        "laplacian options: not cleared before use", err) < 0) return NULL;
-    if (n < 0) {
-        hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian: a size is negative");
-        return NULL;
-    }
+    hdi_refuse(n < 0, "laplacian: a size is negative", c->e);
+    if (c->e->status < 0) return NULL;
     shell = HDI_CAST(hdi_laplacian *, hdi_alloc(c->ctx, 1, sizeof *shell, c->e));
     if (!shell) return NULL;
     memset(shell, 0, sizeof *shell);
     shell->lap.n = n;
     shell->lap.kind = kind;
-    if (c->ctx == &c->context) {                 /* what was counted on the stack moves along */
-        shell->context = c->context;
-        c->ctx = &shell->context;
-    }
-    shell->lap.context = c->ctx;
+    shell->lap.context = hdi_enter_keep(c, &shell->context);
     return &shell->lap;
+}
+
+static void hdi_lap_drop(hd_laplacian *lap) {
+    hd_context ctx;
+    hd_context *use = lap->context;
+    if (use == &HDI_CAST(hdi_laplacian *, HDI_CAST(void *, lap))->context) {   /* about to be freed itself */
+        ctx = *use;
+        use = &ctx;
+    }
+    hdi_laplacian_free(lap, use);
 }
 
 static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status status) {
     if (status >= 0) *out = lap;
-    else hd_laplacian_free(lap);
+    else hdi_lap_drop(lap);
     return status;
+}
+
+/* After the checks. */
+static hd_status hdi_lap_begin(const hdi_call *c) {
+    return c->e->status < 0 ? c->e->status : hdi_progress(c->ctx, "assemble", 0, c->e);
 }
 
 static hd_laplacian_kind hdi_lap_kind(const hd_laplacian_opts *opts, hd_laplacian_kind otherwise) {
@@ -19415,32 +19470,37 @@ static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
     return kind == HD_LAPLACIAN_FEM || kind == HD_LAPLACIAN_VORONOI_COT || kind == HD_LAPLACIAN_COT;
 }
 
-/* What is asked for of triangles besides their kind, checked. Returns whether that is an intrinsic triangulation. */
+/* Checks the options of intrinsic triangulations and resolves them into task. Returns whether one is asked
+ * for. */
 static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
     task->close = opts && opts->tufted;
-    task->delta = opts && opts->mollify != 0 ? opts->mollify : 1e-5;
-    if (hdi_nan(task->delta) || task->delta > 1) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
+    task->delta = opts && opts->mollify != 0 ? opts->mollify : HDI_MOLLIFY_DELTA;
+    hdi_refuse(hdi_nan(task->delta) || task->delta > 1,
+               "laplacian options: mollify is above 1 or not a number", e);
     return opts && (opts->intrinsic_delaunay || opts->tufted);
 }
 
-HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
-                                              const hd_laplacian_opts *opts, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
+                                              const int32_t *tri,
+                                              int32_t n_tri, const hd_laplacian_opts *opts, hd_error *err) {
     hdi_intrinsic_task task;
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
     int intrinsic;
     if (!lap) return c.e->status;
-    if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (n_tri < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
-    if (!hdi_kind_of_triangles(lap->kind))
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: the kind is fem, voronoi-cot or cot"));
+    if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) hdi_missing(c.e);
+    hdi_refuse(n_tri < 0, "laplacian: a size is negative", c.e);
+    hdi_refuse(!hdi_kind_of_triangles(lap->kind),
+               "laplacian of triangles: the kind is fem, voronoi-cot or cot", c.e);
     intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
-    if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_done(out, lap, hdi_lap_faces(lap, xyz, tri, n_tri, intrinsic ? &task : NULL, c.e));
 }
 
-HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
-                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n,
+                                             const int64_t *face_ptr,
+                                             const int32_t *face_idx, int32_t n_faces,
+                                             const hd_laplacian_opts *opts, hd_error *err) {
     const int flips = opts && (opts->intrinsic_delaunay || opts->tufted);
     const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
     const int splits = hdi_kind_of_triangles(kind);
@@ -19456,115 +19516,139 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     poly.n = n;
     poly.m = n_faces;
     poly.lambda = opts && opts->lambda != 0 ? opts->lambda : 1;
-    if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (n_faces < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
-    if (!splits && kind != HD_LAPLACIAN_POLYGON)
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot"));
-    if (!hdi_finite(poly.lambda) || !(poly.lambda > 0 && poly.lambda <= 1e100))
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: lambda is not between 0 and 1e100"));
-    if (hdi_intrinsic_opts(opts, &task, c.e) && !splits)
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot"));
-    if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
+    if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) hdi_missing(c.e);
+    hdi_refuse(n_faces < 0, "laplacian: a size is negative", c.e);
+    hdi_refuse(!splits && kind != HD_LAPLACIAN_POLYGON,
+               "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot", c.e);
+    hdi_refuse(!hdi_finite(poly.lambda) || !(poly.lambda > 0 && poly.lambda <= 1e100),
+               "laplacian of polygons: lambda is not between 0 and 1e100", c.e);
+    hdi_refuse(hdi_intrinsic_opts(opts, &task, c.e) && !splits,
+               "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot", c.e);
+    if (hdi_lap_begin(&c) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e) : hdi_lap_polygons(lap, &poly, c.e));
+    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e)
+                                         : hdi_lap_polygons(lap, &poly, c.e));
 }
 
-HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
-                                             hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h,
+                                             const hd_laplacian_opts *opts, hd_error *err) {
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, L ? L->n_rows : 0, HD_LAPLACIAN_MATRICES, err, &c);
     if (!lap) return c.e->status;
     if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (!hdi_finite(h) || h < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: h is negative or not finite"));
-    if (hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    hdi_refuse(!hdi_finite(h) || h < 0, "laplacian of matrices: h is negative or not finite", c.e);
+    if (c.e->status < 0 || hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0)
+        return hdi_lap_done(out, lap, c.e->status);
     if (L->n_rows != B->n_rows)
-        return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
+        return hdi_lap_done(out, lap,
+                            hdi_fail_row(c.e, HD_ERR_ARGUMENT,
+                                         "laplacian of matrices: L and B differ in size",
+                                                   L->n_rows, B->n_rows, 0));
     lap->h = h;
-    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < 0.01) (void)hdi_lap_ratio(lap, c.e);
+    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < HDI_RATIO_POOR) (void)hdi_lap_ratio(lap, c.e);
     return hdi_lap_done(out, lap, c.e->status);
 }
 
-static hd_status hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
-    rep->neighbours = opts && opts->neighbours ? opts->neighbours : 30;
-    if (rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: neighbours lies in 6..128");
-    return HD_OK;
+static void hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
+    rep->neighbours = opts && opts->neighbours ? opts->neighbours : HDI_NEIGHBOURS;
+    hdi_refuse(rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS,
+               "laplacian of points: neighbours lies in 6..128", e);
 }
 
-/* Options of point sets, resolved, into lap->points. */
-static hd_status hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
+/* Checks the options of point sets and resolves them into lap->points. */
+static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
     hd_point_report *rep = &lap->points;
     rep->bandwidth = opts ? opts->bandwidth : 0;
-    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : 1e-8;
-    if (lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the kind is voronoi-exp or exp (hd_laplacian_tufted_points has fem, voronoi-cot and cot)");
-    if (opts && (opts->intrinsic_delaunay || opts->tufted))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: exponential weights know no triangles; hd_laplacian_tufted_points makes some");
-    if (!hdi_finite(rep->bandwidth) || rep->bandwidth < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
-    if (!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
-    return hdi_point_neighbours(rep, opts, e);
+    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : HDI_WEIGHT_CUT;
+    hdi_refuse(lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP,
+               "laplacian of points: the kind is voronoi-exp or exp "
+               "(hd_laplacian_tufted_points has fem, voronoi-cot and cot)", e);
+    hdi_refuse(opts && (opts->intrinsic_delaunay || opts->tufted),
+               "laplacian of points: exponential weights know no triangles; hd_laplacian_tufted_points makes some", e);
+    hdi_refuse(!hdi_finite(rep->bandwidth) || rep->bandwidth < 0,
+               "laplacian of points: the bandwidth is negative or not finite", e);
+    hdi_refuse(!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1),
+               "laplacian of points: weight_cut lies in (0, 1)", e);
+    hdi_point_neighbours(rep, opts, e);
 }
 
-HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n,
+                                           const hd_laplacian_opts *opts, hd_error *err) {
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_VORONOI_EXP), err, &c);
     if (!lap) return c.e->status;
-    if (!out || (n > 0 && !xyz)) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (hdi_point_opts(lap, opts, c.e) < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, hdi_lap_points(lap, xyz, c.e));
+    if (!out || (n > 0 && !xyz)) hdi_missing(c.e);
+    hdi_point_opts(lap, opts, c.e);
+    return hdi_lap_done(out, lap, hdi_lap_begin(&c) < 0 ? c.e->status : hdi_lap_points(lap, xyz, c.e));
 }
 
-HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n,
+                                                  const int64_t *nbr_ptr, const int32_t *nbr,
                                                   const hd_laplacian_opts *opts, hd_error *err) {
     hdi_intrinsic_task task;
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
     if (!lap) return c.e->status;
-    if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (!hdi_kind_of_triangles(lap->kind))
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "tufted laplacian of points: the kind is fem, voronoi-cot or cot"));
+    if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) hdi_missing(c.e);
+    hdi_refuse(!hdi_kind_of_triangles(lap->kind),
+               "tufted laplacian of points: the kind is fem, voronoi-cot or cot",
+               c.e);
     (void)hdi_intrinsic_opts(opts, &task, c.e);
-    if (c.e->status < 0 || (!nbr_ptr && hdi_point_neighbours(&lap->points, opts, c.e) < 0)) return hdi_lap_done(out, lap, c.e->status);
-    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    if (!nbr_ptr) hdi_point_neighbours(&lap->points, opts, c.e);
+    if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_done(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e));
 }
 
-/* Points, queries and sizes; *m becomes the number of queries. */
-static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m, hd_error *e) {
+/* Checks points, queries and sizes. *m becomes the number of queries. */
+static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m,
+                                      hd_error *e) {
     if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
     if (!query) *m = n;
     if (n > 0 && !xyz) return hdi_missing(e);
     return hdi_points_check(xyz, n, query, *m, e);
 }
 
-HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m, int32_t k, int32_t *index,
-                                             double *distance2, hd_context *ctx, hd_error *err) {
+static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t n, const hdi_call *c,
+                                     hdi_scope *s) {
+    *s = hdi_scope_begin(c->ctx, c->e);
+    if (hdi_progress(c->ctx, "neighbours", 0, c->e) < 0 || hdi_tree_make(tree, xyz, n, s) < 0)
+        return c->e->status;
+    return hdi_progress(c->ctx, "neighbours", 0.1, c->e);
+}
+
+HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m,
+                                             int32_t k,
+                                             int32_t *index, double *distance2, hd_context *ctx,
+                                                 hd_error *err) {
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
     if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: k is not positive");
     if (m > 0 && !index) return hdi_missing(c.e);
-    s = hdi_scope_begin(c.ctx, c.e);
-    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
+    if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
         (void)hdi_nearest(&tree, xyz, query, m, k, index, distance2, c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
-HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query, int32_t m, double radius, hd_context *ctx,
-                                            hd_error *err) {
+HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query,
+                                            int32_t m,
+                                            double radius, hd_context *ctx, hd_error *err) {
+    const double r = hdi_min(radius, 1e152);     /* a square that does not overflow */
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
     if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
     if (!out) return hdi_missing(c.e);
-    if (hdi_nan(radius) || radius < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
-    s = hdi_scope_begin(c.ctx, c.e);
-    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
-        (void)hdi_within(out, &tree, xyz, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
+    if (hdi_nan(radius) || radius < 0)
+        return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
+    if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
+        (void)hdi_within(out, &tree, xyz, query, m, r * r, c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
-HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x,
+                                          double *y, hd_error *err) {
     hdi_call c;
     hdi_scope s;
     double *in, *out;
@@ -19582,15 +19666,7 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
 }
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) {
-    hd_context ctx;
-    hd_context *use;
-    if (!lap) return;
-    use = lap->context;
-    if (use == &HDI_CAST(hdi_laplacian *, HDI_CAST(void *, lap))->context) {   /* about to be freed itself */
-        ctx = *use;
-        use = &ctx;
-    }
-    hdi_laplacian_free(lap, use);
+    if (lap) hdi_lap_drop(lap);
 }
 
 /* ---- rational approximations ---- */
@@ -19601,7 +19677,8 @@ HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int3
     return out ? hdi_rational_get(out, kind, degree, c.e) : hdi_missing(c.e);
 }
 
-HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol, hd_context *ctx, hd_error *err) {
+HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
+                                          hd_context *ctx, hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     return out && t ? hdi_rational_shared(out, n_times, t, tol, c.ctx, c.e) : hdi_missing(c.e);
@@ -19612,13 +19689,16 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return 
 /* ---- shifted systems ---- */
 
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
-    if (!hdi_finite(t) || t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
-    if (!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: theta lies on (-inf, 0] or is not finite");
-    if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: the solver is cocg, cocr or minres");
-    if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: unknown preconditioner");
-    if (!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: tol is not in [0, 1)");
-    if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: max_iterations is negative");
-    return HD_OK;
+    hdi_refuse_value(!hdi_finite(t) || t < 0, "solve: t is negative or not finite", t, e);
+    hdi_refuse(!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0),
+               "solve: theta lies on (-inf, 0] or is not finite", e);
+    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES,
+               "solve: the solver is cocg, cocr or minres", e);
+    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "solve: unknown preconditioner",
+               e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "solve: tol is not in [0, 1)", e);
+    hdi_refuse(o->max_iterations < 0, "solve: max_iterations is negative", e);
+    return e->status;
 }
 
 /* ---- direct solver ---- */
@@ -20017,26 +20097,64 @@ HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entri
 /* ---- heat ---- */
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
-    if (o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown method");
-    if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown solver");
-    if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown preconditioner");
-    if (o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL)) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: poles are uniform, kernel or diagonal; own sets go into rational");
-    if (o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the degree is not in 1..14", -1, -1, o->degree);
-    if ((o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL) && o->degree && o->degree < HDI_RAT_KERNEL_MIN)
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: kernel and diagonal sets have degrees 2 to 14", -1, -1, o->degree);
-    if (!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
-    if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: max_iterations is negative");
-    if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown ordering");
-    if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
-    if (o->method == HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: the krylov method has no use for poles or a degree");
-    if ((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: solver and precond belong to the iterative method");
-    if (o->rational && o->solver == HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: Lanczos has no use for a pole set");
-    return o->rational ? hdi_rational_check(o->rational, e) : HD_OK;
+    const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
+    hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
+    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS, "heat: unknown solver", e);
+    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "heat: unknown preconditioner",
+               e);
+    hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
+               "heat: poles are uniform, kernel or diagonal; own sets go into rational", e);
+    hdi_refuse_value(o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX, "heat: the degree is not in 1..14",
+                     o->degree, e);
+    hdi_refuse_value(from_two && o->degree && o->degree < HDI_RAT_KERNEL_MIN,
+                     "heat: kernel and diagonal sets have degrees 2 to 14", o->degree, e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
+    hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
+    hdi_refuse(o->method == HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
+               "heat: the krylov method has no use for poles or a degree", e);
+    hdi_refuse((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond),
+               "heat: solver and precond belong to the iterative method", e);
+    hdi_refuse(o->rational && o->solver == HD_SOLVER_LANCZOS, "heat: Lanczos has no use for a pole set", e);
+    return e->status < 0 || !o->rational ? e->status : hdi_rational_check(o->rational, e);
 }
 
-HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err) {
+/* Takes up the options, with defaults for those that are zero. */
+static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
+    hd_heat_opts *o = &heat->opts;
+    if (opts) *o = *opts;
+    if (o->rational) {
+        heat->own_set = *o->rational;
+        heat->own_set.kind = HD_POLES_OWN;
+        o->rational = &heat->own_set;
+    }
+    heat->iterations_asked = o->solver || o->precond;
+    heat->poles_asked = o->rational || o->poles || o->degree;
+    heat->exacting = o->tol > 0 && o->tol < HDI_TOL_HEAT;
+    heat->limit = o->tol > 0 ? o->tol : HDI_ROUNDING_LIMIT;
+    o->precond = o->precond ? o->precond : HD_PRECOND_MILDL;
+    o->tol = o->tol > 0 ? o->tol : HDI_TOL_HEAT;
+    o->max_iterations = o->max_iterations ? o->max_iterations : HDI_MAX_ITERATIONS;
+}
+
+/* What creation computes. The permutation is copied. */
+static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
+    const int own = heat->opts.ordering == HD_ORDERING_OWN;
+    heat->source = lap;
+    heat->scale = hdi_heat_scale(lap);
+    heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
+    if (own && hdi_sym_check(heat->opts.perm, lap->n, heat->ctx, e) >= 0)
+        heat->perm = HDI_CAST(int32_t *,
+                              hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n), sizeof *heat->perm,
+                                                  heat->ctx, e));
+    heat->opts.perm = heat->perm;
+    if (e->status < 0 || hdi_heat_drift(lap, &heat->drift, heat->ctx, e) < 0) return e->status;
+    heat->drift /= heat->scale;
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts,
+                                      hd_error *err) {
     hdi_call c;
     hd_heat *heat;
     if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
@@ -20048,38 +20166,10 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     if (!heat) return c.e->status;
     memset(heat, 0, sizeof *heat);
     heat->ctx = c.ctx;
-    heat->source = lap;
-    if (opts) heat->opts = *opts;
-    if (heat->opts.rational) {
-        heat->own_set = *heat->opts.rational;
-        heat->own_set.kind = HD_POLES_OWN;
-        heat->opts.rational = &heat->own_set;
-    }
-    heat->iterations_asked = heat->opts.solver || heat->opts.precond;
-    heat->poles_asked = heat->opts.rational || heat->opts.poles || heat->opts.degree;
-    heat->opts.precond = heat->opts.precond ? heat->opts.precond : HD_PRECOND_MILDL;
-    heat->exacting = heat->opts.tol > 0 && heat->opts.tol < 1e-9;
-    heat->limit = heat->opts.tol > 0 ? heat->opts.tol : HDI_ROUNDING_LIMIT;
-    heat->opts.tol = heat->opts.tol > 0 ? heat->opts.tol : 1e-9;
-    heat->opts.max_iterations = heat->opts.max_iterations ? heat->opts.max_iterations : 20000;
-    heat->scale = hdi_heat_scale(lap);
-    heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
-    if (heat->opts.ordering == HD_ORDERING_OWN) {
-        if (hdi_sym_check(heat->opts.perm, lap->n, c.ctx, c.e) >= 0)
-            heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
-        if (!heat->perm) {
-            hd_heat_free(heat);
-            return c.e->status;
-        }
-    }
-    heat->opts.perm = heat->perm;
-    if (hdi_heat_drift(lap, &heat->drift, c.ctx, c.e) < 0) {
-        hd_heat_free(heat);
-        return c.e->status;
-    }
-    heat->drift /= heat->scale;
-    *out = heat;
-    return HD_OK;
+    hdi_heat_defaults(heat, opts);
+    if (hdi_heat_make(heat, lap, c.e) >= 0) *out = heat;
+    else hd_heat_free(heat);
+    return c.e->status;
 }
 
 HEATDIFF_API void hd_heat_free(hd_heat *heat) {
@@ -20101,7 +20191,8 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_free(ctx, heat);
 }
 
-HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
+HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs,
+                                        hd_c64 *x,
                                         const hd_solve_opts *opts, hd_solve_report *report, hd_error *err) {
     hd_solve_opts o;
     hd_heat_opts plan;
@@ -20119,12 +20210,12 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     plan.max_iterations = o.max_iterations;
     plan.context = o.context;
     if (hd_heat_create(&heat, lap, &plan, c.e) < 0) return c.e->status;
-    hdi_shifted_solve(heat, t, theta, rhs, x, o.tol > 0 ? o.tol : 1e-10, report, c.e);
+    hdi_shifted_solve(heat, t, theta, rhs, x, o.tol > 0 ? o.tol : HDI_TOL_SOLVE, report, c.e);
     hd_heat_free(heat);
     return c.e->status;
 }
 
-/* Fields that lie ldf apart and whose answers will lie ldu apart in the same array: they go where their answers will be. */
+/* Moves fields that lie ldf apart to where their answers will be, ldu apart in the same array. */
 static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     int32_t q;
     for (q = 1; q < ask->k && ask->ldu != ask->ldf; q++) {
@@ -20134,7 +20225,8 @@ static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     ask->ldf = ask->ldu;
 }
 
-HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
+HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                     const double *F, size_t ldf,
                                      double *U, size_t ldu, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, report, err) < 0) return hdi_heat_end(&h);
@@ -20152,8 +20244,10 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int32_t k,
-                                       const int32_t *sources, double *U, size_t ldu, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                       int32_t k,
+                                       const int32_t *sources, double *U, size_t ldu, hd_report *report,
+                                           hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t, 0) < 0) return hdi_heat_end(&h);
@@ -20167,12 +20261,13 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t 
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u, hd_report *report,
+HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u,
+                                      hd_report *report,
                                       hd_error *err) {
     return hd_heat_columns(heat, kernel, 1, &t, 1, &source, u, 0, report, err);
 }
 
-/* Pairs of vertices. */
+/* Checks pairs of vertices. */
 static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_t *i, const int32_t *j) {
     const hd_laplacian *lap = h->heat->source;
     if (n_pairs < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
@@ -20181,19 +20276,23 @@ static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_
     return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
 }
 
-HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int64_t n_pairs,
-                                       const int32_t *i, const int32_t *j, double *values, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                       int64_t n_pairs,
+                                       const int32_t *i, const int32_t *j, double *values, hd_report *report,
+                                           hd_error *err) {
     hdi_heat_call h;
     hdi_entry_list list;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 0) < 0 || hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 0) < 0 || hdi_pairs_check(&h, n_pairs, i, j) < 0)
+        return hdi_heat_end(&h);
     if (n_pairs > 0 && !values) hdi_missing(h.e);
     list.values = values;
     if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *D, size_t ldd,
+HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                        double *D, size_t ldd,
                                         hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
@@ -20204,20 +20303,24 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *values,
+HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                     double *values,
                                      hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
     if (!values) hdi_missing(h.e);
     else if (kernel != HD_KERNEL_SYMMETRIC)
-        hdi_fail(h.e, HD_ERR_ARGUMENT, "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
+        hdi_fail(h.e, HD_ERR_ARGUMENT,
+                 "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
     if (h.e->status >= 0) (void)hdi_edges_run(&h, values);
     return hdi_heat_end(&h);
 }
 
-/* The start of a query of a distance. Commute and biharmonic have no time: n_times is 0 or 1 and t is not looked at. */
-static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
+/* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
+ * and t is not read. */
+static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                    const double *t,
                                     int positive, hd_report *report, hd_error *err) {
     if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
@@ -20225,14 +20328,18 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
     if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
     if (n_times > 1 || n_times < 0)
-        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times);
+        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1,
+                            n_times);
     return hdi_direct_only(h);
 }
 
-HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k,
-                                        const int32_t *sources, double *D, size_t ldd, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                        const double *t, int32_t k,
+                                        const int32_t *sources, double *D, size_t ldd, hd_report *report,
+                                            hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0)
+        return hdi_heat_end(&h);
     if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     else if (k > 0 && (!sources || !D)) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
@@ -20241,19 +20348,24 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int64_t n_pairs,
-                                     const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
+                                     int64_t n_pairs,
+                                     const int32_t *i, const int32_t *j, double *K, double *d,
+                                         hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0) return hdi_heat_end(&h);
     h.relative = d != NULL;
-    if (hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0) (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
+    if (hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
+        (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given,
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count,
+                                      int32_t n_given,
                                       int32_t *vertex, double *distance, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0)
+        return hdi_heat_end(&h);
     if (count < 1 || n_given < 0 || n_given > count || count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, count);
     else if (!vertex) hdi_missing(h.e);
@@ -20265,40 +20377,34 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 /* ---- geodesic distance ---- */
 
 static hd_status hdi_geo_check(const hd_geodesic_opts *o, hd_error *e) {
-    if (!hdi_finite(o->t) || o->t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
-    if (o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown mass");
-    if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown ordering");
-    if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
-    return HD_OK;
+    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
+    hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
+               "geodesic: unknown mass", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
+    return e->status;
 }
 
-HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const hd_geodesic_opts *opts,
-                                          hd_error *err) {
+HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri,
+                                          int32_t n_tri, const hd_geodesic_opts *opts, hd_error *err) {
     hd_geodesic_opts o;
     hd_geodesic *g;
     hdi_call c;
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
-    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0)
+        return c.e->status;
     if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_missing(c.e);
-    if (n < 0 || n_tri < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: a size is negative");
+    hdi_refuse(n < 0 || n_tri < 0, "geodesic: a size is negative", c.e);
     if (hdi_geo_check(&o, c.e) < 0) return c.e->status;
     if (o.ordering == HD_ORDERING_OWN && hdi_sym_check(o.perm, n, c.ctx, c.e) < 0) return c.e->status;
     g = HDI_CAST(hd_geodesic *, hdi_alloc(c.ctx, 1, sizeof *g, c.e));
     if (!g) return c.e->status;
     memset(g, 0, sizeof *g);
-    if (c.ctx == &c.context) {
-        g->context = c.context;
-        c.ctx = &g->context;
-    }
-    g->ctx = c.ctx;
+    g->ctx = hdi_enter_keep(&c, &g->context);
     g->n = n;
-    if (hdi_geo_make(g, xyz, tri, n_tri, &o, c.e) < 0) {
-        hdi_geo_free(g);
-        return c.e->status;
-    }
-    *out = g;
-    return HD_OK;
+    if (hdi_geo_make(g, xyz, tri, n_tri, &o, c.e) >= 0) *out = g;
+    else hdi_geo_free(g);
+    return c.e->status;
 }
 
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { hdi_geo_free(g); }
@@ -20311,8 +20417,9 @@ static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
     return rep ? rep->status : e->status;
 }
 
-/* Checks the arguments of a query; the report is filled with what is known of the plan. */
-static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d, hd_geodesic_report *rep, hd_error *err,
+/* Checks the arguments of a query, and fills the report with what the plan says. */
+static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d,
+                               hd_geodesic_report *rep, hd_error *err,
                                hdi_call *c) {
     int32_t q;
     if (rep) {
@@ -20324,14 +20431,16 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
     if (rep) hdi_geo_tell_plan(g, rep);
     for (q = 0; q < k; q++) {
         if (sources[q] >= 0 && sources[q] < g->n) continue;
-        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q], sources[q]);
+        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q],
+                      sources[q]);
         c->e->column = q;
         return c->e->status;
     }
     return hdi_progress(g->ctx, "solve", 0, c->e);
 }
 
-HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources, double *d, hd_geodesic_report *report,
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources,
+                                            double *d, hd_geodesic_report *report,
                                             hd_error *err) {
     hdi_call c;
     if (hdi_geo_begin(g, sources, n_sources, d, report, err, &c) < 0) return hdi_geo_end(report, c.e);
@@ -20340,22 +20449,15 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, c
     return hdi_geo_end(report, c.e);
 }
 
-HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd,
+HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D,
+                                             size_t ldd,
                                              hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
-    int32_t q, n_cols;
     if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0) return hdi_geo_end(report, c.e);
     ldd = ldd ? ldd : HDI_CAST(size_t, g->n);
-    if (k < 0) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the number of sources is negative");
-    else if (ldd < HDI_CAST(size_t, g->n)) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the leading dimension is smaller than n");
-    for (q = 0; q < k && c.e->status >= 0; q += n_cols) {
-        const int32_t wide = k - q >= HDI_GEO_WIDE_FROM;
-        double *to = D + HDI_CAST(size_t, q) * ldd;
-        n_cols = !wide ? 1 : k - q < HDI_GEO_WIDE ? k - q : HDI_GEO_WIDE;
-        if (hdi_progress(g->ctx, "solve", HDI_CAST(double, q) / k, c.e) < 0) break;
-        if (wide) (void)hdi_geo_wide(g, sources + q, n_cols, to, ldd, report, c.e);
-        else (void)hdi_geo_one(g, sources + q, 1, to, report, c.e);
-    }
+    hdi_refuse(k < 0, "geodesic: the number of sources is negative", c.e);
+    hdi_refuse(ldd < HDI_CAST(size_t, g->n), "geodesic: the leading dimension is smaller than n", c.e);
+    (void)hdi_geo_all(g, sources, k, D, ldd, report, c.e);
     return hdi_geo_end(report, c.e);
 }
 
