@@ -12769,23 +12769,28 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     }
 }
 
-/* ==== [15] krylov ====
- * Iterative solvers for (t L + theta B) x = b, complex symmetric: every inner product is x'y without conjugate, unless it is a norm.
- * For real theta and b every number stays real and cocg is the conjugate gradient method. May call [14].
+/* ==== [20] iterative ====
+ * Owns the iterative solvers of A x = b, A = t L + theta B, and conjugate gradients for B u = w. A is
+ * complex symmetric: every inner product is x'y without conjugation, except inside norms. For real theta
+ * and real b all numbers stay real, and cocg is the conjugate gradient method. May call [19].
  * This work is based on
- *   H. van der Vorst, J. Melissen, A Petrov-Galerkin type method for solving Ax = b, where A is symmetric complex, 1990 (cocg)
+ *   H. van der Vorst, J. Melissen, A Petrov-Galerkin type method for solving Ax = b, where A is symmetric
+ *     complex, 1990 (cocg)
  *   T. Sogabe, S.-L. Zhang, A COCR method for solving complex symmetric linear systems, 2007 (cocr)
- *   S.-C. Choi, Minimal residual methods for complex symmetric, skew symmetric, and skew Hermitian systems, 2013 (minres)
- *   Y. Saad, M. Yeung, J. Erhel, F. Guyomarc'h, A deflated version of the conjugate gradient algorithm, 2000 (deflation)
- * Where L 1 = 0, the constants W of the components are known eigenvectors: A W = theta B W. Right-hand sides come without them (1'b = 0
- * per component), and they are kept out of all directions: that takes the smallest eigenvalue out of the iteration, and the caller, who
- * knows their part of the solution exactly, conserves heat. */
+ *   S.-C. Choi, Minimal residual methods for complex symmetric, skew symmetric, and skew Hermitian systems,
+ *     2013 (minres)
+ *   Y. Saad, M. Yeung, J. Erhel, F. Guyomarc'h, A deflated version of the conjugate gradient algorithm, 2000
+ * Deviation: if L 1 = 0, the constants W of the components are known eigenvectors, A W = theta B W. The
+ * caller takes them out of the right-hand side (1'b = 0 for each component), and the solvers keep them out
+ * of all directions. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
+ * the solution, which is known exactly, and heat is conserved. */
 
 /* y = A x on rows; returns x'y. */
 static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
     const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
     const int32_t *HDI_RESTRICT Aj = a->lap->L.col;
-    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B, *HDI_RESTRICT b = a->lap->mass;
+    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B;
+    const double *HDI_RESTRICT b = a->lap->mass;
     const double t = a->t;
     const hd_c64 theta = a->theta;
     hd_c64 dot = hdi_c(0, 0);
@@ -12821,7 +12826,7 @@ static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x
     return dot;
 }
 
-/* Takes the B-mean of every component out of z. sums [n_components]. */
+/* Subtracts from z its B-mean on every component, if L 1 = 0. sums [n_components] is work. */
 static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
     const double *b = lap->mass;
     const int32_t *comp = lap->component;
@@ -12844,7 +12849,16 @@ static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
     for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], sums[comp[i]]);
 }
 
-enum { HDI_KRYLOV_VECTORS = 8 };
+/* Limits of an iteration, set by hand. They only matter where rounding stops the residual from falling. */
+/* |r|/|b|: below it, the level that rounding allows is computed and watched */
+#define HDI_KRYLOV_NEAR 1e-9
+#define HDI_KRYLOV_USABLE 1e-7   /* |r|/|b|: a solution at most this bad is handed out, with a warning */
+#define HDI_KRYLOV_ASTRAY 1e3    /* a recurrence that grows by this from its best has lost its way */
+enum {
+    HDI_KRYLOV_VECTORS = 8,
+    HDI_KRYLOV_PATIENCE = 50,    /* steps without halving the residual, besides as many as the best took */
+    HDI_KRYLOV_LOOK = 16         /* steps between looks at the progress callback */
+};
 
 /* One system under solution. It can be stopped and taken up again. */
 typedef struct hdi_krylov {
@@ -12853,7 +12867,7 @@ typedef struct hdi_krylov {
     hd_solver solver;
     const double *weight;                /* [n] 1/diag(B): the residual's norm */
     hd_c64 *sums;                        /* [n_components] */
-    hd_c64 *spare;                       /* [n] the best x so far, when a round may spoil it */
+    hd_c64 *spare;                       /* [n] the best x so far, kept while a round may spoil it */
     hd_c64 *x, *r;                       /* [n] solution and residual */
     hd_c64 *v[HDI_KRYLOV_VECTORS - 2];   /* [n] each, as many as the solver needs */
     double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
@@ -12863,15 +12877,18 @@ typedef struct hdi_krylov {
     double beta, beta_old, c1, c2;
 } hdi_krylov;
 
-/* Vectors of a system's own, x and r among them; one more after them is work within a step. */
-static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7; }
+/* Vectors that a system owns, x and r included. One more after them is work within a step. */
+static int hdi_krylov_vectors(hd_solver solver) {
+    return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7;
+}
 
+/* z = M^-1 r without its constants. */
 static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
     hdi_precond_apply(&k->m, r, z);
     hdi_deflate(k->a.lap, z, k->sums);
 }
 
-/* r = b - A x from x, and its norm: the truth that recurrences drift away from. */
+/* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. */
 static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
     const int32_t n = k->a.lap->n_active;
     int32_t i;
@@ -12881,7 +12898,8 @@ static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
     k->ready = 0;
 }
 
-/* What rounding contributes to the residual of x at most, in the same norm; in practice less than half of it. */
+/* A bound of what rounding contributes to the residual of x, in the same norm. Usually less than half of
+ * it is seen. */
 static double hdi_krylov_noise(const hdi_krylov *k) {
     const hd_laplacian *lap = k->a.lap;
     const double theta = hdi_cabs(k->a.theta);
@@ -12897,7 +12915,8 @@ static double hdi_krylov_noise(const hdi_krylov *k) {
 }
 
 /* x += alpha p, r -= alpha q; returns the new norm of r. */
-static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RESTRICT p, const hd_c64 *HDI_RESTRICT q) {
+static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RESTRICT p,
+                              const hd_c64 *HDI_RESTRICT q) {
     hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
     const double *HDI_RESTRICT w = k->weight;
     const int32_t n = k->a.lap->n_active;
@@ -12911,7 +12930,8 @@ static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RES
     return sqrt(norm);
 }
 
-/* z = M^-1 r without its constants taken out: their B-means go to k->sums instead. Returns r'z, which constants do not change (1'r = 0). */
+/* z = M^-1 r with its constants left in; k->sums receives their B-means. Returns r'z, which the constants do
+ * not change, since 1'r = 0. */
 static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const hd_laplacian *lap = k->a.lap;
     const double *HDI_RESTRICT b = lap->mass;
@@ -12926,25 +12946,29 @@ static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r
         else mean = hdi_cadd(mean, hdi_cscale(b[i], z[i]));
     }
     if (!comp) sums[0] = mean;
-    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(lap->conserves ? 1 / lap->component_mass[i] : 0, sums[i]);
+    for (i = 0; i < lap->n_components; i++)
+        sums[i] = hdi_cscale(lap->conserves ? 1 / lap->component_mass[i] : 0, sums[i]);
     return dot;
 }
 
-/* p = z - its B-means + beta p */
-static void hdi_krylov_deflated_direction(const hdi_krylov *k, hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p) {
+/* p = z - its B-means in k->sums + beta p */
+static void hdi_krylov_deflated_direction(const hdi_krylov *k, hd_c64 beta, const hd_c64 *HDI_RESTRICT z,
+                                          hd_c64 *HDI_RESTRICT p) {
     const int32_t n = k->a.lap->n_active, *comp = k->a.lap->n_components > 1 ? k->a.lap->component : NULL;
     const hd_c64 mean = k->sums[0];
     int32_t i;
-    for (i = 0; i < n; i++) p[i] = hdi_cadd(hdi_csub(z[i], comp ? k->sums[comp[i]] : mean), hdi_cmul(beta, p[i]));
+    for (i = 0; i < n; i++)
+        p[i] = hdi_cadd(hdi_csub(z[i], comp ? k->sums[comp[i]] : mean), hdi_cmul(beta, p[i]));
 }
 
 /* p = z + beta p */
-static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p, int32_t n) {
+static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p,
+                                 int32_t n) {
     int32_t i;
     for (i = 0; i < n; i++) p[i] = hdi_cadd(z[i], hdi_cmul(beta, p[i]));
 }
 
-/* A quotient of the recurrence; marks the method as broken when it is none. */
+/* A quotient of the recurrence. The method is marked as broken if it is not finite. */
 static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
     const hd_c64 q = hdi_cdiv(a, b);
     if (!hdi_cfinite(q)) k->broken = 1;
@@ -12988,7 +13012,7 @@ static void hdi_cocr_step(hdi_krylov *k) {
     k->rho = rho;
 }
 
-/* sqrt of y^* M y for y = M^-1 w, by w^* y; M is real and positive definite. */
+/* The square root of y^* M y = w^* y, where y = M^-1 w. M is real and positive definite. */
 static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
     const int32_t n = k->a.lap->n_active;
     double s = 0;
@@ -12998,27 +13022,30 @@ static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
     return s > 0 ? sqrt(s) : 0;
 }
 
-/* The Saunders process A conj(V_k) = V_(k+1) T_k, with unitary V (in the M geometry) and a complex-symmetric tridiagonal T whose
- * off-diagonals are real, and the QR factorisation of T by rotations [c s; -conj(s) c]. */
-static void hdi_minres_step(hdi_krylov *k) {
+/* MINRES on the Saunders process A conj(V_k) = V_(k+1) T_k: V is unitary in the geometry of M, T is complex
+ * symmetric and tridiagonal with real off-diagonals. */
+static void hdi_minres_start(hdi_krylov *k) {
     const int32_t n = k->a.lap->n_active;
-    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4], *v = k->v[5];
-    hd_c64 alpha, eps, dbar, delta, gbar, gamma, phi, s;
-    double beta, size, c;
+    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4];
     int32_t i;
-    if (!k->ready) {
-        memcpy(w, k->r, HDI_CAST(size_t, n) * sizeof *w);
-        hdi_krylov_precond(k, w, y);
-        k->beta = hdi_minres_beta(k, w, y);
-        k->beta_old = 1;
-        k->phibar = hdi_c(k->beta, 0);
-        k->c1 = k->c2 = 1;
-        k->s1 = k->s2 = hdi_c(0, 0);
-        for (i = 0; i < n; i++) w_old[i] = d[i] = d_old[i] = hdi_c(0, 0);
-        if (k->beta == 0) k->broken = 1;
-    }
-    if (k->broken) return;
-    beta = k->beta;
+    memcpy(w, k->r, HDI_CAST(size_t, n) * sizeof *w);
+    hdi_krylov_precond(k, w, y);
+    k->beta = hdi_minres_beta(k, w, y);
+    k->beta_old = k->c1 = 1;
+    k->phibar = hdi_c(k->beta, 0);
+    k->c2 = 0;                                   /* T has no entry above its first diagonal one */
+    k->s1 = k->s2 = hdi_c(0, 0);
+    for (i = 0; i < n; i++) w_old[i] = d[i] = d_old[i] = hdi_c(0, 0);
+    if (k->beta == 0) k->broken = 1;
+}
+
+/* One step of the process: the direction v = conj(y)/beta goes to v[5], the next w to v[1], the next y =
+ * M^-1 w to v[2]. Returns the diagonal entry v'Av of T. */
+static hd_c64 hdi_minres_extend(hdi_krylov *k) {
+    const int32_t n = k->a.lap->n_active;
+    const double beta = k->beta;
+    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *v = k->v[5], alpha;
+    int32_t i;
     for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(y[i]));
     alpha = hdi_system_apply(&k->a, v, y);
     for (i = 0; i < n; i++) {                    /* w_old becomes the new w */
@@ -13030,12 +13057,23 @@ static void hdi_minres_step(hdi_krylov *k) {
     hdi_krylov_precond(k, w_old, y);
     k->beta_old = beta;
     k->beta = hdi_minres_beta(k, w_old, y);
-    /* column of T: (eps) (delta) gamma below the two old rotations */
-    eps = hdi_cscale(beta, k->s2);
-    dbar = hdi_c(k->c2 * beta, 0);
-    if (!k->ready) eps = dbar = hdi_c(0, 0);
-    delta = hdi_cadd(hdi_cscale(k->c1, dbar), hdi_cmul(k->s1, alpha));
-    gbar = hdi_csub(hdi_cscale(k->c1, alpha), hdi_cmul(hdi_cconj(k->s1), dbar));
+    return alpha;
+}
+
+/* T is factorised as Q R by rotations [c s; -conj(s) c]. Its new column is (eps delta gamma) in R. */
+static void hdi_minres_step(hdi_krylov *k) {
+    const int32_t n = k->a.lap->n_active;
+    const hd_c64 *v = k->v[5];
+    hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, gamma, phi, s;
+    double dbar, size, c;
+    int32_t i;
+    if (!k->ready) hdi_minres_start(k);
+    if (k->broken) return;
+    alpha = hdi_minres_extend(k);
+    eps = hdi_cscale(k->beta_old, k->s2);        /* the two old rotations */
+    dbar = k->c2 * k->beta_old;
+    delta = hdi_cadd(hdi_c(k->c1 * dbar, 0), hdi_cmul(k->s1, alpha));
+    gbar = hdi_csub(hdi_cscale(k->c1, alpha), hdi_cscale(dbar, hdi_cconj(k->s1)));
     size = hypot(hdi_cabs(gbar), k->beta);
     if (size == 0) {
         k->broken = 1;
@@ -13054,7 +13092,8 @@ static void hdi_minres_step(hdi_krylov *k) {
     k->v[3] = d_old;
     k->v[4] = d;
     phi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
-    for (i = 0; i < n; i++) k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, w_old[i]));
+    for (i = 0; i < n; i++)
+        k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, k->v[1][i]));
     k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
     k->c2 = k->c1;
     k->s2 = k->s1;
@@ -13062,7 +13101,7 @@ static void hdi_minres_step(hdi_krylov *k) {
     k->s1 = s;
 }
 
-/* From x = 0. b_norm: what the residual is reported against. */
+/* Begins at x = 0. The residual is reported against b_norm. */
 static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
     const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
     memset(k->x, 0, bytes);
@@ -13073,37 +13112,44 @@ static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
     k->broken = k->ready = 0;
 }
 
-/* What a solver is told and tells while it runs. */
+/* How a running solver reports progress and learns that it shall stop. */
 typedef struct hdi_watch {
-    hd_context *ctx;             /* for progress; NULL: not the calling thread */
-    int32_t *stop;               /* set by any thread that failed, read by all */
+    hd_context *ctx;             /* for progress; NULL: this is not the calling thread */
+    int32_t *stop;               /* any thread that fails sets it, all threads read it */
     double from, share;          /* of the progress bar */
     const char *stage;
 } hdi_watch;
 
 static hd_status hdi_watch_look(const hdi_watch *w, double done, hd_error *e) {
-    if (w->stop && HDI_LOAD(w->stop)) return hdi_fail(e, HD_ERR_CANCELLED, "stopped because another task failed or was cancelled");
+    if (w->stop && HDI_LOAD(w->stop))
+        return hdi_fail(e, HD_ERR_CANCELLED, "stopped because another task failed or was cancelled");
     if (!w->ctx) return HD_OK;
     return hdi_progress(w->ctx, w->stage, w->from + w->share * hdi_min(1, hdi_max(0, done)), e);
 }
 
+/* The share of the work that is done when a residual has come from start down to now, on a logarithmic
+ * scale. */
 static double hdi_krylov_done(double start, double now, double target) {
     if (!(now > target) || !(start > target)) return 1;
     return target > 0 ? log(start / now) / log(start / target) : 0;
 }
 
-/* Iterates until the residual norm by the recurrence is at most target, or gains nothing more. Near rounding it ends at floor_share of what that may
- * contribute: below, recurrences go astray. left: steps allowed, counted down. */
-static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start, int64_t *left, const hdi_watch *watch, hd_error *e) {
+/* Iterates until the recurrence says |r| <= target, or until it gains no more. Near the level of rounding it
+ * ends at floor_share times hdi_krylov_noise, since recurrences go astray below. start: |r| at the beginning,
+ * for progress. left: steps allowed, counted down. */
+static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start,
+                                  int64_t *left,
+                                  const hdi_watch *watch, hd_error *e) {
     double best = k->r_norm, least = target;
     int64_t step, best_step = 0;
     int near_rounding = 0;
     for (step = 1; k->r_norm > least && !k->broken && *left > 0; step++, --*left) {
-        if (!near_rounding && k->r_norm < 1e-9 * k->b_norm) {
+        if (!near_rounding && k->r_norm < HDI_KRYLOV_NEAR * k->b_norm) {
             near_rounding = 1;
             least = hdi_max(target, floor_share * hdi_krylov_noise(k));
         }
-        if (step % 16 == 1 && hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
+        if (step % HDI_KRYLOV_LOOK == 1 &&
+            hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
         if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
         else if (k->solver == HD_SOLVER_COCR) hdi_cocr_step(k);
         else hdi_minres_step(k);
@@ -13113,16 +13159,19 @@ static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_sha
         if (k->r_norm < best / 2) {
             best = k->r_norm;
             best_step = step;
-        } else if (best < 1e-7 * k->b_norm && (step - best_step > 50 + best_step || k->r_norm > 1e3 * best)) {
+        } else if (best < HDI_KRYLOV_USABLE * k->b_norm &&
+                   (step - best_step > HDI_KRYLOV_PATIENCE + best_step ||
+                    k->r_norm > HDI_KRYLOV_ASTRAY * best)) {
             break;
         }
     }
     return HD_OK;
 }
 
-/* Solves until the residual norm, computed from x, is at most target. Rounding may keep it above: then it stops where another round no longer
- * halves it, with the best x and HD_WARN_ACCURACY. */
-static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations, const hdi_watch *watch, hd_error *e) {
+/* Solves until |b - A x|, computed from x, is at most target. Rounding may keep it above. Then the solver
+ * stops when another round does not halve it, and returns the best x with HD_WARN_ACCURACY. */
+static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations,
+                                const hdi_watch *watch, hd_error *e) {
     const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
     const double start = k->r_norm;
     double before = k->r_norm, floor_share = 0.5;
@@ -13130,16 +13179,19 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
     while (k->r_norm > target) {
         memcpy(k->spare, k->x, bytes);
         if (hdi_krylov_round(k, target, floor_share, start, &left, watch, e) < 0) return e->status;
-        hdi_krylov_residual(k, b);               /* the recurrence says done: believe x alone */
+        hdi_krylov_residual(k, b);               /* the recurrence says done: only x itself can confirm it */
         if (k->r_norm <= target) return HD_OK;
-        if (left <= 0) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "the iteration did not reach the tolerance in max_iterations steps");
+        if (left <= 0)
+            return hdi_fail(e, HD_ERR_NOT_CONVERGED,
+                            "the iteration did not reach the tolerance in max_iterations steps");
         if (!(k->r_norm <= before / 2)) {
             if (!(k->r_norm <= before)) {
                 memcpy(k->x, k->spare, bytes);
                 hdi_krylov_residual(k, b);
             }
-            if (k->r_norm <= 1e-7 * k->b_norm) return HD_WARN_ACCURACY;
-            return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: no step brings the residual down");
+            if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
+            return hdi_fail(e, HD_ERR_BREAKDOWN,
+                            "the iteration broke down: no step brings the residual down");
         }
         before = k->r_norm;
         floor_share /= 4;
@@ -13150,11 +13202,17 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
 
 /* ---- conjugate gradients for B u = w, with the diagonal as preconditioner ---- */
 
-/* Error in the B norm, relative to u and times 1/sqrt(b_ratio), as seen. The recurrence stops at a tenth of it. */
+/* The error of u in the B norm, relative to u and times sqrt(b_ratio), as measured. The recurrence stops when
+ * r'z has come down by HDI_MASS_STOP, the square of a tenth of it. */
 #define HDI_MASS_TOL 1e-14
+#define HDI_MASS_STOP 1e-30
+#define HDI_MASS_FAILED 1e-24    /* of r'z after HDI_MASS_STEPS: not converged */
+enum { HDI_MASS_STEPS = 1000 };
 
-/* Condition of diag(B)^-1 B is at most 4 for linear elements: about 30 steps to rounding. work [3 n]. */
-static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double *u, double *work, hd_error *e) {
+/* B u = w. For linear elements the condition number of diag(B)^-1 B is at most 4, and some 30 steps lead
+ * to the level of rounding. work [3 n]. */
+static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double *u, double *work,
+                                hd_error *e) {
     const int32_t n = lap->n_active;
     double *r = work, *p = work + n, *q = work + 2 * HDI_CAST(int64_t, n), rho = 0, rho_new, start;
     int32_t i, step;
@@ -13169,11 +13227,13 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
         rho += r[i] * p[i];
     }
     start = rho;
-    for (step = 0; step < 1000 && rho > 1e-30 * start; step++) {
+    for (step = 0; step < HDI_MASS_STEPS && rho > HDI_MASS_STOP * start; step++) {
         double alpha, mu;
         hdi_pair_apply(lap, 0, 1, p, q);
         mu = hdi_dot(p, q, n);
-        if (!(mu > 0)) return hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: a vector with x'Bx <= 0 was met");
+        if (!(mu > 0))
+            return hdi_fail(e, HD_ERR_NOT_POSITIVE,
+                            "B is not positive definite: a vector with x'Bx <= 0 was met");
         alpha = rho / mu;
         rho_new = 0;
         for (i = 0; i < n; i++) {
@@ -13184,22 +13244,27 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
         for (i = 0; i < n; i++) p[i] = r[i] / lap->b_diag[i] + rho_new / rho * p[i];
         rho = rho_new;
     }
-    if (rho > 1e-24 * start) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
+    if (rho > HDI_MASS_FAILED * start)
+        return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
     return HD_OK;
 }
 
-/* ==== [16] rational ====
- * Pole sets: the constants, evaluation, lookup; sets for many times, and their weights by least squares. May call [06].
+/* ==== [21] rational ====
+ * Owns pole sets: their tables, lookup and evaluation; sets that serve many times, and the fit of their
+ * weights. May call [06].
  * This work is based on
  *   W. Cody, G. Meinardus, R. Varga, Chebyshev rational approximations to e^-x in [0, inf), 1969
- *   A. Carpenter, A. Ruttan, R. Varga, Extended numerical computations on the "1/9" conjecture, 1984 (the errors, to many digits)
- * The table is printed by tools/poles.py, which also checks it. Deviation: the paper takes coefficients from E. Gallopoulos and Y. Saad,
- * Efficient solution of parabolic equations by Krylov approximation methods, 1992, whose order-14 table is wrong in its last digits. */
+ *   A. Carpenter, A. Ruttan, R. Varga, Extended numerical computations on the "1/9" conjecture, 1984: the
+ *     errors, to many digits
+ * tools/poles.py prints the table and checks it.
+ * Deviation: the paper takes the coefficients from E. Gallopoulos, Y. Saad, Efficient solution of
+ * parabolic equations by Krylov approximation methods, 1992. The order-14 table there is wrong in its last
+ * digits. */
 
 /* poles.py: begin */
-/* Computed by tools/poles.py, which also checks these digits. For every set: a0, max |e|, max W|e| (0 for
- * uniform sets, where it would be the same); then per pole Re theta, Im theta, Re a, Im a, the real pole first (odd r),
- * then one of each conjugate pair by ascending Im theta. */
+/* Computed by tools/poles.py, which also checks these digits. Each set begins with a0, max |e| and max
+ * W|e| (0 for uniform sets, where it would be the same). Then come Re theta, Im theta, Re a, Im a of each
+ * pole: the real pole first (odd r), then one of each conjugate pair by ascending Im theta. */
 static const double hdi_rat_table[] = {
     /* uniform r = 1 */
     -0.066831042161850457, 0.066831042161850457, 0,
@@ -13450,29 +13515,42 @@ static const double hdi_rat_table[] = {
 };
 /* poles.py: end */
 
+/* Kernel and diagonal sets have the same degrees. */
 enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };   /* diagonal sets too */
 
+/* Doubles that the table spends on a set. */
 static int32_t hdi_rat_size(int32_t degree) { return 3 + 4 * ((degree + 1) / 2); }
 
-static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
+/* Where the set begins in the table: uniform sets come first, then kernel, then diagonal ones. */
+static const double *hdi_rat_row(hd_pole_kind kind, int32_t degree) {
+    const int32_t n_whole = kind == HD_POLES_UNIFORM ? 0 : kind == HD_POLES_KERNEL ? 1 : 2;
     const double *row = hdi_rat_table;
-    int32_t r, i;
+    int32_t r, q;
+    for (q = 0; q < n_whole; q++)
+        for (r = q == 0 ? 1 : HDI_RAT_KERNEL_MIN; r <= HDI_RAT_UNIFORM_MAX; r++) row += hdi_rat_size(r);
+    for (r = n_whole == 0 ? 1 : HDI_RAT_KERNEL_MIN; r < degree; r++) row += hdi_rat_size(r);
+    return row;
+}
+
+static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
+    const double *row;
+    int32_t i;
     if (kind != HD_POLES_UNIFORM && kind != HD_POLES_KERNEL && kind != HD_POLES_DIAGONAL)
         return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform, kernel or diagonal");
     if (kind == HD_POLES_UNIFORM && (degree < 1 || degree > HDI_RAT_UNIFORM_MAX))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: uniform sets have degrees 1 to 14", -1, -1, degree);
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: uniform sets have degrees 1 to 14", -1, -1,
+                            degree);
     if (kind != HD_POLES_UNIFORM && (degree < HDI_RAT_KERNEL_MIN || degree > HDI_RAT_KERNEL_MAX))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel and diagonal sets have degrees 2 to 14", -1, -1, degree);
-    for (r = 1; r < (kind == HD_POLES_UNIFORM ? degree : HDI_RAT_UNIFORM_MAX + 1); r++) row += hdi_rat_size(r);
-    for (r = HDI_RAT_KERNEL_MIN; kind == HD_POLES_DIAGONAL && r <= HDI_RAT_KERNEL_MAX; r++) row += hdi_rat_size(r);
-    for (r = HDI_RAT_KERNEL_MIN; kind != HD_POLES_UNIFORM && r < degree; r++) row += hdi_rat_size(r);
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel and diagonal sets have degrees 2 to 14", -1,
+                            -1, degree);
+    row = hdi_rat_row(kind, degree);
     memset(out, 0, sizeof *out);
     out->kind = kind;
     out->degree = degree;
     out->n_poles = (degree + 1) / 2;
     out->a0 = row[0];
-    /* The table's errors are the exact optimum; its numbers, rounded to double, lose up to 7 % of that at degree 14, and the sum of
-     * a dozen terms of size 1e4 some more. */
+    /* The errors in the table are those of the exact optimum. Its numbers are rounded to double, which
+     * costs up to 7 % of that at degree 14; a sum of a dozen terms of size 1e4 costs some more. */
     out->max_error = 1.1 * row[1] + 1e-14;
     out->max_weighted_error = row[2] > 0 ? 1.1 * row[2] + 1e-14 : 0;
     for (i = 0; i < out->n_poles; i++) {
@@ -13495,13 +13573,15 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
 
 static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     int32_t i;
-    if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES) return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
+    if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
     if (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 ||
         hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0)
         return hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
     for (i = 0; i < set->n_poles; i++) {
         const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
-        const char *text = bad ? "own pole set: a pole or weight is not finite" : "own pole set: theta needs Im > 0, or Im = 0 and Re > 0";
+        const char *text = bad ? "own pole set: a pole or weight is not finite"
+            : "own pole set: theta needs Im > 0, or Im = 0 and Re > 0";
         if (!bad && (set->theta[i].im > 0 || (set->theta[i].im == 0 && set->theta[i].re > 0))) continue;
         hdi_fail(e, bad ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT, text);
         e->pole = i;
@@ -13510,298 +13590,362 @@ static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     return HD_OK;
 }
 
-/* min |x - theta| over x <= 0, i.e. min |t lambda + theta|: how far A stays from singular, in the B geometry. */
+/* min |x - theta| over x <= 0, which is min |t lambda + theta|: the distance of A from a singular matrix,
+ * in the B geometry. */
 static double hdi_pole_distance(hd_c64 theta) { return theta.re >= 0 ? hdi_cabs(theta) : fabs(theta.im); }
 
 /* ---- shared sets ---- */
-/* Poles that serve all times t in [t0, lambda t0], with weights of their own for each: t0 L + theta_i B is factorised once. With tau = t/t0 and the eigenvalue
- * of t0 B^-1 L called y = -x,
- *     exp(-tau y) ~ c(x) = 2 Re sum_i a_i(tau)/(x - theta_i),   a0 = 0, c(0) = 1,   error measured as (1 + tau y)|e|,
- * which is the measure of the kernel sets, for every tau. As a set for the time t itself, in hd_rational's terms, it reads tau theta_i, tau a_i.
+/* Poles that serve all times t in [t0, lambda t0], with weights of their own for each time: t0 L + theta_i
+ * B is factorised once. Let tau = t/t0, and let y = -x be an eigenvalue of t0 B^-1 L. Then
+ *     exp(-tau y) ~ c(x) = 2 Re sum_i a_i(tau)/(x - theta_i),   a0 = 0, c(0) = 1.
+ * The error is measured as (1 + tau y)|e|, for every tau. This is the measure of the kernel sets. As a set
+ * for the time t itself, in the terms of hd_rational, it is tau theta_i, tau a_i.
  * This work is based on
- *   M. Lopez-Fernandez, C. Palencia, A. Schaedle, A spectral order method for inverting sectorial Laplace transforms, 2006: one contour for many times
- *   G. Golub, V. Pereyra, The differentiation of pseudo-inverses and nonlinear least squares problems whose variables separate, 1973 (in the script)
- *   C. Lawson, Contributions to the theory of linear least maximum approximation, 1961: least squares whose weights follow the error
+ *   M. Lopez-Fernandez, C. Palencia, A. Schaedle, A spectral order method for inverting sectorial Laplace
+ *     transforms, 2006: one contour for many times
+ *   G. Golub, V. Pereyra, The differentiation of pseudo-inverses and nonlinear least squares problems
+ *     whose variables separate, 1973 (in the script)
+ *   C. Lawson, Contributions to the theory of linear least maximum approximation, 1961: least squares
+ *     whose weights follow the error
  *   H. Ehlich, K. Zeller, Schwankung von Polynomen zwischen Gitterpunkten, 1964: the bound between points
- * Deviation: the poles are free, not on a hyperbola, which needs twice as many. The table is printed by tools/shared_poles.py (about 15 minutes), which
- * also checks it. */
+ * Deviation: the poles are free rather than on a hyperbola, which needs twice as many.
+ * tools/shared_poles.py prints the table (in about 15 minutes) and checks it. */
 
 /* shared_poles.py: begin */
-/* Computed by tools/shared_poles.py, which also checks it. For every set: the largest ratio of times, number of pairs, largest weighted error
- * over all times (with rounding), largest sum 2 |a_i|/distance; then Re theta, Im theta of one of each pair, by ascending |theta|. Pairs ascend, and for each the
- * ratio. */
+/* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of
+ * times, the number of pairs, the largest weighted error over all times (with rounding) and the largest
+ * sum of 2 |a_i|/distance. Then come Re theta, Im theta of one pole of each pair, by ascending |theta|.
+ * Sets ascend by the number of pairs, then by the ratio. */
 static const double hdi_shared_table[] = {
     1.8, 8, 9.79e-11, 24.3,
-        2.50109297, 0.637058254, 2.17122959, 1.9179449, 1.49504902, 3.22060516, 0.436050967, 4.5644826,
-        -1.07297888, 5.97718894, -3.15771065, 7.50082094, -6.07844808, 9.20332631, -10.5021249, 11.2188529,
+      2.50109297, 0.637058254, 2.17122959, 1.9179449, 1.49504902, 3.22060516, 0.436050967, 4.5644826,
+      -1.07297888, 5.97718894, -3.15771065, 7.50082094, -6.07844808, 9.20332631, -10.5021249, 11.2188529,
     3.2, 8, 4.51e-09, 20,
-        1.32441677, 0.395660883, 1.101686, 1.19827716, 0.643733983, 2.03754677, -0.078695318, 2.94869249,
-        -1.12636701, 3.98942629, -2.64066158, 5.25101642, -4.94521348, 6.83154739, -8.76839225, 8.81974826,
+      1.32441677, 0.395660883, 1.101686, 1.19827716, 0.643733983, 2.03754677, -0.078695318, 2.94869249,
+      -1.12636701, 3.98942629, -2.64066158, 5.25101642, -4.94521348, 6.83154739, -8.76839225, 8.81974826,
     5.6, 8, 6.2e-08, 18.4,
-        0.733524945, 0.245618174, 0.586586632, 0.749369194, 0.284720456, 1.29504979, -0.190295942, 1.92911923,
-        -0.890396896, 2.74598052, -1.99998364, 3.88597908, -3.91266907, 5.4267002, -7.36220023, 7.39950913,
+      0.733524945, 0.245618174, 0.586586632, 0.749369194, 0.284720456, 1.29504979, -0.190295942, 1.92911923,
+      -0.890396896, 2.74598052, -1.99998364, 3.88597908, -3.91266907, 5.4267002, -7.36220023, 7.39950913,
     10, 8, 4.54e-07, 15.7,
-        0.38933325, 0.147131123, 0.295244873, 0.453067749, 0.103637894, 0.799453759, -0.191288461, 1.240481,
-        -0.644255821, 1.90273983, -1.48095429, 2.93701838, -3.1068834, 4.41109813, -6.26071086, 6.32649569,
+      0.38933325, 0.147131123, 0.295244873, 0.453067749, 0.103637894, 0.799453759, -0.191288461, 1.240481,
+      -0.644255821, 1.90273983, -1.48095429, 2.93701838, -3.1068834, 4.41109813, -6.26071086, 6.32649569,
     18, 8, 2.51e-06, 15.7,
-        0.214272192, 0.0871084771, 0.156889452, 0.270601827, 0.042367231, 0.487479442, -0.124726046, 0.798145365,
-        -0.406624133, 1.34498027, -1.0314075, 2.27947063, -2.41635335, 3.68404484, -5.35829886, 5.55491346,
+      0.214272192, 0.0871084771, 0.156889452, 0.270601827, 0.042367231, 0.487479442,
+      -0.124726046, 0.798145365, -0.406624133, 1.34498027, -1.0314075, 2.27947063, -2.41635335, 3.68404484,
+      -5.35829886, 5.55491346,
     32, 8, 9.02e-06, 15,
-        0.118042015, 0.0515884795, 0.0834045137, 0.161802265, 0.0173343816, 0.297422085, -0.0684957203, 0.52445475,
-        -0.254136191, 0.988519521, -0.746168995, 1.82612054, -1.95659371, 3.15503623, -4.67447313, 4.96927567,
+      0.118042015, 0.0515884795, 0.0834045137, 0.161802265, 0.0173343816, 0.297422085,
+      -0.0684957203, 0.52445475, -0.254136191, 0.988519521, -0.746168995, 1.82612054, -1.95659371, 3.15503623,
+      -4.67447313, 4.96927567,
     3.2, 12, 2.17e-12, 115,
-        1.92786655, 0.413936484, 1.76523526, 1.25239208, 1.42646511, 2.12385622, 0.872061738, 3.03550226,
-        0.0952089587, 3.94546451, 2.65349177, 4.0580223, -0.855927806, 4.89644448, -2.03717695, 5.99336073,
-        -3.58576175, 7.30691663, -5.70793179, 8.88480747, -8.73677694, 10.7613992, -13.3826341, 13.0290528,
+      1.92786655, 0.413936484, 1.76523526, 1.25239208, 1.42646511, 2.12385622, 0.872061738, 3.03550226,
+      0.0952089587, 3.94546451, 2.65349177, 4.0580223, -0.855927806, 4.89644448, -2.03717695, 5.99336073,
+      -3.58576175, 7.30691663, -5.70793179, 8.88480747, -8.73677694, 10.7613992, -13.3826341, 13.0290528,
     5.6, 12, 9.32e-12, 124,
-        1.1156037, 0.244935271, 1.01633585, 0.740033436, 0.815110899, 1.25163143, 0.506399449, 1.79370278,
-        0.0813178661, 2.38531942, -0.474906106, 3.05499222, -1.19221576, 3.84895279, -2.14278852, 4.83216407,
-        -3.46555416, 6.06263479, -5.37145261, 7.56888175, -8.18037212, 9.3672187, -12.5825862, 11.5383919,
+      1.1156037, 0.244935271, 1.01633585, 0.740033436, 0.815110899, 1.25163143, 0.506399449, 1.79370278,
+      0.0813178661, 2.38531942, -0.474906106, 3.05499222, -1.19221576, 3.84895279, -2.14278852, 4.83216407,
+      -3.46555416, 6.06263479, -5.37145261, 7.56888175, -8.18037212, 9.3672187, -12.5825862, 11.5383919,
     10, 12, 1.93e-10, 109,
-        0.606585192, 0.148983193, 0.54319089, 0.451972033, 0.415106696, 0.771028768, 0.220043205, 1.12005973,
-        -0.0459325315, 1.51967857, -0.389714287, 2.00894493, -0.84546104, 2.65611845, -1.51195213, 3.53553745,
-        -2.54295616, 4.69603533, -4.15435782, 6.15594187, -6.66529732, 7.9245182, -10.7595029, 10.0667408,
+      0.606585192, 0.148983193, 0.54319089, 0.451972033, 0.415106696, 0.771028768, 0.220043205, 1.12005973,
+      -0.0459325315, 1.51967857, -0.389714287, 2.00894493, -0.84546104, 2.65611845, -1.51195213, 3.53553745,
+      -2.54295616, 4.69603533, -4.15435782, 6.15594187, -6.66529732, 7.9245182, -10.7595029, 10.0667408,
     18, 12, 2.16e-09, 97.7,
-        0.328962352, 0.0880300632, 0.289601762, 0.268133723, 0.210193247, 0.461773649, 0.0913926425, 0.681916346,
-        -0.0636021013, 0.947559948, -0.260749437, 1.30987101, -0.549944731, 1.84805265, -1.03014202, 2.6216911,
-        -1.84840448, 3.67929769, -3.21733837, 5.05592273, -5.47230152, 6.76249101, -9.29215097, 8.84998249,
+      0.328962352, 0.0880300632, 0.289601762, 0.268133723, 0.210193247, 0.461773649,
+      0.0913926425, 0.681916346, -0.0636021013, 0.947559948, -0.260749437, 1.30987101,
+      -0.549944731, 1.84805265, -1.03014202, 2.6216911, -1.84840448, 3.67929769, -3.21733837, 5.05592273,
+      -5.47230152, 6.76249101, -9.29215097, 8.84998249,
     32, 12, 1.7e-08, 79.7,
-        0.177202298, 0.0519617469, 0.152750504, 0.159216606, 0.104541218, 0.277132154, 0.0341451571, 0.414794873,
-        -0.0538528238, 0.594104209, -0.167585098, 0.878697855, -0.360987965, 1.32667456, -0.720456336, 1.99136857,
-        -1.38193402, 2.9442927, -2.56106306, 4.2259948, -4.60787875, 5.86756232, -8.21967815, 7.8867613,
+      0.177202298, 0.0519617469, 0.152750504, 0.159216606, 0.104541218, 0.277132154,
+      0.0341451571, 0.414794873, -0.0538528238, 0.594104209, -0.167585098, 0.878697855,
+      -0.360987965, 1.32667456, -0.720456336, 1.99136857, -1.38193402, 2.9442927, -2.56106306, 4.2259948,
+      -4.60787875, 5.86756232, -8.21967815, 7.8867613,
     56, 12, 7.66e-08, 73.3,
-        0.0993568233, 0.0308234041, 0.0841852586, 0.0948445007, 0.0542988842, 0.166796695, 0.0131936378, 0.255529272,
-        -0.0278836613, 0.383826235, -0.0907624424, 0.600965888, -0.220519481, 0.970561357, -0.485486654, 1.53862809,
-        -1.01407985, 2.3837056, -2.0164049, 3.57541408, -3.86254354, 5.15030042, -7.26625035, 7.12979997,
+      0.0993568233, 0.0308234041, 0.0841852586, 0.0948445007, 0.0542988842, 0.166796695,
+      0.0131936378, 0.255529272, -0.0278836613, 0.383826235, -0.0907624424, 0.600965888,
+      -0.220519481, 0.970561357, -0.485486654, 1.53862809, -1.01407985, 2.3837056, -2.0164049, 3.57541408,
+      -3.86254354, 5.15030042, -7.26625035, 7.12979997,
     100, 12, 3.46e-07, 59.4,
-        0.0530389084, 0.0179228913, 0.0439461227, 0.0554515394, 0.0263011935, 0.0988436724, 0.00718078393, 0.154108391,
-        -0.00978519934, 0.243091575, -0.0500451638, 0.409037963, -0.137848822, 0.699945077, -0.329748706, 1.18016961,
-        -0.748359617, 1.92880072, -1.61152021, 3.04158614, -3.30046912, 4.55775039, -6.53123522, 6.47410686,
+      0.0530389084, 0.0179228913, 0.0439461227, 0.0554515394, 0.0263011935, 0.0988436724,
+      0.00718078393, 0.154108391, -0.00978519934, 0.243091575, -0.0500451638, 0.409037963,
+      -0.137848822, 0.699945077, -0.329748706, 1.18016961, -0.748359617, 1.92880072, -1.61152021, 3.04158614,
+      -3.30046912, 4.55775039, -6.53123522, 6.47410686,
     180, 12, 1.07e-06, 50.7,
-        0.0285941084, 0.00994811629, 0.0229792954, 0.0309253101, 0.0121923203, 0.0558979263, 0.00111338944, 0.0899480106,
-        -0.00798721408, 0.159837539, -0.024220834, 0.288660417, -0.078465602, 0.524091584, -0.21781435, 0.931026694,
-        -0.545008886, 1.58819196, -1.26124874, 2.62464373, -2.77671099, 4.10970812, -5.83383351, 6.05346785,
+      0.0285941084, 0.00994811629, 0.0229792954, 0.0309253101, 0.0121923203, 0.0558979263,
+      0.00111338944, 0.0899480106, -0.00798721408, 0.159837539, -0.024220834, 0.288660417,
+      -0.078465602, 0.524091584, -0.21781435, 0.931026694, -0.545008886, 1.58819196, -1.26124874, 2.62464373,
+      -2.77671099, 4.10970812, -5.83383351, 6.05346785,
     320, 12, 2.87e-06, 47.7,
-        0.0157490918, 0.00582992582, 0.01260877, 0.0181504325, 0.00663251864, 0.03255651, 0.00210384752, 0.0568802507,
-        0.000720397382, 0.107742233, -0.00693788102, 0.20602894, -0.045822937, 0.391295126, -0.146709749, 0.734909428,
-        -0.407452202, 1.32080078, -1.02972846, 2.28928991, -2.43159676, 3.72062216, -5.39962473, 5.61568469,
+      0.0157490918, 0.00582992582, 0.01260877, 0.0181504325, 0.00663251864, 0.03255651,
+      0.00210384752, 0.0568802507, 0.000720397382, 0.107742233, -0.00693788102, 0.20602894,
+      -0.045822937, 0.391295126, -0.146709749, 0.734909428, -0.407452202, 1.32080078, -1.02972846, 2.28928991,
+      -2.43159676, 3.72062216, -5.39962473, 5.61568469,
     560, 12, 7.03e-06, 52,
-        0.00923946347, 0.003264387, 0.00734281524, 0.0101701597, 0.00372483133, 0.0184677681, 0.00220149636, 0.0333054682,
-        -0.000345333209, 0.0670142119, -0.00742535811, 0.139153149, -0.0286477173, 0.283066178, -0.0997049815, 0.557471453,
-        -0.310134676, 1.05573276, -0.832613436, 1.91747976, -2.08683304, 3.25909057, -4.85860887, 5.06175102,
+      0.00923946347, 0.003264387, 0.00734281524, 0.0101701597, 0.00372483133, 0.0184677681,
+      0.00220149636, 0.0333054682, -0.000345333209, 0.0670142119, -0.00742535811, 0.139153149,
+      -0.0286477173, 0.283066178, -0.0997049815, 0.557471453, -0.310134676, 1.05573276,
+      -0.832613436, 1.91747976, -2.08683304, 3.25909057, -4.85860887, 5.06175102,
     18, 16, 7.76e-12, 614,
-        0.439898626, 0.088131475, 0.40985611, 0.266676728, 0.349438118, 0.452375522, 0.25812409, 0.651104361,
-        0.135527886, 0.870562279, -0.0178680881, 1.1223819, -0.201658858, 1.42682694, -0.422791448, 1.81745393,
-        -0.709483143, 2.3490016, -1.13854861, 3.05825336, -1.78165982, 3.95569018, -2.71937754, 5.06474782,
-        -4.08305414, 6.41548739, -6.06366168, 8.02037619, -8.9647154, 9.89964046, -13.4684954, 12.1438193,
+      0.439898626, 0.088131475, 0.40985611, 0.266676728, 0.349438118, 0.452375522, 0.25812409, 0.651104361,
+      0.135527886, 0.870562279, -0.0178680881, 1.1223819, -0.201658858, 1.42682694, -0.422791448, 1.81745393,
+      -0.709483143, 2.3490016, -1.13854861, 3.05825336, -1.78165982, 3.95569018, -2.71937754, 5.06474782,
+      -4.08305414, 6.41548739, -6.06366168, 8.02037619, -8.9647154, 9.89964046, -13.4684954, 12.1438193,
     32, 16, 3.21e-11, 503,
-        0.239979628, 0.0522198928, 0.221428734, 0.158410161, 0.184227279, 0.270149529, 0.128377873, 0.392170289,
-        0.0549572499, 0.531264638, -0.0334503759, 0.697107668, -0.130641414, 0.917707036, -0.261849279, 1.23196742,
-        -0.460129267, 1.66670093, -0.762517255, 2.2591175, -1.24904709, 3.05467435, -2.01931755, 4.06497731,
-        -3.1911992, 5.31830923, -4.95947908, 6.83703917, -7.6349403, 8.63821936, -11.8967707, 10.7956955,
+      0.239979628, 0.0522198928, 0.221428734, 0.158410161, 0.184227279, 0.270149529, 0.128377873, 0.392170289,
+      0.0549572499, 0.531264638, -0.0334503759, 0.697107668, -0.130641414, 0.917707036,
+      -0.261849279, 1.23196742, -0.460129267, 1.66670093, -0.762517255, 2.2591175, -1.24904709, 3.05467435,
+      -2.01931755, 4.06497731, -3.1911992, 5.31830923, -4.95947908, 6.83703917, -7.6349403, 8.63821936,
+      -11.8967707, 10.7956955,
     56, 16, 2.31e-10, 406,
-        0.132689893, 0.0311164192, 0.121172518, 0.0946524895, 0.0981824369, 0.16238504, 0.0642855232, 0.237904775,
-        0.0205363427, 0.326357792, -0.0246641236, 0.43994886, -0.0774865261, 0.607949214, -0.155812711, 0.853682685,
-        -0.277471115, 1.21687052, -0.505332599, 1.73563076, -0.897530204, 2.43074221, -1.52579436, 3.34032435,
-        -2.53020949, 4.51846715, -4.12002571, 5.98425334, -6.61447156, 7.74953009, -10.6969522, 9.87688976,
+      0.132689893, 0.0311164192, 0.121172518, 0.0946524895, 0.0981824369, 0.16238504,
+      0.0642855232, 0.237904775, 0.0205363427, 0.326357792, -0.0246641236, 0.43994886,
+      -0.0774865261, 0.607949214, -0.155812711, 0.853682685, -0.277471115, 1.21687052,
+      -0.505332599, 1.73563076, -0.897530204, 2.43074221, -1.52579436, 3.34032435, -2.53020949, 4.51846715,
+      -4.12002571, 5.98425334, -6.61447156, 7.74953009, -10.6969522, 9.87688976,
     100, 16, 1.55e-09, 328,
-        0.071778581, 0.0180091365, 0.064929363, 0.0549345551, 0.0513668139, 0.0945655731, 0.030965224, 0.139572435,
-        0.00751997286, 0.195492225, -0.0134487186, 0.270963005, -0.038950508, 0.400952062, -0.0899222901, 0.593564172,
-        -0.180087998, 0.872801566, -0.329204345, 1.29660715, -0.626362178, 1.90358592, -1.13825508, 2.71607212,
-        -1.99040331, 3.8027171, -3.39889748, 5.19303039, -5.68772851, 6.90515034, -9.53616096, 8.99857641,
+      0.071778581, 0.0180091365, 0.064929363, 0.0549345551, 0.0513668139, 0.0945655731,
+      0.030965224, 0.139572435, 0.00751997286, 0.195492225, -0.0134487186, 0.270963005,
+      -0.038950508, 0.400952062, -0.0899222901, 0.593564172, -0.180087998, 0.872801566,
+      -0.329204345, 1.29660715, -0.626362178, 1.90358592, -1.13825508, 2.71607212, -1.99040331, 3.8027171,
+      -3.39889748, 5.19303039, -5.68772851, 6.90515034, -9.53616096, 8.99857641,
     180, 16, 7.74e-09, 246,
-        0.0381243456, 0.010209765, 0.0339090032, 0.0312942265, 0.0257300952, 0.0545648443, 0.014680896, 0.0814622705,
-        0.00235050827, 0.114911654, -0.00506598999, 0.17229441, -0.021196038, 0.265867459, -0.0473718828, 0.407670916,
-        -0.100607427, 0.645861608, -0.224220676, 0.997425451, -0.456542014, 1.49956027, -0.861273913, 2.22504603,
-        -1.59739315, 3.23053883, -2.86791088, 4.54770837, -5.01194321, 6.20295728, -8.72850258, 8.23098972,
+      0.0381243456, 0.010209765, 0.0339090032, 0.0312942265, 0.0257300952, 0.0545648443,
+      0.014680896, 0.0814622705, 0.00235050827, 0.114911654, -0.00506598999, 0.17229441,
+      -0.021196038, 0.265867459, -0.0473718828, 0.407670916, -0.100607427, 0.645861608,
+      -0.224220676, 0.997425451, -0.456542014, 1.49956027, -0.861273913, 2.22504603, -1.59739315, 3.23053883,
+      -2.86791088, 4.54770837, -5.01194321, 6.20295728, -8.72850258, 8.23098972,
     320, 16, 2.98e-08, 181,
-        0.0203114988, 0.00590460591, 0.0178692834, 0.0181319292, 0.0131840691, 0.0316447414, 0.00650703225, 0.047392023,
-        0.00126091059, 0.0706752786, -9.8406006e-05, 0.109242403, -0.00918694067, 0.179587901, -0.0311220956, 0.289568892,
-        -0.0599706248, 0.470198144, -0.144231372, 0.766676172, -0.323587206, 1.19458338, -0.648886269, 1.84644067,
-        -1.27875811, 2.77461629, -2.40644509, 4.03224615, -4.39133524, 5.66062872, -7.92821025, 7.68599907,
+      0.0203114988, 0.00590460591, 0.0178692834, 0.0181319292, 0.0131840691, 0.0316447414,
+      0.00650703225, 0.047392023, 0.00126091059, 0.0706752786, -9.8406006e-05, 0.109242403,
+      -0.00918694067, 0.179587901, -0.0311220956, 0.289568892, -0.0599706248, 0.470198144,
+      -0.144231372, 0.766676172, -0.323587206, 1.19458338, -0.648886269, 1.84644067, -1.27875811, 2.77461629,
+      -2.40644509, 4.03224615, -4.39133524, 5.66062872, -7.92821025, 7.68599907,
     560, 16, 8.63e-08, 163,
-        0.0114104116, 0.00341569632, 0.00987515058, 0.0105649003, 0.0070643226, 0.0187725583, 0.00396773758, 0.0283609532,
-        0.00225025417, 0.0427136203, 0.00247325118, 0.072295592, -0.0025624665, 0.119407517, -0.00689143749, 0.205603102,
-        -0.03552388, 0.350904948, -0.0994080939, 0.580481578, -0.21344774, 0.945835538, -0.479956357, 1.52124037,
-        -1.00877089, 2.36899266, -2.01493635, 3.55591307, -3.85979096, 5.12473561, -7.26389966, 7.10217198,
+      0.0114104116, 0.00341569632, 0.00987515058, 0.0105649003, 0.0070643226, 0.0187725583,
+      0.00396773758, 0.0283609532, 0.00225025417, 0.0427136203, 0.00247325118, 0.072295592,
+      -0.0025624665, 0.119407517, -0.00689143749, 0.205603102, -0.03552388, 0.350904948,
+      -0.0994080939, 0.580481578, -0.21344774, 0.945835538, -0.479956357, 1.52124037, -1.00877089, 2.36899266,
+      -2.01493635, 3.55591307, -3.85979096, 5.12473561, -7.26389966, 7.10217198,
     1000, 16, 3.93e-07, 127,
-        0.00610948015, 0.00190882205, 0.00527701114, 0.00586321222, 0.00358734254, 0.0102249551, 0.00134657829, 0.0158754361,
-        0.000660637871, 0.0265106564, 0.00121056914, 0.044595923, -0.00121660452, 0.0814061348, -0.00580940122, 0.136675814,
-        -0.0202087683, 0.248160847, -0.0693408603, 0.432282039, -0.150992399, 0.731050942, -0.356949172, 1.22501382,
-        -0.79639811, 1.98928011, -1.67582746, 3.10569692, -3.38024638, 4.63510107, -6.64071793, 6.56484471,
+      0.00610948015, 0.00190882205, 0.00527701114, 0.00586321222, 0.00358734254, 0.0102249551,
+      0.00134657829, 0.0158754361, 0.000660637871, 0.0265106564, 0.00121056914, 0.044595923,
+      -0.00121660452, 0.0814061348, -0.00580940122, 0.136675814, -0.0202087683, 0.248160847,
+      -0.0693408603, 0.432282039, -0.150992399, 0.731050942, -0.356949172, 1.22501382,
+      -0.79639811, 1.98928011, -1.67582746, 3.10569692, -3.38024638, 4.63510107, -6.64071793, 6.56484471,
     1800, 16, 6.57e-07, 121,
-        0.00334705732, 0.00110379449, 0.00285503655, 0.00342660974, 0.00193915235, 0.00612930592, 0.00163520018, 0.00936933322,
-        0.0016429126, 0.0155404153, 0.0021950836, 0.0305202503, 0.00423779506, 0.0533655632, 0.00180774774, 0.103260991,
-        -0.00974171098, 0.187577233, -0.0239239293, 0.333761144, -0.100365632, 0.601309997, -0.26296855, 1.03784104,
-        -0.635159522, 1.74398167, -1.43168658, 2.80202834, -3.02023506, 4.27389596, -6.1245932, 6.18677233,
+      0.00334705732, 0.00110379449, 0.00285503655, 0.00342660974, 0.00193915235, 0.00612930592,
+      0.00163520018, 0.00936933322, 0.0016429126, 0.0155404153, 0.0021950836, 0.0305202503,
+      0.00423779506, 0.0533655632, 0.00180774774, 0.103260991, -0.00974171098, 0.187577233,
+      -0.0239239293, 0.333761144, -0.100365632, 0.601309997, -0.26296855, 1.03784104,
+      -0.635159522, 1.74398167, -1.43168658, 2.80202834, -3.02023506, 4.27389596, -6.1245932, 6.18677233,
     3200, 16, 1.44e-06, 164,
-        0.00199081633, 0.000616876591, 0.00172355324, 0.00190930985, 0.00123789351, 0.00335550898, 0.000821906952, 0.00513221322,
-        0.00115737426, 0.0100568883, 0.00334477326, 0.0192921244, 0.00268559902, 0.0360238118, 0.00469267928, 0.0727716605,
-        -0.00289536438, 0.140231882, -0.00548129996, 0.259653238, -0.0615915945, 0.479315385, -0.188682888, 0.869092893,
-        -0.49877093, 1.51552451, -1.20957331, 2.52664981, -2.70113936, 3.96752406, -5.72293958, 5.86983017,
+      0.00199081633, 0.000616876591, 0.00172355324, 0.00190930985, 0.00123789351, 0.00335550898,
+      0.000821906952, 0.00513221322, 0.00115737426, 0.0100568883, 0.00334477326, 0.0192921244,
+      0.00268559902, 0.0360238118, 0.00469267928, 0.0727716605, -0.00289536438, 0.140231882,
+      -0.00548129996, 0.259653238, -0.0615915945, 0.479315385, -0.188682888, 0.869092893,
+      -0.49877093, 1.51552451, -1.20957331, 2.52664981, -2.70113936, 3.96752406, -5.72293958, 5.86983017,
     5600, 16, 3.05e-06, 146,
-        0.00108163095, 0.000390557113, 0.000915966886, 0.00124682623, 0.000719505445, 0.00225836706, 0.00146137454, 0.00299521149,
-        0.00135727594, 0.00528274161, 0.00153963667, 0.0123112768, 0.00412742784, 0.025102761, 0.00185713922, 0.0515671917,
-        0.0052857741, 0.102252836, -0.0131326495, 0.205175157, -0.0423931485, 0.393906186, -0.145848388, 0.737707419,
-        -0.419778102, 1.32717872, -1.0579819, 2.28085398, -2.46924471, 3.686127, -5.43479744, 5.54810596,
+      0.00108163095, 0.000390557113, 0.000915966886, 0.00124682623, 0.000719505445, 0.00225836706,
+      0.00146137454, 0.00299521149, 0.00135727594, 0.00528274161, 0.00153963667, 0.0123112768,
+      0.00412742784, 0.025102761, 0.00185713922, 0.0515671917, 0.0052857741, 0.102252836,
+      -0.0131326495, 0.205175157, -0.0423931485, 0.393906186, -0.145848388, 0.737707419,
+      -0.419778102, 1.32717872, -1.0579819, 2.28085398, -2.46924471, 3.686127, -5.43479744, 5.54810596,
     32, 20, 1.25e-12, 117,
-        0.175988695, 0.0248101908, 0.15979093, 0.0950906275, 0.174083538, 0.142491372, 0.168085797, 0.247922589,
-        0.133969023, 0.362666489, 0.0808351229, 0.489576034, 0.0114669125, 0.634254501, -0.0689606099, 0.804479557,
-        -0.158675703, 1.0256016, -0.277253187, 1.32205812, -0.446373301, 1.71153722, -0.692393087, 2.21457838,
-        -1.05069359, 2.85348622, -1.56956017, 3.65228987, -2.31479901, 4.63622504, -3.3741504, 5.82929786,
-        -4.87848903, 7.25534197, -7.01563886, 8.92370443, -10.0830808, 10.8557306, -14.7669319, 13.1580288,
+      0.175988695, 0.0248101908, 0.15979093, 0.0950906275, 0.174083538, 0.142491372, 0.168085797, 0.247922589,
+      0.133969023, 0.362666489, 0.0808351229, 0.489576034, 0.0114669125, 0.634254501,
+      -0.0689606099, 0.804479557, -0.158675703, 1.0256016, -0.277253187, 1.32205812, -0.446373301, 1.71153722,
+      -0.692393087, 2.21457838, -1.05069359, 2.85348622, -1.56956017, 3.65228987, -2.31479901, 4.63622504,
+      -3.3741504, 5.82929786, -4.87848903, 7.25534197, -7.01563886, 8.92370443, -10.0830808, 10.8557306,
+      -14.7669319, 13.1580288,
     56, 20, 5.7e-12, 464,
-        0.130201681, 0.0215293176, 0.130428224, 0.0749500066, 0.118327775, 0.136513904, 0.0949383426, 0.203975245,
-        0.0615542805, 0.279261591, 0.0199101588, 0.365512626, -0.0264601284, 0.46938332, -0.0767493619, 0.60574068,
-        -0.139010745, 0.79537353, -0.230715637, 1.05576466, -0.372871024, 1.39868455, -0.581059388, 1.83768725,
-        -0.876585684, 2.40549311, -1.3126599, 3.1430351, -1.96833777, 4.07489644, -2.93755718, 5.2164826,
-        -4.34050208, 6.58434654, -6.3620336, 8.1982083, -9.30804149, 10.0781562, -13.862184, 12.3142498,
+      0.130201681, 0.0215293176, 0.130428224, 0.0749500066, 0.118327775, 0.136513904,
+      0.0949383426, 0.203975245, 0.0615542805, 0.279261591, 0.0199101588, 0.365512626,
+      -0.0264601284, 0.46938332, -0.0767493619, 0.60574068, -0.139010745, 0.79537353,
+      -0.230715637, 1.05576466, -0.372871024, 1.39868455, -0.581059388, 1.83768725, -0.876585684, 2.40549311,
+      -1.3126599, 3.1430351, -1.96833777, 4.07489644, -2.93755718, 5.2164826, -4.34050208, 6.58434654,
+      -6.3620336, 8.1982083, -9.30804149, 10.0781562, -13.862184, 12.3142498,
     100, 20, 2.37e-11, 1.38e+03,
-        0.0873483077, 0.0179668933, 0.081520086, 0.0545126102, 0.0698808805, 0.0930024971, 0.0526139842, 0.135097122,
-        0.0303233216, 0.182914729, 0.00550564915, 0.239647208, -0.0179572321, 0.313598572, -0.041792191, 0.419829965,
-        -0.0763867206, 0.575344949, -0.136197416, 0.796628743, -0.241785108, 1.09872058, -0.417384167, 1.4915349,
-        -0.678059965, 1.98942652, -1.05308326, 2.63889044, -1.6182886, 3.48328478, -2.47349729, 4.54648542,
-        -3.74545526, 5.85237993, -5.62668376, 7.41862227, -8.42333658, 9.26391013, -12.8217747, 11.4786552,
+      0.0873483077, 0.0179668933, 0.081520086, 0.0545126102, 0.0698808805, 0.0930024971,
+      0.0526139842, 0.135097122, 0.0303233216, 0.182914729, 0.00550564915, 0.239647208,
+      -0.0179572321, 0.313598572, -0.041792191, 0.419829965, -0.0763867206, 0.575344949,
+      -0.136197416, 0.796628743, -0.241785108, 1.09872058, -0.417384167, 1.4915349, -0.678059965, 1.98942652,
+      -1.05308326, 2.63889044, -1.6182886, 3.48328478, -2.47349729, 4.54648542, -3.74545526, 5.85237993,
+      -5.62668376, 7.41862227, -8.42333658, 9.26391013, -12.8217747, 11.4786552,
     180, 20, 8.03e-11, 1.73e+03,
-        0.0496897388, 0.0104110524, 0.0464290692, 0.0316258239, 0.0399850678, 0.0540483587, 0.0305115058, 0.0786634992,
-        0.0186610283, 0.106644335, 0.00640839922, 0.140648737, -0.00318149897, 0.18681257, -0.00921761004, 0.259729793,
-        -0.021239661, 0.372951049, -0.0476826523, 0.540045633, -0.104349663, 0.780230404, -0.213420637, 1.1101957,
-        -0.39886115, 1.55088818, -0.696274748, 2.13229688, -1.16260838, 2.89317836, -1.88347413, 3.87683711,
-        -3.00606178, 5.11882229, -4.72347745, 6.62686426, -7.34202221, 8.4210149, -11.5402136, 10.5784624,
+      0.0496897388, 0.0104110524, 0.0464290692, 0.0316258239, 0.0399850678, 0.0540483587,
+      0.0305115058, 0.0786634992, 0.0186610283, 0.106644335, 0.00640839922, 0.140648737,
+      -0.00318149897, 0.18681257, -0.00921761004, 0.259729793, -0.021239661, 0.372951049,
+      -0.0476826523, 0.540045633, -0.104349663, 0.780230404, -0.213420637, 1.1101957, -0.39886115, 1.55088818,
+      -0.696274748, 2.13229688, -1.16260838, 2.89317836, -1.88347413, 3.87683711, -3.00606178, 5.11882229,
+      -4.72347745, 6.62686426, -7.34202221, 8.4210149, -11.5402136, 10.5784624,
     320, 20, 3.6e-10, 865,
-        0.0256128635, 0.00596562405, 0.023566075, 0.0181852021, 0.0195545544, 0.0313391912, 0.0139527949, 0.0460936324,
-        0.00697041683, 0.0631277469, 0.00292154568, 0.0859483167, -0.000831213802, 0.122610517, -0.00521549962, 0.178768995,
-        -0.0130943011, 0.265758567, -0.0319137888, 0.397109134, -0.0738904378, 0.589514207, -0.15627997, 0.861101573,
-        -0.300206605, 1.23477342, -0.536467701, 1.74480954, -0.923424116, 2.44008496, -1.55434815, 3.36536226,
-        -2.57446322, 4.55612215, -4.1824557, 6.03230758, -6.69960117, 7.8137622, -10.8123776, 9.97176766,
+      0.0256128635, 0.00596562405, 0.023566075, 0.0181852021, 0.0195545544, 0.0313391912,
+      0.0139527949, 0.0460936324, 0.00697041683, 0.0631277469, 0.00292154568, 0.0859483167,
+      -0.000831213802, 0.122610517, -0.00521549962, 0.178768995, -0.0130943011, 0.265758567,
+      -0.0319137888, 0.397109134, -0.0738904378, 0.589514207, -0.15627997, 0.861101573,
+      -0.300206605, 1.23477342, -0.536467701, 1.74480954, -0.923424116, 2.44008496, -1.55434815, 3.36536226,
+      -2.57446322, 4.55612215, -4.1824557, 6.03230758, -6.69960117, 7.8137622, -10.8123776, 9.97176766,
     560, 20, 1.39e-09, 1.03e+03,
-        0.0149650975, 0.00346371874, 0.01379907, 0.0105468809, 0.0114622482, 0.018157418, 0.00817370538, 0.0268724944,
-        0.0045900912, 0.0367592904, 0.00310514117, 0.0515087015, 0.00249565196, 0.0749598818, 0.0028781712, 0.113215624,
-        0.00128882258, 0.174365451, -0.00545798142, 0.269683384, -0.0248707074, 0.416197298, -0.07157116, 0.634880778,
-        -0.167943255, 0.950689315, -0.346783377, 1.39632783, -0.660480523, 2.0151374, -1.20175275, 2.85109147,
-        -2.09581091, 3.93854319, -3.54008068, 5.31552708, -5.86119538, 7.00027119, -9.7350972, 9.04935931,
+      0.0149650975, 0.00346371874, 0.01379907, 0.0105468809, 0.0114622482, 0.018157418,
+      0.00817370538, 0.0268724944, 0.0045900912, 0.0367592904, 0.00310514117, 0.0515087015,
+      0.00249565196, 0.0749598818, 0.0028781712, 0.113215624, 0.00128882258, 0.174365451,
+      -0.00545798142, 0.269683384, -0.0248707074, 0.416197298, -0.07157116, 0.634880778,
+      -0.167943255, 0.950689315, -0.346783377, 1.39632783, -0.660480523, 2.0151374, -1.20175275, 2.85109147,
+      -2.09581091, 3.93854319, -3.54008068, 5.31552708, -5.86119538, 7.00027119, -9.7350972, 9.04935931,
     1000, 20, 4.32e-09, 582,
-        0.00775205881, 0.00196724949, 0.00701953933, 0.00604496906, 0.00567930059, 0.010553859, 0.00395882011, 0.0155406511,
-        0.00198773422, 0.0215535967, 0.00287726501, 0.0320248835, 0.00247727669, 0.049749431, 0.00198686093, 0.07721727,
-        0.000499826141, 0.121559473, -0.00518422451, 0.192554747, -0.0207797075, 0.30345586, -0.0556499724, 0.472200593,
-        -0.125119036, 0.723584524, -0.256067434, 1.09415211, -0.485518399, 1.63596643, -0.927976238, 2.41350542,
-        -1.70172592, 3.45244123, -3.01380607, 4.81281804, -5.21036878, 6.50781374, -8.97993034, 8.58043335,
+      0.00775205881, 0.00196724949, 0.00701953933, 0.00604496906, 0.00567930059, 0.010553859,
+      0.00395882011, 0.0155406511, 0.00198773422, 0.0215535967, 0.00287726501, 0.0320248835,
+      0.00247727669, 0.049749431, 0.00198686093, 0.07721727, 0.000499826141, 0.121559473,
+      -0.00518422451, 0.192554747, -0.0207797075, 0.30345586, -0.0556499724, 0.472200593,
+      -0.125119036, 0.723584524, -0.256067434, 1.09415211, -0.485518399, 1.63596643, -0.927976238, 2.41350542,
+      -1.70172592, 3.45244123, -3.01380607, 4.81281804, -5.21036878, 6.50781374, -8.97993034, 8.58043335,
     1800, 20, 1.52e-08, 440,
-        0.00415570169, 0.00107322832, 0.00372397619, 0.00329433537, 0.00288963394, 0.00577797922, 0.0018848577, 0.00869049398,
-        0.00105104419, 0.0120857699, 0.00109800063, 0.0189363824, 0.000715557962, 0.0300261487, 0.000951401324, 0.0482870844,
-        0.00103692883, 0.079596032, -0.000939244176, 0.131486432, -0.00761159229, 0.215665355, -0.0265328736, 0.349379006,
-        -0.0737405483, 0.560988513, -0.178549902, 0.886923604, -0.388231501, 1.36712223, -0.765795528, 2.04771566,
-        -1.44727405, 3.01154535, -2.65469642, 4.29889832, -4.73260543, 5.92766448, -8.36677178, 7.92425876,
+      0.00415570169, 0.00107322832, 0.00372397619, 0.00329433537, 0.00288963394, 0.00577797922,
+      0.0018848577, 0.00869049398, 0.00105104419, 0.0120857699, 0.00109800063, 0.0189363824,
+      0.000715557962, 0.0300261487, 0.000951401324, 0.0482870844, 0.00103692883, 0.079596032,
+      -0.000939244176, 0.131486432, -0.00761159229, 0.215665355, -0.0265328736, 0.349379006,
+      -0.0737405483, 0.560988513, -0.178549902, 0.886923604, -0.388231501, 1.36712223,
+      -0.765795528, 2.04771566, -1.44727405, 3.01154535, -2.65469642, 4.29889832, -4.73260543, 5.92766448,
+      -8.36677178, 7.92425876,
     3200, 20, 4.46e-08, 529,
-        0.00237663054, 0.000629940109, 0.00217227002, 0.00192311224, 0.00178134019, 0.00328597128, 0.00108996641, 0.0047876195,
-        0.000709403109, 0.00720548991, 0.00152749412, 0.0114934491, 0.00151569191, 0.0196169204, 0.00152881324, 0.0326713865,
-        0.00169360816, 0.0549908172, 0.00127444945, 0.0932552909, -0.0013672345, 0.157993438, -0.0114297794, 0.263433767,
-        -0.0425207441, 0.437351648, -0.122132968, 0.712073574, -0.290063676, 1.12751522, -0.59456458, 1.74263211,
-        -1.1830069, 2.6420721, -2.2676573, 3.87675854, -4.20401101, 5.47424167, -7.68274252, 7.46903136,
+      0.00237663054, 0.000629940109, 0.00217227002, 0.00192311224, 0.00178134019, 0.00328597128,
+      0.00108996641, 0.0047876195, 0.000709403109, 0.00720548991, 0.00152749412, 0.0114934491,
+      0.00151569191, 0.0196169204, 0.00152881324, 0.0326713865, 0.00169360816, 0.0549908172,
+      0.00127444945, 0.0932552909, -0.0013672345, 0.157993438, -0.0114297794, 0.263433767,
+      -0.0425207441, 0.437351648, -0.122132968, 0.712073574, -0.290063676, 1.12751522,
+      -0.59456458, 1.74263211, -1.1830069, 2.6420721, -2.2676573, 3.87675854, -4.20401101, 5.47424167,
+      -7.68274252, 7.46903136,
     5600, 20, 1.04e-07, 322,
-        0.00127045497, 0.000356825795, 0.00111510097, 0.00110753074, 0.000842377115, 0.00198775828, 0.000630654304, 0.0029680863,
-        0.000691443786, 0.00429418303, 0.00102477471, 0.00763518986, 0.00126008437, 0.0130184916, 0.00302189691, 0.0227878687,
-        0.00427971253, 0.0406173561, 0.00406188468, 0.0712248561, 0.000724712197, 0.122638812, -0.00977508426, 0.209008398,
-        -0.0367556516, 0.352616983, -0.0970479319, 0.587074736, -0.213466711, 0.953480342, -0.480477883, 1.53926128,
-        -1.01935623, 2.3947812, -2.03862784, 3.58683649, -3.89788262, 5.15995853, -7.31741286, 7.14935448,
+      0.00127045497, 0.000356825795, 0.00111510097, 0.00110753074, 0.000842377115, 0.00198775828,
+      0.000630654304, 0.0029680863, 0.000691443786, 0.00429418303, 0.00102477471, 0.00763518986,
+      0.00126008437, 0.0130184916, 0.00302189691, 0.0227878687, 0.00427971253, 0.0406173561,
+      0.00406188468, 0.0712248561, 0.000724712197, 0.122638812, -0.00977508426, 0.209008398,
+      -0.0367556516, 0.352616983, -0.0970479319, 0.587074736, -0.213466711, 0.953480342,
+      -0.480477883, 1.53926128, -1.01935623, 2.3947812, -2.03862784, 3.58683649, -3.89788262, 5.15995853,
+      -7.31741286, 7.14935448,
     10000, 20, 2.61e-07, 437,
-        0.000739252428, 0.000204656841, 0.000686612271, 0.000605105689, 0.000516811924, 0.00101122136, 0.00028103206, 0.00155663257,
-        0.00032472849, 0.0026158375, 0.000758171428, 0.00449322811, 0.000717894173, 0.00829603779, 0.000819155307, 0.0148744472,
-        0.00301885198, 0.0271859256, 0.00289613082, 0.0505566596, 0.000524180952, 0.0900522007, -0.00671448427, 0.157827355,
-        -0.0254249601, 0.272626195, -0.0710599072, 0.462131534, -0.162645944, 0.797032277, -0.393779593, 1.31506611,
-        -0.861541679, 2.11388314, -1.79977171, 3.26273323, -3.57203923, 4.80324544, -6.91046345, 6.7458015,
+      0.000739252428, 0.000204656841, 0.000686612271, 0.000605105689, 0.000516811924, 0.00101122136,
+      0.00028103206, 0.00155663257, 0.00032472849, 0.0026158375, 0.000758171428, 0.00449322811,
+      0.000717894173, 0.00829603779, 0.000819155307, 0.0148744472, 0.00301885198, 0.0271859256,
+      0.00289613082, 0.0505566596, 0.000524180952, 0.0900522007, -0.00671448427, 0.157827355,
+      -0.0254249601, 0.272626195, -0.0710599072, 0.462131534, -0.162645944, 0.797032277,
+      -0.393779593, 1.31506611, -0.861541679, 2.11388314, -1.79977171, 3.26273323, -3.57203923, 4.80324544,
+      -6.91046345, 6.7458015,
     18000, 20, 5.22e-07, 240,
-        0.000368958555, 0.000117607259, 0.000331278628, 0.000366098565, 0.000279988615, 0.000629673521, 0.000201838289, 0.000877739489,
-        0.000194376687, 0.00147623553, 0.00046571398, 0.00273640476, 0.000402662544, 0.0050600742, 0.0015132128, 0.00940486831,
-        0.0021430546, 0.018084252, 0.00263866733, 0.0332952769, 0.00266079487, 0.060939415, 0.000846080281, 0.110739089,
-        -0.00615240657, 0.198797071, -0.0222773689, 0.358471255, -0.110551865, 0.639139908, -0.28144407, 1.10484405,
-        -0.675353971, 1.84553206, -1.51577982, 2.95510892, -3.17801314, 4.47166917, -6.37313307, 6.40189773,
+      0.000368958555, 0.000117607259, 0.000331278628, 0.000366098565, 0.000279988615, 0.000629673521,
+      0.000201838289, 0.000877739489, 0.000194376687, 0.00147623553, 0.00046571398, 0.00273640476,
+      0.000402662544, 0.0050600742, 0.0015132128, 0.00940486831, 0.0021430546, 0.018084252,
+      0.00263866733, 0.0332952769, 0.00266079487, 0.060939415, 0.000846080281, 0.110739089,
+      -0.00615240657, 0.198797071, -0.0222773689, 0.358471255, -0.110551865, 0.639139908,
+      -0.28144407, 1.10484405, -0.675353971, 1.84553206, -1.51577982, 2.95510892, -3.17801314, 4.47166917,
+      -6.37313307, 6.40189773,
     32000, 20, 1.07e-06, 500,
-        0.000245708578, 4.94384018e-05, 0.000202529425, 0.000173893876, 0.000143598554, 0.000322749653, 9.30249599e-05, 0.000496022042,
-        0.000156856569, 0.000978748577, 0.000503642187, 0.00187142784, 0.000663955465, 0.0037235778, 0.00185588118, 0.00640466165,
-        0.00245768238, 0.0134187752, 0.00289173888, 0.0253328203, 0.00297068676, 0.0476529019, 0.00142631771, 0.0895059998,
-        0.000961106041, 0.170217908, -0.0278552192, 0.321409582, -0.085176649, 0.564932158, -0.241572163, 0.997317378,
-        -0.602470103, 1.68094675, -1.36940965, 2.72417342, -2.93321399, 4.19355364, -6.0169499, 6.11276065,
+      0.000245708578, 4.94384018e-05, 0.000202529425, 0.000173893876, 0.000143598554, 0.000322749653,
+      9.30249599e-05, 0.000496022042, 0.000156856569, 0.000978748577, 0.000503642187, 0.00187142784,
+      0.000663955465, 0.0037235778, 0.00185588118, 0.00640466165, 0.00245768238, 0.0134187752,
+      0.00289173888, 0.0253328203, 0.00297068676, 0.0476529019, 0.00142631771, 0.0895059998,
+      0.000961106041, 0.170217908, -0.0278552192, 0.321409582, -0.085176649, 0.564932158,
+      -0.241572163, 0.997317378, -0.602470103, 1.68094675, -1.36940965, 2.72417342, -2.93321399, 4.19355364,
+      -6.0169499, 6.11276065,
     560, 24, 4.67e-11, 2.5e+03,
-        0.0166801795, 0.00339264444, 0.0156289514, 0.0103018826, 0.0135447233, 0.0176015245, 0.0104920292, 0.0256104668,
-        0.00663696104, 0.0347420395, 0.00262130647, 0.0454154533, -0.000249800662, 0.0598429209, -0.00293375472, 0.081765993,
-        -0.00636509599, 0.111701213, -0.00456487826, 0.155867258, -0.00685369848, 0.229962143, -0.0264761209, 0.3380569,
-        -0.0651978792, 0.461766482, -0.0909202974, 0.646522338, -0.164932342, 0.927314461, -0.314327971, 1.29055138,
-        -0.538277953, 1.74312382, -0.855182804, 2.34715133, -1.35569212, 3.15412408, -2.1446696, 4.17946924,
-        -3.34540387, 5.43817811, -5.14281921, 6.94968468, -7.84447152, 8.73171589, -12.1283019, 10.8590981,
+      0.0166801795, 0.00339264444, 0.0156289514, 0.0103018826, 0.0135447233, 0.0176015245,
+      0.0104920292, 0.0256104668, 0.00663696104, 0.0347420395, 0.00262130647, 0.0454154533,
+      -0.000249800662, 0.0598429209, -0.00293375472, 0.081765993, -0.00636509599, 0.111701213,
+      -0.00456487826, 0.155867258, -0.00685369848, 0.229962143, -0.0264761209, 0.3380569,
+      -0.0651978792, 0.461766482, -0.0909202974, 0.646522338, -0.164932342, 0.927314461,
+      -0.314327971, 1.29055138, -0.538277953, 1.74312382, -0.855182804, 2.34715133, -1.35569212, 3.15412408,
+      -2.1446696, 4.17946924, -3.34540387, 5.43817811, -5.14281921, 6.94968468, -7.84447152, 8.73171589,
+      -12.1283019, 10.8590981,
     1000, 24, 1.32e-10, 2.51e+03,
-        0.00932375564, 0.00195441821, 0.008723049, 0.00594360064, 0.00754514991, 0.0101809957, 0.00583961921, 0.0148622266,
-        0.0037910874, 0.0201891069, 0.00186636415, 0.0267545989, 0.0013971116, 0.0353507565, 0.00185364438, 0.0511095078,
-        0.00207218071, 0.0738035563, 0.00412736569, 0.109752655, -0.000757175083, 0.165956037, -0.0151297558, 0.246512091,
-        -0.037826455, 0.342305728, -0.0506884396, 0.498924076, -0.106078017, 0.736408584, -0.217981459, 1.05332242,
-        -0.399020747, 1.47136804, -0.680872948, 2.03309589, -1.12813389, 2.78294266, -1.83287574, 3.75360509,
-        -2.92818075, 4.9870663, -4.61746143, 6.50108027, -7.21217739, 8.30842074, -11.3868737, 10.4836262,
+      0.00932375564, 0.00195441821, 0.008723049, 0.00594360064, 0.00754514991, 0.0101809957,
+      0.00583961921, 0.0148622266, 0.0037910874, 0.0201891069, 0.00186636415, 0.0267545989,
+      0.0013971116, 0.0353507565, 0.00185364438, 0.0511095078, 0.00207218071, 0.0738035563,
+      0.00412736569, 0.109752655, -0.000757175083, 0.165956037, -0.0151297558, 0.246512091,
+      -0.037826455, 0.342305728, -0.0506884396, 0.498924076, -0.106078017, 0.736408584,
+      -0.217981459, 1.05332242, -0.399020747, 1.47136804, -0.680872948, 2.03309589, -1.12813389, 2.78294266,
+      -1.83287574, 3.75360509, -2.92818075, 4.9870663, -4.61746143, 6.50108027, -7.21217739, 8.30842074,
+      -11.3868737, 10.4836262,
     1800, 24, 4.57e-10, 1.93e+03,
-        0.00502400517, 0.00109240641, 0.00467747268, 0.00332249128, 0.00399378267, 0.0056952509, 0.00296398413, 0.00831736595,
-        0.00171477081, 0.0115551525, 0.00119521759, 0.0152441636, 0.00140731656, 0.0220371146, 0.00102812725, 0.0321037599,
-        0.000850816723, 0.0479264177, 0.00191421509, 0.0693315661, 0.00502489614, 0.108371897, -0.00186532945, 0.166954398,
-        -0.0191424711, 0.248803268, -0.0332731152, 0.35462581, -0.0552029311, 0.539773021, -0.127659726, 0.808701817,
-        -0.263470179, 1.17480665, -0.488100132, 1.67045994, -0.856150915, 2.34029843, -1.44755326, 3.24908402,
-        -2.42857681, 4.42916924, -3.9885585, 5.89560213, -6.45129441, 7.6695706, -10.5047497, 9.80409131,
+      0.00502400517, 0.00109240641, 0.00467747268, 0.00332249128, 0.00399378267, 0.0056952509,
+      0.00296398413, 0.00831736595, 0.00171477081, 0.0115551525, 0.00119521759, 0.0152441636,
+      0.00140731656, 0.0220371146, 0.00102812725, 0.0321037599, 0.000850816723, 0.0479264177,
+      0.00191421509, 0.0693315661, 0.00502489614, 0.108371897, -0.00186532945, 0.166954398,
+      -0.0191424711, 0.248803268, -0.0332731152, 0.35462581, -0.0552029311, 0.539773021,
+      -0.127659726, 0.808701817, -0.263470179, 1.17480665, -0.488100132, 1.67045994, -0.856150915, 2.34029843,
+      -1.44755326, 3.24908402, -2.42857681, 4.42916924, -3.9885585, 5.89560213, -6.45129441, 7.6695706,
+      -10.5047497, 9.80409131,
     3200, 24, 1.54e-09, 1.66e+03,
-        0.00276922555, 0.000625758341, 0.0025785298, 0.00190034735, 0.00218739695, 0.00326118615, 0.00165940769, 0.00482062589,
-        0.00105564415, 0.00647610236, 0.000870272555, 0.00896053795, 0.000764640679, 0.0129845497, 0.00137062991, 0.0194079896,
-        0.00212409185, 0.0307652347, 0.00317596274, 0.0499966739, 0.00262297666, 0.0793401243, -0.00360419778, 0.118920699,
-        -0.014556406, 0.176047824, -0.0147583281, 0.266131325, -0.0351491546, 0.422736561, -0.0932127448, 0.64557341,
-        -0.200252232, 0.954964623, -0.385830158, 1.38995347, -0.680243304, 2.00527778, -1.21317614, 2.86707458,
-        -2.11396752, 3.98229166, -3.56769762, 5.39369611, -5.91340211, 7.12772155, -9.83624091, 9.22488199,
+      0.00276922555, 0.000625758341, 0.0025785298, 0.00190034735, 0.00218739695, 0.00326118615,
+      0.00165940769, 0.00482062589, 0.00105564415, 0.00647610236, 0.000870272555, 0.00896053795,
+      0.000764640679, 0.0129845497, 0.00137062991, 0.0194079896, 0.00212409185, 0.0307652347,
+      0.00317596274, 0.0499966739, 0.00262297666, 0.0793401243, -0.00360419778, 0.118920699,
+      -0.014556406, 0.176047824, -0.0147583281, 0.266131325, -0.0351491546, 0.422736561,
+      -0.0932127448, 0.64557341, -0.200252232, 0.954964623, -0.385830158, 1.38995347,
+      -0.680243304, 2.00527778, -1.21317614, 2.86707458, -2.11396752, 3.98229166, -3.56769762, 5.39369611,
+      -5.91340211, 7.12772155, -9.83624091, 9.22488199,
     5600, 24, 4.26e-09, 1.27e+03,
-        0.00153591531, 0.00035301368, 0.001418328, 0.00107486615, 0.00118159998, 0.00184949069, 0.000840705828, 0.00274281148,
-        0.000518564319, 0.0037676282, 0.00042396916, 0.0053560969, 0.000662178614, 0.00806792948, 0.000886343655, 0.0126452437,
-        0.00119710631, 0.0196794814, 0.00240678304, 0.031107819, 0.00455227532, 0.0510595386, 0.00482246657, 0.0849872393,
-        -0.00196458257, 0.136878464, -0.0190416153, 0.203375672, -0.0255647962, 0.306186588, -0.0490505614, 0.484271173,
-        -0.115487439, 0.754351313, -0.253983824, 1.14882831, -0.516208745, 1.71040792, -0.985558176, 2.47933202,
-        -1.78320844, 3.51027652, -3.11941776, 4.84569462, -5.32834835, 6.50359923, -9.09951753, 8.53263518,
+      0.00153591531, 0.00035301368, 0.001418328, 0.00107486615, 0.00118159998, 0.00184949069,
+      0.000840705828, 0.00274281148, 0.000518564319, 0.0037676282, 0.00042396916, 0.0053560969,
+      0.000662178614, 0.00806792948, 0.000886343655, 0.0126452437, 0.00119710631, 0.0196794814,
+      0.00240678304, 0.031107819, 0.00455227532, 0.0510595386, 0.00482246657, 0.0849872393,
+      -0.00196458257, 0.136878464, -0.0190416153, 0.203375672, -0.0255647962, 0.306186588,
+      -0.0490505614, 0.484271173, -0.115487439, 0.754351313, -0.253983824, 1.14882831,
+      -0.516208745, 1.71040792, -0.985558176, 2.47933202, -1.78320844, 3.51027652, -3.11941776, 4.84569462,
+      -5.32834835, 6.50359923, -9.09951753, 8.53263518,
     10000, 24, 1.05e-08, 1.2e+03,
-        0.000853803544, 0.0001993623, 0.000781867582, 0.000612187738, 0.000649515866, 0.00106855509, 0.000487516014, 0.00157761697,
-        0.000320760931, 0.00213372201, 0.000458602585, 0.00324343335, 0.000573961701, 0.00507335945, 0.00095207243, 0.00814498054,
-        0.00149920325, 0.0133639545, 0.00236078336, 0.0221413753, 0.00344952194, 0.0373140256, 0.00309340459, 0.0628638344,
-        -0.00224447341, 0.102856275, -0.0147984221, 0.155664254, -0.0203604154, 0.239418621, -0.0384788597, 0.384760052,
-        -0.0899832217, 0.611835492, -0.20230188, 0.955191335, -0.42488298, 1.45548043, -0.828401451, 2.15819342,
-        -1.54389485, 3.13128787, -2.78425403, 4.41350682, -4.88674261, 6.02451311, -8.53852044, 7.99644383,
+      0.000853803544, 0.0001993623, 0.000781867582, 0.000612187738, 0.000649515866, 0.00106855509,
+      0.000487516014, 0.00157761697, 0.000320760931, 0.00213372201, 0.000458602585, 0.00324343335,
+      0.000573961701, 0.00507335945, 0.00095207243, 0.00814498054, 0.00149920325, 0.0133639545,
+      0.00236078336, 0.0221413753, 0.00344952194, 0.0373140256, 0.00309340459, 0.0628638344,
+      -0.00224447341, 0.102856275, -0.0147984221, 0.155664254, -0.0203604154, 0.239418621,
+      -0.0384788597, 0.384760052, -0.0899832217, 0.611835492, -0.20230188, 0.955191335,
+      -0.42488298, 1.45548043, -0.828401451, 2.15819342, -1.54389485, 3.13128787, -2.78425403, 4.41350682,
+      -4.88674261, 6.02451311, -8.53852044, 7.99644383,
     18000, 24, 3.3e-08, 1.08e+03,
-        0.000464698761, 0.000113650293, 0.000432659128, 0.000341296429, 0.000355513348, 0.000586062762, 0.000269768787, 0.000901077172,
-        0.000214625625, 0.00111281224, 0.000128623549, 0.0018645761, 0.000406683665, 0.00313349021, 0.000430568513, 0.00539412451,
-        0.000571335645, 0.00904711796, 0.00105932138, 0.0148229872, 0.00145879181, 0.0242585224, 0.00358694573, 0.040790507,
-        0.0054593365, 0.0708024554, 0.00289481601, 0.121461073, -0.00837055978, 0.200990058, -0.0334507035, 0.325249387,
-        -0.0821813588, 0.517880004, -0.175562797, 0.812154942, -0.348144212, 1.27349264, -0.711486126, 1.95251884,
-        -1.3667912, 2.899187, -2.54076113, 4.18236201, -4.58369232, 5.81558167, -8.18131602, 7.82463444,
+      0.000464698761, 0.000113650293, 0.000432659128, 0.000341296429, 0.000355513348, 0.000586062762,
+      0.000269768787, 0.000901077172, 0.000214625625, 0.00111281224, 0.000128623549, 0.0018645761,
+      0.000406683665, 0.00313349021, 0.000430568513, 0.00539412451, 0.000571335645, 0.00904711796,
+      0.00105932138, 0.0148229872, 0.00145879181, 0.0242585224, 0.00358694573, 0.040790507,
+      0.0054593365, 0.0708024554, 0.00289481601, 0.121461073, -0.00837055978, 0.200990058,
+      -0.0334507035, 0.325249387, -0.0821813588, 0.517880004, -0.175562797, 0.812154942,
+      -0.348144212, 1.27349264, -0.711486126, 1.95251884, -1.3667912, 2.899187, -2.54076113, 4.18236201,
+      -4.58369232, 5.81558167, -8.18131602, 7.82463444,
     32000, 24, 6.53e-08, 1.27e+03,
-        0.000263463414, 6.56033217e-05, 0.000245675796, 0.000204365886, 0.000234454503, 0.000339243999, 0.00015273925, 0.000460394507,
-        0.000107070516, 0.000680333641, 0.000216944098, 0.00112287985, 0.000217609339, 0.00192158776, 0.000318721679, 0.00331448992,
-        0.00101069322, 0.00578792514, 0.00152232277, 0.0100982391, 0.00248686203, 0.0173603829, 0.00426747425, 0.0304450238,
-        0.00624206762, 0.0537986859, 0.0061143663, 0.0931422291, 0.00206393805, 0.157863889, -0.00999922125, 0.262417037,
-        -0.0416988283, 0.425656817, -0.107714809, 0.703714635, -0.275604826, 1.13620963, -0.583455738, 1.75814504,
-        -1.17006751, 2.67035501, -2.25264086, 3.92751084, -4.19622845, 5.56036097, -7.69497723, 7.59383411,
+      0.000263463414, 6.56033217e-05, 0.000245675796, 0.000204365886, 0.000234454503, 0.000339243999,
+      0.00015273925, 0.000460394507, 0.000107070516, 0.000680333641, 0.000216944098, 0.00112287985,
+      0.000217609339, 0.00192158776, 0.000318721679, 0.00331448992, 0.00101069322, 0.00578792514,
+      0.00152232277, 0.0100982391, 0.00248686203, 0.0173603829, 0.00426747425, 0.0304450238,
+      0.00624206762, 0.0537986859, 0.0061143663, 0.0931422291, 0.00206393805, 0.157863889,
+      -0.00999922125, 0.262417037, -0.0416988283, 0.425656817, -0.107714809, 0.703714635,
+      -0.275604826, 1.13620963, -0.583455738, 1.75814504, -1.17006751, 2.67035501, -2.25264086, 3.92751084,
+      -4.19622845, 5.56036097, -7.69497723, 7.59383411,
 };
 /* shared_poles.py: end */
 
 enum {
     HDI_SHARED_FEWEST = 4,       /* pairs: poles are factorised in packs of four */
-    HDI_SHARED_LAWSON = 3,       /* steps: they gain a third of the error, more gain nothing to speak of */
+    HDI_SHARED_LAWSON = 3,       /* steps: they take a third off the error; more steps gain almost nothing */
     HDI_SHARED_MOST = 64         /* largest degree of a polynomial in the bound */
 };
+#define HDI_SHARED_PROVEN 1.25   /* what hdi_shared_bound proves for any time, over the error in the table */
 
-/* The fewest poles that hold the weighted error below target for all times within a factor lambda: 1, or 0 when none do (then split the times; out is as it was).
- * For one time, lambda <= 1, that is a kernel set. Else weights are 0 until hdi_shared_fit fills them in, and the errors are what it is known to reach: recorded
- * are the errors on dense times with what rounding can add, and a quarter more is proven for any time. */
+/* The set with the fewest poles whose weighted error is below target for all times within a factor lambda.
+ * Returns 0, and leaves out as it is, if there is none: then the times must be split. For one time, lambda
+ * <= 1, it is a kernel set. Else its weights are 0 until hdi_shared_fit fills them in, and its errors are
+ * what the fit is known to reach: the table records the errors at many times with what rounding can add,
+ * and HDI_SHARED_PROVEN of it is proven for any time. */
 static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
     const int32_t size = HDI_CAST(int32_t, sizeof hdi_shared_table / sizeof *hdi_shared_table);
     hd_rational set;
     hd_error e;
     int32_t k, i, n;
     for (k = 2 * HDI_SHARED_FEWEST; lambda <= 1 && k <= HDI_RAT_KERNEL_MAX; k += 2) {
-        if (hdi_rational_get(&set, HD_POLES_KERNEL, k, &e) < 0 || !(set.max_weighted_error <= target)) continue;
+        if (hdi_rational_get(&set, HD_POLES_KERNEL, k, &e) < 0 || !(set.max_weighted_error <= target))
+            continue;
         *out = set;
         return 1;
     }
     for (k = 0; k < size; k += 4 + 2 * n) {
-        const double *row = hdi_shared_table + k, error = 1.25 * row[2];
+        const double *row = hdi_shared_table + k, error = HDI_SHARED_PROVEN * row[2];
         n = HDI_CAST(int32_t, row[1]);
         if (!(lambda <= row[0] && error <= target)) continue;
         memset(out, 0, sizeof *out);
@@ -13815,8 +13959,9 @@ static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
     return 0;
 }
 
-/* x with the smallest |A x - b|, by Householder reflections: A rows x cols of full rank, column-major, rows >= cols. x comes in b; A is overwritten. Without full
- * rank x is finite, and no more. */
+/* The x with the smallest |A x - b|, by Householder reflections. A is rows x cols of full rank, column-
+ * major, rows >= cols; it is overwritten. x replaces the beginning of b. If A has no full rank, x is
+ * finite, but no more can be said. */
 static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) {
     int64_t j, k;
     for (k = 0; k < cols; k++) {
@@ -13825,7 +13970,8 @@ static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) 
         const double norm = sqrt(hdi_dot(v, v, m)), head = v[0] > 0 ? -norm : norm;
         if (norm == 0) continue;
         v[0] -= head;                            /* I - v v'/(-head v0) takes the column to (head, 0, ..) */
-        for (j = k + 1; j < cols; j++) hdi_axpy(hdi_dot(v, v + (j - k) * rows, m) / (head * v[0]), v, v + (j - k) * rows, m);
+        for (j = k + 1; j < cols; j++)
+            hdi_axpy(hdi_dot(v, v + (j - k) * rows, m) / (head * v[0]), v, v + (j - k) * rows, m);
         hdi_axpy(hdi_dot(v, b + k, m) / (head * v[0]), v, b + k, m);
         v[0] = head;
     }
@@ -13835,12 +13981,13 @@ static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) 
     }
 }
 
-/* (1 + tau y)(exp(-tau y) - c(-y)) at y = p/q, q = 0 being infinity. size receives the sum of the moduli of what is summed. */
+/* (1 + tau y)(exp(-tau y) - c(-y)) at y = p/q, where q = 0 means infinity. size receives the sum of the
+ * moduli of all terms. */
 static double hdi_shared_error(const hd_rational *set, double tau, double p, double q, double *size) {
     const double s = p < 745 / tau * q ? tau * p / q : 745, first = (1 + s) * exp(-s), top = q + tau * p;
     double sum = first;
     int32_t i;
-    *size = (1 + s) * first;                     /* s is off by half an ulp */
+    *size = (1 + s) * first;                     /* s is off by half an ulp; exp(-745) is the last above 0 */
     for (i = 0; i < set->n_poles; i++) {
         const hd_c64 a = set->a[i], d = hdi_c(p + q * set->theta[i].re, q * set->theta[i].im);
         const double inv = 1 / hdi_cabs2(d);
@@ -13850,8 +13997,20 @@ static double hdi_shared_error(const hd_rational *set, double tau, double p, dou
     return sum;
 }
 
-/* The fit: points y_k, k < points, and infinity as the last row. The unknowns are Re a, Im a, scaled and then reflected by I - v v' so that c(0) = 1 fixes the
- * first of them. */
+/* The smallest and the largest modulus of the poles. */
+static void hdi_shared_range(const hd_rational *set, double *least, double *most) {
+    int32_t i;
+    *least = HUGE_VAL;
+    *most = 0;
+    for (i = 0; i < set->n_poles; i++) {
+        *least = hdi_min(*least, hdi_cabs(set->theta[i]));
+        *most = hdi_max(*most, hdi_cabs(set->theta[i]));
+    }
+}
+
+/* The least squares problem of the fit. Its rows are the points y_k, k < points, and infinity. Its
+ * unknowns are Re a, Im a, scaled and then reflected by I - v v', so that c(0) = 1 fixes the first of
+ * them. */
 typedef struct hdi_shared_work {
     int32_t n, points;
     int64_t rows;                /* points + 1 */
@@ -13866,7 +14025,8 @@ static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 96; }
 
 /* Doubles that hdi_shared_fit works in. */
 static uint64_t hdi_shared_room(int32_t n_poles) {
-    const uint64_t n = HDI_CAST(uint64_t, 2 * n_poles), rows = HDI_CAST(uint64_t, hdi_shared_points(n_poles)) + 1;
+    const uint64_t n = HDI_CAST(uint64_t, 2 * n_poles);
+    const uint64_t rows = HDI_CAST(uint64_t, hdi_shared_points(n_poles)) + 1;
     return rows * n + rows + (rows + n) * n + 2 * rows + 3 * n;
 }
 
@@ -13889,26 +14049,26 @@ static hdi_shared_work hdi_shared_begin(int32_t n_poles, double *room) {
     return k;
 }
 
-/* A, b: the weighted problem, columns scaled to a norm near 1. */
+/* A, b: the weighted problem, with columns scaled to a norm near 1. Points are spaced evenly in log y,
+ * from 0.02 times the smallest |theta| to 15 times the largest, as in tools/shared_poles.py. */
 static void hdi_shared_matrix(hdi_shared_work *k, const hd_rational *set, double tau) {
-    double least = HUGE_VAL, most = 0;
+    double least, most;
     int64_t r;
     int32_t i;
-    for (i = 0; i < k->n; i++) {
-        least = hdi_min(least, hdi_cabs(set->theta[i]));
-        most = hdi_max(most, hdi_cabs(set->theta[i]));
-    }
+    hdi_shared_range(set, &least, &most);
     for (r = 0; r < k->rows; r++) {
         const int last = r == k->points;
-        const double part = HDI_CAST(double, r) / (k->points - 1), q = last ? 0 : 1, p = last ? 1 : 0.02 * least * exp(part * log(750 * most / least));
+        const double part = HDI_CAST(double, r) / (k->points - 1), q = last ? 0 : 1;
+        const double p = last ? 1 : 0.02 * least * exp(part * log(750 * most / least));
         k->b[r] = last ? 0 : (1 + tau * p) * exp(-tau * p);
         for (i = 0; i < k->n; i++) {             /* -2 Re a/(p + theta q): x = -y */
-            const hd_c64 f = hdi_cdiv(hdi_c(-2 * (q + tau * p), 0), hdi_c(p + q * set->theta[i].re, q * set->theta[i].im));
+            const hd_c64 d = hdi_c(p + q * set->theta[i].re, q * set->theta[i].im);
+            const hd_c64 f = hdi_cdiv(hdi_c(-2 * (q + tau * p), 0), d);
             k->A[i * k->rows + r] = f.re;
             k->A[(k->n + i) * k->rows + r] = -f.im;
         }
     }
-    for (i = 0; i < k->n; i++) {                 /* both parts alike */
+    for (i = 0; i < k->n; i++) {                 /* one scale for both parts */
         double *re = k->A + i * k->rows, *im = re + k->n * k->rows;
         const double s = 1 / sqrt(hdi_dot(re, re, k->rows) + hdi_dot(im, im, k->rows));
         for (r = 0; r < k->rows; r++) {
@@ -13919,7 +14079,7 @@ static void hdi_shared_matrix(hdi_shared_work *k, const hd_rational *set, double
     }
 }
 
-/* A becomes A (I - v v'), after which c(0) = 1 says x_0 = first. */
+/* Replaces A by A (I - v v'). After that, c(0) = 1 means x_0 = first. */
 static void hdi_shared_condition(hdi_shared_work *k, const hd_rational *set) {
     const int32_t n = 2 * k->n;
     double norm, head;
@@ -13940,8 +14100,9 @@ static void hdi_shared_condition(hdi_shared_work *k, const hd_rational *set) {
     for (i = 0; i < n; i++) hdi_axpy(-k->v[i], k->e, k->A + i * k->rows, k->rows);
 }
 
-/* One weighted least squares problem: x [2n], and the errors e at the points; returns the largest. A touch of damping, of the size of rounding, keeps weights
- * small where the error does not care. */
+/* One weighted least squares problem. Sets x [2n] and the errors e at the points, and returns the largest.
+ * A little damping, of the size of rounding, keeps the weights small in directions that the error does not
+ * feel. */
 static double hdi_shared_step(hdi_shared_work *k) {
     const int32_t n = 2 * k->n;
     const int64_t ld = k->rows + n - 1;
@@ -13965,7 +14126,7 @@ static double hdi_shared_step(hdi_shared_work *k) {
     return worst;
 }
 
-/* The weights a of the last step: undo reflection and scaling. */
+/* The weights a of the last step, with reflection and scaling undone. */
 static void hdi_shared_take(const hdi_shared_work *k, double *a) {
     const int32_t n = 2 * k->n;
     double dot;
@@ -13976,28 +14137,34 @@ static void hdi_shared_take(const hdi_shared_work *k, double *a) {
     for (i = 0; i < n; i++) a[i] = k->scale[i] * (a[i] - dot * k->v[i]);
 }
 
-/* How far exp's part of the weighted error is from a polynomial of degree m on y in [c - w, c + w]: Bernstein's bound 2 M rho^-m/(rho - 1) on an ellipse, or
- * what is left of it altogether. */
+/* How far the exponential part of the weighted error is from a polynomial of degree m on y in [c - w, c +
+ * w]: the smaller of Bernstein's bound 2 M rho^-m/(rho - 1) on an ellipse and the largest value of the
+ * part itself. */
 static double hdi_shared_exp_rest(double tau, double c, double w, int32_t m) {
     const double rho = hdi_min(hdi_max(2 * m / (tau * w), 1.3), 1e6), half = w * (rho + 1 / rho) / 2;
     const double M = (1 + tau * (c + half)) * exp(-tau * (c - half));
     return hdi_min(2 * M * pow(rho, -m) / (rho - 1), (1 + tau * (c - w)) * exp(-tau * (c - w)));
 }
 
-/* A bound of the weighted error on y in [lo, hi], or on [lo, inf) when hi is 0, that holds between points too.
- * In u, y = c + w u (or 1/y = c + w u), a fraction (1 + tau y)/(y + theta) is a constant and g/(u - z), and the Chebyshev coefficients of 1/(u - z) are known:
- * |b_j| = 2 rho^-j/|sqrt(z^2 - 1)|, rho + 1/rho = |z - 1| + |z + 1|. So the error is a polynomial of degree m and a rest that is bounded; m is taken so that the
- * rest is small against goal. A polynomial of degree m is at most 1/cos(m pi/2n) times its largest value at n Chebyshev points (Ehlich, Zeller). Rounding of
- * the evaluation is allowed for. */
+/* A bound of the weighted error on y in [lo, hi], or on [lo, inf) if hi is 0. It holds between the points
+ * too. In u, where y = c + w u (or 1/y = c + w u), a fraction (1 + tau y)/(y + theta) is a constant and
+ * g/(u - z). The Chebyshev coefficients of 1/(u - z) are known: |b_j| = 2 rho^-j/|sqrt(z^2 - 1)| with rho
+ * + 1/rho = |z - 1| + |z + 1|. So the error is a polynomial of degree m and a rest that is bounded. m is
+ * chosen so that the rest is small against goal. A polynomial of degree m is at most 1/cos(m pi/2n) times
+ * its largest value at n Chebyshev points (Ehlich, Zeller). The bound includes the rounding of the
+ * evaluation. */
 static double hdi_shared_panel(const hd_rational *set, double tau, double lo, double hi, double goal) {
-    const double pi = 3.141592653589793238, c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
+    const double pi = 3.141592653589793238;
+    const double c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
     double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, size, largest = 0;
     int32_t i, j, m;
     for (i = 0; i < set->n_poles; i++) {
-        const hd_c64 theta = set->theta[i], pole = hi > 0 ? hdi_c(-theta.re, -theta.im) : hdi_cdiv(hdi_c(-1, 0), theta);
+        const hd_c64 theta = set->theta[i];
+        const hd_c64 pole = hi > 0 ? hdi_c(-theta.re, -theta.im) : hdi_cdiv(hdi_c(-1, 0), theta);
         const hd_c64 z = hdi_c((pole.re - c) / w, pole.im / w);
-        const double left = hypot(z.re + 1, z.im), right = hypot(z.re - 1, z.im), s = (left + right) / 2, rho = s + sqrt(hdi_max(s * s - 1, 0));
-        const double g = 2 * hdi_cabs(set->a[i]) * hypot(1 - tau * theta.re, tau * theta.im) / (w * (hi > 0 ? 1 : hdi_cabs2(theta)));
+        const double left = hypot(z.re + 1, z.im), right = hypot(z.re - 1, z.im), s = (left + right) / 2;
+        const double rho = s + sqrt(hdi_max(s * s - 1, 0)), stretch = w * (hi > 0 ? 1 : hdi_cabs2(theta));
+        const double g = 2 * hdi_cabs(set->a[i]) * hypot(1 - tau * theta.re, tau * theta.im) / stretch;
         inv[i] = 1 / rho;
         part[i] = 2 * g / (sqrt(left * right) * (rho - 1));
     }
@@ -14007,35 +14174,31 @@ static double hdi_shared_panel(const hd_rational *set, double tau, double lo, do
         if (rest <= 0.02 * goal || m == HDI_SHARED_MOST) break;
     }
     for (j = 0; j < 4 * m; j++) {
-        const double u = c + w * cos(pi * (j + 0.5) / (4 * m)), e = hi > 0 ? hdi_shared_error(set, tau, u, 1, &size) : hdi_shared_error(set, tau, 1, u, &size);
-        most = hdi_max(most, fabs(e));
+        const double u = c + w * cos(pi * (j + 0.5) / (4 * m));
+        most = hdi_max(most, fabs(hdi_shared_error(set, tau, hi > 0 ? u : 1, hi > 0 ? 1 : u, &size)));
         largest = hdi_max(largest, size);
     }
     return (most + rest + 4 * DBL_EPSILON * largest) / cos(pi / 8) + rest;
 }
 
-/* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length, away from the poles; the last is [lo, inf). */
+/* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length away from the
+ * poles, until tau y reaches 45, where the exponential part is near 1e-18. The last is [lo, inf). */
 static void hdi_shared_bound(hd_rational *set, double tau, double goal) {
-    double least = HUGE_VAL, most = 0, lo = 0, hi;
-    int32_t i;
-    for (i = 0; i < set->n_poles; i++) {
-        least = hdi_min(least, hdi_cabs(set->theta[i]));
-        most = hdi_max(most, hdi_cabs(set->theta[i]));
-    }
+    double least, most, lo = 0, hi;
+    hdi_shared_range(set, &least, &most);
     set->max_error = set->max_weighted_error = 0;
-    for (hi = least / 8; hi > 0; lo = hi, hi = lo < 2 * most || tau * lo < 45 ? 2 * lo : 0) {
+    for (hi = least / 8;; lo = hi, hi = lo < 2 * most || tau * lo < 45 ? 2 * lo : 0) {
         const double e = hdi_shared_panel(set, tau, lo, hi, goal);
         set->max_weighted_error = hdi_max(set->max_weighted_error, e);
         set->max_error = hdi_max(set->max_error, e / (1 + tau * lo));
+        if (!(hi > 0)) return;
     }
-    hi = hdi_shared_panel(set, tau, lo, 0, goal);
-    set->max_weighted_error = hdi_max(set->max_weighted_error, hi);
-    set->max_error = hdi_max(set->max_error, hi / (1 + tau * lo));
 }
 
-/* The weights of a shared set for the time tau t0, tau > 0, and their errors: near the smallest largest (1 + tau y)|e|, by least squares and Lawson's steps. Both
- * errors are bounds for all y >= 0, for any tau; small ones for tau in [1, lambda] of the pick. room: hdi_shared_room doubles. THE SET IS TRUSTED: pairs only,
- * Im theta > 0. */
+/* The weights of a shared set for the time tau t0, tau > 0, and their errors. Least squares and Lawson's
+ * steps bring the largest (1 + tau y)|e| near its minimum. Both errors are bounds for all y >= 0 and for
+ * any tau; they are small for tau in [1, lambda] of the pick. room: hdi_shared_room doubles. THE SET IS
+ * TRUSTED: only pairs, Im theta > 0. */
 static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
     hdi_shared_work k = hdi_shared_begin(set->n_poles, room);
     double lowest = HUGE_VAL;
@@ -14062,24 +14225,31 @@ static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
     hdi_shared_bound(set, tau, lowest);
 }
 
-/* Sets for n_times times, each in terms of its own time: theta_i/t is the same for all. */
-static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol, hd_context *ctx, hd_error *e) {
+/* Sets for n_times times, each in terms of its own time: theta_i/t is the same for all of them. */
+static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
+                                     hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     double least = HUGE_VAL, most = 0, *room;
     hd_rational set;
     int32_t q, i;
-    if (n_times < 1 || !(tol > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: no times, or tol is not positive", -1, -1, n_times < 1 ? n_times : tol);
+    if (n_times < 1 || !(tol > 0))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: no times, or tol is not positive", -1, -1,
+                            n_times < 1 ? n_times : tol);
     for (q = 0; q < n_times; q++) {
-        if (!hdi_finite(t[q]) || !(t[q] > 0)) return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: a time is not positive or not finite", q, -1, t[q]);
+        if (!hdi_finite(t[q]) || !(t[q] > 0))
+            return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: a time is not positive or not finite", q,
+                                -1, t[q]);
         least = hdi_min(least, t[q]);
         most = hdi_max(most, t[q]);
     }
     if (!hdi_shared_pick(&set, most / least, tol))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: no set is that exact over so wide a range of times", -1, -1, most / least);
+        return hdi_fail_row(e, HD_ERR_ARGUMENT,
+                            "shared poles: no set is that exact over so wide a range of times", -1, -1,
+                                most / least);
     room = HDI_TAKE(&s, double, hdi_shared_room(set.n_poles));
     for (q = 0; room && q < n_times; q++) {
         const double tau = t[q] / least;
-        if (least < most) hdi_shared_fit(&set, tau, room);    /* a single time has its weights */
+        if (least < most) hdi_shared_fit(&set, tau, room);    /* the set for a single time has its weights */
         out[q] = set;
         for (i = 0; i < set.n_poles; i++) {
             out[q].theta[i] = hdi_cscale(tau, set.theta[i]);
@@ -19049,42 +19219,61 @@ static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double 
 }
 
 /* ==== [28] geodesic ====
- * Geodesic distance by the heat method on triangle meshes. May call [18].
+ * Owns geodesic distances on triangle meshes by the heat method: two real factors, and everything a query
+ * does with them. May call [18].
  * This work is based on
- *   K. Crane, C. Weischedel, M. Wardetzky, Geodesics in heat: a new approach to computing distance based on heat flow, 2013
- * Three steps: (B + t L) u = the indicator of the sources; X = -grad u / |grad u| on every face; L phi = div X, where phi is the distance but for a constant.
+ *   K. Crane, C. Weischedel, M. Wardetzky, Geodesics in heat: a new approach to computing distance based
+ *     on heat flow, 2013
+ * There are three steps: (B + t L) u = the indicator of the sources; X = -grad u / |grad u| on every face;
+ * L phi = div X, where phi is the distance up to a constant.
  * Deviations:
- *   L has one row taken out for each component, which is exact, instead of a small number added to its diagonal, which tilts phi on large meshes.
- *   X follows |u|. Where cotangents are negative u can be so too, here and there far from the sources, and with its sign would point the wrong way.
- *   Heat far away is smaller than any double. What has faded is solved for again from where it still could be told (hdi_geo_further), so that
- *   distances do not end where u underflows.
- *   A face is kept as its triangle in the plane: corners (0,0), (2l,0), (2p,2q), and everything is written in l, p, q: no cotangents, no cancellation. */
+ *   One row of L is taken out for each component. This is exact. The paper adds a small number to the
+ *     diagonal, which tilts phi on large meshes.
+ *   X follows |u|. Where cotangents are negative, u can be negative too at some places far from the
+ *     sources, and X would point the wrong way there.
+ *   Far from the sources u is smaller than any double. Where it has faded, it is solved for again from the
+ *     border of the region where it is known (hdi_geo_further). So distances do not end where u
+ *     underflows.
+ *   A face is stored as its triangle in the plane with corners (0,0), (2l,0), (2p,2q). Everything is
+ *     written in l, p and q: there are no cotangents and no cancellation. */
 
-typedef struct hdi_geo_face { double l, p, q; int32_t v[3], spare; } hdi_geo_face;   /* lengths in units of h; v in elimination order, the longest edge first */
+/* Lengths are in units of h. v is in elimination order and begins with the longest edge. */
+typedef struct hdi_geo_face {
+    double l, p, q;
+    int32_t v[3], spare;
+} hdi_geo_face;
 
+/* Columns of a batch, and the fewest that are worth one. A batch always costs as much as a full one. */
 enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3 };
+
+/* |u| over its largest: below, u is taken as unknown, since underflow is near */
+#define HDI_GEO_FAINT 1e-200
+/* |grad u|^2 over (|u|/edge)^2: below, rounding would choose the direction */
+#define HDI_GEO_FLAT 1e-26
+#define HDI_GEO_RESIDUAL 1e-6    /* a larger relative residual is reported as HD_WARN_ACCURACY */
 
 struct hd_geodesic {
     hd_context *ctx, context;
     int32_t n, n_active, n_faces, n_components;
     double h, t;
     hdi_symbolic sym;
-    hdi_factor heat, poisson;    /* of L + B/t, and of L with the rows pin replaced by those of the identity */
-    hdi_geo_face *face;          /* [n_faces] in elimination order of their first corner to go */
-    double *mass;                /* [n_active] diagonal of B/t, from here on all in elimination order */
+    /* of L + B/t, and of L with the rows pin replaced by those of the identity */
+    hdi_factor heat, poisson;
+    hdi_geo_face *face;          /* [n_faces] ordered by the corner that is eliminated first */
+    double *mass;                /* [n_active] diagonal of B/t. This and all below is in elimination order */
     int32_t *row;                /* [n] vertex -> row, -1 without mass */
     int32_t *component;          /* [n_active] */
     int32_t *pin;                /* [n_components] the last row of each */
     char *active;                /* [n_super] fronts that the sources touch */
     char *reached;               /* [n_components] has a source */
-    char *mark;                  /* [n_active] sources; how far the heat could be told */
+    char *mark;                  /* [n_active] sources; or how far u is known */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
-    double *wide_x, *wide_b, *wide_work;   /* the same for eight columns side by side, made when they are first needed */
+    double *wide_x, *wide_b, *wide_work;   /* the same for a batch, made when first needed */
     int64_t *value_ptr;          /* [n_components + 1] */
-    double *value;               /* [value_size] of phi at the sources, by component, ascending */
+    double *value;               /* [value_size] phi at the sources, by component, ascending */
     hdi_pair *sorted;            /* [value_size] */
     int32_t value_size;
-    int64_t n_staged;            /* fronts that all stages after the first ones went to, so far */
+    int64_t n_staged;            /* fronts visited so far by all stages after the first ones */
 };
 
 /* ---- making ---- */
@@ -19120,14 +19309,33 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_free(ctx, g);
 }
 
-/* Face f in its plane, the longest edge on the axis: the height is then as small as it gets, and loses nothing. */
+/* Allocates unless something failed before: a list of arrays needs one check at its end. */
+static void *hdi_geo_alloc(hd_geodesic *g, int64_t count, size_t size, hd_error *e) {
+    return e->status < 0 ? NULL : hdi_alloc(g->ctx, HDI_CAST(uint64_t, count), size, e);
+}
+
+static double *hdi_geo_doubles(hd_geodesic *g, int64_t count, hd_error *e) {
+    return HDI_CAST(double *, hdi_geo_alloc(g, count, sizeof(double), e));
+}
+
+static int32_t *hdi_geo_ints(hd_geodesic *g, int64_t count, hd_error *e) {
+    return HDI_CAST(int32_t *, hdi_geo_alloc(g, count, sizeof(int32_t), e));
+}
+
+static char *hdi_geo_bytes(hd_geodesic *g, int64_t count, hd_error *e) {
+    return HDI_CAST(char *, hdi_geo_alloc(g, count, 1, e));
+}
+
+/* Face f in its plane with the longest edge on the axis. The height is then as small as it can be and
+ * keeps its relative precision. */
 static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
     double edge[3][3], length[3];
     hdi_geo_face out;
     int i, q, k = 0;
     for (q = 0; q < 3; q++) {                    /* edge q leaves corner q */
-        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[q]), edge[q]);
+        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[q]),
+                 edge[q]);
         for (i = 0; i < 3; i++) edge[q][i] /= h;
         length[q] = hdi_norm3(edge[q]);
         if (length[q] > length[k]) k = q;
@@ -19140,33 +19348,37 @@ static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t
     return out;
 }
 
-static int32_t hdi_geo_first(const int32_t *v, const int32_t *row) {
+/* The first of a face's corners to be eliminated. */
+static int32_t hdi_geo_first(const hdi_mesh *mesh, int32_t f, const int32_t *row) {
+    const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
     const int32_t a = row[v[0]], b = row[v[1]], c = row[v[2]], d = a < b ? a : b;
     return c < d ? c : d;
 }
 
-/* The faces with an area, sorted by the first of their corners to be eliminated, so that passes over them run through the vectors once. */
+/* The faces that have an area, sorted by the corner that is eliminated first. Passes over them then run
+ * through the vectors once. */
 static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int64_t *at = HDI_TAKE_ZERO(&s, int64_t, HDI_CAST(int64_t, g->n_active) + 1);
     int32_t f;
-    g->face = HDI_CAST(hdi_geo_face *, at ? hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_faces), sizeof *g->face, e) : NULL);
+    g->face = HDI_CAST(hdi_geo_face *, hdi_geo_alloc(g, g->n_faces, sizeof *g->face, e));
     if (!g->face) return hdi_scope_end(&s);
     for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0) at[hdi_geo_first(mesh->tri + 3 * HDI_CAST(int64_t, f), g->row)]++;
+        if (mesh->area[f] > 0) at[hdi_geo_first(mesh, f, g->row)]++;
     hdi_prefix_sum(at, g->n_active);
     for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0) g->face[at[hdi_geo_first(mesh->tri + 3 * HDI_CAST(int64_t, f), g->row)]++] = hdi_geo_frame(mesh, f, g->row, g->h);
+        if (mesh->area[f] > 0)
+            g->face[at[hdi_geo_first(mesh, f, g->row)]++] = hdi_geo_frame(mesh, f, g->row, g->h);
     return hdi_scope_end(&s);
 }
 
-/* What is per row, in elimination order. */
+/* The arrays over rows, in elimination order. */
 static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     int32_t i, v;
-    g->mass = HDI_CAST(double *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_active), sizeof(double), e));
-    if (g->mass) g->row = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n), sizeof(int32_t), e));
-    if (g->row) g->component = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_active), sizeof(int32_t), e));
-    if (g->component) g->pin = HDI_CAST(int32_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components), sizeof(int32_t), e));
+    g->mass = hdi_geo_doubles(g, g->n_active, e);
+    g->row = hdi_geo_ints(g, g->n, e);
+    g->component = hdi_geo_ints(g, g->n_active, e);
+    g->pin = hdi_geo_ints(g, g->n_components, e);
     if (e->status < 0) return e->status;
     for (v = 0; v < g->n; v++) g->row[v] = -1;
     for (i = 0; i < g->n_active; i++) {
@@ -19175,13 +19387,16 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error 
         g->component[i] = lap->component[from];
         g->pin[g->component[i]] = i;
         g->mass[i] = lap->mass[from] / g->t;
-        if (!hdi_finite(g->mass[i])) return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1, lap->vertex[from], g->t);
+        if (!hdi_finite(g->mass[i]))
+            return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1,
+                                 lap->vertex[from], g->t);
     }
     return HD_OK;
 }
 
-/* Factors the matrix val; what only factoring needs is given back. */
-static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacian *lap, const double *val, hd_error *e) {
+/* Factors the matrix val, and frees what only factoring needs. */
+static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacian *lap, const double *val,
+                                hd_error *e) {
     hdi_values v;
     memset(&v, 0, sizeof v);
     v.real = val;
@@ -19198,7 +19413,8 @@ static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacia
     return HD_OK;
 }
 
-/* L + B/t, then L with the row and column of one vertex of each component replaced by those of the identity: phi is zero there. */
+/* L + B/t; then L with the row and column of one vertex of each component replaced by those of the
+ * identity, where phi is zero. */
 static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     double *val = HDI_TAKE(&s, double, lap->L.nnz);
@@ -19206,7 +19422,8 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     int64_t p;
     if (!val) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) val[p] = lap->L.val[p] + (lap->L.col[p] == i ? lap->mass[i] / g->t : 0);
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            val[p] = lap->L.val[p] + (lap->L.col[p] == i ? lap->mass[i] / g->t : 0);
     if (hdi_geo_factor(g, &g->heat, lap, val, e) < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) {
         const int32_t row = g->row[lap->vertex[i]], pin = g->pin[lap->component[i]];
@@ -19219,21 +19436,23 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     return hdi_scope_end(&s);
 }
 
+/* Work of the queries. */
 static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, g->n_active);
-    g->active = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->sym.n_super), 1, e));
-    if (g->active) g->reached = HDI_CAST(char *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components), 1, e));
-    if (g->reached) g->mark = HDI_CAST(char *, hdi_alloc(g->ctx, n, 1, e));
-    if (g->mark) g->value_ptr = HDI_CAST(int64_t *, hdi_alloc(g->ctx, HDI_CAST(uint64_t, g->n_components) + 1, sizeof(int64_t), e));
-    if (g->value_ptr) g->x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->x) g->b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->b) g->r = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->r) g->work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, 1, 1), sizeof(double), e));
+    g->active = hdi_geo_bytes(g, g->sym.n_super, e);
+    g->reached = hdi_geo_bytes(g, g->n_components, e);
+    g->mark = hdi_geo_bytes(g, g->n_active, e);
+    g->value_ptr = HDI_CAST(int64_t *,
+                            hdi_geo_alloc(g, HDI_CAST(int64_t, g->n_components) + 1, sizeof(int64_t), e));
+    g->x = hdi_geo_doubles(g, g->n_active, e);
+    g->b = hdi_geo_doubles(g, g->n_active, e);
+    g->r = hdi_geo_doubles(g, g->n_active, e);
+    g->work = hdi_geo_doubles(g, HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, 1, 1)), e);
     return e->status;
 }
 
 /* Ordering, analysis and both factors. */
-static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const hd_geodesic_opts *o, hd_error *e) {
+static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const hd_geodesic_opts *o,
+                                 hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int32_t *own = HDI_TAKE(&s, int32_t, lap->n_active);
     const hdi_order order = hdi_order_of(o->ordering, lap->xyz, own);
@@ -19243,7 +19462,8 @@ static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const 
     return hdi_scope_end(&s);
 }
 
-static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *tri, int32_t m, const hd_geodesic_opts *o, hd_error *e) {
+static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *tri, int32_t m,
+                              const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     hd_laplacian *lap = HDI_CAST(hd_laplacian *, hdi_alloc(g->ctx, 1, sizeof *lap, e));
     hdi_mesh mesh;
@@ -19251,17 +19471,21 @@ static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *
     hdi_mesh_clear(&mesh, xyz, g->n, tri, m);
     memset(lap, 0, sizeof *lap);
     lap->n = g->n;
-    lap->context = g->ctx;
-    lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;   /* the row sums of fem are the lumped mass */
+    lap->context = g->ctx;                       /* the row sums of fem are the lumped mass */
+    lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
     if (hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_mesh(lap, &mesh, 0, &s) >= 0) {
         g->n_active = lap->n_active;
         g->n_components = lap->n_components;
         g->n_faces = lap->mesh.n_faces_used;
         g->h = lap->h;
         g->t = o->t > 0 ? o->t : lap->h * lap->h;
-        if (!hdi_finite(g->t) || !(g->t > 0)) hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: the square of the mean edge length is no number to compute with", -1, -1, lap->h);
+        if (!hdi_finite(g->t) || !(g->t > 0))
+            hdi_fail_row(e, HD_ERR_ARGUMENT,
+                         "geodesic: the square of the mean edge length is no number to compute with",
+                         -1, -1, lap->h);
     }
-    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 && hdi_geo_faces(g, &mesh, e) >= 0) {
+    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 &&
+        hdi_geo_faces(g, &mesh, e) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
         if (hdi_geo_factors(g, lap, e) >= 0) (void)hdi_geo_room(g, e);
     }
@@ -19271,21 +19495,33 @@ static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *
 
 /* ---- passes over the faces ---- */
 
-/* What -grad |u| / |grad |u|| of a face adds to div X: g[1], g[2] at corners 1 and 2, minus their sum at corner 0. Without heat above least, or without a slope
- * beyond rounding (where fronts of symmetric meshes meet, rounding would choose a side), nothing. Returns the largest |u|, by which u is normalised before
- * anything is squared. */
-static HDI_INLINE double hdi_geo_flow(const hdi_geo_face *f, double u0, double u1, double u2, double least, double *g) {
-    const double a0 = fabs(u0), a1 = fabs(u1), a2 = fabs(u2), m = hdi_max(hdi_max(a0, a1), a2), s = m >= least ? 1 / m : 0;
+/* What X = -grad |u| / |grad |u|| of a face adds to div X: g[1], g[2] at corners 1 and 2, minus their sum
+ * at corner 0. Nothing is added if no |u| reaches least, or if the slope is within rounding: where fronts
+ * of symmetric meshes meet, rounding would choose a side. u is normalised by its largest modulus on the
+ * face before anything is squared. Returns that modulus. */
+static HDI_INLINE double hdi_geo_flow(const hdi_geo_face *f, double u0, double u1, double u2, double least,
+                                      double *g) {
+    const double a0 = fabs(u0), a1 = fabs(u1), a2 = fabs(u2);
+    const double m = hdi_max(hdi_max(a0, a1), a2), s = m >= least ? 1 / m : 0;
     const double d1 = (a1 - a0) * s, d2 = (a2 - a0) * s;
     const double x = f->q * d1, y = f->l * d2 - f->p * d1;   /* grad u times the area */
-    const double norm2 = x * x + y * y, w = norm2 > 1e-26 * f->l * f->l ? -1 / sqrt(norm2) : 0;
+    const double norm2 = x * x + y * y, w = norm2 > HDI_GEO_FLAT * f->l * f->l ? -1 / sqrt(norm2) : 0;
     g[1] = (f->q * x - f->p * y) * w;
     g[2] = f->l * y * w;
     return m;
 }
 
-/* b = div X, integrated against the hat functions: the right-hand side of L phi = b. Returns how many faces have some heat, but less than least. */
-static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRICT u, double least, double *HDI_RESTRICT b) {
+/* b += what hdi_geo_flow says of the face. */
+static HDI_INLINE void hdi_geo_add(const hdi_geo_face *f, const double *g, double *b) {
+    b[f->v[0]] -= g[1] + g[2];
+    b[f->v[1]] += g[1];
+    b[f->v[2]] += g[2];
+}
+
+/* b = div X, integrated against the hat functions: the right-hand side of L phi = b. Returns how many
+ * faces have heat, but all of it below least. */
+static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRICT u, double least,
+                                  double *HDI_RESTRICT b) {
     int64_t faint = 0;
     int32_t f;
     memset(b, 0, HDI_CAST(size_t, g->n_active) * sizeof *b);
@@ -19294,20 +19530,23 @@ static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRI
         double d[3];
         const double m = hdi_geo_flow(a, u[a->v[0]], u[a->v[1]], u[a->v[2]], least, d);
         faint += m < least && m > 0;
-        b[a->v[0]] -= d[1] + d[2];
-        b[a->v[1]] += d[1];
-        b[a->v[2]] += d[2];
+        hdi_geo_add(a, d, b);
     }
     return faint;
 }
 
-/* The same for eight columns side by side. Returns the columns with faint faces as bits. */
-static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RESTRICT u, const double *HDI_RESTRICT least, double *HDI_RESTRICT b) {
+/* Where corner q of a face lies in a batch of columns. */
+static HDI_INLINE int64_t hdi_geo_at(const hdi_geo_face *f,
+                                     int q) { return HDI_GEO_WIDE * HDI_CAST(int64_t, f->v[q]); }
+
+/* The same for a batch. Returns the columns with faint faces as bits. */
+static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RESTRICT u,
+                                     const double *HDI_RESTRICT least, double *HDI_RESTRICT b) {
     int32_t f, c;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
         for (c = 0; c < HDI_GEO_WIDE; c++) {
             double d[3];
             const double m = hdi_geo_flow(a, u[i + c], u[j + c], u[k + c], least[c], d);
@@ -19321,26 +19560,34 @@ static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RES
 }
 
 #if HDI_X86
-/* hdi_geo_flow, four or eight columns at a time. */
-static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *u, const double *least, double *b) {
-    const hdi_v4 zero = _mm256_setzero_pd(), one = _mm256_set1_pd(1), minus = _mm256_set1_pd(-1), sign = _mm256_set1_pd(-0.0);
+/* hdi_geo_flow for four columns at a time. */
+static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *u, const double *least,
+                                            double *b) {
+    const hdi_v4 zero = _mm256_setzero_pd(), one = _mm256_set1_pd(1), minus = _mm256_set1_pd(-1);
+    const hdi_v4 sign = _mm256_set1_pd(-0.0);
     int32_t f, c;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
-        const hdi_v4 l = _mm256_set1_pd(a->l), p = _mm256_set1_pd(a->p), q = _mm256_set1_pd(a->q), flat = _mm256_set1_pd(1e-26 * a->l * a->l);
+        const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
+        const hdi_v4 l = _mm256_set1_pd(a->l), p = _mm256_set1_pd(a->p), q = _mm256_set1_pd(a->q);
+        const hdi_v4 flat = _mm256_set1_pd(HDI_GEO_FLAT * a->l * a->l);
         for (c = 0; c < HDI_GEO_WIDE; c += 4) {
-            const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c)), u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
-            const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c)), m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
+            const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c));
+            const hdi_v4 u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
+            const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c));
+            const hdi_v4 m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
             const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ);
             const hdi_v4 s = _mm256_and_pd(lit, _mm256_div_pd(one, _mm256_blendv_pd(one, m, lit)));
-            const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s), d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
-            const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1)), norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
+            const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s);
+            const hdi_v4 d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
+            const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1));
+            const hdi_v4 norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
             const hdi_v4 slope = _mm256_cmp_pd(norm2, flat, _CMP_GT_OQ);
             const hdi_v4 length = _mm256_sqrt_pd(_mm256_blendv_pd(one, norm2, slope));
             const hdi_v4 w = _mm256_and_pd(slope, _mm256_div_pd(minus, length));
-            const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w), g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
+            const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w);
+            const hdi_v4 g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
             faint |= (_mm256_movemask_pd(_mm256_cmp_pd(m, zero, _CMP_GT_OQ)) & ~_mm256_movemask_pd(lit)) << c;
             _mm256_storeu_pd(b + i + c, _mm256_sub_pd(_mm256_loadu_pd(b + i + c), _mm256_add_pd(g1, g2)));
             _mm256_storeu_pd(b + j + c, _mm256_add_pd(_mm256_loadu_pd(b + j + c), g1));
@@ -19350,23 +19597,31 @@ static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *
     return faint;
 }
 
-static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double *u, const double *least, double *b) {
-    const hdi_v8 zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1), minus = _mm512_set1_pd(-1), sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
+static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double *u, const double *least,
+                                              double *b) {
+    const hdi_v8 zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1), minus = _mm512_set1_pd(-1);
+    const hdi_v8 sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
     int32_t f;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const int64_t i = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[0]), j = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[1]), k = HDI_GEO_WIDE * HDI_CAST(int64_t, a->v[2]);
+        const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
         const hdi_v8 l = _mm512_set1_pd(a->l), p = _mm512_set1_pd(a->p), q = _mm512_set1_pd(a->q);
-        const hdi_v8 u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i)), u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
-        const hdi_v8 u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k)), m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
+        const hdi_v8 u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i));
+        const hdi_v8 u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
+        const hdi_v8 u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k));
+        const hdi_v8 m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
         const __mmask8 lit = _mm512_cmp_pd_mask(m, low, _CMP_GE_OQ);
         const hdi_v8 s = _mm512_maskz_div_pd(lit, one, m);
-        const hdi_v8 d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s), d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
-        const hdi_v8 x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1)), norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
-        const __mmask8 slope = _mm512_cmp_pd_mask(norm2, _mm512_set1_pd(1e-26 * a->l * a->l), _CMP_GT_OQ);
+        const hdi_v8 d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s);
+        const hdi_v8 d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
+        const hdi_v8 x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1));
+        const hdi_v8 norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
+        const __mmask8 slope = _mm512_cmp_pd_mask(norm2, _mm512_set1_pd(HDI_GEO_FLAT * a->l * a->l),
+                                                  _CMP_GT_OQ);
         const hdi_v8 w = _mm512_maskz_div_pd(slope, minus, _mm512_sqrt_pd(norm2));
-        const hdi_v8 g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w), g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
+        const hdi_v8 g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w);
+        const hdi_v8 g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
         faint |= _mm512_cmp_pd_mask(m, zero, _CMP_GT_OQ) & ~lit;
         _mm512_storeu_pd(b + i, _mm512_sub_pd(_mm512_loadu_pd(b + i), _mm512_add_pd(g1, g2)));
         _mm512_storeu_pd(b + j, _mm512_add_pd(_mm512_loadu_pd(b + j), g1));
@@ -19402,18 +19657,19 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
 }
 
 /* ---- heat beyond what a double can hold ---- */
-/* u falls by about a factor of e over a distance of sqrt(t), and at t = h^2 it is gone after some 700 edges. Let S be where it could be told, and u' = u
- * beyond S, 0 on it. Then A u' = f, A = L + B/t, is zero but for the rows along the border of S, and there it is known: f_i = sum over j beyond of A_ij u_j for i in
- * S, f_j = -sum over i in S of A_ij u_i beyond. Solved with f scaled to one, the same u goes on, as far again as before. Only directions are wanted,
- * so that the scale is of no interest. A face belongs to the first stage that tells one of its corners.
- * A stage costs what it touches, so that a long strip costs in proportion to its length: the faces around the
- * rows just told; forward, the fronts on the ways from the border towards the root, as far as they have
- * something to hand on; backward, those that heat beyond S comes to from above. u' is 0 on S, and fades. */
+/* u falls by about a factor of e over a distance of sqrt(t). At t = h^2 it underflows after some 700
+ * edges. Let S be the rows where it is known, and u' = u beyond S and 0 on S. Then f = A u', A = L + B/t,
+ * is zero except in the rows along the border of S, and is known there: f_i = sum over j beyond of A_ij
+ * u_j for i in S, f_j = -sum over i in S of A_ij u_i for j beyond. f is scaled to one, and solving A u' =
+ * f continues u as far again as before. The scale does not matter, because only directions are used. A
+ * face belongs to the first stage that reaches one of its corners. A stage costs what it touches, so a
+ * long strip costs in proportion to its length. A stage visits the faces around the rows that became known
+ * last; forward, the fronts on the ways from the border towards the root, as long as they have something
+ * to hand on; backward, the fronts that heat beyond S reaches from above. u' is 0 on S, and it fades. */
 
-static const double hdi_geo_faint = 1e-200;      /* of the largest u: below, doubles are soon at their end */
 enum { HDI_GEO_BEYOND = 0, HDI_GEO_EARLIER = 1, HDI_GEO_NOW = 2 };
 
-/* g->x is zero but for the pivots of front, g->r is zero between stages, and so is g->active. */
+/* g->x is zero except for the pivots of front. Between stages g->r and g->active are zero. */
 typedef struct hdi_geo_far {
     hd_geodesic *g;
     int64_t *around_ptr;         /* [n_active + 1] */
@@ -19453,7 +19709,7 @@ static hd_status hdi_geo_far_begin(hdi_geo_far *w, hd_geodesic *g, hdi_scope *s)
     return HD_OK;
 }
 
-/* Marks what u tells, of the rows beyond. */
+/* Marks the rows beyond at which u is now known, |u| >= least. */
 static void hdi_geo_tell(hdi_geo_far *w, double least) {
     const hd_geodesic *g = w->g;
     int32_t k, i;
@@ -19477,14 +19733,15 @@ static double hdi_geo_largest(const hdi_geo_far *w) {
     return most;
 }
 
-/* Whether row i is the first corner of a face that is told now: each face is visited from one corner. */
+/* Whether row i is the first corner of the face that became known now. So each face is visited from one
+ * corner. */
 static int hdi_geo_visit(const hd_geodesic *g, const hdi_geo_face *a, int32_t i) {
     int q = 0;
     while (g->mark[a->v[q]] != HDI_GEO_NOW) q++;
     return a->v[q] == i;
 }
 
-/* Forward, tasks come before the top: the vectors of its fronts take the room that theirs leave. */
+/* Opens a front. Forward, tasks come before the top, because the vectors of its fronts reuse their memory. */
 static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
     const hdi_symbolic *s = &w->g->sym;
     const uint64_t place = HDI_CAST(uint64_t, v) + (s->task_of[v] < 0 ? HDI_CAST(uint64_t, s->n_super) : 0);
@@ -19499,7 +19756,7 @@ static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
     w->open[i] = x;
 }
 
-/* f along the border of what is told, into g->r, with its fronts opened. */
+/* Puts f along the border of what is known into g->r, and opens the fronts there. */
 static void hdi_geo_border(hdi_geo_far *w) {
     const hd_geodesic *g = w->g;
     int64_t p;
@@ -19526,7 +19783,7 @@ static void hdi_geo_border(hdi_geo_far *w) {
         }
 }
 
-/* The largest |f|, which then becomes 1. 0: there is no border, or none with numbers to compute with. */
+/* Scales f so that its largest modulus is 1. Returns 0 if there is no border, or no usable number on it. */
 static int hdi_geo_scale(const hdi_geo_far *w) {
     const hd_geodesic *g = w->g;
     double most = 0;
@@ -19540,7 +19797,7 @@ static int hdi_geo_scale(const hdi_geo_far *w) {
     return 1;
 }
 
-/* From the open fronts upwards, as long as a front has something to hand on. */
+/* Goes upwards from the open fronts, as long as a front has something to hand on. */
 static void hdi_geo_forward(hdi_geo_far *w, const hdi_sweep *z) {
     const hdi_symbolic *s = &w->g->sym;
     w->n_ends = 0;
@@ -19558,7 +19815,7 @@ static void hdi_geo_forward(hdi_geo_far *w, const hdi_sweep *z) {
     }
 }
 
-/* Whether a front that nothing came to forward has heat: from its rows above, of those beyond. */
+/* Whether a front that the forward sweep did not visit receives heat from its rows above, of those beyond. */
 static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
     int64_t p;
     for (p = g->sym.row_ptr[v]; p < g->sym.row_ptr[v + 1]; p++)
@@ -19566,8 +19823,8 @@ static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
     return 0;
 }
 
-/* From the ends of the way up down again, the highest first: an end with another one above it may have got
- * heat from there, by fronts that nothing came to forward. */
+/* Goes down again from the ends of the way up, the highest first. An end below another one may have
+ * received heat from there, through fronts that the forward sweep did not visit. */
 static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
     const hdi_symbolic *s = &w->g->sym;
     int32_t k;
@@ -19589,7 +19846,7 @@ static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
     }
 }
 
-/* g->x = A^-1 f, f in g->r, where it matters. What was in g->x goes. */
+/* g->x = A^-1 f where it matters, with f in g->r. The old content of g->x is lost. */
 static void hdi_geo_stage(hdi_geo_far *w) {
     hd_geodesic *g = w->g;
     const int32_t *super = g->sym.super;
@@ -19611,7 +19868,7 @@ static void hdi_geo_stage(hdi_geo_far *w) {
     g->n_staged += w->n_fronts;
 }
 
-/* div X of the faces of which nothing was told before this stage. */
+/* Adds div X of the faces that no earlier stage reached. */
 static void hdi_geo_divergence_now(const hdi_geo_far *w, double least) {
     const hd_geodesic *g = w->g;
     int32_t n;
@@ -19624,19 +19881,20 @@ static void hdi_geo_divergence_now(const hdi_geo_far *w, double least) {
             if (g->mark[i] == HDI_GEO_EARLIER || g->mark[j] == HDI_GEO_EARLIER) continue;
             if (g->mark[k] == HDI_GEO_EARLIER || !hdi_geo_visit(g, a, w->told[n])) continue;
             (void)hdi_geo_flow(a, g->x[i], g->x[j], g->x[k], least, d);
-            g->b[i] -= d[1] + d[2];
-            g->b[j] += d[1];
-            g->b[k] += d[2];
+            hdi_geo_add(a, d, g->b);
         }
 }
 
-static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, double *x, const char *active) {
+/* x = the inverse times x for k columns side by side, 1 or a batch. */
+static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, double *x,
+                          const char *active) {
     hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work, 1);
     z.active = active;
     hdi_sweep_run(&z, g->ctx);
 }
 
-/* Adds to b what lies beyond u >= least, stage by stage. u is in g->x. Where heat ends for good (no more of the component, weights of zero), the rest has no direction. */
+/* Adds to b what lies beyond |u| >= least, stage by stage, with u in g->x. Where heat ends for good (the
+ * component ends, or weights are zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     hdi_geo_far w;
@@ -19647,7 +19905,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
         if (!hdi_geo_scale(&w) || hdi_progress(g->ctx, "solve", 0.5, e) < 0) break;
         hdi_geo_stage(&w);
         ++*n_stages;
-        least = hdi_geo_largest(&w) * hdi_geo_faint;
+        least = hdi_geo_largest(&w) * HDI_GEO_FAINT;
         if (!(least > DBL_MIN)) break;
         hdi_geo_tell(&w, least);
         hdi_geo_divergence_now(&w, least);
@@ -19657,7 +19915,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
 
 /* ---- queries ---- */
 
-/* Indicator of the sources into x, with the fronts that it touches. Sources twice count once. */
+/* The indicator of the sources into x, and the fronts that it touches. A source named twice counts once. */
 static void hdi_geo_start(hd_geodesic *g, const int32_t *sources, int32_t k) {
     int32_t q;
     memset(g->x, 0, HDI_CAST(size_t, g->n_active) * sizeof *g->x);
@@ -19672,17 +19930,20 @@ static void hdi_geo_start(hd_geodesic *g, const int32_t *sources, int32_t k) {
     }
 }
 
-/* What u has to have to be told from nothing: relative to what the sources have. */
-static double hdi_geo_least(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u, int64_t stride) {
+/* The |u| from which on u counts as known, relative to its size at the sources. */
+static double hdi_geo_least(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u,
+                            int64_t stride) {
     double most = 0;
     int32_t q;
     for (q = 0; q < k; q++)
         if (g->row[sources[q]] >= 0) most = hdi_max(most, fabs(u[stride * g->row[sources[q]]]));
-    return hdi_max(most * hdi_geo_faint, DBL_MIN);
+    return hdi_max(most * HDI_GEO_FAINT, DBL_MIN);
 }
 
-/* |r| / |b| of the heat equation, r = b - A u, b the indicator of the sources; work r [n_active]. */
-static double hdi_geo_heat_residual(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u, double *r) {
+/* |r| / |b| of the heat equation, where r = b - A u and b is the indicator of the sources. r [n_active] is
+ * work. */
+static double hdi_geo_heat_residual(const hd_geodesic *g, const int32_t *sources, int32_t k, const double *u,
+                                    double *r) {
     double b2 = 0, r2 = 0;
     int32_t i, q;
     memset(r, 0, HDI_CAST(size_t, g->n_active) * sizeof *r);
@@ -19697,7 +19958,7 @@ static double hdi_geo_heat_residual(const hd_geodesic *g, const int32_t *sources
     return b2 > 0 ? sqrt(r2 / b2) : 0;
 }
 
-/* |b - L phi| / |b|; b in g->r, which is used up. */
+/* |b - L phi| / |b|, with b in g->r, which is overwritten. */
 static double hdi_geo_residual(const hd_geodesic *g, const double *phi) {
     double b2 = 0, r2 = 0;
     int32_t i;
@@ -19707,17 +19968,16 @@ static double hdi_geo_residual(const hd_geodesic *g, const double *phi) {
     return b2 > 0 ? sqrt(r2 / b2) : 0;
 }
 
-/* Room for phi at k sources. */
+/* Memory for phi at k sources. */
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t k, hd_error *e) {
-    const uint64_t most = HDI_CAST(uint64_t, k < g->n_active ? k : g->n_active);
-    if (HDI_CAST(size_t, g->value_size) >= most) return HD_OK;
+    const int32_t most = k < g->n_active ? k : g->n_active;
+    if (g->value_size >= most) return HD_OK;
     hdi_free(g->ctx, g->value);
     hdi_free(g->ctx, g->sorted);
     g->value_size = 0;
-    g->sorted = NULL;
-    g->value = HDI_CAST(double *, hdi_alloc(g->ctx, most, sizeof(double), e));
-    if (g->value) g->sorted = HDI_CAST(hdi_pair *, hdi_alloc(g->ctx, most, sizeof(hdi_pair), e));
-    if (g->sorted) g->value_size = HDI_CAST(int32_t, most);
+    g->value = hdi_geo_doubles(g, most, e);
+    g->sorted = HDI_CAST(hdi_pair *, hdi_geo_alloc(g, most, sizeof(hdi_pair), e));
+    if (g->sorted) g->value_size = most;
     return e->status;
 }
 
@@ -19732,7 +19992,8 @@ static void hdi_geo_values(hd_geodesic *g, const int32_t *sources, int32_t k, co
         if (i < 0 || g->mark[i]) continue;
         g->mark[i] = 1;
         memcpy(&bits, phi + i, sizeof bits);
-        g->sorted[n].key = bits >> 63 ? ~bits : bits | HDI_CAST(uint64_t, 1) << 63;   /* in the order of the doubles */
+        /* in the order of the doubles */
+        g->sorted[n].key = bits >> 63 ? ~bits : bits | HDI_CAST(uint64_t, 1) << 63;
         g->sorted[n++].id = i;
         g->value_ptr[g->component[i]]++;
     }
@@ -19755,7 +20016,8 @@ static double hdi_geo_nearest(const double *value, int64_t n, double phi) {
     return lo < n ? hdi_min(value[lo] - phi, phi - value[lo - 1]) : phi - value[n - 1];
 }
 
-/* phi to distances: zero at the sources, infinite where none is. Returns whether all is finite that should be. */
+/* From phi to distances: zero at the sources, infinite on components without one. Returns whether all
+ * distances that should be finite are. */
 static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d) {
     int fine = 1;
     int32_t v;
@@ -19763,7 +20025,8 @@ static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d)
         const int32_t i = g->row[v], c = i < 0 ? -1 : g->component[i];
         d[v] = HUGE_VAL;
         if (i < 0 || !g->reached[c]) continue;
-        d[v] = g->h * hdi_geo_nearest(g->value + g->value_ptr[c], g->value_ptr[c + 1] - g->value_ptr[c], phi[i]);
+        d[v] = g->h * hdi_geo_nearest(g->value + g->value_ptr[c], g->value_ptr[c + 1] - g->value_ptr[c],
+                                      phi[i]);
         fine &= hdi_finite(d[v]);
     }
     return fine;
@@ -19772,17 +20035,19 @@ static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d)
 static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance) {
     rep->residual_heat = hdi_max(rep->residual_heat, heat);
     rep->residual_distance = hdi_max(rep->residual_distance, distance);
-    if (!(heat <= 1e-6) || !(distance <= 1e-6)) rep->status = HD_WARN_ACCURACY;
+    if (!(heat <= HDI_GEO_RESIDUAL) || !(distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
 }
 
 static hd_status hdi_geo_not_finite(hd_error *e, int32_t column) {
-    hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding has eaten the answer: the mesh has faces that are too thin");
+    hdi_fail(e, HD_ERR_BREAKDOWN,
+             "geodesic: rounding has eaten the answer: the mesh has faces that are too thin");
     e->column = column;
     return e->status;
 }
 
 /* Distance to the set of sources. */
-static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, hd_geodesic_report *rep, hd_error *e) {
+static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, double *d,
+                             hd_geodesic_report *rep, hd_error *e) {
     double least, heat = 0;
     int32_t i, n_stages = 1;
     if (hdi_geo_values_room(g, k, e) < 0) return e->status;
@@ -19790,7 +20055,8 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
     hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
     if (rep) heat = hdi_geo_heat_residual(g, sources, k, g->x, g->r);
     least = hdi_geo_least(g, sources, k, g->x, 1);
-    if (hdi_geo_divergence(g, g->x, least, g->b) && hdi_geo_further(g, least, &n_stages, e) < 0) return e->status;
+    if (hdi_geo_divergence(g, g->x, least, g->b) && hdi_geo_further(g, least, &n_stages, e) < 0)
+        return e->status;
     if (rep) memcpy(g->r, g->b, HDI_CAST(size_t, g->n_active) * sizeof *g->r);
     for (i = 0; i < g->n_components; i++) g->b[g->pin[i]] = 0;
     hdi_geo_sweep(g, &g->poisson, 1, g->b, NULL);
@@ -19804,20 +20070,24 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
 }
 
 static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
-    const uint64_t n = HDI_GEO_WIDE * HDI_CAST(uint64_t, g->n_active);
-    if (!g->wide_x) g->wide_x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->wide_x && !g->wide_b) g->wide_b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->wide_b && !g->wide_work) g->wide_work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1), sizeof(double), e));
+    const int64_t n = HDI_GEO_WIDE * HDI_CAST(int64_t, g->n_active);
+    const int64_t n_work = HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1));
+    if (!g->wide_x) g->wide_x = hdi_geo_doubles(g, n, e);
+    if (!g->wide_b) g->wide_b = hdi_geo_doubles(g, n, e);
+    if (!g->wide_work) g->wide_work = hdi_geo_doubles(g, n_work, e);
     return e->status;
 }
 
+/* Column c of a batch. */
 static void hdi_geo_column(const hd_geodesic *g, const double *wide, int32_t c, double *x) {
     int32_t i;
     for (i = 0; i < g->n_active; i++) x[i] = wide[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c];
 }
 
-/* phi of up to eight single sources to distances, the columns in d; those with a bit in skip need not be finite. */
-static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, int32_t k, int skip, double *d, size_t ldd) {
+/* From phi of up to eight single sources to distances, in the columns of d. Columns with a bit in skip
+ * need not be finite. */
+static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, int32_t k, int skip,
+                                  double *d, size_t ldd) {
     double at[HDI_GEO_WIDE];
     int32_t component[HDI_GEO_WIDE], v, c, fine = 1;
     for (c = 0; c < k; c++) {
@@ -19839,7 +20109,7 @@ static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, 
     return fine;
 }
 
-/* Residuals of the heat equation of eight columns; then, with u gone, those of phi. */
+/* Residuals of the heat equation for a batch; then, when u is gone, those of phi. */
 static void hdi_geo_wide_heat(hd_geodesic *g, const int32_t *sources, int32_t k, double *heat) {
     int32_t c;
     for (c = 0; c < k; c++) {
@@ -19848,7 +20118,8 @@ static void hdi_geo_wide_heat(hd_geodesic *g, const int32_t *sources, int32_t k,
     }
 }
 
-static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double *heat, hd_geodesic_report *rep) {
+static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double *heat,
+                               hd_geodesic_report *rep) {
     int32_t c;
     for (c = 0; c < k; c++) {
         if (skip >> c & 1) continue;
@@ -19859,8 +20130,10 @@ static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double
     }
 }
 
-/* Distances to up to eight sources, each for itself, side by side. Columns whose heat fades out are done again alone. */
-static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, size_t ldd, hd_geodesic_report *rep, hd_error *e) {
+/* Distances to up to eight sources, each for itself, as a batch. Columns whose heat fades out are computed
+ * again alone. */
+static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, size_t ldd,
+                              hd_geodesic_report *rep, hd_error *e) {
     const size_t size = HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof(double);
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, i;
@@ -19874,27 +20147,56 @@ static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k,
         hdi_sweep_touch(&g->sym, g->row[sources[c]], g->active);
     }
     hdi_geo_sweep(g, &g->heat, HDI_GEO_WIDE, g->wide_x, g->active);
-    for (c = 0; c < HDI_GEO_WIDE; c++) least[c] = c < k ? hdi_geo_least(g, sources + c, 1, g->wide_x + c, HDI_GEO_WIDE) : DBL_MIN;
+    for (c = 0; c < HDI_GEO_WIDE; c++)
+        least[c] = c < k ? hdi_geo_least(g, sources + c, 1, g->wide_x + c, HDI_GEO_WIDE) : DBL_MIN;
     faint = hdi_geo_divergence8(g, g->wide_x, least, g->wide_b);
     if (rep) hdi_geo_wide_heat(g, sources, k, heat);
     if (rep) memcpy(g->wide_x, g->wide_b, size);
-    for (i = 0; i < g->n_components; i++) memset(g->wide_b + HDI_GEO_WIDE * HDI_CAST(int64_t, g->pin[i]), 0, HDI_GEO_WIDE * sizeof(double));
+    for (i = 0; i < g->n_components; i++)
+        memset(g->wide_b + HDI_GEO_WIDE * HDI_CAST(int64_t, g->pin[i]), 0, HDI_GEO_WIDE * sizeof(double));
     hdi_geo_sweep(g, &g->poisson, HDI_GEO_WIDE, g->wide_b, NULL);
     if (!hdi_geo_wide_distances(g, sources, k, faint, d, ldd)) return hdi_geo_not_finite(e, -1);
     if (rep) hdi_geo_wide_judge(g, k, faint, heat, rep);
     for (c = 0; c < k; c++)
-        if (faint >> c & 1 && hdi_geo_one(g, sources + c, 1, d + HDI_CAST(size_t, c) * ldd, rep, e) < 0) return e->status;
+        if (faint >> c & 1 && hdi_geo_one(g, sources + c, 1, d + HDI_CAST(size_t, c) * ldd, rep, e) < 0)
+            return e->status;
     return HD_OK;
 }
 
+/* Distances to k sources, each for itself. */
+static hd_status hdi_geo_all(hd_geodesic *g, const int32_t *sources, int32_t k, double *D, size_t ldd,
+                             hd_geodesic_report *rep, hd_error *e) {
+    int32_t q, n_cols;
+    for (q = 0; q < k && e->status >= 0; q += n_cols) {
+        const int32_t wide = k - q >= HDI_GEO_WIDE_FROM;
+        double *to = D + HDI_CAST(size_t, q) * ldd;
+        n_cols = !wide ? 1 : k - q < HDI_GEO_WIDE ? k - q : HDI_GEO_WIDE;
+        if (hdi_progress(g->ctx, "solve", HDI_CAST(double, q) / k, e) < 0) break;
+        if (wide) (void)hdi_geo_wide(g, sources + q, n_cols, to, ldd, rep, e);
+        else (void)hdi_geo_one(g, sources + q, 1, to, rep, e);
+    }
+    return e->status;
+}
+
+/* What a report says before anything is solved. */
+static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
+    rep->t = g->t;
+    rep->h = g->h;
+    rep->n_components = g->n_components;
+    rep->ordering = g->sym.ordering;
+    rep->factor_nnz = g->sym.nnz;
+    rep->factor_flops = 2 * g->sym.flops;
+}
+
 /* ==== [29] api ====
- * Argument checks, defaults, lifetimes; the bodies of the public functions. May call everything. */
+ * Owns argument checks, defaults and lifetimes, and the bodies of the public functions. May call
+ * everything. */
 
 HEATDIFF_API const char *hd_status_name(hd_status status) {
     switch (status) {
-#define HD_STATUS_NAME(name, value, text) case name: return #name;
-        HD_STATUS_LIST(HD_STATUS_NAME)
-#undef HD_STATUS_NAME
+#define HDI_STATUS_NAME(name, value, text) case name: return #name;
+        HD_STATUS_LIST(HDI_STATUS_NAME)
+#undef HDI_STATUS_NAME
         case HD_STATUS_FORCE_INT: break;
     }
     return "HD_UNKNOWN_STATUS";
@@ -19902,15 +20204,16 @@ HEATDIFF_API const char *hd_status_name(hd_status status) {
 
 HEATDIFF_API const char *hd_status_text(hd_status status) {
     switch (status) {
-#define HD_STATUS_TEXT(name, value, text) case name: return text;
-        HD_STATUS_LIST(HD_STATUS_TEXT)
-#undef HD_STATUS_TEXT
+#define HDI_STATUS_TEXT(name, value, text) case name: return text;
+        HD_STATUS_LIST(HDI_STATUS_TEXT)
+#undef HDI_STATUS_TEXT
         case HD_STATUS_FORCE_INT: break;
     }
     return "unknown status";
 }
 
-/* What a public function works with: an error and a context that are there, whatever the caller gave. */
+/* An error and a context for the body of a public function: the caller's, or own ones if the caller gave
+ * none. */
 typedef struct hdi_call {
     hd_error error;
     hd_error *e;
@@ -19928,20 +20231,44 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
 
 #define HDI_CLEARED(opts) (!(opts)->begin_zero && !(opts)->end_zero)
 
-/* The same where options may name the context. Those that were not cleared are an error, and nothing in them
- * is followed. */
+/* The same where options may name the context. Options that were not cleared are an error, and nothing in
+ * them is used. */
 static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
     if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
 }
 
-HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets, const int32_t *i,
-                                            const int32_t *j, const double *v, hd_context *ctx, hd_error *err) {
+/* The context of an object that outlives the call: the caller's, or own, to which the counts so far move. */
+static hd_context *hdi_enter_keep(hdi_call *c, hd_context *own) {
+    if (c->ctx != &c->context) return c->ctx;
+    *own = c->context;
+    return c->ctx = own;
+}
+
+/* Refuses the call if an argument is bad. Of several refusals the first one stays. */
+static void hdi_refuse(int bad, const char *text, hd_error *e) {
+    if (bad && e->status >= 0) (void)hdi_fail(e, HD_ERR_ARGUMENT, text);
+}
+
+static void hdi_refuse_value(int bad, const char *text, double value, hd_error *e) {
+    if (bad && e->status >= 0) (void)hdi_fail_row(e, HD_ERR_ARGUMENT, text, -1, -1, value);
+}
+
+static void hdi_refuse_ordering(hd_ordering ordering, const int32_t *perm, const char *text, hd_error *e) {
+    hdi_refuse(ordering < HD_ORDERING_AUTO || ordering > HD_ORDERING_OWN, text, e);
+    hdi_refuse(ordering == HD_ORDERING_OWN && !perm, "ordering: own, but no permutation is given", e);
+}
+
+HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets,
+                                            const int32_t *i,
+                                            const int32_t *j, const double *v, hd_context *ctx,
+                                                hd_error *err) {
     hdi_call c;
     hdi_scope s;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     if (!out || (n_triplets > 0 && (!i || !j))) return hdi_missing(c.e);
-    if (n_rows < 0 || n_cols < 0 || n_triplets < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "triplets: a size is negative");
+    if (n_rows < 0 || n_cols < 0 || n_triplets < 0)
+        return hdi_fail(c.e, HD_ERR_ARGUMENT, "triplets: a size is negative");
     s = hdi_scope_begin(c.ctx, c.e);
     (void)hdi_csr_from_triplets(out, n_rows, n_cols, n_triplets, i, j, v, &s);
     return hdi_scope_end(&s);
@@ -19960,21 +20287,26 @@ HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context
     return hdi_csr_check_rows(a, c.e) < 0 ? c.e->status : hdi_csr_transpose(out, a, c.ctx, c.e);
 }
 
-HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx, hd_error *err) {
+HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx,
+                                      hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     if (!out || !a || !b) return hdi_missing(c.e);
     if (hdi_csr_check_rows(a, c.e) < 0 || hdi_csr_check_rows(b, c.e) < 0) return c.e->status;
-    if (a->n_cols != b->n_rows) return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "product: the inner sizes differ", a->n_cols, b->n_rows, 0);
+    if (a->n_cols != b->n_rows)
+        return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "product: the inner sizes differ", a->n_cols, b->n_rows, 0);
     return hdi_csr_product(out, a, b, c.ctx, c.e);
 }
 
-HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx, hd_error *err) {
+HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx,
+                                      hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     if (!out || !a || (a->n_rows > 0 && !perm)) return hdi_missing(c.e);
     if (hdi_csr_check_rows(a, c.e) < 0) return c.e->status;
-    if (a->n_rows != a->n_cols) return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "permute: the matrix is not square", a->n_rows, a->n_cols, 0);
+    if (a->n_rows != a->n_cols)
+        return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "permute: the matrix is not square", a->n_rows, a->n_cols,
+                            0);
     return hdi_csr_permute(out, a, perm, c.ctx, c.e);
 }
 
@@ -19992,34 +20324,58 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
 
 /* ---- operators ---- */
 
-/* A Laplacian without content, with a context that lives as long as it does. A context of the library's own sits behind the struct. */
-typedef struct hdi_laplacian { hd_laplacian lap; hd_context context; } hdi_laplacian;
+/* Defaults of options, as their declarations state. */
+#define HDI_MOLLIFY_DELTA 1e-5
+#define HDI_WEIGHT_CUT 1e-8
+#define HDI_TOL_HEAT 1e-9
+#define HDI_TOL_SOLVE 1e-10
+enum { HDI_NEIGHBOURS = 30, HDI_MAX_ITERATIONS = 20000 };
+/* a smaller b_ratio by Gershgorin's circles is worth a proof by factorisations */
+#define HDI_RATIO_POOR 0.01
 
-static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind, hd_error *err, hdi_call *c) {
+/* A Laplacian with a context that lives as long. */
+typedef struct hdi_laplacian {
+    hd_laplacian lap;
+    hd_context context;
+} hdi_laplacian;
+
+/* A Laplacian without content. */
+static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind,
+                                 hd_error *err,
+                                 hdi_call *c) {
     hdi_laplacian *shell;
     if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
                        "laplacian options: not cleared before use", err) < 0) return NULL;
-    if (n < 0) {
-        hdi_fail(c->e, HD_ERR_ARGUMENT, "laplacian: a size is negative");
-        return NULL;
-    }
+    hdi_refuse(n < 0, "laplacian: a size is negative", c->e);
+    if (c->e->status < 0) return NULL;
     shell = HDI_CAST(hdi_laplacian *, hdi_alloc(c->ctx, 1, sizeof *shell, c->e));
     if (!shell) return NULL;
     memset(shell, 0, sizeof *shell);
     shell->lap.n = n;
     shell->lap.kind = kind;
-    if (c->ctx == &c->context) {                 /* what was counted on the stack moves along */
-        shell->context = c->context;
-        c->ctx = &shell->context;
-    }
-    shell->lap.context = c->ctx;
+    shell->lap.context = hdi_enter_keep(c, &shell->context);
     return &shell->lap;
+}
+
+static void hdi_lap_drop(hd_laplacian *lap) {
+    hd_context ctx;
+    hd_context *use = lap->context;
+    if (use == &HDI_CAST(hdi_laplacian *, HDI_CAST(void *, lap))->context) {   /* about to be freed itself */
+        ctx = *use;
+        use = &ctx;
+    }
+    hdi_laplacian_free(lap, use);
 }
 
 static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status status) {
     if (status >= 0) *out = lap;
-    else hd_laplacian_free(lap);
+    else hdi_lap_drop(lap);
     return status;
+}
+
+/* After the checks. */
+static hd_status hdi_lap_begin(const hdi_call *c) {
+    return c->e->status < 0 ? c->e->status : hdi_progress(c->ctx, "assemble", 0, c->e);
 }
 
 static hd_laplacian_kind hdi_lap_kind(const hd_laplacian_opts *opts, hd_laplacian_kind otherwise) {
@@ -20030,35 +20386,40 @@ static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
     return kind == HD_LAPLACIAN_FEM || kind == HD_LAPLACIAN_VORONOI_COT || kind == HD_LAPLACIAN_COT;
 }
 
-/* What is asked for of triangles besides their kind, checked. Returns whether that is an intrinsic triangulation. */
+/* Checks the options of intrinsic triangulations and resolves them into task. Returns whether one is asked
+ * for. */
 static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
     task->close = opts && opts->tufted;
-    task->delta = opts && opts->mollify != 0 ? opts->mollify : 1e-5;
-    if (hdi_nan(task->delta) || task->delta > 1) hdi_fail(e, HD_ERR_ARGUMENT, "laplacian options: mollify is above 1 or not a number");
+    task->delta = opts && opts->mollify != 0 ? opts->mollify : HDI_MOLLIFY_DELTA;
+    hdi_refuse(hdi_nan(task->delta) || task->delta > 1,
+               "laplacian options: mollify is above 1 or not a number", e);
     return opts && (opts->intrinsic_delaunay || opts->tufted);
 }
 
-HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri,
-                                              const hd_laplacian_opts *opts, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
+                                              const int32_t *tri,
+                                              int32_t n_tri, const hd_laplacian_opts *opts, hd_error *err) {
     hdi_intrinsic_task task;
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
     int intrinsic;
     if (!lap) return c.e->status;
-    if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (n_tri < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
-    if (!hdi_kind_of_triangles(lap->kind))
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: the kind is fem, voronoi-cot or cot"));
+    if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) hdi_missing(c.e);
+    hdi_refuse(n_tri < 0, "laplacian: a size is negative", c.e);
+    hdi_refuse(!hdi_kind_of_triangles(lap->kind),
+               "laplacian of triangles: the kind is fem, voronoi-cot or cot", c.e);
     intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
-    if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
-    if (intrinsic && opts->updatable)
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of triangles: an intrinsic triangulation is not updatable, its flips depend on the lengths"));
+    hdi_refuse(intrinsic && opts->updatable,
+               "laplacian of triangles: an intrinsic triangulation is not updatable, its flips depend on the lengths", c.e);
+    if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     if (intrinsic) return hdi_lap_done(out, lap, hdi_lap_intrinsic(lap, xyz, tri, n_tri, &task, c.e));
     return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, opts && opts->updatable, c.e));
 }
 
-HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *face_ptr, const int32_t *face_idx,
-                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n,
+                                             const int64_t *face_ptr,
+                                             const int32_t *face_idx, int32_t n_faces,
+                                             const hd_laplacian_opts *opts, hd_error *err) {
     const int flips = opts && (opts->intrinsic_delaunay || opts->tufted);
     const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
     const int splits = hdi_kind_of_triangles(kind);
@@ -20074,115 +20435,140 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     poly.n = n;
     poly.m = n_faces;
     poly.lambda = opts && opts->lambda != 0 ? opts->lambda : 1;
-    if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (n_faces < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian: a size is negative"));
-    if (!splits && kind != HD_LAPLACIAN_POLYGON)
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot"));
-    if (!hdi_finite(poly.lambda) || !(poly.lambda > 0 && poly.lambda <= 1e100))
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: lambda is not between 0 and 1e100"));
-    if (hdi_intrinsic_opts(opts, &task, c.e) && !splits)
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot"));
-    if (c.e->status < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
+    if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) hdi_missing(c.e);
+    hdi_refuse(n_faces < 0, "laplacian: a size is negative", c.e);
+    hdi_refuse(!splits && kind != HD_LAPLACIAN_POLYGON,
+               "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot", c.e);
+    hdi_refuse(!hdi_finite(poly.lambda) || !(poly.lambda > 0 && poly.lambda <= 1e100),
+               "laplacian of polygons: lambda is not between 0 and 1e100", c.e);
+    hdi_refuse(hdi_intrinsic_opts(opts, &task, c.e) && !splits,
+               "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot", c.e);
+    if (hdi_lap_begin(&c) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e) : hdi_lap_polygons(lap, &poly, c.e));
+    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e)
+                                         : hdi_lap_polygons(lap, &poly, c.e));
 }
 
-HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h, const hd_laplacian_opts *opts,
-                                             hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h,
+                                             const hd_laplacian_opts *opts, hd_error *err) {
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, L ? L->n_rows : 0, HD_LAPLACIAN_MATRICES, err, &c);
     if (!lap) return c.e->status;
     if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (!hdi_finite(h) || h < 0) return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: h is negative or not finite"));
-    if (hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    hdi_refuse(!hdi_finite(h) || h < 0, "laplacian of matrices: h is negative or not finite", c.e);
+    if (c.e->status < 0 || hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0)
+        return hdi_lap_done(out, lap, c.e->status);
     if (L->n_rows != B->n_rows)
-        return hdi_lap_done(out, lap, hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows, B->n_rows, 0));
+        return hdi_lap_done(out, lap,
+                            hdi_fail_row(c.e, HD_ERR_ARGUMENT,
+                                         "laplacian of matrices: L and B differ in size",
+                                                   L->n_rows, B->n_rows, 0));
     lap->h = h;
-    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < 0.01) (void)hdi_lap_ratio(lap, c.e);
+    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < HDI_RATIO_POOR) (void)hdi_lap_ratio(lap, c.e);
     return hdi_lap_done(out, lap, c.e->status);
 }
 
-static hd_status hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
-    rep->neighbours = opts && opts->neighbours ? opts->neighbours : 30;
-    if (rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: neighbours lies in 6..128");
-    return HD_OK;
+static void hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
+    rep->neighbours = opts && opts->neighbours ? opts->neighbours : HDI_NEIGHBOURS;
+    hdi_refuse(rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS,
+               "laplacian of points: neighbours lies in 6..128", e);
 }
 
-/* Options of point sets, resolved, into lap->points. */
-static hd_status hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
+/* Checks the options of point sets and resolves them into lap->points. */
+static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
     hd_point_report *rep = &lap->points;
     rep->bandwidth = opts ? opts->bandwidth : 0;
-    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : 1e-8;
-    if (lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the kind is voronoi-exp or exp (hd_laplacian_tufted_points has fem, voronoi-cot and cot)");
-    if (opts && (opts->intrinsic_delaunay || opts->tufted))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: exponential weights know no triangles; hd_laplacian_tufted_points makes some");
-    if (!hdi_finite(rep->bandwidth) || rep->bandwidth < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: the bandwidth is negative or not finite");
-    if (!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1)) return hdi_fail(e, HD_ERR_ARGUMENT, "laplacian of points: weight_cut lies in (0, 1)");
-    return hdi_point_neighbours(rep, opts, e);
+    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : HDI_WEIGHT_CUT;
+    hdi_refuse(lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP,
+               "laplacian of points: the kind is voronoi-exp or exp "
+               "(hd_laplacian_tufted_points has fem, voronoi-cot and cot)", e);
+    hdi_refuse(opts && (opts->intrinsic_delaunay || opts->tufted),
+               "laplacian of points: exponential weights know no triangles; "
+               "hd_laplacian_tufted_points makes some", e);
+    hdi_refuse(!hdi_finite(rep->bandwidth) || rep->bandwidth < 0,
+               "laplacian of points: the bandwidth is negative or not finite", e);
+    hdi_refuse(!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1),
+               "laplacian of points: weight_cut lies in (0, 1)", e);
+    hdi_point_neighbours(rep, opts, e);
 }
 
-HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n, const hd_laplacian_opts *opts, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n,
+                                           const hd_laplacian_opts *opts, hd_error *err) {
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_VORONOI_EXP), err, &c);
     if (!lap) return c.e->status;
-    if (!out || (n > 0 && !xyz)) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (hdi_point_opts(lap, opts, c.e) < 0 || hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, hdi_lap_points(lap, xyz, c.e));
+    if (!out || (n > 0 && !xyz)) hdi_missing(c.e);
+    hdi_point_opts(lap, opts, c.e);
+    return hdi_lap_done(out, lap, hdi_lap_begin(&c) < 0 ? c.e->status : hdi_lap_points(lap, xyz, c.e));
 }
 
-HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n,
+                                                  const int64_t *nbr_ptr, const int32_t *nbr,
                                                   const hd_laplacian_opts *opts, hd_error *err) {
     hdi_intrinsic_task task;
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
     if (!lap) return c.e->status;
-    if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (!hdi_kind_of_triangles(lap->kind))
-        return hdi_lap_done(out, lap, hdi_fail(c.e, HD_ERR_ARGUMENT, "tufted laplacian of points: the kind is fem, voronoi-cot or cot"));
+    if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) hdi_missing(c.e);
+    hdi_refuse(!hdi_kind_of_triangles(lap->kind),
+               "tufted laplacian of points: the kind is fem, voronoi-cot or cot",
+               c.e);
     (void)hdi_intrinsic_opts(opts, &task, c.e);
-    if (c.e->status < 0 || (!nbr_ptr && hdi_point_neighbours(&lap->points, opts, c.e) < 0)) return hdi_lap_done(out, lap, c.e->status);
-    if (hdi_progress(c.ctx, "assemble", 0, c.e) < 0) return hdi_lap_done(out, lap, c.e->status);
+    if (!nbr_ptr) hdi_point_neighbours(&lap->points, opts, c.e);
+    if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_done(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e));
 }
 
-/* Points, queries and sizes; *m becomes the number of queries. */
-static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m, hd_error *e) {
+/* Checks points, queries and sizes. *m becomes the number of queries. */
+static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m,
+                                      hd_error *e) {
     if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
     if (!query) *m = n;
     if (n > 0 && !xyz) return hdi_missing(e);
     return hdi_points_check(xyz, n, query, *m, e);
 }
 
-HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m, int32_t k, int32_t *index,
-                                             double *distance2, hd_context *ctx, hd_error *err) {
+static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t n, const hdi_call *c,
+                                     hdi_scope *s) {
+    *s = hdi_scope_begin(c->ctx, c->e);
+    if (hdi_progress(c->ctx, "neighbours", 0, c->e) < 0 || hdi_tree_make(tree, xyz, n, s) < 0)
+        return c->e->status;
+    return hdi_progress(c->ctx, "neighbours", 0.1, c->e);
+}
+
+HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m,
+                                             int32_t k,
+                                             int32_t *index, double *distance2, hd_context *ctx,
+                                                 hd_error *err) {
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
     if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: k is not positive");
     if (m > 0 && !index) return hdi_missing(c.e);
-    s = hdi_scope_begin(c.ctx, c.e);
-    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
+    if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
         (void)hdi_nearest(&tree, query, m, k, index, distance2, c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
-HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query, int32_t m, double radius, hd_context *ctx,
-                                            hd_error *err) {
+HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query,
+                                            int32_t m,
+                                            double radius, hd_context *ctx, hd_error *err) {
+    const double r = hdi_min(radius, 1e152);     /* a square that does not overflow */
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
     if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
     if (!out) return hdi_missing(c.e);
-    if (hdi_nan(radius) || radius < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
-    s = hdi_scope_begin(c.ctx, c.e);
-    if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
-        (void)hdi_within(out, &tree, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
+    if (hdi_nan(radius) || radius < 0)
+        return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
+    if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
+        (void)hdi_within(out, &tree, query, m, r * r, c.ctx, c.e);
     return hdi_scope_end(&s);
 }
 
-HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x,
+                                          double *y, hd_error *err) {
     hdi_call c;
     hdi_scope s;
     double *in, *out;
@@ -20208,15 +20594,7 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz,
 }
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) {
-    hd_context ctx;
-    hd_context *use;
-    if (!lap) return;
-    use = lap->context;
-    if (use == &HDI_CAST(hdi_laplacian *, HDI_CAST(void *, lap))->context) {   /* about to be freed itself */
-        ctx = *use;
-        use = &ctx;
-    }
-    hdi_laplacian_free(lap, use);
+    if (lap) hdi_lap_drop(lap);
 }
 
 /* ---- rational approximations ---- */
@@ -20227,7 +20605,8 @@ HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int3
     return out ? hdi_rational_get(out, kind, degree, c.e) : hdi_missing(c.e);
 }
 
-HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol, hd_context *ctx, hd_error *err) {
+HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
+                                          hd_context *ctx, hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     return out && t ? hdi_rational_shared(out, n_times, t, tol, c.ctx, c.e) : hdi_missing(c.e);
@@ -20238,13 +20617,16 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return 
 /* ---- shifted systems ---- */
 
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
-    if (!hdi_finite(t) || t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "solve: t is negative or not finite", -1, -1, t);
-    if (!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: theta lies on (-inf, 0] or is not finite");
-    if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: the solver is cocg, cocr or minres");
-    if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: unknown preconditioner");
-    if (!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: tol is not in [0, 1)");
-    if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "solve: max_iterations is negative");
-    return HD_OK;
+    hdi_refuse_value(!hdi_finite(t) || t < 0, "solve: t is negative or not finite", t, e);
+    hdi_refuse(!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0),
+               "solve: theta lies on (-inf, 0] or is not finite", e);
+    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES,
+               "solve: the solver is cocg, cocr or minres", e);
+    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "solve: unknown preconditioner",
+               e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "solve: tol is not in [0, 1)", e);
+    hdi_refuse(o->max_iterations < 0, "solve: max_iterations is negative", e);
+    return e->status;
 }
 
 /* ---- direct solver ---- */
@@ -20430,26 +20812,61 @@ HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entri
 /* ---- heat ---- */
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
-    if (o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown method");
-    if (o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown solver");
-    if (o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown preconditioner");
-    if (o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL)) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: poles are uniform, kernel or diagonal; own sets go into rational");
-    if (o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX) return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the degree is not in 1..14", -1, -1, o->degree);
-    if ((o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL) && o->degree && o->degree < HDI_RAT_KERNEL_MIN)
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: kernel and diagonal sets have degrees 2 to 14", -1, -1, o->degree);
-    if (!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: tol is not in [0, 1)");
-    if (o->max_iterations < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: max_iterations is negative");
-    if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: unknown ordering");
-    if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
-    if (o->method == HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: the krylov method has no use for poles or a degree");
-    if ((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "heat: solver and precond belong to the iterative method");
-    if (o->rational && o->solver == HD_SOLVER_LANCZOS) return hdi_fail(e, HD_ERR_ARGUMENT, "heat: Lanczos has no use for a pole set");
-    return o->rational ? hdi_rational_check(o->rational, e) : HD_OK;
+    const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
+    hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
+    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS, "heat: unknown solver", e);
+    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "heat: unknown preconditioner",
+               e);
+    hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
+               "heat: poles are uniform, kernel or diagonal; own sets go into rational", e);
+    hdi_refuse_value(o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX, "heat: the degree is not in 1..14",
+                     o->degree, e);
+    hdi_refuse_value(from_two && o->degree && o->degree < HDI_RAT_KERNEL_MIN,
+                     "heat: kernel and diagonal sets have degrees 2 to 14", o->degree, e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
+    hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
+    hdi_refuse(o->method == HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
+               "heat: the krylov method has no use for poles or a degree", e);
+    hdi_refuse((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond),
+               "heat: solver and precond belong to the iterative method", e);
+    hdi_refuse(o->rational && o->solver == HD_SOLVER_LANCZOS, "heat: Lanczos has no use for a pole set", e);
+    return e->status < 0 || !o->rational ? e->status : hdi_rational_check(o->rational, e);
 }
 
-HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts, hd_error *err) {
+/* Takes up the options, with defaults for those that are zero. */
+static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
+    hd_heat_opts *o = &heat->opts;
+    if (opts) *o = *opts;
+    if (o->rational) {
+        heat->own_set = *o->rational;
+        heat->own_set.kind = HD_POLES_OWN;
+        o->rational = &heat->own_set;
+    }
+    heat->iterations_asked = o->solver || o->precond;
+    heat->poles_asked = o->rational || o->poles || o->degree;
+    heat->exacting = o->tol > 0 && o->tol < HDI_TOL_HEAT;
+    heat->limit = o->tol > 0 ? o->tol : HDI_ROUNDING_LIMIT;
+    o->precond = o->precond ? o->precond : HD_PRECOND_MILDL;
+    o->tol = o->tol > 0 ? o->tol : HDI_TOL_HEAT;
+    o->max_iterations = o->max_iterations ? o->max_iterations : HDI_MAX_ITERATIONS;
+}
+
+/* What creation computes. The permutation is copied. */
+static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
+    hd_context *ctx = heat->ctx;
+    heat->source = lap;
+    heat->sums = HDI_NEW(ctx, double, 2 * HDI_CAST(uint64_t, lap->n_components), e);
+    if (!heat->sums) return e->status;
+    hdi_heat_measure_pair(heat);
+    if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
+        heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n), sizeof *heat->perm, ctx, e));
+    heat->opts.perm = heat->perm;
+    return e->status;
+}
+
+HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts,
+                                      hd_error *err) {
     hdi_call c;
     hd_heat *heat;
     if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
@@ -20461,37 +20878,10 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     if (!heat) return c.e->status;
     memset(heat, 0, sizeof *heat);
     heat->ctx = c.ctx;
-    heat->source = lap;
-    if (opts) heat->opts = *opts;
-    if (heat->opts.rational) {
-        heat->own_set = *heat->opts.rational;
-        heat->own_set.kind = HD_POLES_OWN;
-        heat->opts.rational = &heat->own_set;
-    }
-    heat->iterations_asked = heat->opts.solver || heat->opts.precond;
-    heat->poles_asked = heat->opts.rational || heat->opts.poles || heat->opts.degree;
-    heat->opts.precond = heat->opts.precond ? heat->opts.precond : HD_PRECOND_MILDL;
-    heat->exacting = heat->opts.tol > 0 && heat->opts.tol < 1e-9;
-    heat->limit = heat->opts.tol > 0 ? heat->opts.tol : HDI_ROUNDING_LIMIT;
-    heat->opts.tol = heat->opts.tol > 0 ? heat->opts.tol : 1e-9;
-    heat->opts.max_iterations = heat->opts.max_iterations ? heat->opts.max_iterations : 20000;
-    heat->sums = HDI_CAST(double *, hdi_alloc(c.ctx, 2 * HDI_CAST(uint64_t, lap->n_components), sizeof(double), c.e));
-    if (!heat->sums) {
-        hd_heat_free(heat);
-        return c.e->status;
-    }
-    hdi_heat_measure_pair(heat);
-    if (heat->opts.ordering == HD_ORDERING_OWN) {
-        if (hdi_order_check(heat->opts.perm, lap->n, c.ctx, c.e) >= 0)
-            heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n), sizeof *heat->perm, c.ctx, c.e));
-        if (!heat->perm) {
-            hd_heat_free(heat);
-            return c.e->status;
-        }
-    }
-    heat->opts.perm = heat->perm;
-    *out = heat;
-    return HD_OK;
+    hdi_heat_defaults(heat, opts);
+    if (hdi_heat_make(heat, lap, c.e) >= 0) *out = heat;
+    else hd_heat_free(heat);
+    return c.e->status;
 }
 
 HEATDIFF_API void hd_heat_free(hd_heat *heat) {
@@ -20515,7 +20905,8 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_free(ctx, heat);
 }
 
-HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
+HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs,
+                                        hd_c64 *x,
                                         const hd_solve_opts *opts, hd_solve_report *report, hd_error *err) {
     hd_solve_opts o;
     hd_heat_opts plan;
@@ -20533,12 +20924,12 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     plan.max_iterations = o.max_iterations;
     plan.context = o.context;
     if (hd_heat_create(&heat, lap, &plan, c.e) < 0) return c.e->status;
-    hdi_shifted_solve(heat, t, theta, rhs, x, o.tol > 0 ? o.tol : 1e-10, report, c.e);
+    hdi_shifted_solve(heat, t, theta, rhs, x, o.tol > 0 ? o.tol : HDI_TOL_SOLVE, report, c.e);
     hd_heat_free(heat);
     return c.e->status;
 }
 
-/* Fields that lie ldf apart and whose answers will lie ldu apart in the same array: they go where their answers will be. */
+/* Moves fields that lie ldf apart to where their answers will be, ldu apart in the same array. */
 static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     int32_t q;
     for (q = 1; q < ask->k && ask->ldu != ask->ldf; q++) {
@@ -20548,7 +20939,8 @@ static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     ask->ldf = ask->ldu;
 }
 
-HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
+HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                     const double *F, size_t ldf,
                                      double *U, size_t ldu, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, report, err) < 0) return hdi_heat_end(&h);
@@ -20566,8 +20958,10 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int32_t k,
-                                       const int32_t *sources, double *U, size_t ldu, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                       int32_t k,
+                                       const int32_t *sources, double *U, size_t ldu, hd_report *report,
+                                           hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t, 0) < 0) return hdi_heat_end(&h);
@@ -20581,12 +20975,13 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t 
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u, hd_report *report,
+HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u,
+                                      hd_report *report,
                                       hd_error *err) {
     return hd_heat_columns(heat, kernel, 1, &t, 1, &source, u, 0, report, err);
 }
 
-/* Pairs of vertices. */
+/* Checks pairs of vertices. */
 static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_t *i, const int32_t *j) {
     const hd_laplacian *lap = h->heat->source;
     if (n_pairs < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
@@ -20595,19 +20990,23 @@ static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_
     return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
 }
 
-HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, int64_t n_pairs,
-                                       const int32_t *i, const int32_t *j, double *values, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                       int64_t n_pairs,
+                                       const int32_t *i, const int32_t *j, double *values, hd_report *report,
+                                           hd_error *err) {
     hdi_heat_call h;
     hdi_entry_list list;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 0) < 0 || hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 0) < 0 || hdi_pairs_check(&h, n_pairs, i, j) < 0)
+        return hdi_heat_end(&h);
     if (n_pairs > 0 && !values) hdi_missing(h.e);
     list.values = values;
     if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *D, size_t ldd,
+HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                        double *D, size_t ldd,
                                         hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
@@ -20618,20 +21017,24 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, double *values,
+HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                     double *values,
                                      hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
     if (!values) hdi_missing(h.e);
     else if (kernel != HD_KERNEL_SYMMETRIC)
-        hdi_fail(h.e, HD_ERR_ARGUMENT, "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
+        hdi_fail(h.e, HD_ERR_ARGUMENT,
+                 "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
     if (h.e->status >= 0) (void)hdi_edges_run(&h, values);
     return hdi_heat_end(&h);
 }
 
-/* The start of a query of a distance. Commute and biharmonic have no time: n_times is 0 or 1 and t is not looked at. */
-static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
+/* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
+ * and t is not read. */
+static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                    const double *t,
                                     int positive, hd_report *report, hd_error *err) {
     if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
@@ -20639,14 +21042,18 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
     if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
     if (n_times > 1 || n_times < 0)
-        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1, n_times);
+        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1,
+                            n_times);
     return hdi_direct_only(h);
 }
 
-HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k,
-                                        const int32_t *sources, double *D, size_t ldd, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                        const double *t, int32_t k,
+                                        const int32_t *sources, double *D, size_t ldd, hd_report *report,
+                                            hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0)
+        return hdi_heat_end(&h);
     if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     else if (k > 0 && (!sources || !D)) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
@@ -20655,19 +21062,24 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int64_t n_pairs,
-                                     const int32_t *i, const int32_t *j, double *K, double *d, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
+                                     int64_t n_pairs,
+                                     const int32_t *i, const int32_t *j, double *K, double *d,
+                                         hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0) return hdi_heat_end(&h);
     h.relative = d != NULL;
-    if (hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0) (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
+    if (hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
+        (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given,
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count,
+                                      int32_t n_given,
                                       int32_t *vertex, double *distance, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0)
+        return hdi_heat_end(&h);
     if (count < 1 || n_given < 0 || n_given > count || count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, count);
     else if (!vertex) hdi_missing(h.e);
@@ -20679,53 +21091,37 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 /* ---- geodesic distance ---- */
 
 static hd_status hdi_geo_check(const hd_geodesic_opts *o, hd_error *e) {
-    if (!hdi_finite(o->t) || o->t < 0) return hdi_fail_row(e, HD_ERR_ARGUMENT, "geodesic: t is negative or not finite", -1, -1, o->t);
-    if (o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown mass");
-    if (o->ordering < HD_ORDERING_AUTO || o->ordering > HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: unknown ordering");
-    if (o->ordering == HD_ORDERING_OWN && !o->perm) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
-    return HD_OK;
+    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
+    hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
+               "geodesic: unknown mass", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
+    return e->status;
 }
 
-HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri, const hd_geodesic_opts *opts,
-                                          hd_error *err) {
+HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri,
+                                          int32_t n_tri, const hd_geodesic_opts *opts, hd_error *err) {
     hd_geodesic_opts o;
     hd_geodesic *g;
     hdi_call c;
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
-    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0) return c.e->status;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0)
+        return c.e->status;
     if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_missing(c.e);
-    if (n < 0 || n_tri < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: a size is negative");
+    hdi_refuse(n < 0 || n_tri < 0, "geodesic: a size is negative", c.e);
     if (hdi_geo_check(&o, c.e) < 0) return c.e->status;
     if (o.ordering == HD_ORDERING_OWN && hdi_order_check(o.perm, n, c.ctx, c.e) < 0) return c.e->status;
     g = HDI_CAST(hd_geodesic *, hdi_alloc(c.ctx, 1, sizeof *g, c.e));
     if (!g) return c.e->status;
     memset(g, 0, sizeof *g);
-    if (c.ctx == &c.context) {
-        g->context = c.context;
-        c.ctx = &g->context;
-    }
-    g->ctx = c.ctx;
+    g->ctx = hdi_enter_keep(&c, &g->context);
     g->n = n;
-    if (hdi_geo_make(g, xyz, tri, n_tri, &o, c.e) < 0) {
-        hdi_geo_free(g);
-        return c.e->status;
-    }
-    *out = g;
-    return HD_OK;
+    if (hdi_geo_make(g, xyz, tri, n_tri, &o, c.e) >= 0) *out = g;
+    else hdi_geo_free(g);
+    return c.e->status;
 }
 
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { hdi_geo_free(g); }
-
-static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
-    if (!rep) return;
-    rep->t = g->t;
-    rep->h = g->h;
-    rep->n_components = g->n_components;
-    rep->ordering = g->sym.ordering;
-    rep->factor_nnz = g->sym.nnz;
-    rep->factor_flops = 2 * g->sym.flops;
-}
 
 static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
     if (rep && e->status < 0) {
@@ -20735,8 +21131,9 @@ static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
     return rep ? rep->status : e->status;
 }
 
-/* Checks the arguments of a query; the report is filled with what is known of the plan. */
-static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d, hd_geodesic_report *rep, hd_error *err,
+/* Checks the arguments of a query, and fills the report with what the plan says. */
+static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d,
+                               hd_geodesic_report *rep, hd_error *err,
                                hdi_call *c) {
     int32_t q;
     if (rep) {
@@ -20745,17 +21142,19 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
     }
     if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
     if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
-    hdi_geo_tell_plan(g, rep);
+    if (rep) hdi_geo_tell_plan(g, rep);
     for (q = 0; q < k; q++) {
         if (sources[q] >= 0 && sources[q] < g->n) continue;
-        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q], sources[q]);
+        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q],
+                      sources[q]);
         c->e->column = q;
         return c->e->status;
     }
     return hdi_progress(g->ctx, "solve", 0, c->e);
 }
 
-HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources, double *d, hd_geodesic_report *report,
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources,
+                                            double *d, hd_geodesic_report *report,
                                             hd_error *err) {
     hdi_call c;
     if (hdi_geo_begin(g, sources, n_sources, d, report, err, &c) < 0) return hdi_geo_end(report, c.e);
@@ -20764,26 +21163,20 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, c
     return hdi_geo_end(report, c.e);
 }
 
-HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D, size_t ldd,
+HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D,
+                                             size_t ldd,
                                              hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
-    int32_t q, n_cols;
     if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0) return hdi_geo_end(report, c.e);
     ldd = ldd ? ldd : HDI_CAST(size_t, g->n);
-    if (k < 0) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the number of sources is negative");
-    else if (ldd < HDI_CAST(size_t, g->n)) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the leading dimension is smaller than n");
-    for (q = 0; q < k && c.e->status >= 0; q += n_cols) {
-        const int32_t wide = k - q >= HDI_GEO_WIDE_FROM;
-        double *to = D + HDI_CAST(size_t, q) * ldd;
-        n_cols = !wide ? 1 : k - q < HDI_GEO_WIDE ? k - q : HDI_GEO_WIDE;
-        if (hdi_progress(g->ctx, "solve", HDI_CAST(double, q) / k, c.e) < 0) break;
-        if (wide) (void)hdi_geo_wide(g, sources + q, n_cols, to, ldd, report, c.e);
-        else (void)hdi_geo_one(g, sources + q, 1, to, report, c.e);
-    }
+    hdi_refuse(k < 0, "geodesic: the number of sources is negative", c.e);
+    hdi_refuse(ldd < HDI_CAST(size_t, g->n), "geodesic: the leading dimension is smaller than n", c.e);
+    (void)hdi_geo_all(g, sources, k, D, ldd, report, c.e);
     return hdi_geo_end(report, c.e);
 }
 
-/* ==== [30] closing ==== */
+/* ==== [30] closing ====
+ * Owns the end of the implementation, with the warning pop that pairs with [00]; then the licences. */
 
 #ifdef __cplusplus
 }
@@ -20798,19 +21191,23 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 
 /* Two licences, take the one you like better.
 
-   MIT License. Copyright (c) 2026 The heatdiff authors.
-   Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated documentation files (the
-   "Software"), to deal in the Software without restriction, including without limitation the rights to use, copy, modify, merge, publish,
-   distribute, sublicense, and/or sell copies of the Software, and to permit persons to whom the Software is furnished to do so, subject to
-   the following conditions: The above copyright notice and this permission notice shall be included in all copies or substantial portions
-   of the Software. THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE
-   WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS
-   BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN
-   CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE.
+   MIT License. Copyright (c) 2026 The heatdiff authors. Permission is hereby granted, free of charge, to
+   any person obtaining a copy of this software and associated documentation files (the "Software"), to
+   deal in the Software without restriction, including without limitation the rights to use, copy, modify,
+   merge, publish, distribute, sublicense, and/or sell copies of the Software, and to permit persons to
+   whom the Software is furnished to do so, subject to the following conditions: The above copyright notice
+   and this permission notice shall be included in all copies or substantial portions of the Software. THE
+   SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT
+   LIMITED TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN
+   NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY,
+   WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE
+   SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE.
 
-   Public domain (www.unlicense.org). This is free and unencumbered software released into the public domain. Anyone is free to copy, modify,
-   publish, use, compile, sell, or distribute this software, either in source code form or as a compiled binary, for any purpose, commercial or
-   non-commercial, and by any means. THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED
-   TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS BE LIABLE FOR ANY
-   CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE
-   SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE. */
+   Public domain (www.unlicense.org). This is free and unencumbered software released into the public
+   domain. Anyone is free to copy, modify, publish, use, compile, sell, or distribute this software, either
+   in source code form or as a compiled binary, for any purpose, commercial or non-commercial, and by any
+   means. THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT
+   NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT.
+   IN NO EVENT SHALL THE AUTHORS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION
+   OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR
+   OTHER DEALINGS IN THE SOFTWARE. */

@@ -489,9 +489,9 @@ def set_size(r):
 def table_text(sets):
     """The table as C source, with its marker lines."""
     lines = [BEGIN,
-             '/* Computed by tools/poles.py, which also checks these digits. For every set: a0, max |e|, max W|e| (0 for',
-             ' * uniform sets, where it would be the same); then per pole Re theta, Im theta, Re a, Im a, the real pole first (odd r),',
-             ' * then one of each conjugate pair by ascending Im theta. */',
+             '/* Computed by tools/poles.py, which also checks these digits. Each set begins with a0, max |e| and max',
+             ' * W|e| (0 for uniform sets, where it would be the same). Then come Re theta, Im theta, Re a, Im a of each',
+             ' * pole: the real pole first (odd r), then one of each conjugate pair by ascending Im theta. */',
              DECLARATION]
     for one in sets:
         lines.append('    /* %s r = %d */' % (one.problem.name, one.degree))

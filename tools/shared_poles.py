@@ -46,6 +46,7 @@ import argparse
 import os
 import re
 import sys
+import textwrap
 import time
 from collections import namedtuple
 
@@ -379,14 +380,16 @@ def worth_it(one):
 
 def table_text(sets):
     lines = [BEGIN,
-             '/* Computed by tools/shared_poles.py, which also checks it. For every set: the largest ratio of times, number of pairs, largest weighted error',
-             ' * over all times (with rounding), largest sum 2 |a_i|/distance; then Re theta, Im theta of one of each pair, by ascending |theta|. Pairs ascend, and for each the',
-             ' * ratio. */',
+             '/* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of',
+             ' * times, the number of pairs, the largest weighted error over all times (with rounding) and the largest',
+             ' * sum of 2 |a_i|/distance. Then come Re theta, Im theta of one pole of each pair, by ascending |theta|.',
+             ' * Sets ascend by the number of pairs, then by the ratio. */',
              DECLARATION]
     for one in sets:
         lines.append('    %g, %d, %.3g, %.3g,' % (one.lam, one.pairs, one.error, one.amplification))
-        numbers = ['%.*g, %.*g' % (DIGITS, z.real, DIGITS, z.imag) for z in one.theta]
-        lines += ['        ' + ', '.join(numbers[k:k + 4]) + ',' for k in range(0, len(numbers), 4)]
+        numbers = ['%.*g,\xa0%.*g' % (DIGITS, z.real, DIGITS, z.imag) for z in one.theta]
+        rows = textwrap.wrap(', '.join(numbers) + ',', 110, initial_indent=' '*6, subsequent_indent=' '*6)
+        lines += [row.replace('\xa0', ' ') for row in rows]      # a pole stays on one line
     return '\n'.join(lines + ['};', END])
 
 
