@@ -396,7 +396,7 @@ typedef struct hd_laplacian {
     hd_point_report points;
     hd_context *context;
     int64_t version;            /* number of updates */
-    struct hdi_moving *moving;  /* private: what hd_laplacian_update needs, or NULL */
+    struct hd_moving *moving;   /* private: what hd_laplacian_update needs, or NULL */
 } hd_laplacian;
 
 typedef enum hd_pole_kind {
@@ -6219,7 +6219,7 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int clo
  * listed there. */
 
 /* What an update needs of a triangle mesh: the faces that have an area, in the order in which they were summed. */
-typedef struct hdi_moving {
+typedef struct hd_moving {
     int32_t m;
     int32_t *tri;               /* [3 m] */
     int32_t *face;              /* [m] the caller's numbers */
