@@ -184,6 +184,18 @@ class Names(unittest.TestCase):
         self.assertEqual(names(h.private_names()), ["BAD_MACRO", "HD_BAD", "bad_tag", "bad_type", "BAD_CONSTANT", "bad_variable",
                                                     "bad_function", "bad_callback"])
 
+    def test_names_that_a_macro_completes(self):
+        h = implementation("""
+            #define HDI_JOIN_NOW(name, set) hdi_##name##_##set
+            #define HDI_JOIN(name, set) HDI_JOIN_NOW(name, set)
+            #define HDI_NAME(name) HDI_JOIN(name, HDI_SET)
+            #define HDI_BARE(name) name
+            static int HDI_NAME(fine)(int a) { return a; }
+            static int HDI_BARE(bad)(int a) { return a; }
+        """)
+        self.assertEqual(names(h.private_names()), ["bad"])
+        self.assertEqual([f.name for f in h.functions], ["hdi_fine", "bad"])
+
     def test_public(self):
         h = of("#define BAD 1\n#define HD_FINE 1\n#define HEATDIFF_API extern\ntypedef struct hd_a bad_a;\nenum { HD_X, bad_x };\n"
                "HEATDIFF_API int bad_f(int fine);\nHEATDIFF_API int hd_f(struct hd_a *fine);\n")

@@ -91,6 +91,7 @@ class House:
         self.border = self.find_border()
         self.public = set()           # names of the functions that the public part declares
         self.functions, self.forward, self.names = [], [], []
+        self.pasting = self.find_pasting()
         self.parse()
         self.macros = [Place(line, m.group(1)) for line, d in self.directives
                        for m in [re.match(r"#define ([A-Za-z_]\w*)\(", d)] if m]
@@ -101,6 +102,17 @@ class House:
         kind = re.match(r"#\s*(if|elif|else|endif)", joined)   # braces are balanced branch by branch
         keep = "#" + ("if" if kind.group(1) == "if" else kind.group(1)) if kind else ""
         return keep + blank(m.group())[len(keep):] if keep else blank(m.group())
+
+    def find_pasting(self):
+        """Macros that paste hdi_ in front of the name they are given, themselves or by another such macro."""
+        bodies = {m.group(1): m.group(2) for line, d in self.directives
+                  for m in [re.match(r"#define (\w+)\(\w+(?:, *\w+)*\) *(.*)", d)] if m}
+        found = {name for name, body in bodies.items() if re.match(r"hdi_ *##", body)}
+        while True:
+            more = {name for name, body in bodies.items() if re.match(r"\w*", body).group() in found} - found
+            if not more:
+                return found
+            found |= more
 
     # ---- rooms ----
 
@@ -194,7 +206,8 @@ class House:
         return len(tokens)
 
     def signature(self, head):
-        """(name, index of the parameters' opening bracket) of a function, or None. MACRO(name)(...) has the name."""
+        """(name, index of the parameters' opening bracket) of a function, or None. MACRO(name)(...) has the name, with
+        hdi_ in front where the macro pastes that."""
         i = 0
         while i < len(head):
             text = head[i].text
@@ -207,7 +220,7 @@ class House:
                     continue
                 if re.fullmatch(r"[A-Z_][A-Z0-9_]*", text):
                     if end < len(head) and head[end].text == "(" and end - i == 4:
-                        return head[i + 2].text, end
+                        return ("hdi_" if text in self.pasting else "") + head[i + 2].text, end
                     i = end
                     continue
                 if text not in KEYWORDS:
