@@ -572,6 +572,7 @@ typedef struct hd_geodesic_opts {
     /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere. */
     const int32_t *perm;
     hd_context *context;
+    int32_t updatable;          /* 1: hd_geodesic_update may be called; the plan keeps L, and 100 bytes a face */
     int32_t end_zero;
 } hd_geodesic_opts;
 
@@ -1092,6 +1093,13 @@ typedef struct hd_geodesic hd_geodesic;
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n,
                                           const int32_t *tri, int32_t n_tri,
                                           const hd_geodesic_opts *opts, hd_error *err);
+/* New coordinates for the same faces, of a plan made with the option updatable. Ordering and analysis stay.
+ * xyz    [3 n] finite. Faces that were left out stay left out
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face: it has no area any more, or vertex). Then
+ *        nothing has changed. After HD_ERR_BREAKDOWN, HD_ERR_MEMORY or HD_ERR_CANCELLED the plan answers no
+ *        query until an update succeeds
+ * Cost   one pass over faces and entries, and the two factorisations */
+HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to the nearest source.
@@ -19281,6 +19289,10 @@ struct hd_geodesic {
     hdi_pair *sorted;            /* [value_size] */
     int32_t value_size;
     int64_t n_staged;            /* fronts visited so far by all stages after the first ones */
+    hd_laplacian *lap;           /* of updatable plans, else NULL */
+    int32_t *from;               /* [n_faces] which of lap->moving's faces each is; updatable */
+    double t_asked;              /* 0: h^2 */
+    int32_t ready;               /* 0: the last update failed half way */
 };
 
 /* ---- making ---- */
@@ -19313,6 +19325,8 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_free(ctx, g->value_ptr);
     hdi_free(ctx, g->value);
     hdi_free(ctx, g->sorted);
+    hdi_free(ctx, g->from);
+    hdi_laplacian_free(g->lap, ctx);
     hdi_free(ctx, g);
 }
 
@@ -19367,16 +19381,39 @@ static int32_t hdi_geo_first(const hdi_mesh *mesh, int32_t f, const int32_t *row
 static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int64_t *at = HDI_TAKE_ZERO(&s, int64_t, HDI_CAST(int64_t, g->n_active) + 1);
-    int32_t f;
+    int32_t f, used = 0;
     g->face = HDI_CAST(hdi_geo_face *, hdi_geo_alloc(g, g->n_faces, sizeof *g->face, e));
-    if (!g->face) return hdi_scope_end(&s);
+    if (g->lap) g->from = hdi_geo_ints(g, g->n_faces, e);
+    if (e->status < 0) return hdi_scope_end(&s);
     for (f = 0; f < mesh->m; f++)
         if (mesh->area[f] > 0) at[hdi_geo_first(mesh, f, g->row)]++;
     hdi_prefix_sum(at, g->n_active);
-    for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0)
-            g->face[at[hdi_geo_first(mesh, f, g->row)]++] = hdi_geo_frame(mesh, f, g->row, g->h);
+    for (f = 0; f < mesh->m; f++) {
+        int64_t k;
+        if (!(mesh->area[f] > 0)) continue;
+        k = at[hdi_geo_first(mesh, f, g->row)]++;
+        g->face[k] = hdi_geo_frame(mesh, f, g->row, g->h);
+        if (g->from) g->from[k] = used++;
+    }
     return hdi_scope_end(&s);
+}
+
+/* h, t and the masses of rows that are known. */
+static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
+    int32_t i;
+    g->h = lap->h;
+    g->t = g->t_asked > 0 ? g->t_asked : lap->h * lap->h;
+    if (!hdi_finite(g->t) || !(g->t > 0))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT,
+                            "geodesic: the square of the mean edge length is no number to compute with", -1, -1, lap->h);
+    for (i = 0; i < g->n_active; i++) {
+        const int32_t from = g->sym.perm[i];
+        g->mass[i] = lap->mass[from] / g->t;
+        if (!hdi_finite(g->mass[i]))
+            return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1,
+                                 lap->vertex[from], g->t);
+    }
+    return HD_OK;
 }
 
 /* The arrays over rows, in elimination order. */
@@ -19393,12 +19430,8 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error 
         g->row[lap->vertex[from]] = i;
         g->component[i] = lap->component[from];
         g->pin[g->component[i]] = i;
-        g->mass[i] = lap->mass[from] / g->t;
-        if (!hdi_finite(g->mass[i]))
-            return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1,
-                                 lap->vertex[from], g->t);
     }
-    return HD_OK;
+    return hdi_geo_masses(g, lap, e);
 }
 
 /* Factors the matrix val, and frees what only factoring needs. */
@@ -19484,20 +19517,38 @@ static hd_status hdi_geo_make(hd_geodesic *g, const double *xyz, const int32_t *
         g->n_active = lap->n_active;
         g->n_components = lap->n_components;
         g->n_faces = lap->mesh.n_faces_used;
-        g->h = lap->h;
-        g->t = o->t > 0 ? o->t : lap->h * lap->h;
-        if (!hdi_finite(g->t) || !(g->t > 0))
-            hdi_fail_row(e, HD_ERR_ARGUMENT,
-                         "geodesic: the square of the mean edge length is no number to compute with",
-                         -1, -1, lap->h);
+        g->t_asked = o->t;
+        if (o->updatable && hdi_moving_make(lap, &mesh, e) >= 0) g->lap = lap;
     }
     if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 &&
         hdi_geo_faces(g, &mesh, e) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
-        if (hdi_geo_factors(g, lap, e) >= 0) (void)hdi_geo_room(g, e);
+        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, e) >= 0;
     }
-    hdi_laplacian_free(lap, g->ctx);
+    if (!g->lap) hdi_laplacian_free(lap, g->ctx);
     return hdi_scope_end(&s);
+}
+
+/* The plan for new coordinates. Nothing changes before all faces are known to be fine. */
+static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) {
+    const hdi_moving *moving = g->lap->moving;
+    hd_mesh_report rep;
+    hdi_mesh mesh;
+    int32_t f;
+    memset(&rep, 0, sizeof rep);
+    if (hdi_moving_measure(g->lap, xyz, &rep, e) < 0) return e->status;
+    for (f = 0; f < moving->m; f++)
+        if (!(moving->area[f] > 0))
+            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more", moving->face[f], -1, 0);
+    g->ready = 0;
+    if (hdi_lap_update(g->lap, xyz, e) < 0 || hdi_geo_masses(g, g->lap, e) < 0) return e->status;
+    hdi_mesh_clear(&mesh, xyz, g->n, moving->tri, moving->m);
+    mesh.area = moving->area;
+    for (f = 0; f < g->n_faces; f++) g->face[f] = hdi_geo_frame(&mesh, g->from[f], g->row, g->h);
+    hdi_factor_free(&g->heat);
+    hdi_factor_free(&g->poisson);
+    if (hdi_geo_factors(g, g->lap, e) >= 0) g->ready = 1;
+    return e->status;
 }
 
 /* ---- passes over the faces ---- */
@@ -21129,6 +21180,14 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
     return c.e->status;
 }
 
+HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, g ? g->ctx : NULL, err) < 0) return c.e->status;
+    if (!g || !xyz) return hdi_missing(c.e);
+    if (!g->lap) return hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the plan was not made with the option updatable");
+    return hdi_geo_update(g, xyz, c.e);
+}
+
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { hdi_geo_free(g); }
 
 static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
@@ -21150,6 +21209,7 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
     }
     if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
     if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
+    if (!g->ready) return hdi_fail(c->e, HD_ERR_ARGUMENT, "geodesic: the last update failed");
     if (rep) hdi_geo_tell_plan(g, rep);
     for (q = 0; q < k; q++) {
         if (sources[q] >= 0 && sources[q] < g->n) continue;

@@ -130,6 +130,44 @@ static void mov_errors(void) {
     free(before);
 }
 
+/* Geodesic distances of a plan that moves with the mesh. */
+static void mov_geodesic(const shape *s, const char *what) {
+    double *xyz = DENSE_NEW(double, 3 * s->n), *d = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    const int32_t source = s->tri[0];
+    hd_geodesic_opts o;
+    hd_geodesic *plan = NULL, *fresh = NULL;
+    hd_geodesic_report rep, rep2;
+    hd_error e;
+    int32_t i;
+    int frame;
+    memset(&o, 0, sizeof o);
+    CHECK(hd_geodesic_create(&fresh, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK);
+    CHECK(hd_geodesic_update(fresh, s->xyz, &e) == HD_ERR_ARGUMENT && hd_geodesic_update(NULL, s->xyz, &e) == HD_ERR_ARGUMENT);
+    hd_geodesic_free(fresh);
+    o.updatable = 1;
+    CHECK(hd_geodesic_create(&plan, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK);
+    for (frame = 1; frame < 4; frame++) {
+        mov_bend(s, 0.3 * frame, xyz);
+        CHECK_MSG(hd_geodesic_update(plan, xyz, &e) == HD_OK, "%s: %s", what, e.text);
+        o.updatable = 0;
+        CHECK(hd_geodesic_create(&fresh, xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK);
+        CHECK(hd_geodesic_distance(plan, 1, &source, d, &rep, NULL) == HD_OK && hd_geodesic_distance(fresh, 1, &source, want, &rep2, NULL) == HD_OK);
+        CHECK(fabs(rep.h - rep2.h) <= 1e-13 * rep2.h && fabs(rep.t - rep2.t) <= 1e-13 * rep2.t && rep.residual_distance < 1e-9);
+        for (i = 0; i < s->n; i++)
+            CHECK_MSG(d[i] == want[i] || fabs(d[i] - want[i]) <= 1e-9 * dense_max_abs(xyz, 3 * s->n), "%s: frame %d: %g for %g", what, frame, d[i], want[i]);
+        hd_geodesic_free(fresh);
+    }
+    memcpy(want, d, (size_t)s->n * sizeof *d);
+    memcpy(xyz, s->xyz, 3 * (size_t)s->n * sizeof *xyz);
+    memcpy(xyz + 3 * s->tri[0], s->xyz + 3 * s->tri[1], 3 * sizeof *xyz);
+    CHECK(hd_geodesic_update(plan, xyz, &e) == HD_ERR_EMPTY && (e.face >= 0 || e.vertex >= 0));
+    CHECK(hd_geodesic_distance(plan, 1, &source, d, &rep, NULL) == HD_OK && memcmp(d, want, (size_t)s->n * sizeof *d) == 0);   /* as it was */
+    hd_geodesic_free(plan);
+    free(xyz);
+    free(d);
+    free(want);
+}
+
 static void test_moving(void) {
     shape ball = shape_bumpy(3, 5), sheet = shape_grid(13, 11, 0.3), soup = eng_soup(300, 500, 9);
     mov_frames(&ball, HD_LAPLACIAN_FEM, "ball, fem");
@@ -137,6 +175,8 @@ static void test_moving(void) {
     mov_frames(&sheet, HD_LAPLACIAN_VORONOI_COT, "sheet, voronoi-cot");
     mov_frames(&soup, HD_LAPLACIAN_FEM, "soup, fem");
     mov_errors();
+    mov_geodesic(&ball, "ball");
+    mov_geodesic(&sheet, "sheet");
     shape_free(&ball);
     shape_free(&sheet);
     shape_free(&soup);
