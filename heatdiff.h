@@ -14275,19 +14275,20 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
 }
 
 /* ==== [22] poles ====
- * The family t L + theta_i B over the poles of a set, for one right-hand side: solutions, their weighted sum, and what it can be off by.
- * May call [15] and [16].
- * One right-hand side goes through its poles one after the other, since what is solved already is a good start for the next: with
- * A_p = A_q + (theta_p - theta_q) B,  A_p sum c_q x_q = (sum c_q) b + B sum c_q (theta_p - theta_q) x_q,  and for sum c_q = 1 the residual is a
- * combination that least squares make small. The conjugate of a solution is that of the conjugate pole, and counts as another one.
- * Parallel tasks are right-hand sides, and preconditioners. */
+ * The family t L + theta_i B over the poles of a set, for one right-hand side: solutions, their weighted sum,
+ * and what it can be off by. May call [15] and [16].
+ * One right-hand side goes through its poles one after the other, since what is solved already is a good
+ * start for the next: with A_p = A_q + (theta_p - theta_q) B,  A_p sum c_q x_q = (sum c_q) b + B sum c_q
+ * (theta_p - theta_q) x_q,  and for sum c_q = 1 the residual is a combination that least squares make small.
+ * The conjugate of a solution is that of the conjugate pole, and counts as another one. Parallel tasks are
+ * right-hand sides, and preconditioners. */
 
 /* ---- what answers can be off by ---- */
 /* An error r in the system of a pole, b - A x = r, is an error A^-1 r in its solution. Two norms bound it:
  *   |A^-1 r|_B <= |r|_(B^-1) / min |t lambda + theta|
  *   |A^-1 r|_M <= |r|_(B^-1) max (1 + t lambda)/|t lambda + theta|,   M = B + t L,
- * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v), and
- * |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1): far less where heat has spread over many vertices. */
+ * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v),
+ * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1): far less where heat has spread over many vertices. */
 
 /* Bounds by parts, of an error in one of the norms, or of values. */
 typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
@@ -14314,7 +14315,8 @@ static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
     return a;
 }
 
-/* The account that every query keeps of its errors, and that becomes the report's. Absolute, over the values noted. */
+/* The account that every query keeps of its errors, and that becomes the report's. Absolute, over the values
+ * noted. */
 typedef struct hdi_ledger {
     hdi_parts off;               /* the largest of each part */
     hdi_parts known;             /* evidence of each part, as hd_evidence; hdi_ledger_begin sets it */
@@ -14323,7 +14325,8 @@ typedef struct hdi_ledger {
     int64_t n_values;
 } hdi_ledger;
 
-static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding, int relative) {
+static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding,
+                                   int relative) {
     hdi_ledger l;
     memset(&l, 0, sizeof l);
     l.known.rational = rational;
@@ -14344,7 +14347,8 @@ static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     l->off.rounding = hdi_max(l->off.rounding, off.rounding);
     l->largest = hdi_max(l->largest, size);
     if (size > 0) l->smallest = hdi_min(l->smallest, size);
-    if (l->relative >= 0) {                      /* relative to the exact value, which is at least size - all */
+    /* relative to the exact value, which is at least size - all */
+    if (l->relative >= 0) {
         const double all = hdi_parts_sum(&off);
         l->relative = hdi_max(l->relative, all == 0 ? 0 : hdi_quotient(all, size - all));
     }
@@ -14378,29 +14382,46 @@ static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     hdi_evidence_worst(&rep->evidence_rational, l->known.rational);
     hdi_evidence_worst(&rep->evidence_solver, l->known.solver);
     hdi_evidence_worst(&rep->evidence_rounding, l->known.rounding);
-    if (hdi_finite(l->smallest)) rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
+    if (hdi_finite(l->smallest))
+        rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
     if (l->relative >= 0 && rep->error_relative < l->relative) rep->error_relative = l->relative;
     hdi_bound_judge(total, rep);
 }
 
-/* What rounding adds to a residual b - (t L + theta B) x in row i is at most c_i sum_j M_ij |x_j| with M = t |L| + |theta| |B|
- * and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more (N. Higham, Accuracy and Stability
- * of Numerical Algorithms, 2002, section 3.1). In the norm of D^-1 that is at most sqrt(sum_j noise_j |x_j|^2),
- * noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik, by Cauchy and Schwarz. work [n]. */
+/* What rounding adds to a residual b - (t L + theta B) x in row i is at most c_i sum_j M_ij |x_j| with M = t
+ * |L| + |theta| |B| and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more
+ * (N. Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.1). In the norm of D^-1 that is
+ * at most sqrt(sum_j noise_j |x_j|^2), noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik, by Cauchy and Schwarz.
+ * work [n]. */
 #define HDI_NOISE_TERMS 8
+
+/* Entries of row i of L and B. */
+static double hdi_row_terms(const hd_laplacian *lap, int32_t i) {
+    return HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]);
+}
+
+/* The diagonal entry of row i of L. */
+static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
+    int64_t p;
+    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+        if (lap->L.col[p] == i) return lap->L.val[p];
+    return 0;
+}
 
 static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, double *noise, double *work) {
     int32_t i;
     int64_t p;
     for (i = 0; i < lap->n_active; i++) {
-        const double terms = HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) + HDI_NOISE_TERMS, c = terms * DBL_EPSILON / 2;
+        const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON / 2;
         double sum = lap->B ? 0 : theta * lap->mass[i];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) sum += t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0);
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            sum += t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0);
         work[i] = hdi_min(c * c * (sum / lap->b_diag[i]), 1e150);   /* beyond, no digit is left anyway */
     }
     for (i = 0; i < lap->n_active; i++) {
         double sum = lap->B ? 0 : theta * lap->mass[i] * work[i];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) sum += (t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0)) * work[lap->L.col[p]];
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            sum += (t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0)) * work[lap->L.col[p]];
         noise[i] = hdi_min(sum, 1e300);
     }
 }
@@ -14413,8 +14434,9 @@ static double hdi_rat_reach(const hd_rational *set) {
     return most;
 }
 
-/* max (1 + x)/|x + theta| over x >= 0 */
-static double hdi_pole_reach(hd_c64 theta) {
+/* What an error of x_p does to a sum of the poles' solutions at most. */
+static double hdi_pole_size(const hd_rational *set, int32_t p) { return hdi_rat_count(set,
+                            p) * hdi_cabs(set->a[p]); }  /* max (1 + x)/|x + theta| over x >= 0 */ static double hdi_pole_reach(hd_c64 theta) {
     const double x = theta.re < 1 ? theta.im * theta.im / (1 - theta.re) - theta.re : -1;
     const double inside = x > 0 ? (1 + x) / hypot(x + theta.re, theta.im) : 0;
     return hdi_max(inside, hdi_max(1, 1 / hdi_cabs(theta)));
@@ -14426,7 +14448,14 @@ static double hdi_resolvent_factor(hd_c64 theta) {
 }
 
 /* 1/sqrt(b_ratio): from the norm of D^-1 to that of B^-1. */
-static double hdi_ratio_root(const hd_laplacian *lap) { return lap->b_ratio > 0 ? 1 / sqrt(lap->b_ratio) : HUGE_VAL; }
+static double hdi_ratio_root(const hd_laplacian *lap) {
+    return lap->b_ratio > 0 ? 1 / sqrt(lap->b_ratio) : HUGE_VAL;
+}
+
+/* A bound of entry (i,i) of the inverse of B. */
+static double hdi_inverse_mass(const hd_laplacian *lap, int32_t i) {
+    return lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[i]) : HUGE_VAL;
+}
 
 /* What is shared by all right-hand sides: the pair, and preconditioners for a set and a time. */
 typedef struct hdi_family {
@@ -14453,16 +14482,20 @@ static void hdi_family_free(hdi_family *fam) {
     fam->filled = 0;
 }
 
-/* Takes up a set and a time, with room for the preconditioners. hdi_family_fill is to follow when filled is 0. */
+/* Takes up a set and a time, with room for the preconditioners. hdi_family_fill is to follow when filled is
+ * 0. */
 static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double t, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
-    const uint64_t size = fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
+    const uint64_t size =
+        fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
     int32_t i;
     if (fam->filled && fam->t == t && memcmp(&fam->set, set, sizeof *set) == 0) return HD_OK;
     fam->filled = 0;
     if (fam->n_values < set->n_poles) {
         hdi_family_free(fam);
-        fam->values = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, HDI_CAST(uint64_t, set->n_poles) * (size + 1), sizeof(hd_c64), e));
+        fam->values = HDI_CAST(hd_c64 *,
+                               hdi_alloc(fam->ctx, HDI_CAST(uint64_t, set->n_poles) * (size + 1),
+                                         sizeof(hd_c64), e));
         if (!fam->values) return e->status;
         fam->n_values = set->n_poles;
     }
@@ -14492,8 +14525,10 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
     a.lap = job->fam->lap;
     a.t = job->fam->t;
     a.theta = job->fam->set.theta[index];
-    if (job->fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);   /* real, positive definite */
-    hdi_precond_make(job->fam->m + index, &a, work, HDI_CAST(int64_t *, HDI_CAST(void *, work + job->fam->lap->n_active)));
+    /* real, positive definite */
+    if (job->fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
+    hdi_precond_make(job->fam->m + index, &a, work,
+                     HDI_CAST(int64_t *, HDI_CAST(void *, work + job->fam->lap->n_active)));
 }
 
 /* Makes the preconditioners, one parallel task each. */
@@ -14548,7 +14583,8 @@ typedef struct hdi_lane {
     int32_t watch;               /* direct: a row whose entries of all solutions are kept, -1: none */
     hd_c64 pole_value[HD_MAX_POLES];
     double pole_off[HD_MAX_POLES];   /* residual of each in the norm of diag(B)^-1, as far as it is seen */
-    double seen_b, seen_m;       /* what these residuals make of the answer, in the norms of B and of B + tL */
+    /* what these residuals make of the answer, in the norms of B and of B + tL */
+    double seen_b, seen_m;
     int64_t steps;               /* of Lanczos */
     hd_status status;
     hd_error error;
@@ -14609,8 +14645,10 @@ static uint64_t hdi_lane_stride(const hdi_family *fam) {
 
 /* Room for the systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), n_comp = HDI_CAST(uint64_t, fam->lap->n_components);
-    const uint64_t n_vec = HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)), count = HDI_CAST(uint64_t, fam->set.n_poles);
+    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active);
+    const uint64_t n_comp = HDI_CAST(uint64_t, fam->lap->n_components);
+    const uint64_t n_vec = HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver));
+    const uint64_t count = HDI_CAST(uint64_t, fam->set.n_poles);
     uint64_t i, j;
     if (!lane->vectors || lane->n_systems < fam->set.n_poles) {
         hdi_free(fam->ctx, lane->b);
@@ -14618,7 +14656,8 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
         lane->vectors = NULL;
         lane->n_systems = 0;
         lane->b = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, 3 * n + n_comp, sizeof(hd_c64), e));
-        if (lane->b) lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count * n_vec * n, sizeof(hd_c64), e));
+        if (lane->b)
+            lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count * n_vec * n, sizeof(hd_c64), e));
         if (!lane->vectors) return e->status;
         lane->n_systems = fam->set.n_poles;
     }
@@ -14629,7 +14668,8 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
         k->x = v;
         k->r = v + n;
         for (j = 2; j < n_vec; j++) k->v[j - 2] = v + j * n;
-        k->v[n_vec - 2] = lane->b + n;           /* a work vector that all systems share, as they run one after the other */
+        /* a work vector that all systems share, as they run one after the other */
+        k->v[n_vec - 2] = lane->b + n;
         k->spare = lane->b + 2 * n;
         k->sums = lane->b + 3 * n;
         k->a.lap = fam->lap;
@@ -14647,21 +14687,22 @@ static double hdi_pole_error(const hdi_krylov *k) {
     return k->r_norm * hdi_ratio_root(k->a.lap) / hdi_pole_distance(k->a.theta);
 }
 
-/* What an error of x_p does to the answer at most. */
-static double hdi_pole_weight(const hdi_family *fam, int32_t p) { return hdi_rat_count(&fam->set, p) * hdi_cabs(fam->set.a[p]); }
-
-/* A residual where a measurement will do: twice what was found, and an eighth of what rounding could hide at the very worst,
- * about a unit in the last place of every row. */
+/* A residual where a measurement will do: twice what was found, and an eighth of what rounding could hide at
+ * the very worst, about a unit in the last place of every row. */
 static double hdi_residual_seen(double found, double rounding) { return 2 * found + rounding / 8; }
 
-/* Enters the residual of pole p, found and by rounding, both in the norm of D^-1, into the lane's bounds. found counts
- * as a part of rounding where nothing was iterated. */
-static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p, double found, double rounding, int iterated) {
-    const double weight = hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * hdi_ratio_root(lap);
-    const double by_b = weight / hdi_pole_distance(set->theta[p]), by_m = weight * hdi_pole_reach(set->theta[p]);
+/* Enters the residual of pole p, found and by rounding, both in the norm of D^-1, into the lane's bounds.
+ * found counts as a part of rounding where nothing was iterated. */
+static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
+                              double found, double rounding, int iterated) {
+    const double weight = hdi_pole_size(set, p) * hdi_ratio_root(lap);
+    const double by_b = weight / hdi_pole_distance(set->theta[p]);
+    const double by_m = weight * hdi_pole_reach(set->theta[p]);
     const double solver = iterated ? found : 0, rest = rounding + found - solver;
-    /* The sum of the answers loses half a unit of each |a x| twice a pole; |x|_B by that is at most rounding/|theta|. */
-    const double sum = weight / hdi_rat_reach(set) * rounding * (2 * set->n_poles + 2) / (HDI_NOISE_TERMS + 1);
+    /* The sum of the answers loses half a unit of each |a x| twice a pole; |x|_B by that is at most
+     * rounding/|theta|. */
+    const double sum =
+        weight / hdi_rat_reach(set) * rounding * (2 * set->n_poles + 2) / (HDI_NOISE_TERMS + 1);
     lane->pole_off[p] = hdi_residual_seen(found, rounding);
     lane->seen_b += by_b * lane->pole_off[p];
     lane->seen_m += by_m * lane->pole_off[p];
@@ -14681,7 +14722,8 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
     lane->negative = 0;
 }
 
-/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds of its error but for the rational part. */
+/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds of its error but for the rational
+ * part. */
 static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
     double *HDI_RESTRICT u = lane->u;
@@ -14691,15 +14733,17 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
         const hd_c64 *HDI_RESTRICT x = lane->k[i].x;
         const double c = hdi_rat_count(&fam->set, i), are = c * fam->set.a[i].re, aim = c * fam->set.a[i].im;
         for (j = 0; j < n; j++) u[j] -= are * x[j].re - aim * x[j].im;
-        hdi_lane_residual(lane, fam->lap, &fam->set, i, lane->k[i].r_norm, sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
+        hdi_lane_residual(lane, fam->lap, &fam->set, i, lane->k[i].r_norm,
+                          sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
     }
 }
 
 enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
 
-/* Inner products of solution p with those of poles p to last, into gram[q - p][0] = x_q^* D x_p and gram[q - p][1] = x_q' D x_p,
- * D = diag(B). */
-static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n, hd_c64 gram[][2]) {
+/* Inner products of solution p with those of poles p to last, into gram[q - p][0] = x_q^* D x_p and gram[q -
+ * p][1] = x_q' D x_p, D = diag(B). */
+static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n,
+                              hd_c64 gram[][2]) {
     const hd_c64 *HDI_RESTRICT y = lane->k[p].x;
     int32_t q, i;
     for (q = p; q <= last; q++) {
@@ -14717,8 +14761,8 @@ static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, 
     }
 }
 
-/* Solves the Hermitian h c = 1 (m x m, rows of HDI_WARM_MAX) by L D L^*, in place; a pivot that rounding has eaten ends the set of
- * useful directions: the rest get zero. */
+/* Solves the Hermitian h c = 1 (m x m, rows of HDI_WARM_MAX) by L D L^*, in place; a pivot that rounding has
+ * eaten ends the set of useful directions: the rest get zero. */
 static void hdi_warm_solve(hd_c64 h[][HDI_WARM_MAX], hd_c64 *c, int32_t m) {
     int32_t i, j, k;
     for (i = 0; i < m; i++) {
@@ -14726,7 +14770,8 @@ static void hdi_warm_solve(hd_c64 h[][HDI_WARM_MAX], hd_c64 *c, int32_t m) {
         c[i] = hdi_c(1, 0);
         for (j = 0; j < i; j++) {
             hd_c64 s = h[i][j];
-            for (k = 0; k < j; k++) s = hdi_csub(s, hdi_cscale(h[k][k].re, hdi_cmul(h[i][k], hdi_cconj(h[j][k]))));
+            for (k = 0; k < j; k++)
+                s = hdi_csub(s, hdi_cscale(h[k][k].re, hdi_cmul(h[i][k], hdi_cconj(h[j][k]))));
             h[i][j] = h[j][j].re > 0 ? hdi_cscale(1 / h[j][j].re, s) : hdi_c(0, 0);
             h[i][i].re -= h[j][j].re * hdi_cabs2(h[i][j]);
             c[i] = hdi_csub(c[i], hdi_cmul(h[i][j], c[j]));
@@ -14741,10 +14786,13 @@ static void hdi_warm_solve(hd_c64 h[][HDI_WARM_MAX], hd_c64 *c, int32_t m) {
     }
 }
 
-/* Start of system p from the solutions of poles p + 1 to last, whose inner products are in gram. A point is a pole or its conjugate. */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last, hd_c64 gram[][HDI_WARM_POLES + 1][2]) {
+/* Start of system p from the solutions of poles p + 1 to last, whose inner products are in gram. A point is a
+ * pole or its conjugate. */
+static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last,
+                           hd_c64 gram[][HDI_WARM_POLES + 1][2]) {
     const int32_t n = fam->lap->n_active;
-    hd_c64 h[HDI_WARM_MAX][HDI_WARM_MAX], c[HDI_WARM_MAX], shift[HDI_WARM_MAX], sum = hdi_c(0, 0), *HDI_RESTRICT x = lane->k[p].x;
+    hd_c64 h[HDI_WARM_MAX][HDI_WARM_MAX], c[HDI_WARM_MAX], shift[HDI_WARM_MAX], sum = hdi_c(0, 0);
+    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
     for (i = p + 1; i <= last; i++) {
         for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
@@ -14755,7 +14803,8 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     }
     for (i = 0; i < m; i++) {
         for (j = 0; j <= i; j++) {
-            const hd_c64 *g = gram[pole[j]][pole[i] - pole[j]];   /* x_i^* D x_j and x_i' D x_j for the poles behind the points */
+            /* x_i^* D x_j and x_i' D x_j for the poles behind the points */
+            const hd_c64 *g = gram[pole[j]][pole[i] - pole[j]];
             hd_c64 v = conj[i] == conj[j] ? g[0] : g[1];
             if (conj[j]) v = hdi_cconj(v);
             h[i][j] = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), v);
@@ -14772,9 +14821,11 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     }
 }
 
-/* Runs the systems until the bound of their part of the answer's error is at most aim: each may use up an equal share of what those before it
- * left over. From where they are, or fresh, each started from those before it; the last pole comes first, which measures best. */
-static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, double aim, const hdi_watch *watch, hd_error *e) {
+/* Runs the systems until the bound of their part of the answer's error is at most aim: each may use up an
+ * equal share of what those before it left over. From where they are, or fresh, each started from those
+ * before it; the last pole comes first, which measures best. */
+static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, double aim,
+                              const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
     const double b_norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, fam->lap->n_active));
     hd_c64 gram[HD_MAX_POLES][HDI_WARM_POLES + 1][2];
@@ -14786,7 +14837,8 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
     for (p = n_poles; p-- > 0;) {
         hdi_krylov *k = lane->k + p;
         const int32_t last = p + HDI_WARM_POLES < n_poles ? p + HDI_WARM_POLES : n_poles - 1;
-        const double weight = hdi_pole_weight(fam, p), fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
+        const double weight = hdi_pole_size(&fam->set, p);
+        const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         if (fresh) hdi_krylov_start(k, lane->b, b_norm);
         if (fresh && p < last && b_norm > 0) {
@@ -14795,7 +14847,8 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
             if (!(k->r_norm < b_norm)) hdi_krylov_start(k, lane->b, b_norm);
         }
         part.from = watch->from + part.share * (n_poles - 1 - p);
-        status = hdi_krylov_run(k, lane->b, share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]),
+        status = hdi_krylov_run(k, lane->b,
+                                share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]),
                                 fam->max_iterations - k->iterations, &part, e);
         if (status < 0) {
             if (status == HD_ERR_NOT_CONVERGED) e->value = k->r_norm / k->b_norm;
@@ -14818,7 +14871,8 @@ static double hdi_resolvent_ratio(hd_c64 theta) {
 
 /* ---- the same by factorisation ---- */
 
-/* What is told of the solutions of a pack's four systems for one right-hand side, in one pass over L and B. */
+/* What is told of the solutions of a pack's four systems for one right-hand side, in one pass over L and
+ * B. */
 typedef struct hdi_check {
     const hd_laplacian *lap;
     double t, theta[HDI_PACK];   /* re[4], im[4] */
@@ -14870,7 +14924,8 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
 typedef struct hdi_check512 { hdi_v8 l, b, norm, first, size; } hdi_check512;
 
 /* Row i is complete: l and b hold its products with L and B. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_row(hdi_check *h, hdi_check512 *s, int32_t i, const double *x) {
+static HDI_AVX512 HDI_INLINE void hdi_check512_row(hdi_check *h, hdi_check512 *s, int32_t i,
+                                                   const double *x) {
     const hdi_v8 t = _mm512_set1_pd(h->t), re = hdi_twice512(h->theta), im = hdi_twice512(h->theta + 4);
     const hdi_v8 turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
     const hdi_v8 weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
@@ -14945,20 +15000,22 @@ static HDI_AVX512 void hdi_check_512(hdi_check *const *c, int32_t k) {
 }
 #endif
 
-/* What has been analysed and factorised for a plan: the pair in elimination order, the poles of a set at a time in packs (and a lone real pole in the real
- * factor), or B + g L for shift-and-invert Lanczos. */
+/* What has been analysed and factorised for a plan: the pair in elimination order, the poles of a set at a
+ * time in packs (and a lone real pole in the real factor), or B + g L for shift-and-invert Lanczos. */
 typedef struct hdi_elim {
     hd_context *ctx;
     const hd_laplacian *source;  /* entries of its matrices are what the factors are made of */
     hd_laplacian *lap;           /* the same in elimination order, scaled */
     double scale;
     double *weight;              /* [n] 1/diag(B) */
-    double *noise, *noise_shift; /* [n] weights of rounding, of the poles' matrices and of B + shift L; [n] work after them */
+    /* [n] weights of rounding, of the poles' matrices and of B + shift L; [n] work after them */
+    double *noise, *noise_shift;
     double *reach;               /* [n] bound of diag((B + tL)^-1) for reach_t, or NULL */
     double reach_t;
     hdi_symbolic sym;
     hdi_factor pack[HD_MAX_POLES / 4], real, shifted;
-    int32_t n_packs, filled;     /* packs that have room; 1: they hold set and t */
+    int32_t n_packs, n_used;     /* packs that have room; packs of the set */
+    int32_t filled;              /* 1: they hold set and t */
     int32_t lone;                /* pole in the real factor, -1 none */
     hd_rational set;
     double t;
@@ -14986,8 +15043,8 @@ static void hdi_elim_own(const hd_laplacian *lap, const int32_t *perm, int32_t *
 }
 
 /* Ordering, analysis, and the pair renumbered by it. */
-static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering,
-                               const int32_t *own, double scale, hd_context *ctx, hd_error *e) {
+static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, const int32_t *own,
+                               double scale, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *rows = HDI_TAKE(&s, int32_t, lap->n_active), i;
     const hdi_order order = hdi_order_of(ordering, lap->xyz, own ? rows : NULL);
@@ -14997,10 +15054,12 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     m->source = lap;
     m->scale = scale;
     if (own) hdi_elim_own(lap, own, rows);
-    if (e->status >= 0 && hdi_symbolic_order(&m->sym, &lap->L, &order, ctx, e) >= 0) m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
+    if (e->status >= 0 && hdi_symbolic_order(&m->sym, &lap->L, &order, ctx, e) >= 0)
+        m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
     if (m->lap) {
         (void)hdi_pair_scale(m->lap);
-        m->weight = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
+        m->weight =
+            HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
         m->noise = m->weight ? m->weight + lap->n_active : NULL;
         m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
         for (i = 0; m->weight && i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
@@ -15023,14 +15082,11 @@ static hdi_values hdi_elim_values(const hdi_elim *m, double t) {
 /* Largest |diagonal entry| of t L + theta_q B, over k of them. */
 static double hdi_elim_diagonal(const hd_laplacian *lap, double t, const hd_c64 *theta, int32_t k) {
     double most = 0;
-    int64_t p;
     int32_t i, q;
     for (i = 0; i < lap->n_active; i++) {
-        const double b = lap->b_diag[i];
-        double l = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            if (lap->L.col[p] == i) l = t * lap->L.val[p];
-        for (q = 0; q < k; q++) most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
+        const double b = lap->b_diag[i], l = t * hdi_row_diagonal(lap, i);
+        for (q = 0; q < k; q++)
+            most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
     }
     return sqrt(most);
 }
@@ -15050,41 +15106,44 @@ static hd_status hdi_elim_shift(hdi_elim *m, double g, hd_error *e) {
     if (m->shift == g && m->shifted.ready) return HD_OK;
     if (hdi_elim_real(m, &m->shifted, g, 1, e) < 0) return e->status;
     if (m->shifted.all.negative)
-        return hdi_fail(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite, or B not positive definite: B + g L has a negative pivot");
+        return hdi_fail(e, HD_ERR_NOT_POSITIVE,
+                        "L is not positive semi-definite, or B not positive definite: B + g L has a negative pivot");
     hdi_noise_weights(m->lap, g, 1, m->noise_shift, m->noise_shift + m->lap->n_active);
     m->shift = g;
     return HD_OK;
 }
 
-/* Packs a set needs; lone: the real pole that goes to the real factor because it would need a pack to itself. */
-static int32_t hdi_elim_packs(const hd_rational *set, int32_t *lone) {
-    *lone = set->n_poles % 4 == 1 && set->theta[0].im == 0 ? 0 : -1;
-    return (set->n_poles - (*lone + 1) + 3) / 4;
-}
-
 /* Pole in place q of pack i, or the last one again. */
 static int32_t hdi_elim_pole(const hdi_elim *m, int32_t i, int32_t q) {
-    const int32_t p = m->lone + 1 + 4 * i + q;
-    return p < m->set.n_poles ? p : m->set.n_poles - 1;
+    return hdi_low32(m->lone + 1 + 4 * i + q, m->set.n_poles - 1);
 }
 
-/* Factors of all poles of a set at a time. */
-static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
-    hdi_values v = hdi_elim_values(m, t);
-    int32_t i, q, n_packs;
-    if (m->filled && m->t == t && m->set.n_poles == set->n_poles && memcmp(m->set.theta, set->theta, HDI_CAST(size_t, set->n_poles) * sizeof *set->theta) == 0) {
-        m->set = *set;                           /* weights cost nothing */
-        return HD_OK;
-    }
+/* Takes up a set of poles at a time. A real pole that would need a pack to itself goes to the real factor:
+ * lone. */
+static void hdi_elim_take(hdi_elim *m, const hd_rational *set, double t) {
     m->filled = 0;
     m->reach_t = -1;
     m->set = *set;
     m->t = t;
-    n_packs = hdi_elim_packs(set, &m->lone);
-    for (; m->n_packs < n_packs; m->n_packs++)
+    m->lone = set->n_poles % 4 == 1 && set->theta[0].im == 0 ? 0 : -1;
+    m->n_used = (set->n_poles - (m->lone + 1) + 3) / 4;
+}
+
+/* Factors of all poles of a set at a time. */
+static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
+    const size_t bytes = HDI_CAST(size_t, set->n_poles) * sizeof *set->theta;
+    hdi_values v = hdi_elim_values(m, t);
+    int32_t i, q;
+    if (m->filled && m->t == t && m->set.n_poles == set->n_poles &&
+        memcmp(m->set.theta, set->theta, bytes) == 0) {
+        m->set = *set;                           /* weights cost nothing */
+        return HD_OK;
+    }
+    hdi_elim_take(m, set, t);
+    for (; m->n_packs < m->n_used; m->n_packs++)
         if (hdi_factor_make(m->pack + m->n_packs, &m->sym, HDI_PACK, m->ctx, e) < 0) return e->status;
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
-    for (i = 0; i < n_packs; i++) {
+    for (i = 0; i < m->n_used; i++) {
         hd_c64 theta[4];
         for (q = 0; q < 4; q++) {
             theta[q] = set->theta[hdi_elim_pole(m, i, q)];
@@ -15109,19 +15168,23 @@ typedef struct hdi_batch {
 
 /* Doubles of a batch's arrays. */
 static uint64_t hdi_batch_size(const hdi_elim *m, int32_t k, uint64_t *x, uint64_t *xr) {
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1), real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1);
+    const uint64_t real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
     *x = HDI_PACK * n * HDI_CAST(uint64_t, k);
     *xr = n * (k > 1 ? 8 : 1);
     return *x + *xr + (pack > real ? pack : real) + HDI_CAST(uint64_t, m->sym.n_super) / sizeof(double) + 8;
 }
 
 static hd_status hdi_not_semidefinite(hd_error *e) {
-    return hdi_fail(e, HD_ERR_NOT_POSITIVE, "L is not positive semi-definite: a vector with x'Lx < 0 was met (is it minus the matrix meant?)");
+    return hdi_fail(e, HD_ERR_NOT_POSITIVE,
+                    "L is not positive semi-definite: a vector with x'Lx < 0 was met (is it minus the matrix meant?)");
 }
 
-/* Keeps of the solution x of pole p what measures the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f, which is at most
- * a factor times Re of rhs'x. Real parts of x are stride apart; norm2: |x|_B^2 as computed; off: bound of its residual. */
-static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p, double norm2, double off, const double *x, int64_t stride) {
+/* Keeps of the solution x of pole p what measures the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
+ * which is at most a factor times Re of rhs'x. Real parts of x are stride apart; norm2: |x|_B^2 as computed;
+ * off: bound of its residual. */
+static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
+                           double norm2, double off, const double *x, int64_t stride) {
     const hd_c64 theta = set->theta[p];
     const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
     const double factor = hdi_resolvent_factor(theta);
@@ -15132,34 +15195,48 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     lane->first_pole = p;
     lane->first_norm = sqrt(norm2) + error;
     /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
-    if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error) lane->negative = 1;
+    if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
+        lane->negative = 1;
     if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
-/* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has its solution at x + 8 at[q]. */
-static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const int32_t *at, int32_t k, const double *x, int64_t stride) {
-    const int32_t left = m->set.n_poles - (m->lone + 1 + 4 * i), n_here = left < 4 ? left : 4;
+/* The check of pack i for a right-hand side and its solutions; nothing is added to an answer yet. */
+static hdi_check hdi_check_open(const hdi_elim *m, int32_t i, const double *rhs, const double *x,
+                                int64_t stride) {
+    hdi_check h;
+    int q;
+    memset(&h, 0, sizeof h);
+    h.lap = m->lap;
+    h.t = m->t;
+    for (q = 0; q < 4; q++) {
+        h.theta[q] = m->set.theta[hdi_elim_pole(m, i, q)].re;
+        h.theta[q + 4] = m->set.theta[hdi_elim_pole(m, i, q)].im;
+    }
+    h.weight = m->weight;
+    h.noise = m->noise;
+    h.rhs = rhs;
+    h.x = x;
+    h.stride = stride;
+    return h;
+}
+
+/* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has
+ * its solution at x + 8 at[q]. */
+static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const int32_t *at, int32_t k,
+                           const double *x, int64_t stride) {
+    const int32_t n_here = hdi_low32(m->set.n_poles - (m->lone + 1 + 4 * i), 4);
     hdi_check c[HDI_CHECK_MOST], *list[HDI_CHECK_MOST] = {NULL};
-    int32_t r;
+    int32_t r, p;
     int q, together = 1;
     for (r = 0; r < k; r++) {
         hdi_check *h = list[r] = c + r;
-        memset(h, 0, sizeof *h);
-        h->lap = m->lap;
-        h->t = m->t;
+        *h = hdi_check_open(m, i, lane[r]->rhs, x + HDI_PACK * at[r], stride);
         for (q = 0; q < 4; q++) {
-            const int32_t p = hdi_elim_pole(m, i, q);
-            const double count = q < n_here ? hdi_rat_count(&m->set, p) : 0;
-            h->theta[q] = m->set.theta[p].re;
-            h->theta[q + 4] = m->set.theta[p].im;
-            h->coef[q] = -count * m->set.a[p].re;
-            h->coef[q + 4] = count * m->set.a[p].im;
+            const hd_c64 a = m->set.a[hdi_elim_pole(m, i, q)];
+            const double count = q < n_here ? hdi_rat_count(&m->set, hdi_elim_pole(m, i, q)) : 0;
+            h->coef[q] = -count * a.re;
+            h->coef[q + 4] = count * a.im;
         }
-        h->weight = m->weight;
-        h->noise = m->noise;
-        h->rhs = lane[r]->rhs;
-        h->x = x + HDI_PACK * at[r];
-        h->stride = stride;
         h->u = lane[r]->u;
         h->bu = lane[r]->tmp;
         together = together && at[r] == at[0] + r;
@@ -15171,13 +15248,17 @@ static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
     hdi_check_c(list, k);
     for (r = 0; r < k; r++) {
         hdi_lane *to = lane[r];
+        const hdi_check *h = c + r;
         for (q = 0; q < n_here; q++) {
-            const int32_t p = hdi_elim_pole(m, i, q);
-            hdi_lane_residual(to, m->lap, &m->set, p, sqrt(c[r].norm2[q]), sqrt(c[r].size2[q]), 0);
-            if (to->watch >= 0) to->pole_value[p] = hdi_c(c[r].x[stride * to->watch + q], c[r].x[stride * to->watch + q + 4]);
-            if (i > 0 || q > 0) continue;
-            hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, c[r].first2), sqrt(c[r].norm2[q]) + sqrt(c[r].size2[q]), c[r].x, stride);
+            p = hdi_elim_pole(m, i, q);
+            hdi_lane_residual(to, m->lap, &m->set, p, sqrt(h->norm2[q]), sqrt(h->size2[q]), 0);
+            if (to->watch < 0) continue;
+            to->pole_value[p] = hdi_c(h->x[stride * to->watch + q], h->x[stride * to->watch + q + 4]);
         }
+        if (i > 0) continue;
+        p = hdi_elim_pole(m, 0, 0);
+        hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, h->first2), sqrt(h->norm2[0]) + sqrt(h->size2[0]),
+                       h->x, stride);
     }
 }
 
@@ -15208,10 +15289,11 @@ static void hdi_batch_real(const hdi_elim *m, hdi_lane *lane, const double *x, i
     hdi_lane_first(lane, lap, &m->set, 0, hdi_max(0, first2), sqrt(norm2) + sqrt(size2), x, stride);
 }
 
-/* u = a0 f - sum a_i x_i for k lanes (those that are skipped cost, but do not count). ctx: threads for the sweeps; NULL within a task. */
+/* u = a0 f - sum a_i x_i for k lanes (those that are skipped cost, but do not count). ctx: threads for the
+ * sweeps; NULL within a task. */
 static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane, int32_t k, hd_context *ctx) {
     const hdi_symbolic *s = &m->sym;
-    const int32_t n = s->n, n_packs = (m->set.n_poles - (m->lone + 1) + 3) / 4, wide = k > 1 ? 8 : 1;
+    const int32_t n = s->n, wide = k > 1 ? 8 : 1;
     int64_t j, touched = 0;
     int32_t i, r, n_list = 0, at[HDI_LANES_BATCH];
     hdi_lane *list[HDI_LANES_BATCH];
@@ -15247,7 +15329,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         for (r = 0; r < k; r++)
             if (!lane[r].skip) hdi_batch_real(m, lane + r, b->xr + r, wide);
     }
-    for (i = 0; i < n_packs; i++) {
+    for (i = 0; i < m->n_used; i++) {
         memset(b->x, 0, HDI_CAST(size_t, n) * HDI_CAST(size_t, k) * HDI_PACK * sizeof *b->x);
         for (r = 0; r < k; r++) {
             for (j = 0; j < n && !lane[r].skip; j++) {
@@ -15259,7 +15341,8 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
         for (r = 0; r < n_list; r += HDI_CHECK_MOST)
-            hdi_batch_pack(m, i, list + r, at + r, n_list - r < HDI_CHECK_MOST ? n_list - r : HDI_CHECK_MOST, b->x, HDI_PACK * HDI_CAST(int64_t, k));
+            hdi_batch_pack(m, i, list + r, at + r, n_list - r < HDI_CHECK_MOST ? n_list - r : HDI_CHECK_MOST,
+                           b->x, HDI_PACK * HDI_CAST(int64_t, k));
     }
 }
 
@@ -15289,8 +15372,8 @@ static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
 
 /* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester).
  * value [nnz]: room. */
-static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value, hdi_factor *f,
-                           hd_error *e) {
+static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value,
+                           hdi_factor *f, hd_error *e) {
     hdi_values v;
     int32_t i;
     int64_t p;
@@ -15333,7 +15416,8 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
                 break;
             }
             if (tries != 1 || e->status < 0 || hdi_lap_exceeds(lap, &b, -slack, value, &f, e)) continue;
-            if (f.all.negative) hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: it has a negative pivot");
+            if (f.all.negative)
+                hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: it has a negative pivot");
         }
     }
     hdi_factor_free(&f);
@@ -15341,17 +15425,20 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-/* Sets the heat of each component to c0 times that of the right-hand side: the constants' part of c(-t B^-1 L) f, exactly. */
+/* Sets the heat of each component to c0 times that of the right-hand side: the constants' part of c(-t B^-1
+ * L) f, exactly. */
 static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
     int32_t c;
     if (!lap->conserves) return;
     hdi_component_sums(lap, lap->mass, lane->u, lane->sums);
-    for (c = 0; c < lap->n_components; c++) lane->sums[c] = (c0 * lane->target[c] - lane->sums[c]) / lap->component_mass[c];
+    for (c = 0; c < lap->n_components; c++)
+        lane->sums[c] = (c0 * lane->target[c] - lane->sums[c]) / lap->component_mass[c];
     hdi_component_add(lap, lane->sums, lane->u);
 }
 
-/* What rounding does to the heat of components, n sums of masses times values, and to that of the field itself where it is
- * dense; and what is left of L 1, which counts as zero where it is so to rounding, up to 1e-8. Same in both norms. */
+/* What rounding does to the heat of components, n sums of masses times values, and to that of the field
+ * itself where it is dense; and what is left of L 1, which counts as zero where it is so to rounding, up to
+ * 1e-8. Same in both norms. */
 static double hdi_conserve_off(const hd_laplacian *lap, const hdi_lane *lane, double drift_t, int dense) {
     const double sums = HDI_CAST(double, lap->n_active) * DBL_EPSILON / 2;
     const double given = dense ? (sums + 4 * DBL_EPSILON) * lane->f_norm : 0;
@@ -15386,8 +15473,8 @@ static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, doub
     return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
 }
 
-/* Errors of a set, for |exp(x) - c(x)| and for (1 + |x|) times that. Of the caller's own sets either may be unknown, 0: a
- * weighted one bounds the other; without both, bounds hold for c itself. */
+/* Errors of a set, for |exp(x) - c(x)| and for (1 + |x|) times that. Of the caller's own sets either may be
+ * unknown, 0: a weighted one bounds the other; without both, bounds hold for c itself. */
 static double hdi_set_uniform(const hd_rational *set) {
     return set->max_error > 0 ? set->max_error : set->max_weighted_error;
 }
@@ -15395,33 +15482,39 @@ static double hdi_set_weighted(const hd_rational *set) {
     return set->max_weighted_error > 0 ? set->max_weighted_error : set->max_error > 0 ? HUGE_VAL : 0;
 }
 
-/* Bounds of (exp - c)(-t B^-1 L) f in both norms. That of a weighted set is relative to the resolvent (B + t L)^-1 B f, which
- * a solution bounds; the constants drop out of built-in sets, whose c(0) = 1. */
+/* Bounds of (exp - c)(-t B^-1 L) f in both norms. That of a weighted set is relative to the resolvent (B + t
+ * L)^-1 B f, which a solution bounds; the constants drop out of built-in sets, whose c(0) = 1. */
 static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, hdi_lane *lane) {
     const double weighted = hdi_set_weighted(set);
     const int constants = lap->conserves && set->kind == HD_POLES_OWN;
     int32_t p;
-    for (p = 0; p < set->n_poles && constants; p++) {   /* c(0), by which constants are multiplied, and what they leave when taken out */
-        const double off = 8 * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) / hdi_pole_distance(set->theta[p]) * lane->f_norm;
+    /* c(0), by which constants are multiplied, and what they leave when taken out */
+    for (p = 0; p < set->n_poles && constants; p++) {
+        const double off = 8 * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) /
+                           hdi_pole_distance(set->theta[p]) * lane->f_norm;
         lane->off.rounding += off;
         lane->off_m.rounding += off;
     }
     for (p = 0; p < set->n_poles; p++)           /* the sum of the answers again: |x_v| <= sqrt(g_v) |x|_M */
-        lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * hdi_pole_reach(set->theta[p]) * sqrt(lane->energy);
+        lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_pole_size(set, p) *
+            hdi_pole_reach(set->theta[p]) * sqrt(lane->energy);
     if (set->a0 != 0 && lane->f_off > 0) {       /* nothing is known of f's error in the norm of B + tL */
         lane->off.rounding += fabs(set->a0) * lane->f_off;
         lane->off_m.rounding = HUGE_VAL;
         lane->rounding = HD_EVIDENCE_ESTIMATED;
     }
     lane->off.rational = hdi_set_uniform(set) * lane->f_norm;
-    lane->off_m.rational = hdi_finite(weighted) ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
+    lane->off_m.rational =
+        hdi_finite(weighted) ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
     if (hdi_finite(weighted) && set->n_poles > 0) {
-        const double resolvent = constants ? lane->f_norm : hdi_resolvent_ratio(set->theta[lane->first_pole]) * lane->first_norm;
+        const double resolvent = constants ? lane->f_norm
+                                 : hdi_resolvent_ratio(set->theta[lane->first_pole]) * lane->first_norm;
         lane->off.rational = hdi_min(lane->off.rational, weighted * hdi_min(resolvent, lane->f_norm));
     }
 }
 
-/* Is u'Lu of an answer negative, beyond rounding? Matrices of the caller's own may be anything; a mesh's are not asked. */
+/* Is u'Lu of an answer negative, beyond rounding? Matrices of the caller's own may be anything; a mesh's are
+ * not asked. */
 static int hdi_lane_negative(const hd_laplacian *lap, const hdi_lane *lane) {
     double sum = 0, size = 0;
     int32_t i;
@@ -15440,13 +15533,17 @@ static int hdi_lane_negative(const hd_laplacian *lap, const hdi_lane *lane) {
 /* The right-hand side without its constants, complex. */
 static void hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
     int32_t i;
-    for (i = 0; i < lap->n_components; i++) lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
-    for (i = 0; i < lap->n_active; i++) lane->b[i] = hdi_c(lane->rhs[i] - lap->mass[i] * lane->sums[lap->component[i]], 0);
+    for (i = 0; i < lap->n_components; i++)
+        lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
+    for (i = 0; i < lap->n_active; i++)
+        lane->b[i] = hdi_c(lane->rhs[i] - lap->mass[i] * lane->sums[lap->component[i]], 0);
 }
 
-/* K_t f through a pole set. The tolerance is relative to the answer, which is not known before: a first round aims at it relative to f,
- * which is never too strict as |K_t f|_B <= |f|_B, and the next ones go on from there relative to what came out. */
-static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
+/* K_t f through a pole set. The tolerance is relative to the answer, which is not known before: a first round
+ * aims at it relative to f, which is never too strict as |K_t f|_B <= |f|_B, and the next ones go on from
+ * there relative to what came out. */
+static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane,
+                                const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = fam->lap;
     const double c0 = fam->set.kind == HD_POLES_OWN ? hdi_rational_eval(&fam->set, 0) : 1;
     double aim = tol * lane->f_norm, room;
@@ -15473,7 +15570,8 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
     lane->energy = lane->f_norm * lane->f_norm;
     if (fam->set.n_poles > 0) {
         const hd_c64 *x = lane->k[0].x;
-        hdi_lane_first(lane, lap, &fam->set, 0, hdi_b_norm2_complex(lap, x, lane->tmp), lane->k[0].r_norm, &x->re, 2);
+        hdi_lane_first(lane, lap, &fam->set, 0, hdi_b_norm2_complex(lap, x, lane->tmp), lane->k[0].r_norm,
+                       &x->re, 2);
         if (lane->negative || hdi_lane_negative(lap, lane)) return hdi_not_semidefinite(e);
     }
     hdi_rational_bound(lap, &fam->set, lane);
@@ -15481,13 +15579,15 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
     return lane->off.solver <= tol * (lane->u_norm - lane->off.solver) ? HD_OK : HD_WARN_ACCURACY;
 }
 
-/* What is left to do after the poles' factors have been applied: constants, norms, bounds. limit: of rounding, relative to
- * the answer, above which the status warns. */
+/* What is left to do after the poles' factors have been applied: constants, norms, bounds. limit: of
+ * rounding, relative to the answer, above which the status warns. */
 static hd_status hdi_elim_finish(const hdi_elim *m, double limit, double drift_t, int dense, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
     int32_t i;
     hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
-    for (i = 0; i < lap->n_active && lap->conserves; i++) lane->tmp[i] += lap->mass[i] * lane->sums[lap->component[i]];   /* B u, what was added included */
+    /* B u, what was added included */
+    for (i = 0; i < lap->n_active && lap->conserves; i++)
+        lane->tmp[i] += lap->mass[i] * lane->sums[lap->component[i]];
     lane->u_norm = sqrt(hdi_max(0, hdi_dot(lane->u, lane->tmp, lap->n_active)));
     if (hdi_lane_negative(lap, lane)) lane->negative = 1;
     hdi_rational_bound(lap, &m->set, lane);
@@ -15497,63 +15597,101 @@ static hd_status hdi_elim_finish(const hdi_elim *m, double limit, double drift_t
 
 /* ---- entries of the kernel without columns ---- */
 
-/* values [n_sets][stride] += sum over poles p of Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: entries of the lower triangle in the order of the analysis,
- * or by pivots the diagonal, or that of B Z_p B. The factors are there, and stay. */
-static hd_status hdi_elim_invert(hdi_elim *m, int32_t n_sets, const hd_c64 *weight, hdi_wanted wanted, double *values, int64_t stride, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(m->ctx, e);
-    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n_sets));
-    const int32_t n_poles = m->set.n_poles;
+/* The coefficients [8] by which real and imaginary parts of the four systems of pack i add up to the sum of
+ * Re(w_p x_p) over its poles p. */
+static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double *coef) {
+    int32_t q;
+    for (q = 0; q < 4; q++) {
+        const int32_t p = m->lone + 1 + 4 * i + q;
+        coef[q] = p < m->set.n_poles ? w[p].re : 0;
+        coef[q + 4] = p < m->set.n_poles ? -w[p].im : 0;
+    }
+}
+
+/* Weighted sums of the inverses of all poles: values [n_sets][stride] += sum over poles p of
+ * Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: entries of the lower triangle in the order of the
+ * analysis, or by pivots the diagonal, or that of B Z_p B. */
+typedef struct hdi_elim_sums {
+    int32_t n_sets;
+    const hd_c64 *weight;        /* [n_sets][n_poles] */
+    hdi_wanted wanted;
+    double *values;
+    int64_t stride;
+} hdi_elim_sums;
+
+/* The part of n factors of the same width, f[i] with the coefficients of pack i, or of the lone real pole. b:
+ * the entries of B where forms are wanted. coef [n_sets][8]: work. */
+static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_elim_sums *sums,
+                                  const double *b, double *coef, hd_error *e) {
+    const int32_t width = n > 0 ? f->width : 0;
     hdi_forms forms;
     hdi_inverse z;
-    double *b = NULL;
+    int32_t i, k;
+    if (n == 0 || e->status < 0 || hdi_inverse_make(&z, &m->sym, width, m->ctx, e) < 0) return;
+    if (b) (void)hdi_forms_make(&forms, &m->sym, width, &m->source->L, b, m->ctx, e);
+    z.coef = coef;
+    z.n_sets = sums->n_sets;
+    z.wanted = sums->wanted;
+    z.forms = b ? &forms : NULL;
+    z.values = sums->values;
+    z.stride = sums->stride;
+    for (i = 0; i < n && e->status >= 0; i++) {
+        for (k = 0; k < sums->n_sets; k++) {
+            const hd_c64 *w = sums->weight + HDI_CAST(int64_t, k) * m->set.n_poles;
+            if (width == 1) coef[k] = w[m->lone].re;
+            else hdi_elim_coef(m, i, w, coef + HDI_PACK * HDI_CAST(int64_t, k));
+        }
+        (void)hdi_inverse_run(&z, f + i, e);
+    }
+    hdi_inverse_free(&z, m->ctx);
+    if (b) hdi_forms_free(&forms, m->ctx);
+}
+
+/* Sums over all poles. The factors are there, and stay. */
+static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(m->ctx, e);
+    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, sums->n_sets)), *b = NULL;
     int64_t p;
-    int32_t i, k, q;
-    if (wanted == HDI_WANT_FORMS) {              /* the source's entries, scaled as m->lap is */
+    if (sums->wanted == HDI_WANT_FORMS) {        /* the source's entries, scaled as m->lap is */
         b = HDI_TAKE(&s, double, m->source->L.nnz);
         for (p = 0; b && p < m->source->L.nnz; p++) b[p] = m->scale * m->source->B[p];
     }
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = -1; i < (n_poles - (m->lone + 1) + 3) / 4 && e->status >= 0; i++) {   /* -1: the lone real pole */
-        if (i < 0 && m->lone < 0) continue;
-        memset(coef, 0, HDI_PACK * HDI_CAST(size_t, n_sets) * sizeof *coef);
-        for (k = 0; k < n_sets; k++) {
-            if (i < 0) coef[k] = weight[HDI_CAST(int64_t, k) * n_poles].re;
-            for (q = 0; i >= 0 && q < 4 && m->lone + 1 + 4 * i + q < n_poles; q++) {
-                const hd_c64 w = weight[HDI_CAST(int64_t, k) * n_poles + m->lone + 1 + 4 * i + q];
-                coef[HDI_PACK * k + q] = w.re;
-                coef[HDI_PACK * k + q + 4] = -w.im;
-            }
-        }
-        if (i <= 0 && hdi_inverse_make(&z, &m->sym, i < 0 ? 1 : HDI_PACK, m->ctx, e) < 0) break;
-        if (i <= 0 && wanted == HDI_WANT_FORMS && hdi_forms_make(&forms, &m->sym, i < 0 ? 1 : HDI_PACK, &m->source->L, b, m->ctx, e) < 0) {
-            hdi_inverse_free(&z, m->ctx);
-            break;
-        }
-        z.coef = coef;
-        z.n_sets = n_sets;
-        z.wanted = wanted;
-        z.forms = &forms;
-        z.values = values;
-        z.stride = stride;
-        (void)hdi_inverse_run(&z, i < 0 ? &m->real : m->pack + i, e);
-        if (i >= 0 && e->status >= 0 && 4 * (i + 1) < n_poles - (m->lone + 1)) continue;   /* the next pack works in the same room */
-        hdi_inverse_free(&z, m->ctx);
-        if (wanted == HDI_WANT_FORMS) hdi_forms_free(&forms, m->ctx);
-    }
+    hdi_elim_invert_width(m, &m->real, m->lone >= 0, sums, b, coef, e);
+    hdi_elim_invert_width(m, m->pack, m->n_used, sums, b, coef, e);
     return hdi_scope_end(&s);
+}
+
+/* out [n] = the diagonal of the inverse of a factor, by pivots. coef [width]: of its parts, as hdi_elim_coef
+ * has them. */
+static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
+                                           hd_error *e) {
+    hdi_inverse z;
+    if (hdi_inverse_make(&z, &m->sym, f->width, m->ctx, e) < 0) return e->status;
+    memset(out, 0, HDI_CAST(size_t, m->sym.n) * sizeof *out);
+    z.coef = coef;
+    z.n_sets = 1;
+    z.wanted = HDI_WANT_DIAGONAL;
+    z.values = out;
+    z.stride = m->sym.n;
+    (void)hdi_inverse_run(&z, f, e);
+    hdi_inverse_free(&z, m->ctx);
+    return e->status;
 }
 
 enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
 
-/* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares of the relative error. 0: not to be had; for
- * sets of few poles. work: columns [2 HDI_RESOLVENT_POLES + 1][HDI_RESOLVENT_POINTS]. */
+/* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares
+ * of the relative error. 0: not to be had; for sets of few poles. work: columns [2 HDI_RESOLVENT_POLES +
+ * 1][HDI_RESOLVENT_POINTS]. */
 static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double *slack) {
-    double work[(2 * HDI_RESOLVENT_POLES + 1) * HDI_RESOLVENT_POINTS], *b = work + 2 * HDI_RESOLVENT_POLES * HDI_RESOLVENT_POINTS, worst = 0;
+    double work[(2 * HDI_RESOLVENT_POLES + 1) * HDI_RESOLVENT_POINTS];
+    double *b = work + 2 * HDI_RESOLVENT_POLES * HDI_RESOLVENT_POINTS, worst = 0;
     int32_t p, i, cols = 0;
     if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
     for (p = 0; p < set->n_poles; cols += set->theta[p].im != 0 ? 2 : 1, p++) {
         for (i = 0; i < HDI_RESOLVENT_POINTS; i++) {
-            const double s = (i + 0.5) / HDI_CAST(double, HDI_RESOLVENT_POINTS), x = 2 * s / ((1 - s) * (1 - s));
+            const double s = (i + 0.5) / HDI_CAST(double, HDI_RESOLVENT_POINTS);
+            const double x = 2 * s / ((1 - s) * (1 - s));
             const hd_c64 f = hdi_cdiv(hdi_c(1 + x, 0), hdi_c(x + set->theta[p].re, set->theta[p].im));
             work[cols * HDI_RESOLVENT_POINTS + i] = f.re;
             if (set->theta[p].im != 0) work[(cols + 1) * HDI_RESOLVENT_POINTS + i] = -f.im;
@@ -15567,9 +15705,13 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
         cols += pair ? 2 : 1;
     }
     for (i = 0; i <= 8 * HDI_RESOLVENT_POINTS; i++) {   /* the end is x = infinity */
-        const double s = i / (8 * HDI_CAST(double, HDI_RESOLVENT_POINTS)), q = 0.5 * (1 - s) * (1 - s);   /* x = s/q */
+        /* x = s/q */
+        const double s = i / (8 * HDI_CAST(double, HDI_RESOLVENT_POINTS)), q = 0.5 * (1 - s) * (1 - s);
         double sum = 0;
-        for (p = 0; p < set->n_poles; p++) sum += hdi_cmul(weight[p], hdi_cdiv(hdi_c(q + s, 0), hdi_c(s + q * set->theta[p].re, q * set->theta[p].im))).re;
+        for (p = 0; p < set->n_poles; p++)
+            sum += hdi_cmul(weight[p],
+                            hdi_cdiv(hdi_c(q + s, 0),
+                                     hdi_c(s + q * set->theta[p].re, q * set->theta[p].im))).re;
         worst = hdi_max(worst, fabs(sum - 1));
     }
     *slack = 2 * worst;
@@ -15581,25 +15723,20 @@ static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
     return lap->conserves ? 1 / lap->component_mass[lap->component[i]] : 0;
 }
 
-/* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new one. */
+/* What rounding may add to the entries of an inverse that bound others. */
+#define HDI_REACH_SLACK 1.01
+
+/* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
+ * one. */
 static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
-    const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = 1.01 * hdi_max(1, theta);   /* 1.01: rounding */
-    const size_t n = HDI_CAST(size_t, m->sym.n);
-    hdi_inverse z;
+    const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = HDI_REACH_SLACK * hdi_max(1, theta);
     int32_t i;
     if (m->reach && m->reach_t == m->t) return HD_OK;
-    if (!m->reach) m->reach = HDI_CAST(double *, hdi_alloc(m->ctx, n, sizeof(double), e));
-    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, &m->real, m->t, theta, e) >= 0) && hdi_inverse_make(&z, &m->sym, 1, m->ctx, e) >= 0) {
-        memset(m->reach, 0, n * sizeof *m->reach);
-        z.coef = &factor;
-        z.n_sets = 1;
-        z.wanted = HDI_WANT_DIAGONAL;
-        z.values = m->reach;
-        z.stride = m->sym.n;
-        (void)hdi_inverse_run(&z, &m->real, e);
-        hdi_inverse_free(&z, m->ctx);
+    if (!m->reach) m->reach = HDI_NEW(m->ctx, double, m->sym.n, e);
+    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, &m->real, m->t, theta, e) >= 0) &&
+        hdi_elim_inverse_diagonal(m, &m->real, &factor, m->reach, e) >= 0) {
         for (i = 0; i < m->sym.n; i++) {
-            const double most = m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[i]) : HUGE_VAL;
+            const double most = hdi_inverse_mass(m->lap, i);
             if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
             m->reach[i] = hdi_max(m->reach[i], hdi_constant_part(m->lap, i));
         }
@@ -15612,7 +15749,8 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     return e->status;
 }
 
-/* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor (1 + x)) for x >= 0. -1: none does. */
+/* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor
+ * (1 + x)) for x >= 0. -1: none does. */
 static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
     int32_t p, best = -1;
     for (p = 0; p < set->n_poles; p++) {
@@ -15625,20 +15763,23 @@ static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
 }
 
 /* ==== [23] lanczos ====
- * Owns K_t f without poles: Lanczos for the exponential, and shift-and-invert Lanczos on one real factor. May call [22].
- * This work is based on
+ * Owns K_t f without poles: Lanczos for the exponential, and shift-and-invert Lanczos on one real factor. May
+ * call [22]. This work is based on
  *   M. Hochbruck, Ch. Lubich, On Krylov subspace approximations to the matrix exponential operator, 1997
  *   I. Moret, P. Novati, RD-rational approximations of the matrix exponential, 2004
  *   J. van den Eshof, M. Hochbruck, Preconditioning Lanczos approximations to the matrix exponential, 2006 */
 
 /* ---- Lanczos for the exponential ---- */
-/* The basis is not kept. A first sweep finds the coefficients, a second one makes the same vectors again, to the last bit, and adds them up: as
- * much work as writing them to fresh memory and reading them back would be, with six vectors in place of hundreds.
- * No reorthogonalisation: the few huge eigenvalues that slivers have come back as copies, which costs a third more steps (bunny, t = 100 h^2: 280
- * where full reorthogonalisation takes 200) and no accuracy. Simon's partial reorthogonalisation saves those steps and takes 2.4 times as long. */
+/* The basis is not kept. A first sweep finds the coefficients, a second one makes the same vectors again, to
+ * the last bit, and adds them up: as much work as writing them to fresh memory and reading them back would
+ * be, with six vectors in place of hundreds. No reorthogonalisation: the few huge eigenvalues that slivers
+ * have come back as copies, which costs a third more steps (bunny, t = 100 h^2: 280 where full
+ * reorthogonalisation takes 200) and no accuracy. Simon's partial reorthogonalisation saves those steps and
+ * takes 2.4 times as long. */
 
-/* t beta_(m+1) |e_m' phi_1(-t T) e_1|, phi_1(z) = (e^z - 1)/z: bounds the error of m steps from a vector of norm one. For the error is
- * beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds, the last factor has one sign for all s, and the first shrinks. */
+/* t beta_(m+1) |e_m' phi_1(-t T) e_1|, phi_1(z) = (e^z - 1)/z: bounds the error of m steps from a vector of
+ * norm one. For the error is beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds, the last factor
+ * has one sign for all s, and the first shrinks. */
 static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_error *e) {
     const int32_t m = z->m;
     double sum = 0, least = 0, most = 0;
@@ -15649,7 +15790,8 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
         z->z0[i] = i == 0;
         z->z1[i] = i == m - 1;
     }
-    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m))
+        return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
     for (i = 0; i < m; i++) {
         least = hdi_min(least, z->d[i]);
         most = hdi_max(most, fabs(z->d[i]));
@@ -15663,7 +15805,8 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
     return HD_OK;
 }
 
-/* y = exp(-t T) e_1 through the best uniform set of degree 14: O(m) a pole, and as exact as rounding would leave an eigensolution. */
+/* y = exp(-t T) e_1 through the best uniform set of degree 14: O(m) a pole, and as exact as rounding would
+ * leave an eigensolution. */
 static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set) {
     const int32_t m = z->m;
     hd_c64 *d = z->work, *g = z->work + m;
@@ -15709,12 +15852,13 @@ static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
 }
 
 /* One step: from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). work [4 n]. */
-static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, double *HDI_RESTRICT w, double *mass,
-                                  hd_error *e) {
+static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, double *HDI_RESTRICT w,
+                                  double *mass, hd_error *e) {
     const hd_laplacian *lap = task->lap;
     const int32_t n = lap->n_active, j = z->m;
     const double *HDI_RESTRICT weight = task->weight, *HDI_RESTRICT noise = task->noise;
-    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0, norm = 0, scale, off = 0;
+    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0;
+    double norm = 0, scale, off = 0;
     int32_t i;
     hdi_csr_apply_rows(&lap->L, v, w, 0, n);
     for (i = 0; i < n; i++) {
@@ -15749,9 +15893,10 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
     return HD_OK;
 }
 
-/* A bound of what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) + errors of size noise
- * in B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j) e_j' exp(-s T) e_1 ds: at most noise sqrt(m) times
- * the integral of |exp(-s T) e_1|, which falls with s, so that sums from the left are above it. Then the sum of the answer. */
+/* A bound of what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) +
+ * errors of size noise in B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j) e_j' exp(-s
+ * T) e_1 ds: at most noise sqrt(m) times the integral of |exp(-s T) e_1|, which falls with s, so that sums
+ * from the left are above it. Then the sum of the answer. */
 static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
     const int32_t m = z->m;
     double integral = 0, from = 0, to, size = 0;
@@ -15763,11 +15908,14 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
         from = to;
     }
     for (size = 0, i = 0; i < m; i++) size += z->y[i] * z->y[i];
-    return sqrt(HDI_CAST(double, m)) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
+    return sqrt(HDI_CAST(double, m)) *
+           (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
 }
 
-/* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as convergence speeds up. */
-static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before, double target) {
+/* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as
+ * convergence speeds up. */
+static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before,
+                                double target) {
     const int32_t most = m < 64 ? 1 : m / 32;
     double rate, want;
     if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
@@ -15776,9 +15924,10 @@ static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, doubl
     return want < 1 ? 1 : want > most ? most : HDI_CAST(int32_t, want);
 }
 
-/* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2 is what |u|_B^2 has besides. */
-static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm, double fixed_norm2, hdi_lane *lane,
-                                   const hdi_watch *watch, hd_error *e) {
+/* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2 is what |u|_B^2
+ * has besides. */
+static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm, double fixed_norm2,
+                                   hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = task->lap;
     const double t = task->t, tol = task->tol;
     const int32_t most = task->max_iterations < HDI_LANCZOS_MAX ? task->max_iterations : HDI_LANCZOS_MAX;
@@ -15795,7 +15944,8 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
         hdi_lanczos_coefficients(z, t, &set);
         lane->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * hdi_dot(z->y, z->y, z->m));
         lane->off.solver = f0_norm * bound;
-        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t) + set.max_error);   /* the coefficients are by poles */
+        /* the coefficients are by poles */
+        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t) + set.max_error);
         if (lane->off.solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
         if (bound < best / 2) {
             best = bound;
@@ -15804,35 +15954,40 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
             return HD_WARN_ACCURACY;             /* what rounding leaves */
         }
         if (z->m >= most) {
-            hdi_fail(e, HD_ERR_NOT_CONVERGED, "Lanczos did not reach the tolerance in its largest number of steps; use poles");
+            hdi_fail(e, HD_ERR_NOT_CONVERGED,
+                     "Lanczos did not reach the tolerance in its largest number of steps; use poles");
             e->value = lane->off.solver / lane->u_norm;
             return e->status;
         }
         if (start == 0) start = lane->off.solver;
-        if (hdi_watch_look(watch, 0.5 * hdi_krylov_done(start, lane->off.solver, tol * lane->u_norm), e) < 0) return e->status;
-        look = z->m + hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
+        if (hdi_watch_look(watch, 0.5 * hdi_krylov_done(start, lane->off.solver, tol * lane->u_norm), e) < 0)
+            return e->status;
+        look = z->m +
+               hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
         looked = z->m;
         bound_before = bound;
     }
 }
 
 /* Second sweep: u += f0_norm sum y_j v_j. */
-static hd_status hdi_lanczos_second(const hdi_lanczos_task *task, double f0_norm, hdi_lane *lane, const hdi_watch *watch,
-                                    hd_error *e) {
+static hd_status hdi_lanczos_second(const hdi_lanczos_task *task, double f0_norm, hdi_lane *lane,
+                                    const hdi_watch *watch, hd_error *e) {
     const int32_t n = task->lap->n_active, m = lane->lanczos.m;
     int32_t j;
     hdi_lanczos_start(lane, n, f0_norm);
     for (j = 0; j < m; j++) {
         hdi_axpy(f0_norm * lane->lanczos.y[j], lane->lanczos.v, lane->u, n);
         if (j % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * j / m, e) < 0) return e->status;
-        if (j + 1 < m && hdi_lanczos_step(task, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0) return e->status;
+        if (j + 1 < m && hdi_lanczos_step(task, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0)
+            return e->status;
     }
     lane->lanczos.m = m;
     return HD_OK;
 }
 
 /* K_t f by Lanczos. The constants of each component need none of it. */
-static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
+static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, const hdi_watch *watch,
+                                 hd_error *e) {
     const hd_laplacian *lap = task->lap;
     const int32_t n = lap->n_active;
     hd_status status = HD_OK;
@@ -15876,15 +16031,17 @@ typedef struct hdi_silan {
     double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
-    double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];   /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
+    /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
+    double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];
     int32_t vectors_of, vectors_m;
     int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
     double g;
 } hdi_silan;
 
 /* ---- shift-and-invert Lanczos ---- */
-/* Lanczos in the B inner product for S = (B + g L)^-1 B, whose large eigenvalues are those of the smooth modes: with S V = V T + beta v e_m',
- * exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1 for every t around 10 g. One real factor and one basis serve all these times. */
+/* Lanczos in the B inner product for S = (B + g L)^-1 B, whose large eigenvalues are those of the smooth
+ * modes: with S V = V T + beta v e_m', exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1 for every t around
+ * 10 g. One real factor and one basis serve all these times. */
 static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
     int32_t i;
     for (i = 0; i <= HDI_SILAN_MAX; i++) hdi_free(ctx, z->v[i]);
@@ -15894,20 +16051,25 @@ static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
 }
 
 /* y = B x for wide right-hand sides side by side. */
-static void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const double *HDI_RESTRICT x, double *HDI_RESTRICT y, int32_t begin, int32_t end) {
+static void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const double *HDI_RESTRICT x,
+                               double *HDI_RESTRICT y, int32_t begin, int32_t end) {
+    double *HDI_RESTRICT to;
     int32_t i, r;
     int64_t p;
     for (i = begin; i < end; i++) {
         if (wide == 1) {
             double s = 0;
-            for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++) s += lap->B[p] * x[lap->L.col[p]];
+            for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++)
+                s += lap->B[p] * x[lap->L.col[p]];
             y[i] = lap->B ? s : lap->mass[i] * x[i];
             continue;
         }
-        for (r = 0; r < HDI_SILAN_WIDE; r++) y[HDI_SILAN_WIDE * HDI_CAST(int64_t, i) + r] = lap->B ? 0 : lap->mass[i] * x[HDI_SILAN_WIDE * HDI_CAST(int64_t, i) + r];
+        to = y + HDI_SILAN_WIDE * HDI_CAST(int64_t, i);
+        for (r = 0; r < HDI_SILAN_WIDE; r++)
+            to[r] = lap->B ? 0 : lap->mass[i] * x[HDI_SILAN_WIDE * HDI_CAST(int64_t, i) + r];
         for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++) {
-            const double b = lap->B[p], *HDI_RESTRICT from = x + HDI_SILAN_WIDE * HDI_CAST(int64_t, lap->L.col[p]);
-            double *HDI_RESTRICT to = y + HDI_SILAN_WIDE * HDI_CAST(int64_t, i);
+            const double b = lap->B[p];
+            const double *HDI_RESTRICT from = x + HDI_SILAN_WIDE * HDI_CAST(int64_t, lap->L.col[p]);
             for (r = 0; r < HDI_SILAN_WIDE; r++) to[r] += b * from[r];
         }
     }
@@ -15919,20 +16081,24 @@ static void hdi_mass_task(void *arg, int64_t index, int32_t worker) {
     const hdi_mass_job *j = HDI_CAST(const hdi_mass_job *, arg);
     const int64_t begin = index * HDI_ROWS_PER_TASK, end = begin + HDI_ROWS_PER_TASK;
     (void)worker;
-    hdi_mass_rows_body(j->lap, j->wide, j->x, j->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end < j->lap->n_active ? end : j->lap->n_active));
+    hdi_mass_rows_body(j->lap, j->wide, j->x, j->y, HDI_CAST(int32_t, begin),
+                       HDI_CAST(int32_t, end < j->lap->n_active ? end : j->lap->n_active));
 }
 
-static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *x, double *y, hd_context *ctx) {
+static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *x, double *y,
+                           hd_context *ctx) {
     hdi_mass_job j;
     j.lap = lap;
     j.wide = wide;
     j.x = x;
     j.y = y;
-    hdi_parallel(ctx, (HDI_CAST(int64_t, lap->n_active) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK, hdi_mass_task, &j);
+    hdi_parallel(ctx, (HDI_CAST(int64_t, lap->n_active) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK,
+                 hdi_mass_task, &j);
 }
 
 /* out[r] = sum_i x_ir y_ir */
-static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y, int64_t n, int32_t wide, double *out) {
+static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y, int64_t n, int32_t wide,
+                          double *out) {
     int64_t i;
     int r;
     if (wide == 1) {
@@ -15944,7 +16110,8 @@ static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRI
         for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] += x[HDI_SILAN_WIDE * i + r] * y[HDI_SILAN_WIDE * i + r];
 }
 
-/* Starts from the lanes' f and rhs = B f without constants, which lanes keep apart in sums; |f|_B of what is left. */
+/* Starts from the lanes' f and rhs = B f without constants, which lanes keep apart in sums; |f|_B of what is
+ * left. */
 static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const uint64_t n = HDI_CAST(uint64_t, lap->n_active), wide = HDI_CAST(uint64_t, z->wide);
@@ -15952,7 +16119,9 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_CAST(double *, hdi_alloc(ctx, n * wide, sizeof(double), e));
     if (z->v[0] && !z->c) z->c = HDI_CAST(double *, hdi_alloc(ctx, 2 * n * wide + 2 * n, sizeof(double), e));
-    if (z->c && !z->work) z->work = HDI_CAST(double *, hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide, 1), sizeof(double), e));
+    if (z->c && !z->work)
+        z->work = HDI_CAST(double *,
+                           hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide, 1), sizeof(double), e));
     if (e->status < 0) return e->status;
     z->w = z->c + n * wide;
     z->probe = z->w + n * wide;
@@ -15965,7 +16134,8 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
         z->f_norm[r] = 0;
         z->whole[r] = r < z->k ? lane[r].f_norm : 0;
         if (r < z->k && !lane[r].skip) {
-            for (i = 0; i < lap->n_components; i++) lane[r].sums[i] = lap->conserves ? lane[r].target[i] / lap->component_mass[i] : 0;
+            for (i = 0; i < lap->n_components; i++)
+                lane[r].sums[i] = lap->conserves ? lane[r].target[i] / lap->component_mass[i] : 0;
             for (i = 0; i < lap->n_active; i++) {
                 const double mean = lane[r].sums[lap->component[i]];
                 z->v[0][z->wide * i + r] = lane[r].f[i] - mean;
@@ -15973,7 +16143,8 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
             }
         }
         norm = 0;
-        for (i = 0; i < lap->n_active && r < z->k && !lane[r].skip; i++) norm += z->v[0][z->wide * i + r] * z->c[z->wide * i + r];
+        for (i = 0; i < lap->n_active && r < z->k && !lane[r].skip; i++)
+            norm += z->v[0][z->wide * i + r] * z->c[z->wide * i + r];
         if (norm > 0 && sqrt(norm) > DBL_EPSILON * lane[r].f_norm) z->f_norm[r] = sqrt(norm);
         else z->done[r] = -1;                    /* nothing there but constants */
         for (i = 0; i < lap->n_active; i++) {
@@ -15985,8 +16156,8 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     return HD_OK;
 }
 
-/* The residual of the solve w = S B v of right-hand side 0, held against what rounding can make of it. Some of the first
- * solves are looked at. */
+/* The residual of the solve w = S B v of right-hand side 0, held against what rounding can make of it. Some
+ * of the first solves are looked at. */
 static void hdi_silan_probe(hdi_silan *z) {
     const hd_laplacian *lap = z->m->lap;
     double *x = z->probe, *r = x + lap->n_active, sum = 0;
@@ -16001,13 +16172,15 @@ static void hdi_silan_probe(hdi_silan *z) {
 }
 
 /* out[r] = sqrt(sum_i weight_i x_ir^2) */
-static void hdi_wide_norms(const double *HDI_RESTRICT x, const double *HDI_RESTRICT weight, int64_t n, int32_t wide, double *out) {
+static void hdi_wide_norms(const double *HDI_RESTRICT x, const double *HDI_RESTRICT weight, int64_t n,
+                           int32_t wide, double *out) {
     int64_t i;
     int r;
     for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] = 0;
     if (wide == 1) out[0] = hdi_norm2w(x, weight, n);
     for (i = 0; wide > 1 && i < n; i++)
-        for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] += weight[i] * (x[HDI_SILAN_WIDE * i + r] * x[HDI_SILAN_WIDE * i + r]);
+        for (r = 0; r < HDI_SILAN_WIDE; r++)
+            out[r] += weight[i] * (x[HDI_SILAN_WIDE * i + r] * x[HDI_SILAN_WIDE * i + r]);
     for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] = sqrt(out[r]);
 }
 
@@ -16021,7 +16194,8 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     hdi_sweep s;
     int64_t i;
     int32_t r;
-    if (!z->v[j + 1]) z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(double), e));
+    if (!z->v[j + 1])
+        z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(double), e));
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
     s = hdi_sweep_open(&z->m->shifted, wide, w, z->work, 1);
@@ -16035,7 +16209,8 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     else
         for (i = 0; i < n; i++)
             for (r = 0; r < HDI_SILAN_WIDE; r++)
-                w[HDI_SILAN_WIDE * i + r] -= z->alpha[j][r] * v[HDI_SILAN_WIDE * i + r] + inv[r] * v_old[HDI_SILAN_WIDE * i + r];
+                w[HDI_SILAN_WIDE * i + r] -= z->alpha[j][r] * v[HDI_SILAN_WIDE * i + r] +
+                    inv[r] * v_old[HDI_SILAN_WIDE * i + r];
     hdi_mass_apply(lap, wide, w, z->c, ctx);
     hdi_wide_dots(w, z->c, n, wide, norm);
     for (r = 0; r < wide; r++) {
@@ -16061,7 +16236,8 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
 }
 
 /* Eigenvalues of T_m of right-hand side r, and rows p and q of its eigenvectors. */
-static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, int32_t q, double *d, double *x, double *y) {
+static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, int32_t q, double *d,
+                           double *x, double *y) {
     double off[HDI_SILAN_MAX];
     int32_t i;
     for (i = 0; i < m; i++) {
@@ -16073,11 +16249,16 @@ static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, 
     return hdi_tridiag_eigen(d, off, x, y, m);
 }
 
-/* exp(-s (1/mu - 1)/g): mu is an eigenvalue of T in (0, 1]; what rounding makes of tiny ones belongs to modes that are gone. */
-static double hdi_silan_decay(double mu, double s_over_g) { return mu > 1e-15 ? exp(-s_over_g * hdi_max(0, 1 / mu - 1)) : s_over_g > 0 ? 0 : 1; }
+/* exp(-s (1/mu - 1)/g): mu is an eigenvalue of T in (0, 1]; what rounding makes of tiny ones belongs to modes
+ * that are gone. */
+static double hdi_silan_decay(double mu, double s_over_g) {
+    if (mu > 1e-15) return exp(-s_over_g * hdi_max(0, 1 / mu - 1));
+    return s_over_g > 0 ? 0 : 1;
+}
 
-/* (F(a) - F(b))/(a - b) for F(x) = exp(-tau (1/x - 1)), a and b in (0, 1]; fa, fb: F there. */
-static double hdi_silan_slope(double a, double fa, double b, double fb, double tau) {
+/* (F(a) - F(b))/(a - b) for F(x) = exp(-tau (1/x - 1)),
+                              a and b in (0, 1]; fa, fb: F there. */ static double hdi_silan_slope(double a,
+                              double fa, double b, double fb, double tau) {
     const double d = a - b;
     double x;
     if (fabs(d) > 0.1 * a) return (fa - fb) / d;
@@ -16087,24 +16268,30 @@ static double hdi_silan_slope(double a, double fa, double b, double fb, double t
     return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
 }
 
-/* The bound of the error for right-hand side r after m steps at time t, relative to |f|_B, and |u|_B relative to it too. The error is beta times
- * sum_j x_j y_j F[mu_j, S] v_(m+1), with mu_j the eigenvalues of T, x and y the first and last rows of its eigenvectors, F[.,.] the divided difference;
- * S has its eigenvalues in (0, 1], where the sum is a smooth function of them, so that its maximum on points that crowd at both ends is the bound. */
-static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, double t, double *bound, double *size, hd_error *e) {
+/* The bound of the error for right-hand side r after m steps at time t, relative to |f|_B, and |u|_B relative
+ * to it too. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1), with mu_j the eigenvalues of T, x and
+ * y the first and last rows of its eigenvectors, F[.,.] the divided difference; S has its eigenvalues in (0,
+ * 1], where the sum is a smooth function of them, so that its maximum on points that crowd at both ends is
+ * the bound. */
+static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, double t, double *bound,
+                                 double *size, hd_error *e) {
     double d[HDI_SILAN_MAX], x[HDI_SILAN_MAX], y[HDI_SILAN_MAX], f[HDI_SILAN_MAX], most = 0, norm = 0;
     const double tau = t / z->g;
     int32_t i, k;
-    if (!hdi_silan_eigen(z, r, m, 0, m - 1, d, x, y)) return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+    if (!hdi_silan_eigen(z, r, m, 0, m - 1, d, x, y))
+        return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
-        if (d[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r]) return hdi_not_semidefinite(e);
+        if (d[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
+            return hdi_not_semidefinite(e);
         f[i] = hdi_silan_decay(d[i], tau);
         norm += x[i] * f[i] * x[i] * f[i];
         x[i] *= y[i];
     }
     *size = sqrt(norm);
     for (k = 1; k <= HDI_SILAN_POINTS; k++) {
-        const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS)), at = s * s, fa = hdi_silan_decay(at, tau);
+        const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS)), at = s * s;
+        const double fa = hdi_silan_decay(at, tau);
         double sum = 0;
         for (i = 0; i < m; i++) sum += x[i] * hdi_silan_slope(d[i], f[i], at, fa, tau);
         most = hdi_max(most, fabs(sum));
@@ -16128,8 +16315,10 @@ static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error 
     return HD_OK;
 }
 
-/* Coefficients of the basis for right-hand side r after m steps at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1. */
-static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, int32_t m, double t, double *out, hd_error *e) {
+/* Coefficients of the basis for right-hand side r after m steps at time t, times |f|_B: y = exp(-t (T^-1 -
+ * 1)/g) e_1. */
+static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, int32_t m, double t, double *out,
+                                        hd_error *e) {
     double first[HDI_SILAN_MAX];
     int32_t i;
     if (hdi_silan_vectors(z, r, m, e) < 0) return e->status;
@@ -16138,9 +16327,12 @@ static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, int32_t m, doub
     return HD_OK;
 }
 
-/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is |constants|_B^2. */
-static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, double tol, const double *fixed, hd_context *ctx, hd_error *e) {
-    double best[HDI_SILAN_WIDE], reached[HDI_SILAN_WIDE];   /* reached: bound relative to f: of an answer that has died away no digit is to be had */
+/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is
+ * |constants|_B^2. */
+static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, double tol,
+                               const double *fixed, hd_context *ctx, hd_error *e) {
+    /* reached: bound relative to f: of an answer that has died away no digit is to be had */
+    double best[HDI_SILAN_WIDE], reached[HDI_SILAN_WIDE];
     int32_t r, q, left = 0, look = 4, best_m[HDI_SILAN_WIDE], most = HDI_SILAN_MAX - 1;
     hd_status worst = HD_OK;
     for (r = 0; r < z->k; r++) {
@@ -16150,12 +16342,15 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
     }
     while (left > 0) {
         double miss_all = 1;
-        if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0 || hdi_silan_step(z, ctx, e) < 0) return e->status;
+        if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0 ||
+            hdi_silan_step(z, ctx, e) < 0)
+            return e->status;
         if (z->steps < look && z->steps < most) continue;
         for (r = 0; r < z->k; r++) {
             double miss = 0, worst_bound = 0;
             if (z->done[r]) continue;
-            for (q = 0; q < n_times && z->beta[z->steps][r] > 0 && (q < 2 || miss <= 1); q++) {   /* last and first time first: the worst, as a rule */
+            /* last and first time first: the worst, as a rule */
+            for (q = 0; q < n_times && z->beta[z->steps][r] > 0 && (q < 2 || miss <= 1); q++) {
                 const double at = t[q == 0 ? n_times - 1 : q - 1];
                 double bound, size;
                 if (hdi_silan_bound(z, r, z->steps, at, &bound, &size, e) < 0) return e->status;
@@ -16168,7 +16363,9 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
                 best[r] = miss;
                 best_m[r] = z->steps;
             } else if (z->steps > best_m[r] + 12 || z->steps >= most) {
-                if (miss > 1 && reached[r] > 1e-6) return hdi_fail(e, HD_ERR_NOT_CONVERGED, "shift-and-invert Lanczos did not reach the tolerance");
+                if (miss > 1 && reached[r] > 1e-6)
+                    return hdi_fail(e, HD_ERR_NOT_CONVERGED,
+                                    "shift-and-invert Lanczos did not reach the tolerance");
                 if (miss > 1) worst = HD_WARN_ACCURACY;
                 miss = 1;
             }
@@ -16179,17 +16376,20 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
             miss_all = hdi_max(miss_all, miss);
         }
         /* a step gains a factor of two or so */
-        look = z->steps + (miss_all > 1 ? HDI_CAST(int32_t, hdi_min(8, 0.6 * log2(hdi_min(miss_all, 1e30)))) : 1);
+        look = z->steps +
+               (miss_all > 1 ? HDI_CAST(int32_t, hdi_min(8, 0.6 * log2(hdi_min(miss_all, 1e30)))) : 1);
         if (look <= z->steps) look = z->steps + 1;
     }
     return worst;
 }
 
-/* What rounding does to the answer of right-hand side r after m steps, relative to |f|_B: with S V = V T + ... + errors Phi_j
- * of the steps, it is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, divided differences as in hdi_silan_bound. A solve's
- * residual is an error no larger in the B norm. y: the answer's coefficients. given: what the right-hand side is off by
- * from B f, which is an error of the first step. T's eigenvectors are there. */
-static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y, double given) {
+/* What rounding does to the answer of right-hand side r after m steps, relative to |f|_B: with S V = V T +
+ * ... + errors Phi_j of the steps, it is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, divided differences
+ * as in hdi_silan_bound. A solve's residual is an error no larger in the B norm. y: the answer's
+ * coefficients. given: what the right-hand side is off by from B f, which is an error of the first step. T's
+ * eigenvectors are there. */
+static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y,
+                                 double given) {
     double f[HDI_SILAN_MAX], most[HDI_SILAN_MAX], slope[HDI_SILAN_MAX], sum = 0, size = 0;
     const double tau = t / z->g, root = hdi_ratio_root(z->m->lap);
     int32_t i, j, k;
@@ -16199,20 +16399,27 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
         size += fabs(y[i]);
     }
     for (k = 2; k <= HDI_SILAN_POINTS; k += 2) {
-        const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS)), at = s * s, fa = hdi_silan_decay(at, tau);
+        const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS)), at = s * s;
+        const double fa = hdi_silan_decay(at, tau);
         for (i = 0; i < m; i++) slope[i] = z->vectors[i] * hdi_silan_slope(z->mu[i], f[i], at, fa, tau);
-        for (j = 0; j < m; j++) most[j] = hdi_max(most[j], fabs(hdi_dot(z->vectors + HDI_CAST(int64_t, j) * m, slope, m)));
+        for (j = 0; j < m; j++)
+            most[j] = hdi_max(most[j], fabs(hdi_dot(z->vectors + HDI_CAST(int64_t, j) * m, slope, m)));
     }
     for (j = 0; j < m; j++) {
-        const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, which makes the next right-hand side */
-        const double step = root * (hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]) + product) + 4 * DBL_EPSILON * (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
+        /* of B w, which makes the next right-hand side */
+        const double product = z->m->lap->B ? z->noise[j][r] : 0;
+        const double step = root *
+                            (hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]) + product) +
+                            4 * DBL_EPSILON *
+                            (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
         sum += 1.5 * most[j] * step;
     }
     return z->f_norm[r] * sum + 1.5 * most[0] * given + m * DBL_EPSILON * size;
 }
 
 /* The answer of right-hand side r at time t into its lane: constants and the basis' part. */
-static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drift, hdi_lane *lane, hd_error *e) {
+static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drift, hdi_lane *lane,
+                                  hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int32_t m = z->done[r], n = lap->n_active;
     double y[HDI_SILAN_MAX], bound = 0, size, *HDI_RESTRICT u = lane->u;
@@ -16223,7 +16430,8 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
     lane->rounding = HD_EVIDENCE_MEASURED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
-        if (hdi_silan_coefficients(z, r, m, t, y, e) < 0 || hdi_silan_bound(z, r, m, t, &bound, &size, e) < 0) return e->status;
+        if (hdi_silan_coefficients(z, r, m, t, y, e) < 0 || hdi_silan_bound(z, r, m, t, &bound, &size, e) < 0)
+            return e->status;
         for (begin = 0; begin < n; begin += 1024) {   /* rows in blocks that stay in cache */
             const int64_t end = begin + 1024 < n ? begin + 1024 : n;
             for (j = 0; j < m; j++) {
@@ -16242,15 +16450,16 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
 }
 
 /* ==== [24] ground ====
- * Owns L with one vertex of each component held at zero: its inverse, for distances without a time, and a bound of the
- * smallest eigenvalue that is not zero. May call [22]. */
+ * Owns L with one vertex of each component held at zero: its inverse, for distances without a time, and a
+ * bound of the smallest eigenvalue that is not zero. May call [22]. */
 
 /* L with one vertex of each component held at zero. All by rows in elimination order. */
 typedef struct hdi_ground {
     hdi_factor factor;
     char *held;                  /* [n] */
     double *diag, *mean, *form;  /* [n] of G; G b; of G B G less the means' part, when formed */
-    double *trace;               /* [n_components] at least 1/lambda for the smallest eigenvalue that is not zero */
+    /* [n_components] at least 1/lambda for the smallest eigenvalue that is not zero */
+    double *trace;
     double largest_trace;
     double *mean_off;            /* [n_components] G b is off by at most sqrt(G_vv) times this */
     int32_t formed;
@@ -16259,9 +16468,9 @@ typedef struct hdi_ground {
 /* ---- the pair grounded ---- */
 /* With one vertex of each component held at zero L has an inverse G, and
  *     commute time  d^2 = (e_i - e_j)' G (e_i - e_j),     biharmonic  d^2 = |P G (e_i - e_j)|_B^2,
- * P taking out the mean of each component: exactly, and whatever the spectrum. diag(G) comes by selected inversion; that of
- * G B G is minus the derivative of diag((L + s B)^-1) at s = 0, which an imaginary s gives without cancellation.
- * This part is based on
+ * P taking out the mean of each component: exactly, and whatever the spectrum. diag(G) comes by selected
+ * inversion; that of G B G is minus the derivative of diag((L + s B)^-1) at s = 0, which an imaginary s gives
+ * without cancellation. This part is based on
  *   W. Squire, G. Trapp, Using complex variables to estimate derivatives of real functions, 1998
  * Components whose rows of L do not sum to zero are not held: there L has an inverse of its own. */
 
@@ -16284,12 +16493,15 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
             sum += lap->L.val[p];
             size += fabs(lap->L.val[p]);
         }
-        if (fabs(sum) > HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) * DBL_EPSILON * size) loose[lap->component[i]] = 0;
+        if (fabs(sum) > hdi_row_terms(lap, i) * DBL_EPSILON * size)
+            loose[lap->component[i]] = 0;
     }
 }
 
-/* L with the rows and columns held replaced by those of the identity, by entries of the source; imaginary: its B times that, or 0. */
-static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double imaginary, double *real, hd_c64 *z) {
+/* L with the rows and columns held replaced by those of the identity, by entries of the source; imaginary:
+ * its B times that, or 0. */
+static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double imaginary, double *real,
+                              hd_c64 *z) {
     const hd_laplacian *lap = m->source;
     int32_t i;
     int64_t p;
@@ -16297,29 +16509,12 @@ static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double ima
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const int32_t j = lap->L.col[p];
             const int held = g->held[m->lap->row[lap->vertex[i]]] || g->held[m->lap->row[lap->vertex[j]]];
-            const double l = held ? i == j : lap->L.val[p], b = held ? 0 : lap->B ? lap->B[p] : i == j ? lap->mass[i] : 0;
+            const double l = held ? i == j : lap->L.val[p];
+            const double b = held ? 0 : lap->B ? lap->B[p] : i == j ? lap->mass[i] : 0;
             if (real) real[p] = l;
             else z[p] = hdi_c(l, imaginary * b);
         }
     }
-}
-
-/* out [n] += the diagonal of the inverse, by pivots, its part c times unit. */
-static hd_status hdi_ground_diagonal(const hdi_elim *m, hdi_factor *f, int c, double unit, double *out, hd_error *e) {
-    double coef[HDI_PACK];
-    hdi_inverse z;
-    memset(coef, 0, sizeof coef);
-    coef[c] = unit;
-    if (hdi_inverse_make(&z, &m->sym, f->width, m->ctx, e) < 0) return e->status;
-    memset(out, 0, HDI_CAST(size_t, m->sym.n) * sizeof *out);
-    z.coef = coef;
-    z.n_sets = 1;
-    z.wanted = HDI_WANT_DIAGONAL;
-    z.values = out;
-    z.stride = m->sym.n;
-    (void)hdi_inverse_run(&z, f, e);
-    hdi_inverse_free(&z, m->ctx);
-    return e->status;
 }
 
 /* x = G x; rows held are zero in both. work: a sweep's. */
@@ -16332,17 +16527,18 @@ static void hdi_ground_solve(const hdi_elim *m, const hdi_ground *g, double *x, 
     hdi_sweep_run(&z, m->ctx);
 }
 
-/* r = b - L x on the rows not held, by differences x_j - x_i: rows of L sum to zero but for `rest`, and neighbours are much
- * alike, so that next to nothing is lost. x as it stands for G b is then off by at most sqrt(G_vv) times off of v's component: for
- * |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i| sqrt(G_ii))^2. extra: as much more in each |r_i|, or NULL. off
- * [n_components], or NULL. */
-static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const double *b, const double *x, const double *extra, double *r, double *off) {
+/* r = b - L x on the rows not held, by differences x_j - x_i: rows of L sum to zero but for `rest`, and
+ * neighbours are much alike, so that next to nothing is lost. x as it stands for G b is then off by at most
+ * sqrt(G_vv) times off of v's component: for |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i|
+ * sqrt(G_ii))^2. extra: as much more in each |r_i|, or NULL. off [n_components], or NULL. */
+static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const double *b, const double *x,
+                                const double *extra, double *r, double *off) {
     const hd_laplacian *lap = m->lap;
     int32_t i;
     int64_t p;
     if (off) memset(off, 0, HDI_CAST(size_t, lap->n_components) * sizeof *off);
     for (i = 0; i < lap->n_active; i++) {
-        const double c = (HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) + 4) * DBL_EPSILON;
+        const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
         double size = fabs(b[i]), rest = 0;
         r[i] = b[i];
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && !g->held[i]; p++) {
@@ -16354,12 +16550,15 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
         if (g->held[i]) r[i] = 0;
         else if (!lap->conserves) r[i] -= rest * x[i];
         size += lap->conserves ? 0 : fabs(rest * x[i]);
-        if (!g->held[i] && off) off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) * sqrt(hdi_max(0, g->diag[i]));
+        if (!g->held[i] && off)
+            off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) *
+                sqrt(hdi_max(0, g->diag[i]));
     }
 }
 
 /* x = G b, solved, then once more for what is left; off as above. r [n], sweep: work. */
-static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra, double *x, double *off, double *r, double *sweep) {
+static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra,
+                               double *x, double *off, double *r, double *sweep) {
     int32_t i;
     memcpy(x, b, HDI_CAST(size_t, m->sym.n) * sizeof *x);
     hdi_ground_solve(m, g, x, sweep);
@@ -16373,6 +16572,7 @@ static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const dou
 static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const hd_laplacian *lap = m->lap;
+    const double one = 1;
     const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
     double *val;
     char *loose;
@@ -16398,7 +16598,8 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
         hdi_ground_values(m, g, 0, val, NULL);
         memset(&v, 0, sizeof v);
         v.real = val;
-        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 && hdi_ground_diagonal(m, &g->factor, 0, 1, g->diag, e) >= 0) {
+        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 &&
+            hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, e) >= 0) {
             if (g->factor.all.negative) hdi_not_semidefinite(e);
             for (i = 0; i < lap->n_active; i++) {
                 double size = lap->B ? 0 : lap->mass[i];
@@ -16418,7 +16619,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const hd_laplacian *lap = m->lap;
     const double step = g->largest_trace > 0 ? 1e-9 / g->largest_trace : 1;
-    double *work, *b;
+    double *work, *b, coef[HDI_PACK] = {0};
     char *loose;
     hdi_factor pack;
     hdi_values v;
@@ -16433,7 +16634,8 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
         hdi_ground_values(m, g, step * m->scale, NULL, val);
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
-        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_ground_diagonal(m, &pack, 4, -1 / step, g->form, e);
+        coef[4] = -1 / step;                     /* the first one's imaginary part */
+        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, e);
         hdi_factor_free(&pack);
     }
     if (e->status < 0) return hdi_scope_end(&s);
@@ -16442,19 +16644,23 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_ground_components(lap, loose);
     for (i = 0; i < lap->n_active; i++) {
         if (!loose[lap->component[i]]) g->mean[i] = 0;   /* nothing to take out */
-        g->form[i] = g->held[i] ? 0 : hdi_max(0, g->form[i] - g->mean[i] * g->mean[i] / lap->component_mass[lap->component[i]]);
+        g->form[i] = g->held[i] ? 0
+                     : hdi_max(0,
+                               g->form[i] - g->mean[i] * g->mean[i] / lap->component_mass[lap->component[i]]);
     }
     g->formed = 1;
     return hdi_scope_end(&s);
 }
 
-/* Column `row` of G, or with forms of P' G B G P, into u [n]; its error at v is at most sqrt(G_vv) times what is returned.
- * work: hdi_ground_room. */
-static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t row, int forms, double *u, double *work) {
+/* Column `row` of G, or with forms of P' G B G P, into u [n]; its error at v is at most sqrt(G_vv) times what
+ * is returned. work: hdi_ground_room. */
+static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t row, int forms, double *u,
+                                double *work) {
     const hd_laplacian *lap = m->lap;
     const int32_t n = lap->n_active, c = lap->component[row];
     const double mass = lap->component_mass[c], ws = forms ? g->mean[row] : 0, trace = g->trace[c];
-    double *b = work, *y = b + n, *extra = y + n, *r = extra + n, *by = r + n, *sweep = by + lap->n_components, off;
+    double *b = work, *y = b + n, *extra = y + n, *r = extra + n, *by = r + n;
+    double *sweep = by + lap->n_components, off;
     int32_t i;
     int64_t p;
     for (i = 0; i < n; i++) b[i] = i == row && !g->held[i];
@@ -16468,7 +16674,7 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t 
             size += fabs(lap->B[p] * u[lap->L.col[p]]);
         }
         b[i] = g->held[i] ? 0 : sum;
-        extra[i] = (HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) + 2) * DBL_EPSILON / 8 * size;
+        extra[i] = (hdi_row_terms(lap, i) + 2) * DBL_EPSILON / 8 * size;
     }
     hdi_ground_refined(m, g, b, extra, y, by, r, sweep);
     for (i = 0; i < n; i++) u[i] = y[i] - (lap->component[i] == c ? ws * g->mean[i] / mass : 0);
@@ -16476,28 +16682,31 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t 
 }
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
-    return 4 * HDI_CAST(uint64_t, m->sym.n) + HDI_CAST(uint64_t, m->lap->n_components) + hdi_sweep_size(&m->sym, 1, 1, 1);
+    return 4 * HDI_CAST(uint64_t, m->sym.n) + HDI_CAST(uint64_t, m->lap->n_components) +
+           hdi_sweep_size(&m->sym, 1, 1, 1);
 }
 
 /* ==== [25] plan ====
- * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors and bases that are kept, the run of
- * a request, and the report. May call [24] and [23].
+ * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors and bases that are
+ * kept, the run of a request, and the report. May call [24] and [23].
  * This work is based on
- *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013, eqs. (8), (9)
- * Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver). The constants of each
- * component are carried exactly, so that uniform sets conserve heat too. */
+ *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013, eqs.
+ * (8), (9) Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver). The
+ * constants of each component are carried exactly, so that uniform sets conserve heat too. */
 
 #define HDI_ROUNDING_LIMIT 1e-7              /* the direct method's own error by default is 3e-8 */
 
 struct hd_heat {
     hd_context *ctx;
     const hd_laplacian *source;  /* the caller's */
-    double scale;                /* what B, and with it t, is multiplied by in the two copies below, each made when it is first needed */
+    /* what B, and with it t, is multiplied by in the two copies below, each made when it is first needed */
+    double scale;
     hd_heat_opts opts;           /* resolved, perm and rational copied */
     int32_t *perm;
     int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
     int32_t exacting;            /* a tol below the default is asked for: sets of the highest degree */
-    double limit;                /* of rounding relative to the answer, above which the status warns: tol, or by default */
+    /* of rounding relative to the answer, above which the status warns: tol, or by default */
+    double limit;
     uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
@@ -16512,14 +16721,15 @@ struct hd_heat {
     hdi_lane lane[HDI_LANES];    /* work arrays, kept from call to call */
     double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
-    double drift;                /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
+    /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
+    double drift;
     int64_t version;             /* of the Laplacian that all this is made of */
     int64_t *fill;               /* [n_active] work of a renewal, made at the first */
     double *sums;                /* [2 n_components] work */
 };
 
-/* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm, and by that of
- * B + tL with reach, a bound of diag((B + tL)^-1), where that is at hand (else NULL). */
+/* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm,
+ * and by that of B + tL with reach, a bound of diag((B + tL)^-1), where that is at hand (else NULL). */
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
     double smallest_b = HUGE_VAL, largest_g = 0, *touched = lane->spare_sums;
     hdi_parts by_b;
@@ -16537,9 +16747,10 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
 
-/* Adds the numbers of one field to the report, where the worst stays. ledger: a new one, or NULL when single values are noted
- * elsewhere. */
-static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger, const double *reach, int own, hd_report *rep) {
+/* Adds the numbers of one field to the report, where the worst stays. ledger: a new one, or NULL when single
+ * values are noted elsewhere. */
+static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
+                           const double *reach, int own, hd_report *rep) {
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
@@ -16556,10 +16767,13 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
         hdi_bound_judge(rep->error_bound_b, rep);
-        hdi_evidence_worst(&rep->evidence_b, hdi_max(ledger->known.rational, hdi_max(ledger->known.solver, ledger->known.rounding)));
+        hdi_evidence_worst(&rep->evidence_b,
+                           hdi_max(ledger->known.rational,
+                                   hdi_max(ledger->known.solver, ledger->known.rounding)));
     }
     rep->residual = hdi_max(rep->residual, lane->residual);
-    if (lap->conserves && !own && heat_abs > 0) rep->mass_drift = hdi_max(rep->mass_drift, fabs(heat - heat_in) / heat_abs);
+    if (lap->conserves && !own && heat_abs > 0)
+        rep->mass_drift = hdi_max(rep->mass_drift, fabs(heat - heat_in) / heat_abs);
 }
 
 /* Gershgorin: every eigenvalue of B^-1 L is below this. A guess where b_ratio is not known: it serves for
@@ -16635,7 +16849,8 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
-    heat->fam.solver = heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES ? heat->opts.solver : HD_SOLVER_COCG;
+    heat->fam.solver = heat->opts.solver == HD_SOLVER_COCR ||
+                       heat->opts.solver == HD_SOLVER_MINRES ? heat->opts.solver : HD_SOLVER_COCG;
     heat->fam.precond = heat->opts.precond;
     heat->fam.max_iterations = heat->opts.max_iterations;
     return e->status;
@@ -16644,7 +16859,8 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
 /* The copy of the pair in elimination order, analysed. */
 static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
     if (heat->elim.ctx) return HD_OK;
-    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, heat->perm, heat->scale, heat->ctx, e);
+    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, heat->perm, heat->scale, heat->ctx,
+                         e);
 }
 
 /* Checks a right-hand side. *exponent: its largest part is between 2^(exponent - 1) and 2^exponent. */
@@ -16653,7 +16869,8 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         if (!hdi_cfinite(rhs[v]))
-            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v,
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite",
+                                v,
                                 -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
         if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
     }
@@ -16662,8 +16879,8 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
 }
 
 /* One system with a plan made for it. */
-static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x, double tol, hd_solve_report *report,
-                                   hd_error *e) {
+static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
+                                   double tol, hd_solve_report *report, hd_error *e) {
     const hd_laplacian *lap;
     hdi_lane *lane = heat->lane;
     hdi_krylov *k = lane->k;
@@ -16673,7 +16890,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     double b_norm;
     int32_t i, v;
     int exponent, unit;
-    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0 || hdi_heat_iterative(heat, e) < 0) return e->status;
+    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0 || hdi_heat_iterative(heat, e) < 0)
+        return e->status;
     lap = heat->lap;
     memset(&watch, 0, sizeof watch);
     memset(&set, 0, sizeof set);
@@ -16682,22 +16900,30 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     watch.stage = "solve";
     set.n_poles = 1;
     set.theta[0] = theta;
-    if (hdi_family_set(&heat->fam, &set, t * heat->scale, e) < 0 || hdi_lane_make(lane, lap, heat->ctx, e) < 0) return e->status;
+    if (hdi_family_set(&heat->fam, &set, t * heat->scale, e) < 0 ||
+        hdi_lane_make(lane, lap, heat->ctx, e) < 0)
+        return e->status;
     if (hdi_lane_systems(lane, &heat->fam, e) < 0) return e->status;
     if (hdi_family_fill(&heat->fam, lane->vectors, hdi_lane_stride(&heat->fam), e) < 0) return e->status;
     for (i = 0; i < lap->n_active; i++) {        /* near one, so that no norm underflows or overflows */
         const hd_c64 r = rhs[lap->vertex[i]];
         lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
     }
-    frexp(heat->scale, &unit);                   /* the answer is in units of the right-hand side's, times those of B */
+    /* the answer is in units of the right-hand side's, times those of B */
+    frexp(heat->scale, &unit);
     unit += exponent - 1;
     b_norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
     memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
-    if (lap->conserves) {                        /* constants apart: b - B mean(b), and mean(b)/theta to the solution */
-        for (i = 0; i < lap->n_active; i++) k->sums[lap->component[i]] = hdi_cadd(k->sums[lap->component[i]], lane->b[i]);
-        for (i = 0; i < lap->n_components; i++) k->sums[i] = hdi_cscale(1 / lap->component_mass[i], k->sums[i]);
-        for (i = 0; i < lap->n_active; i++) lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], k->sums[lap->component[i]]));
-        for (v = 0; v < lap->n; v++) x[v] = lap->row[v] >= 0 ? hdi_cdiv(k->sums[lap->component[lap->row[v]]], theta) : hdi_c(0, 0);
+    /* constants apart: b - B mean(b), and mean(b)/theta to the solution */
+    if (lap->conserves) {
+        for (i = 0; i < lap->n_active; i++)
+            k->sums[lap->component[i]] = hdi_cadd(k->sums[lap->component[i]], lane->b[i]);
+        for (i = 0; i < lap->n_components; i++)
+            k->sums[i] = hdi_cscale(1 / lap->component_mass[i], k->sums[i]);
+        for (i = 0; i < lap->n_active; i++)
+            lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], k->sums[lap->component[i]]));
+        for (v = 0; v < lap->n; v++)
+            x[v] = lap->row[v] >= 0 ? hdi_cdiv(k->sums[lap->component[lap->row[v]]], theta) : hdi_c(0, 0);
     } else {
         for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
     }
@@ -16705,7 +16931,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     status = hdi_krylov_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
     for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
     if (report) {
-        const double error = hdi_pole_error(k), norm = sqrt(hdi_b_norm2_complex(lap, k->x, lane->tmp)) - error;
+        const double error = hdi_pole_error(k);
+        const double norm = sqrt(hdi_b_norm2_complex(lap, k->x, lane->tmp)) - error;
         report->iterations = k->iterations;
         report->residual = b_norm > 0 ? k->r_norm / b_norm : 0;
         report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
@@ -16714,24 +16941,28 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     for (v = 0; v < lap->n; v++) {
         x[v] = hdi_c(ldexp(x[v].re, unit), ldexp(x[v].im, unit));
         if (!hdi_cfinite(x[v]) && e->status >= 0)
-            hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1, x[v].re);
+            hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1,
+                         x[v].re);
     }
     return e->status;
 }
 
-/* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and its steps are few: a step reads L once and
- * streams about ten vectors, and stores one; through the poles a step reads as much five times over, in complex. */
+/* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and its steps are
+ * few: a step reads L once and streams about ten vectors, and stores one; through the poles a step reads as
+ * much five times over, in complex. */
 static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
     const hd_heat_opts *o = &heat->opts;
     const double steps = 1.2 * sqrt(t * heat->lambda_max) + 10;
     if (o->solver) return o->solver;
-    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B) return HD_SOLVER_COCG;
+    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B)
+        return HD_SOLVER_COCG;
     return steps <= 400 ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
 typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
 
-/* Single entries of the kernel, sorted by their column: item q is order[begin[q]] to order[begin[q + 1] - 1]. */
+/* Single entries of the kernel, sorted by their column: item q is order[begin[q]] to order[begin[q + 1] -
+ * 1]. */
 typedef struct hdi_entry_list {
     hdi_pair *order;             /* [n] key: the column; id: which entry */
     int64_t *begin;              /* [k + 1] */
@@ -16774,15 +17005,18 @@ typedef struct hdi_heat_call {
     int32_t relative;            /* the report has errors relative to each value too */
     int32_t deflated;            /* direct: right-hand sides are without their constants */
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
-    double still;                /* t = 0 stands for a t so small that K_t f is f to rounding; |K_t - 1| <= this */
+    /* t = 0 stands for a t so small that K_t f is f to rounding; |K_t - 1| <= this */
+    double still;
     int32_t equal;               /* t is so large that each component has its mean */
-    double *off_b, *off_m;       /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
+    /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
+    double *off_b, *off_m;
     hdi_lane *lane;              /* [HDI_LANES], the plan's */
     int32_t n_lanes, batch;      /* lanes that exist; first item in lane 0 */
     int32_t stop;
 } hdi_heat_call;
 
-/* t for the scaled pair. Where that is beyond all doubles anything as large does, and as small where it vanishes. */
+/* t for the scaled pair. Where that is beyond all doubles anything as large does, and as small where it
+ * vanishes. */
 static double hdi_heat_scaled(const hd_heat *heat, double t) {
     return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
 }
@@ -16796,14 +17030,14 @@ static void hdi_heat_measure_pair(hd_heat *heat) {
     heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
 }
 
-/* Brings the copies of the pair up to date after an update of the Laplacian. Orderings, analyses and all room stay; what
- * depends on values is made again when it is needed. */
+/* Brings the copies of the pair up to date after an update of the Laplacian. Orderings, analyses and all room
+ * stay; what depends on values is made again when it is needed. */
 static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     hdi_elim *m = &heat->elim;
     int32_t i;
     if (heat->version == lap->version) return HD_OK;
-    if (!heat->fill) heat->fill = HDI_CAST(int64_t *, hdi_alloc(heat->ctx, HDI_CAST(uint64_t, lap->n_active), sizeof(int64_t), e));
+    if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill) return e->status;
     hdi_heat_measure_pair(heat);
     if (m->ctx) {
@@ -16826,7 +17060,8 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     return HD_OK;
 }
 
-static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, hd_report *report, hd_error *err) {
+static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, hd_report *report,
+                                hd_error *err) {
     memset(h, 0, sizeof *h);
     h->rep = report ? report : &h->own_report;
     memset(h->rep, 0, sizeof *h->rep);
@@ -16850,9 +17085,10 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 /* Seconds that methods would take at rates one core has been seen to reach, and the bytes they would hold. */
 typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov_bytes; } hdi_cost;
 
-/* Rates: flops of packs, with seconds per non-zero for what small fronts cost besides, and of real fronts; bytes per second of sweeps; seconds per
- * non-zero of a step of Lanczos (with what looks at its bound cost, per step squared) and of COCG; per row of an ordering with its analysis.
- * Measured on meshes of 36K to 1M vertices. */
+/* Rates: flops of packs, with seconds per non-zero for what small fronts cost besides, and of real fronts;
+ * bytes per second of sweeps; seconds per non-zero of a step of Lanczos (with what looks at its bound cost,
+ * per step squared) and of COCG; per row of an ordering with its analysis. Measured on meshes of 36K to 1M
+ * vertices. */
 #define HDI_RATE_PACK 70e9
 #define HDI_ENTRY_PACK 12e-9
 #define HDI_RATE_REAL 25e9
@@ -16862,21 +17098,26 @@ typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov
 #define HDI_STEP_COCG 4e-9
 #define HDI_ROW_ANALYSIS 0.8e-6
 
-/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops; where rows are wider than 10 so much more of the former and its square
- * of the latter (point sets with 233 and 117 a row, 20 to 150 thousand: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5). */
+/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops; where rows are
+ * wider than 10 so much more of the former and its square of the latter (point sets with 233 and 117 a row,
+ * 20 to 150 thousand: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5). */
 static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     const hdi_symbolic *s = heat->elim.ctx ? &heat->elim.sym : NULL;
-    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->ask.k, hh = heat->source->h * heat->source->h * heat->scale;
+    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->ask.k;
+    const double hh = heat->source->h * heat->source->h * heat->scale;
     const double wide = hdi_max(1, entries / (10 * n));
-    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide, flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
+    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide;
+    const double flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
     const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide;
     const double real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n * wide;
     const double analysis = s ? 0 : HDI_ROW_ANALYSIS * n * wide;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
-    const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4, packs = pairs > 4 ? (pairs + 3) / 4 : 1;
-    const double span = h->times[h->n_times - 1] / h->times[0], windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
+    const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4;
+    const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
+    const double span = h->times[h->n_times - 1] / h->times[0];
+    const double windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
     const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
     double one, factor;
     hdi_cost c;
@@ -16888,13 +17129,20 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
             one = 1.2 * sqrt(t * heat->lambda_max) + 10;
             one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
         } else {
-            one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) * (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
+            one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) *
+                  (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
         }
         c.iterative += k * one;
     }
-    c.krylov = analysis + windows * flops / HDI_RATE_REAL + k * windows * steps * (16 * nnz + 100 * n) / HDI_RATE_SWEEP + k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
-    factor = packs * (16 * flops / HDI_RATE_PACK + HDI_ENTRY_PACK * nnz) + (poles % 4 == 1 ? flops / HDI_RATE_REAL : 0);
-    c.direct = analysis + h->n_times * (factor + k * packs * (64 * nnz + 400 * n) / (k > 1 ? 1.6 * HDI_RATE_SWEEP : 0.6 * HDI_RATE_SWEEP));
+    c.krylov = analysis + windows * flops / HDI_RATE_REAL +
+               k * windows * steps * (16 * nnz + 100 * n) / HDI_RATE_SWEEP +
+               k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
+    factor = packs * (16 * flops / HDI_RATE_PACK + HDI_ENTRY_PACK * nnz) +
+             (poles % 4 == 1 ? flops / HDI_RATE_REAL : 0);
+    c.direct = analysis +
+               h->n_times *
+               (factor +
+                k * packs * (64 * nnz + 400 * n) / (k > 1 ? 1.6 * HDI_RATE_SWEEP : 0.6 * HDI_RATE_SWEEP));
     if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= factor;
     c.direct_bytes = 64 * packs * stored + 200 * n + 8 * real_stored;
     c.krylov_bytes = 8 * real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
@@ -16905,11 +17153,13 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     return c;
 }
 
-/* By the model, or as asked. The analysis is made only when iterating does not win against the least that a factorisation could cost. */
+/* By the model, or as asked. The analysis is made only when iterating does not win against the least that a
+ * factorisation could cost. */
 static hd_status hdi_heat_pick(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const hd_context *ctx = heat->ctx;
-    const double room = ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
+    const double room = ctx->byte_limit
+                        ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
     hdi_cost c;
     int no_direct, no_krylov;
     h->method = heat->opts.method;
@@ -16924,20 +17174,24 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     }
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     c = hdi_heat_cost(h);
-    if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) && hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
+    if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) &&
+        hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
         if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
         c = hdi_heat_cost(h);
     }
     no_direct = c.direct_bytes > room;
     no_krylov = c.krylov_bytes > room || heat->poles_asked;
     h->method = HD_METHOD_ITERATIVE;
-    h->rep->reason = no_direct && c.krylov_bytes > room ? "factors would not fit the byte limit" : "iterations cost less than a factorisation";
+    h->rep->reason = "iterations cost less than a factorisation";
+    if (no_direct && c.krylov_bytes > room) h->rep->reason = "factors would not fit the byte limit";
     if (!no_krylov && c.krylov < c.iterative && (no_direct || c.krylov <= c.direct)) {
         h->method = HD_METHOD_KRYLOV;
-        h->rep->reason = h->n_times > 1 ? "one real factor serves many times" : "few columns: one real factor costs less than those of the poles";
+        h->rep->reason = "few columns: one real factor costs less than those of the poles";
+        if (h->n_times > 1) h->rep->reason = "one real factor serves many times";
     } else if (!no_direct && c.direct < c.iterative) {
         h->method = HD_METHOD_DIRECT;
-        h->rep->reason = h->ask.k > 1 ? "many columns: solves with the factors of the poles cost least" : "the factors of the poles cost least";
+        h->rep->reason = "the factors of the poles cost least";
+        if (h->ask.k > 1) h->rep->reason = "many columns: solves with the factors of the poles cost least";
     }
     return HD_OK;
 }
@@ -16952,7 +17206,8 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
 /* Is t (scaled) so large that nothing is left but the means of the components? 1, 0, or an error. */
 static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
     if (!heat->source->conserves || heat->opts.rational || t * heat->lambda_max < HDI_EQUAL_FROM) return 0;
-    if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0) return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
+    if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0)
+        return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
     if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* not to be told: go on as ever */
     return 0;
 }
@@ -16960,7 +17215,8 @@ static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
 /* The method, its copy of the pair, and what of the report is known by now. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {   /* |exp(-t lambda) - 1| <= t lambda */
+    /* |exp(-t lambda) - 1| <= t lambda */
+    if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {
         h->still = h->t * heat->lambda_max;
         h->t = 0;
     }
@@ -16981,9 +17237,11 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         if (h->e->status < 0) return h->e->status;
     }
     h->rep->method = h->method;
-    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t) : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
+    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t)
+                : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
     h->rep->solver = h->solver;
-    h->rep->precond = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS ? heat->opts.precond : HD_PRECOND_NONE;
+    h->rep->precond = h->method == HD_METHOD_ITERATIVE &&
+                      h->solver != HD_SOLVER_LANCZOS ? heat->opts.precond : HD_PRECOND_NONE;
     return HD_OK;
 }
 
@@ -17005,16 +17263,19 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
     hdi_component_sums(lap, NULL, lane->rhs, lane->target);
 }
 
-/* Degree of a uniform set: even ones, as an odd one costs as much as the next; the first whose error is 1e-9 of the least that the
- * answer can be, which is what its constants amount to. */
+/* Degree of a uniform set: even ones, as an odd one costs as much as the next; the first whose error is 1e-9
+ * of the least that the answer can be, which is what its constants amount to. */
 static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
     hd_rational set;
     hd_error e;
     double least = 0;
     int32_t c, r;
-    for (c = 0; c < lap->n_components && lap->conserves; c++) least += lane->target[c] * lane->target[c] / lap->component_mass[c];
+    for (c = 0; c < lap->n_components && lap->conserves; c++)
+        least += lane->target[c] * lane->target[c] / lap->component_mass[c];
     for (r = 8; r < HDI_RAT_UNIFORM_MAX; r = !direct ? r + 2 : r == 8 ? 9 : HDI_RAT_UNIFORM_MAX)
-        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= (direct ? 2e-9 : 1e-9) * sqrt(least)) break;
+        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK &&
+            set.max_error * lane->f_norm <= (direct ? 2e-9 : 1e-9) * sqrt(least))
+            break;
     return r;
 }
 
@@ -17024,13 +17285,16 @@ static hd_status hdi_fields_check(const hdi_heat_call *h) {
     for (q = 0; q < h->ask.k; q++) {
         const double *f = h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf;
         for (v = 0; v < h->heat->source->n; v++)
-            if (!hdi_finite(f[v])) return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v, q, f[v]);
+            if (!hdi_finite(f[v]))
+                return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v,
+                                    q, f[v]);
     }
     return HD_OK;
 }
 
 static int32_t hdi_heat_source(const hdi_heat_call *h, int32_t q) {
-    return h->ask.sources ? h->ask.sources[q] : HDI_CAST(int32_t, h->ask.list->order[h->ask.list->begin[q]].key);
+    return h->ask.sources ? h->ask.sources[q]
+           : HDI_CAST(int32_t, h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
 /* Brings fields whose squares could leave the range of doubles near one, by a power of two. */
@@ -17045,15 +17309,17 @@ static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
     for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
 
-/* What rounding does to B f for a full B, in the B norm after B^-1. Much where f lies along B's small eigenvectors. */
+/* What rounding does to B f for a full B, in the B norm after B^-1. Much where f lies along B's small
+ * eigenvectors. */
 static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     double sum = 0;
     int32_t i;
     int64_t p;
     for (i = 0; i < lap->n_active && lap->B; i++) {
         double size = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) size += fabs(lap->B[p] * f[lap->L.col[p]]);
-        size *= HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) * DBL_EPSILON / 2;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            size += fabs(lap->B[p] * f[lap->L.col[p]]);
+        size *= hdi_row_terms(lap, i) * DBL_EPSILON / 2;
         sum += size * size / lap->b_diag[i];
     }
     return sum > 0 ? sqrt(sum) * hdi_ratio_root(lap) : 0;
@@ -17086,11 +17352,14 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         if (h->ask.query == HDI_QUERY_OPERATOR) {
             int64_t p;
             lane->f[row] = 1;
-            for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++) lane->rhs[lap->L.col[p]] = lap->B[p];   /* B e_row */
+            /* B e_row */
+            for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++)
+                lane->rhs[lap->L.col[p]] = lap->B[p];
             if (!lap->B) lane->rhs[row] = lap->mass[row];
         } else {
             lane->rhs[row] = 1;
-            if (h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && lap->b_ratio > 0) {   /* B^-1 e is not needed, only a bound of its norm */
+            /* B^-1 e is not needed, only a bound of its norm */
+            if (h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && lap->b_ratio > 0) {
                 hdi_component_sums(lap, NULL, lane->rhs, lane->target);
                 lane->f_norm = 1 / sqrt(lap->b_ratio * lap->b_diag[row]);
                 return HD_OK;
@@ -17099,7 +17368,8 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         }
     }
     hdi_heat_measure(lap, lane);
-    if (h->ask.query == HDI_QUERY_SYMMETRIC && lap->B) lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
+    if (h->ask.query == HDI_QUERY_SYMMETRIC && lap->B)
+        lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
     return HD_OK;
 }
 
@@ -17122,7 +17392,8 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         memset(&off, 0, sizeof off);
         values[at.id] = row < 0 ? 0 : unit * lane->u[row];
         if (lane->skip) values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && HDI_CAST(uint64_t, v) == at.key;
-        if (!lane->skip && row >= 0) off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
+        if (!lane->skip && row >= 0)
+            off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
 }
@@ -17147,11 +17418,13 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
         u[lap->vertex[i]] = lane->exponent ? ldexp(lane->u[i], lane->exponent) : unit * lane->u[i];
 }
 
-/* The degree of a uniform set that serves all fields; columns, whose constants are known to be small, get the highest. */
+/* The degree of a uniform set that serves all fields; columns, whose constants are known to be small, get the
+ * highest. */
 static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
     int32_t q, r;
     *degree = h->ask.query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
-    if (h->ask.query == HDI_QUERY_FIELD && hdi_lane_make(h->lane, h->lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    if (h->ask.query == HDI_QUERY_FIELD && hdi_lane_make(h->lane, h->lap, h->heat->ctx, h->e) < 0)
+        return h->e->status;
     for (q = 0; q < h->ask.k && h->ask.query == HDI_QUERY_FIELD; q++) {
         if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
         r = hdi_uniform_degree(h->lap, h->lane, h->method == HD_METHOD_DIRECT);
@@ -17163,13 +17436,17 @@ static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
 /* The pole set of this call. */
 static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
-    const hd_pole_kind kind = o->poles ? o->poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
-    int32_t degree = o->degree ? o->degree : h->degree ? h->degree : h->heat->exacting ? HDI_RAT_KERNEL_MAX : h->method == HD_METHOD_DIRECT ? 9 : 10;   /* four pairs fill a pack, a real pole costs little */
+    const hd_pole_kind kind = o->poles ? o->poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM
+                              : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
+    /* four pairs fill a pack, a real pole costs little */
+    int32_t degree = o->degree ? o->degree : h->degree ? h->degree : h->heat->exacting ? HDI_RAT_KERNEL_MAX
+                     : h->method == HD_METHOD_DIRECT ? 9 : 10;
     if (h->set || o->rational) {
         *set = h->set ? *h->set : *o->rational;
         return HD_OK;
     }
-    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0) return h->e->status;
+    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0)
+        return h->e->status;
     return hdi_rational_get(set, kind, degree, h->e);
 }
 
@@ -17178,7 +17455,8 @@ static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
     task.lap = heat->lap;
     task.weight = heat->weight;
     task.noise = heat->noise;
-    task.t = heat->lambda_max > 0 ? hdi_min(t, 1e100 / heat->lambda_max) : t;   /* beyond, all that moves is gone */
+    /* beyond, all that moves is gone */
+    task.t = heat->lambda_max > 0 ? hdi_min(t, 1e100 / heat->lambda_max) : t;
     task.tol = heat->opts.tol;
     task.drift = heat->drift;
     task.max_iterations = heat->opts.max_iterations;
@@ -17200,7 +17478,9 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     lane->status = hdi_watch_look(&watch, 0, &lane->error);
     if (lane->status >= 0) {
         if (h->solver == HD_SOLVER_LANCZOS) lane->status = hdi_lanczos_run(&task, lane, &watch, &lane->error);
-        else lane->status = hdi_family_run(&h->heat->fam, h->heat->opts.tol, h->t * h->heat->drift, lane, &watch, &lane->error);
+        else
+            lane->status = hdi_family_run(&h->heat->fam, h->heat->opts.tol, h->t * h->heat->drift, lane,
+                                          &watch, &lane->error);
     }
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
 }
@@ -17220,7 +17500,8 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
 static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
     const hdi_lane *lane = h->lane + i;
     const hdi_elim *m = &h->heat->elim;
-    const double *reach = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && m->reach && m->reach_t == m->t ? m->reach : NULL;
+    const double *reach = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && m->reach &&
+                          m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
@@ -17228,10 +17509,12 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
 }
 
-/* Report and errors of the lanes, in their order: the first failure that is not "another task failed" is the one to tell. */
+/* Report and errors of the lanes, in their order: the first failure that is not "another task failed" is the
+ * one to tell. */
 static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     const hd_rational *set = &h->heat->fam.set;
-    const int own = h->heat->opts.rational != NULL, poles = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS;
+    const int own = h->heat->opts.rational != NULL;
+    const int poles = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS;
     const hdi_ledger blank = hdi_heat_ledger(h);
     int32_t i, p;
     for (i = 0; i < n; i++) {
@@ -17314,7 +17597,8 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_heat_load_some(h);
         /* told here too: the calling thread may find all lanes taken */
-        if (h->e->status >= 0 && hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) >= 0)
+        if (h->e->status >= 0 &&
+            hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) >= 0)
             hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
         if (hdi_heat_store_some(h, n) < 0) break;
     }
@@ -17323,13 +17607,13 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
 
 /* ---- direct ---- */
 
-/* Growth of built-in sets is at most 4.2, of shared ones 7.9, wherever L is positive semi-definite, and the pivots of a real
- * pole are positive. */
+/* Growth of built-in sets is at most 4.2, of shared ones 7.9, wherever L is positive semi-definite, and the
+ * pivots of a real pole are positive. */
 static hd_status hdi_direct_growth(hdi_heat_call *h) {
     const hdi_elim *m = &h->heat->elim;
     int32_t i;
     if (m->lone >= 0 && m->real.all.negative) return hdi_not_semidefinite(h->e);
-    for (i = 0; 4 * i < m->set.n_poles - (m->lone + 1) && m->set.kind != HD_POLES_OWN; i++)
+    for (i = 0; i < m->n_used && m->set.kind != HD_POLES_OWN; i++)
         if (m->pack[i].all.largest > 50 * m->pack[i].largest_entry) return hdi_not_semidefinite(h->e);
     return HD_OK;
 }
@@ -17340,9 +17624,10 @@ static hd_status hdi_direct_factors(hdi_heat_call *h) {
     hd_report *rep = h->rep;
     hd_rational set;
     int32_t i;
-    if (hdi_heat_set(h, &set) < 0 || hdi_elim_poles(m, &set, h->t, h->e) < 0 || hdi_direct_growth(h) < 0) return h->e->status;
+    if (hdi_heat_set(h, &set) < 0 || hdi_elim_poles(m, &set, h->t, h->e) < 0 || hdi_direct_growth(h) < 0)
+        return h->e->status;
     hdi_report_set(rep, &set);
-    for (i = 0; 4 * i < set.n_poles - (m->lone + 1); i++) {
+    for (i = 0; i < m->n_used; i++) {
         rep->factor_flops += 16 * m->sym.flops;
         rep->growth = hdi_max(rep->growth, m->pack[i].all.largest / m->pack[i].largest_entry);
     }
@@ -17360,10 +17645,12 @@ typedef struct hdi_batches {
     uint64_t doubles;            /* of a batch's arrays */
 } hdi_batches;
 
-/* How many, and room for them: lanes, and the batches' arrays in the plan. No more batches than take the room of a pack. */
+/* How many, and room for them: lanes, and the batches' arrays in the plan. No more batches than take the room
+ * of a pack. */
 static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active), most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
+    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active);
+    const uint64_t most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
     uint64_t x, xr;
     b->h = h;
     b->n_here = 0;
@@ -17371,12 +17658,16 @@ static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     b->doubles = hdi_batch_size(&heat->elim, b->width, &x, &xr);
     b->count = (h->ask.k + b->width - 1) / b->width;
     if (b->count > HDI_BATCHES) b->count = HDI_BATCHES;
-    while (b->count > 1 && HDI_CAST(uint64_t, b->count) * (b->doubles + 7 * n * HDI_CAST(uint64_t, b->width)) > most) b->count--;
+    while (b->count > 1 &&
+           HDI_CAST(uint64_t, b->count) * (b->doubles + 7 * n * HDI_CAST(uint64_t, b->width)) > most)
+        b->count--;
     if (hdi_heat_lanes(h, b->count * b->width) < 0) return h->e->status;
     if (heat->batch_doubles >= b->doubles * HDI_CAST(uint64_t, b->count)) return HD_OK;
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_doubles = 0;
-    heat->batch_room = HDI_CAST(double *, hdi_alloc(heat->ctx, b->doubles * HDI_CAST(uint64_t, b->count), sizeof(double), h->e));
+    heat->batch_room = HDI_CAST(double *,
+                                hdi_alloc(heat->ctx, b->doubles * HDI_CAST(uint64_t, b->count),
+                                          sizeof(double), h->e));
     if (heat->batch_room) heat->batch_doubles = b->doubles * HDI_CAST(uint64_t, b->count);
     return h->e->status;
 }
@@ -17400,7 +17691,8 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     const hd_heat *heat = h->heat;
     const hdi_batch batch = hdi_batches_get(b, index);
     hdi_lane *lane = h->lane + index * b->width;
-    const int32_t left = b->n_here - HDI_CAST(int32_t, index) * b->width, n = left < b->width ? left : b->width;
+    const int32_t left = b->n_here - HDI_CAST(int32_t, index) * b->width;
+    const int32_t n = left < b->width ? left : b->width;
     int32_t r;
     (void)worker;
     hdi_batch_run(&heat->elim, &batch, lane, n, b->count > 1 ? NULL : heat->ctx);
@@ -17411,30 +17703,36 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     }
 }
 
-/* Above this t lambda_max columns, too, are solved without their constants: these are nearly all of the answer then, and
- * rounding of them would be most of the error. Below, their right-hand sides stay sparse. */
+/* Above this t lambda_max columns, too, are solved without their constants: these are nearly all of the
+ * answer then, and rounding of them would be most of the error. Below, their right-hand sides stay sparse. */
 #define HDI_DEFLATE 3e5
 
-/* Takes the constants out of a dense right-hand side, for the digits of the rest; they are put back exactly in the end. */
+/* Takes the constants out of a dense right-hand side, for the digits of the rest; they are put back exactly
+ * in the end. */
 static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
     int32_t i;
-    for (i = 0; i < lap->n_components; i++) lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
-    for (i = 0; i < lap->n_active && lap->conserves; i++) lane->rhs[i] -= lap->mass[i] * lane->sums[lap->component[i]];
+    for (i = 0; i < lap->n_components; i++)
+        lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
+    for (i = 0; i < lap->n_active && lap->conserves; i++)
+        lane->rhs[i] -= lap->mass[i] * lane->sums[lap->component[i]];
 }
 
 static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     hdi_batches b;
     int32_t i;
-    if (hdi_direct_factors(h) < 0 || (!h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0)) return h->e->status;
+    if (hdi_direct_factors(h) < 0 || (!h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0))
+        return h->e->status;
     if (hdi_batches_make(&b, h) < 0) return h->e->status;
     h->deflated = !h->watching && (h->ask.query == HDI_QUERY_FIELD || h->t * heat->lambda_max > HDI_DEFLATE);
     for (h->batch = 0; h->batch < h->ask.k; h->batch += b.n_here) {
-        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0) return h->e->status;
+        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0)
+            return h->e->status;
         b.n_here = hdi_heat_load_some(h);
         for (i = 0; i < b.n_here && h->deflated; i++)
             if (!h->lane[i].skip) hdi_lane_deflate(h->lane + i, h->lap);
-        if (h->e->status >= 0) hdi_parallel(heat->ctx, (b.n_here + b.width - 1) / b.width, hdi_batches_task, &b);
+        if (h->e->status >= 0)
+            hdi_parallel(heat->ctx, (b.n_here + b.width - 1) / b.width, hdi_batches_task, &b);
         if (hdi_heat_store_some(h, b.n_here) < 0) return h->e->status;
     }
     return h->e->status;
@@ -17442,8 +17740,8 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* A shift for times [from, to]: about a tenth of their mean, and a power of four, so that times near each other share the
- * factor whichever came first. Not so large that B drowns beside g L. */
+/* A shift for times [from, to]: about a tenth of their mean, and a power of four, so that times near each
+ * other share the factor whichever came first. Not so large that B drowns beside g L. */
 static double hdi_krylov_shift(double from, double to, double lambda_max) {
     const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL);
     int exponent;
@@ -17452,20 +17750,25 @@ static double hdi_krylov_shift(double from, double to, double lambda_max) {
 }
 
 /* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
-static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w, int32_t n_windows) {
+static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w,
+                              int32_t n_windows) {
     const double end = times[0] * pow(times[n_times - 1] / times[0], (w + 1.0) / n_windows);
     int32_t q1 = q0 + 1;
-    while (q1 < n_times && (w + 1 >= n_windows || times[q1] <= end * (1 + 1e-13))) q1++;   /* 1e-13: rounding of pow */
+    /* 1e-13: rounding of pow */
+    while (q1 < n_times && (w + 1 >= n_windows || times[q1] <= end * (1 + 1e-13))) q1++;
     return q1;
 }
 
-/* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its times. */
+/* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its
+ * times. */
 static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
-    const double factor = s->flops_done / HDI_RATE_REAL, step = 16 * HDI_CAST(double, s->nnz) / HDI_RATE_SWEEP + 1e-8 * s->n;
+    const double factor = s->flops_done / HDI_RATE_REAL;
+    const double step = 16 * HDI_CAST(double, s->nnz) / HDI_RATE_SWEEP + 1e-8 * s->n;
     double best = HUGE_VAL;
     int32_t w, least = 1;
     for (w = 1; w <= 16; w++) {
-        const double ratio = pow(span, 1.0 / w), steps = 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
+        const double ratio = pow(span, 1.0 / w);
+        const double steps = 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
         const double cost = w * (factor + steps * step);
         if (cost < best) {
             best = cost;
@@ -17483,7 +17786,9 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
     hd_status status;
     int32_t i, q;
     int64_t c;
-    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(h->times[q0], h->times[q1 - 1], heat->lambda_max), h->e) < 0) return h->e->status;
+    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(h->times[q0], h->times[q1 - 1], heat->lambda_max),
+                       h->e) < 0)
+        return h->e->status;
     z->g = heat->elim.shift;
     z->k = n;
     if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
@@ -17496,8 +17801,11 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
         for (i = 0; i < n; i++) {
             hdi_lane *lane = h->lane + i;
             lane->status = status;
-            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], heat->drift, lane, h->e) < 0) return h->e->status;
-            if (!lane->skip && (lane->off.solver > heat->opts.tol * lane->u_norm || lane->off.rounding > heat->limit * lane->u_norm))
+            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], heat->drift, lane, h->e) < 0)
+                return h->e->status;
+            if (!lane->skip &&
+                (lane->off.solver > heat->opts.tol * lane->u_norm ||
+                 lane->off.rounding > heat->limit * lane->u_norm))
                 lane->status = HD_WARN_ACCURACY;
         }
         for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
@@ -17530,19 +17838,23 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
         }
     }
     h->rep->factor_flops = heat->elim.sym.flops;
-    h->rep->growth = heat->elim.shifted.largest_entry > 0 ? heat->elim.shifted.all.largest / heat->elim.shifted.largest_entry : 0;
+    h->rep->growth = heat->elim.shifted.largest_entry > 0
+                     ? heat->elim.shifted.all.largest / heat->elim.shifted.largest_entry : 0;
     return h->e->status;
 }
 
 /* ---- the run ---- */
 
-/* Did a method that auto chose run into the byte limit? Then what was factorised goes, and iterations take its place. */
+/* Did a method that auto chose run into the byte limit? Then what was factorised goes, and iterations take
+ * its place. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t i;
-    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx) return 0;
+    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx)
+        return 0;
     if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
-    if (h->batch > 0 && h->ask.query == HDI_QUERY_FIELD) return 0;   /* fields may have been overwritten by their answers */
+    /* fields may have been overwritten by their answers */
+    if (h->batch > 0 && h->ask.query == HDI_QUERY_FIELD) return 0;
     for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
     if (heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
     hdi_elim_free(&heat->elim);
@@ -17567,11 +17879,16 @@ static hd_status hdi_heat_plain(hdi_heat_call *h) {
     for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
         if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
         if (!lane->skip) {
-            for (i = 0; i < lap->n_active; i++) lane->u[i] = h->equal ? lane->target[lap->component[i]] / lap->component_mass[lap->component[i]] : lane->f[i];
+            for (i = 0; i < lap->n_active; i++)
+                lane->u[i] = h->equal
+                             ? lane->target[lap->component[i]] / lap->component_mass[lap->component[i]]
+                             : lane->f[i];
             lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
-            if (h->equal) hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->ask.query == HDI_QUERY_FIELD));
+            if (h->equal)
+                hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->ask.query == HDI_QUERY_FIELD));
             else hdi_lane_rounding(lane, h->still * lane->f_norm);
-            if (!h->equal && h->ask.query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
+            if (!h->equal && h->ask.query == HDI_QUERY_SYMMETRIC)
+                hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
             if (!h->equal && lane->f_off > 0) {
                 hdi_lane_rounding(lane, lane->f_off);
                 lane->rounding = HD_EVIDENCE_ESTIMATED;
@@ -17604,7 +17921,8 @@ static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *
 }
 
 /* Sources, or vertices of pairs: *which gets the index of one that is not in the mesh. */
-static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which, hd_error *e) {
+static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
+                                    hd_error *e) {
     int64_t q;
     for (q = 0; q < k && e->status >= 0; q++)
         if (hdi_vertex_check(lap, vertex[q], e) < 0) *which = q;
@@ -17633,7 +17951,8 @@ static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double
 }
 
 /* The start of a query of a kernel. */
-static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, hd_report *report, hd_error *err) {
+static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, hd_report *report,
+                                  hd_error *err) {
     const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
     if (hdi_heat_begin(h, heat, query, report, err) < 0) return h->e->status;
     if (kernel == HD_KERNEL_OPERATOR || kernel == HD_KERNEL_SYMMETRIC) return HD_OK;
@@ -17643,7 +17962,8 @@ static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel ker
 /* Sets a leading dimension's default and checks it. */
 static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
     const size_t n = HDI_CAST(size_t, h->heat->source->n);
-    if (ld && ld < n) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
+    if (ld && ld < n)
+        hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
     return ld ? ld : n;
 }
 
@@ -17651,7 +17971,8 @@ static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
 static hd_status hdi_direct_only(hdi_heat_call *h) {
     const hd_method asked = h->heat->opts.method;
     if (asked == HD_METHOD_ITERATIVE || asked == HD_METHOD_KRYLOV)
-        return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: diagonals and distances to all vertices need the direct method");
+        return hdi_fail(h->e, HD_ERR_ARGUMENT,
+                        "heat: diagonals and distances to all vertices need the direct method");
     return HD_OK;
 }
 
@@ -17677,19 +17998,22 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
     sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
     sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
-    sum.smallest = all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest) ? all->smallest : sum.smallest;
+    sum.smallest = all->smallest > 0 &&
+                   (sum.smallest == 0 || all->smallest < sum.smallest) ? all->smallest : sum.smallest;
     sum.n_lost += all->n_lost;
     *all = sum;
 }
 
-/* The n_times times of a call, ascending and scaled, times factor, and which each is. h->t becomes the last. */
+/* The n_times times of a call, ascending and scaled, times factor, and which each is. h->t becomes the
+ * last. */
 static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor) {
     const int32_t n = h->ask.n_times;
     hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n);
     double *sorted = HDI_TAKE(&h->s, double, n);
     int32_t *column = HDI_TAKE(&h->s, int32_t, n), q;
     if (h->e->status < 0) return h->e->status;
-    for (q = 0; q < n; q++) {                    /* bits of doubles that are not negative are in their order */
+    /* bits of doubles that are not negative are in their order */
+    for (q = 0; q < n; q++) {
         const double v = h->ask.t[q] + 0.0;
         memcpy(&order[q].key, &v, sizeof v);
         order[q].id = q;
@@ -17741,7 +18065,8 @@ static int hdi_heat_together(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t q;
     if (hdi_heat_sort_times(h, 1) < 0) return 1;
-    if (h->times[0] * heat->lambda_max < HDI_STILL || hdi_heat_engine(h) < 0 || h->method != HD_METHOD_KRYLOV) return h->e->status < 0 && !hdi_heat_retreat(h);
+    if (h->times[0] * heat->lambda_max < HDI_STILL || hdi_heat_engine(h) < 0 || h->method != HD_METHOD_KRYLOV)
+        return h->e->status < 0 && !hdi_heat_retreat(h);
     if (hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return h->e->status < 0;
     if (hdi_heat_by_krylov(h) < 0) return !hdi_heat_retreat(h);
     for (q = 0; q < h->ask.n_times && h->ask.list; q++) hdi_ledger_close(h->ask.list->ledger + q, h->rep);
@@ -17756,8 +18081,10 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     return hdi_heat_end(h);
 }
 
-/* Entries (i[q], j[q]) sorted by column, and a ledger for each time; the request of h becomes that. list: what it points to. */
-static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int64_t n, const int32_t *i, const int32_t *j) {
+/* Entries (i[q], j[q]) sorted by column, and a ledger for each time; the request of h becomes that. list:
+ * what it points to. */
+static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int64_t n, const int32_t *i,
+                                     const int32_t *j) {
     int64_t q;
     list->n = n;
     list->rows = i;
@@ -17780,8 +18107,8 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
 }
 
 /* ==== [26] kernel ====
- * Owns entries of the kernel that come by selected inversion: diagonals, edges, and how rounding of them is measured.
- * May call [25]. */
+ * Owns entries of the kernel that come by selected inversion: diagonals, edges, and how rounding of them is
+ * measured. May call [25]. */
 
 /* ---- diagonals ---- */
 
@@ -17795,7 +18122,8 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
 }
 
 
-/* Columns within another call: k of them at the (scaled) time t through the factors that the plan holds or makes. */
+/* Columns within another call: k of them at the (scaled) time t through the factors that the plan holds or
+ * makes. */
 typedef struct hdi_columns {
     double t;
     hd_kernel kernel;
@@ -17807,58 +18135,86 @@ typedef struct hdi_columns {
     double *off_b, *off_m;       /* [k] */
 } hdi_columns;
 
-static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_report *rep) {
+/* The columns. The larger residual stays in to (NULL: not wanted). */
+static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_report *to, hd_error *e) {
     hdi_heat_call h;
-    if (hdi_kernel_begin(&h, heat, c->kernel, rep, NULL) < 0) return hdi_heat_end(&h);
-    h.t = c->t;
-    h.ask.k = c->k;
-    h.method = HD_METHOD_DIRECT;
-    h.diagonal = 1;
-    h.ask.sources = c->sources;
-    h.set = c->set;
-    h.ask.U = c->U;
-    h.ask.ldu = c->ldu;
-    h.equal = c->equal;
-    h.watching = c->watching;
-    h.off_b = c->off_b;
-    h.off_m = c->off_m;
-    if (hdi_heat_analysed(heat, h.e) >= 0) {
+    hd_report rep;
+    if (hdi_kernel_begin(&h, heat, c->kernel, &rep, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0) {
+        h.t = c->t;
+        h.ask.k = c->k;
+        h.method = HD_METHOD_DIRECT;
+        h.diagonal = 1;
+        h.ask.sources = c->sources;
+        h.set = c->set;
+        h.ask.U = c->U;
+        h.ask.ldu = c->ldu;
+        h.equal = c->equal;
+        h.watching = c->watching;
+        h.off_b = c->off_b;
+        h.off_m = c->off_m;
         h.lap = heat->elim.lap;
         if (h.equal) (void)hdi_heat_plain(&h);
         else (void)hdi_heat_by_direct(&h);
     }
-    return hdi_heat_end(&h);
+    if (hdi_heat_end(&h) < 0) *e = rep.error;
+    else if (to) to->residual = hdi_max(to->residual, rep.residual);
+    return e->status;
 }
 
 /* ---- rounding of inversions ---- */
-/* What rounding does to entries found by inversion no theorem says well. It is measured at a few rows where it is largest: a
- * solve with the same poles, whose own error its residual bounds, is held against the entry. */
+/* What rounding does to entries found by inversion no theorem says well. It is measured at a few rows where
+ * it is largest: a solve with the same poles, whose own error its residual bounds, is held against the
+ * entry. */
 enum { HDI_PROBES = 3 };
 #define HDI_PROBE_SAFETY 4   /* differences seen at the probes stand for those of all rows */
 #define HDI_PROBE_OWN 100    /* and more so for functions of the caller's, whose poles may lie beside the spectrum */
 
-/* Can rounding be told from the values alone? k_t(i,i) is at least what the constants are of it, most (of row i) times value:
- * returns the relative error that a smaller value shows. For sets that approximate exp. */
-static double hdi_below_constants(const hd_laplacian *lap, const hd_rational *set, int32_t i, double value, double times) {
-    const double least = times * (lap->conserves && set->kind != HD_POLES_OWN ? 1 / lap->component_mass[lap->component[i]] : 0);
-    return value < 0.999 * least ? hdi_quotient(least - value, fabs(value)) : 0;
+/* Does rounding show in the values alone? k_t(i,i) is at least what the constants are of it, and no set that
+ * approximates exp gives less. values [n]: that times mass^power. Returns the largest relative error that a
+ * smaller value proves. */
+static double hdi_below_constants(const hd_laplacian *lap, const hd_rational *set, const double *values,
+                                  int power) {
+    double most = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        const double b = lap->mass[i], unit = power == 0 ? 1 : power == 1 ? b : b * b;
+        const double least = set->kind == HD_POLES_OWN ? 0 : unit * hdi_constant_part(lap, i);
+        if (values[i] < 0.999 * least) most = hdi_max(most, hdi_quotient(least - values[i], fabs(values[i])));
+    }
+    return most;
 }
 
-/* A pole beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss. What rounding
- * of its entries, (|theta| + t lambda) eps, then does to the inverse in the B norm: estimated by first-order perturbation.
- * Poles further than 1 from the spectrum are left to the probes. */
+/* A pole beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss.
+ * This is an estimate by first-order perturbation of what rounding of the entries, (|theta| + t lambda) eps,
+ * then does to the inverse in the B norm. Poles further than 1 from the spectrum are left to the probes. */
 static double hdi_own_near(const hd_heat *heat, const hd_rational *set, double t) {
     double sum = 0;
     int32_t p;
     for (p = 0; p < set->n_poles && set->kind == HD_POLES_OWN; p++) {
         const double d = hdi_pole_distance(set->theta[p]);
-        const double size = hdi_rat_count(set, p) * hdi_cabs(set->a[p]) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
+        const double size = hdi_pole_size(set, p) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
         if (d < 1) sum += DBL_EPSILON * hdi_quotient(hdi_quotient(size, d), d);
     }
     return sum;
 }
 
-/* The largest entry of diag(B^-1), or a bound of it: a matrix whose B norm is x has entries of at most this times x. */
+/* Rounding relative to size [n] of a diagonal by poles of the caller's own. seen: by the probes. mass: the
+ * diagonal is that of a kernel times B. */
+static double hdi_own_rounding(const hd_heat *heat, const hd_rational *set, double t, double seen,
+                               const double *size, int mass) {
+    const hd_laplacian *lap = heat->elim.lap;
+    const double near = hdi_own_near(heat, set, t);
+    double most = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active && near > 0; i++) {
+        const double spread = hdi_quotient(mass ? 1 : 1 / lap->b_diag[i], lap->b_ratio);
+        most = hdi_max(most, hdi_quotient(spread, size[i]));
+    }
+    return HDI_PROBE_OWN * seen + near * most;
+}
+
+/* The largest entry of diag(B^-1), or a bound of it: a matrix whose B norm is x has entries of at most this
+ * times x. */
 static double hdi_largest_spread(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
@@ -17868,21 +18224,18 @@ static double hdi_largest_spread(const hd_laplacian *lap) {
 
 typedef struct hdi_probe { int32_t k, row[HDI_PROBES]; } hdi_probe;
 
-/* Rows to look at: where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). k may be NULL. */
+/* Rows to look at: where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). */
 static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
     hdi_probe x;
     double most[2] = {-1, -1};
     int32_t i, q, at[HDI_PROBES] = {-1, -1, -1};
-    int64_t p;
     for (i = 0; i < lap->n_active; i++) {
-        double l = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            if (lap->L.col[p] == i) l = lap->L.val[p];
+        const double l = hdi_row_diagonal(lap, i);
         if (l / lap->b_diag[i] > most[0]) {
             most[0] = l / lap->b_diag[i];
             at[0] = i;
         }
-        if (k && l * k[i] > most[1]) {
+        if (l * k[i] > most[1]) {
             most[1] = l * k[i];
             at[1] = i;
         }
@@ -17895,14 +18248,14 @@ static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_
     return x;
 }
 
-/* Their columns by the poles of set at the call's time; what is found stays in the plan's lanes. */
-static hd_status hdi_probe_run(hdi_heat_call *h, hdi_probe *x, hd_kernel kernel, const hd_rational *set) {
-    hd_heat *heat = h->heat;
+/* Solves for the columns of these rows by the poles of set at the call's time. What is found stays in the
+ * plan's lanes. */
+static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel kernel,
+                               const hd_rational *set) {
     const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
     int32_t vertex[HDI_PROBES], i;
     hdi_columns c;
-    hd_report rep;
-    for (i = 0; i < x->k; i++) vertex[i] = heat->elim.lap->vertex[x->row[i]];
+    for (i = 0; i < x->k; i++) vertex[i] = h->heat->elim.lap->vertex[x->row[i]];
     memset(&c, 0, sizeof c);
     c.t = h->t;
     c.kernel = kernel;
@@ -17910,75 +18263,96 @@ static hd_status hdi_probe_run(hdi_heat_call *h, hdi_probe *x, hd_kernel kernel,
     c.k = x->k;
     c.sources = vertex;
     c.watching = 1;
-    if (x->k > 0 && hdi_direct_columns(heat, &c, &rep) < 0) *h->e = rep.error;
-    else if (x->k > 0) h->rep->residual = hdi_max(h->rep->residual, rep.residual);
-    return h->e->status;
+    return x->k > 0 ? hdi_direct_columns(h->heat, &c, h->rep, h->e) : h->e->status;
 }
 
-/* Probe q's own entry by the weights of `set`, a set in terms of a time that is tau times that of the factors, and a bound of
- * its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
-static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q, const hd_rational *set, double tau, double f, double g, double *off) {
-    const hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap = m->lap;
+/* What a probe, whose own error is at most off, says of the rounding of a value, relative to size. */
+static double hdi_probe_seen(double probe, double off, double value, double size) {
+    return hdi_quotient(HDI_PROBE_SAFETY * fabs(probe - value) + off, fabs(size));
+}
+
+/* Probe q's own entry by the weights of `set`, a set in terms of a time that is tau times that of the
+ * factors, and a bound of its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
+static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q, const hd_rational *set,
+                              double tau, double f, double g, double *off) {
+    const hd_laplacian *lap = heat->elim.lap;
     const hdi_lane *lane = heat->lane + q;
-    const double b = lap->b_diag[x->row[q]];
+    const double root = hdi_ratio_root(lap);
     double value = set->a0 * f, by_b = 0, by_m = 0;
     int32_t p;
     for (p = 0; p < set->n_poles; p++) {
-        const double count = hdi_rat_count(set, p), weight = count * hdi_cabs(set->a[p]) * hdi_ratio_root(lap) * lane->pole_off[p];
-        value -= count / tau * hdi_cmul(set->a[p], lane->pole_value[p]).re;
+        const double weight = hdi_pole_size(set, p) * root * lane->pole_off[p];
+        value -= hdi_rat_count(set, p) / tau * hdi_cmul(set->a[p], lane->pole_value[p]).re;
         by_m += weight * hdi_pole_reach(set->theta[p]);
         by_b += weight / hdi_pole_distance(set->theta[p]);
     }
-    *off = hdi_min(g > 0 && hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL, by_b * hdi_ratio_root(lap) / sqrt(b)) + 4 * DBL_EPSILON * fabs(value);
+    by_m = g > 0 && hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL;
+    *off = hdi_min(by_m, by_b * root / sqrt(lap->b_diag[x->row[q]])) + 4 * DBL_EPSILON * fabs(value);
     return value;
 }
 
 /* Entries of k_t for one time, in elimination order and in the unit of the scaled pair. */
 typedef struct hdi_entries {
-    double *k, *g;               /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
-    int64_t size;
+    /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
+    double *k, *g;
     double weighted, uniform;    /* of the set: |error| <= weighted g, uniform diag(B^-1) */
     double left_out;             /* besides, times diag(B^-1): a0 of a set where B is full */
     hd_rational resolvent;       /* the poles with weights for g */
 } hdi_entries;
 
-/* Factors for h->t, and from them k and g. room [2 size]. */
-static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *room, int64_t size, hdi_entries *x) {
-    hdi_elim *m = &h->heat->elim;
-    hd_c64 weight[2 * HD_MAX_POLES];
+/* Weights of the poles for g: by least squares, or those of a single pole. They become the resolvent of x
+ * too. Returns by how much g can be too small, HUGE_VAL: it bounds nothing. */
+static double hdi_entries_resolvent(const hd_rational *set, hd_c64 *weight, hdi_entries *x) {
     double factor = 1, slack = 0;
-    int32_t p, best, i;
+    int32_t p, best = 0;
+    if (!hdi_resolvent_weights(set, weight, &slack)) {
+        slack = 0;
+        best = hdi_resolvent_pole(set, &factor);
+        for (p = 0; p < set->n_poles; p++) weight[p] = hdi_c(p == best ? factor : 0, 0);
+    }
+    x->resolvent = *set;
+    x->resolvent.kind = HD_POLES_OWN;
+    x->resolvent.a0 = x->resolvent.max_error = x->resolvent.max_weighted_error = 0;
+    for (p = 0; p < set->n_poles; p++) x->resolvent.a[p] = hdi_cscale(-1 / hdi_rat_count(set, p), weight[p]);
+    return best >= 0 ? 1 + slack : HUGE_VAL;
+}
+
+/* Factors for h->t, and from them k and g. room [2 size]. */
+static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *room, int64_t size,
+                                  hdi_entries *x) {
+    hdi_elim *m = &h->heat->elim;
+    const hd_laplacian *lap = m->lap;
+    hd_c64 weight[2 * HD_MAX_POLES];
+    hdi_elim_sums sums;
+    double slack;
+    int32_t p, i;
     memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
     memset(weight, 0, sizeof weight);
     if (hdi_direct_factors(h) < 0) return h->e->status;
     for (p = 0; p < m->set.n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
-    best = 0;
-    if (!hdi_resolvent_weights(&m->set, weight + m->set.n_poles, &slack)) {
-        slack = 0;
-        best = hdi_resolvent_pole(&m->set, &factor);
-        for (p = 0; p < m->set.n_poles; p++) weight[m->set.n_poles + p] = hdi_c(p == best ? factor : 0, 0);
-    }
-    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2, weight, wanted, room, size, h->e) < 0) return h->e->status;
-    x->resolvent = m->set;
-    x->resolvent.kind = HD_POLES_OWN;
-    x->resolvent.a0 = x->resolvent.max_error = x->resolvent.max_weighted_error = 0;
-    for (p = 0; p < m->set.n_poles; p++) x->resolvent.a[p] = hdi_cscale(-1 / hdi_rat_count(&m->set, p), weight[m->set.n_poles + p]);
+    slack = hdi_entries_resolvent(&m->set, weight + m->set.n_poles, x);
+    sums.n_sets = 2;
+    sums.weight = weight;
+    sums.wanted = wanted;
+    sums.values = room;
+    sums.stride = size;
+    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, &sums, h->e) < 0)
+        return h->e->status;
     x->k = room;
     x->g = room + size;
-    x->size = size;
-    x->weighted = best >= 0 ? (1 + slack) * hdi_set_weighted(&m->set) : HUGE_VAL;
     x->uniform = hdi_set_uniform(&m->set);       /* 0: bounds hold for c itself */
-    if (x->uniform == 0) x->weighted = 0;
+    x->weighted = x->uniform == 0 ? 0 : hdi_finite(slack) ? slack * hdi_set_weighted(&m->set) : HUGE_VAL;
     x->left_out = 0;
-    for (i = 0; i < m->sym.n && wanted != HDI_WANT_ENTRIES; i++)
-        x->g[i] = hdi_max(x->g[i], hdi_constant_part(m->lap, i) * (wanted == HDI_WANT_FORMS ? m->lap->mass[i] * m->lap->mass[i] : 1));
+    for (i = 0; i < m->sym.n && wanted != HDI_WANT_ENTRIES; i++) {
+        const double unit = wanted == HDI_WANT_FORMS ? lap->mass[i] * lap->mass[i] : 1;
+        x->g[i] = hdi_max(x->g[i], hdi_constant_part(lap, i) * unit);
+    }
     return HD_OK;
 }
 
-/* Bound of the rational error of k_t(i,i), from g(i,i) and diag(B)(i). */
-static double hdi_entry_error(const hdi_entries *x, double g, double b, double b_ratio) {
-    const double spread = b_ratio > 0 ? 1 / (b_ratio * b) : HUGE_VAL, out = x->left_out > 0 ? x->left_out * spread : 0;
+/* Bound of the rational error of k_t(i,i), from g(i,i). */
+static double hdi_entry_error(const hdi_entries *x, const hd_laplacian *lap, int32_t i, double g) {
+    const double spread = hdi_inverse_mass(lap, i), out = x->left_out > 0 ? x->left_out * spread : 0;
     const double uniform = x->uniform > 0 ? x->uniform * spread : 0;
     return (hdi_finite(x->weighted) ? hdi_min(x->weighted * hdi_max(0, g), uniform) : uniform) + out;
 }
@@ -18006,135 +18380,180 @@ static void hdi_operator_diagonal(const hdi_elim *m, const double *k, double *di
     }
 }
 
-/* Bound of a diagonal's error relative to the value itself above which the highest degree takes over: on all meshes tried errors are below 1e-7 then. With
- * B = I errors come closer to their bound. */
-static double hdi_diagonal_limit(const hd_heat *heat) {
-    const hd_laplacian_kind kind = heat->source->kind;
-    return kind == HD_LAPLACIAN_COT || kind == HD_LAPLACIAN_EXP ? 4.2e-7 : 5.3e-7;
+/* The highest degree takes over where the bound of a diagonal's error, relative to the value itself, is above
+ * this. The errors themselves are below 1e-7 then. Tuned on meshes of 1K to 1M vertices; with B = I errors
+ * come closer to their bound. The bound of the operator's diagonal with a full B is not as sharp by this
+ * factor. */
+#define HDI_DIAGONAL_SURE 5.3e-7
+#define HDI_DIAGONAL_SURE_PLAIN 4.2e-7
+#define HDI_DIAGONAL_LOOSE 50
+
+static double hdi_diagonal_limit(const hd_laplacian *lap, hd_kernel kernel) {
+    const int plain = lap->kind == HD_LAPLACIAN_COT || lap->kind == HD_LAPLACIAN_EXP;
+    const double loose = kernel == HD_KERNEL_OPERATOR && lap->B ? HDI_DIAGONAL_LOOSE : 1;
+    return loose * (plain ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
 }
 
 /* The ledger of values found by inversion. */
 static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
     const hd_rational *set = &h->heat->elim.set;
-    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && (set->a0 == 0 || !h->heat->source->B);
-    return hdi_ledger_begin(h->equal || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
+    const int exact_a0 = set->a0 == 0 || !h->heat->source->B;
+    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && exact_a0;
+    const hd_evidence rational = h->equal || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN;
+    return hdi_ledger_begin(rational, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
 }
 
-/* Values by rows to vertices; their errors, off and rounding relative to size, to the report, in the caller's unit. Returns the largest off relative to its value. */
-static double hdi_diagonal_tell(hdi_heat_call *h, hd_kernel kernel, const double *value, const double *off, const double *size, double rounding, double *out) {
+/* A diagonal under way, by rows in elimination order and in the unit of the scaled pair. */
+typedef struct hdi_diagonal {
+    hd_kernel kernel;
+    double *value, *off;         /* [n] and bounds of the rational errors */
+    double *g;                   /* [n] at least diag((B + tL)^-1) */
+    double *size;                /* [n] what rounding is relative to: value, or own */
+    double *own;                 /* [n] work */
+} hdi_diagonal;
+
+/* A diagonal to vertices, in the caller's unit; its errors, off and rounding relative to size, to the report.
+ * Returns the largest off relative to its value. */
+static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, double rounding, double *out) {
     const hd_laplacian *lap = h->lap;
-    const double unit = kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
+    const double unit = d->kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
     hdi_ledger ledger = hdi_inverse_ledger(h, 1);
     double most = 0;
     int32_t i, v;
     h->relative = 1;
-    for (v = 0; v < lap->n; v++) out[v] = kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
+    for (v = 0; v < lap->n; v++) out[v] = d->kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
     for (i = 0; i < lap->n_active; i++) {
+        const double value = d->value[i], seen = rounding > 0 ? unit * rounding * fabs(d->size[i]) : 0;
         hdi_parts part;
         memset(&part, 0, sizeof part);
-        part.rational = unit * off[i];
-        part.rounding = 4 * DBL_EPSILON * unit * fabs(value[i]) + (rounding > 0 ? unit * rounding * fabs(size[i]) : 0);
-        out[lap->vertex[i]] = unit * value[i];
-        hdi_ledger_note(&ledger, unit * value[i], part);
-        most = hdi_max(most, hdi_quotient(off[i], fabs(value[i])));
+        part.rational = unit * d->off[i];
+        part.rounding = 4 * DBL_EPSILON * unit * fabs(value) + seen;
+        out[lap->vertex[i]] = unit * value;
+        hdi_ledger_note(&ledger, unit * value, part);
+        most = hdi_max(most, hdi_quotient(d->off[i], fabs(value)));
     }
     hdi_ledger_close(&ledger, h->rep);
     return most;
 }
 
 /* Where t is so large that k_t(i,i) = 1/mass of the component. */
-static void hdi_diagonal_equal(hdi_heat_call *h, hd_kernel kernel, double *value, double *off, double *out) {
+static void hdi_diagonal_equal(hdi_heat_call *h, const hdi_diagonal *d, double *out) {
     const hd_laplacian *lap = h->lap;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
-        value[i] = (kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1) / lap->component_mass[lap->component[i]];
-        off[i] = 0;
+        const double unit = d->kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
+        d->value[i] = unit / lap->component_mass[lap->component[i]];
+        d->off[i] = 0;
     }
-    (void)hdi_diagonal_tell(h, kernel, value, off, value, HDI_CAST(double, lap->n_active) * DBL_EPSILON, out);
+    (void)hdi_diagonal_tell(h, d, HDI_CAST(double, lap->n_active) * DBL_EPSILON, out);
 }
 
-/* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. *relative: the largest of the
- * rational error relative to the value. */
-static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
-    hd_heat *heat = h->heat;
-    const hd_laplacian *lap;
-    const hdi_symbolic *s;
-    const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
-    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *room, *value, *off, *g, *own, rounding = 0;
-    const double *size_of;
-    hdi_entries x;
+/* The diagonal of K_t for a full B, from all entries of k_t on the pattern of B. */
+static void hdi_diagonal_full(const hdi_elim *m, const hdi_entries *x, const hdi_diagonal *d) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_laplacian *lap = m->lap;
+    int32_t v, i;
+    int64_t n;
+    hdi_operator_diagonal(m, x->k, d->value);
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            if (s->a_row[n] != s->a_col[n]) continue;
+            i = s->super[v] + s->a_col[n];
+            d->g[i] = hdi_max(x->g[n], hdi_constant_part(lap, i));
+        }
+    }
+    for (i = 0; i < s->n; i++) {
+        const double form = sqrt(hdi_max(0, d->g[i]) * lap->b_diag[i]);
+        const double weighted = hdi_finite(x->weighted) ? x->weighted * form : HUGE_VAL;
+        d->off[i] = hdi_min(x->weighted == 0 ? 0 : weighted, x->uniform * hdi_ratio_root(lap));
+    }
+}
+
+/* The diagonal of k_t, or for a diagonal B of K_t. */
+static void hdi_diagonal_plain(const hdi_elim *m, hdi_entries *x, const hdi_diagonal *d) {
+    const hd_laplacian *lap = m->lap;
+    const double a0 = m->set.a0;
+    int32_t i;
+    /* a full B's inverse is not at hand, and a0 is of the size of the set's error */
+    if (lap->B) x->left_out = fabs(a0);
+    for (i = 0; i < m->sym.n; i++) {
+        const double b = d->kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
+        d->g[i] = x->g[i];
+        d->value[i] = b * (x->k[i] + (lap->B ? 0 : a0 / lap->mass[i]));
+        d->off[i] = b * hdi_entry_error(x, lap, i, x->g[i]);
+    }
+}
+
+/* Rounding is relative to the value; that of any function of the caller's, which may vanish, to the
+ * resolvent. */
+static void hdi_diagonal_own(const hd_laplacian *lap, hdi_diagonal *d) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        const double most = hdi_inverse_mass(lap, i), g = d->g[i] > 0 && d->g[i] < most ? d->g[i] : most;
+        d->own[i] = g * (d->kernel == HD_KERNEL_OPERATOR ? lap->b_diag[i] : 1);
+    }
+    d->size = d->own;
+}
+
+/* What rounding does to a diagonal by the poles of the plan, relative to size. */
+static hd_status hdi_diagonal_rounding(hdi_heat_call *h, const hdi_diagonal *d, double *rounding) {
+    const hd_laplacian *lap = h->lap;
+    const hd_rational *set = &h->heat->elim.set;
+    const int mass = d->kernel == HD_KERNEL_OPERATOR;
     hdi_probe probe;
-    int64_t size, n;
-    int32_t i, v, worst = 0;
-    *relative = 0;
-    if (hdi_heat_analysed(heat, h->e) < 0) return hdi_scope_end(&scope);
-    h->lap = lap = heat->elim.lap;
-    h->equal = hdi_heat_equal(heat, h->t, h->e);
-    s = &heat->elim.sym;
-    size = full ? s->a_ptr[s->n_super] : s->n;
-    room = HDI_TAKE(&scope, double, 2 * size);
-    value = HDI_TAKE(&scope, double, 4 * HDI_CAST(uint64_t, s->n));
-    if (h->e->status < 0) return hdi_scope_end(&scope);
-    off = value + s->n;
-    g = off + s->n;
-    own = g + s->n;
-    if (h->equal) {
-        hdi_diagonal_equal(h, kernel, value, off, out);
-        return hdi_scope_end(&scope);
-    }
-    if (hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) < 0) return hdi_scope_end(&scope);
-    if (full) {
-        hdi_operator_diagonal(&heat->elim, x.k, value);
-        for (v = 0; v < s->n_super; v++)
-            for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++)
-                if (s->a_row[n] == s->a_col[n]) g[s->super[v] + s->a_col[n]] = hdi_max(x.g[n], hdi_constant_part(lap, s->super[v] + s->a_col[n]));
-        for (i = 0; i < s->n; i++) off[i] = hdi_min(x.weighted == 0 ? 0 : hdi_finite(x.weighted) ? x.weighted * sqrt(hdi_max(0, g[i]) * lap->b_diag[i]) : HUGE_VAL,
-                                                    x.uniform * hdi_ratio_root(lap));
-    } else {
-        const double a0 = heat->elim.set.a0;
-        if (lap->B) x.left_out = fabs(a0);       /* a full B's inverse is not at hand, and a0 is of the size of the set's error */
-        for (i = 0; i < s->n; i++) {
-            const double b = kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
-            g[i] = x.g[i];
-            value[i] = b * (x.k[i] + (lap->B ? 0 : a0 / lap->mass[i]));
-            off[i] = b * hdi_entry_error(&x, x.g[i], lap->b_diag[i], lap->b_ratio);
-        }
-    }
-    /* Rounding is relative to the value; of any function of the caller's, which may vanish, to the resolvent. */
-    size_of = value;
-    if (heat->elim.set.kind == HD_POLES_OWN) {
-        for (i = 0; i < s->n; i++) {
-            const double most = lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[i]) : HUGE_VAL;
-            own[i] = (g[i] > 0 && g[i] < most ? g[i] : most) * (kernel == HD_KERNEL_OPERATOR ? lap->b_diag[i] : 1);
-        }
-        size_of = own;
-    }
-    for (i = 1; i < s->n; i++)
-        if (off[i] * value[worst] > off[worst] * value[i]) worst = i;
-    probe = hdi_probe_rows(lap, value, s->n > 0 ? worst : -1);
-    if (hdi_probe_run(h, &probe, kernel, &heat->elim.set) < 0) return hdi_scope_end(&scope);
+    int32_t i, worst = 0;
+    *rounding = 0;
+    for (i = 1; i < lap->n_active; i++)
+        if (d->off[i] * d->value[worst] > d->off[worst] * d->value[i]) worst = i;
+    probe = hdi_probe_rows(lap, d->value, lap->n_active > 0 ? worst : -1);
+    if (hdi_probe_run(h, &probe, d->kernel, set) < 0) return h->e->status;
     for (i = 0; i < probe.k; i++) {
         const int32_t row = probe.row[i];
-        const double f = kernel == HD_KERNEL_OPERATOR ? 1 : lap->B ? 0 : 1 / lap->mass[row];
-        double by, there = hdi_probe_value(heat, &probe, i, &heat->elim.set, 1, f, g[row], &by);
-        rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - value[row]) + by, fabs(size_of[row])));
+        const double f = mass ? 1 : lap->B ? 0 : 1 / lap->mass[row];
+        double by, there = hdi_probe_value(h->heat, &probe, i, set, 1, f, d->g[row], &by);
+        *rounding = hdi_max(*rounding, hdi_probe_seen(there, by, d->value[row], d->size[row]));
     }
-    for (i = 0; i < s->n; i++) rounding = hdi_max(rounding, hdi_below_constants(lap, &heat->elim.set, i, value[i], kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1));
-    if (size_of == own) {
-        const double near = hdi_own_near(heat, &heat->elim.set, h->t);
-        double most = 0;
-        for (i = 0; i < s->n && near > 0; i++) {
-            const double b = lap->b_diag[i], spread = (kernel == HD_KERNEL_OPERATOR ? 1 : 1 / b) / lap->b_ratio;
-            most = hdi_max(most, hdi_quotient(spread, own[i]));
-        }
-        rounding = HDI_PROBE_OWN * rounding + near * most;
+    *rounding = hdi_max(*rounding, hdi_below_constants(lap, set, d->value, mass));
+    if (set->kind == HD_POLES_OWN) *rounding = hdi_own_rounding(h->heat, set, h->t, *rounding, d->size, mass);
+    return HD_OK;
+}
+
+/* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. *relative: the
+ * largest of the rational errors relative to the value. */
+static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
+    hd_heat *heat = h->heat;
+    hdi_elim *m = &heat->elim;
+    const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
+    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
+    double *room, rounding;
+    hdi_diagonal d;
+    hdi_entries x;
+    int64_t size;
+    *relative = 0;
+    if (hdi_heat_analysed(heat, h->e) < 0) return hdi_scope_end(&scope);
+    h->lap = m->lap;
+    h->equal = hdi_heat_equal(heat, h->t, h->e);
+    size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
+    room = HDI_TAKE(&scope, double, 2 * size);
+    d.value = d.size = HDI_TAKE(&scope, double, 4 * HDI_CAST(uint64_t, m->sym.n));
+    if (h->e->status < 0) return hdi_scope_end(&scope);
+    d.kernel = kernel;
+    d.off = d.value + m->sym.n;
+    d.g = d.off + m->sym.n;
+    d.own = d.g + m->sym.n;
+    if (h->equal) {
+        hdi_diagonal_equal(h, &d, out);
+    } else if (hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) >= 0) {
+        if (full) hdi_diagonal_full(m, &x, &d);
+        else hdi_diagonal_plain(m, &x, &d);
+        if (m->set.kind == HD_POLES_OWN) hdi_diagonal_own(m->lap, &d);
+        if (hdi_diagonal_rounding(h, &d, &rounding) >= 0) *relative = hdi_diagonal_tell(h, &d, rounding, out);
     }
-    *relative = hdi_diagonal_tell(h, kernel, value, off, size_of, rounding, out);
     return hdi_scope_end(&scope);
 }
 
-/* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other is the same. */
+/* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other
+ * is the same. */
 static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
     const hdi_symbolic *s = &m->sym;
     const hd_csr *a = &m->source->L;
@@ -18147,16 +18566,18 @@ static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, 
             hdi_entry_place(s, v, n, &i, &j);
             val[p] = unit * k[n];
             if (i == j) continue;
-            i = s->perm[i];                      /* a_from is entry (j,i): rows of A are walked from column j */
+            /* a_from is entry (j,i): rows of A are walked from column j */
+            i = s->perm[i];
             j = s->perm[j];
-            other = a->row_ptr[i] + hdi_lower_bound(a->col + a->row_ptr[i], a->row_ptr[i + 1] - a->row_ptr[i], j);
+            other = a->row_ptr[i] +
+                    hdi_lower_bound(a->col + a->row_ptr[i], a->row_ptr[i + 1] - a->row_ptr[i], j);
             val[other] = unit * k[n];
         }
     }
 }
 
-/* Adds a0 B^-1 where B is diagonal, and notes the rational error: that of an entry (i,j) is at most the larger of those of (i,i)
- * and (j,j). k and g [n]: their diagonals. */
+/* Adds a0 B^-1 where B is diagonal, and notes the rational error: that of an entry (i,j) is at most the
+ * larger of those of (i,i) and (j,j). k and g [n]: their diagonals. */
 static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double *g, hdi_ledger *ledger) {
     const hdi_symbolic *s = &m->sym;
     const hd_laplacian *lap = m->lap;
@@ -18172,20 +18593,24 @@ static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double
             if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
             k[i] = x->k[n];
             g[i] = x->g[n];
-            part.rational = m->scale * hdi_entry_error(x, g[i], lap->b_diag[i], lap->b_ratio);
+            part.rational = m->scale * hdi_entry_error(x, lap, i, g[i]);
             part.rounding = 4 * DBL_EPSILON * m->scale * fabs(k[i]);
             hdi_ledger_note(ledger, m->scale * k[i], part);
         }
     }
 }
 
-/* Rounding of a row: the probe's own entry, and what its column differs by from the entries of the row. */
-static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe, int32_t q, const double *k, const double *g, const double *values) {
+/* Rounding of a row: of the probe's own entry, and what its column differs by from the entries of the row. */
+static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe, int32_t q, const double *k,
+                                    const double *g, const double *values) {
     const hd_laplacian *lap = heat->source, *in = heat->elim.lap;
+    const hd_rational *set = &heat->elim.set;
     const int32_t at = probe->row[q], row = lap->row[in->vertex[at]];
-    double by, there = hdi_probe_value(heat, probe, q, &heat->elim.set, 1, lap->B ? 0 : 1 / in->mass[at], g[at], &by), most;
-    /* columns of uniform sets carry the constants exactly, which the entries do not; a full B's entries are without a0 B^-1 */
-    const int comparable = heat->elim.set.a0 == 0 || (heat->elim.set.kind == HD_POLES_OWN && !lap->B);
+    const double f = lap->B ? 0 : 1 / in->mass[at];
+    double by, there = hdi_probe_value(heat, probe, q, set, 1, f, g[at], &by), most;
+    /* Columns of uniform sets carry the constants exactly, which the entries do not. A full B's entries are
+     * without a0 B^-1. */
+    const int comparable = set->a0 == 0 || (set->kind == HD_POLES_OWN && !lap->B);
     hdi_parts part;
     int64_t p;
     most = heat->scale * (HDI_PROBE_SAFETY * fabs(there - k[at]) + by);
@@ -18195,9 +18620,30 @@ static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe,
         most = hdi_max(most, fabs(heat->scale * heat->lane[q].u[j] - values[p]) + heat->scale * off);
     }
     memset(&part, 0, sizeof part);
-    part.rounding = heat->elim.set.kind == HD_POLES_OWN ? HDI_PROBE_OWN * most : most;
+    part.rounding = set->kind == HD_POLES_OWN ? HDI_PROBE_OWN * most : most;
     part.rounding += 4 * DBL_EPSILON * heat->scale * fabs(k[at]);
     return part;
+}
+
+/* Rounding of the entries, from probes; k and g as above. */
+static hd_status hdi_edges_probe(hdi_heat_call *h, const double *k, const double *g, const double *values,
+                                 hdi_ledger *ledger) {
+    const hd_heat *heat = h->heat;
+    const hd_rational *set = &heat->elim.set;
+    const int32_t n = h->lap->n_active;
+    const double near = heat->scale * hdi_own_near(heat, set, h->t) * hdi_largest_spread(h->lap);
+    hdi_probe probe;
+    int32_t i, top = 0;
+    for (i = 1; i < n; i++)
+        if (k[i] > k[top]) top = i;
+    probe = hdi_probe_rows(h->lap, k, n > 0 ? top : -1);
+    if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set) < 0) return h->e->status;
+    for (i = 0; i < probe.k; i++) {
+        hdi_parts part = hdi_edges_rounding(heat, &probe, i, k, g, values);
+        part.rounding += near;
+        hdi_ledger_note(ledger, heat->scale * k[probe.row[i]], part);
+    }
+    return HD_OK;
 }
 
 /* Where t is so large that k_t is 1/mass of the component. */
@@ -18217,59 +18663,65 @@ static void hdi_edges_equal(hdi_heat_call *h, double *values) {
     hdi_ledger_close(&ledger, h->rep);
 }
 
-/* With the set's degree, into values. */
+/* The edges with the set's degree, into values. *rational: the largest rational error relative to the largest
+ * value. */
 static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *rational) {
     hd_heat *heat = h->heat;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
     const hdi_symbolic *s = &heat->elim.sym;
     const int64_t size = s->a_ptr[s->n_super];
-    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, size)), *k = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, s->n));
+    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, size));
+    double *k = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, s->n));
+    hdi_ledger ledger;
     hdi_entries x;
-    int32_t i;
     *rational = 0;
     h->lap = heat->elim.lap;
     h->equal = h->e->status >= 0 && hdi_heat_equal(heat, h->t, h->e);
-    if (h->equal) hdi_edges_equal(h, values);
-    else if (h->e->status >= 0 && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
-        hdi_ledger ledger = hdi_inverse_ledger(h, 0);
-        hdi_probe probe;
-        int32_t top = 0;
+    if (h->equal) {
+        hdi_edges_equal(h, values);
+    } else if (h->e->status >= 0 && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
+        ledger = hdi_inverse_ledger(h, 0);
         hdi_edges_judge(&heat->elim, &x, k, k + s->n, &ledger);
         *rational = hdi_quotient(ledger.off.rational, ledger.largest);
         hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
-        for (i = 1; i < s->n; i++)
-            if (k[i] > k[top]) top = i;
-        probe = hdi_probe_rows(h->lap, k, s->n > 0 ? top : -1);
-        if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, &heat->elim.set) >= 0)
-            for (i = 0; i < probe.k; i++) {
-                hdi_parts part = hdi_edges_rounding(heat, &probe, i, k, k + s->n, values);
-                part.rounding += heat->scale * hdi_own_near(heat, &heat->elim.set, h->t) * hdi_largest_spread(h->lap);
-                hdi_ledger_note(&ledger, heat->scale * k[probe.row[i]], part);
-            }
+        (void)hdi_edges_probe(h, k, k + s->n, values, &ledger);
         hdi_ledger_close(&ledger, h->rep);
     }
     return hdi_scope_end(&scope);
 }
 
-/* The diagonal of the kernel on vertices, or with `edges` k_t on the pattern of L, with the set's degree by default. Where the bound shows vertices (of tiny cells
- * among large ones, slivers) whose error relative to their own value may be above the promise, of edges that relative to the largest value, a second time with the
- * highest degree. The error seen is a fifth of the bound or so on all meshes tried: 1e-7. */
+/* After the highest degree of poles, whose factors did not fit the byte limit, comes that by default. 0:
+ * neither. */
+static int hdi_degree_retreat(const hd_heat *heat, int32_t *degree, hd_error *e) {
+    if (*degree == 0 || e->status != HD_ERR_MEMORY_LIMIT || heat->elim.n_packs == 0) return 0;
+    *degree = 0;
+    hdi_error_clear(e);
+    return 1;
+}
+
+static hd_status hdi_entries_once(hdi_heat_call *h, hd_kernel kernel, int edges, double *out,
+                                  double *rational) {
+    return edges ? hdi_edges_once(h, out, rational) : hdi_diagonal_once(h, kernel, out, rational);
+}
+
+/* The diagonal of the kernel on vertices, or with `edges` k_t on the pattern of L, with the set's degree by
+ * default. Tiny cells among large ones and slivers have errors relative to their own value that may be above
+ * the promise. Where the bound shows this, or for edges the bound relative to the largest value, the highest
+ * degree takes over. The error seen is about a fifth of the bound on all meshes tried. */
 static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges, double *out) {
     const hd_report before = *h->rep;
     const hd_heat *heat = h->heat;
-    const double loose = kernel == HD_KERNEL_OPERATOR && heat->source->B ? 50 : 1;   /* the bound, of the operator's diagonal */
     double rational;
-    hd_status st;
-    if ((edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational)) < 0) return h->e->status;
+    if (hdi_entries_once(h, kernel, edges, out, &rational) < 0) return h->e->status;
     if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
-    if (rational <= loose * hdi_diagonal_limit(heat)) return HD_OK;
-    *h->rep = before;
+    if (rational <= hdi_diagonal_limit(heat->source, kernel)) return HD_OK;
     h->degree = HDI_RAT_KERNEL_MAX;
-    st = edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational);
+    do {
+        *h->rep = before;
+        (void)hdi_entries_once(h, kernel, edges, out, &rational);
+    } while (hdi_degree_retreat(heat, &h->degree, h->e));
     h->degree = 0;
-    if (st != HD_ERR_MEMORY_LIMIT) return st;
-    *h->rep = before;                            /* no room for twice the factors: the first answer it is */
-    return edges ? hdi_edges_once(h, out, &rational) : hdi_diagonal_once(h, kernel, out, &rational);
+    return h->e->status;
 }
 
 /* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
@@ -18296,7 +18748,8 @@ static int32_t hdi_shared_packs(double ratio, double tol) {
     return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
 }
 
-/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how many packs those are. */
+/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how
+ * many packs those are. */
 static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
     int32_t w, best = 0;
     for (w = 1; w <= most && w <= 64; w++) {
@@ -18308,13 +18761,40 @@ static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_
     return best;
 }
 
-/* Weights of k and of a bound of g for every time in turn, for poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
-static void hdi_shared_weights(const hd_rational *set, int32_t n_times, const double *t, hd_c64 *weight) {
+/* Times that share their poles, in terms of those of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1
+ * / tau. */
+typedef struct hdi_window {
+    int32_t n_times;
+    const double *t;             /* [n_times] scaled, ascending */
+    hd_rational *set;            /* [n_times] */
+    hd_c64 *weight;              /* [2 n_times][n_poles] of k and of a bound of g, for every time in turn */
+    double *values;              /* [2 n_times][n] k and g by rows in elimination order */
+    size_t n;
+} hdi_window;
+
+/* k of time q in an array as values, and g n further on. */
+static double *hdi_window_at(const hdi_window *w, double *values, int32_t q) {
+    return values + 2 * HDI_CAST(size_t, q) * w->n;
+}
+
+/* Room for times q0 to q1 - 1 of a call. */
+static void hdi_window_take(hdi_window *w, const hdi_heat_call *h, int32_t q0, int32_t q1, hdi_scope *s) {
+    const uint64_t sets = 2 * HDI_CAST(uint64_t, q1 - q0);
+    w->n_times = q1 - q0;
+    w->t = h->times + q0;
+    w->n = HDI_CAST(size_t, h->heat->elim.sym.n);
+    w->set = HDI_TAKE(s, hd_rational, w->n_times);
+    w->weight = HDI_TAKE_ZERO(s, hd_c64, sets * HD_MAX_POLES);
+    w->values = HDI_TAKE_ZERO(s, double, sets * w->n);
+}
+
+static void hdi_window_weights(const hdi_window *w) {
+    const hd_rational *set = w->set;
     int32_t q, p;
-    for (q = 0; q < n_times; q++) {
-        double factor = 1, tau = t[q] / t[0];
+    for (q = 0; q < w->n_times; q++) {
+        double factor = 1, tau = w->t[q] / w->t[0];
         const int32_t best = hdi_resolvent_pole(set + q, &factor);
-        hd_c64 *k = weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
+        hd_c64 *k = w->weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
         for (p = 0; p < set->n_poles; p++) {
             k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
             g[p] = hdi_c(p == best ? factor / tau : 0, 0);
@@ -18322,46 +18802,75 @@ static void hdi_shared_weights(const hd_rational *set, int32_t n_times, const do
     }
 }
 
-/* k_t(v,v) for the (scaled) times t[0..n_times), ascending, by one set of poles, into the columns that `column` names. */
-static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t n_times, const double *t, const int32_t *column, double *D, size_t ldd) {
-    hd_heat *heat = h->heat;
-    hdi_elim *m = &heat->elim;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), sets = 2 * HDI_CAST(uint64_t, n_times);
-    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
-    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, sets * HD_MAX_POLES);
-    double *room = HDI_TAKE_ZERO(&s, double, sets * n), *off = HDI_TAKE(&s, double, n);
-    int32_t q, i, r, worst = -1;
-    double most = 0;
-    hdi_probe probe;
-    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
-    h->t = t[0];
-    h->set = set;
-    if (hdi_direct_factors(h) < 0) return hdi_scope_end(&s);
-    hdi_shared_weights(set, n_times, t, weight);
-    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, HDI_WANT_DIAGONAL, room, HDI_CAST(int64_t, n), h->e) < 0) return hdi_scope_end(&s);
-    h->set = NULL;
+/* The sets, the factors at the first time, and the values. */
+static hd_status hdi_window_run(hdi_heat_call *h, const hdi_window *w, double tol, hdi_wanted wanted) {
+    hdi_elim *m = &h->heat->elim;
+    hd_context *ctx = h->heat->ctx;
+    hdi_elim_sums sums;
+    hd_status status;
+    if (h->e->status < 0 || hdi_rational_shared(w->set, w->n_times, w->t, tol, ctx, h->e) < 0)
+        return h->e->status;
+    h->t = w->t[0];
+    h->set = w->set;
     h->lap = m->lap;
-    for (i = 0; i < m->sym.n; i++) {             /* of the last time: there rounding is largest */
-        const double *k = room + 2 * HDI_CAST(size_t, n_times - 1) * n, *g = k + n;
-        if (worst < 0 || g[i] * most > k[i]) {
-            worst = i;
-            most = hdi_quotient(k[i], g[i]);
-        }
+    status = hdi_direct_factors(h);
+    h->set = NULL;
+    if (status < 0) return status;
+    hdi_window_weights(w);
+    sums.n_sets = 2 * w->n_times;
+    sums.weight = w->weight;
+    sums.wanted = wanted;
+    sums.values = w->values;
+    sums.stride = m->sym.n;
+    if (hdi_progress(ctx, "invert", 0, h->e) < 0) return h->e->status;
+    return hdi_elim_invert(m, &sums, h->e);
+}
+
+/* The row where k is smallest beside g, and rounding with it largest. */
+static int32_t hdi_window_worst(const double *k, const double *g, int32_t n) {
+    double least = 0;
+    int32_t i, worst = -1;
+    for (i = 0; i < n; i++) {
+        if (worst >= 0 && !(g[i] * least > k[i])) continue;
+        worst = i;
+        least = hdi_quotient(k[i], g[i]);
     }
-    probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * n, worst);
-    if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < n_times; q++) {
-        const double *k = room + 2 * HDI_CAST(size_t, q) * n, *g = k + n;
+    return worst;
+}
+
+/* k_t(v,v) for times q0 to q1 - 1 of the call by one set of poles. */
+static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, double *D, size_t ldd) {
+    const hdi_elim *m = &h->heat->elim;
+    const hd_laplacian *lap = m->lap;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    hdi_window w;
+    hdi_diagonal d;
+    hdi_probe probe;
+    int32_t q, i, r;
+    memset(&d, 0, sizeof d);
+    d.kernel = HD_KERNEL_SYMMETRIC;
+    hdi_window_take(&w, h, q0, q1, &s);
+    d.off = HDI_TAKE(&s, double, w.n);
+    if (hdi_window_run(h, &w, HDI_SHARED_TOL, HDI_WANT_DIAGONAL) < 0) return hdi_scope_end(&s);
+    d.value = hdi_window_at(&w, w.values, w.n_times - 1);   /* at the last time rounding is largest */
+    probe = hdi_probe_rows(lap, d.value, hdi_window_worst(d.value, d.value + w.n, m->sym.n));
+    if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, w.set) < 0) return hdi_scope_end(&s);
+    for (q = 0; q < w.n_times; q++) {
+        const hd_rational *set = w.set + q;
         double rounding = 0;
+        d.value = d.size = hdi_window_at(&w, w.values, q);
+        d.g = d.value + w.n;
         for (r = 0; r < probe.k; r++) {
             const int32_t row = probe.row[r];
-            double by, there = hdi_probe_value(heat, &probe, r, set + q, t[q] / t[0], 0, g[row], &by);
-            rounding = hdi_max(rounding, hdi_quotient(HDI_PROBE_SAFETY * fabs(there - k[row]) + by, fabs(k[row])));
+            double by, there = hdi_probe_value(h->heat, &probe, r, set, w.t[q] / w.t[0], 0, d.g[row], &by);
+            rounding = hdi_max(rounding, hdi_probe_seen(there, by, d.value[row], d.value[row]));
         }
-        for (i = 0; i < m->sym.n; i++) rounding = hdi_max(rounding, hdi_below_constants(m->lap, set + q, i, k[i], 1));
-        for (i = 0; i < m->sym.n; i++) off[i] = hdi_min(set[q].max_weighted_error * hdi_max(0, g[i]), set[q].max_error / (m->lap->b_ratio * m->lap->b_diag[i]));
-        (void)hdi_diagonal_tell(h, HD_KERNEL_SYMMETRIC, k, off, k, rounding, D + HDI_CAST(size_t, column[q]) * ldd);
+        rounding = hdi_max(rounding, hdi_below_constants(lap, set, d.value, 0));
+        for (i = 0; i < m->sym.n; i++) {
+            const double spread = lap->b_ratio * lap->b_diag[i];
+            d.off[i] = hdi_min(set->max_weighted_error * hdi_max(0, d.g[i]), set->max_error / spread);
+        }
+        (void)hdi_diagonal_tell(h, &d, rounding, D + HDI_CAST(size_t, h->time_column[q0 + q]) * ldd);
     }
     return hdi_scope_end(&s);
 }
@@ -18371,28 +18880,31 @@ static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, doubl
     int32_t w, q0, q1;
     for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
         q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
-        if (hdi_diagonal_window(h, q1 - q0, h->times + q0, h->time_column + q0, D, ldd) < 0) break;
+        if (hdi_diagonal_window(h, q0, q1, D, ldd) < 0) break;
     }
     return h->e->status;
 }
 
-/* All times of a call: by shared poles where that takes fewer packs, else one by one. A set of degree 9, which one time
- * takes, costs as much as 9/8 packs: a pack and a real factor. */
+/* How many packs are worth as much as so many times one by one: each takes a set of degree 9, a pack and a
+ * real factor, which costs an eighth of a pack. */
+static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 9 * n_times; }
+
+/* All times of a call: by shared poles where that takes fewer packs, else one by one. */
 static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
     hd_heat *heat = h->heat;
-    int32_t q;
+    const int32_t n_times = h->ask.n_times;
+    int32_t q, packs = 0, windows;
     if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    if (kernel == HD_KERNEL_SYMMETRIC && h->ask.n_times > 1 && !heat->poles_asked && !heat->exacting) {
-        int32_t packs = 0, windows;
+    if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && !heat->poles_asked && !heat->exacting) {
         if (hdi_heat_sort_times(h, 1) < 0) return h->e->status;
-        windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], HDI_SHARED_TOL, h->n_times, &packs);
-        if (windows > 0 && 8 * packs < 9 * h->n_times && !hdi_heat_equal(heat, h->t, h->e)) {
+        windows = hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_TOL, n_times, &packs);
+        if (windows > 0 && hdi_shared_pays(packs, n_times) && !hdi_heat_equal(heat, h->t, h->e)) {
             if (hdi_diagonal_windows(h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return h->e->status;
             hdi_heat_forget(h);                  /* one by one takes less */
         }
     }
-    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
+    for (q = 0; q < n_times && h->e->status >= 0; q++) {
         h->t = hdi_heat_scaled(heat, h->ask.t[q]);
         if (hdi_entries_sure(h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h->e->column = q;
     }
@@ -18407,7 +18919,8 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
     hdi_inverse_tell(h);
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
         h->t = hdi_heat_scaled(h->heat, h->ask.t[q]);
-        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + HDI_CAST(size_t, q) * nnz) < 0) h->e->column = q;
+        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + HDI_CAST(size_t, q) * nnz) < 0)
+            h->e->column = q;
     }
     return h->e->status;
 }
@@ -18417,9 +18930,10 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
 
 /* ---- distances ---- */
 
-/* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source, and bounds of
- * their errors: the rational one of f is at most weighted times a form with diagonal g, and at most uniform times one with
- * diagonal spread; that of a column by rounding at most sqrt(g_v) times a number that is known of each column. */
+/* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the
+ * source, and bounds of their errors: the rational one of f is at most weighted times a form with diagonal g,
+ * and at most uniform times one with diagonal spread; that of a column by rounding at most sqrt(g_v) times a
+ * number that is known of each column. */
 typedef struct hdi_metric {
     hd_distance_kind kind;
     double t;                    /* of columns, scaled */
@@ -18430,32 +18944,39 @@ typedef struct hdi_metric {
     hd_rational resolvent;       /* weights for g */
     double weighted, uniform;    /* HUGE_VAL: it bounds nothing */
     double left_out;             /* times the form of spread, besides: a0 B^-1 of a full B */
-    double rounding;             /* of diag, relative to it, or with own to g: of any function of the caller's, which may vanish */
+    /* of diag, relative to it, or with own to g: of any function of the caller's, which may vanish */
+    double rounding;
     int own;
 } hdi_metric;
 
-/* A column of f by vertices, and what rounding can put it off by: sqrt(g_v) times off_m, and sqrt(spread_v) times off_b. */
+/* A column of f by vertices, and what rounding can put it off by: sqrt(g_v) times off_m, and sqrt(spread_v)
+ * times off_b. */
 typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
 
-/* What rounding of a function of the caller's is relative to: the resolvent, or where that bounds nothing the mass. */
+/* What rounding of a function of the caller's is relative to: the resolvent, or where that bounds nothing the
+ * mass. */
 static double hdi_own_size(double g, double spread) { return g > 0 && hdi_finite(g) ? g : spread; }
 
 /* Commute and biharmonic, from L grounded. */
-static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scope, hd_error *e) {
+static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *scope) {
     const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
-    hdi_elim *m = &heat->elim;
-    hdi_ground *g = &heat->ground;
+    hdi_elim *m = &h->heat->elim;
+    hdi_ground *g = &h->heat->ground;
+    const double *value;
     double *work, *u;
     hdi_probe probe;
     int32_t i, farthest = 0, nearest = 0;
-    if (hdi_ground_make(m, g, e) < 0 || (forms && hdi_ground_forms(m, g, e) < 0)) return e->status;
+    h->rep->reason = "one real factor of L, one vertex of each component held";
+    h->rep->factor_flops = m->sym.flops;
+    if (hdi_ground_make(m, g, h->e) < 0 || (forms && hdi_ground_forms(m, g, h->e) < 0)) return h->e->status;
+    value = forms ? g->form : g->diag;
     work = HDI_TAKE(scope, double, hdi_ground_room(m));
     u = HDI_TAKE(scope, double, m->sym.n);
     if (!work || !u) return scope->e->status;
-    x->unit = forms ? 1 / heat->scale : 1;
+    x->unit = forms ? 1 / h->heat->scale : 1;
     for (i = 0; i < m->sym.n; i++) {
         const int32_t r = m->sym.perm[i];
-        x->diag[r] = x->unit * (forms ? g->form[i] : g->diag[i]);
+        x->diag[r] = x->unit * value[i];
         x->g[r] = hdi_max(0, g->diag[i]);
         x->spread[r] = HUGE_VAL;
     }
@@ -18464,11 +18985,12 @@ static hd_status hdi_metric_ground(hd_heat *heat, hdi_metric *x, hdi_scope *scop
         if (g->diag[i] > 0 && !(g->diag[nearest] > 0 && g->diag[nearest] <= g->diag[i])) nearest = i;
     }
     probe = hdi_probe_rows(m->lap, g->diag, m->sym.n > 0 ? farthest : -1);
-    for (i = 0; i <= probe.k && m->sym.n > 0; i++) {   /* and the nearest, where the relative error is largest */
+    /* and the nearest, where the relative error is largest */
+    for (i = 0; i <= probe.k && m->sym.n > 0; i++) {
         const int32_t row = i < probe.k ? probe.row[i] : nearest;
-        const double there = forms ? g->form[row] : g->diag[row];
         const double off = hdi_ground_column(m, g, row, forms, u, work) * sqrt(hdi_max(0, g->diag[row]));
-        x->rounding = hdi_max(x->rounding, hdi_quotient(4 * HDI_PROBE_SAFETY * fabs(u[row] - there) + off, there));
+        const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
+        x->rounding = hdi_max(x->rounding, hdi_quotient(seen, value[row]));
     }
     return HD_OK;
 }
@@ -18484,6 +19006,34 @@ static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
     x->rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON;
 }
 
+/* Measures what rounding does to the diagonal. */
+static hd_status hdi_metric_probe(hdi_heat_call *h, hdi_metric *x, const hdi_entries *entries) {
+    hd_heat *heat = h->heat;
+    const hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = m->lap;
+    const int full = x->kind == HD_DISTANCE_WEIGHTED && lap->B;
+    const hdi_probe probe = hdi_probe_rows(lap, entries->k, -1);
+    int32_t i;
+    if (hdi_probe_run(h, &probe, full ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x->set) < 0)
+        return h->e->status;
+    for (i = 0; i < probe.k; i++) {
+        const int32_t row = probe.row[i];
+        const double b = lap->b_diag[row], g = full ? HUGE_VAL : entries->g[row];
+        double value = entries->k[row], by;
+        double there = hdi_probe_value(heat, &probe, i, &x->set, 1, full, g, &by);
+        if (full) {                              /* f is (B K)(v,v): the column is K e_v */
+            hdi_pair_apply(lap, 0, 1, heat->lane[i].u, heat->lane[i].tmp);
+            there = heat->lane[i].tmp[row];
+            by *= sqrt(b) / (hdi_ratio_root(lap) / sqrt(b));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
+            value = x->diag[m->sym.perm[row]] * heat->scale;
+        }
+        by = hdi_probe_seen(there, by, value,
+                            x->own ? hdi_own_size(entries->g[row], hdi_inverse_mass(lap, row)) : value);
+        x->rounding = hdi_max(x->rounding, by);
+    }
+    return HD_OK;
+}
+
 /* The diagonal by inversion of the factors of the poles, at h->t. */
 static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *scope) {
     hd_heat *heat = h->heat;
@@ -18492,58 +19042,41 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
     const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
     double *room = HDI_TAKE(scope, double, 2 * HDI_CAST(uint64_t, m->sym.n));
     hdi_entries entries;
-    hdi_probe probe;
     int32_t i;
-    if (!room || hdi_entries_make(h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) < 0) return h->e->status;
+    if (!room) return h->e->status;
+    if (hdi_entries_make(h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) < 0)
+        return h->e->status;
     if (lap->B && !full) x->left_out = fabs(m->set.a0);
     for (i = 0; i < m->sym.n; i++) {
         const int32_t r = m->sym.perm[i];
-        const double b = lap->b_diag[r], w = full ? 1 / heat->scale : weighted ? b * m->lap->mass[i] : heat->scale;   /* no square of b */
-        x->diag[r] = w * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i])) + (full ? m->set.a0 * b : 0);
-        x->g[r] = w * entries.g[i];
-        x->spread[r] = weighted ? b : lap->b_ratio > 0 ? 1 / (lap->b_ratio * b) : HUGE_VAL;
+        /* no square of b */
+        const double b = lap->b_diag[r], plain = weighted ? b * m->lap->mass[i] : heat->scale;
+        const double unit = full ? 1 / heat->scale : plain;
+        x->diag[r] = unit * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i])) +
+                     (full ? m->set.a0 * b : 0);
+        x->g[r] = unit * entries.g[i];
+        x->spread[r] = weighted ? b : hdi_inverse_mass(lap, r);
     }
     x->own = m->set.kind == HD_POLES_OWN;
     x->set = m->set;
     x->resolvent = entries.resolvent;
     x->weighted = entries.weighted;
     x->uniform = entries.uniform;
-    probe = hdi_probe_rows(m->lap, entries.k, -1);
-    if (hdi_probe_run(h, &probe, full ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x->set) < 0) return h->e->status;
-    for (i = 0; i < probe.k; i++) {
-        const int32_t row = probe.row[i];
-        double by, there, value = entries.k[row];
-        if (full) {                              /* f is (B K)(v,v): the column is K e_v */
-            hdi_pair_apply(m->lap, 0, 1, heat->lane[i].u, heat->lane[i].tmp);
-            there = heat->lane[i].tmp[row];
-            (void)hdi_probe_value(heat, &probe, i, &x->set, 1, 1, HUGE_VAL, &by);
-            by *= sqrt(m->lap->b_diag[row]) / (hdi_ratio_root(m->lap) / sqrt(m->lap->b_diag[row]));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
-            value = (x->diag[m->sym.perm[row]]) * heat->scale;
-            by += HDI_PROBE_SAFETY * fabs(there - value);
-        } else {
-            there = hdi_probe_value(heat, &probe, i, &x->set, 1, 0, entries.g[row], &by);
-            by += HDI_PROBE_SAFETY * fabs(there - value);
-        }
-        if (x->own) value = hdi_own_size(entries.g[row], m->lap->b_ratio > 0 ? 1 / (m->lap->b_ratio * m->lap->b_diag[row]) : HUGE_VAL);
-        x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(value)));
+    if (hdi_metric_probe(h, x, &entries) < 0) return h->e->status;
+    if (x->own) {                                /* from here on g is what rounding is relative to */
+        for (i = 0; i < m->sym.n; i++)
+            entries.g[i] = hdi_own_size(entries.g[i], hdi_quotient(1 / m->lap->b_diag[i], m->lap->b_ratio));
+        x->rounding = hdi_own_rounding(heat, &x->set, h->t, x->rounding, entries.g, 0);
     }
-    if (x->own) {
-        const double near = hdi_own_near(heat, &x->set, h->t);
-        double most = 0;
-        for (i = 0; i < m->sym.n && near > 0; i++) {
-            const double spread = hdi_quotient(1 / m->lap->b_diag[i], m->lap->b_ratio);
-            most = hdi_max(most, hdi_quotient(spread, hdi_own_size(entries.g[i], spread)));
-        }
-        x->rounding = HDI_PROBE_OWN * x->rounding + near * most;
-    }
-    for (i = 0; i < m->sym.n && x->set.a0 == 0; i++)
-        x->rounding = hdi_max(x->rounding, hdi_below_constants(m->lap, &x->set, i, entries.k[i], full ? m->lap->mass[i] * m->lap->mass[i] : 1));
+    if (x->set.a0 == 0)
+        x->rounding = hdi_max(x->rounding, hdi_below_constants(m->lap, &x->set, entries.k, full ? 2 : 0));
     return HD_OK;
 }
 
-static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, hdi_metric *x, hdi_scope *keep, hd_report *rep) {
-    const hd_laplacian *lap = heat->source;
-    const size_t n = HDI_CAST(size_t, lap->n_active);
+/* The metric of a kind at a time, by poles of a degree (0: by default). keep holds its arrays. */
+static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree,
+                                 hdi_metric *x, hdi_scope *keep, hd_report *rep) {
+    const size_t n = HDI_CAST(size_t, heat->source->n_active);
     hd_error *e = keep->e;
     hdi_scope scope;
     hdi_heat_call h;
@@ -18554,33 +19087,27 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     if (!x->diag) return e->status;
     x->g = x->diag + n;
     x->spread = x->g + n;
-    scope = hdi_scope_begin(heat->ctx, e);
     x->t = hdi_min(2 * hdi_heat_scaled(heat, t), 1e300);
     x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, rep, NULL) < 0 || hdi_heat_analysed(heat, h.e) < 0) {
-        *e = *h.e;
-        return hdi_heat_end(&h);
-    }
-    hdi_inverse_tell(&h);
-    h.t = x->t;
-    h.degree = degree;
-    h.lap = heat->elim.lap;
-    h.relative = 1;
-    if (x->filter) {
-        rep->reason = "one real factor of L, one vertex of each component held";
-        (void)hdi_metric_ground(heat, x, &scope, h.e);
-        rep->factor_flops = heat->elim.sym.flops;
-    } else {
-        x->equal = hdi_heat_equal(heat, x->t, h.e);
-        if (x->equal) hdi_metric_equal(lap, x);
+    scope = hdi_scope_begin(heat->ctx, e);
+    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, rep, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0) {
+        hdi_inverse_tell(&h);
+        h.t = x->t;
+        h.degree = degree;
+        h.lap = heat->elim.lap;
+        h.relative = 1;
+        x->equal = !x->filter && hdi_heat_equal(heat, x->t, h.e);
+        if (x->filter) (void)hdi_metric_ground(&h, x, &scope);
+        else if (x->equal) hdi_metric_equal(heat->source, x);
         else if (h.e->status >= 0) (void)hdi_metric_invert(&h, x, &scope);
     }
-    if (h.e->status < 0 && e->status >= 0) *e = *h.e;
+    if (h.e->status < 0) *e = *h.e;
     hdi_heat_end(&h);
     return hdi_scope_end(&scope);
 }
 
-/* Column s of f into u [n], by vertices, from what the plan gives: of k_t, or of K_t e_s. work [2 n_active]. */
+/* Column s of f into u [n], by vertices, from what the plan gives: of k_t, or of K_t e_s. work [2
+ * n_active]. */
 static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
     int32_t i;
     if (x->kind != HD_DISTANCE_WEIGHTED) {
@@ -18592,79 +19119,120 @@ static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, d
     for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : work[lap->n_active + lap->row[i]];
 }
 
-/* Columns of f for k sources, step apart; c [k]. rep: residual. */
-static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, int32_t k, const int32_t *sources, double *D, size_t step, hdi_metric_column *c, hd_report *rep, hd_error *e) {
+/* Distances of a kind from k sources to all vertices. Those of source r go to D + r ld. */
+typedef struct hdi_distances {
+    hd_distance_kind kind;
+    int32_t k;
+    const int32_t *sources;
+    double *D;
+    size_t ld;
+} hdi_distances;
+
+/* From one source. */
+static hdi_distances hdi_distances_one(const hd_heat *heat, hd_distance_kind kind, const int32_t *source,
+                                       double *D) {
+    hdi_distances x;
+    x.kind = kind;
+    x.k = 1;
+    x.sources = source;
+    x.D = D;
+    x.ld = HDI_CAST(size_t, heat->source->n);
+    return x;
+}
+
+/* Columns of f from L grounded. */
+static hd_status hdi_metric_columns_ground(hd_heat *heat, const hdi_metric *x, const hdi_distances *to,
+                                           hdi_metric_column *c, hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const hd_laplacian *lap = heat->source;
-    const size_t n = HDI_CAST(size_t, lap->n_active);
-    const double unit = x->kind == HD_DISTANCE_WEIGHTED ? 1 / sqrt(heat->scale) : sqrt(heat->scale);
-    double *work, *off, *u;
-    hdi_columns query;
-    hd_report columns;
+    const hdi_elim *m = &heat->elim;
+    const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
+    double *work = HDI_TAKE(&s, double, hdi_ground_room(m)), *u = HDI_TAKE(&s, double, m->sym.n);
     int32_t r, i;
-    for (r = 0; r < k; r++) c[r].u = D + HDI_CAST(size_t, r) * step;
-    if (x->filter) {
-        work = HDI_TAKE(&s, double, hdi_ground_room(&heat->elim));
-        u = HDI_TAKE(&s, double, n);
-        for (r = 0; r < k && e->status >= 0; r++) {
-            const int32_t row = heat->elim.lap->row[sources[r]];
-            if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, e) < 0) break;
-            c[r].off_m = 0;
-            c[r].off_b = HUGE_VAL;
-            memset(c[r].u, 0, HDI_CAST(size_t, lap->n) * sizeof(double));
-            if (row < 0) continue;
-            c[r].off_m = x->unit * hdi_ground_column(&heat->elim, &heat->ground, row, x->kind == HD_DISTANCE_BIHARMONIC, u, work);
-            for (i = 0; i < heat->elim.sym.n; i++) c[r].u[heat->elim.lap->vertex[i]] = x->unit * u[i];
-        }
-        return hdi_scope_end(&s);
-    }
-    off = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, k) + 1);
-    work = HDI_TAKE(&s, double, 2 * n + 1);
-    if (e->status < 0) return hdi_scope_end(&s);
-    memset(&query, 0, sizeof query);
-    query.t = x->t;
-    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    query.set = &x->set;
-    query.k = k;
-    query.equal = x->equal;
-    query.sources = sources;
-    query.U = D;
-    query.ldu = step;
-    query.off_b = off;
-    query.off_m = off + k;
-    if (hdi_direct_columns(heat, &query, &columns) < 0) *e = columns.error;
-    else rep->residual = hdi_max(rep->residual, columns.residual);
-    for (r = 0; r < k && e->status >= 0; r++) {
-        hdi_metric_of_column(lap, x, c[r].u, work);
-        c[r].off_m = unit * off[k + r];
-        c[r].off_b = unit * off[r] * (x->kind == HD_DISTANCE_WEIGHTED ? sqrt(heat->scale) : 1);
+    for (r = 0; r < to->k && e->status >= 0; r++) {
+        const int32_t row = m->lap->row[to->sources[r]];
+        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / to->k, e) < 0) break;
+        c[r].off_m = 0;
+        c[r].off_b = HUGE_VAL;
+        memset(c[r].u, 0, HDI_CAST(size_t, heat->source->n) * sizeof(double));
+        if (row < 0) continue;
+        c[r].off_m = x->unit * hdi_ground_column(m, &heat->ground, row, forms, u, work);
+        for (i = 0; i < m->sym.n; i++) c[r].u[m->lap->vertex[i]] = x->unit * u[i];
     }
     return hdi_scope_end(&s);
 }
 
-/* Bound of the rational error of d^2 between s and v: of the form of g, whose column g_sv is known or not, and of that of
- * spread; either bounds it alone. */
-static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss, double sv) {
+/* What the plan is asked for: columns that become columns of f. */
+static hdi_columns hdi_metric_query(const hdi_metric *x, const hd_rational *set, const hdi_distances *to) {
+    hdi_columns query;
+    memset(&query, 0, sizeof query);
+    query.t = x->t;
+    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    query.set = set;
+    query.k = to->k;
+    query.sources = to->sources;
+    query.U = to->D;
+    query.ldu = to->ld;
+    return query;
+}
+
+/* Columns of f for the sources; c [k]. rep: residual. */
+static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, const hdi_distances *to,
+                                    hdi_metric_column *c, hd_report *rep, hd_error *e) {
+    hdi_scope s;
+    const int weighted = x->kind == HD_DISTANCE_WEIGHTED;
+    const double unit = weighted ? 1 / sqrt(heat->scale) : sqrt(heat->scale);
+    hdi_columns query = hdi_metric_query(x, &x->set, to);
+    double *work, *off;
+    int32_t r;
+    for (r = 0; r < to->k; r++) c[r].u = to->D + HDI_CAST(size_t, r) * to->ld;
+    if (x->filter) return hdi_metric_columns_ground(heat, x, to, c, e);
+    s = hdi_scope_begin(heat->ctx, e);
+    off = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, to->k) + 1);
+    work = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, heat->source->n_active) + 1);
+    if (e->status < 0) return hdi_scope_end(&s);
+    query.equal = x->equal;
+    query.off_b = off;
+    query.off_m = off + to->k;
+    (void)hdi_direct_columns(heat, &query, rep, e);
+    for (r = 0; r < to->k && e->status >= 0; r++) {
+        hdi_metric_of_column(heat->source, x, c[r].u, work);
+        c[r].off_m = unit * query.off_m[r];
+        c[r].off_b = unit * query.off_b[r] * (weighted ? sqrt(heat->scale) : 1);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Bound of the rational error of d^2 between s and v: of the form of g, whose column g_sv is known or not,
+ * and of that of spread; either bounds it alone. */
+static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss,
+                                  double sv) {
     const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, gv)), wide = sqrt(ss) + sqrt(sv);
     double form = root * root, bound = HUGE_VAL;
     if (x->filter || x->equal) return 0;
     if (x->uniform == 0) return x->left_out > 0 ? x->left_out * wide * wide : 0;
-    if (gsv) form = hdi_min(form, hdi_max(0, gs + gv - 2 * *gsv) + (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
+    if (gsv)
+        form = hdi_min(form,
+                       hdi_max(0, gs + gv - 2 * *gsv) +
+                       (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
     if (hdi_finite(x->weighted)) bound = x->weighted * form;
     bound = hdi_min(bound, x->uniform * wide * wide);
     return x->left_out > 0 ? bound + x->left_out * wide * wide : bound;
 }
 
-/* d from column s of f, in place. g: the same column of the resolvent, whose own d^2 bounds the rational error; NULL: from the
- * diagonals, which is less sharp near s. Between components the last two kinds are infinite. */
-static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s, const hdi_metric_column *c, const double *g, hd_report *rep, hdi_ledger *ledger) {
+/* d from column s of f, in place. g: the same column of the resolvent, whose own d^2 bounds the rational
+ * error; NULL: from the diagonals, which is less sharp near s. Between components the last two kinds are
+ * infinite. */
+static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s,
+                                const hdi_metric_column *c, const double *g, hd_report *rep,
+                                hdi_ledger *ledger) {
     const int32_t rs = lap->row[s];
     const double fs = rs < 0 ? 0 : x->diag[rs], gs = rs < 0 ? 0 : x->g[rs], ss = rs < 0 ? 0 : x->spread[rs];
     double *u = c->u;
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         const int32_t r = lap->row[v];
-        const double f = r < 0 ? 0 : x->diag[r], gv = r < 0 ? 0 : x->g[r], sv = r < 0 ? 0 : x->spread[r], d2 = fs - 2 * u[v] + f;
+        const double f = r < 0 ? 0 : x->diag[r], gv = r < 0 ? 0 : x->g[r], sv = r < 0 ? 0 : x->spread[r];
+        const double d2 = fs - 2 * u[v] + f;
         double rational, rounding = 0, delta, error, d;
         hdi_parts part;
         if (v == s) {
@@ -18680,7 +19248,9 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
             const double by_m = hdi_bound_times(hdi_finite(gv) ? sqrt(hdi_max(0, gv)) : HUGE_VAL, c->off_m);
             rounding = 2 * hdi_min(by_m, hdi_bound_times(hdi_finite(sv) ? sqrt(sv) : HUGE_VAL, c->off_b));
         }
-        if (x->rounding > 0) rounding += x->rounding * (x->own ? hdi_own_size(gs, ss) + hdi_own_size(gv, sv) : fabs(fs) + fabs(f));
+        if (x->rounding > 0)
+            rounding += x->rounding *
+                (x->own ? hdi_own_size(gs, ss) + hdi_own_size(gv, sv) : fabs(fs) + fabs(f));
         rounding += 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
         delta = rational + rounding;
         d = d2 > 0 ? sqrt(d2) : 0;
@@ -18698,11 +19268,13 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
 
 static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
     const int none = x->filter || x->equal || (x->uniform == 0 && x->left_out == 0);
-    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, 1);
+    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE,
+                            HD_EVIDENCE_MEASURED, 1);
 }
 
-/* Bound of the error relative to the largest distance that sends the default to the highest degree, and what the bound of degree 9 is to be expected at, as
- * seen on meshes of 1K to 50K vertices: so much times sqrt(t)/h. */
+/* Bound of the error relative to the largest distance that sends the default to the highest degree, and what
+ * the bound of degree 9 is to be expected at, as seen on meshes of 1K to 50K vertices: so much times
+ * sqrt(t)/h. */
 #define HDI_DISTANCE_SURE 2.5e-6
 #define HDI_DISTANCE_EXPECTED 4.4e-7
 
@@ -18711,252 +19283,298 @@ static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
     return kind >= HD_DISTANCE_COMMUTE || heat->poles_asked || heat->exacting;
 }
 
-/* Did the factors of the highest degree not fit the byte limit? Then those of the default are to be tried. */
-static int hdi_metric_retry(const hd_heat *heat, hd_error *e) {
-    if (e->status != HD_ERR_MEMORY_LIMIT || heat->elim.n_packs == 0) return 0;
-    hdi_error_clear(e);
-    return 1;
-}
-
 /* The same columns of the resolvent's bound g, in f's units. */
-static hd_status hdi_metric_resolvent(hd_heat *heat, const hdi_metric *x, int32_t source, double *g, double *work, hd_error *e) {
-    hdi_columns query;
-    hd_report rep;
-    memset(&query, 0, sizeof query);
-    query.t = x->t;
-    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    query.set = &x->resolvent;
-    query.k = 1;
-    query.sources = &source;
-    query.U = g;
-    query.ldu = HDI_CAST(size_t, heat->source->n);
-    if (hdi_direct_columns(heat, &query, &rep) < 0) *e = rep.error;
-    else hdi_metric_of_column(heat->source, x, g, work);
+static hd_status hdi_metric_resolvent(hd_heat *heat, const hdi_metric *x, const int32_t *source, double *g,
+                                      double *work, hd_error *e) {
+    const hdi_distances to = hdi_distances_one(heat, x->kind, source, g);
+    const hdi_columns query = hdi_metric_query(x, &x->resolvent, &to);
+    if (hdi_direct_columns(heat, &query, NULL, e) >= 0) hdi_metric_of_column(heat->source, x, g, work);
     return e->status;
 }
 
-/* One time, all sources: columns step apart. degree 0: by default. */
-static hd_status hdi_distance_once(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree, int32_t k, const int32_t *sources, double *D, size_t step,
+/* One time, all sources. degree 0: by default. */
+static hd_status hdi_distance_once(hd_heat *heat, const hdi_distances *to, double t, int32_t degree,
                                    hd_report *rep, hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
     const size_t n = HDI_CAST(size_t, heat->source->n);
     double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
-    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, HDI_CAST(uint64_t, k) + 1);
+    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, HDI_CAST(uint64_t, to->k) + 1);
     hdi_metric x;
     int32_t r;
     memset(rep, 0, sizeof *rep);
-    if (e->status < 0 || hdi_metric_make(heat, kind, t, degree, &x, &s, rep) < 0) return hdi_scope_end(&s);
+    if (e->status < 0 || hdi_metric_make(heat, to->kind, t, degree, &x, &s, rep) < 0)
+        return hdi_scope_end(&s);
     rep->error_relative = 0;
-    (void)hdi_metric_columns(heat, &x, k, sources, D, step, column, rep, e);
-    if (e->status >= 0 && !x.filter && !x.equal && x.weighted > 0 && hdi_finite(x.weighted)) g = HDI_TAKE(&s, double, n);
-    for (r = 0; r < k && e->status >= 0; r++) {
+    (void)hdi_metric_columns(heat, &x, to, column, rep, e);
+    if (!x.filter && !x.equal && x.weighted > 0 && hdi_finite(x.weighted)) g = HDI_TAKE(&s, double, n);
+    for (r = 0; r < to->k && e->status >= 0; r++) {
         hdi_ledger ledger = hdi_metric_ledger(&x);
-        if (g && hdi_metric_resolvent(heat, &x, sources[r], g, work, e) < 0) break;
-        hdi_metric_distance(heat->source, &x, sources[r], column + r, g, rep, &ledger);
+        if (g && hdi_metric_resolvent(heat, &x, to->sources + r, g, work, e) < 0) break;
+        hdi_metric_distance(heat->source, &x, to->sources[r], column + r, g, rep, &ledger);
         hdi_ledger_close(&ledger, rep);
     }
     return hdi_scope_end(&s);
 }
 
-/* out [n_sets][n] += the weighted sums of column `row` of the inverses, or with mass of the inverses times the (full, scaled) B, rows in elimination order: pairs only.
- * x [8 n], work as a sweep's, active [n_super], spare [3 n]. pole_off: the poles' residuals as seen, in the norm of D^-1. */
-static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t n_sets, const hd_c64 *weight, double *out, double *x, double *work, char *active,
-                              double *spare, double *pole_off) {
-    const int32_t n = m->sym.n, n_poles = m->set.n_poles;
-    hdi_check check, *list = &check;
-    const int64_t begin = m->lap->L.row_ptr[row], end = m->lap->L.row_ptr[row + 1];
+/* ---- distances at many times ---- */
+
+/* Distances of the first two kinds at times that share their poles. Rows are in elimination order. */
+typedef struct hdi_distance_shared {
+    hdi_heat_call *h;
+    const hdi_elim *m;
+    hdi_window w;
+    const int32_t *time_column;  /* [n_times] which of the call's times each is */
+    int weighted, full;          /* full: weighted, and B is full */
+    double unit;                 /* of f to the plan's numbers */
+    double *column;              /* [2 n_times][n] of k and g, or with full of K_t and of g B */
+    double *x, *sweep, *rhs;     /* [n][8], a sweep's, [3 n] */
+    double *product;             /* full: [2 n] */
+    double *g;                   /* by vertices */
+    double *rounding;            /* [n_times] of the diagonals, relative */
+    char *active;                /* [n_super] */
+    double pole_off[HD_MAX_POLES];   /* residuals as seen, in the norm of D^-1, of the column */
+    hdi_metric metric;
+} hdi_distance_shared;
+
+/* Room for times q0 to q1 - 1 of the call. */
+static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call *h, hd_distance_kind kind,
+                                          int32_t q0, int32_t q1, hdi_scope *s) {
+    const uint64_t n = HDI_CAST(uint64_t, h->heat->elim.sym.n), n_times = HDI_CAST(uint64_t, q1 - q0);
+    memset(z, 0, sizeof *z);
+    hdi_window_take(&z->w, h, q0, q1, s);
+    z->h = h;
+    z->m = &h->heat->elim;
+    z->time_column = h->time_column + q0;
+    z->weighted = kind == HD_DISTANCE_WEIGHTED;
+    z->full = z->weighted && z->m->lap->B;
+    z->unit = z->weighted ? 1 / h->heat->scale : h->heat->scale;
+    z->column = HDI_TAKE(s, double, 2 * n_times * n);
+    z->x = HDI_TAKE(s, double, HDI_PACK * n);
+    z->sweep = HDI_TAKE(s, double, hdi_sweep_size(&z->m->sym, HDI_PACK, 1, 1));
+    z->rhs = HDI_TAKE(s, double, 3 * n);
+    z->product = z->full ? HDI_TAKE(s, double, 2 * n) : NULL;
+    z->g = HDI_TAKE(s, double, h->heat->source->n);
+    z->rounding = HDI_TAKE_ZERO(s, double, n_times);
+    z->active = HDI_TAKE(s, char, HDI_CAST(int64_t, z->m->sym.n_super) + 1);
+    z->metric.kind = kind;
+    z->metric.diag = HDI_TAKE(s, double, 3 * n + 1);
+    if (s->e->status < 0) return s->e->status;
+    z->metric.g = z->metric.diag + n;
+    z->metric.spread = z->metric.g + n;
+    return HD_OK;
+}
+
+/* The right-hand side of a row: e_row, or with full B e_row; and what its sweeps touch. */
+static void hdi_distance_shared_rhs(hdi_distance_shared *z, int32_t row) {
+    const hd_laplacian *lap = z->m->lap;
     int64_t p;
-    int32_t i, k, q, j;
-    memset(active, 0, HDI_CAST(size_t, m->sym.n_super));
-    hdi_sweep_touch(&m->sym, row, active);
-    for (p = begin; p < end && mass; p++) hdi_sweep_touch(&m->sym, m->lap->L.col[p], active);
-    for (i = 0; 4 * i < n_poles; i++) {
-        hdi_sweep z;
-        memset(x, 0, HDI_CAST(size_t, n) * HDI_PACK * sizeof *x);
-        for (q = 0; q < 4 && !mass; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
-        for (p = begin; p < end && mass; p++)
-            for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, m->lap->L.col[p]) + q] = m->lap->B[p];
-        z = hdi_sweep_open(m->pack + i, 1, x, work, 1);
-        z.active = active;
-        hdi_sweep_run(&z, m->ctx);
-        memset(&check, 0, sizeof check);
-        memset(spare, 0, 3 * HDI_CAST(size_t, n) * sizeof *spare);
-        if (!mass) spare[row] = 1;
-        for (p = begin; p < end && mass; p++) spare[m->lap->L.col[p]] = m->lap->B[p];
-        check.lap = m->lap;
-        check.t = m->t;
-        check.weight = m->weight;
-        check.noise = m->noise;
-        check.rhs = spare;
-        check.x = x;
-        check.stride = HDI_PACK;
-        check.u = spare + n;
-        check.bu = check.u + n;
-        for (q = 0; q < 4; q++) {
-            check.theta[q] = m->set.theta[hdi_elim_pole(m, i, q)].re;
-            check.theta[q + 4] = m->set.theta[hdi_elim_pole(m, i, q)].im;
-        }
-        hdi_check_c(&list, 1);
-        for (q = 0; q < 4 && 4 * i + q < n_poles; q++) pole_off[4 * i + q] = hdi_residual_seen(sqrt(check.norm2[q]), sqrt(check.size2[q]));
-        for (k = 0; k < n_sets; k++) {
-            const hd_c64 *w = weight + HDI_CAST(int64_t, k) * n_poles + 4 * i;
-            double *HDI_RESTRICT to = out + HDI_CAST(int64_t, k) * n, c[HDI_PACK];
-            for (q = 0; q < 4; q++) {
-                c[q] = 4 * i + q < n_poles ? w[q].re : 0;
-                c[q + 4] = 4 * i + q < n_poles ? -w[q].im : 0;
-            }
-            for (j = 0; j < n; j++)
-                for (q = 0; q < HDI_PACK; q++) to[j] += c[q] * x[HDI_PACK * HDI_CAST(int64_t, j) + q];
+    memset(z->rhs, 0, 3 * z->w.n * sizeof *z->rhs);
+    memset(z->active, 0, HDI_CAST(size_t, z->m->sym.n_super));
+    hdi_sweep_touch(&z->m->sym, row, z->active);
+    if (!z->full) z->rhs[row] = 1;
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && z->full; p++) {
+        hdi_sweep_touch(&z->m->sym, lap->L.col[p], z->active);
+        z->rhs[lap->L.col[p]] = lap->B[p];
+    }
+}
+
+/* Solves for the poles of pack i; the residuals. */
+static void hdi_distance_shared_solve(hdi_distance_shared *z, int32_t i) {
+    const hdi_elim *m = z->m;
+    hdi_check check, *list = &check;
+    hdi_sweep sweep;
+    int64_t j;
+    int32_t q;
+    memset(z->x, 0, z->w.n * HDI_PACK * sizeof *z->x);
+    for (j = 0; j < m->sym.n; j++)
+        for (q = 0; q < 4; q++) z->x[HDI_PACK * j + q] = z->rhs[j];
+    sweep = hdi_sweep_open(m->pack + i, 1, z->x, z->sweep, 1);
+    sweep.active = z->active;
+    hdi_sweep_run(&sweep, m->ctx);
+    check = hdi_check_open(m, i, z->rhs, z->x, HDI_PACK);
+    check.u = z->rhs + m->sym.n;
+    check.bu = check.u + m->sym.n;
+    hdi_check_c(&list, 1);
+    for (q = 0; q < 4 && 4 * i + q < m->set.n_poles; q++)
+        z->pole_off[4 * i + q] = hdi_residual_seen(sqrt(check.norm2[q]), sqrt(check.size2[q]));
+}
+
+/* The columns of a row at all times. Shared sets have pairs of poles only. */
+static void hdi_distance_shared_column(hdi_distance_shared *z, int32_t row) {
+    const hdi_elim *m = z->m;
+    const double *x = z->x;
+    double coef[HDI_PACK];
+    int64_t j;
+    int32_t i, k, q;
+    memset(z->column, 0, 2 * HDI_CAST(size_t, z->w.n_times) * z->w.n * sizeof *z->column);
+    hdi_distance_shared_rhs(z, row);
+    for (i = 0; i < m->n_used; i++) {
+        hdi_distance_shared_solve(z, i);
+        for (k = 0; k < 2 * z->w.n_times; k++) {
+            double *HDI_RESTRICT to = z->column + HDI_CAST(int64_t, k) * m->sym.n;
+            hdi_elim_coef(m, i, z->w.weight + HDI_CAST(int64_t, k) * m->set.n_poles, coef);
+            for (j = 0; j < m->sym.n; j++)
+                for (q = 0; q < HDI_PACK; q++) to[j] += coef[q] * x[HDI_PACK * j + q];
         }
     }
 }
 
-/* Distances of the first two kinds at the (scaled, ascending) times h->times[q0..q1) of the kernel by one set of poles. */
-static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, int32_t q0, int32_t q1, int32_t k, const int32_t *sources, double *D, size_t ldd) {
-    hd_heat *heat = h->heat;
-    hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap = heat->source;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    const int32_t n_times = q1 - q0, n = m->sym.n;
-    const int weighted = kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
-    const uint64_t size = 2 * HDI_CAST(uint64_t, n_times) * HDI_CAST(uint64_t, n);
-    const double *t = h->times + q0, unit = weighted ? 1 / heat->scale : heat->scale;
-    hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
-    hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(uint64_t, n_times) * HD_MAX_POLES);
-    double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n));
-    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n), *spare = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n));
-    double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, n)) : NULL, *rounding = HDI_TAKE_ZERO(&s, double, n_times);
-    char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
-    double pole_off[HD_MAX_POLES];
-    hdi_metric metric;
+/* The columns of time q, made those of f where B is full. */
+static const double *hdi_distance_shared_at(const hdi_distance_shared *z, int32_t q) {
+    const double *c = hdi_window_at(&z->w, z->column, q);
+    if (!z->full) return c;
+    hdi_pair_apply(z->m->lap, 0, 1, c, z->product);
+    hdi_pair_apply(z->m->lap, 0, 1, c + z->w.n, z->product + z->w.n);
+    return z->product;
+}
+
+/* What the residuals of a column make of the answer at time q in the norm of B + tL. */
+static double hdi_distance_shared_off(const hdi_distance_shared *z, int32_t q) {
+    const hd_rational *set = z->w.set + q;
+    const double root = hdi_ratio_root(z->m->lap);
+    double off = 0;
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++)
+        off += 2 * hdi_cabs(set->a[p]) * z->pole_off[p] * root * hdi_pole_reach(set->theta[p]);
+    return off;
+}
+
+/* Rounding of the diagonals: columns of some rows, found as those of sources are, are held against them. */
+static void hdi_distance_shared_probe(hdi_distance_shared *z) {
+    const hd_laplacian *lap = z->m->lap;
+    const double *last = hdi_window_at(&z->w, z->w.values, z->w.n_times - 1);
+    const hdi_probe probe = hdi_probe_rows(lap, last, -1);
+    int32_t i, q;
+    for (i = 0; i < probe.k; i++) {
+        const int32_t row = probe.row[i];
+        hdi_distance_shared_column(z, row);
+        for (q = 0; q < z->w.n_times; q++) {
+            const double *f = hdi_window_at(&z->w, z->w.values, q), *g = f + z->w.n;
+            const double off = hdi_distance_shared_off(z, q) * sqrt(hdi_max(0, g[row]));
+            const double there = hdi_distance_shared_at(z, q)[row];
+            z->rounding[q] = hdi_max(z->rounding[q], hdi_probe_seen(there, off, f[row], f[row]));
+        }
+    }
+    for (q = 0; q < z->w.n_times; q++) {
+        const double *f = hdi_window_at(&z->w, z->w.values, q);
+        z->rounding[q] = hdi_max(z->rounding[q], hdi_below_constants(lap, z->w.set + q, f, z->full ? 2 : 0));
+    }
+}
+
+/* Distances from a source at time q, whose columns are there (row < 0: they are zero), into u by vertices. */
+static void hdi_distance_shared_judge(hdi_distance_shared *z, int32_t q, int32_t source, double *u) {
+    const hdi_elim *m = z->m;
+    const hd_laplacian *lap = z->h->heat->source;
+    const hd_rational *set = z->w.set + q;
+    const double *f = hdi_window_at(&z->w, z->w.values, q), *c = hdi_distance_shared_at(z, q);
+    const int32_t row = m->lap->row[source];
+    const double bs = z->weighted && !z->full && row >= 0 ? m->lap->mass[row] : 1;
+    hdi_metric_column of;
+    hdi_ledger ledger;
+    int32_t i;
+    memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
+    memset(z->g, 0, HDI_CAST(size_t, lap->n) * sizeof *z->g);
+    for (i = 0; i < m->sym.n; i++) {
+        const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
+        const double b = z->weighted && !z->full ? m->lap->mass[i] : 1, unit = z->unit * b * b;
+        z->metric.diag[at] = unit * f[i];
+        z->metric.g[at] = unit * f[m->sym.n + i];
+        z->metric.spread[at] = z->weighted ? lap->b_diag[at] : hdi_inverse_mass(lap, at);
+        u[v] = z->unit * b * bs * c[i];
+        z->g[v] = z->unit * b * bs * c[m->sym.n + i];
+    }
+    z->metric.weighted = set->max_weighted_error;
+    z->metric.uniform = set->max_error;
+    z->metric.rounding = z->rounding[q];
+    of.u = u;
+    of.off_m = hdi_distance_shared_off(z, q) * (sqrt(z->unit) * bs);
+    of.off_b = HUGE_VAL;
+    ledger = hdi_metric_ledger(&z->metric);
+    hdi_metric_distance(lap, &z->metric, source, &of, z->g, z->h->rep, &ledger);
+    hdi_ledger_close(&ledger, z->h->rep);
+}
+
+/* Distances of the first two kinds at times q0 to q1 - 1 of the call by one set of poles. */
+static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, int32_t q0, int32_t q1) {
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    const int32_t *row = h->heat->elim.lap->row;
+    hdi_distance_shared z;
     hdi_probe probe;
-    int32_t q, r, i, p;
-    memset(&metric, 0, sizeof metric);
-    metric.kind = kind;
-    metric.diag = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n) + 1);
-    if (h->e->status < 0 || hdi_rational_shared(set, n_times, t, HDI_SHARED_DISTANCE_TOL, heat->ctx, h->e) < 0) return hdi_scope_end(&s);
-    metric.g = metric.diag + n;
-    metric.spread = metric.g + n;
-    h->t = t[0];
-    h->set = set;
-    h->lap = m->lap;
+    int32_t q, r;
     h->relative = 1;
-    if (hdi_direct_factors(h) < 0) return hdi_scope_end(&s);
-    hdi_shared_weights(set, n_times, t, weight);
-    if (hdi_progress(heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, 2 * n_times, weight, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, n, h->e) < 0)
+    if (hdi_distance_shared_take(&z, h, to->kind, q0, q1, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_window_run(h, &z.w, HDI_SHARED_DISTANCE_TOL, z.full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL) < 0)
         return hdi_scope_end(&s);
-    probe = hdi_probe_rows(m->lap, room + 2 * HDI_CAST(size_t, n_times - 1) * HDI_CAST(size_t, n), -1);
-    for (i = 0; i < probe.k; i++) {              /* columns of the forms' rows, as those of sources are found */
-        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
-        hdi_shared_column(m, probe.row[i], full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
-        for (q = 0; q < n_times; q++) {
-            const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
-            const int32_t row = probe.row[i];
-            double there = c[row], off = 0;
-            if (full) {
-                hdi_pair_apply(m->lap, 0, 1, c, product);
-                there = product[row];
-            }
-            for (p = 0; p < set[q].n_poles; p++) off += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
-            off *= sqrt(hdi_max(0, f[n + row]));
-            rounding[q] = hdi_max(rounding[q], hdi_quotient(HDI_PROBE_SAFETY * fabs(there - f[row]) + off, fabs(f[row])));
-        }
+    hdi_distance_shared_probe(&z);
+    for (r = 0; r < to->k; r++) {
+        double *D = to->D + HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) * to->ld;
+        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, r) / to->k, h->e) < 0) break;
+        memset(z.column, 0, 2 * HDI_CAST(size_t, q1 - q0) * z.w.n * sizeof *z.column);
+        memset(z.pole_off, 0, sizeof z.pole_off);
+        if (row[to->sources[r]] >= 0) hdi_distance_shared_column(&z, row[to->sources[r]]);
+        for (q = 0; q < z.w.n_times; q++)
+            hdi_distance_shared_judge(&z, q, to->sources[r], D + HDI_CAST(size_t, z.time_column[q]) * to->ld);
     }
-    for (q = 0; q < n_times; q++)
-        for (i = 0; i < n; i++)
-            rounding[q] = hdi_max(rounding[q], hdi_below_constants(m->lap, set + q, i, room[2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n) + HDI_CAST(size_t, i)],
-                                                                   full ? m->lap->mass[i] * m->lap->mass[i] : 1));
-    for (r = 0; r < k; r++) {
-        const int32_t row = m->lap->row[sources[r]];
-        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / k, h->e) < 0) break;
-        memset(column, 0, HDI_CAST(size_t, size) * sizeof *column);
-        memset(pole_off, 0, sizeof pole_off);
-        if (row >= 0) hdi_shared_column(m, row, full, 2 * n_times, weight, column, x, work, active, spare, pole_off);
-        for (q = 0; q < n_times; q++) {
-            const double *f = room + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n), *c = column + 2 * HDI_CAST(size_t, q) * HDI_CAST(size_t, n);
-            double *u = D + (HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) + HDI_CAST(size_t, h->time_column[q0 + q])) * ldd;
-            const double bs = weighted && !full && row >= 0 ? m->lap->mass[row] : 1;
-            hdi_metric_column of;
-            hdi_ledger ledger;
-            memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
-            memset(g, 0, HDI_CAST(size_t, lap->n) * sizeof *g);
-            if (full) {                          /* B of what is B times the inverses */
-                hdi_pair_apply(m->lap, 0, 1, c, product);
-                hdi_pair_apply(m->lap, 0, 1, c + n, product + n);
-                c = product;
-            }
-            for (i = 0; i < n; i++) {
-                const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
-                const double b = weighted && !full ? m->lap->mass[i] : 1, unit_f = unit * b * b;
-                metric.diag[at] = unit_f * f[i];
-                metric.g[at] = unit_f * f[n + i];
-                metric.spread[at] = weighted ? lap->b_diag[at] : lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[at]) : HUGE_VAL;
-                u[v] = unit * b * bs * c[i];
-                g[v] = unit * b * bs * c[n + i];
-            }
-            metric.weighted = set[q].max_weighted_error;
-            metric.uniform = set[q].max_error;
-            metric.rounding = rounding[q];
-            of.u = u;
-            of.off_m = 0;
-            of.off_b = HUGE_VAL;
-            for (p = 0; p < set[q].n_poles; p++) of.off_m += 2 * hdi_cabs(set[q].a[p]) * pole_off[p] * hdi_ratio_root(m->lap) * hdi_pole_reach(set[q].theta[p]);
-            of.off_m *= sqrt(unit) * bs;
-            ledger = hdi_metric_ledger(&metric);
-            hdi_metric_distance(lap, &metric, sources[r], &of, g, h->rep, &ledger);
-            hdi_ledger_close(&ledger, h->rep);
-        }
-    }
-    if (n > 0 && k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
+    if (z.w.n > 0 && to->k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
         probe.k = 1;
-        probe.row[0] = m->lap->row[sources[0]] >= 0 ? m->lap->row[sources[0]] : 0;
-        (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set);
+        probe.row[0] = hdi_high32(row[to->sources[0]], 0);
+        (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, z.w.set);
     }
     return hdi_scope_end(&s);
 }
 
 /* All times through shared poles, when that is cheaper than one by one. 0: it is not, or not possible. */
-static int hdi_distance_windows(hdi_heat_call *h, hd_distance_kind kind, int32_t k, const int32_t *sources, double *D, size_t ldd) {
+static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to) {
     hd_heat *heat = h->heat;
     const int32_t n_times = h->ask.n_times;
     int32_t packs = 0, windows, w, q0, q1;
     if (n_times < 2 || heat->poles_asked || heat->exacting) return 0;
     if (hdi_heat_sort_times(h, 2) < 0 || hdi_heat_analysed(heat, h->e) < 0) return 0;
-    windows = hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
+    windows =
+        hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
     if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return 0;
     hdi_inverse_tell(h);
     for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
         q1 = hdi_window_end(h->times, n_times, q0, w, windows);
-        if (hdi_distance_window(h, kind, q0, q1, k, sources, D, ldd) < 0) break;
+        if (hdi_distance_window(h, to, q0, q1) < 0) break;
     }
     return 1;
 }
 
-/* Distances at one time. Where much cancels, or is sure to, with the highest degree if there is room for its factors. */
-static hd_status hdi_distance_time(hd_heat *heat, hd_distance_kind kind, double t, int32_t k, const int32_t *sources, double *D,
-                                   size_t step, hd_report *rep, hd_error *e) {
-    const int settled = hdi_metric_settled(heat, kind);
+/* Distances at one time. Where much cancels, or is sure to, with the highest degree if there is room for its
+ * factors. */
+static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
+                                   hd_error *e) {
+    const int settled = hdi_metric_settled(heat, to->kind);
     const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
-    const int sure = !settled && kind == HD_DISTANCE_CLASSICAL && expected > HDI_DISTANCE_SURE;
-    if (!sure) (void)hdi_distance_once(heat, kind, t, 0, k, sources, D, step, rep, e);
-    if (e->status >= 0 && !settled && (sure || rep->error_rational > HDI_DISTANCE_SURE))
-        (void)hdi_distance_once(heat, kind, t, HDI_RAT_KERNEL_MAX, k, sources, D, step, rep, e);
-    if (settled || !hdi_metric_retry(heat, e)) return e->status;
-    return hdi_distance_once(heat, kind, t, 0, k, sources, D, step, rep, e);
+    const int sure = !settled && to->kind == HD_DISTANCE_CLASSICAL && expected > HDI_DISTANCE_SURE;
+    int32_t degree = HDI_RAT_KERNEL_MAX;
+    if (!sure && hdi_distance_once(heat, to, t, 0, rep, e) < 0) return e->status;
+    if (settled || (!sure && rep->error_rational <= HDI_DISTANCE_SURE)) return e->status;
+    do (void)hdi_distance_once(heat, to, t, degree, rep, e);
+    while (hdi_degree_retreat(heat, &degree, e));
+    return e->status;
 }
 
 /* One to all: all times and sources of a call. */
-static hd_status hdi_distance_run(hdi_heat_call *h, hd_distance_kind kind, int32_t k, const int32_t *sources, double *D, size_t ldd) {
-    hd_heat *heat = h->heat;
+static hd_status hdi_distance_run(hdi_heat_call *h, hd_distance_kind kind, int32_t k, const int32_t *sources,
+                                  double *D, size_t ldd) {
     const int timeless = kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times;
+    hdi_distances to;
     hd_report one;
     int32_t q;
-    if (!timeless && hdi_distance_windows(h, kind, k, sources, D, ldd) && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
+    to.kind = kind;
+    to.k = k;
+    to.sources = sources;
+    to.D = D;
+    to.ld = ldd;
+    if (!timeless && hdi_distance_windows(h, &to) && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
     if (h->e->status == HD_ERR_MEMORY_LIMIT && n_times > 1) hdi_heat_forget(h);   /* one by one takes less */
+    to.ld = ldd * HDI_CAST(size_t, n_times);
     for (q = 0; q < n_times && h->e->status >= 0; q++) {
-        (void)hdi_distance_time(heat, kind, timeless ? 0 : h->ask.t[q], k, sources, D + HDI_CAST(size_t, q) * ldd,
-                                ldd * HDI_CAST(size_t, n_times), &one, h->e);
+        to.D = D + HDI_CAST(size_t, q) * ldd;
+        (void)hdi_distance_time(h->heat, &to, timeless ? 0 : h->ask.t[q], &one, h->e);
         if (h->e->status < 0) h->e->column = q;
         else if (q == 0) *h->rep = one;
         else hdi_report_merge(h->rep, &one);
@@ -18966,24 +19584,35 @@ static hd_status hdi_distance_run(hdi_heat_call *h, hd_distance_kind kind, int32
 
 /* ---- pairs ---- */
 
-/* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. list [2 n_pairs], place [2 n_pairs]. Returns their number. */
-static int32_t hdi_pairs_vertices(int64_t n_pairs, const int32_t *i, const int32_t *j, hdi_pair *order, int32_t *list, int32_t *place) {
+/* Pairs at one time: vertices i and j, and where entries and distances go, each NULL or [n]. */
+typedef struct hdi_pairs {
+    hd_distance_kind kind;
+    int64_t n;
+    const int32_t *i, *j;
+    double *K, *d;
+} hdi_pairs;
+
+/* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. order, list, place
+ * [2 n]. Returns their number. */
+static int32_t hdi_pairs_vertices(const hdi_pairs *x, hdi_pair *order, int32_t *list, int32_t *place) {
     int32_t n = 0;
     int64_t q;
-    for (q = 0; q < 2 * n_pairs; q++) {
-        order[q].key = HDI_CAST(uint64_t, q % 2 ? j[q / 2] : i[q / 2]);
+    for (q = 0; q < 2 * x->n; q++) {
+        order[q].key = HDI_CAST(uint64_t, q % 2 ? x->j[q / 2] : x->i[q / 2]);
         order[q].id = q;
     }
-    hdi_sort_pairs(order, 2 * n_pairs);
-    for (q = 0; q < 2 * n_pairs; q++) {
+    hdi_sort_pairs(order, 2 * x->n);
+    for (q = 0; q < 2 * x->n; q++) {
         if (q == 0 || order[q].key != order[q - 1].key) list[n++] = HDI_CAST(int32_t, order[q].key);
         place[order[q].id] = n - 1;
     }
     return n;
 }
 
-/* |u - v|_B of fields on vertices, v NULL: |u|_B; whatever their size, with B times scale near one. work [2 n_active]. */
-static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work, double scale) {
+/* |u - v|_B of fields on vertices, v NULL: |u|_B; whatever their size, with B times scale near one. work [2
+ * n_active]. */
+static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work,
+                              double scale) {
     double most = 0;
     int32_t r;
     int exponent = 0;
@@ -18999,7 +19628,8 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
         int64_t p;
         for (r = 0; r < lap->n_active; r++) {
             double s = 0;
-            for (p = lap->L.row_ptr[r]; p < lap->L.row_ptr[r + 1]; p++) s += scale * lap->B[p] * work[lap->L.col[p]];
+            for (p = lap->L.row_ptr[r]; p < lap->L.row_ptr[r + 1]; p++)
+                s += scale * lap->B[p] * work[lap->L.col[p]];
             sum += work[r] * s;
         }
         return ldexp(sqrt(hdi_max(0, sum)) / sqrt(scale), exponent);
@@ -19026,44 +19656,73 @@ static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
     to->rounding = all * (as->rounding / sum);
 }
 
-/* Kernel entries and distances of the pairs from columns at t: K_t(i,j) = (K_t e_j)_i, and |K_t B^-1 (e_i - e_j)|_B, which loses nothing
- * beside what the columns are off by: the report's bound of columns becomes that of distances. */
-static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind, double scale, const double *U, int64_t n_pairs, const int32_t *i, const int32_t *j, const int32_t *place,
-                                 double *K, double *d, double *work, hd_report *rep) {
+/* K_t(i,j) for pair q from the columns ui of i and uj of j: (K_t e_j)_i, or from symmetric columns (k_t(i,.)
+ * B)_j. */
+static double hdi_pairs_entry(const hd_laplacian *lap, const hdi_pairs *x, int64_t q, const double *ui,
+                              const double *uj) {
+    const int32_t i = x->i[q], j = x->j[q], row = lap->row[j];
+    double sum = 0;
+    int64_t p;
+    if (x->kind == HD_DISTANCE_WEIGHTED) return uj[i];
+    if (row < 0) return i == j;
+    if (!lap->B) return ui[j] * lap->mass[row];
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++)
+        sum += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
+    return sum;
+}
+
+/* The error of that entry for an error e of the column with |e|_B = 1: of e_i, or |(B e)_j| <= sqrt(B_jj)
+ * |e|_B. */
+static double hdi_pairs_entry_off(const hd_laplacian *lap, const hdi_pairs *x, int64_t q) {
+    const int weighted = x->kind == HD_DISTANCE_WEIGHTED;
+    const int32_t row = lap->row[weighted ? x->i[q] : x->j[q]];
+    if (row < 0) return 0;
+    return weighted ? hdi_ratio_root(lap) / sqrt(lap->b_diag[row]) : sqrt(lap->b_diag[row]);
+}
+
+/* Columns of the distinct vertices of pairs, and which of them each pair's two are. */
+typedef struct hdi_pair_columns {
+    double *U;
+    const int32_t *place;
+    double *work;                /* [2 n_active] */
+} hdi_pair_columns;
+
+/* Kernel entries and distances |K_t B^-1 (e_i - e_j)|_B of the pairs from columns at t. The distances lose
+ * nothing beside what the columns are off by: the report's bound of columns becomes that of distances. */
+static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const hdi_pair_columns *c,
+                                 hd_report *rep) {
+    const hd_laplacian *lap = heat->source;
     const size_t n = HDI_CAST(size_t, lap->n);
     const hdi_parts share = hdi_parts_of(rep);
     const double bound_b = rep->error_bound_b;
-    hdi_ledger of_k = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0), of_d = of_k;
+    hdi_ledger of_k =
+        hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0);
+    hdi_ledger of_d = of_k;
     hdi_parts part;
-    int64_t q, p;
+    int64_t q;
     memset(&part, 0, sizeof part);
     of_d.relative = 0;
-    for (q = 0; q < n_pairs; q++) {
-        const double *ui = U + n * HDI_CAST(size_t, place[2 * q]), *uj = U + n * HDI_CAST(size_t, place[2 * q + 1]);
-        const int32_t ri = lap->row[i[q]], rj = lap->row[j[q]];
-        const double size_i = hdi_vertex_norm(lap, ui, NULL, work, scale), size_j = hdi_vertex_norm(lap, uj, NULL, work, scale);
-        double distance, off;
-        if (K && kind == HD_DISTANCE_WEIGHTED) {
-            K[q] = uj[i[q]];
-            off = bound_b * size_j * (ri < 0 ? 0 : hdi_ratio_root(lap) / sqrt(lap->b_diag[ri]));
-        } else if (K) {                          /* symmetric columns: K_t(i,j) = (k_t(i,.) B)_j, and |(B e)_j| <= sqrt(B_jj) |e|_B */
-            K[q] = rj < 0 ? i[q] == j[q] : lap->B ? 0 : ui[j[q]] * lap->mass[rj];
-            for (p = rj < 0 ? 0 : lap->L.row_ptr[rj]; rj >= 0 && lap->B && p < lap->L.row_ptr[rj + 1]; p++) K[q] += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
-            off = bound_b * size_i * (rj < 0 ? 0 : sqrt(lap->b_diag[rj]));
+    for (q = 0; q < x->n; q++) {
+        const double *ui = c->U + n * HDI_CAST(size_t, c->place[2 * q]);
+        const double *uj = c->U + n * HDI_CAST(size_t, c->place[2 * q + 1]);
+        const double size_i = hdi_vertex_norm(lap, ui, NULL, c->work, heat->scale);
+        const double size_j = hdi_vertex_norm(lap, uj, NULL, c->work, heat->scale);
+        if (x->K) {
+            const double off = bound_b * (x->kind == HD_DISTANCE_WEIGHTED ? size_j : size_i);
+            x->K[q] = hdi_pairs_entry(lap, x, q, ui, uj);
+            part.rounding = off * hdi_pairs_entry_off(lap, x, q) + 8 * DBL_EPSILON * fabs(x->K[q]);
+            hdi_ledger_note(&of_k, x->K[q], part);
         }
-        if (K) {
-            part.rounding = off + 8 * DBL_EPSILON * fabs(K[q]);
-            hdi_ledger_note(&of_k, K[q], part);
-        }
-        if (!d) continue;
-        distance = i[q] == j[q] ? 0 : hdi_vertex_norm(lap, ui, uj, work, scale);
-        d[q] = distance;
-        if (i[q] == j[q]) continue;
+        if (!x->d) continue;
+        x->d[q] = 0;
+        if (x->i[q] == x->j[q]) continue;
+        x->d[q] = hdi_vertex_norm(lap, ui, uj, c->work, heat->scale);
         part.rounding = (bound_b + 4 * DBL_EPSILON) * (size_i + size_j);
-        rep->n_lost += distance < 10 * part.rounding;
-        hdi_ledger_note(&of_d, distance, part);
+        rep->n_lost += x->d[q] < 10 * part.rounding;
+        hdi_ledger_note(&of_d, x->d[q], part);
     }
-    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = rep->error_relative = rep->smallest = 0;
+    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = 0;
+    rep->error_relative = rep->smallest = 0;
     rep->error_bound_b = HUGE_VAL;
     rep->evidence_b = HD_EVIDENCE_NONE;
     hdi_parts_share(&of_k.off, &share);
@@ -19073,8 +19732,9 @@ static void hdi_pairs_of_columns(const hd_laplacian *lap, hd_distance_kind kind,
     hdi_ledger_close(&of_d, rep);
 }
 
-/* Distances one by one from entries and the diagonal, for more vertices than columns fit; each is judged by itself. */
-static hd_status hdi_pairs_distances(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j, double *d, hd_report *rep) {
+/* Distances one by one from entries and the diagonal, for more vertices than columns fit. Each is judged by
+ * itself. */
+static hd_status hdi_pairs_distances(hd_heat *heat, const hdi_pairs *p, double t, hd_report *rep) {
     hd_error *e = &rep->error;
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
     double *f = HDI_TAKE(&s, double, heat->source->n);
@@ -19082,46 +19742,51 @@ static hd_status hdi_pairs_distances(hd_heat *heat, hd_distance_kind kind, doubl
     hdi_metric_column c;
     hdi_metric x;
     int64_t q;
-    if (!f || hdi_metric_make(heat, kind, t, 0, &x, &s, rep) < 0) return hdi_scope_end(&s);
+    if (!f || hdi_metric_make(heat, p->kind, t, 0, &x, &s, rep) < 0) return hdi_scope_end(&s);
     rep->error_relative = 0;
     ledger = hdi_metric_ledger(&x);
-    for (q = 0; q < n_pairs && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
-        if (q == 0 || i[q] != i[q - 1]) {
+    for (q = 0; q < p->n && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
+        double d;
+        if (q == 0 || p->i[q] != p->i[q - 1]) {
+            const hdi_distances to = hdi_distances_one(heat, p->kind, p->i + q, f);
             hdi_ledger all = hdi_metric_ledger(&x);
-            if (hdi_metric_columns(heat, &x, 1, i + q, f, HDI_CAST(size_t, heat->source->n), &c, rep, e) < 0) break;
-            hdi_metric_distance(heat->source, &x, i[q], &c, NULL, rep, &all);
-            ledger.off.rational = hdi_max(ledger.off.rational, all.off.rational);   /* of the pairs, as of all vertices */
+            if (hdi_metric_columns(heat, &x, &to, &c, rep, e) < 0) break;
+            hdi_metric_distance(heat->source, &x, p->i[q], &c, NULL, rep, &all);
+            /* of the pairs, as of all vertices */
+            ledger.off.rational = hdi_max(ledger.off.rational, all.off.rational);
             ledger.off.rounding = hdi_max(ledger.off.rounding, all.off.rounding);
             ledger.relative = hdi_max(ledger.relative, all.relative);
         }
-        d[q] = f[j[q]];
-        if (hdi_finite(d[q])) ledger.largest = hdi_max(ledger.largest, d[q]);
-        if (d[q] > 0 && hdi_finite(d[q])) ledger.smallest = hdi_min(ledger.smallest, d[q]);
-        ledger.n_values += i[q] != j[q] && hdi_finite(d[q]);
+        p->d[q] = d = f[p->j[q]];
+        if (!hdi_finite(d)) continue;
+        ledger.largest = hdi_max(ledger.largest, d);
+        if (d > 0) ledger.smallest = hdi_min(ledger.smallest, d);
+        ledger.n_values += p->i[q] != p->j[q];
     }
     if (e->status >= 0) hdi_ledger_close(&ledger, rep);
     return hdi_scope_end(&s);
 }
 
-/* Both, each of which may be NULL, without columns in store. */
-static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i,
-                                      const int32_t *j, double *K, double *d, hd_report *rep) {
+/* The pairs without columns in store. */
+static hd_status hdi_pairs_by_entries(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
     hdi_heat_call h;
     hdi_entry_list list;
     hd_report one;
     memset(rep, 0, sizeof *rep);
     hdi_error_clear(&rep->error);
-    if (K && kind < HD_DISTANCE_COMMUTE) {
-        if (hdi_kernel_begin(&h, heat, HD_KERNEL_OPERATOR, rep, NULL) < 0 || hdi_times_check(&h, 1, &t, 0) < 0) return hdi_heat_end(&h);
-        list.values = K;
-        (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
+    if (x->K && x->kind < HD_DISTANCE_COMMUTE) {
+        if (hdi_kernel_begin(&h, heat, HD_KERNEL_OPERATOR, rep, NULL) >= 0 &&
+            hdi_times_check(&h, 1, &t, 0) >= 0) {
+            list.values = x->K;
+            (void)hdi_entry_list_make(&h, &list, x->n, x->i, x->j);
+        }
         if (hdi_heat_run(&h) < 0) return rep->status;
     }
-    if (!d) return rep->status;
+    if (!x->d) return rep->status;
     memset(&one, 0, sizeof one);
     hdi_error_clear(&one.error);
     rep->error_relative = 0;                     /* of the distances */
-    if (hdi_pairs_distances(heat, kind, t, n_pairs, i, j, d, &one) < 0) {
+    if (hdi_pairs_distances(heat, x, t, &one) < 0) {
         rep->error = one.error;
         return rep->status = one.error.status;
     }
@@ -19132,53 +19797,53 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, hd_distance_kind kind, doub
 /* Columns that are held at the same time: at most so many doubles, half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Pairs at time t; rep, cleared, gets the report. */
-static hd_status hdi_pairs_once(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j,
-                                double *K, double *d, hd_report *rep) {
-    const hd_laplacian *lap = heat->source;
+/* Pairs at time t; rep gets the report. */
+static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
+    const uint64_t n = HDI_CAST(uint64_t, heat->source->n), twice = 2 * HDI_CAST(uint64_t, x->n);
+    const hd_kernel kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     hd_error e;
-    hdi_scope s;
+    hdi_scope s = hdi_scope_begin(heat->ctx, &e);
+    hdi_pair *order = HDI_TAKE(&s, hdi_pair, twice);
+    int32_t *list = HDI_TAKE(&s, int32_t, twice), *place = HDI_TAKE(&s, int32_t, twice), n_list;
+    hdi_pair_columns c;
     hdi_heat_call h;
-    hdi_pair *order;
-    double *work, *U;
-    int32_t *list, *place, n_list;
-    hdi_error_clear(&e);
-    s = hdi_scope_begin(heat->ctx, &e);
-    order = HDI_TAKE(&s, hdi_pair, 2 * n_pairs);
-    list = HDI_TAKE(&s, int32_t, 2 * n_pairs);
-    place = HDI_TAKE(&s, int32_t, 2 * n_pairs);
-    work = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n) + 1);
-    n_list = e.status < 0 ? 0 : hdi_pairs_vertices(n_pairs, i, j, order, list, place);
-    if (e.status >= 0 && (kind >= HD_DISTANCE_COMMUTE || HDI_CAST(int64_t, n_list) * lap->n > HDI_PAIRS_DOUBLES)) {
+    c.place = place;
+    c.work = HDI_TAKE(&s, double, 2 * n + 1);
+    n_list = e.status < 0 ? 0 : hdi_pairs_vertices(x, order, list, place);
+    if (e.status >= 0 &&
+        (x->kind >= HD_DISTANCE_COMMUTE || HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES)) {
         hdi_scope_end(&s);
-        return hdi_pairs_by_entries(heat, kind, t, n_pairs, i, j, K, d, rep);
+        return hdi_pairs_by_entries(heat, x, t, rep);
     }
-    U = HDI_TAKE(&s, double, HDI_CAST(uint64_t, lap->n) * HDI_CAST(uint64_t, n_list));
-    if (hdi_kernel_begin(&h, heat, kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, rep, NULL) < 0 ||
-        hdi_times_check(&h, 1, &t, 0) < 0 || e.status < 0) {
+    c.U = HDI_TAKE(&s, double, n * HDI_CAST(uint64_t, n_list));
+    if (hdi_kernel_begin(&h, heat, kernel, rep, NULL) >= 0 && hdi_times_check(&h, 1, &t, 0) >= 0) {
         if (e.status < 0) *h.e = e;
-        hdi_heat_end(&h);
-    } else {
         h.ask.k = n_list;
         h.ask.sources = list;
-        h.ask.U = U;
-        h.ask.ldu = HDI_CAST(size_t, lap->n);
-        if (hdi_heat_run(&h) >= 0) hdi_pairs_of_columns(lap, kind, heat->scale, U, n_pairs, i, j, place, K, d, work, rep);
+        h.ask.U = c.U;
+        h.ask.ldu = n;
     }
+    if (hdi_heat_run(&h) >= 0) hdi_pairs_of_columns(heat, x, &c, rep);
     hdi_scope_end(&s);
     return rep->status;
 }
 
 /* The pairs at all times of a call. */
-static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i, const int32_t *j, double *K,
-                               double *d) {
-    const int32_t n_times = kind >= HD_DISTANCE_COMMUTE ? 1 : h->ask.n_times;
+static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i,
+                               const int32_t *j, double *K, double *d) {
+    const int timeless = kind >= HD_DISTANCE_COMMUTE;
+    const int32_t n_times = timeless ? 1 : h->ask.n_times;
+    hdi_pairs x;
     hd_report one;
     int32_t q;
+    x.kind = kind;
+    x.n = n_pairs;
+    x.i = i;
+    x.j = j;
     for (q = 0; q < n_times; q++) {
-        const int64_t at = n_pairs * q;
-        const double t = kind >= HD_DISTANCE_COMMUTE ? 0 : h->ask.t[q];
-        if (hdi_pairs_once(h->heat, kind, t, n_pairs, i, j, K ? K + at : NULL, d ? d + at : NULL, &one) < 0) {
+        x.K = K ? K + n_pairs * q : NULL;
+        x.d = d ? d + n_pairs * q : NULL;
+        if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
             *h->rep = one;
             if (n_times > 1) h->e->column = q;
             return h->e->status;
@@ -19199,29 +19864,31 @@ static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
     return best;
 }
 
-/* Gonzalez 1985. */
-static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex,
-                                double *distance) {
+/* Farthest points, each the one that is farthest from those before it. This function is based on
+ *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
+static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double t, int32_t count,
+                                int32_t n_given, int32_t *vertex, double *distance) {
     hd_heat *heat = h->heat;
     const hd_laplacian *lap = heat->source;
-    const int settled = hdi_metric_settled(heat, kind);
     double *nearest = HDI_TAKE(&h->s, double, lap->n), *u = HDI_TAKE(&h->s, double, lap->n);
     hdi_metric x;
     hdi_metric_column c;
     hdi_ledger ledger;
     hd_report one;
-    int32_t q, v;
+    int32_t q, v, degree = hdi_metric_settled(heat, kind) ? 0 : HDI_RAT_KERNEL_MAX;
+    if (h->e->status < 0) return h->e->status;
     memset(&one, 0, sizeof one);
-    if (h->e->status >= 0) (void)hdi_metric_make(heat, kind, t, settled ? 0 : HDI_RAT_KERNEL_MAX, &x, &h->s, &one);
-    if (!settled && hdi_metric_retry(heat, h->e)) (void)hdi_metric_make(heat, kind, t, 0, &x, &h->s, &one);
+    do (void)hdi_metric_make(heat, kind, t, degree, &x, &h->s, &one);
+    while (hdi_degree_retreat(heat, &degree, h->e));
     if (h->e->status < 0) return h->e->status;
     one.error_relative = 0;
     for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
     for (q = 0; q < count && h->e->status >= 0; q++) {
+        const hdi_distances to = hdi_distances_one(heat, kind, vertex + q, u);
         if (q >= n_given) vertex[q] = q == 0 ? lap->vertex[0] : hdi_sample_next(lap, nearest);
         if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
         if (q + 1 == count || hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / count, h->e) < 0) break;
-        if (hdi_metric_columns(heat, &x, 1, vertex + q, u, HDI_CAST(size_t, lap->n), &c, &one, h->e) < 0) break;
+        if (hdi_metric_columns(heat, &x, &to, &c, &one, h->e) < 0) break;
         ledger = hdi_metric_ledger(&x);
         hdi_metric_distance(lap, &x, vertex[q], &c, NULL, &one, &ledger);
         hdi_ledger_close(&ledger, &one);

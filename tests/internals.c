@@ -1684,6 +1684,7 @@ static void int_invert_of(int kind, hd_laplacian_kind form, int level, int32_t d
     hdi_elim m;
     hd_rational set;
     hd_c64 weight[SETS * HD_MAX_POLES];
+    hdi_elim_sums sums;
     uint64_t seed = 31;
     double *diag, *entries, *want, size = 0, off = 0;
     int64_t count, q;
@@ -1702,7 +1703,16 @@ static void int_invert_of(int kind, hd_laplacian_kind form, int level, int32_t d
     entries = DENSE_NEW(double, SETS * count);
     want = DENSE_NEW(double, SETS * PICKED * n);
     diag[0] = 100;                               /* sums are added to what is there */
-    CHECK(hdi_elim_invert(&m, SETS, weight, HDI_WANT_DIAGONAL, diag, n, &e) == HD_OK && hdi_elim_invert(&m, SETS, weight, HDI_WANT_ENTRIES, entries, count, &e) == HD_OK);
+    sums.n_sets = SETS;
+    sums.weight = weight;
+    sums.wanted = HDI_WANT_DIAGONAL;
+    sums.values = diag;
+    sums.stride = n;
+    CHECK(hdi_elim_invert(&m, &sums, &e) == HD_OK);
+    sums.wanted = HDI_WANT_ENTRIES;
+    sums.values = entries;
+    sums.stride = count;
+    CHECK(hdi_elim_invert(&m, &sums, &e) == HD_OK);
     diag[0] -= 100;
     for (p = 0; p < set.n_poles; p++) {
         for (c = 0; c < PICKED; c++) {
@@ -1801,13 +1811,20 @@ static void int_pairs_by_entries(void) {
         for (kind = 0; kind < 4; kind++) {
             double size = 0, size_K = 0;
             hd_report rep;
+            hdi_pairs pairs;
             memset(&rep, 0, sizeof rep);
             for (q = 0; q < PAIRS; q++) {
                 i[q] = q % 3 ? i[q - 1] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
                 j[q] = q % 11 == 5 ? i[q] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
             }
             CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, K, d, NULL) >= 0);
-            CHECK(hdi_pairs_by_entries(heat, (hd_distance_kind)kind, t, PAIRS, i, j, one_K, one_d, &rep) >= 0 && rep.error.status == HD_OK && rep.status >= 0);
+            pairs.kind = (hd_distance_kind)kind;
+            pairs.n = PAIRS;
+            pairs.i = i;
+            pairs.j = j;
+            pairs.K = one_K;
+            pairs.d = one_d;
+            CHECK(hdi_pairs_by_entries(heat, &pairs, t, &rep) >= 0 && rep.error.status == HD_OK && rep.status >= 0);
             for (q = 0; q < PAIRS; q++) {
                 size = fmax(size, d[q]);
                 size_K = fmax(size_K, kind < 2 ? fabs(K[q]) : 0);
@@ -1817,6 +1834,7 @@ static void int_pairs_by_entries(void) {
                 if (kind < 2) CHECK_MSG(fabs(K[q] - one_K[q]) <= 1e-7 * size_K, "kind %d: entry %.12g by columns, %.12g by entries", kind, K[q], one_K[q]);
             }
             CHECK_MSG(kind > 1 || (rep.error_bound > 0 && rep.error_bound < 1e-3), "kind %d: bound %g", kind, rep.error_bound);
+            pairs.K = NULL;
             for (way = 0; way < 3; way++) {      /* stopped early, in the middle, and not at all */
                 int64_t left = way == 0 ? 1 : way == 1 ? 9 : 100000;
                 const int64_t all = left;
@@ -1824,7 +1842,7 @@ static void int_pairs_by_entries(void) {
                 ctx->progress = int_stop_at;
                 ctx->progress_user = &left;
                 memset(&rep, 0, sizeof rep);
-                CHECK((hdi_pairs_by_entries(heat, (hd_distance_kind)kind, t, PAIRS, i, j, NULL, one_d, &rep) == HD_ERR_CANCELLED) == (left <= 0));
+                CHECK((hdi_pairs_by_entries(heat, &pairs, t, &rep) == HD_ERR_CANCELLED) == (left <= 0));
                 CHECK(left < all && rep.status == rep.error.status);
                 ctx->progress = NULL;
             }
