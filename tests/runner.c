@@ -163,6 +163,7 @@ static void test_tmp_remove(void) {
 #include "test_operators_all.h"
 #include "test_picture.h"
 #include "test_bounds.h"
+#include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
 
@@ -172,7 +173,7 @@ static const test_group test_groups[] = {
     {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
     {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic},
     {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
-    {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds},
+    {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"platform", test_platform},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
