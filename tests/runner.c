@@ -86,7 +86,7 @@ static int test_check(int ok, const char *file, int line, const char *what) {
 
 /* Bytes of the longest file names. Windows limits whole paths, to 259, with the folder of the tests among them. */
 #ifdef _WIN32
-enum { TEST_LONGEST_NAME = 140 };
+enum { TEST_LONGEST_NAME = 110 };
 #else
 enum { TEST_LONGEST_NAME = 255 };
 #endif

@@ -5,7 +5,7 @@
 #   tools/portability.sh [OPTION...] [TARGET...]    without targets: all of them
 #     --list          the targets, what they run, and the packages of Debian that they need; then stops
 #     --install       installs what is missing with apt-get (as root)
-#     --full          all groups on every target, not only the stated ones
+#     --groups SET    one of all, most, core, x87, fast instead of what a target runs; --list tells them
 #     --seconds N     most seconds for the groups of a target (default 600); running out of them fails
 #     --flags FLAGS   of the compiler (default -O1)
 #
@@ -14,12 +14,12 @@ set -uo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 
 # Groups: `most` leaves out those that take minutes without a compiler that optimises, `core` is what an emulator does in half a
-# minute. x87 has what does not ask for bits, for bounds near rounding or for the exact end of a range (see Limits in heatdiff.h).
+# minute. x87 has what does not ask for bits, for bounds near rounding or for what is zero up to it (see Limits in heatdiff.h).
 all="base sparse operators rational intrinsic ldl engines krylov heat robust points assembly polygon geodesic diagonal forms \
 everywhere picture meshio bounds platform"
 most="base sparse operators rational intrinsic ldl krylov heat robust assembly polygon picture meshio platform"
 core="base sparse rational krylov meshio platform"
-x87="base sparse operators intrinsic ldl engines krylov heat robust assembly polygon diagonal forms everywhere picture platform"
+x87="base sparse operators intrinsic ldl engines krylov heat robust assembly diagonal forms everywhere picture platform"
 fast="base sparse operators krylov heat polygon meshio platform"
 
 # Debian's clang-cl has its version in its name.
@@ -138,7 +138,7 @@ one_target() {
     fi
   fi
   if [ "$run" = syntax ]; then msvc_syntax; return; fi
-  [ $full = 0 ] || groups=all
+  [ -z "$set_of" ] || groups=$set_of
   t0=$SECONDS
   if ! $cc $flags $(includes "$cc") -w -I"$top" "$top/tests/runner.c" -o "$work/$name.exe" -lm >"$work/log" 2>&1; then
     head -20 "$work/log"
@@ -159,7 +159,7 @@ one_target() {
   return $status
 }
 
-install=0 full=0 seconds=600 flags=-O1 named=1 chosen=()
+install=0 set_of='' seconds=600 flags=-O1 named=1 chosen=()
 while [ $# -gt 0 ]; do
   case $1 in
     --list)
@@ -170,10 +170,10 @@ while [ $# -gt 0 ]; do
       for g in all most core x87 fast; do printf '%s: %s\n' "$g" "${!g}"; done
       exit 0 ;;
     --install) install=1 ;;
-    --full) full=1 ;;
-    --seconds | --flags)
+    --seconds | --flags | --groups)
       [ $# -gt 1 ] || usage
-      if [ "$1" = --flags ]; then flags=$2; else seconds=$2; fi
+      case $1 in --flags) flags=$2 ;; --seconds) seconds=$2 ;; *) set_of=$2 ;; esac
+      case "$set_of" in '' | all | most | core | x87 | fast) ;; *) usage ;; esac
       shift ;;
     -*) usage ;;
     *)
