@@ -106,6 +106,9 @@
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
      no file and never exits.
+     Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). x87 registers keep more digits now and then: results
+     are as accurate, but neither bits nor bounds of the error near rounding are promised. On 32-bit x86 compile
+     with -msse2 -mfpmath=sse. -ffast-math takes away the same promises; input that is not finite is still refused.
 
    Threads
      There is no global or thread-local state. One object serves one thread at a time, and so does one
@@ -2072,14 +2075,16 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
 #define HDI_IN4 static HDI_AVX2 HDI_INLINE
 #define HDI_IN8 static HDI_AVX512 HDI_INLINE
 
-/* Two lanes, where the compiler has vectors; its own arithmetic serves every processor. */
+/* Two lanes, where the compiler has vectors; its own arithmetic serves every processor. On x87 registers
+ * vectors would live in memory. */
 enum {
     hdi_cols_plain = 4, hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_masks_plain = 0, hdi_apart_plain = 1,
     hdi_tile_rows_plain = 1, hdi_tile_cols_plain = 1, hdi_solve_rows_plain = 1, hdi_sweep_rows_plain = 1,
     hdi_sweep_cols_plain = 2
 };
 #define HDI_TARGET_plain
-#if (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD) && \
+    (!defined(__i386__) || defined(__SSE2__))
 typedef double hdi_v2 __attribute__((vector_size(16)));
 typedef double hdi_v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
 HDI_IN2 hdi_v2 hdi_two(double a, double b) { const hdi_v2 v = {a, b}; return v; }

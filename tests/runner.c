@@ -13,6 +13,7 @@
 #endif
 
 #include <errno.h>
+#include <float.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,7 +74,22 @@ static int test_check(int ok, const char *file, int line, const char *what) {
 #define CHECK(cond) test_check((cond) != 0, __FILE__, __LINE__, #cond)
 #define CHECK_MSG(cond, ...) test_check_msg((cond) != 0, __FILE__, __LINE__, #cond, __VA_ARGS__)
 
+/* Arithmetic is that of doubles. Not so on x87 registers, which keep more digits for as long as they hold a number: sums that round in a
+ * way of their own, and the same bits in another order, are not promised there (see Limits in heatdiff.h). */
+#if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD == 0
+#define TEST_EXACT 1
+#else
+#define TEST_EXACT 0
+#endif
+
 /* ---- a directory for files ---- */
+
+/* Bytes of the longest file names. Windows limits whole paths, to 259, with the folder of the tests among them. */
+#ifdef _WIN32
+enum { TEST_LONGEST_NAME = 110 };
+#else
+enum { TEST_LONGEST_NAME = 255 };
+#endif
 
 static char test_tmp_path[512];
 static int test_tmp_made;
@@ -148,6 +164,7 @@ static void test_tmp_remove(void) {
 #include "test_picture.h"
 #include "test_bounds.h"
 #include "test_moving.h"
+#include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
 
@@ -158,6 +175,7 @@ static const test_group test_groups[] = {
     {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic},
     {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"moving", test_moving},
+    {"platform", test_platform},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
@@ -202,6 +220,7 @@ int main(int argc, char **argv) {
         ran++;
     }
     test_tmp_remove();
+    if (!TEST_EXACT) printf("arithmetic is not that of doubles (FLT_EVAL_METHOD): bits are compared up to rounding\n");
     if (!ran) {
         fprintf(stderr, "runner: no group has such a name\n");
         return 2;

@@ -729,7 +729,7 @@ static void tmio_test_long_names(void)
     mio_error e;
     tmio_sample_make(&s);
     for (k = 0; k < 12; k++) {
-        const int size = k < 8 ? 248 + k : 96 + k;      /* with its extension */
+        const int size = k < 8 ? TEST_LONGEST_NAME - 7 + k : 96 + k;    /* with its extension */
         for (n = 0; n < k % 2; n++) name[n] = 'x';
         for (; n + 6 <= size; n += 2) memcpy(name + n, "\303\251", 2);
         for (; n + 4 < size; n++) name[n] = 'y';

@@ -272,8 +272,8 @@ static void tpic_test_png_file(void)
     if (f) fclose(f);
     remove(path);
     n = (size_t)snprintf(path, sizeof path, "%s/", test_tmp_dir());
-    memset(path + n, 'x', 255);                         /* as long as names can be */
-    memcpy(path + n + 251, ".png", 5);
+    memset(path + n, 'x', TEST_LONGEST_NAME);
+    memcpy(path + n + TEST_LONGEST_NAME - 4, ".png", 5);
     CHECK(pic_png_write(path, rgb, 2, 2) == PIC_OK && remove(path) == 0);
     snprintf(path, sizeof path, "%s/no such folder/x.png", test_tmp_dir());
     CHECK(pic_png_write(path, rgb, 2, 2) == PIC_ERR_FILE);
@@ -482,8 +482,8 @@ static void tpic_render_ok(const pic_panel *p, int32_t n, const pic_opts *o, con
 static void tpic_test_degenerate(void)
 {
     static const double flat[9] = {0, 0, 0, 1, 0, 0, 2, 0, 0}, big[9] = {-1.7e308, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 1},
-                        tiny[9] = {0, 0, 0, 1e-300, 0, 0, 0, 1e-300, 0}, broken[9] = {0, 0, 0, 1, (double)NAN, 0, 0, 1, HUGE_VAL},
-                        here[9] = {5, 5, 5, 5, 5, 5, 5, 5, 5}, values[3] = {(double)NAN, HUGE_VAL, -HUGE_VAL}, same[3] = {2, 2, 2};
+                        tiny[9] = {0, 0, 0, 1e-300, 0, 0, 0, 1e-300, 0}, here[9] = {5, 5, 5, 5, 5, 5, 5, 5, 5}, same[3] = {2, 2, 2};
+    const double broken[9] = {0, 0, 0, 1, (double)NAN, 0, 0, 1, HUGE_VAL}, values[3] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
     static const int32_t one[3] = {0, 1, 2}, wild[6] = {0, 1, 7, -1, 0, 0}, marks[3] = {0, 99, -4};
     const double *const places[5] = {flat, big, tiny, broken, here};
     pic_opts o = tpic_small();

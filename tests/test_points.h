@@ -363,7 +363,7 @@ static void pts_sheets(void) {
     static const double gaps[] = {2, 3, 20};
     size_t k;
     for (k = 0; k < 3; k++) {
-        const double offset[3] = {0, 0, gaps[k] / sqrt(N)};
+        const double offset[3] = {0, 0, gaps[k] / sqrt((double)N)};
         double each = 0;
         int32_t i;
         both = shape_disjoint(&s, &t, offset);
