@@ -476,6 +476,7 @@ class Page(unittest.TestCase):
         b.shot("laptop-bad-file")
         self.assertEqual(b.js("heatdiff.mesh.n"), n)
         self.assertFalse(b.js("document.getElementById('alert').hidden"), "the message stays until it is read")
+        self.assertEqual(b.js("document.getElementById('shape').value"), "0:12000")
         b.drop("noise.ply", bytes(range(256)) * 40)
         b.until("document.getElementById('alert-text').textContent.includes('noise.ply')")
         b.until("heatdiff.times.length && " + SHOWN)

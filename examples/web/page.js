@@ -9,15 +9,15 @@ const $ = (id) => document.getElementById(id);
 const DIRECT = 2, KRYLOV = 3;                 // hd_method
 const CHUNK = 10;                             // times of one call: ten make a decade
 const EVIDENCE = ["", "proven", "measured", "estimated"];
-const NAMES = { kernel: "Heat kernel k_t(source, x), per area", distance: "Diffusion distance to the source",
-  geodesic: "Distance along the surface", signature: "Heat kernel signature k_t(x, x), per area", smooth: "Displacement of the surface" };
+const NAMES = { kernel: "Heat kernel from the source (per area)", distance: "Diffusion distance to the source",
+  geodesic: "Distance along the surface", signature: "Heat kernel signature (per area)", smooth: "Displacement of the surface" };
 const STAGES = { neighbours: "finding neighbours", assemble: "assembling", "flip edges": "flipping edges", order: "ordering", analyse: "analysing",
   factor: "factorising", invert: "inverting", precondition: "preparing", solve: "solving" };
 
 const state = {
   mesh: null, name: "", generation: 0, source: 0, mode: "kernel", at: 0, times: [], facts: null,
   columns: [], signature: [], smooth: [], geodesic: null,      // by time: { values, bound, evidence, how, ms }
-  factored: -1, shown: null, asked: 0, failed: null, settled: 0, answers: 0,
+  factored: -1, shown: null, asked: 0, failed: null, log: { kernel: false, signature: true }, settled: 0, answers: 0,
 };
 window.heatdiff = state;                      // for the console, and for the tests
 
@@ -99,7 +99,9 @@ function refuse(title, text) {
   state.failed = text;
   if (again && again.order !== state.order) {
     state.order = again.order;
+    $("shape").value = again.choice;
     load(again.order, again.name);
+    fileOption();
   }
   say(title, text);
 }
@@ -110,7 +112,8 @@ function ready(m) {
   const [h, area, active, components, border, nonmanifold, leftOut] = m.facts;
   const mesh = state.mesh = state.next || state.mesh;
   state.facts = { h, area, active, components, border, nonmanifold, leftOut };
-  state.last = { order: state.order, name: state.name };
+  state.last = { order: state.order, name: state.name, choice: $("shape").value };
+  if (state.order.op === "file") state.fileOrder = state.order;
   state.keepSource = false;
   const count = Math.max(12, Math.ceil(3 * Math.log2(area / (h * h))) + 1);
   const ahead = state.times.length ? 0 : 3;
@@ -330,12 +333,12 @@ function show() {
     step();
     return showReady();
   }
-  const scale = scaleOf(answer.values, $("log").checked && (mode === "kernel" || mode === "signature"));
+  const scale = scaleOf(answer.values, Boolean(state.log[mode]));
   if (answer.xyz) view.setPositions(answer.xyz);
   else if (view.moved) view.setPositions(state.mesh.xyz);
   view.moved = Boolean(answer.xyz);
   view.source = mode === "signature" || mode === "smooth" ? -1 : state.source;
-  view.setValues(scale.s, scale.rule);
+  view.setValues(scale.s, scale.rule, scale.log);
   state.shown = { mode, at: state.at, source: state.source, scale, ...answer };
   drawLegend(scale, mode);
   showFacts(answer);
@@ -353,6 +356,7 @@ function showControls() {
   $("source").disabled = noSource;
   $("source").value = state.source;
   $("hint").textContent = noSource ? "Not used here." : "Click the surface to move it.";
+  $("log").checked = Boolean(state.log[mode]);
   $("log-label").style.visibility = mode === "kernel" || mode === "signature" ? "visible" : "hidden";
   $("mend-label").hidden = !state.mesh.tri.length;
 }
@@ -457,23 +461,28 @@ function setMode(mode) {
   if (state.times.length) show();
 }
 
+// The list offers the last file that could be read.
+function fileOption() {
+  const option = document.querySelector("#shape [value=file]");
+  option.hidden = !state.fileOrder;
+  if (state.fileOrder) option.textContent = state.fileOrder.name;
+}
+
 async function loadFile(file) {
   if (!file) return;
   state.order = { op: "file", name: file.name, data: await file.arrayBuffer() };
   const option = document.querySelector("#shape [value=file]");
-  state.label = file.name;
-  load(state.order, file.name);
   option.textContent = file.name;
   option.hidden = false;
   $("shape").value = "file";
-  state.fileOrder = state.order;
+  load(state.order, file.name);
 }
 
 function loadShape() {
   const choice = $("shape").value;
   if (choice === "file") {
     state.order = state.fileOrder;
-    return load(state.order, state.label);
+    return load(state.order, state.order.name);
   }
   const [which, n] = choice.split(":").map(Number);
   state.order = { op: "shape", which, n };
@@ -620,7 +629,7 @@ function listen() {
   $("source").onchange = (e) => setSource(Math.min(state.mesh.n - 1, Math.max(0, Math.round(Number(e.target.value) || 0))));
   $("lines").onchange = (e) => { view.lines = e.target.checked; view.draw(); if (state.shown) drawLegend(state.shown.scale, state.mode); };
   $("edges").onchange = (e) => { view.edges = e.target.checked; view.draw(); };
-  $("log").onchange = () => show();
+  $("log").onchange = (e) => { state.log[state.mode] = e.target.checked; show(); };
   $("alert-close").onclick = hideAlert;
   $("save-png").onclick = () => state.shown && picture().toBlob((blob) => save(blob, fileName("png")), "image/png");
   $("save-ply").onclick = () => state.shown && save(ply(), fileName("ply"));

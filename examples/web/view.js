@@ -41,6 +41,7 @@ in float s;
 uniform sampler2D map;
 uniform vec2 rule;      // isolines where rule.x s + rule.y is an integer
 uniform float lines;
+uniform float zero;       // whether there is an isoline at zero
 uniform float points;
 uniform float flat_colour;
 out vec4 colour;
@@ -55,11 +56,12 @@ void main() {
   } else if (!gl_FrontFacing) m = -m;
   float u = rule.x * s + rule.y, w = max(fwidth(u), 1e-7);
   if (lines > 0.5) ink = (1.0 - smoothstep(0.5, 1.3, abs(fract(u - 0.5) - 0.5) / w)) * (1.0 - smoothstep(0.25, 0.6, w));
+  if (zero < 0.5 && abs(u) < 0.5) ink = 0.0;
   vec3 base = s < -0.5 ? vec3(0.62) : texture(map, vec2(clamp(s, 0.002, 0.998), 0.5)).rgb;
   if (flat_colour > 0.5) { colour = vec4(0.06, 0.07, 0.09, 0.28); return; }
   float key = max(0.0, dot(m, normalize(vec3(-0.45, 0.65, 0.65)))), fill = 0.5 + 0.5 * m.y;
   float shine = pow(max(0.0, dot(m, normalize(vec3(-0.3, 0.5, 1.0)))), 40.0);
-  vec3 lit = base * (0.46 + 0.2 * fill + 0.5 * key) + 0.07 * shine;
+  vec3 lit = base * (0.6 + 0.16 * fill + 0.4 * key) + vec3(0.03, 0.035, 0.045) * (0.4 + fill + key) + 0.06 * shine;
   float luma = dot(base, vec3(0.3, 0.59, 0.11));
   vec3 line = luma > 0.3 ? lit * 0.35 : lit + vec3(0.34);
   colour = vec4(mix(lit, line, 0.75 * ink), 1.0);
@@ -69,23 +71,21 @@ const MARK_VERTEX = `#version 300 es
 uniform mat4 camera;
 uniform vec3 at;
 uniform float size;
-void main() { gl_Position = camera * vec4(at, 1.0); gl_Position.z -= 0.004 * gl_Position.w; gl_PointSize = size; }`;
+void main() { gl_Position = camera * vec4(at, 1.0); gl_Position.z -= 0.012 * gl_Position.w; gl_PointSize = size; }`;
 
 const MARK_FRAGMENT = `#version 300 es
 precision highp float;
-uniform float seen;
 out vec4 colour;
 void main() {
   float r = length(2.0 * gl_PointCoord - 1.0);
   if (r > 1.0) discard;
   colour = r > 0.62 ? vec4(0.1, 0.1, 0.12, 1.0) : vec4(1.0, 0.35, 0.21, 1.0);
-  colour *= seen;
 }`;
 
 class View {
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = this.gl = canvas.getContext("webgl2", { antialias: true });
+    const gl = this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
     if (!gl) throw new Error("This page draws with WebGL 2, which this browser does not offer.");
     this.surface = this.program(SURFACE_VERTEX, SURFACE_FRAGMENT);
     this.mark = this.program(MARK_VERTEX, MARK_FRAGMENT);
@@ -97,12 +97,13 @@ class View {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, ramp);
     for (const [k, v] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE]])
       gl.texParameteri(gl.TEXTURE_2D, k, v);
-    this.yaw = 0.55;
+    this.yaw = -0.55;
     this.pitch = 0.32;
     this.zoom = 1;
     this.lines = true;
     this.edges = false;
     this.rule = [0, 0.5];
+    this.zero = false;
     this.source = -1;
     this.n = 0;
     this.later = 0;
@@ -181,8 +182,9 @@ class View {
     return out;
   }
 
-  setValues(s, rule) {
+  setValues(s, rule, zero) {
     this.rule = rule;
+    this.zero = zero;
     this.upload("value", this.gl.ARRAY_BUFFER, s);
     this.draw();
   }
@@ -202,7 +204,7 @@ class View {
   matrices() {
     const { canvas } = this, cy = Math.cos(this.yaw), sy = Math.sin(this.yaw), cp = Math.cos(this.pitch), sp = Math.sin(this.pitch);
     const turn = [cy, sp * sy, -cp * sy, 0, cp, sp, sy, -sp * cy, cp * cy];      // columns
-    const aspect = canvas.width / canvas.height, f = 2.6 * this.zoom * Math.min(1, aspect), back = 3.1;
+    const aspect = canvas.width / canvas.height, f = 2.9 * this.zoom * Math.min(1, aspect), back = 3.1;
     const scale = [f / aspect, f], near = 0.5, far = 6;
     const m = new Float32Array(16);
     for (let c = 0; c < 3; c++) {
@@ -238,6 +240,7 @@ class View {
     gl.uniformMatrix3fv(surface.turn, false, turn);
     gl.uniform2f(surface.rule, ...this.rule);
     gl.uniform1f(surface.lines, this.lines && this.tri.length ? 1 : 0);
+    gl.uniform1f(surface.zero, this.zero ? 1 : 0);
     gl.uniform1f(surface.points, this.tri.length ? 0 : 1);
     gl.uniform1f(surface.flat_colour, 0);
     gl.uniform1f(surface.dot_size, 1.8 * this.h / this.radius * camera[5] / Math.max(0.1, Math.cos(this.pitch)) * height / 2);
@@ -270,7 +273,6 @@ class View {
     gl.uniformMatrix4fv(mark.camera, false, camera);
     gl.uniform3fv(mark.at, this.at.subarray(3 * this.source, 3 * this.source + 3));
     gl.uniform1f(mark.size, 13 * ratio);
-    gl.uniform1f(mark.seen, 1);
     gl.drawArrays(gl.POINTS, 0, 1);
   }
 

@@ -203,11 +203,11 @@ static void page_bend_torus(shape *s) {
     int32_t i;
     for (i = 0; i < s->n; i++) {
         double *p = s->xyz + 3 * (size_t)i;
-        const double u = atan2(p[1], p[0]), ring = sqrt(p[0] * p[0] + p[1] * p[1]), r = 1 + 0.35 * sin(3 * u);
+        const double u = atan2(p[2], p[0]), ring = sqrt(p[0] * p[0] + p[2] * p[2]), r = 1 + 0.3 * sin(3 * u);
         const double out = 1 + (ring - 1) * r;
         p[0] *= out / ring;
-        p[1] *= out / ring;
-        p[2] = p[2] * r + 0.18 * sin(2 * u);
+        p[1] = p[1] * r + 0.2 * sin(2 * u);
+        p[2] *= out / ring;
     }
 }
 
