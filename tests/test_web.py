@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Tests of examples/web: test_web.py [--keep FOLDER] [--large] [unittest options].
 
-Builds the page, compares the WASM module in node with the same C code built natively, and uses the page in headless Chromium: picks
-a shape, clicks, moves the slider, drops files. Needs nothing but Python 3. Parts whose programs are missing (clang with wasi-libc, node,
-chromium, a native compiler) are skipped. --keep FOLDER leaves the page and the screenshots there; --large measures a mesh of 36K vertices.
+Builds the page, compares the WASM module in node with the same C code built natively, and uses the page in headless
+Chromium: picks shapes, clicks, moves the slider, drops files. Needs nothing but Python 3. Parts whose programs are
+missing (clang with wasi-libc, node, chromium, a native compiler) are skipped. --keep FOLDER leaves the page and the
+screenshots there; --large measures a mesh of 36K vertices.
 """
 import base64
 import ctypes
@@ -44,7 +45,8 @@ def built():
         with open(probe, "w") as f:
             f.write("#include <math.h>\n#include <stdlib.h>\ndouble f(double x) { return sin(x); }\n")
         command = [clang] + build.LINK + ["-Wl,--export=f", probe, "-o", probe + ".wasm"]
-        there = shutil.which(clang) and subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        there = shutil.which(clang) and subprocess.run(command, **quiet).returncode == 0
         BUILT["wasm"] = build.module(FOLDER) if there else None
         BUILT["page"] = build.page(FOLDER, BUILT["wasm"]) if there else None
     return BUILT["page"]
@@ -67,7 +69,8 @@ def ring(n, m):
         for j in range(m):
             a, b = 2 * math.pi * i / n, 2 * math.pi * j / m
             r = 3 + (1 + 0.2 * math.sin(3 * a)) * math.cos(b)
-            lines.append("v %.12g %.12g %.12g" % (r * math.cos(a), r * math.sin(a), (1 + 0.2 * math.cos(5 * a)) * math.sin(b)))
+            z = (1 + 0.2 * math.cos(5 * a)) * math.sin(b)
+            lines.append("v %.12g %.12g %.12g" % (r * math.cos(a), r * math.sin(a), z))
     for i in range(n):
         for j in range(m):
             p, q = i * m + j + 1, (i + 1) % n * m + j + 1
@@ -78,15 +81,19 @@ def ring(n, m):
 
 # ---- the same questions to the module and to native code ----
 
-STEPS = [["shape", 0, 3000], ["shape", 1, 2500], ["shape", 2, 2000], ["shape", 3, 2000], ["shape", 4, 2000], ["file", "ring.obj", ring(40, 20)]]
-QUERIES = [["columns", DIRECT, [30.0], 7], ["columns", DIRECT, [30.0], 500], ["columns", KRYLOV, [2.0, 4.0, 8.0, 16.0], 33],
+STEPS = [["shape", 0, 3000], ["shape", 1, 2500], ["shape", 2, 2000], ["shape", 3, 2000], ["shape", 4, 2000],
+         ["file", "ring.obj", ring(40, 20)]]
+QUERIES = [["columns", DIRECT, [30.0], 7], ["columns", DIRECT, [30.0], 500],
+           ["columns", KRYLOV, [2.0, 4.0, 8.0, 16.0], 33],
            ["signature", [20.0, 40.0, 80.0]], ["smooth", [1.0, 3.0]], ["geodesic", 11]]
 
 NODE = r"""
 const fs = require("fs"), vm = require("vm");
 // The page's own worker, with its module put in by hand: what is tested is what runs.
-const worker = { performance, TextDecoder, TextEncoder, WebAssembly, postMessage() {}, module: new WebAssembly.Module(fs.readFileSync(process.argv[2])) };
-vm.runInNewContext(fs.readFileSync(process.argv[5], "utf8") + "\nonmessage({ data: { op: 'start', module } }); this.exported = wasm;", worker);
+const worker = { performance, TextDecoder, TextEncoder, WebAssembly, postMessage() {},
+  module: new WebAssembly.Module(fs.readFileSync(process.argv[2])) };
+const start = "\nonmessage({ data: { op: 'start', module } }); this.exported = wasm;";
+vm.runInNewContext(fs.readFileSync(process.argv[5], "utf8") + start, worker);
 const wasm = worker.exported, steps = JSON.parse(fs.readFileSync(process.argv[3])), out = process.argv[4];
 const bytes = () => new Uint8Array(wasm.memory.buffer);
 const put = (b) => { const p = wasm.page_alloc(b.length + 1); bytes().set(b, p); bytes()[p + b.length] = 0; return p; };
@@ -120,7 +127,8 @@ def in_node(steps):
         f.write(NODE)
     with open(ask, "w") as f:
         json.dump(steps, f)
-    run = subprocess.run([program("node", "nodejs"), script, BUILT["wasm"], ask, out, os.path.join(WEB, "worker.js")], stdout=subprocess.PIPE, check=True)
+    command = [program("node", "nodejs"), script, BUILT["wasm"], ask, out, os.path.join(WEB, "worker.js")]
+    run = subprocess.run(command, stdout=subprocess.PIPE, check=True)
     rows = json.loads(run.stdout)
     for i, row in enumerate(rows):
         with open("%s.%d" % (out, i), "rb") as f:
@@ -136,8 +144,8 @@ def native_library():
         lib = os.path.join(FOLDER, "web.so")
         BUILT["native"] = None
         if cc:
-            subprocess.run([cc, "-std=gnu99", "-O2", "-ffp-contract=off", "-DNDEBUG", "-DHEATDIFF_NO_SIMD", "-fPIC", "-shared", "-Wno-unused-function",
-                            os.path.join(WEB, "web.c"), "-o", lib, "-lm"], check=True)
+            subprocess.run([cc, "-std=gnu99", "-O2", "-ffp-contract=off", "-DNDEBUG", "-DHEATDIFF_NO_SIMD", "-fPIC",
+                            "-shared", "-Wno-unused-function", os.path.join(WEB, "web.c"), "-o", lib, "-lm"], check=True)
             BUILT["native"] = lib
     return BUILT["native"]
 
@@ -172,7 +180,8 @@ def natively(steps):
             status, count = lib.page_geodesic(a[0]), n
         ms = 1000 * (time.perf_counter() - begin)
         source = lib.page_facts() if count < 0 else lib.page_out()
-        rows.append({"status": status, "ms": ms, "n": lib.page_n(), "text": lib.page_text().decode() if status < 0 else "",
+        said = lib.page_text().decode() if status < 0 else ""
+        rows.append({"status": status, "ms": ms, "n": lib.page_n(), "text": said,
                      "values": tuple(source[:abs(count)]) if status >= 0 and count else ()})
     return rows
 
@@ -212,8 +221,9 @@ class Module(unittest.TestCase):
 
     def test_bad_files(self):
         needs(("node", program("node", "nodejs")))
-        files = {"a.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "a.ply": "ply\nformat ascii 1.0\nelement vertex 2\nend_header\n", "a.off": "OFF\n3 1\n",
-                 "a.txt": "hello", "a.stl": "", "flat.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}
+        files = {"a.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "a.txt": "hello",
+                 "a.ply": "ply\nformat ascii 1.0\nelement vertex 2\nend_header\n", "a.off": "OFF\n3 1\n",
+                 "a.stl": "", "flat.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}
         for name, content in files.items():
             rows = in_node([["file", name, content], ["begin", 0], ["shape", 1, 700], ["begin", 0]])
             said = rows[0]["text"] or rows[1]["text"]
@@ -230,15 +240,18 @@ class Module(unittest.TestCase):
         h = natively([surface, ["begin", 0]])[1]["values"][0]
         decade = [10 * 2 ** (k / 3) for k in range(10)]
         steps = [surface, ["begin", 0]] + with_times([
-            ["columns", DIRECT, [100.0], 7], ["columns", DIRECT, [200.0], 7], ["columns", DIRECT, [200.0], 700], ["columns", DIRECT, [200.0], 1700],
-            ["columns", KRYLOV, decade, 7], ["columns", KRYLOV, decade, 99], ["smooth", decade], ["geodesic", 5], ["geodesic", 6],
+            ["columns", DIRECT, [100.0], 7], ["columns", DIRECT, [200.0], 7], ["columns", DIRECT, [200.0], 700],
+            ["columns", DIRECT, [200.0], 1700], ["columns", KRYLOV, decade, 7], ["columns", KRYLOV, decade, 99],
+            ["smooth", decade], ["geodesic", 5], ["geodesic", 6],
             ["signature", [100.0]], ["signature", decade]], h)
-        names = ["make the shape", "Laplacian", "column: order, analyse, factorise, solve", "column at a new time", "further column", "further column",
-                 "columns of a decade, first", "columns of a decade", "smoothing over a decade", "geodesic, first", "geodesic", "signature", "signatures of a decade"]
+        names = ["make the shape", "Laplacian", "column: order, analyse, factorise, solve", "column at a new time",
+                 "further column", "further column", "columns of a decade, first", "columns of a decade",
+                 "smoothing over a decade", "geodesic, first", "geodesic", "signature", "signatures of a decade"]
         there, here = in_node(steps), natively(steps)
         for name, a, b in zip(names, there, here):
-            print("%-42s wasm %7.1f ms, native %7.1f ms, ratio %.2f" % (name, a["ms"], b["ms"], a["ms"] / b["ms"]), file=sys.stderr)
-        print("%d vertices, %.0f MB of memory" % (there[0]["n"], there[-1]["bytes"] / 2 ** 20), file=sys.stderr)
+            print("%-42s wasm %7.1f ms, native %7.1f ms, ratio %.2f"
+                  % (name, a["ms"], b["ms"], a["ms"] / b["ms"]), file=sys.stderr)
+        print("%d vertices, %.0f MB" % (there[0]["n"], there[-1]["bytes"] / 2 ** 20), file=sys.stderr)
 
 
 # ---- the page in a browser ----
@@ -256,9 +269,11 @@ class Browser:
             os.dup2(b, 4)
 
         self.process = subprocess.Popen(
-            [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
-             "--disable-sync", "--disable-extensions", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
-             "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe", "--user-data-dir=" + self.profile, "about:blank"],
+            [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
+             "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--use-gl=angle",
+             "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
+             "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe", "--user-data-dir=" + self.profile,
+             "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, close_fds=False, preexec_fn=wire)
         os.close(from_us)
         os.close(from_it)
@@ -267,7 +282,8 @@ class Browser:
         self.session = self.ask("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log"):
             self.ask(domain + ".enable")
-        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if phone else 1, mobile=phone)
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if phone else 1,
+                 mobile=phone)
         if phone:
             self.ask("Emulation.setTouchEmulationEnabled", enabled=True)
         self.ask("Page.navigate", url="file://" + page)
@@ -312,10 +328,12 @@ class Browser:
             if self.js("Boolean(%s)" % code):
                 return
             time.sleep(0.05)
-        raise AssertionError("not within %d s: %s; the page says: %s" % (seconds, code, self.js("document.body.innerText")))
+        says = self.js("document.body.innerText")
+        raise AssertionError("not within %d s: %s; the page says: %s" % (seconds, code, says))
 
     def mouse(self, kind, x, y, buttons=0):
-        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left" if kind != "mouseMoved" or buttons else "none", buttons=buttons, clickCount=1)
+        button = "left" if kind != "mouseMoved" or buttons else "none"
+        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=buttons, clickCount=1)
 
     def click(self, x, y):
         self.mouse("mousePressed", x, y, 1)
@@ -323,8 +341,10 @@ class Browser:
 
     def drop(self, name, data):
         """What the page sees when a file is dropped on it."""
-        self.js("""(() => { const d = new DataTransfer(); d.items.add(new File([Uint8Array.from(atob(%s), (c) => c.charCodeAt(0))], %s));
-                for (const t of ["dragenter", "dragover", "drop"]) document.body.dispatchEvent(new DragEvent(t, { dataTransfer: d, bubbles: true, cancelable: true })); })()"""
+        self.js("""(() => { const d = new DataTransfer(), data = Uint8Array.from(atob(%s), (c) => c.charCodeAt(0));
+                d.items.add(new File([data], %s));
+                for (const t of ["dragenter", "dragover", "drop"]) document.body.dispatchEvent(
+                    new DragEvent(t, { dataTransfer: d, bubbles: true, cancelable: true })); })()"""
                 % (json.dumps(base64.b64encode(data).decode()), json.dumps(name)))
 
     def text(self, element):
@@ -370,8 +390,12 @@ class Page(unittest.TestCase):
         self.browser.until(SHOWN)
 
     def slide(self, at):
-        self.browser.js("(() => { const s = document.getElementById('time'); s.value = %d; s.dispatchEvent(new Event('input')); })()" % at)
+        self.browser.js("document.getElementById('time').value = %d; setTime(%d)" % (at, at))
         self.browser.until(SHOWN)
+
+    def choose(self, shape):
+        self.browser.js("(() => { const s = document.getElementById('shape'); s.value = '%s';"
+                        "s.dispatchEvent(new Event('change')); })()" % shape)
 
     def test_laptop(self):
         b = self.open()
@@ -390,17 +414,19 @@ class Page(unittest.TestCase):
         # every step of the slider is answered at once
         slow = 0
         for at in range(0, b.js("heatdiff.shownCount"), 3):
-            took = b.js("(() => { const s = document.getElementById('time'); s.value = %d; const t = performance.now(); s.dispatchEvent(new Event('input'));"
-                        "return heatdiff.shown && heatdiff.shown.at === %d ? performance.now() - t : 1e9; })()" % (at, at))
-            slow = max(slow, took)
+            slow = max(slow, b.js(
+                "(() => { const s = document.getElementById('time'), begin = performance.now(); s.value = %d;"
+                "s.dispatchEvent(new Event('input'));"
+                "return heatdiff.shown && heatdiff.shown.at === %d ? performance.now() - begin : 1e9; })()" % (at, at)))
         print("slowest step of the slider: %.1f ms" % slow, file=sys.stderr)
         self.assertLess(slow, 1000)
         # further clicks at one time, by the factors that are there
         self.slide(20)
         b.until(IDLE, 120)
         b.until("heatdiff.factored === heatdiff.at", 30)
-        took = b.js("(async () => { const all = []; for (let k = 0; k < 5; k++) { setSource(100 + 777 * k); while (!heatdiff.shown) await new Promise((r) => setTimeout(r, 1));"
-                    "all.push(heatdiff.took); } return all; })()")
+        took = b.js("(async () => { const all = []; for (let k = 0; k < 5; k++) { setSource(100 + 777 * k);"
+                    "while (!heatdiff.shown) await new Promise((r) => setTimeout(r, 1)); all.push(heatdiff.took); }"
+                    "return all; })()")
         print("clicks, to the picture's data: %s ms" % ", ".join("%.1f" % t for t in took), file=sys.stderr)
         # drag turns and does not click
         source, yaw = b.js("heatdiff.source"), b.js("view.yaw")
@@ -438,8 +464,8 @@ class Page(unittest.TestCase):
         chunk = at // 10
         times = b.js("chunkTimes(%d)" % chunk)
         far = b.js("chunkTimes(%d)" % ((at + 3) // 10))
-        native = natively([["file", "ring.obj", text], ["begin", 0], ["columns", KRYLOV, times, 17], ["columns", KRYLOV, far, 17], ["signature", far],
-                           ["geodesic", 17]])
+        native = natively([["file", "ring.obj", text], ["begin", 0], ["columns", KRYLOV, times, 17],
+                           ["columns", KRYLOV, far, 17], ["signature", far], ["geodesic", 17]])
         n, k, j = 1800, at - 10 * chunk, at + 3 - 10 * ((at + 3) // 10)
         self.assertAlmostEqual(times[k] / t, 1, 14)
         diagonal, column = native[4]["values"][n * j:n * j + n], native[3]["values"][n * j:n * j + n]
@@ -490,7 +516,7 @@ class Page(unittest.TestCase):
         b.js("scrollTo(0, 400)")
         b.shot("phone-scrolled")
         b.js("scrollTo(0, 0)")
-        b.js("(() => { const s = document.getElementById('shape'); s.value = '4:12000'; s.dispatchEvent(new Event('change')); })()")
+        self.choose("4:12000")
         b.until("heatdiff.mesh && heatdiff.mesh.tri.length === 0 && " + IDLE, 120)
         self.assertTrue(b.js("document.querySelector('[value=geodesic]').disabled"))
         b.shot("phone-points")
@@ -498,8 +524,10 @@ class Page(unittest.TestCase):
 
     def test_shapes(self):
         b = self.open()
-        for value in b.js("[...document.querySelectorAll('#shape option')].map((o) => o.value).filter((v) => v !== 'file' && v !== '0:36000')"):
-            b.js("(() => { const s = document.getElementById('shape'); s.value = %s; s.dispatchEvent(new Event('change')); })()" % json.dumps(value))
+        for value in b.js("[...document.querySelectorAll('#shape option')].map((o) => o.value)"):
+            if value in ("file", "0:36000"):
+                continue
+            self.choose(value)
             b.until("heatdiff.times.length && " + SHOWN)
             self.mode("kernel")
             b.until(IDLE, 120)

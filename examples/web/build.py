@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Makes the page: build.py [FOLDER]. Writes heatdiff.html and heatdiff.wasm to FOLDER (build-web by default).
 
-Needs clang with the target wasm32-wasi, wasm-ld and wasi-libc (Debian: clang lld wasi-libc libclang-rt-14-dev-wasm32),
-and takes wasm-opt (Debian: binaryen) if it is there. The page is one file and needs neither a server nor a network.
+Needs clang with the target wasm32-wasi, wasm-ld and wasi-libc (Debian: clang lld wasi-libc
+libclang-rt-14-dev-wasm32), and takes wasm-opt (Debian: binaryen) if it is there. The page is one file and needs
+neither a server nor a network.
 """
 import base64
 import os
@@ -12,10 +13,12 @@ import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-COMPILE = ["--target=wasm32-wasi", "-std=c99", "-Oz", "-msimd128", "-mbulk-memory", "-DNDEBUG", "-D_WASI_EMULATED_SIGNAL",
-           "-D_WASI_EMULATED_PROCESS_CLOCKS", "-Wall", "-Wextra", "-Wno-unused-function"]
-# Compiled and linked in two steps, and no -O on the link: clang would run wasm-opt by itself, without the features.
-LINK = ["--target=wasm32-wasi", "-mexec-model=reactor", "-Wl,--gc-sections", "-Wl,--strip-all", "-Wl,-z,stack-size=1048576"]
+COMPILE = ["--target=wasm32-wasi", "-std=c99", "-Oz", "-msimd128", "-mbulk-memory", "-DNDEBUG",
+           "-D_WASI_EMULATED_SIGNAL", "-D_WASI_EMULATED_PROCESS_CLOCKS", "-Wall", "-Wextra", "-Wno-unused-function"]
+# Compiled and linked in two steps, without -O on the link: there clang would run wasm-opt, which lacks the features.
+LINK = ["--target=wasm32-wasi", "-mexec-model=reactor", "-Wl,--gc-sections", "-Wl,--strip-all",
+        "-Wl,-z,stack-size=1048576"]
+OPTIMISE = ["wasm-opt", "--enable-simd", "--enable-bulk-memory", "-Oz"]
 
 
 def module(folder):
@@ -25,7 +28,7 @@ def module(folder):
     subprocess.run([clang] + LINK + [obj, "-o", wasm], check=True)
     os.remove(obj)
     if shutil.which("wasm-opt"):
-        subprocess.run(["wasm-opt", "--enable-simd", "--enable-bulk-memory", "-Oz", wasm, "-o", wasm], check=True)
+        subprocess.run(OPTIMISE + [wasm, "-o", wasm], check=True)
     return wasm
 
 

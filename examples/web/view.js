@@ -3,9 +3,14 @@
 
 // Viridis as a polynomial of degree six (coefficients of the public domain, fitted by Matt Zucker).
 const VIRIDIS = [
-  [0.2777273272, 0.0054073445, 0.3340998053], [0.1050930431, 1.4046135299, 1.3845901626], [-0.3308618287, 0.2148475595, 0.0950951630],
-  [-4.6342304990, -5.7991009734, -19.3324409563], [6.2282699363, 14.1799333668, 56.6905526007], [4.7763849977, -13.7451453777, -65.3530326334],
-  [-5.4354558559, 4.6458526122, 26.3124352496]];
+  [0.2777273272, 0.0054073445, 0.3340998053],
+  [0.1050930431, 1.4046135299, 1.3845901626],
+  [-0.3308618287, 0.2148475595, 0.095095163],
+  [-4.634230499, -5.7991009734, -19.3324409563],
+  [6.2282699363, 14.1799333668, 56.6905526007],
+  [4.7763849977, -13.7451453777, -65.3530326334],
+  [-5.4354558559, 4.6458526122, 26.3124352496],
+];
 
 function viridis(s) {
   return [0, 1, 2].map((c) => {
@@ -85,17 +90,27 @@ void main() {
 class View {
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
+    const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false }));
     if (!gl) throw new Error("This page draws with WebGL 2, which this browser does not offer.");
     this.surface = this.program(SURFACE_VERTEX, SURFACE_FRAGMENT);
     this.mark = this.program(MARK_VERTEX, MARK_FRAGMENT);
-    this.buffers = { at: gl.createBuffer(), normal: gl.createBuffer(), value: gl.createBuffer(), tri: gl.createBuffer(), edge: gl.createBuffer() };
+    this.buffers = {
+      at: gl.createBuffer(),
+      normal: gl.createBuffer(),
+      value: gl.createBuffer(),
+      tri: gl.createBuffer(),
+      edge: gl.createBuffer(),
+    };
     this.map = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, this.map);
     const ramp = new Uint8Array(1024);
     for (let i = 0; i < 256; i++) ramp.set([...viridis(i / 255), 255], 4 * i);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, ramp);
-    for (const [k, v] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE]])
+    for (const [k, v] of [
+      [gl.TEXTURE_MIN_FILTER, gl.LINEAR],
+      [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
+      [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE],
+    ])
       gl.texParameteri(gl.TEXTURE_2D, k, v);
     this.yaw = -0.55;
     this.pitch = 0.32;
@@ -112,8 +127,12 @@ class View {
   }
 
   program(vertex, fragment) {
-    const gl = this.gl, p = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+    const gl = this.gl,
+      p = gl.createProgram();
+    for (const [kind, text] of [
+      [gl.VERTEX_SHADER, vertex],
+      [gl.FRAGMENT_SHADER, fragment],
+    ]) {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
@@ -147,7 +166,10 @@ class View {
 
   // Centred and scaled to one size, whatever the coordinates are: `radius` is the largest distance from the middle.
   setPositions(xyz) {
-    const n = this.n, lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity], at = new Float32Array(3 * n);
+    const n = this.n,
+      lo = [Infinity, Infinity, Infinity],
+      hi = [-Infinity, -Infinity, -Infinity],
+      at = new Float32Array(3 * n);
     for (let i = 0; i < 3 * n; i++) {
       const c = i % 3;
       if (xyz[i] < lo[c]) lo[c] = xyz[i];
@@ -155,7 +177,8 @@ class View {
     }
     const mid = [0, 1, 2].map((c) => (lo[c] + hi[c]) / 2);
     let far = 0;
-    for (let i = 0; i < n; i++) far = Math.max(far, Math.hypot(xyz[3 * i] - mid[0], xyz[3 * i + 1] - mid[1], xyz[3 * i + 2] - mid[2]));
+    for (let i = 0; i < n; i++)
+      far = Math.max(far, Math.hypot(xyz[3 * i] - mid[0], xyz[3 * i + 1] - mid[1], xyz[3 * i + 2] - mid[2]));
     this.radius = far || 1;
     for (let i = 0; i < 3 * n; i++) at[i] = (xyz[i] - mid[i % 3]) / this.radius;
     this.at = at;
@@ -165,13 +188,27 @@ class View {
   }
 
   normals() {
-    const a = this.at, t = this.tri, out = new Float32Array(a.length);
+    const a = this.at,
+      t = this.tri,
+      out = new Float32Array(a.length);
     for (let f = 0; f < t.length; f += 3) {
-      const i = 3 * t[f], j = 3 * t[f + 1], k = 3 * t[f + 2];
-      const ux = a[j] - a[i], uy = a[j + 1] - a[i + 1], uz = a[j + 2] - a[i + 2];
-      const vx = a[k] - a[i], vy = a[k + 1] - a[i + 1], vz = a[k + 2] - a[i + 2];
-      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-      for (const p of [i, j, k]) { out[p] += x; out[p + 1] += y; out[p + 2] += z; }
+      const i = 3 * t[f],
+        j = 3 * t[f + 1],
+        k = 3 * t[f + 2];
+      const ux = a[j] - a[i],
+        uy = a[j + 1] - a[i + 1],
+        uz = a[j + 2] - a[i + 2];
+      const vx = a[k] - a[i],
+        vy = a[k + 1] - a[i + 1],
+        vz = a[k + 2] - a[i + 2];
+      const x = uy * vz - uz * vy,
+        y = uz * vx - ux * vz,
+        z = ux * vy - uy * vx;
+      for (const p of [i, j, k]) {
+        out[p] += x;
+        out[p + 1] += y;
+        out[p + 2] += z;
+      }
     }
     for (let i = 0; i < out.length; i += 3) {
       const len = Math.hypot(out[i], out[i + 1], out[i + 2]) || 1;
@@ -190,11 +227,18 @@ class View {
   }
 
   makeEdges() {
-    const t = this.tri, seen = new Set(), out = [];
+    const t = this.tri,
+      seen = new Set(),
+      out = [];
     for (let f = 0; f < t.length; f += 3)
       for (let c = 0; c < 3; c++) {
-        const a = t[f + c], b = t[f + (c + 1) % 3], key = Math.min(a, b) * this.n + Math.max(a, b);
-        if (!seen.has(key)) { seen.add(key); out.push(a, b); }
+        const a = t[f + c],
+          b = t[f + ((c + 1) % 3)],
+          key = Math.min(a, b) * this.n + Math.max(a, b);
+        if (!seen.has(key)) {
+          seen.add(key);
+          out.push(a, b);
+        }
       }
     this.upload("edge", this.gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(out));
     this.edgeCount = out.length;
@@ -202,31 +246,48 @@ class View {
   }
 
   matrices() {
-    const { canvas } = this, cy = Math.cos(this.yaw), sy = Math.sin(this.yaw), cp = Math.cos(this.pitch), sp = Math.sin(this.pitch);
-    const turn = [cy, sp * sy, -cp * sy, 0, cp, sp, sy, -sp * cy, cp * cy];      // columns
-    const aspect = canvas.width / canvas.height, f = 2.9 * this.zoom * Math.min(1, aspect), back = 3.1;
-    const scale = [f / aspect, f], near = 0.5, far = 6;
+    const { canvas } = this,
+      cy = Math.cos(this.yaw),
+      sy = Math.sin(this.yaw),
+      cp = Math.cos(this.pitch),
+      sp = Math.sin(this.pitch);
+    const turn = [cy, sp * sy, -cp * sy, 0, cp, sp, sy, -sp * cy, cp * cy]; // columns
+    const aspect = canvas.width / canvas.height,
+      f = 2.9 * this.zoom * Math.min(1, aspect),
+      back = 3.1;
+    const scale = [f / aspect, f],
+      near = 0.5,
+      far = 6;
     const m = new Float32Array(16);
     for (let c = 0; c < 3; c++) {
       m[4 * c] = scale[0] * turn[3 * c];
       m[4 * c + 1] = scale[1] * turn[3 * c + 1];
-      m[4 * c + 2] = -turn[3 * c + 2] * (far + near) / (far - near);
+      m[4 * c + 2] = (-turn[3 * c + 2] * (far + near)) / (far - near);
       m[4 * c + 3] = -turn[3 * c + 2];
     }
-    m[13] = 0.06 * back;       // a little above the middle: the legend is below
-    m[14] = back * (far + near) / (far - near) - 2 * far * near / (far - near);
+    m[13] = 0.06 * back; // a little above the middle: the legend is below
+    m[14] = (back * (far + near)) / (far - near) - (2 * far * near) / (far - near);
     m[15] = back;
     return { camera: m, turn: new Float32Array(turn) };
   }
 
   draw() {
-    if (!this.later) this.later = requestAnimationFrame(() => { this.later = 0; this.drawNow(); });
+    if (!this.later)
+      this.later = requestAnimationFrame(() => {
+        this.later = 0;
+        this.drawNow();
+      });
   }
 
   drawNow() {
-    const { gl, canvas, surface } = this, ratio = Math.min(2, window.devicePixelRatio || 1);
-    const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
-    if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
+    const { gl, canvas, surface } = this,
+      ratio = Math.min(2, window.devicePixelRatio || 1);
+    const width = Math.max(1, Math.round(canvas.clientWidth * ratio)),
+      height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    if (canvas.width !== width || canvas.height !== height) {
+      canvas.width = width;
+      canvas.height = height;
+    }
     const { camera, turn } = this.matrices();
     gl.viewport(0, 0, width, height);
     gl.clearColor(0.933, 0.929, 0.914, 1);
@@ -243,8 +304,15 @@ class View {
     gl.uniform1f(surface.zero, this.zero ? 1 : 0);
     gl.uniform1f(surface.points, this.tri.length ? 0 : 1);
     gl.uniform1f(surface.flat_colour, 0);
-    gl.uniform1f(surface.dot_size, 1.8 * this.h / this.radius * camera[5] / Math.max(0.1, Math.cos(this.pitch)) * height / 2);
-    for (const [k, name, size] of [[0, "at", 3], [1, "normal", 3], [2, "value", 1]]) {
+    gl.uniform1f(
+      surface.dot_size,
+      (((((1.8 * this.h) / this.radius) * camera[5]) / Math.max(0.1, Math.cos(this.pitch))) * height) / 2,
+    );
+    for (const [k, name, size] of [
+      [0, "at", 3],
+      [1, "normal", 3],
+      [2, "value", 1],
+    ]) {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[name]);
       gl.enableVertexAttribArray(k);
       gl.vertexAttribPointer(k, size, gl.FLOAT, false, 0, 0);
@@ -278,28 +346,47 @@ class View {
 
   // The vertex nearest to where the ray through a pixel first meets the surface; -1: it misses. x, y in CSS pixels.
   pick(x, y) {
-    const { camera: m } = this.matrices(), a = this.at, t = this.tri;
-    const px = 2 * x / this.canvas.clientWidth - 1, py = 1 - 2 * y / this.canvas.clientHeight;
-    const n = this.n, sx = new Float32Array(n), sy = new Float32Array(n), sw = new Float32Array(n);
+    const { camera: m } = this.matrices(),
+      a = this.at,
+      t = this.tri;
+    const px = (2 * x) / this.canvas.clientWidth - 1,
+      py = 1 - (2 * y) / this.canvas.clientHeight;
+    const n = this.n,
+      sx = new Float32Array(n),
+      sy = new Float32Array(n),
+      sw = new Float32Array(n);
     for (let i = 0; i < n; i++) {
-      const u = a[3 * i], v = a[3 * i + 1], z = a[3 * i + 2], w = m[3] * u + m[7] * v + m[11] * z + m[15];
+      const u = a[3 * i],
+        v = a[3 * i + 1],
+        z = a[3 * i + 2],
+        w = m[3] * u + m[7] * v + m[11] * z + m[15];
       sw[i] = w;
       sx[i] = (m[0] * u + m[4] * v + m[8] * z + m[12]) / w - px;
       sy[i] = (m[1] * u + m[5] * v + m[9] * z + m[13]) / w - py;
     }
-    let best = -1, depth = Infinity;
+    let best = -1,
+      depth = Infinity;
     if (!t.length) {
-      const reach = 0.05 ** 2, spot = (1.2 * this.h / this.radius) ** 2;
+      const reach = 0.05 ** 2,
+        spot = ((1.2 * this.h) / this.radius) ** 2;
       let score = Infinity;
       for (let i = 0; i < n; i++) {
-        const d = (sx[i] * sx[i] + sy[i] * sy[i]), rank = sw[i] + (d > spot ? 10 + d : 0);
-        if (d < reach && rank < score) { score = rank; best = i; }
+        const d = sx[i] * sx[i] + sy[i] * sy[i],
+          rank = sw[i] + (d > spot ? 10 + d : 0);
+        if (d < reach && rank < score) {
+          score = rank;
+          best = i;
+        }
       }
       return best;
     }
     for (let f = 0; f < t.length; f += 3) {
-      const i = t[f], j = t[f + 1], k = t[f + 2];
-      const A = sx[j] * sy[k] - sx[k] * sy[j], B = sx[k] * sy[i] - sx[i] * sy[k], C = sx[i] * sy[j] - sx[j] * sy[i];
+      const i = t[f],
+        j = t[f + 1],
+        k = t[f + 2];
+      const A = sx[j] * sy[k] - sx[k] * sy[j],
+        B = sx[k] * sy[i] - sx[i] * sy[k],
+        C = sx[i] * sy[j] - sx[j] * sy[i];
       if (!((A >= 0 && B >= 0 && C >= 0) || (A <= 0 && B <= 0 && C <= 0)) || A + B + C === 0) continue;
       const w = (A + B + C) / (A / sw[i] + B / sw[j] + C / sw[k]);
       if (w > 0 && w < depth) {
@@ -312,9 +399,12 @@ class View {
 
   // Where a vertex is drawn, in CSS pixels.
   where(i) {
-    const { camera: m } = this.matrices(), [x, y, z] = this.at.subarray(3 * i, 3 * i + 3);
+    const { camera: m } = this.matrices(),
+      [x, y, z] = this.at.subarray(3 * i, 3 * i + 3);
     const w = m[3] * x + m[7] * y + m[11] * z + m[15];
-    return [(((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) / 2) * this.canvas.clientWidth,
-      ((1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) / 2) * this.canvas.clientHeight];
+    return [
+      (((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) / 2) * this.canvas.clientWidth,
+      ((1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) / 2) * this.canvas.clientHeight,
+    ];
   }
 }

@@ -1,8 +1,8 @@
 /* web.c - what the page calls: one mesh, its Laplacian and its plans, behind functions of numbers and pointers
 
-   Built as a WASM module by build.sh, and as a native library by tests/test_web.py, which compares the two. There
-   is one session. Functions return hd_status; after a failure page_text() says what is wrong and where. Answers
-   are doubles at page_out(), and the facts about them at page_facts(). */
+   build.py makes a WASM module of it, and tests/test_web.py a native library, to compare the two. There is one
+   session. Functions return hd_status; after a failure page_text() says what is wrong and where. Answers are
+   doubles at page_out(), and the facts about them are at page_facts(). */
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,11 +13,11 @@
 #define PAGE_IMPORT(name) __attribute__((import_module("page"), import_name(name)))
 #define PAGE_EXPORT(name) __attribute__((export_name(#name))) name
 PAGE_IMPORT("progress") void page_progress(const char *stage, double done);
-PAGE_IMPORT("number") double page_number(const char *text);                     /* what strtod does */
-PAGE_IMPORT("digits") int32_t page_digits(double x, char *to, int32_t room);    /* what %g does; returns the length */
+PAGE_IMPORT("number") double page_number(const char *text);                   /* what strtod does */
+PAGE_IMPORT("digits") int32_t page_digits(double x, char *to, int32_t room);  /* as %g; returns the length */
 
-/* The C library's printf and strtod are 25 KB of module, with all their formats and numbers of 128 bits. The messages of
- * meshio.h need strings, characters, integers and now and then a double. */
+/* The C library's printf and strtod take 20 KB of the module: they know all formats, and numbers of 128 bits.
+ * The messages of meshio.h need strings, characters, integers and now and then a double. */
 static void page_put(char **p, const char *end, const char *from, size_t n) {
     for (; n > 0 && *p < end; n--) *(*p)++ = *from++;
 }
@@ -31,33 +31,53 @@ static void page_put_integer(char **p, const char *end, int64_t x, int is_signed
     page_put(p, end, d, (size_t)(digit + sizeof digit - d));
 }
 
+/* A precision after the point, or SIZE_MAX. */
+static size_t page_precision(const char **format, va_list *args) {
+    const char *f = *format;
+    size_t n = 0;
+    if (*f != '.') return SIZE_MAX;
+    if (*++f == '*') {
+        n = (size_t)va_arg(*args, int);
+        f++;
+    }
+    for (; *f >= '0' && *f <= '9'; f++) n = 10 * n + (size_t)(*f - '0');
+    *format = f;
+    return n;
+}
+
 static int page_vprint(char *to, size_t room, const char *format, va_list args) {
     char *p = to, number[40];
     const char *const end = to + room - 1;
+    va_list list;
+    va_copy(list, args);
     for (; *format; format++) {
-        size_t most = SIZE_MAX;
+        size_t most;
         int longs = 0;
-        if (*format != '%') { page_put(&p, end, format, 1); continue; }
-        if (*++format == '.') {
-            for (most = 0, format++; *format >= '0' && *format <= '9'; format++) most = 10 * most + (size_t)(*format - '0');
-            if (*format == '*') { most = (size_t)va_arg(args, int); format++; }
+        if (*format != '%') {
+            page_put(&p, end, format, 1);
+            continue;
         }
+        format++;
+        most = page_precision(&format, &list);
         for (; *format == 'l'; format++) longs++;
         if (*format == 's') {
-            const char *s = va_arg(args, const char *);
+            const char *s = va_arg(list, const char *);
             size_t n = 0;
             while (n < most && s[n]) n++;
             page_put(&p, end, s, n);
         } else if (*format == 'c') {
-            number[0] = (char)va_arg(args, int);
+            number[0] = (char)va_arg(list, int);
             page_put(&p, end, number, 1);
         } else if (*format == 'd' || *format == 'u') {
             const int is_signed = *format == 'd';
-            page_put_integer(&p, end, longs > 1 ? va_arg(args, long long) : is_signed ? va_arg(args, long) : (int64_t)va_arg(args, unsigned long), is_signed);
+            const int64_t x = longs > 1 ? va_arg(list, long long)
+                            : is_signed ? va_arg(list, long) : (int64_t)va_arg(list, unsigned long);
+            page_put_integer(&p, end, x, is_signed);
         } else if (*format == 'g' || *format == 'f') {
-            page_put(&p, end, number, (size_t)page_digits(va_arg(args, double), number, sizeof number));
+            page_put(&p, end, number, (size_t)page_digits(va_arg(list, double), number, sizeof number));
         } else if (*format) page_put(&p, end, format, 1);
     }
+    va_end(list);
     *p = 0;
     return (int)(p - to);
 }
@@ -85,11 +105,11 @@ static void page_progress(const char *stage, double done) { (void)stage; (void)d
 #include "../../tools/meshio.h"
 #include "../../tools/shapes.h"
 
-/* What page_facts() holds after a query, and after page_begin. The page's worker reads them by these numbers. */
+/* What page_facts() holds after a query, and after page_begin. page.js reads them by these numbers. */
 enum {
     FACT_ERROR_BOUND, FACT_EVIDENCE, FACT_METHOD, FACT_DEGREE, FACT_ITERATIONS, FACT_FACTOR_NNZ, FACT_RESIDUAL,
-    FACT_H = 0, FACT_AREA, FACT_ACTIVE, FACT_COMPONENTS, FACT_BOUNDARY_EDGES, FACT_NONMANIFOLD_EDGES, FACT_LEFT_OUT,
-    FACT_NEGATIVE_WEIGHTS, FACT_KIND, N_FACTS
+    FACT_H = 0, FACT_AREA, FACT_ACTIVE, FACT_COMPONENTS, FACT_BOUNDARY_EDGES, FACT_NONMANIFOLD_EDGES,
+    FACT_LEFT_OUT, FACT_NEGATIVE_WEIGHTS, FACT_KIND, N_FACTS
 };
 
 static struct {
@@ -192,8 +212,8 @@ static hd_status page_take(int32_t n, double *xyz, int32_t n_faces, int64_t *fac
 static hd_status page_split(void) {
     mio_error e;
     if (!page.mesh.n_faces) return HD_OK;
-    if (mio_triangulate(&page.mesh, &page.tri, &page.n_tri, NULL, &e) < 0) return page_fail(HD_ERR_MEMORY, e.text);
-    return HD_OK;
+    if (mio_triangulate(&page.mesh, &page.tri, &page.n_tri, NULL, &e) == MIO_OK) return HD_OK;
+    return page_fail(HD_ERR_MEMORY, e.text);
 }
 
 enum { SHAPE_ELEPHANT, SHAPE_BALL, SHAPE_TORUS, SHAPE_QUADS, SHAPE_POINTS };
@@ -211,6 +231,18 @@ static void page_bend_torus(shape *s) {
     }
 }
 
+/* A cushion: the sphere made flatter, with dents. */
+static void page_dent(double *xyz, int32_t n) {
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        double *x = xyz + 3 * (size_t)i;
+        const double r = 1 + 0.16 * sin(5 * x[0]) * sin(5 * x[1]) * sin(5 * x[2] + 1);
+        x[0] *= 1.2 * r;
+        x[1] *= 0.75 * r;
+        x[2] *= r;
+    }
+}
+
 /* A built-in shape of about n vertices, of a size near 1. */
 hd_status PAGE_EXPORT(page_shape)(int32_t which, int32_t n) {
     const double side = sqrt((double)n);
@@ -221,16 +253,10 @@ hd_status PAGE_EXPORT(page_shape)(int32_t which, int32_t n) {
     if (which == SHAPE_QUADS) {
         shape_poly p = shape_quad_sphere((int32_t)(side / sqrt(6.0) + 0.5));
         status = page_take(p.n, p.xyz, p.n_faces, p.face_ptr, p.face_idx);
-        for (n = 0; status == HD_OK && n < p.n; n++) {      /* a cushion: the sphere made flatter, with dents */
-            double *x = p.xyz + 3 * (size_t)n;
-            const double r = 1 + 0.16 * sin(5 * x[0]) * sin(5 * x[1]) * sin(5 * x[2] + 1);
-            x[0] *= 1.2 * r;
-            x[1] *= 0.75 * r;
-            x[2] *= r;
-        }
+        if (status == HD_OK) page_dent(p.xyz, p.n);
     } else {
         shape s = which == SHAPE_BALL ? shape_bumpy(levels, 5)
-                : which == SHAPE_TORUS ? shape_torus((int32_t)(side * 1.6), (int32_t)(side / 1.6), 1.0, 0.42)
+                : which == SHAPE_TORUS ? shape_torus((int32_t)(side * 1.6), (int32_t)(side / 1.6), 1.0, 0.36)
                 : shape_demo(n);
         if (which == SHAPE_TORUS) page_bend_torus(&s);
         if (which == SHAPE_POINTS) s.n_tri = 0;
@@ -253,10 +279,12 @@ hd_status PAGE_EXPORT(page_file)(char *data, size_t size, const char *name) {
     return page_split();
 }
 
-static int page_triangles_only(void) { return page.mesh.face_ptr[page.mesh.n_faces] == 3 * (int64_t)page.mesh.n_faces; }
+static int page_triangles_only(void) {
+    return page.mesh.face_ptr[page.mesh.n_faces] == 3 * (int64_t)page.mesh.n_faces;
+}
 
-/* The Laplacian: linear elements for triangles, that of polygons, tufted for points. mend = 1: triangles by an intrinsic
- * Delaunay triangulation. */
+/* The Laplacian: linear elements for triangles, that of polygons, tufted for points. mend = 1: intrinsic Delaunay
+ * triangulation of the faces, split into triangles. */
 hd_status PAGE_EXPORT(page_begin)(int32_t mend) {
     const mio_mesh *m = &page.mesh;
     hd_laplacian_opts o;
@@ -268,11 +296,13 @@ hd_status PAGE_EXPORT(page_begin)(int32_t mend) {
     memset(&o, 0, sizeof o);
     page.ctx.progress = page_tick;
     o.context = &page.ctx;
-    if (m->n_faces == 0) status = hd_laplacian_tufted_points(&page.lap, m->xyz, m->n, NULL, NULL, &o, &e);
-    else if (mend || page_triangles_only()) {
-        o.intrinsic_delaunay = mend;
+    o.intrinsic_delaunay = mend && m->n_faces;
+    if (m->n_faces == 0)
+        status = hd_laplacian_tufted_points(&page.lap, m->xyz, m->n, NULL, NULL, &o, &e);
+    else if (mend || page_triangles_only())
         status = hd_laplacian_triangles(&page.lap, m->xyz, m->n, page.tri, page.n_tri, &o, &e);
-    } else status = hd_laplacian_polygons(&page.lap, m->xyz, m->n, m->face_ptr, m->face_idx, m->n_faces, &o, &e);
+    else
+        status = hd_laplacian_polygons(&page.lap, m->xyz, m->n, m->face_ptr, m->face_idx, m->n_faces, &o, &e);
     if (status < 0) return page_fail_at(&e);
     r = &page.lap->mesh;
     page.facts[FACT_H] = page.lap->h;
@@ -299,25 +329,26 @@ static hd_heat *page_plan(hd_method method) {
     return page.plan[method];
 }
 
-static hd_status page_end(hd_status status, const hd_report *r) {
-    if (status < 0) return page_fail_at(&r->error);
+static hd_status page_end(const hd_report *r) {
+    if (r->status < 0) return page_fail_at(&r->error);
     page.facts[FACT_ERROR_BOUND] = r->error_bound;
-    page.facts[FACT_EVIDENCE] = r->evidence_rational > r->evidence_solver ? r->evidence_rational : r->evidence_solver;
-    if (r->evidence_rounding > page.facts[FACT_EVIDENCE]) page.facts[FACT_EVIDENCE] = r->evidence_rounding;
+    page.facts[FACT_EVIDENCE] = fmax(r->evidence_rational, fmax(r->evidence_solver, r->evidence_rounding));
     page.facts[FACT_METHOD] = r->method;
     page.facts[FACT_DEGREE] = r->degree;
     page.facts[FACT_ITERATIONS] = (double)r->iterations;
     page.facts[FACT_FACTOR_NNZ] = (double)r->factor_nnz;
     page.facts[FACT_RESIDUAL] = r->residual;
-    return status;
+    return r->status;
 }
 
-/* The column of k_t at a source: out [n n_times]. method: direct for one time, again and again; krylov for many. */
+/* The column of k_t at a source: out [n n_times]. method: direct for many sources at one time, krylov for many
+ * times. */
 hd_status PAGE_EXPORT(page_columns)(int32_t method, int32_t n_times, const double *t, int32_t source) {
     hd_report r;
     hd_heat *plan = page_plan((hd_method)method);
     if (!plan || page_make_room((size_t)page.mesh.n * (size_t)n_times) < 0) return HD_ERR_MEMORY;
-    return page_end(hd_heat_columns(plan, HD_KERNEL_SYMMETRIC, n_times, t, 1, &source, page.out, 0, &r, NULL), &r);
+    hd_heat_columns(plan, HD_KERNEL_SYMMETRIC, n_times, t, 1, &source, page.out, 0, &r, NULL);
+    return page_end(&r);
 }
 
 /* The heat kernel signature k_t(x,x): out [n n_times]. */
@@ -325,14 +356,14 @@ hd_status PAGE_EXPORT(page_signature)(int32_t n_times, const double *t) {
     hd_report r;
     hd_heat *plan = page_plan(HD_METHOD_DIRECT);
     if (!plan || page_make_room((size_t)page.mesh.n * (size_t)n_times) < 0) return HD_ERR_MEMORY;
-    return page_end(hd_heat_diagonal(plan, HD_KERNEL_SYMMETRIC, n_times, t, page.out, 0, &r, NULL), &r);
+    hd_heat_diagonal(plan, HD_KERNEL_SYMMETRIC, n_times, t, page.out, 0, &r, NULL);
+    return page_end(&r);
 }
 
-/* The coordinates, diffused: out [n] x, y, z for each time, ordered x at all times, y at all times, z at all times. */
+/* The coordinates, diffused: out [n] for x at all times, then y at all times, then z. */
 hd_status PAGE_EXPORT(page_smooth)(int32_t n_times, const double *t) {
     const size_t n = (size_t)page.mesh.n;
     hd_report r;
-    hd_status status;
     hd_heat *plan = page_plan(HD_METHOD_KRYLOV);
     double *field = (double *)malloc(3 * n * sizeof *field);
     size_t i;
@@ -341,9 +372,9 @@ hd_status PAGE_EXPORT(page_smooth)(int32_t n_times, const double *t) {
         return page_fail(HD_ERR_MEMORY, "not enough memory to smooth the surface");
     }
     for (i = 0; i < 3 * n; i++) field[i % 3 * n + i / 3] = page.mesh.xyz[i];
-    status = page_end(hd_heat_apply(plan, n_times, t, 3, field, 0, page.out, 0, &r, NULL), &r);
+    hd_heat_apply(plan, n_times, t, 3, field, 0, page.out, 0, &r, NULL);
     free(field);
-    return status;
+    return page_end(&r);
 }
 
 /* Distances along the surface to a source: out [n]. HUGE_VAL where no path leads. */

@@ -1,6 +1,9 @@
 // worker.js - one session of web.c behind messages {id, op, ...}; answers {id, ms, status, text, facts, out, mesh}
 "use strict";
-let wasm, compiled, current = 0, told = 0;
+let wasm,
+  compiled,
+  current = 0,
+  told = 0;
 
 const bytes = () => new Uint8Array(wasm.memory.buffer);
 
@@ -43,9 +46,18 @@ function start() {
 }
 
 function mesh() {
-  const n = wasm.page_n(), nTri = wasm.page_n_tri();
-  const tri = nTri ? new Int32Array(wasm.memory.buffer, wasm.page_tri(), 3 * nTri).slice() : new Int32Array(0);
-  return { n, nFaces: wasm.page_n_faces(), tri, xyz: doubles(wasm.page_xyz(), 3 * n), format: text(wasm.page_format()) };
+  const n = wasm.page_n(),
+    nTri = wasm.page_n_tri();
+  const tri = nTri
+    ? new Int32Array(wasm.memory.buffer, wasm.page_tri(), 3 * nTri).slice()
+    : new Int32Array(0);
+  return {
+    n,
+    nFaces: wasm.page_n_faces(),
+    tri,
+    xyz: doubles(wasm.page_xyz(), 3 * n),
+    format: text(wasm.page_format()),
+  };
 }
 
 function withTimes(t, ask) {
@@ -59,13 +71,17 @@ function withTimes(t, ask) {
 const ops = {
   shape: (m) => [wasm.page_shape(m.which, m.n), 0],
   file(m) {
-    const data = put(new Uint8Array(m.data)), name = put(new TextEncoder().encode(m.name));
+    const data = put(new Uint8Array(m.data)),
+      name = put(new TextEncoder().encode(m.name));
     const status = wasm.page_file(data, m.data.byteLength, name);
     wasm.page_free(name);
     return [status, 0];
   },
   begin: (m) => [wasm.page_begin(m.mend ? 1 : 0), 0],
-  columns: (m) => [withTimes(m.t, (k, t) => wasm.page_columns(m.method, k, t, m.source)), wasm.page_n() * m.t.length],
+  columns: (m) => [
+    withTimes(m.t, (k, t) => wasm.page_columns(m.method, k, t, m.source)),
+    wasm.page_n() * m.t.length,
+  ],
   signature: (m) => [withTimes(m.t, (k, t) => wasm.page_signature(k, t)), wasm.page_n() * m.t.length],
   smooth: (m) => [withTimes(m.t, (k, t) => wasm.page_smooth(k, t)), 3 * wasm.page_n() * m.t.length],
   geodesic: (m) => [wasm.page_geodesic(m.source), wasm.page_n()],
@@ -77,7 +93,9 @@ onmessage = ({ data: m }) => {
     start();
     return;
   }
-  const begin = performance.now(), answer = { id: m.id, status: 0, text: "" }, give = [];
+  const begin = performance.now(),
+    answer = { id: m.id, status: 0, text: "" },
+    give = [];
   current = m.id;
   told = begin;
   try {
@@ -92,7 +110,8 @@ onmessage = ({ data: m }) => {
       answer.facts = doubles(wasm.page_facts(), 9);
       if (count) give.push((answer.out = doubles(wasm.page_out(), count)).buffer);
     }
-  } catch (e) {     // a trap: only memory can do that; the module begins anew
+  } catch (e) {
+    // a trap: only memory can do that; the module begins anew
     answer.status = -2;
     answer.text = "out of memory: this surface is too large for the browser";
     start();
