@@ -261,18 +261,31 @@ static int mio_read_all(mio_in *in, FILE *f)
     return MIO_OK;
 }
 
-static int mio_open(mio_in *in, const char *path, int (*stop)(void), mio_error *e)
+static void mio_begin(mio_in *in, const char *path, int (*stop)(void), mio_error *e)
 {
-    static const unsigned char bom[3] = {0xef, 0xbb, 0xbf};
-    const int standard = strcmp(path, "-") == 0;
-    FILE *f = stdin;
-    int status;
     memset(in, 0, sizeof *in);
     in->path = path;
-    in->name = standard ? "<stdin>" : path;
+    in->name = strcmp(path, "-") == 0 ? "<stdin>" : path;
     in->stop = stop;
     in->e = e;
     in->line = 1;
+}
+
+/* The content is there: reading starts at its first byte. */
+static void mio_rewind(mio_in *in)
+{
+    static const unsigned char bom[3] = {0xef, 0xbb, 0xbf};
+    in->p = in->data;
+    in->end = in->data + in->size;
+    if (in->size >= 3 && memcmp(in->data, bom, 3) == 0) in->p += 3;        /* a mark that some editors leave */
+}
+
+static int mio_open(mio_in *in, const char *path, int (*stop)(void), mio_error *e)
+{
+    const int standard = strcmp(path, "-") == 0;
+    FILE *f = stdin;
+    int status;
+    mio_begin(in, path, stop, e);
     if (!standard) f = fopen(path, "rb");
 #if defined(_WIN32)
     if (standard) (void)_setmode(_fileno(stdin), _O_BINARY);
@@ -281,9 +294,7 @@ static int mio_open(mio_in *in, const char *path, int (*stop)(void), mio_error *
     status = mio_read_all(in, f);
     if (!standard) fclose(f);
     if (status != MIO_OK) { mio_close(in); return status; }
-    in->p = in->data;
-    in->end = in->data + in->size;
-    if (in->size >= 3 && memcmp(in->data, bom, 3) == 0) in->p += 3;        /* a mark that some editors leave */
+    mio_rewind(in);
     return MIO_OK;
 }
 
@@ -1552,30 +1563,36 @@ static int mio_unknown(const mio_in *in)
     return mio_fail(in, 0, "neither the content nor the name tells a format this reads (OBJ, OFF, PLY, STL, XYZ)");
 }
 
+/* The mesh of an opened file, which is closed. */
+static int mio_parse(mio_in *in, mio_mesh *m)
+{
+    mio_build b;
+    int status = MIO_OK;
+    memset(&b, 0, sizeof b);
+    if (!mio_looks_stl_binary(in)) status = mio_refuse(in);           /* whose header can be anything */
+    if (status == MIO_OK) switch (mio_which(in)) {
+    case MIO_IN_OBJ:        status = mio_load_obj(in, &b, m); break;
+    case MIO_IN_OFF:        status = mio_load_off(in, &b, m); break;
+    case MIO_IN_PLY:        status = mio_load_ply(in, &b, m); break;
+    case MIO_IN_STL_ASCII:  status = mio_load_stl(in, &b, m, 1); break;
+    case MIO_IN_STL_BINARY: status = mio_load_stl(in, &b, m, 0); break;
+    case MIO_IN_XYZ:        status = mio_load_xyz(in, &b, m); break;
+    case MIO_IN_NUMBERS:    status = mio_load_numbers(in, &b, m); break;
+    default:                status = mio_unknown(in); break;
+    }
+    mio_build_free(&b);
+    mio_close(in);
+    if (status != MIO_OK) mio_free(m);
+    return status;
+}
+
 static int mio_load(mio_mesh *m, const char *path, int (*stop)(void), mio_error *e)
 {
     mio_in in;
-    mio_build b;
     int status;
     memset(m, 0, sizeof *m);
-    memset(&b, 0, sizeof b);
     status = mio_open(&in, path, stop, e);
-    if (status != MIO_OK) return status;
-    if (!mio_looks_stl_binary(&in)) status = mio_refuse(&in);         /* whose header can be anything */
-    if (status == MIO_OK) switch (mio_which(&in)) {
-    case MIO_IN_OBJ:        status = mio_load_obj(&in, &b, m); break;
-    case MIO_IN_OFF:        status = mio_load_off(&in, &b, m); break;
-    case MIO_IN_PLY:        status = mio_load_ply(&in, &b, m); break;
-    case MIO_IN_STL_ASCII:  status = mio_load_stl(&in, &b, m, 1); break;
-    case MIO_IN_STL_BINARY: status = mio_load_stl(&in, &b, m, 0); break;
-    case MIO_IN_XYZ:        status = mio_load_xyz(&in, &b, m); break;
-    case MIO_IN_NUMBERS:    status = mio_load_numbers(&in, &b, m); break;
-    default:                status = mio_unknown(&in); break;
-    }
-    mio_build_free(&b);
-    mio_close(&in);
-    if (status != MIO_OK) mio_free(m);
-    return status;
+    return status == MIO_OK ? mio_parse(&in, m) : status;
 }
 
 static int mio_triangulate(const mio_mesh *m, int32_t **tri, int32_t *n_tri, int32_t **face_of_tri, mio_error *e)

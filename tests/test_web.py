@@ -1,0 +1,559 @@
+#!/usr/bin/env python3
+"""Tests of examples/web: test_web.py [--keep FOLDER] [--large] [unittest options].
+
+Builds the page, compares the WASM module in node with the same C code built natively, and uses the page in headless
+Chromium: picks shapes, clicks, moves the slider, drops files. Needs nothing but Python 3. Parts whose programs are
+missing (clang with wasi-libc, node, chromium, a native compiler) are skipped. --keep FOLDER leaves the page and the
+screenshots there; --large measures a mesh of 36K vertices.
+"""
+import base64
+import ctypes
+import json
+import math
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+WEB = os.path.join(TOP, "examples", "web")
+sys.path.insert(0, WEB)
+import build  # noqa: E402
+
+FOLDER, LARGE, BUILT = None, False, {}
+DIRECT, KRYLOV = 2, 3
+PAGE_LIMIT, MODULE_LIMIT = 1500000, 345000
+
+
+def program(*names):
+    return next((shutil.which(n) for n in names if shutil.which(n)), None)
+
+
+CHROMIUM = program("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+def built():
+    """The page, made once; None where the compiler cannot make it."""
+    if "page" not in BUILT:
+        clang = os.environ.get("CLANG", "clang")
+        probe = os.path.join(FOLDER, "probe.c")
+        with open(probe, "w") as f:
+            f.write("#include <math.h>\n#include <stdlib.h>\ndouble f(double x) { return sin(x); }\n")
+        command = [clang] + build.LINK + ["-Wl,--export=f", probe, "-o", probe + ".wasm"]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        there = shutil.which(clang) and subprocess.run(command, **quiet).returncode == 0
+        BUILT["wasm"] = build.module(FOLDER) if there else None
+        BUILT["page"] = build.page(FOLDER, BUILT["wasm"]) if there else None
+    return BUILT["page"]
+
+
+def needs(*what):
+    if not built():
+        raise unittest.SkipTest("no clang for wasm32-wasi")
+    for name, there in what:
+        if not there:
+            raise unittest.SkipTest("no " + name)
+
+
+# ---- meshes ----
+
+def ring(n, m):
+    """A torus of n by m vertices with waves, as OBJ text."""
+    lines = []
+    for i in range(n):
+        for j in range(m):
+            a, b = 2 * math.pi * i / n, 2 * math.pi * j / m
+            r = 3 + (1 + 0.2 * math.sin(3 * a)) * math.cos(b)
+            z = (1 + 0.2 * math.cos(5 * a)) * math.sin(b)
+            lines.append("v %.12g %.12g %.12g" % (r * math.cos(a), r * math.sin(a), z))
+    for i in range(n):
+        for j in range(m):
+            p, q = i * m + j + 1, (i + 1) % n * m + j + 1
+            r, s = i * m + (j + 1) % m + 1, (i + 1) % n * m + (j + 1) % m + 1
+            lines += ["f %d %d %d" % (p, q, s), "f %d %d %d" % (p, s, r)]
+    return "\n".join(lines) + "\n"
+
+
+# ---- the same questions to the module and to native code ----
+
+STEPS = [["shape", 0, 3000], ["shape", 1, 2500], ["shape", 2, 2000], ["shape", 3, 2000], ["shape", 4, 2000],
+         ["file", "ring.obj", ring(40, 20)]]
+QUERIES = [["columns", DIRECT, [30.0], 7], ["columns", DIRECT, [30.0], 500],
+           ["columns", KRYLOV, [2.0, 4.0, 8.0, 16.0], 33],
+           ["signature", [20.0, 40.0, 80.0]], ["smooth", [1.0, 3.0]], ["geodesic", 11]]
+
+NODE = r"""
+const fs = require("fs"), vm = require("vm");
+// The page's own worker, with its module put in by hand: what is tested is what runs.
+const worker = { performance, TextDecoder, TextEncoder, WebAssembly, postMessage() {},
+  module: new WebAssembly.Module(fs.readFileSync(process.argv[2])) };
+const start = "\nonmessage({ data: { op: 'start', module } }); this.exported = wasm;";
+vm.runInNewContext(fs.readFileSync(process.argv[5], "utf8") + start, worker);
+const wasm = worker.exported, steps = JSON.parse(fs.readFileSync(process.argv[3])), out = process.argv[4];
+const bytes = () => new Uint8Array(wasm.memory.buffer);
+const put = (b) => { const p = wasm.page_alloc(b.length + 1); bytes().set(b, p); bytes()[p + b.length] = 0; return p; };
+const text = () => { const p = wasm.page_text(), u = bytes(); return Buffer.from(u.slice(p, u.indexOf(0, p))).toString(); };
+// Milliseconds of this thread alone where the system tells them: other programs are running too.
+const clock = () => {
+  try {
+    return Number(fs.readFileSync(`/proc/self/task/${process.pid}/schedstat`, "utf8").split(" ")[0]) / 1e6;
+  } catch (e) {
+    return performance.now();
+  }
+};
+const rows = [];
+for (const step of steps) {
+  const [op, ...a] = step, n = wasm.page_n(), begin = clock();
+  let status, count = 0, p = 0;
+  const times = (list) => (p = put(new Uint8Array(Float64Array.from(list).buffer)));
+  if (op === "shape") status = wasm.page_shape(a[0], a[1]);
+  if (op === "file") { const d = Buffer.from(a[1]), q = put(Buffer.from(a[0])); status = wasm.page_file(put(d), d.length, q); }
+  if (op === "begin") { status = wasm.page_begin(a[0]); count = -9; }
+  if (op === "columns") { status = wasm.page_columns(a[0], a[1].length, times(a[1]), a[2]); count = n * a[1].length; }
+  if (op === "signature") { status = wasm.page_signature(a[0].length, times(a[0])); count = n * a[0].length; }
+  if (op === "smooth") { status = wasm.page_smooth(a[0].length, times(a[0])); count = 3 * n * a[0].length; }
+  if (op === "geodesic") { status = wasm.page_geodesic(a[0]); count = n; }
+  const ms = clock() - begin, from = count < 0 ? wasm.page_facts() : wasm.page_out();
+  if (p) wasm.page_free(p);
+  const values = status < 0 ? [] : new Float64Array(wasm.memory.buffer, from, Math.abs(count));
+  fs.writeFileSync(`${out}.${rows.length}`, Buffer.from(Float64Array.from(values).buffer));
+  rows.push({ status, ms, n: wasm.page_n(), text: status < 0 ? text() : "", bytes: wasm.memory.buffer.byteLength });
+}
+console.log(JSON.stringify(rows));
+"""
+
+
+def in_node(steps):
+    """What the module answers: for each step its facts and its doubles."""
+    script, ask, out = (os.path.join(FOLDER, n) for n in ("node.js", "steps.json", "answer"))
+    with open(script, "w") as f:
+        f.write(NODE)
+    with open(ask, "w") as f:
+        json.dump(steps, f)
+    command = [program("node", "nodejs"), script, BUILT["wasm"], ask, out, os.path.join(WEB, "worker.js")]
+    run = subprocess.run(command, stdout=subprocess.PIPE, check=True)
+    rows = json.loads(run.stdout)
+    for i, row in enumerate(rows):
+        with open("%s.%d" % (out, i), "rb") as f:
+            data = f.read()
+        row["values"] = struct.unpack("<%dd" % (len(data) // 8), data)
+        os.remove("%s.%d" % (out, i))
+    return rows
+
+
+def native_library():
+    if "native" not in BUILT:
+        cc = program(os.environ.get("CC", "cc"), "gcc", "clang")
+        lib = os.path.join(FOLDER, "web.so")
+        BUILT["native"] = None
+        if cc:
+            subprocess.run([cc, "-std=gnu99", "-O2", "-ffp-contract=off", "-DNDEBUG", "-DHEATDIFF_NO_SIMD", "-fPIC",
+                            "-shared", "-Wno-unused-function", os.path.join(WEB, "web.c"), "-o", lib, "-lm"], check=True)
+            BUILT["native"] = lib
+    return BUILT["native"]
+
+
+def natively(steps):
+    lib = ctypes.CDLL(native_library())
+    lib.page_alloc.restype = ctypes.c_void_p
+    lib.page_out.restype = lib.page_facts.restype = ctypes.POINTER(ctypes.c_double)
+    lib.page_text.restype = ctypes.c_char_p
+    lib.page_file.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_char_p]
+    lib.page_alloc.argtypes = [ctypes.c_size_t]
+    rows = []
+    for op, *a in steps:
+        n, count, begin = lib.page_n(), 0, time.thread_time()
+        times = (lambda t: (len(t), (ctypes.c_double * len(t))(*t)))
+        if op == "shape":
+            status = lib.page_shape(*a)
+        elif op == "file":
+            data = a[1].encode()
+            block = lib.page_alloc(len(data) + 1)
+            ctypes.memmove(block, data, len(data))
+            status = lib.page_file(block, len(data), a[0].encode())
+        elif op == "begin":
+            status, count = lib.page_begin(a[0]), -9
+        elif op == "columns":
+            status, count = lib.page_columns(a[0], *times(a[1]), a[2]), n * len(a[1])
+        elif op == "signature":
+            status, count = lib.page_signature(*times(a[0])), n * len(a[0])
+        elif op == "smooth":
+            status, count = lib.page_smooth(*times(a[0])), 3 * n * len(a[0])
+        else:
+            status, count = lib.page_geodesic(a[0]), n
+        ms = 1000 * (time.thread_time() - begin)
+        source = lib.page_facts() if count < 0 else lib.page_out()
+        said = lib.page_text().decode() if status < 0 else ""
+        rows.append({"status": status, "ms": ms, "n": lib.page_n(), "text": said,
+                     "values": tuple(source[:abs(count)]) if status >= 0 and count else ()})
+    return rows
+
+
+def with_times(steps, h):
+    """The steps with times in units of h^2."""
+    return [[[x * h * h for x in v] if isinstance(v, list) else v for v in s] for s in steps]
+
+
+class Module(unittest.TestCase):
+    def test_sizes(self):
+        needs()
+        wasm, page = os.path.getsize(BUILT["wasm"]), os.path.getsize(BUILT["page"])
+        print("module %.0f KB, page %.0f KB" % (wasm / 1000, page / 1000), file=sys.stderr)
+        self.assertLess(wasm, MODULE_LIMIT)
+        self.assertLess(page, PAGE_LIMIT)
+        with open(BUILT["page"], encoding="utf-8") as f:
+            self.assertNotIn("http", f.read().replace("http://www.w3.org", ""), "the page needs no network")
+
+    def test_same_numbers_as_native(self):
+        needs(("node", program("node", "nodejs")), ("native compiler", native_library()))
+        for surface in STEPS:
+            h = natively([surface, ["begin", 0]])[1]["values"][0]
+            steps = [surface, ["begin", 0]] + with_times(QUERIES, h)
+            if surface[:2] == ["shape", 2]:
+                steps += [["begin", 1]] + with_times(QUERIES[:1], h)
+            there, here = in_node(steps), natively(steps)
+            for step, a, b in zip(steps, there, here):
+                with self.subTest(surface=surface[:2], step=step[0]):
+                    self.assertEqual((a["status"], a["n"], a["text"]), (b["status"], b["n"], b["text"]))
+                    self.assertEqual(len(a["values"]), len(b["values"]))
+                    if step[0] == "begin":
+                        a["values"], b["values"] = a["values"][:2], b["values"][:2]
+                    most = max([abs(x) for x in b["values"] if math.isfinite(x)] or [1])
+                    for x, y in zip(a["values"], b["values"]):
+                        self.assertTrue(x == y or abs(x - y) <= 1e-12 * most, (x, y, most))
+
+    def test_bad_files(self):
+        needs(("node", program("node", "nodejs")))
+        files = {"a.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "a.txt": "hello",
+                 "a.ply": "ply\nformat ascii 1.0\nelement vertex 2\nend_header\n", "a.off": "OFF\n3 1\n",
+                 "a.stl": "", "flat.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}
+        for name, content in files.items():
+            rows = in_node([["file", name, content], ["begin", 0], ["shape", 1, 700], ["begin", 0]])
+            said = rows[0]["text"] or rows[1]["text"]
+            print("%s: %s" % (name, said), file=sys.stderr)
+            self.assertTrue(said)
+            self.assertEqual(rows[3]["status"], 0, "a good surface works after a bad file")
+        self.assertIn("a.obj:4: ", in_node([["file", "a.obj", files["a.obj"]]])[0]["text"])
+
+    def test_measure(self):
+        if not LARGE:
+            raise unittest.SkipTest("--large")
+        needs(("node", program("node", "nodejs")), ("native compiler", native_library()))
+        surface = ["shape", 0, 36000]
+        h = natively([surface, ["begin", 0]])[1]["values"][0]
+        decade = [10 * 2 ** (k / 3) for k in range(10)]
+        steps = [surface, ["begin", 0]] + with_times([
+            ["columns", DIRECT, [100.0], 7], ["columns", DIRECT, [200.0], 7], ["columns", DIRECT, [200.0], 700],
+            ["columns", DIRECT, [200.0], 1700], ["columns", KRYLOV, decade, 7], ["columns", KRYLOV, decade, 99],
+            ["smooth", decade], ["geodesic", 5], ["geodesic", 6],
+            ["signature", [100.0]], ["signature", decade]], h)
+        names = ["make the shape", "Laplacian", "column: order, analyse, factorise, solve", "column at a new time",
+                 "further column", "further column", "columns of a decade, first", "columns of a decade",
+                 "smoothing over a decade", "geodesic, first", "geodesic", "signature", "signatures of a decade"]
+        there, here = in_node(steps), natively(steps)
+        for name, a, b in zip(names, there, here):
+            print("%-42s wasm %7.1f ms, native %7.1f ms, ratio %.2f"
+                  % (name, a["ms"], b["ms"], a["ms"] / b["ms"]), file=sys.stderr)
+        print("%d vertices, %.0f MB" % (there[0]["n"], there[-1]["bytes"] / 2 ** 20), file=sys.stderr)
+
+
+# ---- the page in a browser ----
+
+class Browser:
+    """Chromium by its debugging pipe: messages of JSON that end on a zero byte."""
+
+    def __init__(self, page, width, height, phone=False):
+        self.profile = tempfile.mkdtemp(dir=FOLDER)
+        (from_us, self.to), (self.back, from_it) = os.pipe(), os.pipe()
+
+        def wire():
+            a, b = os.dup(from_us), os.dup(from_it)
+            os.dup2(a, 3)
+            os.dup2(b, 4)
+
+        self.process = subprocess.Popen(
+            [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
+             "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--use-gl=angle",
+             "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
+             "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe", "--user-data-dir=" + self.profile,
+             "about:blank"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, close_fds=False, preexec_fn=wire)
+        os.close(from_us)
+        os.close(from_it)
+        self.buffer, self.count, self.errors, self.session = b"", 0, [], None
+        target = next(t for t in self.ask("Target.getTargets")["targetInfos"] if t["type"] == "page")
+        self.session = self.ask("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log"):
+            self.ask(domain + ".enable")
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if phone else 1,
+                 mobile=phone)
+        if phone:
+            self.ask("Emulation.setTouchEmulationEnabled", enabled=True)
+        self.ask("Page.navigate", url="file://" + page)
+
+    def read(self):
+        while b"\0" not in self.buffer:
+            more = os.read(self.back, 1 << 20)
+            if not more:
+                raise RuntimeError("chromium ended")
+            self.buffer += more
+        one, self.buffer = self.buffer.split(b"\0", 1)
+        m = json.loads(one)
+        if m.get("method") == "Runtime.exceptionThrown":
+            d = m["params"]["exceptionDetails"]
+            self.errors.append(d.get("exception", {}).get("description", d["text"]))
+        if m.get("method") == "Log.entryAdded" and m["params"]["entry"]["level"] == "error":
+            self.errors.append(m["params"]["entry"]["text"])
+        return m
+
+    def ask(self, method, **params):
+        self.count += 1
+        m = {"id": self.count, "method": method, "params": params}
+        if self.session:
+            m["sessionId"] = self.session
+        os.write(self.to, json.dumps(m).encode() + b"\0")
+        while True:
+            got = self.read()
+            if got.get("id") == self.count:
+                if "error" in got:
+                    raise RuntimeError("%s: %s" % (method, got["error"]["message"]))
+                return got["result"]
+
+    def js(self, code):
+        r = self.ask("Runtime.evaluate", expression=code, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in r:
+            raise RuntimeError(r["exceptionDetails"].get("exception", {}).get("description", code))
+        return r["result"].get("value")
+
+    def until(self, code, seconds=60):
+        end = time.time() + seconds
+        while time.time() < end:
+            if self.js("Boolean(%s)" % code):
+                return
+            time.sleep(0.05)
+        says = self.js("document.body.innerText")
+        raise AssertionError("not within %d s: %s; the page says: %s" % (seconds, code, says))
+
+    def mouse(self, kind, x, y, buttons=0):
+        button = "left" if kind != "mouseMoved" or buttons else "none"
+        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=buttons, clickCount=1)
+
+    def click(self, x, y):
+        self.mouse("mousePressed", x, y, 1)
+        self.mouse("mouseReleased", x, y)
+
+    def drop(self, name, data):
+        """What the page sees when a file is dropped on it."""
+        self.js("""(() => { const d = new DataTransfer(), data = Uint8Array.from(atob(%s), (c) => c.charCodeAt(0));
+                d.items.add(new File([data], %s));
+                for (const t of ["dragenter", "dragover", "drop"]) document.body.dispatchEvent(
+                    new DragEvent(t, { dataTransfer: d, bubbles: true, cancelable: true })); })()"""
+                % (json.dumps(base64.b64encode(data).decode()), json.dumps(name)))
+
+    def text(self, element):
+        return self.js("document.getElementById(%s).textContent" % json.dumps(element))
+
+    def shot(self, name):
+        self.js("new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))")
+        path = os.path.join(FOLDER, name + ".png")
+        with open(path, "wb") as f:
+            f.write(base64.b64decode(self.ask("Page.captureScreenshot", format="png")["data"]))
+        return path
+
+    def close(self):
+        try:
+            self.session = None
+            self.ask("Browser.close")
+        except (RuntimeError, OSError):
+            pass
+        try:
+            self.process.wait(10)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        os.close(self.to)
+        os.close(self.back)
+        shutil.rmtree(self.profile, ignore_errors=True)
+
+
+SHOWN = "heatdiff.shown && heatdiff.shown.mode === heatdiff.mode && document.body.dataset.idle"
+IDLE = SHOWN + " && document.body.dataset.idle === 'yes'"
+
+
+class Page(unittest.TestCase):
+    def open(self, width=1280, height=800, phone=False):
+        needs(("chromium", CHROMIUM))
+        self.browser = Browser(BUILT["page"], width, height, phone)
+        self.addCleanup(self.browser.close)
+        self.browser.until("window.heatdiff && heatdiff.times.length && " + SHOWN)
+        return self.browser
+
+    def mode(self, name):
+        self.browser.js("document.querySelector('[value=%s]').click()" % name)
+        self.browser.until(SHOWN)
+
+    def slide(self, at):
+        self.browser.js("document.getElementById('time').value = %d; setTime(%d)" % (at, at))
+        self.browser.until(SHOWN)
+
+    def choose(self, shape):
+        self.browser.js("(() => { const s = document.getElementById('shape'); s.value = '%s';"
+                        "s.dispatchEvent(new Event('change')); })()" % shape)
+
+    def test_laptop(self):
+        b = self.open()
+        b.until(IDLE, 120)
+        self.assertEqual(b.text("fact-ready"), "%d of %d times" % (b.js("heatdiff.shownCount"), b.js("heatdiff.shownCount")))
+        b.shot("laptop-kernel")
+        # a click moves the source to a vertex at that place of the picture
+        x, y = b.js("view.where(view.pick(480, 380))")
+        was = b.js("heatdiff.source")
+        b.click(x, y)
+        b.until("heatdiff.source !== %d && %s" % (was, SHOWN))
+        u, v = b.js("view.where(heatdiff.source)")
+        self.assertLess(math.hypot(u - x, v - y), 12)
+        b.until(IDLE, 120)
+        b.shot("laptop-clicked")
+        # every step of the slider is answered at once
+        slow = 0
+        for at in range(0, b.js("heatdiff.shownCount"), 3):
+            slow = max(slow, b.js(
+                "(() => { const s = document.getElementById('time'), begin = performance.now(); s.value = %d;"
+                "s.dispatchEvent(new Event('input'));"
+                "return heatdiff.shown && heatdiff.shown.at === %d ? performance.now() - begin : 1e9; })()" % (at, at)))
+        print("slowest step of the slider: %.1f ms" % slow, file=sys.stderr)
+        self.assertLess(slow, 1000)
+        # further clicks at one time, by the factors that are there
+        self.slide(20)
+        b.until(IDLE, 120)
+        b.until("heatdiff.factored === heatdiff.at", 30)
+        took = b.js("(async () => { const all = []; for (let k = 0; k < 5; k++) { setSource(100 + 777 * k);"
+                    "while (!heatdiff.shown) await new Promise((r) => setTimeout(r, 1)); all.push(heatdiff.took); }"
+                    "return all; })()")
+        print("clicks, to the picture's data: %s ms" % ", ".join("%.1f" % t for t in took), file=sys.stderr)
+        # drag turns and does not click
+        source, yaw = b.js("heatdiff.source"), b.js("view.yaw")
+        b.mouse("mousePressed", 400, 400, 1)
+        for k in range(1, 6):
+            b.mouse("mouseMoved", 400 + 20 * k, 400, 1)
+        b.mouse("mouseReleased", 500, 400)
+        self.assertEqual(b.js("heatdiff.source"), source)
+        self.assertGreater(b.js("view.yaw"), yaw + 0.3)
+        for name in ("geodesic", "smooth", "signature", "distance"):
+            self.mode(name)
+            b.until(IDLE, 240)
+            b.shot("laptop-" + name)
+        self.assertIn("(", b.text("fact-bound"))
+        b.js("document.getElementById('edges').click()")
+        b.mouse("mouseMoved", 480, 380)
+        b.until("!document.getElementById('hover').hidden")
+        b.shot("laptop-edges")
+        self.assertEqual(b.errors, [])
+
+    def test_numbers(self):
+        """What the page holds is what native code answers."""
+        b = self.open()
+        needs(("native compiler", native_library()))
+        text = ring(60, 30)
+        b.drop("ring.obj", text.encode())
+        b.until("heatdiff.name === 'ring.obj' && heatdiff.mesh.n === 1800 && " + IDLE)
+        b.js("setSource(17)")
+        self.mode("signature")
+        b.until(IDLE)
+        self.mode("distance")
+        b.until(IDLE)
+        at = b.js("heatdiff.at")
+        t = b.js("heatdiff.times[%d]" % at)
+        chunk = at // 10
+        times = b.js("chunkTimes(%d)" % chunk)
+        far = b.js("chunkTimes(%d)" % ((at + 3) // 10))
+        native = natively([["file", "ring.obj", text], ["begin", 0], ["columns", KRYLOV, times, 17],
+                           ["columns", KRYLOV, far, 17], ["signature", far], ["geodesic", 17]])
+        n, k, j = 1800, at - 10 * chunk, at + 3 - 10 * ((at + 3) // 10)
+        self.assertAlmostEqual(times[k] / t, 1, 14)
+        diagonal, column = native[4]["values"][n * j:n * j + n], native[3]["values"][n * j:n * j + n]
+        want = [math.sqrt(max(0, diagonal[17] - 2 * column[i] + diagonal[i])) if i != 17 else 0 for i in range(n)]
+        got = b.js("Array.from(heatdiff.shown.values)")
+        self.assertLess(max(abs(x - y) for x, y in zip(got, want)), 1e-9 * max(want))
+        self.mode("kernel")
+        b.until(IDLE)
+        column = native[2]["values"][n * k:n * k + n]
+        got = b.js("Array.from(heatdiff.shown.values)")
+        self.assertLess(max(abs(x - y) for x, y in zip(got, column)), 1e-12 * max(column))
+        self.mode("geodesic")
+        b.until(IDLE)
+        got = b.js("Array.from(heatdiff.shown.values)")
+        self.assertLess(max(abs(x - y) for x, y in zip(got, native[5]["values"])), 1e-12 * max(native[5]["values"]))
+        # what is saved can be read again, with the values
+        head, count = b.js("ply().arrayBuffer().then((a) => [new TextDecoder().decode(a.slice(0, 600)), a.byteLength])")
+        head = head[:head.index("end_header\n") + 11]
+        self.assertIn("element vertex 1800", head)
+        self.assertEqual(count, len(head) + 35 * 1800 + 13 * 3600)
+        self.assertGreater(b.js("picture().toDataURL().length"), 20000)
+        b.shot("laptop-file")
+        self.assertEqual(b.errors, [])
+
+    def test_bad_file(self):
+        b = self.open()
+        n = b.js("heatdiff.mesh.n")
+        b.drop("broken.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n")
+        b.until("!document.getElementById('alert').hidden")
+        said = b.text("alert-title") + ": " + b.text("alert-text")
+        print("a bad file: " + said, file=sys.stderr)
+        self.assertIn("broken.obj:4", said)
+        b.until("heatdiff.times.length && " + SHOWN)
+        b.shot("laptop-bad-file")
+        self.assertEqual(b.js("heatdiff.mesh.n"), n)
+        self.assertFalse(b.js("document.getElementById('alert').hidden"), "the message stays until it is read")
+        self.assertEqual(b.js("document.getElementById('shape').value"), "0:12000")
+        b.drop("noise.ply", bytes(range(256)) * 40)
+        b.until("document.getElementById('alert-text').textContent.includes('noise.ply')")
+        b.until("heatdiff.times.length && " + SHOWN)
+        self.assertEqual(b.errors, [])
+
+    def test_phone(self):
+        b = self.open(390, 844, True)
+        b.until(IDLE, 120)
+        b.shot("phone-kernel")
+        self.assertLessEqual(b.js("document.documentElement.scrollWidth"), 390)
+        b.js("scrollTo(0, 400)")
+        b.shot("phone-scrolled")
+        b.js("scrollTo(0, 0)")
+        self.choose("4:12000")
+        b.until("heatdiff.mesh && heatdiff.mesh.tri.length === 0 && " + IDLE, 120)
+        self.assertTrue(b.js("document.querySelector('[value=geodesic]').disabled"))
+        b.shot("phone-points")
+        self.assertEqual(b.errors, [])
+
+    def test_shapes(self):
+        b = self.open()
+        for value in b.js("[...document.querySelectorAll('#shape option')].map((o) => o.value)"):
+            if value in ("file", "0:36000"):
+                continue
+            self.choose(value)
+            b.until("heatdiff.times.length && " + SHOWN)
+            self.mode("kernel")
+            b.until(IDLE, 120)
+            b.shot("shape-" + value.replace(":", "-"))
+        self.assertEqual(b.errors, [])
+
+
+if __name__ == "__main__":
+    arguments = sys.argv
+    if "--large" in arguments:
+        LARGE = True
+        arguments.remove("--large")
+    keep = None
+    if "--keep" in arguments:
+        k = arguments.index("--keep")
+        keep = arguments[k + 1]
+        del arguments[k:k + 2]
+        os.makedirs(keep, exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        FOLDER = os.path.abspath(keep or scratch)
+        unittest.main(argv=arguments)
