@@ -51,7 +51,7 @@
      [D] functions   by task: matrices, operators, neighbours, pole sets, solvers, heat, geodesic distance
 
      Implementation, from the bottom up: a room calls only rooms above it in the file
-     [00] platform   compilers, the C library, OpenMP, configuration macros
+     [00] platform   compilers, the C library, threads of the system, configuration macros
      [01] scalar     minima and maxima, checked sizes, complex arithmetic
      [02] error      filling hd_error
      [03] memory     counted allocation and scopes that free work arrays
@@ -88,7 +88,9 @@
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
-     HEATDIFF_NO_OPENMP        no OpenMP, even if the compiler has it on
+     HEATDIFF_NO_THREADS       no threads of the library's own. They need POSIX threads or Windows, and
+                               atomic operations of GCC, Clang or MSVC; anything else is serial by itself,
+                               as is WebAssembly without threads
      HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. It is needed
                                only where that is neither heatdiff.h nor what the compiler says
                                (__FILE_NAME__)
@@ -112,6 +114,17 @@
      One exception: plans read their Laplacian and never write to it. So several plans in several threads may
      share one Laplacian if every plan has a context of its own (hd_heat_opts.context). Without one, a plan
      uses the Laplacian's context. If you set allocators, they must allow calls from several threads.
+
+     The library's own threads belong to a context. They start when the first long work needs them (20 to 50
+     microseconds each), sleep between calls, and end with the last object made with the context. Functions
+     that make no object end them before they return. So nothing is left running when all objects are freed.
+     Threads claim small tasks. The calling thread works too, and never waits for a thread that has not begun.
+     Results are the same to the last bit for any number of threads.
+     Nested use: if your own threads each have a plan with a context, set hd_context.n_threads = 1 there, or
+     share the processors out. Every other number is correct too, only slower.
+     fork: the child process may use and free the objects of its parent. The parent's threads do not exist in
+     it; new ones start when work needs them. Do not fork while another thread is inside the library.
+     Systems with a C library older than glibc 2.34 need -lpthread; without it programs link and are serial.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -190,7 +203,7 @@ typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x
 
 /* Memory functions. alloc returns NULL if there is no memory; its blocks must be aligned to 8 bytes. free
  * receives the size that the block was allocated with. Blocks are never resized, so there is no realloc. The
- * library calls both functions from the calling thread only. */
+ * library calls both functions from the calling thread only. Threads do not take their memory from them. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
@@ -210,9 +223,12 @@ typedef enum hd_simd {
     HD_SIMD_AVX512              /* AVX-512, if the processor has it */
 } hd_simd;
 
+typedef struct hd_threads hd_threads;            /* started and ended by the library */
+
 /* Memory, progress and threads of a computation. All zeros are good defaults: malloc, no limits, no progress,
- * and OpenMP's threads if compiled with OpenMP. The context belongs to the caller and must outlive every
- * object made with it. Wherever a function takes a context, NULL means one with these defaults. */
+ * as many threads as there are processors. The context belongs to the caller and must outlive every object
+ * made with it; do not copy it in the meantime. Wherever a function takes a context, NULL means one with these
+ * defaults. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
     uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit */
@@ -234,16 +250,27 @@ typedef struct hd_context {
     void *progress_user;
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all tasks are
-     * done. The calling thread is worker 0; other threads have numbers of their own. NULL: OpenMP if compiled
-     * with it, else serial. Results depend neither on this function nor on the number of threads. */
+     * done. The calling thread is worker 0; other threads have numbers of their own. NULL: the library's own
+     * threads. Results depend neither on this function nor on the number of threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    int32_t threads;            /* of OpenMP: 0 for all, 1 for serial; ignored if parallel_for is set */
+    /* Threads that work at the same time, the calling one included. 0: as many as the process may use
+     * processors; 1: serial. Ignored if parallel_for is set. */
+    int32_t n_threads;
     hd_simd simd;
 
     /* Filled by the library. */
     uint64_t bytes_in_use, bytes_peak, allocations;
+    uint64_t regions;           /* parallel loops that other threads were asked to share */
+    uint64_t helped;            /* tasks that other threads did */
+    uint64_t waits;             /* times that the calling thread slept until others were done */
+    hd_threads *threads;        /* running, NULL: none; not counted in bytes_in_use */
+    int32_t n_holders;          /* objects made with this context: its threads end with the last one */
 } hd_context;
+
+/* How many threads work for this context: n_threads, or by default the processors that the process may use.
+ * 1 if the library has no threads here. NULL: of a context of defaults. */
+HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
 /* A sparse matrix by compressed rows. In every row the columns ascend and occur once. val may be NULL in a
  * pattern. Matrices made by the library are freed with hd_csr_free. Your own arrays stay yours. */
@@ -1122,11 +1149,36 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#if defined(_OPENMP) && !defined(HEATDIFF_NO_OPENMP)
-#include <omp.h>
-#define HDI_OPENMP 1
+
+/* Threads of the system: none, POSIX or Windows. */
+#define HDI_THREADS_POSIX 1
+#define HDI_THREADS_WINDOWS 2
+#if defined(HEATDIFF_NO_THREADS) || !(defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)) || defined(__TINYC__)
+#define HDI_THREADS 0
+#elif (defined(__wasm__) || defined(__EMSCRIPTEN__)) && !defined(__EMSCRIPTEN_PTHREADS__)
+#define HDI_THREADS 0
+#elif defined(_WIN32)
+#define HDI_THREADS HDI_THREADS_WINDOWS
+#elif defined(__unix__) || defined(__APPLE__)
+#define HDI_THREADS HDI_THREADS_POSIX
 #else
-#define HDI_OPENMP 0
+#define HDI_THREADS 0
+#endif
+#if HDI_THREADS == HDI_THREADS_POSIX
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/syscall.h>
+#endif
+#elif HDI_THREADS == HDI_THREADS_WINDOWS
+#ifndef WIN32_LEAN_AND_MEAN
+#define WIN32_LEAN_AND_MEAN
+#endif
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
 #endif
 
 #if defined(HEATDIFF_MALLOC) && defined(HEATDIFF_FREE)
@@ -1208,6 +1260,25 @@ extern "C" {
 #else
 #define HDI_CAST(type, x) ((type)(x))
 #define HDI_RECAST(type, x) ((type)(x))
+#endif
+
+/* Counters that threads share. HDI_ATOMIC_GET sees all that was written before the matching HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. */
+#if defined(__GNUC__) || defined(__clang__)
+#define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
+#define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
+#define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
+#elif HDI_THREADS
+#define HDI_ATOMIC_GET(p) HDI_CAST(uint32_t, InterlockedCompareExchange(HDI_RECAST(volatile LONG *, p), 0, 0))
+#define HDI_ATOMIC_SET(p, v) ((void)InterlockedExchange(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)))
+#define HDI_ATOMIC_ADD(p, v) HDI_CAST(uint32_t, InterlockedExchangeAdd(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)) + (v))
+#else
+#define HDI_ATOMIC_GET(p) (*(p))
+#define HDI_ATOMIC_SET(p, v) (*(p) = (v))
+#define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
+#endif
+
+#if HDI_THREADS == HDI_THREADS_POSIX && defined(__linux__) && !defined(__cplusplus)
+long syscall(long number, ...);                  /* not declared with -std=c99 */
 #endif
 
 #ifdef HEATDIFF_USE_BLAS
@@ -1495,12 +1566,12 @@ static hd_status hdi_scope_end(hdi_scope *s) {
 #define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 
 /* ==== [04] context ====
- * Progress, cancelling and parallel loops. May call [03]. */
+ * Progress, cancelling, threads and parallel loops. May call [03]. */
 
 static hd_status hdi_context_check(const hd_context *ctx, hd_error *e) {
     if (!ctx->allocator.alloc != !ctx->allocator.free)
         return hdi_fail(e, HD_ERR_ARGUMENT, "context: the allocator needs both alloc and free, or none");
-    if (ctx->threads < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "context: threads is negative");
+    if (ctx->n_threads < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "context: n_threads is negative");
     return HD_OK;
 }
 
@@ -1514,30 +1585,368 @@ static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, h
     return hdi_fail(e, HD_ERR_ARGUMENT, "context: progress returned neither HD_PROGRESS_CONTINUE nor HD_PROGRESS_CANCEL");
 }
 
-/* Whether tasks would be done one after the other: some work is prepared for several at a time then for nothing. */
-static int hdi_is_serial(const hd_context *ctx) {
-    if (ctx->parallel_for) return 0;
-#if HDI_OPENMP
-    if (ctx->threads != 1 && !omp_in_parallel()) return ctx->threads == 0 && omp_get_max_threads() == 1;
+/* ---- threads ---- */
+/* The threads of a context. One loop is open at a time. Its tasks are claimed from a counter that never goes
+ * back: a loop owns the numbers [base, base + n), so that a thread that comes late, with the numbers of an
+ * earlier loop, finds nothing to claim and touches nothing. The calling thread claims like the others and waits only for tasks
+ * that others have claimed.
+ * Sleeping threads cost a call of the system to wake, about 5 microseconds, and 50 until they work. Threads that find nothing
+ * to claim therefore look around for a short while before they sleep. */
+
+#if HDI_THREADS == HDI_THREADS_POSIX
+typedef pthread_mutex_t hdi_mutex;
+typedef pthread_cond_t hdi_signal;
+typedef pthread_t hdi_thread;
+static void hdi_mutex_make(hdi_mutex *m) { pthread_mutex_init(m, NULL); }
+static void hdi_mutex_end(hdi_mutex *m) { pthread_mutex_destroy(m); }
+static void hdi_lock(hdi_mutex *m) { pthread_mutex_lock(m); }
+static void hdi_unlock(hdi_mutex *m) { pthread_mutex_unlock(m); }
+static void hdi_signal_make(hdi_signal *c) { pthread_cond_init(c, NULL); }
+static void hdi_signal_end(hdi_signal *c) { pthread_cond_destroy(c); }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { pthread_cond_wait(c, m); }
+static void hdi_signal_one(hdi_signal *c) { pthread_cond_signal(c); }
+static void hdi_signal_all(hdi_signal *c) { pthread_cond_broadcast(c); }
+static int64_t hdi_process(void) { return getpid(); }
+#define HDI_THREAD_BODY static void *
+#define HDI_THREAD_DONE NULL
+typedef void *(*hdi_thread_body)(void *);
+
+/* Before glibc 2.34 these functions are in a library of their own. A program that was linked without it has
+ * no threads. */
+#if defined(HDI_THREADS_WEAK) || (defined(__GLIBC__) && (__GLIBC__ < 2 || (__GLIBC__ == 2 && __GLIBC_MINOR__ < 34)))
+#define HDI_WEAK(name) static __typeof__(name) hdi_##name __attribute__((weakref(#name)))
+HDI_WEAK(pthread_create);
+HDI_WEAK(pthread_join);
+HDI_WEAK(pthread_attr_setstacksize);
+static int hdi_threads_linked(void) { return hdi_pthread_create && hdi_pthread_join && hdi_pthread_attr_setstacksize; }
+#else
+#define hdi_pthread_create pthread_create
+#define hdi_pthread_join pthread_join
+#define hdi_pthread_attr_setstacksize pthread_attr_setstacksize
+static int hdi_threads_linked(void) { return 1; }
 #endif
-    return 1;
+
+/* The stack of a thread: some systems give as little as 128 KB, musl among them. */
+enum { HDI_STACK = 1 << 20 };
+
+/* Signals go to the threads of the program, where the compiler's mode shows how to say so. */
+static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
+    pthread_attr_t attr;
+    int failed;
+#ifdef SIG_SETMASK
+    sigset_t all, old;
+    sigfillset(&all);
+    sigprocmask(SIG_SETMASK, &all, &old);
+#endif
+    pthread_attr_init(&attr);
+    hdi_pthread_attr_setstacksize(&attr, HDI_STACK);
+    failed = hdi_pthread_create(t, &attr, body, arg);
+    pthread_attr_destroy(&attr);
+#ifdef SIG_SETMASK
+    sigprocmask(SIG_SETMASK, &old, NULL);
+#endif
+    return !failed;
+}
+
+static void hdi_thread_join(hdi_thread t) { hdi_pthread_join(t, NULL); }
+
+/* Processors that this process may run on. */
+static int32_t hdi_processors(void) {
+    long n = 0;
+#if defined(__linux__) && defined(SYS_sched_getaffinity)
+    unsigned long mask[128];
+    const long bytes = syscall(SYS_sched_getaffinity, 0, sizeof mask, mask);
+    long i;
+    for (i = 0; i < bytes / HDI_CAST(long, sizeof *mask); i++)
+        for (; mask[i]; mask[i] &= mask[i] - 1) n++;
+#endif
+    if (n < 1) n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n < 1 ? 1 : HDI_CAST(int32_t, hdi_least(n, 1 << 16));
+}
+#elif HDI_THREADS == HDI_THREADS_WINDOWS
+typedef SRWLOCK hdi_mutex;
+typedef CONDITION_VARIABLE hdi_signal;
+typedef HANDLE hdi_thread;
+static void hdi_mutex_make(hdi_mutex *m) { InitializeSRWLock(m); }
+static void hdi_mutex_end(hdi_mutex *m) { (void)m; }
+static void hdi_lock(hdi_mutex *m) { AcquireSRWLockExclusive(m); }
+static void hdi_unlock(hdi_mutex *m) { ReleaseSRWLockExclusive(m); }
+static void hdi_signal_make(hdi_signal *c) { InitializeConditionVariable(c); }
+static void hdi_signal_end(hdi_signal *c) { (void)c; }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { SleepConditionVariableSRW(c, m, INFINITE, 0); }
+static void hdi_signal_one(hdi_signal *c) { WakeConditionVariable(c); }
+static void hdi_signal_all(hdi_signal *c) { WakeAllConditionVariable(c); }
+static int64_t hdi_process(void) { return 0; }   /* no fork here */
+#define HDI_THREAD_BODY static DWORD WINAPI
+#define HDI_THREAD_DONE 0
+typedef DWORD (WINAPI *hdi_thread_body)(void *);
+
+static int hdi_threads_linked(void) { return 1; }
+
+static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
+    *t = CreateThread(NULL, 0, body, arg, 0, NULL);
+    return *t != NULL;
+}
+
+static void hdi_thread_join(hdi_thread t) {
+    WaitForSingleObject(t, INFINITE);
+    CloseHandle(t);
+}
+
+static int32_t hdi_processors(void) {
+    DWORD_PTR mine = 0, all = 0;
+    int32_t n = 0;
+    if (GetProcessAffinityMask(GetCurrentProcess(), &mine, &all))
+        for (; mine; mine &= mine - 1) n++;
+    return n > 0 ? n : 1;
+}
+#else
+static int32_t hdi_processors(void) { return 1; }
+static int hdi_threads_linked(void) { return 0; }
+#endif
+
+/* Threads that work for the context, the calling one included. */
+static int32_t hdi_context_width(const hd_context *ctx) {
+    if (!hdi_threads_linked()) return 1;
+    return ctx->n_threads > 0 ? ctx->n_threads : hdi_processors();
+}
+
+#if HDI_THREADS
+/* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. */
+enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000 };
+
+typedef struct hdi_seat {
+    struct hd_threads *threads;
+    int32_t worker;
+    hdi_thread thread;
+} hdi_seat;
+
+/* What a thread knows of the open loop. */
+typedef struct hdi_loop {
+    uint32_t base, n;
+    hd_task task;
+    void *arg;
+    const int32_t *order;        /* NULL: claim i is task i; else task order[i] */
+} hdi_loop;
+
+struct hd_threads {
+    hdi_mutex lock;
+    hdi_signal work, finished;   /* for the threads; for the calling one */
+    int64_t process;
+    int32_t asked, most;         /* n_threads of the context; threads besides the caller, at most */
+    int32_t n, n_asleep, caller_asleep, leave;
+    int32_t open;                /* a loop is under way; written by the calling thread only */
+    hdi_loop loop;
+    uint32_t next, ready, done;  /* counters: next number to claim, end of those that may be, tasks that are done */
+    uint32_t helped;
+    hdi_seat seat[HDI_THREADS_MOST - 1];
+};
+
+
+static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
+#if defined(__GNUC__) || defined(__clang__)
+    return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
+#else
+    volatile LONG *at = HDI_RECAST(volatile LONG *, p);
+    return HDI_CAST(uint32_t, InterlockedCompareExchange(at, HDI_CAST(LONG, to), HDI_CAST(LONG, from))) == from;
+#endif
+}
+
+/* Tells the processor that a loop only waits. */
+static void hdi_relax(void) {
+#if defined(_MSC_VER) && !defined(__clang__)
+    YieldProcessor();
+#elif defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("isb");
+#endif
+}
+
+/* How many tasks may be claimed now. */
+static int32_t hdi_claimable(hd_threads *t) {
+    const uint32_t next = HDI_ATOMIC_GET(&t->next);
+    return HDI_CAST(int32_t, HDI_ATOMIC_GET(&t->ready) - next);
+}
+
+/* Number of a task of this loop that is the caller's from now on, or -1. */
+static int64_t hdi_claim(hd_threads *t, const hdi_loop *loop) {
+    for (;;) {
+        const uint32_t next = HDI_ATOMIC_GET(&t->next), i = next - loop->base;
+        if (i >= loop->n || HDI_CAST(int32_t, HDI_ATOMIC_GET(&t->ready) - next) <= 0) return -1;
+        if (hdi_swap(&t->next, next, next + 1)) return i;
+    }
+}
+
+/* Does tasks of the loop until none can be claimed. The last task of all wakes the calling thread. */
+static void hdi_loop_work(hd_threads *t, const hdi_loop *loop, int32_t worker) {
+    int64_t i;
+    while ((i = hdi_claim(t, loop)) >= 0) {
+        loop->task(loop->arg, loop->order ? loop->order[i] : i, worker);
+        if (worker) HDI_ATOMIC_ADD(&t->helped, 1);
+        if (HDI_ATOMIC_ADD(&t->done, 1) != loop->n || worker == 0) continue;
+        hdi_lock(&t->lock);
+        if (t->caller_asleep) hdi_signal_one(&t->finished);
+        hdi_unlock(&t->lock);
+    }
+}
+
+HDI_THREAD_BODY hdi_seat_run(void *arg) {
+    const hdi_seat *seat = HDI_CAST(const hdi_seat *, arg);
+    hd_threads *t = seat->threads;
+    hdi_loop loop;
+    int32_t k;
+    for (;;) {
+        for (k = 0; k < HDI_SPIN && hdi_claimable(t) <= 0; k++) hdi_relax();
+        hdi_lock(&t->lock);
+        while (!t->leave && hdi_claimable(t) <= 0) {
+            t->n_asleep++;
+            hdi_signal_wait(&t->work, &t->lock);
+            t->n_asleep--;
+        }
+        if (t->leave) break;
+        loop = t->loop;
+        hdi_unlock(&t->lock);
+        hdi_loop_work(t, &loop, seat->worker);
+    }
+    hdi_unlock(&t->lock);
+    return HDI_THREAD_DONE;
+}
+
+/* Neither counted nor limited, like the stacks of the threads: what is counted does not depend on their number. */
+static hd_threads *hdi_threads_new(hd_context *ctx) {
+    hd_threads *t = HDI_CAST(hd_threads *, HEATDIFF_MALLOC(sizeof *t));
+    int32_t most;
+    if (!t) return NULL;
+    memset(t, 0, sizeof *t);
+    hdi_mutex_make(&t->lock);
+    hdi_signal_make(&t->work);
+    hdi_signal_make(&t->finished);
+    t->process = hdi_process();
+    t->asked = ctx->n_threads;
+    most = hdi_context_width(ctx);
+    t->most = HDI_CAST(int32_t, hdi_least(most, HDI_THREADS_MOST)) - 1;
+    return t;
+}
+
+/* Ends the threads of the context. In a child process they do not exist, and their locks are left alone. */
+static void hdi_threads_end(hd_context *ctx) {
+    hd_threads *t = ctx->threads;
+    if (!t) return;
+    if (t->process == hdi_process()) {
+        hdi_lock(&t->lock);
+        t->leave = 1;
+        hdi_signal_all(&t->work);
+        hdi_unlock(&t->lock);
+        while (t->n > 0) hdi_thread_join(t->seat[--t->n].thread);
+        hdi_signal_end(&t->work);
+        hdi_signal_end(&t->finished);
+        hdi_mutex_end(&t->lock);
+    }
+    HEATDIFF_FREE(t);
+    ctx->threads = NULL;
+}
+
+/* Threads for a loop of so many tasks, started when they are first needed. NULL: the caller does it alone. */
+static hd_threads *hdi_threads_get(hd_context *ctx, int64_t n_tasks) {
+    hd_threads *t = ctx->threads;
+    if (n_tasks < 2 || n_tasks > INT32_MAX || ctx->n_threads == 1 || ctx->n_holders == 0) return NULL;
+    if (t && t->open) return NULL;               /* called by a task */
+    if (t && (t->process != hdi_process() || t->asked != ctx->n_threads)) {
+        hdi_threads_end(ctx);
+        t = NULL;
+    }
+    if (!t) t = ctx->threads = hdi_threads_new(ctx);
+    while (t && t->n < t->most && t->n + 1 < n_tasks) {
+        hdi_seat *seat = t->seat + t->n;
+        seat->threads = t;
+        seat->worker = t->n + 1;
+        if (!hdi_thread_start(&seat->thread, hdi_seat_run, seat)) t->most = t->n;
+        else t->n++;
+    }
+    return t && t->n > 0 ? t : NULL;
+}
+
+/* The calling thread has nothing to claim, but others are at work: looks around, then sleeps. */
+static void hdi_loop_wait(hd_context *ctx, hd_threads *t) {
+    const uint32_t n = t->loop.n;
+    int32_t k;
+    for (k = 0; k < HDI_SPIN && HDI_ATOMIC_GET(&t->done) != n && hdi_claimable(t) <= 0; k++) hdi_relax();
+    hdi_lock(&t->lock);
+    while (HDI_ATOMIC_GET(&t->done) != n && hdi_claimable(t) <= 0) {
+        t->caller_asleep = 1;
+        ctx->waits++;
+        hdi_signal_wait(&t->finished, &t->lock);
+        t->caller_asleep = 0;
+    }
+    hdi_unlock(&t->lock);
+}
+
+/* The loop of n tasks, of which n_ready may be claimed at once, in the order given (NULL: 0, 1, 2...); tasks release the others. */
+static void hdi_loop_run(hd_context *ctx, hd_threads *t, hdi_loop *loop, int64_t n_ready) {
+    int64_t wake;
+    hdi_lock(&t->lock);
+    loop->base = HDI_ATOMIC_GET(&t->next);                        /* nobody claims now */
+    t->loop = *loop;
+    t->open = 1;
+    HDI_ATOMIC_SET(&t->done, 0);
+    HDI_ATOMIC_SET(&t->ready, loop->base + HDI_CAST(uint32_t, n_ready));
+    for (wake = hdi_least(t->n_asleep, n_ready - 1); wake > 0; wake--) hdi_signal_one(&t->work);
+    hdi_unlock(&t->lock);
+    ctx->regions++;
+    for (;;) {
+        hdi_loop_work(t, loop, 0);
+        if (HDI_ATOMIC_GET(&t->done) == loop->n) break;
+        hdi_loop_wait(ctx, t);
+    }
+    t->open = 0;
+    ctx->helped += HDI_ATOMIC_GET(&t->helped);
+    HDI_ATOMIC_SET(&t->helped, 0);
+}
+
+/* From within a task: task id of the open loop may be claimed too. */
+static void hdi_release(hd_threads *t, int32_t id, int32_t *order) {
+    hdi_lock(&t->lock);
+    order[t->ready - t->loop.base] = id;
+    HDI_ATOMIC_SET(&t->ready, t->ready + 1);
+    if (t->caller_asleep) hdi_signal_one(&t->finished);
+    else if (t->n_asleep) hdi_signal_one(&t->work);
+    hdi_unlock(&t->lock);
+}
+#else
+static void hdi_threads_end(hd_context *ctx) { (void)ctx; }
+#endif
+
+/* An object that is made with the context holds it; its threads end with the last one. */
+static void hdi_hold(hd_context *ctx) { ctx->n_holders++; }
+
+static void hdi_let_go(hd_context *ctx) {
+    if (--ctx->n_holders == 0) hdi_threads_end(ctx);
+}
+
+/* ---- loops ---- */
+
+/* Whether tasks are done one after the other. Then some work is not worth its preparation. */
+static int hdi_is_serial(const hd_context *ctx) {
+    return !ctx->parallel_for && (ctx->n_holders == 0 || hdi_context_width(ctx) == 1);
 }
 
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
     int64_t i;
-    if (ctx->parallel_for && n_tasks > 1) {
-        ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
-        return;
-    }
-#if HDI_OPENMP
-    if (n_tasks > 1 && ctx->threads != 1 && !omp_in_parallel()) {
-        const int threads = ctx->threads > 0 ? ctx->threads : omp_get_max_threads();
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-        for (i = 0; i < n_tasks; i++) task(arg, i, omp_get_thread_num());
+#if HDI_THREADS
+    hd_threads *t = ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
+    if (t) {
+        hdi_loop loop;
+        loop.n = HDI_CAST(uint32_t, n_tasks);
+        loop.task = task;
+        loop.arg = arg;
+        loop.order = NULL;
+        hdi_loop_run(ctx, t, &loop, n_tasks);
         return;
     }
 #endif
-    for (i = 0; i < n_tasks; i++) task(arg, i, 0);
+    if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
+    else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
 
 /* The same for [0, n) in ranges of per_task; the last one may be shorter. */
@@ -17711,13 +18120,13 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     }
     for (i = 0; i < s->n; i++) rounding = hdi_max(rounding, hdi_below_constants(lap, &heat->elim.set, i, value[i], kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1));
     if (size_of == own) {
-        const double near = hdi_own_near(heat, &heat->elim.set, h->t);
+        const double closeness = hdi_own_near(heat, &heat->elim.set, h->t);
         double most = 0;
-        for (i = 0; i < s->n && near > 0; i++) {
+        for (i = 0; i < s->n && closeness > 0; i++) {
             const double b = lap->b_diag[i], spread = (kernel == HD_KERNEL_OPERATOR ? 1 : 1 / b) / lap->b_ratio;
             most = hdi_max(most, hdi_quotient(spread, own[i]));
         }
-        rounding = HDI_PROBE_OWN * rounding + near * most;
+        rounding = HDI_PROBE_OWN * rounding + closeness * most;
     }
     *relative = hdi_diagonal_tell(h, kernel, value, off, size_of, rounding, out);
     return hdi_scope_end(&scope);
@@ -18117,13 +18526,13 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
         x->rounding = hdi_max(x->rounding, hdi_quotient(by, fabs(value)));
     }
     if (x->own) {
-        const double near = hdi_own_near(heat, &x->set, h->t);
+        const double closeness = hdi_own_near(heat, &x->set, h->t);
         double most = 0;
-        for (i = 0; i < m->sym.n && near > 0; i++) {
+        for (i = 0; i < m->sym.n && closeness > 0; i++) {
             const double spread = hdi_quotient(1 / m->lap->b_diag[i], m->lap->b_ratio);
             most = hdi_max(most, hdi_quotient(spread, hdi_own_size(entries.g[i], spread)));
         }
-        x->rounding = HDI_PROBE_OWN * x->rounding + near * most;
+        x->rounding = HDI_PROBE_OWN * x->rounding + closeness * most;
     }
     for (i = 0; i < m->sym.n && x->set.a0 == 0; i++)
         x->rounding = hdi_max(x->rounding, hdi_below_constants(m->lap, &x->set, i, entries.k[i], full ? m->lap->mass[i] * m->lap->mass[i] : 1));
@@ -18892,6 +19301,7 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_free(ctx, g->value);
     hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
+    hdi_let_go(ctx);
 }
 
 /* Face f in its plane, the longest edge on the axis: the height is then as small as it gets, and loses nothing. */
@@ -19684,6 +20094,12 @@ HEATDIFF_API const char *hd_status_text(hd_status status) {
     return "unknown status";
 }
 
+HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx) {
+    hd_context own;
+    memset(&own, 0, sizeof own);
+    return hdi_context_width(ctx ? ctx : &own);
+}
+
 /* What a public function works with: an error and a context that are there, whatever the caller gave. */
 typedef struct hdi_call {
     hd_error error;
@@ -19787,6 +20203,7 @@ static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_la
         c->ctx = &shell->context;
     }
     shell->lap.context = c->ctx;
+    hdi_hold(c->ctx);
     return &shell->lap;
 }
 
@@ -19934,8 +20351,10 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: k is not positive");
     if (m > 0 && !index) return hdi_missing(c.e);
     s = hdi_scope_begin(c.ctx, c.e);
+    hdi_hold(c.ctx);
     if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
         (void)hdi_nearest(&tree, query, m, k, index, distance2, c.ctx, c.e);
+    hdi_let_go(c.ctx);
     return hdi_scope_end(&s);
 }
 
@@ -19948,8 +20367,10 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     if (!out) return hdi_missing(c.e);
     if (hdi_nan(radius) || radius < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
     s = hdi_scope_begin(c.ctx, c.e);
+    hdi_hold(c.ctx);
     if (hdi_progress(c.ctx, "neighbours", 0, c.e) >= 0 && hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c.ctx, "neighbours", 0.1, c.e) >= 0)
         (void)hdi_within(out, &tree, query, m, hdi_min(radius, 1e152) * hdi_min(radius, 1e152), c.ctx, c.e);
+    hdi_let_go(c.ctx);
     return hdi_scope_end(&s);
 }
 
@@ -19980,6 +20401,7 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) {
         use = &ctx;
     }
     hdi_laplacian_free(lap, use);
+    hdi_let_go(use);
 }
 
 /* ---- rational approximations ---- */
@@ -20034,6 +20456,7 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f) {
     hdi_free(ctx, f->inv);
     hdi_symbolic_free(ctx, &f->sym);
     hdi_free(ctx, f);
+    hdi_let_go(ctx);
 }
 
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -20059,6 +20482,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
         c.ctx = &f->context;
     }
     f->ctx = c.ctx;
+    hdi_hold(f->ctx);
     f->n = a->n_rows;
     f->nnz = a->nnz;
     order = hdi_order_of(o.ordering, o.xyz, o.perm);
@@ -20224,6 +20648,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     if (!heat) return c.e->status;
     memset(heat, 0, sizeof *heat);
     heat->ctx = c.ctx;
+    hdi_hold(heat->ctx);
     heat->source = lap;
     if (opts) heat->opts = *opts;
     if (heat->opts.rational) {
@@ -20275,6 +20700,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_free(ctx, heat->batch_room);
     hdi_free(ctx, heat->perm);
     hdi_free(ctx, heat);
+    hdi_let_go(ctx);
 }
 
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
@@ -20468,6 +20894,7 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
         c.ctx = &g->context;
     }
     g->ctx = c.ctx;
+    hdi_hold(g->ctx);
     g->n = n;
     if (hdi_geo_make(g, xyz, tri, n_tri, &o, c.e) < 0) {
         hdi_geo_free(g);

@@ -4,7 +4,7 @@
              [MESH ...]
        bench parts [MESH ...]
 
-   Build:  cc -O2 -fopenmp tools/bench.c -o bench -lm       (without -fopenmp: one thread only)
+   Build:  cc -O2 tools/bench.c -o bench -lm
    With the rivals (see bench_rivals.h; CMake does this if it finds them):
        c++ -std=c++17 -O3 -march=native -DNDEBUG -fopenmp -I/usr/include/eigen3 -c tools/bench_rivals.cpp
        cc -O2 -fopenmp -DHEATDIFF_BENCH_RIVALS tools/bench.c bench_rivals.o -o bench \
@@ -312,10 +312,11 @@ static double load_speed(int threads, int simd, const double *x, int64_t n) {
     int r, k;
     memset(&ctx, 0, sizeof ctx);
     memset(&j, 0, sizeof j);
-    ctx.threads = threads;
+    ctx.n_threads = threads;
     j.simd = simd;
     j.x = x;
     j.share = n / threads;
+    hdi_hold(&ctx);
     for (r = 0; r < 5; r++) {
         const double t0 = now();
         double work = 8.0 * (double)(j.share * threads), seconds;
@@ -324,6 +325,7 @@ static double load_speed(int threads, int simd, const double *x, int64_t n) {
         for (k = 0; simd && k < threads; k++) work = (k ? work : 0) + j.flops[k];
         if (work / seconds > best) best = work / seconds;
     }
+    hdi_let_go(&ctx);
     return 1e-9 * best;
 }
 
@@ -404,7 +406,7 @@ static hd_status plan_open(plan *p, const bench *b, const ask *a) {
     hd_heat_opts o;
     memset(p, 0, sizeof *p);
     memset(&o, 0, sizeof o);
-    p->ctx.threads = b->threads;
+    p->ctx.n_threads = b->threads;
     p->ctx.progress = watch_progress;
     p->ctx.progress_user = &p->w;
     o.context = &p->ctx;
@@ -733,7 +735,7 @@ static void opponent_turn(opponent *o, int first) {
     if (first || rival_seconds(o, &r) < rival_seconds(o, &o->best)) o->best = r;
 }
 
-/* Waits until the threads of OpenMP and BLAS stop spinning, so that they do not slow down the other side. */
+/* Waits until the threads of the rivals stop spinning, so that they do not slow down the other side. */
 static void rest(void) {
 #if defined(CLOCK_MONOTONIC)
     struct timespec t = {0, 60000000};
@@ -1400,7 +1402,7 @@ static void real_solve(const bench *b, double g, int32_t row, double *x, real_ru
     memset(&ctx, 0, sizeof ctx);
     memset(&o, 0, sizeof o);
     memset(out, 0, sizeof *out);
-    ctx.threads = b->threads;
+    ctx.n_threads = b->threads;
     o.context = &ctx;
     o.xyz = b->lap->xyz;
     for (p = 0; val && p < L->nnz; p++) val[p] = b->pair.B[p] + g * L->val[p];
@@ -1523,7 +1525,7 @@ static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run 
     memset(&o, 0, sizeof o);
     memset(&ctx, 0, sizeof ctx);
     memset(r, 0, sizeof *r);
-    ctx.threads = b->threads;
+    ctx.n_threads = b->threads;
     o.context = &ctx;
     r->fine = hd_geodesic_create(&g, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o,
                                  NULL) >= 0 &&
@@ -1631,7 +1633,7 @@ static void job_assembly(bench *b) {
         double t;
         memset(&o, 0, sizeof o);
         memset(&ctx, 0, sizeof ctx);
-        ctx.threads = b->threads;
+        ctx.n_threads = b->threads;
         o.context = &ctx;
         o.kind = voronoi ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
         rest();
@@ -1801,9 +1803,7 @@ static int parse_threads(settings *set, const char *s) {
     for (set->n_threads = 0; set->n_threads < 16; s = end + 1) {
         const long k = strtol(s, &end, 10);
         if (end == s || k < 1 || k > 256) return 0;
-        set->threads[set->n_threads++] = HDI_OPENMP ? (int32_t)k : 1;
-        if (!HDI_OPENMP && k > 1)
-            fprintf(stderr, "bench: compiled without OpenMP: one thread, for the rivals too\n");
+        set->threads[set->n_threads++] = (int32_t)k;
         if (*end != ',') return *end == 0;
     }
     return 0;
@@ -1908,11 +1908,7 @@ int main(int argc, char **argv) {
     set.columns = 100;
     set.seconds = 10;
     set.n_threads = 1;
-#if HDI_OPENMP
-    set.threads[0] = omp_get_max_threads();
-#else
-    set.threads[0] = 1;
-#endif
+    set.threads[0] = hd_context_threads(NULL);
     if (!parse(&set, argc, argv, &first))
         return usage(argc > 1 && strcmp(argv[1], "--help") ? "an argument is not understood" : NULL);
     if (!set.fresh) keep_memory();
