@@ -1913,8 +1913,34 @@ static void hdi_release(hd_threads *t, int32_t id, int32_t *order) {
     else if (t->n_asleep) hdi_signal_one(&t->work);
     hdi_unlock(&t->lock);
 }
+
+/* Threads that can share n tasks with the caller; NULL: none, or they are the user's. */
+static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
+    return ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
+}
+
+/* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones. */
+static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task, void *arg) {
+    hdi_loop loop;
+    loop.n = HDI_CAST(uint32_t, n);
+    loop.task = task;
+    loop.arg = arg;
+    loop.order = order;
+    hdi_loop_run(ctx, ctx->threads, &loop, n_ready);
+}
 #else
 static void hdi_threads_end(hd_context *ctx) { (void)ctx; }
+static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
+    (void)ctx;
+    (void)n_tasks;
+    return NULL;
+}
+static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task, void *arg) {
+    HDI_CAST(void, ctx), HDI_CAST(void, n), HDI_CAST(void, n_ready), HDI_CAST(void, order), HDI_CAST(void, task), HDI_CAST(void, arg);
+}
+static void hdi_release(hd_threads *t, int32_t id, int32_t *order) {
+    HDI_CAST(void, t), HDI_CAST(void, id), HDI_CAST(void, order);
+}
 #endif
 
 /* An object that is made with the context holds it; its threads end with the last one. */
@@ -9703,7 +9729,7 @@ typedef struct hdi_symbolic {
     /* the schedule, of room [16] */
     int32_t n_tasks;             /* subtrees that can be worked on at the same time */
     int32_t *task_begin, *task_end;  /* [n_tasks] their supernodes */
-    int32_t *task_of;            /* [n_super] -1: top */
+    int32_t *task_of;            /* [n_super] below 0: top[-1 - task_of] */
     int32_t n_top;
     int32_t *top;                /* [n_top] the other supernodes, children before parents */
     int32_t task_pivots, task_update;  /* largest of a front in a subtree */
@@ -10297,7 +10323,8 @@ static int64_t hdi_sched_roots(hdi_sched_space *z) {
 }
 
 /* All places: a space of its own for every subtree, of which only what its roots leave behind stays; the top
- * takes what it finds free. Returns the size of it all. */
+ * takes what it finds free, but vectors of the top have places of their own, so that their fronts can be worked on in any
+ * order that the tree allows. Returns the size of it all. */
 static int64_t hdi_sched_spaces(hdi_sched_space *z) {
     const hdi_symbolic *s = z->s;
     int64_t base = 0, from = 0, n_roots, i;
@@ -10315,7 +10342,9 @@ static int64_t hdi_sched_spaces(hdi_sched_space *z) {
         hdi_gaps_free(&z->gaps, from, to - from);
         if (i < n_roots) from = to + z->roots[i].id;
     }
-    return hdi_sched_place(z, s->top, 0, s->n_top);
+    if (z->matrices) return hdi_sched_place(z, s->top, 0, s->n_top);
+    for (k = 0; k < s->n_top; k++, base += hdi_sched_size(z, s->top[k - 1])) z->at[s->top[k]] = base;
+    return base;
 }
 
 /* ---- tasks ---- */
@@ -10359,6 +10388,7 @@ static void hdi_sched_tasks(hdi_symbolic *s, double *sum) {
     double open = 0;
     for (v = 0; v < s->n_super; v++) {
         if (task[v] < 0) {
+            task[v] = -1 - s->n_top;
             s->top[s->n_top++] = v;
             /* a top node in between ends a task, whose supernodes are consecutive */
             open = HUGE_VAL;
@@ -11074,13 +11104,13 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
 typedef struct hdi_sweep {
     const hdi_factor *f;
     double *x, *vec;             /* [n][k], [vector_size][k] entries */
-    double *gather;              /* [largest_update][k] entries for each part, packs with k > 1 and real */
-    int64_t gather_size;         /* doubles */
     int32_t k;                   /* right-hand sides side by side: packs any, real 1 or 8 */
     int32_t backward;
     const char *active;          /* forward */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
+    int32_t *pending, *order;    /* shared by threads: what nodes wait for; the nodes as they become ready */
+    hd_threads *threads;
 } hdi_sweep;
 
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
@@ -11248,16 +11278,16 @@ static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int back
     for (i = first; i < last; i += 8) HDI_PREFETCH(f->panel + i);
 }
 
-static void hdi_sweep_front(const hdi_sweep *z, int32_t v, int64_t part) {
+/* Backward, the front's vector has been handed on, and its place is free to gather the rows below. */
+static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const hdi_factor *f = z->f;
     const int64_t w = HDI_CAST(int64_t, f->width) * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v];
-    double *gather = z->gather + z->gather_size * part;
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
         if (z->wanted && !z->wanted[v]) return;
-        if (f->width == 1) hdi_sweep_backward_real(z, v, y, gather);
-        else hdi_sweep_backward_pack(z, v, y, gather);
+        if (f->width == 1) hdi_sweep_backward_real(z, v, y, t);
+        else hdi_sweep_backward_pack(z, v, y, t);
         return;
     }
     if (z->active && !z->active[v]) return;
@@ -11271,42 +11301,134 @@ static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
     int32_t v;
     (void)worker;
     if (z->backward)
-        for (v = end; v-- > begin;) hdi_sweep_front(z, v, index);
+        for (v = end; v-- > begin;) hdi_sweep_front(z, v);
     else
-        for (v = begin; v < end; v++) hdi_sweep_front(z, v, index);
+        for (v = begin; v < end; v++) hdi_sweep_front(z, v);
+}
+
+/* ---- a sweep as one loop ---- */
+/* Its nodes: the subtrees and the fronts of the top, forward, then the same backward. A front of the top waits
+ * for its children forward, a subtree for the parents of its roots backward. Whoever does the last thing that
+ * a node waits for releases it. */
+
+/* A sweep that reads fewer bytes is done by one thread: two would need as long, with 10 GB/s and 50 microseconds to begin. */
+#define HDI_SWEEP_SHARED 1e6
+
+static int32_t hdi_sweep_nodes(const hdi_symbolic *s) { return s->n_tasks + s->n_top; }
+
+/* One of the things that a node waits for is done. */
+static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node, int32_t *pending) {
+    if (HDI_ATOMIC_ADD(pending, -1) == 0) hdi_release(z->threads, node, z->order);
+}
+
+/* Whether supernode v hands its vector to a front of the top. */
+static int hdi_sweep_below_top(const hdi_symbolic *s, int32_t v) {
+    return s->parent[v] >= 0 && s->task_of[s->parent[v]] < 0;
+}
+
+/* Forward, supernode v is done, whose parent belongs to the top. */
+static void hdi_sweep_up(const hdi_sweep *z, int32_t v) {
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t node = s->n_tasks - 1 - s->task_of[s->parent[v]];
+    hdi_sweep_arrive(z, node, z->pending + node);
+}
+
+/* What subtree k waits for backward. */
+static int32_t hdi_sweep_roots(const hdi_symbolic *s, int32_t k) {
+    int32_t v, n = 0;
+    for (v = s->task_begin[k]; v < s->task_end[k]; v++) n += hdi_sweep_below_top(s, v);
+    return n;
+}
+
+/* Node i is done: those that waited for it. */
+static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t n = hdi_sweep_nodes(s), v = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
+    int32_t k;
+    if (z->backward) {
+        for (k = v < 0 ? 0 : s->kid_ptr[v]; v >= 0 && k < s->kid_ptr[v + 1]; k++) {
+            const int32_t task = s->task_of[s->kid[k]];
+            if (task < 0) hdi_release(z->threads, n + s->n_tasks - 1 - task, z->order);
+            else hdi_sweep_arrive(z, n + task, z->pending + task);
+        }
+    } else if (v >= 0) {
+        if (s->parent[v] >= 0) hdi_sweep_up(z, v);
+        else hdi_release(z->threads, n + i, z->order);
+    } else {
+        z->pending[i] = hdi_sweep_roots(s, i);
+        if (z->pending[i] == 0) hdi_release(z->threads, n + i, z->order);
+        for (k = s->task_begin[i]; k < s->task_end[i]; k++)
+            if (hdi_sweep_below_top(s, k)) hdi_sweep_up(z, k);
+    }
+}
+
+static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
+    hdi_sweep z = *HDI_CAST(const hdi_sweep *, arg);
+    const hdi_symbolic *s = z.f->sym;
+    const int32_t n = hdi_sweep_nodes(s), i = HDI_CAST(int32_t, index) % n;
+    z.backward = index >= n;
+    if (i < s->n_tasks) hdi_sweep_task(&z, i, worker);
+    else hdi_sweep_front(&z, s->top[i - s->n_tasks]);
+    hdi_sweep_next(&z, i);
+}
+
+/* All of it, or with active the way back. */
+static void hdi_sweep_share(hdi_sweep *z, hd_context *ctx) {
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t n = hdi_sweep_nodes(s);
+    int32_t n_ready = 0, k;
+    for (k = 0; k < s->n_tasks; k++) {
+        z->pending[k] = z->active ? hdi_sweep_roots(s, k) : 0;
+        if (z->pending[k] == 0) z->order[n_ready++] = z->active ? n + k : k;
+    }
+    for (k = 0; k < s->n_top; k++) {
+        const int32_t v = s->top[k], node = s->n_tasks + k;
+        z->pending[node] = s->kid_ptr[v + 1] - s->kid_ptr[v];
+        if (z->active ? s->parent[v] < 0 : z->pending[node] == 0) z->order[n_ready++] = z->active ? n + node : node;
+    }
+    hdi_parallel_ordered(ctx, z->active ? n : 2 * n, n_ready, z->order, hdi_sweep_node, z);
 }
 
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
 static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     const hdi_symbolic *s = z->f->sym;
+    const double bytes = 2 * 8.0 * z->f->width * HDI_CAST(double, z->f->panel_at[s->n_super]);
     int32_t i;
+    if (ctx && !ctx->parallel_for && bytes < HDI_SWEEP_SHARED) ctx = NULL;
+    if (ctx) z->threads = hdi_threads_own(ctx, hdi_sweep_nodes(s));
     z->backward = 0;
+    if (z->threads && !z->active) {
+        hdi_sweep_share(z, ctx);
+        return;
+    }
     if (ctx && !z->active) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
     else for (i = 0; i < s->n_tasks; i++) hdi_sweep_task(z, i, 0);
-    for (i = 0; i < s->n_top; i++) hdi_sweep_front(z, s->top[i], s->n_tasks);
+    for (i = 0; i < s->n_top; i++) hdi_sweep_front(z, s->top[i]);
+    if (z->threads) {
+        hdi_sweep_share(z, ctx);
+        return;
+    }
     z->backward = 1;
-    for (i = s->n_top; i-- > 0;) hdi_sweep_front(z, s->top[i], s->n_tasks);
+    for (i = s->n_top; i-- > 0;) hdi_sweep_front(z, s->top[i]);
     if (ctx) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
     else for (i = s->n_tasks; i-- > 0;) hdi_sweep_task(z, i, 0);
 }
 
-/* Doubles that a sweep of k right-hand sides works with besides x: vec, and gather for each part under way at
- * the same time. */
-static uint64_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k, int parallel) {
+/* Doubles that a sweep of k right-hand sides works with besides x: vec, pending and order. */
+static uint64_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k) {
     const uint64_t w = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, k);
-    const uint64_t parts = parallel ? HDI_CAST(uint64_t, s->n_tasks) + 1 : 1;
-    return w * (HDI_CAST(uint64_t, s->vector_size) + parts * HDI_CAST(uint64_t, s->largest_update)) + 16;
+    return w * HDI_CAST(uint64_t, s->vector_size) + 2 * HDI_CAST(uint64_t, hdi_sweep_nodes(s)) + 16;
 }
 
-static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, double *work, int parallel) {
+static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, double *work) {
     hdi_sweep z;
     memset(&z, 0, sizeof z);
     z.f = f;
     z.x = x;
     z.k = k;
     z.vec = work;
-    z.gather = work + HDI_CAST(int64_t, f->width) * k * f->sym->vector_size;
-    z.gather_size = parallel ? HDI_CAST(int64_t, f->width) * k * f->sym->largest_update : 0;
+    z.pending = HDI_CAST(int32_t *, HDI_CAST(void *, work + HDI_CAST(int64_t, f->width) * k * f->sym->vector_size));
+    z.order = z.pending + hdi_sweep_nodes(f->sym);
     return z;
 }
 
@@ -11453,7 +11575,7 @@ static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
     const uint64_t size = HDI_CAST(uint64_t, f->n) * HDI_CAST(uint64_t, width * k);
     if (f->x[which]) return HD_OK;
     if (!f->work[which])
-        f->work[which] = HDI_CAST(double *, hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k, 1),
+        f->work[which] = HDI_CAST(double *, hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k),
                                                       sizeof(double), e));
     if (f->work[which]) f->x[which] = HDI_CAST(double *, hdi_alloc(f->ctx, size, sizeof(double), e));
     return e->status;
@@ -11464,7 +11586,7 @@ static void hdi_ldl_solve_real(hd_ldl *f, int32_t q, int32_t n_cols, const doubl
                                size_t ldx) {
     const int32_t wide = n_cols > 1 ? 8 : 1;
     double *at = f->x[0];
-    hdi_sweep z = hdi_sweep_open(&f->real, wide, f->x[0], f->work[0], 1);
+    hdi_sweep z = hdi_sweep_open(&f->real, wide, f->x[0], f->work[0]);
     int32_t i, r;
     for (i = 0; i < f->n; i++, at += wide)
         for (r = 0; r < wide; r++)
@@ -11479,7 +11601,7 @@ static void hdi_ldl_solve_real(hd_ldl *f, int32_t q, int32_t n_cols, const doubl
 static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx) {
     const int32_t lanes = hdi_ldl_lanes(f, p);
     double *at = f->x[1];
-    hdi_sweep z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1], 1);
+    hdi_sweep z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1]);
     int32_t i, q;
     b += HDI_PACK_LANES * HDI_CAST(size_t, p) * ldb;
     x += HDI_PACK_LANES * HDI_CAST(size_t, p) * ldx;
@@ -12664,7 +12786,7 @@ static void hdi_ldl_column(const hd_ldl *f, const hdi_factor *of, const hdi_ldl_
     const hdi_symbolic *s = &f->sym;
     const int32_t width = of->width, stride = width == 1 ? 1 : 2, source = f->inv[t->order[begin].key];
     double *x = f->x[width > 1];
-    hdi_sweep z = hdi_sweep_open(of, 1, x, f->work[width > 1], 1);
+    hdi_sweep z = hdi_sweep_open(of, 1, x, f->work[width > 1]);
     int64_t p;
     int32_t v, q;
     memset(t->active, 0, HDI_CAST(size_t, s->n_super));
@@ -15148,7 +15270,7 @@ typedef struct hdi_batch {
 
 /* Doubles of a batch's arrays. */
 static uint64_t hdi_batch_size(const hdi_elim *m, int32_t k, uint64_t *x, uint64_t *xr) {
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1), real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k), real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1);
     *x = HDI_PACK * n * HDI_CAST(uint64_t, k);
     *xr = n * (k > 1 ? 8 : 1);
     return *x + *xr + (pack > real ? pack : real) + HDI_CAST(uint64_t, m->sym.n_super) / sizeof(double) + 8;
@@ -15280,7 +15402,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     if (m->lone >= 0) {
         for (j = 0; j < n; j++)
             for (r = 0; r < wide; r++) b->xr[wide * j + r] = r < k && !lane[r].skip ? lane[r].rhs[j] : 0;
-        z = hdi_sweep_open(&m->real, wide, b->xr, b->work, ctx != NULL);
+        z = hdi_sweep_open(&m->real, wide, b->xr, b->work);
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
         for (r = 0; r < k; r++)
@@ -15294,7 +15416,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
                 to[0] = to[1] = to[2] = to[3] = lane[r].rhs[j];
             }
         }
-        z = hdi_sweep_open(m->pack + i, k, b->x, b->work, ctx != NULL);
+        z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
         for (r = 0; r < n_list; r += HDI_CHECK_MOST)
@@ -15991,7 +16113,7 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_CAST(double *, hdi_alloc(ctx, n * wide, sizeof(double), e));
     if (z->v[0] && !z->c) z->c = HDI_CAST(double *, hdi_alloc(ctx, 2 * n * wide + 2 * n, sizeof(double), e));
-    if (z->c && !z->work) z->work = HDI_CAST(double *, hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide, 1), sizeof(double), e));
+    if (z->c && !z->work) z->work = HDI_CAST(double *, hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide), sizeof(double), e));
     if (e->status < 0) return e->status;
     z->w = z->c + n * wide;
     z->probe = z->w + n * wide;
@@ -16063,7 +16185,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     if (!z->v[j + 1]) z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(double), e));
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
-    s = hdi_sweep_open(&z->m->shifted, wide, w, z->work, 1);
+    s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
     hdi_sweep_run(&s, ctx);
     hdi_wide_norms(w, z->m->noise_shift, n, wide, z->noise[j]);
     if (j == 0 || j == 3) hdi_silan_probe(z);
@@ -16367,7 +16489,7 @@ static void hdi_ground_solve(const hdi_elim *m, const hdi_ground *g, double *x, 
     int32_t i;
     for (i = 0; i < m->sym.n; i++)
         if (g->held[i]) x[i] = 0;
-    z = hdi_sweep_open(&g->factor, 1, x, work, 1);
+    z = hdi_sweep_open(&g->factor, 1, x, work);
     hdi_sweep_run(&z, m->ctx);
 }
 
@@ -16466,7 +16588,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     if (g->formed) return HD_OK;
     loose = HDI_TAKE(&s, char, lap->n_components);
     val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
-    work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1, 1));
+    work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
     b = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n_active));
     if (e->status >= 0 && hdi_factor_make(&pack, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
         hdi_ground_values(m, g, step * m->scale, NULL, val);
@@ -16515,7 +16637,7 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t 
 }
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
-    return 4 * HDI_CAST(uint64_t, m->sym.n) + HDI_CAST(uint64_t, m->lap->n_components) + hdi_sweep_size(&m->sym, 1, 1, 1);
+    return 4 * HDI_CAST(uint64_t, m->sym.n) + HDI_CAST(uint64_t, m->lap->n_components) + hdi_sweep_size(&m->sym, 1, 1);
 }
 
 /* ==== [25] plan ====
@@ -18774,7 +18896,7 @@ static void hdi_shared_column(const hdi_elim *m, int32_t row, int mass, int32_t 
         for (q = 0; q < 4 && !mass; q++) x[HDI_PACK * HDI_CAST(int64_t, row) + q] = 1;
         for (p = begin; p < end && mass; p++)
             for (q = 0; q < 4; q++) x[HDI_PACK * HDI_CAST(int64_t, m->lap->L.col[p]) + q] = m->lap->B[p];
-        z = hdi_sweep_open(m->pack + i, 1, x, work, 1);
+        z = hdi_sweep_open(m->pack + i, 1, x, work);
         z.active = active;
         hdi_sweep_run(&z, m->ctx);
         memset(&check, 0, sizeof check);
@@ -18822,7 +18944,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, hd_distance_kind kind, in
     hd_rational *set = HDI_TAKE(&s, hd_rational, n_times);
     hd_c64 *weight = HDI_TAKE_ZERO(&s, hd_c64, 2 * HDI_CAST(uint64_t, n_times) * HD_MAX_POLES);
     double *room = HDI_TAKE_ZERO(&s, double, size), *column = HDI_TAKE(&s, double, size), *x = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, n));
-    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1, 1)), *g = HDI_TAKE(&s, double, lap->n), *spare = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n));
+    double *work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, HDI_PACK, 1)), *g = HDI_TAKE(&s, double, lap->n), *spare = HDI_TAKE(&s, double, 3 * HDI_CAST(uint64_t, n));
     double *product = full ? HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, n)) : NULL, *rounding = HDI_TAKE_ZERO(&s, double, n_times);
     char *active = HDI_CAST(char *, hdi_take(&s, HDI_CAST(size_t, m->sym.n_super) + 1, 1));
     double pole_off[HD_MAX_POLES];
@@ -19412,7 +19534,7 @@ static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
     if (g->value_ptr) g->x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->x) g->b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->b) g->r = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->r) g->work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, 1, 1), sizeof(double), e));
+    if (g->r) g->work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, 1), sizeof(double), e));
     return e->status;
 }
 
@@ -19735,7 +19857,7 @@ static void hdi_geo_forward(hdi_geo_far *w, const hdi_sweep *z) {
         int64_t i = 0;
         w->open[0] = w->open[--w->n_open];
         if (w->n_open > 0) hdi_sift_down(w->open, 0, w->n_open);
-        hdi_sweep_front(z, v, 0);
+        hdi_sweep_front(z, v);
         while (i < below && !(fabs(up[i]) >= DBL_MIN)) i++;
         if (i < below) hdi_geo_open(w, s->parent[v]);
         else w->end[w->n_ends++] = v;
@@ -19762,7 +19884,7 @@ static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
         w->open[w->n_open++].id = end;
         while (w->n_open > 0) {
             const int32_t v = HDI_CAST(int32_t, w->open[--w->n_open].id);
-            hdi_sweep_front(z, v, 0);
+            hdi_sweep_front(z, v);
             w->g->active[v] = 1;
             w->front[w->n_fronts++] = v;
             for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
@@ -19786,7 +19908,7 @@ static void hdi_geo_stage(hdi_geo_far *w) {
     }
     g->x = g->r;
     g->r = swap;
-    z = hdi_sweep_open(&g->heat, 1, g->x, g->work, 1);
+    z = hdi_sweep_open(&g->heat, 1, g->x, g->work);
     z.active = g->active;
     hdi_geo_forward(w, &z);
     z.backward = 1;
@@ -19815,7 +19937,7 @@ static void hdi_geo_divergence_now(const hdi_geo_far *w, double least) {
 }
 
 static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, double *x, const char *active) {
-    hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work, 1);
+    hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work);
     z.active = active;
     hdi_sweep_run(&z, g->ctx);
 }
@@ -19991,7 +20113,7 @@ static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
     const uint64_t n = HDI_GEO_WIDE * HDI_CAST(uint64_t, g->n_active);
     if (!g->wide_x) g->wide_x = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
     if (g->wide_x && !g->wide_b) g->wide_b = HDI_CAST(double *, hdi_alloc(g->ctx, n, sizeof(double), e));
-    if (g->wide_b && !g->wide_work) g->wide_work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1), sizeof(double), e));
+    if (g->wide_b && !g->wide_work) g->wide_work = HDI_CAST(double *, hdi_alloc(g->ctx, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE), sizeof(double), e));
     return e->status;
 }
 
