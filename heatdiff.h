@@ -51,7 +51,7 @@
      [D] functions   by task: matrices, operators, neighbours, pole sets, solvers, heat, geodesic distance
 
      Implementation, from the bottom up: a room calls only rooms above it in the file
-     [00] platform   compilers, the C library, OpenMP, configuration macros
+     [00] platform   compilers, the C library, threads of the system, configuration macros
      [01] scalar     minima and maxima, checked sizes, complex arithmetic
      [02] error      filling hd_error
      [03] memory     counted allocation and scopes that free work arrays
@@ -89,7 +89,9 @@
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
-     HEATDIFF_NO_OPENMP        no OpenMP, even if the compiler has it on
+     HEATDIFF_NO_THREADS       no threads of the library's own. They need POSIX threads or Windows, and
+                               atomic operations of GCC, Clang or MSVC; anything else is serial by itself,
+                               as is WebAssembly without threads
      HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. It is needed
                                only where that is neither heatdiff.h nor what the compiler says
                                (__FILE_NAME__)
@@ -116,6 +118,17 @@
      One exception: plans read their Laplacian and never write to it. So several plans in several threads may
      share one Laplacian if every plan has a context of its own (hd_heat_opts.context). Without one, a plan
      uses the Laplacian's context. If you set allocators, they must allow calls from several threads.
+
+     The library's own threads belong to a context. They start when the first long work needs them (20 to 50
+     microseconds each), sleep between calls, and end with the last object made with the context. Functions
+     that make no object end them before they return. So nothing is left running when all objects are freed.
+     Threads claim small tasks. The calling thread works too, and never waits for a thread that has not begun.
+     Results are the same to the last bit for any number of threads.
+     Nested use: if your own threads each have a plan with a context, set hd_context.n_threads = 1 there, or
+     share the processors out. Every other number is correct too, only slower.
+     fork: the child process may use and free the objects of its parent. The parent's threads do not exist in
+     it; new ones start when work needs them. Do not fork while another thread is inside the library.
+     Systems with a C library older than glibc 2.34 need -lpthread; without it programs link and are serial.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -194,7 +207,7 @@ typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x
 
 /* Memory functions. alloc returns NULL if there is no memory; its blocks must be aligned to 8 bytes. free
  * receives the size that the block was allocated with. Blocks are never resized, so there is no realloc. The
- * library calls both functions from the calling thread only. */
+ * library calls both functions from the calling thread only. Threads do not take their memory from them. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
@@ -214,9 +227,12 @@ typedef enum hd_simd {
     HD_SIMD_AVX512              /* AVX-512, if the processor has it */
 } hd_simd;
 
+typedef struct hd_threads hd_threads;            /* started and ended by the library */
+
 /* Memory, progress and threads of a computation. All zeros are good defaults: malloc, no limits, no progress,
- * and OpenMP's threads if compiled with OpenMP. The context belongs to the caller and must outlive every
- * object made with it. Wherever a function takes a context, NULL means one with these defaults. */
+ * as many threads as there are processors. The context belongs to the caller and must outlive every object
+ * made with it; do not copy it in the meantime. Wherever a function takes a context, NULL means one with these
+ * defaults. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
     uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit */
@@ -238,16 +254,27 @@ typedef struct hd_context {
     void *progress_user;
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all tasks are
-     * done. The calling thread is worker 0; other threads have numbers of their own. NULL: OpenMP if compiled
-     * with it, else serial. Results depend neither on this function nor on the number of threads. */
+     * done. The calling thread is worker 0; other threads have numbers of their own. NULL: the library's own
+     * threads. Results depend neither on this function nor on the number of threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    int32_t threads;            /* of OpenMP: 0 for all, 1 for serial; ignored if parallel_for is set */
+    /* Threads that work at the same time, the calling one included. 0: as many as the process may use
+     * processors; 1: serial. Ignored if parallel_for is set. */
+    int32_t n_threads;
     hd_simd simd;
 
     /* Filled by the library. */
     uint64_t bytes_in_use, bytes_peak, allocations;
+    uint64_t regions;           /* parallel loops that other threads were asked to share */
+    uint64_t helped;            /* tasks that other threads did */
+    uint64_t waits;             /* times that the calling thread slept until others were done */
+    hd_threads *threads;        /* running, NULL: none; not counted in bytes_in_use */
+    int32_t n_holders;          /* objects made with this context: its threads end with the last one */
 } hd_context;
+
+/* How many threads work for this context: n_threads, or by default the processors that the process may use.
+ * 1 if the library has no threads here. NULL: of a context of defaults. */
+HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
 /* A sparse matrix by compressed rows. In every row the columns ascend and occur once. val may be NULL in a
  * pattern. Matrices made by the library are freed with hd_csr_free. Your own arrays stay yours. */
@@ -1149,11 +1176,36 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#if defined(_OPENMP) && !defined(HEATDIFF_NO_OPENMP)
-#include <omp.h>
-#define HDI_OPENMP 1
+
+/* Threads of the system: none, POSIX or Windows. */
+#define HDI_THREADS_POSIX 1
+#define HDI_THREADS_WINDOWS 2
+#if defined(HEATDIFF_NO_THREADS) || !(defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)) || defined(__TINYC__)
+#define HDI_THREADS 0
+#elif (defined(__wasm__) || defined(__EMSCRIPTEN__)) && !defined(__EMSCRIPTEN_PTHREADS__)
+#define HDI_THREADS 0
+#elif defined(_WIN32)
+#define HDI_THREADS HDI_THREADS_WINDOWS
+#elif defined(__unix__) || defined(__APPLE__)
+#define HDI_THREADS HDI_THREADS_POSIX
 #else
-#define HDI_OPENMP 0
+#define HDI_THREADS 0
+#endif
+#if HDI_THREADS == HDI_THREADS_POSIX
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/syscall.h>
+#endif
+#elif HDI_THREADS == HDI_THREADS_WINDOWS
+#ifndef WIN32_LEAN_AND_MEAN
+#define WIN32_LEAN_AND_MEAN
+#endif
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
 #endif
 
 #if defined(HEATDIFF_MALLOC) && defined(HEATDIFF_FREE)
@@ -1237,6 +1289,25 @@ extern "C" {
 #else
 #define HDI_CAST(type, x) ((type)(x))
 #define HDI_RECAST(type, x) ((type)(x))
+#endif
+
+/* Counters that threads share. HDI_ATOMIC_GET sees all that was written before the matching HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. */
+#if defined(__GNUC__) || defined(__clang__)
+#define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
+#define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
+#define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
+#elif HDI_THREADS
+#define HDI_ATOMIC_GET(p) HDI_CAST(uint32_t, InterlockedCompareExchange(HDI_RECAST(volatile LONG *, p), 0, 0))
+#define HDI_ATOMIC_SET(p, v) ((void)InterlockedExchange(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)))
+#define HDI_ATOMIC_ADD(p, v) HDI_CAST(uint32_t, InterlockedExchangeAdd(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)) + (v))
+#else
+#define HDI_ATOMIC_GET(p) (*(p))
+#define HDI_ATOMIC_SET(p, v) (*(p) = (v))
+#define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
+#endif
+
+#if HDI_THREADS == HDI_THREADS_POSIX && defined(__linux__) && !defined(__cplusplus)
+long syscall(long number, ...);                  /* not declared with -std=c99 */
 #endif
 
 #ifdef HEATDIFF_USE_BLAS
@@ -1529,12 +1600,12 @@ static hd_status hdi_scope_end(hdi_scope *s) {
 #define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 
 /* ==== [04] context ====
- * Progress, cancelling and parallel loops. May call [03]. */
+ * Progress, cancelling, threads and parallel loops. May call [03]. */
 
 static hd_status hdi_context_check(const hd_context *ctx, hd_error *e) {
     if (!ctx->allocator.alloc != !ctx->allocator.free)
         return hdi_fail(e, HD_ERR_ARGUMENT, "context: the allocator needs both alloc and free, or none");
-    if (ctx->threads < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "context: threads is negative");
+    if (ctx->n_threads < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "context: n_threads is negative");
     return HD_OK;
 }
 
@@ -1548,30 +1619,394 @@ static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, h
     return hdi_fail(e, HD_ERR_ARGUMENT, "context: progress returned neither HD_PROGRESS_CONTINUE nor HD_PROGRESS_CANCEL");
 }
 
-/* Whether tasks would be done one after the other: some work is prepared for several at a time then for nothing. */
-static int hdi_is_serial(const hd_context *ctx) {
-    if (ctx->parallel_for) return 0;
-#if HDI_OPENMP
-    if (ctx->threads != 1 && !omp_in_parallel()) return ctx->threads == 0 && omp_get_max_threads() == 1;
+/* ---- threads ---- */
+/* The threads of a context. One loop is open at a time. Its tasks are claimed from a counter that never goes
+ * back: a loop owns the numbers [base, base + n), so that a thread that comes late, with the numbers of an
+ * earlier loop, finds nothing to claim and touches nothing. The calling thread claims like the others and waits only for tasks
+ * that others have claimed.
+ * Sleeping threads cost a call of the system to wake, about 5 microseconds, and 50 until they work. Threads that find nothing
+ * to claim therefore look around for a short while before they sleep. */
+
+#if HDI_THREADS == HDI_THREADS_POSIX
+typedef pthread_mutex_t hdi_mutex;
+typedef pthread_cond_t hdi_signal;
+typedef pthread_t hdi_thread;
+static void hdi_mutex_make(hdi_mutex *m) { pthread_mutex_init(m, NULL); }
+static void hdi_mutex_end(hdi_mutex *m) { pthread_mutex_destroy(m); }
+static void hdi_lock(hdi_mutex *m) { pthread_mutex_lock(m); }
+static void hdi_unlock(hdi_mutex *m) { pthread_mutex_unlock(m); }
+static void hdi_signal_make(hdi_signal *c) { pthread_cond_init(c, NULL); }
+static void hdi_signal_end(hdi_signal *c) { pthread_cond_destroy(c); }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { pthread_cond_wait(c, m); }
+static void hdi_signal_one(hdi_signal *c) { pthread_cond_signal(c); }
+static void hdi_signal_all(hdi_signal *c) { pthread_cond_broadcast(c); }
+static int64_t hdi_process(void) { return getpid(); }
+#define HDI_THREAD_BODY static void *
+#define HDI_THREAD_DONE NULL
+typedef void *(*hdi_thread_body)(void *);
+
+/* Before glibc 2.34 these functions are in a library of their own. A program that was linked without it has
+ * no threads. */
+#if defined(HDI_THREADS_WEAK) || (defined(__GLIBC__) && (__GLIBC__ < 2 || (__GLIBC__ == 2 && __GLIBC_MINOR__ < 34)))
+#define HDI_WEAK(name) static __typeof__(name) hdi_##name __attribute__((weakref(#name)))
+HDI_WEAK(pthread_create);
+HDI_WEAK(pthread_join);
+HDI_WEAK(pthread_attr_setstacksize);
+static int hdi_threads_linked(void) { return hdi_pthread_create && hdi_pthread_join && hdi_pthread_attr_setstacksize; }
+#else
+#define hdi_pthread_create pthread_create
+#define hdi_pthread_join pthread_join
+#define hdi_pthread_attr_setstacksize pthread_attr_setstacksize
+static int hdi_threads_linked(void) { return 1; }
 #endif
-    return 1;
+
+/* The stack of a thread: some systems give as little as 128 KB, musl among them. */
+enum { HDI_STACK = 1 << 20 };
+
+/* Signals go to the threads of the program, where the compiler's mode shows how to say so. */
+static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
+    pthread_attr_t attr;
+    int failed;
+#ifdef SIG_SETMASK
+    sigset_t all, old;
+    sigfillset(&all);
+    sigprocmask(SIG_SETMASK, &all, &old);
+#endif
+    pthread_attr_init(&attr);
+    hdi_pthread_attr_setstacksize(&attr, HDI_STACK);
+    failed = hdi_pthread_create(t, &attr, body, arg);
+    pthread_attr_destroy(&attr);
+#ifdef SIG_SETMASK
+    sigprocmask(SIG_SETMASK, &old, NULL);
+#endif
+    return !failed;
+}
+
+static void hdi_thread_join(hdi_thread t) { hdi_pthread_join(t, NULL); }
+
+/* Processors that this process may run on. */
+static int32_t hdi_processors(void) {
+    long n = 0;
+#if defined(__linux__) && defined(SYS_sched_getaffinity)
+    unsigned long mask[128];
+    const long bytes = syscall(SYS_sched_getaffinity, 0, sizeof mask, mask);
+    long i;
+    for (i = 0; i < bytes / HDI_CAST(long, sizeof *mask); i++)
+        for (; mask[i]; mask[i] &= mask[i] - 1) n++;
+#endif
+    if (n < 1) n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n < 1 ? 1 : HDI_CAST(int32_t, hdi_least(n, 1 << 16));
+}
+#elif HDI_THREADS == HDI_THREADS_WINDOWS
+typedef SRWLOCK hdi_mutex;
+typedef CONDITION_VARIABLE hdi_signal;
+typedef HANDLE hdi_thread;
+static void hdi_mutex_make(hdi_mutex *m) { InitializeSRWLock(m); }
+static void hdi_mutex_end(hdi_mutex *m) { (void)m; }
+static void hdi_lock(hdi_mutex *m) { AcquireSRWLockExclusive(m); }
+static void hdi_unlock(hdi_mutex *m) { ReleaseSRWLockExclusive(m); }
+static void hdi_signal_make(hdi_signal *c) { InitializeConditionVariable(c); }
+static void hdi_signal_end(hdi_signal *c) { (void)c; }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { SleepConditionVariableSRW(c, m, INFINITE, 0); }
+static void hdi_signal_one(hdi_signal *c) { WakeConditionVariable(c); }
+static void hdi_signal_all(hdi_signal *c) { WakeAllConditionVariable(c); }
+static int64_t hdi_process(void) { return 0; }   /* no fork here */
+#define HDI_THREAD_BODY static DWORD WINAPI
+#define HDI_THREAD_DONE 0
+typedef DWORD (WINAPI *hdi_thread_body)(void *);
+
+static int hdi_threads_linked(void) { return 1; }
+
+static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
+    *t = CreateThread(NULL, 0, body, arg, 0, NULL);
+    return *t != NULL;
+}
+
+static void hdi_thread_join(hdi_thread t) {
+    WaitForSingleObject(t, INFINITE);
+    CloseHandle(t);
+}
+
+static int32_t hdi_processors(void) {
+    DWORD_PTR mine = 0, all = 0;
+    int32_t n = 0;
+    if (GetProcessAffinityMask(GetCurrentProcess(), &mine, &all))
+        for (; mine; mine &= mine - 1) n++;
+    return n > 0 ? n : 1;
+}
+#else
+static int32_t hdi_processors(void) { return 1; }
+static int hdi_threads_linked(void) { return 0; }
+#endif
+
+/* Threads that work for the context, the calling one included. */
+static int32_t hdi_context_width(const hd_context *ctx) {
+    if (!hdi_threads_linked()) return 1;
+    return ctx->n_threads > 0 ? ctx->n_threads : hdi_processors();
+}
+
+#if HDI_THREADS
+/* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. */
+enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000 };
+
+typedef struct hdi_seat {
+    struct hd_threads *threads;
+    int32_t worker;
+    hdi_thread thread;
+} hdi_seat;
+
+/* What a thread knows of the open loop. */
+typedef struct hdi_loop {
+    uint32_t base, n;
+    hd_task task;
+    void *arg;
+    const int32_t *order;        /* NULL: claim i is task i; else task order[i] */
+} hdi_loop;
+
+struct hd_threads {
+    hdi_mutex lock;
+    hdi_signal work, finished;   /* for the threads; for the calling one */
+    int64_t process;
+    int32_t asked, most;         /* n_threads of the context; threads besides the caller, at most */
+    int32_t n, n_asleep, caller_asleep, leave;
+    int32_t open;                /* a loop is under way; written by the calling thread only */
+    hdi_loop loop;
+    uint32_t next, ready, done;  /* counters: next number to claim, end of those that may be, tasks that are done */
+    uint32_t helped;
+    hdi_seat seat[HDI_THREADS_MOST - 1];
+};
+
+
+static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
+#if defined(__GNUC__) || defined(__clang__)
+    return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
+#else
+    volatile LONG *at = HDI_RECAST(volatile LONG *, p);
+    return HDI_CAST(uint32_t, InterlockedCompareExchange(at, HDI_CAST(LONG, to), HDI_CAST(LONG, from))) == from;
+#endif
+}
+
+/* Tells the processor that a loop only waits. */
+static void hdi_relax(void) {
+#if defined(_MSC_VER) && !defined(__clang__)
+    YieldProcessor();
+#elif defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("isb");
+#endif
+}
+
+/* How many tasks may be claimed now. */
+static int32_t hdi_claimable(hd_threads *t) {
+    const uint32_t next = HDI_ATOMIC_GET(&t->next);
+    return HDI_CAST(int32_t, HDI_ATOMIC_GET(&t->ready) - next);
+}
+
+/* Number of a task of this loop that is the caller's from now on, or -1. */
+static int64_t hdi_claim(hd_threads *t, const hdi_loop *loop) {
+    for (;;) {
+        const uint32_t next = HDI_ATOMIC_GET(&t->next), i = next - loop->base;
+        if (i >= loop->n || HDI_CAST(int32_t, HDI_ATOMIC_GET(&t->ready) - next) <= 0) return -1;
+        if (hdi_swap(&t->next, next, next + 1)) return i;
+    }
+}
+
+/* Does tasks of the loop until none can be claimed. The last task of all wakes the calling thread. */
+static void hdi_loop_work(hd_threads *t, const hdi_loop *loop, int32_t worker) {
+    int64_t i;
+    while ((i = hdi_claim(t, loop)) >= 0) {
+        loop->task(loop->arg, loop->order ? loop->order[i] : i, worker);
+        if (worker) HDI_ATOMIC_ADD(&t->helped, 1);
+        if (HDI_ATOMIC_ADD(&t->done, 1) != loop->n || worker == 0) continue;
+        hdi_lock(&t->lock);
+        if (t->caller_asleep) hdi_signal_one(&t->finished);
+        hdi_unlock(&t->lock);
+    }
+}
+
+HDI_THREAD_BODY hdi_seat_run(void *arg) {
+    const hdi_seat *seat = HDI_CAST(const hdi_seat *, arg);
+    hd_threads *t = seat->threads;
+    hdi_loop loop;
+    int32_t k;
+    for (;;) {
+        for (k = 0; k < HDI_SPIN && hdi_claimable(t) <= 0; k++) hdi_relax();
+        hdi_lock(&t->lock);
+        while (!t->leave && hdi_claimable(t) <= 0) {
+            t->n_asleep++;
+            hdi_signal_wait(&t->work, &t->lock);
+            t->n_asleep--;
+        }
+        if (t->leave) break;
+        loop = t->loop;
+        hdi_unlock(&t->lock);
+        hdi_loop_work(t, &loop, seat->worker);
+    }
+    hdi_unlock(&t->lock);
+    return HDI_THREAD_DONE;
+}
+
+/* Neither counted nor limited, like the stacks of the threads: what is counted does not depend on their number. */
+static hd_threads *hdi_threads_new(hd_context *ctx) {
+    hd_threads *t = HDI_CAST(hd_threads *, HEATDIFF_MALLOC(sizeof *t));
+    int32_t most;
+    if (!t) return NULL;
+    memset(t, 0, sizeof *t);
+    hdi_mutex_make(&t->lock);
+    hdi_signal_make(&t->work);
+    hdi_signal_make(&t->finished);
+    t->process = hdi_process();
+    t->asked = ctx->n_threads;
+    most = hdi_context_width(ctx);
+    t->most = HDI_CAST(int32_t, hdi_least(most, HDI_THREADS_MOST)) - 1;
+    return t;
+}
+
+/* Ends the threads of the context. In a child process they do not exist, and their locks are left alone. */
+static void hdi_threads_end(hd_context *ctx) {
+    hd_threads *t = ctx->threads;
+    if (!t) return;
+    if (t->process == hdi_process()) {
+        hdi_lock(&t->lock);
+        t->leave = 1;
+        hdi_signal_all(&t->work);
+        hdi_unlock(&t->lock);
+        while (t->n > 0) hdi_thread_join(t->seat[--t->n].thread);
+        hdi_signal_end(&t->work);
+        hdi_signal_end(&t->finished);
+        hdi_mutex_end(&t->lock);
+    }
+    HEATDIFF_FREE(t);
+    ctx->threads = NULL;
+}
+
+/* Threads for a loop of so many tasks, started when they are first needed. NULL: the caller does it alone. */
+static hd_threads *hdi_threads_get(hd_context *ctx, int64_t n_tasks) {
+    hd_threads *t = ctx->threads;
+    if (n_tasks < 2 || n_tasks > INT32_MAX || ctx->n_threads == 1 || ctx->n_holders == 0) return NULL;
+    if (t && t->open) return NULL;               /* called by a task */
+    if (t && (t->process != hdi_process() || t->asked != ctx->n_threads)) {
+        hdi_threads_end(ctx);
+        t = NULL;
+    }
+    if (!t) t = ctx->threads = hdi_threads_new(ctx);
+    while (t && t->n < t->most && t->n + 1 < n_tasks) {
+        hdi_seat *seat = t->seat + t->n;
+        seat->threads = t;
+        seat->worker = t->n + 1;
+        if (!hdi_thread_start(&seat->thread, hdi_seat_run, seat)) t->most = t->n;
+        else t->n++;
+    }
+    return t && t->n > 0 ? t : NULL;
+}
+
+/* The calling thread has nothing to claim, but others are at work: looks around, then sleeps. */
+static void hdi_loop_wait(hd_context *ctx, hd_threads *t) {
+    const uint32_t n = t->loop.n;
+    int32_t k;
+    for (k = 0; k < HDI_SPIN && HDI_ATOMIC_GET(&t->done) != n && hdi_claimable(t) <= 0; k++) hdi_relax();
+    hdi_lock(&t->lock);
+    while (HDI_ATOMIC_GET(&t->done) != n && hdi_claimable(t) <= 0) {
+        t->caller_asleep = 1;
+        ctx->waits++;
+        hdi_signal_wait(&t->finished, &t->lock);
+        t->caller_asleep = 0;
+    }
+    hdi_unlock(&t->lock);
+}
+
+/* The loop of n tasks, of which n_ready may be claimed at once, in the order given (NULL: 0, 1, 2...); tasks release the others. */
+static void hdi_loop_run(hd_context *ctx, hd_threads *t, hdi_loop *loop, int64_t n_ready) {
+    int64_t wake;
+    hdi_lock(&t->lock);
+    loop->base = HDI_ATOMIC_GET(&t->next);                        /* nobody claims now */
+    t->loop = *loop;
+    t->open = 1;
+    HDI_ATOMIC_SET(&t->done, 0);
+    HDI_ATOMIC_SET(&t->ready, loop->base + HDI_CAST(uint32_t, n_ready));
+    for (wake = hdi_least(t->n_asleep, n_ready - 1); wake > 0; wake--) hdi_signal_one(&t->work);
+    hdi_unlock(&t->lock);
+    ctx->regions++;
+    for (;;) {
+        hdi_loop_work(t, loop, 0);
+        if (HDI_ATOMIC_GET(&t->done) == loop->n) break;
+        hdi_loop_wait(ctx, t);
+    }
+    t->open = 0;
+    ctx->helped += HDI_ATOMIC_GET(&t->helped);
+    HDI_ATOMIC_SET(&t->helped, 0);
+}
+
+/* From within a task: task id of the open loop may be claimed too. */
+static void hdi_release(hd_threads *t, int32_t id, int32_t *order) {
+    hdi_lock(&t->lock);
+    order[t->ready - t->loop.base] = id;
+    HDI_ATOMIC_SET(&t->ready, t->ready + 1);
+    if (t->caller_asleep) hdi_signal_one(&t->finished);
+    else if (t->n_asleep) hdi_signal_one(&t->work);
+    hdi_unlock(&t->lock);
+}
+
+/* Threads that can share n tasks with the caller; NULL: none, or they are the user's. */
+static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
+    return ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
+}
+
+/* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones. */
+static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task, void *arg) {
+    hdi_loop loop;
+    loop.n = HDI_CAST(uint32_t, n);
+    loop.task = task;
+    loop.arg = arg;
+    loop.order = order;
+    hdi_loop_run(ctx, ctx->threads, &loop, n_ready);
+}
+#else
+static void hdi_threads_end(hd_context *ctx) { (void)ctx; }
+static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
+    (void)ctx;
+    (void)n_tasks;
+    return NULL;
+}
+static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task, void *arg) {
+    HDI_CAST(void, ctx), HDI_CAST(void, n), HDI_CAST(void, n_ready), HDI_CAST(void, order), HDI_CAST(void, task), HDI_CAST(void, arg);
+}
+static void hdi_release(hd_threads *t, int32_t id, int32_t *order) {
+    HDI_CAST(void, t), HDI_CAST(void, id), HDI_CAST(void, order);
+}
+#endif
+
+/* An object that is made with the context holds it; its threads end with the last one. */
+static void hdi_hold(hd_context *ctx) { ctx->n_holders++; }
+
+static void hdi_let_go(hd_context *ctx) {
+    if (--ctx->n_holders == 0) hdi_threads_end(ctx);
+}
+
+/* ---- loops ---- */
+
+/* Whether tasks are done one after the other. Then some work is not worth its preparation. */
+static int hdi_is_serial(const hd_context *ctx) {
+    return !ctx->parallel_for && (ctx->n_holders == 0 || hdi_context_width(ctx) == 1);
 }
 
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
     int64_t i;
-    if (ctx->parallel_for && n_tasks > 1) {
-        ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
-        return;
-    }
-#if HDI_OPENMP
-    if (n_tasks > 1 && ctx->threads != 1 && !omp_in_parallel()) {
-        const int threads = ctx->threads > 0 ? ctx->threads : omp_get_max_threads();
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-        for (i = 0; i < n_tasks; i++) task(arg, i, omp_get_thread_num());
+#if HDI_THREADS
+    hd_threads *t = ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
+    if (t) {
+        hdi_loop loop;
+        loop.n = HDI_CAST(uint32_t, n_tasks);
+        loop.task = task;
+        loop.arg = arg;
+        loop.order = NULL;
+        hdi_loop_run(ctx, t, &loop, n_tasks);
         return;
     }
 #endif
-    for (i = 0; i < n_tasks; i++) task(arg, i, 0);
+    if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
+    else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
 
 /* The same for [0, n) in ranges of per_task; the last one may be shorter. */
@@ -9514,7 +9949,7 @@ typedef struct hdi_symbolic {
     /* the schedule, of room [16] */
     int32_t n_tasks;             /* subtrees that can be worked on at the same time */
     int32_t *task_begin, *task_end;  /* [n_tasks] their supernodes */
-    int32_t *task_of;            /* [n_super] -1: top */
+    int32_t *task_of;            /* [n_super] below 0: top[-1 - task_of] */
     int32_t n_top;
     int32_t *top;                /* [n_top] the other supernodes, children before parents */
     int32_t task_pivots, task_update;  /* largest of a front in a subtree */
@@ -10108,7 +10543,8 @@ static int64_t hdi_sched_roots(hdi_sched_space *z) {
 }
 
 /* All places: a space of its own for every subtree, of which only what its roots leave behind stays; the top
- * takes what it finds free. Returns the size of it all. */
+ * takes what it finds free, but vectors of the top have places of their own, so that their fronts can be worked on in any
+ * order that the tree allows. Returns the size of it all. */
 static int64_t hdi_sched_spaces(hdi_sched_space *z) {
     const hdi_symbolic *s = z->s;
     int64_t base = 0, from = 0, n_roots, i;
@@ -10126,7 +10562,9 @@ static int64_t hdi_sched_spaces(hdi_sched_space *z) {
         hdi_gaps_free(&z->gaps, from, to - from);
         if (i < n_roots) from = to + z->roots[i].id;
     }
-    return hdi_sched_place(z, s->top, 0, s->n_top);
+    if (z->matrices) return hdi_sched_place(z, s->top, 0, s->n_top);
+    for (k = 0; k < s->n_top; k++, base += hdi_sched_size(z, s->top[k - 1])) z->at[s->top[k]] = base;
+    return base;
 }
 
 /* ---- tasks ---- */
@@ -10170,6 +10608,7 @@ static void hdi_sched_tasks(hdi_symbolic *s, double *sum) {
     double open = 0;
     for (v = 0; v < s->n_super; v++) {
         if (task[v] < 0) {
+            task[v] = -1 - s->n_top;
             s->top[s->n_top++] = v;
             /* a top node in between ends a task, whose supernodes are consecutive */
             open = HUGE_VAL;
@@ -10870,13 +11309,13 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
 typedef struct hdi_sweep {
     const hdi_factor *f;
     double *x, *vec;             /* [n][k], [vector_size][k] entries */
-    double *gather;              /* [largest_update][k] entries for each part, packs with k > 1 and real */
-    int64_t gather_size;         /* doubles */
     int32_t k;                   /* right-hand sides side by side: packs any, real 1 or 8 */
     int32_t backward;
     const char *active;          /* forward */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
+    int32_t *pending, *order;    /* shared by threads: what nodes wait for; the nodes as they become ready */
+    hd_threads *threads;
 } hdi_sweep;
 
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
@@ -11044,16 +11483,16 @@ static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int back
     for (i = first; i < last; i += 8) HDI_PREFETCH(f->panel + i);
 }
 
-static void hdi_sweep_front(const hdi_sweep *z, int32_t v, int64_t part) {
+/* Backward, the front's vector has been handed on, and its place is free to gather the rows below. */
+static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const hdi_factor *f = z->f;
     const int64_t w = HDI_CAST(int64_t, f->width) * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v];
-    double *gather = z->gather + z->gather_size * part;
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
         if (z->wanted && !z->wanted[v]) return;
-        if (f->width == 1) hdi_sweep_backward_real(z, v, y, gather);
-        else hdi_sweep_backward_pack(z, v, y, gather);
+        if (f->width == 1) hdi_sweep_backward_real(z, v, y, t);
+        else hdi_sweep_backward_pack(z, v, y, t);
         return;
     }
     if (z->active && !z->active[v]) return;
@@ -11067,42 +11506,134 @@ static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
     int32_t v;
     (void)worker;
     if (z->backward)
-        for (v = end; v-- > begin;) hdi_sweep_front(z, v, index);
+        for (v = end; v-- > begin;) hdi_sweep_front(z, v);
     else
-        for (v = begin; v < end; v++) hdi_sweep_front(z, v, index);
+        for (v = begin; v < end; v++) hdi_sweep_front(z, v);
+}
+
+/* ---- a sweep as one loop ---- */
+/* Its nodes: the subtrees and the fronts of the top, forward, then the same backward. A front of the top waits
+ * for its children forward, a subtree for the parents of its roots backward. Whoever does the last thing that
+ * a node waits for releases it. */
+
+/* A sweep that reads fewer bytes is done by one thread: two would need as long, with 10 GB/s and 50 microseconds to begin. */
+#define HDI_SWEEP_SHARED 1e6
+
+static int32_t hdi_sweep_nodes(const hdi_symbolic *s) { return s->n_tasks + s->n_top; }
+
+/* One of the things that a node waits for is done. */
+static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node, int32_t *pending) {
+    if (HDI_ATOMIC_ADD(pending, -1) == 0) hdi_release(z->threads, node, z->order);
+}
+
+/* Whether supernode v hands its vector to a front of the top. */
+static int hdi_sweep_below_top(const hdi_symbolic *s, int32_t v) {
+    return s->parent[v] >= 0 && s->task_of[s->parent[v]] < 0;
+}
+
+/* Forward, supernode v is done, whose parent belongs to the top. */
+static void hdi_sweep_up(const hdi_sweep *z, int32_t v) {
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t node = s->n_tasks - 1 - s->task_of[s->parent[v]];
+    hdi_sweep_arrive(z, node, z->pending + node);
+}
+
+/* What subtree k waits for backward. */
+static int32_t hdi_sweep_roots(const hdi_symbolic *s, int32_t k) {
+    int32_t v, n = 0;
+    for (v = s->task_begin[k]; v < s->task_end[k]; v++) n += hdi_sweep_below_top(s, v);
+    return n;
+}
+
+/* Node i is done: those that waited for it. */
+static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t n = hdi_sweep_nodes(s), v = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
+    int32_t k;
+    if (z->backward) {
+        for (k = v < 0 ? 0 : s->kid_ptr[v]; v >= 0 && k < s->kid_ptr[v + 1]; k++) {
+            const int32_t task = s->task_of[s->kid[k]];
+            if (task < 0) hdi_release(z->threads, n + s->n_tasks - 1 - task, z->order);
+            else hdi_sweep_arrive(z, n + task, z->pending + task);
+        }
+    } else if (v >= 0) {
+        if (s->parent[v] >= 0) hdi_sweep_up(z, v);
+        else hdi_release(z->threads, n + i, z->order);
+    } else {
+        z->pending[i] = hdi_sweep_roots(s, i);
+        if (z->pending[i] == 0) hdi_release(z->threads, n + i, z->order);
+        for (k = s->task_begin[i]; k < s->task_end[i]; k++)
+            if (hdi_sweep_below_top(s, k)) hdi_sweep_up(z, k);
+    }
+}
+
+static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
+    hdi_sweep z = *HDI_CAST(const hdi_sweep *, arg);
+    const hdi_symbolic *s = z.f->sym;
+    const int32_t n = hdi_sweep_nodes(s), i = HDI_CAST(int32_t, index) % n;
+    z.backward = index >= n;
+    if (i < s->n_tasks) hdi_sweep_task(&z, i, worker);
+    else hdi_sweep_front(&z, s->top[i - s->n_tasks]);
+    hdi_sweep_next(&z, i);
+}
+
+/* All of it, or with active the way back. */
+static void hdi_sweep_share(hdi_sweep *z, hd_context *ctx) {
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t n = hdi_sweep_nodes(s);
+    int32_t n_ready = 0, k;
+    for (k = 0; k < s->n_tasks; k++) {
+        z->pending[k] = z->active ? hdi_sweep_roots(s, k) : 0;
+        if (z->pending[k] == 0) z->order[n_ready++] = z->active ? n + k : k;
+    }
+    for (k = 0; k < s->n_top; k++) {
+        const int32_t v = s->top[k], node = s->n_tasks + k;
+        z->pending[node] = s->kid_ptr[v + 1] - s->kid_ptr[v];
+        if (z->active ? s->parent[v] < 0 : z->pending[node] == 0) z->order[n_ready++] = z->active ? n + node : node;
+    }
+    hdi_parallel_ordered(ctx, z->active ? n : 2 * n, n_ready, z->order, hdi_sweep_node, z);
 }
 
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
 static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     const hdi_symbolic *s = z->f->sym;
+    const double bytes = 2 * 8.0 * z->f->width * HDI_CAST(double, z->f->panel_at[s->n_super]);
     int32_t i;
+    if (ctx && !ctx->parallel_for && bytes < HDI_SWEEP_SHARED) ctx = NULL;
+    if (ctx) z->threads = hdi_threads_own(ctx, hdi_sweep_nodes(s));
     z->backward = 0;
+    if (z->threads && !z->active) {
+        hdi_sweep_share(z, ctx);
+        return;
+    }
     if (ctx && !z->active) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
     else for (i = 0; i < s->n_tasks; i++) hdi_sweep_task(z, i, 0);
-    for (i = 0; i < s->n_top; i++) hdi_sweep_front(z, s->top[i], s->n_tasks);
+    for (i = 0; i < s->n_top; i++) hdi_sweep_front(z, s->top[i]);
+    if (z->threads) {
+        hdi_sweep_share(z, ctx);
+        return;
+    }
     z->backward = 1;
-    for (i = s->n_top; i-- > 0;) hdi_sweep_front(z, s->top[i], s->n_tasks);
+    for (i = s->n_top; i-- > 0;) hdi_sweep_front(z, s->top[i]);
     if (ctx) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
     else for (i = s->n_tasks; i-- > 0;) hdi_sweep_task(z, i, 0);
 }
 
-/* Doubles that a sweep of k right-hand sides works with besides x: vec, and gather for each part under way at
- * the same time. */
-static uint64_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k, int parallel) {
+/* Doubles that a sweep of k right-hand sides works with besides x: vec, pending and order. */
+static uint64_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k) {
     const uint64_t w = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, k);
-    const uint64_t parts = parallel ? HDI_CAST(uint64_t, s->n_tasks) + 1 : 1;
-    return w * (HDI_CAST(uint64_t, s->vector_size) + parts * HDI_CAST(uint64_t, s->largest_update)) + 16;
+    return w * HDI_CAST(uint64_t, s->vector_size) + 2 * HDI_CAST(uint64_t, hdi_sweep_nodes(s)) + 16;
 }
 
-static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, double *work, int parallel) {
+static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, double *work) {
     hdi_sweep z;
     memset(&z, 0, sizeof z);
     z.f = f;
     z.x = x;
     z.k = k;
     z.vec = work;
-    z.gather = work + HDI_CAST(int64_t, f->width) * k * f->sym->vector_size;
-    z.gather_size = parallel ? HDI_CAST(int64_t, f->width) * k * f->sym->largest_update : 0;
+    z.pending = HDI_CAST(int32_t *, HDI_CAST(void *, work + HDI_CAST(int64_t, f->width) * k * f->sym->vector_size));
+    z.order = z.pending + hdi_sweep_nodes(f->sym);
     return z;
 }
 
@@ -11249,7 +11780,7 @@ static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
     const uint64_t size = HDI_CAST(uint64_t, f->n) * HDI_CAST(uint64_t, width * k);
     if (f->x[which]) return HD_OK;
     if (!f->work[which])
-        f->work[which] = HDI_CAST(double *, hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k, 1),
+        f->work[which] = HDI_CAST(double *, hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k),
                                                       sizeof(double), e));
     if (f->work[which]) f->x[which] = HDI_CAST(double *, hdi_alloc(f->ctx, size, sizeof(double), e));
     return e->status;
@@ -11260,7 +11791,7 @@ static void hdi_ldl_solve_real(hd_ldl *f, int32_t q, int32_t n_cols, const doubl
                                size_t ldx) {
     const int32_t wide = n_cols > 1 ? 8 : 1;
     double *at = f->x[0];
-    hdi_sweep z = hdi_sweep_open(&f->real, wide, f->x[0], f->work[0], 1);
+    hdi_sweep z = hdi_sweep_open(&f->real, wide, f->x[0], f->work[0]);
     int32_t i, r;
     for (i = 0; i < f->n; i++, at += wide)
         for (r = 0; r < wide; r++)
@@ -11275,7 +11806,7 @@ static void hdi_ldl_solve_real(hd_ldl *f, int32_t q, int32_t n_cols, const doubl
 static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx) {
     const int32_t lanes = hdi_ldl_lanes(f, p);
     double *at = f->x[1];
-    hdi_sweep z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1], 1);
+    hdi_sweep z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1]);
     int32_t i, q;
     b += HDI_PACK_LANES * HDI_CAST(size_t, p) * ldb;
     x += HDI_PACK_LANES * HDI_CAST(size_t, p) * ldx;
@@ -12460,7 +12991,7 @@ static void hdi_ldl_column(const hd_ldl *f, const hdi_factor *of, const hdi_ldl_
     const hdi_symbolic *s = &f->sym;
     const int32_t width = of->width, stride = width == 1 ? 1 : 2, source = f->inv[t->order[begin].key];
     double *x = f->x[width > 1];
-    hdi_sweep z = hdi_sweep_open(of, 1, x, f->work[width > 1], 1);
+    hdi_sweep z = hdi_sweep_open(of, 1, x, f->work[width > 1]);
     int64_t p;
     int32_t v, q;
     memset(t->active, 0, HDI_CAST(size_t, s->n_super));
@@ -15173,8 +15704,8 @@ typedef struct hdi_batch {
 
 /* Doubles of a batch's arrays. */
 static uint64_t hdi_batch_size(const hdi_elim *m, int32_t k, uint64_t *x, uint64_t *xr) {
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k, 1);
-    const uint64_t real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1, 1);
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k);
+    const uint64_t real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1);
     *x = HDI_PACK * n * HDI_CAST(uint64_t, k);
     *xr = n * (k > 1 ? 8 : 1);
     return *x + *xr + (pack > real ? pack : real) + HDI_CAST(uint64_t, m->sym.n_super) / sizeof(double) + 8;
@@ -15328,7 +15859,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     if (m->lone >= 0) {
         for (j = 0; j < n; j++)
             for (r = 0; r < wide; r++) b->xr[wide * j + r] = r < k && !lane[r].skip ? lane[r].rhs[j] : 0;
-        z = hdi_sweep_open(&m->real, wide, b->xr, b->work, ctx != NULL);
+        z = hdi_sweep_open(&m->real, wide, b->xr, b->work);
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
         for (r = 0; r < k; r++)
@@ -15342,7 +15873,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
                 to[0] = to[1] = to[2] = to[3] = lane[r].rhs[j];
             }
         }
-        z = hdi_sweep_open(m->pack + i, k, b->x, b->work, ctx != NULL);
+        z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
         for (r = 0; r < n_list; r += HDI_CHECK_MOST)
@@ -16126,7 +16657,7 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     if (z->v[0] && !z->c) z->c = HDI_CAST(double *, hdi_alloc(ctx, 2 * n * wide + 2 * n, sizeof(double), e));
     if (z->c && !z->work)
         z->work = HDI_CAST(double *,
-                           hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide, 1), sizeof(double), e));
+                           hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide), sizeof(double), e));
     if (e->status < 0) return e->status;
     z->w = z->c + n * wide;
     z->probe = z->w + n * wide;
@@ -16203,7 +16734,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
         z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(double), e));
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
-    s = hdi_sweep_open(&z->m->shifted, wide, w, z->work, 1);
+    s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
     hdi_sweep_run(&s, ctx);
     hdi_wide_norms(w, z->m->noise_shift, n, wide, z->noise[j]);
     if (j == 0 || j == 3) hdi_silan_probe(z);
@@ -16528,7 +17059,7 @@ static void hdi_ground_solve(const hdi_elim *m, const hdi_ground *g, double *x, 
     int32_t i;
     for (i = 0; i < m->sym.n; i++)
         if (g->held[i]) x[i] = 0;
-    z = hdi_sweep_open(&g->factor, 1, x, work, 1);
+    z = hdi_sweep_open(&g->factor, 1, x, work);
     hdi_sweep_run(&z, m->ctx);
 }
 
@@ -16633,7 +17164,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     if (g->formed) return HD_OK;
     loose = HDI_TAKE(&s, char, lap->n_components);
     val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
-    work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1, 1));
+    work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
     b = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n_active));
     if (e->status >= 0 && hdi_factor_make(&pack, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
         hdi_ground_values(m, g, step * m->scale, NULL, val);
@@ -16688,7 +17219,7 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t 
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
     return 4 * HDI_CAST(uint64_t, m->sym.n) + HDI_CAST(uint64_t, m->lap->n_components) +
-           hdi_sweep_size(&m->sym, 1, 1, 1);
+           hdi_sweep_size(&m->sym, 1, 1);
 }
 
 /* ==== [25] plan ====
@@ -18208,14 +18739,14 @@ static double hdi_own_near(const hd_heat *heat, const hd_rational *set, double t
 static double hdi_own_rounding(const hd_heat *heat, const hd_rational *set, double t, double seen,
                                const double *size, int mass) {
     const hd_laplacian *lap = heat->elim.lap;
-    const double near = hdi_own_near(heat, set, t);
+    const double closeness = hdi_own_near(heat, set, t);
     double most = 0;
     int32_t i;
-    for (i = 0; i < lap->n_active && near > 0; i++) {
+    for (i = 0; i < lap->n_active && closeness > 0; i++) {
         const double spread = hdi_quotient(mass ? 1 : 1 / lap->b_diag[i], lap->b_ratio);
         most = hdi_max(most, hdi_quotient(spread, size[i]));
     }
-    return HDI_PROBE_OWN * seen + near * most;
+    return HDI_PROBE_OWN * seen + closeness * most;
 }
 
 /* The largest entry of diag(B^-1), or a bound of it: a matrix whose B norm is x has entries of at most this
@@ -18636,7 +19167,7 @@ static hd_status hdi_edges_probe(hdi_heat_call *h, const double *k, const double
     const hd_heat *heat = h->heat;
     const hd_rational *set = &heat->elim.set;
     const int32_t n = h->lap->n_active;
-    const double near = heat->scale * hdi_own_near(heat, set, h->t) * hdi_largest_spread(h->lap);
+    const double closeness = heat->scale * hdi_own_near(heat, set, h->t) * hdi_largest_spread(h->lap);
     hdi_probe probe;
     int32_t i, top = 0;
     for (i = 1; i < n; i++)
@@ -18645,7 +19176,7 @@ static hd_status hdi_edges_probe(hdi_heat_call *h, const double *k, const double
     if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set) < 0) return h->e->status;
     for (i = 0; i < probe.k; i++) {
         hdi_parts part = hdi_edges_rounding(heat, &probe, i, k, g, values);
-        part.rounding += near;
+        part.rounding += closeness;
         hdi_ledger_note(ledger, heat->scale * k[probe.row[i]], part);
     }
     return HD_OK;
@@ -19355,7 +19886,7 @@ static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call 
     z->unit = z->weighted ? 1 / h->heat->scale : h->heat->scale;
     z->column = HDI_TAKE(s, double, 2 * n_times * n);
     z->x = HDI_TAKE(s, double, HDI_PACK * n);
-    z->sweep = HDI_TAKE(s, double, hdi_sweep_size(&z->m->sym, HDI_PACK, 1, 1));
+    z->sweep = HDI_TAKE(s, double, hdi_sweep_size(&z->m->sym, HDI_PACK, 1));
     z->rhs = HDI_TAKE(s, double, 3 * n);
     z->product = z->full ? HDI_TAKE(s, double, 2 * n) : NULL;
     z->g = HDI_TAKE(s, double, h->heat->source->n);
@@ -19393,7 +19924,7 @@ static void hdi_distance_shared_solve(hdi_distance_shared *z, int32_t i) {
     memset(z->x, 0, z->w.n * HDI_PACK * sizeof *z->x);
     for (j = 0; j < m->sym.n; j++)
         for (q = 0; q < 4; q++) z->x[HDI_PACK * j + q] = z->rhs[j];
-    sweep = hdi_sweep_open(m->pack + i, 1, z->x, z->sweep, 1);
+    sweep = hdi_sweep_open(m->pack + i, 1, z->x, z->sweep);
     sweep.active = z->active;
     hdi_sweep_run(&sweep, m->ctx);
     check = hdi_check_open(m, i, z->rhs, z->x, HDI_PACK);
@@ -20000,6 +20531,7 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_free(ctx, g->from);
     hdi_laplacian_free(g->lap, ctx);
     hdi_free(ctx, g);
+    hdi_let_go(ctx);
 }
 
 /* Allocates unless something failed before: a list of arrays needs one check at its end. */
@@ -20158,7 +20690,7 @@ static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
     g->x = hdi_geo_doubles(g, g->n_active, e);
     g->b = hdi_geo_doubles(g, g->n_active, e);
     g->r = hdi_geo_doubles(g, g->n_active, e);
-    g->work = hdi_geo_doubles(g, HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, 1, 1)), e);
+    g->work = hdi_geo_doubles(g, HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, 1)), e);
     return e->status;
 }
 
@@ -20538,7 +21070,7 @@ static void hdi_geo_forward(hdi_geo_far *w, const hdi_sweep *z) {
         int64_t i = 0;
         w->open[0] = w->open[--w->n_open];
         if (w->n_open > 0) hdi_sift_down(w->open, 0, w->n_open);
-        hdi_sweep_front(z, v, 0);
+        hdi_sweep_front(z, v);
         while (i < below && !(fabs(up[i]) >= DBL_MIN)) i++;
         if (i < below) hdi_geo_open(w, s->parent[v]);
         else w->end[w->n_ends++] = v;
@@ -20565,7 +21097,7 @@ static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
         w->open[w->n_open++].id = end;
         while (w->n_open > 0) {
             const int32_t v = HDI_CAST(int32_t, w->open[--w->n_open].id);
-            hdi_sweep_front(z, v, 0);
+            hdi_sweep_front(z, v);
             w->g->active[v] = 1;
             w->front[w->n_fronts++] = v;
             for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
@@ -20589,7 +21121,7 @@ static void hdi_geo_stage(hdi_geo_far *w) {
     }
     g->x = g->r;
     g->r = swap;
-    z = hdi_sweep_open(&g->heat, 1, g->x, g->work, 1);
+    z = hdi_sweep_open(&g->heat, 1, g->x, g->work);
     z.active = g->active;
     hdi_geo_forward(w, &z);
     z.backward = 1;
@@ -20618,7 +21150,7 @@ static void hdi_geo_divergence_now(const hdi_geo_far *w, double least) {
 /* x = the inverse times x for k columns side by side, 1 or a batch. */
 static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int32_t k, double *x,
                           const char *active) {
-    hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work, 1);
+    hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work);
     z.active = active;
     hdi_sweep_run(&z, g->ctx);
 }
@@ -20801,7 +21333,7 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
 
 static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
     const int64_t n = HDI_GEO_WIDE * HDI_CAST(int64_t, g->n_active);
-    const int64_t n_work = HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE, 1));
+    const int64_t n_work = HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
     if (!g->wide_x) g->wide_x = hdi_geo_doubles(g, n, e);
     if (!g->wide_b) g->wide_b = hdi_geo_doubles(g, n, e);
     if (!g->wide_work) g->wide_work = hdi_geo_doubles(g, n_work, e);
@@ -20940,6 +21472,12 @@ HEATDIFF_API const char *hd_status_text(hd_status status) {
         case HD_STATUS_FORCE_INT: break;
     }
     return "unknown status";
+}
+
+HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx) {
+    hd_context own;
+    memset(&own, 0, sizeof own);
+    return hdi_context_width(ctx ? ctx : &own);
 }
 
 /* An error and a context for the body of a public function: the caller's, or own ones if the caller gave
@@ -21084,6 +21622,7 @@ static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_la
     shell->lap.n = n;
     shell->lap.kind = kind;
     shell->lap.context = hdi_enter_keep(c, &shell->context);
+    hdi_hold(c->ctx);
     return &shell->lap;
 }
 
@@ -21095,6 +21634,7 @@ static void hdi_lap_drop(hd_laplacian *lap) {
         use = &ctx;
     }
     hdi_laplacian_free(lap, use);
+    hdi_let_go(use);
 }
 
 static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status status) {
@@ -21261,6 +21801,7 @@ static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double
 static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t n, const hdi_call *c,
                                      hdi_scope *s) {
     *s = hdi_scope_begin(c->ctx, c->e);
+    hdi_hold(c->ctx);
     if (hdi_progress(c->ctx, "neighbours", 0, c->e) < 0 || hdi_tree_make(tree, xyz, n, s) < 0)
         return c->e->status;
     return hdi_progress(c->ctx, "neighbours", 0.1, c->e);
@@ -21278,6 +21819,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
     if (m > 0 && !index) return hdi_missing(c.e);
     if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
         (void)hdi_nearest(&tree, query, m, k, index, distance2, c.ctx, c.e);
+    hdi_let_go(c.ctx);
     return hdi_scope_end(&s);
 }
 
@@ -21295,6 +21837,7 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     r = hdi_min(radius, 1e152);                  /* its square does not overflow */
     if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
         (void)hdi_within(out, &tree, query, m, r * r, c.ctx, c.e);
+    hdi_let_go(c.ctx);
     return hdi_scope_end(&s);
 }
 
@@ -21384,6 +21927,7 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f) {
     hdi_free(ctx, f->inv);
     hdi_symbolic_free(ctx, &f->sym);
     hdi_free(ctx, f);
+    hdi_let_go(ctx);
 }
 
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -21409,6 +21953,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
         c.ctx = &f->context;
     }
     f->ctx = c.ctx;
+    hdi_hold(f->ctx);
     f->n = a->n_rows;
     f->nnz = a->nnz;
     order = hdi_order_of(o.ordering, o.xyz, o.perm);
@@ -21609,6 +22154,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     if (!heat) return c.e->status;
     memset(heat, 0, sizeof *heat);
     heat->ctx = c.ctx;
+    hdi_hold(heat->ctx);
     hdi_heat_defaults(heat, opts);
     if (hdi_heat_make(heat, lap, c.e) >= 0) *out = heat;
     else hd_heat_free(heat);
@@ -21634,6 +22180,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_free(ctx, heat->fill);
     hdi_free(ctx, heat->sums);
     hdi_free(ctx, heat);
+    hdi_let_go(ctx);
 }
 
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs,
@@ -21846,6 +22393,7 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
     if (!g) return c.e->status;
     memset(g, 0, sizeof *g);
     g->ctx = hdi_enter_keep(&c, &g->context);
+    hdi_hold(g->ctx);
     g->n = n;
     if (hdi_geo_make(g, xyz, tri, n_tri, &o, c.e) >= 0) *out = g;
     else hdi_geo_free(g);

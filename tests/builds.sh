@@ -11,7 +11,7 @@ printf '#define HEATDIFF_STATIC\n#define HEATDIFF_IMPLEMENTATION\n#include "heat
 printf '#define HEATDIFF_STATIC\n#define HEATDIFF_IMPLEMENTATION\n#include "heatdiff.h"\nint other(void);\nint main(void) { return hd_status_name(HD_OK)[0] != other(); }\n' >"$work/copy2.c"
 for f in impl use copy1 copy2; do cp "$work/$f.c" "$work/$f.cpp"; done
 count=0
-for c in "gcc -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "gcc -std=c11" "gcc -std=c99 -O3 -march=native -fopenmp" "gcc -std=c99 -DNDEBUG -O2" \
+for c in "gcc -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "gcc -std=c11" "gcc -std=c99 -O3 -march=native" "gcc -std=c99 -DHEATDIFF_NO_THREADS" "gcc -std=c99 -DNDEBUG -O2" \
          "clang -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "clang -std=c11" "g++ -std=c++11 -Wold-style-cast" "g++ -std=c++17" "g++ -std=c++20" "g++ -std=c++23" \
          "clang++ -std=c++11 -Wold-style-cast" "clang++ -std=c++17" "clang++ -std=c++20"; do
   command -v "${c%% *}" >/dev/null || { echo "not here: ${c%% *}"; continue; }

@@ -982,7 +982,9 @@ static void int_places(const hdi_symbolic *s, int triangle, const int64_t *at, i
             left++;
         }
     }
-    for (k = 0; k < s->n_top; k++) int_place_front(s, &m, s->top[k], triangle, at, what);
+    for (k = 0; k < s->n_top && triangle; k++) int_place_front(s, &m, s->top[k], triangle, at, what);
+    for (k = 0; k < s->n_top && !triangle; k++) int_space_take(&m, at[s->top[k]], s->row_ptr[s->top[k] + 1] - s->row_ptr[s->top[k]], s->top[k], what);
+    for (p = 0; p < size && !triangle; p++) m.owner[p] = -1;             /* in any order, so that all stay */
     for (p = 0; p < size; p++) held += m.owner[p] >= 0;
     CHECK_MSG(held == 0, "%s: %lld entries are never let go", what, (long long)held);
     free(next);
@@ -1033,12 +1035,12 @@ static void int_symbolic_one(const hd_csr *a, int32_t *perm, int dense, const ch
     for (k = 0; k < s.n_tasks; k++) {
         for (v = s.task_begin[k]; v < s.task_end[k]; v++) {
             seen[v]++;
-            CHECK(s.task_of[v] == k && (s.parent[v] < 0 || s.task_of[s.parent[v]] == k || s.task_of[s.parent[v]] == -1));
+            CHECK(s.task_of[v] == k && (s.parent[v] < 0 || s.task_of[s.parent[v]] == k || s.task_of[s.parent[v]] < 0));
         }
     }
     for (k = 0; k < s.n_top; k++) {
         seen[s.top[k]]++;
-        CHECK(s.task_of[s.top[k]] == -1 && (k == 0 || s.top[k] > s.top[k - 1]));
+        CHECK(s.task_of[s.top[k]] == -1 - k && (k == 0 || s.top[k] > s.top[k - 1]));
     }
     for (v = 0; v < s.n_super; v++) CHECK_MSG(seen[v] == 1, "%s: supernode %d is worked on %d times", what, (int)v, (int)seen[v]);
     int_places(&s, 1, s.update, s.work, what);
@@ -1226,7 +1228,7 @@ static void int_sweep_one(const hdi_elim *m, const hdi_factor *f, int32_t k, hd_
     const int64_t n = s->n, w = f->width;
     double *x = DENSE_NEW(double, n * w * k), *one = DENSE_NEW(double, n * w), *again = DENSE_NEW(double, n * w * k), *b = DENSE_NEW(double,
         n * w * k);
-    double *work = DENSE_NEW(double, hdi_sweep_size(s, f->width, k, 1));
+    double *work = DENSE_NEW(double, hdi_sweep_size(s, f->width, k));
     char *active = DENSE_NEW(char, s->n_super);
     uint64_t seed = 17;
     hdi_sweep z;
@@ -1238,14 +1240,14 @@ static void int_sweep_one(const hdi_elim *m, const hdi_factor *f, int32_t k, hd_
         for (i = 0; i < n; i++)
             if (!sparse || i % 61 == 7) hdi_sweep_touch(s, (int32_t)i, active);
         memcpy(x, b, (size_t)(n * w * k) * sizeof *x);
-        for (i = 0; (size_t)i < hdi_sweep_size(s, f->width, k, 1); i++) work[i] = 1e300;
-        z = hdi_sweep_open(f, k, x, work, 1);
+        for (i = 0; (size_t)i < hdi_sweep_size(s, f->width, k); i++) work[i] = 1e300;
+        z = hdi_sweep_open(f, k, x, work);
         hdi_sweep_run(&z, ctx);
         for (r = 0; r < k; r++) {
             double worst = 0;
             for (i = 0; i < n; i++)
                 for (q = 0; q < w; q++) one[w * i + q] = b[w * (k * i + r) + q];
-            z = hdi_sweep_open(f, 1, one, work, 0);
+            z = hdi_sweep_open(f, 1, one, work);
             hdi_sweep_run(&z, NULL);
             for (i = 0; i < n; i++)
                 for (q = 0; q < w; q++) worst = fmax(worst, fabs(one[w * i + q] - x[w * (k * i + r) + q]));
@@ -1254,8 +1256,8 @@ static void int_sweep_one(const hdi_elim *m, const hdi_factor *f, int32_t k, hd_
         }
         for (q = 0; q < 2; q++) {
             memcpy(again, b, (size_t)(n * w * k) * sizeof *x);
-            for (i = 0; (size_t)i < hdi_sweep_size(s, f->width, k, q); i++) work[i] = 1e300;
-            z = hdi_sweep_open(f, k, again, work, q);
+            for (i = 0; (size_t)i < hdi_sweep_size(s, f->width, k); i++) work[i] = 1e300;
+            z = hdi_sweep_open(f, k, again, work);
             z.active = active;
             hdi_sweep_run(&z, q ? ctx : NULL);
             CHECK_MSG(dense_max_diff(again, x, n * w * k) == 0, "%s: %d side by side, by active fronts: off by %g", what, (int)k,

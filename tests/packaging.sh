@@ -28,7 +28,7 @@ is "plain copy of one file" "$work/copy/consumer"
 
 # Installed, without its tests and with the shared library. CMAKE_BUILD_TYPE is as quick to compile as can be: numbers do not change.
 quietly cmake -S "$top" -B "$work/build" -DCMAKE_BUILD_TYPE=Debug -DHEATDIFF_BUILD_TESTS=OFF -DHEATDIFF_BUILD_EXAMPLES=OFF \
-  -DHEATDIFF_BENCH_RIVALS=OFF -DHEATDIFF_BUILD_SHARED=ON -DHEATDIFF_OPENMP=OFF -DCMAKE_INSTALL_PREFIX="$work/prefix" -DCMAKE_INSTALL_LIBDIR=lib
+  -DHEATDIFF_BENCH_RIVALS=OFF -DHEATDIFF_BUILD_SHARED=ON -DCMAKE_INSTALL_PREFIX="$work/prefix" -DCMAKE_INSTALL_LIBDIR=lib
 quietly cmake --build "$work/build" --target heatdiff-tool heatdiff_shared
 quietly cmake --install "$work/build"
 for f in include/heatdiff.h bin/heatdiff lib/pkgconfig/heatdiff.pc lib/cmake/heatdiff/heatdiff-config.cmake \
@@ -72,7 +72,7 @@ mingw=x86_64-w64-mingw32
 if command -v $mingw-gcc >/dev/null; then
   printf 'set(CMAKE_SYSTEM_NAME Windows)\nset(CMAKE_C_COMPILER %s-gcc)\nset(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)\n' $mingw >"$work/mingw.cmake"
   quietly cmake -S "$top" -B "$work/windows" -DCMAKE_TOOLCHAIN_FILE="$work/mingw.cmake" -DCMAKE_BUILD_TYPE=Debug -DHEATDIFF_BUILD_TESTS=OFF \
-    -DHEATDIFF_BUILD_EXAMPLES=OFF -DHEATDIFF_BUILD_TOOLS=OFF -DHEATDIFF_OPENMP=OFF -DHEATDIFF_BUILD_SHARED=ON -DCMAKE_INSTALL_PREFIX="$work/winprefix" -DCMAKE_INSTALL_LIBDIR=lib
+    -DHEATDIFF_BUILD_EXAMPLES=OFF -DHEATDIFF_BUILD_TOOLS=OFF -DHEATDIFF_BUILD_SHARED=ON -DCMAKE_INSTALL_PREFIX="$work/winprefix" -DCMAKE_INSTALL_LIBDIR=lib
   quietly cmake --build "$work/windows"
   quietly cmake --install "$work/windows"
   dll=$(echo "$work"/winprefix/bin/*heatdiff*.dll)

@@ -156,6 +156,7 @@ static void test_tmp_remove(void) {
 #include "test_robust.h"
 #include "test_polygon.h"
 #include "test_ldl.h"
+#include "test_threads.h"
 #include "test_engines.h"
 #include "test_geodesic.h"
 #include "test_diagonal.h"
@@ -171,7 +172,7 @@ typedef struct test_group { const char *name; void (*run)(void); } test_group;
 static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
     {"intrinsic", test_intrinsic},
-    {"ldl", test_ldl},           {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
+    {"ldl", test_ldl},           {"threads", test_threads}, {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
     {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic},
     {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"moving", test_moving},

@@ -141,7 +141,7 @@ static void asm_points(void) {
     int wrong = 0;
     memset(&ctx, 0, sizeof ctx);
     memset(&o, 0, sizeof o);
-    ctx.threads = 1;
+    ctx.n_threads = 1;
     o.context = &ctx;
     for (i = 0; i < N; i++) {
         double r = 0;
@@ -244,7 +244,7 @@ static void asm_blocks(void) {
         memset(ctx, 0, sizeof ctx);
         o.kind = kinds[k];
         for (way = 0; way < WAYS; way++) {
-            ctx[way].threads = way == 1 ? 2 : 1;
+            ctx[way].n_threads = way == 1 ? 2 : 1;
             if (way == 2) ctx[way].parallel_for = sparse_reverse_for;
             if (way == 3) ctx[way].parallel_for = heat_shuffled_for;
             ctx[way].parallel_user = &calls;
@@ -280,7 +280,7 @@ static void asm_blocks(void) {
         hd_laplacian_opts o;
         memset(&ctx, 0, sizeof ctx);
         memset(&o, 0, sizeof o);
-        ctx.threads = 1;
+        ctx.n_threads = 1;
         if (way) ctx.parallel_for = sparse_reverse_for;
         ctx.parallel_user = &calls;
         o.context = &ctx;

@@ -239,9 +239,9 @@ static void base_context_misuse(void) {
     CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, &e) == HD_ERR_ARGUMENT && e.status == HD_ERR_ARGUMENT);
     CHECK(hd_csr_from_triplets(&a, 1, 1, 1, &zero, &zero, NULL, &ctx, &e) == HD_ERR_ARGUMENT);
     ctx = test_memory_context(&m);
-    ctx.threads = -1;
+    ctx.n_threads = -1;
     CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, &e) == HD_ERR_ARGUMENT);
-    ctx.threads = 0;
+    ctx.n_threads = 0;
     lo.begin_zero = 1;
     CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, &e) == HD_ERR_ARGUMENT);
     lo.begin_zero = 0;

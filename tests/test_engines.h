@@ -846,12 +846,6 @@ static int64_t eng_thread_run(const shape *s, hd_laplacian_kind kind, hd_heat_op
     return calls;
 }
 
-#ifdef _OPENMP
-enum { eng_openmp = 1 };
-#else
-enum { eng_openmp = 0 };             /* ways 0 to 3 are all the same */
-#endif
-
 static int eng_same_report(const hd_report *a, const hd_report *b) {
     return a->method == b->method && a->solver == b->solver && a->iterations == b->iterations && a->degree == b->degree && a->n_poles == b->n_poles &&
            a->residual == b->residual && a->error_bound == b->error_bound && a->error_bound_b == b->error_bound_b && a->growth == b->growth &&
@@ -873,7 +867,7 @@ static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts 
             CHECK_MSG(off <= limit * most, "%s: level %d is off by %g in column %lld", what, level, off / most, (long long)(part / s->n));
         }
         for (way = 1; way < LDL_WAYS; way++) {
-            if (way < 4 && (level > 0 || !eng_openmp)) continue;
+            if (way < 4 && level > 0) continue;
             calls += eng_thread_run(s, kind, o, ldl_simds[level], way, other, rep2);
             CHECK_MSG(memcmp(first, other, (size_t)size * sizeof *first) == 0, "%s: way %d of threading gives other bits, level %d", what, way,
                 level);

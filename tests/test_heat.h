@@ -906,7 +906,7 @@ static void heat_threads(void) {
             memset(&ctx, 0, sizeof ctx);
             memset(&lo, 0, sizeof lo);
             memset(&ho, 0, sizeof ho);
-            ctx.threads = way == 1 ? 0 : way == 2 ? 2 : way == 3 ? 3 : 1;    /* with OpenMP: one, all, two, three */
+            ctx.n_threads = way == 1 ? 0 : way == 2 ? 2 : way == 3 ? 3 : 1;
             ctx.parallel_user = &calls;
             if (way == 4) ctx.parallel_for = sparse_reverse_for;
             if (way == 5) ctx.parallel_for = heat_shuffled_for;

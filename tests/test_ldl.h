@@ -1131,7 +1131,7 @@ static hd_progress ldl_thread_progress(void *user, const char *stage, double don
 }
 #endif
 
-enum { LDL_WAYS = 7 };
+enum { LDL_WAYS = 8 };
 
 typedef struct ldl_way {
     hd_context ctx;
@@ -1141,11 +1141,11 @@ typedef struct ldl_way {
 #endif
 } ldl_way;
 
-/* One thread; with OpenMP all, two, three; backwards, shuffled, and real threads. w must stay where it is. */
+/* The library's threads: one, all, two, three; a user's: backwards, shuffled, real threads; nine of the library's. w must stay where it is. */
 static void ldl_way_begin(ldl_way *w, int way, hd_simd simd) {
     memset(w, 0, sizeof *w);
     w->ctx.simd = simd;
-    w->ctx.threads = way == 1 ? 0 : way == 2 ? 2 : way == 3 ? 3 : 1;
+    w->ctx.n_threads = way == 1 ? 0 : way == 2 ? 2 : way == 3 ? 3 : way == 7 ? 9 : 1;
     w->ctx.parallel_user = &w->calls;
     if (way == 4) w->ctx.parallel_for = sparse_reverse_for;
     if (way == 5) w->ctx.parallel_for = heat_shuffled_for;
@@ -1160,7 +1160,7 @@ static void ldl_way_begin(ldl_way *w, int way, hd_simd simd) {
 }
 
 static void ldl_way_end(ldl_way *w, int way) {
-    CHECK(w->ctx.bytes_in_use == 0);
+    CHECK(w->ctx.bytes_in_use == 0 && !w->ctx.threads && w->ctx.n_holders == 0);
 #ifdef LDL_THREADS
     if (way != 6) return;
     CHECK_MSG(w->pool.elsewhere == 0, "%lld wrong calls of progress", (long long)w->pool.elsewhere);
@@ -1629,9 +1629,9 @@ static void ldl_bad_options(void) {
     LDL_BAD(o.ordering = (hd_ordering)99, HD_ERR_ARGUMENT);
     LDL_BAD(o.ordering = HD_ORDERING_OWN, HD_ERR_ARGUMENT);
     LDL_BAD(o.ordering = HD_ORDERING_NESTED_DISSECTION, HD_ERR_ARGUMENT);
-    ctx.threads = -1;
+    ctx.n_threads = -1;
     LDL_BAD(o.context = &ctx, HD_ERR_ARGUMENT);
-    ctx.threads = 0;
+    ctx.n_threads = 0;
     ctx.allocator.alloc = test_memory_alloc;
     LDL_BAD(o.context = &ctx, HD_ERR_ARGUMENT);
     good.ordering = HD_ORDERING_OWN;

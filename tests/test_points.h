@@ -565,7 +565,7 @@ static void pts_threads(void) {
     int64_t calls = 0;
     int way;
     memset(ctx, 0, sizeof ctx);
-    ctx[0].threads = 1;
+    ctx[0].n_threads = 1;
     ctx[1].parallel_user = ctx[2].parallel_user = &calls;
     ctx[1].parallel_for = sparse_reverse_for;
     ctx[2].parallel_for = heat_shuffled_for;

@@ -3,8 +3,9 @@
        bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] [--fresh] [--csv]
              [MESH ...]
        bench parts [MESH ...]
+       bench busy [--threads N] [--seconds S] [MESH ...]
 
-   Build:  cc -O2 -fopenmp tools/bench.c -o bench -lm       (without -fopenmp: one thread only)
+   Build:  cc -O2 tools/bench.c -o bench -lm
    With the rivals (see bench_rivals.h; CMake does this if it finds them):
        c++ -std=c++17 -O3 -march=native -DNDEBUG -fopenmp -I/usr/include/eigen3 -c tools/bench_rivals.cpp
        cc -O2 -fopenmp -DHEATDIFF_BENCH_RIVALS tools/bench.c bench_rivals.o -o bench \
@@ -312,10 +313,11 @@ static double load_speed(int threads, int simd, const double *x, int64_t n) {
     int r, k;
     memset(&ctx, 0, sizeof ctx);
     memset(&j, 0, sizeof j);
-    ctx.threads = threads;
+    ctx.n_threads = threads;
     j.simd = simd;
     j.x = x;
     j.share = n / threads;
+    hdi_hold(&ctx);
     for (r = 0; r < 5; r++) {
         const double t0 = now();
         double work = 8.0 * (double)(j.share * threads), seconds;
@@ -324,6 +326,7 @@ static double load_speed(int threads, int simd, const double *x, int64_t n) {
         for (k = 0; simd && k < threads; k++) work = (k ? work : 0) + j.flops[k];
         if (work / seconds > best) best = work / seconds;
     }
+    hdi_let_go(&ctx);
     return 1e-9 * best;
 }
 
@@ -359,7 +362,7 @@ static void watch_start(watch *w) {
 }
 
 typedef struct settings {
-    int jobs, csv, umfpack, fresh, columns, n_threads, asked;
+    int jobs, csv, umfpack, fresh, columns, n_threads, asked, busy;
     int32_t threads[16];
     double seconds;
 } settings;
@@ -404,7 +407,7 @@ static hd_status plan_open(plan *p, const bench *b, const ask *a) {
     hd_heat_opts o;
     memset(p, 0, sizeof *p);
     memset(&o, 0, sizeof o);
-    p->ctx.threads = b->threads;
+    p->ctx.n_threads = b->threads;
     p->ctx.progress = watch_progress;
     p->ctx.progress_user = &p->w;
     o.context = &p->ctx;
@@ -733,7 +736,7 @@ static void opponent_turn(opponent *o, int first) {
     if (first || rival_seconds(o, &r) < rival_seconds(o, &o->best)) o->best = r;
 }
 
-/* Waits until the threads of OpenMP and BLAS stop spinning, so that they do not slow down the other side. */
+/* Waits until the threads of the rivals stop spinning, so that they do not slow down the other side. */
 static void rest(void) {
 #if defined(CLOCK_MONOTONIC)
     struct timespec t = {0, 60000000};
@@ -1400,7 +1403,7 @@ static void real_solve(const bench *b, double g, int32_t row, double *x, real_ru
     memset(&ctx, 0, sizeof ctx);
     memset(&o, 0, sizeof o);
     memset(out, 0, sizeof *out);
-    ctx.threads = b->threads;
+    ctx.n_threads = b->threads;
     o.context = &ctx;
     o.xyz = b->lap->xyz;
     for (p = 0; val && p < L->nnz; p++) val[p] = b->pair.B[p] + g * L->val[p];
@@ -1523,7 +1526,7 @@ static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run 
     memset(&o, 0, sizeof o);
     memset(&ctx, 0, sizeof ctx);
     memset(r, 0, sizeof *r);
-    ctx.threads = b->threads;
+    ctx.n_threads = b->threads;
     o.context = &ctx;
     r->fine = hd_geodesic_create(&g, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o,
                                  NULL) >= 0 &&
@@ -1631,7 +1634,7 @@ static void job_assembly(bench *b) {
         double t;
         memset(&o, 0, sizeof o);
         memset(&ctx, 0, sizeof ctx);
-        ctx.threads = b->threads;
+        ctx.n_threads = b->threads;
         o.context = &ctx;
         o.kind = voronoi ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
         rest();
@@ -1749,6 +1752,169 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
     }
 }
 
+/* ==== threads beside other processes ==== */
+/* Every job on one thread and on all, in turns: alone, then beside as many busy processes as there are
+ * processors, niced and not. Beside others the middle of the runs tells more than the best one. */
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#define BENCH_BUSY 1
+#endif
+
+#ifdef BENCH_BUSY
+enum { BUSY_MOST = 64, BUSY_RUNS = 41 };
+
+typedef struct busy_job { const char *name; hd_method method; query what; int32_t n_times, n_columns; int warm, stage; } busy_job;
+
+/* warm: asked once before the clock starts; stage: of which the seconds count, -1 all */
+static const busy_job busy_jobs[] = {
+    {"assembly", HD_METHOD_AUTO, COLUMNS, 0, 0, 0, -1},
+    {"one column", HD_METHOD_AUTO, COLUMNS, 1, 1, 0, -1},
+    {"100 columns", HD_METHOD_DIRECT, COLUMNS, 1, 100, 0, -1},
+    {"  factor", HD_METHOD_DIRECT, COLUMNS, 1, 100, 0, STAGE_FACTOR},
+    {"  solve", HD_METHOD_DIRECT, COLUMNS, 1, 100, 0, STAGE_SOLVE},
+    {"further column", HD_METHOD_DIRECT, COLUMNS, 1, 1, 1, -1},
+    {"16 times", HD_METHOD_AUTO, COLUMNS, 16, 1, 0, -1},
+    {"signature", HD_METHOD_AUTO, DIAGONAL, 1, 1, 0, -1},
+    {"  inversion", HD_METHOD_AUTO, DIAGONAL, 1, 1, 0, STAGE_INVERT}};
+enum { BUSY_JOBS = sizeof busy_jobs / sizeof *busy_jobs };
+
+typedef struct busy_run { double seconds, stage[STAGES]; double regions, helped, waits; } busy_run;
+
+static void busy_once(const bench *b, const busy_job *j, double *U, busy_run *r) {
+    double times[16], t0;
+    int32_t vertices[100];
+    plan p;
+    ours out;
+    ask a;
+    int k;
+    memset(&a, 0, sizeof a);
+    memset(r, 0, sizeof *r);
+    for (k = 0; k < 16; k++) times[k] = (k ? 10 * pow(10, k / 5.0) : 100) * b->hh;
+    for (k = 0; k < 100; k++) vertices[k] = b->lap->vertex[(int64_t)k * b->pair.n / 100];
+    a.what = j->what;
+    a.method = j->method;
+    a.n_times = j->n_times;
+    a.n_columns = j->n_columns;
+    a.times = times;
+    a.vertices = vertices;
+    if (j->n_times == 0) {
+        hd_laplacian_opts o;
+        hd_laplacian *lap = NULL;
+        memset(&o, 0, sizeof o);
+        memset(&p, 0, sizeof p);
+        p.ctx.n_threads = b->threads;
+        o.context = &p.ctx;
+        t0 = now();
+        (void)hd_laplacian_triangles(&lap, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o, NULL);
+        r->seconds = now() - t0;
+        hd_laplacian_free(lap);
+    } else if (plan_open(&p, b, &a) >= 0) {
+        if (j->warm) plan_run(&p, &a, U, &out);
+        p.ctx.regions = p.ctx.helped = p.ctx.waits = 0;
+        watch_start(&p.w);
+        plan_run(&p, &a, U, &out);
+        for (k = 0; k < STAGES; k++) r->stage[k] = out.stage[k];
+        r->seconds = out.total;
+        plan_close(&p);
+    }
+    r->regions = (double)p.ctx.regions;
+    r->helped = (double)p.ctx.helped;
+    r->waits = (double)p.ctx.waits;
+}
+
+static int busy_less(const void *x, const void *y) {
+    const double a = *(const double *)x, b = *(const double *)y;
+    return (a > b) - (a < b);
+}
+
+/* One job in turns; jobs that only look at a stage of the one before share its runs. Returns how many were printed. */
+static int busy_print(bench *b, int first, double *U, int32_t all) {
+    double seconds[BUSY_JOBS][2][BUSY_RUNS];
+    busy_run r;
+    const double start = now();
+    double count[3] = {0, 0, 0};
+    int n = 0, k, q, last = first + 1;
+    while (last < BUSY_JOBS && busy_jobs[last].stage >= 0) last++;
+    for (n = 0; n < BUSY_RUNS && (n < 3 || now() - start < b->set->seconds); n++) {
+        for (q = 0; q < 2; q++) {
+            const int many = (q + n) % 2;        /* who begins takes turns as well */
+            b->threads = many ? all : 1;
+            busy_once(b, busy_jobs + first, U, &r);
+            for (k = first; k < last; k++)
+                seconds[k][many][n] = busy_jobs[k].stage < 0 ? r.seconds : r.stage[busy_jobs[k].stage];
+            if (!many) continue;
+            count[0] += r.regions;
+            count[1] += r.helped;
+            count[2] += r.waits;
+        }
+    }
+    for (k = first; k < last; k++) {
+        double *one = seconds[k][0], *many = seconds[k][1];
+        for (q = 0; q < 2; q++) qsort(seconds[k][q], (size_t)n, sizeof(double), busy_less);
+        printf("  %-16s %9.2f %9.2f %6.2f  %9.2f %9.2f %6.2f", busy_jobs[k].name, 1e3 * one[0], 1e3 * many[0],
+               one[0] / many[0], 1e3 * one[n / 2], 1e3 * many[n / 2], one[n / 2] / many[n / 2]);
+        if (k == first) printf("  %7.0f %8.0f %6.1f  %d", count[0] / n, count[1] / n, count[2] / n, n);
+        printf("\n");
+    }
+    fflush(stdout);
+    return last - first;
+}
+
+static int busy_start(pid_t *pid, int n, int niced) {
+    int k;
+    for (k = 0; k < n; k++) {
+        pid[k] = fork();
+        if (pid[k] < 0) return k;
+        if (pid[k] > 0) continue;
+        if (niced && nice(19) == -1) _exit(1);
+        for (;;) (void)busy_less(&k, &k);
+    }
+    return n;
+}
+
+static void busy_mesh(const settings *set, const char *name, const double *xyz, int32_t n, const int32_t *tri,
+                      int32_t n_tri, const double *peak) {
+    static const char *const states[] = {"alone", "beside niced processes", "beside other processes"};
+    const int32_t all = set->threads[0];
+    rival_mesh surface;
+    hd_laplacian *lap = NULL;
+    double *U = (double *)malloc((size_t)n * 100 * sizeof *U);
+    pid_t pid[BUSY_MOST];
+    int state, k;
+    bench b;
+    surface.n = n;
+    surface.n_tri = n_tri;
+    surface.xyz = xyz;
+    surface.tri = tri;
+    if (!U || hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, NULL) < 0) {
+        free(U);
+        return;
+    }
+    bench_open(&b, set, name, &surface, lap, all, peak);
+    for (state = 0; state < 3; state++) {
+        const int others = state ? busy_start(pid, (int)hdi_least(hd_context_threads(NULL), BUSY_MOST), state == 1) : 0;
+        printf("\n%s, %d rows, %s; ms on 1 and on %d threads, ratio; regions, tasks of others, waits, runs\n"
+               "                      best 1     best n  ratio   middle 1  middle n  ratio  regions   helped  waits  runs\n",
+               name, (int)lap->n_active, states[state], (int)all);
+        for (k = 0; k < BUSY_JOBS;) k += busy_print(&b, k, U, all);
+        for (k = 0; k < others; k++) kill(pid[k], SIGKILL);
+        for (k = 0; k < others; k++) waitpid(pid[k], NULL, 0);
+    }
+    free(b.own_B);
+    free(U);
+    hd_laplacian_free(lap);
+}
+#else
+static void busy_mesh(const settings *set, const char *name, const double *xyz, int32_t n, const int32_t *tri,
+                      int32_t n_tri, const double *peak) {
+    (void)set; (void)name; (void)xyz; (void)n; (void)tri; (void)n_tri; (void)peak;
+    printf("busy processes need POSIX\n");
+}
+#endif
+
 /* A mesh from a file, for the parts (set NULL) or for the contests. */
 static int bench_file(const settings *set, const char *path, const double *peak) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
@@ -1762,7 +1928,7 @@ static int bench_file(const settings *set, const char *path, const double *peak)
     }
     if (!set) printf("%s: loaded in %.1f ms\n", path, 1e3 * (now() - t0));
     if (mio_triangulate(&mesh, &tri, &n_tri, &face, &e) >= 0) {
-        if (set) bench_mesh(set, name, mesh.xyz, mesh.n, tri, n_tri, peak);
+        if (set) (set->busy ? busy_mesh : bench_mesh)(set, name, mesh.xyz, mesh.n, tri, n_tri, peak);
         else parts_mesh(path, mesh.xyz, mesh.n, tri, n_tri);
     }
     free(tri);
@@ -1772,7 +1938,7 @@ static int bench_file(const settings *set, const char *path, const double *peak)
 }
 
 static void bench_shape(const settings *set, const char *name, shape s, const double *peak) {
-    if (set) bench_mesh(set, name, s.xyz, s.n, s.tri, s.n_tri, peak);
+    if (set) (set->busy ? busy_mesh : bench_mesh)(set, name, s.xyz, s.n, s.tri, s.n_tri, peak);
     else parts_mesh(name, s.xyz, s.n, s.tri, s.n_tri);
     shape_free(&s);
 }
@@ -1784,6 +1950,7 @@ static int usage(const char *what) {
     fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] "
                     "[--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
+                    "       bench busy [--threads N] [--seconds S] [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
                     "  --jobs LIST     of "
                     "one,small,columns,further,times,stages,geodesic,signature,eigen,assembly; default: all\n"
@@ -1801,9 +1968,7 @@ static int parse_threads(settings *set, const char *s) {
     for (set->n_threads = 0; set->n_threads < 16; s = end + 1) {
         const long k = strtol(s, &end, 10);
         if (end == s || k < 1 || k > 256) return 0;
-        set->threads[set->n_threads++] = HDI_OPENMP ? (int32_t)k : 1;
-        if (!HDI_OPENMP && k > 1)
-            fprintf(stderr, "bench: compiled without OpenMP: one thread, for the rivals too\n");
+        set->threads[set->n_threads++] = (int32_t)k;
         if (*end != ',') return *end == 0;
     }
     return 0;
@@ -1908,15 +2073,13 @@ int main(int argc, char **argv) {
     set.columns = 100;
     set.seconds = 10;
     set.n_threads = 1;
-#if HDI_OPENMP
-    set.threads[0] = omp_get_max_threads();
-#else
-    set.threads[0] = 1;
-#endif
-    if (!parse(&set, argc, argv, &first))
+    set.threads[0] = hd_context_threads(NULL);
+    set.busy = argc > 1 && !strcmp(argv[1], "busy");
+    if (!parse(&set, argc - set.busy, argv + set.busy, &first))
         return usage(argc > 1 && strcmp(argv[1], "--help") ? "an argument is not understood" : NULL);
     if (!set.fresh) keep_memory();
-    if (!HAVE_RIVALS) printf("%sbuilt without rivals: times and errors of ours alone\n", set.csv ? "# " : "");
+    first += set.busy;
+    if (!HAVE_RIVALS && !set.busy) printf("%sbuilt without rivals: times and errors of ours alone\n", set.csv ? "# " : "");
     measure_machine(&set, peak);
     if (set.csv)
         printf("mesh,mass,rows,job,t_over_h2,threads,ours,seconds,rival,rival_seconds,ratio,error,"

@@ -2443,7 +2443,7 @@ int main(int argc, char **argv) {
     memset(&o, 0, sizeof o);
     o.count = 1000000;
     o.seed = 1;
-    serial.threads = 1;
+    serial.n_threads = 1;
     for (i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--quick") == 0) o.quick = 1;
         else if (strcmp(argv[i], "--self") == 0) self = 1;

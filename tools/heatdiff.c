@@ -45,9 +45,6 @@
 #include <direct.h>
 #include <io.h>
 #endif
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 enum { DONE = 0, FAILED = 1, USAGE = 2, INTERRUPTED = 130 };   /* exit codes */
 
@@ -274,123 +271,6 @@ static int close_stdout(void)
     if (fflush(stdout) == 0 && !ferror(stdout)) return DONE;
     return fail(FAILED, "standard output: cannot write: %s", errno ? strerror(errno) : "it is closed");
 }
-
-/* ==== threads ==== */
-/* If threads need no extra link flag, or if the flag is given, a pool of threads runs the library's parallel
- * loops. So the plain build uses the whole machine. With OpenMP the library has its own threads; otherwise
- * everything is serial. */
-
-#if defined(TOOL_POSIX) && !defined(_OPENMP)
-#if defined(_REENTRANT) || defined(__APPLE__) || \
-    (defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 34))
-#define TOOL_THREADS 1
-#include <pthread.h>
-#endif
-#endif
-
-#ifdef TOOL_THREADS
-
-enum { MAX_THREADS = 256 };
-
-typedef struct pool_seat { struct pool *pool; int32_t worker; } pool_seat;
-
-/* One loop runs at a time. Sleeping workers wake when round changes, and take the next index until no task is
- * left. */
-typedef struct pool {
-    pthread_mutex_t lock;
-    pthread_cond_t start, finish;
-    pthread_t thread[MAX_THREADS];
-    pool_seat seat[MAX_THREADS];
-    int n_threads, active, leave;    /* threads besides the caller; those still busy in this round */
-    uint64_t round;
-    int64_t n_tasks, next;
-    hd_task task;
-    void *arg;
-} pool;
-
-/* Takes tasks until none is left. The lock is held on entry and on return. */
-static void pool_work(pool *p, int32_t worker)
-{
-    while (p->next < p->n_tasks) {
-        const int64_t i = p->next++;
-        pthread_mutex_unlock(&p->lock);
-        p->task(p->arg, i, worker);
-        pthread_mutex_lock(&p->lock);
-    }
-}
-
-static void *pool_thread(void *arg)
-{
-    const pool_seat *seat = (const pool_seat *)arg;
-    pool *p = seat->pool;
-    uint64_t seen = 0;
-    pthread_mutex_lock(&p->lock);
-    for (;;) {
-        while (p->round == seen && !p->leave) pthread_cond_wait(&p->start, &p->lock);
-        if (p->leave) break;
-        seen = p->round;
-        pool_work(p, seat->worker);
-        if (--p->active == 0) pthread_cond_signal(&p->finish);
-    }
-    pthread_mutex_unlock(&p->lock);
-    return NULL;
-}
-
-static void pool_run(void *user, int64_t n_tasks, hd_task task, void *arg)
-{
-    pool *p = (pool *)user;
-    pthread_mutex_lock(&p->lock);
-    p->task = task;
-    p->arg = arg;
-    p->n_tasks = n_tasks;
-    p->next = 0;
-    p->active = p->n_threads;
-    p->round++;
-    pthread_cond_broadcast(&p->start);
-    pool_work(p, 0);
-    while (p->active > 0) pthread_cond_wait(&p->finish, &p->lock);
-    pthread_mutex_unlock(&p->lock);
-}
-
-/* The main thread keeps all signals. It is no error if fewer threads can be made than asked for. */
-static void pool_begin(pool *p, int n_threads)
-{
-    sigset_t all, old;
-    memset(p, 0, sizeof *p);
-    pthread_mutex_init(&p->lock, NULL);
-    pthread_cond_init(&p->start, NULL);
-    pthread_cond_init(&p->finish, NULL);
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &old);
-    for (; p->n_threads < n_threads - 1 && p->n_threads < MAX_THREADS; p->n_threads++) {
-        pool_seat *seat = &p->seat[p->n_threads];
-        seat->pool = p;
-        seat->worker = p->n_threads + 1;
-        if (pthread_create(&p->thread[p->n_threads], NULL, pool_thread, seat) != 0) break;
-    }
-    pthread_sigmask(SIG_SETMASK, &old, NULL);
-}
-
-static void pool_end(pool *p)
-{
-    int i;
-    pthread_mutex_lock(&p->lock);
-    p->leave = 1;
-    pthread_cond_broadcast(&p->start);
-    pthread_mutex_unlock(&p->lock);
-    for (i = 0; i < p->n_threads; i++) pthread_join(p->thread[i], NULL);
-    pthread_cond_destroy(&p->start);
-    pthread_cond_destroy(&p->finish);
-    pthread_mutex_destroy(&p->lock);
-}
-
-static int processors(void)
-{
-    const long n = sysconf(_SC_NPROCESSORS_ONLN);
-    return n < 1 ? 1 : n > MAX_THREADS ? MAX_THREADS : (int)n;
-}
-
-#endif
 
 /* Nine tenths of the machine's memory, 0 if unknown. With more, the system might kill the process without a
  * readable error. */
@@ -1599,9 +1479,6 @@ typedef struct run {
     summary sum;
     seconds sec;
     double started;
-#ifdef TOOL_THREADS
-    pool threads;
-#endif
 } run;
 
 static void run_begin(run *r, const options *o)
@@ -1611,25 +1488,15 @@ static void run_begin(run *r, const options *o)
     r->started = now();
     r->mesh_name = o->mesh ? display_name(o->mesh) : "demo";
     r->context.byte_limit = o->memory_limit ? o->memory_limit : machine_bytes();
-    r->context.threads = (int32_t)o->threads;
+    r->context.n_threads = (int32_t)o->threads;
     r->context.simd = (hd_simd)o->simd;
     r->context.progress = on_progress;
     bar.enabled = !o->quiet && stderr_is_terminal();
-#ifdef TOOL_THREADS
-    pool_begin(&r->threads, o->threads ? (int)o->threads : processors());
-    if (r->threads.n_threads > 0) {
-        r->context.parallel_for = pool_run;
-        r->context.parallel_user = &r->threads;
-    }
-#endif
 }
 
 static void run_end(run *r)
 {
     bar_hide();
-#ifdef TOOL_THREADS
-    pool_end(&r->threads);
-#endif
     hd_heat_free(r->heat);
     hd_geodesic_free(r->geodesic);
     hd_laplacian_free(r->lap);
@@ -1644,17 +1511,7 @@ static void run_end(run *r)
     free(r->sum.per_time);
 }
 
-static int threads_used(const run *r)
-{
-#ifdef _OPENMP
-    return r->context.threads > 0 ? (int)r->context.threads : omp_get_max_threads();
-#elif defined(TOOL_THREADS)
-    return r->threads.n_threads + 1;
-#else
-    (void)r;
-    return 1;
-#endif
-}
+static int threads_used(const run *r) { return (int)hd_context_threads(&r->context); }
 
 /* n rows of doubles, with the size checked. */
 static double *new_columns(int64_t n, int64_t columns)
