@@ -19,7 +19,8 @@
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. Two calls make a heat kernel of a triangle mesh:
+   and link with -lm. Give the implementation a file of its own: it takes some 12 s to compile at -O2, the
+   declarations take none. Two calls make a heat kernel of a triangle mesh:
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, &err) < 0) return fail(&err);
