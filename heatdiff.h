@@ -108,7 +108,8 @@
      no file and never exits.
      Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). x87 registers keep more digits now and then: results
      are as accurate, but neither bits nor bounds of the error near rounding are promised. On 32-bit x86 compile
-     with -msse2 -mfpmath=sse. -ffast-math takes away the same promises; input that is not finite is still refused.
+     with -msse2 -mfpmath=sse. -ffast-math takes away the same promises. Coordinates, matrices, fields and times
+     that are not finite are still refused then, options are not.
 
    Threads
      There is no global or thread-local state. One object serves one thread at a time, and so does one
