@@ -115,8 +115,10 @@ int main(void) {
     return hd_csr_product(&c, &a, &b, NULL, NULL) != HD_ERR_TOO_LARGE;
 }
 END
-if echo 'int main(void) { return 0; }' | gcc -m32 -x c - -o "$work/small" 2>/dev/null && "$work/small"; then
-  gcc -m32 -std=c99 $warn -Wno-psabi "$work/wide.c" -o "$work/wide" -lm
+small="gcc -m32"
+[ -e /usr/include/asm ] || small="gcc -m32 -idirafter /usr/include/$(gcc -print-multiarch)"     # only gcc-multilib has it
+if echo 'int main(void) { return 0; }' | $small -x c - -o "$work/small" 2>/dev/null && "$work/small"; then
+  $small -std=c99 $warn "$work/wide.c" -o "$work/wide" -lm
   "$work/wide"
   echo "ok: gcc -m32"
 else

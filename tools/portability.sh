@@ -13,15 +13,17 @@
 set -uo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 
-# Groups: `most` leaves out those that take minutes without a compiler that optimises, `core` is what an emulator does in half a
-# minute. x87 has what does not ask for bits, for bounds near rounding or for what is zero up to it (see Limits in heatdiff.h).
+# Groups. most leaves out those that take minutes without optimisation; core is what an emulator does in half a minute, with every
+# method in `platform`. fast is what -ffast-math leaves (builds.sh has NaN in the input). x87 is what asks neither for bits, nor for
+# bounds near rounding, nor for what is zero up to it: see Limits in heatdiff.h.
 all="base sparse operators rational intrinsic ldl engines krylov heat robust points assembly polygon geodesic diagonal forms \
 everywhere picture meshio bounds platform"
 most="base sparse operators rational intrinsic ldl krylov heat robust assembly polygon picture meshio platform"
 core="base sparse rational krylov meshio platform"
 x87="base sparse operators intrinsic ldl engines krylov heat robust assembly diagonal forms everywhere picture platform"
-fast="base sparse operators krylov heat polygon meshio platform"
+fast="base sparse heat platform"
 
+multilib=gcc-$(gcc -dumpversion 2>/dev/null | cut -d. -f1)-multilib
 # Debian's clang-cl has its version in its name.
 clang_cl=$(command -v clang-cl || compgen -c clang-cl- | sort -V | tail -1)
 
@@ -43,8 +45,8 @@ clang++-20  | clang++ -std=c++20 -x c++              |             | most | clan
 clang++-23  | clang++ -std=c++2b -x c++              |             | most | clang g++
 tcc         | tcc                                    |             | most | tcc
 musl        | musl-gcc -static                       |             | most | musl-tools
-x86-32      | gcc -m32 -msse2 -mfpmath=sse           |             | all  | gcc-12-multilib
-x87         | gcc -m32                               |             | x87  | gcc-12-multilib
+x86-32      | gcc -m32 -msse2 -mfpmath=sse           |             | all  | $multilib
+x87         | gcc -m32                               |             | x87  | $multilib
 mingw64     | x86_64-w64-mingw32-gcc -static         | wine        | most | gcc-mingw-w64-x86-64 wine wine64
 mingw32     | i686-w64-mingw32-gcc -static -msse2 -mfpmath=sse | wine32 | most | gcc-mingw-w64-i686 wine wine32
 armhf       | arm-linux-gnueabihf-gcc -static        | qemu-arm    | core | gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user
@@ -146,7 +148,7 @@ one_target() {
     return 1
   fi
   mkdir -p "$work/files"
-  (cd "$work" && export -f run_it && export work && timeout "$seconds" bash -c 'run_it "$@"' run "$run" "./$name.exe" --tmp files ${!groups}) \
+  (cd "$work" && export -f run_it && export work && timeout "$seconds" bash -c 'run_it "$@"' bash "$run" "./$name.exe" --tmp files ${!groups}) \
     >"$work/out" 2>"$work/err" || status=$?
   summary=$(tr -d '\r' <"$work/out" | grep -E '^[0-9]+ passed, [0-9]+ failed' | tail -1)
   if [ $status != 0 ]; then
