@@ -516,6 +516,17 @@ class Page(unittest.TestCase):
         b.until("heatdiff.times.length && " + SHOWN)
         self.assertEqual(b.errors, [])
 
+    def test_out_of_memory(self):
+        """A trap in a worker costs that answer and no more."""
+        b = self.open()
+        b.until(IDLE, 120)
+        b.js("give(workers[1], { op: 'columns', t: null, done: (m) => fail(m, 'smooth') })")     # null traps
+        b.until("!document.getElementById('alert').hidden")
+        self.assertIn("memory", b.text("alert-text"))
+        b.js("setSource(1000)")
+        b.until(IDLE + " && heatdiff.known === heatdiff.shownCount", 120)
+        self.assertEqual(b.errors, [])
+
     def test_phone(self):
         b = self.open(390, 844, True)
         b.until(IDLE, 120)

@@ -45,7 +45,7 @@ const state = {
   factored: -1,
   shown: null,
   asked: 0,
-  failed: null,
+  failed: new Set(), // what could not be computed on this surface
   log: { kernel: false, signature: true },
   settled: 0,
   answers: 0,
@@ -94,7 +94,11 @@ function hear(w, m) {
   }
   const job = w.job;
   w.job = w.progress = null;
-  if (job.generation === state.generation) job.done(m, w, job);
+  if (job.generation === state.generation) {
+    const loading = job.op === "shape" || job.op === "file" || job.op === "begin";
+    if (m.restarted && !loading) order(w, state.last.order);
+    job.done(m);
+  }
   step();
 }
 
@@ -102,7 +106,7 @@ function hear(w, m) {
 function step() {
   for (const w of workers) {
     if (w.job) continue;
-    const job = w.queue.shift() || (state.times.length && !state.failed ? wanted(w) : null);
+    const job = w.queue.shift() || (state.times.length ? wanted(w) : null);
     if (job) give(w, job);
   }
   showBusy();
@@ -110,20 +114,22 @@ function step() {
 
 // ---- a new surface ----
 
-function load(order, name) {
+function load(surface, name) {
   state.generation++;
-  Object.assign(state, { times: [], failed: null, factored: -1 });
+  Object.assign(state, { times: [], failed: new Set(), factored: -1 });
   forgetAnswers();
   hideAlert();
   for (const w of workers) w.queue = [];
-  const first = workers[0];
-  const begin = { op: "begin", mend: $("mend").checked };
-  for (const w of workers) {
-    const copy = order.data ? { ...order, data: order.data.slice(0) } : order;
-    w.queue.push({ ...copy, done: (m) => w === first && loaded(m, name) });
-    w.queue.push({ ...begin, done: (m) => w === first && ready(m) });
-  }
+  order(workers[0], surface, (m) => loaded(m, name), ready);
+  order(workers[1], surface);
   step();
+}
+
+// A surface and its Laplacian for one worker. What it answers counts once, so mostly nobody listens.
+function order(w, surface, whenLoaded = () => {}, whenReady = () => {}) {
+  if (!surface) return;
+  const copy = surface.data ? { ...surface, data: surface.data.slice(0) } : surface;
+  w.queue.unshift({ ...copy, done: whenLoaded }, { op: "begin", mend: $("mend").checked, done: whenReady });
 }
 
 function loaded(m, name) {
@@ -135,7 +141,6 @@ function loaded(m, name) {
 function refuse(title, text) {
   for (const w of workers) w.queue = [];
   const again = state.last;
-  state.failed = text;
   if (again && again.order !== state.order) {
     state.order = again.order;
     $("shape").value = again.choice;
@@ -232,7 +237,7 @@ const busyWith = (op, c) =>
   );
 
 function chunkJob(op, c) {
-  if (c < 0 || busyWith(op, c)) return null;
+  if (c < 0 || state.failed.has(op) || busyWith(op, c)) return null;
   const source = state.source;
   return {
     op,
@@ -241,7 +246,7 @@ function chunkJob(op, c) {
     method: KRYLOV,
     source,
     done: (m) => {
-      if (m.status < 0) return fail(m);
+      if (m.status < 0) return fail(m, op);
       if (op === "columns" && source !== state.source) return;
       const n = state.mesh.n,
         k = m.facts,
@@ -266,6 +271,7 @@ function coordinates(out, n, count, q) {
 
 function columnJob(i, only_prepare) {
   const source = state.source;
+  if (state.failed.has("direct")) return null;
   return {
     op: "columns",
     chunk: -1,
@@ -274,7 +280,7 @@ function columnJob(i, only_prepare) {
     source,
     quiet: only_prepare,
     done: (m) => {
-      if (m.status < 0) return fail(m);
+      if (m.status < 0) return fail(m, "direct");
       state.factored = i;
       if (source !== state.source || state.columns[i]) return;
       state.columns[i] = {
@@ -292,11 +298,12 @@ function columnJob(i, only_prepare) {
 
 function geodesicJob() {
   const source = state.source;
+  if (state.failed.has("geodesic")) return null;
   return {
     op: "geodesic",
     source,
     done: (m) => {
-      if (m.status < 0) return fail(m);
+      if (m.status < 0) return fail(m, "geodesic");
       if (source !== state.source) return;
       state.geodesic = { values: m.out, residual: m.facts[6], ms: m.ms, many: 1 };
       arrived("geodesic", m);
@@ -331,8 +338,10 @@ function wanted(w) {
   );
 }
 
-function fail(m) {
-  state.failed = m.text;
+// Most likely memory: the rest of the page goes on without this kind of answer.
+function fail(m, what) {
+  state.failed.add(what);
+  state.factored = -1;
   say("The computation failed", m.text);
 }
 

@@ -114,6 +114,7 @@ onmessage = ({ data: m }) => {
     // a trap: only memory can do that; the module begins anew
     answer.status = -2;
     answer.text = "out of memory: this surface is too large for the browser";
+    answer.restarted = true;
     start();
   }
   answer.ms = performance.now() - begin;
