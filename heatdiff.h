@@ -16302,11 +16302,15 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
+/* The step of the derivative, relative to the smallest eigenvalue that is not zero. Its error is the square
+ * of this. */
+#define HDI_GROUND_STEP 1e-9
+
 /* form: diag of G B G without the part of the means. mean: G b, and the bound of its error. */
 static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const hd_laplacian *lap = m->lap;
-    const double step = g->largest_trace > 0 ? 1e-9 / g->largest_trace : 1;
+    const double step = g->largest_trace > 0 ? HDI_GROUND_STEP / g->largest_trace : 1;
     double *work, *b, coef[HDI_PACK] = {0};
     char *loose;
     hdi_factor pack;
@@ -16529,8 +16533,9 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
-    heat->fam.solver = heat->opts.solver == HD_SOLVER_COCR ||
-                       heat->opts.solver == HD_SOLVER_MINRES ? heat->opts.solver : HD_SOLVER_COCG;
+    heat->fam.solver = HD_SOLVER_COCG;
+    if (heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES)
+        heat->fam.solver = heat->opts.solver;
     heat->fam.precond = heat->opts.precond;
     heat->fam.max_iterations = heat->opts.max_iterations;
     return e->status;
@@ -16929,8 +16934,9 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
     h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t)
                 : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
     h->rep->solver = h->solver;
-    h->rep->precond = h->method == HD_METHOD_ITERATIVE &&
-                      h->solver != HD_SOLVER_LANCZOS ? heat->opts.precond : HD_PRECOND_NONE;
+    h->rep->precond = HD_PRECOND_NONE;
+    if (h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS)
+        h->rep->precond = heat->opts.precond;
     return HD_OK;
 }
 
@@ -17131,8 +17137,10 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_pole_kind kind = o->poles ? o->poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM
                               : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
     /* four pairs fill a pack, a real pole costs little */
-    int32_t degree = o->degree ? o->degree : h->degree ? h->degree : h->heat->exacting ? HDI_RAT_KERNEL_MAX
-                     : h->method == HD_METHOD_DIRECT ? 9 : 10;
+    int32_t degree = h->method == HD_METHOD_DIRECT ? 9 : 10;
+    if (h->heat->exacting) degree = HDI_RAT_KERNEL_MAX;
+    if (h->degree) degree = h->degree;
+    if (o->degree) degree = o->degree;
     if (h->set || o->rational) {
         *set = h->set ? *h->set : *o->rational;
         return HD_OK;
@@ -17192,8 +17200,8 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
 static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
     const hdi_lane *lane = h->lane + i;
     const hdi_elim *m = &h->heat->elim;
-    const double *reach = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && m->reach &&
-                          m->reach_t == m->t ? m->reach : NULL;
+    const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal;
+    const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
@@ -17690,8 +17698,8 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
     sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
     sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
-    sum.smallest = all->smallest > 0 &&
-                   (sum.smallest == 0 || all->smallest < sum.smallest) ? all->smallest : sum.smallest;
+    if (all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest))
+        sum.smallest = all->smallest;
     sum.n_lost += all->n_lost;
     *all = sum;
 }
