@@ -14813,12 +14813,14 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
 }
 
 /* ==== [22] poles ====
- * The family t L + theta_i B over the poles of a set, for one right-hand side: solutions, their weighted sum,
- * and what it can be off by. May call [15] and [16].
- * One right-hand side goes through its poles one after the other, since what is solved already is a good
- * start for the next: with A_p = A_q + (theta_p - theta_q) B,  A_p sum c_q x_q = (sum c_q) b + B sum c_q
- * (theta_p - theta_q) x_q,  and for sum c_q = 1 the residual is a combination that least squares make small.
- * The conjugate of a solution is that of the conjugate pole, and counts as another one. Parallel tasks are
+ * Owns the family t L + theta_i B over the poles of a set: solutions for one right-hand side, by iterations
+ * or with factors, their weighted sum, the bound of its error, and weighted sums of the inverses. May call
+ * [18], [20] and [21].
+ * Iterations take the poles one after the other, because the solutions at hand give a good start for the next
+ * pole. With
+ *   A_p = A_q + (theta_p - theta_q) B,   A_p sum c_q x_q = (sum c_q) b + B sum c_q (theta_p - theta_q) x_q,
+ * and for sum c_q = 1 the residual is a combination of vectors that least squares make small. The conjugate
+ * of a solution is the solution of the conjugate pole, and counts as another one. Parallel tasks are
  * right-hand sides, and preconditioners. */
 
 /* ---- what answers can be off by ---- */
@@ -14826,14 +14828,15 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
  *   |A^-1 r|_B <= |r|_(B^-1) / min |t lambda + theta|
  *   |A^-1 r|_M <= |r|_(B^-1) max (1 + t lambda)/|t lambda + theta|,   M = B + t L,
  * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v),
- * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1): far less where heat has spread over many vertices. */
+ * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread over many
+ * vertices. */
 
-/* Bounds by parts, of an error in one of the norms, or of values. */
+/* Parts of an error bound, in one of the norms or of values. */
 typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
 
 static double hdi_parts_sum(const hdi_parts *p) { return p->rational + p->solver + p->rounding; }
 
-/* A product of bounds: where one is nothing so is the other's part, and infinity is no operand. */
+/* A product of bounds. Zero times infinity is zero, and infinity is HUGE_VAL. */
 static double hdi_bound_times(double a, double b) {
     if (a == 0 || b == 0) return 0;
     return hdi_finite(a) && hdi_finite(b) ? a * b : HUGE_VAL;
@@ -14853,8 +14856,8 @@ static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
     return a;
 }
 
-/* The account that every query keeps of its errors, and that becomes the report's. Absolute, over the values
- * noted. */
+/* Every query keeps an account of its errors, which becomes part of the report. The numbers are absolute,
+ * over all values noted. */
 typedef struct hdi_ledger {
     hdi_parts off;               /* the largest of each part */
     hdi_parts known;             /* evidence of each part, as hd_evidence; hdi_ledger_begin sets it */
@@ -14877,7 +14880,7 @@ static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_
 
 static double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : HUGE_VAL; }
 
-/* A value and what it can be off by. */
+/* Notes a value and the bound of its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     const double size = fabs(value);
     l->off.rational = hdi_max(l->off.rational, off.rational);
@@ -14897,14 +14900,14 @@ static void hdi_evidence_worst(hd_evidence *to, double evidence) {
     if (evidence > HDI_CAST(double, *to)) *to = HDI_CAST(hd_evidence, HDI_CAST(int, evidence));
 }
 
-/* Above this a bound says nothing worth having. */
+/* A larger bound is of no use to the caller, and the status warns. */
 #define HDI_BOUND_USEFUL 1e-2
 
 static void hdi_bound_judge(double bound, hd_report *rep) {
     if (!(bound <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
 }
 
-/* The one way from errors to a report, which keeps the worst of all ledgers that it is given. */
+/* Enters a ledger into a report. The report keeps the worst of all its ledgers. */
 static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     hdi_parts part = l->off;
     double total;
@@ -14926,13 +14929,6 @@ static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     hdi_bound_judge(total, rep);
 }
 
-/* What rounding adds to a residual b - (t L + theta B) x in row i is at most c_i sum_j M_ij |x_j| with M = t
- * |L| + |theta| |B| and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more
- * (N. Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.1). In the norm of D^-1 that is
- * at most sqrt(sum_j noise_j |x_j|^2), noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik, by Cauchy and Schwarz.
- * work [n]. */
-#define HDI_NOISE_TERMS 8
-
 /* Entries of row i of L and B. */
 static double hdi_row_terms(const hd_laplacian *lap, int32_t i) {
     return HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]);
@@ -14945,6 +14941,14 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
         if (lap->L.col[p] == i) return lap->L.val[p];
     return 0;
 }
+
+/* Rounding adds to row i of a residual b - (t L + theta B) x at most c_i sum_j M_ij |x_j|, with M = t |L| +
+ * |theta| |B|, and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more (N.
+ * Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.1). By Cauchy and Schwarz that is
+ * at most sqrt(sum_j noise_j |x_j|^2) in the norm of D^-1, with
+ *   noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik.
+ * work [n]. */
+#define HDI_NOISE_TERMS 8
 
 static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, double *noise, double *work) {
     int32_t i;
@@ -14972,9 +14976,13 @@ static double hdi_rat_reach(const hd_rational *set) {
     return most;
 }
 
-/* What an error of x_p does to a sum of the poles' solutions at most. */
-static double hdi_pole_size(const hd_rational *set, int32_t p) { return hdi_rat_count(set,
-                            p) * hdi_cabs(set->a[p]); }  /* max (1 + x)/|x + theta| over x >= 0 */ static double hdi_pole_reach(hd_c64 theta) {
+/* Bound of what an error of size one of x_p does to the weighted sum of the poles' solutions. */
+static double hdi_pole_size(const hd_rational *set, int32_t p) {
+    return hdi_rat_count(set, p) * hdi_cabs(set->a[p]);
+}
+
+/* max (1 + x)/|x + theta| over x >= 0 */
+static double hdi_pole_reach(hd_c64 theta) {
     const double x = theta.re < 1 ? theta.im * theta.im / (1 - theta.re) - theta.re : -1;
     const double inside = x > 0 ? (1 + x) / hypot(x + theta.re, theta.im) : 0;
     return hdi_max(inside, hdi_max(1, 1 / hdi_cabs(theta)));
@@ -14995,7 +15003,7 @@ static double hdi_inverse_mass(const hd_laplacian *lap, int32_t i) {
     return lap->b_ratio > 0 ? 1 / (lap->b_ratio * lap->b_diag[i]) : HUGE_VAL;
 }
 
-/* What is shared by all right-hand sides: the pair, and preconditioners for a set and a time. */
+/* All right-hand sides share the pair, and the preconditioners for a set and a time. */
 typedef struct hdi_family {
     hd_context *ctx;
     const hd_laplacian *lap;
@@ -15020,8 +15028,8 @@ static void hdi_family_free(hdi_family *fam) {
     fam->filled = 0;
 }
 
-/* Takes up a set and a time, with room for the preconditioners. hdi_family_fill is to follow when filled is
- * 0. */
+/* Takes up a set and a time, with room for the preconditioners. When filled is 0, hdi_family_fill must
+ * follow. */
 static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double t, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
     const uint64_t size =
@@ -15031,9 +15039,7 @@ static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double 
     fam->filled = 0;
     if (fam->n_values < set->n_poles) {
         hdi_family_free(fam);
-        fam->values = HDI_CAST(hd_c64 *,
-                               hdi_alloc(fam->ctx, HDI_CAST(uint64_t, set->n_poles) * (size + 1),
-                                         sizeof(hd_c64), e));
+        fam->values = HDI_NEW(fam->ctx, hd_c64, HDI_CAST(uint64_t, set->n_poles) * (size + 1), e);
         if (!fam->values) return e->status;
         fam->n_values = set->n_poles;
     }
@@ -15082,7 +15088,8 @@ static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, uint64_t stride,
     return HD_OK;
 }
 
-/* Right-hand sides at a time: at most, by iterations, and in a batch through the factors of poles. */
+/* Most right-hand sides at a time: in all, by iterations, and in a batch with the factors of the poles.
+ * Batches at a time. Right-hand sides that one check of residuals takes. */
 enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 8, HDI_BATCHES = 3, HDI_CHECK_MOST = 4 };
 
 enum { HDI_LANCZOS_MAX = 4096 };
@@ -15097,7 +15104,7 @@ typedef struct hdi_lanczos {
     int32_t m;
 } hdi_lanczos;
 
-/* One right-hand side under way. Arrays are [n] rows unless said otherwise. */
+/* One right-hand side. Arrays are [n] by rows unless said otherwise. */
 typedef struct hdi_lane {
     double *f, *rhs, *u;         /* the field, B f, the answer */
     double *tmp;                 /* [4 n] */
@@ -15141,8 +15148,8 @@ static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
 static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, lap->n_active), n_comp = HDI_CAST(uint64_t, lap->n_components);
     if (lane->f) return HD_OK;
-    lane->f = HDI_CAST(double *, hdi_alloc(ctx, 7 * n, sizeof(double), e));
-    if (lane->f) lane->target = HDI_CAST(double *, hdi_alloc(ctx, 3 * n_comp, sizeof(double), e));
+    lane->f = HDI_NEW(ctx, double, 7 * n, e);
+    if (lane->f) lane->target = HDI_NEW(ctx, double, 3 * n_comp, e);
     if (!lane->target) {
         hdi_lane_free(lane, ctx);
         return e->status;
@@ -15161,8 +15168,8 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_co
     hdi_lanczos *z = &lane->lanczos;
     if (z->alpha) return HD_OK;
     hdi_free(ctx, z->v);
-    z->v = HDI_CAST(double *, hdi_alloc(ctx, 3 * n, sizeof(double), e));
-    if (z->v) z->alpha = HDI_CAST(double *, hdi_alloc(ctx, 11 * most, sizeof(double), e));
+    z->v = HDI_NEW(ctx, double, 3 * n, e);
+    if (z->v) z->alpha = HDI_NEW(ctx, double, 11 * most, e);
     if (!z->alpha) return e->status;             /* the lane frees what it has */
     z->c = z->v + n;
     z->c_old = z->c + n;
@@ -15193,9 +15200,9 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
         hdi_free(fam->ctx, lane->vectors);
         lane->vectors = NULL;
         lane->n_systems = 0;
-        lane->b = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, 3 * n + n_comp, sizeof(hd_c64), e));
+        lane->b = HDI_NEW(fam->ctx, hd_c64, 3 * n + n_comp, e);
         if (lane->b)
-            lane->vectors = HDI_CAST(hd_c64 *, hdi_alloc(fam->ctx, count * n_vec * n, sizeof(hd_c64), e));
+            lane->vectors = HDI_NEW(fam->ctx, hd_c64, count * n_vec * n, e);
         if (!lane->vectors) return e->status;
         lane->n_systems = fam->set.n_poles;
     }
@@ -15225,12 +15232,12 @@ static double hdi_pole_error(const hdi_krylov *k) {
     return k->r_norm * hdi_ratio_root(k->a.lap) / hdi_pole_distance(k->a.theta);
 }
 
-/* A residual where a measurement will do: twice what was found, and an eighth of what rounding could hide at
- * the very worst, about a unit in the last place of every row. */
+/* A measured residual: twice what was found, and an eighth of the worst that rounding could hide, about a
+ * unit in the last place of every row. */
 static double hdi_residual_seen(double found, double rounding) { return 2 * found + rounding / 8; }
 
-/* Enters the residual of pole p, found and by rounding, both in the norm of D^-1, into the lane's bounds.
- * found counts as a part of rounding where nothing was iterated. */
+/* Enters the residual of pole p into the lane's bounds. found: as computed, rounding: its bound of rounding,
+ * both in the norm of D^-1. Where nothing was iterated found is a part of rounding. */
 static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
                               double found, double rounding, int iterated) {
     const double weight = hdi_pole_size(set, p) * hdi_ratio_root(lap);
@@ -15260,7 +15267,7 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
     lane->negative = 0;
 }
 
-/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds of its error but for the rational
+/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds of its error without the rational
  * part. */
 static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
@@ -15278,8 +15285,8 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
 
 enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
 
-/* Inner products of solution p with those of poles p to last, into gram[q - p][0] = x_q^* D x_p and gram[q -
- * p][1] = x_q' D x_p, D = diag(B). */
+/* Inner products of solution p with those of poles p to last, D = diag(B):
+ *   gram[q - p][0] = x_q^* D x_p,   gram[q - p][1] = x_q' D x_p. */
 static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n,
                               hd_c64 gram[][2]) {
     const hd_c64 *HDI_RESTRICT y = lane->k[p].x;
@@ -15299,8 +15306,8 @@ static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, 
     }
 }
 
-/* Solves the Hermitian h c = 1 (m x m, rows of HDI_WARM_MAX) by L D L^*, in place; a pivot that rounding has
- * eaten ends the set of useful directions: the rest get zero. */
+/* Solves the Hermitian system h c = 1 (m x m, rows of HDI_WARM_MAX) by L D L^*, in place. Where rounding has
+ * eaten a pivot the direction is of no use, and its coefficient is zero. */
 static void hdi_warm_solve(hd_c64 h[][HDI_WARM_MAX], hd_c64 *c, int32_t m) {
     int32_t i, j, k;
     for (i = 0; i < m; i++) {
@@ -15324,8 +15331,8 @@ static void hdi_warm_solve(hd_c64 h[][HDI_WARM_MAX], hd_c64 *c, int32_t m) {
     }
 }
 
-/* Start of system p from the solutions of poles p + 1 to last, whose inner products are in gram. A point is a
- * pole or its conjugate. */
+/* The start of system p from the solutions of poles p + 1 to last, whose inner products are in gram. A point
+ * is a pole or its conjugate. */
 static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last,
                            hd_c64 gram[][HDI_WARM_POLES + 1][2]) {
     const int32_t n = fam->lap->n_active;
@@ -15359,9 +15366,9 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     }
 }
 
-/* Runs the systems until the bound of their part of the answer's error is at most aim: each may use up an
- * equal share of what those before it left over. From where they are, or fresh, each started from those
- * before it; the last pole comes first, which measures best. */
+/* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
+ * share of what is left over by those before it. fresh: each starts from the solutions of those before it,
+ * else from where it is. The order from the last pole to the first was the fastest in measurements. */
 static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, double aim,
                               const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
@@ -15409,8 +15416,7 @@ static double hdi_resolvent_ratio(hd_c64 theta) {
 
 /* ---- the same by factorisation ---- */
 
-/* What is told of the solutions of a pack's four systems for one right-hand side, in one pass over L and
- * B. */
+/* Measures the solutions of a pack's four systems for one right-hand side, in one pass over L and B. */
 typedef struct hdi_check {
     const hd_laplacian *lap;
     double t, theta[HDI_PACK];   /* re[4], im[4] */
@@ -15458,7 +15464,7 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
 }
 
 #if HDI_X86
-/* What is summed for one right-hand side. */
+/* The sums for one right-hand side. */
 typedef struct hdi_check512 { hdi_v8 l, b, norm, first, size; } hdi_check512;
 
 /* Row i is complete: l and b hold its products with L and B. */
@@ -15491,7 +15497,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_end(hdi_check *h, const hdi_check
     h->first2 += first[0] + first[4];
 }
 
-/* n right-hand sides, whose rows of x stand side by side. */
+/* For n right-hand sides, whose rows of x stand side by side. */
 static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int n) {
     const hd_laplacian *lap = c[0]->lap;
     const hdi_v8 zero = _mm512_setzero_pd();
@@ -15538,8 +15544,8 @@ static HDI_AVX512 void hdi_check_512(hdi_check *const *c, int32_t k) {
 }
 #endif
 
-/* What has been analysed and factorised for a plan: the pair in elimination order, the poles of a set at a
- * time in packs (and a lone real pole in the real factor), or B + g L for shift-and-invert Lanczos. */
+/* What a plan has analysed and factorised: the pair in elimination order, and either the poles of a set at a
+ * time in packs, with a lone real pole in the real factor, or B + g L for shift-and-invert Lanczos. */
 typedef struct hdi_elim {
     hd_context *ctx;
     const hd_laplacian *source;  /* entries of its matrices are what the factors are made of */
@@ -15580,11 +15586,19 @@ static void hdi_elim_own(const hd_laplacian *lap, const int32_t *perm, int32_t *
         if (lap->row[perm[i]] >= 0) rows[k++] = lap->row[perm[i]];
 }
 
+/* 1/diag(B), and room for three more vectors. */
+static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
+    double *w = HDI_NEW(ctx, double, 4 * HDI_CAST(uint64_t, lap->n_active), e);
+    int32_t i;
+    for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
+    return w;
+}
+
 /* Ordering, analysis, and the pair renumbered by it. */
 static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, const int32_t *own,
                                double scale, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    int32_t *rows = HDI_TAKE(&s, int32_t, lap->n_active), i;
+    int32_t *rows = HDI_TAKE(&s, int32_t, lap->n_active);
     const hdi_order order = hdi_order_of(ordering, lap->xyz, own ? rows : NULL);
     if (e->status < 0) return hdi_scope_end(&s);
     memset(m, 0, sizeof *m);
@@ -15596,11 +15610,9 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
         m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
     if (m->lap) {
         (void)hdi_pair_scale(m->lap);
-        m->weight =
-            HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof(double), e));
+        m->weight = hdi_make_weight(m->lap, ctx, e);
         m->noise = m->weight ? m->weight + lap->n_active : NULL;
         m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
-        for (i = 0; m->weight && i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
     }
     if (e->status < 0) hdi_elim_free(m);
     return hdi_scope_end(&s);
@@ -15645,13 +15657,14 @@ static hd_status hdi_elim_shift(hdi_elim *m, double g, hd_error *e) {
     if (hdi_elim_real(m, &m->shifted, g, 1, e) < 0) return e->status;
     if (m->shifted.all.negative)
         return hdi_fail(e, HD_ERR_NOT_POSITIVE,
-                        "L is not positive semi-definite, or B not positive definite: B + g L has a negative pivot");
+                        "L is not positive semi-definite, or B not positive definite: "
+                        "B + g L has a negative pivot");
     hdi_noise_weights(m->lap, g, 1, m->noise_shift, m->noise_shift + m->lap->n_active);
     m->shift = g;
     return HD_OK;
 }
 
-/* Pole in place q of pack i, or the last one again. */
+/* The pole in place q of pack i. A pack that is not full repeats the last pole. */
 static int32_t hdi_elim_pole(const hdi_elim *m, int32_t i, int32_t q) {
     return hdi_low32(m->lone + 1 + 4 * i + q, m->set.n_poles - 1);
 }
@@ -15698,7 +15711,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     return HD_OK;
 }
 
-/* A batch of right-hand sides, each in a lane, solved through all poles. */
+/* Arrays of a batch: right-hand sides, each in a lane, that are solved through all poles together. */
 typedef struct hdi_batch {
     double *x, *xr, *work;       /* [n][k] packs, [n] or [n][8] real, sweeps */
     char *active;                /* [n_super] */
@@ -15715,11 +15728,12 @@ static uint64_t hdi_batch_size(const hdi_elim *m, int32_t k, uint64_t *x, uint64
 
 static hd_status hdi_not_semidefinite(hd_error *e) {
     return hdi_fail(e, HD_ERR_NOT_POSITIVE,
-                    "L is not positive semi-definite: a vector with x'Lx < 0 was met (is it minus the matrix meant?)");
+                    "L is not positive semi-definite: a vector with x'Lx < 0 was met "
+                    "(is it minus the matrix meant?)");
 }
 
-/* Keeps of the solution x of pole p what measures the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
- * which is at most a factor times Re of rhs'x. Real parts of x are stride apart; norm2: |x|_B^2 as computed;
+/* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
+ * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm2: |x|_B^2 as computed.
  * off: bound of its residual. */
 static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
                            double norm2, double off, const double *x, int64_t stride) {
@@ -15758,8 +15772,8 @@ static hdi_check hdi_check_open(const hdi_elim *m, int32_t i, const double *rhs,
     return h;
 }
 
-/* Checks of a pack's systems for the lanes listed, their bounds, and their part of the answer. lane[q] has
- * its solution at x + 8 at[q]. */
+/* Checks a pack's systems for the lanes listed, and adds their part of the answer and its bounds. The
+ * solution of lane[r] is at x + 8 at[r]. */
 static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const int32_t *at, int32_t k,
                            const double *x, int64_t stride) {
     const int32_t n_here = hdi_low32(m->set.n_poles - (m->lone + 1 + 4 * i), 4);
@@ -15827,8 +15841,8 @@ static void hdi_batch_real(const hdi_elim *m, hdi_lane *lane, const double *x, i
     hdi_lane_first(lane, lap, &m->set, 0, hdi_max(0, first2), sqrt(norm2) + sqrt(size2), x, stride);
 }
 
-/* u = a0 f - sum a_i x_i for k lanes (those that are skipped cost, but do not count). ctx: threads for the
- * sweeps; NULL within a task. */
+/* u = a0 f - sum a_i x_i for k lanes. Lanes that are skipped are solved for zero. ctx: threads for the
+ * sweeps, NULL within a task. */
 static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane, int32_t k, hd_context *ctx) {
     const hdi_symbolic *s = &m->sym;
     const int32_t n = s->n, wide = k > 1 ? 8 : 1;
@@ -15879,8 +15893,8 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
         for (r = 0; r < n_list; r += HDI_CHECK_MOST)
-            hdi_batch_pack(m, i, list + r, at + r, n_list - r < HDI_CHECK_MOST ? n_list - r : HDI_CHECK_MOST,
-                           b->x, HDI_PACK * HDI_CAST(int64_t, k));
+            hdi_batch_pack(m, i, list + r, at + r, hdi_low32(n_list - r, HDI_CHECK_MOST), b->x,
+                           HDI_PACK * HDI_CAST(int64_t, k));
     }
 }
 
@@ -15925,10 +15939,10 @@ static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigm
     return 0;
 }
 
-/* A proven b_ratio where Gershgorin's, in lap, is poor: values from the estimate downwards, each tried by a
- * factorisation. What that rounds is a matrix E with |x'Ex| <= eps (nnz(L) + 2 n) x'diag(B)x (after Rump
- * 2006): so much is added to sigma. Where all fail, B has a negative eigenvalue, or the ratio is not known.
- * */
+/* A proven b_ratio where that of Gershgorin's theorem, which lap has, is poor. Values from an estimate
+ * downwards are each tried by a factorisation. Its rounding is that of a matrix E with |x'Ex| <= eps (nnz(L)
+ * + 2 n) x'diag(B)x (after Rump 2006), which is added to sigma. Where all tries fail, B has a negative
+ * eigenvalue, or the ratio is not known. */
 static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const double dominant = hdi_max(lap->b_ratio, 0);
@@ -15963,8 +15977,24 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-/* Sets the heat of each component to c0 times that of the right-hand side: the constants' part of c(-t B^-1
- * L) f, exactly. */
+/* The means of the right-hand side, where constants are conserved, into lane->sums; else zeros. */
+static void hdi_lane_means(hdi_lane *lane, const hd_laplacian *lap) {
+    int32_t i;
+    for (i = 0; i < lap->n_components; i++)
+        lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
+}
+
+/* Their squared norm, which every answer has at least. */
+static double hdi_lane_means_norm2(const hdi_lane *lane, const hd_laplacian *lap) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_components && lap->conserves; i++)
+        sum += lane->target[i] * lane->target[i] / lap->component_mass[i];
+    return sum;
+}
+
+/* Sets the heat of each component to c0 times that of the right-hand side. This is the exact part of c(-t
+ * B^-1 L) f in the constants. */
 static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
     int32_t c;
     if (!lap->conserves) return;
@@ -15974,9 +16004,9 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
     hdi_component_add(lap, lane->sums, lane->u);
 }
 
-/* What rounding does to the heat of components, n sums of masses times values, and to that of the field
- * itself where it is dense; and what is left of L 1, which counts as zero where it is so to rounding, up to
- * 1e-8. Same in both norms. */
+/* Bound of what rounding does to the heat of components, which are n sums of masses times values; to that of
+ * the field itself where it is dense; and of what is left of L 1, which counts as zero up to 1e-8. The bound
+ * is the same in both norms. */
 static double hdi_conserve_off(const hd_laplacian *lap, const hdi_lane *lane, double drift_t, int dense) {
     const double sums = HDI_CAST(double, lap->n_active) * DBL_EPSILON / 2;
     const double given = dense ? (sums + 4 * DBL_EPSILON) * lane->f_norm : 0;
@@ -16012,7 +16042,7 @@ static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, doub
 }
 
 /* Errors of a set, for |exp(x) - c(x)| and for (1 + |x|) times that. Of the caller's own sets either may be
- * unknown, 0: a weighted one bounds the other; without both, bounds hold for c itself. */
+ * unknown, 0. A weighted error bounds the other one. Without both, bounds hold for c itself. */
 static double hdi_set_uniform(const hd_rational *set) {
     return set->max_error > 0 ? set->max_error : set->max_weighted_error;
 }
@@ -16020,8 +16050,8 @@ static double hdi_set_weighted(const hd_rational *set) {
     return set->max_weighted_error > 0 ? set->max_weighted_error : set->max_error > 0 ? HUGE_VAL : 0;
 }
 
-/* Bounds of (exp - c)(-t B^-1 L) f in both norms. That of a weighted set is relative to the resolvent (B + t
- * L)^-1 B f, which a solution bounds; the constants drop out of built-in sets, whose c(0) = 1. */
+/* Bounds of (exp - c)(-t B^-1 L) f in both norms. The bound of a weighted set is relative to the resolvent (B
+ * + t L)^-1 B f, which a solution bounds. The constants drop out of built-in sets, whose c(0) is 1. */
 static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, hdi_lane *lane) {
     const double weighted = hdi_set_weighted(set);
     const int constants = lap->conserves && set->kind == HD_POLES_OWN;
@@ -16051,8 +16081,7 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     }
 }
 
-/* Is u'Lu of an answer negative, beyond rounding? Matrices of the caller's own may be anything; a mesh's are
- * not asked. */
+/* Is u'Lu of an answer negative, beyond rounding? Only matrices of the caller's own are tested. */
 static int hdi_lane_negative(const hd_laplacian *lap, const hdi_lane *lane) {
     double sum = 0, size = 0;
     int32_t i;
@@ -16071,15 +16100,14 @@ static int hdi_lane_negative(const hd_laplacian *lap, const hdi_lane *lane) {
 /* The right-hand side without its constants, complex. */
 static void hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
     int32_t i;
-    for (i = 0; i < lap->n_components; i++)
-        lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
+    hdi_lane_means(lane, lap);
     for (i = 0; i < lap->n_active; i++)
         lane->b[i] = hdi_c(lane->rhs[i] - lap->mass[i] * lane->sums[lap->component[i]], 0);
 }
 
-/* K_t f through a pole set. The tolerance is relative to the answer, which is not known before: a first round
- * aims at it relative to f, which is never too strict as |K_t f|_B <= |f|_B, and the next ones go on from
- * there relative to what came out. */
+/* K_t f through a pole set. The tolerance is relative to the answer, which is not known yet. A first round
+ * aims at the tolerance relative to f, which is never too strict because |K_t f|_B <= |f|_B. The next rounds
+ * go on from there, relative to the answer that came out. */
 static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane,
                                 const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = fam->lap;
@@ -16117,8 +16145,8 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
     return lane->off.solver <= tol * (lane->u_norm - lane->off.solver) ? HD_OK : HD_WARN_ACCURACY;
 }
 
-/* What is left to do after the poles' factors have been applied: constants, norms, bounds. limit: of
- * rounding, relative to the answer, above which the status warns. */
+/* Finishes an answer by the poles' factors: constants, norms, bounds. The status warns where rounding
+ * relative to the answer is above limit. */
 static hd_status hdi_elim_finish(const hdi_elim *m, double limit, double drift_t, int dense, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
     int32_t i;
@@ -16219,8 +16247,8 @@ static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, con
 enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
 
 /* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares
- * of the relative error. 0: not to be had; for sets of few poles. work: columns [2 HDI_RESOLVENT_POLES +
- * 1][HDI_RESOLVENT_POINTS]. */
+ * of the relative error, for sets of few poles. Returns 0 where there are none. work: columns [2
+ * HDI_RESOLVENT_POLES + 1][HDI_RESOLVENT_POINTS]. */
 static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double *slack) {
     double work[(2 * HDI_RESOLVENT_POLES + 1) * HDI_RESOLVENT_POINTS];
     double *b = work + 2 * HDI_RESOLVENT_POLES * HDI_RESOLVENT_POINTS, worst = 0;
@@ -16256,12 +16284,12 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
     return worst < 0.2;
 }
 
-/* What the constants alone are of diag((B + tL)^-1), however much of them rounding has eaten. */
+/* The part of the constants in diag((B + tL)^-1). It is known exactly, whatever rounding has eaten. */
 static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
     return lap->conserves ? 1 / lap->component_mass[lap->component[i]] : 0;
 }
 
-/* What rounding may add to the entries of an inverse that bound others. */
+/* A factor for the rounding of an inverse's entries that serve as bounds. */
 #define HDI_REACH_SLACK 1.01
 
 /* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
@@ -16287,8 +16315,8 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     return e->status;
 }
 
-/* The pole whose Re (tL + theta B)^-1 bounds (B + tL)^-1 best, times *factor: Re 1/(x + theta) >= 1/(factor
- * (1 + x)) for x >= 0. -1: none does. */
+/* The pole whose Re (tL + theta B)^-1 times *factor bounds (B + tL)^-1 best: Re 1/(x + theta) >= 1/(factor (1
+ * + x)) for x >= 0. Returns -1 where no pole does. */
 static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
     int32_t p, best = -1;
     for (p = 0; p < set->n_poles; p++) {
@@ -16302,22 +16330,28 @@ static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
 
 /* ==== [23] lanczos ====
  * Owns K_t f without poles: Lanczos for the exponential, and shift-and-invert Lanczos on one real factor. May
- * call [22]. This work is based on
+ * call [22].
+ * This work is based on
  *   M. Hochbruck, Ch. Lubich, On Krylov subspace approximations to the matrix exponential operator, 1997
  *   I. Moret, P. Novati, RD-rational approximations of the matrix exponential, 2004
  *   J. van den Eshof, M. Hochbruck, Preconditioning Lanczos approximations to the matrix exponential, 2006 */
 
 /* ---- Lanczos for the exponential ---- */
-/* The basis is not kept. A first sweep finds the coefficients, a second one makes the same vectors again, to
- * the last bit, and adds them up: as much work as writing them to fresh memory and reading them back would
- * be, with six vectors in place of hundreds. No reorthogonalisation: the few huge eigenvalues that slivers
- * have come back as copies, which costs a third more steps (bunny, t = 100 h^2: 280 where full
- * reorthogonalisation takes 200) and no accuracy. Simon's partial reorthogonalisation saves those steps and
- * takes 2.4 times as long. */
+/* The basis is not kept. A first sweep finds the coefficients. A second one makes the same vectors again, to
+ * the last bit, and adds them up. This is as much work as to write hundreds of vectors to memory and read
+ * them back, and needs room for six.
+ * There is no reorthogonalisation. Slivers have a few huge eigenvalues that come back as copies. This costs a
+ * third more steps (bunny, t = 100 h^2: 280, with full reorthogonalisation 200) and no accuracy. Simon's
+ * partial reorthogonalisation saves those steps but takes 2.4 times as long. */
 
-/* t beta_(m+1) |e_m' phi_1(-t T) e_1|, phi_1(z) = (e^z - 1)/z: bounds the error of m steps from a vector of
- * norm one. For the error is beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds, the last factor
- * has one sign for all s, and the first shrinks. */
+static hd_status hdi_lanczos_failed(hd_error *e) {
+    return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+}
+
+/* Bounds the error of m steps from a vector of norm one by
+ *   t beta_(m+1) |e_m' phi_1(-t T) e_1|,   phi_1(z) = (e^z - 1)/z.
+ * The error is beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds. The last factor has one sign
+ * for all s, and the first one shrinks. */
 static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_error *e) {
     const int32_t m = z->m;
     double sum = 0, least = 0, most = 0;
@@ -16329,7 +16363,7 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
         z->z1[i] = i == m - 1;
     }
     if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m))
-        return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+        return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         least = hdi_min(least, z->d[i]);
         most = hdi_max(most, fabs(z->d[i]));
@@ -16343,8 +16377,8 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
     return HD_OK;
 }
 
-/* y = exp(-t T) e_1 through the best uniform set of degree 14: O(m) a pole, and as exact as rounding would
- * leave an eigensolution. */
+/* y = exp(-t T) e_1 by the best uniform set of degree 14. It takes O(m) operations a pole, and its error is
+ * that of rounding in an eigensolution. */
 static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set) {
     const int32_t m = z->m;
     hd_c64 *d = z->work, *g = z->work + m;
@@ -16367,7 +16401,7 @@ static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational
     }
 }
 
-/* What the process works on. */
+/* A run of the process. */
 typedef struct hdi_lanczos_task {
     const hd_laplacian *lap;
     const double *weight, *noise;        /* [n] 1/diag(B); weights of rounding of a product with L */
@@ -16389,7 +16423,8 @@ static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
     z->m = 0;
 }
 
-/* One step: from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). work [4 n]. */
+/* One step from v_j, c = B v_j, c_old = B v_(j-1) to the next vectors, and alpha_j, beta_(j+1). w [n] and
+ * mass [3 n]: work. */
 static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, double *HDI_RESTRICT w,
                                   double *mass, hd_error *e) {
     const hd_laplacian *lap = task->lap;
@@ -16432,9 +16467,9 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
 }
 
 /* A bound of what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) +
- * errors of size noise in B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j) e_j' exp(-s
- * T) e_1 ds: at most noise sqrt(m) times the integral of |exp(-s T) e_1|, which falls with s, so that sums
- * from the left are above it. Then the sum of the answer. */
+ * errors of size noise in the norm of B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j)
+ * e_j' exp(-s T) e_1 ds. This is at most noise sqrt(m) times the integral of |exp(-s T) e_1|, which falls
+ * with s, so that left Riemann sums are above it. Rounding of the answer's own sum comes on top. */
 static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
     const int32_t m = z->m;
     double integral = 0, from = 0, to, size = 0;
@@ -16450,8 +16485,8 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
            (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
 }
 
-/* Steps to the next look at the bound: half of what a straight line through the last two looks promises, as
- * convergence speeds up. */
+/* Steps to the next look at the bound: half of what a straight line through the logarithms of the last two
+ * promises, because convergence speeds up. */
 static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before,
                                 double target) {
     const int32_t most = m < 64 ? 1 : m / 32;
@@ -16462,8 +16497,8 @@ static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, doubl
     return want < 1 ? 1 : want > most ? most : HDI_CAST(int32_t, want);
 }
 
-/* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2 is what |u|_B^2
- * has besides. */
+/* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2: the part of
+ * |u|_B^2 that is in the constants. */
 static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm, double fixed_norm2,
                                    hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = task->lap;
@@ -16523,7 +16558,7 @@ static hd_status hdi_lanczos_second(const hdi_lanczos_task *task, double f0_norm
     return HD_OK;
 }
 
-/* K_t f by Lanczos. The constants of each component need none of it. */
+/* K_t f by Lanczos, which the constants of each component do not enter. */
 static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, const hdi_watch *watch,
                                  hd_error *e) {
     const hd_laplacian *lap = task->lap;
@@ -16534,14 +16569,14 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
     memset(lane->u, 0, HDI_CAST(size_t, n) * sizeof *lane->u);
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_ESTIMATED;
-    if (lap->conserves) {
-        for (i = 0; i < lap->n_components; i++) {
-            lane->sums[i] = -lane->target[i] / lap->component_mass[i];
-            fixed += lane->target[i] * lane->target[i] / lap->component_mass[i];
+    if (lap->conserves) {                        /* f0 = f - constants, rhs0 = B f0 */
+        fixed = hdi_lane_means_norm2(lane, lap);
+        hdi_lane_means(lane, lap);
+        for (i = 0; i < n; i++) {
+            lane->u[i] = lane->sums[lap->component[i]];
+            lane->f[i] -= lane->u[i];
+            lane->rhs[i] -= lap->mass[i] * lane->u[i];
         }
-        hdi_component_add(lap, lane->sums, lane->f);               /* f0 = f - constants, rhs0 = B f0 */
-        for (i = 0; i < n; i++) lane->rhs[i] += lap->mass[i] * lane->sums[lap->component[i]];
-        for (i = 0; i < n; i++) lane->u[i] = -lane->sums[lap->component[i]];
     }
     f0_norm = hdi_dot(lane->f, lane->rhs, n);
     f0_norm = f0_norm > 0 ? sqrt(f0_norm) : 0;
@@ -16558,7 +16593,7 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
 
 enum { HDI_SILAN_MAX = 160, HDI_SILAN_POINTS = 96, HDI_SILAN_WIDE = 8 };
 
-/* The process for 1 or 8 right-hand sides side by side; times share it. */
+/* The process for 1 or 8 right-hand sides side by side. All times share it. */
 typedef struct hdi_silan {
     const hdi_elim *m;
     int32_t k, wide, steps;      /* right-hand sides, 1 or 8, steps taken */
@@ -16578,8 +16613,9 @@ typedef struct hdi_silan {
 
 /* ---- shift-and-invert Lanczos ---- */
 /* Lanczos in the B inner product for S = (B + g L)^-1 B, whose large eigenvalues are those of the smooth
- * modes: with S V = V T + beta v e_m', exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1 for every t around
- * 10 g. One real factor and one basis serve all these times. */
+ * modes. With S V = V T + beta v e_m',
+ *   exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1
+ * for every t around 10 g. One real factor and one basis serve all these times. */
 static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
     int32_t i;
     for (i = 0; i <= HDI_SILAN_MAX; i++) hdi_free(ctx, z->v[i]);
@@ -16613,14 +16649,16 @@ static void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const doub
     }
 }
 
-typedef struct hdi_mass_job { const hd_laplacian *lap; int32_t wide; const double *x; double *y; } hdi_mass_job;
+typedef struct hdi_mass_job {
+    const hd_laplacian *lap;
+    int32_t wide;
+    const double *x;
+    double *y;
+} hdi_mass_job;
 
-static void hdi_mass_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_mass_task(void *arg, int64_t begin, int64_t end) {
     const hdi_mass_job *j = HDI_CAST(const hdi_mass_job *, arg);
-    const int64_t begin = index * HDI_ROWS_PER_TASK, end = begin + HDI_ROWS_PER_TASK;
-    (void)worker;
-    hdi_mass_rows_body(j->lap, j->wide, j->x, j->y, HDI_CAST(int32_t, begin),
-                       HDI_CAST(int32_t, end < j->lap->n_active ? end : j->lap->n_active));
+    hdi_mass_rows_body(j->lap, j->wide, j->x, j->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end));
 }
 
 static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *x, double *y,
@@ -16630,8 +16668,7 @@ static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *
     j.wide = wide;
     j.x = x;
     j.y = y;
-    hdi_parallel(ctx, (HDI_CAST(int64_t, lap->n_active) + HDI_ROWS_PER_TASK - 1) / HDI_ROWS_PER_TASK,
-                 hdi_mass_task, &j);
+    hdi_parallel_ranges(ctx, lap->n_active, HDI_ROWS_PER_TASK, hdi_mass_task, &j);
 }
 
 /* out[r] = sum_i x_ir y_ir */
@@ -16648,54 +16685,54 @@ static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRI
         for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] += x[HDI_SILAN_WIDE * i + r] * y[HDI_SILAN_WIDE * i + r];
 }
 
-/* Starts from the lanes' f and rhs = B f without constants, which lanes keep apart in sums; |f|_B of what is
- * left. */
-static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
+/* Right-hand side r of the start: the lane's f and rhs = B f without their constants, of norm one. */
+static void hdi_silan_take(hdi_silan *z, int32_t r, hdi_lane *lane) {
     const hd_laplacian *lap = z->m->lap;
-    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), wide = HDI_CAST(uint64_t, z->wide);
+    double *v = z->v[0], norm = 0;
     int64_t i;
+    z->done[r] = -1;                             /* nothing there but constants */
+    z->f_norm[r] = 0;
+    z->whole[r] = lane ? lane->f_norm : 0;
+    if (lane && !lane->skip) {
+        hdi_lane_means(lane, lap);
+        for (i = 0; i < lap->n_active; i++) {
+            const int64_t at = z->wide * i + r;
+            const double mean = lane->sums[lap->component[i]];
+            v[at] = lane->f[i] - mean;
+            z->c[at] = lane->rhs[i] - lap->mass[i] * mean;
+            norm += v[at] * z->c[at];
+        }
+        if (norm > 0 && sqrt(norm) > DBL_EPSILON * lane->f_norm) {
+            z->f_norm[r] = sqrt(norm);
+            z->done[r] = 0;
+        }
+    }
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t at = z->wide * i + r;
+        v[at] = z->f_norm[r] > 0 ? v[at] / z->f_norm[r] : 0;
+        z->c[at] = z->f_norm[r] > 0 ? z->c[at] / z->f_norm[r] : 0;
+    }
+}
+
+/* Starts with the fields of z->k lanes. */
+static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
+    const uint64_t n = HDI_CAST(uint64_t, z->m->lap->n_active), count = n * HDI_CAST(uint64_t, z->wide);
     int32_t r;
-    if (!z->v[0]) z->v[0] = HDI_CAST(double *, hdi_alloc(ctx, n * wide, sizeof(double), e));
-    if (z->v[0] && !z->c) z->c = HDI_CAST(double *, hdi_alloc(ctx, 2 * n * wide + 2 * n, sizeof(double), e));
-    if (z->c && !z->work)
-        z->work = HDI_CAST(double *,
-                           hdi_alloc(ctx, hdi_sweep_size(&z->m->sym, 1, z->wide), sizeof(double), e));
+    if (!z->v[0]) z->v[0] = HDI_NEW(ctx, double, count, e);
+    if (z->v[0] && !z->c) z->c = HDI_NEW(ctx, double, 2 * count + 2 * n, e);
+    if (z->c && !z->work) z->work = HDI_NEW(ctx, double, hdi_sweep_size(&z->m->sym, 1, z->wide), e);
     if (e->status < 0) return e->status;
-    z->w = z->c + n * wide;
-    z->probe = z->w + n * wide;
+    z->w = z->c + count;
+    z->probe = z->w + count;
     z->solved = 0;
     z->steps = 0;
     z->vectors_of = -1;
-    for (r = 0; r < z->wide; r++) {
-        double norm;
-        z->done[r] = 0;
-        z->f_norm[r] = 0;
-        z->whole[r] = r < z->k ? lane[r].f_norm : 0;
-        if (r < z->k && !lane[r].skip) {
-            for (i = 0; i < lap->n_components; i++)
-                lane[r].sums[i] = lap->conserves ? lane[r].target[i] / lap->component_mass[i] : 0;
-            for (i = 0; i < lap->n_active; i++) {
-                const double mean = lane[r].sums[lap->component[i]];
-                z->v[0][z->wide * i + r] = lane[r].f[i] - mean;
-                z->c[z->wide * i + r] = lane[r].rhs[i] - lap->mass[i] * mean;
-            }
-        }
-        norm = 0;
-        for (i = 0; i < lap->n_active && r < z->k && !lane[r].skip; i++)
-            norm += z->v[0][z->wide * i + r] * z->c[z->wide * i + r];
-        if (norm > 0 && sqrt(norm) > DBL_EPSILON * lane[r].f_norm) z->f_norm[r] = sqrt(norm);
-        else z->done[r] = -1;                    /* nothing there but constants */
-        for (i = 0; i < lap->n_active; i++) {
-            const int64_t at = z->wide * i + r;
-            z->v[0][at] = z->f_norm[r] > 0 ? z->v[0][at] / z->f_norm[r] : 0;
-            z->c[at] = z->f_norm[r] > 0 ? z->c[at] / z->f_norm[r] : 0;
-        }
-    }
+    for (r = 0; r < z->wide; r++) hdi_silan_take(z, r, r < z->k ? lane + r : NULL);
     return HD_OK;
 }
 
-/* The residual of the solve w = S B v of right-hand side 0, held against what rounding can make of it. Some
- * of the first solves are looked at. */
+/* Compares the residual of the solve w = S B v of right-hand side 0 with the bound of rounding. Only some of
+ * the first solves are measured. */
 static void hdi_silan_probe(hdi_silan *z) {
     const hd_laplacian *lap = z->m->lap;
     double *x = z->probe, *r = x + lap->n_active, sum = 0;
@@ -16733,7 +16770,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     int64_t i;
     int32_t r;
     if (!z->v[j + 1])
-        z->v[j + 1] = HDI_CAST(double *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(double), e));
+        z->v[j + 1] = HDI_NEW(ctx, double, count, e);
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
     s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
@@ -16787,16 +16824,26 @@ static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, 
     return hdi_tridiag_eigen(d, off, x, y, m);
 }
 
-/* exp(-s (1/mu - 1)/g): mu is an eigenvalue of T in (0, 1]; what rounding makes of tiny ones belongs to modes
- * that are gone. */
+/* exp(-s (1/mu - 1)/g) for an eigenvalue mu of T in (0, 1]. Tiny ones are rounding, and belong to modes that
+ * are gone. */
 static double hdi_silan_decay(double mu, double s_over_g) {
     if (mu > 1e-15) return exp(-s_over_g * hdi_max(0, 1 / mu - 1));
     return s_over_g > 0 ? 0 : 1;
 }
 
-/* (F(a) - F(b))/(a - b) for F(x) = exp(-tau (1/x - 1)),
-                              a and b in (0, 1]; fa, fb: F there. */ static double hdi_silan_slope(double a,
-                              double fa, double b, double fb, double tau) {
+/* Point k of HDI_SILAN_POINTS in (0, 1], which are dense at both ends. What lies between them is below the
+ * maximum on them times the first number, and below that on every other one times the second. Tuned on meshes
+ * of 1K to 1M vertices. */
+#define HDI_SILAN_BETWEEN 1.2
+#define HDI_SILAN_BETWEEN2 1.5
+
+static double hdi_silan_point(int32_t k) {
+    const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS));
+    return s * s;
+}
+
+/* (F(a) - F(b))/(a - b) for F(x) = exp(-tau (1/x - 1)), a and b in (0, 1]; fa, fb: F there. */
+static double hdi_silan_slope(double a, double fa, double b, double fb, double tau) {
     const double d = a - b;
     double x;
     if (fabs(d) > 0.1 * a) return (fa - fb) / d;
@@ -16806,18 +16853,17 @@ static double hdi_silan_decay(double mu, double s_over_g) {
     return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
 }
 
-/* The bound of the error for right-hand side r after m steps at time t, relative to |f|_B, and |u|_B relative
- * to it too. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1), with mu_j the eigenvalues of T, x and
- * y the first and last rows of its eigenvectors, F[.,.] the divided difference; S has its eigenvalues in (0,
- * 1], where the sum is a smooth function of them, so that its maximum on points that crowd at both ends is
- * the bound. */
+/* The error bound of right-hand side r after m steps at time t, relative to |f|_B, and |u|_B relative to it
+ * too. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1), with mu_j the eigenvalues of T, x and y the
+ * first and last rows of its eigenvectors, and F[.,.] the divided difference. S has its eigenvalues in (0,
+ * 1], where the sum is a smooth function of them, so that its maximum on enough points is the bound. */
 static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, double t, double *bound,
                                  double *size, hd_error *e) {
     double d[HDI_SILAN_MAX], x[HDI_SILAN_MAX], y[HDI_SILAN_MAX], f[HDI_SILAN_MAX], most = 0, norm = 0;
     const double tau = t / z->g;
     int32_t i, k;
     if (!hdi_silan_eigen(z, r, m, 0, m - 1, d, x, y))
-        return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+        return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
         if (d[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
@@ -16828,17 +16874,16 @@ static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, doubl
     }
     *size = sqrt(norm);
     for (k = 1; k <= HDI_SILAN_POINTS; k++) {
-        const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS)), at = s * s;
-        const double fa = hdi_silan_decay(at, tau);
+        const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
         double sum = 0;
         for (i = 0; i < m; i++) sum += x[i] * hdi_silan_slope(d[i], f[i], at, fa, tau);
         most = hdi_max(most, fabs(sum));
     }
-    *bound = 1.2 * z->beta[m][r] * most;         /* for what falls between the points */
+    *bound = HDI_SILAN_BETWEEN * z->beta[m][r] * most;
     return HD_OK;
 }
 
-/* All rows of T's eigenvectors, two at a time through the same rotations; kept for the next time. */
+/* All rows of T's eigenvectors, two at a time by the same rotations. They are kept for the next time. */
 static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error *e) {
     int32_t k;
     if (z->vectors_of == r && z->vectors_m == m) return HD_OK;
@@ -16846,7 +16891,7 @@ static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error 
     for (k = 0; k < m; k += 2) {
         double *x = z->vectors + HDI_CAST(int64_t, k) * m, spare[HDI_SILAN_MAX];
         if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->mu, x, k + 1 < m ? x + m : spare))
-            return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
+            return hdi_lanczos_failed(e);
     }
     z->vectors_of = r;
     z->vectors_m = m;
@@ -16865,13 +16910,42 @@ static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, int32_t m, doub
     return HD_OK;
 }
 
+/* The error bound of right-hand side r at the worst of the times: *miss times what is asked for, *bound
+ * relative to |f|_B. fixed: |constants|_B^2. It ends early where two times miss already. */
+static hd_status hdi_silan_miss(const hdi_silan *z, int32_t r, const double *t, int32_t n_times, double tol,
+                                double fixed, double miss_bound[2], hd_error *e) {
+    int32_t q;
+    miss_bound[0] = miss_bound[1] = 0;
+    for (q = 0; q < n_times && z->beta[z->steps][r] > 0 && (q < 2 || miss_bound[0] <= 1); q++) {
+        /* the last and the first are the worst, as a rule */
+        const double at = t[q == 0 ? n_times - 1 : q - 1];
+        double bound, size;
+        if (hdi_silan_bound(z, r, z->steps, at, &bound, &size, e) < 0) return e->status;
+        size = sqrt(size * size + fixed / (z->f_norm[r] * z->f_norm[r]));
+        miss_bound[0] = hdi_max(miss_bound[0], size > 0 ? bound / (tol * size) : bound > 0 ? HUGE_VAL : 0);
+        miss_bound[1] = hdi_max(miss_bound[1], bound);
+    }
+    return HD_OK;
+}
+
+/* Convergence has stopped when so many steps do not halve what is missing. An answer that has died away has
+ * no digits left, and none is missed when the error is below this, relative to f. Tuned on meshes of 1K to 1M
+ * vertices. */
+#define HDI_SILAN_PATIENCE 12
+#define HDI_SILAN_FAILED 1e-6
+
+/* Steps to the next look: one gains about a factor of two. */
+static int32_t hdi_silan_pace(double miss) {
+    const double steps = miss > 1 ? hdi_min(8, 0.6 * log2(hdi_min(miss, 1e30))) : 1;
+    return steps < 1 ? 1 : HDI_CAST(int32_t, steps);
+}
+
 /* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is
  * |constants|_B^2. */
 static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, double tol,
                                const double *fixed, hd_context *ctx, hd_error *e) {
-    /* reached: bound relative to f: of an answer that has died away no digit is to be had */
-    double best[HDI_SILAN_WIDE], reached[HDI_SILAN_WIDE];
-    int32_t r, q, left = 0, look = 4, best_m[HDI_SILAN_WIDE], most = HDI_SILAN_MAX - 1;
+    double best[HDI_SILAN_WIDE], now[2], miss_all;
+    int32_t r, left = 0, look = 4, best_m[HDI_SILAN_WIDE], most = HDI_SILAN_MAX - 1;
     hd_status worst = HD_OK;
     for (r = 0; r < z->k; r++) {
         left += z->done[r] == 0;
@@ -16879,53 +16953,39 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
         best_m[r] = 0;
     }
     while (left > 0) {
-        double miss_all = 1;
-        if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0 ||
-            hdi_silan_step(z, ctx, e) < 0)
-            return e->status;
+        if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0) return e->status;
+        if (hdi_silan_step(z, ctx, e) < 0) return e->status;
         if (z->steps < look && z->steps < most) continue;
+        miss_all = 1;
         for (r = 0; r < z->k; r++) {
-            double miss = 0, worst_bound = 0;
             if (z->done[r]) continue;
-            /* last and first time first: the worst, as a rule */
-            for (q = 0; q < n_times && z->beta[z->steps][r] > 0 && (q < 2 || miss <= 1); q++) {
-                const double at = t[q == 0 ? n_times - 1 : q - 1];
-                double bound, size;
-                if (hdi_silan_bound(z, r, z->steps, at, &bound, &size, e) < 0) return e->status;
-                size = sqrt(size * size + fixed[r] / (z->f_norm[r] * z->f_norm[r]));
-                miss = hdi_max(miss, size > 0 ? bound / (tol * size) : bound > 0 ? HUGE_VAL : 0);
-                worst_bound = hdi_max(worst_bound, bound);
-            }
-            reached[r] = worst_bound;
-            if (miss < best[r] / 2 && z->steps < most) {
-                best[r] = miss;
+            if (hdi_silan_miss(z, r, t, n_times, tol, fixed[r], now, e) < 0) return e->status;
+            if (now[0] < best[r] / 2 && z->steps < most) {
+                best[r] = now[0];
                 best_m[r] = z->steps;
-            } else if (z->steps > best_m[r] + 12 || z->steps >= most) {
-                if (miss > 1 && reached[r] > 1e-6)
+            } else if (z->steps > best_m[r] + HDI_SILAN_PATIENCE || z->steps >= most) {
+                if (now[0] > 1 && now[1] > HDI_SILAN_FAILED)
                     return hdi_fail(e, HD_ERR_NOT_CONVERGED,
                                     "shift-and-invert Lanczos did not reach the tolerance");
-                if (miss > 1) worst = HD_WARN_ACCURACY;
-                miss = 1;
+                if (now[0] > 1) worst = HD_WARN_ACCURACY;
+                now[0] = 1;
             }
-            if (miss <= 1) {
+            if (now[0] <= 1) {
                 z->done[r] = z->steps;
                 left--;
             }
-            miss_all = hdi_max(miss_all, miss);
+            miss_all = hdi_max(miss_all, now[0]);
         }
-        /* a step gains a factor of two or so */
-        look = z->steps +
-               (miss_all > 1 ? HDI_CAST(int32_t, hdi_min(8, 0.6 * log2(hdi_min(miss_all, 1e30)))) : 1);
-        if (look <= z->steps) look = z->steps + 1;
+        look = z->steps + hdi_silan_pace(miss_all);
     }
     return worst;
 }
 
-/* What rounding does to the answer of right-hand side r after m steps, relative to |f|_B: with S V = V T +
- * ... + errors Phi_j of the steps, it is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, divided differences
- * as in hdi_silan_bound. A solve's residual is an error no larger in the B norm. y: the answer's
- * coefficients. given: what the right-hand side is off by from B f, which is an error of the first step. T's
- * eigenvectors are there. */
+/* Bound of what rounding does to the answer of right-hand side r after m steps, relative to |f|_B. With S V =
+ * V T + ... + errors Phi_j of the steps, the answer is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, with
+ * divided differences as in hdi_silan_bound. The residual of a solve is an error that is no larger in the B
+ * norm. y: the answer's coefficients. given: the error of the right-hand side, which is an error of the first
+ * step. T's eigenvectors are there. */
 static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y,
                                  double given) {
     double f[HDI_SILAN_MAX], most[HDI_SILAN_MAX], slope[HDI_SILAN_MAX], sum = 0, size = 0;
@@ -16937,25 +16997,22 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
         size += fabs(y[i]);
     }
     for (k = 2; k <= HDI_SILAN_POINTS; k += 2) {
-        const double s = sin(1.5707963267948966 * k / HDI_CAST(double, HDI_SILAN_POINTS)), at = s * s;
-        const double fa = hdi_silan_decay(at, tau);
+        const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
         for (i = 0; i < m; i++) slope[i] = z->vectors[i] * hdi_silan_slope(z->mu[i], f[i], at, fa, tau);
         for (j = 0; j < m; j++)
             most[j] = hdi_max(most[j], fabs(hdi_dot(z->vectors + HDI_CAST(int64_t, j) * m, slope, m)));
     }
     for (j = 0; j < m; j++) {
-        /* of B w, which makes the next right-hand side */
-        const double product = z->m->lap->B ? z->noise[j][r] : 0;
-        const double step = root *
-                            (hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]) + product) +
-                            4 * DBL_EPSILON *
-                            (fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r]);
-        sum += 1.5 * most[j] * step;
+        const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
+        const double solve = hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]);
+        const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r];
+        const double step = root * (solve + product) + 4 * DBL_EPSILON * size_j;
+        sum += HDI_SILAN_BETWEEN2 * most[j] * step;
     }
-    return z->f_norm[r] * sum + 1.5 * most[0] * given + m * DBL_EPSILON * size;
+    return z->f_norm[r] * sum + HDI_SILAN_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
 }
 
-/* The answer of right-hand side r at time t into its lane: constants and the basis' part. */
+/* The answer of right-hand side r at time t into its lane: the constants, and the part of the basis. */
 static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drift, hdi_lane *lane,
                                   hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
@@ -16988,8 +17045,8 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
 }
 
 /* ==== [24] ground ====
- * Owns L with one vertex of each component held at zero: its inverse, for distances without a time, and a
- * bound of the smallest eigenvalue that is not zero. May call [22]. */
+ * Owns the pair grounded, that is L with one vertex of each component held at zero: its inverse, for
+ * distances without a time, and a bound of the smallest eigenvalue that is not zero. May call [22]. */
 
 /* L with one vertex of each component held at zero. All by rows in elimination order. */
 typedef struct hdi_ground {
@@ -17006,11 +17063,12 @@ typedef struct hdi_ground {
 /* ---- the pair grounded ---- */
 /* With one vertex of each component held at zero L has an inverse G, and
  *     commute time  d^2 = (e_i - e_j)' G (e_i - e_j),     biharmonic  d^2 = |P G (e_i - e_j)|_B^2,
- * P taking out the mean of each component: exactly, and whatever the spectrum. diag(G) comes by selected
- * inversion; that of G B G is minus the derivative of diag((L + s B)^-1) at s = 0, which an imaginary s gives
- * without cancellation. This part is based on
- *   W. Squire, G. Trapp, Using complex variables to estimate derivatives of real functions, 1998
- * Components whose rows of L do not sum to zero are not held: there L has an inverse of its own. */
+ * where P takes out the mean of each component. Both are exact, whatever the spectrum. diag(G) comes by
+ * selected inversion. That of G B G is minus the derivative of diag((L + s B)^-1) at s = 0, which an
+ * imaginary s gives without cancellation. Components whose rows of L do not sum to zero are not held: there L
+ * has an inverse of its own.
+ * This work is based on
+ *   W. Squire, G. Trapp, Using complex variables to estimate derivatives of real functions, 1998 */
 
 static void hdi_ground_free(hdi_ground *g, hd_context *ctx) {
     hdi_factor_free(&g->factor);
@@ -17036,8 +17094,8 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
     }
 }
 
-/* L with the rows and columns held replaced by those of the identity, by entries of the source; imaginary:
- * its B times that, or 0. */
+/* L by entries of the source, where the rows and columns held are those of the identity: real, or complex
+ * with B times `imaginary`. */
 static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double imaginary, double *real,
                               hd_c64 *z) {
     const hd_laplacian *lap = m->source;
@@ -17055,7 +17113,7 @@ static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double ima
     }
 }
 
-/* x = G x; rows held are zero in both. work: a sweep's. */
+/* x = G x. Rows held are zero in both. work: a sweep's. */
 static void hdi_ground_solve(const hdi_elim *m, const hdi_ground *g, double *x, double *work) {
     hdi_sweep z;
     int32_t i;
@@ -17066,9 +17124,9 @@ static void hdi_ground_solve(const hdi_elim *m, const hdi_ground *g, double *x, 
 }
 
 /* r = b - L x on the rows not held, by differences x_j - x_i: rows of L sum to zero but for `rest`, and
- * neighbours are much alike, so that next to nothing is lost. x as it stands for G b is then off by at most
- * sqrt(G_vv) times off of v's component: for |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i|
- * sqrt(G_ii))^2. extra: as much more in each |r_i|, or NULL. off [n_components], or NULL. */
+ * neighbours have nearly the same value, so that little is lost. As an approximation of G b, x is off at v by
+ * at most sqrt(G_vv) times off of v's component: |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i|
+ * sqrt(G_ii))^2. extra: a further error of each r_i, or NULL. off [n_components], or NULL. */
 static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const double *b, const double *x,
                                 const double *extra, double *r, double *off) {
     const hd_laplacian *lap = m->lap;
@@ -17094,7 +17152,7 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
     }
 }
 
-/* x = G b, solved, then once more for what is left; off as above. r [n], sweep: work. */
+/* x = G b, with one step of iterative refinement; off as above. r [n], sweep: work. */
 static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra,
                                double *x, double *off, double *r, double *sweep) {
     int32_t i;
@@ -17120,9 +17178,9 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     if (g->diag) return HD_OK;
     val = HDI_TAKE(&s, double, lap->L.nnz);
     loose = HDI_TAKE(&s, char, n_comp);
-    if (e->status >= 0) g->held = HDI_CAST(char *, hdi_alloc(m->ctx, n, 1, e));
-    if (g->held) g->diag = HDI_CAST(double *, hdi_alloc(m->ctx, 3 * n, sizeof(double), e));
-    if (g->diag) g->trace = HDI_CAST(double *, hdi_alloc(m->ctx, 2 * n_comp, sizeof(double), e));
+    if (e->status >= 0) g->held = HDI_NEW(m->ctx, char, n, e);
+    if (g->held) g->diag = HDI_NEW(m->ctx, double, 3 * n, e);
+    if (g->diag) g->trace = HDI_NEW(m->ctx, double, 2 * n_comp, e);
     if (g->trace && hdi_factor_make(&g->factor, &m->sym, 1, m->ctx, e) >= 0) {
         memset(g->trace, 0, n_comp * sizeof *g->trace);
         g->mean_off = g->trace + n_comp;
@@ -17152,11 +17210,15 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-/* diag of G B G less the means' part: form; and G b: mean, with what that can be off by. */
+/* The step of the derivative, relative to the smallest eigenvalue that is not zero. Its error is the square
+ * of this. */
+#define HDI_GROUND_STEP 1e-9
+
+/* form: diag of G B G without the part of the means. mean: G b, and the bound of its error. */
 static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const hd_laplacian *lap = m->lap;
-    const double step = g->largest_trace > 0 ? 1e-9 / g->largest_trace : 1;
+    const double step = g->largest_trace > 0 ? HDI_GROUND_STEP / g->largest_trace : 1;
     double *work, *b, coef[HDI_PACK] = {0};
     char *loose;
     hdi_factor pack;
@@ -17190,7 +17252,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-/* Column `row` of G, or with forms of P' G B G P, into u [n]; its error at v is at most sqrt(G_vv) times what
+/* Column `row` of G, or with forms of P' G B G P, into u [n]. Its error at v is at most sqrt(G_vv) times what
  * is returned. work: hdi_ground_room. */
 static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t row, int forms, double *u,
                                 double *work) {
@@ -17228,9 +17290,10 @@ static uint64_t hdi_ground_room(const hdi_elim *m) {
  * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors and bases that are
  * kept, the run of a request, and the report. May call [24] and [23].
  * This work is based on
- *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013, eqs.
- * (8), (9) Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver). The
- * constants of each component are carried exactly, so that uniform sets conserve heat too. */
+ *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013,
+ *   eqs. (8) and (9)
+ * Deviations: MINRES, which the paper names, is not valid for complex poles (see hd_solver). The constants of
+ * each component are carried exactly, so that uniform sets conserve heat too. */
 
 #define HDI_ROUNDING_LIMIT 1e-7              /* the direct method's own error by default is 3e-8 */
 
@@ -17267,7 +17330,7 @@ struct hd_heat {
 };
 
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm,
- * and by that of B + tL with reach, a bound of diag((B + tL)^-1), where that is at hand (else NULL). */
+ * and by the norm of B + tL where reach is known. reach: a bound of diag((B + tL)^-1), or NULL. */
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
     double smallest_b = HUGE_VAL, largest_g = 0, *touched = lane->spare_sums;
     hdi_parts by_b;
@@ -17285,7 +17348,7 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
 
-/* Adds the numbers of one field to the report, where the worst stays. ledger: a new one, or NULL when single
+/* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
  * values are noted elsewhere. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
                            const double *reach, int own, hd_report *rep) {
@@ -17314,8 +17377,8 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         rep->mass_drift = hdi_max(rep->mass_drift, fabs(heat - heat_in) / heat_abs);
 }
 
-/* Gershgorin: every eigenvalue of B^-1 L is below this. A guess where b_ratio is not known: it serves for
- * choices only. */
+/* By Gershgorin's theorem every eigenvalue of B^-1 L is below this. Where b_ratio is not known it is a guess,
+ * which serves for choices only. */
 static double hdi_lambda_bound(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
@@ -17358,14 +17421,6 @@ static double hdi_heat_scale(const hd_laplacian *lap) {
     return ldexp(1, -2 * (exponent / 2));
 }
 
-/* 1/diag(B), and room for three more vectors. */
-static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    double *w = HDI_CAST(double *, hdi_alloc(ctx, 4 * HDI_CAST(uint64_t, lap->n_active), sizeof *w, e));
-    int32_t i;
-    for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
-    return w;
-}
-
 /* The copy of the pair to iterate on. */
 static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     if (heat->weight) return HD_OK;
@@ -17387,8 +17442,9 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
-    heat->fam.solver = heat->opts.solver == HD_SOLVER_COCR ||
-                       heat->opts.solver == HD_SOLVER_MINRES ? heat->opts.solver : HD_SOLVER_COCG;
+    heat->fam.solver = HD_SOLVER_COCG;
+    if (heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES)
+        heat->fam.solver = heat->opts.solver;
     heat->fam.precond = heat->opts.precond;
     heat->fam.max_iterations = heat->opts.max_iterations;
     return e->status;
@@ -17401,7 +17457,8 @@ static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
                          e);
 }
 
-/* Checks a right-hand side. *exponent: its largest part is between 2^(exponent - 1) and 2^exponent. */
+/* Checks a right-hand side. The absolute value of its largest part is between 2^(*exponent - 1) and
+ * 2^*exponent. */
 static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
     double largest = 0;
     int32_t v;
@@ -17416,6 +17473,48 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
     return HD_OK;
 }
 
+/* The right-hand side into the lane, near one so that no norm underflows or overflows, by rows and without
+ * its constants, which go to x by vertices: b - B mean(b), and mean(b)/theta. Returns its norm, constants
+ * included. */
+static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int exponent, hd_c64 theta,
+                               hdi_lane *lane, hd_c64 *x) {
+    const hd_laplacian *lap = heat->lap;
+    hd_c64 *sums = lane->k->sums;
+    double norm;
+    int32_t i, v;
+    for (i = 0; i < lap->n_active; i++) {
+        const hd_c64 r = rhs[lap->vertex[i]];
+        lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
+    }
+    norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
+    memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
+    for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
+    if (!lap->conserves) return norm;
+    for (i = 0; i < lap->n_active; i++)
+        sums[lap->component[i]] = hdi_cadd(sums[lap->component[i]], lane->b[i]);
+    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
+    for (i = 0; i < lap->n_active; i++) {
+        const hd_c64 mean = sums[lap->component[i]];
+        lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], mean));
+        x[lap->vertex[i]] = hdi_cdiv(mean, theta);
+    }
+    return norm;
+}
+
+/* The plan and its first lane for one system. */
+static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_error *e) {
+    hdi_family *fam = &heat->fam;
+    hd_rational set;
+    memset(&set, 0, sizeof set);
+    set.n_poles = 1;
+    set.theta[0] = theta;
+    if (hdi_heat_iterative(heat, e) < 0 || hdi_family_set(fam, &set, t * heat->scale, e) < 0)
+        return e->status;
+    if (hdi_lane_make(heat->lane, heat->lap, heat->ctx, e) < 0) return e->status;
+    if (hdi_lane_systems(heat->lane, fam, e) < 0) return e->status;
+    return hdi_family_fill(fam, heat->lane->vectors, hdi_lane_stride(fam), e);
+}
+
 /* One system with a plan made for it. */
 static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                    double tol, hd_solve_report *report, hd_error *e) {
@@ -17423,48 +17522,18 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     hdi_lane *lane = heat->lane;
     hdi_krylov *k = lane->k;
     hdi_watch watch;
-    hd_rational set;
     hd_status status;
     double b_norm;
     int32_t i, v;
     int exponent, unit;
-    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0 || hdi_heat_iterative(heat, e) < 0)
-        return e->status;
+    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0) return e->status;
+    if (hdi_shifted_prepare(heat, t, theta, e) < 0) return e->status;
     lap = heat->lap;
     memset(&watch, 0, sizeof watch);
-    memset(&set, 0, sizeof set);
     watch.ctx = heat->ctx;
     watch.share = 1;
     watch.stage = "solve";
-    set.n_poles = 1;
-    set.theta[0] = theta;
-    if (hdi_family_set(&heat->fam, &set, t * heat->scale, e) < 0 ||
-        hdi_lane_make(lane, lap, heat->ctx, e) < 0)
-        return e->status;
-    if (hdi_lane_systems(lane, &heat->fam, e) < 0) return e->status;
-    if (hdi_family_fill(&heat->fam, lane->vectors, hdi_lane_stride(&heat->fam), e) < 0) return e->status;
-    for (i = 0; i < lap->n_active; i++) {        /* near one, so that no norm underflows or overflows */
-        const hd_c64 r = rhs[lap->vertex[i]];
-        lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
-    }
-    /* the answer is in units of the right-hand side's, times those of B */
-    frexp(heat->scale, &unit);
-    unit += exponent - 1;
-    b_norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
-    memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
-    /* constants apart: b - B mean(b), and mean(b)/theta to the solution */
-    if (lap->conserves) {
-        for (i = 0; i < lap->n_active; i++)
-            k->sums[lap->component[i]] = hdi_cadd(k->sums[lap->component[i]], lane->b[i]);
-        for (i = 0; i < lap->n_components; i++)
-            k->sums[i] = hdi_cscale(1 / lap->component_mass[i], k->sums[i]);
-        for (i = 0; i < lap->n_active; i++)
-            lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], k->sums[lap->component[i]]));
-        for (v = 0; v < lap->n; v++)
-            x[v] = lap->row[v] >= 0 ? hdi_cdiv(k->sums[lap->component[lap->row[v]]], theta) : hdi_c(0, 0);
-    } else {
-        for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
-    }
+    b_norm = hdi_shifted_load(heat, rhs, exponent, theta, lane, x);
     hdi_krylov_start(k, lane->b, b_norm);
     status = hdi_krylov_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
     for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
@@ -17476,6 +17545,9 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
         report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
     }
     if (status > 0) e->status = status;
+    /* the answer is in units of the right-hand side's, times those of B */
+    frexp(heat->scale, &unit);
+    unit += exponent - 1;
     for (v = 0; v < lap->n; v++) {
         x[v] = hdi_c(ldexp(x[v].re, unit), ldexp(x[v].im, unit));
         if (!hdi_cfinite(x[v]) && e->status >= 0)
@@ -17485,16 +17557,23 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     return e->status;
 }
 
+/* Steps of Lanczos for the exponential, and how many are worth their while. Tuned on meshes of 1K to 1M
+ * vertices. */
+#define HDI_LANCZOS_WORTH 400
+
+static double hdi_lanczos_steps(const hd_heat *heat, double t) {
+    return 1.2 * sqrt(t * heat->lambda_max) + 10;
+}
+
 /* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and its steps are
- * few: a step reads L once and streams about ten vectors, and stores one; through the poles a step reads as
- * much five times over, in complex. */
+ * few. A step reads L once, streams about ten vectors, and stores one. Through the poles a step reads five
+ * times as much, in complex numbers. */
 static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
     const hd_heat_opts *o = &heat->opts;
-    const double steps = 1.2 * sqrt(t * heat->lambda_max) + 10;
     if (o->solver) return o->solver;
     if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B)
         return HD_SOLVER_COCG;
-    return steps <= 400 ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
+    return hdi_lanczos_steps(heat, t) <= HDI_LANCZOS_WORTH ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
 typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
@@ -17510,7 +17589,7 @@ typedef struct hdi_entry_list {
     int64_t n;
 } hdi_entry_list;
 
-/* What is asked for: k items, each a field, a column, or the entries of a column. */
+/* A request: k items, each a field, a column, or the entries of a column. */
 typedef struct hdi_request {
     hdi_query query;
     int32_t k, n_times;
@@ -17522,7 +17601,7 @@ typedef struct hdi_request {
     size_t ldf, ldu;
 } hdi_request;
 
-/* A call under way: a few items at a time, each in a lane. */
+/* A call. It takes a few items at a time, each in a lane. */
 typedef struct hdi_heat_call {
     hd_heat *heat;
     hdi_request ask;
@@ -17553,8 +17632,8 @@ typedef struct hdi_heat_call {
     int32_t stop;
 } hdi_heat_call;
 
-/* t for the scaled pair. Where that is beyond all doubles anything as large does, and as small where it
- * vanishes. */
+/* t for the scaled pair, kept within the range of doubles: any t as large, or as small, gives the same
+ * answers. */
 static double hdi_heat_scaled(const hd_heat *heat, double t) {
     return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
 }
@@ -17620,13 +17699,14 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 
 /* ---- choice of the method ---- */
 
-/* Seconds that methods would take at rates one core has been seen to reach, and the bytes they would hold. */
+/* Seconds that the methods would take at rates one core has been seen to reach, and the bytes they would
+ * hold. */
 typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov_bytes; } hdi_cost;
 
-/* Rates: flops of packs, with seconds per non-zero for what small fronts cost besides, and of real fronts;
- * bytes per second of sweeps; seconds per non-zero of a step of Lanczos (with what looks at its bound cost,
- * per step squared) and of COCG; per row of an ordering with its analysis. Measured on meshes of 36K to 1M
- * vertices. */
+/* Flops per second of packs, with the seconds per non-zero that small fronts cost besides, and of real
+ * fronts; bytes per second of sweeps; seconds per non-zero of a step of Lanczos, with what the looks at its
+ * bound cost, per step squared, and of COCG; seconds per row of an ordering with its analysis, and of a copy
+ * to iterate on. Measured on meshes of 36K to 1M vertices. */
 #define HDI_RATE_PACK 70e9
 #define HDI_ENTRY_PACK 12e-9
 #define HDI_RATE_REAL 25e9
@@ -17635,55 +17715,78 @@ typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov
 #define HDI_LOOK_LANCZOS 0.4e-6
 #define HDI_STEP_COCG 4e-9
 #define HDI_ROW_ANALYSIS 0.8e-6
+#define HDI_ROW_ITERATIVE 0.4e-6
 
-/* Before the analysis, what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops; where rows are
- * wider than 10 so much more of the former and its square of the latter (point sets with 233 and 117 a row,
- * 20 to 150 thousand: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5). */
+/* What of the plan is known of factors, or guessed before the analysis. */
+typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hdi_fill;
+
+/* The guess is what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops. Where rows are wider than
+ * 10, so much more of the former and its square of the latter. (Point sets with 233 and 117 entries a row,
+ * 20K to 150K points: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
+static hdi_fill hdi_heat_fill(const hd_heat *heat) {
+    const hdi_symbolic *s = &heat->elim.sym;
+    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz);
+    const double wide = hdi_max(1, entries / (10 * n));
+    hdi_fill f;
+    f.nnz = 30 * n * wide;
+    f.flops = 22 * n * sqrt(n) * wide * wide;
+    f.stored = f.real_stored = 40 * n * wide;
+    f.analysis = HDI_ROW_ANALYSIS * n * wide;
+    if (!heat->elim.ctx) return f;
+    f.nnz = HDI_CAST(double, s->nnz);
+    f.flops = s->flops_done;
+    f.stored = HDI_CAST(double, s->stored + s->work);
+    f.real_stored = HDI_CAST(double, s->panel[s->n_super] + s->work);
+    f.analysis = 0;
+    return f;
+}
+
+/* Iterating. The steps of COCG grow with sqrt(t)/h up to a limit; a full B costs about a third more. */
+static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
+    const hd_heat *heat = h->heat;
+    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->ask.k;
+    const double hh = heat->source->h * heat->source->h * heat->scale;
+    double sum = HDI_ROW_ITERATIVE * n, one;
+    int32_t q;
+    for (q = 0; q < h->n_times; q++) {
+        const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
+        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) {
+            one = hdi_lanczos_steps(heat, t);
+            one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
+        } else {
+            one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) *
+                  (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
+        }
+        sum += k * one;
+    }
+    return sum;
+}
+
+/* The model of all methods. Bases of windows of times a hundredfold apart take 24 steps and 8 more for each
+ * power of ten of that ratio. Tuned on meshes of 1K to 1M vertices. */
 static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
-    const hdi_symbolic *s = heat->elim.ctx ? &heat->elim.sym : NULL;
-    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->ask.k;
-    const double hh = heat->source->h * heat->source->h * heat->scale;
-    const double wide = hdi_max(1, entries / (10 * n));
-    const double nnz = s ? HDI_CAST(double, s->nnz) : 30 * n * wide;
-    const double flops = s ? s->flops_done : 22 * n * sqrt(n) * wide * wide;
-    const double stored = s ? HDI_CAST(double, s->stored + s->work) : 40 * n * wide;
-    const double real_stored = s ? HDI_CAST(double, s->panel[s->n_super] + s->work) : 40 * n * wide;
-    const double analysis = s ? 0 : HDI_ROW_ANALYSIS * n * wide;
+    const hdi_fill f = hdi_heat_fill(heat);
+    const double n = heat->source->n_active, k = h->ask.k;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4;
     const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0];
     const double windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
     const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
-    double one, factor;
+    const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
+    const double factor =
+        packs * (16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz) + (poles % 4 == 1 ? real : 0);
     hdi_cost c;
-    int32_t q;
-    c.iterative = 0.4e-6 * n;
-    for (q = 0; q < h->n_times; q++) {
-        const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
-        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) {
-            one = 1.2 * sqrt(t * heat->lambda_max) + 10;
-            one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
-        } else {
-            one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) *
-                  (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
-        }
-        c.iterative += k * one;
-    }
-    c.krylov = analysis + windows * flops / HDI_RATE_REAL +
-               k * windows * steps * (16 * nnz + 100 * n) / HDI_RATE_SWEEP +
+    c.iterative = hdi_cost_iterative(h, poles);
+    c.krylov = f.analysis + windows * f.flops / HDI_RATE_REAL +
+               k * windows * steps * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP +
                k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
-    factor = packs * (16 * flops / HDI_RATE_PACK + HDI_ENTRY_PACK * nnz) +
-             (poles % 4 == 1 ? flops / HDI_RATE_REAL : 0);
-    c.direct = analysis +
-               h->n_times *
-               (factor +
-                k * packs * (64 * nnz + 400 * n) / (k > 1 ? 1.6 * HDI_RATE_SWEEP : 0.6 * HDI_RATE_SWEEP));
+    c.direct = f.analysis + h->n_times * (factor + k * packs * (64 * f.nnz + 400 * n) / sweep);
     if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= factor;
-    c.direct_bytes = 64 * packs * stored + 200 * n + 8 * real_stored;
-    c.krylov_bytes = 8 * real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
+    c.direct_bytes = 64 * packs * f.stored + 200 * n + 8 * f.real_stored;
+    c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
     c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
     if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
@@ -17691,8 +17794,8 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     return c;
 }
 
-/* By the model, or as asked. The analysis is made only when iterating does not win against the least that a
- * factorisation could cost. */
+/* Picks the method by the model, or as asked for. The analysis is made only where a factorisation could cost
+ * less than iterations. */
 static hd_status hdi_heat_pick(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const hd_context *ctx = heat->ctx;
@@ -17734,14 +17837,15 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     return HD_OK;
 }
 
-/* Below, t lambda is nothing beside one. */
+/* Below this t lambda is nothing beside one, in doubles. */
 #define HDI_STILL 1e-18
 
-/* From here on (t lambda_max) the question is worth its price, and what exp(-t lambda) is nothing after. */
+/* From this t lambda_max on it is worth while to ask whether only the means are left. exp(-x) is zero in
+ * doubles beyond the second number. */
 #define HDI_EQUAL_FROM 1e8
 #define HDI_EQUAL_BEYOND 750
 
-/* Is t (scaled) so large that nothing is left but the means of the components? 1, 0, or an error. */
+/* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. */
 static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
     if (!heat->source->conserves || heat->opts.rational || t * heat->lambda_max < HDI_EQUAL_FROM) return 0;
     if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0)
@@ -17750,7 +17854,7 @@ static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
     return 0;
 }
 
-/* The method, its copy of the pair, and what of the report is known by now. */
+/* Picks the method and its copy of the pair, and reports them. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     /* |exp(-t lambda) - 1| <= t lambda */
@@ -17778,8 +17882,9 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
     h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t)
                 : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
     h->rep->solver = h->solver;
-    h->rep->precond = h->method == HD_METHOD_ITERATIVE &&
-                      h->solver != HD_SOLVER_LANCZOS ? heat->opts.precond : HD_PRECOND_NONE;
+    h->rep->precond = HD_PRECOND_NONE;
+    if (h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS)
+        h->rep->precond = heat->opts.precond;
     return HD_OK;
 }
 
@@ -17801,18 +17906,21 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
     hdi_component_sums(lap, NULL, lane->rhs, lane->target);
 }
 
-/* Degree of a uniform set: even ones, as an odd one costs as much as the next; the first whose error is 1e-9
- * of the least that the answer can be, which is what its constants amount to. */
+/* The error of a uniform set is at most this part of the least that the answer can be, which is what its
+ * constants amount to. Direct: degree 9, which costs little more than 8, serves up to twice that. */
+#define HDI_UNIFORM_SHARE 1e-9
+#define HDI_UNIFORM_SHARE_DIRECT 2e-9
+
+/* Degree of a uniform set. Odd ones cost as much as the next even one; direct, 9 fills a pack and the real
+ * factor. */
 static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
+    const double share = direct ? HDI_UNIFORM_SHARE_DIRECT : HDI_UNIFORM_SHARE;
+    const double most = share * sqrt(hdi_lane_means_norm2(lane, lap));
     hd_rational set;
     hd_error e;
-    double least = 0;
-    int32_t c, r;
-    for (c = 0; c < lap->n_components && lap->conserves; c++)
-        least += lane->target[c] * lane->target[c] / lap->component_mass[c];
+    int32_t r;
     for (r = 8; r < HDI_RAT_UNIFORM_MAX; r = !direct ? r + 2 : r == 8 ? 9 : HDI_RAT_UNIFORM_MAX)
-        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK &&
-            set.max_error * lane->f_norm <= (direct ? 2e-9 : 1e-9) * sqrt(least))
+        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= most)
             break;
     return r;
 }
@@ -17835,7 +17943,7 @@ static int32_t hdi_heat_source(const hdi_heat_call *h, int32_t q) {
            : HDI_CAST(int32_t, h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
-/* Brings fields whose squares could leave the range of doubles near one, by a power of two. */
+/* Brings fields near one, by a power of two, where their squares could leave the range of doubles. */
 static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
     double most = 0;
     int32_t i;
@@ -17847,8 +17955,8 @@ static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
     for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
 
-/* What rounding does to B f for a full B, in the B norm after B^-1. Much where f lies along B's small
- * eigenvectors. */
+/* Bound of what rounding does to B f for a full B, in the B norm after B^-1. It is large where f lies along
+ * eigenvectors of B with small eigenvalues. */
 static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     double sum = 0;
     int32_t i;
@@ -17863,7 +17971,7 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     return sum > 0 ? sqrt(sum) * hdi_ratio_root(lap) : 0;
 }
 
-/* Field and right-hand side of item q. A vertex without mass needs no solve: skip. */
+/* Field and right-hand side of item q. A vertex without mass needs no solve, and is skipped. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const size_t bytes = HDI_CAST(size_t, lap->n_active) * sizeof(double);
@@ -17936,7 +18044,7 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
     }
 }
 
-/* What item q asked for at the time under way, from the lane's answer. */
+/* Stores the answer of item q at the time under way, from its lane. */
 static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, h->now);
@@ -17956,8 +18064,8 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
         u[lap->vertex[i]] = lane->exponent ? ldexp(lane->u[i], lane->exponent) : unit * lane->u[i];
 }
 
-/* The degree of a uniform set that serves all fields; columns, whose constants are known to be small, get the
- * highest. */
+/* The degree of a uniform set that serves all fields. Columns get the highest degree, because their constants
+ * are small. */
 static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
     int32_t q, r;
     *degree = h->ask.query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
@@ -17977,8 +18085,10 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_pole_kind kind = o->poles ? o->poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM
                               : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
     /* four pairs fill a pack, a real pole costs little */
-    int32_t degree = o->degree ? o->degree : h->degree ? h->degree : h->heat->exacting ? HDI_RAT_KERNEL_MAX
-                     : h->method == HD_METHOD_DIRECT ? 9 : 10;
+    int32_t degree = h->method == HD_METHOD_DIRECT ? 9 : 10;
+    if (h->heat->exacting) degree = HDI_RAT_KERNEL_MAX;
+    if (h->degree) degree = h->degree;
+    if (o->degree) degree = o->degree;
     if (h->set || o->rational) {
         *set = h->set ? *h->set : *o->rational;
         return HD_OK;
@@ -18038,8 +18148,8 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
 static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
     const hdi_lane *lane = h->lane + i;
     const hdi_elim *m = &h->heat->elim;
-    const double *reach = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && m->reach &&
-                          m->reach_t == m->t ? m->reach : NULL;
+    const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal;
+    const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
@@ -18047,8 +18157,8 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
 }
 
-/* Report and errors of the lanes, in their order: the first failure that is not "another task failed" is the
- * one to tell. */
+/* Report and errors of the lanes, in their order. The first failure is reported, unless it only says that
+ * another task failed. */
 static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     const hd_rational *set = &h->heat->fam.set;
     const int own = h->heat->opts.rational != NULL;
@@ -18089,15 +18199,15 @@ static void hdi_report_set(hd_report *rep, const hd_rational *set) {
 /* Lanes for the items of the call, at most so many at a time. */
 static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most) {
     int32_t i;
-    h->n_lanes = h->ask.k < most ? h->ask.k : most;
+    h->n_lanes = hdi_low32(h->ask.k, most);
     for (i = 0; i < h->n_lanes; i++)
         if (hdi_lane_make(h->lane + i, h->lap, h->heat->ctx, h->e) < 0) break;
     return h->e->status;
 }
 
-/* Loads the next items into the lanes; how many they are. */
+/* Loads the next items into the lanes. Returns their number. */
 static int32_t hdi_heat_load_some(hdi_heat_call *h) {
-    const int32_t left = h->ask.k - h->batch, n = left < h->n_lanes ? left : h->n_lanes;
+    const int32_t n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
     int32_t i;
     for (i = 0; i < n; i++)
         if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) break;
@@ -18145,14 +18255,17 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
 
 /* ---- direct ---- */
 
-/* Growth of built-in sets is at most 4.2, of shared ones 7.9, wherever L is positive semi-definite, and the
- * pivots of a real pole are positive. */
+/* Wherever L is positive semi-definite the growth of built-in sets is at most 4.2, of shared ones 7.9, and
+ * the pivots of a real pole are positive. Growth far above proves that L is not. */
+#define HDI_GROWTH_MOST 50
+
 static hd_status hdi_direct_growth(hdi_heat_call *h) {
     const hdi_elim *m = &h->heat->elim;
     int32_t i;
     if (m->lone >= 0 && m->real.all.negative) return hdi_not_semidefinite(h->e);
     for (i = 0; i < m->n_used && m->set.kind != HD_POLES_OWN; i++)
-        if (m->pack[i].all.largest > 50 * m->pack[i].largest_entry) return hdi_not_semidefinite(h->e);
+        if (m->pack[i].all.largest > HDI_GROWTH_MOST * m->pack[i].largest_entry)
+            return hdi_not_semidefinite(h->e);
     return HD_OK;
 }
 
@@ -18183,8 +18296,8 @@ typedef struct hdi_batches {
     uint64_t doubles;            /* of a batch's arrays */
 } hdi_batches;
 
-/* How many, and room for them: lanes, and the batches' arrays in the plan. No more batches than take the room
- * of a pack. */
+/* Finds how many batches, and makes room for them: lanes, and the batches' arrays in the plan. The batches
+ * take no more room than a pack of factors. */
 static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active);
@@ -18192,7 +18305,7 @@ static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     uint64_t x, xr;
     b->h = h;
     b->n_here = 0;
-    b->width = h->ask.k < HDI_LANES_BATCH ? h->ask.k : HDI_LANES_BATCH;
+    b->width = hdi_low32(h->ask.k, HDI_LANES_BATCH);
     b->doubles = hdi_batch_size(&heat->elim, b->width, &x, &xr);
     b->count = (h->ask.k + b->width - 1) / b->width;
     if (b->count > HDI_BATCHES) b->count = HDI_BATCHES;
@@ -18203,9 +18316,7 @@ static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     if (heat->batch_doubles >= b->doubles * HDI_CAST(uint64_t, b->count)) return HD_OK;
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_doubles = 0;
-    heat->batch_room = HDI_CAST(double *,
-                                hdi_alloc(heat->ctx, b->doubles * HDI_CAST(uint64_t, b->count),
-                                          sizeof(double), h->e));
+    heat->batch_room = HDI_NEW(heat->ctx, double, b->doubles * HDI_CAST(uint64_t, b->count), h->e);
     if (heat->batch_room) heat->batch_doubles = b->doubles * HDI_CAST(uint64_t, b->count);
     return h->e->status;
 }
@@ -18229,8 +18340,7 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     const hd_heat *heat = h->heat;
     const hdi_batch batch = hdi_batches_get(b, index);
     hdi_lane *lane = h->lane + index * b->width;
-    const int32_t left = b->n_here - HDI_CAST(int32_t, index) * b->width;
-    const int32_t n = left < b->width ? left : b->width;
+    const int32_t n = hdi_low32(b->n_here - HDI_CAST(int32_t, index) * b->width, b->width);
     int32_t r;
     (void)worker;
     hdi_batch_run(&heat->elim, &batch, lane, n, b->count > 1 ? NULL : heat->ctx);
@@ -18241,16 +18351,16 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     }
 }
 
-/* Above this t lambda_max columns, too, are solved without their constants: these are nearly all of the
- * answer then, and rounding of them would be most of the error. Below, their right-hand sides stay sparse. */
+/* Above this t lambda_max right-hand sides of columns, too, are solved without their constants. The constants
+ * are nearly all of the answer there, and their rounding would be most of the error. Below, right-hand sides
+ * stay sparse. */
 #define HDI_DEFLATE 3e5
 
-/* Takes the constants out of a dense right-hand side, for the digits of the rest; they are put back exactly
- * in the end. */
+/* Takes the constants out of a dense right-hand side, which leaves more digits for the rest. They are put
+ * back exactly in the end. */
 static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
     int32_t i;
-    for (i = 0; i < lap->n_components; i++)
-        lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
+    hdi_lane_means(lane, lap);
     for (i = 0; i < lap->n_active && lap->conserves; i++)
         lane->rhs[i] -= lap->mass[i] * lane->sums[lap->component[i]];
 }
@@ -18278,8 +18388,8 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* A shift for times [from, to]: about a tenth of their mean, and a power of four, so that times near each
- * other share the factor whichever came first. Not so large that B drowns beside g L. */
+/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times
+ * near each other share the factor, whichever comes first. It is not so large that B is lost beside g L. */
 static double hdi_krylov_shift(double from, double to, double lambda_max) {
     const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL);
     int exponent;
@@ -18297,6 +18407,12 @@ static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, 
     return q1;
 }
 
+/* Steps of a basis for times in this ratio, tuned on meshes of 1K to 1M vertices. Beyond a ratio of 1e4 none
+ * serves. */
+static double hdi_krylov_steps(double ratio) {
+    return 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
+}
+
 /* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its
  * times. */
 static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
@@ -18305,13 +18421,10 @@ static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
     double best = HUGE_VAL;
     int32_t w, least = 1;
     for (w = 1; w <= 16; w++) {
-        const double ratio = pow(span, 1.0 / w);
-        const double steps = 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
-        const double cost = w * (factor + steps * step);
-        if (cost < best) {
-            best = cost;
-            least = w;
-        }
+        const double cost = w * (factor + hdi_krylov_steps(pow(span, 1.0 / w)) * step);
+        if (cost >= best) continue;
+        best = cost;
+        least = w;
     }
     return least;
 }
@@ -18323,16 +18436,13 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
     double fixed[HDI_SILAN_WIDE];
     hd_status status;
     int32_t i, q;
-    int64_t c;
     if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(h->times[q0], h->times[q1 - 1], heat->lambda_max),
                        h->e) < 0)
         return h->e->status;
     z->g = heat->elim.shift;
     z->k = n;
     if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
-    for (i = 0; i < n; i++)
-        for (fixed[i] = 0, c = 0; c < h->lap->n_components && h->lap->conserves && !h->lane[i].skip; c++)
-            fixed[i] += h->lane[i].target[c] * h->lane[i].target[c] / h->lap->component_mass[c];
+    for (i = 0; i < n; i++) fixed[i] = h->lane[i].skip ? 0 : hdi_lane_means_norm2(h->lane + i, h->lap);
     status = hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
     if (status < 0) return status;
     for (q = q0; q < q1; q++) {
@@ -18361,7 +18471,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     int32_t n, q0, q1, w;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
-        heat->silan = HDI_CAST(hdi_silan *, hdi_alloc(heat->ctx, 1, sizeof *heat->silan, h->e));
+        heat->silan = HDI_NEW(heat->ctx, hdi_silan, 1, h->e);
         if (!heat->silan) return h->e->status;
         memset(heat->silan, 0, sizeof *heat->silan);
     }
@@ -18383,8 +18493,8 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
 
 /* ---- the run ---- */
 
-/* Did a method that auto chose run into the byte limit? Then what was factorised goes, and iterations take
- * its place. */
+/* Did a method that auto chose exceed the byte limit? Then what was factorised is freed, and iterations take
+ * over. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t i;
@@ -18408,7 +18518,7 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     return 1;
 }
 
-/* Answers that need no solve: the field itself where t is nothing, the means where t is all. */
+/* Answers that need no solve: the field itself for t = 0, the means for very large t. */
 static hd_status hdi_heat_plain(hdi_heat_call *h) {
     const hd_laplacian *lap = h->lap;
     hdi_lane *lane = h->lane;
@@ -18446,7 +18556,7 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
     return hdi_iterative_prepare(h) < 0 ? h->e->status : hdi_heat_by_iterations(h);
 }
 
-/* The time under way, and if factors do not fit the byte limit by iterations. */
+/* Answers the time under way. If factors do not fit the byte limit, iterations do. */
 static hd_status hdi_heat_single(hdi_heat_call *h) {
     if (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_answer(h);
     if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
@@ -18458,7 +18568,7 @@ static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *
     return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
 }
 
-/* Sources, or vertices of pairs: *which gets the index of one that is not in the mesh. */
+/* Checks sources, or vertices of pairs. *which becomes the index of one that is not in the mesh. */
 static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
                                     hd_error *e) {
     int64_t q;
@@ -18471,7 +18581,7 @@ static hd_status hdi_sources_check(hdi_heat_call *h, int32_t k, const int32_t *s
     return hdi_vertices_check(h->heat->source, k, sources, &h->e->column, h->e);
 }
 
-/* Checks the times of a call and takes them up; with `positive` 0 is none. */
+/* Checks the times of a call and takes them up. positive: zero is an error. */
 static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t, int positive) {
     int32_t q;
     if (n_times < 1) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: there is no time");
@@ -18505,7 +18615,7 @@ static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
     return ld ? ld : n;
 }
 
-/* Queries that have but one way. */
+/* Checks that the direct method is allowed, for queries that have no other. */
 static hd_status hdi_direct_only(hdi_heat_call *h) {
     const hd_method asked = h->heat->opts.method;
     if (asked == HD_METHOD_ITERATIVE || asked == HD_METHOD_KRYLOV)
@@ -18521,8 +18631,8 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     sum.status = all->status > sum.status ? all->status : sum.status;
     sum.iterations += all->iterations;
     for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
-    sum.degree = all->degree > sum.degree ? all->degree : sum.degree;
-    sum.n_poles = all->n_poles > sum.n_poles ? all->n_poles : sum.n_poles;
+    sum.degree = hdi_high32(all->degree, sum.degree);
+    sum.n_poles = hdi_high32(all->n_poles, sum.n_poles);
     sum.growth = hdi_max(all->growth, sum.growth);
     sum.residual = hdi_max(all->residual, sum.residual);
     sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
@@ -18536,14 +18646,14 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
     sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
     sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
-    sum.smallest = all->smallest > 0 &&
-                   (sum.smallest == 0 || all->smallest < sum.smallest) ? all->smallest : sum.smallest;
+    if (all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest))
+        sum.smallest = all->smallest;
     sum.n_lost += all->n_lost;
     *all = sum;
 }
 
-/* The n_times times of a call, ascending and scaled, times factor, and which each is. h->t becomes the
- * last. */
+/* Sorts the times of a call, scaled and times factor, into h->times, and notes which each is. h->t becomes
+ * the last. */
 static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor) {
     const int32_t n = h->ask.n_times;
     hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n);
@@ -18598,7 +18708,7 @@ static hd_status hdi_heat_each_time(hdi_heat_call *h) {
     return h->rep->status;
 }
 
-/* Many times by one krylov basis or few, where that is the method. 0: it is not. */
+/* Answers many times with one or a few krylov bases, where that is the method. Returns 0 where it is not. */
 static int hdi_heat_together(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t q;
@@ -18619,8 +18729,8 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     return hdi_heat_end(h);
 }
 
-/* Entries (i[q], j[q]) sorted by column, and a ledger for each time; the request of h becomes that. list:
- * what it points to. */
+/* Makes a request of entries (i[q], j[q]), sorted by column, with a ledger for each time, in h. list: what
+ * the request points to. */
 static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int64_t n, const int32_t *i,
                                      const int32_t *j) {
     int64_t q;
@@ -18645,8 +18755,10 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
 }
 
 /* ==== [26] kernel ====
- * Owns entries of the kernel that come by selected inversion: diagonals, edges, and how rounding of them is
- * measured. May call [25]. */
+ * Owns entries of the kernel that come by selected inversion: diagonals, edges, and how their rounding is
+ * measured. May call [25].
+ * This work is based on
+ *   A. Erisman, W. Tinney, On computing certain elements of the inverse of a sparse matrix, 1975 */
 
 /* ---- diagonals ---- */
 
@@ -18660,7 +18772,7 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
 }
 
 
-/* Columns within another call: k of them at the (scaled) time t through the factors that the plan holds or
+/* Columns within another call: k of them at the (scaled) time t, with the factors that the plan holds or
  * makes. */
 typedef struct hdi_columns {
     double t;
@@ -18700,12 +18812,15 @@ static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_repo
 }
 
 /* ---- rounding of inversions ---- */
-/* What rounding does to entries found by inversion no theorem says well. It is measured at a few rows where
- * it is largest: a solve with the same poles, whose own error its residual bounds, is held against the
- * entry. */
+/* No theorem bounds well what rounding does to entries found by inversion. It is measured at a few rows where
+ * it is largest: the entry is compared with a solve with the same poles, whose own error its residual
+ * bounds. */
 enum { HDI_PROBES = 3 };
-#define HDI_PROBE_SAFETY 4   /* differences seen at the probes stand for those of all rows */
-#define HDI_PROBE_OWN 100    /* and more so for functions of the caller's, whose poles may lie beside the spectrum */
+
+/* Differences seen at the probes stand for those of all rows, times the first; for functions of the caller's,
+ * whose poles may lie beside the spectrum, times the second too. */
+#define HDI_PROBE_SAFETY 4
+#define HDI_PROBE_OWN 100
 
 /* Does rounding show in the values alone? k_t(i,i) is at least what the constants are of it, and no set that
  * approximates exp gives less. values [n]: that times mass^power. Returns the largest relative error that a
@@ -18751,8 +18866,8 @@ static double hdi_own_rounding(const hd_heat *heat, const hd_rational *set, doub
     return HDI_PROBE_OWN * seen + closeness * most;
 }
 
-/* The largest entry of diag(B^-1), or a bound of it: a matrix whose B norm is x has entries of at most this
- * times x. */
+/* A bound of the largest entry of diag(B^-1). A matrix whose B norm is x has entries of at most this times
+ * x. */
 static double hdi_largest_spread(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
@@ -18762,7 +18877,7 @@ static double hdi_largest_spread(const hd_laplacian *lap) {
 
 typedef struct hdi_probe { int32_t k, row[HDI_PROBES]; } hdi_probe;
 
-/* Rows to look at: where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). */
+/* The rows where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). */
 static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
     hdi_probe x;
     double most[2] = {-1, -1};
@@ -18804,7 +18919,7 @@ static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel k
     return x->k > 0 ? hdi_direct_columns(h->heat, &c, h->rep, h->e) : h->e->status;
 }
 
-/* What a probe, whose own error is at most off, says of the rounding of a value, relative to size. */
+/* Rounding of a value, relative to size, by a probe whose own error is at most off. */
 static double hdi_probe_seen(double probe, double off, double value, double size) {
     return hdi_quotient(HDI_PROBE_SAFETY * fabs(probe - value) + off, fabs(size));
 }
@@ -18838,8 +18953,8 @@ typedef struct hdi_entries {
     hd_rational resolvent;       /* the poles with weights for g */
 } hdi_entries;
 
-/* Weights of the poles for g: by least squares, or those of a single pole. They become the resolvent of x
- * too. Returns by how much g can be too small, HUGE_VAL: it bounds nothing. */
+/* Weights of the poles for g, by least squares or those of a single pole. The resolvent of x gets them too.
+ * Returns the factor by which g can be too small, HUGE_VAL where it is no bound. */
 static double hdi_entries_resolvent(const hd_rational *set, hd_c64 *weight, hdi_entries *x) {
     double factor = 1, slack = 0;
     int32_t p, best = 0;
@@ -18899,7 +19014,8 @@ static double hdi_entry_error(const hdi_entries *x, const hd_laplacian *lap, int
 static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t *i, int32_t *j) {
     const int32_t begin = s->super[v], end = s->super[v + 1];
     *j = begin + s->a_col[n];
-    *i = s->a_row[n] < end - begin ? begin + s->a_row[n] : s->row[s->row_ptr[v] + s->a_row[n] - (end - begin)];
+    *i = begin + s->a_row[n];
+    if (*i >= end) *i = s->row[s->row_ptr[v] + *i - end];
 }
 
 /* diag(k_t B), a0 included, for a full B: from the entries of k_t on the pattern of B. */
@@ -18941,7 +19057,7 @@ static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
     return hdi_ledger_begin(rational, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
 }
 
-/* A diagonal under way, by rows in elimination order and in the unit of the scaled pair. */
+/* A diagonal that is computed, by rows in elimination order and in the unit of the scaled pair. */
 typedef struct hdi_diagonal {
     hd_kernel kernel;
     double *value, *off;         /* [n] and bounds of the rational errors */
@@ -18950,8 +19066,8 @@ typedef struct hdi_diagonal {
     double *own;                 /* [n] work */
 } hdi_diagonal;
 
-/* A diagonal to vertices, in the caller's unit; its errors, off and rounding relative to size, to the report.
- * Returns the largest off relative to its value. */
+/* Gives a diagonal to vertices, in the caller's unit, and its errors to the report: off, and rounding
+ * relative to size. Returns the largest off relative to its value. */
 static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, double rounding, double *out) {
     const hd_laplacian *lap = h->lap;
     const double unit = d->kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
@@ -19022,8 +19138,8 @@ static void hdi_diagonal_plain(const hdi_elim *m, hdi_entries *x, const hdi_diag
     }
 }
 
-/* Rounding is relative to the value; that of any function of the caller's, which may vanish, to the
- * resolvent. */
+/* Rounding is relative to the value. A function of the caller's may vanish, and its rounding is relative to
+ * the resolvent. */
 static void hdi_diagonal_own(const hd_laplacian *lap, hdi_diagonal *d) {
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
@@ -19033,7 +19149,7 @@ static void hdi_diagonal_own(const hd_laplacian *lap, hdi_diagonal *d) {
     d->size = d->own;
 }
 
-/* What rounding does to a diagonal by the poles of the plan, relative to size. */
+/* Measures what rounding does to a diagonal by the poles of the plan, relative to size. */
 static hd_status hdi_diagonal_rounding(hdi_heat_call *h, const hdi_diagonal *d, double *rounding) {
     const hd_laplacian *lap = h->lap;
     const hd_rational *set = &h->heat->elim.set;
@@ -19056,8 +19172,8 @@ static hd_status hdi_diagonal_rounding(hdi_heat_call *h, const hdi_diagonal *d, 
     return HD_OK;
 }
 
-/* The kernel's diagonal at one time with the set for it, on vertices; bounds into the report. *relative: the
- * largest of the rational errors relative to the value. */
+/* The kernel's diagonal at one time with the set for it, on vertices, and its bounds into the report.
+ * *relative: the largest of the rational errors relative to the value. */
 static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
     hd_heat *heat = h->heat;
     hdi_elim *m = &heat->elim;
@@ -19090,8 +19206,8 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     return hdi_scope_end(&scope);
 }
 
-/* The analysis' entries on the pattern of the source's L: one of each pair (i,j), (j,i) is there, the other
- * is the same. */
+/* The analysis' entries on the pattern of the source's L. The analysis has one of each pair (i,j), (j,i); the
+ * other one is the same. */
 static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
     const hdi_symbolic *s = &m->sym;
     const hd_csr *a = &m->source->L;
@@ -19114,8 +19230,8 @@ static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, 
     }
 }
 
-/* Adds a0 B^-1 where B is diagonal, and notes the rational error: that of an entry (i,j) is at most the
- * larger of those of (i,i) and (j,j). k and g [n]: their diagonals. */
+/* Adds a0 B^-1 where B is diagonal, and notes the rational error. The error of an entry (i,j) is at most the
+ * larger one of (i,i) and (j,j). k and g [n]: their diagonals. */
 static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double *g, hdi_ledger *ledger) {
     const hdi_symbolic *s = &m->sym;
     const hd_laplacian *lap = m->lap;
@@ -19228,8 +19344,8 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *ration
     return hdi_scope_end(&scope);
 }
 
-/* After the highest degree of poles, whose factors did not fit the byte limit, comes that by default. 0:
- * neither. */
+/* Goes on from the highest degree of poles, whose factors did not fit the byte limit, to the default. Returns
+ * 0 where there is no reason to. */
 static int hdi_degree_retreat(const hd_heat *heat, int32_t *degree, hd_error *e) {
     if (*degree == 0 || e->status != HD_ERR_MEMORY_LIMIT || heat->elim.n_packs == 0) return 0;
     *degree = 0;
@@ -19262,13 +19378,14 @@ static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges,
     return h->e->status;
 }
 
-/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. */
+/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. Tuned on meshes
+ * of 1K to 1M vertices. */
 #define HDI_SHARED_TOL 2.5e-8
 #define HDI_SHARED_DISTANCE_TOL 2e-10
 
 /* ---- diagonals at many times ---- */
 
-/* After packs that did not fit the byte limit: those that are there go, and the call begins anew. */
+/* Frees packs after some did not fit the byte limit, and begins the call anew. */
 static void hdi_heat_forget(hdi_heat_call *h) {
     hdi_elim *m = &h->heat->elim;
     hd_report *rep = h->rep;
@@ -19280,14 +19397,14 @@ static void hdi_heat_forget(hdi_heat_call *h) {
     h->set = NULL;
 }
 
-/* Packs that a shared set for a ratio of times takes; 0: there is none. */
+/* Packs that a shared set for a ratio of times takes. Returns 0 where there is no set. */
 static int32_t hdi_shared_packs(double ratio, double tol) {
     hd_rational set;
     return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
 }
 
-/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio, and how
- * many packs those are. */
+/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio. *packs:
+ * how many those are. */
 static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
     int32_t w, best = 0;
     for (w = 1; w <= most && w <= 64; w++) {
@@ -19423,11 +19540,11 @@ static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, doubl
     return h->e->status;
 }
 
-/* How many packs are worth as much as so many times one by one: each takes a set of degree 9, a pack and a
- * real factor, which costs an eighth of a pack. */
+/* Do so many packs cost less than so many times one by one? Each of these takes a set of degree 9, that is a
+ * pack and a real factor, which costs an eighth of a pack. */
 static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 9 * n_times; }
 
-/* All times of a call: by shared poles where that takes fewer packs, else one by one. */
+/* All times of a call: with shared poles where that takes fewer packs, else one by one. */
 static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
     hd_heat *heat = h->heat;
     const int32_t n_times = h->ask.n_times;
@@ -19464,14 +19581,19 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
 }
 
 /* ==== [27] diffusion ====
- * Owns distances: the metric of a kind and a time, one to all, pairs. May call [26]. */
+ * Owns distances: the metric of a kind and a time, one to all, pairs, farthest points. May call [26] and
+ * [24].
+ * This work is based on
+ *   R. Coifman, S. Lafon, Diffusion maps, 2006
+ *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013,
+ *   eq. (6) */
 
 /* ---- distances ---- */
 
-/* What distances of one kind at one time are made of: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the
- * source, and bounds of their errors: the rational one of f is at most weighted times a form with diagonal g,
- * and at most uniform times one with diagonal spread; that of a column by rounding at most sqrt(g_v) times a
- * number that is known of each column. */
+/* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source,
+ * and bounds of their errors. The rational error of f is at most weighted times a form with diagonal g, and
+ * at most uniform times one with diagonal spread. Rounding of a column is at most sqrt(g_v) times a number
+ * that comes with each column. */
 typedef struct hdi_metric {
     hd_distance_kind kind;
     double t;                    /* of columns, scaled */
@@ -19487,11 +19609,11 @@ typedef struct hdi_metric {
     int own;
 } hdi_metric;
 
-/* A column of f by vertices, and what rounding can put it off by: sqrt(g_v) times off_m, and sqrt(spread_v)
- * times off_b. */
+/* A column of f by vertices. Rounding is at most sqrt(g_v) times off_m, and at most sqrt(spread_v) times
+ * off_b. */
 typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
 
-/* What rounding of a function of the caller's is relative to: the resolvent, or where that bounds nothing the
+/* What rounding of a function of the caller's is relative to: the resolvent, or where that is no bound the
  * mass. */
 static double hdi_own_size(double g, double spread) { return g > 0 && hdi_finite(g) ? g : spread; }
 
@@ -19533,7 +19655,7 @@ static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
     return HD_OK;
 }
 
-/* Where t is so large that kernels are the means of the components. */
+/* The diagonal where t is so large that kernels are the means of the components. */
 static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
     int32_t r;
     for (r = 0; r < lap->n_active; r++) {
@@ -19644,7 +19766,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     return hdi_scope_end(&scope);
 }
 
-/* Column s of f into u [n], by vertices, from what the plan gives: of k_t, or of K_t e_s. work [2
+/* Makes a column that the plan gave, of k_t or of K_t e_s, a column of f by vertices, in place. work [2
  * n_active]. */
 static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
     int32_t i;
@@ -19699,7 +19821,7 @@ static hd_status hdi_metric_columns_ground(hd_heat *heat, const hdi_metric *x, c
     return hdi_scope_end(&s);
 }
 
-/* What the plan is asked for: columns that become columns of f. */
+/* The request to the plan for columns that become columns of f. */
 static hdi_columns hdi_metric_query(const hdi_metric *x, const hd_rational *set, const hdi_distances *to) {
     hdi_columns query;
     memset(&query, 0, sizeof query);
@@ -19740,8 +19862,8 @@ static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, const hd
     return hdi_scope_end(&s);
 }
 
-/* Bound of the rational error of d^2 between s and v: of the form of g, whose column g_sv is known or not,
- * and of that of spread; either bounds it alone. */
+/* Bound of the rational error of d^2 between s and v: by the form of g, whose column g_sv may be known, and
+ * by that of spread. Each bounds it alone. */
 static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss,
                                   double sv) {
     const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, gv)), wide = sqrt(ss) + sqrt(sv);
@@ -19758,8 +19880,8 @@ static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, con
 }
 
 /* d from column s of f, in place. g: the same column of the resolvent, whose own d^2 bounds the rational
- * error; NULL: from the diagonals, which is less sharp near s. Between components the last two kinds are
- * infinite. */
+ * error. Where it is NULL the diagonals bound it, which is less sharp near s. Between components distances of
+ * the last two kinds are infinite. */
 static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, int32_t s,
                                 const hdi_metric_column *c, const double *g, hd_report *rep,
                                 hdi_ledger *ledger) {
@@ -19810,13 +19932,13 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
                             HD_EVIDENCE_MEASURED, 1);
 }
 
-/* Bound of the error relative to the largest distance that sends the default to the highest degree, and what
- * the bound of degree 9 is to be expected at, as seen on meshes of 1K to 50K vertices: so much times
- * sqrt(t)/h. */
+/* The default goes to the highest degree where the bound of the error relative to the largest distance is
+ * above the first number. The bound of degree 9 is expected at the second one times sqrt(t)/h, as seen on
+ * meshes of 1K to 50K vertices. */
 #define HDI_DISTANCE_SURE 2.5e-6
 #define HDI_DISTANCE_EXPECTED 4.4e-7
 
-/* Are the poles beyond our choice, or the highest degree as it is? */
+/* Are the poles the caller's choice, or of the highest degree in any case? */
 static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
     return kind >= HD_DISTANCE_COMMUTE || heat->poles_asked || heat->exacting;
 }
@@ -19902,7 +20024,7 @@ static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call 
     return HD_OK;
 }
 
-/* The right-hand side of a row: e_row, or with full B e_row; and what its sweeps touch. */
+/* The right-hand side of a row, e_row or with full B e_row, and the part of its sweeps that is not zero. */
 static void hdi_distance_shared_rhs(hdi_distance_shared *z, int32_t row) {
     const hd_laplacian *lap = z->m->lap;
     int64_t p;
@@ -19916,7 +20038,7 @@ static void hdi_distance_shared_rhs(hdi_distance_shared *z, int32_t row) {
     }
 }
 
-/* Solves for the poles of pack i; the residuals. */
+/* Solves for the poles of pack i, and measures the residuals. */
 static void hdi_distance_shared_solve(hdi_distance_shared *z, int32_t i) {
     const hdi_elim *m = z->m;
     hdi_check check, *list = &check;
@@ -19957,7 +20079,7 @@ static void hdi_distance_shared_column(hdi_distance_shared *z, int32_t row) {
     }
 }
 
-/* The columns of time q, made those of f where B is full. */
+/* The columns of time q. Where B is full they become those of f. */
 static const double *hdi_distance_shared_at(const hdi_distance_shared *z, int32_t q) {
     const double *c = hdi_window_at(&z->w, z->column, q);
     if (!z->full) return c;
@@ -19966,7 +20088,7 @@ static const double *hdi_distance_shared_at(const hdi_distance_shared *z, int32_
     return z->product;
 }
 
-/* What the residuals of a column make of the answer at time q in the norm of B + tL. */
+/* The bound that the residuals of a column give for the answer at time q, in the norm of B + tL. */
 static double hdi_distance_shared_off(const hdi_distance_shared *z, int32_t q) {
     const hd_rational *set = z->w.set + q;
     const double root = hdi_ratio_root(z->m->lap);
@@ -19977,7 +20099,8 @@ static double hdi_distance_shared_off(const hdi_distance_shared *z, int32_t q) {
     return off;
 }
 
-/* Rounding of the diagonals: columns of some rows, found as those of sources are, are held against them. */
+/* Measures rounding of the diagonals: they are compared with columns of some rows, found as those of sources
+ * are. */
 static void hdi_distance_shared_probe(hdi_distance_shared *z) {
     const hd_laplacian *lap = z->m->lap;
     const double *last = hdi_window_at(&z->w, z->w.values, z->w.n_times - 1);
@@ -20061,7 +20184,8 @@ static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, 
     return hdi_scope_end(&s);
 }
 
-/* All times through shared poles, when that is cheaper than one by one. 0: it is not, or not possible. */
+/* All times with shared poles, where that is cheaper than one by one. Returns 0 where it is not, or not
+ * possible. */
 static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to) {
     hd_heat *heat = h->heat;
     const int32_t n_times = h->ask.n_times;
@@ -20079,8 +20203,8 @@ static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to) {
     return 1;
 }
 
-/* Distances at one time. Where much cancels, or is sure to, with the highest degree if there is room for its
- * factors. */
+/* Distances at one time. Where much cancels, or is sure to, the highest degree takes over if there is room
+ * for its factors. */
 static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
                                    hd_error *e) {
     const int settled = hdi_metric_settled(heat, to->kind);
@@ -20094,7 +20218,7 @@ static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, doubl
     return e->status;
 }
 
-/* One to all: all times and sources of a call. */
+/* Distances from one to all: all times and sources of a call. */
 static hd_status hdi_distance_run(hdi_heat_call *h, hd_distance_kind kind, int32_t k, const int32_t *sources,
                                   double *D, size_t ldd) {
     const int timeless = kind >= HD_DISTANCE_COMMUTE;
@@ -20147,7 +20271,7 @@ static int32_t hdi_pairs_vertices(const hdi_pairs *x, hdi_pair *order, int32_t *
     return n;
 }
 
-/* |u - v|_B of fields on vertices, v NULL: |u|_B; whatever their size, with B times scale near one. work [2
+/* |u - v|_B of fields on vertices of any size; v NULL: |u|_B. B times scale is near one. work [2
  * n_active]. */
 static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work,
                               double scale) {
@@ -20185,7 +20309,7 @@ static hdi_parts hdi_parts_of(const hd_report *rep) {
     return p;
 }
 
-/* Shares out what stands in rounding as another bound has it. */
+/* Distributes a bound that stands in rounding over all parts, in the ratio of another bound. */
 static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
     const double all = to->rounding, sum = hdi_parts_sum(as);
     if (!(sum > 0 && hdi_finite(sum) && hdi_finite(all))) return;
@@ -20332,7 +20456,7 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, const hdi_pairs *x, double 
     return rep->status;
 }
 
-/* Columns that are held at the same time: at most so many doubles, half a GiB. */
+/* Most doubles of columns that are held at the same time: half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
 /* Pairs at time t; rep gets the report. */
@@ -20394,7 +20518,7 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t 
 
 /* ---- farthest points ---- */
 
-/* The vertex that is farthest from those chosen, the first of several; without mass never. */
+/* The vertex that is farthest from those chosen, the first one of several. It is never one without mass. */
 static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
     int32_t v, best = -1;
     for (v = 0; v < lap->n; v++)
