@@ -25,7 +25,7 @@
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, &err) < 0) return fail(&err);
        if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
-       hd_heat_column(heat, HD_KERNEL_OPERATOR, 100 * lap->h * lap->h, source, u, NULL, NULL);   u[n] = K_t e_source
+       hd_heat_column(heat, HD_KERNEL_OPERATOR, 100 * lap->h * lap->h, source, u, NULL, NULL);
        hd_heat_free(heat);  hd_laplacian_free(lap);
 
    Conventions
@@ -74,7 +74,7 @@
      [19] precond    Jacobi, SSOR and incomplete L D L'
      [20] iterative  COCG, COCR, CS-MINRES
      [21] rational   pole sets: tables, evaluation, sets shared by many times
-     [22] poles      the family t L + theta_i B: its factors or preconditioners, answers through them, error bounds
+     [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
      [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
      [24] ground     L with one vertex of each component held: distances without a time
      [25] plan       hd_heat: choice of method, kept factors and bases, the run of a request, its report
@@ -109,10 +109,10 @@
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
      no file and never exits.
-     Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). x87 registers keep more digits now and then: results
-     are as accurate, but neither bits nor bounds of the error near rounding are promised. On 32-bit x86 compile
-     with -msse2 -mfpmath=sse. -ffast-math takes away the same promises. Coordinates, matrices, fields and times
-     that are not finite are still refused then, options are not.
+     Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). x87 registers keep more digits now and then:
+     results are as accurate, but neither bits nor bounds of the error near rounding are promised. On 32-bit
+     x86 compile with -msse2 -mfpmath=sse. -ffast-math takes away the same promises. Coordinates, matrices,
+     fields and times that are not finite are still refused then, options are not.
 
    Threads
      There is no global or thread-local state. One object serves one thread at a time, and so does one
@@ -604,7 +604,8 @@ typedef struct hd_geodesic_opts {
     /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere. */
     const int32_t *perm;
     hd_context *context;
-    int32_t updatable;          /* 1: hd_geodesic_update may be called; the plan keeps L, and 100 bytes a face */
+    /* 1: hd_geodesic_update may be called. The plan keeps L then, and 100 bytes for each face. */
+    int32_t updatable;
     int32_t end_zero;
 } hd_geodesic_opts;
 
@@ -626,8 +627,8 @@ typedef struct hd_geodesic_report {
 
 /* ==== [D] functions ==== */
 /* Common to all functions. Arguments come in this order: the object that is made, or that the function works
- * on; what is asked for; the input; the output; report; err. A count stands before its array, but for meshes and
- * points, which are xyz, n. Functions return hd_status. After an error nothing
+ * on; what is asked for; the input; the output; report; err. A count stands before its array, but for
+ * meshes and points, which are xyz, n. Functions return hd_status. After an error nothing
  * is left allocated, *out is unchanged, and output arrays hold unspecified numbers.
  * err and report may be NULL. */
 
@@ -786,8 +787,8 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
-/* New coordinates for the same faces, of a Laplacian made by hd_laplacian_triangles with the option updatable.
- * Plans notice: their next query computes with the new values, on the ordering and analysis that they have.
+/* New coordinates for the same faces, of a Laplacian made by hd_laplacian_triangles with the option
+ * updatable. Plans notice: their next query computes with the new values, on the ordering and analysis that they have.
  * xyz    [3 n] finite
  * Faces that were left out stay left out. Faces that lose their area are counted in lap->mesh and add
  * nothing. L, B and the report are those of a new Laplacian, up to rounding in the order of sums.
@@ -1015,8 +1016,8 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
-/* Columns of the kernel. That of K_t for a source s is K_t e_s: the field at time t that starts as 1 at s and 0
- * elsewhere; its total heat 1'B u is the mass of s.
+/* Columns of the kernel. That of K_t for a source s is K_t e_s: the field at time t that starts as 1 at s and
+ * 0 elsewhere; its total heat 1'B u is the mass of s.
  * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
  *        for K_t, and zero for k_t
  * Errors and cost as above; HD_ERR_INDEX (vertex, column: which source). The first column at a time t carries
@@ -1167,7 +1168,7 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 
 #endif /* HEATDIFF_H */
 
-/* ===================================================================================================================== */
+/* ========================================================================================================== */
 #ifdef HEATDIFF_IMPLEMENTATION
 #ifndef HEATDIFF_IMPLEMENTED
 #define HEATDIFF_IMPLEMENTED
@@ -6675,7 +6676,7 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int clo
  * Voronoi areas go negative on obtuse triangles; mixed ones do not. Deviations of polygons and point sets are
  * listed there. */
 
-/* What an update needs of a triangle mesh: the faces that have an area, in the order in which they were summed. */
+/* What an update needs of a triangle mesh: the faces that have an area, in the order of their sums. */
 typedef struct hd_moving {
     int32_t m;
     int32_t *tri;               /* [3 m] */
@@ -6967,7 +6968,8 @@ static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_err
 }
 
 /* Measures the faces anew, and the masses of vertices. Nothing of the Laplacian changes. */
-static hd_status hdi_moving_measure(const hd_laplacian *lap, const double *xyz, hd_mesh_report *rep, hd_error *e) {
+static hd_status hdi_moving_measure(const hd_laplacian *lap, const double *xyz, hd_mesh_report *rep,
+                                    hd_error *e) {
     hdi_moving *x = lap->moving;
     hdi_face_tally tally;
     hdi_mesh mesh;
@@ -7045,7 +7047,7 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
     hdi_moving_sides(lap);
     hdi_moving_rows(lap);
-    lap->mesh.n_zero_area = unused - lap->mesh.n_repeated_corner - lap->mesh.n_repeated_face + rep.n_zero_area;
+    lap->mesh.n_zero_area = unused + rep.n_zero_area - lap->mesh.n_repeated_corner - lap->mesh.n_repeated_face;
     lap->mesh.n_faces_used = rep.n_faces_used;
     lap->mesh.smallest_angle = rep.smallest_angle;
     lap->version++;
@@ -7653,7 +7655,8 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
         out->mass[i] = lap->mass[from];
         out->b_diag[i] = lap->b_diag[from];
     }
-    for (i = 0; i < out->n_active; i++) {        /* as in hdi_pair_permute: row i of one is column i of the other */
+    /* as in hdi_pair_permute: row i of one is column i of the other */
+    for (i = 0; i < out->n_active; i++) {
         const int32_t from = lap->row[out->vertex[i]];
         for (p = lap->L.row_ptr[from]; p < lap->L.row_ptr[from + 1]; p++) {
             const int64_t q = fill[out->row[lap->vertex[lap->L.col[p]]]]++;
@@ -11162,11 +11165,11 @@ static void hdi_chunks_run(hdi_chunks *h, int64_t begin, int64_t end, hd_context
 
 static void hdi_front_run(const hdi_front *w, int shared, hdi_front_stage stage, int64_t begin, int64_t end) {
     hdi_chunks h;
-    if (end > begin && !shared) hdi_front_part(w, stage, begin, end, w->work);
+    if (end > begin && !shared) hdi_front_part(w, HDI_CAST(int, stage), begin, end, w->work);
     if (end <= begin || !shared) return;
     h.run = hdi_front_part;
     h.front = w;
-    h.stage = stage;
+    h.stage = HDI_CAST(int, stage);
     h.rows = HDI_FRONT_CHUNK;
     h.work = w->f->chunk_scratch;
     h.work_size = w->f->chunk_size;
@@ -12296,11 +12299,11 @@ static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r
 static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front *w, hdi_inverse_stage stage,
                                   int64_t begin, int64_t end) {
     hdi_chunks h;
-    if (end > begin && !z) hdi_inverse_part(w, stage, begin, end, w->buffer);
+    if (end > begin && !z) hdi_inverse_part(w, HDI_CAST(int, stage), begin, end, w->buffer);
     if (end <= begin || !z) return;
     h.run = hdi_inverse_part;
     h.front = w;
-    h.stage = stage;
+    h.stage = HDI_CAST(int, stage);
     h.rows = stage == HDI_INVERSE_CORNER ? HDI_CAST(int64_t, HDI_REAL_MR) : HDI_CAST(int64_t, HDI_INV_CHUNK);
     h.work = z->chunk;
     h.work_size = z->chunk_size;
@@ -20735,7 +20738,8 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, hd_erro
     g->t = g->t_asked > 0 ? g->t_asked : lap->h * lap->h;
     if (!hdi_finite(g->t) || !(g->t > 0))
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "geodesic: the square of the mean edge length is no number to compute with", -1, -1, lap->h);
+                            "geodesic: the square of the mean edge length is no number to compute with", -1, -1,
+                            lap->h);
     for (i = 0; i < g->n_active; i++) {
         const int32_t from = g->sym.perm[i];
         g->mass[i] = lap->mass[from] / g->t;
@@ -20869,7 +20873,8 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     if (hdi_moving_measure(g->lap, xyz, &rep, e) < 0) return e->status;
     for (f = 0; f < moving->m; f++)
         if (!(moving->area[f] > 0))
-            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more", moving->face[f], -1, 0);
+            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more", moving->face[f], -1,
+                                 0);
     g->ready = 0;
     if (hdi_lap_update(g->lap, xyz, e) < 0 || hdi_geo_masses(g, g->lap, e) < 0) return e->status;
     hdi_mesh_clear(&mesh, xyz, g->n, moving->tri, moving->m);
@@ -20924,8 +20929,9 @@ static int64_t hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRI
 }
 
 /* Where corner q of a face lies in a batch of columns. */
-static HDI_INLINE int64_t hdi_geo_at(const hdi_geo_face *f,
-                                     int q) { return HDI_GEO_WIDE * HDI_CAST(int64_t, f->v[q]); }
+static HDI_INLINE int64_t hdi_geo_at(const hdi_geo_face *f, int q) {
+    return HDI_GEO_WIDE * HDI_CAST(int64_t, f->v[q]);
+}
 
 /* The same for a batch. Returns the columns with faint faces as bits. */
 static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RESTRICT u,
@@ -21654,9 +21660,8 @@ static void hdi_refuse_ordering(hd_ordering ordering, const int32_t *perm, const
 }
 
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets,
-                                            const int32_t *i,
-                                            const int32_t *j, const double *v, hd_context *ctx,
-                                                hd_error *err) {
+                                            const int32_t *i, const int32_t *j, const double *v,
+                                            hd_context *ctx, hd_error *err) {
     hdi_call c;
     hdi_scope s;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
@@ -21735,8 +21740,7 @@ typedef struct hdi_laplacian {
 
 /* A Laplacian without content. */
 static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind,
-                                 hd_error *err,
-                                 hdi_call *c) {
+                                 hd_error *err, hdi_call *c) {
     hdi_laplacian *shell;
     if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
                        "laplacian options: not cleared before use", err) < 0) return NULL;
@@ -21793,8 +21797,8 @@ static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task 
 }
 
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
-                                              const int32_t *tri,
-                                              int32_t n_tri, const hd_laplacian_opts *opts, hd_error *err) {
+                                              const int32_t *tri, int32_t n_tri,
+                                              const hd_laplacian_opts *opts, hd_error *err) {
     hdi_intrinsic_task task;
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
@@ -21806,16 +21810,15 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
                "laplacian of triangles: the kind is fem, voronoi-cot or cot", c.e);
     intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
     hdi_refuse(intrinsic && opts->updatable,
-               "laplacian of triangles: an intrinsic triangulation is not updatable, its flips depend on the lengths", c.e);
+               "laplacian of triangles: an intrinsic triangulation is not updatable", c.e);
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     if (intrinsic) return hdi_lap_done(out, lap, hdi_lap_intrinsic(lap, xyz, tri, n_tri, &task, c.e));
     return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, opts && opts->updatable, c.e));
 }
 
 HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n,
-                                             const int64_t *face_ptr,
-                                             const int32_t *face_idx, int32_t n_faces,
-                                             const hd_laplacian_opts *opts, hd_error *err) {
+                                             const int64_t *face_ptr, const int32_t *face_idx,
+                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
     const int flips = opts && (opts->intrinsic_delaunay || opts->tufted);
     const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
     const int splits = hdi_kind_of_triangles(kind);
@@ -21934,9 +21937,8 @@ static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t 
 }
 
 HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m,
-                                             int32_t k,
-                                             int32_t *index, double *distance2, hd_context *ctx,
-                                                 hd_error *err) {
+                                             int32_t k, int32_t *index, double *distance2, hd_context *ctx,
+                                             hd_error *err) {
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
@@ -21950,8 +21952,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 }
 
 HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query,
-                                            int32_t m,
-                                            double radius, hd_context *ctx, hd_error *err) {
+                                            int32_t m, double radius, hd_context *ctx, hd_error *err) {
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
@@ -21989,7 +21990,8 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz,
     hdi_call c;
     if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
     if (!lap || !xyz) return hdi_missing(c.e);
-    if (!lap->moving) return hdi_fail(c.e, HD_ERR_ARGUMENT, "update: the Laplacian was not made with the option updatable");
+    hdi_refuse(!lap->moving, "update: the Laplacian was not made with the option updatable", c.e);
+    if (c.e->status < 0) return c.e->status;
     return hdi_lap_update(lap, xyz, c.e);
 }
 
@@ -22262,7 +22264,8 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
     if (!heat->sums) return e->status;
     hdi_heat_measure_pair(heat);
     if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
-        heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n), sizeof *heat->perm, ctx, e));
+        heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n),
+                                                  sizeof *heat->perm, ctx, e));
     heat->opts.perm = heat->perm;
     return e->status;
 }
@@ -22310,8 +22313,8 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
 }
 
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs,
-                                        hd_c64 *x,
-                                        const hd_solve_opts *opts, hd_solve_report *report, hd_error *err) {
+                                        hd_c64 *x, const hd_solve_opts *opts, hd_solve_report *report,
+                                        hd_error *err) {
     hd_solve_opts o;
     hd_heat_opts plan;
     hd_heat *heat = NULL;
@@ -22344,8 +22347,8 @@ static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
 }
 
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
-                                     const double *F, size_t ldf,
-                                     double *U, size_t ldu, hd_report *report, hd_error *err) {
+                                     const double *F, size_t ldf, double *U, size_t ldu, hd_report *report,
+                                     hd_error *err) {
     hdi_heat_call h;
     if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, report, err) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t, 0) < 0) return hdi_heat_end(&h);
@@ -22363,9 +22366,8 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
 }
 
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                       int32_t k,
-                                       const int32_t *sources, double *U, size_t ldu, hd_report *report,
-                                           hd_error *err) {
+                                       int32_t k, const int32_t *sources, double *U, size_t ldu,
+                                       hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t, 0) < 0) return hdi_heat_end(&h);
@@ -22380,8 +22382,7 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t 
 }
 
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u,
-                                      hd_report *report,
-                                      hd_error *err) {
+                                      hd_report *report, hd_error *err) {
     return hd_heat_columns(heat, kernel, 1, &t, 1, &source, u, 0, report, err);
 }
 
@@ -22395,9 +22396,8 @@ static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_
 }
 
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                       int64_t n_pairs,
-                                       const int32_t *i, const int32_t *j, double *values, hd_report *report,
-                                           hd_error *err) {
+                                       int64_t n_pairs, const int32_t *i, const int32_t *j, double *values,
+                                       hd_report *report, hd_error *err) {
     hdi_heat_call h;
     hdi_entry_list list;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
@@ -22410,8 +22410,7 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 }
 
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                        double *D, size_t ldd,
-                                        hd_report *report, hd_error *err) {
+                                        double *D, size_t ldd, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
@@ -22422,8 +22421,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
 }
 
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                     double *values,
-                                     hd_report *report, hd_error *err) {
+                                     double *values, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
     if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
@@ -22438,8 +22436,7 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
 /* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
  * and t is not read. */
 static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                    const double *t,
-                                    int positive, hd_report *report, hd_error *err) {
+                                    const double *t, int positive, hd_report *report, hd_error *err) {
     if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
     if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC)
@@ -22452,9 +22449,8 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
 }
 
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                        const double *t, int32_t k,
-                                        const int32_t *sources, double *D, size_t ldd, hd_report *report,
-                                            hd_error *err) {
+                                        const double *t, int32_t k, const int32_t *sources, double *D,
+                                        size_t ldd, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0)
         return hdi_heat_end(&h);
@@ -22467,9 +22463,8 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
 }
 
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
-                                     int64_t n_pairs,
-                                     const int32_t *i, const int32_t *j, double *K, double *d,
-                                         hd_report *report, hd_error *err) {
+                                     int64_t n_pairs, const int32_t *i, const int32_t *j, double *K,
+                                     double *d, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0) return hdi_heat_end(&h);
     h.relative = d != NULL;
@@ -22479,8 +22474,8 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
 }
 
 HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count,
-                                      int32_t n_given,
-                                      int32_t *vertex, double *distance, hd_report *report, hd_error *err) {
+                                      int32_t n_given, int32_t *vertex, double *distance, hd_report *report,
+                                      hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0)
         return hdi_heat_end(&h);
@@ -22530,7 +22525,8 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_
     hdi_call c;
     if (hdi_enter(&c, g ? g->ctx : NULL, err) < 0) return c.e->status;
     if (!g || !xyz) return hdi_missing(c.e);
-    if (!g->lap) return hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the plan was not made with the option updatable");
+    hdi_refuse(!g->lap, "geodesic: the plan was not made with the option updatable", c.e);
+    if (c.e->status < 0) return c.e->status;
     return hdi_geo_update(g, xyz, c.e);
 }
 
@@ -22546,8 +22542,7 @@ static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
 
 /* Checks the arguments of a query, and fills the report with what the plan says. */
 static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d,
-                               hd_geodesic_report *rep, hd_error *err,
-                               hdi_call *c) {
+                               hd_geodesic_report *rep, hd_error *err, hdi_call *c) {
     int32_t q;
     if (rep) {
         memset(rep, 0, sizeof *rep);
@@ -22568,8 +22563,7 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
 }
 
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources,
-                                            double *d, hd_geodesic_report *report,
-                                            hd_error *err) {
+                                            double *d, hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
     if (hdi_geo_begin(g, sources, n_sources, d, report, err, &c) < 0) return hdi_geo_end(report, c.e);
     if (n_sources < 1) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: there is no source");
@@ -22578,8 +22572,7 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, c
 }
 
 HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D,
-                                             size_t ldd,
-                                             hd_geodesic_report *report, hd_error *err) {
+                                             size_t ldd, hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
     if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0) return hdi_geo_end(report, c.e);
     ldd = ldd ? ldd : HDI_CAST(size_t, g->n);
