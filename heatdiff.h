@@ -233,8 +233,8 @@ typedef struct hd_threads hd_threads;            /* started and ended by the lib
 
 /* Memory, progress and threads of a computation. All zeros are good defaults: malloc, no limits, no progress,
  * as many threads as there are processors. The context belongs to the caller and must outlive every object
- * made with it; do not copy it in the meantime. Wherever a function takes a context, NULL means one with these
- * defaults. */
+ * made with it; do not copy it in the meantime. Wherever a function takes a context, NULL means one with
+ * these defaults. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
     uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit */
@@ -10678,9 +10678,9 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 /* From so many rows on nested dissection pays for itself: it takes three times as long to find as minimum
  * degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some solves
  * gain nothing up to 250K rows, and lose at most 5 %; they share the order all the same, so that no answer
- * depends on which query came first. Wide rows, those of exponential weights, make factors so large that it pays at once where it
- * has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10, 20, 50, 150 thousand random points
- * and 233 non-zeros a row. */
+ * depends on which query came first. Wide rows, those of exponential weights, make factors so large that it
+ * pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10, 20, 50, 150
+ * thousand random points and 233 non-zeros a row. */
 enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
 
 /* What order the caller asks for. */
