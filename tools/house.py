@@ -34,7 +34,7 @@ MOST_ARGUMENTS = 8
 WIDEST_LINE = 110
 WIDEST_DECLARATION = 100
 KERNEL_ROOMS = ("kernels", "dense")   # the name of the room, and the name it had before
-FOREIGN = ("dgemm_",)                 # names that others have chosen
+FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # names that others have chosen
 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
