@@ -10789,6 +10789,8 @@ typedef struct hdi_factor {
     double *work;                    /* [sym->work] entries: update matrices */
     double *scratch;                 /* [n_tasks + 1][scratch_size], the last one larger: for the top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
+    double *second;                  /* [chunk_size] a second place for S, of fronts that threads share */
+    int32_t *nodes;                  /* of their loops */
     uint64_t scratch_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
@@ -11176,20 +11178,163 @@ static void hdi_front_run(const hdi_front *w, int shared, hdi_front_stage stage,
     hdi_chunks_run(&h, begin, end, w->f->ctx);
 }
 
+/* ---- a large front as one loop ---- */
+/* Its nodes, with rows in chunks c and pivots in blocks k: A(c) assembles rows of the panel (packs), P(k)
+ * eliminates the pivots of a block, C(c,k) computes their columns in the rows below, U(d) rows of the update matrix.
+ *   P(k)    waits for the chunks that hold its rows, and for all C(c,k-2), because S has two places
+ *   C(c,k)  waits for P(k) and for C(c,k-1)
+ *   U(d)    waits for the whole panel
+ * So the next pivots are eliminated while the columns of the last ones are still computed. Node numbers: P(k)
+ * and C(c,k) block by block, then the A, then the U. */
+typedef struct hdi_front_loop {
+    hdi_front w;
+    hdi_factor *f;
+    hdi_pivots *note;
+    double *S[2];
+    int32_t nb, n_blocks, n_chunks, n_panel;     /* n_panel: nodes before the U */
+    int32_t *pending, *order;
+    hd_threads *threads;
+} hdi_front_loop;
+
+/* Node numbers that the largest front needs at most. */
+static int64_t hdi_front_nodes(const hdi_symbolic *s, int32_t nb) {
+    const int64_t chunks = s->largest_front / HDI_FRONT_CHUNK + 1, blocks = s->largest_pivots / nb + 1;
+    return s->n_top ? blocks * (chunks + 1) + 2 * chunks + 1 : 0;
+}
+
+static int32_t hdi_front_block_size(const hdi_factor *f) {
+    return f->width == 1 ? HDI_CAST(int32_t, HDI_REAL_NB) : HDI_CAST(int32_t, HDI_PACK_BLOCK);
+}
+
+/* The first row below the pivots of block k, and the first chunk with such rows. */
+static int64_t hdi_front_end(const hdi_front_loop *l, int32_t k) {
+    return hdi_least(HDI_CAST(int64_t, k + 1) * l->nb, l->w.p);
+}
+
+static int32_t hdi_front_first(const hdi_front_loop *l, int32_t k) {
+    const int64_t end = hdi_front_end(l, k);
+    return end < l->w.m ? HDI_CAST(int32_t, end / HDI_FRONT_CHUNK) : l->n_chunks;
+}
+
+static int32_t hdi_front_node(const hdi_front_loop *l, int32_t k, int32_t c) { return k * (l->n_chunks + 1) + 1 + c; }
+
+/* Whether chunk c holds pivots of block k. */
+static int hdi_front_holds(const hdi_front_loop *l, int32_t k, int32_t c) {
+    const int64_t begin = HDI_CAST(int64_t, k) * l->nb;
+    return k < l->n_blocks && begin < HDI_CAST(int64_t, c + 1) * HDI_FRONT_CHUNK &&
+           hdi_front_end(l, k) > HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK;
+}
+
+static void hdi_front_arrive(const hdi_front_loop *l, int32_t node) {
+    if (HDI_ATOMIC_ADD(l->pending + node, -1) == 0) hdi_release(l->threads, node, l->order);
+}
+
+/* Chunk c is done up to block k, -1 assembled: those that waited for it. */
+static void hdi_front_next(const hdi_front_loop *l, int32_t k, int32_t c) {
+    if (hdi_front_holds(l, k + 1, c)) hdi_front_arrive(l, hdi_front_node(l, k + 1, -1));
+    if (k + 1 < l->n_blocks && c >= hdi_front_first(l, k + 1)) hdi_front_arrive(l, hdi_front_node(l, k + 1, c));
+    if (k >= 0 && k + 2 < l->n_blocks) hdi_front_arrive(l, hdi_front_node(l, k + 2, -1));
+}
+
+/* Node P(k), or with a chunk c >= 0 C(c,k). */
+static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) {
+    const int64_t end = hdi_front_end(l, k), r0 = HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK;
+    const int stop = HDI_LOAD(&l->f->stop);
+    hdi_front w = l->w;
+    int good = 1;
+    w.S = l->S[k % 2];
+    w.k0 = HDI_CAST(int64_t, k) * l->nb;
+    w.nb = HDI_CAST(int32_t, end - w.k0);
+    if (c >= 0) {
+        if (!stop) hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, hdi_least(r0 + HDI_FRONT_CHUNK, w.m),
+                                  l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c));
+        hdi_front_next(l, k, c);
+        return;
+    }
+    if (!stop) good = w.f->width == 1 ? hdi_front_pivots_real(&w, end, l->note) : hdi_front_pivots_pack(&w, l->note);
+    if (!good) HDI_STORE(&l->f->stop, 1);
+    for (c = hdi_front_first(l, k); c < l->n_chunks; c++) hdi_front_arrive(l, hdi_front_node(l, k, c));
+}
+
+static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
+    const hdi_front_loop *l = HDI_CAST(const hdi_front_loop *, arg);
+    const int32_t i = HDI_CAST(int32_t, index), a = hdi_front_node(l, l->n_blocks, -1);
+    const int32_t c = i < a ? i % (l->n_chunks + 1) - 1 : i < a + l->n_chunks ? i - a : i - a - l->n_chunks;
+    const int64_t r0 = HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
+    double *work = l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c < 0 ? 0 : c);
+    int32_t d;
+    (void)worker;
+    if (i >= a + l->n_chunks) {
+        if (!HDI_LOAD(&l->f->stop)) hdi_front_part(&l->w, HDI_FRONT_UPDATE, r0, hdi_least(r1, l->w.u), work);
+        return;
+    }
+    if (i < a) {
+        hdi_front_panel_node(l, i / (l->n_chunks + 1), c);
+    } else {
+        if (!HDI_LOAD(&l->f->stop)) hdi_front_part(&l->w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r1, l->w.m), work);
+        hdi_front_next(l, -1, c);
+    }
+    if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return;
+    for (d = HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK); d-- > 0;)
+        hdi_release(l->threads, a + l->n_chunks + d, l->order);
+}
+
+/* What nodes wait for. Returns how many are ready; *n: how many there are. pending[a], a being the first A: the
+ * nodes of the panel. */
+static int32_t hdi_front_count(hdi_front_loop *l, int32_t *n) {
+    const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = l->f->width > 1;
+    int32_t ready = 0, panel = packs ? l->n_chunks : 0, k, c;
+    for (k = 0; k < l->n_blocks; k++) {
+        int32_t *pivots = l->pending + hdi_front_node(l, k, -1);
+        *pivots = k > 1 ? l->n_chunks - hdi_front_first(l, k - 2) : 0;
+        for (c = 0; c < l->n_chunks; c++) *pivots += (k > 0 || packs) && hdi_front_holds(l, k, c);
+        for (c = hdi_front_first(l, k); c < l->n_chunks; c++) l->pending[hdi_front_node(l, k, c)] = k > 0 || packs ? 2 : 1;
+        panel += 1 + l->n_chunks - hdi_front_first(l, k);
+    }
+    for (c = 0; c < l->n_chunks && packs; c++) l->order[ready++] = a + c;
+    if (!packs) l->order[ready++] = 0;
+    l->pending[a] = panel;
+    *n = panel + HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    return ready;
+}
+
+/* The front from its panel's rows on, by several threads. 0 when a pivot cannot be divided by. */
+static int hdi_front_share(hdi_factor *f, const hdi_front *w, hd_threads *threads, hdi_pivots *note) {
+    hdi_front_loop l;
+    int32_t n, ready;
+    memset(&l, 0, sizeof l);
+    l.w = *w;
+    l.f = f;
+    l.note = note;
+    l.S[0] = w->S;
+    l.S[1] = f->second;
+    l.nb = hdi_front_block_size(f);
+    l.n_blocks = HDI_CAST(int32_t, (w->p + l.nb - 1) / l.nb);
+    l.n_chunks = HDI_CAST(int32_t, (w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    l.threads = threads;
+    l.pending = f->nodes;
+    l.order = f->nodes + hdi_front_nodes(f->sym, l.nb);
+    ready = hdi_front_count(&l, &n);
+    hdi_parallel_ordered(f->ctx, n, ready, l.order, hdi_front_run_node, &l);
+    return !f->stop;
+}
+
 /* Front v, by this thread or shared by all. 0 when a pivot cannot be divided by. */
-static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note, int shared) {
+static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note, int shared) {
     const hdi_symbolic *s = f->sym;
     const int real = f->width == 1;
-    const int64_t most = real ? HDI_CAST(int64_t, HDI_REAL_NB) : HDI_CAST(int64_t, HDI_PACK_BLOCK);
+    const int64_t most = hdi_front_block_size(f);
+    hd_threads *threads = shared ? hdi_threads_own(f->ctx, 2) : NULL;
     hdi_front w = hdi_front_open(f, v, scratch);
     int64_t end;
     int32_t k;
     if (real) hdi_front_assemble_real(&w);
-    else hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, w.m);
+    else if (!threads) hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, w.m);
     for (k = s->kid_ptr[v]; real && k < s->kid_ptr[v + 1]; k++) {
         w.child = s->kid[k];
         hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, hdi_front_below(s, w.child));
     }
+    if (threads) return hdi_front_share(f, &w, threads, note);
     for (; w.k0 < w.p; w.k0 += w.nb) {
         w.nb = HDI_CAST(int32_t, hdi_least(w.p - w.k0, most));
         /* a small front: its columns at once */
@@ -11227,6 +11372,7 @@ static void hdi_factor_free(hdi_factor *f) {
     hdi_free(f->ctx, f->work);
     hdi_free(f->ctx, f->scratch);
     hdi_free(f->ctx, f->chunk_scratch);
+    hdi_free(f->ctx, f->nodes);
     hdi_free(f->ctx, f->pivots);
     memset(f, 0, sizeof *f);
 }
@@ -11250,12 +11396,14 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     f->dinv = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->n) * w);
     f->work = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->work) * w);
     f->scratch = HDI_TAKE(&s, double, f->scratch_size * n_parts + f->chunk_size);
-    f->chunk_scratch = HDI_TAKE(&s, double, f->chunk_size * n_chunks + 1);
+    f->chunk_scratch = HDI_TAKE(&s, double, f->chunk_size * (n_chunks + (n_chunks > 0)) + 1);
+    f->nodes = HDI_TAKE(&s, int32_t, 2 * hdi_front_nodes(sym, hdi_front_block_size(f)) + 2);
     f->pivots = HDI_TAKE(&s, hdi_pivots, n_parts + 1);
     if (e->status < 0) {
         memset(f, 0, sizeof *f);
         return hdi_scope_end(&s);
     }
+    f->second = f->chunk_scratch + f->chunk_size * n_chunks;
     f->ctx = ctx;                                /* the blocks are f's own now */
     return HD_OK;
 }

@@ -7,10 +7,19 @@
 #include <sys/wait.h>
 #endif
 
+/* The sanitizer of threads has one of its own, and knows no threads after a fork. */
+#if defined(__SANITIZE_THREAD__)
+#define THR_SANITIZER 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define THR_SANITIZER 1
+#endif
+#endif
+
 /* Threads of this process besides the first, -1 where the system does not tell. */
 static int thr_running(void) {
     int n = -1;
-#ifdef __linux__
+#if defined(__linux__) && !defined(THR_SANITIZER)
     DIR *d = opendir("/proc/self/task");
     struct dirent *entry;
     for (n = -1; d && (entry = readdir(d)) != NULL;) n += entry->d_name[0] != '.';
@@ -111,7 +120,7 @@ static void thr_counts(const shape *s, const shape *small) {
 
 /* The child of a fork uses and frees what its parent made, and starts threads of its own; the parent goes on. */
 static void thr_fork(const shape *s, const double *want, double *u) {
-#ifndef _WIN32
+#if !defined(_WIN32) && !defined(THR_SANITIZER)
     const size_t size = (size_t)s->n * sizeof *u;
     hd_context ctx;
     hd_laplacian *lap;
