@@ -9977,6 +9977,13 @@ static int64_t hdi_front_rows(const hdi_symbolic *s, int32_t v) {
     return hdi_front_pivots(s, v) + hdi_front_below(s, v);
 }
 
+/* Its pivots p, rows below u, and both, m. */
+static void hdi_front_shape(const hdi_symbolic *s, int32_t v, int64_t *p, int64_t *u, int64_t *m) {
+    *p = hdi_front_pivots(s, v);
+    *u = hdi_front_below(s, v);
+    *m = *p + *u;
+}
+
 /* A supernode while they are merged. */
 typedef struct hdi_node {
     int32_t pivots, rows;            /* rows of the front, pivots included */
@@ -10844,9 +10851,7 @@ static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch)
     memset(&w, 0, sizeof w);
     w.f = f;
     w.v = v;
-    w.p = hdi_front_pivots(s, v);
-    w.u = hdi_front_below(s, v);
-    w.m = w.p + w.u;
+    hdi_front_shape(s, v, &w.p, &w.u, &w.m);
     w.panel = f->panel + f->width * f->panel_at[v];
     w.update = f->work + f->width * s->update[v];
     w.dinv = f->dinv + HDI_CAST(int64_t, f->width) * s->super[v];
@@ -12065,9 +12070,7 @@ static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scra
     memset(&w, 0, sizeof w);
     w.f = f;
     w.v = v;
-    w.p = hdi_front_pivots(s, v);
-    w.u = hdi_front_below(s, v);
-    w.m = w.p + w.u;
+    hdi_front_shape(s, v, &w.p, &w.u, &w.m);
     w.panel = f->panel + f->width * f->panel_at[v];
     w.update = f->work + f->width * s->update[v];
     most = hdi_least(w.p, HDI_PANEL);
