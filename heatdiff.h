@@ -1183,7 +1183,9 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 /* Threads of the system: none, POSIX or Windows. */
 #define HDI_THREADS_POSIX 1
 #define HDI_THREADS_WINDOWS 2
-#if defined(HEATDIFF_NO_THREADS) || !(defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)) || defined(__TINYC__)
+#if defined(HEATDIFF_NO_THREADS) || defined(__TINYC__)
+#define HDI_THREADS 0
+#elif !defined(__GNUC__) && !defined(__clang__) && !defined(_MSC_VER)
 #define HDI_THREADS 0
 #elif (defined(__wasm__) || defined(__EMSCRIPTEN__)) && !defined(__EMSCRIPTEN_PTHREADS__)
 #define HDI_THREADS 0
@@ -1294,7 +1296,8 @@ extern "C" {
 #define HDI_RECAST(type, x) ((type)(x))
 #endif
 
-/* Counters that threads share. HDI_ATOMIC_GET sees all that was written before the matching HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. */
+/* Counters that threads share. HDI_ATOMIC_GET sees all that was written before the matching HDI_ATOMIC_SET;
+ * HDI_ATOMIC_ADD gives the sum. */
 #if defined(__GNUC__) || defined(__clang__)
 #define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
 #define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
@@ -1302,7 +1305,8 @@ extern "C" {
 #elif HDI_THREADS
 #define HDI_ATOMIC_GET(p) HDI_CAST(uint32_t, InterlockedCompareExchange(HDI_RECAST(volatile LONG *, p), 0, 0))
 #define HDI_ATOMIC_SET(p, v) ((void)InterlockedExchange(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)))
-#define HDI_ATOMIC_ADD(p, v) HDI_CAST(uint32_t, InterlockedExchangeAdd(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)) + (v))
+#define HDI_ATOMIC_ADD(p, v) \
+    HDI_CAST(uint32_t, InterlockedExchangeAdd(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)) + (v))
 #else
 #define HDI_ATOMIC_GET(p) (*(p))
 #define HDI_ATOMIC_SET(p, v) (*(p) = (v))
@@ -1624,11 +1628,10 @@ static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, h
 
 /* ---- threads ---- */
 /* The threads of a context. One loop is open at a time. Its tasks are claimed from a counter that never goes
- * back: a loop owns the numbers [base, base + n), so that a thread that comes late, with the numbers of an
- * earlier loop, finds nothing to claim and touches nothing. The calling thread claims like the others and waits only for tasks
- * that others have claimed.
- * Sleeping threads cost a call of the system to wake, about 5 microseconds, and 50 until they work. Threads that find nothing
- * to claim therefore look around for a short while before they sleep. */
+ * back: a loop owns the numbers [base, base + n). So a thread that comes late, with the numbers of an earlier
+ * loop, finds nothing to claim and touches nothing. The calling thread claims like the others and waits only
+ * for tasks that others have claimed. Waking a thread takes a call of the system, about 5 microseconds, and 50
+ * pass until it works. Therefore threads that find nothing to claim look around for a while before they sleep. */
 
 #if HDI_THREADS == HDI_THREADS_POSIX
 typedef pthread_mutex_t hdi_mutex;
@@ -1650,12 +1653,17 @@ typedef void *(*hdi_thread_body)(void *);
 
 /* Before glibc 2.34 these functions are in a library of their own. A program that was linked without it has
  * no threads. */
-#if defined(HDI_THREADS_WEAK) || (defined(__GLIBC__) && (__GLIBC__ < 2 || (__GLIBC__ == 2 && __GLIBC_MINOR__ < 34)))
+#if !defined(HDI_THREADS_WEAK) && defined(__GLIBC__) && __GLIBC__ == 2 && __GLIBC_MINOR__ < 34
+#define HDI_THREADS_WEAK 1
+#endif
+#ifdef HDI_THREADS_WEAK
 #define HDI_WEAK(name) static __typeof__(name) hdi_##name __attribute__((weakref(#name)))
 HDI_WEAK(pthread_create);
 HDI_WEAK(pthread_join);
 HDI_WEAK(pthread_attr_setstacksize);
-static int hdi_threads_linked(void) { return hdi_pthread_create && hdi_pthread_join && hdi_pthread_attr_setstacksize; }
+static int hdi_threads_linked(void) {
+    return hdi_pthread_create && hdi_pthread_join && hdi_pthread_attr_setstacksize;
+}
 #else
 #define hdi_pthread_create pthread_create
 #define hdi_pthread_join pthread_join
@@ -1774,7 +1782,7 @@ struct hd_threads {
     int32_t n, n_asleep, caller_asleep, leave;
     int32_t open;                /* a loop is under way; written by the calling thread only */
     hdi_loop loop;
-    uint32_t next, ready, done;  /* counters: next number to claim, end of those that may be, tasks that are done */
+    uint32_t next, ready, done;  /* next number to claim; end of those that may be claimed; tasks that are done */
     uint32_t helped;
     hdi_seat seat[HDI_THREADS_MOST - 1];
 };
@@ -1785,7 +1793,8 @@ static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
     return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
 #else
     volatile LONG *at = HDI_RECAST(volatile LONG *, p);
-    return HDI_CAST(uint32_t, InterlockedCompareExchange(at, HDI_CAST(LONG, to), HDI_CAST(LONG, from))) == from;
+    const LONG was = InterlockedCompareExchange(at, HDI_CAST(LONG, to), HDI_CAST(LONG, from));
+    return HDI_CAST(uint32_t, was) == from;
 #endif
 }
 
@@ -1850,7 +1859,7 @@ HDI_THREAD_BODY hdi_seat_run(void *arg) {
     return HDI_THREAD_DONE;
 }
 
-/* Neither counted nor limited, like the stacks of the threads: what is counted does not depend on their number. */
+/* Neither counted nor limited, as are the stacks of threads: what is counted does not depend on their number. */
 static hd_threads *hdi_threads_new(hd_context *ctx) {
     hd_threads *t = HDI_CAST(hd_threads *, HEATDIFF_MALLOC(sizeof *t));
     int32_t most;
@@ -1919,7 +1928,7 @@ static void hdi_loop_wait(hd_context *ctx, hd_threads *t) {
     hdi_unlock(&t->lock);
 }
 
-/* The loop of n tasks, of which n_ready may be claimed at once, in the order given (NULL: 0, 1, 2...); tasks release the others. */
+/* Of the loop's tasks n_ready may be claimed at once; tasks release the others. loop->base is set here. */
 static void hdi_loop_run(hd_context *ctx, hd_threads *t, hdi_loop *loop, int64_t n_ready) {
     int64_t wake;
     hdi_lock(&t->lock);
@@ -1957,7 +1966,8 @@ static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
 }
 
 /* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones. */
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task, void *arg) {
+static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
+                                 void *arg) {
     hdi_loop loop;
     loop.n = HDI_CAST(uint32_t, n);
     loop.task = task;
@@ -1972,11 +1982,20 @@ static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
     (void)n_tasks;
     return NULL;
 }
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task, void *arg) {
-    HDI_CAST(void, ctx), HDI_CAST(void, n), HDI_CAST(void, n_ready), HDI_CAST(void, order), HDI_CAST(void, task), HDI_CAST(void, arg);
+/* Never called: */
+static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
+                                 void *arg) {
+    (void)ctx;
+    (void)n;
+    (void)n_ready;
+    (void)order;
+    (void)task;
+    (void)arg;
 }
 static void hdi_release(hd_threads *t, int32_t id, int32_t *order) {
-    HDI_CAST(void, t), HDI_CAST(void, id), HDI_CAST(void, order);
+    (void)t;
+    (void)id;
+    (void)order;
 }
 #endif
 
@@ -10555,8 +10574,8 @@ static int64_t hdi_sched_roots(hdi_sched_space *z) {
 }
 
 /* All places: a space of its own for every subtree, of which only what its roots leave behind stays; the top
- * takes what it finds free, but vectors of the top have places of their own, so that their fronts can be worked on in any
- * order that the tree allows. Returns the size of it all. */
+ * takes what it finds free. Vectors of the top have places of their own: their fronts are worked on in any order
+ * that the tree allows. Returns the size of it all. */
 static int64_t hdi_sched_spaces(hdi_sched_space *z) {
     const hdi_symbolic *s = z->s;
     int64_t base = 0, from = 0, n_roots, i;
@@ -10604,7 +10623,7 @@ static double hdi_sched_subtrees(hdi_symbolic *s, double *sum) {
         total += work;
         if (s->parent[v] >= 0) sum[s->parent[v]] += sum[v];
     }
-    limit = hdi_max(total / HDI_SCHED_SHARES, HDI_SCHED_LEAST);
+    limit = hdi_max(total / HDI_CAST(double, HDI_SCHED_SHARES), HDI_SCHED_LEAST);
     for (v = s->n_super; v-- > 0;) {
         const int32_t up = s->parent[v];
         task[v] = sum[v] > limit ? -1 : up < 0 || task[up] == -1 ? v : task[up];
@@ -11170,7 +11189,7 @@ static void hdi_chunks_run(hdi_chunks *h, int64_t begin, int64_t end, hd_context
     hdi_parallel(ctx, h->n, hdi_chunks_task, h);
 }
 
-static void hdi_front_run(const hdi_front *w, int shared, hdi_front_stage stage, int64_t begin, int64_t end) {
+static void hdi_front_run(const hdi_front *w, int shared, int stage, int64_t begin, int64_t end) {
     hdi_chunks h;
     if (end > begin && !shared) hdi_front_part(w, HDI_CAST(int, stage), begin, end, w->work);
     if (end <= begin || !shared) return;
@@ -11185,7 +11204,8 @@ static void hdi_front_run(const hdi_front *w, int shared, hdi_front_stage stage,
 
 /* ---- a large front as one loop ---- */
 /* Its nodes, with rows in chunks c and pivots in blocks k: A(c) assembles rows of the panel (packs), P(k)
- * eliminates the pivots of a block, C(c,k) computes their columns in the rows below, U(d) rows of the update matrix.
+ * eliminates the pivots of a block, C(c,k) computes their columns in the rows below, U(d) computes rows of the
+ * update matrix.
  *   P(k)    waits for the chunks that hold its rows, and for all C(c,k-2), because S has two places
  *   C(c,k)  waits for P(k) and for C(c,k-1)
  *   U(d)    waits for the whole panel
@@ -11196,7 +11216,7 @@ typedef struct hdi_front_loop {
     hdi_factor *f;
     hdi_pivots *note;
     double *S[2];
-    int32_t nb, n_blocks, n_chunks, n_panel;     /* n_panel: nodes before the U */
+    int32_t nb, n_blocks, n_chunks;
     int32_t *pending, *order;
     hd_threads *threads;
 } hdi_front_loop;
@@ -11221,7 +11241,9 @@ static int32_t hdi_front_first(const hdi_front_loop *l, int32_t k) {
     return end < l->w.m ? HDI_CAST(int32_t, end / HDI_FRONT_CHUNK) : l->n_chunks;
 }
 
-static int32_t hdi_front_node(const hdi_front_loop *l, int32_t k, int32_t c) { return k * (l->n_chunks + 1) + 1 + c; }
+static int32_t hdi_front_node(const hdi_front_loop *l, int32_t k, int32_t c) {
+    return k * (l->n_chunks + 1) + 1 + c;
+}
 
 /* Whether chunk c holds pivots of block k. */
 static int hdi_front_holds(const hdi_front_loop *l, int32_t k, int32_t c) {
@@ -11237,7 +11259,8 @@ static void hdi_front_arrive(const hdi_front_loop *l, int32_t node) {
 /* Chunk c is done up to block k, -1 assembled: those that waited for it. */
 static void hdi_front_next(const hdi_front_loop *l, int32_t k, int32_t c) {
     if (hdi_front_holds(l, k + 1, c)) hdi_front_arrive(l, hdi_front_node(l, k + 1, -1));
-    if (k + 1 < l->n_blocks && c >= hdi_front_first(l, k + 1)) hdi_front_arrive(l, hdi_front_node(l, k + 1, c));
+    if (k + 1 < l->n_blocks && c >= hdi_front_first(l, k + 1))
+        hdi_front_arrive(l, hdi_front_node(l, k + 1, c));
     if (k >= 0 && k + 2 < l->n_blocks) hdi_front_arrive(l, hdi_front_node(l, k + 2, -1));
 }
 
@@ -11251,12 +11274,14 @@ static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) 
     w.k0 = HDI_CAST(int64_t, k) * l->nb;
     w.nb = HDI_CAST(int32_t, end - w.k0);
     if (c >= 0) {
-        if (!stop) hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, hdi_least(r0 + HDI_FRONT_CHUNK, w.m),
-                                  l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c));
+        double *work = l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c);
+        const int64_t r1 = hdi_least(r0 + HDI_FRONT_CHUNK, w.m);
+        if (!stop) hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, r1, work);
         hdi_front_next(l, k, c);
         return;
     }
-    if (!stop) good = w.f->width == 1 ? hdi_front_pivots_real(&w, end, l->note) : hdi_front_pivots_pack(&w, l->note);
+    if (!stop && w.f->width == 1) good = hdi_front_pivots_real(&w, end, l->note);
+    else if (!stop) good = hdi_front_pivots_pack(&w, l->note);
     if (!good) HDI_STORE(&l->f->stop, 1);
     for (c = hdi_front_first(l, k); c < l->n_chunks; c++) hdi_front_arrive(l, hdi_front_node(l, k, c));
 }
@@ -11276,7 +11301,8 @@ static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
     if (i < a) {
         hdi_front_panel_node(l, i / (l->n_chunks + 1), c);
     } else {
-        if (!HDI_LOAD(&l->f->stop)) hdi_front_part(&l->w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r1, l->w.m), work);
+        if (!HDI_LOAD(&l->f->stop))
+            hdi_front_part(&l->w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r1, l->w.m), work);
         hdi_front_next(l, -1, c);
     }
     if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return;
@@ -11284,8 +11310,8 @@ static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
         hdi_release(l->threads, a + l->n_chunks + d, l->order);
 }
 
-/* What nodes wait for. Returns how many are ready; *n: how many there are. pending[a], a being the first A: the
- * nodes of the panel. */
+/* What nodes wait for. Returns how many are ready; *n: how many there are. pending of the first A: the nodes of
+ * the panel. */
 static int32_t hdi_front_count(hdi_front_loop *l, int32_t *n) {
     const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = l->f->width > 1;
     int32_t ready = 0, panel = packs ? l->n_chunks : 0, k, c;
@@ -11293,7 +11319,8 @@ static int32_t hdi_front_count(hdi_front_loop *l, int32_t *n) {
         int32_t *pivots = l->pending + hdi_front_node(l, k, -1);
         *pivots = k > 1 ? l->n_chunks - hdi_front_first(l, k - 2) : 0;
         for (c = 0; c < l->n_chunks; c++) *pivots += (k > 0 || packs) && hdi_front_holds(l, k, c);
-        for (c = hdi_front_first(l, k); c < l->n_chunks; c++) l->pending[hdi_front_node(l, k, c)] = k > 0 || packs ? 2 : 1;
+        for (c = hdi_front_first(l, k); c < l->n_chunks; c++)
+            l->pending[hdi_front_node(l, k, c)] = k > 0 || packs ? 2 : 1;
         panel += 1 + l->n_chunks - hdi_front_first(l, k);
     }
     for (c = 0; c < l->n_chunks && packs; c++) l->order[ready++] = a + c;
@@ -11674,7 +11701,8 @@ static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
  * for its children forward, a subtree for the parents of its roots backward. Whoever does the last thing that
  * a node waits for releases it. */
 
-/* A sweep that reads fewer bytes is done by one thread: two would need as long, with 10 GB/s and 50 microseconds to begin. */
+/* A sweep that reads fewer bytes is done by one thread. At 10 GB/s two would need as long, with the 50
+ * microseconds that a thread takes to begin. */
 #define HDI_SWEEP_SHARED 1e6
 
 static int32_t hdi_sweep_nodes(const hdi_symbolic *s) { return s->n_tasks + s->n_top; }
@@ -11747,7 +11775,8 @@ static void hdi_sweep_share(hdi_sweep *z, hd_context *ctx) {
     for (k = 0; k < s->n_top; k++) {
         const int32_t v = s->top[k], node = s->n_tasks + k;
         z->pending[node] = s->kid_ptr[v + 1] - s->kid_ptr[v];
-        if (z->active ? s->parent[v] < 0 : z->pending[node] == 0) z->order[n_ready++] = z->active ? n + node : node;
+        if (z->active ? s->parent[v] < 0 : z->pending[node] == 0)
+            z->order[n_ready++] = z->active ? n + node : node;
     }
     hdi_parallel_ordered(ctx, z->active ? n : 2 * n, n_ready, z->order, hdi_sweep_node, z);
 }
@@ -11790,7 +11819,8 @@ static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, doubl
     z.x = x;
     z.k = k;
     z.vec = work;
-    z.pending = HDI_CAST(int32_t *, HDI_CAST(void *, work + HDI_CAST(int64_t, f->width) * k * f->sym->vector_size));
+    work += HDI_CAST(int64_t, f->width) * k * f->sym->vector_size;
+    z.pending = HDI_CAST(int32_t *, HDI_CAST(void *, work));
     z.order = z.pending + hdi_sweep_nodes(f->sym);
     return z;
 }
@@ -12447,7 +12477,7 @@ static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r
 }
 
 /* Rows [begin,end) of a stage: at once, or with z as chunks. */
-static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front *w, hdi_inverse_stage stage,
+static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front *w, int stage,
                                   int64_t begin, int64_t end) {
     hdi_chunks h;
     if (end > begin && !z) hdi_inverse_part(w, HDI_CAST(int, stage), begin, end, w->buffer);
