@@ -788,7 +788,8 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
                                           const double *x, double *y, hd_error *err);
 
 /* New coordinates for the same faces, of a Laplacian made by hd_laplacian_triangles with the option
- * updatable. Plans notice: their next query computes with the new values, on the ordering and analysis that they have.
+ * updatable. Plans notice: their next query computes with the new values, on the ordering and analysis that
+ * they have.
  * xyz    [3 n] finite
  * Faces that were left out stay left out. Faces that lose their area are counted in lap->mesh and add
  * nothing. L, B and the report are those of a new Laplacian, up to rounding in the order of sums.
@@ -1168,7 +1169,7 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 
 #endif /* HEATDIFF_H */
 
-/* ========================================================================================================== */
+/* ===================================================================================================== */
 #ifdef HEATDIFF_IMPLEMENTATION
 #ifndef HEATDIFF_IMPLEMENTED
 #define HEATDIFF_IMPLEMENTED
@@ -1243,8 +1244,9 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH(p) __builtin_prefetch(p)
 /* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
-#define HDI_PREFETCH_AT(p, i)                                                                                          \
-    __builtin_prefetch(HDI_RECAST(const void *, HDI_RECAST(uintptr_t, p) + HDI_CAST(uintptr_t, i) * sizeof *(p)))
+#define HDI_PREFETCH_AT(p, i)                                                                      \
+    __builtin_prefetch(HDI_RECAST(const void *,                                                    \
+                                  HDI_RECAST(uintptr_t, p) + HDI_CAST(uintptr_t, i) * sizeof *(p)))
 #else
 #define HDI_RESTRICT
 #define HDI_LOAD(p) (*(p))
@@ -1253,11 +1255,12 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_PREFETCH_AT(p, i) ((void)0)
 #endif
 
-/* Instruction sets. The kernels of room [07] are compiled for each, with function-level targets, and chosen at run time,
- * so that a plain cc -O2 uses what the processor has. Plain C serves everything else. GCC does not align the stack
- * for AVX on Windows (its bug 54412), and __builtin_cpu_supports of clang for MSVC needs a library that is not
- * linked there. */
-#if defined(__x86_64__) && (defined(__clang__) ? !defined(_MSC_VER) : defined(__GNUC__) && !defined(_WIN32)) && \
+/* Instruction sets. The kernels of room [07] are compiled for each, with function-level targets, and chosen
+ * at run time, so that a plain cc -O2 uses what the processor has. Plain C serves everything else. GCC does
+ * not align the stack for AVX on Windows (its bug 54412), and __builtin_cpu_supports of clang for MSVC needs
+ * a library that is not linked there. */
+#if defined(__x86_64__) && \
+    (defined(__clang__) ? !defined(_MSC_VER) : defined(__GNUC__) && !defined(_WIN32)) && \
     !defined(HEATDIFF_NO_SIMD)
 #include <immintrin.h>
 #define HDI_X86 1
@@ -1318,8 +1321,9 @@ long syscall(long number, ...);                  /* not declared with -std=c99 *
 #endif
 
 #ifdef HEATDIFF_USE_BLAS
-void dgemm_(const char *ta, const char *tb, const int *m, const int *n, const int *k, const double *alpha, const double *a, const int *lda,
-            const double *b, const int *ldb, const double *beta, double *c, const int *ldc);
+void dgemm_(const char *ta, const char *tb, const int *m, const int *n, const int *k, const double *alpha,
+            const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c,
+            const int *ldc);
 #endif
 
 /* ==== [01] scalar ====
@@ -1333,7 +1337,9 @@ void dgemm_(const char *ta, const char *tb, const int *m, const int *n, const in
 static hd_c64 hdi_c(double re, double im) { hd_c64 z; z.re = re; z.im = im; return z; }
 static hd_c64 hdi_cadd(hd_c64 a, hd_c64 b) { return hdi_c(a.re + b.re, a.im + b.im); }
 static hd_c64 hdi_csub(hd_c64 a, hd_c64 b) { return hdi_c(a.re - b.re, a.im - b.im); }
-static hd_c64 hdi_cmul(hd_c64 a, hd_c64 b) { return hdi_c(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re); }
+static hd_c64 hdi_cmul(hd_c64 a, hd_c64 b) {
+    return hdi_c(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re);
+}
 static hd_c64 hdi_cscale(double s, hd_c64 a) { return hdi_c(s * a.re, s * a.im); }
 static hd_c64 hdi_cconj(hd_c64 a) { return hdi_c(a.re, -a.im); }
 static double hdi_cabs2(hd_c64 a) { return a.re * a.re + a.im * a.im; }
@@ -1452,8 +1458,8 @@ static void hdi_error_clear(hd_error *e) {
     e->face = e->vertex = e->row = e->column = e->pole = -1;
 }
 
-/* The one place where an error is born: a good line for a breakpoint. Copies of it in every caller would be 4 %
- * of the object code. */
+/* The one place where an error is born: a good line for a breakpoint. Copies of it in every caller would be
+ * 4 % of the object code. */
 static HDI_NOINLINE hd_status hdi_fail(hd_error *e, hd_status status, const char *text) {
     size_t len = strlen(text);
     hdi_error_clear(e);
@@ -1486,32 +1492,37 @@ static hd_status hdi_missing(hd_error *e) {
 }
 
 /* ==== [03] memory ====
- * Counted allocation, aligned to 64 bytes with the block's size kept in front; and scopes, which free the work arrays of a
- * function at its one exit. May call [02]. */
+ * Counted allocation, aligned to 64 bytes with the block's size kept in front; and scopes, which free the
+ * work arrays of a function at its one exit. May call [02]. */
 
 enum { HDI_ALIGN = 64, HDI_HEADER = 2 * sizeof(uint64_t) };
 
 static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
-    const int bytes = ctx->byte_limit && (total > ctx->byte_limit || ctx->bytes_in_use > ctx->byte_limit - total);
+    const uint64_t most = ctx->byte_limit;
+    const int bytes = most && (total > most || ctx->bytes_in_use > most - total);
     if (bytes || (ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit)) {
-        hdi_fail(e, HD_ERR_MEMORY_LIMIT, bytes ? "the byte limit of the context is reached" : "the allocation limit of the context is reached");
+        hdi_fail(e, HD_ERR_MEMORY_LIMIT, bytes ? "the byte limit of the context is reached"
+                                               : "the allocation limit of the context is reached");
         e->value = HDI_CAST(double, total);
     }
     return e->status;
 }
 
-/* Asks for large pages where the system has them to give: fresh memory costs a seventh of the time then, of which a factor needs a lot. */
+/* Asks for large pages where the system has them to give: fresh memory costs a seventh of the time then, of
+ * which a factor needs a lot. */
 static void hdi_large_pages(char *raw, size_t total) {
 #if HDI_LARGE_PAGES
     const size_t page = 4096, skip = (page - HDI_RECAST(size_t, raw) % page) % page;
-    if (total >= HDI_CAST(size_t, 4) << 20) (void)madvise(raw + skip, (total - skip) & ~(page - 1), MADV_HUGEPAGE);
+    if (total >= HDI_CAST(size_t, 4) << 20)
+        (void)madvise(raw + skip, (total - skip) & ~(page - 1), MADV_HUGEPAGE);
 #else
     (void)raw;
     (void)total;
 #endif
 }
 
-/* [count] elements of size bytes, not cleared. NULL with e filled when there are none to have; e must be clear before. */
+/* [count] elements of size bytes, not cleared. NULL with e filled when there are none to have; e must be
+ * clear before. */
 static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e) {
     size_t total, offset;
     uint64_t head[2];
@@ -1523,7 +1534,8 @@ static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e
     total = HDI_CAST(size_t, head[0]);
     if (hdi_alloc_check(ctx, total, e) < 0) return NULL;
     ctx->allocations++;
-    raw = HDI_CAST(char *, ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total) : HEATDIFF_MALLOC(total));
+    raw = HDI_CAST(char *, ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total)
+                                                : HEATDIFF_MALLOC(total));
     if (raw && !ctx->allocator.alloc) hdi_large_pages(raw, total);
     if (!raw) {
         hdi_fail(e, HD_ERR_MEMORY, "out of memory");
@@ -1552,7 +1564,8 @@ static void hdi_free(hd_context *ctx, void *block) {
 
 enum { HDI_SCOPE_MOST = 32 };
 
-/* Work arrays of one function. After a failed take all further ones give NULL, so one check of e->status serves for many. */
+/* Work arrays of one function. After a failed take all further ones give NULL, so one check of e->status
+ * serves for many. */
 typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
@@ -1601,10 +1614,13 @@ static hd_status hdi_scope_end(hdi_scope *s) {
 }
 
 /* [count] elements that outlive their maker. */
-#define HDI_NEW(ctx, type, count, e) HDI_CAST(type *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(type), e))
+#define HDI_NEW(ctx, type, count, e) \
+    HDI_CAST(type *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(type), e))
 
-#define HDI_TAKE(scope, type, count) HDI_CAST(type *, hdi_take(scope, HDI_CAST(uint64_t, count), sizeof(type)))
-#define HDI_TAKE_ZERO(scope, type, count) HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
+#define HDI_TAKE(scope, type, count) \
+    HDI_CAST(type *, hdi_take(scope, HDI_CAST(uint64_t, count), sizeof(type)))
+#define HDI_TAKE_ZERO(scope, type, count) \
+    HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 
 /* ==== [04] context ====
  * Progress, cancelling, threads and parallel loops. May call [03]. */
@@ -1622,16 +1638,19 @@ static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, h
     if (!ctx->progress) return HD_OK;
     answer = ctx->progress(ctx->progress_user, stage, done);
     if (answer == HD_PROGRESS_CONTINUE) return HD_OK;
-    if (answer == HD_PROGRESS_CANCEL) return hdi_fail(e, HD_ERR_CANCELLED, "cancelled by the progress callback");
-    return hdi_fail(e, HD_ERR_ARGUMENT, "context: progress returned neither HD_PROGRESS_CONTINUE nor HD_PROGRESS_CANCEL");
+    if (answer == HD_PROGRESS_CANCEL)
+        return hdi_fail(e, HD_ERR_CANCELLED, "cancelled by the progress callback");
+    return hdi_fail(e, HD_ERR_ARGUMENT,
+                    "context: progress returned neither HD_PROGRESS_CONTINUE nor HD_PROGRESS_CANCEL");
 }
 
 /* ---- threads ---- */
 /* The threads of a context. One loop is open at a time. Its tasks are claimed from a counter that never goes
  * back: a loop owns the numbers [base, base + n). So a thread that comes late, with the numbers of an earlier
  * loop, finds nothing to claim and touches nothing. The calling thread claims like the others and waits only
- * for tasks that others have claimed. Waking a thread takes a call of the system, about 5 microseconds, and 50
- * pass until it works. Therefore threads that find nothing to claim look around for a while before they sleep. */
+ * for tasks that others have claimed. Waking a thread takes a call of the system, about 5 microseconds, and
+ * 50 pass until it works. Therefore threads that find nothing to claim look around for a while before they
+ * sleep. */
 
 #if HDI_THREADS == HDI_THREADS_POSIX
 typedef pthread_mutex_t hdi_mutex;
@@ -1782,7 +1801,7 @@ struct hd_threads {
     int32_t n, n_asleep, caller_asleep, leave;
     int32_t open;                /* a loop is under way; written by the calling thread only */
     hdi_loop loop;
-    uint32_t next, ready, done;  /* next number to claim; end of those that may be claimed; tasks that are done */
+    uint32_t next, ready, done;  /* next number to claim; end of those that may be claimed; tasks done */
     uint32_t helped;
     hdi_seat seat[HDI_THREADS_MOST - 1];
 };
@@ -1859,7 +1878,7 @@ HDI_THREAD_BODY hdi_seat_run(void *arg) {
     return HDI_THREAD_DONE;
 }
 
-/* Neither counted nor limited, as are the stacks of threads: what is counted does not depend on their number. */
+/* Neither counted nor limited, like the stacks of threads: what is counted does not depend on their number. */
 static hd_threads *hdi_threads_new(hd_context *ctx) {
     hd_threads *t = HDI_CAST(hd_threads *, HEATDIFF_MALLOC(sizeof *t));
     int32_t most;
@@ -2042,7 +2061,8 @@ static void hdi_range_run(void *arg, int64_t index, int32_t worker) {
     job->task(job->arg, begin, begin + (rest < job->per_task ? rest : job->per_task));
 }
 
-static void hdi_parallel_ranges(hd_context *ctx, int64_t n, int64_t per_task, hdi_range_task task, void *arg) {
+static void hdi_parallel_ranges(hd_context *ctx, int64_t n, int64_t per_task, hdi_range_task task,
+                                void *arg) {
     hdi_range_job job;
     job.n = n;
     job.per_task = per_task;
@@ -2051,18 +2071,22 @@ static void hdi_parallel_ranges(hd_context *ctx, int64_t n, int64_t per_task, hd
     if (n > 0) hdi_parallel(ctx, (n + per_task - 1) / per_task, hdi_range_run, &job);
 }
 
-/* Instruction sets of the kernels: 0 plain C, 1 AVX2 with FMA, 2 AVX-512. The best one that this processor and system can run. */
+/* Instruction sets of the kernels: 0 plain C, 1 AVX2 with FMA, 2 AVX-512. The best one that this processor
+ * and system can run. */
 static int hdi_simd_best(void) {
 #if HDI_X86
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) return 2;
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+        return 2;
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return 1;
 #endif
     return 0;
 }
 
 static int hdi_simd_level(const hd_context *ctx) {
-    const int best = hdi_simd_best(), asked = ctx->simd == HD_SIMD_NONE ? 0 : ctx->simd == HD_SIMD_AVX2 ? 1 : 2;
+    const int asked = ctx->simd == HD_SIMD_NONE ? 0 : ctx->simd == HD_SIMD_AVX2 ? 1 : 2;
+    const int best = hdi_simd_best();
     return asked < best ? asked : best;
 }
 
@@ -7066,7 +7090,8 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
     hdi_moving_sides(lap);
     hdi_moving_rows(lap);
-    lap->mesh.n_zero_area = unused + rep.n_zero_area - lap->mesh.n_repeated_corner - lap->mesh.n_repeated_face;
+    lap->mesh.n_zero_area = rep.n_zero_area + unused - lap->mesh.n_repeated_corner
+                          - lap->mesh.n_repeated_face;
     lap->mesh.n_faces_used = rep.n_faces_used;
     lap->mesh.smallest_angle = rep.smallest_angle;
     lap->version++;
@@ -10574,8 +10599,8 @@ static int64_t hdi_sched_roots(hdi_sched_space *z) {
 }
 
 /* All places: a space of its own for every subtree, of which only what its roots leave behind stays; the top
- * takes what it finds free. Vectors of the top have places of their own: their fronts are worked on in any order
- * that the tree allows. Returns the size of it all. */
+ * takes what it finds free. Vectors of the top have places of their own: their fronts are worked on in any
+ * order that the tree allows. Returns the size of it all. */
 static int64_t hdi_sched_spaces(hdi_sched_space *z) {
     const hdi_symbolic *s = z->s;
     int64_t base = 0, from = 0, n_roots, i;
@@ -11204,7 +11229,7 @@ static void hdi_front_run(const hdi_front *w, int shared, int stage, int64_t beg
 
 /* ---- a large front as one loop ---- */
 /* Its nodes, with rows in chunks c and pivots in blocks k: A(c) assembles rows of the panel (packs), P(k)
- * eliminates the pivots of a block, C(c,k) computes their columns in the rows below, U(d) computes rows of the
+ * eliminates the pivots of a block, C(c,k) their columns in the rows below, U(d) computes rows of the
  * update matrix.
  *   P(k)    waits for the chunks that hold its rows, and for all C(c,k-2), because S has two places
  *   C(c,k)  waits for P(k) and for C(c,k-1)
@@ -11310,8 +11335,8 @@ static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
         hdi_release(l->threads, a + l->n_chunks + d, l->order);
 }
 
-/* What nodes wait for. Returns how many are ready; *n: how many there are. pending of the first A: the nodes of
- * the panel. */
+/* What nodes wait for. Returns how many are ready; *n: how many there are. pending of the first A: the nodes
+ * of the panel. */
 static int32_t hdi_front_count(hdi_front_loop *l, int32_t *n) {
     const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = l->f->width > 1;
     int32_t ready = 0, panel = packs ? l->n_chunks : 0, k, c;
@@ -11697,9 +11722,9 @@ static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
 }
 
 /* ---- a sweep as one loop ---- */
-/* Its nodes: the subtrees and the fronts of the top, forward, then the same backward. A front of the top waits
- * for its children forward, a subtree for the parents of its roots backward. Whoever does the last thing that
- * a node waits for releases it. */
+/* Its nodes: the subtrees and the fronts of the top, forward, then the same backward. A front of the top
+ * waits for its children forward, a subtree for the parents of its roots backward. Whoever does the last
+ * thing that a node waits for releases it. */
 
 /* A sweep that reads fewer bytes is done by one thread. At 10 GB/s two would need as long, with the 50
  * microseconds that a thread takes to begin. */
@@ -20919,8 +20944,8 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, hd_erro
     g->t = g->t_asked > 0 ? g->t_asked : lap->h * lap->h;
     if (!hdi_finite(g->t) || !(g->t > 0))
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "geodesic: the square of the mean edge length is no number to compute with", -1, -1,
-                            lap->h);
+                            "geodesic: the square of the mean edge length is no number to compute with",
+                            -1, -1, lap->h);
     for (i = 0; i < g->n_active; i++) {
         const int32_t from = g->sym.perm[i];
         g->mass[i] = lap->mass[from] / g->t;
@@ -21054,8 +21079,8 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     if (hdi_moving_measure(g->lap, xyz, &rep, e) < 0) return e->status;
     for (f = 0; f < moving->m; f++)
         if (!(moving->area[f] > 0))
-            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more", moving->face[f], -1,
-                                 0);
+            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more", moving->face[f],
+                                 -1, 0);
     g->ready = 0;
     if (hdi_lap_update(g->lap, xyz, e) < 0 || hdi_geo_masses(g, g->lap, e) < 0) return e->status;
     hdi_mesh_clear(&mesh, xyz, g->n, moving->tri, moving->m);
