@@ -1763,6 +1763,99 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
 #define BENCH_BUSY 1
 #endif
 
+/* ---- work and critical path ---- */
+/* A factor on more threads than the machine has: tasks of the plan take their flops as time, and each thread
+ * that is free claims the task that has been ready longest, as the library's threads do. Waking and the
+ * limits of memory are not in it. */
+
+typedef struct sim { double *thread; int32_t n; double end; } sim;   /* thread [n]: when each is free */
+
+/* The task goes to the thread that is free first. Returns when it is done. */
+static double sim_claim(sim *s, double ready, double work) {
+    int32_t k, first = 0;
+    double done;
+    for (k = 1; k < s->n; k++)
+        if (s->thread[k] < s->thread[first]) first = k;
+    done = hdi_max(ready, s->thread[first]) + work;
+    s->thread[first] = done;
+    if (done > s->end) s->end = done;
+    return done;
+}
+
+/* All threads meet. */
+static void sim_meet(sim *s) {
+    int32_t k;
+    for (k = 0; k < s->n; k++) s->thread[k] = s->end;
+}
+
+/* A front that threads share, by blocks of pivots and chunks of rows; the next pivots begin when their rows are done. */
+static void sim_front(sim *s, double m, double p, double nb) {
+    enum { MOST = 4096 };
+    static double done[MOST];                    /* when each chunk is done up to the block before */
+    const int32_t chunks = (int32_t)ceil(m / HDI_FRONT_CHUNK);
+    double k0, pivots, all = s->end, last = s->end;
+    int32_t c;
+    for (c = 0; c < chunks && c < MOST; c++) done[c] = s->end;
+    for (k0 = 0; k0 < p; k0 += nb) {
+        const double b = hdi_min(nb, p - k0);
+        c = (int32_t)((k0 + b - 1) / HDI_FRONT_CHUNK);
+        pivots = sim_claim(s, hdi_max(done[c], last), b * b * (k0 / 2 + b / 3));
+        last = all;
+        for (c = (int32_t)((k0 + b) / HDI_FRONT_CHUNK); c < chunks && c < MOST; c++) {
+            const double r0 = hdi_max(k0 + b, c * (double)HDI_FRONT_CHUNK), r1 = hdi_min(m, (c + 1) * (double)HDI_FRONT_CHUNK);
+            if (r1 > r0) done[c] = sim_claim(s, hdi_max(pivots, done[c]), (r1 - r0) * b * (k0 + b / 2));
+            all = hdi_max(all, done[c]);
+        }
+    }
+    sim_meet(s);
+    for (c = (int32_t)ceil((m - p) / HDI_FRONT_CHUNK); c-- > 0;) {
+        const double r0 = c * (double)HDI_FRONT_CHUNK, r1 = hdi_min(m - p, r0 + HDI_FRONT_CHUNK);
+        sim_claim(s, s->thread[0], p * (r1 * r1 - r0 * r0) / 2);
+    }
+    sim_meet(s);
+}
+
+/* Time of a factor of packs on n threads, in multiply-adds. */
+static double sim_factor(const hdi_symbolic *f, int32_t n) {
+    double thread[64];
+    sim s;
+    int32_t k, v;
+    memset(thread, 0, sizeof thread);
+    s.thread = thread;
+    s.n = n;
+    s.end = 0;
+    for (k = 0; k < f->n_tasks; k++) {
+        double work = 0;
+        for (v = f->task_begin[k]; v < f->task_end[k]; v++) {
+            const double p = hdi_front_pivots(f, v), u = (double)hdi_front_below(f, v);
+            work += p * p * p / 6 + p * p * u / 2 + p * u * u / 2;
+        }
+        sim_claim(&s, 0, work);
+    }
+    sim_meet(&s);
+    for (k = 0; k < f->n_top; k++)
+        sim_front(&s, (double)hdi_front_rows(f, f->top[k]), hdi_front_pivots(f, f->top[k]), HDI_PACK_BLOCK);
+    return s.end;
+}
+
+static void sim_print(const hd_laplacian *lap) {
+    static const int32_t n[] = {2, 4, 8, 16};
+    hd_ldl_opts o;
+    hd_ldl *f = NULL;
+    double one;
+    int k;
+    memset(&o, 0, sizeof o);
+    o.xyz = lap->xyz;
+    if (hd_ldl_analyse(&f, &lap->L, &o, NULL, NULL) >= 0) {
+        one = sim_factor(&f->sym, 1);
+        printf("  factor by the plan's tasks: %.3g G multiply-adds, %d subtrees and %d shared fronts; parallel efficiency on",
+               1e-9 * one, (int)f->sym.n_tasks, (int)f->sym.n_top);
+        for (k = 0; k < 4; k++) printf(" %d: %.2f", (int)n[k], one / sim_factor(&f->sym, n[k]) / n[k]);
+        printf(" threads\n");
+    }
+    hd_ldl_free(f);
+}
+
 #ifdef BENCH_BUSY
 enum { BUSY_MOST = 64, BUSY_RUNS = 41 };
 
@@ -1895,6 +1988,8 @@ static void busy_mesh(const settings *set, const char *name, const double *xyz, 
         return;
     }
     bench_open(&b, set, name, &surface, lap, all, peak);
+    printf("\n%s, %d rows\n", name, (int)lap->n_active);
+    sim_print(lap);
     for (state = 0; state < 3; state++) {
         const int others = state ? busy_start(pid, (int)hdi_least(hd_context_threads(NULL), BUSY_MOST), state == 1) : 0;
         printf("\n%s, %d rows, %s; ms on 1 and on %d threads, ratio; regions, tasks of others, waits, runs\n"
