@@ -18601,12 +18601,16 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times
- * near each other share the factor, whichever comes first. It is not so large that B is lost beside g L. */
+/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times near
+ * each other share the factor, whichever comes first. For several times, where the number of steps depends on
+ * it more, it is the nearest power of two: 16 times over 2.6 decades take 70 steps then, and 80 with powers of
+ * four. It is not so large that B is lost beside g L. */
 static double hdi_krylov_shift(double from, double to, double lambda_max) {
-    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL);
+    const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
+    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, limit), root = 0.70710678118654752;
     int exponent;
-    (void)frexp(best, &exponent);                /* 2^(exponent - 1) <= best < 2^exponent */
+    const double part = frexp(best, &exponent);  /* best = part 2^exponent, part in [1/2, 1) */
+    if (to > from) return ldexp(1, part > root ? exponent : exponent - 1);
     return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
 }
 
