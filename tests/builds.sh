@@ -41,6 +41,7 @@ static void is(int line, hd_status have, hd_status want) {
 }
 #define IS(call, want) is(__LINE__, call, want)
 int main(void) {
+    const double one = 1;
     double xyz[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 2, 2, 2, 2, 2}, v[4] = {1, 2, 3, 4}, u[6], t;
     const int32_t tri[18] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 4, 5, 0, 4, 4, 1}, i[4] = {0, 1, 2, 3}, same[2] = {1, 1};
     hd_c64 b[6], x[6];
@@ -72,7 +73,7 @@ int main(void) {
         IS(hd_laplacian_matrices(&none, &a, &a, 0, NULL, NULL), HD_ERR_NOT_FINITE);
         a.val[1] = v[2] = 2;
         memcpy(u + 3, bits + k, sizeof *bits);
-        IS(hd_heat_apply(heat, 1, 1, u, 0, u, 0, NULL), HD_ERR_NOT_FINITE);
+        IS(hd_heat_apply(heat, 1, &one, 1, u, 0, u, 0, NULL, NULL), HD_ERR_NOT_FINITE);
         u[3] = 0;
         memcpy(&b[3].im, bits + k, sizeof *bits);
         b[0].re = 1;
@@ -80,7 +81,7 @@ int main(void) {
         IS(hd_shifted_solve(lap, 1, x[0], b, x, NULL, NULL, NULL), HD_ERR_NOT_FINITE);
         b[3].im = 0;
         memcpy(&t, bits + k, sizeof t);
-        IS(hd_heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, u, 0, NULL), HD_ERR_ARGUMENT);
+        IS(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, u, 0, NULL, NULL), HD_ERR_ARGUMENT);
     }
     v[1] = v[2] = 1.5e308;
     IS(hd_csr_from_triplets(&c, 4, 4, 2, same, same, v + 1, NULL, NULL), HD_ERR_NOT_FINITE);
