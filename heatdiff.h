@@ -20700,7 +20700,7 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *x, double t, hd_
         h.ask.k = n_list;
         h.ask.sources = list;
         h.ask.U = c.U;
-        h.ask.ldu = n;
+        h.ask.ldu = HDI_CAST(size_t, n);
     }
     if (hdi_heat_run(&h) >= 0) hdi_pairs_of_columns(heat, x, &c, rep);
     hdi_scope_end(&s);
