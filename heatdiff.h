@@ -9255,7 +9255,7 @@ static uint64_t hdi_nd_key(double x) {
  * equal. work [3 g->n]. */
 static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                              int32_t *work) {
-    static const signed char directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
+    static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
                                                  {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
     int32_t v, a, b, *da = work, *db = work + g->n, *queue = work + 2 * g->n;
     int differ = 0;
@@ -9270,7 +9270,7 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
         pa = hdi_nd_place(nd, g, a);
         pb = hdi_nd_place(nd, g, hdi_nd_farthest(nd, g, pa));
         for (v = 0; v < 3; v++) d[v] = HDI_CAST(double, pb[v]) - HDI_CAST(double, pa[v]);
-    } else for (v = 0; v < 3; v++) d[v] = directions[(kind - 2) % 9][v];
+    } else for (v = 0; v < 3; v++) d[v] = hdi_directions[(kind - 2) % 9][v];
     for (v = 0; v < g->n; v++) {
         const float *x = hdi_nd_place(nd, g, v);
         key[v].key = hdi_nd_key(kind == 1 ? HDI_CAST(double, da[v] - db[v])
