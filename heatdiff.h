@@ -1777,8 +1777,8 @@ static int32_t hdi_context_width(const hd_context *ctx) {
 
 #if HDI_THREADS
 /* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Loops of
- * fewer tasks than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices, 6
- * ms with 3 such loops, gained nothing alone and took 1.4 times as long on a busy machine. */
+ * fewer tasks than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices,
+ * 6 ms with 3 such loops, gained nothing alone and took 1.4 times as long on a busy machine. */
 enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9 };
 
 typedef struct hdi_seat {
@@ -1880,7 +1880,7 @@ HDI_THREAD_BODY hdi_seat_run(void *arg) {
     return HDI_THREAD_DONE;
 }
 
-/* Neither counted nor limited, like the stacks of threads: what is counted does not depend on their number. */
+/* Neither counted nor limited, like stacks of threads: what is counted does not depend on their number. */
 static hd_threads *hdi_threads_new(hd_context *ctx) {
     hd_threads *t = HDI_CAST(hd_threads *, HEATDIFF_MALLOC(sizeof *t));
     int32_t most;
@@ -18601,10 +18601,10 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times near
- * each other share the factor, whichever comes first. For several times, where the number of steps depends on
- * it more, it is the nearest power of two: 16 times over 2.6 decades take 70 steps then, and 80 with powers of
- * four. It is not so large that B is lost beside g L. */
+/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times
+ * near each other share the factor, whichever comes first. For several times, where the number of steps
+ * depends on it more, it is the nearest power of two: 16 times over 2.6 decades take 70 steps then, and 80
+ * with powers of four. It is not so large that B is lost beside g L. */
 static double hdi_krylov_shift(double from, double to, double lambda_max) {
     const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
     const double best = hdi_min(sqrt(from) * sqrt(to) / 10, limit), root = 0.70710678118654752;
