@@ -39,12 +39,12 @@ FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
     "lines": 23000,           # goal 16000
-    "api": 1000,              # lines of room [api]; goal 1100
-    "median": 10,             # lines of a function; goal 13
-    "longest": 54,            # lines of the longest function; goal 60
+    "api": 1100,              # lines of room [api]; goal 1100
+    "median": 13,             # lines of a function; goal 13
+    "longest": 60,            # lines of the longest function; goal 60
     "long": 0,                # functions longer than 60 lines; goal 0
-    "widest": 112,            # characters of the widest line; goal 110
-    "wide": 2,                # lines wider than that; goal 0
+    "widest": 110,            # characters of the widest line; goal 110
+    "wide": 0,                # lines wider than that; goal 0
     "wide-declarations": 0,   # code in the public part wider than 100; goal 0
     "arguments": 8,           # private functions with more than eight arguments; goal 0
     "macros": 40,             # function-like macros in the whole file; no goal of its own
