@@ -285,7 +285,7 @@ class Check(unittest.TestCase):
             with contextlib.redirect_stdout(out):
                 return house.main(["--file", path] + list(args)), out.getvalue()
 
-    @unittest.mock.patch.dict(house.LIMITS, {"skipped-rooms": 1})   # HEADER has no room [02]
+    @unittest.mock.patch.dict(house.LIMITS, {"skipped-rooms": 1, "public-calls": 1})   # HEADER has these
     def test_command_line(self):
         code, out = self.run_main(HEADER)
         self.assertEqual(code, 0)
