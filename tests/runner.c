@@ -32,6 +32,10 @@
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
+#ifdef _WIN32
+#undef near                          /* windows.h has them as macros */
+#undef far
+#endif
 
 /* ---- checks ---- */
 
