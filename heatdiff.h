@@ -131,7 +131,7 @@
      fork: the child process may use and free the objects of its parent. The parent's threads do not exist in
      it; new ones start when work needs them. Do not fork while another thread is inside the library.
      Systems with a C library older than glibc 2.34 need -lpthread; without it programs link and are serial.
-     On Windows the implementation includes windows.h for them, whose macros (near, far) then hold for its file.
+     On Windows the implementation includes windows.h for them, with its macros (near, far).
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
