@@ -1677,17 +1677,11 @@ typedef void *(*hdi_thread_body)(void *);
 #define HDI_THREADS_WEAK 1
 #endif
 #ifdef HDI_THREADS_WEAK
-#define HDI_WEAK(name) static __typeof__(name) hdi_##name __attribute__((weakref(#name)))
-HDI_WEAK(pthread_create);
-HDI_WEAK(pthread_join);
-HDI_WEAK(pthread_attr_setstacksize);
-static int hdi_threads_linked(void) {
-    return hdi_pthread_create && hdi_pthread_join && hdi_pthread_attr_setstacksize;
-}
+#pragma weak pthread_create
+#pragma weak pthread_join
+#pragma weak pthread_attr_setstacksize
+static int hdi_threads_linked(void) { return pthread_create && pthread_join && pthread_attr_setstacksize; }
 #else
-#define hdi_pthread_create pthread_create
-#define hdi_pthread_join pthread_join
-#define hdi_pthread_attr_setstacksize pthread_attr_setstacksize
 static int hdi_threads_linked(void) { return 1; }
 #endif
 
@@ -1704,8 +1698,8 @@ static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     sigprocmask(SIG_SETMASK, &all, &old);
 #endif
     pthread_attr_init(&attr);
-    hdi_pthread_attr_setstacksize(&attr, HDI_STACK);
-    failed = hdi_pthread_create(t, &attr, body, arg);
+    pthread_attr_setstacksize(&attr, HDI_STACK);
+    failed = pthread_create(t, &attr, body, arg);
     pthread_attr_destroy(&attr);
 #ifdef SIG_SETMASK
     sigprocmask(SIG_SETMASK, &old, NULL);
@@ -1713,7 +1707,7 @@ static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     return !failed;
 }
 
-static void hdi_thread_join(hdi_thread t) { hdi_pthread_join(t, NULL); }
+static void hdi_thread_join(hdi_thread t) { pthread_join(t, NULL); }
 
 /* Processors that this process may run on. */
 static int32_t hdi_processors(void) {

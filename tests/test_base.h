@@ -65,16 +65,21 @@ static hd_c64 test_c(double re, double im) {
     return z;
 }
 
-static hd_laplacian *test_laplacian(const shape *s, hd_laplacian_kind kind) {
+/* A shape's Laplacian with these coordinates; ctx may be NULL. */
+static hd_laplacian *test_laplacian_at(const shape *s, const double *xyz, hd_laplacian_kind kind, int updatable, hd_context *ctx) {
     hd_laplacian_opts opts;
     hd_laplacian *lap = NULL;
     hd_error e;
     memset(&opts, 0, sizeof opts);
     opts.kind = kind;
-    CHECK(s->xyz != NULL);
-    if (!CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &opts, &e) == HD_OK)) printf("    %s\n", e.text);
+    opts.updatable = updatable;
+    opts.context = ctx;
+    CHECK(xyz != NULL);
+    if (!CHECK(hd_laplacian_triangles(&lap, xyz, s->n, s->tri, s->n_tri, &opts, &e) == HD_OK)) printf("    %s\n", e.text);
     return lap;
 }
+
+static hd_laplacian *test_laplacian(const shape *s, hd_laplacian_kind kind) { return test_laplacian_at(s, s->xyz, kind, 0, NULL); }
 
 /* The values of a sparse matrix, or val instead of its own, in a dense one. */
 static double *test_dense(const hd_csr *a, const double *val) {

@@ -11,17 +11,6 @@ static void mov_bend(const shape *s, double how, double *xyz) {
     }
 }
 
-static hd_laplacian *mov_make(const shape *s, const double *xyz, hd_laplacian_kind kind, int updatable, hd_context *ctx) {
-    hd_laplacian_opts o;
-    hd_laplacian *lap = NULL;
-    memset(&o, 0, sizeof o);
-    o.kind = kind;
-    o.updatable = updatable;
-    o.context = ctx;
-    CHECK(hd_laplacian_triangles(&lap, xyz, s->n, s->tri, s->n_tri, &o, NULL) == HD_OK);
-    return lap;
-}
-
 static void mov_same_laplacian(const hd_laplacian *a, const hd_laplacian *b, const char *what) {
     const double top = dense_max_abs(b->L.val, b->L.nnz);
     CHECK_MSG(a->n_active == b->n_active && a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, (size_t)b->L.nnz * sizeof(int32_t)) == 0,
@@ -46,7 +35,7 @@ static void mov_frames(const shape *s, hd_laplacian_kind kind, const char *what)
     double *xyz = DENSE_NEW(double, 3 * s->n), *u = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
     test_memory m;
     hd_context ctx = test_memory_context(&m);
-    hd_laplacian *lap = mov_make(s, s->xyz, kind, 1, &ctx), *fresh;
+    hd_laplacian *lap = test_laplacian_at(s, s->xyz, kind, 1, &ctx), *fresh;
     hd_heat *plan[4], *other;
     const double h2 = lap->h * lap->h;
     int k, frame;
@@ -62,7 +51,7 @@ static void mov_frames(const shape *s, hd_laplacian_kind kind, const char *what)
         calls = m.calls;
         CHECK_MSG(hd_laplacian_update(lap, xyz, &e) == HD_OK, "%s: %s", what, e.text);
         CHECK_MSG(m.calls == calls && lap->version == frame + 1, "%s: the update allocates", what);
-        fresh = mov_make(s, xyz, kind, 0, NULL);
+        fresh = test_laplacian_at(s, xyz, kind, 0, NULL);
         mov_same_laplacian(lap, fresh, what);
         for (k = 0; k < 3; k++) {
             const hd_heat_opts o = eng_opts(methods[k]);
@@ -98,7 +87,7 @@ static void mov_frames(const shape *s, hd_laplacian_kind kind, const char *what)
 static void mov_errors(void) {
     shape s = shape_grid(6, 5, 0);
     double *xyz = DENSE_NEW(double, 3 * s.n), *before;
-    hd_laplacian *lap = mov_make(&s, s.xyz, HD_LAPLACIAN_FEM, 1, NULL), *plain = mov_make(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL);
+    hd_laplacian *lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 1, NULL), *plain = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL);
     hd_laplacian_opts o;
     hd_laplacian *none = NULL;
     hd_error e;

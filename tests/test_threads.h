@@ -28,23 +28,10 @@ static int thr_running(void) {
     return n;
 }
 
-static hd_laplacian *thr_laplacian(const shape *s, hd_context *ctx) {
-    hd_laplacian *lap = NULL;
-    hd_laplacian_opts o;
-    memset(&o, 0, sizeof o);
-    o.context = ctx;
-    CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) == HD_OK);
-    return lap;
-}
-
 static hd_heat *thr_plan(const hd_laplacian *lap, hd_context *ctx) {
-    hd_heat *heat = NULL;
-    hd_heat_opts o;
-    memset(&o, 0, sizeof o);
+    hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
     o.context = ctx;
-    o.method = HD_METHOD_DIRECT;
-    CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
-    return heat;
+    return eng_create(lap, &o);
 }
 
 static void thr_column(hd_heat *heat, const hd_laplacian *lap, int32_t source, double *u) {
@@ -62,7 +49,7 @@ static void thr_lifetime(const shape *s, const double *want, double *u) {
     memset(&ctx, 0, sizeof ctx);
     ctx.n_threads = 3;
     CHECK(hd_context_threads(&ctx) == (own ? 3 : 1) && hd_context_threads(NULL) >= 1);
-    lap = thr_laplacian(s, &ctx);
+    lap = test_laplacian_at(s, s->xyz, HD_LAPLACIAN_FEM, 0, &ctx);
     heat = thr_plan(lap, &ctx);
     thr_column(heat, lap, 5, u);
     CHECK(memcmp(u, want, (size_t)s->n * sizeof *u) == 0);
@@ -73,7 +60,7 @@ static void thr_lifetime(const shape *s, const double *want, double *u) {
     CHECK(before < 0 || thr_running() <= before + 2 * own);
     hd_heat_free(heat);
     CHECK((ctx.threads != NULL) == own);
-    other = thr_laplacian(s, &ctx);
+    other = test_laplacian_at(s, s->xyz, HD_LAPLACIAN_FEM, 0, &ctx);
     hd_laplacian_free(lap);
     CHECK(ctx.n_holders == 1);
     hd_laplacian_free(other);
@@ -129,7 +116,7 @@ static void thr_fork(const shape *s, const double *want, double *u) {
     int status = -1, k;
     memset(&ctx, 0, sizeof ctx);
     ctx.n_threads = 2;
-    lap = thr_laplacian(s, &ctx);
+    lap = test_laplacian_at(s, s->xyz, HD_LAPLACIAN_FEM, 0, &ctx);
     heat = thr_plan(lap, &ctx);
     thr_column(heat, lap, 9, u);
     for (k = 0; k < 2; k++) {
@@ -182,7 +169,7 @@ static void *thr_user_run(void *arg) {
 /* A user's threads, each with a plan and a context of its own, share a Laplacian. */
 static void thr_nested(const shape *s, const double *want) {
     enum { USERS = 4 };
-    hd_laplacian *lap = thr_laplacian(s, NULL);
+    hd_laplacian *lap = test_laplacian_at(s, s->xyz, HD_LAPLACIAN_FEM, 0, NULL);
     pthread_t thread[USERS];
     thr_user user[USERS];
     int k;
@@ -250,7 +237,7 @@ static void test_threads(void) {
     hd_heat *heat;
     memset(&serial, 0, sizeof serial);
     serial.n_threads = 1;
-    lap = thr_laplacian(&s, &serial);
+    lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 0, &serial);
     heat = thr_plan(lap, &serial);
     thr_column(heat, lap, 5, want);
     CHECK(serial.regions == 0 && !serial.threads);
