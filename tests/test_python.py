@@ -1,5 +1,6 @@
-"""examples/python against dense eigensolutions of SciPy. Builds the shared library itself; without NumPy, SciPy or a
-compiler it is skipped. Usage: test_python.py [unittest arguments]"""
+"""examples/python against dense matrices of SciPy: with the library's own L and B, and with L and B assembled here.
+Builds the shared library itself. Without NumPy, SciPy or a compiler it says so and exits 77, which ctest shows as skipped,
+or 1 with HEATDIFF_NO_SKIP in the environment. Usage: test_python.py [unittest arguments]"""
 import os
 import shutil
 import subprocess
@@ -13,6 +14,7 @@ try:
     import numpy as np
     import scipy.linalg
     import scipy.sparse
+    import scipy.spatial
 except ImportError:
     np = None
 
@@ -22,8 +24,6 @@ hd = folder = None
 
 def setUpModule():
     global hd, folder
-    if np is None or CC is None or os.name == "nt":
-        raise unittest.SkipTest("NumPy, SciPy or a C compiler is missing")
     folder = tempfile.TemporaryDirectory()
     library = os.path.join(folder.name, "libheatdiff.so")
     subprocess.run([CC, "-O1", "-shared", "-fPIC", "-fvisibility=hidden", os.path.join(TOP, "tools", "heatdiff_shared.c"),
@@ -52,6 +52,120 @@ def kernel(lap, t):
     """k_t by vertices from all eigenpairs of (L, B)."""
     values, vectors = scipy.linalg.eigh(lap.L.toarray(), lap.B.toarray())
     return vectors * np.exp(-t * np.maximum(values, 0)) @ vectors.T
+
+
+# A second opinion of L and B, that shares no line with the library: from gradients of hat functions, in loops.
+
+def cotangents(xyz, tri):
+    """L and the finite-element masses of a mesh, dense: L_ij is the integral of grad i . grad j, B_ij that of i j."""
+    L, B = np.zeros((2, len(xyz), len(xyz)))
+    for face in tri:
+        p = xyz[face]
+        edges = np.stack([p[2] - p[1], p[0] - p[2], p[1] - p[0]])       # edge i is opposite to corner i
+        area = np.linalg.norm(np.cross(edges[0], edges[1])) / 2
+        L[np.ix_(face, face)] += edges @ edges.T / (4 * area)           # gradients are edges turned, over 2 area
+        B[np.ix_(face, face)] += area / 12 * (1 + np.eye(3))
+    return L, B
+
+
+def voronoi(xyz, tri):
+    """Mixed Voronoi areas (Meyer et al. 2003): of circumcentres, but half and quarters of obtuse triangles."""
+    mass = np.zeros(len(xyz))
+    for face in tri:
+        p = xyz[face]
+        for i in range(3):
+            a, b, c = p[i], p[(i + 1) % 3], p[(i + 2) % 3]
+            angles = [np.arccos(np.dot(y - x, z - x) / np.linalg.norm(y - x) / np.linalg.norm(z - x))
+                      for x, y, z in ((a, b, c), (b, c, a), (c, a, b))]
+            area = np.linalg.norm(np.cross(b - a, c - a)) / 2
+            if max(angles) > np.pi / 2:
+                mass[face[i]] += area / (2 if angles[0] > np.pi / 2 else 4)
+            else:
+                mass[face[i]] += (np.dot(c - a, c - a) / np.tan(angles[1]) + np.dot(b - a, b - a) / np.tan(angles[2])) / 8
+    return np.diag(mass)
+
+
+def gaussian(xyz, s):
+    """L of points with weights exp(-d^2/4s) of near pairs, sparse, and masses 1/(weights of the row)."""
+    near = scipy.spatial.cKDTree(xyz).sparse_distance_matrix(scipy.spatial.cKDTree(xyz), 6 * s ** 0.5, output_type="coo_matrix")
+    off = near.row != near.col
+    W = scipy.sparse.coo_matrix((np.exp(-near.data[off] ** 2 / (4 * s)), (near.row[off], near.col[off])), near.shape).tocsr()
+    degree = np.asarray(W.sum(axis=1)).ravel()
+    return scipy.sparse.diags(degree) - W, scipy.sparse.diags(1 / (1 + degree)).tocsr()
+
+
+class Dense(unittest.TestCase):
+    """Columns, signatures and distances at several times against SciPy's expm of -t B^-1 L."""
+
+    def check(self, lap, L, B, times):
+        heat, sources = hd.Heat(lap), [3, len(L) // 2]
+        self.assertLess(abs(lap.L - L).max(), 1e-12 * abs(L).max())
+        self.assertLess(abs(lap.B - B).max(), 1e-13 * abs(B).max())
+        i, j = np.array([0, 5, 9, 9]), np.array([1, len(L) - 1, 9, 2])
+        for t in times:
+            K = scipy.linalg.expm(-t * np.linalg.solve(B, L))
+            k = np.linalg.solve(B, K.T)                                 # K B^-1, as B is symmetric
+            columns, symmetric = heat.columns(t, sources), heat.columns(t, sources, symmetric=True)
+            for q, s in enumerate(sources):
+                self.assertLess(abs(columns[:, q] - K[:, s]).max(), 1e-7 * abs(K[:, s]).max())
+                self.assertLess(abs(symmetric[:, q] - k[:, s]).max(), 1e-7 * abs(k[:, s]).max())
+            self.assertLess(abs(heat.diagonal(t)[:, 0] / np.diag(k) - 1).max(), 1e-6)
+            f = np.sin(np.arange(len(L)))
+            self.assertLess(abs(heat.apply(t, f)[:, 0] - K @ f).max(), 1e-7)
+            self.assertLess(abs(heat.entries(t, i, j)[:, 0] - K[i, j]).max(), 1e-7 * abs(K[i, j]).max())
+            self.check_distance(heat, t, "CLASSICAL", K @ k, (i, j))
+            self.check_distance(heat, t, "WEIGHTED", B @ K @ K, (i, j))
+        self.check_without_time(heat, L, B)
+
+    def check_distance(self, heat, t, kind, G, pairs):
+        """From a dense Gram matrix. Where it says that all vertices are alike to three digits, digits are lost."""
+        kind = "HD_DISTANCE_" + kind
+        want = np.sqrt(np.maximum(np.diag(G)[:, None] - 2 * G + np.diag(G), 0))
+        d = heat.distance(t, [3, 17], kind=kind)
+        if want.max() < 1e-3 * G.max() ** 0.5:
+            self.assertGreater(heat.report["n_lost"], 0)
+            return
+        self.assertLess(abs(d - want[:, [3, 17]]).max(), 1e-5 * want.max(), (t, kind))
+        self.assertLess(abs(heat.pairs(t, *pairs, kind=kind)[:, 0] - want[pairs]).max(), 1e-6 * want.max(), (t, kind))
+
+    def check_without_time(self, heat, L, B):
+        """Commute and biharmonic distances from the pseudo-inverse of B^-1/2 L B^-1/2."""
+        root = scipy.linalg.inv(scipy.linalg.sqrtm(B).real)
+        G = scipy.linalg.pinvh(root @ L @ root)
+        for kind, power in (("COMMUTE", G), ("BIHARMONIC", G @ G)):
+            g = root @ power @ root
+            want = np.sqrt(np.maximum(g[3, 3] - 2 * g[3] + np.diag(g), 0))
+            d = heat.distance(None, 3, kind="HD_DISTANCE_" + kind)[:, 0]
+            self.assertLess(abs(d - want).max(), 1e-6 * want.max(), kind)
+
+    def test_meshes(self):
+        xyz, tri, _ = bumpy(11)
+        xyz = xyz + 0.02 * np.random.default_rng(1).standard_normal(xyz.shape)
+        L, B = cotangents(xyz, tri)
+        times = np.array([0.3, 3, 30, 1000]) * hd.triangles(xyz, tri).h ** 2
+        self.check(hd.triangles(xyz, tri, kind="HD_LAPLACIAN_FEM"), L, B, times)
+        self.check(hd.triangles(xyz, tri, kind="HD_LAPLACIAN_VORONOI_COT"), L, voronoi(xyz, tri), times)
+        self.check(hd.triangles(xyz, tri, kind="HD_LAPLACIAN_COT"), L, np.eye(len(xyz)), [0.1, 10])
+
+    def test_points(self):
+        """Points with matrices of one's own."""
+        p = np.random.default_rng(2).standard_normal((150, 3))
+        L, B = gaussian(p / np.linalg.norm(p, axis=1, keepdims=True), 0.02)
+        self.check(hd.matrices(L, B), L.toarray(), B.toarray(), [1e-3, 0.05, 2])
+
+    def test_sample(self):
+        """Each point is a farthest one from those before it."""
+        xyz, tri, _ = bumpy(9)
+        lap = hd.triangles(xyz, tri)
+        t = 20 * lap.h ** 2
+        k2 = kernel(lap, 2 * t)
+        d = np.sqrt(np.maximum(np.diag(k2)[:, None] - 2 * k2 + np.diag(k2), 0))
+        vertex, distance = hd.Heat(lap).sample(t, 6, [40])
+        self.assertEqual(vertex[0], 40)
+        for q in range(1, 6):
+            far = d[vertex[:q]].min(axis=0)
+            self.assertAlmostEqual(far[vertex[q]], far.max(), delta=1e-6 * d.max())
+            self.assertAlmostEqual(distance[q], far.max(), delta=1e-6 * d.max())
 
 
 class Python(unittest.TestCase):
@@ -145,5 +259,25 @@ class Python(unittest.TestCase):
             self.assertEqual(mine, int(size), what)
 
 
+    def test_tour(self):
+        """Every cell of tour.py runs, and writes a picture that is not blank."""
+        try:
+            import matplotlib.image
+        except ImportError:
+            if os.environ.get("HEATDIFF_NO_SKIP"):
+                raise
+            self.skipTest("matplotlib is missing")
+        pictures = os.path.join(folder.name, "tour")
+        subprocess.run([sys.executable, os.path.join(TOP, "examples", "python", "tour.py"), pictures], check=True,
+                       stdout=subprocess.DEVNULL, env={**os.environ, "MPLCONFIGDIR": folder.name})
+        self.assertEqual(sorted(os.listdir(pictures)), ["accuracy.png", "distance.png", "kernel.png", "signature.png"])
+        for name in os.listdir(pictures):
+            image = matplotlib.image.imread(os.path.join(pictures, name))
+            self.assertGreater(np.unique(image.reshape(-1, image.shape[-1]), axis=0).shape[0], 30, name)
+
+
 if __name__ == "__main__":
+    if np is None or CC is None or os.name == "nt":
+        print("not here: NumPy, SciPy or a C compiler")
+        sys.exit(1 if os.environ.get("HEATDIFF_NO_SKIP") else 77)
     unittest.main()

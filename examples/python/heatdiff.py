@@ -1,7 +1,7 @@
 """heatdiff.py - heatdiff.h from Python, with ctypes and NumPy: nothing to compile but the library itself
 
     cmake -S . -B build -DHEATDIFF_BUILD_SHARED=ON && cmake --build build --target heatdiff_shared
-    HEATDIFF_LIBRARY=build/libheatdiff.so python3 examples/python/demo.py
+    HEATDIFF_LIBRARY=build/libheatdiff.so python3 examples/python/tour.py
 
 Structs and constants are read from heatdiff.h, so that they are those of the library. Arrays go in and come out as
 NumPy arrays of doubles; columns of results are columns of Fortran-ordered arrays. Errors are exceptions that say where.
@@ -12,6 +12,7 @@ NumPy arrays of doubles; columns of results are columns of Fortran-ordered array
     u = heat.columns(t, [0])                            # K_t e_0; heat.report['error_bound'] bounds its error
     signature = heat.diagonal([t1, t2])                 # k_t(v,v)
     d = heat.distance(t, [0])                           # diffusion distance from vertex 0
+    d = heat.pairs(t, [0, 1], [5, 7])                   # of pairs; entries and sample: single entries, farthest points
     far = hd.Geodesic(xyz, tri).distance([0])           # along the surface
 """
 import ctypes
@@ -246,6 +247,31 @@ class Heat:
         out, to = self._room(len(sources) * len(t))
         self._query("hd_heat_distance", C[kind], *times, ctypes.c_int32(len(sources)), _at(sources), *to)
         return out
+
+    def entries(self, t, i, j, symmetric=False):
+        """Entries (i, j) of K_t or k_t: a row for each pair, a column for each time."""
+        i, j, (t, times) = _ints(np.atleast_1d(i)), _ints(np.atleast_1d(j)), self._times(t)
+        i, j = (np.ascontiguousarray(x) for x in np.broadcast_arrays(i, j))
+        out = np.zeros((len(i), len(t)), order="F")
+        self._query("hd_heat_entries", C["HD_KERNEL_SYMMETRIC" if symmetric else "HD_KERNEL_OPERATOR"], *times,
+                    ctypes.c_int64(len(i)), _at(i), _at(j), _at(out))
+        return out
+
+    def pairs(self, t, i, j, kind="HD_DISTANCE_CLASSICAL"):
+        """Diffusion distances of listed pairs, without cancellation: a row for each pair, a column for each time."""
+        i, j, (t, times) = _ints(np.atleast_1d(i)), _ints(np.atleast_1d(j)), self._times(0 if t is None else t)
+        i, j = (np.ascontiguousarray(x) for x in np.broadcast_arrays(i, j))
+        out = np.zeros((len(i), len(t)), order="F")
+        self._query("hd_heat_pairs", C[kind], *times, ctypes.c_int64(len(i)), _at(i), _at(j), None, _at(out))
+        return out
+
+    def sample(self, t, count, given=(), kind="HD_DISTANCE_CLASSICAL"):
+        """Farthest points: count vertices, those given first, and the distance of each to the ones before it."""
+        vertex, distance = np.zeros(count, dtype=np.int32), np.zeros(count)
+        vertex[:len(given)] = given
+        self._query("hd_heat_sample", C[kind], ctypes.c_double(t), ctypes.c_int32(count), ctypes.c_int32(len(given)),
+                    _at(vertex), _at(distance))
+        return vertex, distance
 
 
 class Geodesic:
