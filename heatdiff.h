@@ -101,10 +101,31 @@
                                plain C kernels exist. It is twice as fast as those. The kernels for AVX2 and
                                AVX-512 are faster than OpenBLAS and stay in use
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
+     HEATDIFF_NO_...           leaves out what a program does not use, see the table below
      Wherever the file is included, the same everywhere:
      HEATDIFF_STATIC           all functions are static, for a single file that uses them
      HEATDIFF_API              your own linkage attribute
      No macro changes a public type or prototype.
+
+   Smaller builds (macros beside the implementation)
+     What nobody calls the linker drops by itself (gcc -ffunction-sections -Wl,--gc-sections). These switches
+     drop what an option could still ask for. All functions stay declared and defined. What is left out
+     answers HD_ERR_NOT_BUILT, with the name of the switch in the text of the error. The choice by default
+     (HD_METHOD_AUTO) is among what is there.
+     HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_POLE_FACTORS,
+                               NO_GEODESIC. b_ratio of hd_laplacian_matrices is that of Gershgorin's circles
+     HEATDIFF_NO_POLE_FACTORS  factors of complex matrices: method direct, hd_ldl_*_complex; implies
+                               NO_DIAGONAL
+     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_heat_edges, hd_ldl_inverse*, diagonal
+                               pole sets; implies NO_DIFFUSION. Bounds of the error of method direct are
+                               larger, and times so large that only the means are left take longer
+     HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample
+     HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Needs method direct or krylov,
+                               and direct for pole sets of your choice
+     HEATDIFF_NO_GEODESIC      hd_geodesic_*
+     HEATDIFF_NO_INTRINSIC     options intrinsic_delaunay and tufted, hd_laplacian_tufted_points
+     HEATDIFF_NO_POINTS        hd_laplacian_points, hd_laplacian_tufted_points, hd_neighbours_*
+     HEATDIFF_NO_POLYGONS      hd_laplacian_polygons
 
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
@@ -185,7 +206,8 @@ typedef struct hd_c64 { double re, im; } hd_c64;
     X(HD_ERR_NOT_POSITIVE, -10, "L is not positive semi-definite, or B is not positive definite") \
     X(HD_ERR_STRUCTURE, -11, "a sparse matrix is not well formed")                                \
     X(HD_ERR_EMPTY, -12, "nothing is left to compute on: no vertex has mass")                     \
-    X(HD_ERR_BREAKDOWN, -13, "the iteration broke down")
+    X(HD_ERR_BREAKDOWN, -13, "the iteration broke down")                                          \
+    X(HD_ERR_NOT_BUILT, -14, "this build of the library leaves it out")
 
 typedef enum hd_status {
 #define HD_STATUS_ENUM(name, value, text) name = value,
@@ -1256,6 +1278,76 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
 #define HDI_PREFETCH_AT(p, i) ((void)0)
 #endif
 
+/* What this build has, 1 or 0, and the switch that left it out, by itself or because it implies that. A room
+ * is entered through few functions. These ask first, and compilers drop whatever nobody reaches any more: all
+ * code is checked in every build, and no room has a condition inside. */
+#ifdef HEATDIFF_NO_DIRECT
+#define HDI_HAS_DIRECT 0
+#define HDI_WHY_DIRECT "HEATDIFF_NO_DIRECT"
+#else
+#define HDI_HAS_DIRECT 1
+#define HDI_WHY_DIRECT ""
+#endif
+#ifdef HEATDIFF_NO_POLE_FACTORS
+#define HDI_HAS_POLE_FACTORS 0
+#define HDI_WHY_POLE_FACTORS "HEATDIFF_NO_POLE_FACTORS"
+#else
+#define HDI_HAS_POLE_FACTORS HDI_HAS_DIRECT
+#define HDI_WHY_POLE_FACTORS HDI_WHY_DIRECT
+#endif
+#ifdef HEATDIFF_NO_DIAGONAL
+#define HDI_HAS_DIAGONAL 0
+#define HDI_WHY_DIAGONAL "HEATDIFF_NO_DIAGONAL"
+#else
+#define HDI_HAS_DIAGONAL HDI_HAS_POLE_FACTORS
+#define HDI_WHY_DIAGONAL HDI_WHY_POLE_FACTORS
+#endif
+#ifdef HEATDIFF_NO_DIFFUSION
+#define HDI_HAS_DIFFUSION 0
+#define HDI_WHY_DIFFUSION "HEATDIFF_NO_DIFFUSION"
+#else
+#define HDI_HAS_DIFFUSION HDI_HAS_DIAGONAL
+#define HDI_WHY_DIFFUSION HDI_WHY_DIAGONAL
+#endif
+#ifdef HEATDIFF_NO_GEODESIC
+#define HDI_HAS_GEODESIC 0
+#define HDI_WHY_GEODESIC "HEATDIFF_NO_GEODESIC"
+#else
+#define HDI_HAS_GEODESIC HDI_HAS_DIRECT
+#define HDI_WHY_GEODESIC HDI_WHY_DIRECT
+#endif
+#ifdef HEATDIFF_NO_ITERATIVE
+#define HDI_HAS_ITERATIVE 0
+#define HDI_WHY_ITERATIVE "HEATDIFF_NO_ITERATIVE"
+#else
+#define HDI_HAS_ITERATIVE 1
+#define HDI_WHY_ITERATIVE ""
+#endif
+#ifdef HEATDIFF_NO_INTRINSIC
+#define HDI_HAS_INTRINSIC 0
+#define HDI_WHY_INTRINSIC "HEATDIFF_NO_INTRINSIC"
+#else
+#define HDI_HAS_INTRINSIC 1
+#define HDI_WHY_INTRINSIC ""
+#endif
+#ifdef HEATDIFF_NO_POINTS
+#define HDI_HAS_POINTS 0
+#define HDI_WHY_POINTS "HEATDIFF_NO_POINTS"
+#else
+#define HDI_HAS_POINTS 1
+#define HDI_WHY_POINTS ""
+#endif
+#ifdef HEATDIFF_NO_POLYGONS
+#define HDI_HAS_POLYGONS 0
+#define HDI_WHY_POLYGONS "HEATDIFF_NO_POLYGONS"
+#else
+#define HDI_HAS_POLYGONS 1
+#define HDI_WHY_POLYGONS ""
+#endif
+#if !HDI_HAS_DIRECT && !HDI_HAS_ITERATIVE
+#error "heatdiff.h: HEATDIFF_NO_DIRECT and HEATDIFF_NO_ITERATIVE leave no method"
+#endif
+
 /* Instruction sets. The kernels of room [07] are compiled for each, with function-level targets, and chosen
  * at run time, so that a plain cc -O2 uses what the processor has. Plain C serves everything else. GCC does
  * not align the stack for AVX on Windows (its bug 54412), and __builtin_cpu_supports of clang for MSVC needs
@@ -1491,6 +1583,10 @@ static HDI_NOINLINE hd_status hdi_fail_face(hd_error *e, hd_status status, const
 static hd_status hdi_missing(hd_error *e) {
     return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
 }
+
+/* For what this build has no code for: room is one of HDI_HAS_..., what says it in the field's words. */
+#define HDI_LEFT_OUT(e, room, what) \
+    hdi_fail(e, HD_ERR_NOT_BUILT, "this build leaves out " what " (" HDI_WHY_##room ")")
 
 /* ==== [03] memory ====
  * Counted allocation, aligned to 64 bytes with the block's size kept in front; and scopes, which free the
@@ -7342,7 +7438,8 @@ static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const double *xyz, const i
 /* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
 static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m,
                                const hdi_intrinsic_task *task, hd_error *e) {
-    return task ? hdi_lap_intrinsic(lap, xyz, tri, m, task, e) : hdi_lap_triangles(lap, xyz, tri, m, 0, e);
+    if (HDI_HAS_INTRINSIC && task) return hdi_lap_intrinsic(lap, xyz, tri, m, task, e);
+    return hdi_lap_triangles(lap, xyz, tri, m, 0, e);
 }
 
 /* The faces split as fans, for the operators of triangles. */
@@ -10852,6 +10949,9 @@ typedef struct hdi_factor {
     hd_error error;
 } hdi_factor;
 
+/* Is it the factor of a real matrix, and not a pack? */
+static int hdi_is_real(const hdi_factor *f) { return !HDI_HAS_POLE_FACTORS || f->width == 1; }
+
 static void hdi_pivots_clear(hdi_pivots *q) {
     memset(q, 0, sizeof *q);
     q->smallest = HUGE_VAL;
@@ -11165,7 +11265,7 @@ static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1,
     const hdi_symbolic *s = f->sym;
     const int32_t p = HDI_CAST(int32_t, w->p), k0 = HDI_CAST(int32_t, w->k0), c = w->child;
     hdi_pack_rows rows;
-    if (f->width == 1) {
+    if (hdi_is_real(f)) {
         if (stage == HDI_FRONT_ASSEMBLE)
             hdi_real_extend(f->real, w->panel, w->m, p, w->update, f->work + s->update[c],
                             hdi_front_below(s, c), s->rel + s->row_ptr[c], r0, r1);
@@ -11251,7 +11351,7 @@ static int64_t hdi_front_nodes(const hdi_symbolic *s, int32_t nb) {
 }
 
 static int32_t hdi_front_block_size(const hdi_factor *f) {
-    return f->width == 1 ? HDI_CAST(int32_t, HDI_REAL_NB) : HDI_CAST(int32_t, HDI_PACK_BLOCK);
+    return hdi_is_real(f) ? HDI_CAST(int32_t, HDI_REAL_NB) : HDI_CAST(int32_t, HDI_PACK_BLOCK);
 }
 
 /* The first row below the pivots of block k, and the first chunk with such rows. */
@@ -11303,7 +11403,7 @@ static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) 
         hdi_front_next(l, k, c);
         return;
     }
-    if (!stop && w.f->width == 1) good = hdi_front_pivots_real(&w, end, l->note);
+    if (!stop && hdi_is_real(w.f)) good = hdi_front_pivots_real(&w, end, l->note);
     else if (!stop) good = hdi_front_pivots_pack(&w, l->note);
     if (!good) HDI_STORE(&l->f->stop, 1);
     for (c = hdi_front_first(l, k); c < l->n_chunks; c++) hdi_front_arrive(l, hdi_front_node(l, k, c));
@@ -11336,7 +11436,7 @@ static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
 /* What nodes wait for. Returns how many are ready; *n: how many there are. pending of the first A: the nodes
  * of the panel. */
 static int32_t hdi_front_count(hdi_front_loop *l, int32_t *n) {
-    const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = l->f->width > 1;
+    const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = !hdi_is_real(l->f);
     int32_t ready = 0, panel = packs ? l->n_chunks : 0, k, c;
     for (k = 0; k < l->n_blocks; k++) {
         int32_t *pivots = l->pending + hdi_front_node(l, k, -1);
@@ -11377,7 +11477,7 @@ static int hdi_front_share(hdi_factor *f, const hdi_front *w, hd_threads *thread
 /* Front v, by this thread or shared by all. 0 when a pivot cannot be divided by. */
 static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note, int shared) {
     const hdi_symbolic *s = f->sym;
-    const int real = f->width == 1;
+    const int real = hdi_is_real(f);
     const int64_t most = hdi_front_block_size(f);
     const int64_t nodes = (hdi_front_pivots(s, v) / most + 1) * (hdi_front_rows(s, v) / HDI_FRONT_CHUNK);
     hd_threads *threads = shared ? hdi_threads_own(f->ctx, nodes) : NULL;
@@ -11444,7 +11544,7 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     f->sym = sym;
     f->width = width;
     f->panel_at = width == 1 ? sym->panel : sym->panel_pack;
-    f->pack = hdi_pack_ops_get(hdi_simd_level(ctx));
+    f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(ctx)) : NULL;
     f->real = hdi_real_ops_get(hdi_simd_level(ctx));
     f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
     f->chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
@@ -11609,7 +11709,7 @@ static void hdi_sweep_forward_real(const hdi_sweep *z, int32_t v, double *y, dou
 }
 
 static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *t) {
-    if (z->f->width == 1) hdi_sweep_forward_real(z, v, y, t);
+    if (hdi_is_real(z->f)) hdi_sweep_forward_real(z, v, y, t);
     else hdi_sweep_forward_pack(z, v, y, t);
 }
 
@@ -11700,7 +11800,7 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
         if (z->wanted && !z->wanted[v]) return;
-        if (f->width == 1) hdi_sweep_backward_real(z, v, y, t);
+        if (hdi_is_real(f)) hdi_sweep_backward_real(z, v, y, t);
         else hdi_sweep_backward_pack(z, v, y, t);
         return;
     }
@@ -14192,6 +14292,7 @@ static const double hdi_rat_table[] = {
     -0.98196506093423674, 10.467711454192054, -0.078142978167783206, 0.21550257610584828,
     -4.5075605895604021, 13.008767567859003, -0.0010383125651999775, -0.0086362070804686056,
     -9.7413256359447953, 15.840947521360885, 2.0671816855185641e-05, 6.5573823084788806e-05,
+#if HDI_HAS_DIAGONAL
     /* diagonal r = 2 */
     0, 0.067537133737907679, 0.084246004368216873,
     0.093165638432949657, 0.78606720760465709, 0.0084246004368216873, -0.39955314986781715,
@@ -14273,6 +14374,7 @@ static const double hdi_rat_table[] = {
     -1.0625421595687834, 10.375806417114624, -0.054252691775587503, 0.20350620469919772,
     -4.5870160409811707, 12.891449259479609, -0.0018442580277614033, -0.0077932972131342215,
     -9.8195193949567514, 15.692091318644374, 2.7577538544225898e-05, 5.7130444708159529e-05,
+#endif
 };
 /* poles.py: end */
 
@@ -14301,6 +14403,8 @@ static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t d
     if (kind == HD_POLES_UNIFORM && (degree < 1 || degree > HDI_RAT_UNIFORM_MAX))
         return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: uniform sets have degrees 1 to 14", -1, -1,
                             degree);
+    if (kind == HD_POLES_DIAGONAL && !HDI_HAS_DIAGONAL)
+        return HDI_LEFT_OUT(e, DIAGONAL, "pole sets for diagonals");
     if (kind != HD_POLES_UNIFORM && (degree < HDI_RAT_KERNEL_MIN || degree > HDI_RAT_KERNEL_MAX))
         return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel and diagonal sets have degrees 2 to 14", -1,
                             -1, degree);
@@ -15776,7 +15880,7 @@ typedef struct hdi_elim {
 
 static void hdi_elim_free(hdi_elim *m) {
     int32_t i;
-    if (!m->ctx) return;
+    if (!HDI_HAS_DIRECT || !m->ctx) return;
     for (i = 0; i < m->n_packs; i++) hdi_factor_free(m->pack + i);
     hdi_factor_free(&m->real);
     hdi_factor_free(&m->shifted);
@@ -17865,13 +17969,13 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill) return e->status;
     hdi_heat_measure_pair(heat);
-    if (m->ctx) {
+    if (HDI_HAS_DIRECT && m->ctx) {
         hdi_pair_refresh(m->lap, lap, heat->fill);
         m->scale = hdi_pair_scale(m->lap);
         for (i = 0; i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
         m->filled = m->shifted.ready = 0;
         m->reach_t = -1;
-        if (heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+        if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
     }
     if (heat->lap) {
         hdi_pair_refresh(heat->lap, lap, heat->fill);
@@ -17987,7 +18091,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const double factor =
         packs * (16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz) + (poles % 4 == 1 ? real : 0);
     hdi_cost c;
-    c.iterative = hdi_cost_iterative(h, poles);
+    c.iterative = HDI_HAS_ITERATIVE ? hdi_cost_iterative(h, poles) : HUGE_VAL;
     c.krylov = f.analysis + windows * f.flops / HDI_RATE_REAL +
                k * windows * steps * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP +
                k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
@@ -17999,6 +18103,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
     if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
     if (heat->silan) c.krylov_bytes = 0;
+    if (!HDI_HAS_POLE_FACTORS) c.direct = c.direct_bytes = HUGE_VAL;
     return c;
 }
 
@@ -18007,7 +18112,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
 static hd_status hdi_heat_pick(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const hd_context *ctx = heat->ctx;
-    const double room = ctx->byte_limit
+    const double room = ctx->byte_limit && HDI_HAS_ITERATIVE   /* without iterations there is no retreat */
                         ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
     hdi_cost c;
     int no_direct, no_krylov;
@@ -18021,14 +18126,18 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
         h->method = HD_METHOD_ITERATIVE;
         h->rep->reason = "factors did not fit the byte limit";
     }
-    if (h->method != HD_METHOD_AUTO) return HD_OK;
+    if (h->method == HD_METHOD_AUTO && !HDI_HAS_DIRECT) {
+        h->method = HD_METHOD_ITERATIVE;
+        h->rep->reason = "this build has iterations only";
+    }
+    if (!HDI_HAS_DIRECT || h->method != HD_METHOD_AUTO) return HD_OK;
     c = hdi_heat_cost(h);
     if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) &&
         hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
         if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
         c = hdi_heat_cost(h);
     }
-    no_direct = c.direct_bytes > room;
+    no_direct = !HDI_HAS_POLE_FACTORS || c.direct_bytes > room;
     no_krylov = c.krylov_bytes > room || heat->poles_asked;
     h->method = HD_METHOD_ITERATIVE;
     h->rep->reason = "iterations cost less than a factorisation";
@@ -18055,7 +18164,9 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
 
 /* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. */
 static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
-    if (!heat->source->conserves || heat->opts.rational || t * heat->lambda_max < HDI_EQUAL_FROM) return 0;
+    if (!HDI_HAS_DIAGONAL || !heat->source->conserves || heat->opts.rational ||
+        t * heat->lambda_max < HDI_EQUAL_FROM)
+        return 0;
     if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0)
         return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
     if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* not to be told: go on as ever */
@@ -18071,14 +18182,16 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         h->t = 0;
     }
     if (h->t == 0) {                             /* nothing to solve */
-        h->method = heat->opts.method == HD_METHOD_AUTO ? HD_METHOD_ITERATIVE : heat->opts.method;
+        h->method = heat->opts.method;
+        if (h->method == HD_METHOD_AUTO)
+            h->method = HDI_HAS_ITERATIVE ? HD_METHOD_ITERATIVE : HD_METHOD_KRYLOV;
         h->rep->reason = "t = 0";
     } else if (hdi_heat_pick(h) < 0) {
         return h->e->status;
-    } else if (h->method == HD_METHOD_ITERATIVE) {
+    } else if (HDI_HAS_ITERATIVE && h->method == HD_METHOD_ITERATIVE) {
         if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
         h->lap = heat->lap;
-    } else {
+    } else if (HDI_HAS_DIRECT) {
         if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
         h->lap = heat->elim.lap;
         h->rep->ordering = heat->elim.sym.ordering;
@@ -18577,8 +18690,8 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     hdi_batches b;
     int32_t i;
-    if (hdi_direct_factors(h) < 0 || (!h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0))
-        return h->e->status;
+    if (hdi_direct_factors(h) < 0) return h->e->status;
+    if (HDI_HAS_DIAGONAL && !h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
     if (hdi_batches_make(&b, h) < 0) return h->e->status;
     h->deflated = !h->watching && (h->ask.query == HDI_QUERY_FIELD || h->t * heat->lambda_max > HDI_DEFLATE);
     for (h->batch = 0; h->batch < h->ask.k; h->batch += b.n_here) {
@@ -18710,13 +18823,14 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t i;
+    if (!HDI_HAS_DIRECT || !HDI_HAS_ITERATIVE) return 0;
     if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx)
         return 0;
     if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && h->ask.query == HDI_QUERY_FIELD) return 0;
     for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
-    if (heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
     hdi_elim_free(&heat->elim);
     if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
     hdi_free(heat->ctx, heat->silan);
@@ -18763,9 +18877,10 @@ static hd_status hdi_heat_plain(hdi_heat_call *h) {
 static hd_status hdi_heat_answer(hdi_heat_call *h) {
     if (hdi_heat_engine(h) < 0) return h->e->status;
     if (h->t == 0 || h->equal) return hdi_heat_plain(h);
-    if (h->method == HD_METHOD_DIRECT) return hdi_heat_by_direct(h);
-    if (h->method == HD_METHOD_KRYLOV) return hdi_heat_by_krylov(h);
-    return hdi_iterative_prepare(h) < 0 ? h->e->status : hdi_heat_by_iterations(h);
+    if (HDI_HAS_POLE_FACTORS && h->method == HD_METHOD_DIRECT) return hdi_heat_by_direct(h);
+    if (HDI_HAS_DIRECT && h->method == HD_METHOD_KRYLOV) return hdi_heat_by_krylov(h);
+    if (HDI_HAS_ITERATIVE && hdi_iterative_prepare(h) >= 0) (void)hdi_heat_by_iterations(h);
+    return h->e->status;
 }
 
 /* Answers the time under way. If factors do not fit the byte limit, iterations do. */
@@ -18924,6 +19039,7 @@ static hd_status hdi_heat_each_time(hdi_heat_call *h) {
 static int hdi_heat_together(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     int32_t q;
+    if (!HDI_HAS_DIRECT) return 0;
     if (hdi_heat_sort_times(h, 1) < 0) return 1;
     if (h->times[0] * heat->lambda_max < HDI_STILL || hdi_heat_engine(h) < 0 || h->method != HD_METHOD_KRYLOV)
         return h->e->status < 0 && !hdi_heat_retreat(h);
@@ -22002,7 +22118,10 @@ static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task 
     task->delta = opts && opts->mollify != 0 ? opts->mollify : HDI_MOLLIFY_DELTA;
     hdi_refuse(hdi_nan(task->delta) || task->delta > 1,
                "laplacian options: mollify is above 1 or not a number", e);
-    return opts && (opts->intrinsic_delaunay || opts->tufted);
+    if (HDI_HAS_INTRINSIC || !opts || !(opts->intrinsic_delaunay || opts->tufted))
+        return opts && (opts->intrinsic_delaunay || opts->tufted);
+    if (e->status >= 0) (void)HDI_LEFT_OUT(e, INTRINSIC, "intrinsic triangulations");
+    return 1;
 }
 
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
@@ -22021,7 +22140,8 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
     hdi_refuse(intrinsic && opts->updatable,
                "laplacian of triangles: an intrinsic triangulation is not updatable", c.e);
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
-    if (intrinsic) return hdi_lap_done(out, lap, hdi_lap_intrinsic(lap, xyz, tri, n_tri, &task, c.e));
+    if (HDI_HAS_INTRINSIC && intrinsic)
+        return hdi_lap_done(out, lap, hdi_lap_intrinsic(lap, xyz, tri, n_tri, &task, c.e));
     return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, opts && opts->updatable, c.e));
 }
 
@@ -22036,6 +22156,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
     if (!lap) return c.e->status;
+    if (!HDI_HAS_POLYGONS) return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POLYGONS, "polygons"));
     memset(&poly, 0, sizeof poly);
     poly.xyz = xyz;
     poly.ptr = face_ptr;
@@ -22072,7 +22193,8 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
                                          "laplacian of matrices: L and B differ in size",
                                                    L->n_rows, B->n_rows, 0));
     lap->h = h;
-    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < HDI_RATIO_POOR) (void)hdi_lap_ratio(lap, c.e);
+    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < HDI_RATIO_POOR && HDI_HAS_DIRECT)
+        (void)hdi_lap_ratio(lap, c.e);
     return hdi_lap_done(out, lap, c.e->status);
 }
 
@@ -22105,6 +22227,7 @@ HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_VORONOI_EXP), err, &c);
     if (!lap) return c.e->status;
+    if (!HDI_HAS_POINTS) return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POINTS, "points"));
     if (!out || (n > 0 && !xyz)) hdi_missing(c.e);
     hdi_point_opts(lap, opts, c.e);
     return hdi_lap_done(out, lap, hdi_lap_begin(&c) < 0 ? c.e->status : hdi_lap_points(lap, xyz, c.e));
@@ -22117,6 +22240,9 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
     if (!lap) return c.e->status;
+    if (!HDI_HAS_POINTS) return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POINTS, "points"));
+    if (!HDI_HAS_INTRINSIC)
+        return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, INTRINSIC, "intrinsic triangulations"));
     if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) hdi_missing(c.e);
     hdi_refuse(!hdi_kind_of_triangles(lap->kind),
                "tufted laplacian of points: the kind is fem, voronoi-cot or cot",
@@ -22130,6 +22256,7 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
 /* Checks points, queries and sizes. *m becomes the number of queries. */
 static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m,
                                       hd_error *e) {
+    if (!HDI_HAS_POINTS) return HDI_LEFT_OUT(e, POINTS, "the search of neighbours");
     if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
     if (!query) *m = n;
     if (n > 0 && !xyz) return hdi_missing(e);
@@ -22151,7 +22278,8 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
-    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
+    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0 || !HDI_HAS_POINTS)
+        return c.e->status;
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: k is not positive");
     if (m > 0 && !index) return hdi_missing(c.e);
     if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
@@ -22166,7 +22294,8 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     hdi_scope s;
     hdi_tree tree;
     double r;
-    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0) return c.e->status;
+    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0 || !HDI_HAS_POINTS)
+        return c.e->status;
     if (!out) return hdi_missing(c.e);
     if (hdi_nan(radius) || radius < 0)
         return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
@@ -22278,6 +22407,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     if (opts) o = *opts;
     if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "ldl options: not cleared before use", err) < 0)
         return c.e->status;
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c.e, DIRECT, "factorisations");
     if (!out || !a) return hdi_missing(c.e);
     shape = *a;
     shape.val = NULL;
@@ -22306,12 +22436,16 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 /* Begins a call that factors. */
 static hd_status hdi_ldl_enter(hdi_call *c, hd_ldl *f, const void *val, hd_error *err) {
     if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
     return !f || (f->nnz > 0 && !val) ? hdi_missing(c->e) : HD_OK;
 }
 
 /* Begins a call that needs the real factor, or the packs. given: no array is missing. */
 static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
     if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
+    if (packs && !HDI_HAS_POLE_FACTORS)
+        return HDI_LEFT_OUT(c->e, POLE_FACTORS, "factorisations of complex matrices");
     if (!f || !given) return hdi_missing(c->e);
     if (!packs && !f->real.ready)
         return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a real one");
@@ -22322,7 +22456,7 @@ static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs,
 
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
     hdi_call c;
-    if (hdi_ldl_enter(&c, f, val, err) < 0) return c.e->status;
+    if (hdi_ldl_enter(&c, f, val, err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
     f->n_matrices = f->real.ready = 0;
     if (hdi_ldl_factor(f, val, c.e) < 0) return c.e->status;
     hdi_ldl_tell(f, &f->real, report);
@@ -22334,6 +22468,8 @@ HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 
     hd_ldl_report all;
     hdi_call c;
     if (hdi_ldl_enter(&c, f, val, err) < 0) return c.e->status;
+    if (!HDI_HAS_POLE_FACTORS)
+        return HDI_LEFT_OUT(c.e, POLE_FACTORS, "factorisations of complex matrices");
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of matrices is not positive");
     f->n_matrices = f->real.ready = 0;
     if (hdi_ldl_factor_complex(f, k, val, &all, c.e) < 0) return c.e->status;
@@ -22350,7 +22486,8 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
                                     hd_error *err) {
     hdi_call c;
     int32_t q;
-    if (hdi_ldl_enter_factored(&c, f, 0, f && (k <= 0 || f->n == 0 || (b && x)), err) < 0) return c.e->status;
+    if (hdi_ldl_enter_factored(&c, f, 0, f && (k <= 0 || f->n == 0 || (b && x)), err) < 0 || !HDI_HAS_DIRECT)
+        return c.e->status;
     if (k < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of right-hand sides is negative");
     ldb = ldb ? ldb : HDI_CAST(size_t, f->n);
     ldx = ldx ? ldx : HDI_CAST(size_t, f->n);
@@ -22363,7 +22500,8 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
                                             hd_error *err) {
     hdi_call c;
     int32_t p;
-    if (hdi_ldl_enter_factored(&c, f, 1, f && (f->n == 0 || (b && x)), err) < 0) return c.e->status;
+    if (hdi_ldl_enter_factored(&c, f, 1, f && (f->n == 0 || (b && x)), err) < 0 || !HDI_HAS_POLE_FACTORS)
+        return c.e->status;
     ldx = ldx ? ldx : HDI_CAST(size_t, f->n);
     if (hdi_ldl_leading(f, ldb ? ldb : ldx, ldx, c.e) < 0) return c.e->status;
     if (b == x && ldb && ldb != ldx)
@@ -22375,16 +22513,21 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
     return HD_OK;
 }
 
+static hd_status hdi_ldl_enter_inverse(hdi_call *c, const hd_ldl *f, int packs, hd_error *err) {
+    if (hdi_ldl_enter_factored(c, f, packs, 1, err) < 0 || HDI_HAS_DIAGONAL) return c->e->status;
+    return HDI_LEFT_OUT(c->e, DIAGONAL, "selected inversion");
+}
+
 HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, hd_error *err) {
     hdi_call c;
-    if (hdi_ldl_enter_factored(&c, f, 0, 1, err) < 0) return c.e->status;
+    if (hdi_ldl_enter_inverse(&c, f, 0, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
     return values || diag ? hdi_ldl_invert(f, &f->real, 1, values, diag, c.e) : HD_OK;
 }
 
 HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag, hd_error *err) {
     hdi_call c;
     int32_t p;
-    if (hdi_ldl_enter_factored(&c, f, 1, 1, err) < 0) return c.e->status;
+    if (hdi_ldl_enter_inverse(&c, f, 1, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
     for (p = 0; HDI_PACK_LANES * p < f->n_matrices && (values || diag); p++) {
         const int64_t first = HDI_CAST(int64_t, HDI_PACK_LANES) * p;
         if (hdi_ldl_invert(f, f->pack + p, hdi_ldl_lanes(f, p), values ? &values[first * f->nnz].re : NULL,
@@ -22409,7 +22552,7 @@ static hd_status hdi_ldl_entries_check(const hd_ldl *f, int64_t n, const int32_t
 HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i,
                                               const int32_t *j, double *values, hd_error *err) {
     hdi_call c;
-    if (hdi_ldl_enter_factored(&c, f, 0, 1, err) < 0) return c.e->status;
+    if (hdi_ldl_enter_inverse(&c, f, 0, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
     if (hdi_ldl_entries_check(f, n_entries, i, j, values, c.e) < 0) return c.e->status;
     return n_entries > 0 ? hdi_ldl_inverse_entries(f, 0, n_entries, i, j, values, c.e) : HD_OK;
 }
@@ -22417,12 +22560,25 @@ HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, cons
 HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries, const int32_t *i,
                                                       const int32_t *j, hd_c64 *values, hd_error *err) {
     hdi_call c;
-    if (hdi_ldl_enter_factored(&c, f, 1, 1, err) < 0) return c.e->status;
+    if (hdi_ldl_enter_inverse(&c, f, 1, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
     if (hdi_ldl_entries_check(f, n_entries, i, j, values, c.e) < 0) return c.e->status;
     return n_entries > 0 ? hdi_ldl_inverse_entries(f, 1, n_entries, i, j, &values->re, c.e) : HD_OK;
 }
 
 /* ---- heat ---- */
+
+/* Is what the options ask for in this build? */
+static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
+    const int poles = o->rational || o->poles || o->degree;
+    if (!HDI_HAS_DIRECT && (o->method == HD_METHOD_DIRECT || o->method == HD_METHOD_KRYLOV))
+        (void)HDI_LEFT_OUT(e, DIRECT, "factorisations");
+    else if (!HDI_HAS_POLE_FACTORS && o->method == HD_METHOD_DIRECT)
+        (void)HDI_LEFT_OUT(e, POLE_FACTORS, "method direct");
+    else if (!HDI_HAS_ITERATIVE && (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
+        (void)HDI_LEFT_OUT(e, ITERATIVE, "iterations");
+    else if (!HDI_HAS_ITERATIVE && !HDI_HAS_POLE_FACTORS && poles)
+        (void)HDI_LEFT_OUT(e, POLE_FACTORS, "all that uses poles, with HEATDIFF_NO_ITERATIVE");
+}
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
@@ -22444,6 +22600,7 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     hdi_refuse((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond),
                "heat: solver and precond belong to the iterative method", e);
     hdi_refuse(o->rational && o->solver == HD_SOLVER_LANCZOS, "heat: Lanczos has no use for a pole set", e);
+    if (e->status >= 0) hdi_heat_built(o, e);
     return e->status < 0 || !o->rational ? e->status : hdi_rational_check(o->rational, e);
 }
 
@@ -22509,9 +22666,9 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_upper_free(ctx, &heat->up);
     hdi_free(ctx, heat->weight);
     hdi_laplacian_free(heat->lap, ctx);
-    if (heat->ground.diag) hdi_ground_free(&heat->ground, ctx);
+    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, ctx);
     hdi_elim_free(&heat->elim);
-    if (heat->silan) hdi_silan_free(heat->silan, ctx);
+    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, ctx);
     hdi_free(ctx, heat->silan);
     hdi_free(ctx, heat->batch_room);
     hdi_free(ctx, heat->perm);
@@ -22533,6 +22690,7 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     if (opts) o = *opts;
     if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context ? o.context : lap ? lap->context : NULL,
                        "solve options: not cleared before use", err) < 0) return c.e->status;
+    if (!HDI_HAS_ITERATIVE) return HDI_LEFT_OUT(c.e, ITERATIVE, "iterations");
     if (!lap || !rhs || !x) return hdi_missing(c.e);
     if (hdi_solve_check(t, theta, &o, c.e) < 0) return c.e->status;
     plan.solver = o.solver ? o.solver : HD_SOLVER_COCG;
@@ -22618,11 +22776,17 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
     return hdi_heat_run(&h);
 }
 
+/* Checks that there is selected inversion, and that the direct method is allowed. */
+static hd_status hdi_diagonal_check(hdi_heat_call *h) {
+    return HDI_HAS_DIAGONAL ? hdi_direct_only(h) : HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
+}
+
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
                                         double *D, size_t ldd, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
+        return hdi_heat_end(&h);
     if (!D) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
     if (h.e->status >= 0) (void)hdi_diagonal_run(&h, kernel, D, ldd);
@@ -22633,7 +22797,8 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
                                      double *values, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_direct_only(&h) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
+        return hdi_heat_end(&h);
     if (!values) hdi_missing(h.e);
     else if (kernel != HD_KERNEL_SYMMETRIC)
         hdi_fail(h.e, HD_ERR_ARGUMENT,
@@ -22648,6 +22813,7 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
                                     const double *t, int positive, hd_report *report, hd_error *err) {
     if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
+    if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
     if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
     if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
@@ -22661,7 +22827,8 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         const double *t, int32_t k, const int32_t *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0)
+    if (hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
+        !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     else if (k > 0 && (!sources || !D)) hdi_missing(h.e);
@@ -22675,7 +22842,8 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
                                      int64_t n_pairs, const int32_t *i, const int32_t *j, double *K,
                                      double *d, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
     h.relative = d != NULL;
     if (hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
         (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
@@ -22686,7 +22854,8 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       int32_t n_given, int32_t *vertex, double *distance, hd_report *report,
                                       hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0)
+    if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
+        !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     if (count < 1 || n_given < 0 || n_given > count || count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, count);
@@ -22715,6 +22884,7 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
     if (opts) o = *opts;
     if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0)
         return c.e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
     if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) return hdi_missing(c.e);
     hdi_refuse(n < 0 || n_tri < 0, "geodesic: a size is negative", c.e);
     if (hdi_geo_check(&o, c.e) < 0) return c.e->status;
@@ -22733,13 +22903,16 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, g ? g->ctx : NULL, err) < 0) return c.e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
     if (!g || !xyz) return hdi_missing(c.e);
     hdi_refuse(!g->lap, "geodesic: the plan was not made with the option updatable", c.e);
     if (c.e->status < 0) return c.e->status;
     return hdi_geo_update(g, xyz, c.e);
 }
 
-HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { hdi_geo_free(g); }
+HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) {
+    if (HDI_HAS_GEODESIC) hdi_geo_free(g);
+}
 
 static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
     if (rep && e->status < 0) {
@@ -22758,6 +22931,7 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
         hdi_error_clear(&rep->error);
     }
     if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
     if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
     if (!g->ready) return hdi_fail(c->e, HD_ERR_ARGUMENT, "geodesic: the last update failed");
     if (rep) hdi_geo_tell_plan(g, rep);
@@ -22774,7 +22948,8 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources,
                                             double *d, hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
-    if (hdi_geo_begin(g, sources, n_sources, d, report, err, &c) < 0) return hdi_geo_end(report, c.e);
+    if (hdi_geo_begin(g, sources, n_sources, d, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
+        return hdi_geo_end(report, c.e);
     if (n_sources < 1) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: there is no source");
     else (void)hdi_geo_one(g, sources, n_sources, d, report, c.e);
     return hdi_geo_end(report, c.e);
@@ -22783,7 +22958,8 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, c
 HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D,
                                              size_t ldd, hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
-    if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0) return hdi_geo_end(report, c.e);
+    if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
+        return hdi_geo_end(report, c.e);
     ldd = ldd ? ldd : HDI_CAST(size_t, g->n);
     hdi_refuse(k < 0, "geodesic: the number of sources is negative", c.e);
     hdi_refuse(ldd < HDI_CAST(size_t, g->n), "geodesic: the leading dimension is smaller than n", c.e);

@@ -64,6 +64,7 @@ DIGITS = 90                            # working precision
 MAX_DEGREE = 14                        # in double precision rounding takes over at 15
 CELLS_PER_EXTREMUM = 12                # grid cells between two neighbouring extrema of the error
 BEGIN, END = '/* poles.py: begin */', '/* poles.py: end */'
+GUARD = '#if HDI_HAS_DIAGONAL', '#endif'
 DECLARATION = 'static const double hdi_rat_table[] = {'
 
 
@@ -494,9 +495,11 @@ def table_text(sets):
              ' * pole: the real pole first (odd r), then one of each conjugate pair by ascending Im theta. */',
              DECLARATION]
     for one in sets:
+        if one.problem.name == 'diagonal' and GUARD[0] not in lines:   # the last sets, which smaller builds leave out
+            lines.append(GUARD[0])
         lines.append('    /* %s r = %d */' % (one.problem.name, one.degree))
         lines += ['    ' + ', '.join('%.17g' % v for v in row) + ',' for row in set_rows(one)]
-    return '\n'.join(lines + ['};', END])
+    return '\n'.join(lines + ([GUARD[1]] if GUARD[0] in lines else []) + ['};', END])
 
 
 def parse_table(path):
@@ -507,6 +510,7 @@ def parse_table(path):
         raise ValueError('%s: the lines %s and %s must occur once each' % (path, BEGIN, END))
     body = text[text.index(BEGIN) + len(BEGIN):text.index(END)]
     body = re.sub(r'/\*.*?\*/', ' ', body, flags=re.S)
+    body = re.sub(r'^#.*$', ' ', body, flags=re.M)
     if body.count(DECLARATION) != 1:
         raise ValueError('%s: no "%s" between the markers' % (path, DECLARATION))
     body = body[body.index(DECLARATION) + len(DECLARATION):]
