@@ -367,6 +367,25 @@ typedef struct hd_laplacian_opts {
     int32_t end_zero;
 } hd_laplacian_opts;
 
+/* A triangle mesh as it lies in a vertex buffer and an index buffer. Clear the struct, then set one pointer
+ * to positions and one to indices; the type of the pointer says how the buffer is read. Nothing need be
+ * aligned. Only lists of triangles are read: strips and fans must be converted before.
+ * NOTE: a buffer often repeats vertices along seams of texture coordinates or normals. Repeated vertices are
+ * different vertices, and no heat crosses such a seam. Weld them first. */
+typedef struct hd_mesh_view {
+    int32_t begin_zero;
+    const float *xyz_float;     /* the x of vertex 0, followed by its y and z */
+    const double *xyz_double;   /* or this */
+    size_t stride;              /* bytes from one vertex to the next; 0: packed, three numbers */
+    int64_t n;                  /* vertices */
+    const uint16_t *tri_u16;    /* indices, three for each triangle */
+    const uint32_t *tri_u32;    /* or this */
+    const int16_t *tri_i16;     /* or this */
+    const int32_t *tri_i32;     /* or this */
+    int64_t n_indices;          /* three times the number of triangles */
+    int32_t end_zero;
+} hd_mesh_view;
+
 /* What was found in a mesh. Nothing here is an error: faces that cannot be used are left out and counted. */
 typedef struct hd_mesh_report {
     int32_t n_faces;                 /* given */
@@ -721,6 +740,18 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
                                               const int32_t *tri, int32_t n_tri,
                                               const hd_laplacian_opts *opts, hd_error *err);
 
+/* The same for a mesh in a vertex and an index buffer, without a copy to make by hand. The answer is that of
+ * hd_laplacian_triangles on the same numbers as doubles and int32_t, to the last bit.
+ * view   its buffers are not used after this call
+ * Errors as hd_laplacian_triangles, with the face and the vertex as they are in the buffers. HD_ERR_ARGUMENT:
+ *        the view was not cleared, not exactly one pointer to positions or to indices is set, the stride
+ *        is shorter than a position, or n_indices is not a multiple of three. HD_ERR_TOO_LARGE: more than
+ *        2^31 - 1 vertices or faces, or positions beyond the address space
+ * Cost   24 bytes for each vertex and 12 for each face, for the time of the call. Aligned int32_t, and packed
+ *        and aligned doubles, are read in place */
+HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view *view,
+                                         const hd_laplacian_opts *opts, hd_error *err);
+
 /* The Laplacian of a mesh of polygons. Faces may have any number of corners, and may be triangles, non-planar
  * or non-convex.
  * xyz      [3 n] coordinates, finite
@@ -820,6 +851,10 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  *        faces has an area any more). After an error nothing has changed
  * Cost   one pass over faces and entries; allocates nothing. Not while a plan on lap is at work */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err);
+/* The same for positions in a vertex buffer. view->n must be lap->n; indices are not looked at. Allocates 24
+ * bytes for each vertex for the time of the call, unless the positions are packed and aligned doubles. */
+HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh_view *view,
+                                                hd_error *err);
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
 
@@ -1150,6 +1185,9 @@ typedef struct hd_geodesic hd_geodesic;
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n,
                                           const int32_t *tri, int32_t n_tri,
                                           const hd_geodesic_opts *opts, hd_error *err);
+/* The same for a mesh in a vertex and an index buffer. Errors and cost of the view: see hd_laplacian_view. */
+HEATDIFF_API hd_status hd_geodesic_create_view(hd_geodesic **out, const hd_mesh_view *view,
+                                               const hd_geodesic_opts *opts, hd_error *err);
 /* New coordinates for the same faces, of a plan made with the option updatable. Ordering and analysis stay.
  * xyz    [3 n] finite. Faces that were left out stay left out
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face: it has no area any more, or vertex). Then
@@ -1157,6 +1195,9 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
  *        query until an update succeeds
  * Cost   one pass over faces and entries, and the two factorisations */
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_error *err);
+/* The same for positions in a vertex buffer, as in hd_laplacian_update_view. */
+HEATDIFF_API hd_status hd_geodesic_update_view(hd_geodesic *g, const hd_mesh_view *view,
+                                               hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to the nearest source.
@@ -4753,6 +4794,12 @@ static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const i
     mesh->m = m;
 }
 
+/* id: what corner i of all faces names. */
+static hd_status hdi_corner_fail(int64_t i, int64_t id, hd_error *e) {
+    return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1,
+                         HDI_CAST(double, id));
+}
+
 static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri, int32_t m,
                                 hd_error *e) {
     int64_t i;
@@ -4760,11 +4807,76 @@ static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri
         if (!hdi_finite(xyz[i]))
             return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, xyz[i]);
     for (i = 0; i < 3 * HDI_CAST(int64_t, m); i++)
-        if (tri[i] < 0 || tri[i] >= n)
-            return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1,
-                                 tri[i]);
+        if (tri[i] < 0 || tri[i] >= n) return hdi_corner_fail(i, tri[i], e);
     return HD_OK;
 }
+
+/* ---- vertex and index buffers ---- */
+
+/* Bytes of a position. */
+static size_t hdi_view_wide(const hd_mesh_view *v) {
+    return 3 * (v->xyz_float ? sizeof(float) : sizeof(double));
+}
+
+static int hdi_aligned(const void *p, size_t size) { return HDI_RECAST(size_t, p) % size == 0; }
+
+/* Positions as packed doubles. Bytes are copied, since they need not be aligned. */
+static const double *hdi_view_places(const hd_mesh_view *v, hdi_scope *s) {
+    const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
+    const void *first = v->xyz_float ? HDI_CAST(const void *, v->xyz_float) : v->xyz_double;
+    const char *from = HDI_CAST(const char *, first);
+    double *xyz, *to;
+    float p[3];
+    int64_t i;
+    if (!v->xyz_float && stride == wide && hdi_aligned(first, sizeof(double))) return v->xyz_double;
+    to = xyz = HDI_TAKE(s, double, 3 * v->n);
+    for (i = 0; i < v->n && xyz; i++, to += 3) {
+        memcpy(v->xyz_float ? HDI_CAST(void *, p) : to, from + HDI_CAST(size_t, i) * stride, wide);
+        if (!v->xyz_float) continue;
+        to[0] = HDI_CAST(double, p[0]);
+        to[1] = HDI_CAST(double, p[1]);
+        to[2] = HDI_CAST(double, p[2]);
+    }
+    return xyz;
+}
+
+/* Index number i of a buffer of the type that the view has. */
+static int64_t hdi_view_index(const hd_mesh_view *v, const char *first, int64_t i) {
+    const char *at = first + HDI_CAST(size_t, i) * (v->tri_u16 || v->tri_i16 ? 2 : 4);
+    uint16_t half;
+    uint32_t full;
+    memcpy(&half, at, sizeof half);
+    if (v->tri_u16) return half;
+    if (v->tri_i16) return half < 0x8000 ? half : HDI_CAST(int64_t, half) - 0x10000;
+    memcpy(&full, at, sizeof full);
+    if (v->tri_u32) return full;
+    return full < 0x80000000u ? full : HDI_CAST(int64_t, full) - HDI_CAST(int64_t, 0x100000000);
+}
+
+/* Indices as int32_t. Those of no vertex are an error here, as not all of them are in the range of the type.
+ * Coordinates that are not finite come before it, as they do for packed arrays. */
+static const int32_t *hdi_view_corners(const hd_mesh_view *v, const double *xyz, hdi_scope *s) {
+    const void *first = v->tri_u16 ? HDI_CAST(const void *, v->tri_u16)
+                      : v->tri_i16 ? HDI_CAST(const void *, v->tri_i16)
+                      : v->tri_u32 ? HDI_CAST(const void *, v->tri_u32) : v->tri_i32;
+    const char *from = HDI_CAST(const char *, first);
+    int32_t *tri;
+    int64_t i;
+    if (v->tri_i32 && hdi_aligned(first, sizeof(int32_t))) return v->tri_i32;
+    tri = HDI_TAKE(s, int32_t, v->n_indices);
+    for (i = 0; i < v->n_indices && tri; i++) {
+        const int64_t id = hdi_view_index(v, from, i);
+        if (id < 0 || id >= v->n) {
+            if (hdi_mesh_check(xyz, HDI_CAST(int32_t, v->n), NULL, 0, s->e) >= 0)
+                hdi_corner_fail(i, id, s->e);
+            return NULL;
+        }
+        tri[i] = HDI_CAST(int32_t, id);
+    }
+    return tri;
+}
+
+/* ---- faces ---- */
 
 /* What a block of faces adds to the report. */
 typedef struct hdi_face_tally {
@@ -22145,6 +22257,77 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
     return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, opts && opts->updatable, c.e));
 }
 
+/* ---- views of vertex and index buffers ---- */
+
+/* The arrays of a view: the caller's where they are as we want them, else copies. */
+typedef struct hdi_view {
+    hdi_scope s;
+    const double *xyz;
+    const int32_t *tri;
+    int32_t n, n_tri;
+} hdi_view;
+
+/* Sizes. No position may lie beyond the address space. */
+static hd_status hdi_view_sizes(const hd_mesh_view *v, int faces, hd_error *e) {
+    const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
+    hdi_refuse(v->n < 0 || (faces && v->n_indices < 0), "mesh view: a count is negative", e);
+    hdi_refuse_value(stride < wide, "mesh view: the stride is shorter than a position",
+                     HDI_CAST(double, stride), e);
+    hdi_refuse_value(faces && v->n_indices % 3 != 0,
+                     "mesh view: the number of indices is not a multiple of three",
+                     HDI_CAST(double, v->n_indices), e);
+    if (e->status < 0) return e->status;
+    if (v->n > INT32_MAX || (faces && v->n_indices / 3 > INT32_MAX))
+        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: more than 2^31 - 1 vertices or faces");
+    if (v->n > 1 && HDI_CAST(uint64_t, v->n - 1) > (SIZE_MAX / 2 - wide) / stride)
+        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: positions lie beyond the address space");
+    return HD_OK;
+}
+
+static hd_status hdi_view_check(const hd_mesh_view *v, int faces, hd_error *e) {
+    const int places = (v->xyz_float != NULL) + (v->xyz_double != NULL);
+    const int indices = (v->tri_u16 != NULL) + (v->tri_u32 != NULL) + (v->tri_i16 != NULL)
+                      + (v->tri_i32 != NULL);
+    hdi_refuse(!HDI_CLEARED(v), "mesh view: not cleared before use", e);
+    hdi_refuse(places > 1 || (v->n > 0 && places < 1),
+               "mesh view: set one of xyz_float and xyz_double", e);
+    hdi_refuse(faces && (indices > 1 || (v->n_indices > 0 && indices < 1)),
+               "mesh view: set one of tri_u16, tri_u32, tri_i16 and tri_i32", e);
+    return e->status < 0 ? e->status : hdi_view_sizes(v, faces, e);
+}
+
+/* Opens a view; its scope is to be ended in any case. faces: its indices are wanted too. */
+static hd_status hdi_view_open(hdi_view *out, const hd_mesh_view *v, int faces, const hdi_call *c) {
+    memset(out, 0, sizeof *out);
+    out->s = hdi_scope_begin(c->ctx, c->e);
+    if (!v) return hdi_missing(c->e);
+    if (hdi_view_check(v, faces, c->e) < 0) return c->e->status;
+    out->n = HDI_CAST(int32_t, v->n);
+    out->xyz = hdi_view_places(v, &out->s);
+    if (!faces || c->e->status < 0) return c->e->status;
+    out->n_tri = HDI_CAST(int32_t, v->n_indices / 3);
+    out->tri = hdi_view_corners(v, out->xyz, &out->s);
+    return c->e->status;
+}
+
+/* Opens a view of new positions for n vertices. */
+static hd_status hdi_view_positions(hdi_view *out, const hd_mesh_view *v, int32_t n, const hdi_call *c) {
+    if (hdi_view_open(out, v, 0, c) < 0 || out->n == n) return c->e->status;
+    return hdi_fail_row(c->e, HD_ERR_ARGUMENT, "mesh view: the mesh has another number of vertices", -1, -1,
+                        HDI_CAST(double, v->n));
+}
+
+HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view *view,
+                                         const hd_laplacian_opts *opts, hd_error *err) {
+    hdi_view v;
+    hdi_call c;
+    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
+                       "laplacian options: not cleared before use", err) < 0) return c.e->status;
+    if (hdi_view_open(&v, view, 1, &c) >= 0)
+        (void)hd_laplacian_triangles(out, v.xyz, v.n, v.tri, v.n_tri, opts, c.e);
+    return hdi_scope_end(&v.s);
+}
+
 HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n,
                                              const int64_t *face_ptr, const int32_t *face_idx,
                                              int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
@@ -22331,6 +22514,15 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz,
     hdi_refuse(!lap->moving, "update: the Laplacian was not made with the option updatable", c.e);
     if (c.e->status < 0) return c.e->status;
     return hdi_lap_update(lap, xyz, c.e);
+}
+
+HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh_view *view, hd_error *err) {
+    hdi_view v;
+    hdi_call c;
+    if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (!lap) return hdi_missing(c.e);
+    if (hdi_view_positions(&v, view, lap->n, &c) >= 0) (void)hd_laplacian_update(lap, v.xyz, c.e);
+    return hdi_scope_end(&v.s);
 }
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) {
@@ -22898,6 +23090,26 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
     if (hdi_geo_make(g, xyz, tri, n_tri, &o, c.e) >= 0) *out = g;
     else hdi_geo_free(g);
     return c.e->status;
+}
+
+HEATDIFF_API hd_status hd_geodesic_create_view(hd_geodesic **out, const hd_mesh_view *view,
+                                               const hd_geodesic_opts *opts, hd_error *err) {
+    hdi_view v;
+    hdi_call c;
+    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
+                       "geodesic options: not cleared before use", err) < 0) return c.e->status;
+    if (hdi_view_open(&v, view, 1, &c) >= 0)
+        (void)hd_geodesic_create(out, v.xyz, v.n, v.tri, v.n_tri, opts, c.e);
+    return hdi_scope_end(&v.s);
+}
+
+HEATDIFF_API hd_status hd_geodesic_update_view(hd_geodesic *g, const hd_mesh_view *view, hd_error *err) {
+    hdi_view v;
+    hdi_call c;
+    if (hdi_enter(&c, g ? g->ctx : NULL, err) < 0) return c.e->status;
+    if (!g) return hdi_missing(c.e);
+    if (hdi_view_positions(&v, view, g->n, &c) >= 0) (void)hd_geodesic_update(g, v.xyz, c.e);
+    return hdi_scope_end(&v.s);
 }
 
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_error *err) {

@@ -1,0 +1,262 @@
+/* test_view.h - meshes in vertex and index buffers: the same answers to the bit, the same errors, and sizes that cannot be */
+
+#ifndef TEST_VIEW_H
+#define TEST_VIEW_H
+
+/* The shape as a buffer: positions of one type, stride bytes apart from offset on, and indices of one type from offset on. */
+typedef struct view_buffers {
+    char *vertices, *indices;
+    shape s;                             /* the same numbers as they come out of the buffer */
+    hd_mesh_view view;
+} view_buffers;
+
+enum view_index { VIEW_U16, VIEW_U32, VIEW_I16, VIEW_I32 };
+
+static void view_put_index(char *to, enum view_index type, int64_t value) {
+    const uint16_t half = (uint16_t)value;
+    const uint32_t full = (uint32_t)value;
+    if (type == VIEW_U16 || type == VIEW_I16) memcpy(to, &half, sizeof half);
+    else memcpy(to, &full, sizeof full);
+}
+
+static void view_put_position(char *to, int floats, const double *p) {
+    float f[3];
+    int q;
+    for (q = 0; q < 3; q++) f[q] = (float)p[q];
+    if (floats) memcpy(to, f, sizeof f);
+    else memcpy(to, p, 3 * sizeof *p);
+}
+
+static view_buffers view_make(const shape *s, int floats, size_t stride, enum view_index type, size_t offset) {
+    const size_t wide = floats ? 12 : 24, step = stride ? stride : wide, size = type == VIEW_U16 || type == VIEW_I16 ? 2 : 4;
+    view_buffers b;
+    const void *xyz, *tri;
+    int32_t i;
+    memset(&b, 0, sizeof b);
+    b.vertices = DENSE_NEW(char, offset + (size_t)s->n * step + wide);
+    b.indices = DENSE_NEW(char, offset + 3 * (size_t)s->n_tri * size);
+    memset(b.vertices, 0x7f, offset + (size_t)s->n * step + wide);
+    b.s.n = s->n;
+    b.s.n_tri = s->n_tri;
+    b.s.xyz = DENSE_NEW(double, 3 * s->n);
+    b.s.tri = DENSE_NEW(int32_t, 3 * s->n_tri);
+    memcpy(b.s.tri, s->tri, 3 * (size_t)s->n_tri * sizeof *s->tri);
+    for (i = 0; i < 3 * s->n; i++) b.s.xyz[i] = floats ? (double)(float)s->xyz[i] : s->xyz[i];
+    for (i = 0; i < s->n; i++) view_put_position(b.vertices + offset + (size_t)i * step, floats, s->xyz + 3 * i);
+    for (i = 0; i < 3 * s->n_tri; i++) view_put_index(b.indices + offset + (size_t)i * size, type, s->tri[i]);
+    xyz = b.vertices + offset;
+    tri = b.indices + offset;
+    if (floats) b.view.xyz_float = (const float *)xyz;
+    else b.view.xyz_double = (const double *)xyz;
+    if (type == VIEW_U16) b.view.tri_u16 = (const uint16_t *)tri;
+    else if (type == VIEW_U32) b.view.tri_u32 = (const uint32_t *)tri;
+    else if (type == VIEW_I16) b.view.tri_i16 = (const int16_t *)tri;
+    else b.view.tri_i32 = (const int32_t *)tri;
+    b.view.stride = stride;
+    b.view.n = s->n;
+    b.view.n_indices = 3 * (int64_t)s->n_tri;
+    return b;
+}
+
+static void view_free(view_buffers *b) {
+    free(b->vertices);
+    free(b->indices);
+    shape_free(&b->s);
+}
+
+static int view_same_laplacian(const hd_laplacian *a, const hd_laplacian *b) {
+    const size_t bytes = (size_t)a->L.nnz * sizeof(double);
+    return a->n == b->n && a->n_active == b->n_active && a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, bytes / 2) == 0 &&
+           memcmp(a->L.val, b->L.val, bytes) == 0 && memcmp(a->B, b->B, bytes) == 0 && a->h == b->h && a->area == b->area &&
+           memcmp(a->xyz, b->xyz, 3 * (size_t)a->n_active * sizeof(double)) == 0;
+}
+
+/* Every door with one form of the buffers, and the same numbers as doubles. */
+static void view_answers(const shape *s, const shape *moved, int floats, size_t stride, enum view_index type, size_t offset) {
+    view_buffers b = view_make(s, floats, stride, type, offset), b2 = view_make(moved, floats, stride, type, offset);
+    double *d = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    const int32_t source = s->tri[0];
+    hd_laplacian_opts lo = {0};
+    hd_geodesic_opts go = {0};
+    hd_laplacian *lap = NULL, *other = NULL;
+    hd_geodesic *g = NULL, *other_g = NULL;
+    hd_error e;
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    int frame;
+    lo.updatable = go.updatable = 1;
+    lo.context = go.context = &ctx;
+    CHECK(hd_laplacian_view(&lap, &b.view, &lo, &e) == HD_OK && hd_geodesic_create_view(&g, &b.view, &go, &e) == HD_OK);
+    CHECK(hd_laplacian_triangles(&other, b.s.xyz, s->n, b.s.tri, s->n_tri, &lo, &e) == HD_OK);
+    CHECK(hd_geodesic_create(&other_g, b.s.xyz, s->n, b.s.tri, s->n_tri, &go, &e) == HD_OK);
+    for (frame = 0; frame < 2; frame++) {
+        CHECK_MSG(view_same_laplacian(lap, other), "%d %d %d %d, frame %d", floats, (int)stride, (int)type, (int)offset, frame);
+        CHECK(hd_geodesic_distance(g, 1, &source, d, NULL, &e) >= 0 && hd_geodesic_distance(other_g, 1, &source, want, NULL, &e) >= 0);
+        CHECK_MSG(memcmp(d, want, (size_t)s->n * sizeof *d) == 0, "%d %d %d %d, frame %d", floats, (int)stride, (int)type, (int)offset, frame);
+        CHECK(hd_laplacian_update_view(lap, &b2.view, &e) == HD_OK && hd_laplacian_update(other, b2.s.xyz, &e) == HD_OK);
+        CHECK(hd_geodesic_update_view(g, &b2.view, &e) == HD_OK && hd_geodesic_update(other_g, b2.s.xyz, &e) == HD_OK);
+    }
+    hd_laplacian_free(lap);
+    hd_laplacian_free(other);
+    hd_geodesic_free(g);
+    hd_geodesic_free(other_g);
+    test_memory_done(&m, &ctx, "views");
+    view_free(&b);
+    view_free(&b2);
+    free(d);
+    free(want);
+}
+
+static void view_forms(void) {
+    shape s = shape_bumpy(2, 5), moved = shape_bumpy(2, 6);
+    static const size_t strides[5] = {0, 12, 13, 14, 32}, wide_strides[4] = {0, 24, 25, 40};
+    size_t k, offset;
+    for (offset = 0; offset < 2; offset++) {
+        for (k = 0; k < 5; k++) view_answers(&s, &moved, 1, strides[k], (enum view_index)(k % 4), offset);
+        for (k = 0; k < 4; k++) view_answers(&s, &moved, 0, wide_strides[k], (enum view_index)k, offset);
+    }
+    shape_free(&s);
+    shape_free(&moved);
+}
+
+/* The two doors that make something refuse alike. Returns the error of the first. */
+static hd_error view_refused(const hd_mesh_view *v) {
+    hd_laplacian *lap = NULL;
+    hd_geodesic *g = NULL;
+    hd_error e, e2;
+    CHECK(hd_laplacian_view(&lap, v, NULL, &e) < 0 && lap == NULL);
+    CHECK(hd_geodesic_create_view(&g, v, NULL, &e2) < 0 && g == NULL);
+    CHECK_MSG(e.status == e2.status && e.face == e2.face && e.vertex == e2.vertex && memcmp(&e.value, &e2.value, sizeof e.value) == 0 && strcmp(e.text, e2.text) == 0,
+              "%d %s %lld %lld %g, %d %s %lld %lld %g", (int)e.status, e.text, (long long)e.face, (long long)e.vertex, e.value, (int)e2.status, e2.text,
+              (long long)e2.face, (long long)e2.vertex, e2.value);
+    return e;
+}
+
+/* Data that cannot be: the error of hd_laplacian_triangles, and where the type cannot hold the value, the value itself. */
+static void view_bad_data(void) {
+    static const enum view_index types[4] = {VIEW_U16, VIEW_U32, VIEW_I16, VIEW_I32};
+    static const double values[4] = {65535, 4294967295.0, -1, -1};
+    shape s = shape_grid(6, 5, 0);
+    hd_laplacian *lap = NULL;
+    hd_error e, want;
+    int k;
+    for (k = 0; k < 4; k++) {
+        view_buffers b = view_make(&s, 1, 20, types[k], 1);
+        float *broken;
+        char *at = b.vertices + 1 + 20 * 7 + 4;
+        view_put_index(b.indices + 1 + 11 * (k % 2 ? 4 : 2), types[k], -1);
+        e = view_refused(&b.view);
+        b.s.tri[11] = -1;
+        CHECK(hd_laplacian_triangles(&lap, b.s.xyz, s.n, b.s.tri, s.n_tri, NULL, &want) < 0);
+        CHECK_MSG(e.status == HD_ERR_INDEX && e.face == 3 && e.vertex == want.vertex && e.value == values[k] && strcmp(e.text, want.text) == 0,
+                  "type %d: %s, face %lld, value %g", k, e.text, (long long)e.face, e.value);
+        broken = DENSE_NEW(float, 1);                        /* a coordinate comes before an index */
+        *broken = (float)NAN;
+        memcpy(at, broken, sizeof *broken);
+        e = view_refused(&b.view);
+        CHECK(e.status == HD_ERR_NOT_FINITE && e.vertex == 7 && e.face == -1);
+        view_put_index(b.indices + 1 + 11 * (k % 2 ? 4 : 2), types[k], s.tri[11]);
+        e = view_refused(&b.view);
+        CHECK(e.status == HD_ERR_NOT_FINITE && e.vertex == 7 && e.face == -1);
+        free(broken);
+        view_free(&b);
+    }
+    shape_free(&s);
+}
+
+/* Views that say too little, too much, or what cannot be. Nothing of the buffers is read then. */
+static void view_bad_views(void) {
+    shape s = shape_grid(6, 5, 0);
+    view_buffers b = view_make(&s, 1, 16, VIEW_U16, 0);
+    const uint32_t other[3] = {0, 1, 2};
+    hd_laplacian_opts o = {0};
+    hd_laplacian *lap = NULL;
+    hd_geodesic *g = NULL;
+    hd_mesh_view v;
+    hd_error e;
+    int k;
+    CHECK(view_refused(NULL).status == HD_ERR_ARGUMENT);
+#define VIEW_REFUSES(change, code, words) \
+    do { v = b.view; change; e = view_refused(&v); CHECK_MSG(e.status == (code) && strstr(e.text, words) != NULL, "%s", e.text); } while (0)
+    VIEW_REFUSES(v.begin_zero = 1, HD_ERR_ARGUMENT, "not cleared");
+    VIEW_REFUSES(v.end_zero = 1, HD_ERR_ARGUMENT, "not cleared");
+    VIEW_REFUSES(v.xyz_double = s.xyz, HD_ERR_ARGUMENT, "one of xyz");
+    VIEW_REFUSES(v.xyz_float = NULL, HD_ERR_ARGUMENT, "one of xyz");
+    VIEW_REFUSES(v.tri_u32 = other, HD_ERR_ARGUMENT, "one of tri");
+    VIEW_REFUSES(v.tri_u16 = NULL, HD_ERR_ARGUMENT, "one of tri");
+    VIEW_REFUSES(v.stride = 11, HD_ERR_ARGUMENT, "stride");
+    VIEW_REFUSES(v.n = -1, HD_ERR_ARGUMENT, "negative");
+    VIEW_REFUSES(v.n_indices = -3, HD_ERR_ARGUMENT, "negative");
+    VIEW_REFUSES(v.n_indices = s.n_tri + 1 + (s.n_tri % 3 == 2), HD_ERR_ARGUMENT, "multiple of three");
+    VIEW_REFUSES(v.n = (int64_t)INT32_MAX + 1, HD_ERR_TOO_LARGE, "2^31");
+    VIEW_REFUSES(v.n_indices = 3 * ((int64_t)INT32_MAX + 1), HD_ERR_TOO_LARGE, "2^31");
+    VIEW_REFUSES(v.n = INT64_MAX, HD_ERR_TOO_LARGE, "2^31");
+    VIEW_REFUSES(v.stride = SIZE_MAX, HD_ERR_TOO_LARGE, "address space");
+    VIEW_REFUSES(v.stride = SIZE_MAX / 2 / (size_t)(s.n - 1), HD_ERR_TOO_LARGE, "address space");
+    VIEW_REFUSES(v.n_indices = 0, HD_ERR_EMPTY, "");
+    VIEW_REFUSES(v.n = 0, HD_ERR_INDEX, "does not exist");
+#undef VIEW_REFUSES
+    for (k = 0; k < 2; k++) {                    /* a stride without a second vertex to go to */
+        v = b.view;
+        v.n = 1;
+        v.n_indices = 0;
+        v.stride = k ? SIZE_MAX : 0;
+        CHECK(view_refused(&v).status == HD_ERR_EMPTY);
+    }
+    CHECK(hd_laplacian_view(NULL, &b.view, NULL, &e) == HD_ERR_ARGUMENT && hd_geodesic_create_view(NULL, &b.view, NULL, &e) == HD_ERR_ARGUMENT);
+    o.updatable = 1;
+    CHECK(hd_laplacian_view(&lap, &b.view, &o, &e) == HD_OK && hd_geodesic_create_view(&g, &b.view, NULL, &e) == HD_OK);
+    v = b.view;
+    v.n--;
+    CHECK(hd_laplacian_update_view(lap, &v, &e) == HD_ERR_ARGUMENT && e.value == s.n - 1 && strstr(e.text, "number of vertices"));
+    CHECK(hd_geodesic_update_view(g, &v, &e) == HD_ERR_ARGUMENT && e.value == s.n - 1);
+    CHECK(hd_laplacian_update_view(lap, NULL, &e) == HD_ERR_ARGUMENT && hd_laplacian_update_view(NULL, &v, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_update_view(NULL, &v, &e) == HD_ERR_ARGUMENT && lap->version == 0);
+    v = b.view;                                  /* indices are of no matter to an update */
+    v.tri_u16 = NULL;
+    v.n_indices = 1;
+    CHECK(hd_laplacian_update_view(lap, &v, &e) == HD_OK && lap->version == 1);
+    o.end_zero = 1;
+    CHECK(hd_laplacian_view(&lap, &b.view, &o, &e) == HD_ERR_ARGUMENT && strstr(e.text, "options") != NULL);
+    hd_laplacian_free(lap);
+    hd_geodesic_free(g);
+    view_free(&b);
+    shape_free(&s);
+}
+
+/* Out of memory at every allocation: a status, nothing left, nothing changed. */
+static void view_memory(void) {
+    shape s = shape_grid(6, 5, 0);
+    view_buffers b = view_make(&s, 1, 16, VIEW_U16, 0);
+    hd_laplacian_opts o = {0};
+    hd_error e;
+    int64_t k;
+    int done = 0;
+    o.updatable = 1;
+    for (k = 1; !done && k < 200; k++) {
+        test_memory m;
+        hd_context ctx = test_memory_context(&m);
+        hd_laplacian *lap = NULL;
+        ctx.allocation_limit = (uint64_t)k;
+        o.context = &ctx;
+        if (hd_laplacian_view(&lap, &b.view, &o, &e) < 0) CHECK(e.status == HD_ERR_MEMORY_LIMIT && lap == NULL);
+        else {
+            CHECK(hd_laplacian_update_view(lap, &b.view, &e) == HD_ERR_MEMORY_LIMIT && lap->version == 0);
+            done = 1;
+        }
+        hd_laplacian_free(lap);
+        test_memory_done(&m, &ctx, "views, out of memory");
+    }
+    CHECK(done && k > 4);
+    view_free(&b);
+    shape_free(&s);
+}
+
+static void test_view(void) {
+    view_forms();
+    view_bad_data();
+    view_bad_views();
+    view_memory();
+}
+
+#endif
