@@ -13836,7 +13836,7 @@ enum {
 /* One system under solution. It can be stopped and taken up again. */
 typedef struct hdi_krylov {
     hdi_system a;
-    hdi_precond m;
+    const hdi_precond *m;
     hd_solver solver;
     const double *weight;                /* [n] 1/diag(B): the residual's norm */
     hd_c64 *sums;                        /* [n_components] */
@@ -13850,14 +13850,15 @@ typedef struct hdi_krylov {
     double beta, beta_old, c1, c2;
 } hdi_krylov;
 
-/* Vectors that a system owns, x and r included. One more after them is work within a step. */
+/* Vectors that a system under solution takes, x and r included. One more after them is work within a step. A
+ * system that waits needs x alone: hdi_krylov_residual makes r again, to the last bit. */
 static int hdi_krylov_vectors(hd_solver solver) {
     return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7;
 }
 
 /* z = M^-1 r without its constants. */
 static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
-    hdi_precond_apply(&k->m, r, z);
+    hdi_precond_apply(k->m, r, z);
     hdi_deflate(k->a.lap, z, k->sums);
 }
 
@@ -13911,7 +13912,7 @@ static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r
     const int32_t n = lap->n_active, *comp = lap->n_components > 1 ? lap->component : NULL;
     hd_c64 dot = hdi_c(0, 0), mean = dot, *sums = k->sums;
     int32_t i;
-    hdi_precond_apply(&k->m, r, z);
+    hdi_precond_apply(k->m, r, z);
     memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
     for (i = 0; i < n; i++) {
         dot = hdi_cadd(dot, hdi_cmul(r[i], z[i]));
@@ -15440,7 +15441,9 @@ typedef struct hdi_family {
     hd_rational set;
     double t;
     int32_t filled;              /* the preconditioners are those of set and t */
-    int32_t n_values;            /* poles that values has room for */
+    /* Preconditioners that values has room for: of all poles, or, where there is no memory for them, of one.
+     * Then each is made when its pole has its turn. */
+    int32_t n_values;
     hdi_precond m[HD_MAX_POLES];
     hd_c64 *values;
 } hdi_family;
@@ -15452,62 +15455,85 @@ static void hdi_family_free(hdi_family *fam) {
     fam->filled = 0;
 }
 
-/* Takes up a set and a time, with room for the preconditioners. When filled is 0, hdi_family_fill must
- * follow. */
-static hd_status hdi_family_set(hdi_family *fam, const hd_rational *set, double t, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
-    const uint64_t size =
-        fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
-    int32_t i;
-    if (fam->filled && fam->t == t && memcmp(&fam->set, set, sizeof *set) == 0) return HD_OK;
+/* Takes up a set and a time. When filled is 0, hdi_family_fill must follow. */
+static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
+    if (fam->filled && fam->t == t && memcmp(&fam->set, set, sizeof *set) == 0) return;
     fam->filled = 0;
-    if (fam->n_values < set->n_poles) {
-        hdi_family_free(fam);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, HDI_CAST(uint64_t, set->n_poles) * (size + 1), e);
-        if (!fam->values) return e->status;
-        fam->n_values = set->n_poles;
-    }
     fam->set = *set;
     fam->t = t;
     hdi_noise_weights(fam->lap, t, hdi_rat_reach(set), fam->noise, fam->noise_work);
-    for (i = 0; i < set->n_poles; i++) {
+}
+
+/* Do poles make their preconditioners in turns? */
+static int hdi_family_turns(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
+
+static int hdi_out_of_memory(hd_status status) {
+    return status == HD_ERR_MEMORY || status == HD_ERR_MEMORY_LIMIT;
+}
+
+/* Room for the preconditioners of the set. */
+static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
+    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
+    const uint64_t size =
+        fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
+    int32_t i, room = fam->set.n_poles;
+    if (fam->n_values < room) {
+        hdi_family_free(fam);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, HDI_CAST(uint64_t, room) * (size + 1), e);
+        if (!fam->values && hdi_out_of_memory(e->status) && room > 1) {
+            hdi_error_clear(e);
+            fam->values = HDI_NEW(fam->ctx, hd_c64, size + 1, e);
+            room = 1;
+        }
+        if (!fam->values) return e->status;
+        fam->n_values = room;
+    }
+    for (i = 0; i < fam->set.n_poles; i++) {
         fam->m[i].kind = fam->precond;
         fam->m[i].up = fam->up;
-        fam->m[i].d_inv = size ? fam->values + HDI_CAST(size_t, i) * (size + 1) : NULL;
+        fam->m[i].d_inv =
+            size ? fam->values + (hdi_family_turns(fam) ? 0 : HDI_CAST(size_t, i) * (size + 1)) : NULL;
         fam->m[i].u = size > n ? fam->m[i].d_inv + n : NULL;
     }
     return HD_OK;
 }
 
+/* Complex numbers of work that a preconditioner takes: n of them, and n integers. */
+static uint64_t hdi_fill_work(uint64_t n) { return n + (n + 1) / 2; }
+
+/* Makes the preconditioner of pole p. */
+static void hdi_family_make(const hdi_family *fam, int32_t p, hd_c64 *work) {
+    hdi_precond m = fam->m[p];
+    hdi_system a;
+    a.lap = fam->lap;
+    a.t = fam->t;
+    a.theta = fam->set.theta[p];
+    /* real, positive definite */
+    if (fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
+    hdi_precond_make(&m, &a, work, HDI_CAST(int64_t *, HDI_CAST(void *, work + fam->lap->n_active)));
+}
+
 typedef struct hdi_fill_job {
     hdi_family *fam;
     hd_c64 *work;
-    uint64_t stride;             /* of work from pole to pole, at least 2 n */
 } hdi_fill_job;
 
 static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
-    hdi_fill_job *job = HDI_CAST(hdi_fill_job *, arg);
-    hd_c64 *work = job->work + job->stride * HDI_CAST(size_t, index);
-    hdi_system a;
+    const hdi_fill_job *job = HDI_CAST(const hdi_fill_job *, arg);
+    const uint64_t stride = hdi_fill_work(HDI_CAST(uint64_t, job->fam->lap->n_active));
     (void)worker;
-    a.lap = job->fam->lap;
-    a.t = job->fam->t;
-    a.theta = job->fam->set.theta[index];
-    /* real, positive definite */
-    if (job->fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
-    hdi_precond_make(job->fam->m + index, &a, work,
-                     HDI_CAST(int64_t *, HDI_CAST(void *, work + job->fam->lap->n_active)));
+    hdi_family_make(job->fam, HDI_CAST(int32_t, index), job->work + stride * HDI_CAST(size_t, index));
 }
 
-/* Makes the preconditioners, one parallel task each. */
-static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, uint64_t stride, hd_error *e) {
+/* Makes the preconditioners, one parallel task each. work: [hdi_fill_work] for each of them. */
+static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
     hdi_fill_job job;
     if (fam->filled) return HD_OK;
+    if (hdi_family_room(fam, e) < 0) return e->status;
     if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
     job.fam = fam;
     job.work = work;
-    job.stride = stride;
-    hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, &job);
+    if (!hdi_family_turns(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, &job);
     fam->filled = 1;
     return HD_OK;
 }
@@ -15518,23 +15544,32 @@ enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 8, HDI_BATCHES
 
 enum { HDI_LANCZOS_MAX = 4096 };
 
+/* The most steps that Lanczos can take for t lambda_max. In exact arithmetic the error of m steps is at most
+ * 10 exp(-m^2/(1.25 t lambda_max)) from sqrt(t lambda_max) on, and falls faster beyond t lambda_max/2
+ * (Hochbruck, Lubich 1997, theorem 2): 7.4 sqrt(t lambda_max) steps for 1e-18. Rounding repeats some of them,
+ * and to see that no step helps any more takes a third more and 20. */
+static int32_t hdi_lanczos_most(double t, double lambda_max) {
+    const double most = 100 + 12 * sqrt(t * lambda_max);
+    return most < HDI_LANCZOS_MAX ? HDI_CAST(int32_t, most) : HDI_LANCZOS_MAX;
+}
+
 /* The state of a Lanczos process in the B inner product. */
 typedef struct hdi_lanczos {
     double *v, *c, *c_old;                /* [n] v_m, B v_m, B v_(m-1) */
-    double *alpha, *beta;                 /* [MAX + 1] T: diagonal, and beta[j] between j - 1 and j */
-    double *d, *e, *z0, *z1, *y;          /* [MAX + 1] */
-    hd_c64 *work;                         /* [2 MAX] */
+    double *alpha, *beta;                 /* [room + 1] T: diagonal, and beta[j] between j - 1 and j */
+    double *d, *e, *z0, *z1, *y;          /* [room + 1] */
+    hd_c64 *work;                         /* [2 room] */
     double noise;                         /* largest error of a step by rounding, in the B norm */
-    int32_t m;
+    int32_t m, room;                      /* steps: done, at most */
 } hdi_lanczos;
 
 /* One right-hand side. Arrays are [n] by rows unless said otherwise. */
 typedef struct hdi_lane {
     double *f, *rhs, *u;         /* the field, B f, the answer */
-    double *tmp;                 /* [4 n] */
+    double *tmp, *own_tmp;       /* [4 n]; own_tmp: to be freed, NULL: tmp is work of the systems */
     double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
-    hd_c64 *b, *vectors;
-    hdi_krylov k[HD_MAX_POLES];
+    hd_c64 *b;                   /* begins the systems' arrays */
+    hdi_krylov *k;               /* [n_systems] */
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
@@ -15561,9 +15596,10 @@ typedef struct hdi_lane {
 
 static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
     hdi_free(ctx, lane->f);
+    hdi_free(ctx, lane->own_tmp);
     hdi_free(ctx, lane->target);
     hdi_free(ctx, lane->b);
-    hdi_free(ctx, lane->vectors);
+    hdi_free(ctx, lane->k);
     hdi_free(ctx, lane->lanczos.v);
     hdi_free(ctx, lane->lanczos.alpha);
     memset(lane, 0, sizeof *lane);
@@ -15572,29 +15608,34 @@ static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
 static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, lap->n_active), n_comp = HDI_CAST(uint64_t, lap->n_components);
     if (lane->f) return HD_OK;
-    lane->f = HDI_NEW(ctx, double, 7 * n, e);
-    if (lane->f) lane->target = HDI_NEW(ctx, double, 3 * n_comp, e);
+    lane->f = HDI_NEW(ctx, double, 3 * n, e);
+    if (lane->f) lane->own_tmp = HDI_NEW(ctx, double, 4 * n, e);
+    if (lane->own_tmp) lane->target = HDI_NEW(ctx, double, 3 * n_comp, e);
     if (!lane->target) {
         hdi_lane_free(lane, ctx);
         return e->status;
     }
     lane->rhs = lane->f + n;
     lane->u = lane->rhs + n;
-    lane->tmp = lane->u + n;
+    lane->tmp = lane->own_tmp;
     lane->sums = lane->target + n_comp;
     lane->spare_sums = lane->sums + n_comp;
     return HD_OK;
 }
 
-/* Room for Lanczos. */
-static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), most = HDI_LANCZOS_MAX + 1;
+/* Room for so many steps of Lanczos. */
+static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32_t steps, hd_context *ctx,
+                                  hd_error *e) {
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), most = HDI_CAST(uint64_t, steps) + 1;
     hdi_lanczos *z = &lane->lanczos;
-    if (z->alpha) return HD_OK;
-    hdi_free(ctx, z->v);
-    z->v = HDI_NEW(ctx, double, 3 * n, e);
+    if (z->alpha && z->room >= steps) return HD_OK;
+    hdi_free(ctx, z->alpha);
+    z->alpha = NULL;
+    z->room = 0;
+    if (!z->v) z->v = HDI_NEW(ctx, double, 3 * n, e);
     if (z->v) z->alpha = HDI_NEW(ctx, double, 11 * most, e);
     if (!z->alpha) return e->status;             /* the lane frees what it has */
+    z->room = steps;
     z->c = z->v + n;
     z->c_old = z->c + n;
     z->beta = z->alpha + most;
@@ -15607,46 +15648,51 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, hd_co
     return HD_OK;
 }
 
-/* Complex numbers that a system has in a lane. */
-static uint64_t hdi_lane_stride(const hdi_family *fam) {
-    return HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)) * HDI_CAST(uint64_t, fam->lap->n_active);
+/* Room for `count` systems: b, the vectors that all systems share, as they run one after the other, the x of
+ * each, and sums. The whole of it serves to make preconditioners before. Vectors 2 and 3 of those shared, r
+ * and the first direction being 0 and 1, are work of the lane between the systems. */
+static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
+    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), count = HDI_CAST(uint64_t, fam->set.n_poles);
+    const uint64_t shared = HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)) + 1;
+    const uint64_t size = (1 + shared + count) * n + HDI_CAST(uint64_t, fam->lap->n_components);
+    const uint64_t fill = count * hdi_fill_work(n);
+    hdi_free(fam->ctx, lane->b);
+    hdi_free(fam->ctx, lane->k);
+    lane->k = NULL;
+    lane->n_systems = 0;
+    lane->b = HDI_NEW(fam->ctx, hd_c64, size > fill ? size : fill, e);
+    if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_krylov, count + 1, e);
+    if (!lane->k) return e->status;
+    lane->n_systems = fam->set.n_poles;
+    hdi_free(fam->ctx, lane->own_tmp);
+    lane->own_tmp = NULL;
+    lane->tmp = &lane->b[3 * n].re;
+    return HD_OK;
 }
 
-/* Room for the systems of a set, and their constants. */
+/* The systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active);
-    const uint64_t n_comp = HDI_CAST(uint64_t, fam->lap->n_components);
-    const uint64_t n_vec = HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver));
-    const uint64_t count = HDI_CAST(uint64_t, fam->set.n_poles);
-    uint64_t i, j;
-    if (!lane->vectors || lane->n_systems < fam->set.n_poles) {
-        hdi_free(fam->ctx, lane->b);
-        hdi_free(fam->ctx, lane->vectors);
-        lane->vectors = NULL;
-        lane->n_systems = 0;
-        lane->b = HDI_NEW(fam->ctx, hd_c64, 3 * n + n_comp, e);
-        if (lane->b)
-            lane->vectors = HDI_NEW(fam->ctx, hd_c64, count * n_vec * n, e);
-        if (!lane->vectors) return e->status;
-        lane->n_systems = fam->set.n_poles;
-    }
-    for (i = 0; i < count; i++) {
+    const int n_vec = hdi_krylov_vectors(fam->solver);
+    int32_t i;
+    int j;
+    if ((!lane->k || lane->n_systems < fam->set.n_poles) && hdi_lane_systems_make(lane, fam, e) < 0)
+        return e->status;
+    for (i = 0; i < fam->set.n_poles; i++) {
         hdi_krylov *k = lane->k + i;
-        hd_c64 *v = lane->vectors + i * n_vec * n;
+        hd_c64 *v = lane->b + n;
         memset(k, 0, sizeof *k);
-        k->x = v;
-        k->r = v + n;
-        for (j = 2; j < n_vec; j++) k->v[j - 2] = v + j * n;
-        /* a work vector that all systems share, as they run one after the other */
-        k->v[n_vec - 2] = lane->b + n;
-        k->spare = lane->b + 2 * n;
-        k->sums = lane->b + 3 * n;
+        k->r = v;
+        for (j = 0; j < n_vec - 1; j++) k->v[j] = v += n;
+        k->spare = v += n;
+        k->x = v += n * HDI_CAST(uint64_t, i + 1);
+        k->sums = lane->b + n * HDI_CAST(uint64_t, n_vec + 2 + lane->n_systems);
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
         k->solver = fam->solver;
         k->weight = fam->weight;
-        k->m = fam->m[i];
+        k->m = fam->m + i;
     }
     return HD_OK;
 }
@@ -15809,16 +15855,18 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double weight = hdi_pole_size(&fam->set, p);
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
+        const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
+        const int runs = fresh || k->r_norm > target;
+        if (runs && hdi_family_turns(fam)) hdi_family_make(fam, p, k->r);
         if (fresh) hdi_krylov_start(k, lane->b, b_norm);
+        else if (runs) hdi_krylov_residual(k, lane->b);
         if (fresh && p < last && b_norm > 0) {
             hdi_warm_start(lane, fam, p, last, gram);
             hdi_krylov_residual(k, lane->b);
             if (!(k->r_norm < b_norm)) hdi_krylov_start(k, lane->b, b_norm);
         }
         part.from = watch->from + part.share * (n_poles - 1 - p);
-        status = hdi_krylov_run(k, lane->b,
-                                share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]),
-                                fam->max_iterations - k->iterations, &part, e);
+        status = hdi_krylov_run(k, lane->b, target, fam->max_iterations - k->iterations, &part, e);
         if (status < 0) {
             if (status == HD_ERR_NOT_CONVERGED) e->value = k->r_norm / k->b_norm;
             if (status != HD_ERR_CANCELLED) e->pole = p;
@@ -15981,7 +16029,7 @@ typedef struct hdi_elim {
     double *reach;               /* [n] bound of diag((B + tL)^-1) for reach_t, or NULL */
     double reach_t;
     hdi_symbolic sym;
-    hdi_factor pack[HD_MAX_POLES / 4], real, shifted;
+    hdi_factor *pack, real, shifted;     /* pack [HD_MAX_POLES/4] */
     int32_t n_packs, n_used;     /* packs that have room; packs of the set */
     int32_t filled;              /* 1: they hold set and t */
     int32_t lone;                /* pole in the real factor, -1 none */
@@ -15994,6 +16042,7 @@ static void hdi_elim_free(hdi_elim *m) {
     int32_t i;
     if (!HDI_HAS_DIRECT || !m->ctx) return;
     for (i = 0; i < m->n_packs; i++) hdi_factor_free(m->pack + i);
+    hdi_free(m->ctx, m->pack);
     hdi_factor_free(&m->real);
     hdi_factor_free(&m->shifted);
     hdi_symbolic_free(m->ctx, &m->sym);
@@ -16030,6 +16079,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     m->source = lap;
     m->scale = scale;
     if (own) hdi_elim_own(lap, own, rows);
+    m->pack = HDI_NEW(ctx, hdi_factor, HD_MAX_POLES / 4, e);
     if (e->status >= 0 && hdi_symbolic_order(&m->sym, &lap->L, &order, ctx, e) >= 0)
         m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
     if (m->lap) {
@@ -16927,8 +16977,8 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
                                    hdi_lane *lane, const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = task->lap;
     const double t = task->t, tol = task->tol;
-    const int32_t most = task->max_iterations < HDI_LANCZOS_MAX ? task->max_iterations : HDI_LANCZOS_MAX;
     hdi_lanczos *z = &lane->lanczos;
+    const int32_t most = hdi_low32(task->max_iterations, z->room);
     double bound = 0, bound_before = 0, best = DBL_MAX, start = 0;
     int32_t look = 1, looked = 0, best_m = 0;
     hd_rational set;
@@ -17743,7 +17793,8 @@ struct hd_heat {
     hdi_upper up;
     double *weight;              /* [n] 1/diag(B) */
     hdi_family fam;              /* of the last set and time */
-    hdi_lane lane[HDI_LANES];    /* work arrays, kept from call to call */
+    hdi_lane *lane;              /* [n_lanes] work arrays, kept from call to call; HDI_LANES at most */
+    int32_t n_lanes;
     double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
     /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
@@ -17845,6 +17896,28 @@ static double hdi_heat_scale(const hd_laplacian *lap) {
     return ldexp(1, -2 * (exponent / 2));
 }
 
+static void hdi_heat_free_lanes(hd_heat *heat) {
+    int32_t i;
+    for (i = 0; i < heat->n_lanes; i++) hdi_lane_free(heat->lane + i, heat->ctx);
+    hdi_free(heat->ctx, heat->lane);
+    heat->lane = NULL;
+    heat->n_lanes = 0;
+}
+
+/* Makes the plan have n lanes, without their arrays. */
+static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
+    hdi_lane *lane;
+    if (n <= heat->n_lanes) return HD_OK;
+    lane = HDI_NEW(heat->ctx, hdi_lane, n, e);
+    if (!lane) return e->status;
+    memset(lane, 0, HDI_CAST(size_t, n) * sizeof *lane);
+    if (heat->lane) memcpy(lane, heat->lane, HDI_CAST(size_t, heat->n_lanes) * sizeof *lane);
+    hdi_free(heat->ctx, heat->lane);
+    heat->lane = lane;
+    heat->n_lanes = n;
+    return HD_OK;
+}
+
 /* The copy of the pair to iterate on. */
 static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     if (heat->weight) return HD_OK;
@@ -17932,19 +18005,19 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     memset(&set, 0, sizeof set);
     set.n_poles = 1;
     set.theta[0] = theta;
-    if (hdi_heat_iterative(heat, e) < 0 || hdi_family_set(fam, &set, t * heat->scale, e) < 0)
-        return e->status;
+    if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_seats(heat, 1, e) < 0) return e->status;
+    hdi_family_set(fam, &set, t * heat->scale);
     if (hdi_lane_make(heat->lane, heat->lap, heat->ctx, e) < 0) return e->status;
     if (hdi_lane_systems(heat->lane, fam, e) < 0) return e->status;
-    return hdi_family_fill(fam, heat->lane->vectors, hdi_lane_stride(fam), e);
+    return hdi_family_fill(fam, heat->lane->b, e);
 }
 
 /* One system with a plan made for it. */
 static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                    double tol, hd_solve_report *report, hd_error *e) {
     const hd_laplacian *lap;
-    hdi_lane *lane = heat->lane;
-    hdi_krylov *k = lane->k;
+    hdi_lane *lane;
+    hdi_krylov *k;
     hdi_watch watch;
     hd_status status;
     double b_norm;
@@ -17953,6 +18026,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0) return e->status;
     if (hdi_shifted_prepare(heat, t, theta, e) < 0) return e->status;
     lap = heat->lap;
+    lane = heat->lane;
+    k = lane->k;
     memset(&watch, 0, sizeof watch);
     watch.ctx = heat->ctx;
     watch.share = 1;
@@ -18051,8 +18126,8 @@ typedef struct hdi_heat_call {
     int32_t equal;               /* t is so large that each component has its mean */
     /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
     double *off_b, *off_m;
-    hdi_lane *lane;              /* [HDI_LANES], the plan's */
-    int32_t n_lanes, batch;      /* lanes that exist; first item in lane 0 */
+    hdi_lane *lane;              /* the plan's */
+    int32_t n_lanes, batch;      /* lanes for items; first item in lane 0 */
     int32_t stop;
 } hdi_heat_call;
 
@@ -18285,9 +18360,17 @@ static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
     return 0;
 }
 
+/* Lanes for n items, without their arrays. */
+static hd_status hdi_heat_sit(hdi_heat_call *h, int32_t n) {
+    (void)hdi_heat_seats(h->heat, n, h->e);
+    h->lane = h->heat->lane;
+    return h->e->status;
+}
+
 /* Picks the method and its copy of the pair, and reports them. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
+    if (hdi_heat_sit(h, 1) < 0) return h->e->status;
     /* |exp(-t lambda) - 1| <= t lambda */
     if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {
         h->still = h->t * heat->lambda_max;
@@ -18633,6 +18716,7 @@ static void hdi_report_set(hd_report *rep, const hd_rational *set) {
 static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most) {
     int32_t i;
     h->n_lanes = hdi_low32(h->ask.k, most);
+    if (hdi_heat_sit(h, h->n_lanes) < 0) return h->e->status;
     for (i = 0; i < h->n_lanes; i++)
         if (hdi_lane_make(h->lane + i, h->lap, h->heat->ctx, h->e) < 0) break;
     return h->e->status;
@@ -18660,17 +18744,22 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 /* Lanes, the pole set and its preconditioners. */
 static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
+    /* without a bound of the eigenvalues nothing is known of the steps */
+    const int32_t steps = heat->source->b_ratio > 0 ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
     int32_t i;
     if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE) < 0) return h->e->status;
     for (i = 0; i < h->n_lanes && h->solver == HD_SOLVER_LANCZOS; i++)
-        if (hdi_lane_lanczos(h->lane + i, h->lap, heat->ctx, h->e) < 0) return h->e->status;
+        if (hdi_lane_lanczos(h->lane + i, h->lap, steps, heat->ctx, h->e) < 0) return h->e->status;
     if (h->solver == HD_SOLVER_LANCZOS) return HD_OK;
-    if (hdi_heat_set(h, &set) < 0 || hdi_family_set(&heat->fam, &set, h->t, h->e) < 0) return h->e->status;
+    if (hdi_heat_set(h, &set) < 0) return h->e->status;
+    hdi_family_set(&heat->fam, &set, h->t);
     hdi_report_set(h->rep, &set);
     for (i = 0; i < h->n_lanes; i++)
         if (hdi_lane_systems(h->lane + i, &heat->fam, h->e) < 0) return h->e->status;
-    return hdi_family_fill(&heat->fam, h->lane->vectors, hdi_lane_stride(&heat->fam), h->e);
+    if (hdi_family_fill(&heat->fam, h->lane->b, h->e) < 0) return h->e->status;
+    if (hdi_family_turns(&heat->fam)) h->n_lanes = 1;
+    return HD_OK;
 }
 
 static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
@@ -18934,14 +19023,13 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
  * over. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    int32_t i;
     if (!HDI_HAS_DIRECT || !HDI_HAS_ITERATIVE) return 0;
     if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx)
         return 0;
     if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && h->ask.query == HDI_QUERY_FIELD) return 0;
-    for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, heat->ctx);
+    hdi_heat_free_lanes(heat);
     if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
     hdi_elim_free(&heat->elim);
     if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
@@ -18959,9 +19047,10 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
 /* Answers that need no solve: the field itself for t = 0, the means for very large t. */
 static hd_status hdi_heat_plain(hdi_heat_call *h) {
     const hd_laplacian *lap = h->lap;
-    hdi_lane *lane = h->lane;
+    hdi_lane *lane;
     int32_t i;
-    if (hdi_lane_make(lane, lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, 1) < 0) return h->e->status;
+    lane = h->lane;
     for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
         if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
         if (!lane->skip) {
@@ -22850,10 +22939,9 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
 
 HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hd_context *ctx;
-    int32_t i;
     if (!heat) return;
     ctx = heat->ctx;
-    for (i = 0; i < HDI_LANES; i++) hdi_lane_free(heat->lane + i, ctx);
+    hdi_heat_free_lanes(heat);
     hdi_family_free(&heat->fam);
     hdi_upper_free(ctx, &heat->up);
     hdi_free(ctx, heat->weight);

@@ -608,6 +608,7 @@ static void int_deflation(void) {
     enum { N = 30 };
     hd_laplacian *lap = int_path(N);
     hdi_krylov k;
+    hdi_precond none;
     hdi_upper up;
     hd_context ctx;
     hd_error e;
@@ -619,8 +620,10 @@ static void int_deflation(void) {
     CHECK(hdi_upper_make(&up, &lap->L, &ctx, &e) == HD_OK);
     k.a.lap = lap;
     k.sums = sums;
-    k.m.up = &up;
-    k.m.kind = HD_PRECOND_NONE;
+    memset(&none, 0, sizeof none);
+    none.up = &up;
+    none.kind = HD_PRECOND_NONE;
+    k.m = &none;
     for (i = 0; i < N; i++) {
         r[i] = hdi_c(1 + dense_signed(&seed), 2 + dense_signed(&seed));
         p[i] = hdi_c(0, 0);
