@@ -77,12 +77,13 @@
      [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
      [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
      [24] ground     L with one vertex of each component held: distances without a time
-     [25] plan       hd_heat: choice of method, kept factors and bases, the run of a request, its report
-     [26] kernel     diagonals and edges, by selected inversion
-     [27] diffusion  diffusion distances, pairs, sampling
-     [28] geodesic   the heat method
-     [29] api        argument checks, defaults, lifetimes, bodies of the public functions
-     [30] closing    end of the implementation, licence
+     [25] spectrum   the smallest eigenpairs, counted and complete
+     [26] plan       hd_heat: choice of method, kept factors and bases, the run of a request, its report
+     [27] kernel     diagonals and edges, by selected inversion
+     [28] diffusion  diffusion distances, pairs, sampling
+     [29] geodesic   the heat method
+     [30] api        argument checks, defaults, lifetimes, bodies of the public functions
+     [31] closing    end of the implementation, licence
 
    Options (macros)
      Beside the implementation only:
@@ -630,6 +631,46 @@ typedef struct hd_report {
     double mass_drift;
 } hd_report;
 
+typedef struct hd_spectrum_opts {
+    int32_t begin_zero;
+    int32_t count;              /* pairs wanted; 0: all below `below` */
+    double below;               /* > 0: only eigenvalues below this; 0: no such bound */
+    double tol;                 /* of residuals, see hd_spectrum.residual; default 1e-10 */
+    hd_ordering ordering;
+    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th */
+    hd_context *context;        /* default: the Laplacian's */
+    int32_t end_zero;
+} hd_spectrum_opts;
+
+/* The smallest eigenpairs of L x = lambda B x. The library makes and frees it. Read all fields, change none.
+ * The Laplacian must outlive it, and must not be updated in between. */
+typedef struct hd_spectrum {
+    int32_t n;                  /* vertices */
+    int32_t count;              /* pairs */
+    double *value;              /* [count] eigenvalues, ascending, 1/area */
+    double *vector;             /* [n count] column-major, B-orthonormal, 0 at vertices without mass. The entry
+                                   with the largest absolute value is positive */
+    /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 relative to
+     * the first eigenvalue that does not belong to constants */
+    double *residual;
+    double largest_residual;
+    int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
+    /* 1: proven complete. No pair is missing: L - shift B has as many negative pivots as there are eigenvalues
+     * found below the shift, and rounding cannot change the count, because no eigenvalue found is within
+     * shift_margin of the shift. 0: the count was not reliable; the status is HD_WARN_ACCURACY */
+    int32_t proven;
+    double shift, shift_margin;
+    double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
+    double *left, *left_mass;   /* [n] what the pairs leave of the diagonals of B^-1 (a bound) and of B */
+    int32_t n_factors, n_runs;  /* factorisations; runs of Lanczos */
+    int64_t n_solves;           /* right-hand sides solved for */
+    hd_ordering ordering;
+    int64_t factor_nnz;         /* of one factor */
+    double factor_flops;        /* of all factorisations */
+    const hd_laplacian *lap;
+    hd_context *context;
+} hd_spectrum;
+
 typedef enum hd_geodesic_mass {
     HD_GEODESIC_MASS_BARYCENTRIC = 0,   /* a third of each face to each corner */
     HD_GEODESIC_MASS_VORONOI            /* mixed Voronoi areas, as in HD_LAPLACIAN_VORONOI_COT */
@@ -1167,6 +1208,43 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
                                        const double *t, int64_t n_pairs, const int32_t *i,
                                        const int32_t *j, double *values, hd_report *report,
                                        hd_error *err);
+
+/* ---- eigenpairs ---- */
+
+/* The smallest eigenpairs of L x = lambda B x: all copies of multiple eigenvalues, and those of all
+ * components.
+ * opts   count, below, or both: then whichever ends first. count may be all n_active. NULL is an error
+ * Errors HD_ERR_ARGUMENT (also: more pairs than rows), HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED,
+ *        HD_ERR_INDEX (row: perm is not a permutation), HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ *        with a result: a residual is above tol, or completeness is not proven
+ * Cost   for about 100 pairs at a time one real factorisation of an indefinite matrix, some 250 solves, and
+ *        the orthogonalisation of as many vectors; at the end 4 n count^2 flops. Memory: the vectors twice,
+ *        some 400 more vectors, and a factor
+ * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
+HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
+                                          const hd_spectrum_opts *opts, hd_error *err);
+HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
+
+/* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x) x_i(y)
+ * and the like. Definitions, kinds, shapes and vertices without mass are those of hd_heat_columns,
+ * hd_heat_diagonal and hd_heat_distance. What is left out is bounded.
+ * bound  of the shape of the output and ldu or ldd, or NULL: bounds of the error of each value. The part of
+ *        the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That of
+ *        residuals follows from their sizes, rounding is estimated. For large t the bound is small, for small
+ *        t it tells how many pairs are missing
+ * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column), HD_ERR_MEMORY
+ * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
+ *        ten times as many */
+HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
+                                           const double *t, int32_t k, const int32_t *sources,
+                                           double *U, double *bound, size_t ldu, hd_error *err);
+HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel,
+                                            int32_t n_times, const double *t, double *D,
+                                            double *bound, size_t ldd, hd_error *err);
+HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind,
+                                            int32_t n_times, const double *t, int32_t k,
+                                            const int32_t *sources, double *D, double *bound,
+                                            size_t ldd, hd_error *err);
 
 /* ---- geodesic distance ---- */
 
@@ -17760,7 +17838,1323 @@ static uint64_t hdi_ground_room(const hdi_elim *m) {
            hdi_sweep_size(&m->sym, 1, 1);
 }
 
-/* ==== [25] plan ====
+/* ==== [25] spectrum ====
+ * Owns the smallest eigenpairs of L x = lambda B x: block Lanczos on factors of L - sigma B for a row of
+ * shifts, and the proof by counts of negative pivots that none is missing. May call [24] and [23].
+ * This work is based on
+ *   T. Ericsson, A. Ruhe, The spectral transformation Lanczos method, 1980
+ *   R. Grimes, J. Lewis, H. Simon, A shifted block Lanczos algorithm for solving sparse symmetric generalized
+ *      eigenproblems, 1994 (blocks, rows of shifts, trust intervals by inertia)
+ *   B. Nour-Omid, B. Parlett, T. Ericsson, P. Jensen, How to implement the spectral transformation, 1987 (the
+ *      last block of the basis takes the error of fast modes out of a vector, without a solve)
+ *   J. Sylvester, the law of inertia, 1852: L - sigma B has as many negative pivots as there are eigenvalues
+ *      below sigma
+ * Deviations: no selective orthogonalisation. Every block is orthogonalised against the whole basis and
+ * against the locked vectors nearby, twice or until it is orthogonal. A factorisation costs as much as a few
+ * blocks, so a run that would become long gives way to a new shift instead of an implicit or thick restart. A
+ * run after which eigenvalues are still missing, copies of multiple ones mostly, is followed by another one
+ * from new vectors that are orthogonal to all that was found. */
+
+enum {
+    HDI_SPEC_WIDE = HDI_SILAN_WIDE,  /* vectors in a block, as many as a sweep takes side by side */
+    HDI_SPEC_TILE = 64,              /* rows of a tile: some 300 columns of it stay in the second cache */
+    HDI_SPEC_CHUNKS = 32,            /* parts of a sum over rows, whatever the number of threads */
+    HDI_SPEC_GROUP = 8,              /* blocks that go through a slab at a time */
+    HDI_SPEC_MOST = 320,             /* columns of a basis */
+    HDI_SPEC_SPARE = 112,            /* more than twice the pairs wanted, when these are few */
+    HDI_SPEC_HALF = 64,              /* eigenvalues between the last one known and the next shift */
+    HDI_SPEC_STEPS = 4,              /* blocks from one look at the projected problem to the next */
+    HDI_SPEC_GAPS = 16,              /* pairs beyond those wanted among which a gap is looked for */
+    HDI_SPEC_TRIES = 6,              /* of shifts in a row, and of runs that find nothing */
+    HDI_SPEC_PASSES = 6,             /* most, until a block is orthogonal; two are the rule */
+    HDI_SPEC_PROOFS = 4              /* shifts that may fail to prove that all is found */
+};
+
+/* A run is kept orthogonal to locked vectors whose values are less far from the shift than this many times the
+ * part where values are missing. */
+#define HDI_SPEC_NEARBY 1.5
+
+/* ---- small dense eigenproblems ---- */
+
+/* Householder's reduction of the symmetric A [m][m], of which the lower triangle is read, to the tridiagonal
+ * matrix with diagonal d and off-diagonal e (e[i] between i and i + 1). The reflectors go through the r rows
+ * that stand as columns in z [m][r]: rows of the identity become rows of the transformation. Overwrites A.
+ * work [2 m]. */
+static void hdi_spec_reduce(double *A, double *d, double *e, double *z, int32_t m, int32_t r, double *work) {
+    double *v = work, *p = work + m;
+    int32_t i, j, k;
+    for (k = 0; k < m; k++) {
+        const int32_t n = m - k - 1;
+        double norm = 0, first, tau, dot = 0;
+        d[k] = A[HDI_CAST(int64_t, k) * m + k];
+        e[k] = 0;
+        if (n <= 0) break;
+        for (i = 0; i < n; i++) v[i] = A[HDI_CAST(int64_t, k + 1 + i) * m + k];
+        first = v[0];
+        norm = sqrt(hdi_dot(v, v, n));
+        e[k] = n == 1 ? first : first > 0 ? -norm : norm;
+        if (n == 1 || norm == 0) continue;
+        v[0] -= e[k];
+        tau = 1 / (norm * (norm + fabs(first)));      /* 2/|v|^2 */
+        memset(p, 0, HDI_CAST(size_t, n) * sizeof *p);
+        for (i = 0; i < n; i++) {                /* p = A v */
+            const double *row = A + HDI_CAST(int64_t, k + 1 + i) * m + k + 1;
+            p[i] += hdi_dot(row, v, i) + row[i] * v[i];
+            hdi_axpy(v[i], row, p, i);
+        }
+        for (i = 0; i < n; i++) p[i] *= tau;
+        dot = 0.5 * tau * hdi_dot(p, v, n);
+        hdi_axpy(-dot, v, p, n);
+        for (i = 0; i < n; i++) {                /* A -= v p' + p v' */
+            double *row = A + HDI_CAST(int64_t, k + 1 + i) * m + k + 1;
+            for (j = 0; j <= i; j++) row[j] -= v[i] * p[j] + p[i] * v[j];
+        }
+        memset(p, 0, HDI_CAST(size_t, r < m ? r : m) * sizeof *p);
+        for (i = 0; i < n; i++) hdi_axpy(v[i], z + HDI_CAST(int64_t, k + 1 + i) * r, p, r);
+        for (i = 0; i < n; i++) hdi_axpy(-tau * v[i], p, z + HDI_CAST(int64_t, k + 1 + i) * r, r);
+    }
+}
+
+/* Columns x and y of r entries through a rotation. */
+static void hdi_spec_rotate(double *HDI_RESTRICT x, double *HDI_RESTRICT y, double c, double s, int32_t r) {
+    int32_t q;
+    for (q = 0; q < r; q++) {
+        const double a = x[q], b = y[q];
+        y[q] = s * a + c * b;
+        x[q] = c * a - s * b;
+    }
+}
+
+/* One implicit QL step on rows l..k of a tridiagonal matrix, with Wilkinson's shift. */
+static void hdi_spec_step(double *d, double *e, double *z, int32_t l, int32_t k, int32_t r) {
+    double g = (d[l + 1] - d[l]) / (2 * e[l]), t = hdi_pythag(g, 1), s = 1, c = 1, p = 0;
+    int32_t i;
+    g = d[k] - d[l] + e[l] / (g + (g >= 0 ? t : -t));
+    for (i = k - 1; i >= l; i--) {
+        const double f = s * e[i], b = c * e[i];
+        t = hdi_pythag(f, g);
+        e[i + 1] = t;
+        if (t == 0) {
+            d[i + 1] -= p;
+            e[k] = 0;
+            return;
+        }
+        s = f / t;
+        c = g / t;
+        g = d[i + 1] - p;
+        t = (d[i] - g) * s + 2 * c * b;
+        p = s * t;
+        d[i + 1] = g + p;
+        g = c * t - b;
+        hdi_spec_rotate(z + HDI_CAST(int64_t, i) * r, z + HDI_CAST(int64_t, i + 1) * r, c, s, r);
+    }
+    d[l] -= p;
+    e[l] = g;
+    e[k] = 0;
+}
+
+/* Eigenvalues d [m] of the symmetric A [m][m], which is overwritten. z [m][r]: r rows of the identity become
+ * those rows of the eigenvectors, column by column. work [3 m]. 0 when it does not converge. */
+static int hdi_spec_eigen(double *A, double *d, double *z, int32_t m, int32_t r, double *work) {
+    double *e = work + 2 * HDI_CAST(int64_t, m);
+    int32_t l, k, tries;
+    hdi_spec_reduce(A, d, e, z, m, r, work);
+    for (l = 0; l < m; l++) {
+        for (tries = 0;; tries++) {
+            for (k = l; k < m - 1; k++)
+                if (fabs(e[k]) <= DBL_EPSILON * (fabs(d[k]) + fabs(d[k + 1]))) break;
+            if (k == l) break;
+            if (tries == 60) return 0;
+            hdi_spec_step(d, e, z, l, k, r);
+        }
+    }
+    return 1;
+}
+
+/* ---- slabs ---- */
+
+/* Columns of n entries by tiles of rows: entry (i,j) is at [(i/TILE) TILE room + TILE j + i%TILE]. So a tile
+ * is read in one piece, and stays in cache for many blocks. */
+typedef struct hdi_slab {
+    double *v;
+    int32_t cols, room;
+    double low, high;            /* eigenvalues of the first and last column */
+} hdi_slab;
+
+/* A pass of columns [first, first + cols) of a slab over blocks of right-hand sides [n_blocks][n][8]. */
+typedef struct hdi_slab_pass {
+    const hdi_real_ops *ops;
+    const hdi_slab *slab;
+    int32_t n, first, cols, n_blocks, n_chunks, copy;
+    double *w;                   /* [n_blocks][n][8] */
+    double *h;                   /* [n_blocks][cols][8] coefficients; of dots [n_chunks] of them */
+} hdi_slab_pass;
+
+static int32_t hdi_slab_tiles(int32_t n) { return (n + HDI_SPEC_TILE - 1) / HDI_SPEC_TILE; }
+
+static double *hdi_slab_at(const hdi_slab *s, int32_t tile, int32_t col) {
+    return s->v + HDI_SPEC_TILE * (HDI_CAST(int64_t, tile) * s->room + col);
+}
+
+static hd_status hdi_slab_make(hdi_slab *s, int32_t n, int32_t room, hd_context *ctx, hd_error *e) {
+    memset(s, 0, sizeof *s);
+    s->room = room;
+    s->v = HDI_NEW(ctx, double,
+                   HDI_CAST(uint64_t, hdi_slab_tiles(n)) * HDI_SPEC_TILE * HDI_CAST(uint64_t, room), e);
+    return e->status;
+}
+
+/* h = - V' w over the tiles of a chunk. */
+static void hdi_slab_dots_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_slab_pass *p = HDI_CAST(const hdi_slab_pass *, arg);
+    const int64_t tiles = hdi_slab_tiles(p->n), size = 8 * HDI_CAST(int64_t, p->cols);
+    const int64_t end = (index + 1) * tiles / p->n_chunks;
+    double *h = p->h + index * p->n_blocks * size;
+    int64_t tile;
+    int32_t q;
+    (void)worker;
+    memset(h, 0, HDI_CAST(size_t, p->n_blocks * size) * sizeof *h);
+    for (tile = index * tiles / p->n_chunks; tile < end; tile++) {
+        const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
+        const double *v = hdi_slab_at(p->slab, HDI_CAST(int32_t, tile), p->first);
+        for (q = 0; q < p->n_blocks; q++)
+            p->ops->dots8(h + q * size, v, HDI_SPEC_TILE, n, p->w + 8 * (row + HDI_CAST(int64_t, q) * p->n),
+                          NULL, p->cols);
+    }
+}
+
+/* w -= V h over the tiles of a range. copy: w goes into the slab instead, one block. */
+static void hdi_slab_add_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_slab_pass *p = HDI_CAST(const hdi_slab_pass *, arg);
+    int64_t tile, i;
+    int32_t q;
+    for (tile = begin; tile < end; tile++) {
+        const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
+        double *v = hdi_slab_at(p->slab, HDI_CAST(int32_t, tile), p->first);
+        for (q = 0; q < p->n_blocks && !p->copy; q++)
+            p->ops->gemv8(p->w + 8 * (row + HDI_CAST(int64_t, q) * p->n), NULL, v, HDI_SPEC_TILE, n,
+                          p->h + 8 * HDI_CAST(int64_t, q) * p->cols, p->cols);
+        for (q = 0; q < p->cols && p->copy; q++)
+            for (i = 0; i < n; i++) v[HDI_SPEC_TILE * q + i] = p->w[8 * (row + i) + q];
+    }
+}
+
+/* ---- what a computation holds ---- */
+
+/* Eigenvalues are those of the plan's scaled pair, vectors by rows in elimination order. */
+typedef struct hdi_spec {
+    hd_context *ctx;
+    hdi_elim *m;
+    const hd_laplacian *lap;
+    const hdi_real_ops *ops;
+    int32_t n;
+    hdi_factor factor;
+    double sigma, off;           /* shift of the factor; how far from sigma its count may be wrong */
+    int64_t below;               /* its negative pivots */
+    int32_t refine;              /* 1: solves with this factor take a step of refinement */
+    double unit;                 /* about the smallest eigenvalue that is not zero */
+    double tol;
+    double edge;                 /* all below are found */
+    double share;                /* how much of the work is done */
+    hdi_slab *slab;              /* [n_slabs] locked vectors */
+    char *beside;                /* [n_slabs] 1: the run under way is orthogonal to it */
+    int32_t n_slabs, room_slabs;
+    double *value, *residual;    /* [found] ascending, and what belongs to each */
+    int32_t *slab_of, *col_of;
+    int32_t found;
+    /* the run under way */
+    hdi_slab basis;
+    int32_t most;                /* columns that the basis may have */
+    int32_t cols, last, width;   /* columns of the basis; first column and width of its last block */
+    int32_t before;              /* first column of the block before that */
+    int32_t fresh;               /* columns after them: the newest block, which T does not have yet */
+    double couple[HDI_SPEC_WIDE * HDI_SPEC_WIDE];   /* the newest block times this is what the last one lacks */
+    double *T, *A, *z, *d, *off_ritz; /* [MOST][MOST] projected matrix, twice; eigenvectors; [MOST] eigenvalues,
+                                    residuals */
+    double *w, *bw, *tmp;        /* [n][8] a block, B times it, and another */
+    double *sweep, *h, *part, *work;
+    double *group, *group_b;     /* [GROUP][n][8] */
+    uint64_t seed;
+    int32_t n_factors, n_runs, n_solves;
+    double cross;                /* largest |x'By| seen of two vectors before they were made orthogonal */
+    double next;                 /* no other eigenvalue is below it */
+    int32_t n_null, proven;
+} hdi_spec;
+
+static void hdi_spec_free(hdi_spec *s) {
+    int32_t i;
+    if (!s->ctx) return;
+    for (i = 0; i < s->n_slabs; i++) hdi_free(s->ctx, s->slab[i].v);
+    hdi_free(s->ctx, s->slab);
+    hdi_free(s->ctx, s->beside);
+    hdi_free(s->ctx, s->value);
+    hdi_free(s->ctx, s->slab_of);
+    hdi_free(s->ctx, s->basis.v);
+    hdi_free(s->ctx, s->T);
+    hdi_free(s->ctx, s->w);
+    hdi_free(s->ctx, s->sweep);
+    hdi_free(s->ctx, s->h);
+    hdi_free(s->ctx, s->group);
+    hdi_factor_free(&s->factor);
+    memset(s, 0, sizeof *s);
+}
+
+/* Room for runs. */
+static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {
+    const uint64_t n = HDI_CAST(uint64_t, m->lap->n_active), most = HDI_SPEC_MOST, wide = HDI_SPEC_WIDE;
+    const uint64_t h = (most + wide) * wide * HDI_SPEC_GROUP;
+    memset(s, 0, sizeof *s);
+    s->ctx = m->ctx;
+    s->m = m;
+    s->lap = m->lap;
+    s->n = m->lap->n_active;
+    s->tol = tol;
+    s->ops = hdi_real_ops_get(hdi_simd_level(m->ctx));
+    s->most = count < HDI_SPEC_MOST / 2 ? hdi_low32(2 * count + HDI_SPEC_SPARE, HDI_SPEC_MOST) : HDI_SPEC_MOST;
+    s->most = hdi_low32(s->most, s->n);
+    if (hdi_slab_make(&s->basis, s->n, s->most + HDI_SPEC_WIDE, s->ctx, e) < 0) return e->status;
+    s->value = HDI_NEW(s->ctx, double, 2 * n, e);
+    if (s->value) s->slab_of = HDI_NEW(s->ctx, int32_t, 2 * n, e);
+    if (s->slab_of) s->T = HDI_NEW(s->ctx, double, 3 * most * most + 5 * most, e);
+    if (s->T) s->w = HDI_NEW(s->ctx, double, 3 * n * wide, e);
+    if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_SPEC_WIDE), e);
+    if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * (HDI_SPEC_CHUNKS + 1), e);
+    if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * n * wide * HDI_SPEC_GROUP, e);
+    if (e->status < 0) return e->status;
+    s->residual = s->value + n;
+    s->col_of = s->slab_of + n;
+    s->A = s->T + most * most;
+    s->z = s->A + most * most;
+    s->d = s->z + most * most;
+    s->off_ritz = s->d + most;
+    s->work = s->off_ritz + most;
+    s->bw = s->w + n * wide;
+    s->tmp = s->bw + n * wide;
+    s->part = s->h + h;
+    s->group_b = s->group + n * wide * HDI_SPEC_GROUP;
+    return HD_OK;
+}
+
+/* ---- blocks against slabs ---- */
+
+static hdi_slab_pass hdi_spec_pass(const hdi_spec *s, const hdi_slab *slab, int32_t first, int32_t cols,
+                                   double *w, int32_t n_blocks) {
+    hdi_slab_pass p;
+    memset(&p, 0, sizeof p);
+    p.ops = s->ops;
+    p.slab = slab;
+    p.n = s->n;
+    p.first = first;
+    p.cols = cols;
+    p.w = w;
+    p.n_blocks = n_blocks;
+    p.n_chunks = hdi_low32(HDI_SPEC_CHUNKS, hdi_slab_tiles(s->n) / 8 + 1);
+    return p;
+}
+
+/* h = V' w. The chunks are summed in their order. */
+static void hdi_spec_dots(const hdi_spec *s, hdi_slab_pass p, double *h) {
+    const int64_t size = 8 * HDI_CAST(int64_t, p.cols) * p.n_blocks;
+    int64_t i;
+    int32_t c;
+    p.h = s->part;
+    hdi_parallel(s->ctx, p.n_chunks, hdi_slab_dots_task, &p);
+    for (i = 0; i < size; i++) h[i] = -s->part[i];
+    for (c = 1; c < p.n_chunks; c++)
+        for (i = 0; i < size; i++) h[i] -= s->part[c * size + i];
+}
+
+static void hdi_spec_add(const hdi_spec *s, hdi_slab_pass p, double *h, int copy) {
+    p.h = h;
+    p.copy = copy;
+    hdi_parallel_ranges(s->ctx, hdi_slab_tiles(s->n), 16, hdi_slab_add_task, &p);
+}
+
+/* w -= V V'(B w), with bw = B w, for columns [first, first + cols) of a slab: the coefficients into h. */
+static void hdi_spec_project(const hdi_spec *s, const hdi_slab *slab, int32_t first, int32_t cols, double *w,
+                             double *bw, int32_t n_blocks, double *h) {
+    if (cols == 0) return;
+    hdi_spec_dots(s, hdi_spec_pass(s, slab, first, cols, bw, n_blocks), h);
+    hdi_spec_add(s, hdi_spec_pass(s, slab, first, cols, w, n_blocks), h, 0);
+}
+
+/* ---- operators on blocks ---- */
+
+/* y = L x - shift_r z, by rows of eight. */
+typedef struct hdi_spec_apply {
+    const hd_laplacian *lap;
+    const double *x, *z;
+    double *y, shift[HDI_SPEC_WIDE];
+} hdi_spec_apply;
+
+static void hdi_spec_apply_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_spec_apply *a = HDI_CAST(const hdi_spec_apply *, arg);
+    int64_t i, p;
+    int r;
+    for (i = begin; i < end; i++) {
+        double sum[HDI_SPEC_WIDE] = {0};
+        for (p = a->lap->L.row_ptr[i]; p < a->lap->L.row_ptr[i + 1]; p++) {
+            const double l = a->lap->L.val[p], *x = a->x + 8 * HDI_CAST(int64_t, a->lap->L.col[p]);
+            for (r = 0; r < HDI_SPEC_WIDE; r++) sum[r] += l * x[r];
+        }
+        for (r = 0; r < HDI_SPEC_WIDE; r++) a->y[8 * i + r] = sum[r] - a->shift[r] * a->z[8 * i + r];
+    }
+}
+
+static void hdi_spec_residuals(const hdi_spec *s, const double *shift, const double *x, const double *bx,
+                               double *y) {
+    hdi_spec_apply a;
+    int r;
+    a.lap = s->lap;
+    a.x = x;
+    a.z = bx;
+    a.y = y;
+    for (r = 0; r < HDI_SPEC_WIDE; r++) a.shift[r] = shift ? shift[r] : s->sigma;
+    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_apply_task, &a);
+}
+
+static void hdi_spec_mass(const hdi_spec *s, const double *x, double *y) {
+    hdi_mass_apply(s->lap, HDI_SPEC_WIDE, x, y, s->ctx);
+}
+
+/* w = (L - sigma B)^-1 w in place */
+static void hdi_spec_sweep(hdi_spec *s, double *w) {
+    hdi_sweep z = hdi_sweep_open(&s->factor, HDI_SPEC_WIDE, w, s->sweep);
+    hdi_sweep_run(&z, s->ctx);
+    s->n_solves += HDI_SPEC_WIDE;
+}
+
+/* w = (L - sigma B)^-1 bw. Returns how large the residual bw - (L - sigma B) w is against w: the size of a
+ * change of L that would explain it, a backward error. measure: look at it. */
+static double hdi_spec_inverse(hdi_spec *s, int measure) {
+    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    double error[HDI_SPEC_WIDE], norm[HDI_SPEC_WIDE], worst = 0;
+    int64_t i;
+    int r, turn;
+    memcpy(s->w, s->bw, HDI_CAST(size_t, size) * sizeof *s->w);
+    hdi_spec_sweep(s, s->w);
+    for (turn = 0; turn < 1 + s->refine && (measure || s->refine); turn++) {
+        hdi_spec_mass(s, s->w, s->group);
+        hdi_spec_residuals(s, NULL, s->w, s->group, s->tmp);
+        for (i = 0; i < size; i++) s->tmp[i] = s->bw[i] - s->tmp[i];
+        if (turn < s->refine) {
+            hdi_spec_sweep(s, s->tmp);
+            for (i = 0; i < size; i++) s->w[i] += s->tmp[i];
+            if (measure) continue;
+            break;
+        }
+        hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_SPEC_WIDE, error);
+        hdi_wide_dots(s->w, s->group, s->n, HDI_SPEC_WIDE, norm);
+        for (r = 0; r < HDI_SPEC_WIDE; r++)
+            if (norm[r] > 0) worst = hdi_max(worst, error[r] / sqrt(norm[r]));
+    }
+    return worst;
+}
+
+/* ---- orthogonal blocks ---- */
+
+/* Rows of w and bw times R^-1, R upper triangular. Columns with a zero on its diagonal become zero. */
+typedef struct hdi_spec_scale { double *w, *bw; const double *R; } hdi_spec_scale;
+
+static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_spec_scale *a = HDI_CAST(const hdi_spec_scale *, arg);
+    double inv[HDI_SPEC_WIDE];
+    int64_t i;
+    int q, k;
+    for (q = 0; q < HDI_SPEC_WIDE; q++) inv[q] = a->R[9 * q] > 0 ? 1 / a->R[9 * q] : 0;
+    for (i = begin; i < end; i++) {
+        double *x = a->w + 8 * i, *y = a->bw + 8 * i;
+        for (q = 0; q < HDI_SPEC_WIDE; q++) {
+            for (k = 0; k < q; k++) {
+                x[q] -= a->R[8 * k + q] * x[k];
+                y[q] -= a->R[8 * k + q] * y[k];
+            }
+            x[q] *= inv[q];
+            y[q] *= inv[q];
+        }
+    }
+}
+
+/* A direction that is so much smaller than the column it is left of, is rounding. */
+#define HDI_SPEC_RANK 1e-13
+/* A column of which less is left has lost a digit of orthogonality. */
+#define HDI_SPEC_SHRUNK 0.1
+
+/* G = R' R for the Gram matrix G of a block; a column that depends on those before it keeps a small pivot, and
+ * the next pass sees to it. scale [8]: what columns have been divided by so far, against norm [8]. Returns
+ * how far G is from the identity. */
+static double hdi_spec_cholesky(const double *G, double *R, double *scale, const double *norm) {
+    double off = 0;
+    int q, k, p;
+    memset(R, 0, HDI_SPEC_WIDE * HDI_SPEC_WIDE * sizeof *R);
+    for (q = 0; q < HDI_SPEC_WIDE; q++) {
+        double sum = G[9 * q];
+        for (k = 0; k < q; k++) {
+            double v = G[8 * k + q];
+            if (R[9 * k] == 0) continue;
+            off = hdi_max(off, fabs(v));
+            for (p = 0; p < k; p++) v -= R[8 * p + k] * R[8 * p + q];
+            R[8 * k + q] = v / R[9 * k];
+            sum -= R[8 * k + q] * R[8 * k + q];
+        }
+        sum = G[9 * q] > 0 ? sqrt(hdi_max(sum, 4 * DBL_EPSILON * G[9 * q])) : 0;
+        if (!(scale[q] * sum > HDI_SPEC_RANK * norm[q])) {
+            for (k = 0; k < q; k++) R[8 * k + q] = 0;
+            sum = scale[q] = 0;
+        }
+        if (sum > 0) off = hdi_max(off, fabs(G[9 * q] - 1));
+        scale[q] *= sum;
+        R[9 * q] = sum;
+    }
+    return off;
+}
+
+/* total = R total, both upper triangular */
+static void hdi_spec_compose(const double *R, double *total) {
+    int i, j, k;
+    for (i = 0; i < HDI_SPEC_WIDE; i++) {
+        for (j = i; j < HDI_SPEC_WIDE; j++) {
+            double sum = 0;
+            for (k = i; k <= j; k++) sum += R[8 * i + k] * total[8 * k + j];
+            total[8 * i + j] = sum;
+        }
+    }
+}
+
+/* w -= V V' bw for the basis and the slabs nearby. removed [8]: norms of what was taken out. */
+static void hdi_spec_clean(hdi_spec *s, double *removed) {
+    int32_t i, j, q;
+    for (q = 0; q < HDI_SPEC_WIDE; q++) removed[q] = 0;
+    for (i = 0; i <= s->n_slabs; i++) {
+        const hdi_slab *slab = i < s->n_slabs ? s->slab + i : &s->basis;
+        const int32_t cols = i < s->n_slabs ? slab->cols : s->cols;
+        if (i < s->n_slabs && !s->beside[i]) continue;
+        hdi_spec_project(s, slab, 0, cols, s->w, s->bw, 1, s->h);
+        for (j = 0; j < cols; j++)
+            for (q = 0; q < HDI_SPEC_WIDE; q++) removed[q] += s->h[8 * j + q] * s->h[8 * j + q];
+    }
+    for (q = 0; q < HDI_SPEC_WIDE; q++) removed[q] = sqrt(removed[q]);
+    hdi_spec_mass(s, s->w, s->bw);
+}
+
+/* w less its part in the last two blocks of the basis, from which alone it should have one. The coefficients
+ * are the last block of T. */
+static void hdi_spec_local(hdi_spec *s) {
+    const int32_t at = s->last - s->before;
+    int32_t q, k;
+    hdi_spec_project(s, &s->basis, s->before, s->cols - s->before, s->w, s->bw, 1, s->h);
+    for (q = 0; q < s->width; q++)
+        for (k = 0; k <= q; k++)
+            s->T[HDI_CAST(int64_t, s->last + q) * HDI_SPEC_MOST + s->last + k] =
+                0.5 * (s->h[8 * (at + q) + k] + s->h[8 * (at + k) + q]);
+    hdi_spec_mass(s, s->w, s->bw);
+}
+
+/* Block w orthogonal to the basis and to the slabs nearby, with orthonormal columns, all in B; bw = B w.
+ * couple receives the triangular factor. Parts in the last two blocks go first, then what rounding left in all
+ * vectors; again for columns that become much smaller by it. */
+static void hdi_spec_append(hdi_spec *s) {
+    double norm[HDI_SPEC_WIDE], scale[HDI_SPEC_WIDE], removed[HDI_SPEC_WIDE], G[64], R[64], off = 1;
+    int again = 1;
+    hdi_spec_scale job;
+    int32_t q, pass;
+    memset(s->couple, 0, sizeof s->couple);
+    for (q = 0; q < HDI_SPEC_WIDE; q++) s->couple[9 * q] = scale[q] = 1;
+    hdi_spec_mass(s, s->w, s->bw);
+    hdi_wide_dots(s->w, s->bw, s->n, HDI_SPEC_WIDE, norm);
+    for (q = 0; q < HDI_SPEC_WIDE; q++) norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
+    if (s->cols > 0) hdi_spec_local(s);
+    for (pass = 0; pass < 2 || ((off > 0.1 || again) && pass < HDI_SPEC_PASSES); pass++) {
+        const int clean = again;
+        if (clean) hdi_spec_clean(s, removed);
+        hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_SPEC_WIDE, s->w, 1), NULL, 1);
+        hdi_spec_dots(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_SPEC_WIDE, s->bw, 1), G);
+        off = hdi_spec_cholesky(G, R, scale, norm);
+        for (q = again = 0; q < HDI_SPEC_WIDE; q++)
+            again |= R[9 * q] > 0 && ((clean && removed[q] > HDI_SPEC_SHRUNK * R[9 * q]) ||
+                                      R[9 * q] < HDI_SPEC_SHRUNK * sqrt(G[9 * q]));
+        hdi_spec_compose(R, s->couple);
+        job.w = s->w;
+        job.bw = s->bw;
+        job.R = R;
+        hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
+    }
+}
+
+/* The columns of w that are there become columns of the basis, and T their coupling with the last block. */
+static void hdi_spec_take(hdi_spec *s) {
+    int32_t from[HDI_SPEC_WIDE], n = 0, i, k, q;
+    double C[HDI_SPEC_WIDE * HDI_SPEC_WIDE] = {0};
+    for (q = 0; q < HDI_SPEC_WIDE; q++)
+        if (s->couple[9 * q] > 0) from[n++] = q;
+    for (i = 0; i < n; i++)
+        for (k = 0; k < s->width; k++) C[8 * i + k] = s->couple[8 * from[i] + k];
+    memcpy(s->couple, C, sizeof C);
+    for (i = 0; i < n; i++) {                    /* pack to the left */
+        double *w = s->w, *bw = s->bw;
+        int64_t r;
+        for (r = 0; r < s->n && from[i] != i; r++) {
+            w[8 * r + i] = w[8 * r + from[i]];
+            bw[8 * r + i] = bw[8 * r + from[i]];
+            w[8 * r + from[i]] = bw[8 * r + from[i]] = 0;
+        }
+    }
+    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, n, s->w, 1), NULL, 1);
+    for (i = 0; i < n && s->cols + i < HDI_SPEC_MOST; i++) {
+        double *row = s->T + HDI_CAST(int64_t, s->cols + i) * HDI_SPEC_MOST;
+        memset(row, 0, HDI_CAST(size_t, s->cols + i + 1) * sizeof *row);
+        for (k = 0; k < s->width; k++) row[s->last + k] = C[8 * i + k];
+    }
+    s->fresh = n;
+}
+
+/* ---- a run ---- */
+
+/* A block of numbers in (-1, 1) that are the same on every machine (splitmix64). */
+static void hdi_spec_random(hdi_spec *s, double *w) {
+    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    int64_t i;
+    for (i = 0; i < size; i++) {
+        uint64_t x = s->seed += UINT64_C(0x9e3779b97f4a7c15);
+        x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+        x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
+        x ^= x >> 31;
+        w[i] = HDI_CAST(double, HDI_CAST(int64_t, x >> 11)) * ldexp(1, -52) - 1;
+    }
+}
+
+/* Eigenpairs of the projected matrix. full: all rows of the eigenvectors, else only those of the last block,
+ * which tell the residuals. off_ritz becomes |L x - lambda B x| in the norm of B^-1 that the Ritz vector x
+ * will have. */
+static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
+    const int32_t m = s->cols, r = full ? m : s->width, at = full ? s->last : 0;
+    int32_t i, j, a, k;
+    for (i = 0; i < m; i++)
+        for (j = 0; j <= i; j++)
+            s->A[HDI_CAST(int64_t, i) * m + j] = s->T[HDI_CAST(int64_t, i) * HDI_SPEC_MOST + j];
+    memset(s->z, 0, HDI_CAST(size_t, m) * HDI_CAST(size_t, r) * sizeof *s->z);
+    for (i = 0; i < r; i++) s->z[HDI_CAST(int64_t, i + (full ? 0 : s->last)) * r + i] = 1;
+    if (!hdi_spec_eigen(s->A, s->d, s->z, m, r, s->work)) return hdi_lanczos_failed(e);
+    for (i = 0; i < m; i++) {
+        const double *y = s->z + HDI_CAST(int64_t, i) * r + at;
+        double sum = 0;
+        for (a = 0; a < s->fresh; a++) {
+            double c = 0;
+            for (k = 0; k < s->width; k++) c += s->couple[8 * a + k] * y[k];
+            sum += c * c;
+        }
+        s->off_ritz[i] = s->d[i] != 0 ? sqrt(sum) / (s->d[i] * s->d[i]) : HUGE_VAL;
+    }
+    return HD_OK;
+}
+
+static double hdi_spec_lambda(const hdi_spec *s, int32_t i) { return s->sigma + 1 / s->d[i]; }
+
+static int hdi_spec_converged(const hdi_spec *s, int32_t i) {
+    return s->d[i] != 0 &&
+           s->off_ritz[i] <= s->tol * hdi_max(fabs(hdi_spec_lambda(s, i)), s->unit);
+}
+
+/* The smallest Ritz value above the shift that has not converged: those below it are taken. */
+static double hdi_spec_reach(const hdi_spec *s) {
+    double reach = HUGE_VAL;
+    int32_t i;
+    for (i = 0; i < s->cols; i++)
+        if (s->d[i] > 0 && !hdi_spec_converged(s, i)) reach = hdi_min(reach, hdi_spec_lambda(s, i));
+    return reach;
+}
+
+static int hdi_spec_taken(const hdi_spec *s, int32_t i, double reach) {
+    const double x = s->d[i] != 0 ? hdi_spec_lambda(s, i) : HUGE_VAL;
+    return hdi_spec_converged(s, i) && x > s->edge && x < reach;
+}
+
+/* Blocks until all `missing` eigenvalues between the edge and the shift are there, and `beyond` above it, or
+ * until the basis is full. */
+static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, hd_error *e) {
+    const double limit = 0.1 * s->tol * hdi_max(fabs(s->sigma), s->unit);
+    int32_t look = missing + beyond + 4 * HDI_SPEC_WIDE, i;
+    double error;
+    s->cols = s->last = s->before = s->width = s->fresh = 0;
+    hdi_spec_random(s, s->w);
+    hdi_spec_append(s);
+    hdi_spec_take(s);
+    s->n_runs++;
+    for (;;) {
+        const int32_t first = s->cols == 0;
+        s->before = s->last;
+        s->last = s->cols;
+        s->width = s->fresh;
+        s->cols += s->fresh;
+        s->fresh = 0;
+        if (s->cols == 0) return HD_OK;          /* nothing is left of the space */
+        error = hdi_spec_inverse(s, first);
+        if (first && error > limit) {            /* pivots were small: refine, if that helps */
+            s->refine = 1;
+            if (hdi_spec_inverse(s, 1) > 0.5 * error) s->refine = 0;
+        }
+        hdi_spec_append(s);
+        hdi_spec_take(s);
+        if (hdi_progress(s->ctx, "solve", s->share, e) < 0) return e->status;
+        if (s->fresh > 0 && s->cols + s->fresh <= s->most && s->cols < look) continue;
+        if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
+        if (s->fresh == 0 || s->cols + s->fresh > s->most) return HD_OK;
+        {
+            const double reach = hdi_spec_reach(s);
+            int32_t left = missing, right = beyond;
+            for (i = 0; i < s->cols; i++) {
+                if (!hdi_spec_taken(s, i, reach)) continue;
+                if (s->d[i] < 0) left--;
+                else right--;
+            }
+            if (left <= 0 && right <= 0) return HD_OK;
+        }
+        look = s->cols + HDI_SPEC_STEPS * HDI_SPEC_WIDE;
+    }
+}
+
+/* ---- locking ---- */
+
+/* A slab with `cols` columns, at the end of the list. */
+static hdi_slab *hdi_spec_slab(hdi_spec *s, int32_t cols, hd_error *e) {
+    if (s->n_slabs == s->room_slabs) {
+        const int32_t room = 2 * s->room_slabs + 16;
+        hdi_slab *slab = HDI_NEW(s->ctx, hdi_slab, room, e);
+        char *beside = slab ? HDI_NEW(s->ctx, char, room, e) : NULL;
+        if (!beside) {
+            hdi_free(s->ctx, slab);
+            return NULL;
+        }
+        if (s->n_slabs) memcpy(slab, s->slab, HDI_CAST(size_t, s->n_slabs) * sizeof *slab);
+        hdi_free(s->ctx, s->slab);
+        hdi_free(s->ctx, s->beside);
+        s->slab = slab;
+        s->beside = beside;
+        s->room_slabs = room;
+    }
+    if (hdi_slab_make(s->slab + s->n_slabs, s->n, cols, s->ctx, e) < 0) return NULL;
+    s->slab[s->n_slabs].cols = cols;
+    s->slab[s->n_slabs].low = HUGE_VAL;
+    s->slab[s->n_slabs].high = -HUGE_VAL;
+    return s->slab + s->n_slabs++;
+}
+
+/* Enters a pair whose vector is column col of the last slab. */
+static void hdi_spec_enter(hdi_spec *s, double value, double residual, int32_t col) {
+    hdi_slab *slab = s->slab + s->n_slabs - 1;
+    int32_t i = s->found++;
+    for (; i > 0 && s->value[i - 1] > value; i--) {
+        s->value[i] = s->value[i - 1];
+        s->residual[i] = s->residual[i - 1];
+        s->slab_of[i] = s->slab_of[i - 1];
+        s->col_of[i] = s->col_of[i - 1];
+    }
+    s->value[i] = value;
+    s->residual[i] = residual;
+    s->slab_of[i] = s->n_slabs - 1;
+    s->col_of[i] = col;
+    slab->low = hdi_min(slab->low, value);
+    slab->high = hdi_max(slab->high, value);
+}
+
+/* Coefficients of the Ritz vectors which[0..n) in the basis with its newest block, with the sign that slabs
+ * are added with. The newest block comes in by one more solve that is not made: (L - sigma B)^-1 B x / theta
+ * has the residual of x without its fast modes. */
+static void hdi_spec_coefficients(const hdi_spec *s, const int32_t *which, int32_t n) {
+    const int32_t m = s->cols, rows = m + s->fresh;
+    int32_t q, i, a, k;
+    memset(s->h, 0, 8 * HDI_CAST(size_t, rows) * HDI_CAST(size_t, (n + 7) / 8) * sizeof *s->h);
+    for (q = 0; q < n; q++) {
+        double *h = s->h + 8 * HDI_CAST(int64_t, rows) * (q / 8) + q % 8;
+        const double *y = s->z + HDI_CAST(int64_t, which[q]) * m;
+        for (i = 0; i < m; i++) h[8 * i] = -y[i];
+        for (a = 0; a < s->fresh; a++) {
+            double c = 0;
+            for (k = 0; k < s->width; k++) c += s->couple[8 * a + k] * y[s->last + k];
+            h[8 * (m + a)] = -c / s->d[which[q]];
+        }
+    }
+}
+
+/* The vectors in group, made orthogonal to all that are locked: those far away, against which the run did not
+ * work, are so up to residuals. twin [n]: how much of a vector was in them already. */
+static void hdi_spec_unlock(hdi_spec *s, int32_t n, double *twin) {
+    const int32_t n_blocks = (n + 7) / 8;
+    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    int32_t i, q, j;
+    for (q = 0; q < n_blocks; q++) hdi_spec_mass(s, s->group + q * size, s->group_b + q * size);
+    for (q = 0; q < n; q++) twin[q] = 0;
+    for (i = 0; i < s->n_slabs - 1; i++) {
+        const int32_t cols = s->slab[i].cols;
+        hdi_spec_project(s, s->slab + i, 0, cols, s->group, s->group_b, n_blocks, s->h);
+        for (q = 0; q < n; q++)
+            for (j = 0; j < cols; j++) {
+                const double c = s->h[8 * (HDI_CAST(int64_t, cols) * (q / 8) + j) + q % 8];
+                twin[q] += c * c;
+            }
+    }
+}
+
+/* Residuals of the block x with bx = B x, for eigenvalues of eight Ritz vectors. */
+static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x, double *bx, double *norm) {
+    double worst = 0;
+    int r;
+    hdi_spec_mass(s, x, bx);
+    hdi_spec_residuals(s, value, x, bx, s->tmp);
+    hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_SPEC_WIDE, norm);
+    for (r = 0; r < HDI_SPEC_WIDE; r++)
+        worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
+    return worst;
+}
+
+/* x - (L - sigma B)^-1 r for the residuals r in tmp: a step of inverse iteration. The change is kept out of the
+ * basis, in which the Ritz vectors are as good as they can be, and orthogonal. */
+static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
+    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    double removed[HDI_SPEC_WIDE];
+    int64_t i;
+    memcpy(s->w, s->tmp, HDI_CAST(size_t, size) * sizeof *s->w);
+    hdi_spec_sweep(s, s->w);
+    hdi_spec_mass(s, s->w, s->bw);
+    s->cols += s->fresh;
+    hdi_spec_clean(s, removed);
+    s->cols -= s->fresh;
+    for (i = 0; i < size; i++) x[i] -= i % 8 < n ? s->w[i] : 0;
+}
+
+/* Locks the Ritz vectors which[0..n): one group of blocks. first: their first column in the last slab. Errors
+ * of solves, which eigenvalues next to the shift make large, leave fast modes in the vectors. They are taken out
+ * where they are seen. */
+static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
+    const int32_t n_blocks = (n + 7) / 8;
+    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    double twin[8 * HDI_SPEC_GROUP], norm[HDI_SPEC_WIDE], value[HDI_SPEC_WIDE];
+    int32_t q, r;
+    hdi_spec_coefficients(s, which, n);
+    memset(s->group, 0, HDI_CAST(size_t, n_blocks * size) * sizeof *s->group);
+    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->group, n_blocks), s->h, 0);
+    hdi_spec_unlock(s, n, twin);
+    for (q = 0; q < n_blocks; q++) {
+        double *x = s->group + q * size, *bx = s->group_b + q * size;
+        const int32_t here = hdi_low32(8, n - 8 * q);
+        for (r = 0; r < HDI_SPEC_WIDE; r++) value[r] = r < here ? hdi_spec_lambda(s, which[8 * q + r]) : 0;
+        if (hdi_spec_measure(s, value, x, bx, norm) > 0.5 * s->tol) {
+            hdi_spec_polish(s, x, here);
+            (void)hdi_spec_measure(s, value, x, bx, norm);
+        }
+        hdi_spec_add(s, hdi_spec_pass(s, s->slab + s->n_slabs - 1, first + 8 * q, here, x, 1), NULL, 1);
+        for (r = 0; r < here; r++) {
+            if (twin[8 * q + r] > 0.1) continue; /* found before */
+            s->cross = hdi_max(s->cross, sqrt(twin[8 * q + r]));
+            hdi_spec_enter(s, value[r], norm[r], first + 8 * q + r);
+        }
+    }
+}
+
+/* Takes what a run has found into the list. */
+static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
+    int32_t which[HDI_SPEC_MOST], n = 0, i, j;
+    double reach;
+    if (s->cols == 0) return HD_OK;
+    if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
+    reach = hdi_spec_reach(s);
+    for (i = 0; i < s->cols; i++) {
+        if (!hdi_spec_taken(s, i, reach)) continue;
+        for (j = n++; j > 0 && hdi_spec_lambda(s, which[j - 1]) > hdi_spec_lambda(s, i); j--)
+            which[j] = which[j - 1];
+        which[j] = i;
+    }
+    if (n == 0 || !hdi_spec_slab(s, n, e)) return e->status;
+    for (i = 0; i < n; i += 8 * HDI_SPEC_GROUP)
+        hdi_spec_lock_group(s, which + i, hdi_low32(n - i, 8 * HDI_SPEC_GROUP), i);
+    return HD_OK;
+}
+
+/* Constants of the first `most` components whose rows of L sum to zero: eigenvalue 0, without any search. */
+static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
+    hdi_scope work = hdi_scope_begin(s->ctx, e);
+    char *loose = HDI_TAKE(&work, char, s->lap->n_components);
+    int32_t *col = HDI_TAKE(&work, int32_t, s->lap->n_components), i, k, n = 0;
+    if (e->status < 0) return hdi_scope_end(&work);
+    hdi_ground_components(s->lap, loose);
+    for (k = 0; k < s->lap->n_components; k++) col[k] = loose[k] && n < most ? n++ : -1;
+    for (k = 0; k < n && e->status >= 0; k += HDI_SPEC_HALF) {
+        const int32_t cols = hdi_low32(n - k, HDI_SPEC_HALF);
+        hdi_slab *slab = hdi_spec_slab(s, cols, e);
+        if (!slab) break;
+        memset(slab->v, 0, HDI_CAST(size_t, hdi_slab_tiles(s->n)) * HDI_SPEC_TILE * HDI_CAST(size_t, cols) *
+               sizeof *slab->v);
+        for (i = 0; i < s->n; i++) {
+            const int32_t c = s->lap->component[i], at = col[c] - k;
+            if (col[c] < 0 || at < 0 || at >= cols) continue;
+            hdi_slab_at(slab, i / HDI_SPEC_TILE, at)[i % HDI_SPEC_TILE] =
+                1 / sqrt(s->lap->component_mass[c]);
+        }
+        for (i = 0; i < cols; i++) hdi_spec_enter(s, 0, 0, i);
+    }
+    s->n_null = n;
+    return hdi_scope_end(&work);
+}
+
+/* ---- counts ---- */
+
+/* Without rounding, the negative pivots are as many as the eigenvalues below the shift. With it they belong
+ * to L - sigma B + E, |E_ij| <= gamma_i (|L| |D| |L'|)_ij with half a unit in the last place for each term
+ * of row i (N. Higham, 2002, theorem 10.3, which holds for L D L' as well), and no eigenvalue moves by more
+ * than max_i sum_j |E_ij| / (b_ratio b_i). */
+static double hdi_spec_count_off(hdi_spec *s) {
+    const hdi_symbolic *sym = &s->m->sym;
+    double *v = s->group, *sum = v + s->n, *terms = sum + s->n, worst = 0;
+    int32_t f, j, i;
+    int64_t p;
+    memset(sum, 0, 2 * HDI_CAST(size_t, s->n) * sizeof *sum);
+    for (f = 0; f < sym->n_super; f++) {
+        const int32_t pivots = hdi_front_pivots(sym, f), first = sym->super[f];
+        const int32_t *row = sym->row + sym->row_ptr[f];
+        const int64_t m = hdi_front_rows(sym, f);
+        for (j = 0; j < pivots; j++) {
+            const double *l = s->factor.panel + s->factor.panel_at[f] + j * m;
+            double w = 1;
+            for (p = j + 1; p < m; p++) w += fabs(l[p]);
+            w *= fabs(l[j]);
+            sum[first + j] += w;
+            for (p = j + 1; p < pivots; p++) sum[first + p] += fabs(l[p]) * w;
+            for (p = pivots; p < m; p++) sum[row[p - pivots]] += fabs(l[p]) * w;
+            for (p = j; p < m; p++) terms[p < pivots ? first + p : row[p - pivots]] += 1;
+        }
+    }
+    for (i = 0; i < s->n; i++) {
+        double own = s->lap->B ? 0 : fabs(s->sigma) * s->lap->mass[i];
+        for (p = s->lap->L.row_ptr[i]; p < s->lap->L.row_ptr[i + 1]; p++)
+            own += fabs(s->lap->L.val[p]) + (s->lap->B ? fabs(s->sigma * s->lap->B[p]) : 0);
+        worst = hdi_max(worst, ((terms[i] + HDI_NOISE_TERMS) * sum[i] + 2 * own) / s->lap->b_diag[i]);
+    }
+    return 0.5 * DBL_EPSILON * (1 + 1e-3) * worst * hdi_ratio_root(s->lap) * hdi_ratio_root(s->lap);
+}
+
+/* Factorises L - sigma B and counts. A shift where a pivot is zero is moved a little. */
+static hd_status hdi_spec_shift(hdi_spec *s, double sigma, double step, hd_error *e) {
+    int32_t tries;
+    for (tries = 0;; tries++) {
+        hdi_error_clear(e);
+        s->n_factors++;
+        s->refine = 0;
+        s->sigma = sigma;
+        if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) >= 0) break;
+        if (e->status != HD_ERR_BREAKDOWN || tries == 4) return e->status;
+        sigma += 0.01 * step;
+    }
+    s->below = s->factor.all.negative;
+    s->off = hdi_spec_count_off(s);
+    return HD_OK;
+}
+
+/* Pairs found with values below x. */
+static int32_t hdi_spec_rank(const hdi_spec *s, double x) {
+    int32_t n = 0;
+    while (n < s->found && s->value[n] < x) n++;
+    return n;
+}
+
+/* Whether the count at the shift is that of the exact pair: no value found is so near that rounding could
+ * move it across. */
+static int hdi_spec_sure(const hdi_spec *s) {
+    const double root = hdi_ratio_root(s->lap);
+    int32_t i;
+    for (i = 0; i < s->found; i++)
+        if (fabs(s->value[i] - s->sigma) <= s->off + root * s->residual[i]) return 0;
+    return s->off < HUGE_VAL;
+}
+
+/* Slabs that a run at the shift could find again: those beyond the edge, and those nearly as near. */
+static void hdi_spec_nearby(hdi_spec *s) {
+    int32_t i;
+    for (i = 0; i < s->n_slabs; i++)
+        s->beside[i] = s->slab[i].high > s->edge ||
+                     s->sigma - s->slab[i].high < HDI_SPEC_NEARBY * (s->sigma - s->edge);
+}
+
+/* ---- a row of shifts ---- */
+
+/* What is wanted. */
+typedef struct hdi_spec_goal { int32_t count; double below; } hdi_spec_goal;
+
+/* Mean distance of the last values found, and not less than a part of the mean of all. */
+static double hdi_spec_spacing(const hdi_spec *s) {
+    const int32_t f = s->found, q = hdi_low32(f - 1, HDI_SPEC_HALF / 2);
+    double step = s->unit;
+    if (f > s->n_null) {
+        step = 0.2 * s->value[f - 1] / f;
+        if (q > 0) step = hdi_max(step, (s->value[f - 1] - s->value[f - 1 - q]) / q);
+    }
+    return step;
+}
+
+/* How many of the pairs found are wanted. *all: nothing wanted can follow, if nothing is missing between. */
+static int32_t hdi_spec_wanted(const hdi_spec *s, const hdi_spec_goal *goal, int *all) {
+    const int32_t n = hdi_spec_rank(s, goal->below);
+    *all = n >= goal->count || n < s->found || s->found == s->n || s->edge >= goal->below;
+    return hdi_low32(n, goal->count);
+}
+
+/* The middle of the widest gap among the next ones after the first n values, above `least`. */
+static double hdi_spec_gap(const hdi_spec *s, int32_t n, double least) {
+    double widest = -1, at = least;
+    int32_t i;
+    for (i = n; i < s->found && i < n + HDI_SPEC_GAPS; i++) {
+        const double from = hdi_max(i > 0 ? s->value[i - 1] : -HUGE_VAL, least);
+        if (!(s->value[i] - from > widest)) continue;
+        widest = s->value[i] - from;
+        at = from + widest / 2;
+    }
+    return at;
+}
+
+/* The next shift: in a gap above what is wanted if that much is found, else some way up. failed: proofs that
+ * did not succeed; each takes some more pairs. */
+static double hdi_spec_next(const hdi_spec *s, const hdi_spec_goal *goal, int32_t failed, int32_t half) {
+    int all;
+    const int32_t n = hdi_spec_wanted(s, goal, &all) + failed * HDI_SPEC_GAPS;
+    const double step = hdi_spec_spacing(s);
+    const double from = hdi_max(s->edge, s->found > 0 ? s->value[s->found - 1] : s->edge);
+    double at;
+    if (all && n < s->found)
+        return hdi_spec_gap(s, n, goal->below < HUGE_VAL && goal->below > s->edge ? goal->below : s->edge);
+    at = from + step * hdi_max(1, hdi_min(half, HDI_CAST(double, goal->count) - s->found + 3));
+    if (at >= goal->below) at = hdi_max(goal->below, from + 0.3 * step);
+    return at;
+}
+
+/* A shift below which about as many values are missing as a run finds, or none. */
+static hd_status hdi_spec_move(hdi_spec *s, const hdi_spec_goal *goal, int32_t failed, int32_t half,
+                               int64_t *missing, hd_error *e) {
+    const double step = hdi_spec_spacing(s);
+    double at = hdi_spec_next(s, goal, failed, half), low = s->edge;
+    int32_t tries;
+    for (tries = 0; tries < HDI_SPEC_TRIES; tries++) {
+        if (hdi_spec_shift(s, at, step, e) < 0) return e->status;
+        *missing = s->below - hdi_spec_rank(s, s->sigma);
+        if (*missing < 0) at += 0.37 * step;     /* too near to a value: the count is wrong */
+        else if (*missing > 2 * half) {
+            const double from = s->found > 0 && *missing < 2 * HDI_CAST(int64_t, half) * HDI_SPEC_TRIES
+                ? hdi_max(low, hdi_min(s->value[s->found - 1], 0.5 * (low + at))) : low;
+            at = from + (at - from) * hdi_max(0.05, half / HDI_CAST(double, *missing));
+        } else break;
+    }
+    return HD_OK;
+}
+
+/* A bound from below of all eigenvalues but the first n. */
+static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
+    if (n < s->found) return s->value[n] - hdi_ratio_root(s->lap) * s->residual[n];
+    if (n == s->n) return HUGE_VAL;
+    return s->proven ? s->sigma - s->off : n > 0 ? s->value[n - 1] : 0;
+}
+
+/* The first run: the low end, from a shift below all eigenvalues. */
+static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error *e) {
+    const int32_t beyond = hdi_low32(HDI_SPEC_HALF, goal->count - hdi_low32(goal->count, s->n_null) + 2);
+    double mean = 0;
+    int32_t i;
+    for (i = 0; i < s->n; i++) mean += hdi_row_diagonal(s->lap, i) / s->lap->b_diag[i] / s->n;
+    s->unit = mean > 0 ? mean / s->n : 1;
+    s->edge = -s->unit;
+    if (hdi_spec_constants(s, goal->count, e) < 0 || hdi_spec_shift(s, -s->unit, 0, e) < 0) return e->status;
+    if (s->below) return hdi_not_semidefinite(e);
+    if (goal->count <= s->n_null || s->found == s->n) return HD_OK;
+    hdi_spec_nearby(s);
+    return hdi_spec_lanczos(s, 0, beyond, e) < 0 ? e->status : hdi_spec_lock(s, e);
+}
+
+/* Runs at the shift where `missing` values below it have not been found yet. */
+static hd_status hdi_spec_search(hdi_spec *s, const hdi_spec_goal *goal, int64_t missing, hd_error *e) {
+    s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(goal->count, s->n)));
+    hdi_spec_nearby(s);
+    if (hdi_spec_lanczos(s, HDI_CAST(int32_t, missing), 0, e) < 0 || hdi_spec_lock(s, e) < 0)
+        return e->status;
+    if (s->below == hdi_spec_rank(s, s->sigma)) s->edge = s->sigma;
+    return HD_OK;
+}
+
+/* All that the goal asks for; how many these are into *count. */
+static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t *count, hd_error *e) {
+    int32_t half = hdi_low32(HDI_SPEC_HALF, s->most / 4 + 1), failed = 0, stalls = 0;
+    int64_t missing = 0;
+    int all = 0;
+    if (hdi_spec_start(s, goal, e) < 0) return e->status;
+    s->proven = s->found == s->n || goal->count <= s->n_null;
+    while (!s->proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES) {
+        const int32_t before = s->found;
+        if (hdi_spec_move(s, goal, failed, half, &missing, e) < 0) return e->status;
+        if (missing > 0) {
+            if (hdi_spec_search(s, goal, missing, e) < 0) return e->status;
+            stalls = s->found > before ? 0 : stalls + 1;
+            half = stalls ? half / 2 + 1 : half;
+        }
+        if (missing == 0) s->edge = hdi_max(s->edge, s->sigma);
+        if (s->below == hdi_spec_rank(s, s->sigma) &&
+            (s->below >= goal->count || s->sigma >= goal->below)) {
+            s->proven = hdi_spec_sure(s);
+            failed += !s->proven;
+        }
+        if (missing < 0) failed++;
+        if (s->found == s->n) s->proven = 1;
+    }
+    *count = hdi_spec_wanted(s, goal, &all);
+    s->next = hdi_spec_rest(s, *count);
+    if (all || s->proven) return HD_OK;
+    return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: some eigenpairs were not found");
+}
+
+/* ---- what is handed out ---- */
+
+/* Vectors by vertices, the largest entry of each positive, and values in the units of the source. */
+static void hdi_spec_vectors(const hdi_spec *s, hd_spectrum *out) {
+    const double root = sqrt(s->m->scale), first = s->n_null < s->found ? s->value[s->n_null] : 0;
+    int32_t q, i;
+    for (q = 0; q < out->count; q++) {
+        const hdi_slab *slab = s->slab + s->slab_of[q];
+        double *x = out->vector + HDI_CAST(int64_t, q) * out->n, most = 0, sign;
+        memset(x, 0, HDI_CAST(size_t, out->n) * sizeof *x);
+        for (i = 0; i < s->n; i++) {
+            const double v = hdi_slab_at(slab, i / HDI_SPEC_TILE, s->col_of[q])[i % HDI_SPEC_TILE];
+            x[s->lap->vertex[i]] = v;
+        }
+        for (i = 0; i < out->n; i++)
+            if (fabs(x[i]) > fabs(most)) most = x[i];
+        sign = most < 0 ? -root : root;
+        for (i = 0; i < out->n; i++) x[i] *= sign;
+        out->value[q] = s->m->scale * s->value[q];
+        out->residual[q] = s->residual[q] > 0 ? s->residual[q] / hdi_max(s->value[q], first) : 0;
+        out->largest_residual = hdi_max(out->largest_residual, out->residual[q]);
+    }
+}
+
+/* (B x)(row) for a field on the vertices. */
+static double hdi_spec_mass_row(const hd_laplacian *lap, const double *x, int32_t row) {
+    double sum = 0;
+    int64_t p;
+    if (!lap->B) return lap->mass[row] * x[lap->vertex[row]];
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++)
+        sum += lap->B[p] * x[lap->vertex[lap->L.col[p]]];
+    return sum;
+}
+
+/* What the vectors leave of the diagonals of B^-1 and of B: sums of squares of those that are not there. */
+typedef struct hdi_spec_left { const hd_laplacian *lap; hd_spectrum *out; } hdi_spec_left;
+
+static void hdi_spec_left_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_spec_left *a = HDI_CAST(const hdi_spec_left *, arg);
+    const hd_spectrum *out = a->out;
+    const double rounding = (HDI_NOISE_TERMS + out->count) * DBL_EPSILON;
+    int64_t i;
+    int32_t q;
+    for (i = begin; i < end; i++) {
+        const int32_t row = HDI_CAST(int32_t, i), v = a->lap->vertex[row];
+        const double inverse = hdi_inverse_mass(a->lap, row), b = a->lap->b_diag[row];
+        double k = inverse * (1 + rounding), mass = b * (1 + rounding);
+        for (q = 0; q < out->count; q++) {
+            const double *x = out->vector + HDI_CAST(int64_t, q) * out->n;
+            const double bx = hdi_spec_mass_row(a->lap, x, row);
+            k -= x[v] * x[v];
+            mass -= bx * bx;
+        }
+        out->left[v] = hdi_max(k, rounding * inverse);
+        out->left_mass[v] = hdi_max(mass, rounding * b);
+    }
+}
+
+static void hdi_spec_left_out(const hd_laplacian *lap, hd_spectrum *out, hd_context *ctx) {
+    hdi_spec_left a;
+    a.lap = lap;
+    a.out = out;
+    memset(out->left, 0, HDI_CAST(size_t, out->n) * sizeof *out->left);
+    memset(out->left_mass, 0, HDI_CAST(size_t, out->n) * sizeof *out->left_mass);
+    hdi_parallel_ranges(ctx, lap->n_active, 1024, hdi_spec_left_task, &a);
+}
+
+/* What one call computed, into arrays that are there. */
+static void hdi_spec_report(const hdi_spec *s, hd_spectrum *out) {
+    out->n_constant = hdi_low32(s->n_null, out->count);
+    out->next = s->m->scale * s->next;
+    out->proven = s->proven;
+    out->shift = s->m->scale * s->sigma;
+    out->shift_margin = s->m->scale * s->off;
+    out->n_factors = s->n_factors;
+    out->n_runs = s->n_runs;
+    out->n_solves = s->n_solves;
+    out->factor_nnz = s->m->sym.nnz;
+    out->factor_flops = s->m->sym.flops * s->n_factors;
+    out->ordering = s->m->sym.ordering;
+}
+
+/* Eigenpairs for the goal. m: a pair that is analysed, whose factor kept in m is not touched. The arrays of
+ * out belong to ctx of m. */
+static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol, hd_spectrum *out,
+                              hd_error *e) {
+    hdi_spec s;
+    int32_t count = 0;
+    uint64_t n, k;
+    memset(&s, 0, sizeof s);
+    if (hdi_spec_make(&s, m, goal->count, tol, e) >= 0 && hdi_spec_solve(&s, goal, &count, e) >= 0) {
+        n = HDI_CAST(uint64_t, m->source->n);
+        k = HDI_CAST(uint64_t, count);
+        out->n = m->source->n;
+        out->count = count;
+        out->value = HDI_NEW(m->ctx, double, 2 * k, e);
+        if (out->value) out->vector = HDI_NEW(m->ctx, double, n * k, e);
+        if (out->vector) out->left = HDI_NEW(m->ctx, double, 2 * n, e);
+        if (e->status >= 0) {
+            out->residual = out->value + k;
+            out->left_mass = out->left + n;
+            hdi_spec_vectors(&s, out);
+            hdi_spec_report(&s, out);
+            hdi_spec_left_out(m->source, out, m->ctx);
+        }
+    }
+    hdi_spec_free(&s);
+    return e->status;
+}
+
+/* ---- kernels from eigenpairs ---- */
+
+/* A function of the eigenvalues at one time: exp(-t lambda), 1/lambda or 1/lambda^2, the last two for values
+ * that are not of constants. rest: it is no larger for those left out. error: what the residuals and rounding
+ * can do to a sum over the pairs with entries of norm one. With S = B^-1 L, S X = X Theta + R the error of
+ * exp is the integral of exp(-(t - s) S) R exp(-s Theta), at most |r_i| min(t, 1/theta_i) for each pair; of
+ * the others it is S^-1 R Theta^-1, and that of their product. */
+typedef struct hdi_spec_filter {
+    const hd_spectrum *of;
+    double t;
+    int power;                   /* 0: exp; 1, 2: of 1/lambda */
+    double rest, error;
+    const double *coef;          /* [count] */
+} hdi_spec_filter;
+
+static double hdi_spec_weight(const hdi_spec_filter *f, int32_t i) {
+    const double x = hdi_max(f->of->value[i], 0);
+    if (f->power == 0) return exp(-f->t * x);
+    return i < f->of->n_constant || x == 0 ? 0 : f->power == 1 ? 1 / x : 1 / (x * x);
+}
+
+static hdi_spec_filter hdi_spec_filter_of(const hd_spectrum *s, double t, int power) {
+    const int32_t first = s->n_constant < s->count ? s->n_constant : s->count;
+    const double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0);
+    const double root = hdi_ratio_root(s->lap);
+    hdi_spec_filter f;
+    double sum = 0, most = 0;
+    int32_t i;
+    memset(&f, 0, sizeof f);
+    f.of = s;
+    f.t = t;
+    f.power = power;
+    f.rest = power == 0 ? exp(-t * next) : next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
+    for (i = 0; i < s->count; i++) {
+        const double x = s->value[i], r = root * s->residual[i] * hdi_max(x, low), w = hdi_spec_weight(&f, i);
+        double by = 0;
+        if (power == 0) by = x > 0 ? hdi_min(t, 1 / x) : t;
+        else if (i >= s->n_constant) by = power == 1 ? 1 / (low * x) : (1 / x + 1 / low) / (low * x);
+        sum += r * by * (r * by);
+        most = hdi_max(most, w);
+    }
+    f.error = 2 * sqrt(sum) + 4 * (HDI_NOISE_TERMS + s->count) * DBL_EPSILON * most;
+    return f;
+}
+
+/* Sums over the pairs for one source. x: the source's entries in the vectors; distance: squares of
+ * differences instead of products; mass: of B x instead of x. */
+typedef struct hdi_spec_sum {
+    hdi_spec_filter f;
+    double *x, *weight;          /* [count] */
+    double left, whole;          /* of the source: what is left out of the diagonal, and all of it */
+    int distance, mass, diagonal;
+    double *out, *bound;         /* [n]; bound may be NULL */
+} hdi_spec_sum;
+
+/* Entry of vector q, or of B times it. */
+static double hdi_spec_entry(const hdi_spec_sum *a, int32_t q, int32_t row, int mass) {
+    const hd_spectrum *s = a->f.of;
+    const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
+    return mass ? hdi_spec_mass_row(s->lap, x, row) : x[s->lap->vertex[row]];
+}
+
+/* A bound of |sqrt(a) - sqrt(b)| where b differs by at most off from a. */
+static double hdi_spec_root_off(double a, double off) {
+    return off > 0 ? off / hdi_max(sqrt(hdi_max(a, 0)), sqrt(off)) : 0;
+}
+
+static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_spec_sum *a = HDI_CAST(const hdi_spec_sum *, arg);
+    const hd_spectrum *s = a->f.of;
+    const hd_laplacian *lap = s->lap;
+    int64_t i;
+    int32_t q;
+    for (i = begin; i < end; i++) {
+        const int32_t row = HDI_CAST(int32_t, i), v = lap->vertex[row];
+        const int other = a->distance && a->mass;
+        const double left = other ? s->left_mass[v] : s->left[v];
+        const double whole = other ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
+        double sum = 0, off;
+        for (q = 0; q < s->count; q++) {
+            const double x = hdi_spec_entry(a, q, row, other);
+            if (a->diagonal) sum += a->weight[q] * x * (a->mass ? hdi_spec_entry(a, q, row, 1) : x);
+            else if (a->distance) sum += a->weight[q] * (x - a->x[q]) * (x - a->x[q]);
+            else sum += a->weight[q] * x * a->x[q];
+        }
+        if (a->distance) {
+            const double far_left = sqrt(left) + sqrt(a->left), far_all = sqrt(whole) + sqrt(a->whole);
+            off = a->f.rest * far_left * far_left + a->f.error * far_all * far_all;
+            off = hdi_spec_root_off(sum, off);
+            sum = sqrt(sum);
+        } else {
+            const double l = a->diagonal ? a->mass ? s->left_mass[v] : left : a->left;
+            const double w = a->diagonal ? a->mass ? lap->b_diag[row] : whole : a->whole;
+            off = a->f.rest * sqrt(left * l) + a->f.error * sqrt(whole * w);
+        }
+        a->out[v] = sum;
+        if (a->bound) a->bound[v] = off;
+    }
+}
+
+/* Sets the source of a sum, -1: none, and runs it. work [2 count]. inert: what vertices without mass get. */
+static void hdi_spec_sum_run(hdi_spec_sum *a, int32_t vertex, double inert, double *work, hd_context *ctx) {
+    const hd_spectrum *s = a->f.of;
+    const hd_laplacian *lap = s->lap;
+    const int32_t row = vertex >= 0 ? lap->row[vertex] : -1;
+    int32_t q;
+    a->x = work;
+    a->weight = work + s->count;
+    a->left = a->whole = 0;
+    for (q = 0; q < s->count; q++) {
+        a->weight[q] = hdi_spec_weight(&a->f, q);
+        a->x[q] = row >= 0 ? hdi_spec_entry(a, q, row, a->mass) : 0;
+    }
+    if (row >= 0) {
+        a->left = a->mass ? s->left_mass[vertex] : s->left[vertex];
+        a->whole = a->mass ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
+    }
+    for (q = 0; q < s->n; q++) {
+        a->out[q] = inert;
+        if (a->bound) a->bound[q] = 0;
+    }
+    hdi_parallel_ranges(ctx, lap->n_active, 1024, hdi_spec_sum_task, a);
+}
+
+/* A vertex without mass has a zero kernel row: distances to it are those from the origin. */
+static void hdi_spec_sum_inert(hdi_spec_sum *a, int32_t source) {
+    const hd_spectrum *s = a->f.of;
+    const double off = a->f.rest * a->left + a->f.error * a->whole;
+    double sum = 0;
+    int32_t q;
+    for (q = 0; q < s->count; q++) sum += a->weight[q] * a->x[q] * a->x[q];
+    for (q = 0; q < s->n; q++) {
+        if (s->lap->row[q] >= 0 || s->lap->row[source] < 0) continue;
+        a->out[q] = sqrt(sum);
+        if (a->bound) a->bound[q] = hdi_spec_root_off(sum, off);
+    }
+}
+
+/* ==== [26] plan ====
  * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors and bases that are
  * kept, the run of a request, and the report. May call [24] and [23].
  * This work is based on
@@ -19283,9 +20677,9 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
     return HD_OK;
 }
 
-/* ==== [26] kernel ====
+/* ==== [27] kernel ====
  * Owns entries of the kernel that come by selected inversion: diagonals, edges, and how their rounding is
- * measured. May call [25].
+ * measured. May call [26].
  * This work is based on
  *   A. Erisman, W. Tinney, On computing certain elements of the inverse of a sparse matrix, 1975 */
 
@@ -20109,8 +21503,8 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
     return h->e->status;
 }
 
-/* ==== [27] diffusion ====
- * Owns distances: the metric of a kind and a time, one to all, pairs, farthest points. May call [26] and
+/* ==== [28] diffusion ====
+ * Owns distances: the metric of a kind and a time, one to all, pairs, farthest points. May call [27] and
  * [24].
  * This work is based on
  *   R. Coifman, S. Lafon, Diffusion maps, 2006
@@ -21091,7 +22485,7 @@ static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double 
     return h->e->status;
 }
 
-/* ==== [28] geodesic ====
+/* ==== [29] geodesic ====
  * Owns geodesic distances on triangle meshes by the heat method: two real factors, and everything a query
  * does with them. May call [18].
  * This work is based on
@@ -22108,7 +23502,7 @@ static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
     rep->factor_flops = 2 * g->sym.flops;
 }
 
-/* ==== [29] api ====
+/* ==== [30] api ====
  * Owns argument checks, defaults and lifetimes, and the bodies of the public functions. May call
  * everything. */
 
@@ -22983,6 +24377,202 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
     return c.e->status;
 }
 
+/* ---- eigenpairs ---- */
+
+#define HDI_TOL_SPECTRUM 1e-10
+
+/* A spectrum with a context that lives as long. */
+typedef struct hdi_spectrum {
+    hd_spectrum s;
+    hd_context context;
+} hdi_spectrum;
+
+static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_opts *o, hd_error *e) {
+    hdi_refuse(o->count < 0 || (o->count == 0 && o->below == 0), "spectrum: neither a count nor a bound", e);
+    hdi_refuse_value(o->count > lap->n_active, "spectrum: more pairs than rows", o->count, e);
+    hdi_refuse_value(!hdi_finite(o->below) || o->below < 0, "spectrum: below is negative or not finite",
+                     o->below, e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "spectrum: tol is not in [0, 1)", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "spectrum: unknown ordering", e);
+    return e->status;
+}
+
+static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd_error *e) {
+    hdi_spec_goal goal;
+    hdi_elim m;
+    const double scale = hdi_heat_scale(s->lap), tol = o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM;
+    goal.count = o->count > 0 ? o->count : INT32_MAX;
+    goal.below = o->below > 0 ? o->below / scale : HUGE_VAL;
+    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, s->lap->n, s->context, e) < 0)
+        return e->status;
+    memset(&m, 0, sizeof m);
+    if (hdi_elim_make(&m, s->lap, o->ordering, o->ordering == HD_ORDERING_OWN ? o->perm : NULL, scale,
+                      s->context, e) >= 0)
+        (void)hdi_spec_run(&m, &goal, tol, s, e);
+    hdi_elim_free(&m);
+    if (e->status < 0) return e->status;
+    return s->proven && s->largest_residual <= tol ? HD_OK : HD_WARN_ACCURACY;
+}
+
+HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
+                                          const hd_spectrum_opts *opts, hd_error *err) {
+    hdi_call c;
+    hdi_spectrum *shell;
+    hd_status status;
+    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
+                       opts && opts->context ? opts->context : lap ? lap->context : NULL,
+                       "spectrum options: not cleared before use", err) < 0) return c.e->status;
+    if (!out || !lap || !opts) return hdi_missing(c.e);
+    if (hdi_spectrum_check(lap, opts, c.e) < 0) return c.e->status;
+    shell = HDI_CAST(hdi_spectrum *, hdi_alloc(c.ctx, 1, sizeof *shell, c.e));
+    if (!shell) return c.e->status;
+    memset(shell, 0, sizeof *shell);
+    shell->s.lap = lap;
+    shell->s.context = hdi_enter_keep(&c, &shell->context);
+    hdi_hold(shell->s.context);
+    status = hdi_spectrum_make(&shell->s, opts, c.e);
+    if (status >= 0) *out = &shell->s;
+    else hd_spectrum_free(&shell->s);
+    return status;
+}
+
+HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
+    hd_context own, *ctx;
+    if (!s) return;
+    ctx = s->context;
+    if (ctx == &HDI_CAST(hdi_spectrum *, HDI_CAST(void *, s))->context) {   /* about to be freed itself */
+        own = *ctx;
+        ctx = &own;
+    }
+    hdi_free(ctx, s->value);
+    hdi_free(ctx, s->vector);
+    hdi_free(ctx, s->left);
+    hdi_free(ctx, s);
+    hdi_let_go(ctx);
+}
+
+/* A call for sums over the pairs. */
+typedef struct hdi_sum_call {
+    hdi_call c;
+    hdi_spec_sum sum;
+    double *work;
+    size_t ld;
+} hdi_sum_call;
+
+/* Checks the arguments. needed: sources. */
+static hd_status hdi_sum_begin(hdi_sum_call *h, const hd_spectrum *s, int32_t n_times, const double *t,
+                               int needed, int32_t k, const int32_t *sources, const double *out, size_t ld,
+                               hd_error *err) {
+    int32_t q;
+    memset(h, 0, sizeof *h);
+    if (hdi_enter(&h->c, s ? s->context : NULL, err) < 0) return h->c.e->status;
+    if (!s || (n_times > 0 && !t) || (needed && k > 0 && !sources) || (k > 0 && !out))
+        return hdi_missing(h->c.e);
+    hdi_refuse(n_times < 1, "spectrum: there is no time", h->c.e);
+    hdi_refuse(k < 0, "spectrum: a number of columns is negative", h->c.e);
+    hdi_refuse(ld != 0 && ld < HDI_CAST(size_t, s->n), "spectrum: columns would overlap", h->c.e);
+    for (q = 0; q < n_times; q++)
+        hdi_refuse_value(!hdi_finite(t[q]) || t[q] < 0, "spectrum: t is negative or not finite", t[q],
+                         h->c.e);
+    if (h->c.e->status < 0) return h->c.e->status;
+    if (needed && hdi_vertices_check(s->lap, k, sources, &h->c.e->column, h->c.e) < 0) return h->c.e->status;
+    h->ld = ld ? ld : HDI_CAST(size_t, s->n);
+    h->work = HDI_NEW(h->c.ctx, double, 2 * HDI_CAST(uint64_t, s->count) + 1, h->c.e);
+    return h->c.e->status;
+}
+
+static hd_status hdi_sum_end(hdi_sum_call *h) {
+    hdi_free(h->c.ctx, h->work);
+    return h->c.e->status;
+}
+
+/* Where column q of the answer goes. */
+static void hdi_sum_column(hdi_sum_call *h, size_t q, double *out, double *bound) {
+    h->sum.out = out + q * h->ld;
+    h->sum.bound = bound ? bound + q * h->ld : NULL;
+}
+
+HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
+                                           const double *t, int32_t k, const int32_t *sources, double *U,
+                                           double *bound, size_t ldu, hd_error *err) {
+    hdi_sum_call h;
+    int32_t q, m;
+    if (hdi_sum_begin(&h, s, n_times, t, 1, k, sources, U, ldu, err) < 0) return h.c.e->status;
+    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
+               h.c.e);
+    h.sum.mass = kernel == HD_KERNEL_OPERATOR;
+    for (q = 0; q < k && h.c.e->status >= 0; q++) {
+        for (m = 0; m < n_times; m++) {
+            hdi_sum_column(&h, HDI_CAST(size_t, q) * HDI_CAST(size_t, n_times) + HDI_CAST(size_t, m), U,
+                           bound);
+            h.sum.f = hdi_spec_filter_of(s, t[m], 0);
+            hdi_spec_sum_run(&h.sum, sources[q], 0, h.work, h.c.ctx);
+            if (h.sum.mass && s->lap->row[sources[q]] < 0) h.sum.out[sources[q]] = 1;
+        }
+    }
+    return hdi_sum_end(&h);
+}
+
+HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
+                                            const double *t, double *D, double *bound, size_t ldd,
+                                            hd_error *err) {
+    hdi_sum_call h;
+    int32_t m;
+    if (hdi_sum_begin(&h, s, n_times, t, 0, 1, NULL, D, ldd, err) < 0) return h.c.e->status;
+    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
+               h.c.e);
+    h.sum.mass = kernel == HD_KERNEL_OPERATOR;
+    h.sum.diagonal = 1;
+    for (m = 0; m < n_times && h.c.e->status >= 0; m++) {
+        hdi_sum_column(&h, HDI_CAST(size_t, m), D, bound);
+        h.sum.f = hdi_spec_filter_of(s, t[m], 0);
+        hdi_spec_sum_run(&h.sum, -1, h.sum.mass, h.work, h.c.ctx);
+    }
+    return hdi_sum_end(&h);
+}
+
+/* Without a time, other components are out of reach. */
+static void hdi_sum_apart(const hd_laplacian *lap, int32_t source, double *out, double *bound) {
+    const int32_t own = lap->row[source] < 0 ? -1 : lap->component[lap->row[source]];
+    int32_t v;
+    for (v = 0; v < lap->n; v++) {
+        const int32_t row = lap->row[v];
+        if (v == source || (row >= 0 && lap->component[row] == own)) continue;
+        out[v] = HUGE_VAL;
+        if (bound) bound[v] = 0;
+    }
+}
+
+HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
+                                            const double *t, int32_t k, const int32_t *sources, double *D,
+                                            double *bound, size_t ldd, hd_error *err) {
+    const int power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
+    const double zero = 0;
+    hdi_sum_call h;
+    int32_t q, m;
+    if (power && n_times <= 1) {                 /* no time */
+        n_times = 1;
+        t = &zero;
+    }
+    if (hdi_sum_begin(&h, s, n_times, t, 1, k, sources, D, ldd, err) < 0) return h.c.e->status;
+    hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
+               h.c.e);
+    hdi_refuse(power && n_times > 1, "spectrum: this distance has no time", h.c.e);
+    h.sum.mass = kind == HD_DISTANCE_WEIGHTED;
+    h.sum.distance = 1;
+    for (q = 0; q < k && h.c.e->status >= 0; q++) {
+        for (m = 0; m < n_times; m++) {
+            hdi_sum_column(&h, HDI_CAST(size_t, q) * HDI_CAST(size_t, n_times) + HDI_CAST(size_t, m), D,
+                           bound);
+            h.sum.f = hdi_spec_filter_of(s, 2 * t[m], power);
+            hdi_spec_sum_run(&h.sum, sources[q], 0, h.work, h.c.ctx);
+            if (power) hdi_sum_apart(s->lap, sources[q], h.sum.out, h.sum.bound);
+            else hdi_spec_sum_inert(&h.sum, sources[q]);
+        }
+    }
+    return hdi_sum_end(&h);
+}
+
 /* Moves fields that lie ldf apart to where their answers will be, ldu apart in the same array. */
 static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     int32_t q;
@@ -23267,7 +24857,7 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
     return hdi_geo_end(report, c.e);
 }
 
-/* ==== [30] closing ====
+/* ==== [31] closing ====
  * Owns the end of the implementation, with the warning pop that pairs with [00]; then the licences. */
 
 #ifdef __cplusplus
