@@ -444,7 +444,9 @@ class Usage(Case):
         for c in COMMANDS:
             for h in ("--help", "-h"):
                 self.assertIn(c.encode(), self.good(c, h).stdout)
-        self.assertRegex(self.good("--version").stdout.decode(), r"^heatdiff \d+\.\d+\.\d+\n$")
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "heatdiff.h"), encoding="utf-8") as f:
+            header = dict(re.findall(r"^#define HD_VERSION_(MAJOR|MINOR|PATCH) (\d+)$", f.read(), re.M))
+        self.assertEqual(self.good("--version").stdout.decode(), "heatdiff %(MAJOR)s.%(MINOR)s.%(PATCH)s\n" % header)
 
     def test_both_forms_and_any_order(self):
         a = self.field("kernel", self.small, "--source", 1, "--t", "2h2")
