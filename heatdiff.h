@@ -11140,7 +11140,7 @@ typedef struct hdi_factor {
 } hdi_factor;
 
 /* Is it the factor of a real matrix, and not a pack? */
-static int hdi_is_real(const hdi_factor *f) { return !HDI_HAS_POLE_FACTORS || f->width == 1; }
+static HDI_INLINE int hdi_is_real(const hdi_factor *f) { return !HDI_HAS_POLE_FACTORS || f->width == 1; }
 
 static void hdi_pivots_clear(hdi_pivots *q) {
     memset(q, 0, sizeof *q);

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What the implementation takes: bytes of code and constants by room, for the whole file and for a program that builds a Laplacian
-# and computes one column (the linker leaves out what that does not reach), and seconds of compiling.
+# and computes one column (the linker leaves out what that does not reach), with and without the switches HEATDIFF_NO_...,
+# and seconds of compiling.
 #
 #   tools/size.sh [--seconds]      CC=gcc, FLAGS=-Os choose the compiler; --seconds compiles at -O2 too, and times it
 #
@@ -70,31 +71,48 @@ one() {   # NAME SOURCE LINKED FLAGS...
 one all all.c 0
 one column column.c 1
 one plain column.c 1 -DHEATDIFF_NO_SIMD
+# the same program without what it cannot need; by factors of poles or krylov, by krylov alone, by iterations alone
+lean="-DHEATDIFF_NO_DIAGONAL -DHEATDIFF_NO_INTRINSIC"
+one lean column.c 1 $lean -DHEATDIFF_NO_ITERATIVE
+one lean_plain column.c 1 $lean -DHEATDIFF_NO_ITERATIVE -DHEATDIFF_NO_SIMD
+one krylov column.c 1 $lean -DHEATDIFF_NO_ITERATIVE -DHEATDIFF_NO_POLE_FACTORS -DHEATDIFF_NO_SIMD
+one iterations column.c 1 $lean -DHEATDIFF_NO_DIRECT -DHEATDIFF_NO_SIMD
 
 echo "$("$cc" --version | head -1), $flags, bytes"
-printf '%-16s %10s %10s %12s\n' "room" "whole file" "column" "column plain"
 awk -v work="$work" 'BEGIN {
-  n = split("all column plain", set, " ")
+  n = split("all column plain lean lean_plain krylov iterations", set, " ")
+  printf "%-16s", "room"
+  for (k = 1; k <= n; k++) printf " %10s", set[k]
+  printf "\n"
   for (k = 1; k <= n; k++) {
     file = work "/" set[k] ".txt"
     while ((getline < file) > 0) { room = $1 " " $2; bytes[room, k] = $3; sum[k] += $3; seen[room] = 1 }
   }
-  for (room in seen) printf "%-16s %10d %10d %12d\n", room, bytes[room, 1], bytes[room, 2], bytes[room, 3] | "sort"
+  for (room in seen) {
+    line = sprintf("%-16s", room)
+    for (k = 1; k <= n; k++) line = line sprintf(" %10d", bytes[room, k])
+    print line | "sort"
+  }
   close("sort")
-  printf "%-16s %10d %10d %12d\n", "sum", sum[1], sum[2], sum[3]
+  printf "%-16s", "sum"
+  for (k = 1; k <= n; k++) printf " %10d", sum[k]
+  printf "\n"
 }'
-size "$work/column" "$work/plain" | awk 'NR > 1 {printf "program %-8s text %d, data %d\n", NR == 2 ? "column" : "plain", $1, $2}'
+for k in column plain lean lean_plain krylov iterations; do
+  size "$work/$k" | awk -v name="$k" 'NR > 1 {printf "program %-10s text %d, data %d\n", name, $1, $2}'
+done
 
 if [ "${1:-}" = --seconds ]; then
   printf '#include "heatdiff.h"\n' >"$work/user.c"
-  for c in "gcc -O2" "gcc -Os" "gcc -O0" "gcc -O2 -DHEATDIFF_NO_SIMD" "clang -O2"; do
+  for c in "gcc -O0" "gcc -O1" "gcc -O2" "gcc -Os" "clang -O0" "clang -O1" "clang -O2" "clang -Os" "gcc -O2 -DHEATDIFF_NO_SIMD" \
+           "gcc -O2 -DHEATDIFF_NO_DIRECT -DHEATDIFF_NO_INTRINSIC"; do
     command -v "${c%% *}" >/dev/null || continue
     TIMEFORMAT="%U s of processor time: $c, the implementation"
     time $c -I"$top" -c "$work/all.c" -o "$work/timed.o"
   done
-  TIMEFORMAT="%U s of processor time: gcc -O2, twenty files that include the declarations only"
-  time for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do gcc -O2 -I"$top" -c "$work/user.c" -o "$work/timed.o"; done
+  TIMEFORMAT="%U s of processor time: gcc -O2, a hundred files that include the declarations only"
+  time for i in {1..100}; do gcc -O2 -I"$top" -c "$work/user.c" -o "$work/timed.o"; done
   printf '' >"$work/user.c"
-  TIMEFORMAT="%U s of processor time: gcc -O2, twenty empty files"
-  time for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do gcc -O2 -c "$work/user.c" -o "$work/timed.o"; done
+  TIMEFORMAT="%U s of processor time: gcc -O2, a hundred empty files"
+  time for i in {1..100}; do gcc -O2 -c "$work/user.c" -o "$work/timed.o"; done
 fi

@@ -1,0 +1,343 @@
+/* One build with some of the switches HEATDIFF_NO_...: what it has gives right numbers, what it lacks answers
+   HD_ERR_NOT_BUILT with the name of the switch. tests/switches.sh builds and runs this with each switch and with
+   sensible sets of them. The numbers are closed forms: on the octahedron L = w (4 I - A), w = 1/sqrt(3), and A has the
+   eigenvalues 4, 0 and -2 with 1, 3 and 2 eigenvectors. */
+#include "heatdiff.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The switches of this build, or NULL. */
+#ifdef HEATDIFF_NO_DIRECT
+#define NO_DIRECT "HEATDIFF_NO_DIRECT"
+#else
+#define NO_DIRECT NULL
+#endif
+#ifdef HEATDIFF_NO_POLE_FACTORS
+#define NO_POLE_FACTORS "HEATDIFF_NO_POLE_FACTORS"
+#else
+#define NO_POLE_FACTORS NULL
+#endif
+#ifdef HEATDIFF_NO_DIAGONAL
+#define NO_DIAGONAL "HEATDIFF_NO_DIAGONAL"
+#else
+#define NO_DIAGONAL NULL
+#endif
+#ifdef HEATDIFF_NO_DIFFUSION
+#define NO_DIFFUSION "HEATDIFF_NO_DIFFUSION"
+#else
+#define NO_DIFFUSION NULL
+#endif
+#ifdef HEATDIFF_NO_GEODESIC
+#define NO_GEODESIC "HEATDIFF_NO_GEODESIC"
+#else
+#define NO_GEODESIC NULL
+#endif
+#ifdef HEATDIFF_NO_ITERATIVE
+#define NO_ITERATIVE "HEATDIFF_NO_ITERATIVE"
+#else
+#define NO_ITERATIVE NULL
+#endif
+#ifdef HEATDIFF_NO_INTRINSIC
+#define NO_INTRINSIC "HEATDIFF_NO_INTRINSIC"
+#else
+#define NO_INTRINSIC NULL
+#endif
+#ifdef HEATDIFF_NO_POINTS
+#define NO_POINTS "HEATDIFF_NO_POINTS"
+#else
+#define NO_POINTS NULL
+#endif
+#ifdef HEATDIFF_NO_POLYGONS
+#define NO_POLYGONS "HEATDIFF_NO_POLYGONS"
+#else
+#define NO_POLYGONS NULL
+#endif
+
+/* The switch that takes a part away, by itself or because it implies that; NULL if the part is there. */
+static struct {
+    const char *direct, *pole_factors, *diagonal, *diffusion, *geodesic, *iterative, *intrinsic, *points, *polygons;
+} no;
+
+static const char *either(const char *first, const char *second) { return first ? first : second; }
+
+static void find_switches(void) {
+    no.direct = NO_DIRECT;
+    no.pole_factors = either(NO_POLE_FACTORS, no.direct);
+    no.diagonal = either(NO_DIAGONAL, no.pole_factors);
+    no.diffusion = either(NO_DIFFUSION, no.diagonal);
+    no.geodesic = either(NO_GEODESIC, no.direct);
+    no.iterative = NO_ITERATIVE;
+    no.intrinsic = NO_INTRINSIC;
+    no.points = NO_POINTS;
+    no.polygons = NO_POLYGONS;
+}
+
+static int n_checks, n_failed;
+static hd_error err;
+
+static void check_at(int line, int good, const char *what) {
+    n_checks++;
+    if (good) return;
+    n_failed++;
+    printf("line %d: %s (%s)\n", line, what, err.text);
+}
+#define CHECK(good) check_at(__LINE__, good, #good)
+
+/* Is the status that of a build without what `lacking` names, or HD_OK? Returns whether results can be looked at. */
+static int built_at(int line, hd_status status, const char *lacking, const char *what) {
+    if (!lacking) check_at(line, status == HD_OK, what);
+    else check_at(line, status == HD_ERR_NOT_BUILT && err.status == status && strstr(err.text, lacking) != NULL, what);
+    return status == HD_OK;
+}
+#define BUILT(call, lacking) built_at(__LINE__, call, lacking, #call)
+
+static int near_to(double x, double y) { return fabs(x - y) <= 2e-7; }
+
+static const double xyz[18] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
+static const int32_t tri[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+static const double T = 0.7;
+
+/* f(L) between two vertices for f with the values at the eigenvalues 0, 4 w and 6 w. */
+static double between(int i, int j, double f0, double f4, double f6) {
+    if (i == j) return (f0 + 3 * f4 + 2 * f6) / 6;
+    return i / 2 == j / 2 ? (f0 - 3 * f4 + 2 * f6) / 6 : (f0 - f6) / 6;
+}
+
+static double heat_of(int i, int j, double t) {
+    const double w = 1 / sqrt(3.0);
+    return between(i, j, 1, exp(-4 * w * t), exp(-6 * w * t));
+}
+
+static hd_laplacian *octahedron(hd_laplacian_opts *o) {
+    hd_laplacian *lap = NULL;
+    o->kind = HD_LAPLACIAN_COT;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 6, tri, 8, o, &err) == HD_OK && lap->n_active == 6);
+    return lap;
+}
+
+/* Columns and fields of a plan are right, at one time, at several, and at t = 0. */
+static void check_columns(hd_heat *heat) {
+    const double t[3] = {T, 0.2 * T, 3 * T}, zero = 0, f[6] = {1, 2, 3, 4, 5, 6};
+    double u[18];
+    int q, i, j;
+    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 3, t, 1, tri, u, 0, NULL, &err) == HD_OK);
+    for (q = 0; q < 3; q++)
+        for (i = 0; i < 6; i++) CHECK(near_to(u[6 * q + i], heat_of(i, 0, t[q])));
+    CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, T, 1, u, NULL, &err) == HD_OK);
+    for (i = 0; i < 6; i++) CHECK(near_to(u[i], heat_of(i, 1, T)));
+    CHECK(hd_heat_apply(heat, 1, &zero, 1, f, 0, u, 0, NULL, &err) == HD_OK && u[3] == f[3]);
+    CHECK(hd_heat_apply(heat, 1, t, 1, f, 0, u, 0, NULL, &err) == HD_OK);
+    for (i = 0; i < 6; i++) {
+        double sum = 0;
+        for (j = 0; j < 6; j++) sum += heat_of(i, j, T) * f[j];
+        CHECK(fabs(u[i] - sum) <= 2e-6);
+    }
+    CHECK(hd_heat_entries(heat, HD_KERNEL_SYMMETRIC, 1, t, 2, tri, tri + 1, u, NULL, &err) == HD_OK);
+    CHECK(near_to(u[0], heat_of(0, 2, T)) && near_to(u[1], heat_of(2, 4, T)));
+}
+
+/* A plan by a method and a solver: made if all it needs is there, and right. */
+static void check_plan(const hd_laplacian *lap, hd_method method, hd_solver solver, const char *lacking) {
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    memset(&o, 0, sizeof o);
+    o.method = method;
+    o.solver = solver;
+    if (!BUILT(hd_heat_create(&heat, lap, &o, &err), lacking)) return;
+    check_columns(heat);
+    hd_heat_free(heat);
+}
+
+static void check_plans(const hd_laplacian *lap) {
+    const char *poles = no.iterative ? no.pole_factors : NULL;
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    check_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, NULL);
+    check_plan(lap, HD_METHOD_ITERATIVE, HD_SOLVER_AUTO, no.iterative);
+    check_plan(lap, HD_METHOD_ITERATIVE, HD_SOLVER_COCG, no.iterative);
+    check_plan(lap, HD_METHOD_AUTO, HD_SOLVER_LANCZOS, no.iterative);
+    check_plan(lap, HD_METHOD_DIRECT, HD_SOLVER_AUTO, no.pole_factors);
+    check_plan(lap, HD_METHOD_KRYLOV, HD_SOLVER_AUTO, no.direct);
+    memset(&o, 0, sizeof o);
+    o.degree = 10;
+    if (!BUILT(hd_heat_create(&heat, lap, &o, &err), poles)) return;
+    check_columns(heat);
+    hd_heat_free(heat);
+}
+
+/* What comes from selected inversion, and distances. */
+static void check_signatures(const hd_laplacian *lap) {
+    const int32_t zero = 0, one = 1, two = 2;
+    const double t = T, off = heat_of(0, 0, 2 * T) - heat_of(0, 2, 2 * T);
+    hd_heat *heat = NULL;
+    hd_report rep;
+    double d[6] = {0}, values[24] = {0};
+    int32_t vertex[3] = {0, 0, 0};
+    int i;
+    CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
+    if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, d, 0, &rep, &err), no.diagonal))
+        for (i = 0; i < 6; i++) CHECK(near_to(d[i], heat_of(0, 0, T)));
+    else CHECK(rep.status == HD_ERR_NOT_BUILT);
+    if (BUILT(hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, 1, &t, values, NULL, &err), no.diagonal))
+        CHECK(near_to(values[0], heat_of(0, 0, T)) || near_to(values[0], heat_of(0, 2, T)));
+    if (BUILT(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, d, 0, NULL, &err), no.diffusion))
+        CHECK(d[0] == 0 && near_to(d[2], sqrt(2 * off)) && near_to(d[5], d[2]) && d[1] > d[2]);
+    if (BUILT(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, &two, values, d, NULL, &err), no.diffusion))
+        CHECK(near_to(d[0], sqrt(2 * off)));
+    if (BUILT(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 1, vertex, d, NULL, &err), no.diffusion))
+        CHECK(vertex[1] == one);
+    hd_heat_free(heat);
+}
+
+static void check_geodesic(void) {
+    hd_geodesic *g = NULL;
+    hd_geodesic_report rep;
+    const int32_t zero = 0;
+    double d[6] = {0};
+    if (!BUILT(hd_geodesic_create(&g, xyz, 6, tri, 8, NULL, &err), no.geodesic)) {
+        (void)BUILT(hd_geodesic_distance(NULL, 1, &zero, d, &rep, &err), no.geodesic);
+        CHECK(rep.status == HD_ERR_NOT_BUILT && strstr(rep.error.text, no.geodesic) != NULL);
+        (void)BUILT(hd_geodesic_distances(NULL, 1, &zero, d, 0, NULL, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_update(NULL, xyz, &err), no.geodesic);
+        hd_geodesic_free(g);
+        return;
+    }
+    CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, &err) == HD_OK);
+    CHECK(d[0] == 0 && d[2] > 1 && d[2] < 2 && near_to(d[2], d[5]) && d[1] > d[2] && d[1] < 3);
+    hd_geodesic_free(g);
+}
+
+static void check_shifted(const hd_laplacian *lap) {
+    const double w = 1 / sqrt(3.0);
+    const hd_c64 theta = {2, 0};
+    hd_c64 b[6], x[6];
+    int i;
+    memset(b, 0, sizeof b);
+    memset(x, 0, sizeof x);
+    b[0].re = 1;
+    if (!BUILT(hd_shifted_solve(lap, T, theta, b, x, NULL, NULL, &err), no.iterative)) return;
+    for (i = 0; i < 6; i++)
+        CHECK(near_to(x[i].re, between(i, 0, 0.5, 1 / (4 * w * T + 2), 1 / (6 * w * T + 2))) && near_to(x[i].im, 0));
+}
+
+/* [4 1; 1 3], and 1 + i times that. */
+static void check_ldl(void) {
+    const int32_t i[4] = {0, 0, 1, 1}, j[4] = {0, 1, 0, 1}, first = 0, second = 1;
+    const double v[4] = {4, 1, 1, 3}, b[2] = {1, 2};
+    hd_c64 cv[4], cb[2], cx[2];
+    hd_csr a;
+    hd_ldl *f = NULL;
+    double x[2] = {0}, entry = 0;
+    int k;
+    for (k = 0; k < 4; k++) cv[k].re = cv[k].im = v[k];
+    for (k = 0; k < 2; k++) {
+        cb[k].re = b[k];
+        cb[k].im = 0;
+    }
+    memset(cx, 0, sizeof cx);
+    CHECK(hd_csr_from_triplets(&a, 2, 2, 4, i, j, v, NULL, &err) == HD_OK);
+    if (!BUILT(hd_ldl_analyse(&f, &a, NULL, NULL, &err), no.direct)) {
+        (void)BUILT(hd_ldl_factor(NULL, v, NULL, &err), no.direct);
+        (void)BUILT(hd_ldl_solve(NULL, 1, b, 0, x, 0, &err), no.direct);
+        (void)BUILT(hd_ldl_factor_complex(NULL, 1, cv, NULL, &err), no.direct);
+        hd_csr_free(&a, NULL);
+        return;
+    }
+    CHECK(hd_ldl_factor(f, v, NULL, &err) == HD_OK && hd_ldl_solve(f, 1, b, 0, x, 0, &err) == HD_OK);
+    CHECK(near_to(x[0], 1 / 11.0) && near_to(x[1], 7 / 11.0));
+    if (BUILT(hd_ldl_inverse(f, NULL, x, &err), no.diagonal)) CHECK(near_to(x[0], 3 / 11.0) && near_to(x[1], 4 / 11.0));
+    if (BUILT(hd_ldl_inverse_entries(f, 1, &first, &second, &entry, &err), no.diagonal)) CHECK(near_to(entry, -1 / 11.0));
+    if (BUILT(hd_ldl_factor_complex(f, 1, cv, NULL, &err), no.pole_factors)) {
+        CHECK(hd_ldl_solve_complex(f, cb, 0, cx, 0, &err) == HD_OK);
+        CHECK(near_to(cx[1].re, 3.5 / 11.0) && near_to(cx[1].im, -3.5 / 11.0));
+        if (BUILT(hd_ldl_inverse_complex(f, NULL, cx, &err), no.diagonal)) CHECK(near_to(cx[0].im, -1.5 / 11.0));
+    } else {
+        (void)BUILT(hd_ldl_solve_complex(f, cb, 0, cx, 0, &err), no.pole_factors);
+    }
+    hd_ldl_free(f);
+    hd_csr_free(&a, NULL);
+}
+
+/* The octahedron is Delaunay: flips change nothing. Its faces as polygons have B = 2/sqrt(3) I. */
+static void check_surfaces(void) {
+    static const int64_t ptr[9] = {0, 3, 6, 9, 12, 15, 18, 21, 24};
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts o;
+    double u[6], b = 2 / sqrt(3.0), t = T;
+    hd_heat *heat = NULL;
+    memset(&o, 0, sizeof o);
+    o.kind = HD_LAPLACIAN_COT;
+    o.intrinsic_delaunay = 1;
+    if (BUILT(hd_laplacian_triangles(&lap, xyz, 6, tri, 8, &o, &err), no.intrinsic)) {
+        check_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, NULL);
+        hd_laplacian_free(lap);
+    }
+    o.kind = HD_LAPLACIAN_DEFAULT;
+    (void)BUILT(hd_laplacian_polygons(&lap, xyz, 6, ptr, tri, 8, &o, &err), either(no.polygons, no.intrinsic));
+    if (err.status == HD_OK) hd_laplacian_free(lap);
+    if (!BUILT(hd_laplacian_polygons(&lap, xyz, 6, ptr, tri, 8, NULL, &err), no.polygons)) return;
+    CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
+    CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, t * b, 0, u, NULL, &err) == HD_OK);
+    CHECK(near_to(u[0], heat_of(0, 0, t)) && near_to(u[1], heat_of(0, 1, t)) && near_to(u[2], heat_of(0, 2, t)));
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+}
+
+/* Points evenly on the unit sphere (a Fibonacci lattice). */
+static void check_points(void) {
+    enum { N = 150 };
+    static double p[3 * N], ones[N], y[N];
+    const double from[3] = {0.9, 0.1, 0};
+    int32_t i, nearest = -1;
+    hd_laplacian *lap = NULL;
+    hd_csr within;
+    for (i = 0; i < N; i++) {
+        const double z = 1 - (2 * i + 1.0) / (double)N, r = sqrt(1 - z * z), phi = 2.399963229728653 * i;
+        p[3 * i] = r * cos(phi);
+        p[3 * i + 1] = r * sin(phi);
+        p[3 * i + 2] = z;
+        ones[i] = 1;
+    }
+    if (BUILT(hd_neighbours_nearest(xyz, 6, from, 1, 1, &nearest, NULL, NULL, &err), no.points)) CHECK(nearest == 0);
+    if (BUILT(hd_neighbours_radius(&within, xyz, 6, from, 1, 1.3, NULL, &err), no.points)) {
+        CHECK(within.nnz == 2 && within.col[0] == 0 && within.col[1] == 2);
+        hd_csr_free(&within, NULL);
+    }
+    if (BUILT(hd_laplacian_points(&lap, p, N, NULL, &err), no.points)) {
+        CHECK(lap->n_active == N && fabs(lap->area - 12.566370614359172) < 1);
+        CHECK(hd_laplacian_apply(lap, 1, 0, ones, y, &err) == HD_OK && fabs(y[0]) < 1e-9);
+        hd_laplacian_free(lap);
+    }
+    if (BUILT(hd_laplacian_tufted_points(&lap, p, N, NULL, NULL, NULL, &err), either(no.points, no.intrinsic))) {
+        CHECK(lap->n_active == N && fabs(lap->area - 12.566370614359172) < 1);
+        hd_laplacian_free(lap);
+    }
+}
+
+static void check_poles(void) {
+    hd_rational set;
+    CHECK(hd_rational_get(&set, HD_POLES_UNIFORM, 7, &err) == HD_OK && near_to(hd_rational_eval(&set, -1), exp(-1.0)));
+    CHECK(hd_rational_get(&set, HD_POLES_KERNEL, 10, &err) == HD_OK && near_to(hd_rational_eval(&set, -2), exp(-2.0)));
+    if (BUILT(hd_rational_get(&set, HD_POLES_DIAGONAL, 10, &err), no.diagonal))
+        CHECK(near_to(hd_rational_eval(&set, -2), exp(-2.0)));
+}
+
+int main(void) {
+    hd_laplacian_opts o;
+    hd_laplacian *lap;
+    find_switches();
+    memset(&o, 0, sizeof o);
+    lap = octahedron(&o);
+    check_plans(lap);
+    check_signatures(lap);
+    check_geodesic();
+    check_shifted(lap);
+    check_ldl();
+    check_surfaces();
+    check_points();
+    check_poles();
+    hd_laplacian_free(lap);
+    printf("%d passed, %d failed\n", n_checks - n_failed, n_failed);
+    return n_failed != 0;
+}

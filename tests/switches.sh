@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# Builds with the switches HEATDIFF_NO_..., each alone and sensible sets together: the implementation without warnings,
+# tests/switches.c run, and what is left out really gone from the object.   Usage: switches.sh WORKFOLDER
+# By gcc (C99, -O1) in two files, and in one file with HEATDIFF_STATIC by the other compilers in turn.
+set -euo pipefail
+export top=$(cd "$(dirname "$0")/.." && pwd)
+export work=$1
+mkdir -p "$work"
+export warn="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Werror -I$top"
+printf '#define HEATDIFF_IMPLEMENTATION\n#include "heatdiff.h"\n' >"$work/impl.c"
+printf '#define HEATDIFF_STATIC\n#define HEATDIFF_IMPLEMENTATION\n#include "%s/tests/switches.c"\n' "$top" >"$work/static.c"
+cp "$work/static.c" "$work/static.cpp"
+
+# A function of each room that must not be there.
+gone() {
+  case $1 in
+    DIRECT) echo "hdi_front_factor hdi_nd_split hdi_amd_run hdi_symbolic_order hdi_sweep_run hdi_elim_make hdi_silan_run hdi_real_tiles_plain" \
+                 "$(gone POLE_FACTORS) $(gone GEODESIC)" ;;
+    POLE_FACTORS) echo "hdi_pack_multiply_plain hdi_front_pivots_pack hdi_batch_run hdi_elim_poles $(gone DIAGONAL)" ;;
+    DIAGONAL) echo "hdi_inverse_run hdi_form_task hdi_ground_make hdi_diagonal_run hdi_edges_run $(gone DIFFUSION)" ;;
+    DIFFUSION) echo "hdi_metric_make hdi_pairs_once hdi_sample_run" ;;
+    ITERATIVE) echo "hdi_krylov_run hdi_precond_ordered hdi_fill_task hdi_lanczos_first hdi_family_run" ;;
+    GEODESIC) echo "hdi_geo_make hdi_geo_sweep hdi_geo_free" ;;
+    INTRINSIC) echo "hdi_soup_delaunay hdi_cover_glue" ;;
+    POINTS) echo "hdi_tree_make hdi_nearest_task hdi_lap_points hdi_star_task" ;;
+    POLYGONS) echo "hdi_lap_polygons hdi_poly_check" ;;
+  esac
+}
+
+one() {   # NUMBER SWITCHES: by gcc, and by another compiler
+  local number=$1 flags="" name other ext
+  shift
+  for name in "$@"; do flags="$flags -DHEATDIFF_NO_$name"; done
+  case " $* " in *" SIMD "*) ;; *) local plain=-DHEATDIFF_NO_SIMD ;; esac   # else the kernels take most of the time
+  if command -v gcc >/dev/null; then
+    gcc -std=c99 -O1 $warn $flags ${plain:-} -c "$work/impl.c" -o "$work/$number.o"
+    gcc -std=c99 $warn $flags "$top/tests/switches.c" "$work/$number.o" -o "$work/$number" -lm
+    "$work/$number" >"$work/$number.txt" || { cat "$work/$number.txt"; echo "gcc, without $*: failed"; return 1; }
+    for name in "$@"; do
+      for f in $(gone "$name"); do
+        if nm "$work/$number.o" | grep -qE " $f(\.|$)"; then echo "without $*: $f is still there"; return 1; fi
+      done
+    done
+  fi
+  case $((number % 3)) in 0) other="clang -std=c99" ;; 1) other="g++ -std=c++11" ;; 2) other="clang++ -std=c++17" ;; esac
+  ext=c; case $other in *++*) ext=cpp ;; esac
+  if command -v "${other%% *}" >/dev/null && $other -x "${ext/cpp/c++}" -fsyntax-only /dev/null 2>/dev/null; then
+    $other $warn $flags ${plain:-} "$work/static.$ext" -o "$work/$number.static" -lm
+    "$work/$number.static" >"$work/$number.txt" || { cat "$work/$number.txt"; echo "$other, without $*: failed"; return 1; }
+  fi
+  echo "ok: without $*"
+}
+export -f one gone
+
+nl -v0 -w1 -s' ' <<'END' | xargs -d '\n' -P "${JOBS:-$(nproc)}" -I{} bash -euc 'one {}' || { echo "failed"; exit 1; }
+DIRECT
+POLE_FACTORS
+DIAGONAL
+DIFFUSION
+ITERATIVE
+GEODESIC
+INTRINSIC
+POINTS
+POLYGONS
+THREADS SIMD
+ITERATIVE POLE_FACTORS INTRINSIC
+ITERATIVE DIAGONAL INTRINSIC
+ITERATIVE DIFFUSION
+ITERATIVE DIAGONAL GEODESIC INTRINSIC POINTS POLYGONS THREADS SIMD
+DIRECT INTRINSIC POINTS POLYGONS THREADS SIMD
+END
+printf '#define HEATDIFF_NO_DIRECT\n#define HEATDIFF_NO_ITERATIVE\n#include "impl.c"\n' >"$work/none.c"
+if gcc -I"$top" -fsyntax-only "$work/none.c" 2>"$work/none.txt"; then echo "a build without any method passes"; exit 1; fi
+grep -q "leave no method" "$work/none.txt"
+echo "all switches"
