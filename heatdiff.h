@@ -506,7 +506,12 @@ typedef struct hd_rational {
 } hd_rational;
 
 typedef enum hd_method {
-    HD_METHOD_AUTO = 0,         /* the cheapest by a model of flops and bytes, within the byte limit */
+    /* The cheapest by a model of flops and bytes, within the byte limit. It counts what calls for a few
+     * fields or columns, one after another at one t, have cost by the model. When that exceeds the cost of
+     * factorising all poles, the plan changes to direct, and report.reason says so; another t, or an update
+     * of the Laplacian, begins the count anew. The model uses no clock, so the same calls take the same
+     * methods. The answers of two methods differ within their bounds. */
+    HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV            /* shift-and-invert Lanczos: one real factor, for few fields or many times */
@@ -19177,6 +19182,8 @@ struct hd_heat {
     /* of rounding relative to the answer, above which the status warns: tol, or by default */
     double limit;
     uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
+    /* auto: the time asked for last without factors of its poles, and the cost of these calls by the model */
+    double habit_t, habit_spent;
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_ground ground;           /* made when it is first needed; of elim */
@@ -19508,6 +19515,8 @@ typedef struct hdi_heat_call {
     int32_t n_times;
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
+    double cost;                 /* of this method by the model, where auto picks by it; else 0 */
+    int32_t by_habit;            /* auto picks direct because of the calls before */
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
     const hd_rational *set;      /* instead of what the plan would take */
@@ -19547,6 +19556,7 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     hdi_elim *m = &heat->elim;
     int32_t i;
     if (heat->version == lap->version) return HD_OK;
+    heat->habit_spent = 0;
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill) return e->status;
     hdi_heat_measure_pair(heat);
@@ -19593,8 +19603,10 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 /* ---- choice of the method ---- */
 
 /* Seconds that the methods would take at rates one core has been seen to reach, and the bytes they would
- * hold. */
-typedef struct hdi_cost { double iterative, direct, krylov, direct_bytes, krylov_bytes; } hdi_cost;
+ * hold. factors: the part of direct that makes factors, which later calls at the same t do without. */
+typedef struct hdi_cost {
+    double iterative, direct, krylov, factors, direct_bytes, krylov_bytes;
+} hdi_cost;
 
 /* Flops per second of packs, with the seconds per non-zero that small fronts cost besides, and of real
  * fronts; bytes per second of sweeps; seconds per non-zero of a step of Lanczos, with what the looks at its
@@ -19639,7 +19651,7 @@ static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
     const hd_heat *heat = h->heat;
     const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->ask.k;
     const double hh = heat->source->h * heat->source->h * heat->scale;
-    double sum = HDI_ROW_ITERATIVE * n, one;
+    double sum = heat->weight ? 0 : HDI_ROW_ITERATIVE * n, one;
     int32_t q;
     for (q = 0; q < h->n_times; q++) {
         const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
@@ -19653,6 +19665,33 @@ static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
         sum += k * one;
     }
     return sum;
+}
+
+/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times
+ * near each other share the factor, whichever comes first. For several times, where the number of steps
+ * depends on it more, it is the nearest power of two: 16 times over 2.6 decades take 70 steps then, and 80
+ * with powers of four. It is not so large that B is lost beside g L. */
+static double hdi_krylov_shift(double from, double to, double lambda_max) {
+    const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
+    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, limit), root = 0.70710678118654752;
+    int exponent;
+    const double part = frexp(best, &exponent);  /* best = part 2^exponent, part in [1/2, 1) */
+    if (to > from) return ldexp(1, part > root ? exponent : exponent - 1);
+    return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
+}
+
+/* The kind of pole set that the call takes by its query and the options. */
+static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
+    return h->heat->opts.poles ? h->heat->opts.poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM
+           : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
+}
+
+/* Are the factors of the poles there? The degree that a field takes by default is not known yet: it is taken
+ * to be that of the last. */
+static int hdi_heat_at_hand(const hdi_heat_call *h) {
+    const hdi_elim *m = &h->heat->elim;
+    if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
+    return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
 /* The model of all methods. Bases of windows of times a hundredfold apart take 24 steps and 8 more for each
@@ -19676,8 +19715,10 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     c.krylov = f.analysis + windows * f.flops / HDI_RATE_REAL +
                k * windows * steps * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP +
                k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
-    c.direct = f.analysis + h->n_times * (factor + k * packs * (64 * f.nnz + 400 * n) / sweep);
-    if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= factor;
+    if (h->n_times == 1 && heat->elim.shifted.ready &&
+        heat->elim.shift == hdi_krylov_shift(h->t, h->t, heat->lambda_max)) c.krylov -= real;
+    c.factors = hdi_heat_at_hand(h) ? 0 : f.analysis + h->n_times * factor;
+    c.direct = c.factors + h->n_times * (k * packs * (64 * f.nnz + 400 * n) / sweep);
     c.direct_bytes = 64 * packs * f.stored + 200 * n + 8 * f.real_stored;
     c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
@@ -19688,51 +19729,86 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     return c;
 }
 
-/* Picks the method by the model, or as asked for. The analysis is made only where a factorisation could cost
- * less than iterations. */
-static hd_status hdi_heat_pick(hdi_heat_call *h) {
+/* The cheapest method that fits into so many bytes. */
+static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_cost *c, double room) {
+    const int no_direct = !HDI_HAS_POLE_FACTORS || c->direct_bytes > room;
+    const int no_krylov = c->krylov_bytes > room || h->heat->poles_asked;
+    h->method = HD_METHOD_ITERATIVE;
+    h->cost = c->iterative;
+    h->rep->reason = "iterations cost less than a factorisation";
+    if (no_direct && c->krylov_bytes > room) h->rep->reason = "factors would not fit the byte limit";
+    if (!no_krylov && c->krylov < c->iterative && (no_direct || c->krylov <= c->direct)) {
+        h->method = HD_METHOD_KRYLOV;
+        h->cost = c->krylov;
+        h->rep->reason = "few columns: one real factor costs less than those of the poles";
+        if (h->n_times > 1) h->rep->reason = "one real factor serves many times";
+    } else if (!no_direct && c->direct < c->iterative) {
+        h->method = HD_METHOD_DIRECT;
+        h->cost = c->direct;
+        h->rep->reason = "the factors of the poles cost least";
+        if (c->factors == 0) h->rep->reason = "the factors of the poles are there from calls before";
+        if (h->ask.k > 1) h->rep->reason = "many columns: solves with the factors of the poles cost least";
+    }
+}
+
+/* Have calls at this t cost as much as the factors of the poles, and would these be faster from now on?
+ * Whoever buys when the rent paid amounts to the price never pays more than twice the least (ski rental;
+ * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, never a clock, so the same calls take the same
+ * methods everywhere. */
+static int hdi_heat_habit(const hdi_heat_call *h, const hdi_cost *c, double room) {
+    return h->method != HD_METHOD_DIRECT && h->n_times == 1 && h->t == h->heat->habit_t &&
+           h->heat->habit_spent >= c->factors && c->direct - c->factors < h->cost && c->direct_bytes <= room &&
+           HDI_HAS_POLE_FACTORS;
+}
+
+/* Notes what a call has cost. Factors that are made begin the count anew. */
+static void hdi_heat_spend(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    if (heat->opts.method != HD_METHOD_AUTO || h->t == 0 || h->equal) return;
+    if (h->method == HD_METHOD_DIRECT || heat->habit_t != h->t) heat->habit_spent = 0;
+    heat->habit_t = h->t;
+    if (h->method != HD_METHOD_DIRECT) heat->habit_spent += h->cost;
+}
+
+/* Picks the method by the model. The analysis is made only where a factorisation could cost less than
+ * iterations. */
+static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const hd_context *ctx = heat->ctx;
     const double room = ctx->byte_limit && HDI_HAS_ITERATIVE   /* without iterations there is no retreat */
                         ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
-    hdi_cost c;
-    int no_direct, no_krylov;
-    h->method = heat->opts.method;
-    h->rep->reason = h->method == HD_METHOD_AUTO ? "chosen by cost" : "asked for";
-    if (h->method == HD_METHOD_AUTO && heat->iterations_asked) {
-        h->method = HD_METHOD_ITERATIVE;
-        h->rep->reason = "a solver or preconditioner is asked for";
-    }
-    if (h->method == HD_METHOD_AUTO && heat->no_factors && ctx->byte_limit == heat->no_factors_limit) {
-        h->method = HD_METHOD_ITERATIVE;
-        h->rep->reason = "factors did not fit the byte limit";
-    }
-    if (h->method == HD_METHOD_AUTO && !HDI_HAS_DIRECT) {
-        h->method = HD_METHOD_ITERATIVE;
-        h->rep->reason = "this build has iterations only";
-    }
-    if (!HDI_HAS_DIRECT || h->method != HD_METHOD_AUTO) return HD_OK;
-    c = hdi_heat_cost(h);
-    if (!heat->elim.ctx && c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) &&
-        hdi_min(c.direct_bytes, c.krylov_bytes) < room) {
+    hdi_cost c = hdi_heat_cost(h);
+    hdi_heat_cheapest(h, &c, room);
+    if (!heat->elim.ctx && hdi_min(c.direct_bytes, c.krylov_bytes) < room &&
+        (c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) ||
+         hdi_heat_habit(h, &c, room))) {
         if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
         c = hdi_heat_cost(h);
+        hdi_heat_cheapest(h, &c, room);
     }
-    no_direct = !HDI_HAS_POLE_FACTORS || c.direct_bytes > room;
-    no_krylov = c.krylov_bytes > room || heat->poles_asked;
-    h->method = HD_METHOD_ITERATIVE;
-    h->rep->reason = "iterations cost less than a factorisation";
-    if (no_direct && c.krylov_bytes > room) h->rep->reason = "factors would not fit the byte limit";
-    if (!no_krylov && c.krylov < c.iterative && (no_direct || c.krylov <= c.direct)) {
-        h->method = HD_METHOD_KRYLOV;
-        h->rep->reason = "few columns: one real factor costs less than those of the poles";
-        if (h->n_times > 1) h->rep->reason = "one real factor serves many times";
-    } else if (!no_direct && c.direct < c.iterative) {
+    h->by_habit = hdi_heat_habit(h, &c, room);
+    if (h->by_habit) {
         h->method = HD_METHOD_DIRECT;
-        h->rep->reason = "the factors of the poles cost least";
-        if (h->ask.k > 1) h->rep->reason = "many columns: solves with the factors of the poles cost least";
+        h->rep->reason = "calls at this t have cost as much as the factors of the poles, which serve more";
     }
     return HD_OK;
+}
+
+/* Picks the method by the model, or as asked for. */
+static hd_status hdi_heat_pick(hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    h->method = heat->opts.method;
+    h->cost = 0;
+    h->by_habit = 0;
+    h->rep->reason = "asked for";
+    if (h->method != HD_METHOD_AUTO) return HD_OK;
+    h->method = HD_METHOD_ITERATIVE;
+    h->rep->reason = "a solver or preconditioner is asked for";
+    if (heat->iterations_asked) return HD_OK;
+    h->rep->reason = "factors did not fit the byte limit";
+    if (heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit) return HD_OK;
+    h->rep->reason = "this build has iterations only";
+    return HDI_HAS_DIRECT ? hdi_heat_pick_by_cost(h) : HD_OK;
 }
 
 /* Below this t lambda is nothing beside one, in doubles. */
@@ -19992,8 +20068,7 @@ static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
 /* The pole set of this call. */
 static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
-    const hd_pole_kind kind = o->poles ? o->poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM
-                              : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
+    const hd_pole_kind kind = hdi_heat_kind(h);
     /* four pairs fill a pack, a real pole costs little */
     int32_t degree = h->method == HD_METHOD_DIRECT ? 9 : 10;
     if (h->heat->exacting) degree = HDI_RAT_KERNEL_MAX;
@@ -20304,19 +20379,6 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times
- * near each other share the factor, whichever comes first. For several times, where the number of steps
- * depends on it more, it is the nearest power of two: 16 times over 2.6 decades take 70 steps then, and 80
- * with powers of four. It is not so large that B is lost beside g L. */
-static double hdi_krylov_shift(double from, double to, double lambda_max) {
-    const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
-    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, limit), root = 0.70710678118654752;
-    int exponent;
-    const double part = frexp(best, &exponent);  /* best = part 2^exponent, part in [1/2, 1) */
-    if (to > from) return ldexp(1, part > root ? exponent : exponent - 1);
-    return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
-}
-
 /* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
 static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w,
                               int32_t n_windows) {
@@ -20432,8 +20494,12 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     heat->silan = NULL;
     heat->batch_room = NULL;
     heat->batch_doubles = 0;
-    heat->no_factors = 1;
-    heat->no_factors_limit = heat->ctx->byte_limit;
+    if (h->by_habit) {                           /* the methods before have fitted, and do again */
+        heat->habit_spent = -DBL_MAX;
+    } else {
+        heat->no_factors = 1;
+        heat->no_factors_limit = heat->ctx->byte_limit;
+    }
     hdi_error_clear(h->e);
     return 1;
 }
@@ -20480,7 +20546,8 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
 
 /* Answers the time under way. If factors do not fit the byte limit, iterations do. */
 static hd_status hdi_heat_single(hdi_heat_call *h) {
-    if (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) (void)hdi_heat_answer(h);
+    while (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) {}
+    if (h->e->status >= 0) hdi_heat_spend(h);
     if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     return h->e->status;
 }

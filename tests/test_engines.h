@@ -1185,6 +1185,148 @@ static void eng_choice(void) {
     free(u);
 }
 
+/* Seconds by the model, from its rates and what a report says: of all factors of the poles of a column's set; of a column with
+ * them; of a column with one real factor, which is made at the first. */
+typedef struct eng_price { double factors, direct, krylov, first; } eng_price;
+
+static eng_price eng_prices(const hd_laplacian *lap) {
+    hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
+    hd_heat *heat = eng_create(lap, &o);
+    double *u = DENSE_NEW(double, lap->n), flops, nnz, n = lap->n_active;
+    eng_price p;
+    hd_report rep;
+    CHECK(heat_column(heat, 30 * lap->h * lap->h, 0, u, &rep) >= 0);
+    flops = heat->elim.sym.flops_done;
+    nnz = (double)rep.factor_nnz;
+    p.factors = 16 * flops / HDI_RATE_PACK + HDI_ENTRY_PACK * nnz + flops / HDI_RATE_REAL;
+    p.direct = (64 * nnz + 400 * n) / (0.6 * HDI_RATE_SWEEP);
+    p.krylov = 24 * (16 * nnz + 100 * n + 8 * n) / HDI_RATE_SWEEP;
+    p.first = p.krylov + flops / HDI_RATE_REAL;
+    hd_heat_free(heat);
+    free(u);
+    return p;
+}
+
+/* Auto, asked for columns one by one at one t, goes over to the factors of the poles when the calls have cost as much. */
+static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const char *what) {
+    hd_laplacian *lap = test_laplacian_at(s, s->xyz, kind, 1, NULL);
+    const double t = c * lap->h * lap->h;
+    const eng_price price = eng_prices(lap);
+    const hd_heat_opts none = eng_opts(HD_METHOD_AUTO), krylov = eng_opts(HD_METHOD_KRYLOV), direct = eng_opts(HD_METHOD_DIRECT);
+    hd_heat *heat = eng_create(lap, &none), *asked = eng_create(lap, &krylov), *other = eng_create(lap, &direct), *moving = eng_create(lap, &none);
+    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n), spent = price.first;
+    hd_report rep, rep2;
+    int k, expected = 2, round;
+    while (spent < price.factors && expected < 40) {
+        spent += price.krylov;
+        expected++;
+    }
+    CHECK_MSG(price.direct < price.krylov && expected < 40, "%s: %d", what, expected);
+    for (round = 0; round < 3; round++) {        /* new; at another t; after an update of the Laplacian */
+        const double now = round == 1 ? 1.5 * t : t;
+        if (round == 2) CHECK(hd_laplacian_update(lap, s->xyz, NULL) == HD_OK);
+        for (k = 1; k <= expected + 3; k++) {
+            const int32_t source = lap->vertex[k * 37 % lap->n_active];
+            /* at another t the real factor may serve again, and then the switch may come a call later */
+            const int slack = round == 1;
+            CHECK(eng_ok(heat_column(heat, now, source, u, &rep), &rep, what));
+            CHECK_MSG(k >= expected || rep.method == HD_METHOD_KRYLOV, "%s, round %d, call %d of %d: %s", what, round, k, expected, eng_name(rep.method));
+            CHECK_MSG(k < expected + slack || rep.method == HD_METHOD_DIRECT, "%s, round %d, call %d of %d: %s", what, round, k, expected, eng_name(rep.method));
+            if (k == expected && !slack) CHECK_MSG(strstr(rep.reason, "at this t") != NULL, "%s", rep.reason);
+            if (k > expected + slack) CHECK_MSG(strstr(rep.reason, "calls before") != NULL, "%s", rep.reason);
+            CHECK(eng_ok(heat_column(rep.method == HD_METHOD_DIRECT ? asked : other, now, source, want, &rep2), &rep2, what));
+            CHECK_MSG(dense_max_diff(u, want, lap->n) <= (rep.error_bound + rep2.error_bound) * dense_max_abs(want, lap->n) && rep.error_bound < 1e-5,
+                      "%s, call %d: off by %g, bounds %g and %g", what, k, dense_max_diff(u, want, lap->n), rep.error_bound, rep2.error_bound);
+        }
+    }
+    for (k = 0; k < 2 * expected + 4; k++) {     /* times that change, or change back, and a method that is asked for */
+        CHECK(eng_ok(heat_column(moving, t * (1 + 0.5 * (k % 2)), 3, u, &rep), &rep, what) && rep.method == HD_METHOD_KRYLOV);
+        CHECK(eng_ok(heat_column(asked, t, 3, u, &rep), &rep, what) && rep.method == HD_METHOD_KRYLOV && strcmp(rep.reason, "asked for") == 0);
+    }
+    hd_heat_free(heat);
+    hd_heat_free(asked);
+    hd_heat_free(other);
+    hd_heat_free(moving);
+    hd_laplacian_free(lap);
+    free(u);
+    free(want);
+}
+
+/* The same within byte limits: never an error and never too many bytes where the first call has an answer, and direct only where
+ * its factors fit beside what is there. */
+static void eng_habit_limits(const shape *s) {
+    hd_laplacian *lap = test_laplacian(s, HD_LAPLACIAN_FEM);
+    const double t = 30 * lap->h * lap->h;
+    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
+    hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
+    hd_context ctx;
+    hd_heat *heat = NULL;
+    hd_report rep;
+    uint64_t limit, enough;
+    int k, seen = 0;
+    memset(&ctx, 0, sizeof ctx);
+    o.context = &ctx;
+    heat = eng_create(lap, &o);
+    CHECK(heat_column(heat, t, 5, want, NULL) >= 0);
+    enough = 2 * ctx.bytes_peak;
+    hd_heat_free(heat);
+    o.method = HD_METHOD_AUTO;
+    for (limit = enough; limit > enough / 16; limit -= limit / 16) {
+        memset(&ctx, 0, sizeof ctx);
+        ctx.byte_limit = limit;
+        heat = eng_create(lap, &o);
+        for (k = 0; k < 12; k++) {
+            if (heat_column(heat, t, 5, u, &rep) < 0) {
+                CHECK_MSG(k == 0, "limit %llu: call %d fails: %s", (unsigned long long)limit, k, rep.error.text);
+                break;
+            }
+            CHECK(ctx.bytes_peak <= limit && dense_max_diff(u, want, lap->n) <= 1e-6 * dense_max_abs(want, lap->n));
+        }
+        if (k == 12) seen |= 1 << rep.method;
+        hd_heat_free(heat);
+        CHECK(ctx.bytes_in_use == 0);
+    }
+    CHECK_MSG(seen == (1 << HD_METHOD_DIRECT | 1 << HD_METHOD_KRYLOV | 1 << HD_METHOD_ITERATIVE), "seen: %d", seen);
+    hd_laplacian_free(lap);
+    free(u);
+    free(want);
+}
+
+/* Fields have factors of another set. Where they alternate with columns, no call factorises what the one before has made. */
+static void eng_habit_mixed(const shape *s) {
+    hd_laplacian *lap = test_laplacian(s, HD_LAPLACIAN_FEM);
+    const hd_heat_opts none = eng_opts(HD_METHOD_AUTO);
+    hd_heat *heat = eng_create(lap, &none);
+    const double t = 30 * lap->h * lap->h;
+    double *u = DENSE_NEW(double, lap->n), *f = DENSE_NEW(double, lap->n);
+    hd_report rep;
+    int k, switches = 0;
+    hd_method last[2] = {HD_METHOD_AUTO, HD_METHOD_AUTO};
+    int32_t i;
+    for (i = 0; i < lap->n; i++) f[i] = 2 + sin(3 * s->xyz[3 * i]);
+    for (k = 0; k < 60; k++) {
+        CHECK((k % 2 ? heat_apply(heat, t, 1, f, 0, u, 0, &rep) : heat_column(heat, t, 5, u, &rep)) >= 0);
+        switches += last[k % 2] != HD_METHOD_AUTO && last[k % 2] != rep.method;
+        last[k % 2] = rep.method;
+    }
+    CHECK_MSG(switches <= 1, "%d switches", switches);
+    CHECK((last[0] == HD_METHOD_DIRECT) != (last[1] == HD_METHOD_DIRECT));
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    free(u);
+    free(f);
+}
+
+static void eng_habits(void) {
+    shape s = shape_bumpy(4, 2), ring = shape_torus(144, 60, 2, 1);
+    eng_habit(&s, HD_LAPLACIAN_FEM, 30, "bumpy, fem");
+    eng_habit(&ring, HD_LAPLACIAN_VORONOI_COT, 200, "torus, voronoi");
+    eng_habit_limits(&s);
+    eng_habit_mixed(&s);
+    shape_free(&s);
+    shape_free(&ring);
+}
+
 /* Whatever the limit is: when iterations fit into it, there is an answer; twice the same call is twice the same method. */
 static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
     double *u = DENSE_NEW(double, k * lap->n), *want = DENSE_NEW(double, k * lap->n);
@@ -1579,6 +1721,7 @@ static void test_engines(void) {
     eng_bad_perms();
     eng_choice();
     eng_choice_limits();
+    eng_habits();
     eng_limit_lifted();
     eng_bad_options();
     eng_bad_calls();

@@ -825,7 +825,8 @@ static void tmio_test_vtu(void)
         CHECK(p != NULL);
         if (!p) return;
         p += 17;
-        sizes[0] = sizes[1] = 48; sizes[2] = 18; sizes[3] = 144; sizes[4] = 8 * corners; sizes[5] = 8 * cells; sizes[6] = cells;
+        /* the data lie in the opposite order of their tags */
+        sizes[6] = sizes[5] = 48; sizes[4] = 18; sizes[3] = 144; sizes[2] = 8 * corners; sizes[1] = 8 * cells; sizes[0] = cells;
         for (i = 0, k = 0; i < 7; i++) {
             char want[64];
             snprintf(want, sizeof want, "offset=\"%llu\"", (unsigned long long)k);
@@ -833,9 +834,9 @@ static void tmio_test_vtu(void)
             k += 8 + sizes[i];
         }
         CHECK((size_t)(p - buf) + k + 28 == n && memcmp(p + k, "\n</AppendedData>\n</VTKFile>\n", 28) == 0);
-        at = p + 56 + 8;                        /* the second column */
+        at = p + k - 2 * 56 + 8;                /* the second column, before the first */
         for (i = 0; i < 6; i++) { memcpy(&x, &s.values[6 + i], 8); CHECK(tmio_u64(at + 8 * i) == x); }
-        at = p + k - cells;
+        at = p + 8;
         CHECK(points ? at[0] == 1 && at[5] == 1 : at[0] == 5 && at[1] == 9 && at[2] == 7);
     }
 }

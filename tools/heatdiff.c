@@ -713,7 +713,8 @@ static const option_def OPTIONS[] = {
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n"
-      "- or nothing: standard output, as text" },
+      "- or nothing: standard output, as text. In .ply the columns are\n"
+      "quality, quality_1, ..; .obj has the colours alone" },
     { "no-header", 0, CMD_SOLVES, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
       "of .csv: no first line with the names of the columns" },
     { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",

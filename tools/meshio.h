@@ -2260,21 +2260,27 @@ static void mio_vtu_name(mio_file *f, const mio_output *o, int32_t c)
     mio_put_text(f, "\"");
 }
 
-/* The rest of a DataArray's tag, and steps *offset over its data: the size in 8 bytes, then `bytes` of numbers. */
-static void mio_vtu_appended(mio_file *f, int64_t *offset, int64_t bytes)
+/* The rest of a DataArray's tag, whose data end at *end, and steps back over them: the size in 8 bytes, then `bytes` of numbers.
+ *
+ * The data of the arrays lie in the file in the opposite order of their tags: the cells first, the first column last. meshio 5.0 turns
+ * the offsets in the tags into others, one array after another in the order of the data, and takes the first tag that has the
+ * offset it looks for. In the order of the tags this can be one that is done already: with four columns its new offset is the
+ * old one of another. In the opposite order the tags that are done stand behind. */
+static void mio_vtu_appended(mio_file *f, int64_t *end, int64_t bytes)
 {
+    *end -= 8 + bytes;
     mio_put_text(f, " format=\"appended\" offset=\"");
-    mio_put_integer(f, *offset);
+    mio_put_integer(f, *end);
     mio_put_text(f, "\"/>\n");
-    *offset += 8 + bytes;
 }
 
 /* Cells are the faces; points alone get a cell each, without which most programs would not show them. */
 static void mio_vtu_header(mio_file *f, const mio_mesh *m, const mio_output *o)
 {
     const int64_t cells = m->n_faces ? m->n_faces : m->n, corners = m->n_faces ? m->face_ptr[m->n_faces] : m->n;
-    int64_t offset = 0;
+    int64_t end = 4 * 8 + 24 * (int64_t)m->n + 8 * corners + 9 * cells;
     int32_t c;
+    end += o->cols * (8 + 8 * (int64_t)m->n) + (o->rgb ? 8 + 3 * (int64_t)m->n : 0);
     mio_put_text(f, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
                     "<UnstructuredGrid>\n<Piece NumberOfPoints=\"");
     mio_put_integer(f, m->n);
@@ -2286,20 +2292,20 @@ static void mio_vtu_header(mio_file *f, const mio_mesh *m, const mio_output *o)
     for (c = 0; c < o->cols; c++) {
         mio_put_text(f, "<DataArray type=\"Float64\" Name=");
         mio_vtu_name(f, o, c);
-        mio_vtu_appended(f, &offset, 8 * (int64_t)m->n);
+        mio_vtu_appended(f, &end, 8 * (int64_t)m->n);
     }
     if (o->rgb) {
         mio_put_text(f, "<DataArray type=\"UInt8\" Name=\"RGB\" NumberOfComponents=\"3\"");
-        mio_vtu_appended(f, &offset, 3 * (int64_t)m->n);
+        mio_vtu_appended(f, &end, 3 * (int64_t)m->n);
     }
     mio_put_text(f, "</PointData>\n<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"");
-    mio_vtu_appended(f, &offset, 24 * (int64_t)m->n);
+    mio_vtu_appended(f, &end, 24 * (int64_t)m->n);
     mio_put_text(f, "</Points>\n<Cells>\n<DataArray type=\"Int64\" Name=\"connectivity\"");
-    mio_vtu_appended(f, &offset, 8 * corners);
+    mio_vtu_appended(f, &end, 8 * corners);
     mio_put_text(f, "<DataArray type=\"Int64\" Name=\"offsets\"");
-    mio_vtu_appended(f, &offset, 8 * cells);
+    mio_vtu_appended(f, &end, 8 * cells);
     mio_put_text(f, "<DataArray type=\"UInt8\" Name=\"types\"");
-    mio_vtu_appended(f, &offset, cells);
+    mio_vtu_appended(f, &end, cells);
     mio_put_text(f, "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
 }
 
@@ -2309,16 +2315,16 @@ static void mio_vtu_cells(mio_file *f, const mio_mesh *m)
     const int64_t corners = m->n_faces ? m->face_ptr[m->n_faces] : m->n;
     int64_t k;
     int32_t i;
-    mio_put_u64(f, 8 * (uint64_t)corners);
-    for (k = 0; k < corners && f->status == MIO_OK; k++) mio_put_u64(f, m->n_faces ? (uint64_t)m->face_idx[k] : (uint64_t)k);
-    mio_put_u64(f, 8 * (uint64_t)cells);
-    for (i = 0; i < cells && f->status == MIO_OK; i++) mio_put_u64(f, m->n_faces ? (uint64_t)m->face_ptr[i + 1] : (uint64_t)i + 1);
     mio_put_u64(f, (uint64_t)cells);
     for (i = 0; i < cells && f->status == MIO_OK; i++) {
         const int64_t n = m->n_faces ? m->face_ptr[i + 1] - m->face_ptr[i] : 1;
         const unsigned char type = n == 1 ? 1 : n == 3 ? 5 : n == 4 ? 9 : 7;         /* VTK's vertex, triangle, quad, polygon */
         mio_file_put(f, &type, 1);
     }
+    mio_put_u64(f, 8 * (uint64_t)cells);
+    for (i = 0; i < cells && f->status == MIO_OK; i++) mio_put_u64(f, m->n_faces ? (uint64_t)m->face_ptr[i + 1] : (uint64_t)i + 1);
+    mio_put_u64(f, 8 * (uint64_t)corners);
+    for (k = 0; k < corners && f->status == MIO_OK; k++) mio_put_u64(f, m->n_faces ? (uint64_t)m->face_idx[k] : (uint64_t)k);
 }
 
 static int mio_write_vtu(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e)
@@ -2329,17 +2335,17 @@ static int mio_write_vtu(const char *path, const mio_mesh *m, const mio_output *
     if (mio_check_rows(path, m, o, e) < 0) return MIO_FAILED;
     if (mio_file_open(&f, path, o->stop, e) < 0) return mio_file_close(&f);
     mio_vtu_header(&f, m, o);
-    for (c = 0; c < o->cols; c++) {
-        mio_put_u64(&f, 8 * (uint64_t)m->n);
-        for (v = 0; v < m->n && f.status == MIO_OK; v++) mio_put_f64(&f, o->values[c * o->ld + v]);
-    }
+    mio_vtu_cells(&f, m);
+    mio_put_u64(&f, 24 * (uint64_t)m->n);
+    for (i = 0; i < 3 * (size_t)m->n && f.status == MIO_OK; i++) mio_put_f64(&f, m->xyz[i]);
     if (o->rgb) {
         mio_put_u64(&f, 3 * (uint64_t)m->n);
         mio_file_put(&f, o->rgb, 3 * (size_t)m->n);
     }
-    mio_put_u64(&f, 24 * (uint64_t)m->n);
-    for (i = 0; i < 3 * (size_t)m->n && f.status == MIO_OK; i++) mio_put_f64(&f, m->xyz[i]);
-    mio_vtu_cells(&f, m);
+    for (c = o->cols - 1; c >= 0; c--) {
+        mio_put_u64(&f, 8 * (uint64_t)m->n);
+        for (v = 0; v < m->n && f.status == MIO_OK; v++) mio_put_f64(&f, o->values[c * o->ld + v]);
+    }
     mio_put_text(&f, "\n</AppendedData>\n</VTKFile>\n");
     return mio_file_close(&f);
 }
