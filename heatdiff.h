@@ -97,7 +97,7 @@
      HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. It is needed
                                only where that is neither heatdiff.h nor what the compiler says
                                (__FILE_NAME__)
-     HEATDIFF_NO_SIMD          plain C only, no kernels for AVX2 and AVX-512
+     HEATDIFF_NO_SIMD          plain C only, no kernels for AVX2 and AVX-512, no NEON
      HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, where only
                                plain C kernels exist. It is twice as fast as those. The kernels for AVX2 and
                                AVX-512 are faster than OpenBLAS and stay in use
@@ -244,8 +244,9 @@ typedef struct hd_allocator {
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
 /* Instruction sets of the dense kernels. GCC and Clang on x86-64 compile several versions; other compilers
- * and processors use plain C. Results of two instruction sets agree up to rounding. Within one instruction
- * set results are the same to the last bit for any number of threads. */
+ * and processors use plain C, with the multiply-adds of NEON on AArch64. Results of two instruction sets
+ * agree up to rounding. Within one instruction set results are the same to the last bit for any number of
+ * threads. */
 typedef enum hd_simd {
     HD_SIMD_AUTO = 0,           /* the best set that the processor has */
     HD_SIMD_NONE,               /* plain C */
@@ -2750,8 +2751,9 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
 }
 
 /* ---- vectors of each instruction set ---- */
-/* What a set has to define, here by name_set. A port (NEON, WASM SIMD) adds one such layer, and one more
- * reading of the kernels where the set is chosen.
+/* What a set has to define, here by name_set. A port to wider vectors adds one such layer, and one more
+ * reading of the kernels where the set is chosen. Vectors of two lanes (SSE2, NEON, WASM) are those of plain
+ * C, which only tells them apart.
  *   vec                  HDI_WIDTH doubles
  *   all(a)               a in every lane
  *   load, store          anywhere in memory
@@ -2769,21 +2771,55 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
  *   fused                products of entries are summed with fma
  *   masks                load_tail costs no more than load
  *   apart                the sums of a backward step are closed between its two parts
- *   tile_rows, tile_cols, solve_rows, sweep_rows, sweep_cols  entries of packs that are held in registers */
+ *   tile_rows, tile_cols, solve_rows, sweep_rows, sweep_cols  entries of packs that are held in registers;
+ *     half entries of the first three, if vectors have two lanes */
 #define HDI_IN2 static HDI_INLINE
 #define HDI_IN4 static HDI_AVX2 HDI_INLINE
 #define HDI_IN8 static HDI_AVX512 HDI_INLINE
 
-/* Two lanes, where the compiler has vectors; its own arithmetic serves every processor. On x87 registers
- * vectors would live in memory. */
-enum {
-    hdi_cols_plain = 4, hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_masks_plain = 0, hdi_apart_plain = 1,
-    hdi_tile_rows_plain = 1, hdi_tile_cols_plain = 1, hdi_solve_rows_plain = 1, hdi_sweep_rows_plain = 1,
-    hdi_sweep_cols_plain = 2
-};
+/* Two lanes, where the compiler has vectors; its own arithmetic serves every processor, and NEON adds its
+ * multiply-adds. On x87 registers vectors would live in memory. */
 #define HDI_TARGET_plain
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD) && \
     (!defined(__i386__) || defined(__SSE2__))
+#define HDI_V2 1
+#else
+#define HDI_V2 0
+#endif
+#if HDI_V2 && defined(__aarch64__) && defined(__ARM_NEON)
+#include <arm_neon.h>
+#define HDI_NEON 1
+#else
+#define HDI_NEON 0
+#endif
+
+/* Tiles that stay in the registers: 32 of NEON, 16 elsewhere. GCC keeps 2 x 2 halves in 16, which clang 14
+ * and the engine of node 20 do not: the same product in GF/s with tiles of 2 x 2, 3 x 1 and 2 x 1 is gcc 26,
+ * 25, 23; clang 21, 26, 25; node 21, 21, 27. 2 x 1 also suits scalars, of which compilers make vectors. */
+#if HDI_NEON
+enum {
+    hdi_regs_plain = 4, hdi_fused_plain = 1, hdi_tile_rows_plain = 3, hdi_tile_cols_plain = 3,
+    hdi_solve_rows_plain = 4
+};
+#elif HDI_V2 && defined(__x86_64__)
+#ifdef __clang__
+enum { hdi_tile_rows_plain = 3, hdi_tile_cols_plain = 1 };
+#else
+enum { hdi_tile_rows_plain = 2, hdi_tile_cols_plain = 2 };
+#endif
+enum { hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_solve_rows_plain = 4 };
+#else
+enum {
+    hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_tile_rows_plain = 2, hdi_tile_cols_plain = 1,
+    hdi_solve_rows_plain = 3
+};
+#endif
+enum {
+    hdi_cols_plain = 4, hdi_masks_plain = 0, hdi_apart_plain = 1, hdi_sweep_rows_plain = 1,
+    hdi_sweep_cols_plain = 2
+};
+
+#if HDI_V2
 typedef double hdi_v2 __attribute__((vector_size(16)));
 typedef double hdi_v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
 HDI_IN2 hdi_v2 hdi_two(double a, double b) { const hdi_v2 v = {a, b}; return v; }
@@ -2796,8 +2832,15 @@ HDI_IN2 double hdi_high_plain(hdi_v2 v) { return v[1]; }
 HDI_IN2 hdi_v2 hdi_add_plain(hdi_v2 a, hdi_v2 b) { return a + b; }
 HDI_IN2 hdi_v2 hdi_sub_plain(hdi_v2 a, hdi_v2 b) { return a - b; }
 HDI_IN2 hdi_v2 hdi_mul_plain(hdi_v2 a, hdi_v2 b) { return a * b; }
+#if HDI_NEON
+HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return vfmaq_f64(c, a, b); }
+HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return vfmsq_f64(c, a, b); }
+HDI_IN2 hdi_v2 hdi_fms_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return vfmaq_f64(-c, a, b); }
+HDI_IN2 double hdi_fnma1_plain(double a, double b, double c) { return __builtin_fma(-a, b, c); }
+#else
 HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return a * b + c; }
 HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return c - a * b; }
+#endif
 HDI_IN2 hdi_v2 hdi_cross_minus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) { return a * b - c * d; }
 HDI_IN2 hdi_v2 hdi_cross_plus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) { return a * b + c * d; }
 #else
@@ -2829,8 +2872,10 @@ HDI_IN2 hdi_span hdi_rows_of_plain(int32_t lo, int32_t hi) {
     return g;
 }
 HDI_IN2 hdi_v2 hdi_all_plain(double a) { return hdi_two(a, a); }
+#if !HDI_NEON
 HDI_IN2 hdi_v2 hdi_fms_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_sub_plain(hdi_mul_plain(a, b), c); }
 HDI_IN2 double hdi_fnma1_plain(double a, double b, double c) { return c - a * b; }
+#endif
 HDI_IN2 hdi_v2 hdi_lane_plain(hdi_v2 v, int k) {
     return hdi_all_plain(k ? hdi_high_plain(v) : hdi_low_plain(v));
 }
@@ -3111,6 +3156,7 @@ HDI_KERNEL void HDI_OF(real_tiles)(const hdi_real_tile *first, int64_t n_cols, i
         t.diag = s < -HDI_COLS ? -HDI_COLS : HDI_CAST(int32_t, s - up);
         t.nc = n_cols < HDI_COLS ? HDI_CAST(int32_t, n_cols) : HDI_COLS;
         if (t.n > HDI_WIDTH * (HDI_REGS - 1)) HDI_OF(real_tile)(HDI_REGS, &t);
+        else if (HDI_REGS > 3 && t.n > 2 * HDI_WIDTH) HDI_OF(real_tile)(3, &t);
         else if (HDI_REGS > 2 && t.n > HDI_WIDTH) HDI_OF(real_tile)(2, &t);
         else HDI_OF(real_tile)(1, &t);
         t.B += next;
@@ -3179,6 +3225,7 @@ HDI_KERNEL void HDI_OF(real_rows)(double *P, int64_t ld, int32_t n, int32_t k1, 
     for (; nb > 0; nb -= HDI_COLS, dinv += HDI_COLS) {
         t.nc = nb < HDI_COLS ? nb : HDI_COLS;
         if (n > HDI_WIDTH * (HDI_REGS - 1)) HDI_OF(real_solve)(HDI_REGS, &t, dinv);
+        else if (HDI_REGS > 3 && n > 2 * HDI_WIDTH) HDI_OF(real_solve)(3, &t, dinv);
         else if (HDI_REGS > 2 && n > HDI_WIDTH) HDI_OF(real_solve)(2, &t, dinv);
         else HDI_OF(real_solve)(1, &t, dinv);
         t.C += HDI_COLS * ld;
@@ -3519,105 +3566,86 @@ HDI_PART void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const
 }
 HDI_PART void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(total_put)(y, s, 0); }
 #else
-/* An entry is its real parts and its imaginary parts. */
-typedef struct HDI_OF(entry) { hdi_vec re[4 / HDI_WIDTH], im[4 / HDI_WIDTH]; } HDI_OF(entry);
+/* An entry is its real parts and its imaginary parts: of all four numbers, or of two of them. */
+typedef struct HDI_OF(entry) { hdi_vec re, im; } HDI_OF(entry);
 typedef HDI_OF(entry) HDI_OF(twice);
 typedef HDI_OF(entry) HDI_OF(total);
-#ifndef HDI_HALVES
-#define HDI_HALVES HDI_EACH(h, 4 / HDI_WIDTH)
-#endif
 
 HDI_PART void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) {
-    int h;
-    HDI_HALVES {
-        x->re[h] = hdi_vload(from + HDI_WIDTH * h);
-        x->im[h] = hdi_vload(from + 4 + HDI_WIDTH * h);
-    }
+    x->re = hdi_vload(from);
+    x->im = hdi_vload(from + 4);
 }
 HDI_PART void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) {
-    int h;
-    HDI_HALVES {
-        hdi_vstore(to + HDI_WIDTH * h, x->re[h]);
-        hdi_vstore(to + 4 + HDI_WIDTH * h, x->im[h]);
-    }
+    hdi_vstore(to, x->re);
+    hdi_vstore(to + 4, x->im);
 }
 HDI_PART void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) { HDI_OF(entry_load)(f, from); }
 HDI_PART void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) { *s = *x; }
 HDI_PART void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { *x = *s; }
-HDI_PART void HDI_OF(total_zero)(HDI_OF(total) *s) {
-    int h;
-    HDI_HALVES s->re[h] = s->im[h] = hdi_vall(0);
-}
+HDI_PART void HDI_OF(total_zero)(HDI_OF(total) *s) { s->re = s->im = hdi_vall(0); }
 /* s -= x f, summed as plain C does */
 HDI_PART void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    int h;
-    HDI_HALVES {
-        s->re[h] = hdi_vsub(s->re[h], HDI_OF(cross_minus)(x->re[h], f->re[h], x->im[h], f->im[h]));
-        s->im[h] = hdi_vsub(s->im[h], HDI_OF(cross_plus)(x->im[h], f->re[h], x->re[h], f->im[h]));
-    }
+    s->re = hdi_vsub(s->re, HDI_OF(cross_minus)(x->re, f->re, x->im, f->im));
+    s->im = hdi_vsub(s->im, HDI_OF(cross_plus)(x->im, f->re, x->re, f->im));
 }
 /* s += x f, s -= x f, by fma where the set has it */
 HDI_PART void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    int h;
-    HDI_HALVES {
-        if (HDI_OF(fused)) {
-            s->re[h] = hdi_vfnma(x->im[h], f->im[h], hdi_vfma(x->re[h], f->re[h], s->re[h]));
-            s->im[h] = hdi_vfma(x->re[h], f->im[h], hdi_vfma(x->im[h], f->re[h], s->im[h]));
-        } else {
-            s->re[h] = hdi_vadd(s->re[h], HDI_OF(cross_minus)(x->re[h], f->re[h], x->im[h], f->im[h]));
-            s->im[h] = hdi_vadd(s->im[h], HDI_OF(cross_plus)(x->im[h], f->re[h], x->re[h], f->im[h]));
-        }
+    if (HDI_OF(fused)) {
+        s->re = hdi_vfnma(x->im, f->im, hdi_vfma(x->re, f->re, s->re));
+        s->im = hdi_vfma(x->re, f->im, hdi_vfma(x->im, f->re, s->im));
+    } else {
+        s->re = hdi_vadd(s->re, HDI_OF(cross_minus)(x->re, f->re, x->im, f->im));
+        s->im = hdi_vadd(s->im, HDI_OF(cross_plus)(x->im, f->re, x->re, f->im));
     }
 }
 HDI_PART void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    int h;
     if (!HDI_OF(fused)) {
         HDI_OF(sweep_take)(s, x, f);
         return;
     }
-    HDI_HALVES {
-        s->re[h] = hdi_vfma(x->im[h], f->im[h], hdi_vfnma(x->re[h], f->re[h], s->re[h]));
-        s->im[h] = hdi_vfnma(x->re[h], f->im[h], hdi_vfnma(x->im[h], f->re[h], s->im[h]));
-    }
+    s->re = hdi_vfma(x->im, f->im, hdi_vfnma(x->re, f->re, s->re));
+    s->im = hdi_vfnma(x->re, f->im, hdi_vfnma(x->im, f->re, s->im));
 }
 /* x = x f as plain C does, and by fma where the set has it */
 HDI_PART void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    int h;
-    HDI_HALVES {
-        const hdi_vec re = x->re[h];
-        x->re[h] = HDI_OF(cross_minus)(re, f->re[h], x->im[h], f->im[h]);
-        x->im[h] = HDI_OF(cross_plus)(re, f->im[h], x->im[h], f->re[h]);
-    }
+    const hdi_vec re = x->re;
+    x->re = HDI_OF(cross_minus)(re, f->re, x->im, f->im);
+    x->im = HDI_OF(cross_plus)(re, f->im, x->im, f->re);
 }
 HDI_PART void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    int h;
+    const hdi_vec re = x->re;
     if (!HDI_OF(fused)) {
         HDI_OF(entry_scale)(x, f);
         return;
     }
-    HDI_HALVES {
-        const hdi_vec re = x->re[h];
-        x->re[h] = HDI_OF(fms)(re, f->re[h], hdi_vmul(x->im[h], f->im[h]));
-        x->im[h] = hdi_vfma(re, f->im[h], hdi_vmul(x->im[h], f->re[h]));
-    }
+    x->re = HDI_OF(fms)(re, f->re, hdi_vmul(x->im, f->im));
+    x->im = hdi_vfma(re, f->im, hdi_vmul(x->im, f->re));
 }
 /* c = c - s, or -s; of zero with the sign that the set has always given it */
 HDI_PART void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
     const hdi_vec zero = hdi_vall(HDI_OF(fused) ? 0.0 : -0.0);
-    int h;
-    HDI_HALVES {
-        double *to = c + HDI_WIDTH * h;
-        hdi_vstore(to, hdi_vsub(store ? zero : hdi_vload(to), s->re[h]));
-        hdi_vstore(to + 4, hdi_vsub(store ? zero : hdi_vload(to + 4), s->im[h]));
-    }
+    hdi_vstore(c, hdi_vsub(store ? zero : hdi_vload(c), s->re));
+    hdi_vstore(c + 4, hdi_vsub(store ? zero : hdi_vload(c + 4), s->im));
 }
 HDI_PART void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { HDI_OF(entry_load)(s, y); }
 HDI_PART void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(entry_store)(y, s); }
 #endif
 
-/* A tile of mr x nr entries. */
-HDI_PART void HDI_OF(pack_tile)(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
-    const double *a = g->a + i0 * g->a_row, *b = g->b + (j0 - g->b_first) * g->b_row;
+/* Vectors of two lanes hold half of an entry: the numbers h and h + 1 of its four. Products go over a tile
+ * once for each half, with twice as many entries in registers. Sweeps wait for the memory and hold both
+ * halves: c counts the halves of successive entries. */
+#ifndef HDI_ABREAST
+#define HDI_ABREAST (HDI_WIDTH < 4 ? HDI_WIDTH : 4)   /* numbers of an entry in a vector */
+#define HDI_HALVES (4 / HDI_ABREAST)
+#endif
+HDI_PART int64_t HDI_OF(pack_at)(int c) {
+    return HDI_PACK * (c / HDI_HALVES) + HDI_ABREAST * (c % HDI_HALVES);
+}
+
+/* A tile of mr x nr entries, half h of them. */
+HDI_PART void HDI_OF(pack_half)(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0,
+                                int h) {
+    const double *a = g->a + i0 * g->a_row + h, *b = g->b + (j0 - g->b_first) * g->b_row + h;
     HDI_OF(total) s[HDI_OF(tile_rows)][HDI_OF(tile_cols)];
     int64_t k;
     int i, j;
@@ -3633,10 +3661,15 @@ HDI_PART void HDI_OF(pack_tile)(const hdi_pack_job *g, const int mr, const int n
         }
     }
     HDI_EACH(i, mr) {
-        double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * j0;
+        double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * j0 + h;
         HDI_EACH(j, nr)
             if (!g->lower || j0 + j <= i0 + i) HDI_OF(total_put)(c + HDI_PACK * j, &s[i][j], g->store);
     }
+}
+
+HDI_PART void HDI_OF(pack_tile)(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
+    int h;
+    for (h = 0; h < 4; h += HDI_ABREAST) HDI_OF(pack_half)(g, mr, nr, i0, j0, h);
 }
 
 /* Rows i..end-1 of nr columns. */
@@ -3663,11 +3696,12 @@ HDI_KERNEL void HDI_OF(pack_multiply)(const hdi_pack_job *g, int64_t i0, int64_t
 }
 
 /* mr rows at once, for independent chains of multiply-adds. */
-HDI_PART void HDI_OF(pack_solve_tile)(const hdi_pack_rows *g, const int mr, double *x) {
+HDI_PART void HDI_OF(pack_solve_half)(const hdi_pack_rows *g, const int mr, double *x, int h) {
     int32_t k, j;
     int i;
+    x += h;
     for (k = 0; k < g->nb; k++, x += HDI_PACK) {
-        const double *s = g->s + k * g->s_row;
+        const double *s = g->s + k * g->s_row + h;
         HDI_OF(total) t[HDI_OF(solve_rows)];
         HDI_OF(entry) y;
         HDI_OF(twice) f;
@@ -3682,13 +3716,18 @@ HDI_PART void HDI_OF(pack_solve_tile)(const hdi_pack_rows *g, const int mr, doub
                 HDI_OF(total_take)(&t[i], &y, &f);
             }
         }
-        HDI_OF(twice_load)(&f, g->dinv + HDI_PACK * k);
+        HDI_OF(twice_load)(&f, g->dinv + HDI_PACK * k + h);
         HDI_EACH(i, mr) {
             HDI_OF(total_end)(&y, &t[i]);
             HDI_OF(entry_times)(&y, &f);
             HDI_OF(entry_store)(x + i * g->row, &y);
         }
     }
+}
+
+HDI_PART void HDI_OF(pack_solve_tile)(const hdi_pack_rows *g, const int mr, double *x) {
+    int h;
+    for (h = 0; h < 4; h += HDI_ABREAST) HDI_OF(pack_solve_half)(g, mr, x, h);
 }
 
 HDI_KERNEL void HDI_OF(pack_solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
@@ -3706,14 +3745,18 @@ HDI_KERNEL void HDI_OF(pack_solve_rows)(const hdi_pack_rows *g, int64_t r0, int6
 HDI_KERNEL void HDI_OF(pack_scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0,
                                    int64_t k1, const double *d, double *s) {
     int64_t i, k;
+    int h;
     for (i = r0; i < r1; i++) {
         for (k = k0; k < k1; k++, s += HDI_PACK) {
-            HDI_OF(entry) x;
-            HDI_OF(twice) f;
-            HDI_OF(entry_load)(&x, panel + i * row + HDI_PACK * k);
-            HDI_OF(twice_load)(&f, d + HDI_PACK * k);
-            HDI_OF(entry_scale)(&x, &f);
-            HDI_OF(entry_store)(s, &x);
+            HDI_UNROLL
+            for (h = 0; h < 4; h += HDI_ABREAST) {
+                HDI_OF(entry) x;
+                HDI_OF(twice) f;
+                HDI_OF(entry_load)(&x, panel + i * row + HDI_PACK * k + h);
+                HDI_OF(twice_load)(&f, d + HDI_PACK * k + h);
+                HDI_OF(entry_scale)(&x, &f);
+                HDI_OF(entry_store)(s + h, &x);
+            }
         }
     }
 }
@@ -3735,20 +3778,20 @@ HDI_KERNEL void HDI_OF(pack_add)(double *to, const double *from, const int32_t *
 /* Sweeps of one right-hand side through u rows of a panel. Forward: t_i -= sum_k l_ik y_k. */
 HDI_PART void HDI_OF(pack_forward_rows)(const int n_rows, const double *l, int64_t p, const double *y,
                                         double *t) {
-    HDI_OF(total) s[HDI_OF(sweep_rows)];
+    HDI_OF(total) s[HDI_OF(sweep_rows) * HDI_HALVES];
     int64_t k;
     int i;
-    HDI_EACH(i, n_rows) HDI_OF(sweep_begin)(&s[i], t + HDI_PACK * i);
+    HDI_EACH(i, n_rows * HDI_HALVES) HDI_OF(sweep_begin)(&s[i], t + HDI_OF(pack_at)(i));
     for (k = 0; k < p; k++, l += HDI_PACK) {
-        HDI_OF(twice) f;
-        HDI_OF(twice_load)(&f, y + HDI_PACK * k);
-        HDI_EACH(i, n_rows) {
+        HDI_OF(twice) f[HDI_HALVES];
+        HDI_EACH(i, HDI_HALVES) HDI_OF(twice_load)(&f[i], y + HDI_PACK * k + HDI_OF(pack_at)(i));
+        HDI_EACH(i, n_rows * HDI_HALVES) {
             HDI_OF(entry) x;
-            HDI_OF(entry_load)(&x, l + HDI_PACK * p * i);
-            HDI_OF(sweep_take)(&s[i], &x, &f);
+            HDI_OF(entry_load)(&x, l + HDI_PACK * p * (i / HDI_HALVES) + HDI_OF(pack_at)(i % HDI_HALVES));
+            HDI_OF(sweep_take)(&s[i], &x, &f[i % HDI_HALVES]);
         }
     }
-    HDI_EACH(i, n_rows) HDI_OF(sweep_end)(t + HDI_PACK * i, &s[i]);
+    HDI_EACH(i, n_rows * HDI_HALVES) HDI_OF(sweep_end)(t + HDI_OF(pack_at)(i), &s[i]);
 }
 
 HDI_KERNEL void HDI_OF(pack_forward)(const double *l, int64_t u, int64_t p, const double *y, double *t) {
@@ -3763,21 +3806,22 @@ HDI_KERNEL void HDI_OF(pack_forward)(const double *l, int64_t u, int64_t p, cons
 /* Backward: y_k -= sum_i l_ik x[row_i] for n_cols pivots; row NULL: row_i = i. */
 HDI_PART void HDI_OF(pack_backward_cols)(const int n_cols, const double *l, const int32_t *row, int64_t u,
                                          int64_t p, double *y, const double *x) {
-    HDI_OF(total) s[HDI_OF(sweep_cols)];
+    HDI_OF(total) s[HDI_OF(sweep_cols) * HDI_HALVES];
     int64_t i;
     int c;
-    HDI_EACH(c, n_cols) HDI_OF(sweep_begin)(&s[c], y + HDI_PACK * c);
+    HDI_EACH(c, n_cols * HDI_HALVES) HDI_OF(sweep_begin)(&s[c], y + HDI_OF(pack_at)(c));
     for (i = 0; i < u; i++, l += HDI_PACK * p) {
-        HDI_OF(twice) f;
+        HDI_OF(twice) f[HDI_HALVES];
+        const double *from = x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i);
         HDI_PREFETCH_AT(l, 1024);
-        HDI_OF(twice_load)(&f, x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i));
-        HDI_EACH(c, n_cols) {
+        HDI_EACH(c, HDI_HALVES) HDI_OF(twice_load)(&f[c], from + HDI_OF(pack_at)(c));
+        HDI_EACH(c, n_cols * HDI_HALVES) {
             HDI_OF(entry) v;
-            HDI_OF(entry_load)(&v, l + HDI_PACK * c);
-            HDI_OF(sweep_take)(&s[c], &v, &f);
+            HDI_OF(entry_load)(&v, l + HDI_OF(pack_at)(c));
+            HDI_OF(sweep_take)(&s[c], &v, &f[c % HDI_HALVES]);
         }
     }
-    HDI_EACH(c, n_cols) HDI_OF(sweep_end)(y + HDI_PACK * c, &s[c]);
+    HDI_EACH(c, n_cols * HDI_HALVES) HDI_OF(sweep_end)(y + HDI_OF(pack_at)(c), &s[c]);
 }
 
 HDI_KERNEL void HDI_OF(pack_backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y,
