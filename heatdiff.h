@@ -18125,7 +18125,6 @@ typedef struct hdi_spec {
     double *group, *group_b;     /* [GROUP][n][8] */
     uint64_t seed;
     int32_t n_factors, n_runs, n_solves;
-    double cross;                /* largest |x'By| seen of two vectors before they were made orthogonal */
     double next;                 /* no other eigenvalue is below it */
     int32_t n_null, proven;
 } hdi_spec;
@@ -18326,6 +18325,8 @@ static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
 
 /* A direction that is so much smaller than the column it is left of, is rounding. */
 #define HDI_SPEC_RANK 1e-13
+/* Residuals above this part of the tolerance are taken out of vectors. */
+#define HDI_SPEC_POLISH 0.5
 /* A column of which less is left has lost a digit of orthogonality. */
 #define HDI_SPEC_SHRUNK 0.1
 
@@ -18582,6 +18583,7 @@ static hdi_slab *hdi_spec_slab(hdi_spec *s, int32_t cols, hd_error *e) {
         s->room_slabs = room;
     }
     if (hdi_slab_make(s->slab + s->n_slabs, s->n, cols, s->ctx, e) < 0) return NULL;
+    s->beside[s->n_slabs] = 0;
     s->slab[s->n_slabs].cols = cols;
     s->slab[s->n_slabs].low = HUGE_VAL;
     s->slab[s->n_slabs].high = -HUGE_VAL;
@@ -18656,19 +18658,43 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     return worst;
 }
 
-/* x - (L - sigma B)^-1 r for the residuals r in tmp: a step of inverse iteration. The change is kept out of the
- * basis, in which the Ritz vectors are as good as they can be, and orthogonal. */
+/* x - (L - sigma B)^-1 r for the residuals r in tmp of the first n columns: a step of inverse iteration. The
+ * change has no part in the slabs nearby. */
 static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    const int32_t cols = s->cols;
     double removed[HDI_SPEC_WIDE];
     int64_t i;
     memcpy(s->w, s->tmp, HDI_CAST(size_t, size) * sizeof *s->w);
     hdi_spec_sweep(s, s->w);
     hdi_spec_mass(s, s->w, s->bw);
-    s->cols += s->fresh;
+    s->cols = 0;
     hdi_spec_clean(s, removed);
-    s->cols -= s->fresh;
+    s->cols = cols;
     for (i = 0; i < size; i++) x[i] -= i % 8 < n ? s->w[i] : 0;
+}
+
+/* Block x, n columns that are nearly orthonormal, goes to the last slab from column `at` on, orthonormal and
+ * orthogonal to the columns before. bx: work. */
+static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int32_t n) {
+    const hdi_slab *slab = s->slab + s->n_slabs - 1;
+    double G[64] = {0}, R[64], h[8 * HDI_SPEC_WIDE], scale[HDI_SPEC_WIDE], norm[HDI_SPEC_WIDE];
+    hdi_spec_scale job;
+    int32_t q, r;
+    hdi_spec_mass(s, x, bx);
+    hdi_spec_project(s, slab, 0, at, x, bx, 1, s->h);
+    hdi_spec_mass(s, x, bx);
+    hdi_spec_add(s, hdi_spec_pass(s, slab, at, n, x, 1), NULL, 1);
+    hdi_spec_dots(s, hdi_spec_pass(s, slab, at, n, bx, 1), h);
+    for (q = 0; q < n; q++)
+        for (r = 0; r < n; r++) G[8 * q + r] = h[8 * q + r];
+    for (q = 0; q < HDI_SPEC_WIDE; q++) norm[q] = scale[q] = 1;
+    (void)hdi_spec_cholesky(G, R, scale, norm);
+    job.w = x;
+    job.bw = bx;
+    job.R = R;
+    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
+    hdi_spec_add(s, hdi_spec_pass(s, slab, at, n, x, 1), NULL, 1);
 }
 
 /* Locks the Ritz vectors which[0..n): one group of blocks. first: their first column in the last slab. Errors
@@ -18682,20 +18708,21 @@ static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, in
     hdi_spec_coefficients(s, which, n);
     memset(s->group, 0, HDI_CAST(size_t, n_blocks * size) * sizeof *s->group);
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->group, n_blocks), s->h, 0);
-    hdi_spec_unlock(s, n, twin);
-    for (q = 0; q < n_blocks; q++) {
-        double *x = s->group + q * size, *bx = s->group_b + q * size;
-        const int32_t here = hdi_low32(8, n - 8 * q);
-        for (r = 0; r < HDI_SPEC_WIDE; r++) value[r] = r < here ? hdi_spec_lambda(s, which[8 * q + r]) : 0;
-        if (hdi_spec_measure(s, value, x, bx, norm) > 0.5 * s->tol) {
-            hdi_spec_polish(s, x, here);
-            (void)hdi_spec_measure(s, value, x, bx, norm);
+    for (q = 0; q < 2 * n_blocks; q++) {
+        double *x = s->group + q % n_blocks * size, *bx = s->group_b + q % n_blocks * size;
+        const int32_t at = 8 * (q % n_blocks), here = hdi_low32(8, n - at);
+        for (r = 0; r < HDI_SPEC_WIDE; r++) value[r] = r < here ? hdi_spec_lambda(s, which[at + r]) : 0;
+        if (q < n_blocks) {
+            if (hdi_spec_measure(s, value, x, bx, norm) > HDI_SPEC_POLISH * s->tol)
+                hdi_spec_polish(s, x, here);
+            continue;
         }
-        hdi_spec_add(s, hdi_spec_pass(s, s->slab + s->n_slabs - 1, first + 8 * q, here, x, 1), NULL, 1);
+        if (q == n_blocks) hdi_spec_unlock(s, n, twin);
+        hdi_spec_settle(s, x, bx, first + at, here);
+        (void)hdi_spec_measure(s, value, x, bx, norm);
         for (r = 0; r < here; r++) {
-            if (twin[8 * q + r] > 0.1) continue; /* found before */
-            s->cross = hdi_max(s->cross, sqrt(twin[8 * q + r]));
-            hdi_spec_enter(s, value[r], norm[r], first + 8 * q + r);
+            if (twin[at + r] > 0.1) continue;    /* found before */
+            hdi_spec_enter(s, value[r], norm[r], first + at + r);
         }
     }
 }

@@ -349,14 +349,16 @@ static int output_format(const char *path)
 /* ==== options ==== */
 
 enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32,
-       CMD_HKS = 64, CMD_DISTANCE = 128, CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_ALL = 1023,
+       CMD_HKS = 64, CMD_DISTANCE = 128, CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_SPECTRUM = 1024,
+       CMD_ALL = 2047,
        CMD_TABLES = CMD_PAIRS | CMD_SAMPLE,
        CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE | CMD_TABLES,
        /* results have a row per vertex */
-       CMD_SOLVES = CMD_HEAT | CMD_GEODESIC, CMD_FIELDS = CMD_SOLVES & ~CMD_TABLES,
+       CMD_SOLVES = CMD_HEAT | CMD_GEODESIC | CMD_SPECTRUM, CMD_FIELDS = CMD_SOLVES & ~CMD_TABLES,
        /* by selected inversion, which only the direct method has */
        CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE, CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE,
-       CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER };
+       CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER,
+       CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM };
 
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_AUTO } time_unit;
 /* value is the number, or for auto the number of times. */
@@ -379,7 +381,7 @@ typedef struct options {
     time_spec bandwidth;             /* absolute or h2 */
     int laplacian, poles, method, ordering, simd, solver, precond, kernel, definition;
     long degree, max_iterations, threads, count;
-    double tol, lambda, weight_cut;
+    double tol, lambda, weight_cut, below;
     uint64_t memory_limit;
     int intrinsic_delaunay, tufted;
     int json, quiet, help, version, no_header;
@@ -499,6 +501,12 @@ static int parse_lambda(options *o, const option_def *def, const char *text)
 {
     (void)def;
     return read_real(text, &o->lambda) && o->lambda > 0 && o->lambda <= 1e100;
+}
+
+static int parse_below(options *o, const option_def *def, const char *text)
+{
+    (void)def;
+    return read_real(text, &o->below) && o->below > 0;
 }
 
 static int parse_range(options *o, const option_def *def, const char *text)
@@ -633,6 +641,10 @@ static const option_def OPTIONS[] = {
       "vertices to begin with (default: the first that has mass)" },
     { "count", 0, CMD_SAMPLE, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
       "how many vertices, those of --source included" },
+    { "count", 'k', CMD_SPECTRUM, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
+      "how many eigenpairs, the smallest" },
+    { "below", 0, CMD_SPECTRUM, 0, parse_below, 0, NULL, 0, 0, "X", "a number above 0, such as 100",
+      "eigenvalues below X, all of them or the first K" },
     { "input", 0, CMD_DIFFUSE, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
       "a field: a row per vertex, one or more columns, as text or .npy" },
     { "input", 0, CMD_RENDER, 0, parse_inputs, 0, NULL, 0, 0, "F", "a file name, up to twelve times",
@@ -645,26 +657,26 @@ static const option_def OPTIONS[] = {
       "classical, weighted, commute or biharmonic",
       "classical (default): d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j);\n"
       "weighted: d^2 = (e_i - e_j)' B K_2t (e_i - e_j); commute and\nbiharmonic: without --t" },
-    { "laplacian", 0, CMD_INFO | CMD_HEAT, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
+    { "laplacian", 0, CMD_LAPLACIAN, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
       "fem, voronoi-cot, cot, polygon, voronoi-exp or exp",
       "fem (default of triangles), voronoi-cot, cot: other faces are\n"
       "split; polygon (default of meshes with other faces); of points:\n"
       "voronoi-exp (default) or exp, which take the vertices of a mesh\nas points" },
-    { "intrinsic-delaunay", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL,
+    { "intrinsic-delaunay", 0, CMD_LAPLACIAN, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL,
       "no value",
       "L and B of the surface's own Delaunay triangulation: for bad\n"
       "triangles; with voronoi-cot heat is then never negative" },
-    { "tufted", 0, CMD_INFO | CMD_HEAT, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
+    { "tufted", 0, CMD_LAPLACIAN, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
       "the same for any triangles, also with borders and where\n"
       "three and more faces meet; of points, with triangles made\nfrom their neighbours" },
-    { "lambda", 0, CMD_INFO | CMD_HEAT, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
+    { "lambda", 0, CMD_LAPLACIAN, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
       "of polygon: weight of its stabilising part (1)" },
-    { "bandwidth", 0, CMD_INFO | CMD_HEAT, 0, parse_bandwidth, 0, NULL, 0, 0, "S",
+    { "bandwidth", 0, CMD_LAPLACIAN, 0, parse_bandwidth, 0, NULL, 0, 0, "S",
       "a positive number such as 0.001, or a multiple of h^2 such as 2h2",
       "of points: time parameter of the exponential weights, absolute\n"
       "or in multiples of the squared mean distance of nearest\n"
       "neighbours (2h2); default: from the sampling" },
-    { "weight-cut", 0, CMD_INFO | CMD_HEAT, 0, parse_weight_cut, 0, NULL, 0, 0, "W",
+    { "weight-cut", 0, CMD_LAPLACIAN, 0, parse_weight_cut, 0, NULL, 0, 0, "W",
       "a number between 0 and 1, such as 1e-4",
       "of points: exponentials below W are left out (1e-8); 1e-4 has\nhalf as many non-zeros" },
     { "kernel", 0, CMD_KERNEL | CMD_PAIRS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME",
@@ -677,6 +689,8 @@ static const option_def OPTIONS[] = {
     { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform, kernel or diagonal",
       "uniform (default of diffuse), kernel (of kernel and pairs) or\n"
       "diagonal (of hks, distance and sample)" },
+    { "tol", 0, CMD_SPECTRUM, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-10",
+      "residuals relative to eigenvalues (1e-10)" },
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
       "relative error that iterative methods aim at (1e-9)" },
     { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
@@ -687,6 +701,9 @@ static const option_def OPTIONS[] = {
       "krylov: one factor for one source and for many times;\n"
       "iterative: no factor; auto (default): what costs least" },
     { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
+      "auto, amd or dissection",
+      "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
+    { "ordering", 0, CMD_SPECTRUM, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
       "auto, amd or dissection",
       "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
     { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
@@ -790,6 +807,10 @@ static const command_def COMMANDS[] = {
     { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH",
       "A row for each point, in the order in which they were chosen: vertex, its id counted from 0,\n"
       "and distance, to the nearest of those before it (0 in the first row)." },
+    { "spectrum", CMD_SPECTRUM, "the smallest eigenvalues and eigenvectors", "-k K [--below X] [OPTIONS] MESH",
+      VERTEX_ROWS "A column for each eigenvector, by ascending eigenvalues, B-orthonormal: x_0, x_1, as .csv\n"
+      "and .vtu name them. In text the eigenvalues stand in a first line after #; elsewhere they are\n"
+      "in the report of --json." },
     { "render", CMD_RENDER, "a picture of a field on the mesh",
       "--input F [--input F..] -o PICTURE.png [OPTIONS] MESH [MESH..]",
       "A PNG picture, without numbers." },
@@ -1040,6 +1061,8 @@ static int check_options(const options *o)
     if ((o->command & (CMD_DIFFUSE | CMD_RENDER | CMD_PAIRS)) && !o->input)
         return fail(USAGE, "%s needs --input, which takes the file of %s", name,
                     o->command == CMD_PAIRS ? "vertex pairs" : "a field");
+    if (o->command == CMD_SPECTRUM && !o->count && !(o->below > 0))
+        return fail(USAGE, "spectrum needs -k, which takes a number from 1, or --below");
     if (o->command == CMD_SAMPLE && (code = check_sample(o)) != DONE) return code;
     if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
     if (o->lambda > 0 && o->laplacian != HD_LAPLACIAN_DEFAULT && o->laplacian != HD_LAPLACIAN_POLYGON)
@@ -1107,6 +1130,7 @@ static void print_help(void)
            "  heatdiff distance --source 0 --t 100h2 bunny.obj -o distance.png\n"
            "  heatdiff hks --t auto:16 bunny.obj -o signature.npy\n"
            "  heatdiff geodesic --source 0 bunny.obj -o geodesic.png\n"
+           "  heatdiff spectrum -k 100 bunny.obj -o modes.npy\n"
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
            "  heatdiff render --input a.npy --input b.npy a.obj b.obj -o pair.png\n"
@@ -1470,6 +1494,8 @@ typedef struct run {
     hd_heat *heat;
     hd_geodesic *geodesic;
     hd_geodesic_report geodesic_report;
+    hd_spectrum *spectrum;
+    hd_status spectrum_status;
     int32_t *pairs;                  /* pairs: [2 rows], first the i, then the j */
     int64_t rows;                    /* of the result: the vertices, the pairs or the points */
     /* column-major, rows x n_columns; input q after time k is column q n_times + k */
@@ -1500,6 +1526,7 @@ static void run_end(run *r)
     bar_hide();
     hd_heat_free(r->heat);
     hd_geodesic_free(r->geodesic);
+    hd_spectrum_free(r->spectrum);
     hd_laplacian_free(r->lap);
     mesh_free(&r->mesh);
     free(r->times);
@@ -2012,14 +2039,37 @@ static int solve_geodesic(run *r)
     return fail_library(r->mesh_name, &r->geodesic_report.error);
 }
 
+/* Eigenpairs, whose vectors are the result. */
+static int solve_spectrum(run *r)
+{
+    hd_spectrum_opts opts;
+    hd_error err;
+    memset(&opts, 0, sizeof opts);
+    if (r->o->count > r->lap->n_active)
+        return fail(FAILED, "%s: -k %ld is beyond the mesh, which has %ld vertices with mass", r->mesh_name,
+                    r->o->count, (long)r->lap->n_active);
+    opts.count = (int32_t)r->o->count;
+    opts.below = r->o->below;
+    opts.tol = r->o->tol;
+    opts.ordering = (hd_ordering)r->o->ordering;
+    opts.context = &r->context;
+    r->spectrum_status = hd_spectrum_create(&r->spectrum, r->lap, &opts, &err);
+    if (r->spectrum_status < 0) return fail_library(r->mesh_name, &err);
+    r->n_columns = r->spectrum->count;
+    if (r->o->column < r->n_columns) return DONE;
+    return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column,
+                (long long)r->n_columns);
+}
+
 /* Leaves the plan in r->heat for further questions. */
 static int run_solve(run *r)
 {
-    int code = run_columns(r);
+    int code = r->o->command == CMD_SPECTRUM ? DONE : run_columns(r);
     if (code) return code;
     interrupt.patient = 1;
     stages_start();
     if (r->o->command == CMD_GEODESIC) code = solve_geodesic(r);
+    else if (r->o->command == CMD_SPECTRUM) code = solve_spectrum(r);
     else {
         code = run_plan(r);
         if (!code) code = solve_command(r);
@@ -2378,6 +2428,59 @@ static void report_geodesic(const run *r)
     } else if (!r->o->quiet) print_geodesic(r);
 }
 
+/* ---- of spectrum ---- */
+
+static void json_spectrum(json *j, const run *r)
+{
+    const hd_spectrum *s = r->spectrum;
+    json_text(j, "method", "direct");
+    json_integer(j, "count", s->count);
+    json_numbers(j, "eigenvalues", s->value, s->count);
+    json_numbers(j, "residuals", s->residual, s->count);
+    json_number(j, "residual", s->largest_residual);
+    json_integer(j, "proven", s->proven);
+    json_number(j, "next", s->next);
+    json_number(j, "shift", s->shift);
+    json_number(j, "shift_margin", s->shift_margin);
+    json_integer(j, "factorisations", s->n_factors);
+    json_integer(j, "runs", s->n_runs);
+    json_integer(j, "solves", s->n_solves);
+    json_text(j, "ordering", word_of(ORDERINGS, (int)s->ordering));
+    json_integer(j, "factor_nnz", s->factor_nnz);
+    json_number(j, "factor_flops", s->factor_flops);
+    json_text(j, "status", hd_status_name(r->spectrum_status));
+}
+
+static void print_spectrum(const run *r)
+{
+    const hd_spectrum *s = r->spectrum;
+    print_surface(r);
+    if (s->count > 0)
+        fprintf(stderr, "%ld eigenvalue%s from %.6g to %.6g, largest residual %.1e\n", (long)s->count,
+                plural(s->count), s->value[0], s->value[s->count - 1], s->largest_residual);
+    else fprintf(stderr, "no eigenvalue is below %g\n", r->o->below);
+    fprintf(stderr, "%s: all others are at least %.6g\n", s->proven ? "proven complete" : "NOT proven complete",
+            s->next);
+    fprintf(stderr, "%ld factorisations, %ld runs, %lld solves; factor: %.3g non-zeros, ordering %s\n",
+            (long)s->n_factors, (long)s->n_runs, (long long)s->n_solves, (double)s->factor_nnz,
+            word_of(ORDERINGS, (int)s->ordering));
+    if (s->proven && r->spectrum_status == HD_WARN_ACCURACY)
+        fprintf(stderr, "note: residuals are above the tolerance\n");
+    print_seconds(r);
+}
+
+static void report_spectrum(const run *r)
+{
+    json j;
+    if (r->o->json) {
+        json_begin(&j, r, stderr);
+        json_laplacian(&j, r->lap);
+        json_intrinsic(&j, r, &r->lap->mesh);
+        json_spectrum(&j, r);
+        json_end(&j, r);
+    } else if (!r->o->quiet) print_spectrum(r);
+}
+
 /* ==== pictures ==== */
 
 enum { PICTURE_WIDTH = 1200, PICTURE_HEIGHT = 900, LOG_DECADES = 6 };
@@ -2460,6 +2563,7 @@ typedef struct result {
     int64_t n_columns;
     const double *values;            /* column-major */
     const char *const *names;        /* one word per column */
+    const char *comment;             /* first line of text, or NULL */
     int64_t colour;                  /* the column that colours .ply, .obj and .png */
 } result;
 
@@ -2498,6 +2602,7 @@ static int write_table(const char *path, int kind, const run *r, const result *r
     out.cols = (int32_t)res->n_columns;
     out.values = res->values;
     out.names = res->names;
+    out.comment = kind == MIO_TXT ? res->comment : NULL;
     out.no_header = r->o->no_header;
     status = mio_write(path, kind, &r->mesh.file, &out, &e);
     free(rgb);
@@ -2599,6 +2704,55 @@ static int write_heat(run *r)
     if (kind == FORMAT_PNG) code = write_png(r->o->output, r, &res, title, marker);
     else code = write_table(r->o->output, kind, r, &res);
     bar_hide();
+    r->sec.write = now() - start;
+    return code;
+}
+
+/* ---- of spectrum ---- */
+
+/* The names of the vectors, and the eigenvalues as a line of text. */
+static int spectrum_names(run *r, char **line)
+{
+    const hd_spectrum *s = r->spectrum;
+    const size_t room = 32 * (size_t)s->count + 1;
+    size_t at = 0;
+    int32_t i;
+    r->names = (char (*)[NAME_SIZE])malloc((size_t)s->count * sizeof *r->names + 1);
+    r->name_list = (const char **)malloc((size_t)s->count * sizeof *r->name_list + 1);
+    *line = (char *)malloc(room);
+    if (!r->names || !r->name_list || !*line) return fail_memory("the names of the columns");
+    (*line)[0] = 0;
+    for (i = 0; i < s->count; i++) {
+        snprintf(r->names[i], NAME_SIZE, "x_%ld", (long)i);
+        r->name_list[i] = r->names[i];
+        at += (size_t)snprintf(*line + at, room - at, "%s%.17g", i ? " " : "", s->value[i]);
+    }
+    return DONE;
+}
+
+static int write_spectrum(run *r)
+{
+    const double start = now();
+    const int kind = r->o->output ? output_format(r->o->output) : MIO_TXT;
+    char title[120], *line = NULL;
+    result res;
+    int code = spectrum_names(r, &line);
+    memset(&res, 0, sizeof res);
+    res.n_columns = r->n_columns;
+    res.values = r->spectrum->vector;
+    res.names = r->name_list;
+    res.comment = line;
+    res.colour = r->o->column;
+    if (!code) {
+        bar_show("writing", 0);
+        if (kind == FORMAT_PNG) {
+            snprintf(title, sizeof title, "Eigenvector %ld, eigenvalue %.6g", r->o->column,
+                     r->spectrum->value[r->o->column]);
+            code = write_png(r->o->output, r, &res, title, NULL);
+        } else code = write_table(r->o->output, kind, r, &res);
+        bar_hide();
+    }
+    free(line);
     r->sec.write = now() - start;
     return code;
 }
@@ -2892,6 +3046,16 @@ static int command_geodesic(run *r)
     if (!code) code = run_solve(r);
     if (!code) code = write_heat(r);
     if (!code) report_geodesic(r);
+    return code;
+}
+
+static int command_spectrum(run *r)
+{
+    int code = run_load(r);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_solve(r);
+    if (!code) code = write_spectrum(r);
+    if (!code) report_spectrum(r);
     return code;
 }
 
@@ -3318,6 +3482,7 @@ static int run_command(const options *o)
     case CMD_SAMPLE: code = command_sample(&r); break;
     case CMD_DIFFUSE: code = command_diffuse(&r); break;
     case CMD_GEODESIC: code = command_geodesic(&r); break;
+    case CMD_SPECTRUM: code = command_spectrum(&r); break;
     case CMD_RENDER: code = command_render(&r); break;
     case CMD_DEMO: code = command_demo(&r); break;
     default: break;
