@@ -1967,15 +1967,18 @@ static void hdi_loop_run(hd_context *ctx, hd_threads *t, hdi_loop *loop, int64_t
     HDI_ATOMIC_SET(&t->helped, 0);
 }
 
-/* From within a task: task id of the open loop may be claimed too. */
-static void hdi_release(hd_threads *t, int32_t id, int32_t *order) {
+/* From within a task: tasks [id, id + n) of the open loop may be claimed too. */
+static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
+    int32_t i, wake = n;
     hdi_lock(&t->lock);
-    order[t->ready - t->loop.base] = id;
-    HDI_ATOMIC_SET(&t->ready, t->ready + 1);
-    if (t->caller_asleep) hdi_signal_one(&t->finished);
-    else if (t->n_asleep) hdi_signal_one(&t->work);
+    for (i = 0; i < n; i++) order[t->ready - t->loop.base + HDI_CAST(uint32_t, i)] = id + i;
+    HDI_ATOMIC_SET(&t->ready, t->ready + HDI_CAST(uint32_t, n));
+    if (t->caller_asleep && wake-- > 0) hdi_signal_one(&t->finished);
+    for (i = 0; i < wake && i < t->n_asleep; i++) hdi_signal_one(&t->work);
     hdi_unlock(&t->lock);
 }
+
+static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
 
 /* Threads that can share n tasks with the caller; NULL: none, or they are the user's. */
 static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
@@ -2009,11 +2012,13 @@ static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, in
     (void)task;
     (void)arg;
 }
-static void hdi_release(hd_threads *t, int32_t id, int32_t *order) {
+static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
     (void)t;
     (void)id;
+    (void)n;
     (void)order;
 }
+static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
 #endif
 
 /* An object that is made with the context holds it; its threads end with the last one. */
@@ -13123,10 +13128,13 @@ static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
     hdi_form_run(job->z, &b);
 }
 
-/* The forms of a front's pivots: one by one where that is possible, the others in blocks. The blocks do not
- * depend on who works on them; in the top all threads do. They are sorted by the fronts where they begin,
- * because columns that begin close to each other share more of their ways. */
-static void hdi_forms_front(const hdi_inverse *z, const hdi_inverse_front *w) {
+/* Blocks of columns of p pivots, at most. */
+static int64_t hdi_forms_blocks(const hdi_forms *q, int64_t p) { return (p + q->cols - 1) / q->cols; }
+
+/* The forms of a front's pivots, one by one where that is possible; of the others the blocks. They do not
+ * depend on who works on them. They are sorted by the fronts where they begin, because columns that begin
+ * close to each other share more of their ways. */
+static hdi_form_job hdi_forms_open(const hdi_inverse *z, const hdi_inverse_front *w) {
     const hdi_forms *q = z->forms;
     const hdi_symbolic *s = w->f->sym;
     const int32_t task = s->task_of[w->v];
@@ -13140,12 +13148,19 @@ static void hdi_forms_front(const hdi_inverse *z, const hdi_inverse_front *w) {
         order[job.n].key = HDI_CAST(uint64_t, least);
         order[job.n++].id = j;
     }
-    if (job.n == 0) return;
     hdi_sort_pairs(order, job.n);
     job.z = z;
     job.w = w;
     job.list = order;
-    job.n_blocks = (job.n + q->cols - 1) / q->cols;
+    job.n_blocks = HDI_CAST(int32_t, hdi_forms_blocks(q, job.n));
+    return job;
+}
+
+/* All forms of a front's pivots; in the top by all threads. */
+static void hdi_forms_front(const hdi_inverse *z, const hdi_inverse_front *w) {
+    const hdi_forms *q = z->forms;
+    const int32_t task = w->f->sym->task_of[w->v];
+    hdi_form_job job = hdi_forms_open(z, w);
     for (; job.begin < job.n_blocks; job.begin += task >= 0 ? 1 : q->n_slots) {
         if (task >= 0) hdi_form_task(&job, 0, 0);
         else hdi_parallel(w->f->ctx, hdi_least(job.n_blocks - job.begin, q->n_slots), hdi_form_task, &job);
@@ -13281,6 +13296,152 @@ static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scrat
     }
 }
 
+/* ---- the way down as one loop ---- */
+/* Its nodes: chunks of a stage of a front of the top, one stage after the other; then the subtrees. Whoever
+ * does the last chunk of a stage does what one thread must do before the next, and releases that one's. */
+
+enum { HDI_INVERSE_FORMS = HDI_INVERSE_CHILD + 1, HDI_INVERSE_WHOLE, HDI_INVERSE_TASKS = 1 << 30 };
+
+/* A stage on the way: of front s->top[top], rows [begin,end) in chunks of `rows`. WHOLE: a small front. */
+typedef struct hdi_inverse_step {
+    int32_t top, stage, kid;
+    int64_t k0, k1, begin, end, rows;
+} hdi_inverse_step;
+
+typedef struct hdi_inverse_loop {
+    hdi_inverse *z;
+    hdi_inverse_front w;
+    hdi_form_job form;
+    hdi_inverse_step at;
+    double *scratch;
+    int32_t left;                /* nodes of the stage that are not done */
+    int32_t *order;
+    hd_threads *threads;
+} hdi_inverse_loop;
+
+static void hdi_inverse_step_set(hdi_inverse_step *c, int stage, int64_t begin, int64_t end, int64_t rows) {
+    c->stage = HDI_CAST(int32_t, stage);
+    c->begin = begin;
+    c->end = end;
+    c->rows = rows;
+}
+
+static int64_t hdi_inverse_step_nodes(const hdi_inverse_step *c) {
+    return (c->end - c->begin + c->rows - 1) / c->rows;
+}
+
+/* The first stage of the front c->top: its last block of pivots. */
+static void hdi_inverse_step_front(const hdi_symbolic *s, hdi_inverse_step *c) {
+    const int32_t v = s->top[c->top];
+    const int64_t m = hdi_front_rows(s, v);
+    c->kid = s->kid_ptr[v];
+    c->k1 = hdi_front_pivots(s, v);
+    c->k0 = (c->k1 - 1) / HDI_PANEL * HDI_PANEL;
+    if (m < 2 * HDI_CAST(int64_t, HDI_INV_CHUNK)) hdi_inverse_step_set(c, HDI_INVERSE_WHOLE, 0, 1, 1);
+    else hdi_inverse_step_set(c, HDI_INVERSE_M, c->k1, m, HDI_INV_CHUNK);
+}
+
+/* The next stage, which may have no nodes. 0: there is none. Depends on nothing but the schedule. */
+static int hdi_inverse_step_next(const hdi_inverse *z, const hdi_symbolic *s, hdi_inverse_step *c) {
+    const int32_t v = s->top[hdi_low32(c->top, s->n_top - 1)];
+    const int64_t m = hdi_front_rows(s, v), p = hdi_front_pivots(s, v);
+    const int forms = z->wanted == HDI_WANT_FORMS;
+    if (c->stage == HDI_INVERSE_M) {
+        hdi_inverse_step_set(c, HDI_INVERSE_BELOW, c->k1, m, HDI_INV_CHUNK);
+    } else if (c->stage == HDI_INVERSE_BELOW) {
+        hdi_inverse_step_set(c, HDI_INVERSE_CORNER, 0, c->k1 < m ? c->k1 - c->k0 : 0,
+                             HDI_CAST(int64_t, HDI_REAL_MR));
+    } else if (c->stage == HDI_INVERSE_CORNER && c->k0 > 0) {
+        c->k1 = c->k0;
+        c->k0 -= HDI_PANEL;
+        hdi_inverse_step_set(c, HDI_INVERSE_M, c->k1, m, HDI_INV_CHUNK);
+    } else if (c->stage == HDI_INVERSE_CORNER) {
+        hdi_inverse_step_set(c, HDI_INVERSE_FORMS, 0, 0, 1);
+        if (forms) c->end = hdi_least(hdi_forms_blocks(z->forms, p), z->forms->n_slots);
+    } else if (c->stage == HDI_INVERSE_FORMS && forms && c->end < hdi_forms_blocks(z->forms, p)) {
+        c->begin = c->end;
+        c->end = hdi_least(hdi_forms_blocks(z->forms, p), c->begin + z->forms->n_slots);
+    } else if (c->stage != HDI_INVERSE_WHOLE && c->kid < s->kid_ptr[v + 1]) {
+        hdi_inverse_step_set(c, HDI_INVERSE_CHILD, 0, hdi_front_below(s, s->kid[c->kid++]), HDI_INV_CHUNK);
+    } else {
+        if (c->top-- == 0) return 0;
+        hdi_inverse_step_front(s, c);
+    }
+    return 1;
+}
+
+/* Before M of a front's last block: the front. */
+static void hdi_inverse_enter_front(hdi_inverse_loop *l, int32_t worker) {
+    hdi_inverse *z = l->z;
+    const hdi_symbolic *s = z->f->sym;
+    const double done = 0.5 * (s->n_top - 1 - l->at.top) / s->n_top;
+    if (HDI_LOAD(&z->stop)) return;
+    if (worker == 0 && hdi_progress(z->f->ctx, "invert", done, &z->error) < 0) HDI_STORE(&z->stop, 1);
+    l->w = hdi_inverse_open(z->f, s->top[l->at.top], l->scratch);
+    hdi_factor_fetch(z->f, l->w.v, 1);
+}
+
+/* What one thread does before the stage. */
+static void hdi_inverse_enter(hdi_inverse_loop *l, int32_t worker) {
+    hdi_inverse_front *w = &l->w;
+    const hdi_inverse_step *c = &l->at;
+    const hdi_symbolic *s = l->z->f->sym;
+    const int real = l->z->f->width == 1;
+    const int32_t nr = l->z->f->real->nr;
+    const int64_t p = hdi_front_pivots(s, s->top[c->top]), n = c->k1 - c->k0;
+    if (c->stage == HDI_INVERSE_WHOLE || (c->stage == HDI_INVERSE_M && c->k1 == p))
+        hdi_inverse_enter_front(l, worker);
+    if (HDI_LOAD(&l->z->stop)) return;
+    w->k0 = c->k0;
+    w->k1 = c->k1;
+    if (c->stage == HDI_INVERSE_M) {
+        if (real) hdi_inverse_pivots_real(w);
+        else hdi_inverse_pivots_pack(w);
+    } else if (c->stage == HDI_INVERSE_BELOW && real && w->k1 < w->m) {
+        hdi_inverse_slices_real(w->slices, nr, w->M, w->m - w->k1, w->m - w->k1, n);
+    } else if (c->stage == HDI_INVERSE_CORNER && real && w->k1 < w->m) {
+        hdi_inverse_slices_real(w->slices, nr, w->z + w->k1 + w->k0 * w->m, w->m, w->m - w->k1, n);
+    } else if (c->stage == HDI_INVERSE_FORMS && l->z->wanted != HDI_WANT_FORMS) {
+        hdi_inverse_emit(l->z, w);
+    } else if (c->stage == HDI_INVERSE_FORMS) {
+        if (c->begin == 0) l->form = hdi_forms_open(l->z, w);
+        l->form.begin = HDI_CAST(int32_t, c->begin);
+    } else if (c->stage == HDI_INVERSE_CHILD) {
+        w->child = s->kid[c->kid - 1];
+    }
+}
+
+/* Goes on to the next stage that has nodes, or after the last one to the subtrees. Sets what is ready then:
+ * nodes [*id, *id + result). */
+static int32_t hdi_inverse_advance(hdi_inverse_loop *l, int32_t worker, int32_t *id) {
+    const hdi_symbolic *s = l->z->f->sym;
+    do {
+        if (!hdi_inverse_step_next(l->z, s, &l->at)) {
+            *id = HDI_INVERSE_TASKS;
+            return s->n_tasks;
+        }
+        hdi_inverse_enter(l, worker);
+    } while (hdi_inverse_step_nodes(&l->at) == 0);
+    *id = 0;
+    l->left = HDI_CAST(int32_t, hdi_inverse_step_nodes(&l->at));
+    return l->left;
+}
+
+/* Chunk i of the stage. */
+static void hdi_inverse_chunk(hdi_inverse_loop *l, int32_t i) {
+    const hdi_inverse_step *c = &l->at;
+    /* the last rows of a triangle are longest */
+    const int64_t chunk = hdi_inverse_step_nodes(c) - 1 - i, r0 = c->begin + chunk * c->rows;
+    if (c->stage == HDI_INVERSE_WHOLE) {
+        hdi_inverse_front_run(l->z, l->w.v, l->scratch, 0);
+    } else if (c->stage == HDI_INVERSE_FORMS) {
+        if (c->begin + i < l->form.n_blocks) hdi_form_task(&l->form, i, 0);
+    } else {
+        hdi_inverse_part(&l->w, c->stage, r0, hdi_least(r0 + c->rows, c->end),
+                         l->z->chunk + l->z->chunk_size * HDI_CAST(size_t, chunk));
+    }
+}
+
 static void hdi_inverse_task(void *arg, int64_t index, int32_t worker) {
     hdi_inverse *z = HDI_CAST(hdi_inverse *, arg);
     const hdi_symbolic *s = z->f->sym;
@@ -13291,6 +13452,52 @@ static void hdi_inverse_task(void *arg, int64_t index, int32_t worker) {
     if (worker == 0 && hdi_progress(z->f->ctx, "invert", done, &z->error) < 0) HDI_STORE(&z->stop, 1);
     for (v = s->task_end[i]; v-- > s->task_begin[i] && !HDI_LOAD(&z->stop);)
         hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * HDI_CAST(size_t, i), 0);
+}
+
+static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
+    hdi_inverse_loop *l = HDI_CAST(hdi_inverse_loop *, arg);
+    int32_t id, n;
+    if (index >= HDI_INVERSE_TASKS) {
+        hdi_inverse_task(l->z, index - HDI_INVERSE_TASKS, worker);
+        return;
+    }
+    if (!HDI_LOAD(&l->z->stop)) hdi_inverse_chunk(l, HDI_CAST(int32_t, index));
+    if (HDI_ATOMIC_ADD(&l->left, -1) != 0) return;
+    n = hdi_inverse_advance(l, worker, &id);
+    hdi_release_many(l->threads, id, n, l->order);
+}
+
+/* A step before the first stage. */
+static hdi_inverse_step hdi_inverse_step_begin(const hdi_symbolic *s) {
+    hdi_inverse_step c;
+    memset(&c, 0, sizeof c);
+    c.top = s->n_top;
+    hdi_inverse_step_set(&c, HDI_INVERSE_WHOLE, 0, 0, 1);
+    return c;
+}
+
+/* Nodes of the loop. */
+static int64_t hdi_inverse_count(const hdi_inverse *z, const hdi_symbolic *s) {
+    hdi_inverse_step c = hdi_inverse_step_begin(s);
+    int64_t n = s->n_tasks;
+    while (hdi_inverse_step_next(z, s, &c)) n += hdi_inverse_step_nodes(&c);
+    return n;
+}
+
+/* All of it by several threads. order [n]. */
+static void hdi_inverse_share(hdi_inverse *z, hd_threads *threads, int32_t n, int32_t *order,
+                              double *scratch) {
+    hdi_inverse_loop l;
+    int32_t ready, id, i;
+    memset(&l, 0, sizeof l);
+    l.z = z;
+    l.at = hdi_inverse_step_begin(z->f->sym);
+    l.scratch = scratch;
+    l.order = order;
+    l.threads = threads;
+    ready = hdi_inverse_advance(&l, 0, &id);
+    for (i = 0; i < ready; i++) order[i] = id + i;
+    hdi_parallel_ordered(z->f->ctx, n, ready, order, hdi_inverse_node, &l);
 }
 
 static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
@@ -13326,19 +13533,24 @@ static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t
 static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     const hdi_symbolic *s = f->sym;
     double *scratch = z->scratch + z->scratch_size * HDI_CAST(size_t, s->n_tasks);
-    int32_t i;
+    hdi_scope scope = hdi_scope_begin(f->ctx, e);
+    const int64_t n = s->n_top > 0 ? hdi_inverse_count(z, s) : 0;
+    int32_t i, *order = HDI_TAKE(&scope, int32_t, n);
+    hd_threads *threads = n > 0 && n < HDI_INVERSE_TASKS ? hdi_threads_own(f->ctx, n) : NULL;
+    if (!order) return hdi_scope_end(&scope);
     z->f = f;
     z->stop = 0;
     z->done = s->n_top > 0 ? 0.5 : 0;
     hdi_error_clear(&z->error);
-    for (i = s->n_top; i-- > 0 && !z->stop;) {
+    if (threads) hdi_inverse_share(z, threads, HDI_CAST(int32_t, n), order, scratch);
+    for (i = s->n_top; i-- > 0 && !threads && !z->stop;) {
         const int shared = hdi_front_rows(s, s->top[i]) >= 2 * HDI_INV_CHUNK;
         if (hdi_progress(f->ctx, "invert", 0.5 * (s->n_top - 1 - i) / s->n_top, &z->error) < 0) z->stop = 1;
         else hdi_inverse_front_run(z, s->top[i], scratch, shared);
     }
-    if (!z->stop) hdi_parallel(f->ctx, s->n_tasks, hdi_inverse_task, z);
+    if (!threads && !z->stop) hdi_parallel(f->ctx, s->n_tasks, hdi_inverse_task, z);
     if (z->error.status < 0) *e = z->error;
-    return e->status;
+    return hdi_scope_end(&scope);
 }
 
 /* ---- what hd_ldl asks for ---- */
