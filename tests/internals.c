@@ -1077,6 +1077,7 @@ static void int_tree_one(const hd_csr *a, const int32_t *order, const char *what
     const int32_t n = a->n_rows, n1 = n + 1;
     int32_t *perm = DENSE_NEW(int32_t, n1), *plain = DENSE_NEW(int32_t, n1), i, j, k;
     char *l = int_fill(a, order);
+    hdi_sym_job job;
     hdi_sym_work w;
     hd_context ctx;
     hd_error e;
@@ -1086,14 +1087,18 @@ static void int_tree_one(const hd_csr *a, const int32_t *order, const char *what
     hdi_sym_work_take(&w, a, &s);
     CHECK(e.status == HD_OK);
     memcpy(perm, order, (size_t)n * sizeof *perm);
-    hdi_sym_triangle(a, perm, &w, NULL);
-    hdi_sym_etree(n, w.lower_ptr, w.lower, plain, w.head);
+    memset(&job, 0, sizeof job);
+    job.a = a;
+    job.perm = perm;
+    job.w = &w;
+    hdi_sym_triangle(&job, &ctx);
+    hdi_sym_etree(n, &w, plain, w.head);
     for (j = 0; j < n; j++) {
         for (i = j + 1; i < n && !l[i * n + j]; i++) {}
         CHECK_MSG(plain[j] == (i < n ? i : -1), "%s: parent of %d is %d", what, (int)j, (int)plain[j]);
     }
     free(l);
-    hdi_sym_tree(a, perm, &w);
+    hdi_sym_tree(a, perm, &w, &ctx);
     l = int_fill(a, perm);
     for (j = 0; j < n; j++) {
         int32_t first = -1;
