@@ -80,7 +80,7 @@
      [25] spectrum   the smallest eigenpairs, counted and complete
      [26] plan       hd_heat: choice of method, kept factors and bases, the run of a request, its report
      [27] kernel     diagonals and edges, by selected inversion
-     [28] diffusion  diffusion distances, pairs, sampling
+     [28] diffusion  diffusion distances, pairs, sampling; what a query would take
      [29] geodesic   the heat method
      [30] api        argument checks, defaults, lifetimes, bodies of the public functions
      [31] closing    end of the implementation, licence
@@ -224,7 +224,9 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or of a field */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    double value;          /* the offending value; 0 if there is none */
+    /* The offending value; 0 if there is none. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small. It
+     * is the whole need of a factorisation and what follows it, which is known before it begins. */
+    double value;
 } hd_error;
 
 /* What a progress callback returns. Any other value is HD_ERR_ARGUMENT. Neither value is 0 or 1, so that a
@@ -676,6 +678,45 @@ typedef struct hd_spectrum {
     const hd_laplacian *lap;
     hd_context *context;
 } hd_spectrum;
+
+/* Queries of a plan, as hd_heat_estimate knows them. k is a number of what is named. */
+typedef enum hd_query {
+    HD_QUERY_FIELDS = 0,          /* hd_heat_apply: fields. The default degree is taken as 9 */
+    HD_QUERY_COLUMNS,             /* hd_heat_columns: sources. hd_heat_entries: distinct j */
+    HD_QUERY_PAIRS,               /* hd_heat_pairs, classical or weighted: distinct vertices in the pairs */
+    HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t; no k */
+    HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t; no k */
+    HD_QUERY_EDGES,               /* hd_heat_edges; no k */
+    /* hd_heat_distance: sources, hd_heat_sample: points; commute and biharmonic also hd_heat_pairs */
+    HD_QUERY_DISTANCE,            /* classical */
+    HD_QUERY_DISTANCE_WEIGHTED,
+    HD_QUERY_DISTANCE_COMMUTE,
+    HD_QUERY_DISTANCE_BIHARMONIC
+} hd_query;
+
+/* What a query takes by one method. */
+typedef struct hd_cost {
+    int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
+    int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
+    double flops;               /* real floating-point operations, of factorisations, inversions and solves */
+    double seconds;             /* by a model of one core, which is right within a factor of about two */
+    double bytes;               /* at the peak, beyond what the context has in use now */
+    /* The same if poles of degree 14 take over: for demanding fields, and where slivers or the time make the
+     * bound of a diagonal, of edges or of distances too large. Without room for that the last three do with
+     * bytes, and a looser bound. */
+    double bytes_most;
+} hd_cost;
+
+typedef struct hd_estimate {
+    hd_method method;           /* that would be taken */
+    const char *reason;         /* why, in a few words */
+    /* 1: figures of factorisations come from the analysis of the pattern. 0: they are guesses before it,
+     * within a factor of about three, because iterations cost less or the analysis itself does not fit. */
+    int32_t analysed;
+    hd_cost cost[HD_METHOD_KRYLOV + 1];   /* by hd_method. cost[HD_METHOD_AUTO] is that of method */
+    double bytes_in_use;        /* by the context, now */
+    double bytes_left;          /* of the byte limit; HUGE_VAL without one */
+} hd_estimate;
 
 typedef enum hd_geodesic_mass {
     HD_GEODESIC_MASS_BARYCENTRIC = 0,   /* a third of each face to each corner */
@@ -1251,6 +1292,20 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
                                             int32_t n_times, const double *t, int32_t k,
                                             const int32_t *sources, double *D, double *bound,
                                             size_t ldd, hd_error *err);
+/* What a query would take, without running it: the method, floating-point operations, bytes and seconds, by
+ * that method and by the others.
+ * t        [n_times] as in the query; commute and biharmonic: n_times may be 0
+ * k        see hd_query
+ * estimate if the memory does not suffice, cost[HD_METHOD_AUTO].fits is 0. That is no error
+ * Bytes of the direct method are sums of the arrays that the query will allocate: an upper bound, by a few
+ * percent. Those of the other two methods depend on their steps and are estimates. Output arrays are the
+ * caller's and not counted.
+ * Errors   HD_ERR_ARGUMENT, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost     one ordering and analysis, if the query needs them; the plan keeps them for the query. Otherwise
+ *          one pass over L */
+HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
+                                        const double *t, int32_t k, hd_estimate *estimate,
+                                        hd_error *err);
 
 /* ---- geodesic distance ---- */
 
@@ -1712,6 +1767,24 @@ static hd_status hdi_missing(hd_error *e) {
 /* For what this build has no code for: room is one of HDI_HAS_..., what says it in the field's words. */
 #define HDI_LEFT_OUT(e, room, what) \
     hdi_fail(e, HD_ERR_NOT_BUILT, "this build leaves out " what " (" HDI_WHY_##room ")")
+/* Appends a text, as far as there is room. */
+static void hdi_text_add(hd_error *e, const char *text) {
+    const size_t used = strlen(e->text), len = strlen(text), most = sizeof e->text - 1 - used;
+    memcpy(e->text + used, text, len < most ? len : most);
+    e->text[used + (len < most ? len : most)] = 0;
+}
+
+/* Appends a number of bytes in MB (1e6 bytes), rounded up to one decimal. */
+static void hdi_text_bytes(hd_error *e, double bytes) {
+    uint64_t tenths = HDI_CAST(uint64_t, ceil(bytes / 1e5));
+    char text[32], *at = text + sizeof text;
+    memcpy(at -= 4, " MB", 4);
+    *--at = HDI_CAST(char, '0' + tenths % 10);
+    *--at = '.';
+    do *--at = HDI_CAST(char, '0' + (tenths /= 10) % 10);
+    while (tenths >= 10);
+    hdi_text_add(e, at);
+}
 
 /* ==== [03] memory ====
  * Counted allocation, aligned to 64 bytes with the block's size kept in front; and scopes, which free the
@@ -1725,8 +1798,22 @@ static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
     if (bytes || (ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit)) {
         hdi_fail(e, HD_ERR_MEMORY_LIMIT, bytes ? "the byte limit of the context is reached"
                                                : "the allocation limit of the context is reached");
-        e->value = HDI_CAST(double, total);
+        e->value = HDI_CAST(double, total) + HDI_CAST(double, ctx->bytes_in_use);
     }
+    return e->status;
+}
+
+/* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
+ * leaves. what: of the text. */
+static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
+    const double all = HDI_CAST(double, more) + HDI_CAST(double, ctx->bytes_in_use);
+    if (!ctx->byte_limit || more <= ctx->byte_limit - ctx->bytes_in_use) return e->status;
+    hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
+    hdi_text_add(e, " would bring the memory in use to ");
+    hdi_text_bytes(e, all);
+    hdi_text_add(e, ", and the byte limit is ");
+    hdi_text_bytes(e, HDI_CAST(double, ctx->byte_limit));
+    e->value = all;
     return e->status;
 }
 
@@ -1787,10 +1874,11 @@ static void hdi_free(hd_context *ctx, void *block) {
 enum { HDI_SCOPE_MOST = 32 };
 
 /* Work arrays of one function. After a failed take all further ones give NULL, so one check of e->status
- * serves for many. */
+ * serves for many. With a tally, takes are only added up: they give NULL, and that is no error. */
 typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
+    uint64_t *tally;             /* bytes; NULL: takes are made */
     int32_t n;
     void *block[HDI_SCOPE_MOST];
 } hdi_scope;
@@ -1804,9 +1892,28 @@ static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
     return s;
 }
 
+/* Adds the bytes of a block as hdi_alloc counts them. Sums stay far below 2^64. */
+static void hdi_scope_count(uint64_t *tally, uint64_t count, size_t size) {
+    const uint64_t most = UINT64_C(1) << 60;
+    uint64_t bytes;
+    if (!hdi_size(count, size, HDI_ALIGN + HDI_HEADER, most, &bytes)) bytes = most;
+    *tally = bytes > most - *tally ? most : *tally + bytes;
+}
+
+static hdi_scope hdi_scope_tally(uint64_t *tally, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(NULL, e);
+    *tally = 0;
+    s.tally = tally;
+    return s;
+}
+
 static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
     void *p;
     if (s->e->status < 0) return NULL;
+    if (s->tally) {
+        hdi_scope_count(s->tally, count, size);
+        return NULL;
+    }
     if (s->n == HDI_SCOPE_MOST) {                /* a mistake of ours, which tests would see */
         hdi_fail(s->e, HD_ERR_TOO_LARGE, "a function takes more work arrays than its scope holds");
         return NULL;
@@ -12000,10 +12107,8 @@ static void hdi_factor_free(hdi_factor *f) {
     memset(f, 0, sizeof *f);
 }
 
-/* Room for a factor of the given width; all that factoring and refactoring need. */
-static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
-                                 hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
+/* The arrays of a factor of the given width; all that factoring and refactoring need. */
+static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
     const uint64_t w = HDI_CAST(uint64_t, width);
     const uint64_t n_parts = HDI_CAST(uint64_t, sym->n_tasks > 0 ? sym->n_tasks : 1);
     const uint64_t n_chunks = HDI_CAST(uint64_t, sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);
@@ -12011,24 +12116,41 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     f->sym = sym;
     f->width = width;
     f->panel_at = width == 1 ? sym->panel : sym->panel_pack;
-    f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(ctx)) : NULL;
-    f->real = hdi_real_ops_get(hdi_simd_level(ctx));
     f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
     f->chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
-    f->panel = HDI_TAKE(&s, double, HDI_CAST(uint64_t, f->panel_at[sym->n_super]) * w);
-    f->dinv = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->n) * w);
-    f->work = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->work) * w);
-    f->scratch = HDI_TAKE(&s, double, f->scratch_size * n_parts + f->chunk_size);
-    f->chunk_scratch = HDI_TAKE(&s, double, f->chunk_size * (n_chunks + (n_chunks > 0)) + 1);
-    f->nodes = HDI_TAKE(&s, int32_t, 2 * hdi_front_nodes(sym, hdi_front_block_size(f)) + 2);
-    f->pivots = HDI_TAKE(&s, hdi_pivots, n_parts + 1);
+    f->panel = HDI_TAKE(s, double, HDI_CAST(uint64_t, f->panel_at[sym->n_super]) * w);
+    f->dinv = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->n) * w);
+    f->work = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->work) * w);
+    f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + f->chunk_size);
+    f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * (n_chunks + (n_chunks > 0)) + 1);
+    f->nodes = HDI_TAKE(s, int32_t, 2 * hdi_front_nodes(sym, hdi_front_block_size(f)) + 2);
+    f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
+    if (f->chunk_scratch) f->second = f->chunk_scratch + f->chunk_size * n_chunks;
+}
+
+/* Room for a factor. */
+static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
+                                 hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    hdi_factor_take(f, sym, width, &s);
     if (e->status < 0) {
         memset(f, 0, sizeof *f);
         return hdi_scope_end(&s);
     }
-    f->second = f->chunk_scratch + f->chunk_size * n_chunks;
+    f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(ctx)) : NULL;
+    f->real = hdi_real_ops_get(hdi_simd_level(ctx));
     f->ctx = ctx;                                /* the blocks are f's own now */
     return HD_OK;
+}
+
+/* The bytes of that. */
+static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
+    hd_error none;
+    uint64_t bytes;
+    hdi_scope s = hdi_scope_tally(&bytes, &none);
+    hdi_factor f;
+    hdi_factor_take(&f, sym, width, &s);
+    return bytes;
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported. */
@@ -13563,24 +13685,30 @@ static void hdi_forms_size(hdi_forms *q, const hdi_symbolic *s, int32_t width, i
     for (k = 0; k < 2; k++) q->place[k].size += hdi_form_work(width, q->cols);
 }
 
+/* The arrays of forms whose sizes are known. Returns how many numbers q->column has. */
+static int64_t hdi_forms_take(hdi_forms *q, const hdi_symbolic *s, hdi_scope *keep) {
+    const hdi_form_places *p = q->place;
+    const int64_t columns = p[0].n * p[0].pivots + p[1].n * p[1].pivots;
+    q->inv = HDI_TAKE(keep, int32_t, s->n);
+    q->active = HDI_TAKE_ZERO(keep, uint64_t, (1 + HDI_CAST(int64_t, q->n_slots)) * s->n_super);
+    q->column = HDI_TAKE(keep, int32_t, columns);
+    q->order = HDI_TAKE(keep, hdi_pair, p[0].n * p[0].pivots + s->largest_pivots);
+    q->room = HDI_TAKE(keep, double, HDI_CAST(uint64_t, p[0].n) * p[0].size +
+                       HDI_CAST(uint64_t, p[1].n) * p[1].size);
+    return columns;
+}
+
 /* Room for the forms of x on the pattern of a, with factors of the given width. */
 static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a,
                                 const double *x, hd_context *ctx, hd_error *e) {
     hdi_scope temp = hdi_scope_begin(ctx, e), keep = temp;
     int64_t *need = HDI_TAKE(&temp, int64_t, HDI_CAST(int64_t, s->n_super) + 1), columns, i;
-    hdi_form_places *p = q->place;
     memset(q, 0, sizeof *q);
     if (e->status < 0) return hdi_scope_end(&temp);
     q->a = a;
     q->x = x;
     hdi_forms_size(q, s, width, need);
-    columns = p[0].n * p[0].pivots + p[1].n * p[1].pivots;
-    q->inv = HDI_TAKE(&keep, int32_t, s->n);
-    q->active = HDI_TAKE_ZERO(&keep, uint64_t, (1 + HDI_CAST(int64_t, q->n_slots)) * s->n_super);
-    q->column = HDI_TAKE(&keep, int32_t, columns);
-    q->order = HDI_TAKE(&keep, hdi_pair, p[0].n * p[0].pivots + s->largest_pivots);
-    q->room = HDI_TAKE(&keep, double, HDI_CAST(uint64_t, p[0].n) * p[0].size +
-                       HDI_CAST(uint64_t, p[1].n) * p[1].size);
+    columns = hdi_forms_take(q, s, &keep);
     if (e->status < 0) {
         memset(q, 0, sizeof *q);
         hdi_scope_end(&keep);
@@ -13589,6 +13717,25 @@ static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t wid
     for (i = 0; i < s->n; i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
     hdi_fill_i32(q->column, columns, -1);
     return hdi_scope_end(&temp);                 /* what keep holds is q's own now */
+}
+
+/* The bytes of that, its temporary array with them. That array is made to find out. */
+static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, hd_context *ctx, hd_error *e) {
+    hdi_scope temp = hdi_scope_begin(ctx, e), tally;
+    const int64_t count = HDI_CAST(int64_t, s->n_super) + 1;
+    int64_t *need = HDI_TAKE(&temp, int64_t, count);
+    uint64_t bytes = 0;
+    hd_error none;
+    hdi_forms q;
+    memset(&q, 0, sizeof q);
+    tally = hdi_scope_tally(&bytes, &none);
+    if (need) {
+        hdi_forms_size(&q, s, width, need);
+        (void)hdi_forms_take(&q, s, &tally);
+        (void)HDI_TAKE(&tally, int64_t, count);
+    }
+    hdi_scope_end(&temp);
+    return bytes;
 }
 
 /* ---- the run ---- */
@@ -13845,12 +13992,10 @@ static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
     z->scratch = z->chunk = NULL;
 }
 
-/* Room to invert factors of the given width. */
-static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hd_context *ctx,
-                                  hd_error *e) {
+/* The arrays that inverting factors of the given width takes. */
+static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
     const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_CAST(int32_t, HDI_REAL_MR) + 2;
-    hdi_scope keep = hdi_scope_begin(ctx, e);
     int32_t v;
     memset(z, 0, sizeof *z);
     for (v = 0; v < s->n_super; v++) {
@@ -13860,11 +14005,28 @@ static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
     z->chunk_size = hdi_inverse_buffer(width);
-    z->scratch = HDI_TAKE(&keep, double, z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size);
-    z->chunk = HDI_TAKE(&keep, double, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, chunks) : 1);
+    z->scratch = HDI_TAKE(keep, double, z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size);
+    z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, chunks) : 1);
+}
+
+/* Room to invert factors of the given width. */
+static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hd_context *ctx,
+                                  hd_error *e) {
+    hdi_scope keep = hdi_scope_begin(ctx, e);
+    hdi_inverse_take(z, s, width, &keep);
     if (e->status >= 0) return HD_OK;            /* the blocks are z's own */
     z->scratch = z->chunk = NULL;
     return hdi_scope_end(&keep);
+}
+
+/* The bytes of that. */
+static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width) {
+    hd_error none;
+    uint64_t bytes;
+    hdi_scope keep = hdi_scope_tally(&bytes, &none);
+    hdi_inverse z;
+    hdi_inverse_take(&z, s, width, &keep);
+    return bytes;
 }
 
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
@@ -16705,24 +16867,32 @@ static int32_t hdi_elim_pole(const hdi_elim *m, int32_t i, int32_t q) {
     return hdi_low32(m->lone + 1 + 4 * i + q, m->set.n_poles - 1);
 }
 
-/* Takes up a set of poles at a time. A real pole that would need a pack to itself goes to the real factor:
- * lone. */
+/* A real pole that would need a pack to itself goes to the real factor: lone. */
+static int hdi_set_lone(const hd_rational *set) { return set->n_poles % 4 == 1 && set->theta[0].im == 0; }
+static int32_t hdi_set_packs(const hd_rational *set) { return (set->n_poles - hdi_set_lone(set) + 3) / 4; }
+
+/* Takes up a set of poles at a time. */
 static void hdi_elim_take(hdi_elim *m, const hd_rational *set, double t) {
     m->filled = 0;
     m->reach_t = -1;
     m->set = *set;
     m->t = t;
-    m->lone = set->n_poles % 4 == 1 && set->theta[0].im == 0 ? 0 : -1;
-    m->n_used = (set->n_poles - (m->lone + 1) + 3) / 4;
+    m->lone = hdi_set_lone(set) ? 0 : -1;
+    m->n_used = hdi_set_packs(set);
+}
+
+/* Are the factors of this set and time there? */
+static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
+    const size_t bytes = HDI_CAST(size_t, set->n_poles) * sizeof *set->theta;
+    return m->filled && m->t == t && m->set.n_poles == set->n_poles &&
+           memcmp(m->set.theta, set->theta, bytes) == 0;
 }
 
 /* Factors of all poles of a set at a time. */
 static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
-    const size_t bytes = HDI_CAST(size_t, set->n_poles) * sizeof *set->theta;
     hdi_values v = hdi_elim_values(m, t);
     int32_t i, q;
-    if (m->filled && m->t == t && m->set.n_poles == set->n_poles &&
-        memcmp(m->set.theta, set->theta, bytes) == 0) {
+    if (hdi_elim_holds(m, set, t)) {
         m->set = *set;                           /* weights cost nothing */
         return HD_OK;
     }
@@ -17349,6 +17519,38 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
         m->reach = NULL;
     }
     return e->status;
+}
+
+/* What follows the factors of a set: solves, with hdi_elim_bound before them or without, or an inversion. */
+typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, HDI_AFTER_FORMS } hdi_after;
+
+/* Bytes that the factors of a set take beyond those that are there, with what hdi_elim_bound keeps. */
+static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, hdi_after after) {
+    const int32_t packs = hdi_set_packs(set) - m->n_packs;
+    const int real = (hdi_set_lone(set) || after == HDI_AFTER_BOUND) && !m->real.ctx;
+    uint64_t bytes = 0;
+    if (packs > 0) bytes += HDI_CAST(uint64_t, packs) * hdi_factor_bytes(&m->sym, HDI_PACK);
+    if (real) bytes += hdi_factor_bytes(&m->sym, 1);
+    if (after == HDI_AFTER_BOUND && !m->reach)
+        hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->sym.n), sizeof *m->reach);
+    return bytes;
+}
+
+/* Bytes that hdi_elim_bound, or hdi_elim_invert for so many sums, needs for a while on top of that. */
+static uint64_t hdi_elim_inverse_need(const hdi_elim *m, const hd_rational *set, hdi_after after,
+                                      int32_t n_sets, hd_error *e) {
+    const int forms = after == HDI_AFTER_FORMS;
+    uint64_t real = 0, pack = 0, bytes = 0;
+    if (after == HDI_AFTER_SOLVES) return 0;
+    if (after == HDI_AFTER_BOUND) return hdi_inverse_bytes(&m->sym, 1);
+    if (hdi_set_lone(set))
+        real = hdi_inverse_bytes(&m->sym, 1) + (forms ? hdi_forms_bytes(&m->sym, 1, m->ctx, e) : 0);
+    if (e->status >= 0 && hdi_set_packs(set) > 0)
+        pack = hdi_inverse_bytes(&m->sym, HDI_PACK) +
+               (forms ? hdi_forms_bytes(&m->sym, HDI_PACK, m->ctx, e) : 0);
+    hdi_scope_count(&bytes, HDI_PACK * HDI_CAST(uint64_t, n_sets), sizeof(double));
+    if (forms) hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->source->L.nnz), sizeof(double));
+    return bytes + (real > pack ? real : pack);
 }
 
 /* The pole whose Re (tL + theta B)^-1 times *factor bounds (B + tL)^-1 best: Re 1/(x + theta) >= 1/(factor (1
@@ -18315,6 +18517,28 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, int32_t 
     hdi_ground_refined(m, g, b, extra, y, by, r, sweep);
     for (i = 0; i < n; i++) u[i] = y[i] - (lap->component[i] == c ? ws * g->mean[i] / mass : 0);
     return trace * off + by[c] + g->mean_off[c] * (fabs(ws) / mass + sqrt(trace * g->diag[row] / mass));
+}
+
+/* Bytes that hdi_ground_make takes at its peak, and with forms hdi_ground_forms after it. */
+static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int forms) {
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), n_comp = HDI_CAST(uint64_t, m->lap->n_components);
+    const uint64_t nnz = HDI_CAST(uint64_t, m->lap->L.nnz);
+    uint64_t held = 0, make = 0, form = 0;
+    if (!g->diag) {
+        held = hdi_factor_bytes(&m->sym, 1);
+        hdi_scope_count(&held, n, sizeof(char));
+        hdi_scope_count(&held, 3 * n + 2 * n_comp, sizeof(double));
+        make = hdi_inverse_bytes(&m->sym, 1);
+        hdi_scope_count(&make, nnz, sizeof(double));
+        hdi_scope_count(&make, n_comp, sizeof(char));
+    }
+    if (forms && !g->formed) {
+        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK);
+        hdi_scope_count(&form, nnz, sizeof(hd_c64));
+        hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1) + 2 * n, sizeof(double));
+        hdi_scope_count(&form, n_comp, sizeof(char));
+    }
+    return held + (make > form ? make : form);
 }
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
@@ -20766,14 +20990,70 @@ static hd_status hdi_direct_growth(hdi_heat_call *h) {
     return HD_OK;
 }
 
-/* The pole set and its factors. */
-static hd_status hdi_direct_factors(hdi_heat_call *h) {
+/* How many items are solved at the same time, with k in all: see hdi_batches. The batches take no more room
+ * than a pack of factors. Returns the number of batches. */
+static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, uint64_t *doubles) {
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), most = 8 * HDI_CAST(uint64_t, m->sym.stored);
+    int32_t count;
+    uint64_t x, xr;
+    *width = hdi_low32(k, HDI_LANES_BATCH);
+    *doubles = hdi_batch_size(m, *width, &x, &xr);
+    count = (k + *width - 1) / *width;
+    if (count > HDI_BATCHES) count = HDI_BATCHES;
+    while (count > 1 && HDI_CAST(uint64_t, count) * (*doubles + 7 * n * HDI_CAST(uint64_t, *width)) > most)
+        count--;
+    return count;
+}
+
+/* Bytes that solves of k items take beyond what the plan has. */
+static uint64_t hdi_batches_need(const hd_heat *heat, int32_t k) {
+    const uint64_t n = HDI_CAST(uint64_t, heat->elim.sym.n);
+    const uint64_t n_comp = HDI_CAST(uint64_t, heat->source->n_components);
+    int32_t width, count, lanes, i;
+    uint64_t doubles, bytes = 0, old = 0;
+    if (k < 1) return 0;
+    count = hdi_batches_shape(&heat->elim, k, &width, &doubles);
+    lanes = hdi_low32(k, count * width);
+    if (lanes > heat->n_lanes) hdi_scope_count(&bytes, HDI_CAST(uint64_t, lanes), sizeof(hdi_lane));
+    for (i = 0; i < lanes; i++) {
+        if (i < heat->n_lanes && heat->lane[i].f) continue;
+        hdi_scope_count(&bytes, 7 * n, sizeof(double));
+        hdi_scope_count(&bytes, 3 * n_comp, sizeof(double));
+    }
+    if (heat->batch_doubles >= doubles * HDI_CAST(uint64_t, count)) return bytes;
+    hdi_scope_count(&bytes, doubles * HDI_CAST(uint64_t, count), sizeof(double));
+    if (heat->batch_room) hdi_scope_count(&old, heat->batch_doubles, sizeof(double));
+    return bytes - old;                          /* the old room is freed first */
+}
+
+/* Bytes that the factors of a set take at their peak with all that follows: an inversion of so many sums, or
+ * hdi_elim_bound, and solves of k items. */
+static uint64_t hdi_direct_need(const hd_heat *heat, const hd_rational *set, hdi_after after, int32_t n_sets,
+                                int32_t k, hd_error *e) {
+    const hdi_elim *m = &heat->elim;
+    const uint64_t inverse = hdi_elim_inverse_need(m, set, after, n_sets, e);
+    const uint64_t solves = hdi_batches_need(heat, k);
+    return hdi_elim_factor_need(m, set, after) + (inverse > solves ? inverse : solves);
+}
+
+/* The pole set and its factors. What follows them is asked for too, so that nothing is begun that the byte
+ * limit forbids to end. */
+static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n_sets) {
     hdi_elim *m = &h->heat->elim;
     hd_report *rep = h->rep;
+    const int solves = after <= HDI_AFTER_BOUND;
     hd_rational set;
+    uint64_t need;
     int32_t i;
-    if (hdi_heat_set(h, &set) < 0 || hdi_elim_poles(m, &set, h->t, h->e) < 0 || hdi_direct_growth(h) < 0)
-        return h->e->status;
+    if (hdi_heat_set(h, &set) < 0) return h->e->status;
+    if (!hdi_elim_holds(m, &set, h->t)) {
+        need = hdi_direct_need(h->heat, &set, after, n_sets, solves ? h->ask.k : 1, h->e);
+        if (h->e->status < 0 ||
+            hdi_need(h->heat->ctx, need, solves ? "factors of the poles and solves"
+                                                : "factors of the poles and their inversion", h->e) < 0)
+            return h->e->status;
+    }
+    if (hdi_elim_poles(m, &set, h->t, h->e) < 0 || hdi_direct_growth(h) < 0) return h->e->status;
     hdi_report_set(rep, &set);
     for (i = 0; i < m->n_used; i++) {
         rep->factor_flops += 16 * m->sym.flops;
@@ -20793,22 +21073,12 @@ typedef struct hdi_batches {
     uint64_t doubles;            /* of a batch's arrays */
 } hdi_batches;
 
-/* Finds how many batches, and makes room for them: lanes, and the batches' arrays in the plan. The batches
- * take no more room than a pack of factors. */
+/* Finds how many batches, and makes room for them: lanes, and the batches' arrays in the plan. */
 static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active);
-    const uint64_t most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
-    uint64_t x, xr;
     b->h = h;
     b->n_here = 0;
-    b->width = hdi_low32(h->ask.k, HDI_LANES_BATCH);
-    b->doubles = hdi_batch_size(&heat->elim, b->width, &x, &xr);
-    b->count = (h->ask.k + b->width - 1) / b->width;
-    if (b->count > HDI_BATCHES) b->count = HDI_BATCHES;
-    while (b->count > 1 &&
-           HDI_CAST(uint64_t, b->count) * (b->doubles + 7 * n * HDI_CAST(uint64_t, b->width)) > most)
-        b->count--;
+    b->count = hdi_batches_shape(&heat->elim, h->ask.k, &b->width, &b->doubles);
     if (hdi_heat_lanes(h, b->count * b->width) < 0) return h->e->status;
     if (heat->batch_doubles >= b->doubles * HDI_CAST(uint64_t, b->count)) return HD_OK;
     hdi_free(heat->ctx, heat->batch_room);
@@ -20866,7 +21136,7 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     hdi_batches b;
     int32_t i;
-    if (hdi_direct_factors(h) < 0) return h->e->status;
+    if (hdi_direct_factors(h, h->diagonal ? HDI_AFTER_SOLVES : HDI_AFTER_BOUND, 0) < 0) return h->e->status;
     if (HDI_HAS_DIAGONAL && !h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
     if (hdi_batches_make(&b, h) < 0) return h->e->status;
     h->deflated = !h->watching && (h->ask.query == HDI_QUERY_FIELD || h->t * heat->lambda_max > HDI_DEFLATE);
@@ -20917,6 +21187,17 @@ static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
     return least;
 }
 
+/* Bytes that a basis of so many steps takes, with the real factor before it where there is none. */
+static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) {
+    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), count = n * HDI_CAST(uint64_t, wide);
+    uint64_t bytes = m->shifted.ctx ? 0 : hdi_factor_bytes(&m->sym, 1);
+    int32_t q;
+    for (q = 0; q <= steps; q++) hdi_scope_count(&bytes, count, sizeof(double));
+    hdi_scope_count(&bytes, 2 * count + 2 * n, sizeof(double));
+    hdi_scope_count(&bytes, hdi_sweep_size(&m->sym, 1, wide), sizeof(double));
+    return bytes;
+}
+
 /* One basis for items batch to batch + n - 1 and the times [q0, q1). */
 static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_heat *heat = h->heat;
@@ -20924,6 +21205,10 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
     double fixed[HDI_SILAN_WIDE];
     hd_status status;
     int32_t i, q;
+    /* a step is the least */
+    if (!heat->elim.shifted.ctx && !z->v[0] &&
+        hdi_need(heat->ctx, hdi_krylov_need(&heat->elim, z->wide, 1), "a real factor and a basis", h->e) < 0)
+        return h->e->status;
     if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(h->times[q0], h->times[q1 - 1], heat->lambda_max),
                        h->e) < 0)
         return h->e->status;
@@ -21477,7 +21762,8 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
     int32_t p, i;
     memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
     memset(weight, 0, sizeof weight);
-    if (hdi_direct_factors(h) < 0) return h->e->status;
+    if (hdi_direct_factors(h, wanted == HDI_WANT_FORMS ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, 2) < 0)
+        return h->e->status;
     for (p = 0; p < m->set.n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
     slack = hdi_entries_resolvent(&m->set, weight + m->set.n_poles, x);
     sums.n_sets = 2;
@@ -21842,8 +22128,8 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *ration
 
 /* Goes on from the highest degree of poles, whose factors did not fit the byte limit, to the default. Returns
  * 0 where there is no reason to. */
-static int hdi_degree_retreat(const hd_heat *heat, int32_t *degree, hd_error *e) {
-    if (*degree == 0 || e->status != HD_ERR_MEMORY_LIMIT || heat->elim.n_packs == 0) return 0;
+static int hdi_degree_retreat(int32_t *degree, hd_error *e) {
+    if (*degree == 0 || e->status != HD_ERR_MEMORY_LIMIT) return 0;
     *degree = 0;
     hdi_error_clear(e);
     return 1;
@@ -21869,7 +22155,7 @@ static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges,
     do {
         *h->rep = before;
         (void)hdi_entries_once(h, kernel, edges, out, &rational);
-    } while (hdi_degree_retreat(heat, &h->degree, h->e));
+    } while (hdi_degree_retreat(&h->degree, h->e));
     h->degree = 0;
     return h->e->status;
 }
@@ -21964,7 +22250,8 @@ static hd_status hdi_window_run(hdi_heat_call *h, const hdi_window *w, double to
     h->t = w->t[0];
     h->set = w->set;
     h->lap = m->lap;
-    status = hdi_direct_factors(h);
+    status = hdi_direct_factors(h, wanted == HDI_WANT_FORMS ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE,
+                                2 * w->n_times);
     h->set = NULL;
     if (status < 0) return status;
     hdi_window_weights(w);
@@ -22077,7 +22364,8 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
 }
 
 /* ==== [28] diffusion ====
- * Owns distances: the metric of a kind and a time, one to all, pairs, farthest points. May call [27] and
+ * Owns distances: the metric of a kind and a time, one to all, pairs, farthest points; and estimates of what
+ * queries take. May call [27] and
  * [24].
  * This work is based on
  *   R. Coifman, S. Lafon, Diffusion maps, 2006
@@ -22124,6 +22412,8 @@ static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
     int32_t i, farthest = 0, nearest = 0;
     h->rep->reason = "one real factor of L, one vertex of each component held";
     h->rep->factor_flops = m->sym.flops;
+    if (hdi_need(h->heat->ctx, hdi_ground_need(m, g, forms), "factors of L and their inversion", h->e) < 0)
+        return h->e->status;
     if (hdi_ground_make(m, g, h->e) < 0 || (forms && hdi_ground_forms(m, g, h->e) < 0)) return h->e->status;
     value = forms ? g->form : g->diag;
     work = HDI_TAKE(scope, double, hdi_ground_room(m));
@@ -22710,7 +23000,7 @@ static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, doubl
     if (!sure && hdi_distance_once(heat, to, t, 0, rep, e) < 0) return e->status;
     if (settled || (!sure && rep->error_rational <= HDI_DISTANCE_SURE)) return e->status;
     do (void)hdi_distance_once(heat, to, t, degree, rep, e);
-    while (hdi_degree_retreat(heat, &degree, e));
+    while (hdi_degree_retreat(&degree, e));
     return e->status;
 }
 
@@ -23037,7 +23327,7 @@ static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double 
     if (h->e->status < 0) return h->e->status;
     memset(&one, 0, sizeof one);
     do (void)hdi_metric_make(heat, kind, t, degree, &x, &h->s, &one);
-    while (hdi_degree_retreat(heat, &degree, h->e));
+    while (hdi_degree_retreat(&degree, h->e));
     if (h->e->status < 0) return h->e->status;
     one.error_relative = 0;
     for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
@@ -23056,6 +23346,348 @@ static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double 
     one.error = *h->e;
     *h->rep = one;
     return h->e->status;
+}
+
+/* ---- estimates ---- */
+/* What a query would take. Bytes follow the allocations of the runs above, in their order. A change there is
+ * a change here; tests compare the two. */
+
+/* A query under estimation. */
+typedef struct hdi_estimate {
+    hdi_heat_call *h;
+    hd_query query;
+    hd_estimate *to;
+    int32_t k;
+} hdi_estimate;
+
+/* Flops and seconds of inverting factors, relative to making them. By counting, with and without full B; by
+ * time, on meshes of 10K to 150K vertices. */
+#define HDI_INVERT_FLOPS 2.0
+#define HDI_INVERT_SECONDS 2.0
+#define HDI_FORMS_SECONDS 4.0
+
+/* Bytes of small arrays that are not listed one by one. */
+#define HDI_ESTIMATE_SMALL 4096
+
+static double hdi_estimate_room(const hd_context *ctx) {
+    return ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use)
+                           : HUGE_VAL;
+}
+
+/* Adds work that comes after what is there; bytes are those of the larger one. */
+static void hdi_cost_add(hd_cost *c, double flops, double seconds, double bytes) {
+    c->possible = 1;
+    c->flops += flops;
+    c->seconds += seconds;
+    c->bytes = hdi_max(c->bytes, bytes);
+    c->bytes_most = hdi_max(c->bytes_most, c->bytes);
+}
+
+/* Factors of so many packs, of a real matrix or none, their inversions by a factor of the work, and solves of
+ * k items. */
+static void hdi_cost_direct(const hd_heat *heat, int32_t packs, int real, hdi_after after, double k,
+                            hd_cost *c) {
+    const hdi_fill f = hdi_heat_fill(heat);
+    const int inverse = after >= HDI_AFTER_INVERSE;
+    const double n = heat->source->n_active, invert = inverse ? 1 + HDI_INVERT_FLOPS : 1;
+    const double sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
+    const double longer = after == HDI_AFTER_FORMS ? 1 + HDI_FORMS_SECONDS
+                        : inverse ? 1 + HDI_INVERT_SECONDS : 1;
+    const double pack = 16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz;
+    c->possible = 1;
+    c->flops += (16 * packs + (real ? 1 : 0)) * f.flops * invert + k * (64 * packs + 4) * f.nnz;
+    c->seconds += (packs * pack + (real ? f.flops / HDI_RATE_REAL : 0)) * longer +
+                  k * packs * (64 * f.nnz + 400 * n) / sweep;
+    /* hdi_elim_bound: a real factor and its inverse's diagonal */
+    if (after == HDI_AFTER_BOUND) {
+        c->flops += (1 + HDI_INVERT_FLOPS - (real ? 1 : 0)) * f.flops;
+        c->seconds += (1 + HDI_INVERT_SECONDS - (real ? 1 : 0)) * f.flops / HDI_RATE_REAL;
+    }
+}
+
+/* Bytes of the direct method after an analysis, or guessed before it. held: of arrays that are taken before
+ * the factors. */
+static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hdi_after after,
+                               int32_t n_sets, int32_t k, double held) {
+    hd_heat *heat = x->h->heat;
+    const hdi_fill f = hdi_heat_fill(heat);
+    const double packs = hdi_set_packs(set), n = heat->source->n_active;
+    held += HDI_ESTIMATE_SMALL;
+    /* the solves' arrays of one time stay while the next one is factorised */
+    if (heat->elim.ctx && x->h->n_times > 1) held += HDI_CAST(double, hdi_batches_need(heat, k));
+    if (heat->elim.ctx)
+        return held + HDI_CAST(double, hdi_direct_need(heat, set, after, n_sets, k, x->h->e));
+    held += 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
+    return after >= HDI_AFTER_INVERSE ? held + 16 * n * n_sets : held;
+}
+
+/* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
+ * limit, figures are guesses. */
+static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
+    if (hdi_heat_analysed(h->heat, h->e) == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+    if (h->heat->elim.ctx) h->lap = h->heat->elim.lap;
+    return h->e->status;
+}
+
+/* Is the degree open until fields are seen? */
+static int hdi_estimate_open(const hdi_estimate *x) {
+    const hd_heat_opts *o = &x->h->heat->opts;
+    return x->query == HD_QUERY_FIELDS && !o->rational && !o->degree && !x->h->heat->exacting &&
+           (!o->poles || o->poles == HD_POLES_UNIFORM);
+}
+
+/* The poles by which the direct method would answer a query for fields or columns. */
+static hd_status hdi_estimate_set(const hdi_estimate *x, hd_rational *set) {
+    hd_status status;
+    x->h->method = HD_METHOD_DIRECT;
+    status = hdi_estimate_open(x) ? hdi_rational_get(set, HD_POLES_UNIFORM, 9, x->h->e)
+                                  : hdi_heat_set(x->h, set);
+    return status;
+}
+
+/* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
+static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int32_t poles) {
+    const double n = heat->source->n_active, nnz = HDI_CAST(double, heat->source->L.nnz);
+    const double lanes = hdi_low32(k, HDI_LANES_ITERATIVE);
+    const int vectors = hdi_krylov_vectors(heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES
+                                           : HD_SOLVER_COCG);
+    double bytes = HDI_ESTIMATE_SMALL;
+    if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
+    if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
+    bytes += lanes * 56 * n;
+    if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS)
+        return bytes + lanes * (24 * n + 88.0 * HDI_LANCZOS_MAX);
+    bytes += lanes * (48 * n + 16.0 * poles * vectors * n);
+    if (heat->opts.precond == HD_PRECOND_NONE) return bytes;
+    return bytes + 16.0 * poles * (heat->opts.precond == HD_PRECOND_JACOBI ? n : n + (nnz - n) / 2);
+}
+
+/* Bytes and flops of shift-and-invert Lanczos. Bases that exist are grown. */
+static void hdi_estimate_krylov(const hdi_estimate *x, double seconds, double held, hd_cost *c) {
+    const hd_heat *heat = x->h->heat;
+    const hdi_symbolic *s = &heat->elim.sym;
+    const hdi_fill f = hdi_heat_fill(heat);
+    const double span = x->h->times[x->h->n_times - 1] / x->h->times[0], n = heat->source->n_active;
+    const int32_t windows = heat->elim.ctx && x->h->n_times > 1 ? hdi_krylov_windows(s, span) : 1;
+    const double longer = x->h->n_times > 1 ? 1.5 : 1.2;   /* more than expected, to be safe */
+    const double steps = hdi_min(HDI_SILAN_MAX, longer * hdi_krylov_steps(pow(span, 1.0 / windows)));
+    const int32_t wide = x->k > 3 ? HDI_SILAN_WIDE : 1;
+    double bytes = HDI_ESTIMATE_SMALL + HDI_CAST(double, sizeof(hdi_silan)) + wide * 56 * n + held;
+    if (heat->elim.ctx)
+        bytes += HDI_CAST(double, hdi_krylov_need(&heat->elim, wide, HDI_CAST(int32_t, steps)));
+    else bytes += 8 * f.real_stored + 8 * n * wide * (steps + 4) + 200 * n;
+    hdi_cost_add(c, windows * (f.flops + x->k * steps * 4 * f.nnz), seconds, bytes);
+}
+
+/* Fields, columns and entries: what room [26] chooses. held: bytes of the query's own arrays. */
+static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
+    hdi_heat_call *h = x->h;
+    hd_heat *heat = h->heat;
+    hd_cost *c = x->to->cost;
+    const int32_t n_times = h->n_times;
+    hd_rational set;
+    hdi_cost model;
+    hd_method method;
+    int32_t poles;
+    if (hdi_heat_pick(h) < 0 && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
+    if (h->e->status >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* the times one by one */
+        h->times += n_times - 1;
+        h->n_times = 1;
+        (void)hdi_heat_pick(h);
+        h->times -= n_times - 1;
+        h->n_times = n_times;
+    }
+    hdi_error_clear(h->e);
+    if (h->method != HD_METHOD_ITERATIVE && hdi_estimate_analyse(h) < 0) return h->e->status;
+    model = hdi_heat_cost(h);
+    x->to->method = method = h->method;
+    x->to->reason = h->rep->reason;
+    if (hdi_estimate_set(x, &set) < 0) return h->e->status;
+    poles = heat->opts.rational || heat->opts.degree ? set.n_poles : 5;
+    hdi_cost_add(c + HD_METHOD_ITERATIVE, 8 * model.iterative / HDI_STEP_COCG, model.iterative,
+                 held + hdi_bytes_iterative(heat, h->t, x->k, poles));
+    if (!heat->iterations_asked || method != HD_METHOD_ITERATIVE) {
+        hd_cost *direct = c + HD_METHOD_DIRECT;
+        hdi_cost_direct(heat, hdi_set_packs(&set), hdi_set_lone(&set), HDI_AFTER_BOUND, x->k, direct);
+        direct->flops *= n_times;
+        direct->seconds = hdi_max(direct->seconds * n_times, model.direct);
+        direct->bytes = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
+        if (hdi_estimate_open(x) && hdi_rational_get(&set, HD_POLES_UNIFORM, HDI_RAT_UNIFORM_MAX, h->e) < 0)
+            return h->e->status;
+        direct->bytes_most = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
+        if (!heat->poles_asked || method == HD_METHOD_KRYLOV)
+            hdi_estimate_krylov(x, model.krylov, held, c + HD_METHOD_KRYLOV);
+    }
+    return h->e->status;
+}
+
+/* A diagonal, edges or a metric at one time, by poles of a degree (0: the default), then solves of k
+ * columns. */
+static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_cost *c) {
+    hdi_heat_call *h = x->h;
+    const hd_laplacian *lap = h->heat->source;
+    const double n = lap->n_active, entries = HDI_CAST(double, (lap->L.nnz - lap->n_active) / 2) + n;
+    const int distance = x->query >= HD_QUERY_DISTANCE;
+    const int pattern = x->query == HD_QUERY_EDGES || (x->query == HD_QUERY_DIAGONAL_OPERATOR && lap->B);
+    const hdi_after after = x->query == HD_QUERY_DISTANCE_WEIGHTED && lap->B ? HDI_AFTER_FORMS
+                                                                             : HDI_AFTER_INVERSE;
+    /* of the runs: the two sums, then the arrays of a diagonal, of edges or of a metric */
+    double held = 16 * (pattern ? entries : n) + (distance ? 40 : x->query == HD_QUERY_EDGES ? 16 : 32) * n;
+    /* a distance is kept in the caller's array, and a column of the resolvent is held beside its metric */
+    const double later = distance ? 32 * n + 16.0 * x->k + 24.0 * lap->n : 0;
+    const int32_t solves = hdi_high32(distance ? x->k : 0, HDI_PROBES);
+    hd_rational set;
+    double bytes;
+    h->diagonal = 1;
+    h->method = HD_METHOD_DIRECT;
+    h->degree = degree;
+    if (hdi_heat_set(h, &set) < 0) return h->e->status;
+    h->degree = 0;
+    if (distance) held += 16.0 * lap->n + 48.0 * x->k;
+    bytes = hdi_bytes_direct(x, &set, after, 2, HDI_PROBES, held);
+    bytes = hdi_max(bytes, hdi_bytes_direct(x, &set, HDI_AFTER_SOLVES, 0, solves, held - 16 * n + later));
+    hdi_cost_direct(h->heat, hdi_set_packs(&set), hdi_set_lone(&set), after,
+                    HDI_PROBES + (distance ? 2.0 * x->k : 0), c);
+    hdi_cost_add(c, 0, 0, bytes);
+    return h->e->status;
+}
+
+/* The times of the call with shared poles, in so many windows. */
+static hd_status hdi_estimate_windows(const hdi_estimate *x, int32_t windows, double tol, hd_cost *c) {
+    hdi_heat_call *h = x->h;
+    const hd_laplacian *lap = h->heat->source;
+    const int distance = x->query >= HD_QUERY_DISTANCE;
+    const int full = x->query == HD_QUERY_DISTANCE_WEIGHTED && lap->B;
+    const double n = lap->n_active;
+    int32_t w, q0, q1;
+    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+        hd_rational set;
+        double held, bytes, q;
+        q1 = hdi_window_end(h->times, h->n_times, q0, w, windows);
+        q = q1 - q0;
+        memset(&set, 0, sizeof set);
+        if (!hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), tol)) return h->e->status;
+        /* sets, weights and values; then a vector of a diagonal, or the columns of distances */
+        held = q * (HDI_CAST(double, sizeof set) + 32.0 * HD_MAX_POLES + 16 * n) + 8 * n;
+        if (distance) held += (16 * q + 128 + (full ? 16 : 0)) * n + 8.0 * lap->n;
+        if (distance && h->heat->elim.ctx)
+            held += 8 * HDI_CAST(double, hdi_sweep_size(&h->heat->elim.sym, HDI_PACK, 1));
+        bytes = hdi_bytes_direct(x, &set, full ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, 2 * (q1 - q0),
+                                 HDI_PROBES, held);
+        hdi_cost_direct(h->heat, hdi_set_packs(&set), 0, full ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE,
+                        HDI_PROBES + (distance ? x->k : 0), c);
+        hdi_cost_add(c, 0, 0, bytes);
+    }
+    return h->e->status;
+}
+
+/* Are the times of a diagonal or of distances taken with shared poles? Returns the number of windows. */
+static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
+    const hdi_heat_call *h = x->h;
+    const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
+    int32_t packs = 0, windows;
+    if (h->n_times < 2 || h->heat->poles_asked || h->heat->exacting) return 0;
+    if (x->query != HD_QUERY_DIAGONAL && !distance) return 0;
+    windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], tol, h->n_times, &packs);
+    if (windows < 1) return 0;
+    return (distance ? packs <= h->n_times : hdi_shared_pays(packs, h->n_times)) ? windows : 0;
+}
+
+/* Commute and biharmonic distances. */
+static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
+    hd_heat *heat = x->h->heat;
+    const int forms = x->query == HD_QUERY_DISTANCE_BIHARMONIC;
+    const hdi_fill f = hdi_heat_fill(heat);
+    const double n = heat->source->n_active, held = 40 * n + 16.0 * heat->source->n + 48.0 * x->k;
+    const double real = f.flops / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS);
+    const double solve = (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP * (forms ? 4 : 2);
+    double bytes = 8 * f.real_stored * (forms ? 9 : 1);
+    hdi_cost_direct(heat, forms ? 1 : 0, 1, HDI_AFTER_INVERSE, 0, c);
+    c->flops += (HDI_PROBES + x->k) * 4 * f.nnz * (forms ? 4 : 2);
+    c->seconds = hdi_max(c->seconds, real) + (HDI_PROBES + x->k) * solve;
+    if (heat->elim.ctx) {
+        bytes = HDI_CAST(double, hdi_ground_need(&heat->elim, &heat->ground, forms));
+        bytes += 16 * HDI_CAST(double, hdi_ground_room(&heat->elim));
+    }
+    hdi_cost_add(c, 0, 0, bytes + held + HDI_ESTIMATE_SMALL);
+}
+
+/* Queries that need the direct method. They take what the run would take: shared poles, else the times one by
+ * one, and for distances the highest degree where it is sure to be needed; less where that does not fit. */
+static hd_status hdi_estimate_direct(const hdi_estimate *x) {
+    hdi_heat_call *h = x->h;
+    hd_heat *heat = h->heat;
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
+    const int distance = x->query >= HD_QUERY_DISTANCE;
+    const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL, h0 = heat->source->h;
+    double room;
+    int32_t q, windows;
+    x->to->method = HD_METHOD_DIRECT;
+    x->to->reason = "diagonals and distances to all vertices need the direct method";
+    if (hdi_estimate_analyse(h) < 0) return h->e->status;
+    room = hdi_estimate_room(heat->ctx);
+    if (x->query >= HD_QUERY_DISTANCE_COMMUTE) {
+        hdi_estimate_ground(x, c);
+        return HD_OK;
+    }
+    windows = hdi_estimate_shared(x, tol);
+    if (windows > 0 && (hdi_estimate_windows(x, windows, tol, c) < 0 || c->bytes <= room))
+        return h->e->status;
+    memset(c, 0, sizeof *c);
+    for (q = 0; q < h->n_times && h->e->status >= 0; q++) {
+        const double t = h->times[q] / (distance ? 2 * heat->scale : heat->scale);
+        const double expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
+        const int sure = x->query == HD_QUERY_DISTANCE && !heat->poles_asked && !heat->exacting &&
+                         expected > HDI_DISTANCE_SURE;
+        hd_cost one, most;
+        memset(&one, 0, sizeof one);
+        memset(&most, 0, sizeof most);
+        if (hdi_estimate_inverse(x, heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX, &most) < 0) break;
+        if (sure && most.bytes <= room) one = most;
+        else if (hdi_estimate_inverse(x, 0, &one) < 0) break;
+        hdi_cost_add(c, one.flops, one.seconds, one.bytes);
+        /* after a first try, whose lanes and real factor stay */
+        if (!sure && heat->elim.ctx)
+            most.bytes += HDI_CAST(double, hdi_batches_need(heat, hdi_high32(x->k, HDI_PROBES)) +
+                                           (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+        c->bytes_most = hdi_max(c->bytes_most, most.bytes);
+    }
+    return h->e->status;
+}
+
+/* The estimate of a query whose arguments are checked. */
+static hd_status hdi_estimate_run(const hdi_estimate *x) {
+    hdi_heat_call *h = x->h;
+    const hd_heat *heat = h->heat;
+    const int timeless = x->query >= HD_QUERY_DISTANCE_COMMUTE;
+    const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
+    const double columns = HDI_CAST(double, heat->source->n) * x->k;
+    hd_estimate *to = x->to;
+    if (!timeless && hdi_heat_sort_times(h, distance ? 2 : 1) < 0) return h->e->status;
+    for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
+    if (!timeless) h->t = h->times[h->n_times - 1];
+    if (!timeless && h->t * heat->lambda_max < HDI_STILL && x->query <= HD_QUERY_PAIRS) {
+        to->method = heat->opts.method == HD_METHOD_AUTO ? HD_METHOD_ITERATIVE : heat->opts.method;
+        to->reason = "t = 0";
+        hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
+    } else if (x->query <= HD_QUERY_PAIRS) {
+        /* pairs: their columns */
+        (void)hdi_estimate_solves(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
+    } else {
+        (void)hdi_estimate_direct(x);
+    }
+    return h->e->status;
+}
+
+/* What is known when the call's own arrays are gone. */
+static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
+    int32_t q;
+    to->analysed = heat->elim.ctx != NULL;
+    to->bytes_in_use = HDI_CAST(double, heat->ctx->bytes_in_use);
+    to->bytes_left = hdi_estimate_room(heat->ctx);
+    to->cost[HD_METHOD_AUTO] = to->cost[to->method];
+    for (q = 0; q <= HD_METHOD_KRYLOV; q++)
+        to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
 }
 
 /* ==== [29] geodesic ====
@@ -23285,9 +23917,12 @@ static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacia
 static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     double *val = HDI_TAKE(&s, double, lap->L.nnz);
+    /* the second factor, and what is kept of the first */
+    uint64_t need = hdi_factor_bytes(&g->sym, 1);
     int32_t i, k;
     int64_t p;
-    if (!val) return hdi_scope_end(&s);
+    hdi_scope_count(&need, HDI_CAST(uint64_t, g->sym.panel[g->sym.n_super]), sizeof(double));
+    if (!val || hdi_need(g->ctx, need, "two factors", e) < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             val[p] = lap->L.val[p] + (lap->L.col[p] == i ? lap->mass[i] / g->t : 0);
@@ -25306,6 +25941,35 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
     if (h.e->status >= 0 && hdi_sources_check(&h, n_given, vertex) >= 0)
         (void)hdi_sample_run(&h, kind, t, count, n_given, vertex, distance);
     return hdi_heat_end(&h);
+}
+
+HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
+                                        int32_t k, hd_estimate *estimate, hd_error *err) {
+    const int timeless = query == HD_QUERY_DISTANCE_COMMUTE || query == HD_QUERY_DISTANCE_BIHARMONIC;
+    const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
+    hdi_heat_call h;
+    hd_estimate found;
+    hdi_estimate x;
+    hd_status status;
+    memset(&found, 0, sizeof found);
+    x.h = &h;
+    x.query = query;
+    x.to = &found;
+    x.k = query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? hdi_high32(k, 1) : 0;
+    if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
+    if (!estimate) hdi_missing(h.e);
+    else if (query < HD_QUERY_FIELDS || query > HD_QUERY_DISTANCE_BIHARMONIC)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "estimate: unknown query");
+    else if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
+    else if (query > HD_QUERY_PAIRS) (void)hdi_direct_only(&h);
+    h.ask.k = x.k;
+    if (h.e->status >= 0 && !timeless) (void)hdi_times_check(&h, n_times, t, query > HD_QUERY_PAIRS);
+    if (h.e->status >= 0) (void)hdi_estimate_run(&x);
+    status = hdi_heat_end(&h);
+    if (status < 0) return status;
+    hdi_estimate_close(heat, &found);
+    *estimate = found;
+    return status;
 }
 
 /* ---- geodesic distance ---- */

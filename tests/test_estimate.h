@@ -1,0 +1,250 @@
+/* What a query will take is told before it runs: bytes against what is allocated, and the end at once where they do not fit. */
+
+typedef struct est_case {
+    hd_query query;
+    hd_method method;
+    int32_t n_times, k;
+    double from, ratio;                          /* times in units of h^2: the first, and the last over the first */
+} est_case;
+
+static const est_case EST_CASES[] = {
+    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 1, 1, 10, 1},
+    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 1, 100, 10, 1},
+    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 3, 5, 10, 100},
+    {HD_QUERY_PAIRS, HD_METHOD_DIRECT, 1, 10, 10, 1},
+    {HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 1, 0, 5, 1},
+    {HD_QUERY_DIAGONAL, HD_METHOD_DIRECT, 16, 0, 1, 1000},
+    {HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 2, 0, 1, 3},
+    {HD_QUERY_DIAGONAL_OPERATOR, HD_METHOD_AUTO, 1, 0, 5, 1},
+    {HD_QUERY_EDGES, HD_METHOD_AUTO, 2, 0, 5, 2},
+    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 3, 5, 1},
+    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 1, 100, 1},
+    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 50, 5, 1},
+    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 16, 2, 1, 1000},
+    {HD_QUERY_DISTANCE_WEIGHTED, HD_METHOD_AUTO, 1, 2, 5, 1},
+    {HD_QUERY_DISTANCE_WEIGHTED, HD_METHOD_AUTO, 16, 2, 1, 1000},
+    {HD_QUERY_DISTANCE_COMMUTE, HD_METHOD_AUTO, 0, 2, 0, 1},
+    {HD_QUERY_DISTANCE_BIHARMONIC, HD_METHOD_AUTO, 0, 2, 0, 1},
+};
+enum { EST_N_CASES = sizeof EST_CASES / sizeof EST_CASES[0], EST_MOST_TIMES = 16, EST_MOST_K = 100 };
+
+static int64_t est_values(const hd_laplacian *lap, const est_case *c) {
+    const int64_t rows = c->query == HD_QUERY_EDGES ? lap->L.nnz : lap->n;
+    return rows * (c->k > 0 ? c->k : 1) * (c->n_times > 0 ? c->n_times : 1);
+}
+
+static void est_times(const hd_laplacian *lap, const est_case *c, double *t) {
+    int32_t i;
+    for (i = 0; i < c->n_times; i++)
+        t[i] = c->from * lap->h * lap->h * pow(c->ratio, c->n_times > 1 ? i / (c->n_times - 1.0) : 0);
+}
+
+static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case *c, double *U, hd_report *rep) {
+    double t[EST_MOST_TIMES];
+    int32_t source[EST_MOST_K], i;
+    est_times(lap, c, t);
+    for (i = 0; i < EST_MOST_K; i++) source[i] = lap->vertex[i * 7919 % lap->n_active];
+    switch (c->query) {
+        case HD_QUERY_COLUMNS: return hd_heat_columns(heat, HD_KERNEL_OPERATOR, c->n_times, t, c->k, source, U, 0, rep, NULL);
+        case HD_QUERY_PAIRS:
+            return hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, c->n_times, t, c->k / 2, source, source + c->k / 2, U, U + c->k / 2, rep, NULL);
+        case HD_QUERY_DIAGONAL: return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, 0, rep, NULL);
+        case HD_QUERY_DIAGONAL_OPERATOR: return hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, c->n_times, t, U, 0, rep, NULL);
+        case HD_QUERY_EDGES: return hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, rep, NULL);
+        default: return hd_heat_distance(heat, (hd_distance_kind)(c->query - HD_QUERY_DISTANCE), c->n_times, t, c->k, source, U, 0, rep, NULL);
+    }
+}
+
+/* Calls of the stages that an early end must not reach. */
+static hd_progress est_on_progress(void *user, const char *stage, double done) {
+    int64_t *calls = (int64_t *)user;
+    (void)done;
+    *calls += strcmp(stage, "factor") == 0 || strcmp(stage, "invert") == 0 || strcmp(stage, "solve") == 0;
+    return HD_PROGRESS_CONTINUE;
+}
+
+/* Within a limit below its need a query ends before any work and writes nothing; its error says the need, within which it runs. */
+static void est_early(const hd_laplacian *lap, const est_case *c, uint64_t before, uint64_t truth, const char *what) {
+    const int64_t n_values = est_values(lap, c);
+    double *U = DENSE_NEW(double, n_values);
+    int64_t calls = 0, i, tries;
+    hd_context ctx;
+    hd_heat_opts o = eng_opts(c->method);
+    hd_heat *heat;
+    hd_report rep;
+    hd_status st;
+    memset(&ctx, 0, sizeof ctx);
+    ctx.n_threads = 1;
+    ctx.progress = est_on_progress;
+    ctx.progress_user = &calls;
+    o.context = &ctx;
+    for (i = 0; i < n_values; i++) U[i] = 77;
+    /* The later ones of several times, and degree 9 instead of 14, have needs of their own: no times here that need both. */
+    ctx.byte_limit = before + truth / 4;
+    heat = eng_create(lap, &o);
+    st = est_run(heat, lap, c, U, &rep);
+    CHECK_MSG(st == HD_ERR_MEMORY_LIMIT && rep.error.status == st && rep.error.value > (double)ctx.byte_limit && strstr(rep.error.text, "MB") != NULL,
+              "%s: %s: %s", what, hd_status_name(st), rep.error.text);
+    CHECK_MSG(calls == 0, "%s: %d calls of long stages", what, (int)calls);
+    for (i = 0; i < n_values && U[i] == 77; i++) {}
+    CHECK_MSG(i == n_values, "%s: something is written", what);
+    for (tries = 0; tries < 4 && st == HD_ERR_MEMORY_LIMIT; tries++) {
+        ctx.byte_limit = (uint64_t)rep.error.value;
+        st = est_run(heat, lap, c, U, &rep);
+    }
+    CHECK_MSG(st >= 0 && ctx.byte_limit <= before + truth, "%s: a limit of %g of %g: %s", what, (double)ctx.byte_limit, (double)(before + truth), rep.error.text);
+    hd_heat_free(heat);
+    CHECK(ctx.bytes_in_use == 0);
+    free(U);
+}
+
+static void est_compare(const hd_laplacian *lap, const est_case *c, const char *shape_name) {
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    hd_heat_opts o = eng_opts(c->method);
+    double *U = DENSE_NEW(double, est_values(lap, c)), t[EST_MOST_TIMES], truth;
+    hd_heat *heat;
+    hd_estimate e;
+    hd_report rep;
+    hd_error err;
+    uint64_t before;
+    char what[80];
+    snprintf(what, sizeof what, "%s, query %d, %d times, k = %d", shape_name, (int)c->query, (int)c->n_times, (int)c->k);
+    ctx.n_threads = 1;
+    o.context = &ctx;
+    heat = eng_create(lap, &o);
+    est_times(lap, c, t);
+    if (CHECK_MSG(hd_heat_estimate(heat, c->query, c->n_times, t, c->k, &e, &err) == HD_OK, "%s: %s", what, err.text)) {
+        before = ctx.bytes_in_use;
+        CHECK(e.bytes_in_use == (double)before && e.bytes_left > 1e300 && e.analysed && e.method == HD_METHOD_DIRECT && e.reason && e.cost[0].fits);
+        CHECK(memcmp(&e.cost[0], &e.cost[HD_METHOD_DIRECT], sizeof e.cost[0]) == 0 && e.cost[0].possible);
+        CHECK(e.cost[0].flops > 0 && e.cost[0].seconds > 0 && e.cost[0].bytes_most >= e.cost[0].bytes);
+        ctx.bytes_peak = before;
+        CHECK(eng_ok(est_run(heat, lap, c, U, &rep), &rep, what));
+        truth = (double)(ctx.bytes_peak - before);
+        CHECK_MSG(rep.method == e.method, "%s: %s, and %s was expected", what, eng_name(rep.method), eng_name(e.method));
+        CHECK_MSG(e.cost[0].bytes >= truth || e.cost[0].bytes_most >= truth, "%s: %.0f bytes, estimated %.0f to %.0f", what, truth, e.cost[0].bytes, e.cost[0].bytes_most);
+        /* where degree 14 took over the need is the larger one */
+        if (e.cost[0].bytes >= truth) CHECK_MSG(e.cost[0].bytes <= 1.3 * truth, "%s: %.0f bytes, estimated %.0f", what, truth, e.cost[0].bytes);
+        else CHECK_MSG(rep.degree == 14 && e.cost[0].bytes_most <= 1.3 * truth, "%s: degree %d", what, (int)rep.degree);
+        if (c->n_times <= 1 && e.cost[0].bytes >= truth && rep.degree != 14) est_early(lap, c, before, (uint64_t)truth, what);
+        /* all is there: the same again takes next to nothing */
+        if (c->query == HD_QUERY_COLUMNS && c->n_times == 1) {
+            CHECK(hd_heat_estimate(heat, c->query, c->n_times, t, c->k, &e, &err) == HD_OK);
+            CHECK_MSG(e.cost[0].bytes < 0.5 * truth, "%s: %.0f after %.0f", what, e.cost[0].bytes, truth);
+        }
+    }
+    hd_heat_free(heat);
+    test_memory_done(&m, &ctx, what);
+    free(U);
+}
+
+/* Columns by each method: estimates of the other two are estimates. */
+static void est_methods(const hd_laplacian *lap) {
+    static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
+    static const int32_t ks[3] = {1, 4, 20};
+    double *U = DENSE_NEW(double, 20 * lap->n);
+    int q, w;
+    for (q = 0; q < 4; q++) {
+        for (w = 0; w < 3; w++) {
+            const est_case c = {HD_QUERY_COLUMNS, methods[q], 1, ks[w], 20, 1};
+            hd_context ctx;
+            hd_heat_opts o = eng_opts(methods[q]);
+            hd_heat *heat;
+            hd_estimate e;
+            hd_report rep;
+            uint64_t before;
+            double t[1], truth;
+            memset(&ctx, 0, sizeof ctx);
+            o.context = &ctx;
+            heat = eng_create(lap, &o);
+            est_times(lap, &c, t);
+            CHECK(hd_heat_estimate(heat, c.query, 1, t, c.k, &e, NULL) == HD_OK);
+            before = ctx.bytes_in_use;
+            ctx.bytes_peak = before;
+            CHECK(eng_ok(est_run(heat, lap, &c, U, &rep), &rep, "methods"));
+            truth = (double)(ctx.bytes_peak - before);
+            CHECK_MSG(rep.method == e.method && strcmp(rep.reason, e.reason) == 0, "%s: %s, not %s", eng_name(methods[q]), rep.reason, e.reason);
+            CHECK_MSG(e.cost[0].bytes > 0.7 * truth && e.cost[0].bytes < 1.5 * truth, "%s, %d: %.0f bytes, estimated %.0f", eng_name(methods[q]), (int)c.k, truth, e.cost[0].bytes);
+            CHECK(e.cost[1].possible && e.cost[2].possible && e.cost[3].possible);
+            hd_heat_free(heat);
+        }
+    }
+    free(U);
+}
+
+/* A limit: what fits and what does not, and that the query agrees. */
+static void est_limits(const hd_laplacian *lap) {
+    const double t = 10 * lap->h * lap->h;
+    double *U = DENSE_NEW(double, 20 * lap->n);
+    const est_case c = {HD_QUERY_COLUMNS, HD_METHOD_AUTO, 1, 20, 10, 1};
+    hd_context ctx;
+    hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
+    hd_heat *heat;
+    hd_estimate all, e;
+    hd_report rep;
+    uint64_t limit;
+    int fit = 0, not_fit = 0;
+    memset(&ctx, 0, sizeof ctx);
+    o.context = &ctx;
+    heat = eng_create(lap, &o);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_DIAGONAL, 1, &t, 0, &all, NULL) == HD_OK);
+    for (limit = ctx.bytes_in_use / 2; limit < 2 * (uint64_t)(all.bytes_in_use + all.cost[0].bytes); limit += limit / 5) {
+        hd_status st;
+        hd_heat_free(heat);
+        ctx.byte_limit = limit;
+        heat = eng_create(lap, &o);
+        CHECK(hd_heat_estimate(heat, HD_QUERY_DIAGONAL, 1, &t, 0, &e, NULL) == HD_OK && e.method == HD_METHOD_DIRECT);
+        CHECK(e.bytes_left == (double)limit - e.bytes_in_use && e.cost[0].fits == (e.cost[0].bytes <= e.bytes_left));
+        st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, U, 0, &rep, NULL);
+        if (e.cost[0].fits) CHECK_MSG(st >= 0, "%llu: %s", (unsigned long long)limit, rep.error.text);
+        else if (e.analysed && e.cost[0].bytes > 1.1 * e.bytes_left) CHECK_MSG(st == HD_ERR_MEMORY_LIMIT, "%llu", (unsigned long long)limit);
+        fit += e.cost[0].fits;
+        not_fit += !e.cost[0].fits;
+        CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &t, 20, &e, NULL) == HD_OK);
+        if (e.cost[0].fits) CHECK_MSG(est_run(heat, lap, &c, U, &rep) >= 0, "%llu, %s: %s", (unsigned long long)limit, eng_name(e.method), rep.error.text);
+    }
+    CHECK(fit > 2 && not_fit > 2);
+    hd_heat_free(heat);
+    free(U);
+}
+
+static void est_bad(const hd_laplacian *lap) {
+    hd_heat *heat = eng_plan(lap, HD_METHOD_ITERATIVE, HD_POLES_DEFAULT, 0);
+    const double t = 1, bad = -1, none = 0;
+    hd_estimate e;
+    hd_error err;
+    e.method = HD_METHOD_DIRECT;
+    CHECK(hd_heat_estimate(NULL, HD_QUERY_COLUMNS, 1, &t, 1, &e, &err) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &t, 1, NULL, &err) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &bad, 1, &e, &err) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 0, &t, 1, &e, &err) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &t, -1, &e, &err) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_estimate(heat, (hd_query)99, 1, &t, 1, &e, &err) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_DIAGONAL, 1, &t, 1, &e, &err) == HD_ERR_ARGUMENT && err.text[0]);   /* iterations have none */
+    CHECK(e.method == HD_METHOD_DIRECT);         /* unchanged */
+    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &none, 1, &e, &err) == HD_OK && e.cost[0].seconds == 0 && strcmp(e.reason, "t = 0") == 0);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_FIELDS, 1, &t, 3, &e, NULL) == HD_OK && e.method == HD_METHOD_ITERATIVE && !e.analysed && e.cost[0].flops > 0);
+    hd_heat_free(heat);
+}
+
+static void test_estimate(void) {
+    static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_FEM};
+    static const char *const names[4] = {"ball, fem", "ball, voronoi-cot", "sheet, fem", "points"};
+    shape ball = shape_bumpy(4, 5), sheet = shape_grid(53, 41, 0.3), points = shape_bumpy(3, 5);
+    int q, c;
+    for (q = 0; q < 4; q++) {
+        const shape *s = q == 3 ? &points : q == 2 ? &sheet : &ball;
+        hd_laplacian *lap = NULL;
+        if (q < 3) lap = test_laplacian(s, kinds[q]);
+        else CHECK(hd_laplacian_points(&lap, s->xyz, s->n, NULL, NULL) >= 0);
+        for (c = 0; c < EST_N_CASES; c++) est_compare(lap, EST_CASES + c, names[q]);
+        if (q < 2) est_methods(lap);
+        if (q == 0) est_limits(lap);
+        if (q == 0) est_bad(lap);
+        hd_laplacian_free(lap);
+    }
+    shape_free(&ball);
+    shape_free(&sheet);
+    shape_free(&points);
+}
