@@ -121,8 +121,8 @@
                                pole sets; implies NO_DIFFUSION. Bounds of the error of method direct are
                                larger, and times so large that only the means are left take longer
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample
-     HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Needs method direct or krylov,
-                               and direct for pole sets of your choice
+     HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Pole sets of your choice need
+                               method direct then, and factors that do not fit byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
      HEATDIFF_NO_INTRINSIC     options intrinsic_delaunay and tufted, hd_laplacian_tufted_points
      HEATDIFF_NO_POINTS        hd_laplacian_points, hd_laplacian_tufted_points, hd_neighbours_*

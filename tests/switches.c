@@ -126,6 +126,8 @@ static void check_columns(hd_heat *heat) {
         for (i = 0; i < 6; i++) CHECK(near_to(u[6 * q + i], heat_of(i, 0, t[q])));
     CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, T, 1, u, NULL, &err) == HD_OK);
     for (i = 0; i < 6; i++) CHECK(near_to(u[i], heat_of(i, 1, T)));
+    CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, 1e15, 1, u, NULL, &err) == HD_OK);       /* the means are left */
+    for (i = 0; i < 6; i++) CHECK(near_to(u[i], 1 / 6.0));
     CHECK(hd_heat_apply(heat, 1, &zero, 1, f, 0, u, 0, NULL, &err) == HD_OK && u[3] == f[3]);
     CHECK(hd_heat_apply(heat, 1, t, 1, f, 0, u, 0, NULL, &err) == HD_OK);
     for (i = 0; i < 6; i++) {
