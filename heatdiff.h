@@ -11507,7 +11507,7 @@ typedef struct hdi_factor {
     const int64_t *panel_at;         /* [n_super + 1] sym->panel or sym->panel_pack */
     double *panel, *dinv;            /* [panel_at[n_super]], [n] entries */
     double *work;                    /* [sym->work] entries: update matrices */
-    double *scratch;                 /* [n_tasks + 1][scratch_size], the last one larger: for the top */
+    double *scratch;                 /* [n_tasks][scratch_size], and [chunk_size] where there is a top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
     double *second;                  /* [chunk_size] a second place for S, of fronts that threads share */
     int32_t *nodes;                  /* of their loops */
@@ -12121,7 +12121,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->panel = HDI_TAKE(s, double, HDI_CAST(uint64_t, f->panel_at[sym->n_super]) * w);
     f->dinv = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->n) * w);
     f->work = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->work) * w);
-    f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + f->chunk_size);
+    f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + (sym->n_top ? f->chunk_size : 0));
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * (n_chunks + (n_chunks > 0)) + 1);
     f->nodes = HDI_TAKE(s, int32_t, 2 * hdi_front_nodes(sym, hdi_front_block_size(f)) + 2);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
@@ -14001,7 +14001,7 @@ static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t widt
     for (v = 0; v < s->n_super; v++) {
         const int64_t m = hdi_front_rows(s, v);
         const uint64_t size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), at[v + 1] - at[v], width);
-        if (size > z->top_size) z->top_size = size;
+        if (s->n_top && size > z->top_size) z->top_size = size;
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
     z->chunk_size = hdi_inverse_buffer(width);
@@ -16287,13 +16287,19 @@ typedef struct hdi_lanczos {
     int32_t m, room;                      /* steps: done, at most */
 } hdi_lanczos;
 
+enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
+
+/* Inner products of a solution with itself and those of the next poles, see hdi_warm_products. */
+typedef hd_c64 hdi_gram[HDI_WARM_POLES + 1][2];
+
 /* One right-hand side. Arrays are [n] by rows unless said otherwise. */
 typedef struct hdi_lane {
     double *f, *rhs, *u;         /* the field, B f, the answer */
-    double *tmp, *own_tmp;       /* [4 n]; own_tmp: to be freed, NULL: tmp is work of the systems */
+    double *tmp;                 /* [4 n] after u, or work of the systems */
     double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
     hd_c64 *b;                   /* begins the systems' arrays */
     hdi_krylov *k;               /* [n_systems] */
+    hdi_gram *gram;              /* [n_systems] */
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
@@ -16320,7 +16326,6 @@ typedef struct hdi_lane {
 
 static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
     hdi_free(ctx, lane->f);
-    hdi_free(ctx, lane->own_tmp);
     hdi_free(ctx, lane->target);
     hdi_free(ctx, lane->b);
     hdi_free(ctx, lane->k);
@@ -16332,16 +16337,15 @@ static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
 static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, lap->n_active), n_comp = HDI_CAST(uint64_t, lap->n_components);
     if (lane->f) return HD_OK;
-    lane->f = HDI_NEW(ctx, double, 3 * n, e);
-    if (lane->f) lane->own_tmp = HDI_NEW(ctx, double, 4 * n, e);
-    if (lane->own_tmp) lane->target = HDI_NEW(ctx, double, 3 * n_comp, e);
+    lane->f = HDI_NEW(ctx, double, 7 * n, e);
+    if (lane->f) lane->target = HDI_NEW(ctx, double, 3 * n_comp, e);
     if (!lane->target) {
         hdi_lane_free(lane, ctx);
         return e->status;
     }
     lane->rhs = lane->f + n;
     lane->u = lane->rhs + n;
-    lane->tmp = lane->own_tmp;
+    lane->tmp = lane->u + n;
     lane->sums = lane->target + n_comp;
     lane->spare_sums = lane->sums + n_comp;
     return HD_OK;
@@ -16372,25 +16376,32 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
     return HD_OK;
 }
 
-/* Room for `count` systems: b, the vectors that all systems share, as they run one after the other, the x of
- * each, and sums. The whole of it serves to make preconditioners before. Vectors 2 and 3 of those shared, r
- * and the first direction being 0 and 1, are work of the lane between the systems. */
+/* Room for the systems of a set: b, the vectors that all systems share, as they run one after the other, x of
+ * each, sums, and inner products. The whole of it serves to make preconditioners before. The last two of
+ * those shared are the lane's work between solves. What the lane held is lost. */
 static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), count = HDI_CAST(uint64_t, fam->set.n_poles);
     const uint64_t shared = HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)) + 1;
-    const uint64_t size = (1 + shared + count) * n + HDI_CAST(uint64_t, fam->lap->n_components);
+    const uint64_t vectors = (1 + shared + count) * n + HDI_CAST(uint64_t, fam->lap->n_components);
+    const uint64_t size = vectors + count * (sizeof(hdi_gram) / sizeof(hd_c64));
     const uint64_t fill = count * hdi_fill_work(n);
+    hdi_free(fam->ctx, lane->f);
     hdi_free(fam->ctx, lane->b);
     hdi_free(fam->ctx, lane->k);
+    lane->b = NULL;
     lane->k = NULL;
-    lane->n_systems = 0;
-    lane->b = HDI_NEW(fam->ctx, hd_c64, size > fill ? size : fill, e);
+    lane->f = HDI_NEW(fam->ctx, double, 3 * n, e);
+    if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size > fill ? size : fill, e);
     if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_krylov, count + 1, e);
-    if (!lane->k) return e->status;
-    lane->n_systems = fam->set.n_poles;
-    hdi_free(fam->ctx, lane->own_tmp);
-    lane->own_tmp = NULL;
+    if (!lane->k) {
+        hdi_lane_free(lane, fam->ctx);
+        return e->status;
+    }
+    lane->rhs = lane->f + n;
+    lane->u = lane->rhs + n;
     lane->tmp = &lane->b[3 * n].re;
+    lane->gram = HDI_CAST(hdi_gram *, HDI_CAST(void *, lane->b + vectors));
+    lane->n_systems = fam->set.n_poles;
     return HD_OK;
 }
 
@@ -16477,8 +16488,6 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     }
 }
 
-enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
-
 /* Inner products of solution p with those of poles p to last, D = diag(B):
  *   gram[q - p][0] = x_q^* D x_p,   gram[q - p][1] = x_q' D x_p. */
 static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n,
@@ -16528,7 +16537,7 @@ static void hdi_warm_solve(hd_c64 h[][HDI_WARM_MAX], hd_c64 *c, int32_t m) {
 /* The start of system p from the solutions of poles p + 1 to last, whose inner products are in gram. A point
  * is a pole or its conjugate. */
 static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last,
-                           hd_c64 gram[][HDI_WARM_POLES + 1][2]) {
+                           hdi_gram *gram) {
     const int32_t n = fam->lap->n_active;
     hd_c64 h[HDI_WARM_MAX][HDI_WARM_MAX], c[HDI_WARM_MAX], shift[HDI_WARM_MAX], sum = hdi_c(0, 0);
     hd_c64 *HDI_RESTRICT x = lane->k[p].x;
@@ -16567,7 +16576,7 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
                               const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
     const double b_norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, fam->lap->n_active));
-    hd_c64 gram[HD_MAX_POLES][HDI_WARM_POLES + 1][2];
+    hdi_gram *gram = lane->gram;
     hdi_watch part = *watch;
     hd_status worst = HD_OK, status;
     double left = aim;
@@ -17843,8 +17852,8 @@ typedef struct hdi_silan {
     double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
     /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
-    double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];
-    int32_t vectors_of, vectors_m;
+    double mu[HDI_SILAN_MAX], *vectors;
+    int32_t vectors_of, vectors_m, vectors_room;   /* room: steps that vectors has room for */
     int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
     double g;
 } hdi_silan;
@@ -17859,6 +17868,7 @@ static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
     for (i = 0; i <= HDI_SILAN_MAX; i++) hdi_free(ctx, z->v[i]);
     hdi_free(ctx, z->c);
     hdi_free(ctx, z->work);
+    hdi_free(ctx, z->vectors);
     memset(z, 0, sizeof *z);
 }
 
@@ -18126,6 +18136,13 @@ static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error 
     int32_t k;
     if (z->vectors_of == r && z->vectors_m == m) return HD_OK;
     z->vectors_of = -1;
+    if (z->vectors_room < m) {
+        hdi_free(z->m->ctx, z->vectors);
+        z->vectors_room = 0;
+        z->vectors = HDI_NEW(z->m->ctx, double, m * m, e);
+        if (!z->vectors) return e->status;
+        z->vectors_room = m;
+    }
     for (k = 0; k < m; k += 2) {
         double *x = z->vectors + HDI_CAST(int64_t, k) * m, spare[HDI_SILAN_MAX];
         if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->mu, x, k + 1 < m ? x + m : spare))
@@ -20944,7 +20961,8 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     /* without a bound of the eigenvalues nothing is known of the steps */
-    const int32_t steps = heat->source->b_ratio > 0 ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
+    const int known = heat->source->b_ratio > 0;
+    const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
     int32_t i;
     if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE) < 0) return h->e->status;

@@ -220,6 +220,54 @@ static void rob_byte_limits(const rob_job *job) {
     }
 }
 
+/* Small meshes must not pay for large ones: the most bytes in use for a Laplacian and one column on a sphere of 162
+ * vertices, which examples/embedded computes on a microcontroller. limit: of the context, 0 none. */
+static uint64_t rob_small_peak(hd_laplacian_kind kind, hd_method method, uint64_t limit, double *u) {
+    shape s = shape_icosphere(2);
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    hd_laplacian_opts lap_opts;
+    hd_heat_opts heat_opts;
+    hd_laplacian *lap = NULL;
+    hd_heat *heat = NULL;
+    hd_error e;
+    ctx.simd = HD_SIMD_NONE;
+    ctx.byte_limit = limit;
+    memset(&lap_opts, 0, sizeof lap_opts);
+    memset(&heat_opts, 0, sizeof heat_opts);
+    lap_opts.context = &ctx;
+    lap_opts.kind = kind;
+    heat_opts.method = method;
+    CHECK(s.n == 162 && hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lap_opts, &e) == HD_OK);
+    CHECK(hd_heat_create(&heat, lap, &heat_opts, &e) == HD_OK);
+    CHECK_MSG(hd_heat_column(heat, HD_KERNEL_OPERATOR, 10 * lap->h * lap->h, 0, u, NULL, &e) == HD_OK, "%s", e.text);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    CHECK(m.live == 0 && ctx.bytes_in_use == 0);
+    shape_free(&s);
+    return ctx.bytes_peak;
+}
+
+static void rob_small_memory(void) {
+    static const struct { hd_laplacian_kind kind; hd_method method; uint64_t most; const char *name; } jobs[4] = {
+        {HD_LAPLACIAN_FEM, HD_METHOD_ITERATIVE, 168000, "iterations"},
+        {HD_LAPLACIAN_VORONOI_COT, HD_METHOD_ITERATIVE, 98000, "Lanczos"},
+        {HD_LAPLACIAN_FEM, HD_METHOD_KRYLOV, 242000, "one real factor"},
+        {HD_LAPLACIAN_FEM, HD_METHOD_DIRECT, 652000, "factors of the poles"}};
+    double u[162], v[162];
+    uint64_t peak;
+    int k;
+    for (k = 3; k >= 0; k--) {                    /* the last one leaves the u of iterations */
+        peak = rob_small_peak(jobs[k].kind, jobs[k].method, 0, u);
+        CHECK_MSG(peak <= jobs[k].most, "162 vertices, %s: %llu bytes, at most %llu", jobs[k].name, (unsigned long long)peak,
+                  (unsigned long long)jobs[k].most);
+    }
+    /* with less memory preconditioners are made in turns, and are the same */
+    peak = rob_small_peak(HD_LAPLACIAN_FEM, HD_METHOD_ITERATIVE, 128 << 10, v);
+    CHECK_MSG(peak <= 126000 && memcmp(u, v, sizeof u) == 0, "162 vertices in 128 KiB: %llu bytes, off by %g", (unsigned long long)peak,
+              fabs(u[0] - v[0]));
+}
+
 /* ---- cancelling ---- */
 
 typedef struct rob_progress { int64_t calls, stop_at, solving; hd_progress answer; } rob_progress;
@@ -636,6 +684,7 @@ static void test_robust(void) {
         rob_stop_each_progress(rob_jobs + k, (hd_progress)1, HD_ERR_ARGUMENT);
         rob_stop_each_progress(rob_jobs + k, (hd_progress)0, HD_ERR_ARGUMENT);
     }
+    rob_small_memory();
     rob_cancel_lanes();
     rob_plan_survives();
     rob_not_cleared();

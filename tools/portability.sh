@@ -53,6 +53,7 @@ armhf       | arm-linux-gnueabihf-gcc -static        | qemu-arm    | core | gcc-
 aarch64     | aarch64-linux-gnu-gcc -static          | qemu-aarch64| core | gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 riscv64     | riscv64-linux-gnu-gcc -static          | qemu-riscv64| core | gcc-riscv64-linux-gnu libc6-dev-riscv64-cross qemu-user
 s390x       | s390x-linux-gnu-gcc -static            | qemu-s390x  | core | gcc-s390x-linux-gnu libc6-dev-s390x-cross qemu-user
+cortex-m7   | arm-none-eabi-gcc                      | embedded    | none | gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 fast-math   | gcc -O2 -ffast-math                    |             | fast | gcc
 clang-cl    | ${clang_cl:-clang-cl}  | syntax      | none | clang
 "
@@ -68,6 +69,7 @@ works() {
   local cc=$1 run=$2
   command -v "${cc%% *}" >/dev/null || return 1
   [ "$run" = syntax ] && return 0
+  if [ "$run" = embedded ]; then command -v qemu-system-arm >/dev/null; return; fi
   printf '#include <errno.h>\n#include <math.h>\n#include <stdio.h>\nint main(int c, char **v) { (void)v; return sqrt(c) > 1.5 || errno; }\n' >"$work/try.c"
   $cc $(includes "$cc") "$work/try.c" -o "$work/try.exe" -lm 2>/dev/null || return 1
   run_it "$run" "$work/try.exe" >/dev/null 2>&1
@@ -122,6 +124,17 @@ msvc_syntax() {
   [ $bad = 0 ]
 }
 
+# A processor without an operating system runs examples/embedded.
+embedded() {
+  local t0=$SECONDS status=0 summary
+  python3 "$top/tests/test_embedded.py" >"$work/out" 2>&1 || status=$?
+  summary=$(grep -E '^[0-9]+ passed, [0-9]+ failed' "$work/out" | tail -1)
+  [ $status = 0 ] || head -20 "$work/out"
+  set -- "$1" "$2" $summary
+  report "$1" "$(version "$2")" example "${3:-0}" "${5:-?}" $((SECONDS - t0)) "$2, qemu-system-arm"
+  return $status
+}
+
 one_target() {
   local name=$1 line cc run groups t0 status=0 summary
   line=$(line_of "$name")
@@ -140,6 +153,7 @@ one_target() {
     fi
   fi
   if [ "$run" = syntax ]; then msvc_syntax; return; fi
+  if [ "$run" = embedded ]; then embedded "$name" "$cc"; return; fi
   [ -z "$set_of" ] || groups=$set_of
   t0=$SECONDS
   if ! $cc $flags $(includes "$cc") -w -I"$top" "$top/tests/runner.c" -o "$work/$name.exe" -lm >"$work/log" 2>&1; then
