@@ -8,9 +8,10 @@
    the same clicks, and the program prints the time of each:
 
    HD_METHOD_KRYLOV  one real factor, then some twenty solves with it for each column. The best for a few columns.
-   HD_METHOD_AUTO    sees one column at a time, so it begins with what is best for a few.
-   HD_METHOD_DIRECT  factorises the systems of all poles at the first click, then solves once. Set it where you know that
-                     many columns at the same t will follow.
+   HD_METHOD_AUTO    sees one column at a time, so it begins with what is best for a few. When the columns have cost as much
+                     as the factors of all poles would, by its model, it makes these and is as fast as direct from then on.
+   HD_METHOD_DIRECT  factorises the systems of all poles at the first click, and each click then takes one solve. Set it
+                     where you know that many columns at the same t will follow: nothing is spent on another method first.
 
    The answers differ by less than the bounds of their errors, which the program checks. */
 
