@@ -2920,6 +2920,12 @@ enum { hdi_tile_rows_plain = 3, hdi_tile_cols_plain = 1 };
 enum { hdi_tile_rows_plain = 2, hdi_tile_cols_plain = 2 };
 #endif
 enum { hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_solve_rows_plain = 4 };
+#elif defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+/* Entry by entry: what a register keeps beyond a double would differ from tile to tile. */
+enum {
+    hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_tile_rows_plain = 1, hdi_tile_cols_plain = 1,
+    hdi_solve_rows_plain = 1
+};
 #else
 enum {
     hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_tile_rows_plain = 2, hdi_tile_cols_plain = 1,
