@@ -365,8 +365,9 @@ typedef struct hd_laplacian_opts {
     /* Points: number of nearest neighbours that determine the tangent plane and the cell or star of a point,
      * 6..128. Default 30. */
     int32_t neighbours;
-    /* Triangles, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called. Takes 100 bytes
-     * more for each face. */
+    /* Triangles and polygons, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called.
+     * Takes 100 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
+     * hd_laplacian_update_matrices may be called. Takes 24 bytes more for each entry. Points refuse it. */
     int32_t updatable;
     int32_t end_zero;
 } hd_laplacian_opts;
@@ -929,12 +930,15 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
-/* New coordinates for the same faces, of a Laplacian made by hd_laplacian_triangles with the option
- * updatable. Plans notice: their next query computes with the new values, on the ordering and analysis that
- * they have.
+/* New coordinates for the same faces, of a Laplacian made by hd_laplacian_triangles or hd_laplacian_polygons
+ * with the option updatable. Plans notice: their next query computes with the new values, on the ordering and
+ * analysis that they have.
  * xyz    [3 n] finite
  * Faces that were left out stay left out. Faces that lose their area are counted in lap->mesh and add
- * nothing. L, B and the report are those of a new Laplacian, up to rounding in the order of sums.
+ * nothing. L, B and the report are those of a new Laplacian: to the last bit for the kind polygon, up to
+ * rounding in the order of sums for triangles.
+ * Points have no update. The pairs that are joined, the planes and the cells follow from the places, so that
+ * new places make a new pattern.
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large); HD_ERR_EMPTY (vertex: none of its
  *        faces has an area any more). After an error nothing has changed
  * Cost   one pass over faces and entries; allocates nothing. Not while a plan on lap is at work */
@@ -943,6 +947,18 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz,
  * bytes for each vertex for the time of the call, unless the positions are packed and aligned doubles. */
 HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh_view *view,
                                                 hd_error *err);
+
+/* New values of the caller's own matrices, of a Laplacian made by hd_laplacian_matrices with the option
+ * updatable. Plans notice as above.
+ * L, B   n x n. Entries that were not there must be zero; those that are missing now become zeros. Inert
+ *        vertices stay inert. If B was diagonal it stays so
+ * h      as in hd_laplacian_matrices
+ * The pair is that of a new Laplacian of these matrices, to the last bit, if that has the same pattern.
+ * Errors as hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: an entry that was not there). After
+ *        an error nothing has changed
+ * Cost   linear, and allocates nothing, unless B has to be factorised as in hd_laplacian_matrices */
+HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
+                                                    const hd_csr *B, double h, hd_error *err);
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
 
@@ -7170,8 +7186,15 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int clo
  * Voronoi areas go negative on obtuse triangles; mixed ones do not. Deviations of polygons and point sets are
  * listed there. */
 
-/* What an update needs of a triangle mesh: the faces that have an area, in the order of their sums. */
+enum { HDI_MOVING_BLOCKS = 20 };
+
+/* What an update needs. Of a triangle mesh: the faces that have an area, in the order of their sums. Of
+ * polygons and of the caller's matrices what is named there. */
 typedef struct hd_moving {
+    struct hdi_moving_poly *poly;
+    struct hdi_moving_pair *pair;
+    void *block[HDI_MOVING_BLOCKS];  /* of these two */
+    int32_t n_blocks;
     int32_t m;
     int32_t *tri;               /* [3 m] */
     int32_t *face;              /* [m] the caller's numbers */
@@ -7182,6 +7205,7 @@ typedef struct hd_moving {
 
 static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
     if (!x) return;
+    while (x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
     hdi_free(ctx, x->tri);
     hdi_free(ctx, x->face);
     hdi_free(ctx, x->place);
@@ -7432,14 +7456,26 @@ static int64_t hdi_lap_entry(const hd_laplacian *lap, int32_t i, int32_t j) {
     return begin + hdi_lower_bound(lap->L.col + begin, lap->L.row_ptr[i + 1] - begin, j);
 }
 
+/* Freed with the Laplacian, whatever comes. */
+static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
+    hdi_moving *x = HDI_NEW(lap->context, hdi_moving, 1, e);
+    if (x) memset(x, 0, sizeof *x);
+    return lap->moving = x;
+}
+
+/* Ends the scope; its blocks become x's, if all are there. */
+static hd_status hdi_moving_keep(hdi_moving *x, hdi_scope *s) {
+    if (s->e->status < 0) return hdi_scope_end(s);
+    for (; s->n > 0; s->n--) x->block[x->n_blocks++] = s->block[s->n - 1];
+    return HD_OK;
+}
+
 static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
     hd_context *ctx = lap->context;
     const uint64_t m = HDI_CAST(uint64_t, lap->mesh.n_faces_used);
-    hdi_moving *x = HDI_NEW(ctx, hdi_moving, 1, e);
+    hdi_moving *x = hdi_moving_new(lap, e);
     int32_t f, q;
     if (!x) return e->status;
-    memset(x, 0, sizeof *x);
-    lap->moving = x;                             /* freed with the Laplacian, whatever comes */
     x->tri = HDI_NEW(ctx, int32_t, 3 * m, e);
     if (x->tri) x->face = HDI_NEW(ctx, int32_t, m, e);
     if (x->face) x->place = HDI_NEW(ctx, int64_t, 6 * m, e);
@@ -7461,13 +7497,23 @@ static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_err
     return e->status;
 }
 
+/* Has each row's vertex a mass? mass [n] by vertices. */
+static hd_status hdi_moving_masses(const hd_laplacian *lap, const double *mass, hd_error *e) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        if (!(mass[lap->vertex[i]] > 0))
+            return hdi_fail_face(e, HD_ERR_EMPTY, "update: no face at the vertex has an area any more", -1,
+                                 lap->vertex[i], mass[lap->vertex[i]]);
+    return HD_OK;
+}
+
 /* Measures the faces anew, and the masses of vertices. Nothing of the Laplacian changes. */
 static hd_status hdi_moving_measure(const hd_laplacian *lap, const double *xyz, hd_mesh_report *rep,
                                     hd_error *e) {
     hdi_moving *x = lap->moving;
     hdi_face_tally tally;
     hdi_mesh mesh;
-    int32_t f, i;
+    int32_t f;
     if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return e->status;
     hdi_mesh_clear(&mesh, xyz, lap->n, x->tri, x->m);
     mesh.face = x->face;
@@ -7477,11 +7523,7 @@ static hd_status hdi_moving_measure(const hd_laplacian *lap, const double *xyz, 
     for (f = 0; f < x->m; f++) x->area[f] = hdi_face_measure(&mesh, f, x->cot + hdi_triple(f), &tally);
     if (hdi_tally_report(&tally, x->m, rep, e) < 0) return e->status;
     hdi_mesh_masses(&mesh, hdi_lap_lump(lap->kind), x->mass);
-    for (i = 0; i < lap->n_active; i++)
-        if (!(x->mass[lap->vertex[i]] > 0))
-            return hdi_fail_face(e, HD_ERR_EMPTY, "update: no face at the vertex has an area any more", -1,
-                                 lap->vertex[i], x->mass[lap->vertex[i]]);
-    return HD_OK;
+    return hdi_moving_masses(lap, x->mass, e);
 }
 
 /* Off-diagonal entries from the faces, in the order of the assembly. */
@@ -7532,19 +7574,23 @@ static void hdi_moving_rows(hd_laplacian *lap) {
     lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
 }
 
-static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
-    const int32_t unused = lap->mesh.n_faces - lap->moving->m;   /* left out from the start */
-    hd_mesh_report rep;
+/* Takes up new places, and what the report says of faces measured anew. unused: left out from the start. */
+static void hdi_moving_tell(hd_laplacian *lap, const double *xyz, const hd_mesh_report *rep, int32_t unused) {
     int32_t i;
+    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
+    lap->mesh.n_zero_area = rep->n_zero_area + unused - lap->mesh.n_repeated_corner
+                          - lap->mesh.n_repeated_face;
+    lap->mesh.n_faces_used = rep->n_faces_used;
+    lap->mesh.smallest_angle = rep->smallest_angle;
+}
+
+static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    hd_mesh_report rep;
     memset(&rep, 0, sizeof rep);
     if (hdi_moving_measure(lap, xyz, &rep, e) < 0) return e->status;
-    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
+    hdi_moving_tell(lap, xyz, &rep, lap->mesh.n_faces - lap->moving->m);
     hdi_moving_sides(lap);
     hdi_moving_rows(lap);
-    lap->mesh.n_zero_area = rep.n_zero_area + unused - lap->mesh.n_repeated_corner
-                          - lap->mesh.n_repeated_face;
-    lap->mesh.n_faces_used = rep.n_faces_used;
-    lap->mesh.smallest_angle = rep.smallest_angle;
     lap->version++;
     return HD_OK;
 }
@@ -7686,25 +7732,28 @@ static void hdi_poly_row_edges(hd_laplacian *lap, const double *xyz, int32_t i,
     hdi_edge_tally_add(all, &tally);
 }
 
-static hd_status hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, int32_t *border,
-                                 hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
+static void hdi_poly_work_take(hdi_poly_work *work, const hd_laplacian *lap, hdi_scope *s) {
     const int64_t widest = hdi_fullest(lap->L.row_ptr, lap->n_active);
+    work->place = HDI_TAKE(s, int64_t, lap->n_active);
+    work->count = HDI_TAKE(s, int32_t, widest);
+    work->forward = HDI_TAKE(s, int32_t, widest);
+}
+
+/* Values of L, edges, h and area. border [n_active]: work. */
+static void hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, const hdi_poly_work *work,
+                            int32_t *border) {
     hdi_edge_tally tally = {0, 0, 0, 0, 0};
-    hdi_poly_work work;
-    int32_t i;
-    work.place = HDI_TAKE(&s, int64_t, lap->n_active);
-    work.count = HDI_TAKE(&s, int32_t, widest);
-    work.forward = HDI_TAKE(&s, int32_t, widest);
-    if (e->status < 0) return hdi_scope_end(&s);
+    int32_t i, f;
     hdi_fill_own(border, lap->n_active);
+    lap->mesh.n_negative_weights = 0;
     for (i = 0; i < lap->n_active; i++) {
-        hdi_poly_row(lap, poly, i, &work);
-        hdi_poly_row_edges(lap, poly->xyz, i, &work, &tally, border);
+        hdi_poly_row(lap, poly, i, work);
+        hdi_poly_row_edges(lap, poly->xyz, i, work, &tally, border);
     }
     hdi_edge_report(&tally, border, lap->n_active, &lap->mesh);
     lap->h = tally.length / HDI_CAST(double, tally.n_edges);
-    return hdi_scope_end(&s);
+    lap->area = 0;
+    for (f = 0; f < poly->m; f++) lap->area += poly->area[f];
 }
 
 /* Area of each face to its corners in equal parts. */
@@ -7718,11 +7767,85 @@ static double hdi_poly_mass(const hdi_poly *poly, int32_t v) {
     return sum;
 }
 
+/* Polygons that move: copies of the faces, and work. */
+typedef struct hdi_moving_poly {
+    hdi_poly poly;
+    char *left_out;             /* [m] from the start */
+    int32_t n_left_out;
+    int32_t *mark, *border;     /* [n], [n_active] */
+    double *mass;               /* [n] by vertices */
+    hdi_poly_work work;
+} hdi_moving_poly;
+
+static hd_status hdi_moving_poly_make(hd_laplacian *lap, const hdi_poly *from, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int32_t m = from->m;
+    const int64_t n_corners = from->ptr[m], n = lap->n;
+    hdi_moving *x = hdi_moving_new(lap, e);
+    hdi_moving_poly *z = HDI_TAKE(&s, hdi_moving_poly, 1);
+    int64_t *ptr = HDI_TAKE(&s, int64_t, HDI_CAST(int64_t, m) + 1);
+    int32_t *idx = HDI_TAKE(&s, int32_t, n_corners), f;
+    if (!x || !idx) return hdi_scope_end(&s);
+    z->poly = *from;
+    z->poly.area = HDI_TAKE(&s, double, m);
+    z->poly.g = HDI_TAKE(&s, double, 3 * n_corners);
+    z->poly.w = HDI_TAKE(&s, double, 2 * n_corners);
+    z->poly.face = HDI_TAKE(&s, int32_t, n_corners);
+    z->poly.corner_ptr = HDI_TAKE(&s, int64_t, n + 1);
+    z->poly.corner = HDI_TAKE(&s, int32_t, n_corners);
+    z->left_out = HDI_TAKE(&s, char, m);
+    z->mark = HDI_TAKE(&s, int32_t, n);
+    z->border = HDI_TAKE(&s, int32_t, lap->n_active);
+    z->mass = HDI_TAKE(&s, double, n);
+    hdi_poly_work_take(&z->work, lap, &s);
+    if (e->status < 0) return hdi_scope_end(&s);
+    memcpy(ptr, from->ptr, (HDI_CAST(size_t, m) + 1) * sizeof *ptr);
+    memcpy(idx, from->idx, HDI_CAST(size_t, n_corners) * sizeof *idx);
+    memcpy(z->poly.face, from->face, HDI_CAST(size_t, n_corners) * sizeof *idx);
+    z->poly.ptr = ptr;
+    z->poly.idx = idx;
+    z->n_left_out = 0;
+    for (f = 0; f < m; f++) z->n_left_out += z->left_out[f] = !(from->area[f] > 0);
+    x->poly = z;
+    return hdi_moving_keep(x, &s);
+}
+
+/* As hdi_lap_update. L is made as in a new Laplacian, from the same sums. */
+static hd_status hdi_moving_poly_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    hdi_moving_poly *z = lap->moving->poly;
+    hdi_poly *poly = &z->poly;
+    hd_mesh_report rep;
+    int32_t f, i;
+    memset(&rep, 0, sizeof rep);
+    rep.smallest_angle = 4;                      /* above any */
+    poly->xyz = xyz;
+    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return e->status;
+    hdi_fill_i32(z->mark, lap->n, -1);
+    for (f = 0; f < poly->m; f++) {
+        poly->area[f] = 0;
+        if (!z->left_out[f] && hdi_poly_measure(poly, f, z->mark, &rep, e) < 0) return e->status;
+        rep.n_faces_used += poly->area[f] > 0;
+    }
+    hdi_poly_corners(poly);
+    for (i = 0; i < lap->n; i++) z->mass[i] = hdi_poly_mass(poly, i);
+    if (hdi_moving_masses(lap, z->mass, e) < 0) return e->status;
+    hdi_moving_tell(lap, xyz, &rep, z->n_left_out);
+    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    for (i = 0; i < lap->n_active; i++) {
+        lap->mass[i] = z->mass[lap->vertex[i]];
+        lap->component_mass[lap->component[i]] += lap->mass[i];
+    }
+    hdi_poly_values(lap, poly, &z->work, z->border);
+    lap->version++;
+    return HD_OK;
+}
+
 /* poly: xyz, ptr, idx, n, m and lambda set, the input checked. */
-static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, hd_error *e) {
+static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     double *vertex_mass;
-    int32_t *mark, v, f;
+    hdi_poly_work work;
+    int32_t *mark, v;
     if (hdi_poly_make(poly, &lap->mesh, &s) < 0) return hdi_scope_end(&s);
     vertex_mass = HDI_TAKE(&s, double, lap->n);
     if (!vertex_mass) return hdi_scope_end(&s);
@@ -7732,12 +7855,13 @@ static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, hd_error *e
     if (hdi_lap_places(lap, poly->xyz, e) < 0) return hdi_scope_end(&s);
     mark = HDI_TAKE(&s, int32_t, lap->n_active);
     if (!mark || hdi_poly_pattern(lap, poly, mark, e) < 0) return hdi_scope_end(&s);
-    if (hdi_poly_values(lap, poly, mark, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0)
-        return hdi_scope_end(&s);
-    for (f = 0; f < poly->m; f++) lap->area += poly->area[f];
+    hdi_poly_work_take(&work, lap, &s);
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_poly_values(lap, poly, &work, mark);
+    if (hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
     lap->b_ratio = 1;
     lap->conserves = 1;
-    hdi_lap_components(lap, e);
+    if (hdi_lap_components(lap, e) >= 0 && updatable) (void)hdi_moving_poly_make(lap, poly, e);
     return hdi_scope_end(&s);
 }
 
@@ -7794,21 +7918,33 @@ static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const double *xyz, const i
 
 /* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
 static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m,
-                               const hdi_intrinsic_task *task, hd_error *e) {
+                               const hdi_intrinsic_task *task, int updatable, hd_error *e) {
     if (HDI_HAS_INTRINSIC && task) return hdi_lap_intrinsic(lap, xyz, tri, m, task, e);
-    return hdi_lap_triangles(lap, xyz, tri, m, 0, e);
+    return hdi_lap_triangles(lap, xyz, tri, m, updatable, e);
+}
+
+/* Errors of an update name the polygons that the triangles of x come from. */
+static void hdi_moving_fans(hdi_moving *x, const hdi_poly *poly) {
+    int64_t before = 0;
+    int32_t f, i = 0;
+    for (f = 0; f < poly->m; f++) {
+        const int64_t k = poly->ptr[f + 1] - poly->ptr[f] - 2;
+        if (k > 0) before += k;
+        for (; i < x->m && x->face[i] < before; i++) x->face[i] = f;
+    }
 }
 
 /* The faces split as fans, for the operators of triangles. */
 static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly,
-                              const hdi_intrinsic_task *task, hd_error *e) {
+                              const hdi_intrinsic_task *task, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int64_t m = hdi_poly_fans(poly->ptr, poly->idx, poly->m, NULL);
     int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
     if (!tri) return hdi_scope_end(&s);
     hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
-    if (hdi_lap_faces(lap, poly->xyz, tri, HDI_CAST(int32_t, m), task, e) < 0 && e->face >= 0)
+    if (hdi_lap_faces(lap, poly->xyz, tri, HDI_CAST(int32_t, m), task, updatable, e) < 0 && e->face >= 0)
         e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
+    if (e->status >= 0 && lap->moving) hdi_moving_fans(lap->moving, poly);
     return hdi_scope_end(&s);
 }
 
@@ -8050,6 +8186,126 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     return hdi_scope_end(&s);
 }
 
+/* Matrices whose values change: what to go back to after an error, and work. */
+typedef struct hdi_moving_pair {
+    hd_laplacian before;
+    double *L, *B, *mass, *b_diag, *component_mass;
+    double *full, *diag;        /* [nnz] B and [n_active] its diagonal where lap has none */
+    double *root;               /* [n_active] see hdi_pair_measure */
+} hdi_moving_pair;
+
+static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hdi_moving *x = hdi_moving_new(lap, e);
+    hdi_moving_pair *z = HDI_TAKE(&s, hdi_moving_pair, 1);
+    if (!x || !z) return hdi_scope_end(&s);
+    z->L = HDI_TAKE(&s, double, lap->L.nnz);
+    z->B = HDI_TAKE(&s, double, lap->L.nnz);
+    z->full = lap->B ? NULL : HDI_TAKE(&s, double, lap->L.nnz);
+    z->mass = HDI_TAKE(&s, double, lap->n_active);
+    z->b_diag = HDI_TAKE(&s, double, lap->n_active);
+    z->diag = HDI_TAKE(&s, double, lap->n_active);
+    z->root = HDI_TAKE(&s, double, lap->n_active);
+    z->component_mass = HDI_TAKE(&s, double, lap->n_components);
+    if (e->status >= 0) x->pair = z;
+    return hdi_moving_keep(x, &s);
+}
+
+/* Copies the values of lap to where an error finds them, or with `back` from there. */
+static void hdi_moving_pair_copy(hd_laplacian *lap, int back) {
+    hdi_moving_pair *z = lap->moving->pair;
+    const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
+    double *const here[] = {lap->L.val, lap->B, lap->mass, lap->b_diag, lap->component_mass};
+    double *const kept[] = {z->L, z->B, z->mass, z->b_diag, z->component_mass};
+    const size_t count[] = {HDI_CAST(size_t, lap->L.nnz), HDI_CAST(size_t, lap->L.nnz), n, n, n_comp};
+    int q;
+    for (q = 0; q < 5; q++)
+        if (here[q]) memcpy(back ? here[q] : kept[q], back ? kept[q] : here[q], count[q] * sizeof(double));
+}
+
+static void hdi_moving_pair_restore(hd_laplacian *lap) {
+    *lap = lap->moving->pair->before;
+    hdi_moving_pair_copy(lap, 1);
+}
+
+/* The values of a matrix over vertices into val, on the pattern of lap. */
+static hd_status hdi_pair_refill(const hd_laplacian *lap, const hd_csr *a, double *val, hd_error *e) {
+    int32_t i;
+    int64_t p, q;
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t v = lap->vertex[i];
+        const int64_t end = lap->L.row_ptr[i + 1];
+        q = lap->L.row_ptr[i];
+        for (p = q; p < end; p++) val[p] = 0;
+        for (p = a->row_ptr[v]; p < a->row_ptr[v + 1]; p++) {
+            const int32_t j = lap->row[a->col[p]];
+            if (j < 0) continue;
+            while (q < end && lap->L.col[q] < j) q++;
+            if (q < end && lap->L.col[q] == j) val[q] = a->val[p];
+            else if (a->val[p] != 0)
+                return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: an entry is not in the pattern",
+                                    v, a->col[p], a->val[p]);
+        }
+    }
+    return HD_OK;
+}
+
+static hd_status hdi_pair_symmetric(const hd_laplacian *lap, const double *val, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) {
+            const double x = val[p], y = val[hdi_lap_entry(lap, lap->L.col[p], i)];
+            if (fabs(x - y) > HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)))
+                return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", lap->vertex[i],
+                                    lap->vertex[lap->L.col[p]], x - y);
+        }
+    }
+    return HD_OK;
+}
+
+/* B must not come to vertices that had none. */
+static hd_status hdi_pair_inert(const hd_laplacian *lap, const hd_csr *B, hd_error *e) {
+    int32_t v;
+    int64_t p;
+    for (v = 0; v < lap->n; v++)
+        for (p = B->row_ptr[v]; p < B->row_ptr[v + 1]; p++)
+            if (B->val[p] != 0 && (lap->row[v] < 0 || lap->row[B->col[p]] < 0))
+                return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: a vertex without mass stays so",
+                                    v, B->col[p], B->val[p]);
+    return HD_OK;
+}
+
+/* New values, all but a proof about B. The matrices are checked by rows. After an error lap is as it was. */
+static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
+    hdi_moving_pair *z = lap->moving->pair;
+    const int full = lap->B != NULL;
+    int32_t i;
+    int diagonal = 1;
+    z->before = *lap;
+    hdi_moving_pair_copy(lap, 0);
+    if (!full) {                                 /* for a while */
+        lap->B = z->full;
+        lap->b_diag = z->diag;
+    }
+    lap->area = 0;
+    if (hdi_pair_inert(lap, B, e) >= 0 && hdi_pair_refill(lap, L, lap->L.val, e) >= 0 &&
+        hdi_pair_refill(lap, B, lap->B, e) >= 0 && hdi_pair_symmetric(lap, lap->L.val, e) >= 0 &&
+        hdi_pair_symmetric(lap, lap->B, e) >= 0 && hdi_pair_measure(lap, z->root, &diagonal, e) >= 0)
+        (void)hdi_pair_semidefinite(lap, z->root, e);
+    if (e->status >= 0 && !full && !diagonal)
+        hdi_fail(e, HD_ERR_STRUCTURE, "update of matrices: B was diagonal, and is not any more");
+    if (e->status < 0) {
+        hdi_moving_pair_restore(lap);
+        return e->status;
+    }
+    lap->B = z->before.B;
+    lap->b_diag = z->before.b_diag;
+    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
+    return HD_OK;
+}
+
 /* ---- pairs renumbered ---- */
 
 static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
@@ -8225,6 +8481,9 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
     }
     memcpy(out->component_mass, lap->component_mass, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     out->h = lap->h;
+    out->area = lap->area;
+    out->b_ratio = lap->b_ratio;
+    out->conserves = lap->conserves;
 }
 
 /* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t
@@ -25048,7 +25307,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
                                              int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
     const int flips = opts && (opts->intrinsic_delaunay || opts->tufted);
     const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
-    const int splits = hdi_kind_of_triangles(kind);
+    const int splits = hdi_kind_of_triangles(kind), updatable = opts && opts->updatable;
     hdi_intrinsic_task task;
     hdi_poly poly;
     hdi_call c;
@@ -25070,10 +25329,11 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
                "laplacian of polygons: lambda is not between 0 and 1e100", c.e);
     hdi_refuse(hdi_intrinsic_opts(opts, &task, c.e) && !splits,
                "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot", c.e);
+    hdi_refuse(flips && updatable, "laplacian of polygons: an intrinsic triangulation is not updatable", c.e);
     if (hdi_lap_begin(&c) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, c.e)
-                                         : hdi_lap_polygons(lap, &poly, c.e));
+    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, updatable, c.e)
+                                         : hdi_lap_polygons(lap, &poly, updatable, c.e));
 }
 
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h,
@@ -25093,6 +25353,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     lap->h = h;
     if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < HDI_RATIO_POOR && HDI_HAS_DIRECT)
         (void)hdi_lap_ratio(lap, c.e);
+    if (c.e->status >= 0 && opts && opts->updatable) (void)hdi_moving_pair_make(lap, c.e);
     return hdi_lap_done(out, lap, c.e->status);
 }
 
@@ -25110,6 +25371,8 @@ static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_
     hdi_refuse(lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP,
                "laplacian of points: the kind is voronoi-exp or exp "
                "(hd_laplacian_tufted_points has fem, voronoi-cot and cot)", e);
+    hdi_refuse(opts && opts->updatable,
+               "laplacian of points: not updatable, because new places of points make a new pattern", e);
     hdi_refuse(opts && (opts->intrinsic_delaunay || opts->tufted),
                "laplacian of points: exponential weights know no triangles; "
                "hd_laplacian_tufted_points makes some", e);
@@ -25146,6 +25409,8 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
                "tufted laplacian of points: the kind is fem, voronoi-cot or cot",
                c.e);
     (void)hdi_intrinsic_opts(opts, &task, c.e);
+    hdi_refuse(opts && opts->updatable,
+               "tufted laplacian of points: not updatable, because new places make new triangles", c.e);
     if (!nbr_ptr) hdi_point_neighbours(&lap->points, opts, c.e);
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_done(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e));
@@ -25227,8 +25492,32 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz,
     if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
     if (!lap || !xyz) return hdi_missing(c.e);
     hdi_refuse(!lap->moving, "update: the Laplacian was not made with the option updatable", c.e);
+    hdi_refuse(lap->moving && lap->moving->pair,
+               "update: matrices of your own take hd_laplacian_update_matrices", c.e);
     if (c.e->status < 0) return c.e->status;
-    return hdi_lap_update(lap, xyz, c.e);
+    return lap->moving->poly ? hdi_moving_poly_update(lap, xyz, c.e) : hdi_lap_update(lap, xyz, c.e);
+}
+
+HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
+                                                    double h, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
+    if (!lap || !L || !B || !L->val || !B->val) return hdi_missing(c.e);
+    hdi_refuse(!lap->moving || !lap->moving->pair,
+               "update of matrices: the Laplacian was not made of matrices with the option updatable", c.e);
+    hdi_refuse(!hdi_finite(h) || h < 0, "update of matrices: h is negative or not finite", c.e);
+    hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
+               "update of matrices: a matrix has another size", c.e);
+    if (c.e->status < 0 || hdi_csr_check(L, 0, c.ctx, c.e) < 0 || hdi_csr_check(B, 0, c.ctx, c.e) < 0 ||
+        hdi_pair_update(lap, L, B, c.e) < 0)
+        return c.e->status;
+    if (lap->b_ratio < HDI_RATIO_POOR && hdi_lap_ratio(lap, c.e) < 0) {
+        hdi_moving_pair_restore(lap);
+        return c.e->status;
+    }
+    lap->h = h;
+    lap->version++;
+    return HD_OK;
 }
 
 HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh_view *view, hd_error *err) {

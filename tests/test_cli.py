@@ -1035,6 +1035,68 @@ class Methods(Case):
             self.assertIn("limit", text)
             self.assertFalse(os.path.exists(self.path("never.npy")))
 
+    def dry(self, *args):
+        return json.loads(self.good(*args, "--dry-run", "--json", "-o", self.path("never.npy")).stderr)
+
+    def test_dry_run(self):
+        """What a run takes is told without a result, and is what it takes then."""
+        fields, pairs = self.file("dry.txt", "1 2\n" * 12000), self.file("pairs.txt", "1 2\n5 9\n")
+        runs = {"kernel": ["--source", "0,5", "--t", "10h2"], "diffuse": ["--input", fields, "--t", "1h2,10h2"], "hks": ["--t", "auto:16"],
+                "distance": ["--source", "0", "--t", "3h2"], "pairs": ["--input", pairs, "--t", "10h2"], "sample": ["--count", "4", "--t", "3h2"]}
+        for command, args in runs.items():
+            for more in ([], ["--method", "direct"]):
+                with self.subTest(command=command, more=more):
+                    d = self.dry(command, self.large, *args, *more)
+                    r = self.report(command, self.large, *args, *more)
+                    self.assertIs(d["dry_run"], True)
+                    self.assertEqual(d["method"], r["method"])
+                    e = d["estimate"]
+                    self.assertTrue(e["fits"] and e["flops"] > 0 and e["seconds"] > 0 and d["methods"] and d["ways_out"] == {})
+                    self.assertEqual(e, d["methods"][d["method"]])
+                    if d["method"] == "direct":
+                        self.assertTrue(d["analysed"])
+                        self.assertGreaterEqual(e["bytes_most"], r["peak_bytes"])
+                        if r["degree"] == 9:
+                            self.assertTrue(0.999 * r["peak_bytes"] <= e["bytes"] <= 1.3 * r["peak_bytes"], (e, r["peak_bytes"]))
+                    text = self.good(command, self.large, *args, *more, "--dry-run")
+                    self.assertEqual(text.stdout, b"")
+                    self.assertRegex(text.stderr.decode(), r"dry run: method \w+ \(.+\)\n(.|\n)*flops(.|\n)*MB")
+        g = self.dry("geodesic", self.large, "--source", "0")
+        self.assertTrue(g["analysed"] and g["estimate"]["flops"] > 0 and g["estimate"]["fits"])
+        self.assertIn("--dry-run", self.bad(2, "info", self.large, "--dry-run"))
+        self.assertFalse(os.path.exists(self.path("never.npy")))
+
+    def test_what_would_fit(self):
+        """A run that does not fit says what it needs, what is allowed, and what else would do."""
+        out = self.path("never.npy")
+        run = ["kernel", self.large, "--source", 0, "--t", "10h2", "-o", out]
+        need = self.dry("kernel", self.large, "--source", 0, "--t", "10h2", "--method", "direct")["estimate"]["bytes"]
+        text = self.bad(1, *run, "--method", "direct", "--memory-limit", int(0.7 * need))
+        self.assertIn("%.1f MB are needed, and %.1f MB are allowed" % (1e-6 * need, 1e-6 * int(0.7 * need)), text)
+        for way in ("iterative", "krylov"):
+            self.assertRegex(text, r"--method %s needs [0-9.]+ MB[,\n]" % way)
+            self.good(*run, "--method", way, "--memory-limit", int(0.7 * need))
+        os.remove(out)
+        points = self.file("points.xyz", "".join("%.17g %.17g %.17g\n" % tuple(p) for p in self.points_of(self.large)))
+        run = ["distance", points, "--source", 0, "--t", "3h2"]
+        need = self.dry(*run)["estimate"]["bytes"]
+        limit = int(0.5 * need)
+        text = self.bad(1, *run, "--memory-limit", limit, "-o", out)
+        self.assertRegex(text, r"--tufted needs [0-9.]+ MB, --weight-cut 1e-4 needs [0-9.]+ MB")
+        d = self.dry(*run, "--memory-limit", limit)
+        self.assertFalse(d["estimate"]["fits"])
+        self.assertEqual(sorted(d["ways_out"]), ["--tufted", "--weight-cut 1e-4"])
+        self.assertLess(d["ways_out"]["--tufted"], limit)
+        for option, way in d["ways_out"].items():  # what they need is what they are said to need
+            other = self.dry(*run, *option.split())["estimate"]["bytes"]
+            self.assertTrue(abs(way - other) <= 0.02 * other, (option, way, other))
+        self.assertFalse(os.path.exists(out))
+        self.good(*run, "--tufted", "--memory-limit", limit, "-o", out)
+
+    def points_of(self, path):
+        with open(path) as f:
+            return [[float(x) for x in line.split()[1:4]] for line in f if line.startswith("v ")]
+
 
 def identity(n):
     return [[float(i == j) for j in range(n)] for i in range(n)]

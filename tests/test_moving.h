@@ -157,6 +157,212 @@ static void mov_geodesic(const shape *s, const char *what) {
     free(want);
 }
 
+/* ---- polygons and matrices: the same bits as new ones ---- */
+
+static void mov_same_bits(const hd_laplacian *a, const hd_laplacian *b, const char *what) {
+    const size_t nnz = (size_t)b->L.nnz * sizeof(double), n = (size_t)b->n_active * sizeof(double);
+    if (!CHECK_MSG(a->n_active == b->n_active && a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, (size_t)b->L.nnz * sizeof(int32_t)) == 0,
+                   "%s: another pattern", what)) return;
+    CHECK_MSG(memcmp(a->L.val, b->L.val, nnz) == 0, "%s: L", what);
+    CHECK_MSG(!a->B == !b->B && (!b->B || memcmp(a->B, b->B, nnz) == 0), "%s: B", what);
+    CHECK_MSG(memcmp(a->mass, b->mass, n) == 0 && memcmp(a->b_diag, b->b_diag, n) == 0, "%s: masses", what);
+    CHECK_MSG(memcmp(a->component_mass, b->component_mass, (size_t)b->n_components * sizeof(double)) == 0, "%s: components", what);
+    CHECK_MSG(a->area == b->area && a->h == b->h && a->b_ratio == b->b_ratio && a->conserves == b->conserves, "%s: area, h, ratio or conservation", what);
+    CHECK_MSG(memcmp(&a->mesh, &b->mesh, sizeof a->mesh) == 0, "%s: report", what);
+    CHECK_MSG(!b->xyz || memcmp(a->xyz, b->xyz, 3 * n) == 0, "%s: places", what);
+}
+
+static hd_laplacian *mov_polygons(const shape_poly *s, const double *xyz, hd_laplacian_kind kind, int updatable, hd_context *ctx) {
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts o;
+    hd_error e;
+    memset(&o, 0, sizeof o);
+    o.kind = kind;
+    o.updatable = updatable;
+    o.context = ctx;
+    CHECK_MSG(hd_laplacian_polygons(&lap, xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK, "%s", e.text);
+    return lap;
+}
+
+/* A column by a plan that moved, against that of a new plan: the same bits, as the pairs are. */
+static void mov_same_column(hd_heat *plan, const hd_laplacian *fresh, hd_method method, double t, const char *what) {
+    double *u = DENSE_NEW(double, fresh->n), *want = DENSE_NEW(double, fresh->n);
+    const hd_heat_opts o = eng_opts(method);
+    hd_heat *other = eng_create(fresh, &o);
+    hd_report rep;
+    CHECK(eng_ok(heat_column(plan, t, fresh->vertex[3], u, &rep), &rep, what) && eng_ok(heat_column(other, t, fresh->vertex[3], want, &rep), &rep, what));
+    CHECK_MSG(memcmp(u, want, (size_t)fresh->n * sizeof *u) == 0, "%s, %s: another column", what, eng_name(method));
+    hd_heat_free(other);
+    free(u);
+    free(want);
+}
+
+static void mov_polygon_frames(const shape_poly *s, hd_laplacian_kind kind, const char *what) {
+    double *xyz = DENSE_NEW(double, 3 * s->n);
+    const shape points = {s->n, s->xyz, 0, NULL};
+    static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    hd_laplacian *lap = mov_polygons(s, s->xyz, kind, 1, &ctx), *fresh;
+    hd_heat *plan[3];
+    hd_error e;
+    int frame, k;
+    for (k = 0; k < 3; k++) {
+        const hd_heat_opts o = eng_opts(methods[k]);
+        plan[k] = eng_create(lap, &o);
+    }
+    for (frame = 0; frame < 4; frame++) {
+        int64_t calls;
+        mov_bend(&points, 0.3 * (3 - frame), xyz);   /* the last frame is the start again */
+        calls = m.calls;
+        CHECK_MSG(hd_laplacian_update(lap, xyz, &e) == HD_OK, "%s: %s", what, e.text);
+        CHECK_MSG(m.calls == calls && lap->version == frame + 1, "%s: the update allocates", what);
+        fresh = mov_polygons(s, xyz, kind, 0, NULL);
+        if (kind == HD_LAPLACIAN_POLYGON) mov_same_bits(lap, fresh, what);
+        else mov_same_laplacian(lap, fresh, what);
+        for (k = 0; k < 3 && kind == HD_LAPLACIAN_POLYGON; k++) mov_same_column(plan[k], fresh, methods[k], 20 * fresh->h * fresh->h, what);
+        hd_laplacian_free(fresh);
+    }
+    /* what cannot be taken leaves everything as it was */
+    fresh = mov_polygons(s, xyz, kind, 0, NULL);
+    for (k = 0; k < 3; k++) {
+        mov_bend(&points, 0.1, xyz);
+        if (k == 0) xyz[7] = NAN;
+        for (frame = 0; k == 1 && frame < 3 * s->n; frame++) xyz[frame] = 1;
+        for (frame = 0; k == 2 && frame < 3 * s->n; frame++) xyz[frame] = 1e200 * s->xyz[frame];
+        CHECK(hd_laplacian_update(lap, xyz, &e) == (k == 1 ? HD_ERR_EMPTY : HD_ERR_NOT_FINITE));
+        CHECK(k == 0 ? e.vertex == 2 : k == 1 ? e.vertex >= 0 : e.face >= 0 && e.face < s->n_faces);
+        if (kind == HD_LAPLACIAN_POLYGON) mov_same_bits(lap, fresh, what);
+        CHECK(lap->version == 4);
+    }
+    /* one face loses its area, and gets it back */
+    memcpy(xyz, s->xyz, 3 * (size_t)s->n * sizeof *xyz);
+    for (k = 1; k < s->face_ptr[1]; k++) memcpy(xyz + 3 * s->face_idx[k], xyz + 3 * s->face_idx[0], 3 * sizeof *xyz);
+    if (hd_laplacian_update(lap, xyz, &e) == HD_OK) CHECK(lap->mesh.n_zero_area > fresh->mesh.n_zero_area && lap->mesh.n_faces_used < fresh->mesh.n_faces_used);
+    CHECK(hd_laplacian_update(lap, s->xyz, &e) == HD_OK && lap->mesh.n_faces_used == fresh->mesh.n_faces_used);
+    hd_laplacian_free(fresh);
+    for (k = 0; k < 3; k++) hd_heat_free(plan[k]);
+    hd_laplacian_free(lap);
+    test_memory_done(&m, &ctx, what);
+    free(xyz);
+}
+
+/* L and B of a mesh as matrices over vertices: rows are vertices where every vertex has a mass. */
+static hd_csr mov_matrix(const hd_laplacian *lap, const double *val, int diagonal) {
+    hd_csr a = lap->L;
+    int32_t i;
+    if (!diagonal) {
+        a.val = DENSE_NEW(double, a.nnz);
+        memcpy(a.val, val, (size_t)a.nnz * sizeof(double));
+        return a;
+    }
+    a.nnz = a.n_rows;
+    a.row_ptr = DENSE_NEW(int64_t, a.n_rows + 1);
+    a.col = DENSE_NEW(int32_t, a.n_rows);
+    a.val = DENSE_NEW(double, a.n_rows);
+    for (i = 0; i < a.n_rows; i++) {
+        a.row_ptr[i] = a.col[i] = i;
+        a.val[i] = val[i];
+    }
+    a.row_ptr[i] = i;
+    return a;
+}
+
+static void mov_matrix_free(hd_csr *a, int diagonal) {
+    if (diagonal) {
+        free(a->row_ptr);
+        free(a->col);
+    }
+    free(a->val);
+}
+
+static void mov_matrix_frames(const shape *s, hd_laplacian_kind kind, const char *what) {
+    const int diagonal = kind != HD_LAPLACIAN_FEM;
+    static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
+    double *xyz = DENSE_NEW(double, 3 * s->n);
+    test_memory m;
+    hd_context ctx = test_memory_context(&m);
+    hd_laplacian *lap = NULL, *fresh = NULL, *mesh = test_laplacian_at(s, s->xyz, kind, 1, NULL);
+    hd_laplacian_opts o;
+    hd_heat *plan[3];
+    hd_csr L = mov_matrix(mesh, mesh->L.val, 0), B = mov_matrix(mesh, diagonal ? mesh->mass : mesh->B, diagonal);
+    hd_error e;
+    int frame, k;
+    memset(&o, 0, sizeof o);
+    o.updatable = 1;
+    o.context = &ctx;
+    CHECK_MSG(hd_laplacian_matrices(&lap, &L, &B, mesh->h, &o, &e) == HD_OK, "%s: %s", what, e.text);
+    for (k = 0; k < 3; k++) {
+        const hd_heat_opts ho = eng_opts(methods[k]);
+        plan[k] = eng_create(lap, &ho);
+    }
+    for (frame = 0; frame < 4; frame++) {
+        int64_t calls;
+        mov_bend(s, 0.3 * (3 - frame), xyz);
+        CHECK(hd_laplacian_update(mesh, xyz, NULL) == HD_OK);
+        memcpy(L.val, mesh->L.val, (size_t)L.nnz * sizeof(double));
+        memcpy(B.val, diagonal ? mesh->mass : mesh->B, (size_t)B.nnz * sizeof(double));
+        if (frame == 2) L.val[0] += 0.5;         /* heat is lost there */
+        calls = m.calls;
+        CHECK_MSG(hd_laplacian_update_matrices(lap, &L, &B, mesh->h, &e) == HD_OK, "%s: %s", what, e.text);
+        CHECK_MSG((m.calls == calls || !diagonal) && lap->version == frame + 1, "%s: the update allocates", what);
+        o.updatable = 0;
+        o.context = NULL;
+        fresh = NULL;
+        CHECK(hd_laplacian_matrices(&fresh, &L, &B, mesh->h, &o, &e) == HD_OK && fresh->conserves == (frame != 2));
+        mov_same_bits(lap, fresh, what);
+        for (k = 0; k < 3; k++) mov_same_column(plan[k], fresh, methods[k], 20 * mesh->h * mesh->h, what);
+        if (frame < 3) hd_laplacian_free(fresh);
+    }
+    /* errors, after which all is as it was */
+    for (k = 0; k < 7; k++) {
+        static const hd_status want[7] = {HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE, HD_ERR_NOT_POSITIVE,
+                                          HD_ERR_ARGUMENT, HD_ERR_STRUCTURE, HD_ERR_STRUCTURE};
+        hd_csr Lx = mov_matrix(mesh, L.val, 0), Bx = mov_matrix(mesh, B.val, diagonal), *dense = k == 5 ? &Lx : &Bx;
+        int64_t p;
+        if (k == 0) Lx.val[4] = NAN;
+        if (k == 1) Lx.val[1] += 1;
+        for (p = 0; k == 2 && p < Lx.nnz; p++) Lx.val[p] = -Lx.val[p];
+        for (p = 0; k == 3 && p < Bx.nnz; p++) Bx.val[p] = -Bx.val[p];
+        if (k >= 5) {                            /* a matrix with an entry in two far corners */
+            hd_csr a;
+            int32_t ij[2][4] = {{0, lap->n - 1, 0, 1}, {lap->n - 1, 0, 0, 1}};
+            const double v[4] = {0.5, 0.5, 1, 1};
+            CHECK(hd_csr_from_triplets(&a, lap->n, lap->n, 4, ij[0], ij[1], v, NULL, NULL) == HD_OK);
+            CHECK(hd_laplacian_update_matrices(lap, dense == &Lx ? &a : &L, dense == &Lx ? &B : &a, 1, &e) == want[k] && e.row >= 0);
+            hd_csr_free(&a, NULL);
+        } else {
+            CHECK_MSG(hd_laplacian_update_matrices(lap, &Lx, &Bx, k == 4 ? -1 : 1, &e) == want[k], "%s, error %d: %s", what, k, e.text);
+        }
+        mov_same_bits(lap, fresh, what);
+        CHECK(lap->version == 4);
+        mov_matrix_free(&Lx, 0);
+        mov_matrix_free(&Bx, diagonal);
+    }
+    CHECK(hd_laplacian_update(lap, s->xyz, &e) == HD_ERR_ARGUMENT && strstr(e.text, "matrices") != NULL);
+    CHECK(hd_laplacian_update_matrices(fresh, &L, &B, 1, &e) == HD_ERR_ARGUMENT && hd_laplacian_update_matrices(mesh, &L, &B, 1, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_update_matrices(NULL, &L, &B, 1, &e) == HD_ERR_ARGUMENT && hd_laplacian_update_matrices(lap, NULL, &B, 1, &e) == HD_ERR_ARGUMENT);
+    hd_laplacian_free(fresh);
+    for (k = 0; k < 3; k++) hd_heat_free(plan[k]);
+    hd_laplacian_free(lap);
+    hd_laplacian_free(mesh);
+    mov_matrix_free(&L, 0);
+    mov_matrix_free(&B, diagonal);
+    test_memory_done(&m, &ctx, what);
+    free(xyz);
+}
+
+/* Points are refused, and told why. */
+static void mov_points(const shape *s) {
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    memset(&o, 0, sizeof o);
+    o.updatable = 1;
+    CHECK(hd_laplacian_points(&lap, s->xyz, s->n, &o, &e) == HD_ERR_ARGUMENT && !lap && strstr(e.text, "pattern") != NULL);
+    CHECK(hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT && !lap && strstr(e.text, "triangles") != NULL);
+}
+
 static void test_moving(void) {
     shape ball = shape_bumpy(3, 5), sheet = shape_grid(13, 11, 0.3), soup = eng_soup(300, 500, 9);
     mov_frames(&ball, HD_LAPLACIAN_FEM, "ball, fem");
@@ -164,6 +370,19 @@ static void test_moving(void) {
     mov_frames(&sheet, HD_LAPLACIAN_VORONOI_COT, "sheet, voronoi-cot");
     mov_frames(&soup, HD_LAPLACIAN_FEM, "soup, fem");
     mov_errors();
+    {
+        shape_poly torus = shape_quad_torus(14, 9, 2, 0.7), cells = shape_hex_sphere(2), mixed = shape_trominoes(4, 5, 0.3);
+        mov_polygon_frames(&torus, HD_LAPLACIAN_POLYGON, "torus of quads");
+        mov_polygon_frames(&cells, HD_LAPLACIAN_POLYGON, "sphere of hexagons");
+        mov_polygon_frames(&mixed, HD_LAPLACIAN_POLYGON, "trominoes");
+        mov_polygon_frames(&torus, HD_LAPLACIAN_FEM, "torus of quads, split");
+        shape_poly_free(&torus);
+        shape_poly_free(&cells);
+        shape_poly_free(&mixed);
+    }
+    mov_matrix_frames(&ball, HD_LAPLACIAN_FEM, "matrices of fem");
+    mov_matrix_frames(&ball, HD_LAPLACIAN_VORONOI_COT, "matrices of voronoi-cot");
+    mov_points(&ball);
     mov_geodesic(&ball, "ball");
     mov_geodesic(&sheet, "sheet");
     shape_free(&ball);

@@ -384,7 +384,7 @@ typedef struct options {
     double tol, lambda, weight_cut, below;
     uint64_t memory_limit;
     int intrinsic_delaunay, tufted;
-    int json, quiet, help, version, no_header;
+    int json, quiet, help, version, no_header, dry_run;
     int colormap;                    /* pictures */
     int log_scale, has_range, has_view, has_isolines;
     long isolines, column, width, height;
@@ -726,6 +726,8 @@ static const option_def OPTIONS[] = {
     { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES",
       "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
+    { "dry-run", 0, CMD_SOLVES, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
+      "only tell what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
@@ -1478,6 +1480,10 @@ static int field_load(field_data *field, const char *path, const char *mesh_name
 
 enum { NAME_SIZE = 48 };
 
+/* Options with which a run that does not fit the memory would take less. */
+typedef struct way { char option[48]; double bytes; } way;
+enum { MAX_WAYS = 8 };
+
 typedef struct run {
     const options *o;
     const char *mesh_name;           /* for people */
@@ -1496,6 +1502,9 @@ typedef struct run {
     hd_geodesic_report geodesic_report;
     hd_spectrum *spectrum;
     hd_status spectrum_status;
+    hd_estimate estimate;            /* of --dry-run, or of a run that does not fit */
+    way ways[MAX_WAYS];
+    int n_ways;
     int32_t *pairs;                  /* pairs: [2 rows], first the i, then the j */
     int64_t rows;                    /* of the result: the vertices, the pairs or the points */
     /* column-major, rows x n_columns; input q after time k is column q n_times + k */
@@ -1554,7 +1563,7 @@ static int fail_library(const char *file, const hd_error *e)
     char place[120] = "";
     if (e->status == HD_ERR_CANCELLED && interrupt.asked) return INTERRUPTED;
     if (e->status == HD_ERR_MEMORY_LIMIT && e->value > 0)
-        return fail(FAILED, "%s: %.4g MB more do not fit the memory limit "
+        return fail(FAILED, "%s: at least %.1f MB are needed, more than the memory limit "
                     "(--memory-limit, by default nine tenths of the machine's memory)",
                     file, 1e-6 * e->value);
     if (e->face >= 0) snprintf(place, sizeof place, " face %lld:", (long long)e->face);
@@ -1797,13 +1806,212 @@ static int run_plan(run *r)
     return hd_heat_create(&r->heat, r->lap, &opts, &err) < 0 ? fail_library(r->mesh_name, &err) : DONE;
 }
 
+/* ---- what a run would take ---- */
+
+/* The krylov method takes one input after the other, each at all times. Other methods take one time after the
+ * other, each with all inputs. If the method is free, new pole factors for each time cost less once there are
+ * about as many inputs as times, but never with many times. Measured on meshes of 12K, 35K and 150K vertices:
+ * from 2 to 5 inputs with 4 times, from 8 to 15 inputs with 10. */
+static int time_by_time(const run *r, int n_times)
+{
+    const options *o = r->o;
+    if (o->method != HD_METHOD_AUTO) return o->method != HD_METHOD_KRYLOV;
+    return o->solver || o->precond || o->degree || o->poles || (n_times <= 16 && r->n_inputs >= n_times);
+}
+
+/* Distinct vertices of the pairs. Without memory to tell, all of them count. */
+static int32_t pairs_vertices(const run *r)
+{
+    const int64_t ids = 2 * r->rows;
+    char *seen = (char *)calloc((size_t)r->mesh.n + 1, 1);
+    int32_t count = 0;
+    int64_t i;
+    for (i = 0; seen && i < ids; i++)
+        if (!seen[r->pairs[i]]++) count++;
+    if (!seen) count = ids < r->mesh.n ? (int32_t)ids : r->mesh.n;
+    free(seen);
+    return count;
+}
+
+/* The library's name of the command's query, and how many items it has. */
+static hd_query query_of(const run *r, int32_t *k)
+{
+    const options *o = r->o;
+    *k = (int32_t)r->n_inputs;
+    if (o->command == CMD_KERNEL) return HD_QUERY_COLUMNS;
+    if (o->command == CMD_DIFFUSE) return HD_QUERY_FIELDS;
+    if (o->command == CMD_HKS)
+        return o->kernel == HD_KERNEL_OPERATOR ? HD_QUERY_DIAGONAL_OPERATOR : HD_QUERY_DIAGONAL;
+    if (o->command == CMD_SAMPLE) *k = (int32_t)o->count;
+    if (o->command == CMD_PAIRS) *k = pairs_vertices(r);
+    if (o->command == CMD_PAIRS && !is_timeless(o)) return HD_QUERY_PAIRS;
+    return (hd_query)(HD_QUERY_DISTANCE + o->definition);
+}
+
+/* The estimate of the run's first so many times by a plan. */
+static hd_status estimate_query(const run *r, hd_heat *heat, int n_times, hd_estimate *e, hd_error *err)
+{
+    int32_t k;
+    const hd_query query = query_of(r, &k);
+    /* the tool takes these one by one; the last is the longest of auto:K and what most people write */
+    const int single = r->o->command == CMD_PAIRS || (query <= HD_QUERY_COLUMNS && time_by_time(r, n_times));
+    const int again = single && n_times > 1;
+    const double *t = r->times + (again ? n_times - 1 : 0), twice[2] = { *t, *t };
+    hd_estimate two;
+    int m;
+    if (hd_heat_estimate(heat, query, single ? 1 : n_times, t, k, e, err) < 0 || !again) return err->status;
+    /* while a second time is factorised, work arrays of the first are still there */
+    if (hd_heat_estimate(heat, query, 2, twice, k, &two, err) < 0) return err->status;
+    e->cost[HD_METHOD_DIRECT].bytes = two.cost[HD_METHOD_DIRECT].bytes;
+    e->cost[HD_METHOD_DIRECT].bytes_most = two.cost[HD_METHOD_DIRECT].bytes_most;
+    for (m = 1; m <= HD_METHOD_KRYLOV; m++) {
+        e->cost[m].flops *= n_times;
+        e->cost[m].seconds *= n_times;
+        e->cost[m].fits = e->cost[m].possible && e->cost[m].bytes <= e->bytes_left;
+    }
+    e->cost[0] = e->cost[e->method];
+    return HD_OK;
+}
+
+static double bytes_needed(const run *r) { return r->estimate.bytes_in_use + r->estimate.cost[0].bytes; }
+
+/* Notes a way out, if it takes less. */
+static void add_way(run *r, const char *option, double bytes)
+{
+    way *w = r->ways + r->n_ways;
+    if (r->n_ways == MAX_WAYS || !(bytes < bytes_needed(r))) return;
+    snprintf(w->option, sizeof w->option, "%s", option);
+    w->bytes = bytes;
+    r->n_ways++;
+}
+
+/* A way out by other options than the run's: its plan is made and asked. */
+static void try_options(run *r, const options *o, const char *option)
+{
+    run other = *r;
+    hd_estimate e;
+    hd_error err;
+    const int same = o->tufted == r->o->tufted && o->weight_cut == r->o->weight_cut;
+    other.o = o;
+    memset(&other.context, 0, sizeof other.context);
+    other.context.progress = on_progress;
+    other.context.n_threads = r->context.n_threads;
+    if (!same) other.lap = NULL;
+    other.heat = NULL;
+    if (!interrupt.asked && (same || run_laplacian(&other, &err) >= 0) && other.lap && !run_plan(&other)) {
+        if (estimate_query(&other, other.heat, other.n_times, &e, &err) >= 0)
+            add_way(r, option, e.bytes_in_use + e.cost[0].bytes + (same ? (double)r->context.bytes_in_use : 0));
+        hd_heat_free(other.heat);
+    }
+    if (!same) hd_laplacian_free(other.lap);
+    interrupt.patient = 1;
+}
+
+static const double WIDER_CUT = 1e-4;    /* halves the rows of exponential weights and changes L by 0.1 % */
+
+/* What else would do for a run that does not fit, each with its need. */
+static void find_ways(run *r)
+{
+    const hd_estimate *e = &r->estimate;
+    const hd_cost *iterative = &e->cost[HD_METHOD_ITERATIVE], *krylov = &e->cost[HD_METHOD_KRYLOV];
+    hd_estimate one;
+    hd_error err;
+    options o = *r->o;
+    r->n_ways = 0;
+    if (r->o->method != HD_METHOD_ITERATIVE && iterative->possible)
+        add_way(r, "--method iterative", e->bytes_in_use + iterative->bytes);
+    if (r->o->method == HD_METHOD_DIRECT && krylov->possible && !r->o->degree && !r->o->poles)
+        add_way(r, "--method krylov", e->bytes_in_use + krylov->bytes);
+    if (r->n_times > 1 && r->heat && estimate_query(r, r->heat, 1, &one, &err) >= 0 &&
+        one.cost[0].bytes < 0.95 * e->cost[0].bytes)
+        add_way(r, "one time after the other", one.bytes_in_use + one.cost[0].bytes);
+    if (o.degree > 9) {
+        o.degree = 8;
+        try_options(r, &o, "--degree 8");
+    }
+    o = *r->o;
+    o.tufted = 1;
+    o.laplacian = HD_LAPLACIAN_DEFAULT;
+    o.weight_cut = 0;
+    o.has_bandwidth = 0;
+    if (has_exponentials(r) && laplacian_kind(r) == HD_LAPLACIAN_VORONOI_EXP) try_options(r, &o, "--tufted");
+    o = *r->o;
+    o.weight_cut = WIDER_CUT;
+    if (has_exponentials(r) && r->o->weight_cut < WIDER_CUT) try_options(r, &o, "--weight-cut 1e-4");
+}
+
+/* A run that does not fit the memory: what it needs, what is allowed, and what would fit. */
+static int fail_limit(run *r, const hd_error *e)
+{
+    char ways[600] = "";
+    hd_error err;
+    double allowed = (double)r->context.byte_limit, needed;
+    int i;
+    if (!r->heat || estimate_query(r, r->heat, r->n_times, &r->estimate, &err) < 0 ||
+        r->estimate.cost[0].fits || !r->estimate.cost[0].possible)
+        return fail_library(r->mesh_name, e);
+    needed = bytes_needed(r);
+    needed = needed > e->value ? needed : e->value;
+    find_ways(r);
+    if (interrupt.asked) return INTERRUPTED;
+    for (i = 0; i < r->n_ways; i++)
+        snprintf(ways + strlen(ways), sizeof ways - strlen(ways), "%s%s needs %.1f MB%s", i ? ", " : "; ",
+                 r->ways[i].option, 1e-6 * r->ways[i].bytes, r->ways[i].bytes > allowed ? " (too much)" : "");
+    return fail(FAILED, "%s: %.1f MB are needed, and %.1f MB are allowed (--memory-limit, by default nine "
+                "tenths of the machine's memory)%s", r->mesh_name, 1e-6 * needed, 1e-6 * allowed, ways);
+}
+
+/* --dry-run: the estimate, and what else would fit if the run does not. */
+static int dry_run(run *r)
+{
+    hd_error err;
+    const int code = run_plan(r);
+    if (code) return code;
+    if (estimate_query(r, r->heat, r->n_times, &r->estimate, &err) < 0) return fail_library(r->mesh_name, &err);
+    if (!r->estimate.cost[0].fits) find_ways(r);
+    return interrupt.asked ? INTERRUPTED : DONE;
+}
+
+/* Flops per second of real factorisations, and bytes for each vertex, of a plan for geodesic distances. */
+static const double GEODESIC_RATE = 25e9, GEODESIC_VERTEX = 430;
+
+/* The same of geodesic: two real factors on the pattern of L. */
+static int dry_run_geodesic(run *r)
+{
+    hd_cost *c = r->estimate.cost;
+    hd_ldl_opts opts;
+    hd_ldl_report report;
+    hd_ldl *f = NULL;
+    hd_error err;
+    if (r->mesh.n_tri == 0) return fail(FAILED, "%s: geodesic needs faces, and there are none", r->mesh_name);
+    memset(&opts, 0, sizeof opts);
+    opts.ordering = (hd_ordering)r->o->ordering;
+    opts.xyz = r->lap->xyz;
+    opts.context = &r->context;
+    if (hd_ldl_analyse(&f, &r->lap->L, &opts, &report, &err) < 0) return fail_library(r->mesh_name, &err);
+    r->estimate.bytes_in_use = (double)r->context.bytes_in_use;
+    hd_ldl_free(f);
+    c->possible = r->estimate.analysed = 1;
+    c->flops = 2 * report.factor_flops + r->n_inputs * 8.0 * (double)report.factor_nnz;
+    c->seconds = c->flops / GEODESIC_RATE;
+    c->bytes = c->bytes_most = 16.0 * (double)report.stored + GEODESIC_VERTEX * r->lap->n;
+    r->estimate.bytes_left = r->context.byte_limit ? (double)r->context.byte_limit - r->estimate.bytes_in_use
+                                                   : HUGE_VAL;
+    c->fits = c->bytes <= r->estimate.bytes_left;
+    r->estimate.method = HD_METHOD_DIRECT;
+    r->estimate.reason = "two real factors serve all sources";
+    c[HD_METHOD_DIRECT] = c[0];
+    return interrupt.asked ? INTERRUPTED : DONE;
+}
+
 static double *column_of(const run *r, int q, int k)
 {
     return r->values + ((size_t)q * (size_t)r->n_times + (size_t)k) * (size_t)r->rows;
 }
 
-static int fail_solve(const run *r, hd_report *report, int q)
+static int fail_solve(run *r, hd_report *report, int q)
 {
+    if (report->status == HD_ERR_MEMORY_LIMIT) return fail_limit(r, &report->error);
     if (report->error.row >= 0 && report->error.column >= 0) report->error.column += q;
     return fail_library(report->status == HD_ERR_NOT_FINITE && r->fields ? r->field_name : r->mesh_name,
                         &report->error);
@@ -1852,17 +2060,6 @@ static int solve_input(run *r, const time_group *g, int q, hd_report *report)
     if (q > 0 && report->method == HD_METHOD_KRYLOV) report->factor_flops = 0;
     summary_add(&r->sum, report, g->index, g->n);
     return DONE;
-}
-
-/* The krylov method takes one input after the other, each at all times. Other methods take one time after the
- * other, each with all inputs. If the method is free, new pole factors for each time cost less once there are
- * about as many inputs as times, but never with many times. Measured on meshes of 12K, 35K and 150K vertices:
- * from 2 to 5 inputs with 4 times, from 8 to 15 inputs with 10. */
-static int time_by_time(const run *r, int n_times)
-{
-    const options *o = r->o;
-    if (o->method != HD_METHOD_AUTO) return o->method != HD_METHOD_KRYLOV;
-    return o->solver || o->precond || o->degree || o->poles || (n_times <= 16 && r->n_inputs >= n_times);
 }
 
 /* If the library chooses the method, its choice for the first input decides the order of the others. */
@@ -2064,11 +2261,12 @@ static int solve_spectrum(run *r)
 /* Leaves the plan in r->heat for further questions. */
 static int run_solve(run *r)
 {
-    int code = r->o->command == CMD_SPECTRUM ? DONE : run_columns(r);
+    int code = r->o->dry_run || r->o->command == CMD_SPECTRUM ? DONE : run_columns(r);
     if (code) return code;
     interrupt.patient = 1;
     stages_start();
-    if (r->o->command == CMD_GEODESIC) code = solve_geodesic(r);
+    if (r->o->dry_run) code = r->o->command == CMD_GEODESIC ? dry_run_geodesic(r) : dry_run(r);
+    else if (r->o->command == CMD_GEODESIC) code = solve_geodesic(r);
     else if (r->o->command == CMD_SPECTRUM) code = solve_spectrum(r);
     else {
         code = run_plan(r);
@@ -2369,6 +2567,87 @@ static void report_heat(const run *r)
         json_heat(&j, r);
         json_end(&j, r);
     } else if (!r->o->quiet) print_heat(r);
+}
+
+/* ---- of --dry-run ---- */
+
+static void json_cost(json *j, const char *name, const run *r, const hd_cost *c)
+{
+    json inner;
+    json_key(j, name);
+    json_open(&inner, j->out);
+    json_number(&inner, "flops", c->flops);
+    json_number(&inner, "seconds", c->seconds);
+    json_number(&inner, "bytes", r->estimate.bytes_in_use + c->bytes);
+    json_number(&inner, "bytes_most", r->estimate.bytes_in_use + c->bytes_most);
+    json_key(&inner, "fits");
+    fputs(c->fits ? "true" : "false", inner.out);
+    json_close(&inner);
+}
+
+static void json_estimate(json *j, const run *r)
+{
+    const hd_estimate *e = &r->estimate;
+    json inner;
+    int m;
+    json_key(j, "dry_run");
+    fputs("true", j->out);
+    json_text(j, "method", word_of(METHODS, (int)e->method));
+    json_text(j, "reason", e->reason);
+    json_key(j, "analysed");
+    fputs(e->analysed ? "true" : "false", j->out);
+    json_cost(j, "estimate", r, &e->cost[0]);
+    json_number(j, "bytes_in_use", e->bytes_in_use);
+    json_number(j, "bytes_allowed", r->context.byte_limit ? (double)r->context.byte_limit : (double)NAN);
+    json_key(j, "methods");
+    json_open(&inner, j->out);
+    for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_KRYLOV; m++)
+        if (e->cost[m].possible) json_cost(&inner, word_of(METHODS, m), r, &e->cost[m]);
+    json_close(&inner);
+    json_key(j, "ways_out");
+    json_open(&inner, j->out);
+    for (m = 0; m < r->n_ways; m++) json_number(&inner, r->ways[m].option, r->ways[m].bytes);
+    json_close(&inner);
+}
+
+static void print_cost(const run *r, const char *name, const hd_cost *c)
+{
+    fprintf(stderr, "%-10s %9.3g flops, %8.3g s, %9.1f MB%s\n", name, c->flops, c->seconds,
+            1e-6 * (r->estimate.bytes_in_use + c->bytes), c->fits ? "" : ", too much");
+}
+
+static void print_estimate(const run *r)
+{
+    const hd_estimate *e = &r->estimate;
+    const hd_cost *c = &e->cost[0];
+    int m;
+    fprintf(stderr, "dry run: method %s (%s)\n", word_of(METHODS, (int)e->method), e->reason);
+    fprintf(stderr, "%s: %.3g flops, about %.3g s on one core\n",
+            e->analysed ? "by the analysis of the pattern" : "guessed before the analysis of the pattern",
+            c->flops, c->seconds);
+    fprintf(stderr, "memory at the peak %.1f MB, of which %.1f MB are in use now", 1e-6 * bytes_needed(r),
+            1e-6 * e->bytes_in_use);
+    if (r->context.byte_limit) fprintf(stderr, "; allowed %.1f MB", 1e-6 * (double)r->context.byte_limit);
+    fprintf(stderr, c->fits ? "\n" : ": too much\n");
+    if (c->bytes_most > c->bytes)
+        fprintf(stderr, "with poles of degree 14, if they are needed, %.1f MB\n",
+                1e-6 * (e->bytes_in_use + c->bytes_most));
+    for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_KRYLOV; m++)
+        if (e->cost[m].possible && r->o->command != CMD_GEODESIC) print_cost(r, word_of(METHODS, m), &e->cost[m]);
+    for (m = 0; m < r->n_ways; m++)
+        fprintf(stderr, "%s needs %.1f MB\n", r->ways[m].option, 1e-6 * r->ways[m].bytes);
+}
+
+static void report_estimate(const run *r)
+{
+    json j;
+    if (r->o->json) {
+        json_begin(&j, r, stderr);
+        json_laplacian(&j, r->lap);
+        json_estimate(&j, r);
+        json_query(&j, r);
+        json_end(&j, r);
+    } else if (!r->o->quiet) print_estimate(r);
 }
 
 /* ---- of geodesic ---- */
@@ -2954,6 +3233,20 @@ static int command_info(run *r)
 
 /* ==== kernel, diffuse, distance, hks, pairs, sample, render ==== */
 
+/* The computation, and what becomes of it: a file and a report, or with --dry-run an estimate. */
+static int command_finish(run *r, int (*write)(run *), void (*report)(const run *))
+{
+    int code = run_solve(r);
+    if (code) return code;
+    if (r->o->dry_run) {
+        report_estimate(r);
+        return DONE;
+    }
+    code = write(r);
+    if (!code) report(r);
+    return code;
+}
+
 /* Fields on the mesh that begin at vertices, or at all of them. */
 static int command_columns(run *r)
 {
@@ -2961,10 +3254,7 @@ static int command_columns(run *r)
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     if (!code && r->o->command != CMD_HKS) code = run_sources(r);
-    if (!code) code = run_solve(r);
-    if (!code) code = write_heat(r);
-    if (!code) report_heat(r);
-    return code;
+    return code ? code : command_finish(r, write_heat, report_heat);
 }
 
 /* The two ids of a row into r->pairs. */
@@ -3016,10 +3306,7 @@ static int command_pairs(run *r)
     if (!code) code = run_pairs(r);
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
-    if (!code) code = run_solve(r);
-    if (!code) code = write_ids(r);
-    if (!code) report_heat(r);
-    return code;
+    return code ? code : command_finish(r, write_ids, report_heat);
 }
 
 static int command_sample(run *r)
@@ -3031,10 +3318,7 @@ static int command_sample(run *r)
         code = fail(FAILED, "%s: --count %ld is beyond the mesh, which has %ld vertices with mass",
                     r->mesh_name, r->o->count, (long)r->lap->n_active);
     if (!code) code = run_sources(r);
-    if (!code) code = run_solve(r);
-    if (!code) code = write_ids(r);
-    if (!code) report_heat(r);
-    return code;
+    return code ? code : command_finish(r, write_ids, report_heat);
 }
 
 static int command_geodesic(run *r)
@@ -3043,10 +3327,7 @@ static int command_geodesic(run *r)
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     if (!code) code = run_sources(r);
-    if (!code) code = run_solve(r);
-    if (!code) code = write_heat(r);
-    if (!code) report_geodesic(r);
-    return code;
+    return code ? code : command_finish(r, write_heat, report_geodesic);
 }
 
 static int command_spectrum(run *r)
@@ -3071,11 +3352,9 @@ static int command_diffuse(run *r)
     r->n_inputs = field.columns;
     r->fields = field.values;
     r->field_name = r->o->input;
-    if (!code) code = run_solve(r);
+    if (!code) code = command_finish(r, write_heat, report_heat);
     r->fields = NULL;
     field_free(&field);
-    if (!code) code = write_heat(r);
-    if (!code) report_heat(r);
     return code;
 }
 
