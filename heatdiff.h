@@ -20768,9 +20768,9 @@ static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_cost *c, double room) 
  * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, never a clock, so the same calls take the same
  * methods everywhere. */
 static int hdi_heat_habit(const hdi_heat_call *h, const hdi_cost *c, double room) {
-    return h->method != HD_METHOD_DIRECT && h->n_times == 1 && h->t == h->heat->habit_t &&
-           h->heat->habit_spent >= c->factors && c->direct - c->factors < h->cost && c->direct_bytes <= room &&
-           HDI_HAS_POLE_FACTORS;
+    if (!HDI_HAS_POLE_FACTORS || h->method == HD_METHOD_DIRECT || c->direct_bytes > room) return 0;
+    return h->n_times == 1 && h->t == h->heat->habit_t && h->heat->habit_spent >= c->factors &&
+           c->direct - c->factors < h->cost;
 }
 
 /* Notes what a call has cost. Factors that are made begin the count anew. */
