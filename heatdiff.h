@@ -700,7 +700,9 @@ typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
     double flops;               /* real floating-point operations, of factorisations, inversions and solves */
-    double seconds;             /* by a model of one core, which is right within a factor of about two */
+    /* By a model of one quiet core: within a factor of about two for factorisations. Iterations with poles on
+     * well-shaped meshes take less, down to a tenth. */
+    double seconds;
     double bytes;               /* at the peak, beyond what the context has in use now */
     /* The same if poles of degree 14 take over: for demanding fields, and where slivers or the time make the
      * bound of a diagonal, of edges or of distances too large. Without room for that the last three do with
@@ -23752,7 +23754,7 @@ static void hdi_estimate_krylov(const hdi_estimate *x, double seconds, double he
     const hdi_fill f = hdi_heat_fill(heat);
     const double span = x->h->times[x->h->n_times - 1] / x->h->times[0], n = heat->source->n_active;
     const int32_t windows = heat->elim.ctx && x->h->n_times > 1 ? hdi_krylov_windows(s, span) : 1;
-    const double longer = x->h->n_times > 1 ? 1.5 : 1.2;   /* more than expected, to be safe */
+    const double longer = x->h->n_times > 1 ? 1.5 : 1.3;   /* more than expected, to be safe */
     const double steps = hdi_min(HDI_SILAN_MAX, longer * hdi_krylov_steps(pow(span, 1.0 / windows)));
     const int32_t wide = x->k > 3 ? HDI_SILAN_WIDE : 1;
     double bytes = HDI_ESTIMATE_SMALL + HDI_CAST(double, sizeof(hdi_silan)) + wide * 56 * n + held;
