@@ -644,7 +644,9 @@ typedef struct hd_spectrum_opts {
     int32_t begin_zero;
     int32_t count;              /* pairs wanted; 0: all below `below` */
     double below;               /* > 0: only eigenvalues below this; 0: no such bound */
-    double tol;                 /* of residuals, see hd_spectrum.residual; default 1e-10 */
+    /* Of residuals, see hd_spectrum.residual; default 1e-10. Rounding of L x may be larger where the smallest
+     * eigenvalues are below 1e-6 of the largest. */
+    double tol;
     hd_ordering ordering;
     const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th */
     hd_context *context;        /* default: the Laplacian's */
@@ -657,16 +659,18 @@ typedef struct hd_spectrum {
     int32_t n;                  /* vertices */
     int32_t count;              /* pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
-    double *vector;             /* [n count] column-major, B-orthonormal, 0 at vertices without mass. The entry
-                                   with the largest absolute value is positive */
+    /* [n count] column-major, B-orthonormal, 0 at vertices without mass. The entry with the largest absolute
+     * value is positive */
+    double *vector;
     /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 relative to
      * the first eigenvalue that does not belong to constants */
     double *residual;
     double largest_residual;
+    int32_t n_poor;             /* residuals above tol and above what rounding of L x alone makes */
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
-    /* 1: proven complete. No pair is missing: L - shift B has as many negative pivots as there are eigenvalues
-     * found below the shift, and rounding cannot change the count, because no eigenvalue found is within
-     * shift_margin of the shift. 0: the count was not reliable; the status is HD_WARN_ACCURACY */
+    /* 1: proven complete. No pair is missing: L - shift B has as many negative pivots as there are
+     * eigenvalues found below the shift, and rounding cannot change the count, because no eigenvalue found is
+     * within shift_margin of the shift. 0: the count was not reliable; the status is HD_WARN_ACCURACY */
     int32_t proven;
     double shift, shift_margin;
     double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
@@ -1281,7 +1285,7 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
  * opts   count, below, or both: then whichever ends first. count may be all n_active. NULL is an error
  * Errors HD_ERR_ARGUMENT (also: more pairs than rows), HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED,
  *        HD_ERR_INDEX (row: perm is not a permutation), HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
- *        with a result: a residual is above tol, or completeness is not proven
+ *        with a result: n_poor is not 0, or completeness is not proven
  * Cost   for about 100 pairs at a time one real factorisation of an indefinite matrix, some 250 solves, and
  *        the orthogonalisation of as many vectors; at the end 4 n count^2 flops. Memory: the vectors twice,
  *        some 400 more vectors, and a factor
@@ -1290,8 +1294,8 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
                                           const hd_spectrum_opts *opts, hd_error *err);
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
 
-/* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x) x_i(y)
- * and the like. Definitions, kinds, shapes and vertices without mass are those of hd_heat_columns,
+/* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
+ * x_i(y) and the like. Definitions, kinds, shapes and vertices without mass are those of hd_heat_columns,
  * hd_heat_diagonal and hd_heat_distance. What is left out is bounded.
  * bound  of the shape of the output and ldu or ldd, or NULL: bounds of the error of each value. The part of
  *        the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That of
@@ -18858,12 +18862,19 @@ enum {
     HDI_SPEC_STEPS = 4,              /* blocks from one look at the projected problem to the next */
     HDI_SPEC_GAPS = 16,              /* pairs beyond those wanted among which a gap is looked for */
     HDI_SPEC_TRIES = 6,              /* of shifts in a row, and of runs that find nothing */
-    HDI_SPEC_PASSES = 6,             /* most, until a block is orthogonal; two are the rule */
+    HDI_SPEC_PASSES = 16,            /* most, until a block is orthogonal; two are the rule */
     HDI_SPEC_PROOFS = 4              /* shifts that may fail to prove that all is found */
 };
 
-/* A run is kept orthogonal to locked vectors whose values are less far from the shift than this many times the
- * part where values are missing. */
+/* Shifts are this part of the mean distance of eigenvalues, or more, away from those known. */
+#define HDI_SPEC_NARROW 0.02
+
+/* Pivots that are larger than this many times the matrix spoil solves. On meshes of 3K to 50K vertices they
+ * are 10 to 500 times as large, whatever the shift is; a few shifts are unlucky. */
+#define HDI_SPEC_GROWTH 1e4
+
+/* A run is kept orthogonal to locked vectors whose values are less far from the shift than this many times
+ * the part where values are missing. */
 #define HDI_SPEC_NEARBY 1.5
 
 /* ---- small dense eigenproblems ---- */
@@ -19059,13 +19070,17 @@ typedef struct hdi_spec {
     int32_t most;                /* columns that the basis may have */
     int32_t cols, last, width;   /* columns of the basis; first column and width of its last block */
     int32_t before;              /* first column of the block before that */
+    double lost;                 /* largest column of a block that was dropped */
+    int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
     int32_t fresh;               /* columns after them: the newest block, which T does not have yet */
-    double couple[HDI_SPEC_WIDE * HDI_SPEC_WIDE];   /* the newest block times this is what the last one lacks */
-    double *T, *A, *z, *d, *off_ritz; /* [MOST][MOST] projected matrix, twice; eigenvectors; [MOST] eigenvalues,
-                                    residuals */
+    double couple[HDI_SPEC_WIDE * HDI_SPEC_WIDE];   /* the newest block times this lacks in the last one */
+    double *T, *A, *z;           /* [MOST][MOST] projected matrix, twice; eigenvectors */
+    double *d, *off_ritz;        /* [MOST] eigenvalues, residuals */
     double *w, *bw, *tmp;        /* [n][8] a block, B times it, and another */
     double *sweep, *h, *part, *work;
     double *group, *group_b;     /* [GROUP][n][8] */
+    double *noise;               /* [n] weights of rounding in residuals; [n] work */
+    int32_t n_poor;              /* residuals above the tolerance and rounding */
     uint64_t seed;
     int32_t n_factors, n_runs, n_solves;
     double next;                 /* no other eigenvalue is below it */
@@ -19094,6 +19109,7 @@ static void hdi_spec_free(hdi_spec *s) {
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, m->lap->n_active), most = HDI_SPEC_MOST, wide = HDI_SPEC_WIDE;
     const uint64_t h = (most + wide) * wide * HDI_SPEC_GROUP;
+    const uint64_t group = n * wide * HDI_SPEC_GROUP;
     memset(s, 0, sizeof *s);
     s->ctx = m->ctx;
     s->m = m;
@@ -19101,7 +19117,7 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     s->n = m->lap->n_active;
     s->tol = tol;
     s->ops = hdi_real_ops_get(hdi_simd_level(m->ctx));
-    s->most = count < HDI_SPEC_MOST / 2 ? hdi_low32(2 * count + HDI_SPEC_SPARE, HDI_SPEC_MOST) : HDI_SPEC_MOST;
+    s->most = hdi_low32(2 * hdi_low32(count, HDI_SPEC_MOST) + HDI_SPEC_SPARE, HDI_SPEC_MOST);
     s->most = hdi_low32(s->most, s->n);
     if (hdi_slab_make(&s->basis, s->n, s->most + HDI_SPEC_WIDE, s->ctx, e) < 0) return e->status;
     s->value = HDI_NEW(s->ctx, double, 2 * n, e);
@@ -19110,7 +19126,7 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     if (s->T) s->w = HDI_NEW(s->ctx, double, 3 * n * wide, e);
     if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_SPEC_WIDE), e);
     if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * (HDI_SPEC_CHUNKS + 1), e);
-    if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * n * wide * HDI_SPEC_GROUP, e);
+    if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * group + 2 * n, e);
     if (e->status < 0) return e->status;
     s->residual = s->value + n;
     s->col_of = s->slab_of + n;
@@ -19122,7 +19138,8 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     s->bw = s->w + n * wide;
     s->tmp = s->bw + n * wide;
     s->part = s->h + h;
-    s->group_b = s->group + n * wide * HDI_SPEC_GROUP;
+    s->group_b = s->group + group;
+    s->noise = s->group_b + group;
     return HD_OK;
 }
 
@@ -19267,37 +19284,46 @@ static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
 }
 
 /* A direction that is so much smaller than the column it is left of, is rounding. */
-#define HDI_SPEC_RANK 1e-13
-/* Residuals above this part of the tolerance are taken out of vectors. */
+#define HDI_SPEC_RANK (16 * DBL_EPSILON)
+/* Runs aim at this part of the tolerance. Where errors of solves make residuals larger than the next part of
+ * it, they are taken out of the vectors. */
+#define HDI_SPEC_STRICT 0.3
 #define HDI_SPEC_POLISH 0.5
-/* A column of which less is left has lost a digit of orthogonality. */
+/* Below this part of a squared norm a difference of products has too few digits. */
+#define HDI_SPEC_WEAK 1e-6
+/* A column of which less than this part is left has lost a digit of orthogonality. */
 #define HDI_SPEC_SHRUNK 0.1
 
-/* G = R' R for the Gram matrix G of a block; a column that depends on those before it keeps a small pivot, and
- * the next pass sees to it. scale [8]: what columns have been divided by so far, against norm [8]. Returns
- * how far G is from the identity. */
-static double hdi_spec_cholesky(const double *G, double *R, double *scale, const double *norm) {
+/* G = R' R for the Gram matrix G of a block. A column that nearly depends on those before it is only cleaned
+ * of them, and takes no part in the others: the next pass sees it as it is. scale [8]: what columns have been
+ * divided by so far, against norm [8]. Columns that are rounding become zero, and *drop the largest norm of
+ * them; drop NULL: none. Returns how far G is from the identity. */
+static double hdi_spec_cholesky(const double *G, double *R, double *scale, const double *norm,
+                                double *drop) {
+    int weak[HDI_SPEC_WIDE] = {0};
     double off = 0;
     int q, k, p;
     memset(R, 0, HDI_SPEC_WIDE * HDI_SPEC_WIDE * sizeof *R);
     for (q = 0; q < HDI_SPEC_WIDE; q++) {
+        const double size = G[9 * q] > 0 ? sqrt(G[9 * q]) : 0;
         double sum = G[9 * q];
         for (k = 0; k < q; k++) {
             double v = G[8 * k + q];
-            if (R[9 * k] == 0) continue;
+            if (R[9 * k] == 0 || weak[k]) continue;
             off = hdi_max(off, fabs(v));
             for (p = 0; p < k; p++) v -= R[8 * p + k] * R[8 * p + q];
             R[8 * k + q] = v / R[9 * k];
             sum -= R[8 * k + q] * R[8 * k + q];
         }
-        sum = G[9 * q] > 0 ? sqrt(hdi_max(sum, 4 * DBL_EPSILON * G[9 * q])) : 0;
-        if (!(scale[q] * sum > HDI_SPEC_RANK * norm[q])) {
-            for (k = 0; k < q; k++) R[8 * k + q] = 0;
-            sum = scale[q] = 0;
+        if (size == 0) continue;
+        if (drop && !(scale[q] * size > HDI_SPEC_RANK * norm[q])) {
+            *drop = hdi_max(*drop, scale[q] * size);
+            continue;
         }
-        if (sum > 0) off = hdi_max(off, fabs(G[9 * q] - 1));
-        scale[q] *= sum;
-        R[9 * q] = sum;
+        weak[q] = !(sum > HDI_SPEC_WEAK * G[9 * q]);
+        R[9 * q] = weak[q] ? size : sqrt(sum);
+        off = weak[q] ? HUGE_VAL : hdi_max(off, fabs(G[9 * q] - 1));
+        scale[q] *= R[9 * q];
     }
     return off;
 }
@@ -19344,8 +19370,8 @@ static void hdi_spec_local(hdi_spec *s) {
 }
 
 /* Block w orthogonal to the basis and to the slabs nearby, with orthonormal columns, all in B; bw = B w.
- * couple receives the triangular factor. Parts in the last two blocks go first, then what rounding left in all
- * vectors; again for columns that become much smaller by it. */
+ * couple receives the triangular factor. Parts in the last two blocks go first, then what rounding left in
+ * all vectors; again for columns that become much smaller by it. */
 static void hdi_spec_append(hdi_spec *s) {
     double norm[HDI_SPEC_WIDE], scale[HDI_SPEC_WIDE], removed[HDI_SPEC_WIDE], G[64], R[64], off = 1;
     int again = 1;
@@ -19362,10 +19388,12 @@ static void hdi_spec_append(hdi_spec *s) {
         if (clean) hdi_spec_clean(s, removed);
         hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_SPEC_WIDE, s->w, 1), NULL, 1);
         hdi_spec_dots(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_SPEC_WIDE, s->bw, 1), G);
-        off = hdi_spec_cholesky(G, R, scale, norm);
-        for (q = again = 0; q < HDI_SPEC_WIDE; q++)
-            again |= R[9 * q] > 0 && ((clean && removed[q] > HDI_SPEC_SHRUNK * R[9 * q]) ||
-                                      R[9 * q] < HDI_SPEC_SHRUNK * sqrt(G[9 * q]));
+        off = hdi_spec_cholesky(G, R, scale, norm, pass > 0 ? &s->lost : NULL);
+        again = off == HUGE_VAL;
+        for (q = 0; q < HDI_SPEC_WIDE; q++) {
+            again |= clean && R[9 * q] > 0 && removed[q] > HDI_SPEC_SHRUNK * R[9 * q];
+            again |= R[9 * q] > 0 && R[9 * q] < HDI_SPEC_SHRUNK * sqrt(hdi_max(G[9 * q], 0));
+        }
         hdi_spec_compose(R, s->couple);
         job.w = s->w;
         job.bw = s->bw;
@@ -19416,11 +19444,21 @@ static void hdi_spec_random(hdi_spec *s, double *w) {
     }
 }
 
+static double hdi_spec_lambda(const hdi_spec *s, int32_t i) { return s->sigma + 1 / s->d[i]; }
+
+static int hdi_spec_converged(const hdi_spec *s, int32_t i) {
+    return s->d[i] != 0 &&
+           s->off_ritz[i] <= HDI_SPEC_STRICT * s->tol * hdi_max(fabs(hdi_spec_lambda(s, i)), s->unit);
+}
+
 /* Eigenpairs of the projected matrix. full: all rows of the eigenvectors, else only those of the last block,
  * which tell the residuals. off_ritz becomes |L x - lambda B x| in the norm of B^-1 that the Ritz vector x
- * will have. */
+ * will have. Rounding is as large as the largest 1/(lambda - sigma) makes it. stuck: pairs for which it is
+ * too large, so that further steps are no use: then the eigenvalue next to the shift is locked, and is not in
+ * the way of the next run. */
 static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
     const int32_t m = s->cols, r = full ? m : s->width, at = full ? s->last : 0;
+    double largest = 0;
     int32_t i, j, a, k;
     for (i = 0; i < m; i++)
         for (j = 0; j <= i; j++)
@@ -19428,24 +19466,22 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
     memset(s->z, 0, HDI_CAST(size_t, m) * HDI_CAST(size_t, r) * sizeof *s->z);
     for (i = 0; i < r; i++) s->z[HDI_CAST(int64_t, i + (full ? 0 : s->last)) * r + i] = 1;
     if (!hdi_spec_eigen(s->A, s->d, s->z, m, r, s->work)) return hdi_lanczos_failed(e);
-    for (i = 0; i < m; i++) {
-        const double *y = s->z + HDI_CAST(int64_t, i) * r + at;
+    for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
+    for (i = s->stuck = 0; i < m; i++) {
+        const double *y = s->z + HDI_CAST(int64_t, i) * r + at, d2 = s->d[i] * s->d[i];
         double sum = 0;
+        int reached;
         for (a = 0; a < s->fresh; a++) {
             double c = 0;
             for (k = 0; k < s->width; k++) c += s->couple[8 * a + k] * y[k];
             sum += c * c;
         }
-        s->off_ritz[i] = s->d[i] != 0 ? sqrt(sum) / (s->d[i] * s->d[i]) : HUGE_VAL;
+        s->off_ritz[i] = d2 > 0 ? sqrt(sum) / d2 : HUGE_VAL;
+        reached = hdi_spec_converged(s, i);
+        s->off_ritz[i] += d2 > 0 ? (HDI_SPEC_WIDE * DBL_EPSILON * largest + s->lost) / d2 : 0;
+        s->stuck += reached && !hdi_spec_converged(s, i);
     }
     return HD_OK;
-}
-
-static double hdi_spec_lambda(const hdi_spec *s, int32_t i) { return s->sigma + 1 / s->d[i]; }
-
-static int hdi_spec_converged(const hdi_spec *s, int32_t i) {
-    return s->d[i] != 0 &&
-           s->off_ritz[i] <= s->tol * hdi_max(fabs(hdi_spec_lambda(s, i)), s->unit);
 }
 
 /* The smallest Ritz value above the shift that has not converged: those below it are taken. */
@@ -19469,6 +19505,7 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
     int32_t look = missing + beyond + 4 * HDI_SPEC_WIDE, i;
     double error;
     s->cols = s->last = s->before = s->width = s->fresh = 0;
+    s->lost = 0;
     hdi_spec_random(s, s->w);
     hdi_spec_append(s);
     hdi_spec_take(s);
@@ -19491,7 +19528,7 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
         if (hdi_progress(s->ctx, "solve", s->share, e) < 0) return e->status;
         if (s->fresh > 0 && s->cols + s->fresh <= s->most && s->cols < look) continue;
         if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
-        if (s->fresh == 0 || s->cols + s->fresh > s->most) return HD_OK;
+        if (s->fresh == 0 || s->cols + s->fresh > s->most || s->stuck) return HD_OK;
         {
             const double reach = hdi_spec_reach(s);
             int32_t left = missing, right = beyond;
@@ -19617,6 +19654,21 @@ static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     for (i = 0; i < size; i++) x[i] -= i % 8 < n ? s->w[i] : 0;
 }
 
+/* The same while residuals are too large, for the eigenvalues of block x. A step that makes them larger is
+ * taken back. */
+static void hdi_spec_polish_all(hdi_spec *s, const double *value, double *x, double *bx, int32_t n) {
+    double norm[HDI_SPEC_WIDE], worst = hdi_spec_measure(s, value, x, bx, norm), now;
+    int32_t tries;
+    int64_t i;
+    for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++, worst = now) {
+        hdi_spec_polish(s, x, n);
+        now = hdi_spec_measure(s, value, x, bx, norm);
+        if (now <= worst) continue;
+        for (i = 0; i < 8 * HDI_CAST(int64_t, s->n); i++) x[i] += i % 8 < n ? s->w[i] : 0;
+        return;
+    }
+}
+
 /* Block x, n columns that are nearly orthonormal, goes to the last slab from column `at` on, orthonormal and
  * orthogonal to the columns before. bx: work. */
 static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int32_t n) {
@@ -19632,7 +19684,7 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
     for (q = 0; q < n; q++)
         for (r = 0; r < n; r++) G[8 * q + r] = h[8 * q + r];
     for (q = 0; q < HDI_SPEC_WIDE; q++) norm[q] = scale[q] = 1;
-    (void)hdi_spec_cholesky(G, R, scale, norm);
+    (void)hdi_spec_cholesky(G, R, scale, norm, NULL);
     job.w = x;
     job.bw = bx;
     job.R = R;
@@ -19641,12 +19693,12 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
 }
 
 /* Locks the Ritz vectors which[0..n): one group of blocks. first: their first column in the last slab. Errors
- * of solves, which eigenvalues next to the shift make large, leave fast modes in the vectors. They are taken out
- * where they are seen. */
+ * of solves, which eigenvalues next to the shift make large, leave fast modes in the vectors. They are taken
+ * out where they are seen. */
 static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
     const int32_t n_blocks = (n + 7) / 8;
     const int64_t size = 8 * HDI_CAST(int64_t, s->n);
-    double twin[8 * HDI_SPEC_GROUP], norm[HDI_SPEC_WIDE], value[HDI_SPEC_WIDE];
+    double twin[8 * HDI_SPEC_GROUP], norm[HDI_SPEC_WIDE], noise[HDI_SPEC_WIDE], value[HDI_SPEC_WIDE];
     int32_t q, r;
     hdi_spec_coefficients(s, which, n);
     memset(s->group, 0, HDI_CAST(size_t, n_blocks * size) * sizeof *s->group);
@@ -19656,15 +19708,16 @@ static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, in
         const int32_t at = 8 * (q % n_blocks), here = hdi_low32(8, n - at);
         for (r = 0; r < HDI_SPEC_WIDE; r++) value[r] = r < here ? hdi_spec_lambda(s, which[at + r]) : 0;
         if (q < n_blocks) {
-            if (hdi_spec_measure(s, value, x, bx, norm) > HDI_SPEC_POLISH * s->tol)
-                hdi_spec_polish(s, x, here);
+            hdi_spec_polish_all(s, value, x, bx, here);
             continue;
         }
         if (q == n_blocks) hdi_spec_unlock(s, n, twin);
         hdi_spec_settle(s, x, bx, first + at, here);
         (void)hdi_spec_measure(s, value, x, bx, norm);
+        hdi_wide_norms(x, s->noise, s->n, HDI_SPEC_WIDE, noise);
         for (r = 0; r < here; r++) {
             if (twin[at + r] > 0.1) continue;    /* found before */
+            s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + noise[r];
             hdi_spec_enter(s, value[r], norm[r], first + at + r);
         }
     }
@@ -19677,6 +19730,7 @@ static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
     if (s->cols == 0) return HD_OK;
     if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
     reach = hdi_spec_reach(s);
+    hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
     for (i = 0; i < s->cols; i++) {
         if (!hdi_spec_taken(s, i, reach)) continue;
         for (j = n++; j > 0 && hdi_spec_lambda(s, which[j - 1]) > hdi_spec_lambda(s, i); j--)
@@ -19816,9 +19870,10 @@ static int32_t hdi_spec_wanted(const hdi_spec *s, const hdi_spec_goal *goal, int
     return hdi_low32(n, goal->count);
 }
 
-/* The middle of the widest gap among the next ones after the first n values, above `least`. */
-static double hdi_spec_gap(const hdi_spec *s, int32_t n, double least) {
-    double widest = -1, at = least;
+/* The middle of the widest gap among the next ones after the first n values, above `least`; HUGE_VAL if none
+ * is wider than `narrow`. */
+static double hdi_spec_gap(const hdi_spec *s, int32_t n, double least, double narrow) {
+    double widest = narrow, at = HUGE_VAL;
     int32_t i;
     for (i = n; i < s->found && i < n + HDI_SPEC_GAPS; i++) {
         const double from = hdi_max(i > 0 ? s->value[i - 1] : -HUGE_VAL, least);
@@ -19837,10 +19892,21 @@ static double hdi_spec_next(const hdi_spec *s, const hdi_spec_goal *goal, int32_
     const double step = hdi_spec_spacing(s);
     const double from = hdi_max(s->edge, s->found > 0 ? s->value[s->found - 1] : s->edge);
     double at;
-    if (all && n < s->found)
-        return hdi_spec_gap(s, n, goal->below < HUGE_VAL && goal->below > s->edge ? goal->below : s->edge);
+    if (all && n < s->found) {
+        at = goal->below < HUGE_VAL && goal->below > s->edge ? goal->below : s->edge;
+        at = hdi_spec_gap(s, n, at, HDI_SPEC_NARROW * step);
+        if (at < HUGE_VAL) return at;
+    }
     at = from + step * hdi_max(1, hdi_min(half, HDI_CAST(double, goal->count) - s->found + 3));
     if (at >= goal->below) at = hdi_max(goal->below, from + 0.3 * step);
+    return at;
+}
+
+/* A shift that is not next to a value found. */
+static double hdi_spec_clear(const hdi_spec *s, double at, double step) {
+    int32_t i;
+    for (i = 0; i < s->found; i++)
+        if (fabs(s->value[i] - at) < HDI_SPEC_NARROW * step) at = s->value[i] + HDI_SPEC_NARROW * step;
     return at;
 }
 
@@ -19851,13 +19917,15 @@ static hd_status hdi_spec_move(hdi_spec *s, const hdi_spec_goal *goal, int32_t f
     double at = hdi_spec_next(s, goal, failed, half), low = s->edge;
     int32_t tries;
     for (tries = 0; tries < HDI_SPEC_TRIES; tries++) {
-        if (hdi_spec_shift(s, at, step, e) < 0) return e->status;
+        if (hdi_spec_shift(s, hdi_spec_clear(s, at, step), step, e) < 0) return e->status;
         *missing = s->below - hdi_spec_rank(s, s->sigma);
         if (*missing < 0) at += 0.37 * step;     /* too near to a value: the count is wrong */
         else if (*missing > 2 * half) {
             const double from = s->found > 0 && *missing < 2 * HDI_CAST(int64_t, half) * HDI_SPEC_TRIES
                 ? hdi_max(low, hdi_min(s->value[s->found - 1], 0.5 * (low + at))) : low;
             at = from + (at - from) * hdi_max(0.05, half / HDI_CAST(double, *missing));
+        } else if (s->factor.all.largest > HDI_SPEC_GROWTH * s->factor.largest_entry && *missing > 0) {
+            at += 0.11 * step;                   /* there may be better ones */
         } else break;
     }
     return HD_OK;
@@ -19865,18 +19933,21 @@ static hd_status hdi_spec_move(hdi_spec *s, const hdi_spec_goal *goal, int32_t f
 
 /* A bound from below of all eigenvalues but the first n. */
 static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
-    if (n < s->found) return s->value[n] - hdi_ratio_root(s->lap) * s->residual[n];
+    if (n < s->found) return hdi_max(0, s->value[n] - hdi_ratio_root(s->lap) * s->residual[n]);
     if (n == s->n) return HUGE_VAL;
-    return s->proven ? s->sigma - s->off : n > 0 ? s->value[n - 1] : 0;
+    return s->proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->value[n - 1] : 0;
 }
 
 /* The first run: the low end, from a shift below all eigenvalues. */
 static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error *e) {
     const int32_t beyond = hdi_low32(HDI_SPEC_HALF, goal->count - hdi_low32(goal->count, s->n_null) + 2);
-    double mean = 0;
+    double sum = 0;
     int32_t i;
-    for (i = 0; i < s->n; i++) mean += hdi_row_diagonal(s->lap, i) / s->lap->b_diag[i] / s->n;
-    s->unit = mean > 0 ? mean / s->n : 1;
+    for (i = 0; i < s->n; i++) {                 /* the harmonic mean, which slivers do not make large */
+        const double l = hdi_row_diagonal(s->lap, i);
+        sum += l > 0 ? s->lap->b_diag[i] / l : 0;
+    }
+    s->unit = sum > 0 ? 1 / sum : 1;
     s->edge = -s->unit;
     if (hdi_spec_constants(s, goal->count, e) < 0 || hdi_spec_shift(s, -s->unit, 0, e) < 0) return e->status;
     if (s->below) return hdi_not_semidefinite(e);
@@ -19997,6 +20068,7 @@ static void hdi_spec_report(const hdi_spec *s, hd_spectrum *out) {
     out->n_constant = hdi_low32(s->n_null, out->count);
     out->next = s->m->scale * s->next;
     out->proven = s->proven;
+    out->n_poor = s->n_poor;
     out->shift = s->m->scale * s->sigma;
     out->shift_margin = s->m->scale * s->off;
     out->n_factors = s->n_factors;
@@ -25934,7 +26006,7 @@ static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd
         (void)hdi_spec_run(&m, &goal, tol, s, e);
     hdi_elim_free(&m);
     if (e->status < 0) return e->status;
-    return s->proven && s->largest_residual <= tol ? HD_OK : HD_WARN_ACCURACY;
+    return s->proven && s->n_poor == 0 ? HD_OK : HD_WARN_ACCURACY;
 }
 
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
@@ -25978,27 +26050,40 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
 typedef struct hdi_sum_call {
     hdi_call c;
     hdi_spec_sum sum;
+    int32_t n_times, k;
+    const double *t;
+    const int32_t *sources;      /* [k], or NULL: the diagonal */
     double *work;
     size_t ld;
 } hdi_sum_call;
 
-/* Checks the arguments. needed: sources. */
-static hd_status hdi_sum_begin(hdi_sum_call *h, const hd_spectrum *s, int32_t n_times, const double *t,
-                               int needed, int32_t k, const int32_t *sources, const double *out, size_t ld,
+static hdi_sum_call hdi_sum_call_of(int32_t n_times, const double *t, int32_t k, const int32_t *sources) {
+    hdi_sum_call h;
+    memset(&h, 0, sizeof h);
+    h.n_times = n_times;
+    h.t = t;
+    h.k = k;
+    h.sources = sources;
+    return h;
+}
+
+/* Checks the arguments. */
+static hd_status hdi_sum_begin(hdi_sum_call *h, const hd_spectrum *s, const double *out, size_t ld,
                                hd_error *err) {
+    const int needed = !h->sum.diagonal;
     int32_t q;
-    memset(h, 0, sizeof *h);
     if (hdi_enter(&h->c, s ? s->context : NULL, err) < 0) return h->c.e->status;
-    if (!s || (n_times > 0 && !t) || (needed && k > 0 && !sources) || (k > 0 && !out))
+    if (!s || (h->n_times > 0 && !h->t) || (needed && h->k > 0 && !h->sources) || (h->k > 0 && !out))
         return hdi_missing(h->c.e);
-    hdi_refuse(n_times < 1, "spectrum: there is no time", h->c.e);
-    hdi_refuse(k < 0, "spectrum: a number of columns is negative", h->c.e);
+    hdi_refuse(h->n_times < 1, "spectrum: there is no time", h->c.e);
+    hdi_refuse(h->k < 0, "spectrum: a number of columns is negative", h->c.e);
     hdi_refuse(ld != 0 && ld < HDI_CAST(size_t, s->n), "spectrum: columns would overlap", h->c.e);
-    for (q = 0; q < n_times; q++)
-        hdi_refuse_value(!hdi_finite(t[q]) || t[q] < 0, "spectrum: t is negative or not finite", t[q],
-                         h->c.e);
+    for (q = 0; q < h->n_times; q++)
+        hdi_refuse_value(!hdi_finite(h->t[q]) || h->t[q] < 0, "spectrum: t is negative or not finite",
+                         h->t[q], h->c.e);
     if (h->c.e->status < 0) return h->c.e->status;
-    if (needed && hdi_vertices_check(s->lap, k, sources, &h->c.e->column, h->c.e) < 0) return h->c.e->status;
+    if (needed && hdi_vertices_check(s->lap, h->k, h->sources, &h->c.e->column, h->c.e) < 0)
+        return h->c.e->status;
     h->ld = ld ? ld : HDI_CAST(size_t, s->n);
     h->work = HDI_NEW(h->c.ctx, double, 2 * HDI_CAST(uint64_t, s->count) + 1, h->c.e);
     return h->c.e->status;
@@ -26018,9 +26103,9 @@ static void hdi_sum_column(hdi_sum_call *h, size_t q, double *out, double *bound
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, int32_t k, const int32_t *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    hdi_sum_call h;
+    hdi_sum_call h = hdi_sum_call_of(n_times, t, k, sources);
     int32_t q, m;
-    if (hdi_sum_begin(&h, s, n_times, t, 1, k, sources, U, ldu, err) < 0) return h.c.e->status;
+    if (hdi_sum_begin(&h, s, U, ldu, err) < 0) return h.c.e->status;
     hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
                h.c.e);
     h.sum.mass = kernel == HD_KERNEL_OPERATOR;
@@ -26039,13 +26124,13 @@ HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kerne
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    hdi_sum_call h;
+    hdi_sum_call h = hdi_sum_call_of(n_times, t, 1, NULL);
     int32_t m;
-    if (hdi_sum_begin(&h, s, n_times, t, 0, 1, NULL, D, ldd, err) < 0) return h.c.e->status;
+    h.sum.diagonal = 1;
+    if (hdi_sum_begin(&h, s, D, ldd, err) < 0) return h.c.e->status;
     hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
                h.c.e);
     h.sum.mass = kernel == HD_KERNEL_OPERATOR;
-    h.sum.diagonal = 1;
     for (m = 0; m < n_times && h.c.e->status >= 0; m++) {
         hdi_sum_column(&h, HDI_CAST(size_t, m), D, bound);
         h.sum.f = hdi_spec_filter_of(s, t[m], 0);
@@ -26077,7 +26162,8 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
         n_times = 1;
         t = &zero;
     }
-    if (hdi_sum_begin(&h, s, n_times, t, 1, k, sources, D, ldd, err) < 0) return h.c.e->status;
+    h = hdi_sum_call_of(n_times, t, k, sources);
+    if (hdi_sum_begin(&h, s, D, ldd, err) < 0) return h.c.e->status;
     hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
                h.c.e);
     hdi_refuse(power && n_times > 1, "spectrum: this distance has no time", h.c.e);

@@ -171,6 +171,7 @@ static void test_tmp_remove(void) {
 #include "test_moving.h"
 #include "test_view.h"
 #include "test_estimate.h"
+#include "test_spectrum.h"
 #include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
@@ -182,7 +183,7 @@ static const test_group test_groups[] = {
     {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic},
     {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"moving", test_moving},
-    {"platform", test_platform}, {"view", test_view},     {"estimate", test_estimate},
+    {"platform", test_platform}, {"view", test_view},     {"estimate", test_estimate}, {"spectrum", test_spectrum},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };

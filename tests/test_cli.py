@@ -25,7 +25,7 @@ import zlib
 
 TOOL = None
 POSIX = os.name == "posix"
-COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "sample", "geodesic", "render", "demo")
+COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "sample", "geodesic", "spectrum", "render", "demo")
 
 
 # ---- meshes ----
@@ -1875,6 +1875,40 @@ class Geodesic(Case):
         self.assertIn("--source 12", self.bad(1, "geodesic", self.small, "--source", "0,12"))
         self.assertIn("limit", self.bad(1, "geodesic", self.patch, "--source", 0, "--memory-limit", "20K"))
         self.assertEqual(self.field("geodesic", self.patch, "--source", 5, "--threads", 1), self.field("geodesic", self.patch, "--source", 5, "--threads", 2))
+
+
+class Spectrum(Case):
+    """Eigenpairs: files, report and usage. Numbers are checked by tests/test_spectrum.h."""
+
+    def test_text(self):
+        lines = self.good("spectrum", self.patch, "-k", 5).stdout.decode().splitlines()
+        values = [float(v) for v in lines[0].lstrip("# ").split()]
+        rows = [[float(v) for v in line.split()] for line in lines[1:]]
+        self.assertTrue(lines[0].startswith("# ") and len(values) == 5 and values[0] == 0 and values == sorted(values))
+        self.assertTrue(len(rows) == 100 and all(len(r) == 5 and r[0] == rows[0][0] > 0 for r in rows))
+
+    def test_files(self):
+        for name in ("s.csv", "s.npy", "s.ply", "s.vtu", "s.png"):
+            r = json.loads(self.good("spectrum", self.patch, "-k", 4, "--json", "-o", self.path(name)).stderr)
+            self.assertEqual((r["command"], r["count"], len(r["eigenvalues"]), r["proven"], r["status"]), ("spectrum", 4, 4, 1, "HD_OK"))
+            self.assertGreaterEqual(r["next"], r["eigenvalues"][3] * (1 - 1e-9))
+            self.assertLess(r["residual"], 1e-9)
+        with open(self.path("s.csv")) as f:
+            self.assertEqual(f.readline().strip(), "x_0,x_1,x_2,x_3")
+
+    def test_below(self):
+        r = json.loads(self.good("spectrum", self.patch, "-k", 12, "--json").stderr)
+        half = (r["eigenvalues"][6] + r["eigenvalues"][7]) / 2
+        below = json.loads(self.good("spectrum", self.patch, "--below", half, "--json").stderr)
+        self.assertEqual(below["count"], 7)
+        self.assertIn("proven", self.good("spectrum", self.patch, "--below", half, "-k", 3).stderr.decode())
+
+    def test_usage(self):
+        self.assertIn("-k", self.bad(2, "spectrum", self.patch))
+        self.assertIn("--below takes", self.bad(2, "spectrum", self.patch, "--below", "-1"))
+        self.assertIn("--t", self.bad(2, "spectrum", self.patch, "-k", 3, "--t", 1))
+        self.assertIn("beyond", self.bad(1, "spectrum", self.patch, "-k", 101))
+        self.assertIn("--column 9", self.bad(1, "spectrum", self.patch, "-k", 3, "--column", 9, "-o", self.path("s.png")))
 
 
 class Demo(Case):
