@@ -11073,6 +11073,9 @@ typedef struct hdi_factor {
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
+    int32_t guest;                   /* work, scratch, chunk_scratch, nodes and pivots are another factor's */
+    double *spare;                   /* [spare_size] of a factor within a pack: what is left there */
+    uint64_t spare_size;
     /* a factorisation under way */
     const hdi_values *values;
     int32_t stop;
@@ -11653,12 +11656,80 @@ static void hdi_factor_free(hdi_factor *f) {
     if (!f->ctx) return;
     hdi_free(f->ctx, f->panel);
     hdi_free(f->ctx, f->dinv);
-    hdi_free(f->ctx, f->work);
-    hdi_free(f->ctx, f->scratch);
-    hdi_free(f->ctx, f->chunk_scratch);
-    hdi_free(f->ctx, f->nodes);
-    hdi_free(f->ctx, f->pivots);
+    if (!f->guest) {
+        hdi_free(f->ctx, f->work);
+        hdi_free(f->ctx, f->scratch);
+        hdi_free(f->ctx, f->chunk_scratch);
+        hdi_free(f->ctx, f->nodes);
+        hdi_free(f->ctx, f->pivots);
+    }
     memset(f, 0, sizeof *f);
+}
+
+/* The kernels and the sizes of a factor of the given width that has no room yet. */
+static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width, const hd_context *ctx) {
+    hdi_factor f;
+    memset(&f, 0, sizeof f);
+    f.sym = sym;
+    f.width = width;
+    f.panel_at = width == 1 ? sym->panel : sym->panel_pack;
+    f.pack = hdi_pack_ops_get(hdi_simd_level(ctx));
+    f.real = hdi_real_ops_get(hdi_simd_level(ctx));
+    f.scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
+    f.chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
+    return f;
+}
+
+/* Room to work in: chunks that the largest front of the top has. */
+static uint64_t hdi_factor_chunks(const hdi_symbolic *s) {
+    return HDI_CAST(uint64_t, s->n_top ? s->largest_front / HDI_FRONT_CHUNK + 1 : 0);
+}
+
+/* f becomes another factor like its host, with its own numbers but the host's room to work in. Neither is
+ * factorised or inverted while the other one is. The host lives longer. */
+static hd_status hdi_factor_make_guest(hdi_factor *f, const hdi_factor *host, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(host->ctx, e);
+    const int32_t w = host->width, n = host->sym->n;
+    memset(f, 0, sizeof *f);
+    f->panel = HDI_TAKE(&s, double, host->panel_at[host->sym->n_super] * w);
+    f->dinv = HDI_TAKE(&s, double, HDI_CAST(int64_t, n) * w);
+    if (e->status >= 0) {
+        double *panel = f->panel, *dinv = f->dinv;
+        *f = *host;
+        f->panel = panel;
+        f->dinv = dinv;
+        f->guest = 1;
+        f->ready = 0;
+        return HD_OK;
+    }
+    memset(f, 0, sizeof *f);
+    return hdi_scope_end(&s);
+}
+
+/* A real factor that stands where the update matrices of a pack do, until the pack is factorised or inverted
+ * again, or other use is made of that room. Not to be freed. Returns 0 if it does not fit. */
+static int hdi_factor_within(hdi_factor *f, const hdi_factor *pack) {
+    const hdi_symbolic *s = pack->sym;
+    const uint64_t panel = HDI_CAST(uint64_t, s->panel[s->n_super] + s->work + s->n);
+    const uint64_t n_parts = HDI_CAST(uint64_t, s->n_tasks > 0 ? s->n_tasks : 1);
+    uint64_t scratch, chunks;
+    *f = hdi_factor_of(s, 1, pack->ctx);
+    scratch = f->scratch_size * n_parts + f->chunk_size;
+    chunks = f->chunk_size * (hdi_factor_chunks(s) + 1);
+    if (panel + scratch + chunks > HDI_PACK * HDI_CAST(uint64_t, s->work)) return 0;
+    f->panel = pack->work;
+    f->work = f->panel + s->panel[s->n_super];
+    f->dinv = f->work + s->work;
+    f->scratch = f->dinv + s->n;
+    f->chunk_scratch = f->scratch + scratch;
+    f->second = f->chunk_scratch + f->chunk_size * hdi_factor_chunks(s);
+    f->nodes = pack->nodes;                      /* those of a pack are more: its blocks are smaller */
+    f->pivots = pack->pivots;
+    f->guest = 1;
+    f->ctx = pack->ctx;
+    f->spare = f->chunk_scratch + chunks;
+    f->spare_size = HDI_PACK * HDI_CAST(uint64_t, s->work) - panel - scratch - chunks;
+    return 1;
 }
 
 /* Room for a factor of the given width; all that factoring and refactoring need. */
@@ -11667,15 +11738,8 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t w = HDI_CAST(uint64_t, width);
     const uint64_t n_parts = HDI_CAST(uint64_t, sym->n_tasks > 0 ? sym->n_tasks : 1);
-    const uint64_t n_chunks = HDI_CAST(uint64_t, sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);
-    memset(f, 0, sizeof *f);
-    f->sym = sym;
-    f->width = width;
-    f->panel_at = width == 1 ? sym->panel : sym->panel_pack;
-    f->pack = hdi_pack_ops_get(hdi_simd_level(ctx));
-    f->real = hdi_real_ops_get(hdi_simd_level(ctx));
-    f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
-    f->chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
+    const uint64_t n_chunks = hdi_factor_chunks(sym);
+    *f = hdi_factor_of(sym, width, ctx);
     f->panel = HDI_TAKE(&s, double, HDI_CAST(uint64_t, f->panel_at[sym->n_super]) * w);
     f->dinv = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->n) * w);
     f->work = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->work) * w);
@@ -11690,6 +11754,13 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     f->second = f->chunk_scratch + f->chunk_size * n_chunks;
     f->ctx = ctx;                                /* the blocks are f's own now */
     return HD_OK;
+}
+
+/* Pack i of several that are factorised in turn: those after the first are its guests. */
+static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_symbolic *sym, hd_context *ctx,
+                                      hd_error *e) {
+    if (i > 0) return hdi_factor_make_guest(pack + i, pack, e);
+    return hdi_factor_make(pack, sym, HDI_PACK, ctx, e);
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported. */
@@ -12175,7 +12246,7 @@ static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
     hdi_free(f->ctx, f->pack);
     f->pack = pack;
     for (; f->n_packs < want; f->n_packs++)
-        if (hdi_factor_make(f->pack + f->n_packs, &f->sym, HDI_PACK, f->ctx, e) < 0) return e->status;
+        if (hdi_factor_make_pack(f->pack, f->n_packs, &f->sym, f->ctx, e) < 0) return e->status;
     return HD_OK;
 }
 
@@ -12318,6 +12389,7 @@ typedef struct hdi_inverse {
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
     uint64_t scratch_size, top_size, chunk_size;
+    int32_t guest;               /* scratch is the factor's */
     int32_t stop;
     double done;
     hd_error error;
@@ -13501,31 +13573,39 @@ static void hdi_inverse_share(hdi_inverse *z, hd_threads *threads, int32_t n, in
 }
 
 static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
-    hdi_free(ctx, z->scratch);
+    if (!z->guest) hdi_free(ctx, z->scratch);
     hdi_free(ctx, z->chunk);
     z->scratch = z->chunk = NULL;
 }
 
-/* Room to invert factors of the given width. */
-static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hd_context *ctx,
-                                  hd_error *e) {
+/* Room to invert factors of the given width; with f that factor, some of it in f's spare room if it fits. */
+static hd_status hdi_inverse_make_in(hdi_inverse *z, const hdi_symbolic *s, int32_t width,
+                                     const hdi_factor *f, hd_context *ctx, hd_error *e) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
     const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_CAST(int32_t, HDI_REAL_MR) + 2;
     hdi_scope keep = hdi_scope_begin(ctx, e);
+    uint64_t size;
     int32_t v;
     memset(z, 0, sizeof *z);
     for (v = 0; v < s->n_super; v++) {
         const int64_t m = hdi_front_rows(s, v);
-        const uint64_t size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), at[v + 1] - at[v], width);
+        size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), at[v + 1] - at[v], width);
         if (size > z->top_size) z->top_size = size;
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
     z->chunk_size = hdi_inverse_buffer(width);
-    z->scratch = HDI_TAKE(&keep, double, z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size);
+    size = z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size;
+    z->guest = f && size <= f->spare_size;
+    z->scratch = z->guest ? f->spare : HDI_TAKE(&keep, double, size);
     z->chunk = HDI_TAKE(&keep, double, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, chunks) : 1);
     if (e->status >= 0) return HD_OK;            /* the blocks are z's own */
     z->scratch = z->chunk = NULL;
     return hdi_scope_end(&keep);
+}
+
+static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hd_context *ctx,
+                                  hd_error *e) {
+    return hdi_inverse_make_in(z, s, width, NULL, ctx, e);
 }
 
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
@@ -16335,7 +16415,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     }
     hdi_elim_take(m, set, t);
     for (; m->n_packs < m->n_used; m->n_packs++)
-        if (hdi_factor_make(m->pack + m->n_packs, &m->sym, HDI_PACK, m->ctx, e) < 0) return e->status;
+        if (hdi_factor_make_pack(m->pack, m->n_packs, &m->sym, m->ctx, e) < 0) return e->status;
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < m->n_used; i++) {
         hd_c64 theta[4];
@@ -16875,7 +16955,7 @@ static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_erro
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
                                            hd_error *e) {
     hdi_inverse z;
-    if (hdi_inverse_make(&z, &m->sym, f->width, m->ctx, e) < 0) return e->status;
+    if (hdi_inverse_make_in(&z, &m->sym, f->width, f, m->ctx, e) < 0) return e->status;
     memset(out, 0, HDI_CAST(size_t, m->sym.n) * sizeof *out);
     z.coef = coef;
     z.n_sets = 1;
@@ -16936,14 +17016,16 @@ static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
 #define HDI_REACH_SLACK 1.01
 
 /* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
- * one. */
+ * one, in the room of the first pack where it fits. */
 static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = HDI_REACH_SLACK * hdi_max(1, theta);
+    hdi_factor within, *real = &m->real;
     int32_t i;
     if (m->reach && m->reach_t == m->t) return HD_OK;
     if (!m->reach) m->reach = HDI_NEW(m->ctx, double, m->sym.n, e);
-    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, &m->real, m->t, theta, e) >= 0) &&
-        hdi_elim_inverse_diagonal(m, &m->real, &factor, m->reach, e) >= 0) {
+    if (m->lone < 0 && m->n_used > 0 && hdi_factor_within(&within, m->pack)) real = &within;
+    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
+        hdi_elim_inverse_diagonal(m, real, &factor, m->reach, e) >= 0) {
         for (i = 0; i < m->sym.n; i++) {
             const double most = hdi_inverse_mass(m->lap, i);
             if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
@@ -18937,30 +19019,35 @@ typedef struct hdi_batches {
     hdi_heat_call *h;
     int32_t width, count, n_here;
     uint64_t doubles;            /* of a batch's arrays */
+    int32_t inside;              /* batches whose arrays are where the first pack's update matrices were */
 } hdi_batches;
 
-/* Finds how many batches, and makes room for them: lanes, and the batches' arrays in the plan. The batches
- * take no more room than a pack of factors. */
+/* Finds how many batches, and makes room for them: lanes, and the batches' arrays, as many as fit where the
+ * update matrices of the first pack were, the others in the plan. The batches take no more room than a pack
+ * of factors. */
 static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const uint64_t n = HDI_CAST(uint64_t, h->lap->n_active);
     const uint64_t most = 8 * HDI_CAST(uint64_t, heat->elim.sym.stored);
-    uint64_t x, xr;
+    const uint64_t spare = heat->elim.n_used > 0 ? HDI_PACK * HDI_CAST(uint64_t, heat->elim.sym.work) : 0;
+    uint64_t x, xr, fresh;
     b->h = h;
     b->n_here = 0;
     b->width = hdi_low32(h->ask.k, HDI_LANES_BATCH);
-    b->doubles = hdi_batch_size(&heat->elim, b->width, &x, &xr);
+    b->doubles = (hdi_batch_size(&heat->elim, b->width, &x, &xr) + 7) / 8 * 8;
     b->count = (h->ask.k + b->width - 1) / b->width;
     if (b->count > HDI_BATCHES) b->count = HDI_BATCHES;
     while (b->count > 1 &&
            HDI_CAST(uint64_t, b->count) * (b->doubles + 7 * n * HDI_CAST(uint64_t, b->width)) > most)
         b->count--;
     if (hdi_heat_lanes(h, b->count * b->width) < 0) return h->e->status;
-    if (heat->batch_doubles >= b->doubles * HDI_CAST(uint64_t, b->count)) return HD_OK;
+    b->inside = HDI_CAST(int32_t, hdi_least(HDI_CAST(int64_t, spare / b->doubles), b->count));
+    fresh = b->doubles * HDI_CAST(uint64_t, b->count - b->inside);
+    if (heat->batch_doubles >= fresh) return HD_OK;
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_doubles = 0;
-    heat->batch_room = HDI_NEW(heat->ctx, double, b->doubles * HDI_CAST(uint64_t, b->count), h->e);
-    if (heat->batch_room) heat->batch_doubles = b->doubles * HDI_CAST(uint64_t, b->count);
+    heat->batch_room = HDI_NEW(heat->ctx, double, fresh, h->e);
+    if (heat->batch_room) heat->batch_doubles = fresh;
     return h->e->status;
 }
 
@@ -18970,7 +19057,8 @@ static hdi_batch hdi_batches_get(const hdi_batches *b, int64_t index) {
     hdi_batch one;
     uint64_t x, xr;
     (void)hdi_batch_size(m, b->width, &x, &xr);
-    one.x = b->h->heat->batch_room + b->doubles * HDI_CAST(size_t, index);
+    if (index < b->inside) one.x = m->pack->work + b->doubles * HDI_CAST(size_t, index);
+    else one.x = b->h->heat->batch_room + b->doubles * HDI_CAST(size_t, index - b->inside);
     one.xr = one.x + x;
     one.work = one.xr + xr;
     one.active = HDI_CAST(char *, HDI_CAST(void *, one.x + b->doubles)) - m->sym.n_super - 8;
