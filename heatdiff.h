@@ -11035,7 +11035,10 @@ static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_
  * its update matrix starts as -L21 D L21' and the children's are added afterwards, so that it is neither
  * cleared nor read before. */
 
-enum { HDI_PACK_LANES = HDI_PACK / 2, HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 96 };
+/* Rows of a chunk of a front that threads share, as many as the kernels take at once. The parallel efficiency
+ * that bench simulates for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
+ * 0.46, 0.25. Fronts of fewer rows than HDI_FRONT_SHARED are not shared. */
+enum { HDI_PACK_LANES = HDI_PACK / 2, HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 48, HDI_FRONT_SHARED = 192 };
 
 /* Where values of A come from: real numbers, up to four complex matrices, or t L + theta B, by entries of the
  * pattern that was analysed. */
@@ -11066,9 +11069,9 @@ typedef struct hdi_factor {
     double *work;                    /* [sym->work] entries: update matrices */
     double *scratch;                 /* [n_tasks + 1][scratch_size], the last one larger: for the top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
-    double *second;                  /* [chunk_size] a second place for S, of fronts that threads share */
+    double *second;                  /* [top_size] a second place for S, of fronts that threads share */
     int32_t *nodes;                  /* of their loops */
-    uint64_t scratch_size, chunk_size;   /* doubles */
+    uint64_t scratch_size, top_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
@@ -11116,6 +11119,13 @@ static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) 
     const uint64_t cols = HDI_CAST(uint64_t, hdi_least(below, HDI_FRONT_COLS) * depth);
     if (width == 1) return HDI_CAST(uint64_t, hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
     return HDI_PACK * (p + (rows > cols ? rows : cols)) + 64;
+}
+
+/* Doubles of scratch for a chunk of rows of such fronts: a block of columns of the update, or work of the
+ * kernels. */
+static uint64_t hdi_front_chunk_scratch(int32_t pivots, int32_t below, int32_t width) {
+    const int64_t cols = hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH);
+    return HDI_CAST(uint64_t, width == 1 ? hdi_real_work(below, pivots) : HDI_PACK * cols) + 64;
 }
 
 static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch) {
@@ -11676,7 +11686,8 @@ static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width, const hd
     f.pack = hdi_pack_ops_get(hdi_simd_level(ctx));
     f.real = hdi_real_ops_get(hdi_simd_level(ctx));
     f.scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
-    f.chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
+    f.top_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
+    f.chunk_size = hdi_front_chunk_scratch(sym->largest_pivots, sym->largest_update, width);
     return f;
 }
 
@@ -11714,15 +11725,15 @@ static int hdi_factor_within(hdi_factor *f, const hdi_factor *pack) {
     const uint64_t n_parts = HDI_CAST(uint64_t, s->n_tasks > 0 ? s->n_tasks : 1);
     uint64_t scratch, chunks;
     *f = hdi_factor_of(s, 1, pack->ctx);
-    scratch = f->scratch_size * n_parts + f->chunk_size;
-    chunks = f->chunk_size * (hdi_factor_chunks(s) + 1);
+    scratch = f->scratch_size * n_parts + 2 * f->top_size;
+    chunks = f->chunk_size * hdi_factor_chunks(s);
     if (panel + scratch + chunks > HDI_PACK * HDI_CAST(uint64_t, s->work)) return 0;
     f->panel = pack->work;
     f->work = f->panel + s->panel[s->n_super];
     f->dinv = f->work + s->work;
     f->scratch = f->dinv + s->n;
     f->chunk_scratch = f->scratch + scratch;
-    f->second = f->chunk_scratch + f->chunk_size * hdi_factor_chunks(s);
+    f->second = f->chunk_scratch - f->top_size;
     f->nodes = pack->nodes;                      /* those of a pack are more: its blocks are smaller */
     f->pivots = pack->pivots;
     f->guest = 1;
@@ -11738,20 +11749,20 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t w = HDI_CAST(uint64_t, width);
     const uint64_t n_parts = HDI_CAST(uint64_t, sym->n_tasks > 0 ? sym->n_tasks : 1);
-    const uint64_t n_chunks = hdi_factor_chunks(sym);
+    const uint64_t n_chunks = hdi_factor_chunks(sym), second = n_chunks > 0;
     *f = hdi_factor_of(sym, width, ctx);
     f->panel = HDI_TAKE(&s, double, HDI_CAST(uint64_t, f->panel_at[sym->n_super]) * w);
     f->dinv = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->n) * w);
     f->work = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->work) * w);
-    f->scratch = HDI_TAKE(&s, double, f->scratch_size * n_parts + f->chunk_size);
-    f->chunk_scratch = HDI_TAKE(&s, double, f->chunk_size * (n_chunks + (n_chunks > 0)) + 1);
+    f->scratch = HDI_TAKE(&s, double, f->scratch_size * n_parts + (1 + second) * f->top_size);
+    f->chunk_scratch = HDI_TAKE(&s, double, f->chunk_size * n_chunks + 1);
     f->nodes = HDI_TAKE(&s, int32_t, 2 * hdi_front_nodes(sym, hdi_front_block_size(f)) + 2);
     f->pivots = HDI_TAKE(&s, hdi_pivots, n_parts + 1);
     if (e->status < 0) {
         memset(f, 0, sizeof *f);
         return hdi_scope_end(&s);
     }
-    f->second = f->chunk_scratch + f->chunk_size * n_chunks;
+    f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
     f->ctx = ctx;                                /* the blocks are f's own now */
     return HD_OK;
 }
@@ -11800,7 +11811,7 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
     for (i = 0; i < n_parts; i++) hdi_pivots_clear(f->pivots + i);
     hdi_parallel(f->ctx, s->n_tasks, hdi_factor_task, f);
     for (i = 0; i < s->n_top && !f->stop; i++) {
-        const int shared = hdi_front_rows(s, s->top[i]) >= 2 * HDI_FRONT_CHUNK;
+        const int shared = hdi_front_rows(s, s->top[i]) >= HDI_FRONT_SHARED;
         if (hdi_progress(f->ctx, "factor", 0.5 + 0.5 * i / s->n_top, &f->error) < 0) break;
         if (!hdi_front_factor(f, s->top[i], scratch, f->pivots + s->n_tasks, shared)) break;
     }
