@@ -11070,13 +11070,15 @@ typedef struct hdi_factor {
     double *scratch;                 /* [n_tasks + 1][scratch_size], the last one larger: for the top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
     double *second;                  /* [top_size] a second place for S, of fronts that threads share */
-    int32_t *nodes;                  /* of their loops */
+    int32_t *nodes;                  /* what their nodes wait for */
+    int32_t *order;                  /* [n_order] nodes of the loop over the tree, as they become ready */
+    int64_t n_order;
     uint64_t scratch_size, top_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
-    int32_t guest;                   /* work, scratch, chunk_scratch, nodes and pivots are another factor's */
+    int32_t guest;                   /* work, scratch, chunk_scratch, nodes, order and pivots are another's */
     double *spare;                   /* [spare_size] of a factor within a pack: what is left there */
     uint64_t spare_size;
     /* a factorisation under way */
@@ -11466,10 +11468,10 @@ static void hdi_front_run(const hdi_front *w, int shared, int stage, int64_t beg
     hdi_chunks_run(&h, begin, end, w->f->ctx);
 }
 
-/* ---- a large front as one loop ---- */
-/* Its nodes, with rows in chunks c and pivots in blocks k: A(c) assembles rows of the panel (packs), P(k)
- * eliminates the pivots of a block, C(c,k) their columns in the rows below, U(d) computes rows of the
- * update matrix.
+/* ---- a large front by several threads ---- */
+/* Its nodes, part of the loop over all of the tree, with rows in chunks c and pivots in blocks k: A(c)
+ * assembles rows of the panel (packs), P(k) eliminates the pivots of a block, C(c,k) their columns in the
+ * rows below, U(d) computes rows of the update matrix.
  *   P(k)    waits for the chunks that hold its rows, and for all C(c,k-2), because S has two places
  *   C(c,k)  waits for P(k) and for C(c,k-1)
  *   U(d)    waits for the whole panel
@@ -11481,6 +11483,7 @@ typedef struct hdi_front_loop {
     hdi_pivots *note;
     double *S[2];
     int32_t nb, n_blocks, n_chunks;
+    int32_t left;                /* U that are not done */
     int32_t *pending, *order;
     hd_threads *threads;
 } hdi_front_loop;
@@ -11550,17 +11553,20 @@ static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) 
     for (c = hdi_front_first(l, k); c < l->n_chunks; c++) hdi_front_arrive(l, hdi_front_node(l, k, c));
 }
 
-static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
-    const hdi_front_loop *l = HDI_CAST(const hdi_front_loop *, arg);
-    const int32_t i = HDI_CAST(int32_t, index), a = hdi_front_node(l, l->n_blocks, -1);
+static int32_t hdi_front_updates(const hdi_front_loop *l) {
+    return HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+}
+
+/* Returns 1 when it was the front's last node. */
+static int hdi_front_run_node(hdi_front_loop *l, int32_t i) {
+    const int32_t a = hdi_front_node(l, l->n_blocks, -1);
     const int32_t c = i < a ? i % (l->n_chunks + 1) - 1 : i < a + l->n_chunks ? i - a : i - a - l->n_chunks;
     const int64_t r0 = HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
     double *work = l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c < 0 ? 0 : c);
     int32_t d;
-    (void)worker;
     if (i >= a + l->n_chunks) {
         if (!HDI_LOAD(&l->f->stop)) hdi_front_part(&l->w, HDI_FRONT_UPDATE, r0, hdi_least(r1, l->w.u), work);
-        return;
+        return HDI_ATOMIC_ADD(&l->left, -1) == 0;
     }
     if (i < a) {
         hdi_front_panel_node(l, i / (l->n_chunks + 1), c);
@@ -11569,16 +11575,15 @@ static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
             hdi_front_part(&l->w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r1, l->w.m), work);
         hdi_front_next(l, -1, c);
     }
-    if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return;
-    for (d = HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK); d-- > 0;)
-        hdi_release(l->threads, a + l->n_chunks + d, l->order);
+    if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return 0;
+    for (d = hdi_front_updates(l); d-- > 0;) hdi_release(l->threads, a + l->n_chunks + d, l->order);
+    return l->w.u == 0;
 }
 
-/* What nodes wait for. Returns how many are ready; *n: how many there are. pending of the first A: the nodes
- * of the panel. */
-static int32_t hdi_front_count(hdi_front_loop *l, int32_t *n) {
+/* What nodes wait for. Returns how many there are. pending of the first A: the nodes of the panel. */
+static int32_t hdi_front_count(hdi_front_loop *l) {
     const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = l->f->width > 1;
-    int32_t ready = 0, panel = packs ? l->n_chunks : 0, k, c;
+    int32_t panel = packs ? l->n_chunks : 0, k, c;
     for (k = 0; k < l->n_blocks; k++) {
         int32_t *pivots = l->pending + hdi_front_node(l, k, -1);
         *pivots = k > 1 ? l->n_chunks - hdi_front_first(l, k - 2) : 0;
@@ -11587,32 +11592,21 @@ static int32_t hdi_front_count(hdi_front_loop *l, int32_t *n) {
             l->pending[hdi_front_node(l, k, c)] = k > 0 || packs ? 2 : 1;
         panel += 1 + l->n_chunks - hdi_front_first(l, k);
     }
-    for (c = 0; c < l->n_chunks && packs; c++) l->order[ready++] = a + c;
-    if (!packs) l->order[ready++] = 0;
     l->pending[a] = panel;
-    *n = panel + HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-    return ready;
+    l->left = hdi_front_updates(l);
+    return panel + l->left;
 }
 
-/* The front from its panel's rows on, by several threads. 0 when a pivot cannot be divided by. */
-static int hdi_front_share(hdi_factor *f, const hdi_front *w, hd_threads *threads, hdi_pivots *note) {
-    hdi_front_loop l;
-    int32_t n, ready;
-    memset(&l, 0, sizeof l);
-    l.w = *w;
-    l.f = f;
-    l.note = note;
-    l.S[0] = w->S;
-    l.S[1] = f->second;
-    l.nb = hdi_front_block_size(f);
-    l.n_blocks = HDI_CAST(int32_t, (w->p + l.nb - 1) / l.nb);
-    l.n_chunks = HDI_CAST(int32_t, (w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-    l.threads = threads;
-    l.pending = f->nodes;
-    l.order = f->nodes + hdi_front_nodes(f->sym, l.nb);
-    ready = hdi_front_count(&l, &n);
-    hdi_parallel_ordered(f->ctx, n, ready, l.order, hdi_front_run_node, &l);
-    return !f->stop;
+/* Takes up a front of shape w. Returns the number of its nodes. */
+static int32_t hdi_front_loop_set(hdi_front_loop *l, const hdi_front *w) {
+    l->w = *w;
+    l->S[0] = w->S;
+    l->S[1] = l->f->second;
+    l->nb = hdi_front_block_size(l->f);
+    l->n_blocks = HDI_CAST(int32_t, (w->p + l->nb - 1) / l->nb);
+    l->n_chunks = HDI_CAST(int32_t, (w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    l->pending = l->f->nodes;
+    return hdi_front_count(l);
 }
 
 /* Front v, by this thread or shared by all. 0 when a pivot cannot be divided by. */
@@ -11620,18 +11614,15 @@ static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivot
     const hdi_symbolic *s = f->sym;
     const int real = f->width == 1;
     const int64_t most = hdi_front_block_size(f);
-    const int64_t nodes = (hdi_front_pivots(s, v) / most + 1) * (hdi_front_rows(s, v) / HDI_FRONT_CHUNK);
-    hd_threads *threads = shared ? hdi_threads_own(f->ctx, nodes) : NULL;
     hdi_front w = hdi_front_open(f, v, scratch);
     int64_t end;
     int32_t k;
     if (real) hdi_front_assemble_real(&w);
-    else if (!threads) hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, w.m);
+    else hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, w.m);
     for (k = s->kid_ptr[v]; real && k < s->kid_ptr[v + 1]; k++) {
         w.child = s->kid[k];
         hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, hdi_front_below(s, w.child));
     }
-    if (threads) return hdi_front_share(f, &w, threads, note);
     for (; w.k0 < w.p; w.k0 += w.nb) {
         w.nb = HDI_CAST(int32_t, hdi_least(w.p - w.k0, most));
         /* a small front: its columns at once */
@@ -11671,9 +11662,42 @@ static void hdi_factor_free(hdi_factor *f) {
         hdi_free(f->ctx, f->scratch);
         hdi_free(f->ctx, f->chunk_scratch);
         hdi_free(f->ctx, f->nodes);
+        hdi_free(f->ctx, f->order);
         hdi_free(f->ctx, f->pivots);
     }
     memset(f, 0, sizeof *f);
+}
+
+/* Whether threads share front v, which belongs to the top. */
+static int hdi_factor_shared(const hdi_symbolic *s, int32_t v) {
+    return hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
+}
+
+/* Chunks of columns of child c. */
+static int32_t hdi_factor_child_nodes(const hdi_symbolic *s, int32_t c) {
+    return HDI_CAST(int32_t, (hdi_front_below(s, c) + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+}
+
+/* Nodes of the loop over all of the tree, see below. Uses f->nodes. */
+static int64_t hdi_factor_nodes(hdi_factor *f) {
+    const hdi_symbolic *s = f->sym;
+    int64_t n = s->n_top > 0 ? s->n_tasks : 0;
+    int32_t i, k;
+    hdi_front_loop l;
+    hdi_front w;
+    memset(&l, 0, sizeof l);
+    memset(&w, 0, sizeof w);
+    l.f = f;
+    w.f = f;
+    for (i = 0; i < s->n_top; i++) {
+        const int32_t v = s->top[i];
+        if (!hdi_factor_shared(s, v)) continue;
+        hdi_front_shape(s, v, &w.p, &w.u, &w.m);
+        n += hdi_front_loop_set(&l, &w);
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1] && f->width == 1; k++)
+            n += hdi_factor_child_nodes(s, s->kid[k]);
+    }
+    return n;
 }
 
 /* The kernels and the sizes of a factor of the given width that has no room yet. */
@@ -11723,23 +11747,26 @@ static int hdi_factor_within(hdi_factor *f, const hdi_factor *pack) {
     const hdi_symbolic *s = pack->sym;
     const uint64_t panel = HDI_CAST(uint64_t, s->panel[s->n_super] + s->work + s->n);
     const uint64_t n_parts = HDI_CAST(uint64_t, s->n_tasks > 0 ? s->n_tasks : 1);
-    uint64_t scratch, chunks;
+    uint64_t scratch, chunks, order;
     *f = hdi_factor_of(s, 1, pack->ctx);
+    f->nodes = pack->nodes;                      /* those of a pack are more: its blocks are smaller */
+    f->n_order = hdi_factor_nodes(f);
+    order = HDI_CAST(uint64_t, f->n_order / 2 + 1);
     scratch = f->scratch_size * n_parts + 2 * f->top_size;
     chunks = f->chunk_size * hdi_factor_chunks(s);
-    if (panel + scratch + chunks > HDI_PACK * HDI_CAST(uint64_t, s->work)) return 0;
+    if (panel + scratch + chunks + order > HDI_PACK * HDI_CAST(uint64_t, s->work)) return 0;
     f->panel = pack->work;
     f->work = f->panel + s->panel[s->n_super];
     f->dinv = f->work + s->work;
     f->scratch = f->dinv + s->n;
     f->chunk_scratch = f->scratch + scratch;
     f->second = f->chunk_scratch - f->top_size;
-    f->nodes = pack->nodes;                      /* those of a pack are more: its blocks are smaller */
+    f->order = HDI_CAST(int32_t *, HDI_CAST(void *, f->chunk_scratch + chunks));
     f->pivots = pack->pivots;
     f->guest = 1;
     f->ctx = pack->ctx;
-    f->spare = f->chunk_scratch + chunks;
-    f->spare_size = HDI_PACK * HDI_CAST(uint64_t, s->work) - panel - scratch - chunks;
+    f->spare = f->chunk_scratch + chunks + order;
+    f->spare_size = HDI_PACK * HDI_CAST(uint64_t, s->work) - panel - scratch - chunks - order;
     return 1;
 }
 
@@ -11756,8 +11783,10 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
     f->work = HDI_TAKE(&s, double, HDI_CAST(uint64_t, sym->work) * w);
     f->scratch = HDI_TAKE(&s, double, f->scratch_size * n_parts + (1 + second) * f->top_size);
     f->chunk_scratch = HDI_TAKE(&s, double, f->chunk_size * n_chunks + 1);
-    f->nodes = HDI_TAKE(&s, int32_t, 2 * hdi_front_nodes(sym, hdi_front_block_size(f)) + 2);
+    f->nodes = HDI_TAKE(&s, int32_t, hdi_front_nodes(sym, hdi_front_block_size(f)) + 1);
     f->pivots = HDI_TAKE(&s, hdi_pivots, n_parts + 1);
+    f->n_order = e->status < 0 ? 0 : hdi_factor_nodes(f);
+    f->order = HDI_TAKE(&s, int32_t, f->n_order + 1);
     if (e->status < 0) {
         memset(f, 0, sizeof *f);
         return hdi_scope_end(&s);
@@ -11798,20 +11827,114 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
     return e->status;
 }
 
+/* ---- the tree as one loop ---- */
+/* Its nodes: the subtrees; then for one front of the top after the other, chunks of each child that is added
+ * to it (real numbers), and those of the front. Whoever does the last node of a step does what one thread
+ * must do before the next, and releases that one's. */
+
+enum { HDI_FACTOR_TASKS = 1 << 30 };
+
+typedef struct hdi_factor_loop {
+    hdi_front_loop l;            /* of the front under way */
+    int32_t top, kid;            /* which front of the top; the child that is added next */
+    int32_t assembling;
+    int32_t left;                /* subtrees, or chunks of the child, that are not done */
+} hdi_factor_loop;
+
+/* Takes up front top + 1: 1, and to be shared from here on; 0 when it is done, by this thread. */
+static int hdi_factor_open(hdi_factor_loop *t, int32_t worker) {
+    hdi_factor *f = t->l.f;
+    const hdi_symbolic *s = f->sym;
+    const int32_t v = s->top[++t->top];
+    double *scratch = hdi_factor_scratch(f, s->n_tasks);
+    hdi_front w = hdi_front_open(f, v, scratch);
+    if (worker == 0 && !HDI_LOAD(&f->stop) &&
+        hdi_progress(f->ctx, "factor", 0.5 + 0.5 * t->top / s->n_top, &f->error) < 0)
+        HDI_STORE(&f->stop, 1);
+    if (!hdi_factor_shared(s, v)) {
+        if (!HDI_LOAD(&f->stop) && !hdi_front_factor(f, v, scratch, t->l.note, 0)) HDI_STORE(&f->stop, 1);
+        return 0;
+    }
+    if (f->width == 1 && !HDI_LOAD(&f->stop)) hdi_front_assemble_real(&w);
+    (void)hdi_front_loop_set(&t->l, &w);
+    t->kid = s->kid_ptr[v];
+    return 1;
+}
+
+/* Goes on to the next step. Returns how many nodes are ready, [*id, *id + result); 0: the tree is done. */
+static int32_t hdi_factor_advance(hdi_factor_loop *t, int32_t worker, int32_t *id) {
+    hdi_factor *f = t->l.f;
+    const hdi_symbolic *s = f->sym;
+    const int real = f->width == 1;
+    if (!t->assembling) {
+        do {
+            if (t->top + 1 >= s->n_top) return 0;
+        } while (!hdi_factor_open(t, worker));
+    }
+    t->assembling = real && t->kid < s->kid_ptr[s->top[t->top] + 1];
+    *id = 0;
+    if (t->assembling) {
+        t->l.w.child = s->kid[t->kid++];
+        return t->left = hdi_factor_child_nodes(s, t->l.w.child);
+    }
+    if (real) return 1;
+    *id = hdi_front_node(&t->l, t->l.n_blocks, -1);
+    return t->l.n_chunks;
+}
+
+static void hdi_factor_node(void *arg, int64_t index, int32_t worker) {
+    hdi_factor_loop *t = HDI_CAST(hdi_factor_loop *, arg);
+    hdi_factor *f = t->l.f;
+    int32_t id, n;
+    if (index >= HDI_FACTOR_TASKS) {
+        hdi_factor_task(f, index - HDI_FACTOR_TASKS, worker);
+        if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
+    } else if (t->assembling) {
+        const int64_t r0 = index * HDI_FRONT_CHUNK, end = hdi_front_below(f->sym, t->l.w.child);
+        if (!HDI_LOAD(&f->stop))
+            hdi_front_part(&t->l.w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r0 + HDI_FRONT_CHUNK, end), NULL);
+        if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
+    } else if (!hdi_front_run_node(&t->l, HDI_CAST(int32_t, index))) {
+        return;
+    }
+    n = hdi_factor_advance(t, worker, &id);
+    if (n > 0) hdi_release_many(t->l.threads, id, n, t->l.order);
+}
+
+/* All fronts, by several threads. */
+static void hdi_factor_share(hdi_factor *f, hd_threads *threads) {
+    const hdi_symbolic *s = f->sym;
+    hdi_factor_loop t;
+    int32_t i, ready = s->n_tasks, id = HDI_FACTOR_TASKS;
+    memset(&t, 0, sizeof t);
+    t.l.f = f;
+    t.l.note = f->pivots + s->n_tasks;
+    t.l.threads = threads;
+    t.l.order = f->order;
+    t.top = -1;
+    t.left = ready;
+    if (ready == 0) ready = hdi_factor_advance(&t, 0, &id);
+    for (i = 0; i < ready; i++) f->order[i] = id + i;
+    hdi_parallel_ordered(f->ctx, HDI_CAST(int32_t, f->n_order), ready, f->order, hdi_factor_node, &t);
+}
+
 /* All fronts: subtrees at the same time, then the top, whose fronts are shared. */
 static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
     const hdi_symbolic *s = f->sym;
     const int32_t n_parts = s->n_tasks + 1;
     double *scratch = hdi_factor_scratch(f, s->n_tasks);
+    const int64_t n = f->n_order < HDI_FACTOR_TASKS ? f->n_order : 0;
+    hd_threads *threads = hdi_threads_own(f->ctx, n);
     int32_t i;
     f->ready = f->stop = 0;
     f->values = values;
     f->share = s->n_top > 0 ? 0.5 : 1;
     hdi_error_clear(&f->error);
     for (i = 0; i < n_parts; i++) hdi_pivots_clear(f->pivots + i);
-    hdi_parallel(f->ctx, s->n_tasks, hdi_factor_task, f);
-    for (i = 0; i < s->n_top && !f->stop; i++) {
-        const int shared = hdi_front_rows(s, s->top[i]) >= HDI_FRONT_SHARED;
+    if (threads) hdi_factor_share(f, threads);
+    else hdi_parallel(f->ctx, s->n_tasks, hdi_factor_task, f);
+    for (i = 0; i < s->n_top && !threads && !f->stop; i++) {
+        const int shared = hdi_factor_shared(s, s->top[i]);
         if (hdi_progress(f->ctx, "factor", 0.5 + 0.5 * i / s->n_top, &f->error) < 0) break;
         if (!hdi_front_factor(f, s->top[i], scratch, f->pivots + s->n_tasks, shared)) break;
     }
