@@ -11559,7 +11559,7 @@ static int32_t hdi_front_updates(const hdi_front_loop *l) {
 
 /* Returns 1 when it was the front's last node. */
 static int hdi_front_run_node(hdi_front_loop *l, int32_t i) {
-    const int32_t a = hdi_front_node(l, l->n_blocks, -1);
+    const int32_t a = hdi_front_node(l, l->n_blocks, -1), updates = hdi_front_updates(l);
     const int32_t c = i < a ? i % (l->n_chunks + 1) - 1 : i < a + l->n_chunks ? i - a : i - a - l->n_chunks;
     const int64_t r0 = HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
     double *work = l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c < 0 ? 0 : c);
@@ -11576,8 +11576,9 @@ static int hdi_front_run_node(hdi_front_loop *l, int32_t i) {
         hdi_front_next(l, -1, c);
     }
     if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return 0;
-    for (d = hdi_front_updates(l); d-- > 0;) hdi_release(l->threads, a + l->n_chunks + d, l->order);
-    return l->w.u == 0;
+    /* once the last of them is released l may belong to the next front */
+    for (d = updates; d-- > 0;) hdi_release(l->threads, a + l->n_chunks + d, l->order);
+    return updates == 0;
 }
 
 /* What nodes wait for. Returns how many there are. pending of the first A: the nodes of the panel. */
