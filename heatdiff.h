@@ -11749,7 +11749,10 @@ static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_
  * its update matrix starts as -L21 D L21' and the children's are added afterwards, so that it is neither
  * cleared nor read before. */
 
-enum { HDI_PACK_LANES = HDI_PACK / 2, HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 96 };
+/* Rows of a chunk of a front that threads share, as many as the kernels take at once. The parallel efficiency
+ * that bench simulates for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
+ * 0.46, 0.25. Fronts of fewer rows than HDI_FRONT_SHARED are not shared. */
+enum { HDI_PACK_LANES = HDI_PACK / 2, HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 48, HDI_FRONT_SHARED = 192 };
 
 /* Where values of A come from: real numbers, up to four complex matrices, or t L + theta B, by entries of the
  * pattern that was analysed. */
@@ -11780,13 +11783,18 @@ typedef struct hdi_factor {
     double *work;                    /* [sym->work] entries: update matrices */
     double *scratch;                 /* [n_tasks][scratch_size], and [chunk_size] where there is a top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
-    double *second;                  /* [chunk_size] a second place for S, of fronts that threads share */
-    int32_t *nodes;                  /* of their loops */
-    uint64_t scratch_size, chunk_size;   /* doubles */
+    double *second;                  /* [top_size] a second place for S, of fronts that threads share */
+    int32_t *nodes;                  /* what their nodes wait for */
+    int32_t *order;                  /* [n_order] nodes of the loop over the tree, as they become ready */
+    int64_t n_order;
+    uint64_t scratch_size, top_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
+    int32_t guest;                   /* work, scratch, chunk_scratch, nodes, order and pivots are another's */
+    double *spare;                   /* [spare_size] of a factor within a pack: what is left there */
+    uint64_t spare_size;
     /* a factorisation under way */
     const hdi_values *values;
     int32_t stop;
@@ -11830,6 +11838,13 @@ static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) 
     const uint64_t cols = HDI_CAST(uint64_t, hdi_least(below, HDI_FRONT_COLS) * depth);
     if (width == 1) return HDI_CAST(uint64_t, hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
     return HDI_PACK * (p + (rows > cols ? rows : cols)) + 64;
+}
+
+/* Doubles of scratch for a chunk of rows of such fronts: a block of columns of the update, or work of the
+ * kernels. */
+static uint64_t hdi_front_chunk_scratch(int32_t pivots, int32_t below, int32_t width) {
+    const int64_t cols = hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH);
+    return HDI_CAST(uint64_t, width == 1 ? hdi_real_work(below, pivots) : HDI_PACK * cols) + 64;
 }
 
 static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch) {
@@ -12170,10 +12185,10 @@ static void hdi_front_run(const hdi_front *w, int shared, int stage, int64_t beg
     hdi_chunks_run(&h, begin, end, w->f->ctx);
 }
 
-/* ---- a large front as one loop ---- */
-/* Its nodes, with rows in chunks c and pivots in blocks k: A(c) assembles rows of the panel (packs), P(k)
- * eliminates the pivots of a block, C(c,k) their columns in the rows below, U(d) computes rows of the
- * update matrix.
+/* ---- a large front by several threads ---- */
+/* Its nodes, part of the loop over all of the tree, with rows in chunks c and pivots in blocks k: A(c)
+ * assembles rows of the panel (packs), P(k) eliminates the pivots of a block, C(c,k) their columns in the
+ * rows below, U(d) computes rows of the update matrix.
  *   P(k)    waits for the chunks that hold its rows, and for all C(c,k-2), because S has two places
  *   C(c,k)  waits for P(k) and for C(c,k-1)
  *   U(d)    waits for the whole panel
@@ -12185,6 +12200,7 @@ typedef struct hdi_front_loop {
     hdi_pivots *note;
     double *S[2];
     int32_t nb, n_blocks, n_chunks;
+    int32_t left;                /* U that are not done */
     int32_t *pending, *order;
     hd_threads *threads;
 } hdi_front_loop;
@@ -12254,17 +12270,20 @@ static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) 
     for (c = hdi_front_first(l, k); c < l->n_chunks; c++) hdi_front_arrive(l, hdi_front_node(l, k, c));
 }
 
-static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
-    const hdi_front_loop *l = HDI_CAST(const hdi_front_loop *, arg);
-    const int32_t i = HDI_CAST(int32_t, index), a = hdi_front_node(l, l->n_blocks, -1);
+static int32_t hdi_front_updates(const hdi_front_loop *l) {
+    return HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+}
+
+/* Returns 1 when it was the front's last node. */
+static int hdi_front_run_node(hdi_front_loop *l, int32_t i) {
+    const int32_t a = hdi_front_node(l, l->n_blocks, -1), updates = hdi_front_updates(l);
     const int32_t c = i < a ? i % (l->n_chunks + 1) - 1 : i < a + l->n_chunks ? i - a : i - a - l->n_chunks;
     const int64_t r0 = HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
     double *work = l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c < 0 ? 0 : c);
     int32_t d;
-    (void)worker;
     if (i >= a + l->n_chunks) {
         if (!HDI_LOAD(&l->f->stop)) hdi_front_part(&l->w, HDI_FRONT_UPDATE, r0, hdi_least(r1, l->w.u), work);
-        return;
+        return HDI_ATOMIC_ADD(&l->left, -1) == 0;
     }
     if (i < a) {
         hdi_front_panel_node(l, i / (l->n_chunks + 1), c);
@@ -12273,50 +12292,42 @@ static void hdi_front_run_node(void *arg, int64_t index, int32_t worker) {
             hdi_front_part(&l->w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r1, l->w.m), work);
         hdi_front_next(l, -1, c);
     }
-    if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return;
-    for (d = HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK); d-- > 0;)
-        hdi_release(l->threads, a + l->n_chunks + d, l->order);
+    if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return 0;
+    /* once the last of them is released l may belong to the next front */
+    for (d = updates; d-- > 0;) hdi_release(l->threads, a + l->n_chunks + d, l->order);
+    return updates == 0;
 }
 
-/* What nodes wait for. Returns how many are ready; *n: how many there are. pending of the first A: the nodes
+/* What nodes wait for, unless pending is NULL. Returns how many there are. pending of the first A: the nodes
  * of the panel. */
-static int32_t hdi_front_count(hdi_front_loop *l, int32_t *n) {
+static int32_t hdi_front_count(hdi_front_loop *l) {
     const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = !hdi_is_real(l->f);
-    int32_t ready = 0, panel = packs ? l->n_chunks : 0, k, c;
+    int32_t panel = packs ? l->n_chunks : 0, k, c;
     for (k = 0; k < l->n_blocks; k++) {
-        int32_t *pivots = l->pending + hdi_front_node(l, k, -1);
+        int32_t *pivots;
+        panel += 1 + l->n_chunks - hdi_front_first(l, k);
+        if (!l->pending) continue;
+        pivots = l->pending + hdi_front_node(l, k, -1);
         *pivots = k > 1 ? l->n_chunks - hdi_front_first(l, k - 2) : 0;
         for (c = 0; c < l->n_chunks; c++) *pivots += (k > 0 || packs) && hdi_front_holds(l, k, c);
         for (c = hdi_front_first(l, k); c < l->n_chunks; c++)
             l->pending[hdi_front_node(l, k, c)] = k > 0 || packs ? 2 : 1;
-        panel += 1 + l->n_chunks - hdi_front_first(l, k);
     }
-    for (c = 0; c < l->n_chunks && packs; c++) l->order[ready++] = a + c;
-    if (!packs) l->order[ready++] = 0;
-    l->pending[a] = panel;
-    *n = panel + HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-    return ready;
+    if (l->pending) l->pending[a] = panel;
+    l->left = hdi_front_updates(l);
+    return panel + l->left;
 }
 
-/* The front from its panel's rows on, by several threads. 0 when a pivot cannot be divided by. */
-static int hdi_front_share(hdi_factor *f, const hdi_front *w, hd_threads *threads, hdi_pivots *note) {
-    hdi_front_loop l;
-    int32_t n, ready;
-    memset(&l, 0, sizeof l);
-    l.w = *w;
-    l.f = f;
-    l.note = note;
-    l.S[0] = w->S;
-    l.S[1] = f->second;
-    l.nb = hdi_front_block_size(f);
-    l.n_blocks = HDI_CAST(int32_t, (w->p + l.nb - 1) / l.nb);
-    l.n_chunks = HDI_CAST(int32_t, (w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-    l.threads = threads;
-    l.pending = f->nodes;
-    l.order = f->nodes + hdi_front_nodes(f->sym, l.nb);
-    ready = hdi_front_count(&l, &n);
-    hdi_parallel_ordered(f->ctx, n, ready, l.order, hdi_front_run_node, &l);
-    return !f->stop;
+/* Takes up a front of shape w. Returns the number of its nodes. */
+static int32_t hdi_front_loop_set(hdi_front_loop *l, const hdi_front *w) {
+    l->w = *w;
+    l->S[0] = w->S;
+    l->S[1] = l->f->second;
+    l->nb = hdi_front_block_size(l->f);
+    l->n_blocks = HDI_CAST(int32_t, (w->p + l->nb - 1) / l->nb);
+    l->n_chunks = HDI_CAST(int32_t, (w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    l->pending = l->f->nodes;
+    return hdi_front_count(l);
 }
 
 /* Front v, by this thread or shared by all. 0 when a pivot cannot be divided by. */
@@ -12324,18 +12335,15 @@ static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivot
     const hdi_symbolic *s = f->sym;
     const int real = hdi_is_real(f);
     const int64_t most = hdi_front_block_size(f);
-    const int64_t nodes = (hdi_front_pivots(s, v) / most + 1) * (hdi_front_rows(s, v) / HDI_FRONT_CHUNK);
-    hd_threads *threads = shared ? hdi_threads_own(f->ctx, nodes) : NULL;
     hdi_front w = hdi_front_open(f, v, scratch);
     int64_t end;
     int32_t k;
     if (real) hdi_front_assemble_real(&w);
-    else if (!threads) hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, w.m);
+    else hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, w.m);
     for (k = s->kid_ptr[v]; real && k < s->kid_ptr[v + 1]; k++) {
         w.child = s->kid[k];
         hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, hdi_front_below(s, w.child));
     }
-    if (threads) return hdi_front_share(f, &w, threads, note);
     for (; w.k0 < w.p; w.k0 += w.nb) {
         w.nb = HDI_CAST(int32_t, hdi_least(w.p - w.k0, most));
         /* a small front: its columns at once */
@@ -12370,33 +12378,152 @@ static void hdi_factor_free(hdi_factor *f) {
     if (!f->ctx) return;
     hdi_free(f->ctx, f->panel);
     hdi_free(f->ctx, f->dinv);
-    hdi_free(f->ctx, f->work);
-    hdi_free(f->ctx, f->scratch);
-    hdi_free(f->ctx, f->chunk_scratch);
-    hdi_free(f->ctx, f->nodes);
-    hdi_free(f->ctx, f->pivots);
+    if (!f->guest) {
+        hdi_free(f->ctx, f->work);
+        hdi_free(f->ctx, f->scratch);
+        hdi_free(f->ctx, f->chunk_scratch);
+        hdi_free(f->ctx, f->nodes);
+        hdi_free(f->ctx, f->order);
+        hdi_free(f->ctx, f->pivots);
+    }
     memset(f, 0, sizeof *f);
+}
+
+/* Whether threads share front v, which belongs to the top. */
+static int hdi_factor_shared(const hdi_symbolic *s, int32_t v) {
+    return hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
+}
+
+/* Chunks of columns of child c. */
+static int32_t hdi_factor_child_nodes(const hdi_symbolic *s, int32_t c) {
+    return HDI_CAST(int32_t, (hdi_front_below(s, c) + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+}
+
+/* Nodes of the loop over all of the tree, see below. Fills f->nodes, if there is one. */
+static int64_t hdi_factor_nodes(hdi_factor *f) {
+    const hdi_symbolic *s = f->sym;
+    int64_t n = s->n_top > 0 ? s->n_tasks : 0;
+    int32_t i, k;
+    hdi_front_loop l;
+    hdi_front w;
+    memset(&l, 0, sizeof l);
+    memset(&w, 0, sizeof w);
+    l.f = f;
+    w.f = f;
+    for (i = 0; i < s->n_top; i++) {
+        const int32_t v = s->top[i];
+        if (!hdi_factor_shared(s, v)) continue;
+        hdi_front_shape(s, v, &w.p, &w.u, &w.m);
+        n += hdi_front_loop_set(&l, &w);
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1] && hdi_is_real(f); k++)
+            n += hdi_factor_child_nodes(s, s->kid[k]);
+    }
+    return n;
+}
+
+/* The sizes of a factor of the given width that has no room yet. */
+static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width) {
+    hdi_factor f;
+    memset(&f, 0, sizeof f);
+    f.sym = sym;
+    f.width = width;
+    f.panel_at = width == 1 ? sym->panel : sym->panel_pack;
+    f.scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
+    f.top_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
+    f.chunk_size = hdi_front_chunk_scratch(sym->largest_pivots, sym->largest_update, width);
+    return f;
+}
+
+/* Room to work in: chunks that the largest front of the top has. */
+static uint64_t hdi_factor_chunks(const hdi_symbolic *s) {
+    return HDI_CAST(uint64_t, s->n_top ? s->largest_front / HDI_FRONT_CHUNK + 1 : 0);
+}
+
+/* Parts of the tree that have a scratch and pivots of their own. */
+static uint64_t hdi_factor_parts(const hdi_symbolic *s) {
+    return HDI_CAST(uint64_t, s->n_tasks > 0 ? s->n_tasks : 1);
+}
+
+/* The numbers of a factor. */
+static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
+    const uint64_t w = HDI_CAST(uint64_t, f->width);
+    f->panel = HDI_TAKE(s, double, HDI_CAST(uint64_t, f->panel_at[f->sym->n_super]) * w);
+    f->dinv = HDI_TAKE(s, double, HDI_CAST(uint64_t, f->sym->n) * w);
+}
+
+/* f becomes another factor like its host, with its own numbers but the host's room to work in. Neither is
+ * factorised or inverted while the other one is. The host lives longer. */
+static hd_status hdi_factor_make_guest(hdi_factor *f, const hdi_factor *host, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(host->ctx, e);
+    *f = *host;
+    f->guest = 1;
+    f->ready = 0;
+    hdi_factor_take_numbers(f, &s);
+    if (e->status >= 0) return HD_OK;
+    memset(f, 0, sizeof *f);
+    return hdi_scope_end(&s);
+}
+
+/* The bytes of that. */
+static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
+    hd_error none;
+    uint64_t bytes;
+    hdi_scope s = hdi_scope_tally(&bytes, &none);
+    hdi_factor f = hdi_factor_of(sym, width);
+    hdi_factor_take_numbers(&f, &s);
+    return bytes;
+}
+
+/* The sizes of a real factor that stands where the update matrices of a pack do. Returns 0 if it does not
+ * fit. */
+static int hdi_factor_within_size(hdi_factor *f, const hdi_symbolic *s) {
+    const uint64_t room = HDI_PACK * HDI_CAST(uint64_t, s->work);
+    uint64_t need = HDI_CAST(uint64_t, s->panel[s->n_super] + s->work + s->n);
+    *f = hdi_factor_of(s, 1);
+    f->n_order = hdi_factor_nodes(f);
+    need += f->scratch_size * hdi_factor_parts(s) + 2 * f->top_size;
+    need += f->chunk_size * hdi_factor_chunks(s) + HDI_CAST(uint64_t, f->n_order / 2 + 1);
+    f->spare_size = need <= room ? room - need : 0;
+    return need <= room;
+}
+
+/* A real factor that stands where the update matrices of a pack do, until the pack is factorised or inverted
+ * again, or other use is made of that room. Not to be freed. Returns 0 if it does not fit. */
+static int hdi_factor_within(hdi_factor *f, const hdi_factor *pack) {
+    const hdi_symbolic *s = pack->sym;
+    if (!hdi_factor_within_size(f, s)) return 0;
+    f->real = pack->real;
+    f->pack = pack->pack;
+    f->panel = pack->work;
+    f->work = f->panel + s->panel[s->n_super];
+    f->dinv = f->work + s->work;
+    f->scratch = f->dinv + s->n;
+    f->second = f->scratch + f->scratch_size * hdi_factor_parts(s) + f->top_size;
+    f->chunk_scratch = f->second + f->top_size;
+    f->spare = f->chunk_scratch + f->chunk_size * hdi_factor_chunks(s);
+    f->order = HDI_CAST(int32_t *, HDI_CAST(void *, f->spare));
+    f->spare += f->n_order / 2 + 1;
+    f->nodes = pack->nodes;                      /* those of a pack are more: its blocks are smaller */
+    f->pivots = pack->pivots;
+    f->guest = 1;
+    f->ctx = pack->ctx;
+    return 1;
 }
 
 /* The arrays of a factor of the given width; all that factoring and refactoring need. */
 static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
-    const uint64_t w = HDI_CAST(uint64_t, width);
-    const uint64_t n_parts = HDI_CAST(uint64_t, sym->n_tasks > 0 ? sym->n_tasks : 1);
-    const uint64_t n_chunks = HDI_CAST(uint64_t, sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);
-    memset(f, 0, sizeof *f);
-    f->sym = sym;
-    f->width = width;
-    f->panel_at = width == 1 ? sym->panel : sym->panel_pack;
-    f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
-    f->chunk_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
-    f->panel = HDI_TAKE(s, double, HDI_CAST(uint64_t, f->panel_at[sym->n_super]) * w);
-    f->dinv = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->n) * w);
-    f->work = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->work) * w);
-    f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + (sym->n_top ? f->chunk_size : 0));
-    f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * (n_chunks + (n_chunks > 0)) + 1);
-    f->nodes = HDI_TAKE(s, int32_t, 2 * hdi_front_nodes(sym, hdi_front_block_size(f)) + 2);
+    const uint64_t n_parts = hdi_factor_parts(sym), n_chunks = hdi_factor_chunks(sym);
+    const uint64_t tops = (sym->n_top > 0) + (n_chunks > 0);
+    *f = hdi_factor_of(sym, width);
+    hdi_factor_take_numbers(f, s);
+    f->work = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->work) * HDI_CAST(uint64_t, width));
+    f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
+    f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
+    f->nodes = HDI_TAKE(s, int32_t, hdi_front_nodes(sym, hdi_front_block_size(f)) + 1);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
-    if (f->chunk_scratch) f->second = f->chunk_scratch + f->chunk_size * n_chunks;
+    f->n_order = hdi_factor_nodes(f);
+    f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
+    if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
 }
 
 /* Room for a factor. */
@@ -12424,6 +12551,13 @@ static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
     return bytes;
 }
 
+/* Pack i of several that are factorised in turn: those after the first are its guests. */
+static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_symbolic *sym, hd_context *ctx,
+                                      hd_error *e) {
+    if (i > 0) return hdi_factor_make_guest(pack + i, pack, e);
+    return hdi_factor_make(pack, sym, HDI_PACK, ctx, e);
+}
+
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported. */
 static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e) {
     int32_t i;
@@ -12448,20 +12582,114 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
     return e->status;
 }
 
+/* ---- the tree as one loop ---- */
+/* Its nodes: the subtrees; then for one front of the top after the other, chunks of each child that is added
+ * to it (real numbers), and those of the front. Whoever does the last node of a step does what one thread
+ * must do before the next, and releases that one's. */
+
+enum { HDI_FACTOR_TASKS = 1 << 30 };
+
+typedef struct hdi_factor_loop {
+    hdi_front_loop l;            /* of the front under way */
+    int32_t top, kid;            /* which front of the top; the child that is added next */
+    int32_t assembling;
+    int32_t left;                /* subtrees, or chunks of the child, that are not done */
+} hdi_factor_loop;
+
+/* Takes up front top + 1: 1, and to be shared from here on; 0 when it is done, by this thread. */
+static int hdi_factor_open(hdi_factor_loop *t, int32_t worker) {
+    hdi_factor *f = t->l.f;
+    const hdi_symbolic *s = f->sym;
+    const int32_t v = s->top[++t->top];
+    double *scratch = hdi_factor_scratch(f, s->n_tasks);
+    hdi_front w = hdi_front_open(f, v, scratch);
+    if (worker == 0 && !HDI_LOAD(&f->stop) &&
+        hdi_progress(f->ctx, "factor", 0.5 + 0.5 * t->top / s->n_top, &f->error) < 0)
+        HDI_STORE(&f->stop, 1);
+    if (!hdi_factor_shared(s, v)) {
+        if (!HDI_LOAD(&f->stop) && !hdi_front_factor(f, v, scratch, t->l.note, 0)) HDI_STORE(&f->stop, 1);
+        return 0;
+    }
+    if (f->width == 1 && !HDI_LOAD(&f->stop)) hdi_front_assemble_real(&w);
+    (void)hdi_front_loop_set(&t->l, &w);
+    t->kid = s->kid_ptr[v];
+    return 1;
+}
+
+/* Goes on to the next step. Returns how many nodes are ready, [*id, *id + result); 0: the tree is done. */
+static int32_t hdi_factor_advance(hdi_factor_loop *t, int32_t worker, int32_t *id) {
+    hdi_factor *f = t->l.f;
+    const hdi_symbolic *s = f->sym;
+    const int real = f->width == 1;
+    if (!t->assembling) {
+        do {
+            if (t->top + 1 >= s->n_top) return 0;
+        } while (!hdi_factor_open(t, worker));
+    }
+    t->assembling = real && t->kid < s->kid_ptr[s->top[t->top] + 1];
+    *id = 0;
+    if (t->assembling) {
+        t->l.w.child = s->kid[t->kid++];
+        return t->left = hdi_factor_child_nodes(s, t->l.w.child);
+    }
+    if (real) return 1;
+    *id = hdi_front_node(&t->l, t->l.n_blocks, -1);
+    return t->l.n_chunks;
+}
+
+static void hdi_factor_node(void *arg, int64_t index, int32_t worker) {
+    hdi_factor_loop *t = HDI_CAST(hdi_factor_loop *, arg);
+    hdi_factor *f = t->l.f;
+    int32_t id, n;
+    if (index >= HDI_FACTOR_TASKS) {
+        hdi_factor_task(f, index - HDI_FACTOR_TASKS, worker);
+        if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
+    } else if (t->assembling) {
+        const int64_t r0 = index * HDI_FRONT_CHUNK, end = hdi_front_below(f->sym, t->l.w.child);
+        if (!HDI_LOAD(&f->stop))
+            hdi_front_part(&t->l.w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r0 + HDI_FRONT_CHUNK, end), NULL);
+        if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
+    } else if (!hdi_front_run_node(&t->l, HDI_CAST(int32_t, index))) {
+        return;
+    }
+    n = hdi_factor_advance(t, worker, &id);
+    if (n > 0) hdi_release_many(t->l.threads, id, n, t->l.order);
+}
+
+/* All fronts, by several threads. */
+static void hdi_factor_share(hdi_factor *f, hd_threads *threads) {
+    const hdi_symbolic *s = f->sym;
+    hdi_factor_loop t;
+    int32_t i, ready = s->n_tasks, id = HDI_FACTOR_TASKS;
+    memset(&t, 0, sizeof t);
+    t.l.f = f;
+    t.l.note = f->pivots + s->n_tasks;
+    t.l.threads = threads;
+    t.l.order = f->order;
+    t.top = -1;
+    t.left = ready;
+    if (ready == 0) ready = hdi_factor_advance(&t, 0, &id);
+    for (i = 0; i < ready; i++) f->order[i] = id + i;
+    hdi_parallel_ordered(f->ctx, HDI_CAST(int32_t, f->n_order), ready, f->order, hdi_factor_node, &t);
+}
+
 /* All fronts: subtrees at the same time, then the top, whose fronts are shared. */
 static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
     const hdi_symbolic *s = f->sym;
     const int32_t n_parts = s->n_tasks + 1;
     double *scratch = hdi_factor_scratch(f, s->n_tasks);
+    const int64_t n = f->n_order < HDI_FACTOR_TASKS ? f->n_order : 0;
+    hd_threads *threads = hdi_threads_own(f->ctx, n);
     int32_t i;
     f->ready = f->stop = 0;
     f->values = values;
     f->share = s->n_top > 0 ? 0.5 : 1;
     hdi_error_clear(&f->error);
     for (i = 0; i < n_parts; i++) hdi_pivots_clear(f->pivots + i);
-    hdi_parallel(f->ctx, s->n_tasks, hdi_factor_task, f);
-    for (i = 0; i < s->n_top && !f->stop; i++) {
-        const int shared = hdi_front_rows(s, s->top[i]) >= 2 * HDI_FRONT_CHUNK;
+    if (threads) hdi_factor_share(f, threads);
+    else hdi_parallel(f->ctx, s->n_tasks, hdi_factor_task, f);
+    for (i = 0; i < s->n_top && !threads && !f->stop; i++) {
+        const int shared = hdi_factor_shared(s, s->top[i]);
         if (hdi_progress(f->ctx, "factor", 0.5 + 0.5 * i / s->n_top, &f->error) < 0) break;
         if (!hdi_front_factor(f, s->top[i], scratch, f->pivots + s->n_tasks, shared)) break;
     }
@@ -12907,7 +13135,7 @@ static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
     hdi_free(f->ctx, f->pack);
     f->pack = pack;
     for (; f->n_packs < want; f->n_packs++)
-        if (hdi_factor_make(f->pack + f->n_packs, &f->sym, HDI_PACK, f->ctx, e) < 0) return e->status;
+        if (hdi_factor_make_pack(f->pack, f->n_packs, &f->sym, f->ctx, e) < 0) return e->status;
     return HD_OK;
 }
 
@@ -13050,6 +13278,7 @@ typedef struct hdi_inverse {
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
     uint64_t scratch_size, top_size, chunk_size;
+    int32_t guest;               /* scratch is the factor's */
     int32_t stop;
     double done;
     hd_error error;
@@ -14258,45 +14487,50 @@ static void hdi_inverse_share(hdi_inverse *z, hd_threads *threads, int32_t n, in
 }
 
 static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
-    hdi_free(ctx, z->scratch);
+    if (!z->guest) hdi_free(ctx, z->scratch);
     hdi_free(ctx, z->chunk);
     z->scratch = z->chunk = NULL;
 }
 
-/* The arrays that inverting factors of the given width takes. */
-static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
+/* The arrays that inverting factors of the given width takes; with f that factor, some of it in f's spare room
+ * if it fits. */
+static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const hdi_factor *f,
+                             hdi_scope *keep) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
     const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_CAST(int32_t, HDI_REAL_MR) + 2;
+    uint64_t size;
     int32_t v;
     memset(z, 0, sizeof *z);
     for (v = 0; v < s->n_super; v++) {
         const int64_t m = hdi_front_rows(s, v);
-        const uint64_t size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), at[v + 1] - at[v], width);
+        size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), at[v + 1] - at[v], width);
         if (s->n_top && size > z->top_size) z->top_size = size;
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
     z->chunk_size = hdi_inverse_buffer(width);
-    z->scratch = HDI_TAKE(keep, double, z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size);
+    size = z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size;
+    z->guest = f && size <= f->spare_size;
+    z->scratch = z->guest ? f->spare : HDI_TAKE(keep, double, size);
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, chunks) : 1);
 }
 
-/* Room to invert factors of the given width. */
-static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hd_context *ctx,
-                                  hd_error *e) {
+/* Room to invert factors of the given width; f: see hdi_inverse_take. */
+static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const hdi_factor *f,
+                                  hd_context *ctx, hd_error *e) {
     hdi_scope keep = hdi_scope_begin(ctx, e);
-    hdi_inverse_take(z, s, width, &keep);
+    hdi_inverse_take(z, s, width, f, &keep);
     if (e->status >= 0) return HD_OK;            /* the blocks are z's own */
     z->scratch = z->chunk = NULL;
     return hdi_scope_end(&keep);
 }
 
 /* The bytes of that. */
-static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width) {
+static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, const hdi_factor *f) {
     hd_error none;
     uint64_t bytes;
     hdi_scope keep = hdi_scope_tally(&bytes, &none);
     hdi_inverse z;
-    hdi_inverse_take(&z, s, width, &keep);
+    hdi_inverse_take(&z, s, width, f, &keep);
     return bytes;
 }
 
@@ -14369,7 +14603,7 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
     for (q = 0; q < n_sets; q++) coef[q * of->width + hdi_pack_part(q, stride)] = 1;
-    if (e->status < 0 || hdi_inverse_make(&z, &f->sym, of->width, f->ctx, e) < 0) return hdi_scope_end(&s);
+    if (e->status < 0 || hdi_inverse_make(&z, &f->sym, of->width, NULL, f->ctx, e) < 0) return hdi_scope_end(&s);
     z.coef = coef;
     z.n_sets = n_sets;
     z.values = x;
@@ -17178,7 +17412,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     }
     hdi_elim_take(m, set, t);
     for (; m->n_packs < m->n_used; m->n_packs++)
-        if (hdi_factor_make(m->pack + m->n_packs, &m->sym, HDI_PACK, m->ctx, e) < 0) return e->status;
+        if (hdi_factor_make_pack(m->pack, m->n_packs, &m->sym, m->ctx, e) < 0) return e->status;
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < m->n_used; i++) {
         hd_c64 theta[4];
@@ -17679,7 +17913,7 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
     hdi_forms forms;
     hdi_inverse z;
     int32_t i, k;
-    if (n == 0 || e->status < 0 || hdi_inverse_make(&z, &m->sym, width, m->ctx, e) < 0) return;
+    if (n == 0 || e->status < 0 || hdi_inverse_make(&z, &m->sym, width, NULL, m->ctx, e) < 0) return;
     if (b) (void)hdi_forms_make(&forms, &m->sym, width, &m->source->L, b, m->ctx, e);
     z.coef = coef;
     z.n_sets = sums->n_sets;
@@ -17718,7 +17952,7 @@ static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_erro
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
                                            hd_error *e) {
     hdi_inverse z;
-    if (hdi_inverse_make(&z, &m->sym, f->width, m->ctx, e) < 0) return e->status;
+    if (hdi_inverse_make(&z, &m->sym, f->width, f, m->ctx, e) < 0) return e->status;
     memset(out, 0, HDI_CAST(size_t, m->sym.n) * sizeof *out);
     z.coef = coef;
     z.n_sets = 1;
@@ -17779,14 +18013,16 @@ static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
 #define HDI_REACH_SLACK 1.01
 
 /* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
- * one. */
+ * one, in the room of the first pack where it fits. */
 static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = HDI_REACH_SLACK * hdi_max(1, theta);
+    hdi_factor within, *real = &m->real;
     int32_t i;
     if (m->reach && m->reach_t == m->t) return HD_OK;
     if (!m->reach) m->reach = HDI_NEW(m->ctx, double, m->sym.n, e);
-    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, &m->real, m->t, theta, e) >= 0) &&
-        hdi_elim_inverse_diagonal(m, &m->real, &factor, m->reach, e) >= 0) {
+    if (m->lone < 0 && m->n_used > 0 && hdi_factor_within(&within, m->pack)) real = &within;
+    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
+        hdi_elim_inverse_diagonal(m, real, &factor, m->reach, e) >= 0) {
         for (i = 0; i < m->sym.n; i++) {
             const double most = hdi_inverse_mass(m->lap, i);
             if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
@@ -17804,15 +18040,22 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
 /* What follows the factors of a set: solves, with hdi_elim_bound before them or without, or an inversion. */
 typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, HDI_AFTER_FORMS } hdi_after;
 
+/* Does hdi_elim_bound find room for its real factor in the first pack? */
+static int hdi_elim_bound_within(const hdi_elim *m, const hd_rational *set, hdi_factor *within) {
+    return !hdi_set_lone(set) && hdi_set_packs(set) > 0 && hdi_factor_within_size(within, &m->sym);
+}
+
 /* Bytes that the factors of a set take beyond those that are there, with what hdi_elim_bound keeps. */
 static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, hdi_after after) {
-    const int32_t packs = hdi_set_packs(set) - m->n_packs;
-    const int real = (hdi_set_lone(set) || after == HDI_AFTER_BOUND) && !m->real.ctx;
+    const int32_t packs = hdi_set_packs(set), guests = packs - hdi_high32(m->n_packs, 1);
+    const int bound = after == HDI_AFTER_BOUND;
+    hdi_factor within;
+    const int real = hdi_set_lone(set) || (bound && !hdi_elim_bound_within(m, set, &within));
     uint64_t bytes = 0;
-    if (packs > 0) bytes += HDI_CAST(uint64_t, packs) * hdi_factor_bytes(&m->sym, HDI_PACK);
-    if (real) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (after == HDI_AFTER_BOUND && !m->reach)
-        hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->sym.n), sizeof *m->reach);
+    if (packs > 0 && m->n_packs == 0) bytes += hdi_factor_bytes(&m->sym, HDI_PACK);
+    if (guests > 0) bytes += HDI_CAST(uint64_t, guests) * hdi_factor_guest_bytes(&m->sym, HDI_PACK);
+    if (real && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
+    if (bound && !m->reach) hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->sym.n), sizeof *m->reach);
     return bytes;
 }
 
@@ -17821,12 +18064,14 @@ static uint64_t hdi_elim_inverse_need(const hdi_elim *m, const hd_rational *set,
                                       int32_t n_sets, hd_error *e) {
     const int forms = after == HDI_AFTER_FORMS;
     uint64_t real = 0, pack = 0, bytes = 0;
+    hdi_factor within;
     if (after == HDI_AFTER_SOLVES) return 0;
-    if (after == HDI_AFTER_BOUND) return hdi_inverse_bytes(&m->sym, 1);
+    if (after == HDI_AFTER_BOUND)
+        return hdi_inverse_bytes(&m->sym, 1, hdi_elim_bound_within(m, set, &within) ? &within : NULL);
     if (hdi_set_lone(set))
-        real = hdi_inverse_bytes(&m->sym, 1) + (forms ? hdi_forms_bytes(&m->sym, 1, m->ctx, e) : 0);
+        real = hdi_inverse_bytes(&m->sym, 1, NULL) + (forms ? hdi_forms_bytes(&m->sym, 1, m->ctx, e) : 0);
     if (e->status >= 0 && hdi_set_packs(set) > 0)
-        pack = hdi_inverse_bytes(&m->sym, HDI_PACK) +
+        pack = hdi_inverse_bytes(&m->sym, HDI_PACK, NULL) +
                (forms ? hdi_forms_bytes(&m->sym, HDI_PACK, m->ctx, e) : 0);
     hdi_scope_count(&bytes, HDI_PACK * HDI_CAST(uint64_t, n_sets), sizeof(double));
     if (forms) hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->source->L.nnz), sizeof(double));
@@ -18816,12 +19061,12 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
         held = hdi_factor_bytes(&m->sym, 1);
         hdi_scope_count(&held, n, sizeof(char));
         hdi_scope_count(&held, 3 * n + 2 * n_comp, sizeof(double));
-        make = hdi_inverse_bytes(&m->sym, 1);
+        make = hdi_inverse_bytes(&m->sym, 1, NULL);
         hdi_scope_count(&make, nnz, sizeof(double));
         hdi_scope_count(&make, n_comp, sizeof(char));
     }
     if (forms && !g->formed) {
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK);
+        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, NULL);
         hdi_scope_count(&form, nnz, sizeof(hd_c64));
         hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1) + 2 * n, sizeof(double));
         hdi_scope_count(&form, n_comp, sizeof(char));
@@ -21354,7 +21599,7 @@ static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, u
     int32_t count;
     uint64_t x, xr;
     *width = hdi_low32(k, HDI_LANES_BATCH);
-    *doubles = hdi_batch_size(m, *width, &x, &xr);
+    *doubles = (hdi_batch_size(m, *width, &x, &xr) + 7) / 8 * 8;
     count = (k + *width - 1) / *width;
     if (count > HDI_BATCHES) count = HDI_BATCHES;
     while (count > 1 && HDI_CAST(uint64_t, count) * (*doubles + 7 * n * HDI_CAST(uint64_t, *width)) > most)
@@ -21362,8 +21607,14 @@ static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, u
     return count;
 }
 
-/* Bytes that solves of k items take beyond what the plan has. */
-static uint64_t hdi_batches_need(const hd_heat *heat, int32_t k) {
+/* How many of them have their arrays where the update matrices of the first of so many packs were. */
+static int32_t hdi_batches_inside(const hdi_elim *m, int32_t packs, uint64_t doubles, int32_t count) {
+    const uint64_t spare = packs > 0 ? HDI_PACK * HDI_CAST(uint64_t, m->sym.work) : 0;
+    return HDI_CAST(int32_t, hdi_least(HDI_CAST(int64_t, spare / doubles), count));
+}
+
+/* Bytes that solves of k items with so many packs take beyond what the plan has. */
+static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
     const uint64_t n = HDI_CAST(uint64_t, heat->elim.sym.n);
     const uint64_t n_comp = HDI_CAST(uint64_t, heat->source->n_components);
     int32_t width, count, lanes, i;
@@ -21377,8 +21628,9 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t k) {
         hdi_scope_count(&bytes, 7 * n, sizeof(double));
         hdi_scope_count(&bytes, 3 * n_comp, sizeof(double));
     }
-    if (heat->batch_doubles >= doubles * HDI_CAST(uint64_t, count)) return bytes;
-    hdi_scope_count(&bytes, doubles * HDI_CAST(uint64_t, count), sizeof(double));
+    doubles *= HDI_CAST(uint64_t, count - hdi_batches_inside(&heat->elim, packs, doubles, count));
+    if (heat->batch_doubles >= doubles) return bytes;
+    hdi_scope_count(&bytes, doubles, sizeof(double));
     if (heat->batch_room) hdi_scope_count(&old, heat->batch_doubles, sizeof(double));
     return bytes - old;                          /* the old room is freed first */
 }
@@ -21389,7 +21641,7 @@ static uint64_t hdi_direct_need(const hd_heat *heat, const hd_rational *set, hdi
                                 int32_t k, hd_error *e) {
     const hdi_elim *m = &heat->elim;
     const uint64_t inverse = hdi_elim_inverse_need(m, set, after, n_sets, e);
-    const uint64_t solves = hdi_batches_need(heat, k);
+    const uint64_t solves = hdi_batches_need(heat, hdi_set_packs(set), k);
     return hdi_elim_factor_need(m, set, after) + (inverse > solves ? inverse : solves);
 }
 
@@ -21428,20 +21680,25 @@ typedef struct hdi_batches {
     hdi_heat_call *h;
     int32_t width, count, n_here;
     uint64_t doubles;            /* of a batch's arrays */
+    int32_t inside;              /* batches whose arrays are where the first pack's update matrices were */
 } hdi_batches;
 
-/* Finds how many batches, and makes room for them: lanes, and the batches' arrays in the plan. */
+/* Finds how many batches, and makes room for them: lanes, and the batches' arrays, as many as fit where the
+ * update matrices of the first pack were, the others in the plan. */
 static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     hd_heat *heat = h->heat;
+    uint64_t fresh;
     b->h = h;
     b->n_here = 0;
     b->count = hdi_batches_shape(&heat->elim, h->ask.k, &b->width, &b->doubles);
     if (hdi_heat_lanes(h, b->count * b->width) < 0) return h->e->status;
-    if (heat->batch_doubles >= b->doubles * HDI_CAST(uint64_t, b->count)) return HD_OK;
+    b->inside = hdi_batches_inside(&heat->elim, heat->elim.n_used, b->doubles, b->count);
+    fresh = b->doubles * HDI_CAST(uint64_t, b->count - b->inside);
+    if (heat->batch_doubles >= fresh) return HD_OK;
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_doubles = 0;
-    heat->batch_room = HDI_NEW(heat->ctx, double, b->doubles * HDI_CAST(uint64_t, b->count), h->e);
-    if (heat->batch_room) heat->batch_doubles = b->doubles * HDI_CAST(uint64_t, b->count);
+    heat->batch_room = HDI_NEW(heat->ctx, double, fresh, h->e);
+    if (heat->batch_room) heat->batch_doubles = fresh;
     return h->e->status;
 }
 
@@ -21451,7 +21708,8 @@ static hdi_batch hdi_batches_get(const hdi_batches *b, int64_t index) {
     hdi_batch one;
     uint64_t x, xr;
     (void)hdi_batch_size(m, b->width, &x, &xr);
-    one.x = b->h->heat->batch_room + b->doubles * HDI_CAST(size_t, index);
+    if (index < b->inside) one.x = m->pack->work + b->doubles * HDI_CAST(size_t, index);
+    else one.x = b->h->heat->batch_room + b->doubles * HDI_CAST(size_t, index - b->inside);
     one.xr = one.x + x;
     one.work = one.xr + xr;
     one.active = HDI_CAST(char *, HDI_CAST(void *, one.x + b->doubles)) - m->sym.n_super - 8;
@@ -23771,7 +24029,8 @@ static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hd
     const double packs = hdi_set_packs(set), n = heat->source->n_active;
     held += HDI_ESTIMATE_SMALL;
     /* the solves' arrays of one time stay while the next one is factorised */
-    if (heat->elim.ctx && x->h->n_times > 1) held += HDI_CAST(double, hdi_batches_need(heat, k));
+    if (heat->elim.ctx && x->h->n_times > 1)
+        held += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(set), k));
     if (heat->elim.ctx)
         return held + HDI_CAST(double, hdi_direct_need(heat, set, after, n_sets, k, x->h->e));
     held += 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
@@ -24005,7 +24264,7 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
         hdi_cost_add(c, one.flops, one.seconds, one.bytes);
         /* after a first try, whose lanes and real factor stay */
         if (!sure && heat->elim.ctx)
-            most.bytes += HDI_CAST(double, hdi_batches_need(heat, hdi_high32(x->k, HDI_PROBES)) +
+            most.bytes += HDI_CAST(double, hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
                                            (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
         c->bytes_most = hdi_max(c->bytes_most, most.bytes);
     }

@@ -40,7 +40,7 @@ static void forms_run(const forms_case *c, const hdi_symbolic *s, hd_context *ct
     for (q = 0; q < 4 && c->z; q++) v.z[q] = c->z + q * c->a->nnz;
     hdi_error_clear(&e);
     CHECK_MSG(hdi_factor_make(&f, s, width, ctx, &e) == HD_OK && hdi_factor_run(&f, &v, &e) == HD_OK, "%s: %s", what, e.text);
-    CHECK_MSG(hdi_inverse_make(&z, s, width, ctx, &e) == HD_OK && hdi_forms_make(&forms, s, width, c->a, c->x, ctx, &e) == HD_OK, "%s: %s", what, e.text);
+    CHECK_MSG(hdi_inverse_make(&z, s, width, NULL, ctx, &e) == HD_OK && hdi_forms_make(&forms, s, width, c->a, c->x, ctx, &e) == HD_OK, "%s: %s", what, e.text);
     if (c->cols && c->cols < forms.cols) forms.cols = c->cols;
     if (c->slots && c->slots < forms.n_slots) forms.n_slots = c->slots;
     memset(coef, 0, sizeof coef);
