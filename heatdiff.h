@@ -21622,17 +21622,21 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
     if (k < 1) return 0;
     count = hdi_batches_shape(&heat->elim, k, &width, &doubles);
     lanes = hdi_low32(k, count * width);
-    if (lanes > heat->n_lanes) hdi_scope_count(&bytes, HDI_CAST(uint64_t, lanes), sizeof(hdi_lane));
+    if (lanes > heat->n_lanes) {
+        hdi_scope_count(&bytes, HDI_CAST(uint64_t, lanes), sizeof(hdi_lane));
+        if (heat->lane) hdi_scope_count(&old, HDI_CAST(uint64_t, heat->n_lanes), sizeof(hdi_lane));
+    }
     for (i = 0; i < lanes; i++) {
         if (i < heat->n_lanes && heat->lane[i].f) continue;
         hdi_scope_count(&bytes, 7 * n, sizeof(double));
         hdi_scope_count(&bytes, 3 * n_comp, sizeof(double));
     }
     doubles *= HDI_CAST(uint64_t, count - hdi_batches_inside(&heat->elim, packs, doubles, count));
-    if (heat->batch_doubles >= doubles) return bytes;
-    hdi_scope_count(&bytes, doubles, sizeof(double));
-    if (heat->batch_room) hdi_scope_count(&old, heat->batch_doubles, sizeof(double));
-    return bytes - old;                          /* the old room is freed first */
+    if (heat->batch_doubles < doubles) {
+        hdi_scope_count(&bytes, doubles, sizeof(double));
+        if (heat->batch_room) hdi_scope_count(&old, heat->batch_doubles, sizeof(double));
+    }
+    return bytes > old ? bytes - old : 0;        /* old room is freed */
 }
 
 /* Bytes that the factors of a set take at their peak with all that follows: an inversion of so many sums, or
@@ -24070,10 +24074,10 @@ static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int3
     double bytes = HDI_ESTIMATE_SMALL;
     if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
     if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
-    bytes += lanes * 56 * n;
     if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS)
-        return bytes + lanes * (24 * n + 88.0 * HDI_LANCZOS_MAX);
-    bytes += lanes * (48 * n + 16.0 * poles * vectors * n);
+        return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(t, heat->lambda_max));
+    /* hdi_lane_systems_make: the vectors, or if they are more the room to make preconditioners */
+    bytes += lanes * (24 * n + 16 * hdi_max((2 + vectors + poles) * n, 1.5 * poles * n));
     if (heat->opts.precond == HD_PRECOND_NONE) return bytes;
     return bytes + 16.0 * poles * (heat->opts.precond == HD_PRECOND_JACOBI ? n : n + (nnz - n) / 2);
 }
