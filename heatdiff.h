@@ -14492,8 +14492,8 @@ static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
     z->scratch = z->chunk = NULL;
 }
 
-/* The arrays that inverting factors of the given width takes; with f that factor, some of it in f's spare room
- * if it fits. */
+/* The arrays that inverting factors of the given width takes; with f that factor, some of it in f's spare
+ * room if it fits. */
 static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const hdi_factor *f,
                              hdi_scope *keep) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
@@ -14603,7 +14603,8 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
     for (q = 0; q < n_sets; q++) coef[q * of->width + hdi_pack_part(q, stride)] = 1;
-    if (e->status < 0 || hdi_inverse_make(&z, &f->sym, of->width, NULL, f->ctx, e) < 0) return hdi_scope_end(&s);
+    if (e->status < 0 || hdi_inverse_make(&z, &f->sym, of->width, NULL, f->ctx, e) < 0)
+        return hdi_scope_end(&s);
     z.coef = coef;
     z.n_sets = n_sets;
     z.values = x;
