@@ -17161,6 +17161,9 @@ typedef struct hdi_silan {
     int32_t vectors_of, vectors_m;
     int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
     double g;
+    double from;                 /* the time that the fields are answers of, with bounds of their errors */
+    hdi_parts before[HDI_SILAN_WIDE];
+    double last;                 /* the last time of the windows that will go on from this one, or 0 */
 } hdi_silan;
 
 /* ---- shift-and-invert Lanczos ---- */
@@ -17405,34 +17408,53 @@ static double hdi_silan_slope(double a, double fa, double b, double fb, double t
     return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
 }
 
-/* The error bound of right-hand side r after m steps at time t, relative to |f|_B, and |u|_B relative to it
- * too. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1), with mu_j the eigenvalues of T, x and y the
- * first and last rows of its eigenvectors, and F[.,.] the divided difference. S has its eigenvalues in (0,
- * 1], where the sum is a smooth function of them, so that its maximum on enough points is the bound. */
-static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, double t, double *bound,
-                                 double *size, hd_error *e) {
-    double d[HDI_SILAN_MAX], x[HDI_SILAN_MAX], y[HDI_SILAN_MAX], f[HDI_SILAN_MAX], most = 0, norm = 0;
-    const double tau = t / z->g;
-    int32_t i, k;
-    if (!hdi_silan_eigen(z, r, m, 0, m - 1, d, x, y))
-        return hdi_lanczos_failed(e);
+/* What the error bounds of a right-hand side need of T_m: its eigenvalues, and their weights in e_1 and
+ * between e_1 and e_m. */
+typedef struct hdi_ritz {
+    int32_t m;
+    double beta, mu[HDI_SILAN_MAX], first[HDI_SILAN_MAX], both[HDI_SILAN_MAX];
+} hdi_ritz;
+
+static hd_status hdi_silan_ritz(const hdi_silan *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
+    int32_t i;
+    s->m = m;
+    s->beta = z->beta[m][r];
+    if (!hdi_silan_eigen(z, r, m, 0, m - 1, s->mu, s->first, s->both)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
-        if (d[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
+        if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
             return hdi_not_semidefinite(e);
-        f[i] = hdi_silan_decay(d[i], tau);
-        norm += x[i] * f[i] * x[i] * f[i];
-        x[i] *= y[i];
+        s->both[i] *= s->first[i];
     }
-    *size = sqrt(norm);
+    return HD_OK;
+}
+
+/* |u|_B relative to |f|_B; tau = t/g. */
+static double hdi_ritz_size(const hdi_ritz *s, double tau) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < s->m; i++) {
+        const double part = s->first[i] * hdi_silan_decay(s->mu[i], tau);
+        sum += part * part;
+    }
+    return sqrt(sum);
+}
+
+/* The error bound at tau = t/g, relative to |f|_B. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1),
+ * with mu_j the eigenvalues of T, x and y the first and last rows of its eigenvectors, and F[.,.] the divided
+ * difference. S has its eigenvalues in (0, 1], where the sum is a smooth function of them, so that its
+ * maximum on enough points is the bound. */
+static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
+    double f[HDI_SILAN_MAX], most = 0;
+    int32_t i, k;
+    for (i = 0; i < s->m; i++) f[i] = hdi_silan_decay(s->mu[i], tau);
     for (k = 1; k <= HDI_SILAN_POINTS; k++) {
         const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
         double sum = 0;
-        for (i = 0; i < m; i++) sum += x[i] * hdi_silan_slope(d[i], f[i], at, fa, tau);
+        for (i = 0; i < s->m; i++) sum += s->both[i] * hdi_silan_slope(s->mu[i], f[i], at, fa, tau);
         most = hdi_max(most, fabs(sum));
     }
-    *bound = HDI_SILAN_BETWEEN * z->beta[m][r] * most;
-    return HD_OK;
+    return HDI_SILAN_BETWEEN * s->beta * most;
 }
 
 /* All rows of T's eigenvectors, two at a time by the same rotations. They are kept for the next time. */
@@ -17462,19 +17484,33 @@ static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, int32_t m, doub
     return HD_OK;
 }
 
+/* What a window hands on to the next may bring this share of the error that is asked for at the last time of
+ * all. Answers there count as no smaller than the second number times what is handed on: where they are, a
+ * later window begins with the fields again. */
+#define HDI_SILAN_SHARE 0.25
+#define HDI_SILAN_FADES 1e-3
+
 /* The error bound of right-hand side r at the worst of the times: *miss times what is asked for, *bound
  * relative to |f|_B. fixed: |constants|_B^2. It ends early where two times miss already. */
 static hd_status hdi_silan_miss(const hdi_silan *z, int32_t r, const double *t, int32_t n_times, double tol,
                                 double fixed, double miss_bound[2], hd_error *e) {
+    const double before = z->before[r].solver / z->f_norm[r], rest = fixed / (z->f_norm[r] * z->f_norm[r]);
+    hdi_ritz s;
     int32_t q;
     miss_bound[0] = miss_bound[1] = 0;
-    for (q = 0; q < n_times && z->beta[z->steps][r] > 0 && (q < 2 || miss_bound[0] <= 1); q++) {
+    if (!(z->beta[z->steps][r] > 0)) return HD_OK;
+    if (hdi_silan_ritz(z, r, z->steps, &s, e) < 0) return e->status;
+    for (q = 0; q < n_times && (q < 2 || miss_bound[0] <= 1); q++) {
         /* the last and the first are the worst, as a rule */
-        const double at = t[q == 0 ? n_times - 1 : q - 1];
-        double bound, size;
-        if (hdi_silan_bound(z, r, z->steps, at, &bound, &size, e) < 0) return e->status;
-        size = sqrt(size * size + fixed / (z->f_norm[r] * z->f_norm[r]));
-        miss_bound[0] = hdi_max(miss_bound[0], size > 0 ? bound / (tol * size) : bound > 0 ? HUGE_VAL : 0);
+        const double tau = (t[q == 0 ? n_times - 1 : q - 1] - z->from) / z->g;
+        const double bound = hdi_ritz_bound(&s, tau);
+        double asked = hdi_ritz_size(&s, tau);
+        asked = tol * sqrt(asked * asked + rest);
+        if (q == 0 && z->last > 0) {
+            const double last = hdi_ritz_size(&s, (z->last - z->from) / z->g);
+            asked = HDI_SILAN_SHARE * hdi_max(tol * sqrt(last * last + rest), HDI_SILAN_FADES * asked);
+        } else asked -= before;
+        miss_bound[0] = hdi_max(miss_bound[0], asked > 0 ? bound / asked : bound > 0 ? HUGE_VAL : 0);
         miss_bound[1] = hdi_max(miss_bound[1], bound);
     }
     return HD_OK;
@@ -17535,7 +17571,7 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
 
 /* Bound of what rounding does to the answer of right-hand side r after m steps, relative to |f|_B. With S V =
  * V T + ... + errors Phi_j of the steps, the answer is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, with
- * divided differences as in hdi_silan_bound. The residual of a solve is an error that is no larger in the B
+ * divided differences as in hdi_ritz_bound. The residual of a solve is an error that is no larger in the B
  * norm. y: the answer's coefficients. given: the error of the right-hand side, which is an error of the first
  * step. T's eigenvectors are there. */
 static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y,
@@ -17564,12 +17600,14 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
     return z->f_norm[r] * sum + HDI_SILAN_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
 }
 
-/* The answer of right-hand side r at time t into its lane: the constants, and the part of the basis. */
+/* The answer of right-hand side r, a time t after z->from, into its lane: the constants, and the part of the
+ * basis. */
 static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drift, hdi_lane *lane,
                                   hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int32_t m = z->done[r], n = lap->n_active;
-    double y[HDI_SILAN_MAX], bound = 0, size, *HDI_RESTRICT u = lane->u;
+    double y[HDI_SILAN_MAX], *HDI_RESTRICT u = lane->u;
+    hdi_ritz s;
     int64_t i, begin;
     int32_t j;
     for (i = 0; i < n; i++) u[i] = lane->sums[lap->component[i]];
@@ -17577,7 +17615,7 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
     lane->rounding = HD_EVIDENCE_MEASURED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
-        if (hdi_silan_coefficients(z, r, m, t, y, e) < 0 || hdi_silan_bound(z, r, m, t, &bound, &size, e) < 0)
+        if (hdi_silan_coefficients(z, r, m, t, y, e) < 0 || hdi_silan_ritz(z, r, m, &s, e) < 0)
             return e->status;
         for (begin = 0; begin < n; begin += 1024) {   /* rows in blocks that stay in cache */
             const int64_t end = begin + 1024 < n ? begin + 1024 : n;
@@ -17587,9 +17625,11 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drif
                 else for (i = begin; i < end; i++) u[i] += y[j] * v[HDI_SILAN_WIDE * i + r];
             }
         }
-        lane->off.solver = bound * z->f_norm[r];
+        lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
         lane->off.rounding = hdi_silan_rounding(z, r, m, t, y, lane->rhs_off);
     }
+    lane->off.solver += z->before[r].solver;     /* K_t makes no error larger */
+    lane->off.rounding += z->before[r].rounding;
     hdi_conserve_sums(lap, lane);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1));
@@ -19655,8 +19695,38 @@ static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
     return sum;
 }
 
-/* The model of all methods. Bases of windows of times a hundredfold apart take 24 steps and 8 more for each
- * power of ten of that ratio. Tuned on meshes of 1K to 1M vertices. */
+/* Windows of times with a factor and a basis each: how many, their steps together, those of the longest. */
+typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
+
+/* Steps of a basis for times in this ratio, beginning with fields or with answers. It takes some more where
+ * other windows go on from its answers. Fitted to runs at ratios from 2 to 300 on meshes of 10K to 50K
+ * vertices; fewer are enough at large times, where few eigenvalues matter. */
+#define HDI_STEPS_HANDED_ON 3
+
+static double hdi_krylov_steps(double ratio, int goes_on) {
+    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), 0.9 * HDI_SILAN_MAX);
+}
+
+/* The number of windows of equal ratio that costs least. */
+static hdi_windows hdi_krylov_windows(hdi_fill f, double n, double span) {
+    const double factor = f.flops / HDI_RATE_REAL, step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * n;
+    double best = HUGE_VAL;
+    hdi_windows all = {1, 0, 0};
+    int32_t w;
+    for (w = 1; w <= 16; w++) {
+        const double ratio = pow(span, 1.0 / w);
+        const double longest = hdi_krylov_steps(ratio, 0) + (w > 1 ? HDI_STEPS_HANDED_ON : 0);
+        const double steps = longest + (w - 1) * hdi_krylov_steps(ratio, 1);
+        if (ratio > 1e4 || w * factor + steps * step >= best) continue;   /* beyond none serves */
+        best = w * factor + steps * step;
+        all.n = w;
+        all.steps = steps;
+        all.longest = longest;
+    }
+    return all;
+}
+
+/* The model of all methods. */
 static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
@@ -19666,20 +19736,19 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4;
     const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0];
-    const double windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
-    const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
+    const hdi_windows w = hdi_krylov_windows(f, n, span);
     const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
     const double factor =
         packs * (16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz) + (poles % 4 == 1 ? real : 0);
     hdi_cost c;
     c.iterative = HDI_HAS_ITERATIVE ? hdi_cost_iterative(h, poles) : HUGE_VAL;
-    c.krylov = f.analysis + windows * f.flops / HDI_RATE_REAL +
-               k * windows * steps * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP +
-               k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
+    c.krylov = f.analysis + w.n * f.flops / HDI_RATE_REAL +
+               k * w.steps * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP +
+               k * h->n_times * w.steps / w.n * 8 * n / HDI_RATE_SWEEP;
     c.direct = f.analysis + h->n_times * (factor + k * packs * (64 * f.nnz + 400 * n) / sweep);
     if (heat->elim.filled && heat->elim.t == h->t && h->n_times == 1) c.direct -= factor;
     c.direct_bytes = 64 * packs * f.stored + 200 * n + 8 * f.real_stored;
-    c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
+    c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * w.longest : w.longest) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
     c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
     if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
@@ -20304,16 +20373,20 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times
- * near each other share the factor, whichever comes first. For several times, where the number of steps
- * depends on it more, it is the nearest power of two: 16 times over 2.6 decades take 70 steps then, and 80
- * with powers of four. It is not so large that B is lost beside g L. */
-static double hdi_krylov_shift(double from, double to, double lambda_max) {
+/* A shift for the times [first, last] of a window that begins with fields, or with answers at `from`. A
+ * single time takes about a tenth of it, and a power of four, so that times near each other share the factor,
+ * whichever comes first. Several times depend on it more: half or twice the best shift costs up to a fourth
+ * of the steps. The best ones were found on meshes of 10K to 50K vertices, for ratios of 2 to 300. It is
+ * not so large that B is lost beside g L. */
+#define HDI_SHIFT_FIELD 0.07
+#define HDI_SHIFT_ANSWER 0.15
+
+static double hdi_krylov_shift(double from, double first, double last, double lambda_max) {
     const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
-    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, limit), root = 0.70710678118654752;
     int exponent;
-    const double part = frexp(best, &exponent);  /* best = part 2^exponent, part in [1/2, 1) */
-    if (to > from) return ldexp(1, part > root ? exponent : exponent - 1);
+    if (from > 0) return hdi_min(HDI_SHIFT_ANSWER * sqrt(from) * sqrt(last - from), limit);
+    if (last > first) return hdi_min(HDI_SHIFT_FIELD * sqrt(first) * sqrt(last), limit);
+    frexp(hdi_min(last / 10, limit), &exponent);   /* in [1/2, 1) times 2^exponent */
     return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
 }
 
@@ -20327,49 +20400,32 @@ static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, 
     return q1;
 }
 
-/* Steps of a basis for times in this ratio, tuned on meshes of 1K to 1M vertices. Beyond a ratio of 1e4 none
- * serves. */
-static double hdi_krylov_steps(double ratio) {
-    return 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
-}
-
-/* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its
- * times. */
-static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
-    const double factor = s->flops_done / HDI_RATE_REAL;
-    const double step = 16 * HDI_CAST(double, s->nnz) / HDI_RATE_SWEEP + 1e-8 * s->n;
-    double best = HUGE_VAL;
-    int32_t w, least = 1;
-    for (w = 1; w <= 16; w++) {
-        const double cost = w * (factor + hdi_krylov_steps(pow(span, 1.0 / w)) * step);
-        if (cost >= best) continue;
-        best = cost;
-        least = w;
-    }
-    return least;
-}
-
-/* One basis for items batch to batch + n - 1 and the times [q0, q1). */
-static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
+/* The steps of a basis for n items and the times [q0, q1). */
+static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_heat *heat = h->heat;
     hdi_silan *z = heat->silan;
     double fixed[HDI_SILAN_WIDE];
-    hd_status status;
-    int32_t i, q;
-    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(h->times[q0], h->times[q1 - 1], heat->lambda_max),
-                       h->e) < 0)
-        return h->e->status;
+    int32_t i;
+    const double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
+    if (hdi_elim_shift(&heat->elim, g, h->e) < 0) return h->e->status;
     z->g = heat->elim.shift;
     z->k = n;
+    z->last = q1 < h->n_times ? h->times[h->n_times - 1] : 0;
     if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
     for (i = 0; i < n; i++) fixed[i] = h->lane[i].skip ? 0 : hdi_lane_means_norm2(h->lane + i, h->lap);
-    status = hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
-    if (status < 0) return status;
+    return hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+}
+
+/* The answers of n items at the times [q0, q1), from their basis. */
+static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
+    const hd_heat *heat = h->heat;
+    int32_t i, q;
     for (q = q0; q < q1; q++) {
+        const double t = h->times[q] - heat->silan->from;
         for (i = 0; i < n; i++) {
             hdi_lane *lane = h->lane + i;
             lane->status = status;
-            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], heat->drift, lane, h->e) < 0)
+            if (!lane->skip && hdi_silan_answer(heat->silan, i, t, heat->drift, lane, h->e) < 0)
                 return h->e->status;
             if (!lane->skip &&
                 (lane->off.solver > heat->opts.tol * lane->u_norm ||
@@ -20383,12 +20439,72 @@ static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int3
     return HD_OK;
 }
 
+/* The next window begins with the answers at time `from`, or (0) with the fields themselves. */
+static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
+    const hd_laplacian *lap = h->lap;
+    hdi_silan *z = h->heat->silan;
+    int32_t i;
+    z->from = from;
+    memset(z->before, 0, sizeof z->before);
+    if (!(from > 0)) (void)hdi_heat_load_some(h);
+    for (i = 0; i < n && from > 0; i++) {
+        hdi_lane *lane = h->lane + i;
+        if (lane->skip) continue;
+        z->before[i] = lane->off;
+        memcpy(lane->f, lane->u, HDI_CAST(size_t, lap->n_active) * sizeof *lane->f);
+        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+        lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        lane->f_norm = lane->u_norm;
+    }
+}
+
+/* Are the last answers of n items exact enough for the next window, up to time `to`? The size of answers
+ * there is estimated by their basis. */
+static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
+    const hd_heat *heat = h->heat;
+    const hdi_silan *z = heat->silan;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        const hdi_lane *lane = h->lane + i;
+        double size, fixed;
+        hdi_ritz s;
+        if (lane->skip) continue;
+        fixed = hdi_lane_means_norm2(lane, h->lap);
+        size = 0;
+        if (z->done[i] > 0) {
+            if (hdi_silan_ritz(z, i, z->done[i], &s, h->e) < 0) return 0;
+            size = z->f_norm[i] * hdi_ritz_size(&s, (to - z->from) / z->g);
+        }
+        size = sqrt(size * size + fixed) / 2;
+        if (lane->off.solver > heat->opts.tol * size || lane->off.rounding > heat->limit * size) return 0;
+    }
+    return 1;
+}
+
+/* n items at all times. Windows after the first begin with the last answers of the one before,
+ *   exp(-t B^-1 L) f = exp(-(t - s) B^-1 L) exp(-s B^-1 L) f,
+ * which are smooth: the basis needs half as many steps. Where answers die away and what is handed on is not
+ * exact enough, a window begins with the fields. */
+static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows) {
+    int32_t q0, q1, w, goes_on;
+    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+        hd_status status;
+        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
+        goes_on = w > 0 && hdi_krylov_goes_on(h, n, h->times[q1 - 1]);
+        if (h->e->status >= 0) hdi_krylov_begin(h, n, goes_on ? h->times[q0 - 1] : 0);
+        if (h->e->status < 0) return h->e->status;
+        status = hdi_krylov_basis(h, n, q0, q1);
+        if (status < 0 || hdi_krylov_answers(h, n, q0, q1, status) < 0) return h->e->status;
+    }
+    return HD_OK;
+}
+
 static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const double span = h->times[h->n_times - 1] / h->times[0];
     const int32_t wide = h->ask.k > 3 ? HDI_SILAN_WIDE : 1;
-    const int32_t n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
-    int32_t n, q0, q1, w;
+    const int32_t n_windows = hdi_krylov_windows(hdi_heat_fill(heat), heat->elim.sym.n, span).n;
+    int32_t n;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
         heat->silan = HDI_NEW(heat->ctx, hdi_silan, 1, h->e);
@@ -20398,12 +20514,9 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     heat->silan->wide = wide;
     heat->silan->m = &heat->elim;
     if (hdi_heat_lanes(h, wide) < 0) return h->e->status;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
-        for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
-            n = hdi_heat_load_some(h);
-            if (h->e->status < 0 || hdi_krylov_window(h, n, q0, q1) < 0) return h->e->status;
-        }
+    for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
+        n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
+        if (hdi_krylov_items(h, n, n_windows) < 0) return h->e->status;
     }
     h->rep->factor_flops = heat->elim.sym.flops;
     h->rep->growth = heat->elim.shifted.largest_entry > 0
