@@ -17152,13 +17152,15 @@ typedef struct hdi_silan {
     double *v[HDI_SILAN_MAX + 1];/* [n][wide] the basis */
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double *probe;               /* [2 n] a solution and its residual */
+    double *ahead;               /* [8][n] answers at several times, wide == 1 */
     double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
     double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
-    /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
-    double mu[HDI_SILAN_MAX], vectors[HDI_SILAN_MAX * HDI_SILAN_MAX];
-    int32_t vectors_of, vectors_m;
+    /* of T_m of each right-hand side, when done: eigenvalues, then rows of the eigenvectors */
+    double *eigen[HDI_SILAN_WIDE];
+    int32_t eigen_m[HDI_SILAN_WIDE];      /* 0: not known */
+    int32_t eigen_room[HDI_SILAN_WIDE];   /* the largest m that there is room for */
     int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
     double g;
     double from;                 /* the time that the fields are answers of, with bounds of their errors */
@@ -17174,8 +17176,10 @@ typedef struct hdi_silan {
 static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
     int32_t i;
     for (i = 0; i <= HDI_SILAN_MAX; i++) hdi_free(ctx, z->v[i]);
+    for (i = 0; i < HDI_SILAN_WIDE; i++) hdi_free(ctx, z->eigen[i]);
     hdi_free(ctx, z->c);
     hdi_free(ctx, z->work);
+    hdi_free(ctx, z->ahead);
     memset(z, 0, sizeof *z);
 }
 
@@ -17281,7 +17285,7 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     z->probe = z->w + count;
     z->solved = 0;
     z->steps = 0;
-    z->vectors_of = -1;
+    memset(z->eigen_m, 0, sizeof z->eigen_m);
     for (r = 0; r < z->wide; r++) hdi_silan_take(z, r, r < z->k ? lane + r : NULL);
     return HD_OK;
 }
@@ -17416,10 +17420,15 @@ typedef struct hdi_ritz {
 } hdi_ritz;
 
 static hd_status hdi_silan_ritz(const hdi_silan *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
+    const double *known = z->eigen_m[r] == m ? z->eigen[r] : NULL;
     int32_t i;
     s->m = m;
     s->beta = z->beta[m][r];
-    if (!hdi_silan_eigen(z, r, m, 0, m - 1, s->mu, s->first, s->both)) return hdi_lanczos_failed(e);
+    if (known) {
+        memcpy(s->mu, known, HDI_CAST(size_t, m) * sizeof *known);
+        memcpy(s->first, known + m, HDI_CAST(size_t, m) * sizeof *known);
+        memcpy(s->both, known + HDI_CAST(int64_t, m) * m, HDI_CAST(size_t, m) * sizeof *known);
+    } else if (!hdi_silan_eigen(z, r, m, 0, m - 1, s->mu, s->first, s->both)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
         if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
@@ -17457,31 +17466,102 @@ static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
     return HDI_SILAN_BETWEEN * s->beta * most;
 }
 
-/* All rows of T's eigenvectors, two at a time by the same rotations. They are kept for the next time. */
+/* All rows of T's eigenvectors, two at a time by the same rotations. They are kept for all times. */
 static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error *e) {
+    hd_context *ctx = z->m->ctx;
     int32_t k;
-    if (z->vectors_of == r && z->vectors_m == m) return HD_OK;
-    z->vectors_of = -1;
+    if (z->eigen_m[r] == m) return HD_OK;
+    z->eigen_m[r] = 0;
+    if (z->eigen_room[r] < m) {
+        hdi_free(ctx, z->eigen[r]);
+        z->eigen_room[r] = 0;
+        z->eigen[r] = HDI_NEW(ctx, double, HDI_CAST(uint64_t, m) * HDI_CAST(uint64_t, m + 1), e);
+        if (!z->eigen[r]) return e->status;
+        z->eigen_room[r] = m;
+    }
     for (k = 0; k < m; k += 2) {
-        double *x = z->vectors + HDI_CAST(int64_t, k) * m, spare[HDI_SILAN_MAX];
-        if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->mu, x, k + 1 < m ? x + m : spare))
+        double *x = z->eigen[r] + HDI_CAST(int64_t, k + 1) * m, spare[HDI_SILAN_MAX];
+        if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->eigen[r], x, k + 1 < m ? x + m : spare))
             return hdi_lanczos_failed(e);
     }
-    z->vectors_of = r;
-    z->vectors_m = m;
+    z->eigen_m[r] = m;
     return HD_OK;
 }
 
-/* Coefficients of the basis for right-hand side r after m steps at time t, times |f|_B: y = exp(-t (T^-1 -
- * 1)/g) e_1. */
-static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, int32_t m, double t, double *out,
-                                        hd_error *e) {
+/* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, and
+ * zeros up to the longest basis. */
+static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, double t, double *y, hd_error *e) {
+    const int32_t m = hdi_high32(z->done[r], 0);
     double first[HDI_SILAN_MAX];
+    const double *mu;
     int32_t i;
+    for (i = m; i < z->steps; i++) y[i] = 0;
+    if (m == 0) return HD_OK;
     if (hdi_silan_vectors(z, r, m, e) < 0) return e->status;
-    for (i = 0; i < m; i++) first[i] = z->f_norm[r] * z->vectors[i] * hdi_silan_decay(z->mu[i], t / z->g);
-    for (i = 0; i < m; i++) out[i] = hdi_dot(z->vectors + HDI_CAST(int64_t, i) * m, first, m);
+    mu = z->eigen[r];
+    for (i = 0; i < m; i++) first[i] = z->f_norm[r] * mu[m + i] * hdi_silan_decay(mu[i], t / z->g);
+    for (i = 0; i < m; i++) y[i] = hdi_dot(mu + HDI_CAST(int64_t, i + 1) * m, first, m);
     return HD_OK;
+}
+
+/* Answers that are summed up in one pass over the basis: of one right-hand side at several times, or of
+ * several at one time. */
+typedef struct hdi_silan_sum {
+    int32_t count;
+    double y[HDI_SILAN_WIDE][HDI_SILAN_MAX];
+    double *u[HDI_SILAN_WIDE];   /* [n], or NULL: not wanted */
+    const double *means[HDI_SILAN_WIDE];   /* [n_components] the constants of each */
+} hdi_silan_sum;
+
+enum { HDI_SILAN_BLOCK = 128 };  /* rows whose sums stay in the first cache */
+
+/* Rows [begin, end) of all sums, side by side: s [rows][8]. */
+static void hdi_silan_sum_block(const hdi_silan *z, const hdi_silan_sum *a, int64_t begin, int64_t end,
+                                double *HDI_RESTRICT s) {
+    int32_t j, p;
+    int64_t i;
+    for (j = 0; j < z->steps; j++) {
+        const double *HDI_RESTRICT v = z->v[j] + z->wide * begin;
+        if (z->wide > 1) {
+            double y[HDI_SILAN_WIDE];
+            for (p = 0; p < HDI_SILAN_WIDE; p++) y[p] = p < a->count ? a->y[p][j] : 0;
+            for (i = 0; i < end - begin; i++)
+                for (p = 0; p < HDI_SILAN_WIDE; p++)
+                    s[HDI_SILAN_WIDE * i + p] += y[p] * v[HDI_SILAN_WIDE * i + p];
+        } else {
+            for (p = 0; p < a->count; p++)
+                for (i = 0; i < end - begin; i++) s[HDI_SILAN_BLOCK * p + i] += a->y[p][j] * v[i];
+        }
+    }
+}
+
+typedef struct hdi_silan_sum_job { const hdi_silan *z; const hdi_silan_sum *a; } hdi_silan_sum_job;
+
+static void hdi_silan_sum_task(void *arg, int64_t first, int64_t last) {
+    const hdi_silan_sum_job *job = HDI_CAST(const hdi_silan_sum_job *, arg);
+    const hdi_silan_sum *a = job->a;
+    const int32_t *component = job->z->m->lap->component;
+    const int64_t row = job->z->wide > 1 ? HDI_SILAN_WIDE : 1;
+    const int64_t column = job->z->wide > 1 ? 1 : HDI_SILAN_BLOCK;
+    int64_t begin, i;
+    int32_t p;
+    for (begin = first; begin < last; begin += HDI_SILAN_BLOCK) {
+        const int64_t end = begin + HDI_SILAN_BLOCK < last ? begin + HDI_SILAN_BLOCK : last;
+        double s[HDI_SILAN_WIDE * HDI_SILAN_BLOCK];
+        memset(s, 0, sizeof s);
+        hdi_silan_sum_block(job->z, a, begin, end, s);
+        for (p = 0; p < a->count; p++)
+            for (i = begin; i < end && a->u[p]; i++)
+                a->u[p][i] = a->means[p][component[i]] + s[row * (i - begin) + column * p];
+    }
+}
+
+/* u = the constants and the part of the basis, for each answer. */
+static void hdi_silan_sum_run(const hdi_silan *z, const hdi_silan_sum *a, hd_context *ctx) {
+    hdi_silan_sum_job job;
+    job.z = z;
+    job.a = a;
+    hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_silan_sum_task, &job);
 }
 
 /* What a window hands on to the next may bring this share of the error that is asked for at the last time of
@@ -17577,18 +17657,18 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
 static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y,
                                  double given) {
     double f[HDI_SILAN_MAX], most[HDI_SILAN_MAX], slope[HDI_SILAN_MAX], sum = 0, size = 0;
-    const double tau = t / z->g, root = hdi_ratio_root(z->m->lap);
+    const double *mu = z->eigen[r], *vectors = mu + m, tau = t / z->g, root = hdi_ratio_root(z->m->lap);
     int32_t i, j, k;
     for (i = 0; i < m; i++) {
-        f[i] = hdi_silan_decay(z->mu[i], tau);
+        f[i] = hdi_silan_decay(mu[i], tau);
         most[i] = 0;
         size += fabs(y[i]);
     }
     for (k = 2; k <= HDI_SILAN_POINTS; k += 2) {
         const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
-        for (i = 0; i < m; i++) slope[i] = z->vectors[i] * hdi_silan_slope(z->mu[i], f[i], at, fa, tau);
+        for (i = 0; i < m; i++) slope[i] = vectors[i] * hdi_silan_slope(mu[i], f[i], at, fa, tau);
         for (j = 0; j < m; j++)
-            most[j] = hdi_max(most[j], fabs(hdi_dot(z->vectors + HDI_CAST(int64_t, j) * m, slope, m)));
+            most[j] = hdi_max(most[j], fabs(hdi_dot(vectors + HDI_CAST(int64_t, j) * m, slope, m)));
     }
     for (j = 0; j < m; j++) {
         const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
@@ -17600,31 +17680,17 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
     return z->f_norm[r] * sum + HDI_SILAN_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
 }
 
-/* The answer of right-hand side r, a time t after z->from, into its lane: the constants, and the part of the
- * basis. */
-static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drift, hdi_lane *lane,
-                                  hd_error *e) {
+/* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
+static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, const double *y, double drift,
+                                  hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
-    const int32_t m = z->done[r], n = lap->n_active;
-    double y[HDI_SILAN_MAX], *HDI_RESTRICT u = lane->u;
+    const int32_t m = z->done[r];
     hdi_ritz s;
-    int64_t i, begin;
-    int32_t j;
-    for (i = 0; i < n; i++) u[i] = lane->sums[lap->component[i]];
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_MEASURED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
-        if (hdi_silan_coefficients(z, r, m, t, y, e) < 0 || hdi_silan_ritz(z, r, m, &s, e) < 0)
-            return e->status;
-        for (begin = 0; begin < n; begin += 1024) {   /* rows in blocks that stay in cache */
-            const int64_t end = begin + 1024 < n ? begin + 1024 : n;
-            for (j = 0; j < m; j++) {
-                const double *HDI_RESTRICT v = z->v[j];
-                if (z->wide == 1) for (i = begin; i < end; i++) u[i] += y[j] * v[i];
-                else for (i = begin; i < end; i++) u[i] += y[j] * v[HDI_SILAN_WIDE * i + r];
-            }
-        }
+        if (hdi_silan_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
         lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
         lane->off.rounding = hdi_silan_rounding(z, r, m, t, y, lane->rhs_off);
     }
@@ -19751,6 +19817,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * w.longest : w.longest) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
     c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
+    if (k <= 3 && h->n_times > 1) c.krylov_bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
     if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
     if (heat->silan) c.krylov_bytes = 0;
     if (!HDI_HAS_POLE_FACTORS) c.direct = c.direct_bytes = HUGE_VAL;
@@ -20416,25 +20483,56 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     return hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
 }
 
-/* The answers of n items at the times [q0, q1), from their basis. */
-static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
+/* The answers of n items at time q, whose sums are in place p and after in a. counted: their steps have been
+ * told of already. */
+static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_silan_sum *a, int32_t p,
+                                  int counted, hd_status status) {
     const hd_heat *heat = h->heat;
-    int32_t i, q;
-    for (q = q0; q < q1; q++) {
-        const double t = h->times[q] - heat->silan->from;
-        for (i = 0; i < n; i++) {
-            hdi_lane *lane = h->lane + i;
-            lane->status = status;
-            if (!lane->skip && hdi_silan_answer(heat->silan, i, t, heat->drift, lane, h->e) < 0)
-                return h->e->status;
-            if (!lane->skip &&
-                (lane->off.solver > heat->opts.tol * lane->u_norm ||
-                 lane->off.rounding > heat->limit * lane->u_norm))
-                lane->status = HD_WARN_ACCURACY;
+    const size_t bytes = HDI_CAST(size_t, h->lap->n_active) * sizeof *h->lane->u;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        hdi_lane *lane = h->lane + i;
+        lane->status = status;
+        if (lane->skip) continue;
+        if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
+        if (hdi_silan_answer(heat->silan, i, h->times[q] - heat->silan->from, a->y[p + i], heat->drift, lane,
+                             h->e) < 0)
+            return h->e->status;
+        if (counted) lane->steps = 0;
+        if (lane->off.solver > heat->opts.tol * lane->u_norm ||
+            lane->off.rounding > heat->limit * lane->u_norm)
+            lane->status = HD_WARN_ACCURACY;
+    }
+    h->now = h->time_column ? h->time_column[q] : h->now;
+    return hdi_heat_store_some(h, n);
+}
+
+/* The answers of n items at the times [q0, q1), from their basis: as many in one pass over it as there are
+ * places in a sum. */
+static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
+    hd_context *ctx = h->heat->ctx;
+    hdi_silan *z = h->heat->silan;
+    const int64_t rows = h->lap->n_active;
+    const int abreast = z->wide > 1;             /* else one item, at several times */
+    hdi_silan_sum a;
+    int32_t p, q, n_here;
+    memset(&a, 0, sizeof a);
+    if (!abreast && q1 - q0 > 1 && !z->ahead)
+        z->ahead = HDI_NEW(ctx, double, HDI_SILAN_WIDE * HDI_CAST(uint64_t, rows), h->e);
+    if (h->e->status < 0) return h->e->status;
+    for (q = q0; q < q1; q += n_here) {
+        n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_SILAN_WIDE);
+        a.count = n * n_here;
+        for (p = 0; p < a.count; p++) {
+            const hdi_lane *lane = h->lane + (abreast ? p : 0);
+            const double t = h->times[abreast ? q : q + p] - z->from;
+            a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
+            a.means[p] = lane->sums;
+            if (hdi_silan_coefficients(z, abreast ? p : 0, t, a.y[p], h->e) < 0) return h->e->status;
         }
-        for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
-        h->now = h->time_column ? h->time_column[q] : h->now;
-        if (hdi_heat_store_some(h, n) < 0) return h->e->status;
+        hdi_silan_sum_run(z, &a, ctx);
+        for (p = 0; p < n_here; p++)
+            if (hdi_krylov_store(h, n, q + p, &a, p, q + p > q0, status) < 0) return h->e->status;
     }
     return HD_OK;
 }

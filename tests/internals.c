@@ -1508,6 +1508,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     double *u = DENSE_NEW(double, n), *want = DENSE_NEW(double, n), *L = DENSE_NEW(double, n * n), *B = DENSE_NEW(double, n * n), loosest = 0;
     hdi_silan *z = DENSE_NEW(hdi_silan, 1);
     hdi_ritz ritz;
+    hdi_silan_sum sum;
     hd_context ctx;
     hd_error e;
     hdi_elim m;
@@ -1517,6 +1518,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     int64_t p;
     int q, decayed;
     memset(&ctx, 0, sizeof ctx);
+    memset(&sum, 0, sizeof sum);
     CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
     t *= m.scale;
     for (i = 0; i < n; i++) {
@@ -1546,7 +1548,13 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 bound = hdi_ritz_bound(&ritz, at / z->g);
                 size = hdi_ritz_size(&ritz, at / z->g);
                 z->done[r] = step;
-                CHECK(hdi_silan_answer(z, r, at, 0, lane + r, &e) == HD_OK);
+                sum.count = r + 1;               /* of several abreast, only this one is wanted */
+                memset(sum.u, 0, sizeof sum.u);
+                sum.u[r] = lane[r].u;
+                sum.means[r] = lane[r].sums;
+                CHECK(hdi_silan_coefficients(z, r, at, sum.y[r], &e) == HD_OK);
+                hdi_silan_sum_run(z, &sum, &ctx);
+                CHECK(hdi_silan_answer(z, r, at, sum.y[r], 0, lane + r, &e) == HD_OK);
                 z->done[r] = 0;
                 dense_pair_heat(&pair, at, lane[r].rhs, want);
                 for (i = 0; i < n; i++) u[i] = lane[r].u[i] - want[i];
