@@ -18364,15 +18364,20 @@ typedef struct hdi_silan {
     double *v[HDI_SILAN_MAX + 1];/* [n][wide] the basis */
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double *probe;               /* [2 n] a solution and its residual */
+    double *ahead;               /* [8][n] answers at several times, wide == 1 */
     double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
     double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
-    /* eigenvalues of T of one right-hand side, rows of its eigenvectors */
-    double mu[HDI_SILAN_MAX], *vectors;
-    int32_t vectors_of, vectors_m, vectors_room;   /* room: steps that vectors has room for */
+    /* of T_m of each right-hand side, when done: eigenvalues, then rows of the eigenvectors */
+    double *eigen[HDI_SILAN_WIDE];
+    int32_t eigen_m[HDI_SILAN_WIDE];      /* 0: not known */
+    int32_t eigen_room[HDI_SILAN_WIDE];   /* the largest m that there is room for */
     int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
     double g;
+    double from;                 /* the time that the fields are answers of, with bounds of their errors */
+    hdi_parts before[HDI_SILAN_WIDE];
+    double last;                 /* the last time of the windows that will go on from this one, or 0 */
 } hdi_silan;
 
 /* ---- shift-and-invert Lanczos ---- */
@@ -18383,9 +18388,10 @@ typedef struct hdi_silan {
 static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
     int32_t i;
     for (i = 0; i <= HDI_SILAN_MAX; i++) hdi_free(ctx, z->v[i]);
+    for (i = 0; i < HDI_SILAN_WIDE; i++) hdi_free(ctx, z->eigen[i]);
     hdi_free(ctx, z->c);
     hdi_free(ctx, z->work);
-    hdi_free(ctx, z->vectors);
+    hdi_free(ctx, z->ahead);
     memset(z, 0, sizeof *z);
 }
 
@@ -18491,7 +18497,7 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     z->probe = z->w + count;
     z->solved = 0;
     z->steps = 0;
-    z->vectors_of = -1;
+    memset(z->eigen_m, 0, sizeof z->eigen_m);
     for (r = 0; r < z->wide; r++) hdi_silan_take(z, r, r < z->k ? lane + r : NULL);
     return HD_OK;
 }
@@ -18618,83 +18624,185 @@ static double hdi_silan_slope(double a, double fa, double b, double fb, double t
     return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
 }
 
-/* The error bound of right-hand side r after m steps at time t, relative to |f|_B, and |u|_B relative to it
- * too. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1), with mu_j the eigenvalues of T, x and y the
- * first and last rows of its eigenvectors, and F[.,.] the divided difference. S has its eigenvalues in (0,
- * 1], where the sum is a smooth function of them, so that its maximum on enough points is the bound. */
-static hd_status hdi_silan_bound(const hdi_silan *z, int32_t r, int32_t m, double t, double *bound,
-                                 double *size, hd_error *e) {
-    double d[HDI_SILAN_MAX], x[HDI_SILAN_MAX], y[HDI_SILAN_MAX], f[HDI_SILAN_MAX], most = 0, norm = 0;
-    const double tau = t / z->g;
-    int32_t i, k;
-    if (!hdi_silan_eigen(z, r, m, 0, m - 1, d, x, y))
-        return hdi_lanczos_failed(e);
+/* What the error bounds of a right-hand side need of T_m: its eigenvalues, and their weights in e_1 and
+ * between e_1 and e_m. */
+typedef struct hdi_ritz {
+    int32_t m;
+    double beta, mu[HDI_SILAN_MAX], first[HDI_SILAN_MAX], both[HDI_SILAN_MAX];
+} hdi_ritz;
+
+static hd_status hdi_silan_ritz(const hdi_silan *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
+    const double *known = z->eigen_m[r] == m ? z->eigen[r] : NULL;
+    int32_t i;
+    s->m = m;
+    s->beta = z->beta[m][r];
+    if (known) {
+        memcpy(s->mu, known, HDI_CAST(size_t, m) * sizeof *known);
+        memcpy(s->first, known + m, HDI_CAST(size_t, m) * sizeof *known);
+        memcpy(s->both, known + HDI_CAST(int64_t, m) * m, HDI_CAST(size_t, m) * sizeof *known);
+    } else if (!hdi_silan_eigen(z, r, m, 0, m - 1, s->mu, s->first, s->both)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
-        if (d[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
+        if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
             return hdi_not_semidefinite(e);
-        f[i] = hdi_silan_decay(d[i], tau);
-        norm += x[i] * f[i] * x[i] * f[i];
-        x[i] *= y[i];
+        s->both[i] *= s->first[i];
     }
-    *size = sqrt(norm);
+    return HD_OK;
+}
+
+/* |u|_B relative to |f|_B; tau = t/g. */
+static double hdi_ritz_size(const hdi_ritz *s, double tau) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < s->m; i++) {
+        const double part = s->first[i] * hdi_silan_decay(s->mu[i], tau);
+        sum += part * part;
+    }
+    return sqrt(sum);
+}
+
+/* The error bound at tau = t/g, relative to |f|_B. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1),
+ * with mu_j the eigenvalues of T, x and y the first and last rows of its eigenvectors, and F[.,.] the divided
+ * difference. S has its eigenvalues in (0, 1], where the sum is a smooth function of them, so that its
+ * maximum on enough points is the bound. */
+static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
+    double f[HDI_SILAN_MAX], most = 0;
+    int32_t i, k;
+    for (i = 0; i < s->m; i++) f[i] = hdi_silan_decay(s->mu[i], tau);
     for (k = 1; k <= HDI_SILAN_POINTS; k++) {
         const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
         double sum = 0;
-        for (i = 0; i < m; i++) sum += x[i] * hdi_silan_slope(d[i], f[i], at, fa, tau);
+        for (i = 0; i < s->m; i++) sum += s->both[i] * hdi_silan_slope(s->mu[i], f[i], at, fa, tau);
         most = hdi_max(most, fabs(sum));
     }
-    *bound = HDI_SILAN_BETWEEN * z->beta[m][r] * most;
-    return HD_OK;
+    return HDI_SILAN_BETWEEN * s->beta * most;
 }
 
-/* All rows of T's eigenvectors, two at a time by the same rotations. They are kept for the next time. */
+/* All rows of T's eigenvectors, two at a time by the same rotations. They are kept for all times. */
 static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error *e) {
+    hd_context *ctx = z->m->ctx;
     int32_t k;
-    if (z->vectors_of == r && z->vectors_m == m) return HD_OK;
-    z->vectors_of = -1;
-    if (z->vectors_room < m) {
-        hdi_free(z->m->ctx, z->vectors);
-        z->vectors_room = 0;
-        z->vectors = HDI_NEW(z->m->ctx, double, m * m, e);
-        if (!z->vectors) return e->status;
-        z->vectors_room = m;
+    if (z->eigen_m[r] == m) return HD_OK;
+    z->eigen_m[r] = 0;
+    if (z->eigen_room[r] < m) {
+        hdi_free(ctx, z->eigen[r]);
+        z->eigen_room[r] = 0;
+        z->eigen[r] = HDI_NEW(ctx, double, HDI_CAST(uint64_t, m) * HDI_CAST(uint64_t, m + 1), e);
+        if (!z->eigen[r]) return e->status;
+        z->eigen_room[r] = m;
     }
     for (k = 0; k < m; k += 2) {
-        double *x = z->vectors + HDI_CAST(int64_t, k) * m, spare[HDI_SILAN_MAX];
-        if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->mu, x, k + 1 < m ? x + m : spare))
+        double *x = z->eigen[r] + HDI_CAST(int64_t, k + 1) * m, spare[HDI_SILAN_MAX];
+        if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->eigen[r], x, k + 1 < m ? x + m : spare))
             return hdi_lanczos_failed(e);
     }
-    z->vectors_of = r;
-    z->vectors_m = m;
+    z->eigen_m[r] = m;
     return HD_OK;
 }
 
-/* Coefficients of the basis for right-hand side r after m steps at time t, times |f|_B: y = exp(-t (T^-1 -
- * 1)/g) e_1. */
-static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, int32_t m, double t, double *out,
-                                        hd_error *e) {
+/* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, and
+ * zeros up to the longest basis. */
+static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, double t, double *y, hd_error *e) {
+    const int32_t m = hdi_high32(z->done[r], 0);
     double first[HDI_SILAN_MAX];
+    const double *mu;
     int32_t i;
+    for (i = m; i < z->steps; i++) y[i] = 0;
+    if (m == 0) return HD_OK;
     if (hdi_silan_vectors(z, r, m, e) < 0) return e->status;
-    for (i = 0; i < m; i++) first[i] = z->f_norm[r] * z->vectors[i] * hdi_silan_decay(z->mu[i], t / z->g);
-    for (i = 0; i < m; i++) out[i] = hdi_dot(z->vectors + HDI_CAST(int64_t, i) * m, first, m);
+    mu = z->eigen[r];
+    for (i = 0; i < m; i++) first[i] = z->f_norm[r] * mu[m + i] * hdi_silan_decay(mu[i], t / z->g);
+    for (i = 0; i < m; i++) y[i] = hdi_dot(mu + HDI_CAST(int64_t, i + 1) * m, first, m);
     return HD_OK;
 }
+
+/* Answers that are summed up in one pass over the basis: of one right-hand side at several times, or of
+ * several at one time. */
+typedef struct hdi_silan_sum {
+    int32_t count;
+    double y[HDI_SILAN_WIDE][HDI_SILAN_MAX];
+    double *u[HDI_SILAN_WIDE];   /* [n], or NULL: not wanted */
+    const double *means[HDI_SILAN_WIDE];   /* [n_components] the constants of each */
+} hdi_silan_sum;
+
+enum { HDI_SILAN_BLOCK = 128 };  /* rows whose sums stay in the first cache */
+
+/* Rows [begin, end) of all sums, side by side: s [rows][8]. */
+static void hdi_silan_sum_block(const hdi_silan *z, const hdi_silan_sum *a, int64_t begin, int64_t end,
+                                double *HDI_RESTRICT s) {
+    int32_t j, p;
+    int64_t i;
+    for (j = 0; j < z->steps; j++) {
+        const double *HDI_RESTRICT v = z->v[j] + z->wide * begin;
+        if (z->wide > 1) {
+            double y[HDI_SILAN_WIDE];
+            for (p = 0; p < HDI_SILAN_WIDE; p++) y[p] = p < a->count ? a->y[p][j] : 0;
+            for (i = 0; i < end - begin; i++)
+                for (p = 0; p < HDI_SILAN_WIDE; p++)
+                    s[HDI_SILAN_WIDE * i + p] += y[p] * v[HDI_SILAN_WIDE * i + p];
+        } else {
+            for (p = 0; p < a->count; p++)
+                for (i = 0; i < end - begin; i++) s[HDI_SILAN_BLOCK * p + i] += a->y[p][j] * v[i];
+        }
+    }
+}
+
+typedef struct hdi_silan_sum_job { const hdi_silan *z; const hdi_silan_sum *a; } hdi_silan_sum_job;
+
+static void hdi_silan_sum_task(void *arg, int64_t first, int64_t last) {
+    const hdi_silan_sum_job *job = HDI_CAST(const hdi_silan_sum_job *, arg);
+    const hdi_silan_sum *a = job->a;
+    const int32_t *component = job->z->m->lap->component;
+    const int64_t row = job->z->wide > 1 ? HDI_SILAN_WIDE : 1;
+    const int64_t column = job->z->wide > 1 ? 1 : HDI_SILAN_BLOCK;
+    int64_t begin, i;
+    int32_t p;
+    for (begin = first; begin < last; begin += HDI_SILAN_BLOCK) {
+        const int64_t end = begin + HDI_SILAN_BLOCK < last ? begin + HDI_SILAN_BLOCK : last;
+        double s[HDI_SILAN_WIDE * HDI_SILAN_BLOCK];
+        memset(s, 0, sizeof s);
+        hdi_silan_sum_block(job->z, a, begin, end, s);
+        for (p = 0; p < a->count; p++)
+            for (i = begin; i < end && a->u[p]; i++)
+                a->u[p][i] = a->means[p][component[i]] + s[row * (i - begin) + column * p];
+    }
+}
+
+/* u = the constants and the part of the basis, for each answer. */
+static void hdi_silan_sum_run(const hdi_silan *z, const hdi_silan_sum *a, hd_context *ctx) {
+    hdi_silan_sum_job job;
+    job.z = z;
+    job.a = a;
+    hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_silan_sum_task, &job);
+}
+
+/* What a window hands on to the next may bring this share of the error that is asked for at the last time of
+ * all. Answers there count as no smaller than the second number times what is handed on: where they are, a
+ * later window begins with the fields again. */
+#define HDI_SILAN_SHARE 0.25
+#define HDI_SILAN_FADES 1e-3
 
 /* The error bound of right-hand side r at the worst of the times: *miss times what is asked for, *bound
  * relative to |f|_B. fixed: |constants|_B^2. It ends early where two times miss already. */
 static hd_status hdi_silan_miss(const hdi_silan *z, int32_t r, const double *t, int32_t n_times, double tol,
                                 double fixed, double miss_bound[2], hd_error *e) {
+    const double before = z->before[r].solver / z->f_norm[r], rest = fixed / (z->f_norm[r] * z->f_norm[r]);
+    hdi_ritz s;
     int32_t q;
     miss_bound[0] = miss_bound[1] = 0;
-    for (q = 0; q < n_times && z->beta[z->steps][r] > 0 && (q < 2 || miss_bound[0] <= 1); q++) {
+    if (!(z->beta[z->steps][r] > 0)) return HD_OK;
+    if (hdi_silan_ritz(z, r, z->steps, &s, e) < 0) return e->status;
+    for (q = 0; q < n_times && (q < 2 || miss_bound[0] <= 1); q++) {
         /* the last and the first are the worst, as a rule */
-        const double at = t[q == 0 ? n_times - 1 : q - 1];
-        double bound, size;
-        if (hdi_silan_bound(z, r, z->steps, at, &bound, &size, e) < 0) return e->status;
-        size = sqrt(size * size + fixed / (z->f_norm[r] * z->f_norm[r]));
-        miss_bound[0] = hdi_max(miss_bound[0], size > 0 ? bound / (tol * size) : bound > 0 ? HUGE_VAL : 0);
+        const double tau = (t[q == 0 ? n_times - 1 : q - 1] - z->from) / z->g;
+        const double bound = hdi_ritz_bound(&s, tau);
+        double asked = hdi_ritz_size(&s, tau);
+        asked = tol * sqrt(asked * asked + rest);
+        if (q == 0 && z->last > 0) {
+            const double last = hdi_ritz_size(&s, (z->last - z->from) / z->g);
+            asked = HDI_SILAN_SHARE * hdi_max(tol * sqrt(last * last + rest), HDI_SILAN_FADES * asked);
+        } else asked -= before;
+        miss_bound[0] = hdi_max(miss_bound[0], asked > 0 ? bound / asked : bound > 0 ? HUGE_VAL : 0);
         miss_bound[1] = hdi_max(miss_bound[1], bound);
     }
     return HD_OK;
@@ -18755,24 +18863,24 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
 
 /* Bound of what rounding does to the answer of right-hand side r after m steps, relative to |f|_B. With S V =
  * V T + ... + errors Phi_j of the steps, the answer is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, with
- * divided differences as in hdi_silan_bound. The residual of a solve is an error that is no larger in the B
+ * divided differences as in hdi_ritz_bound. The residual of a solve is an error that is no larger in the B
  * norm. y: the answer's coefficients. given: the error of the right-hand side, which is an error of the first
  * step. T's eigenvectors are there. */
 static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y,
                                  double given) {
     double f[HDI_SILAN_MAX], most[HDI_SILAN_MAX], slope[HDI_SILAN_MAX], sum = 0, size = 0;
-    const double tau = t / z->g, root = hdi_ratio_root(z->m->lap);
+    const double *mu = z->eigen[r], *vectors = mu + m, tau = t / z->g, root = hdi_ratio_root(z->m->lap);
     int32_t i, j, k;
     for (i = 0; i < m; i++) {
-        f[i] = hdi_silan_decay(z->mu[i], tau);
+        f[i] = hdi_silan_decay(mu[i], tau);
         most[i] = 0;
         size += fabs(y[i]);
     }
     for (k = 2; k <= HDI_SILAN_POINTS; k += 2) {
         const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
-        for (i = 0; i < m; i++) slope[i] = z->vectors[i] * hdi_silan_slope(z->mu[i], f[i], at, fa, tau);
+        for (i = 0; i < m; i++) slope[i] = vectors[i] * hdi_silan_slope(mu[i], f[i], at, fa, tau);
         for (j = 0; j < m; j++)
-            most[j] = hdi_max(most[j], fabs(hdi_dot(z->vectors + HDI_CAST(int64_t, j) * m, slope, m)));
+            most[j] = hdi_max(most[j], fabs(hdi_dot(vectors + HDI_CAST(int64_t, j) * m, slope, m)));
     }
     for (j = 0; j < m; j++) {
         const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
@@ -18784,32 +18892,22 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
     return z->f_norm[r] * sum + HDI_SILAN_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
 }
 
-/* The answer of right-hand side r at time t into its lane: the constants, and the part of the basis. */
-static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, double drift, hdi_lane *lane,
-                                  hd_error *e) {
+/* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
+static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, const double *y, double drift,
+                                  hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
-    const int32_t m = z->done[r], n = lap->n_active;
-    double y[HDI_SILAN_MAX], bound = 0, size, *HDI_RESTRICT u = lane->u;
-    int64_t i, begin;
-    int32_t j;
-    for (i = 0; i < n; i++) u[i] = lane->sums[lap->component[i]];
+    const int32_t m = z->done[r];
+    hdi_ritz s;
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_MEASURED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
-        if (hdi_silan_coefficients(z, r, m, t, y, e) < 0 || hdi_silan_bound(z, r, m, t, &bound, &size, e) < 0)
-            return e->status;
-        for (begin = 0; begin < n; begin += 1024) {   /* rows in blocks that stay in cache */
-            const int64_t end = begin + 1024 < n ? begin + 1024 : n;
-            for (j = 0; j < m; j++) {
-                const double *HDI_RESTRICT v = z->v[j];
-                if (z->wide == 1) for (i = begin; i < end; i++) u[i] += y[j] * v[i];
-                else for (i = begin; i < end; i++) u[i] += y[j] * v[HDI_SILAN_WIDE * i + r];
-            }
-        }
-        lane->off.solver = bound * z->f_norm[r];
+        if (hdi_silan_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
+        lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
         lane->off.rounding = hdi_silan_rounding(z, r, m, t, y, lane->rhs_off);
     }
+    lane->off.solver += z->before[r].solver;     /* K_t makes no error larger */
+    lane->off.rounding += z->before[r].rounding;
     hdi_conserve_sums(lap, lane);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1));
@@ -20999,16 +21097,20 @@ static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
     return sum;
 }
 
-/* A shift for times [from, to]: about a tenth of their geometric mean, and a power of four, so that times
- * near each other share the factor, whichever comes first. For several times, where the number of steps
- * depends on it more, it is the nearest power of two: 16 times over 2.6 decades take 70 steps then, and 80
- * with powers of four. It is not so large that B is lost beside g L. */
-static double hdi_krylov_shift(double from, double to, double lambda_max) {
+/* A shift for the times [first, last] of a window that begins with fields, or with answers at `from`. A
+ * single time takes about a tenth of it, and a power of four, so that times near each other share the factor,
+ * whichever comes first. Several times depend on it more: half or twice the best shift costs up to a fourth
+ * of the steps. The best ones were found on meshes of 10K to 50K vertices, for ratios of 2 to 300. It is
+ * not so large that B is lost beside g L. */
+#define HDI_SHIFT_FIELD 0.07
+#define HDI_SHIFT_ANSWER 0.15
+
+static double hdi_krylov_shift(double from, double first, double last, double lambda_max) {
     const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
-    const double best = hdi_min(sqrt(from) * sqrt(to) / 10, limit), root = 0.70710678118654752;
     int exponent;
-    const double part = frexp(best, &exponent);  /* best = part 2^exponent, part in [1/2, 1) */
-    if (to > from) return ldexp(1, part > root ? exponent : exponent - 1);
+    if (from > 0) return hdi_min(HDI_SHIFT_ANSWER * sqrt(from) * sqrt(last - from), limit);
+    if (last > first) return hdi_min(HDI_SHIFT_FIELD * sqrt(first) * sqrt(last), limit);
+    frexp(hdi_min(last / 10, limit), &exponent);   /* in [1/2, 1) times 2^exponent */
     return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
 }
 
@@ -21026,8 +21128,38 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
-/* The model of all methods. Bases of windows of times a hundredfold apart take 24 steps and 8 more for each
- * power of ten of that ratio. Tuned on meshes of 1K to 1M vertices. */
+/* Windows of times with a factor and a basis each: how many, their steps together, those of the longest. */
+typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
+
+/* Steps of a basis for times in this ratio, beginning with fields or with answers. It takes some more where
+ * other windows go on from its answers. Fitted to runs at ratios from 2 to 300 on meshes of 10K to 50K
+ * vertices; fewer are enough at large times, where few eigenvalues matter. */
+#define HDI_STEPS_HANDED_ON 3
+
+static double hdi_krylov_steps(double ratio, int goes_on) {
+    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), 0.9 * HDI_SILAN_MAX);
+}
+
+/* The number of windows of equal ratio that costs least. */
+static hdi_windows hdi_krylov_windows(hdi_fill f, double n, double span) {
+    const double factor = f.flops / HDI_RATE_REAL, step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * n;
+    double best = HUGE_VAL;
+    hdi_windows all = {1, 0, 0};
+    int32_t w;
+    for (w = 1; w <= 16; w++) {
+        const double ratio = pow(span, 1.0 / w);
+        const double longest = hdi_krylov_steps(ratio, 0) + (w > 1 ? HDI_STEPS_HANDED_ON : 0);
+        const double steps = longest + (w - 1) * hdi_krylov_steps(ratio, 1);
+        if (ratio > 1e4 || w * factor + steps * step >= best) continue;   /* beyond none serves */
+        best = w * factor + steps * step;
+        all.n = w;
+        all.steps = steps;
+        all.longest = longest;
+    }
+    return all;
+}
+
+/* The model of all methods. */
 static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
@@ -21037,24 +21169,24 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4;
     const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0];
-    const double windows = span > 100 ? ceil(log(span) / log(100.0)) : 1;
-    const double steps = 24 + 8 * log10(hdi_max(1, pow(span, 1 / windows)));
+    const hdi_windows w = hdi_krylov_windows(f, n, span);
     const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
     const double factor =
         packs * (16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz) + (poles % 4 == 1 ? real : 0);
     hdi_cost c;
     c.iterative = HDI_HAS_ITERATIVE ? hdi_cost_iterative(h, poles) : HUGE_VAL;
-    c.krylov = f.analysis + windows * f.flops / HDI_RATE_REAL +
-               k * windows * steps * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP +
-               k * h->n_times * steps * 8 * n / HDI_RATE_SWEEP;
+    c.krylov = f.analysis + w.n * f.flops / HDI_RATE_REAL +
+               k * w.steps * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP +
+               k * h->n_times * w.steps / w.n * 8 * n / HDI_RATE_SWEEP;
     if (h->n_times == 1 && heat->elim.shifted.ready &&
-        heat->elim.shift == hdi_krylov_shift(h->t, h->t, heat->lambda_max)) c.krylov -= real;
+        heat->elim.shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max)) c.krylov -= real;
     c.factors = hdi_heat_at_hand(h) ? 0 : f.analysis + h->n_times * factor;
     c.direct = c.factors + h->n_times * (k * packs * (64 * f.nnz + 400 * n) / sweep);
     c.direct_bytes = 64 * packs * f.stored + 200 * n + 8 * f.real_stored;
-    c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * steps : steps) + 200 * n;
+    c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * w.longest : w.longest) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
     c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
+    if (k <= 3 && h->n_times > 1) c.krylov_bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
     if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
     if (heat->silan) c.krylov_bytes = 0;
     if (!HDI_HAS_POLE_FACTORS) c.direct = c.direct_bytes = HUGE_VAL;
@@ -21785,28 +21917,6 @@ static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, 
     return q1;
 }
 
-/* Steps of a basis for times in this ratio, tuned on meshes of 1K to 1M vertices. Beyond a ratio of 1e4 none
- * serves. */
-static double hdi_krylov_steps(double ratio) {
-    return 22 + 4 * log10(hdi_max(1, ratio)) + 0.35 * sqrt(ratio) + (ratio > 1e4 ? 1e9 : 0);
-}
-
-/* How many windows cost least: every one needs a factor and a basis, whose length grows with the ratio of its
- * times. */
-static int32_t hdi_krylov_windows(const hdi_symbolic *s, double span) {
-    const double factor = s->flops_done / HDI_RATE_REAL;
-    const double step = 16 * HDI_CAST(double, s->nnz) / HDI_RATE_SWEEP + 1e-8 * s->n;
-    double best = HUGE_VAL;
-    int32_t w, least = 1;
-    for (w = 1; w <= 16; w++) {
-        const double cost = w * (factor + hdi_krylov_steps(pow(span, 1.0 / w)) * step);
-        if (cost >= best) continue;
-        best = cost;
-        least = w;
-    }
-    return least;
-}
-
 /* Bytes that a basis of so many steps takes, with the real factor before it where there is none. */
 static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) {
     const uint64_t n = HDI_CAST(uint64_t, m->sym.n), count = n * HDI_CAST(uint64_t, wide);
@@ -21818,40 +21928,136 @@ static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) 
     return bytes;
 }
 
-/* One basis for items batch to batch + n - 1 and the times [q0, q1). */
-static hd_status hdi_krylov_window(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
+/* The steps of a basis for n items and the times [q0, q1). */
+static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_heat *heat = h->heat;
     hdi_silan *z = heat->silan;
     double fixed[HDI_SILAN_WIDE];
-    hd_status status;
-    int32_t i, q;
+    int32_t i;
+    const double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
     /* a step is the least */
     if (!heat->elim.shifted.ctx && !z->v[0] &&
         hdi_need(heat->ctx, hdi_krylov_need(&heat->elim, z->wide, 1), "a real factor and a basis", h->e) < 0)
         return h->e->status;
-    if (hdi_elim_shift(&heat->elim, hdi_krylov_shift(h->times[q0], h->times[q1 - 1], heat->lambda_max),
-                       h->e) < 0)
-        return h->e->status;
+    if (hdi_elim_shift(&heat->elim, g, h->e) < 0) return h->e->status;
     z->g = heat->elim.shift;
     z->k = n;
+    z->last = q1 < h->n_times ? h->times[h->n_times - 1] : 0;
     if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
     for (i = 0; i < n; i++) fixed[i] = h->lane[i].skip ? 0 : hdi_lane_means_norm2(h->lane + i, h->lap);
-    status = hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
-    if (status < 0) return status;
-    for (q = q0; q < q1; q++) {
-        for (i = 0; i < n; i++) {
-            hdi_lane *lane = h->lane + i;
-            lane->status = status;
-            if (!lane->skip && hdi_silan_answer(z, i, h->times[q], heat->drift, lane, h->e) < 0)
-                return h->e->status;
-            if (!lane->skip &&
-                (lane->off.solver > heat->opts.tol * lane->u_norm ||
-                 lane->off.rounding > heat->limit * lane->u_norm))
-                lane->status = HD_WARN_ACCURACY;
+    return hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+}
+
+/* The answers of n items at time q, whose sums are in place p and after in a. counted: their steps have been
+ * told of already. */
+static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_silan_sum *a, int32_t p,
+                                  int counted, hd_status status) {
+    const hd_heat *heat = h->heat;
+    const size_t bytes = HDI_CAST(size_t, h->lap->n_active) * sizeof *h->lane->u;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        hdi_lane *lane = h->lane + i;
+        lane->status = status;
+        if (lane->skip) continue;
+        if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
+        if (hdi_silan_answer(heat->silan, i, h->times[q] - heat->silan->from, a->y[p + i], heat->drift, lane,
+                             h->e) < 0)
+            return h->e->status;
+        if (counted) lane->steps = 0;
+        if (lane->off.solver > heat->opts.tol * lane->u_norm ||
+            lane->off.rounding > heat->limit * lane->u_norm)
+            lane->status = HD_WARN_ACCURACY;
+    }
+    h->now = h->time_column ? h->time_column[q] : h->now;
+    return hdi_heat_store_some(h, n);
+}
+
+/* The answers of n items at the times [q0, q1), from their basis: as many in one pass over it as there are
+ * places in a sum. */
+static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
+    hd_context *ctx = h->heat->ctx;
+    hdi_silan *z = h->heat->silan;
+    const int64_t rows = h->lap->n_active;
+    const int abreast = z->wide > 1;             /* else one item, at several times */
+    hdi_silan_sum a;
+    int32_t p, q, n_here;
+    memset(&a, 0, sizeof a);
+    if (!abreast && q1 - q0 > 1 && !z->ahead)
+        z->ahead = HDI_NEW(ctx, double, HDI_SILAN_WIDE * HDI_CAST(uint64_t, rows), h->e);
+    if (h->e->status < 0) return h->e->status;
+    for (q = q0; q < q1; q += n_here) {
+        n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_SILAN_WIDE);
+        a.count = n * n_here;
+        for (p = 0; p < a.count; p++) {
+            const hdi_lane *lane = h->lane + (abreast ? p : 0);
+            const double t = h->times[abreast ? q : q + p] - z->from;
+            a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
+            a.means[p] = lane->sums;
+            if (hdi_silan_coefficients(z, abreast ? p : 0, t, a.y[p], h->e) < 0) return h->e->status;
         }
-        for (i = 0; i < n && q > q0; i++) h->lane[i].steps = 0;   /* counted once */
-        h->now = h->time_column ? h->time_column[q] : h->now;
-        if (hdi_heat_store_some(h, n) < 0) return h->e->status;
+        hdi_silan_sum_run(z, &a, ctx);
+        for (p = 0; p < n_here; p++)
+            if (hdi_krylov_store(h, n, q + p, &a, p, q + p > q0, status) < 0) return h->e->status;
+    }
+    return HD_OK;
+}
+
+/* The next window begins with the answers at time `from`, or (0) with the fields themselves. */
+static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
+    const hd_laplacian *lap = h->lap;
+    hdi_silan *z = h->heat->silan;
+    int32_t i;
+    z->from = from;
+    memset(z->before, 0, sizeof z->before);
+    if (!(from > 0)) (void)hdi_heat_load_some(h);
+    for (i = 0; i < n && from > 0; i++) {
+        hdi_lane *lane = h->lane + i;
+        if (lane->skip) continue;
+        z->before[i] = lane->off;
+        memcpy(lane->f, lane->u, HDI_CAST(size_t, lap->n_active) * sizeof *lane->f);
+        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+        lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        lane->f_norm = lane->u_norm;
+    }
+}
+
+/* Are the last answers of n items exact enough for the next window, up to time `to`? The size of answers
+ * there is estimated by their basis. */
+static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
+    const hd_heat *heat = h->heat;
+    const hdi_silan *z = heat->silan;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        const hdi_lane *lane = h->lane + i;
+        double size, fixed;
+        hdi_ritz s;
+        if (lane->skip) continue;
+        fixed = hdi_lane_means_norm2(lane, h->lap);
+        size = 0;
+        if (z->done[i] > 0) {
+            if (hdi_silan_ritz(z, i, z->done[i], &s, h->e) < 0) return 0;
+            size = z->f_norm[i] * hdi_ritz_size(&s, (to - z->from) / z->g);
+        }
+        size = sqrt(size * size + fixed) / 2;
+        if (lane->off.solver > heat->opts.tol * size || lane->off.rounding > heat->limit * size) return 0;
+    }
+    return 1;
+}
+
+/* n items at all times. Windows after the first begin with the last answers of the one before,
+ *   exp(-t B^-1 L) f = exp(-(t - s) B^-1 L) exp(-s B^-1 L) f,
+ * which are smooth: the basis needs half as many steps. Where answers die away and what is handed on is not
+ * exact enough, a window begins with the fields. */
+static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows) {
+    int32_t q0, q1, w, goes_on;
+    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+        hd_status status;
+        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
+        goes_on = w > 0 && hdi_krylov_goes_on(h, n, h->times[q1 - 1]);
+        if (h->e->status >= 0) hdi_krylov_begin(h, n, goes_on ? h->times[q0 - 1] : 0);
+        if (h->e->status < 0) return h->e->status;
+        status = hdi_krylov_basis(h, n, q0, q1);
+        if (status < 0 || hdi_krylov_answers(h, n, q0, q1, status) < 0) return h->e->status;
     }
     return HD_OK;
 }
@@ -21860,8 +22066,8 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const double span = h->times[h->n_times - 1] / h->times[0];
     const int32_t wide = h->ask.k > 3 ? HDI_SILAN_WIDE : 1;
-    const int32_t n_windows = h->n_times > 1 ? hdi_krylov_windows(&heat->elim.sym, span) : 1;
-    int32_t n, q0, q1, w;
+    const int32_t n_windows = hdi_krylov_windows(hdi_heat_fill(heat), heat->elim.sym.n, span).n;
+    int32_t n;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
         heat->silan = HDI_NEW(heat->ctx, hdi_silan, 1, h->e);
@@ -21871,12 +22077,9 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     heat->silan->wide = wide;
     heat->silan->m = &heat->elim;
     if (hdi_heat_lanes(h, wide) < 0) return h->e->status;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
-        for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
-            n = hdi_heat_load_some(h);
-            if (h->e->status < 0 || hdi_krylov_window(h, n, q0, q1) < 0) return h->e->status;
-        }
+    for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
+        n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
+        if (hdi_krylov_items(h, n, n_windows) < 0) return h->e->status;
     }
     h->rep->factor_flops = heat->elim.sym.flops;
     h->rep->growth = heat->elim.shifted.largest_entry > 0
@@ -24086,18 +24289,19 @@ static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int3
 /* Bytes and flops of shift-and-invert Lanczos. Bases that exist are grown. */
 static void hdi_estimate_krylov(const hdi_estimate *x, double seconds, double held, hd_cost *c) {
     const hd_heat *heat = x->h->heat;
-    const hdi_symbolic *s = &heat->elim.sym;
     const hdi_fill f = hdi_heat_fill(heat);
+    const int several = x->h->n_times > 1;
     const double span = x->h->times[x->h->n_times - 1] / x->h->times[0], n = heat->source->n_active;
-    const int32_t windows = heat->elim.ctx && x->h->n_times > 1 ? hdi_krylov_windows(s, span) : 1;
-    const double longer = x->h->n_times > 1 ? 1.5 : 1.3;   /* more than expected, to be safe */
-    const double steps = hdi_min(HDI_SILAN_MAX, longer * hdi_krylov_steps(pow(span, 1.0 / windows)));
+    const hdi_windows w = hdi_krylov_windows(f, n, span);
+    const double longer = several ? 1.3 : 1.15;  /* more than expected, to be safe */
+    const double steps = hdi_min(HDI_SILAN_MAX, longer * w.longest);
     const int32_t wide = x->k > 3 ? HDI_SILAN_WIDE : 1;
     double bytes = HDI_ESTIMATE_SMALL + HDI_CAST(double, sizeof(hdi_silan)) + wide * 56 * n + held;
     if (heat->elim.ctx)
         bytes += HDI_CAST(double, hdi_krylov_need(&heat->elim, wide, HDI_CAST(int32_t, steps)));
     else bytes += 8 * f.real_stored + 8 * n * wide * (steps + 4) + 200 * n;
-    hdi_cost_add(c, windows * (f.flops + x->k * steps * 4 * f.nnz), seconds, bytes);
+    if (several && wide == 1) bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
+    hdi_cost_add(c, w.n * f.flops + x->k * w.steps * 4 * f.nnz, seconds, bytes);
 }
 
 /* Fields, columns and entries: what room [26] chooses. held: bytes of the query's own arrays. */

@@ -1512,6 +1512,8 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
     double *u = DENSE_NEW(double, n), *want = DENSE_NEW(double, n), *L = DENSE_NEW(double, n * n), *B = DENSE_NEW(double, n * n), loosest = 0;
     hdi_silan *z = DENSE_NEW(hdi_silan, 1);
+    hdi_ritz ritz;
+    hdi_silan_sum sum;
     hd_context ctx;
     hd_error e;
     hdi_elim m;
@@ -1521,6 +1523,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     int64_t p;
     int q, decayed;
     memset(&ctx, 0, sizeof ctx);
+    memset(&sum, 0, sizeof sum);
     CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
     t *= m.scale;
     for (i = 0; i < n; i++) {
@@ -1532,7 +1535,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     }
     CHECK(dense_pair_solve(&pair, L, B, n));
     lane = int_lanes(m.lap, k, &ctx);
-    CHECK(hdi_elim_shift(&m, hdi_krylov_shift(t, t, 0), &e) == HD_OK && m.shift / t > 0.05 && m.shift / t <= 0.2);
+    CHECK(hdi_elim_shift(&m, hdi_krylov_shift(0, t, t, 0), &e) == HD_OK && m.shift / t > 0.05 && m.shift / t <= 0.2);
     z->wide = wide;
     z->m = &m;
     z->k = k;
@@ -1546,9 +1549,17 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 const double at = t * factors[q], eps = 1e-15 * fmin(at * dense_max_abs(pair.lambda, n), 1e3) + 3e-14;
                 double bound, size, error;
                 if (step > 1 && !(z->beta[step - 1][r] > 1e-13)) continue;
-                CHECK(hdi_silan_bound(z, r, step, at, &bound, &size, &e) == HD_OK);
+                CHECK(hdi_silan_ritz(z, r, step, &ritz, &e) == HD_OK);
+                bound = hdi_ritz_bound(&ritz, at / z->g);
+                size = hdi_ritz_size(&ritz, at / z->g);
                 z->done[r] = step;
-                CHECK(hdi_silan_answer(z, r, at, 0, lane + r, &e) == HD_OK);
+                sum.count = r + 1;               /* of several abreast, only this one is wanted */
+                memset(sum.u, 0, sizeof sum.u);
+                sum.u[r] = lane[r].u;
+                sum.means[r] = lane[r].sums;
+                CHECK(hdi_silan_coefficients(z, r, at, sum.y[r], &e) == HD_OK);
+                hdi_silan_sum_run(z, &sum, &ctx);
+                CHECK(hdi_silan_answer(z, r, at, sum.y[r], 0, lane + r, &e) == HD_OK);
                 z->done[r] = 0;
                 dense_pair_heat(&pair, at, lane[r].rhs, want);
                 for (i = 0; i < n; i++) u[i] = lane[r].u[i] - want[i];

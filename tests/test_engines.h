@@ -783,6 +783,45 @@ static void eng_times(void) {
     shape_free(&s);
 }
 
+/* Columns of two batches at times over five decades, one source without mass among them, against calls for one column
+ * and one time, which begin with the field. */
+static void eng_times_columns_of(const hd_laplacian *lap, double unit, const char *what) {
+    enum { COLUMNS = 10, TIMES = 16 };
+    hd_heat *heat = eng_plan(lap, HD_METHOD_KRYLOV, HD_POLES_DEFAULT, 0);
+    const int32_t n = lap->n;
+    double times[TIMES], *U = DENSE_NEW(double, COLUMNS * TIMES * n), *u = DENSE_NEW(double, n);
+    int32_t sources[COLUMNS], c, q;
+    hd_report rep, one;
+    for (c = 0; c < COLUMNS; c++) sources[c] = (3 + 7 * c) % n;
+    for (q = 0; q < TIMES; q++) times[q] = unit * 0.1 * pow(1e5, q / (TIMES - 1.0));
+    if (eng_ok(hd_heat_columns(heat, HD_KERNEL_OPERATOR, TIMES, times, COLUMNS, sources, U, 0, &rep, NULL), &rep, what)) {
+        for (c = 0; c < COLUMNS; c++) {
+            for (q = 0; q < TIMES; q += 3) {
+                const double *column = U + (c * TIMES + q) * n;
+                CHECK(eng_ok(heat_columns(heat, times[q], HD_KERNEL_OPERATOR, 1, sources + c, u, 0, &one), &one, what));
+                CHECK_MSG(dense_max_diff(u, column, n) <= (rep.error_bound + one.error_bound + 1e-13) * dense_max_abs(u, n),
+                    "%s: column %d, time %g: off by %g from a call of its own", what, (int)c, times[q],
+                          dense_max_diff(u, column, n) / dense_max_abs(u, n));
+            }
+        }
+    }
+    hd_heat_free(heat);
+    free(U);
+    free(u);
+}
+
+static void eng_times_columns(void) {
+    shape ball = shape_icosphere(2), s = eng_with_inert(&ball);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    eng_times_columns_of(lap, lap->h * lap->h, "columns and times");
+    hd_laplacian_free(lap);
+    lap = eng_leaking(12, 9);
+    eng_times_columns_of(lap, 0.02, "columns and times, leaking");
+    hd_laplacian_free(lap);
+    shape_free(&ball);
+    shape_free(&s);
+}
+
 /* A source without mass at many times. */
 static void eng_times_inert(void) {
     shape ball = shape_icosphere(0), s = eng_with_inert(&ball);
@@ -1712,6 +1751,7 @@ static void test_engines(void) {
     eng_reuse();
     eng_switch();
     eng_times();
+    eng_times_columns();
     eng_times_inert();
     eng_threads();
     eng_extreme_times();
