@@ -2838,6 +2838,9 @@ typedef struct hdi_real_tile {
 /* An entry of a pack matrix is re[4], im[4]: the same entry for four poles. Every operation on entries is one
  * on vectors without any shuffle. */
 enum { HDI_PACK = 8, HDI_PACK_ROWS = 48, HDI_PACK_DEPTH = 64, HDI_PACK_BLOCK = 16 };
+/* Sweeps of many right-hand sides: rows that are taken at a time on the way down, so that a chunk of a panel
+ * stays in the caches while the next one is fetched; entries that are fetched ahead on the way up. */
+enum { HDI_PACK_CHUNK = 32, HDI_PACK_AHEAD = 64 };
 
 /* C(i,j) = or -= sum_k A(i,k) B(j,k), k in [0,depth), for i in [i0,i1), j in [j0,j1), with lower only j <= i.
  * A(i,k) is at a + i a_row + k a_col, all strides in doubles; C(i,j) at c + i c_row + 8 j, or, packed, at c +
@@ -2864,6 +2867,18 @@ typedef struct hdi_pack_rows {
     int32_t nb;
 } hdi_pack_rows;
 
+/* A block of columns of a panel in a sweep with k right-hand sides, whose rows of k entries stand side by
+ * side: n pivots' rows from the block's first on, then u rows below. Row i of the pivots is y + i x_row, row
+ * i below t + i x_row on the way up, and x + below[i] x_row on the way down. */
+typedef struct hdi_pack_sweep {
+    const double *l;
+    int64_t row, x_row;              /* doubles from row to row of the block, and of x, y and t */
+    int64_t width, n, u, k;          /* columns of the block; n >= width */
+    double *y, *t;
+    const double *x;
+    const int32_t *below;
+} hdi_pack_sweep;
+
 typedef struct hdi_pack_ops {
     void (*multiply)(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1);
     void (*solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1);
@@ -2872,6 +2887,10 @@ typedef struct hdi_pack_ops {
     void (*add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off);
     void (*forward)(const double *l, int64_t u, int64_t p, const double *y, double *t);
     void (*backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x);
+    /* up: y1 = L11^-1 y1, y2 -= L21 y1, t -= L31 y1; down: y1 = L11^-T (y1 - L21' y2 - L31' x[below]), where
+     * y1 are the block's own rows of y, y2 those that follow */
+    void (*up)(const hdi_pack_sweep *g);
+    void (*down)(const hdi_pack_sweep *g);
 } hdi_pack_ops;
 
 /* s = l d for an entry */
@@ -2905,8 +2924,8 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
  *   fused                products of entries are summed with fma
  *   masks                load_tail costs no more than load
  *   apart                the sums of a backward step are closed between its two parts
- *   tile_rows, tile_cols, solve_rows, sweep_rows, sweep_cols  entries of packs that are held in registers;
- *     half entries of the first three, if vectors have two lanes */
+ *   tile_rows, tile_cols, solve_rows, sweep_rows, sweep_cols, sweep_many  entries of packs that are held in
+ *     registers; half entries of the first three and of the last, if vectors have two lanes */
 #define HDI_IN2 static HDI_INLINE
 #define HDI_IN4 static HDI_AVX2 HDI_INLINE
 #define HDI_IN8 static HDI_AVX512 HDI_INLINE
@@ -2956,7 +2975,7 @@ enum {
 #endif
 enum {
     hdi_cols_plain = 4, hdi_masks_plain = 0, hdi_apart_plain = 1, hdi_sweep_rows_plain = 1,
-    hdi_sweep_cols_plain = 2
+    hdi_sweep_cols_plain = 2, hdi_sweep_many_plain = hdi_tile_rows_plain > 1 ? 4 : 1
 };
 
 #if HDI_V2
@@ -3044,7 +3063,7 @@ typedef __m512d hdi_v8;
 enum {
     hdi_cols_avx2 = 4, hdi_regs_avx2 = 3, hdi_fused_avx2 = 1, hdi_masks_avx2 = 0, hdi_apart_avx2 = 0,
     hdi_tile_rows_avx2 = 2, hdi_tile_cols_avx2 = 2, hdi_solve_rows_avx2 = 2, hdi_sweep_rows_avx2 = 2,
-    hdi_sweep_cols_avx2 = 4
+    hdi_sweep_cols_avx2 = 4, hdi_sweep_many_avx2 = 4
 };
 #define HDI_TARGET_avx2 HDI_AVX2
 typedef __m256d hdi_vec_avx2;
@@ -3113,7 +3132,7 @@ HDI_IN4 void hdi_store_rows_avx2(double *p, hdi_v4 v, hdi_span g, int32_t q) {
 enum {
     hdi_cols_avx512 = 8, hdi_regs_avx512 = 3, hdi_fused_avx512 = 1, hdi_masks_avx512 = 1,
     hdi_tile_rows_avx512 = 4, hdi_tile_cols_avx512 = 3, hdi_solve_rows_avx512 = 6, hdi_sweep_rows_avx512 = 4,
-    hdi_sweep_cols_avx512 = 8
+    hdi_sweep_cols_avx512 = 8, hdi_sweep_many_avx512 = 8
 };
 #define HDI_TARGET_avx512 HDI_AVX512
 typedef __m512d hdi_vec_avx512;
@@ -3984,6 +4003,103 @@ HDI_KERNEL void HDI_OF(pack_backward)(const double *l, const int32_t *row, int64
     }
 }
 
+/* Sweeps of many right-hand sides: s += sum_q l_q x_q in n_cols of them, q in [0,n). l_q is step doubles
+ * after the one before, x_q in row q of x, or with listed in row list[q]. Every entry of L is read once for
+ * all right-hand sides, and waited for: what comes `ahead` of it in memory is fetched. */
+HDI_PART void HDI_OF(pack_many_sum)(const int n_cols, const int listed, HDI_OF(total) *s, const double *l,
+                                    int64_t step, int64_t ahead, int64_t n, const double *x, int64_t x_row,
+                                    const int32_t *list) {
+    int64_t q;
+    int c;
+    for (q = 0; q < n; q++, l += step) {
+        const double *from = x + x_row * (listed ? HDI_CAST(int64_t, list[q]) : q);
+        HDI_OF(twice) f;
+        HDI_OF(twice_load)(&f, l);
+        HDI_PREFETCH_AT(l, ahead);
+        HDI_EACH(c, n_cols) {
+            HDI_OF(entry) v;
+            HDI_OF(entry_load)(&v, from + HDI_PACK * c);
+            HDI_OF(total_add)(&s[c], &v, &f);
+        }
+    }
+}
+
+HDI_PART void HDI_OF(pack_many_zero)(const int n_cols, HDI_OF(total) *s) {
+    int c;
+    HDI_EACH(c, n_cols) HDI_OF(total_zero)(&s[c]);
+}
+
+/* y -= s */
+HDI_PART void HDI_OF(pack_many_put)(const int n_cols, double *y, const HDI_OF(total) *s) {
+    int c;
+    HDI_EACH(c, n_cols) HDI_OF(total_put)(y + HDI_PACK * c, &s[c], 0);
+}
+
+/* at: doubles from the first right-hand side's first number to that of these */
+HDI_PART void HDI_OF(pack_up_cols)(const int n_cols, const hdi_pack_sweep *g, int64_t at) {
+    HDI_OF(total) s[HDI_OF(sweep_many)];
+    const double *l = g->l + at % HDI_PACK;
+    int64_t i;
+    for (i = 0; i < g->n + g->u; i++, l += g->row) {
+        double *to = i < g->n ? g->y + g->x_row * i : g->t + g->x_row * (i - g->n);
+        HDI_OF(pack_many_zero)(n_cols, s);
+        HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, HDI_PACK * HDI_PACK_AHEAD, hdi_least(i, g->width),
+                              g->y + at, g->x_row, NULL);
+        HDI_OF(pack_many_put)(n_cols, to + at, s);
+    }
+}
+
+/* Rows in chunks from below: for the pivots that come before a chunk, and to the pivots in it, one by one. */
+HDI_PART void HDI_OF(pack_down_cols)(const int n_cols, const hdi_pack_sweep *g, int64_t at) {
+    HDI_OF(total) s[HDI_OF(sweep_many)];
+    const double *l = g->l + at % HDI_PACK, *below = l + g->row * g->n;
+    const int64_t ahead = -HDI_PACK_CHUNK * g->row;
+    int64_t c, end = g->u, begin = g->n > HDI_PACK_CHUNK ? 0 : hdi_least(g->u, HDI_PACK_CHUNK);
+    double *y = g->y + at;
+    for (; end > begin; end -= hdi_least(end - begin, HDI_PACK_CHUNK)) {
+        const int64_t from = end - hdi_least(end - begin, HDI_PACK_CHUNK);
+        for (c = 0; c < g->width; c++) {
+            HDI_OF(pack_many_zero)(n_cols, s);
+            HDI_OF(pack_many_sum)(n_cols, 1, s, below + g->row * from + HDI_PACK * c, g->row, ahead,
+                                  end - from, g->x + at, g->x_row, g->below + from);
+            HDI_OF(pack_many_put)(n_cols, y + g->x_row * c, s);
+        }
+    }
+    for (end = g->n; end > 0; end = begin) {
+        const int64_t rest = end == g->n && end <= HDI_PACK_CHUNK ? hdi_least(g->u, HDI_PACK_CHUNK) : 0;
+        begin = end > HDI_PACK_CHUNK ? end - HDI_PACK_CHUNK : 0;
+        for (c = hdi_least(end, g->width) - 1; c >= 0; c--) {
+            const int64_t first = c < begin ? begin : c + 1;
+            HDI_OF(pack_many_zero)(n_cols, s);
+            HDI_OF(pack_many_sum)(n_cols, 1, s, below + HDI_PACK * c, g->row, ahead, rest, g->x + at,
+                                  g->x_row, g->below);
+            HDI_OF(pack_many_sum)(n_cols, 0, s, l + g->row * first + HDI_PACK * c, g->row, ahead,
+                                  end - first, y + g->x_row * first, g->x_row, NULL);
+            HDI_OF(pack_many_put)(n_cols, y + g->x_row * c, s);
+        }
+    }
+}
+
+HDI_KERNEL void HDI_OF(pack_up)(const hdi_pack_sweep *g) {
+    enum { most = HDI_OF(sweep_many) };
+    int64_t c, h;
+    for (h = 0; h < 4; h += HDI_ABREAST) {
+        for (c = 0; c + most <= g->k; c += most) HDI_OF(pack_up_cols)(most, g, HDI_PACK * c + h);
+        if (most > 4 && c + 4 <= g->k) HDI_OF(pack_up_cols)(4, g, HDI_PACK * c + h), c += 4;
+        for (; c < g->k; c++) HDI_OF(pack_up_cols)(1, g, HDI_PACK * c + h);
+    }
+}
+
+HDI_KERNEL void HDI_OF(pack_down)(const hdi_pack_sweep *g) {
+    enum { most = HDI_OF(sweep_many) };
+    int64_t c, h;
+    for (h = 0; h < 4; h += HDI_ABREAST) {
+        for (c = 0; c + most <= g->k; c += most) HDI_OF(pack_down_cols)(most, g, HDI_PACK * c + h);
+        if (most > 4 && c + 4 <= g->k) HDI_OF(pack_down_cols)(4, g, HDI_PACK * c + h), c += 4;
+        for (; c < g->k; c++) HDI_OF(pack_down_cols)(1, g, HDI_PACK * c + h);
+    }
+}
+
 static const hdi_real_ops *HDI_OF(real_ops)(void) {
     static const hdi_real_ops hdi_ops = {
         HDI_REGS * HDI_WIDTH, HDI_COLS,
@@ -3997,7 +4113,8 @@ static const hdi_real_ops *HDI_OF(real_ops)(void) {
 
 static const hdi_pack_ops *HDI_OF(pack_ops)(void) {
     static const hdi_pack_ops hdi_ops = {HDI_OF(pack_multiply), HDI_OF(pack_solve_rows), HDI_OF(pack_scale),
-                                         HDI_OF(pack_add), HDI_OF(pack_forward), HDI_OF(pack_backward)};
+                                         HDI_OF(pack_add), HDI_OF(pack_forward), HDI_OF(pack_backward),
+                                         HDI_OF(pack_up), HDI_OF(pack_down)};
     return &hdi_ops;
 }
 
@@ -4254,12 +4371,12 @@ static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m,
 /* The same for eight right-hand sides, x row-major [.][8]. */
 static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p,
                                const double *dinv, double *x1, const double *x, const int32_t *idx) {
-    int32_t k, j;
+    int32_t k, j, r;
     for (k = (p - 1) & ~7; k >= 0; k -= 8) {
         const int32_t nc = p - k < 8 ? p - k : 8;
         double *b = x1 + 8 * k;
-        if (dinv)
-            for (j = 0; j < 8 * nc; j++) b[j] *= dinv[k + j / 8];
+        for (j = 0; j < nc && dinv; j++)
+            for (r = 0; r < 8; r++) b[8 * j + r] *= dinv[k + j];
         if (m > p) o->dots8(b, P + p + k * m, m, m - p, x, idx, nc);
         if (k + nc < p) o->dots8(b, P + k + nc + k * m, m, p - k - nc, b + 8 * nc, NULL, nc);
         o->upper8(b, P + k + k * m, m, nc);
@@ -12709,6 +12826,8 @@ typedef struct hdi_sweep {
     int32_t k;                   /* right-hand sides side by side: packs any, real 1 or 8 */
     int32_t backward;
     const char *active;          /* forward */
+    const double *const *rhs;    /* packs: [k][n] real right-hand sides, the same for all matrices; NULL in
+                                    it: zero. NULL: they are in x, which otherwise is only written */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
     int32_t *pending, *order;    /* shared by threads: what nodes wait for; the nodes as they become ready */
@@ -12741,40 +12860,41 @@ static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double 
     }
 }
 
+/* A block of supernode v's panel, for several right-hand sides. */
+static hdi_pack_sweep hdi_sweep_block(const hdi_sweep *z, int32_t v, const hdi_block *b, double *y,
+                                      double *t) {
+    const hdi_symbolic *s = z->f->sym;
+    hdi_pack_sweep g;
+    g.l = b->at;
+    g.row = b->row;
+    g.x_row = HDI_PACK * z->k;
+    g.width = b->width;
+    g.n = hdi_front_pivots(s, v) - b->begin;
+    g.u = hdi_front_below(s, v);
+    g.k = z->k;
+    g.y = y + g.x_row * b->begin;
+    g.t = t;
+    g.x = z->x;
+    g.below = s->row + s->row_ptr[v];
+    return g;
+}
+
 /* y = L11^-1 y, t -= L21 y */
 static void hdi_sweep_forward_pack(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_factor *f = z->f;
-    const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v), row = HDI_PACK * z->k;
-    hdi_pack_job g;
+    const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
     int64_t i, q;
-    memset(&g, 0, sizeof g);
-    g.a_col = HDI_PACK;
-    g.b_row = HDI_PACK;
-    g.b_col = g.c_row = row;
     for (q = 0; q * HDI_PANEL < p; q++) {
         const hdi_block b = hdi_block_of(f->panel + HDI_PACK * f->panel_at[v], p + u, p, q);
-        double *l = b.at, *w = y + row * b.begin;
-        if (z->k == 1) {
-            for (i = 1; i < b.width; i++) f->pack->forward(l + i * b.row, 1, i, w, w + HDI_PACK * i);
-            f->pack->forward(l + b.width * b.row, p - b.begin - b.width, b.width, w, w + b.row);
-            f->pack->forward(l + (p - b.begin) * b.row, u, b.width, w, t);
+        double *l = b.at, *w = y + HDI_PACK * b.begin;
+        if (z->k > 1) {
+            const hdi_pack_sweep g = hdi_sweep_block(z, v, &b, y, t);
+            f->pack->up(&g);
             continue;
         }
-        g.a_row = b.row;
-        g.b = w;
-        for (i = 1; i < b.width; i++) {
-            g.a = l + i * b.row;
-            g.c = w + row * i;
-            g.depth = i;
-            f->pack->multiply(&g, 0, 1, 0, z->k);
-        }
-        g.depth = b.width;
-        g.a = l + b.width * b.row;
-        g.c = w + row * b.width;
-        f->pack->multiply(&g, 0, p - b.begin - b.width, 0, z->k);
-        g.a = l + (p - b.begin) * b.row;
-        g.c = t;
-        f->pack->multiply(&g, 0, u, 0, z->k);
+        for (i = 1; i < b.width; i++) f->pack->forward(l + i * b.row, 1, i, w, w + HDI_PACK * i);
+        f->pack->forward(l + b.width * b.row, p - b.begin - b.width, b.width, w, w + b.row);
+        f->pack->forward(l + (p - b.begin) * b.row, u, b.width, w, t);
     }
 }
 
@@ -12801,10 +12921,10 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
     else hdi_sweep_forward_pack(z, v, y, t);
 }
 
-/* y = D^-1 y; with several right-hand sides the rows below are gathered. */
-static void hdi_sweep_divide_pack(const hdi_sweep *z, int32_t v, double *y, double *gather) {
+/* y = D^-1 y */
+static void hdi_sweep_divide_pack(const hdi_sweep *z, int32_t v, double *y) {
     const hdi_symbolic *s = z->f->sym;
-    const int64_t p = hdi_front_pivots(s, v), u = hdi_front_below(s, v), row = HDI_PACK * z->k;
+    const int64_t p = hdi_front_pivots(s, v);
     const double *dinv = z->f->dinv + HDI_PACK * HDI_CAST(int64_t, s->super[v]);
     double t[HDI_PACK];
     int64_t i;
@@ -12812,48 +12932,29 @@ static void hdi_sweep_divide_pack(const hdi_sweep *z, int32_t v, double *y, doub
         memcpy(t, y + HDI_PACK * i, sizeof t);
         hdi_pack_times(t, dinv + HDI_PACK * (i / z->k), y + HDI_PACK * i);
     }
-    for (i = 0; i < u && z->k > 1; i++)
-        memcpy(gather + i * row, z->x + row * s->row[s->row_ptr[v] + i],
-               HDI_CAST(size_t, row) * sizeof *gather);
 }
 
 /* y = L11^-T (D^-1 y - L21' x[rows]) */
-static void hdi_sweep_backward_pack(const hdi_sweep *z, int32_t v, double *y, double *gather) {
+static void hdi_sweep_backward_pack(const hdi_sweep *z, int32_t v, double *y) {
     const hdi_factor *f = z->f;
-    const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v), row = HDI_PACK * z->k;
+    const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
     const int32_t *idx = f->sym->row + f->sym->row_ptr[v];
-    hdi_pack_job g;
     int64_t i, q;
-    hdi_sweep_divide_pack(z, v, y, gather);
-    memset(&g, 0, sizeof g);
-    g.a_row = g.b_row = HDI_PACK;
-    g.b_col = g.c_row = row;
+    if (z->rhs && z->active && !z->active[v])    /* written only now, to be used at once */
+        memset(y, 0, HDI_CAST(size_t, p * HDI_PACK * z->k) * sizeof *y);
+    else hdi_sweep_divide_pack(z, v, y);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
         const hdi_block b = hdi_block_of(f->panel + HDI_PACK * f->panel_at[v], p + u, p, q);
-        double *l = b.at, *w = y + row * b.begin;
-        if (z->k == 1) {
-            f->pack->backward(l + (p - b.begin) * b.row, idx, u, b.width, w, z->x);
-            f->pack->backward(l + b.width * b.row, NULL, p - b.begin - b.width, b.width, w, w + b.row);
-            for (i = b.width - 1; i > 0; i--)
-                f->pack->backward(l + i * b.row, NULL, 1, i, w, w + HDI_PACK * i);
+        double *l = b.at, *w = y + HDI_PACK * b.begin;
+        if (z->k > 1) {
+            const hdi_pack_sweep g = hdi_sweep_block(z, v, &b, y, NULL);
+            f->pack->down(&g);
             continue;
         }
-        g.a_col = b.row;
-        g.c = w;
-        g.a = l + (p - b.begin) * b.row;
-        g.b = gather;
-        g.depth = u;
-        f->pack->multiply(&g, 0, b.width, 0, z->k);
-        g.a = l + b.width * b.row;
-        g.b = w + row * b.width;
-        g.depth = p - b.begin - b.width;
-        f->pack->multiply(&g, 0, b.width, 0, z->k);
-        g.depth = 1;
-        for (i = b.width - 1; i > 0; i--) {
-            g.a = l + i * b.row;
-            g.b = w + row * i;
-            f->pack->multiply(&g, 0, i, 0, z->k);
-        }
+        f->pack->backward(l + (p - b.begin) * b.row, idx, u, b.width, w, z->x);
+        f->pack->backward(l + b.width * b.row, NULL, p - b.begin - b.width, b.width, w, w + b.row);
+        for (i = b.width - 1; i > 0; i--)
+            f->pack->backward(l + i * b.row, NULL, 1, i, w, w + HDI_PACK * i);
     }
 }
 
@@ -12880,6 +12981,20 @@ static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int back
     for (i = first; i < last; i += 8) HDI_PREFETCH(f->panel + i);
 }
 
+/* The pivots' part of the right-hand sides, where they are given apart from x. */
+static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
+    const int32_t *super = z->f->sym->super + v;
+    int32_t i, r;
+    if (!z->rhs) return;
+    for (i = super[0]; i < super[1]; i++) {
+        for (r = 0; r < z->k; r++, y += HDI_PACK) {
+            const double b = z->rhs[r] ? z->rhs[r][i] : 0;
+            y[0] = y[1] = y[2] = y[3] = b;
+            y[4] = y[5] = y[6] = y[7] = 0;
+        }
+    }
+}
+
 /* Backward, the front's vector has been handed on, and its place is free to gather the rows below. */
 static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const hdi_factor *f = z->f;
@@ -12889,10 +13004,11 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     if (z->backward) {
         if (z->wanted && !z->wanted[v]) return;
         if (hdi_is_real(f)) hdi_sweep_backward_real(z, v, y, t);
-        else hdi_sweep_backward_pack(z, v, y, t);
+        else hdi_sweep_backward_pack(z, v, y);
         return;
     }
     if (z->active && !z->active[v]) return;
+    hdi_sweep_take(z, v, y);
     hdi_sweep_children(z, v, y, t);
     hdi_sweep_forward(z, v, y, t);
 }
@@ -17569,9 +17685,11 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     const int32_t n = s->n, wide = k > 1 ? 8 : 1;
     int64_t j, touched = 0;
     int32_t i, r, n_list = 0, at[HDI_LANES_BATCH];
+    const double *rhs[HDI_LANES_BATCH];
     hdi_lane *list[HDI_LANES_BATCH];
     hdi_sweep z;
     for (r = 0; r < k; r++) {
+        rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
         if (lane[r].skip) continue;
         list[n_list] = lane + r;
         at[n_list++] = r;
@@ -17603,14 +17721,8 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
             if (!lane[r].skip) hdi_batch_real(m, lane + r, b->xr + r, wide);
     }
     for (i = 0; i < m->n_used; i++) {
-        memset(b->x, 0, HDI_CAST(size_t, n) * HDI_CAST(size_t, k) * HDI_PACK * sizeof *b->x);
-        for (r = 0; r < k; r++) {
-            for (j = 0; j < n && !lane[r].skip; j++) {
-                double *to = b->x + HDI_PACK * (k * j + r);
-                to[0] = to[1] = to[2] = to[3] = lane[r].rhs[j];
-            }
-        }
         z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
+        z.rhs = rhs;
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
         for (r = 0; r < n_list; r += HDI_CHECK_MOST)
