@@ -20712,6 +20712,29 @@ static void hdi_spec_sum_inert(hdi_spec_sum *a, int32_t source) {
 
 #define HDI_ROUNDING_LIMIT 1e-7              /* the direct method's own error by default is 3e-8 */
 
+/* The smallest eigenpairs, for distances at large times. Nothing is there while s.value is NULL. */
+typedef struct hdi_modes {
+    hd_spectrum s;               /* in the caller's units; without a shell */
+    double *off;                 /* [count] norms of residuals |B^-1 L x - lambda x|_B with their rounding */
+    double *bx;                  /* [n count] B x, for weighted distances with a full B; made when needed */
+    double *one;                 /* [2 n] B 1 by vertices, and what rounding left out of it */
+    double *by;                  /* [n] what entries of bx, or of the vectors, count by: 1, or diagonal B */
+    double low;                  /* all eigenvalues but those of the constants are at least this */
+    double off_norm;             /* |B^-1 L X - X Lambda| */
+    double off_gram;             /* |X' B X - 1| */
+    int32_t barred;              /* they could not be found; no other try */
+} hdi_modes;
+
+static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
+    hdi_free(ctx, x->s.value);
+    hdi_free(ctx, x->s.vector);
+    hdi_free(ctx, x->s.left);
+    hdi_free(ctx, x->off);
+    hdi_free(ctx, x->bx);
+    hdi_free(ctx, x->one);
+    memset(x, 0, sizeof *x);
+}
+
 struct hd_heat {
     hd_context *ctx;
     const hd_laplacian *source;  /* the caller's */
@@ -20729,6 +20752,7 @@ struct hd_heat {
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_ground ground;           /* made when it is first needed; of elim */
+    hdi_modes modes;             /* so too */
     hdi_silan *silan;
     double *batch_room;          /* arrays of the batches */
     uint64_t batch_doubles;
@@ -21109,6 +21133,7 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
         m->filled = m->shifted.ready = 0;
         m->reach_t = -1;
         if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+        if (HDI_HAS_DIFFUSION) hdi_modes_free(&heat->modes, heat->ctx);
     }
     if (heat->lap) {
         hdi_pair_refresh(heat->lap, lap, heat->fill);
@@ -23656,7 +23681,9 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
 /* The default goes to the highest degree where the bound of the error relative to the largest distance is
  * above the first number. The bound of degree 9 is expected at the second one times sqrt(t)/h, as seen on
  * meshes of 1K to 50K vertices. */
-#define HDI_DISTANCE_SURE 2.5e-6
+#define HDI_DISTANCE_SURE 3.5e-7
+/* With a larger bound eigenpairs are asked for help. */
+#define HDI_DISTANCE_MOST 1e-6
 #define HDI_DISTANCE_EXPECTED 4.4e-7
 
 /* Are the poles the caller's choice, or of the highest degree in any case? */
@@ -23697,6 +23724,487 @@ static hd_status hdi_distance_once(hd_heat *heat, const hdi_distances *to, doubl
     return hdi_scope_end(&s);
 }
 
+/* ---- distances from the smallest eigenpairs ---- */
+/* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
+ *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2
+ * does not cancel, however small it is. Constants drop out within a component; S takes them out below.
+ * Bounds. Let A = B^-1 L, X the vectors found with their values Theta, R = A X - X Theta, c = X' B y for
+ * y = B^-1 (e_x - e_y), and Q y = y - X c. All norms are those of B, and A >= low where S leaves anything.
+ * Then d = |exp(-t A) y| differs from |exp(-t Theta) c| by at most
+ *     |exp(-t A) S X c - S X exp(-t Theta) c| + |exp(-t A) S Q y|.
+ * With exp(-t A) X - X exp(-t Theta) = - int exp(-(t - s) A) R exp(-s Theta) ds the first is at most
+ *     exp(-t low) sum_i |r_i| min(t, 1/(theta_i - low)) |c_i|.
+ * No gap enters. Without R the complement of X would be invariant, A >= next - |R| there by the count of
+ * eigenvalues (Weyl's inequality), and in the same way the second is at most
+ *     exp(-t low) (exp(-t (next - |R| - low)) + |R|/(next - |R| - low)) |Q y|.
+ * Every term carries exp(-t low), so that the error is small beside distances of 1e-200 as well. */
+
+/* What is left out is at most this part of the largest distance, or less where the caller asks for more. */
+#define HDI_MODES_TOL 1e-7
+/* The tolerance of the residuals of eigenpairs, far below what the bound allows for at t lambda = 700. */
+#define HDI_MODES_RESIDUAL 1e-12
+/* Eigenpairs are tried before poles when so many are expected to do, and after them up to the second number.
+ * On meshes of 642 to 41K vertices the bound by poles goes above 1e-6 where 13 to 80 are expected. 20 take
+ * one to two times as long as poles do, once, and the second number about ten times. */
+#define HDI_MODES_FIRST 20
+#define HDI_MODES_MOST 180
+#define HDI_MODES_REASON "at such a t few eigenpairs are left: distances are sums over them"
+/* From this t low on distances are among the smallest doubles. */
+#define HDI_MODES_FADED 650
+
+/* The sum over the pairs between one vertex and all others at one time. */
+typedef struct hdi_mode_sum {
+    const hdi_modes *of;
+    const hd_laplacian *lap;
+    int weighted;
+    const double *x;             /* [n count] of vectors, or of B times them */
+    int32_t first;               /* of the pairs that are not constants */
+    double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds of the errors per |c_i| */
+    double scale, depth;         /* exp(-t low), t low */
+    double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
+    double rounding;             /* factor of |y| */
+    int32_t source;
+    double *d;                   /* [n] */
+    double *part;                /* [2 n] the errors by residuals, then by what is left out, without scale */
+} hdi_mode_sum;
+
+/* The square of |y| at one vertex, all of it and what the pairs leave. */
+static double hdi_modes_whole(const hdi_mode_sum *a, int32_t v) {
+    const int32_t r = a->lap->row[v];
+    return r < 0 ? 0 : a->weighted ? a->lap->b_diag[r] : hdi_inverse_mass(a->lap, r);
+}
+
+static double hdi_modes_left(const hdi_mode_sum *a, int32_t v) {
+    return (a->weighted ? a->of->s.left_mass[v] : a->of->s.left[v]) + a->of->off_gram * hdi_modes_whole(a, v);
+}
+
+/* The part of d that does not decay: that of the constants. */
+static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
+    const hd_laplacian *lap = a->lap;
+    const int32_t i = lap->row[a->source], j = lap->row[v], n = lap->n;
+    const int32_t ci = i < 0 ? -1 : lap->component[i], cj = j < 0 ? -1 : lap->component[j];
+    const double *one = a->of->one;
+    double bi = 0, bj = 0;
+    if (a->first == 0) return 0;
+    if (ci == cj) {
+        if (!a->weighted || ci < 0) return 0;
+        bi = one[a->source] - one[v] + (one[n + a->source] - one[n + v]);
+        return fabs(bi) / sqrt(lap->component_mass[ci]);
+    }
+    if (ci >= 0) bi = (a->weighted ? one[a->source] : 1) / sqrt(lap->component_mass[ci]);
+    if (cj >= 0) bj = (a->weighted ? one[v] : 1) / sqrt(lap->component_mass[cj]);
+    return hdi_pythag(bi, bj);
+}
+
+static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_mode_sum *a = HDI_CAST(const hdi_mode_sum *, arg);
+    const double *by = a->of->by;
+    const int64_t n = a->lap->n;
+    const int plain = !a->weighted || a->of->bx != NULL;
+    double *HDI_RESTRICT sum = a->d, *HDI_RESTRICT off = a->part, *HDI_RESTRICT out = a->part + n;
+    const double far_left = sqrt(hdi_modes_left(a, a->source));
+    int64_t v;
+    int32_t q;
+    for (v = begin; v < end; v++) sum[v] = off[v] = 0;
+    for (q = a->first; q < a->of->s.count; q++) {
+        const double *x = a->x + q * n, w = a->weight[q], c = a->off[q];
+        const double from = x[a->source] * (plain ? 1 : by[a->source]);
+        for (v = begin; v < end; v++) {
+            const double z = (plain ? x[v] : by[v] * x[v]) - from;
+            sum[v] += w * z * (w * z);
+            off[v] += c * fabs(z);
+        }
+    }
+    for (v = begin; v < end; v++) {
+        const int32_t at = HDI_CAST(int32_t, v);
+        const double left = far_left + sqrt(hdi_modes_left(a, at));
+        out[v] = a->cut * left;
+        off[v] += a->mixed * left;
+        sum[v] = hdi_pythag(hdi_modes_constant(a, at), sqrt(sum[v]) * a->scale);
+    }
+}
+
+/* The largest error that rounding makes of a distance d: of sums, of exp(-t low) whose argument is rounded,
+ * and of numbers below the normal ones. */
+static double hdi_modes_rounding(const hdi_mode_sum *a, int32_t v, double d) {
+    const double all = sqrt(hdi_modes_whole(a, a->source)) + sqrt(hdi_modes_whole(a, v));
+    return a->scale * a->rounding * all + 8 * (1 + hdi_min(a->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d +
+           4 * DBL_MIN * DBL_EPSILON;
+}
+
+/* Notes the distance to v and its bound. */
+static void hdi_mode_sum_note(const hdi_mode_sum *a, int32_t v, hdi_ledger *ledger, hd_report *rep) {
+    hdi_parts part;
+    part.rational = a->scale * a->part[a->lap->n + v];
+    part.solver = a->scale * a->part[v];
+    part.rounding = hdi_modes_rounding(a, v, a->d[v]);
+    rep->n_lost += a->d[v] < 10 * hdi_parts_sum(&part);
+    hdi_ledger_note(ledger, a->d[v], part);
+}
+
+/* d from the source to all vertices; the account goes to the ledger. */
+static void hdi_mode_sum_run(hdi_mode_sum *a, int32_t source, double *d, hdi_ledger *ledger, hd_report *rep,
+                             hd_context *ctx) {
+    const int32_t n = a->lap->n;
+    int32_t v;
+    a->source = source;
+    a->d = d;
+    hdi_parallel_ranges(ctx, n, 1024, hdi_mode_sum_task, a);
+    d[source] = 0;
+    for (v = 0; v < n; v++)
+        if (v != source) hdi_mode_sum_note(a, v, ledger, rep);
+}
+
+/* The sum at time t. work [2 count + 2 n] */
+static hdi_mode_sum hdi_mode_sum_at(const hd_heat *heat, hd_distance_kind kind, double t, double *work) {
+    const hdi_modes *of = &heat->modes;
+    const hd_spectrum *s = &of->s;
+    const double next = s->next < HUGE_VAL ? s->next - of->off_norm : HUGE_VAL;
+    const double gap = hdi_max(0, next - of->low);
+    hdi_mode_sum a;
+    int32_t q;
+    memset(&a, 0, sizeof a);
+    a.of = of;
+    a.lap = heat->source;
+    a.weighted = kind == HD_DISTANCE_WEIGHTED;
+    a.x = a.weighted && of->bx ? of->bx : s->vector;
+    a.weight = work;
+    a.off = work + s->count;
+    a.part = work + 2 * HDI_CAST(int64_t, s->count);
+    a.first = s->n_constant;
+    a.depth = t * of->low;
+    a.scale = exp(-a.depth);
+    for (q = a.first; q < s->count; q++) {
+        const double over = hdi_max(0, s->value[q] - of->low);
+        a.weight[q] = exp(-t * over);
+        a.off[q] = of->off[q] * hdi_min(t, over > 0 ? 1 / over : t);
+    }
+    a.cut = next < HUGE_VAL ? exp(-t * gap) : 0;
+    a.mixed = of->off_norm * (next < HUGE_VAL ? hdi_min(t, gap > 0 ? 1 / gap : t) : 0);
+    a.rounding = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
+    return a;
+}
+
+/* The norm of the rounding of B^-1 L x - lambda x, L's rows that sum to zero included. */
+static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double value) {
+    double sum = 0;
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON;
+        double row = lap->B ? 0 : value * lap->mass[i] * fabs(x[lap->vertex[i]]);
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            row += (fabs(lap->L.val[p]) + (lap->B ? value * fabs(lap->B[p]) : 0)) *
+                fabs(x[lap->vertex[lap->L.col[p]]]);
+        row *= c;
+        sum += row * (row / lap->b_diag[i]);
+    }
+    return hdi_ratio_root(lap) * sqrt(sum);
+}
+
+/* The largest |X' B X - 1|, in the norm of Frobenius. bx [n] */
+static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, double *bx) {
+    double sum = 0;
+    int32_t i, j, q;
+    for (j = 0; j < s->count; j++) {
+        const double *xj = s->vector + HDI_CAST(int64_t, j) * s->n;
+        memset(bx, 0, HDI_CAST(size_t, s->n) * sizeof *bx);
+        for (q = 0; q < lap->n_active; q++) bx[lap->vertex[q]] = hdi_spec_mass_row(lap, xj, q);
+        for (i = 0; i <= j; i++) {
+            const double g = hdi_dot(s->vector + HDI_CAST(int64_t, i) * s->n, bx, s->n) - (i == j);
+            sum += (i == j ? 1 : 2) * g * g;
+        }
+    }
+    return sqrt(sum);
+}
+
+/* B 1 by vertices in two doubles each (Neumaier 1974). */
+static void hdi_modes_one(const hd_laplacian *lap, double *one) {
+    int32_t i;
+    int64_t p;
+    memset(one, 0, 2 * HDI_CAST(size_t, lap->n) * sizeof *one);
+    for (i = 0; i < lap->n_active; i++) {
+        double sum = 0, rest = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) {
+            const double v = lap->B[p], t = sum + v;
+            rest += fabs(sum) >= fabs(v) ? sum - t + v : v - t + sum;
+            sum = t;
+        }
+        one[lap->vertex[i]] = lap->B ? sum + rest : lap->mass[i];
+        if (lap->B) one[lap->n + lap->vertex[i]] = sum - one[lap->vertex[i]] + rest;
+    }
+}
+
+/* What bounds need of eigenpairs that are there. */
+static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
+    hdi_modes *x = &heat->modes;
+    const hd_spectrum *s = &x->s;
+    const hd_laplacian *lap = heat->source;
+    const uint64_t n = HDI_CAST(uint64_t, s->n);
+    const int32_t first = s->n_constant;
+    int32_t q, i;
+    x->off = HDI_NEW(heat->ctx, double, s->count + 1, e);
+    if (x->off) x->one = HDI_NEW(heat->ctx, double, 3 * n, e);
+    if (e->status < 0) return e->status;
+    x->by = x->one + 2 * n;
+    x->off_gram = hdi_modes_gram(lap, s, x->one);
+    for (q = 0, x->off_norm = 0; q < s->count; q++) {
+        const double value = s->value[q], unit = first < s->count ? s->value[first] : 0;
+        x->off[q] = hdi_ratio_root(lap) * s->residual[q] * hdi_max(value, unit);
+        x->off[q] += hdi_modes_noise(lap, s->vector + HDI_CAST(int64_t, q) * s->n, fabs(value));
+        x->off[q] += x->off_gram * fabs(s->value[s->count - 1]);
+        if (q >= first) x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
+    }
+    x->low = first < s->count ? s->value[first] : s->next < HUGE_VAL ? s->next : 0;
+    x->low = hdi_max(0, x->low - x->off_norm);
+    hdi_modes_one(lap, x->one);
+    memset(x->by, 0, HDI_CAST(size_t, lap->n) * sizeof *x->by);
+    for (i = 0; i < lap->n_active; i++) x->by[lap->vertex[i]] = lap->mass[i];
+    return HD_OK;
+}
+
+/* B times the vectors. */
+static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
+    hdi_modes *x = &heat->modes;
+    const hd_laplacian *lap = heat->source;
+    const int64_t size = HDI_CAST(int64_t, x->s.n) * x->s.count;
+    int64_t at;
+    int32_t i;
+    if (x->bx || !lap->B) return HD_OK;
+    x->bx = HDI_NEW(heat->ctx, double, size, e);
+    if (!x->bx) return e->status;
+    memset(x->bx, 0, HDI_CAST(size_t, size) * sizeof *x->bx);
+    for (at = 0; at < size; at += x->s.n)
+        for (i = 0; i < lap->n_active; i++)
+            x->bx[at + lap->vertex[i]] = hdi_spec_mass_row(lap, x->s.vector + at, i);
+    return HD_OK;
+}
+
+/* How far eigenvalues have to reach above the lowest one, times t: exp of it is |y| over the part that may be
+ * left out. The largest distance is at least about 1/sqrt(mass) times exp(-t low). */
+static double hdi_modes_depth(const hd_heat *heat) {
+    const hd_laplacian *lap = heat->source;
+    const double tol = heat->exacting ? hdi_min(HDI_MODES_TOL, 0.1 * heat->opts.tol) : HDI_MODES_TOL;
+    double mass = 0, inverse = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_components; i++) mass = hdi_max(mass, lap->component_mass[i]);
+    for (i = 0; i < lap->n_active; i++) inverse = hdi_max(inverse, hdi_inverse_mass(lap, i));
+    return log(2 * sqrt(inverse) * sqrt(mass) / tol);
+}
+
+/* How many eigenvalues above the constants are expected below the lowest of them plus `above`: by those that
+ * are there, or by Weyl's law N(lambda) = area lambda/(4 pi). On regular meshes half the sum of B_ii/L_ii is
+ * 0.072 area with the masses of finite elements and 0.144 area with diagonal ones, which is 0.9 and 1.8 times
+ * area/(4 pi); it needs no lengths, and slivers do not spoil it. */
+static double hdi_modes_expected(const hd_heat *heat, double above) {
+    const hd_laplacian *lap = heat->source;
+    const hd_spectrum *s = &heat->modes.s;
+    double sum = 0;
+    int32_t i;
+    if (s->value) {
+        const double reach = s->next - heat->modes.low, there = s->count - s->n_constant + 1;
+        return reach >= above ? 0 : 1.1 * there * (above / hdi_max(reach, 1e-6 * above));
+    }
+    for (i = 0; i < lap->n_active; i++)
+        sum += hdi_quotient(lap->b_diag[i], hdi_max(0, hdi_row_diagonal(lap, i)));
+    return 0.5 * sum * above;
+}
+
+/* May eigenpairs serve distances of this kind? */
+static int hdi_modes_apply(const hd_heat *heat, hd_distance_kind kind) {
+    return kind <= HD_DISTANCE_WEIGHTED && !heat->poles_asked && !heat->modes.barred &&
+           !heat->iterations_asked && heat->opts.method != HD_METHOD_ITERATIVE &&
+           heat->opts.method != HD_METHOD_KRYLOV && heat->source->b_ratio > 0 &&
+           heat->source->n_components <= HDI_MODES_FIRST;
+}
+
+/* Pairs that are asked for where `more` are expected above the constants. */
+static int32_t hdi_modes_count(const hd_heat *heat, double more) {
+    const hd_laplacian *lap = heat->source;
+    const double constants = lap->conserves ? lap->n_components : 0;
+    return HDI_CAST(int32_t, hdi_min(lap->n_active, ceil(1.25 * more) + 6 + constants));
+}
+
+/* Bytes that finding so many pairs takes; a guess before the analysis. */
+static double hdi_modes_need(const hd_heat *heat, int32_t count) {
+    const double n = heat->source->n_active, wide = HDI_SPEC_WIDE;
+    const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(heat->source->n_active);
+    const double most = hdi_min(n, hdi_min(HDI_SPEC_MOST, 2.0 * count + HDI_SPEC_SPARE));
+    const double h = (HDI_SPEC_MOST + wide) * wide * HDI_SPEC_GROUP * (HDI_SPEC_CHUNKS + 1);
+    double doubles = tiles * (most + wide) + 3 * n + 3.0 * HDI_SPEC_MOST * HDI_SPEC_MOST + h;
+    doubles += 3 * wide * n + 2 * wide * HDI_SPEC_GROUP * n + 2 * tiles * (count + HDI_SPEC_GAPS) +
+               2.0 * heat->source->n;
+    if (!heat->elim.ctx) return 8 * doubles + 8 * hdi_heat_fill(heat).real_stored;
+    return 8 * (doubles + HDI_CAST(double, hdi_sweep_size(&heat->elim.sym, 1, HDI_SPEC_WIDE))) +
+           HDI_CAST(double, hdi_factor_bytes(&heat->elim.sym, 1));
+}
+
+/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven
+ * complete: then poles go on. Only out of memory by the system, and cancelling, are errors. */
+static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
+    hdi_modes *x = &heat->modes;
+    const hd_laplacian *lap = heat->source;
+    hdi_spec_goal goal;
+    hdi_modes_free(x, heat->ctx);
+    if (hdi_heat_analysed(heat, e) < 0) return 0;
+    if (heat->ctx->byte_limit && hdi_modes_need(heat, count) > HDI_CAST(double, heat->ctx->byte_limit) -
+                                                               HDI_CAST(double, heat->ctx->bytes_in_use))
+        return 0;
+    goal.below = HUGE_VAL;
+    goal.count = count;
+    x->s.lap = lap;
+    x->s.context = heat->ctx;
+    if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
+        x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0)
+        return 1;
+    hdi_modes_free(x, heat->ctx);
+    x->barred = e->status != HD_ERR_MEMORY_LIMIT;
+    if (e->status != HD_ERR_MEMORY && e->status != HD_ERR_CANCELLED) hdi_error_clear(e);
+    return 0;
+}
+
+/* Are no more than `most` eigenpairs expected to do at time t? */
+static int hdi_modes_near(const hd_heat *heat, hd_distance_kind kind, double t, int32_t most) {
+    return HDI_HAS_DIFFUSION && hdi_modes_apply(heat, kind) &&
+           hdi_modes_expected(heat, hdi_modes_depth(heat) / t) <= most;
+}
+
+/* Are eigenpairs tried before poles at time t? */
+static int hdi_modes_first(const hd_heat *heat, hd_distance_kind kind, double t) {
+    return hdi_modes_near(heat, kind, t, HDI_MODES_FIRST);
+}
+
+/* Are there eigenpairs enough for time t, if need be after finding them? At most `most` are looked for. */
+static int hdi_modes_reach(hd_heat *heat, hd_distance_kind kind, double t, int32_t most, hd_error *e) {
+    const double above = hdi_modes_depth(heat) / t;
+    int32_t tries;
+    if (!HDI_HAS_DIFFUSION || !hdi_modes_apply(heat, kind)) return 0;
+    for (tries = 0; tries < 4; tries++) {
+        const hdi_modes *x = &heat->modes;
+        const double more = hdi_modes_expected(heat, above);
+        if (x->s.value && x->s.next - x->low >= above)
+            return kind == HD_DISTANCE_CLASSICAL || hdi_modes_mass(heat, e) >= 0;
+        if (more > most || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
+    }
+    return 0;
+}
+
+/* Is a bound of distances by eigenpairs as it should be, or so near zero that nothing else is better? */
+static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
+    return rep->error_bound <= HDI_DISTANCE_MOST || t * heat->modes.low > HDI_MODES_FADED;
+}
+
+/* What the report says of distances from eigenpairs. */
+static void hdi_modes_tell(const hd_heat *heat, hd_report *rep) {
+    rep->method = HD_METHOD_DIRECT;
+    rep->reason = HDI_MODES_REASON;
+    rep->ordering = heat->elim.sym.ordering;
+    rep->factor_nnz = heat->elim.sym.nnz;
+    rep->factor_flops = heat->modes.s.factor_flops;
+}
+
+static hdi_ledger hdi_modes_ledger(void) {
+    return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 1);
+}
+
+/* Distances of all sources at time t from the eigenpairs that are there. */
+static hd_status hdi_modes_distance(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
+                                    hd_error *e) {
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    const uint64_t n = HDI_CAST(uint64_t, heat->source->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    double *work = HDI_TAKE(&s, double, 2 * (n + count) + 1);
+    hdi_mode_sum sum;
+    int32_t r;
+    memset(rep, 0, sizeof *rep);
+    hdi_modes_tell(heat, rep);
+    if (work) sum = hdi_mode_sum_at(heat, to->kind, t, work);
+    for (r = 0; r < to->k && work; r++) {
+        hdi_ledger ledger = hdi_modes_ledger();
+        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / to->k, e) < 0) break;
+        hdi_mode_sum_run(&sum, to->sources[r], to->D + HDI_CAST(size_t, r) * to->ld, &ledger, rep, heat->ctx);
+        hdi_ledger_close(&ledger, rep);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Distances at one time by poles. Where much cancels, or is sure to, the highest degree takes over if there
+ * is room for its factors. */
+static hd_status hdi_distance_poles(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
+                                   hd_error *e) {
+    const int settled = hdi_metric_settled(heat, to->kind);
+    const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
+    const int sure = !settled && to->kind == HD_DISTANCE_CLASSICAL && expected > HDI_DISTANCE_SURE;
+    int32_t degree = HDI_RAT_KERNEL_MAX;
+    if (!sure && hdi_distance_once(heat, to, t, 0, rep, e) < 0) return e->status;
+    if (settled || (!sure && rep->error_rational <= HDI_DISTANCE_SURE)) return e->status;
+    do (void)hdi_distance_once(heat, to, t, degree, rep, e);
+    while (hdi_degree_retreat(&degree, e));
+    return e->status;
+}
+
+/* Frees the factors of poles, which are of no more use. */
+static void hdi_packs_drop(hd_heat *heat) {
+    hdi_elim *m = &heat->elim;
+    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
+    m->filled = 0;
+}
+
+/* Distances at one time, which poles have made: by eigenpairs after all, if the bound is not as it should be
+ * and these have a lower one. */
+static hd_status hdi_distance_help(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
+                                   hd_error *e) {
+    const double bound = rep->error_bound;
+    if (bound <= HDI_DISTANCE_MOST || !hdi_modes_near(heat, to->kind, t, HDI_MODES_MOST)) return e->status;
+    hdi_packs_drop(heat);
+    if (!hdi_modes_reach(heat, to->kind, t, HDI_MODES_MOST, e)) return e->status;
+    if (hdi_modes_distance(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
+    return hdi_distance_poles(heat, to, t, rep, e);
+}
+
+/* Distances at one time: from eigenpairs where few are left, else by poles. Where the bound is not as it
+ * should be the other way is tried too, and the one with the lower bound taken. */
+static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
+                                   hd_error *e) {
+    double bound;
+    if (!hdi_modes_first(heat, to->kind, t) || !hdi_modes_reach(heat, to->kind, t, HDI_MODES_FIRST, e)) {
+        if (e->status < 0 || hdi_distance_poles(heat, to, t, rep, e) < 0) return e->status;
+        return hdi_distance_help(heat, to, t, rep, e);
+    }
+    if (hdi_modes_distance(heat, to, t, rep, e) < 0 || hdi_modes_good(heat, t, rep)) return e->status;
+    bound = rep->error_bound;
+    if (hdi_distance_poles(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
+    return hdi_modes_distance(heat, to, t, rep, e);
+}
+
+/* Adds the report of one time to that of the call. */
+static void hdi_distance_note(hdi_heat_call *h, const hd_report *one, int *begun) {
+    if (*begun) hdi_report_merge(h->rep, one);
+    else *h->rep = *one;
+    *begun = 1;
+}
+
+/* The late times of a call from eigenpairs, the last one first; h->times is sorted. done [n_times]: of these
+ * 1. Returns how many of the earlier ones are left. */
+static int32_t hdi_distance_late(hdi_heat_call *h, const hdi_distances *to, char *done, int *begun) {
+    int32_t q = h->n_times;
+    memset(done, 0, HDI_CAST(size_t, h->n_times));
+    for (; q > 0 && h->e->status >= 0; q--) {
+        const int32_t column = h->time_column[q - 1];
+        const double t = h->ask.t[column];
+        hdi_distances one = *to;
+        hd_report rep;
+        if (!hdi_modes_first(h->heat, to->kind, t) ||
+            !hdi_modes_reach(h->heat, to->kind, t, HDI_MODES_FIRST, h->e))
+            break;
+        one.ld = to->ld * HDI_CAST(size_t, h->n_times);
+        one.D = to->D + HDI_CAST(size_t, column) * to->ld;
+        if (hdi_modes_distance(h->heat, &one, t, &rep, h->e) < 0 || !hdi_modes_good(h->heat, t, &rep)) break;
+        hdi_distance_note(h, &rep, begun);
+        done[column] = 1;
+    }
+    return q;
+}
+
 /* ---- distances at many times ---- */
 
 /* Distances of the first two kinds at times that share their poles. Rows are in elimination order. */
@@ -23714,6 +24222,7 @@ typedef struct hdi_distance_shared {
     double *rounding;            /* [n_times] of the diagonals, relative */
     char *active;                /* [n_super] */
     double pole_off[HD_MAX_POLES];   /* residuals as seen, in the norm of D^-1, of the column */
+    hd_report *one;              /* [n_times] */
     hdi_metric metric;
 } hdi_distance_shared;
 
@@ -23736,6 +24245,7 @@ static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call 
     z->product = z->full ? HDI_TAKE(s, double, 2 * n) : NULL;
     z->g = HDI_TAKE(s, double, h->heat->source->n);
     z->rounding = HDI_TAKE_ZERO(s, double, n_times);
+    z->one = HDI_TAKE_ZERO(s, hd_report, n_times);
     z->active = HDI_TAKE(s, char, HDI_CAST(int64_t, z->m->sym.n_super) + 1);
     z->metric.kind = kind;
     z->metric.diag = HDI_TAKE(s, double, 3 * n + 1);
@@ -23872,8 +24382,23 @@ static void hdi_distance_shared_judge(hdi_distance_shared *z, int32_t q, int32_t
     of.off_m = hdi_distance_shared_off(z, q) * (sqrt(z->unit) * bs);
     of.off_b = HUGE_VAL;
     ledger = hdi_metric_ledger(&z->metric);
-    hdi_metric_distance(lap, &z->metric, source, &of, z->g, z->h->rep, &ledger);
-    hdi_ledger_close(&ledger, z->h->rep);
+    hdi_metric_distance(lap, &z->metric, source, &of, z->g, z->one + q, &ledger);
+    hdi_ledger_close(&ledger, z->one + q);
+}
+
+/* The times of a window into the report of the call, those that eigenpairs do better by these. */
+static void hdi_distance_shared_end(hdi_distance_shared *z, const hdi_distances *to) {
+    hdi_heat_call *h = z->h;
+    int32_t q;
+    for (q = 0; q < z->w.n_times && h->e->status >= 0; q++) {
+        hd_report *one = z->one + q;
+        hdi_distances at = *to;
+        at.ld = to->ld * HDI_CAST(size_t, h->n_times);
+        at.D = to->D + HDI_CAST(size_t, z->time_column[q]) * to->ld;
+        if (hdi_distance_help(h->heat, &at, h->ask.t[z->time_column[q]], one, h->e) < 0) break;
+        hdi_report_merge(one, h->rep);           /* the method stays that of the window */
+        *h->rep = *one;
+    }
 }
 
 /* Distances of the first two kinds at times q0 to q1 - 1 of the call by one set of poles. */
@@ -23902,20 +24427,21 @@ static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, 
         probe.row[0] = hdi_high32(row[to->sources[0]], 0);
         (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, z.w.set);
     }
+    hdi_distance_shared_end(&z, to);
     return hdi_scope_end(&s);
 }
 
-/* All times with shared poles, where that is cheaper than one by one. Returns 0 where it is not, or not
- * possible. */
-static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to) {
+/* The first n_times of the sorted times with shared poles, where that is cheaper than one by one. Returns 0
+ * where it is not, or not possible. */
+static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32_t n_times) {
     hd_heat *heat = h->heat;
-    const int32_t n_times = h->ask.n_times;
     int32_t packs = 0, windows, w, q0, q1;
-    if (n_times < 2 || heat->poles_asked || heat->exacting) return 0;
-    if (hdi_heat_sort_times(h, 2) < 0 || hdi_heat_analysed(heat, h->e) < 0) return 0;
+    if (n_times < 2 || heat->poles_asked || heat->exacting || hdi_heat_analysed(heat, h->e) < 0) return 0;
     windows =
         hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
-    if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return 0;
+    if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->times[n_times - 1], h->e) ||
+        h->e->status < 0)
+        return 0;
     hdi_inverse_tell(h);
     for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
         q1 = hdi_window_end(h->times, n_times, q0, w, windows);
@@ -23924,43 +24450,38 @@ static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to) {
     return 1;
 }
 
-/* Distances at one time. Where much cancels, or is sure to, the highest degree takes over if there is room
- * for its factors. */
-static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
-                                   hd_error *e) {
-    const int settled = hdi_metric_settled(heat, to->kind);
-    const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
-    const int sure = !settled && to->kind == HD_DISTANCE_CLASSICAL && expected > HDI_DISTANCE_SURE;
-    int32_t degree = HDI_RAT_KERNEL_MAX;
-    if (!sure && hdi_distance_once(heat, to, t, 0, rep, e) < 0) return e->status;
-    if (settled || (!sure && rep->error_rational <= HDI_DISTANCE_SURE)) return e->status;
-    do (void)hdi_distance_once(heat, to, t, degree, rep, e);
-    while (hdi_degree_retreat(&degree, e));
-    return e->status;
-}
-
 /* Distances from one to all: all times and sources of a call. */
 static hd_status hdi_distance_run(hdi_heat_call *h, hd_distance_kind kind, int32_t k, const int32_t *sources,
                                   double *D, size_t ldd) {
     const int timeless = kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times;
+    char *done = HDI_TAKE_ZERO(&h->s, char, n_times);
     hdi_distances to;
     hd_report one;
     int32_t q;
+    int begun = 0;
     to.kind = kind;
     to.k = k;
     to.sources = sources;
     to.D = D;
     to.ld = ldd;
-    if (!timeless && hdi_distance_windows(h, &to) && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
-    if (h->e->status == HD_ERR_MEMORY_LIMIT && n_times > 1) hdi_heat_forget(h);   /* one by one takes less */
+    if (done && n_times > 1 && hdi_heat_sort_times(h, 2) >= 0) {
+        const int32_t early = hdi_distance_late(h, &to, done, &begun);
+        if (early == 0 || h->e->status < 0) return h->e->status;
+        if (hdi_distance_windows(h, &to, early) && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
+        if (h->e->status == HD_ERR_MEMORY_LIMIT) {   /* one by one takes less */
+            hdi_heat_forget(h);
+            memset(done, 0, HDI_CAST(size_t, n_times));
+            begun = 0;
+        }
+    }
     to.ld = ldd * HDI_CAST(size_t, n_times);
     for (q = 0; q < n_times && h->e->status >= 0; q++) {
+        if (done[q]) continue;
         to.D = D + HDI_CAST(size_t, q) * ldd;
         (void)hdi_distance_time(h->heat, &to, timeless ? 0 : h->ask.t[q], &one, h->e);
         if (h->e->status < 0) h->e->column = q;
-        else if (q == 0) *h->rep = one;
-        else hdi_report_merge(h->rep, &one);
+        else hdi_distance_note(h, &one, &begun);
     }
     return h->e->status;
 }
@@ -23973,6 +24494,8 @@ typedef struct hdi_pairs {
     int64_t n;
     const int32_t *i, *j;
     double *K, *d;
+    hd_report *of_k;             /* of the entries alone; with d, may be NULL */
+    double *bound;               /* of the distances alone; may be NULL */
 } hdi_pairs;
 
 /* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. order, list, place
@@ -24082,7 +24605,7 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
         hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0);
     hdi_ledger of_d = of_k;
     hdi_parts part;
-    int64_t q;
+    int64_t q, n_lost = 0;
     memset(&part, 0, sizeof part);
     of_d.relative = 0;
     for (q = 0; q < x->n; q++) {
@@ -24101,7 +24624,7 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
         if (x->i[q] == x->j[q]) continue;
         x->d[q] = hdi_vertex_norm(lap, ui, uj, c->work, heat->scale);
         part.rounding = (bound_b + 4 * DBL_EPSILON) * (size_i + size_j);
-        rep->n_lost += x->d[q] < 10 * part.rounding;
+        n_lost += x->d[q] < 10 * part.rounding;
         hdi_ledger_note(&of_d, x->d[q], part);
     }
     rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = 0;
@@ -24112,6 +24635,9 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
     hdi_parts_share(&of_d.off, &share);
     hdi_ledger_close(&of_k, rep);
     rep->smallest = 0;                           /* of the distances */
+    if (x->of_k) *x->of_k = *rep;
+    rep->n_lost = n_lost;
+    if (x->bound) *x->bound = hdi_quotient(hdi_parts_sum(&of_d.off), of_d.largest);
     hdi_ledger_close(&of_d, rep);
 }
 
@@ -24173,15 +24699,43 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, const hdi_pairs *x, double 
         rep->error = one.error;
         return rep->status = one.error.status;
     }
+    if (x->of_k) *x->of_k = *rep;
+    if (x->bound) *x->bound = one.error_bound;
     hdi_report_merge(rep, &one);
     return rep->status;
+}
+
+/* Distances of the pairs at time t from the eigenpairs that are there. */
+static hd_status hdi_modes_pairs(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
+    hd_error *e = &rep->error;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    const uint64_t n = HDI_CAST(uint64_t, heat->source->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    double *work = HDI_TAKE(&s, double, 3 * n + 2 * count + 1);
+    hdi_ledger ledger = hdi_modes_ledger();
+    hdi_mode_sum sum;
+    int64_t q;
+    if (!work) return hdi_scope_end(&s);
+    hdi_modes_tell(heat, rep);
+    sum = hdi_mode_sum_at(heat, x->kind, t, work + n);
+    sum.d = work;
+    for (q = 0; q < x->n; q++) {
+        x->d[q] = 0;
+        if (x->i[q] == x->j[q]) continue;
+        sum.source = x->i[q];
+        hdi_mode_sum_task(&sum, x->j[q], HDI_CAST(int64_t, x->j[q]) + 1);
+        x->d[q] = work[x->j[q]];
+        hdi_mode_sum_note(&sum, x->j[q], &ledger, rep);
+    }
+    hdi_ledger_close(&ledger, rep);
+    return hdi_scope_end(&s);
 }
 
 /* Most doubles of columns that are held at the same time: half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Pairs at time t; rep gets the report. */
-static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
+/* Pairs at time t, from columns by poles of a degree (0: by default); rep gets the report. */
+static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, int32_t degree,
+                                   hd_report *rep) {
     const uint64_t n = HDI_CAST(uint64_t, heat->source->n), twice = 2 * HDI_CAST(uint64_t, x->n);
     const hd_kernel kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     hd_error e;
@@ -24205,9 +24759,85 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *x, double t, hd_
         h.ask.sources = list;
         h.ask.U = c.U;
         h.ask.ldu = HDI_CAST(size_t, n);
+        h.degree = degree;
     }
     if (hdi_heat_run(&h) >= 0) hdi_pairs_of_columns(heat, x, &c, rep);
     hdi_scope_end(&s);
+    return rep->status;
+}
+
+/* The distances of pairs at time t from eigenpairs, of which at most `most` are looked for. Returns 0, with
+ * nothing written, where there are none, or where the bound is neither as it should be nor below `bound`; rep
+ * is then set for errors only. */
+static int hdi_pairs_by_modes(hd_heat *heat, const hdi_pairs *x, double t, int32_t most, double bound,
+                              hd_report *rep) {
+    hd_report one;
+    hdi_pairs y = *x;
+    hdi_scope s = hdi_scope_begin(heat->ctx, &one.error);
+    int taken = 0;
+    memset(&one, 0, sizeof one);
+    hdi_error_clear(&one.error);
+    y.d = NULL;
+    if (hdi_modes_reach(heat, x->kind, t, most, &one.error)) y.d = HDI_TAKE(&s, double, x->n);
+    if (y.d && hdi_modes_pairs(heat, &y, t, &one) >= 0)
+        taken = one.error_bound < bound || hdi_modes_good(heat, t, &one);
+    if (taken) memcpy(x->d, y.d, HDI_CAST(size_t, x->n) * sizeof *y.d);
+    if (one.error.status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(&one.error);
+    if (one.error.status < 0) one.status = one.error.status;
+    if (taken || one.status < 0) *rep = one;
+    hdi_scope_end(&s);
+    return taken;
+}
+
+/* Pairs at time t from columns. Distances take the highest degree where the direct method's bound is not as
+ * it should be; entries stay as they are without distances. */
+static hd_status hdi_pairs_poles(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
+    hdi_pairs y = *x;
+    int32_t degree = HDI_RAT_KERNEL_MAX;
+    if (hdi_pairs_columns(heat, x, t, 0, rep) < 0 || !x->d || hdi_metric_settled(heat, x->kind) ||
+        *x->bound <= HDI_DISTANCE_MOST || rep->method != HD_METHOD_DIRECT)
+        return rep->status;
+    y.K = NULL;
+    y.of_k = NULL;
+    do (void)hdi_pairs_columns(heat, &y, t, degree, rep);
+    while (hdi_degree_retreat(&degree, &rep->error));
+    if (rep->status >= 0 && x->K) {
+        hd_report all = *x->of_k;
+        hdi_report_merge(&all, rep);
+        *rep = all;
+    }
+    return rep->status;
+}
+
+/* Pairs at time t: entries from columns, and distances too, or as hdi_distance_time takes them. */
+static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t, hd_report *rep) {
+    hdi_pairs x = *pairs;
+    hd_report of_k, all;
+    double bound = 0;
+    memset(&of_k, 0, sizeof of_k);
+    memset(rep, 0, sizeof *rep);
+    hdi_error_clear(&rep->error);
+    if (x.d && hdi_modes_first(heat, x.kind, t)) {
+        const int taken = hdi_pairs_by_modes(heat, &x, t, HDI_MODES_FIRST, 0, rep);
+        x.d = NULL;
+        if (rep->status < 0 || (taken && !x.K)) return rep->status;
+        if (taken) {
+            if (hdi_pairs_columns(heat, &x, t, 0, &of_k) >= 0) hdi_report_merge(rep, &of_k);
+            else *rep = of_k;
+            return rep->status;
+        }
+        x.d = pairs->d;
+    }
+    x.of_k = &of_k;
+    x.bound = &bound;
+    if (hdi_pairs_poles(heat, &x, t, rep) < 0 || !x.d || bound <= HDI_DISTANCE_MOST ||
+        !hdi_modes_near(heat, x.kind, t, HDI_MODES_MOST))
+        return rep->status;
+    hdi_packs_drop(heat);
+    if (!hdi_pairs_by_modes(heat, &x, t, HDI_MODES_MOST, bound, rep) || !x.K) return rep->status;
+    all = of_k;
+    hdi_report_merge(&all, rep);
+    *rep = all;
     return rep->status;
 }
 
@@ -24219,6 +24849,7 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t 
     hdi_pairs x;
     hd_report one;
     int32_t q;
+    memset(&x, 0, sizeof x);
     x.kind = kind;
     x.n = n_pairs;
     x.i = i;
@@ -24247,37 +24878,118 @@ static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
     return best;
 }
 
-/* Farthest points, each the one that is farthest from those before it. This function is based on
- *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
-static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double t, int32_t count,
-                                int32_t n_given, int32_t *vertex, double *distance) {
-    hd_heat *heat = h->heat;
-    const hd_laplacian *lap = heat->source;
-    double *nearest = HDI_TAKE(&h->s, double, lap->n), *u = HDI_TAKE(&h->s, double, lap->n);
-    hdi_metric x;
+/* Farthest points under way, and where distances to the last one come from: a metric, or else eigenpairs. */
+typedef struct hdi_samples {
+    hd_distance_kind kind;
+    double t;
+    int32_t count, n_given, *vertex;
+    double *distance, *nearest, *u;
+    const hdi_metric *x;
+    hdi_mode_sum *sum;
+} hdi_samples;
+
+/* Distances from a vertex into u. */
+static hd_status hdi_sample_distances(hd_heat *heat, const hdi_samples *a, const int32_t *vertex,
+                                      hd_report *rep, hd_error *e) {
+    const hdi_distances to = hdi_distances_one(heat, a->kind, vertex, a->u);
     hdi_metric_column c;
     hdi_ledger ledger;
-    hd_report one;
-    int32_t q, v, degree = hdi_metric_settled(heat, kind) ? 0 : HDI_RAT_KERNEL_MAX;
-    if (h->e->status < 0) return h->e->status;
-    memset(&one, 0, sizeof one);
-    do (void)hdi_metric_make(heat, kind, t, degree, &x, &h->s, &one);
-    while (hdi_degree_retreat(&degree, h->e));
-    if (h->e->status < 0) return h->e->status;
-    one.error_relative = 0;
-    for (v = 0; v < lap->n; v++) nearest[v] = HUGE_VAL;
-    for (q = 0; q < count && h->e->status >= 0; q++) {
-        const hdi_distances to = hdi_distances_one(heat, kind, vertex + q, u);
-        if (q >= n_given) vertex[q] = q == 0 ? lap->vertex[0] : hdi_sample_next(lap, nearest);
-        if (distance) distance[q] = q == 0 ? 0 : hdi_max(0, nearest[vertex[q]]);
-        if (q + 1 == count || hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / count, h->e) < 0) break;
-        if (hdi_metric_columns(heat, &x, &to, &c, &one, h->e) < 0) break;
-        ledger = hdi_metric_ledger(&x);
-        hdi_metric_distance(lap, &x, vertex[q], &c, NULL, &one, &ledger);
-        hdi_ledger_close(&ledger, &one);
-        for (v = 0; v < lap->n; v++) nearest[v] = hdi_min(nearest[v], u[v]);
-        nearest[vertex[q]] = -1;                 /* not again, even when no distance is left */
+    if (a->sum) {
+        ledger = hdi_modes_ledger();
+        hdi_mode_sum_run(a->sum, *vertex, a->u, &ledger, rep, heat->ctx);
+    } else {
+        if (hdi_metric_columns(heat, a->x, &to, &c, rep, e) < 0) return e->status;
+        ledger = hdi_metric_ledger(a->x);
+        hdi_metric_distance(heat->source, a->x, *vertex, &c, NULL, rep, &ledger);
     }
+    hdi_ledger_close(&ledger, rep);
+    return HD_OK;
+}
+
+/* All points, each the one that is farthest from those before it. This function is based on
+ *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
+static hd_status hdi_sample_points(hd_heat *heat, const hdi_samples *a, hd_report *rep, hd_error *e) {
+    const hd_laplacian *lap = heat->source;
+    int32_t *vertex = a->vertex, q, v;
+    rep->error_relative = 0;
+    for (v = 0; v < lap->n; v++) a->nearest[v] = HUGE_VAL;
+    for (q = 0; q < a->count && e->status >= 0; q++) {
+        if (q >= a->n_given) vertex[q] = q == 0 ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
+        if (a->distance) a->distance[q] = q == 0 ? 0 : hdi_max(0, a->nearest[vertex[q]]);
+        if (q + 1 == a->count ||
+            hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / a->count, e) < 0)
+            break;
+        if (hdi_sample_distances(heat, a, vertex + q, rep, e) < 0) break;
+        for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
+        a->nearest[vertex[q]] = -1;              /* not again, even when no distance is left */
+    }
+    return e->status;
+}
+
+/* The points by distances from poles. */
+static hd_status hdi_sample_poles(hd_heat *heat, hdi_samples *a, hd_report *rep, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    int32_t degree = hdi_metric_settled(heat, a->kind) ? 0 : HDI_RAT_KERNEL_MAX;
+    hdi_metric x;
+    memset(rep, 0, sizeof *rep);
+    do (void)hdi_metric_make(heat, a->kind, a->t, degree, &x, &s, rep);
+    while (hdi_degree_retreat(&degree, e));
+    a->x = &x;
+    a->sum = NULL;
+    if (e->status >= 0) (void)hdi_sample_points(heat, a, rep, e);
+    return hdi_scope_end(&s);
+}
+
+/* The points by distances from the eigenpairs that are there. */
+static hd_status hdi_sample_modes(hd_heat *heat, hdi_samples *a, hd_report *rep, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    const uint64_t n = HDI_CAST(uint64_t, heat->source->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    double *work = HDI_TAKE(&s, double, 2 * (n + count) + 1);
+    hdi_mode_sum sum;
+    memset(rep, 0, sizeof *rep);
+    hdi_modes_tell(heat, rep);
+    if (!work) return hdi_scope_end(&s);
+    sum = hdi_mode_sum_at(heat, a->kind, a->t, work);
+    a->sum = &sum;
+    (void)hdi_sample_points(heat, a, rep, e);
+    a->sum = NULL;
+    return hdi_scope_end(&s);
+}
+
+/* The points by either, chosen as in hdi_distance_time. */
+static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep, hd_error *e) {
+    const int first = hdi_modes_first(heat, a->kind, a->t) &&
+        hdi_modes_reach(heat, a->kind, a->t, HDI_MODES_FIRST, e);
+    double bound;
+    if (first && (hdi_sample_modes(heat, a, rep, e) < 0 || hdi_modes_good(heat, a->t, rep))) return e->status;
+    bound = first ? rep->error_bound : HUGE_VAL;
+    if (e->status < 0 || hdi_sample_poles(heat, a, rep, e) < 0) return e->status;
+    if (rep->error_bound <= HDI_DISTANCE_MOST || (first && bound >= rep->error_bound)) return e->status;
+    if (!first) {
+        if (!hdi_modes_near(heat, a->kind, a->t, HDI_MODES_MOST)) return e->status;
+        hdi_packs_drop(heat);
+        if (!hdi_modes_reach(heat, a->kind, a->t, HDI_MODES_MOST, e)) return e->status;
+    }
+    bound = rep->error_bound;
+    if (hdi_sample_modes(heat, a, rep, e) < 0 || rep->error_bound <= bound) return e->status;
+    return hdi_sample_poles(heat, a, rep, e);
+}
+
+static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double t, int32_t count,
+                                int32_t n_given, int32_t *vertex, double *distance) {
+    hdi_samples a;
+    hd_report one;
+    memset(&one, 0, sizeof one);
+    memset(&a, 0, sizeof a);
+    a.kind = kind;
+    a.t = t;
+    a.count = count;
+    a.n_given = n_given;
+    a.vertex = vertex;
+    a.distance = distance;
+    a.nearest = HDI_TAKE(&h->s, double, h->heat->source->n);
+    a.u = HDI_TAKE(&h->s, double, h->heat->source->n);
+    if (h->e->status >= 0) (void)hdi_sample_either(h->heat, &a, &one, h->e);
     one.error = *h->e;
     *h->rep = one;
     return h->e->status;
@@ -24451,7 +25163,12 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
         direct->bytes = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
         if (hdi_estimate_open(x) && hdi_rational_get(&set, HD_POLES_UNIFORM, HDI_RAT_UNIFORM_MAX, h->e) < 0)
             return h->e->status;
+        if (x->query == HD_QUERY_PAIRS && !heat->poles_asked && !heat->exacting &&
+            hdi_rational_get(&set, HD_POLES_KERNEL, HDI_RAT_KERNEL_MAX, h->e) < 0)
+            return h->e->status;
         direct->bytes_most = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
+        if (x->query == HD_QUERY_PAIRS && heat->elim.ctx)   /* the solves' arrays of the first try stay */
+            direct->bytes_most += HDI_CAST(double, hdi_batches_need(heat, x->k));
         if (!heat->poles_asked || method == HD_METHOD_KRYLOV)
             hdi_estimate_krylov(x, model.krylov, held, c + HD_METHOD_KRYLOV);
     }
@@ -24530,6 +25247,59 @@ static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
     return (distance ? packs <= h->n_times : hdi_shared_pays(packs, h->n_times)) ? windows : 0;
 }
 
+/* Seconds that an eigenpair costs for each vertex, and all of them together as much as so many, without
+ * factors. Measured on meshes of 2.5K to 41K vertices with 13 to 80 pairs; a rough guess for others. */
+#define HDI_MODES_SECONDS 7e-7
+#define HDI_MODES_BEGIN 5
+
+static hd_distance_kind hdi_estimate_kind(const hdi_estimate *x) {
+    return x->query == HD_QUERY_DISTANCE ? HD_DISTANCE_CLASSICAL : HD_DISTANCE_WEIGHTED;
+}
+
+/* Eigenpairs for distances at time t. */
+static int32_t hdi_estimate_pairs(const hd_heat *heat, double t) {
+    return hdi_modes_count(heat, hdi_modes_expected(heat, hdi_modes_depth(heat) / t));
+}
+
+/* Finding so many eigenpairs, and distances from k sources by them. */
+static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c) {
+    const hd_heat *heat = x->h->heat;
+    const hdi_fill f = hdi_heat_fill(heat);
+    const double n = heat->source->n_active, runs = 2 + ceil(count / HDI_CAST(double, HDI_SPEC_HALF));
+    const double solves = 2.5 * count + HDI_SPEC_HALF, pairs = count + HDI_MODES_BEGIN;
+    const double seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * pairs;
+    const double flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
+    const double need = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
+    if (heat->modes.s.value && heat->modes.s.count >= count) hdi_cost_add(c, 0, 0, 16 * (n + count));
+    else hdi_cost_add(c, flops, seconds, need);
+    c->flops += 6 * n * count * x->k;
+}
+
+/* Late times, where eigenpairs come first: how many times are left before them. *held: bytes that then
+ * stay. */
+static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held) {
+    const hd_heat *heat = x->h->heat;
+    const double n = heat->source->n, unit = 2 * heat->scale;
+    const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && heat->source->B;
+    int32_t early = x->h->n_times, count;
+    while (early > 0 && hdi_modes_first(heat, hdi_estimate_kind(x), x->h->times[early - 1] / unit)) early--;
+    *held = 0;
+    if (early == x->h->n_times) return early;
+    count = hdi_estimate_pairs(heat, x->h->times[early] / unit);
+    if (hdi_modes_need(heat, count) > hdi_estimate_room(heat->ctx)) return x->h->n_times;
+    hdi_estimate_modes(x, count, c);
+    if (!heat->modes.s.value) *held = 8 * n * ((twice ? 2 : 1) * count + 5);
+    return early;
+}
+
+/* Bytes that eigenpairs need which may come after poles at time t. */
+static double hdi_estimate_help(const hdi_estimate *x, double t) {
+    const hd_heat *heat = x->h->heat;
+    if (x->query < HD_QUERY_DISTANCE || !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST))
+        return 0;
+    return hdi_modes_need(heat, hdi_estimate_pairs(heat, t));
+}
+
 /* Commute and biharmonic distances. */
 static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     hd_heat *heat = x->h->heat;
@@ -24549,6 +25319,13 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     hdi_cost_add(c, 0, 0, bytes + held + HDI_ESTIMATE_SMALL);
 }
 
+/* Adds the cost of late times, after which so many bytes are held. */
+static void hdi_estimate_join(hd_cost *c, const hd_cost *late, double held) {
+    c->bytes += held;
+    c->bytes_most += held;
+    if (late->possible) hdi_cost_add(c, late->flops, late->seconds, late->bytes);
+}
+
 /* Queries that need the direct method. They take what the run would take: shared poles, else the times one by
  * one, and for distances the highest degree where it is sure to be needed; less where that does not fit. */
 static hd_status hdi_estimate_direct(const hdi_estimate *x) {
@@ -24557,8 +25334,10 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
     const int distance = x->query >= HD_QUERY_DISTANCE;
     const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL, h0 = heat->source->h;
-    double room;
-    int32_t q, windows;
+    hd_cost late;
+    double room, held = 0;
+    int32_t q, windows, early = h->n_times;
+    memset(&late, 0, sizeof late);
     x->to->method = HD_METHOD_DIRECT;
     x->to->reason = "diagonals and distances to all vertices need the direct method";
     if (hdi_estimate_analyse(h) < 0) return h->e->status;
@@ -24567,10 +25346,17 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
         hdi_estimate_ground(x, c);
         return HD_OK;
     }
+    if (distance) early = hdi_estimate_late(x, &late, &held);
+    h->n_times = early;
     windows = hdi_estimate_shared(x, tol);
-    if (windows > 0 && (hdi_estimate_windows(x, windows, tol, c) < 0 || c->bytes <= room))
+    if (early == 0) {
+        *c = late;
+        x->to->reason = HDI_MODES_REASON;
+    } else if (windows > 0 && (hdi_estimate_windows(x, windows, tol, c) < 0 || c->bytes <= room)) {
+        hdi_estimate_join(c, &late, held);
         return h->e->status;
-    memset(c, 0, sizeof *c);
+    }
+    if (early > 0) memset(c, 0, sizeof *c);
     for (q = 0; q < h->n_times && h->e->status >= 0; q++) {
         const double t = h->times[q] / (distance ? 2 * heat->scale : heat->scale);
         const double expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
@@ -24587,8 +25373,9 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
         if (!sure && heat->elim.ctx)
             most.bytes += HDI_CAST(double, hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
                                            (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
-        c->bytes_most = hdi_max(c->bytes_most, most.bytes);
+        c->bytes_most = hdi_max(c->bytes_most, hdi_max(most.bytes, hdi_estimate_help(x, t)));
     }
+    if (early > 0) hdi_estimate_join(c, &late, held);
     return h->e->status;
 }
 
@@ -26516,6 +27303,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_free(ctx, heat->weight);
     hdi_laplacian_free(heat->lap, ctx);
     if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, ctx);
+    if (HDI_HAS_DIFFUSION) hdi_modes_free(&heat->modes, ctx);
     hdi_elim_free(&heat->elim);
     if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, ctx);
     hdi_free(ctx, heat->silan);

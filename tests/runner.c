@@ -168,6 +168,7 @@ static void test_tmp_remove(void) {
 #include "test_operators_all.h"
 #include "test_picture.h"
 #include "test_bounds.h"
+#include "test_large_t.h"
 #include "test_moving.h"
 #include "test_view.h"
 #include "test_estimate.h"
@@ -184,6 +185,7 @@ static const test_group test_groups[] = {
     {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"moving", test_moving},
     {"platform", test_platform}, {"view", test_view},     {"estimate", test_estimate}, {"spectrum", test_spectrum},
+    {"large_t", test_large_t},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };

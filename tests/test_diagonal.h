@@ -1390,7 +1390,7 @@ static void diag_limits_by_default(void) {
     base = ctx.bytes_in_use;
     for (kind = -1; kind < 4; kind++) {
         int fine = 0, refused = 0;
-        for (limit = 0, need = 0; limit <= need + need / 20; limit += need / 50) {
+        for (limit = 0, need = 0; limit <= need + need / 20; limit += need / (kind == 0 || kind == 1 ? 400 : 50)) {
             hd_heat *heat = NULL;
             hd_report rep;
             hd_status st;
@@ -1409,7 +1409,7 @@ static void diag_limits_by_default(void) {
             CHECK(ctx.bytes_in_use == base);
             for (i = 0; st >= 0 && i < s.n; i++) CHECK(D[i] >= 0 && D[i] < 1e9);
         }
-        CHECK(fine > 1 && refused > 10);
+        CHECK_MSG(fine > 1 && refused > 10, "kind %d: %d fine, %d refused, %g bytes", kind, fine, refused, (double)need);
     }
     ctx.byte_limit = 0;
     hd_laplacian_free(lap);

@@ -375,8 +375,8 @@ static void forms_many_times(void) {
         heat_case_free(&c);
         free(D);
     }
-    for (q = 0; q < 2; q++)                      /* of weighted ones: much the same for either mass */
-        CHECK_MSG(bound[q] > 0.03 * bound[q + 2] && bound[q] < 3 * bound[q + 2] && bound[q] < 1e-6, "bounds %g and %g", bound[q], bound[q + 2]);
+    for (q = 0; q < 2; q++)                      /* of weighted ones: much the same for either mass, poles or eigenpairs */
+        CHECK_MSG(bound[q] > 0.03 * bound[q + 2] && bound[q] < 6 * bound[q + 2] && bound[q] < 1e-6, "bounds %g and %g", bound[q], bound[q + 2]);
     shape_free(&ball);
     shape_free(&odd);
 }
