@@ -16888,6 +16888,9 @@ static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
  * Batches at a time. Right-hand sides that one check of residuals takes. */
 enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 8, HDI_BATCHES = 3, HDI_CHECK_MOST = 4 };
 
+/* Right-hand sides of a full batch, which AVX-512 checks in one pass. */
+enum { HDI_CHECK_BATCH = 8 };
+
 enum { HDI_LANCZOS_MAX = 4096 };
 
 /* The most steps that Lanczos can take for t lambda_max. In exact arithmetic the error of m steps is at most
@@ -17256,6 +17259,12 @@ typedef struct hdi_check {
     double first2;               /* |x|_B^2 of the first system */
 } hdi_check;
 
+/* The same of a real pole's solutions, for a batch of right-hand sides. */
+typedef struct hdi_real_check {
+    double theta, a;             /* the pole; u -= a x */
+    double norm2[HDI_CHECK_BATCH], size2[HDI_CHECK_BATCH], first2[HDI_CHECK_BATCH];
+} hdi_real_check;
+
 static void hdi_check_c(hdi_check *const *c, int32_t k) {
     const hd_laplacian *lap = c[0]->lap;
     int64_t p;
@@ -17359,6 +17368,151 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int
     }
     HDI_UNROLL
     for (r = 0; r < n; r++) hdi_check512_end(c[r], &s[r]);
+}
+
+/* The sums of eight vectors' entries. */
+static HDI_AVX512 HDI_INLINE hdi_v8 hdi_sums512(const hdi_v8 *v) {
+    hdi_v8 two[4], four[2];
+    int r;
+    HDI_UNROLL
+    for (r = 0; r < 4; r++)
+        two[r] = _mm512_add_pd(_mm512_unpacklo_pd(v[2 * r], v[2 * r + 1]),
+                               _mm512_unpackhi_pd(v[2 * r], v[2 * r + 1]));
+    HDI_UNROLL
+    for (r = 0; r < 2; r++)
+        four[r] = _mm512_add_pd(_mm512_shuffle_f64x2(two[2 * r], two[2 * r + 1], 0x88),
+                                _mm512_shuffle_f64x2(two[2 * r], two[2 * r + 1], 0xdd));
+    return _mm512_add_pd(_mm512_shuffle_f64x2(four[0], four[1], 0x88),
+                         _mm512_shuffle_f64x2(four[0], four[1], 0xdd));
+}
+
+/* Row i of eight right-hand sides is complete, at its solutions; u and bu receive its part of the answers. */
+static HDI_AVX512 HDI_INLINE void hdi_check512_rows(hdi_check *const *c, const hdi_v8 *l, const hdi_v8 *b,
+                                                    double (*sum)[3][HDI_PACK], int32_t i, const double *at,
+                                                    hdi_v8 *u, hdi_v8 *bu) {
+    const hdi_check *h = c[0];
+    const hdi_v8 t = _mm512_set1_pd(h->t), re = hdi_twice512(h->theta), im = hdi_twice512(h->theta + 4);
+    const hdi_v8 turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
+    const hdi_v8 weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
+    const hdi_v8 coef = _mm512_loadu_pd(h->coef);
+    hdi_v8 cv[HDI_CHECK_BATCH], cb[HDI_CHECK_BATCH];
+    int r;
+    HDI_UNROLL
+    for (r = 0; r < HDI_CHECK_BATCH; r++, sum++) {
+        const hdi_v8 v = _mm512_loadu_pd(at + HDI_PACK * r);
+        hdi_v8 rest = _mm512_fnmadd_pd(t, l[r], _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));
+        rest = _mm512_fnmadd_pd(re, b[r], rest);
+        rest = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(b[r], b[r], 0x4e), rest);
+        _mm512_storeu_pd(sum[0][0], _mm512_fmadd_pd(_mm512_mul_pd(weight, rest), rest,
+                                                    _mm512_loadu_pd(sum[0][0])));
+        _mm512_storeu_pd(sum[0][1], _mm512_fmadd_pd(_mm512_mul_pd(noise, v), v, _mm512_loadu_pd(sum[0][1])));
+        _mm512_storeu_pd(sum[0][2], _mm512_fmadd_pd(v, b[r], _mm512_loadu_pd(sum[0][2])));
+        cv[r] = _mm512_mul_pd(coef, v);
+        cb[r] = _mm512_mul_pd(coef, b[r]);
+    }
+    *u = hdi_sums512(cv);
+    *bu = hdi_sums512(cb);
+}
+
+/* The same of the lone real pole: l and b for all right-hand sides, x their row; sum: norm, size, first. Its
+ * part is taken from u and bu. */
+static HDI_AVX512 HDI_INLINE void hdi_check512_real(hdi_check *const *c, const hdi_real_check *z, hdi_v8 l,
+                                                    hdi_v8 b, int32_t i, const double *x, hdi_v8 *sum) {
+    const hdi_v8 v = _mm512_loadu_pd(x), weight = _mm512_set1_pd(c[0]->weight[i]);
+    double rhs[HDI_CHECK_BATCH];
+    hdi_v8 rest;
+    int r;
+    for (r = 0; r < HDI_CHECK_BATCH; r++) rhs[r] = c[r]->rhs[i];
+    rest = _mm512_fnmadd_pd(_mm512_set1_pd(c[0]->t), l, _mm512_loadu_pd(rhs));
+    rest = _mm512_fnmadd_pd(_mm512_set1_pd(z->theta), b, rest);
+    sum[0] = _mm512_fmadd_pd(_mm512_mul_pd(weight, rest), rest, sum[0]);
+    sum[1] = _mm512_fmadd_pd(_mm512_mul_pd(_mm512_set1_pd(c[0]->noise[i]), v), v, sum[1]);
+    sum[2] = _mm512_fmadd_pd(v, b, sum[2]);
+}
+
+/* Row i of the answers. There are more of them than the processor looks ahead for. */
+static HDI_AVX512 HDI_INLINE void hdi_check512_put(hdi_check *const *c, int32_t i, hdi_v8 u, hdi_v8 bu) {
+    double part[2][HDI_CHECK_BATCH];
+    int r;
+    _mm512_storeu_pd(part[0], u);
+    _mm512_storeu_pd(part[1], bu);
+    for (r = 0; r < HDI_CHECK_BATCH; r++) {
+        c[r]->u[i] += part[0][r];
+        c[r]->bu[i] += part[1][r];
+        if (i % 8) continue;
+        HDI_PREFETCH_AT(c[r]->u, i + 64);
+        HDI_PREFETCH_AT(c[r]->bu, i + 64);
+        HDI_PREFETCH_AT(c[r]->rhs, i + 64);
+    }
+}
+
+/* What the sums have come to. */
+static HDI_AVX512 void hdi_check512_close(hdi_check *const *c, double (*sum)[3][HDI_PACK],
+                                          const hdi_v8 *real, hdi_real_check *z) {
+    int r, q;
+    _mm512_storeu_pd(z->norm2, real[0]);
+    _mm512_storeu_pd(z->size2, real[1]);
+    _mm512_storeu_pd(z->first2, real[2]);
+    for (r = 0; r < HDI_CHECK_BATCH; r++) {
+        for (q = 0; q < 4; q++) {
+            c[r]->norm2[q] = sum[r][0][q] + sum[r][0][q + 4];
+            c[r]->size2[q] = sum[r][1][q] + sum[r][1][q + 4];
+        }
+        c[r]->first2 = sum[r][2][0] + sum[r][2][4];
+    }
+}
+
+/* For HDI_CHECK_BATCH right-hand sides side by side, and with xr the lone real pole's solutions, by rows. */
+static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const double *xr,
+                                                     hdi_real_check *z) {
+    const hd_laplacian *lap = c[0]->lap;
+    const hdi_v8 zero = _mm512_setzero_pd(), a = _mm512_set1_pd(z->a);
+    const int64_t stride = c[0]->stride;
+    double sum[HDI_CHECK_BATCH][3][HDI_PACK];
+    hdi_v8 real[3];
+    int64_t p;
+    int32_t i;
+    int r;
+    memset(sum, 0, sizeof sum);
+    real[0] = real[1] = real[2] = zero;
+    for (i = 0; i < lap->n_active; i++) {
+        const double *at = c[0]->x + stride * i;
+        const double *at_real = xr ? xr + HDI_CHECK_BATCH * HDI_CAST(int64_t, i) : at;
+        const hdi_v8 mass = lap->B ? zero : _mm512_set1_pd(lap->mass[i]);
+        hdi_v8 l[HDI_CHECK_BATCH], b[HDI_CHECK_BATCH], lr = zero, br = zero, u, bu;
+        HDI_UNROLL
+        for (r = 0; r < HDI_CHECK_BATCH; r++) {
+            l[r] = zero;
+            b[r] = _mm512_mul_pd(mass, _mm512_loadu_pd(at + HDI_PACK * r));
+        }
+        if (xr) br = _mm512_mul_pd(mass, _mm512_loadu_pd(at_real));
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int64_t j = lap->L.col[p];
+            const hdi_v8 lx = _mm512_set1_pd(lap->L.val[p]), bx = lap->B ? _mm512_set1_pd(lap->B[p]) : zero;
+            HDI_UNROLL
+            for (r = 0; r < HDI_CHECK_BATCH; r++) {
+                const hdi_v8 v = _mm512_loadu_pd(c[0]->x + stride * j + HDI_PACK * r);
+                l[r] = _mm512_fmadd_pd(lx, v, l[r]);
+                b[r] = _mm512_fmadd_pd(bx, v, b[r]);
+            }
+            if (!xr) continue;
+            lr = _mm512_fmadd_pd(lx, _mm512_loadu_pd(xr + HDI_CHECK_BATCH * j), lr);
+            br = _mm512_fmadd_pd(bx, _mm512_loadu_pd(xr + HDI_CHECK_BATCH * j), br);
+        }
+        hdi_check512_rows(c, l, b, sum, i, at, &u, &bu);
+        if (xr) {
+            hdi_check512_real(c, z, lr, br, i, at_real, real);
+            u = _mm512_fnmadd_pd(a, _mm512_loadu_pd(at_real), u);
+            bu = _mm512_fnmadd_pd(a, br, bu);
+        }
+        hdi_check512_put(c, i, u, bu);
+    }
+    hdi_check512_close(c, sum, real, z);
+}
+
+static HDI_AVX512 void hdi_check_512_batch(hdi_check *const *c, const double *xr, hdi_real_check *z) {
+    if (xr) hdi_check512_batch(c, xr, z);
+    else hdi_check512_batch(c, NULL, z);
 }
 
 static HDI_AVX512 void hdi_check_512(hdi_check *const *c, int32_t k) {
@@ -17609,25 +17763,66 @@ static hdi_check hdi_check_open(const hdi_elim *m, int32_t i, const double *rhs,
     return h;
 }
 
+static hdi_check hdi_batch_check(const hdi_elim *m, int32_t i, const hdi_lane *lane, const double *x,
+                                 int64_t stride) {
+    const int32_t n_here = hdi_low32(m->set.n_poles - (m->lone + 1 + 4 * i), 4);
+    hdi_check h = hdi_check_open(m, i, lane->rhs, x, stride);
+    int q;
+    for (q = 0; q < 4; q++) {
+        const hd_c64 a = m->set.a[hdi_elim_pole(m, i, q)];
+        const double count = q < n_here ? hdi_rat_count(&m->set, hdi_elim_pole(m, i, q)) : 0;
+        h.coef[q] = -count * a.re;
+        h.coef[q + 4] = count * a.im;
+    }
+    h.u = lane->u;
+    h.bu = lane->tmp;
+    return h;
+}
+
+/* What the check of pack i has measured for a lane. */
+static void hdi_batch_note(const hdi_elim *m, int32_t i, const hdi_check *h, hdi_lane *to) {
+    const int32_t n_here = hdi_low32(m->set.n_poles - (m->lone + 1 + 4 * i), 4);
+    int32_t p;
+    int q;
+    for (q = 0; q < n_here; q++) {
+        p = hdi_elim_pole(m, i, q);
+        hdi_lane_residual(to, m->lap, &m->set, p, sqrt(h->norm2[q]), sqrt(h->size2[q]), 0);
+        if (to->watch < 0) continue;
+        to->pole_value[p] = hdi_c(h->x[h->stride * to->watch + q], h->x[h->stride * to->watch + q + 4]);
+    }
+    if (i > 0) return;
+    p = hdi_elim_pole(m, 0, 0);
+    hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, h->first2), sqrt(h->norm2[0]) + sqrt(h->size2[0]), h->x,
+                   h->stride);
+}
+
+/* The same for the lone real pole. x by rows of wide. */
+static void hdi_batch_real_note(const hdi_elim *m, const hdi_real_check *c, int32_t r, hdi_lane *to,
+                                const double *x, int32_t wide) {
+    hdi_lane_residual(to, m->lap, &m->set, 0, sqrt(c->norm2[r]), sqrt(c->size2[r]), 0);
+    if (to->watch >= 0) to->pole_value[0] = hdi_c(x[HDI_CAST(int64_t, wide) * to->watch + r], 0);
+    hdi_lane_first(to, m->lap, &m->set, 0, hdi_max(0, c->first2[r]), sqrt(c->norm2[r]) + sqrt(c->size2[r]),
+                   x + r, wide);
+}
+
+static hdi_real_check hdi_batch_real_check(const hdi_elim *m) {
+    hdi_real_check c;
+    memset(&c, 0, sizeof c);
+    c.theta = m->set.theta[0].re;
+    c.a = m->set.a[0].re;
+    return c;
+}
+
 /* Checks a pack's systems for the lanes listed, and adds their part of the answer and its bounds. The
  * solution of lane[r] is at x + 8 at[r]. */
 static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const int32_t *at, int32_t k,
                            const double *x, int64_t stride) {
-    const int32_t n_here = hdi_low32(m->set.n_poles - (m->lone + 1 + 4 * i), 4);
     hdi_check c[HDI_CHECK_MOST], *list[HDI_CHECK_MOST] = {NULL};
-    int32_t r, p;
-    int q, together = 1;
+    int32_t r;
+    int together = 1;
     for (r = 0; r < k; r++) {
-        hdi_check *h = list[r] = c + r;
-        *h = hdi_check_open(m, i, lane[r]->rhs, x + HDI_PACK * at[r], stride);
-        for (q = 0; q < 4; q++) {
-            const hd_c64 a = m->set.a[hdi_elim_pole(m, i, q)];
-            const double count = q < n_here ? hdi_rat_count(&m->set, hdi_elim_pole(m, i, q)) : 0;
-            h->coef[q] = -count * a.re;
-            h->coef[q + 4] = count * a.im;
-        }
-        h->u = lane[r]->u;
-        h->bu = lane[r]->tmp;
+        c[r] = hdi_batch_check(m, i, lane[r], x + HDI_PACK * at[r], stride);
+        list[r] = c + r;
         together = together && at[r] == at[0] + r;
     }
 #if HDI_X86
@@ -17635,47 +17830,64 @@ static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
     else
 #endif
     hdi_check_c(list, k);
-    for (r = 0; r < k; r++) {
-        hdi_lane *to = lane[r];
-        const hdi_check *h = c + r;
-        for (q = 0; q < n_here; q++) {
-            p = hdi_elim_pole(m, i, q);
-            hdi_lane_residual(to, m->lap, &m->set, p, sqrt(h->norm2[q]), sqrt(h->size2[q]), 0);
-            if (to->watch < 0) continue;
-            to->pole_value[p] = hdi_c(h->x[stride * to->watch + q], h->x[stride * to->watch + q + 4]);
-        }
-        if (i > 0) continue;
-        p = hdi_elim_pole(m, 0, 0);
-        hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, h->first2), sqrt(h->norm2[0]) + sqrt(h->size2[0]),
-                       h->x, stride);
-    }
+    for (r = 0; r < k; r++) hdi_batch_note(m, i, c + r, lane[r]);
 }
 
-/* The lone real pole's part. */
-static void hdi_batch_real(const hdi_elim *m, hdi_lane *lane, const double *x, int64_t stride) {
+/* The lone real pole's part for lane r. */
+static void hdi_batch_real(const hdi_elim *m, int32_t r, hdi_lane *lane, const double *xr, int32_t wide) {
     const hd_laplacian *lap = m->lap;
-    const double theta = m->set.theta[0].re, a = m->set.a[0].re;
-    double norm2 = 0, size2 = 0, first2 = 0, r;
+    const int64_t stride = wide;
+    const double *x = xr + r;
+    hdi_real_check c = hdi_batch_real_check(m);
     int64_t p;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
-        double l = 0, b = 0;
+        double l = 0, b = 0, rest;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const double v = x[stride * lap->L.col[p]];
             l += lap->L.val[p] * v;
             if (lap->B) b += lap->B[p] * v;
         }
         if (!lap->B) b = lap->mass[i] * x[stride * i];
-        r = lane->rhs[i] - m->t * l - theta * b;
-        norm2 += m->weight[i] * r * r;
-        size2 += m->noise[i] * x[stride * i] * x[stride * i];
-        first2 += x[stride * i] * b;
-        lane->u[i] -= a * x[stride * i];
-        lane->tmp[i] -= a * b;
+        rest = lane->rhs[i] - m->t * l - c.theta * b;
+        c.norm2[r] += m->weight[i] * rest * rest;
+        c.size2[r] += m->noise[i] * x[stride * i] * x[stride * i];
+        c.first2[r] += x[stride * i] * b;
+        lane->u[i] -= c.a * x[stride * i];
+        lane->tmp[i] -= c.a * b;
     }
-    hdi_lane_residual(lane, lap, &m->set, 0, sqrt(norm2), sqrt(size2), 0);
-    if (lane->watch >= 0) lane->pole_value[0] = hdi_c(x[stride * lane->watch], 0);
-    hdi_lane_first(lane, lap, &m->set, 0, hdi_max(0, first2), sqrt(norm2) + sqrt(size2), x, stride);
+    hdi_batch_real_note(m, &c, r, lane, xr, wide);
+}
+
+/* Whether all is checked by the kernel for full batches. */
+static int hdi_batch_is_full(const hdi_elim *m, int32_t n_list) {
+#if HDI_X86
+    return n_list == HDI_CHECK_BATCH && m->n_used > 0 && m->pack[0].pack == hdi_pack_ops_get(2);
+#else
+    (void)m, (void)n_list;
+    return 0;
+#endif
+}
+
+/* A full batch in one pass over L and B: pack i, and with the first the lone real pole. */
+static void hdi_batch_full(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const hdi_batch *b) {
+#if HDI_X86
+    const double *xr = i == 0 && m->lone >= 0 ? b->xr : NULL;
+    hdi_real_check real = hdi_batch_real_check(m);
+    hdi_check c[HDI_CHECK_BATCH], *list[HDI_CHECK_BATCH];
+    int32_t r;
+    for (r = 0; r < HDI_CHECK_BATCH; r++) {
+        c[r] = hdi_batch_check(m, i, lane[r], b->x + HDI_PACK * r, HDI_PACK * HDI_CHECK_BATCH);
+        list[r] = c + r;
+    }
+    hdi_check_512_batch(list, xr, &real);
+    for (r = 0; r < HDI_CHECK_BATCH; r++) {
+        if (xr) hdi_batch_real_note(m, &real, r, lane[r], xr, HDI_CHECK_BATCH);
+        hdi_batch_note(m, i, c + r, lane[r]);
+    }
+#else
+    (void)m, (void)i, (void)lane, (void)b;
+#endif
 }
 
 /* u = a0 f - sum a_i x_i for k lanes. Lanes that are skipped are solved for zero. ctx: threads for the
@@ -17685,6 +17897,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     const int32_t n = s->n, wide = k > 1 ? 8 : 1;
     int64_t j, touched = 0;
     int32_t i, r, n_list = 0, at[HDI_LANES_BATCH];
+    int full;
     const double *rhs[HDI_LANES_BATCH];
     hdi_lane *list[HDI_LANES_BATCH];
     hdi_sweep z;
@@ -17694,6 +17907,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         list[n_list] = lane + r;
         at[n_list++] = r;
     }
+    full = hdi_batch_is_full(m, n_list);
     memset(b->active, 0, HDI_CAST(size_t, s->n_super));
     for (r = 0; r < k; r++) {
         double norm2 = 0;
@@ -17717,15 +17931,16 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         z = hdi_sweep_open(&m->real, wide, b->xr, b->work);
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
-        for (r = 0; r < k; r++)
-            if (!lane[r].skip) hdi_batch_real(m, lane + r, b->xr + r, wide);
+        for (r = 0; r < k && !full; r++)
+            if (!lane[r].skip) hdi_batch_real(m, r, lane + r, b->xr, wide);
     }
     for (i = 0; i < m->n_used; i++) {
         z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
         z.rhs = rhs;
         z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
         hdi_sweep_run(&z, ctx);
-        for (r = 0; r < n_list; r += HDI_CHECK_MOST)
+        if (full) hdi_batch_full(m, i, list, b);
+        for (r = 0; r < n_list && !full; r += HDI_CHECK_MOST)
             hdi_batch_pack(m, i, list + r, at + r, hdi_low32(n_list - r, HDI_CHECK_MOST), b->x,
                            HDI_PACK * HDI_CAST(int64_t, k));
     }
@@ -24274,12 +24489,10 @@ static void hdi_distance_shared_solve(hdi_distance_shared *z, int32_t i) {
     const hdi_elim *m = z->m;
     hdi_check check, *list = &check;
     hdi_sweep sweep;
-    int64_t j;
+    const double *rhs = z->rhs;
     int32_t q;
-    memset(z->x, 0, z->w.n * HDI_PACK * sizeof *z->x);
-    for (j = 0; j < m->sym.n; j++)
-        for (q = 0; q < 4; q++) z->x[HDI_PACK * j + q] = z->rhs[j];
     sweep = hdi_sweep_open(m->pack + i, 1, z->x, z->sweep);
+    sweep.rhs = &rhs;
     sweep.active = z->active;
     hdi_sweep_run(&sweep, m->ctx);
     check = hdi_check_open(m, i, z->rhs, z->x, HDI_PACK);
