@@ -156,9 +156,9 @@ static chart_axis chart_range(const chart *c, int vertical, double from, double 
     return a;
 }
 
-/* A power of ten, in plain digits where they are few. */
-static void chart_number(text *s, int power) {
-    if (power >= 0 && power <= 3) text_add(s, "%.0f", pow(10, power));
+/* A power of ten, in plain digits up to a power of most. */
+static void chart_number(text *s, int power, int most) {
+    if (power >= 0 && power <= most) text_add(s, "%.0f", pow(10, power));
     else if (power < 0 && power >= -2) text_add(s, "%.*f", -power, pow(10, power));
     else text_add(s, "10<tspan dy=\"-5\" font-size=\"9.5\">%s%d</tspan>", power < 0 ? "&#8722;" : "",
                   abs(power));
@@ -182,7 +182,7 @@ static void chart_grid(text *s, const chart_axis *a, const chart_axis *other, in
             if (vertical) text_add(s, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">", other->from - 6, at
                                    + 4.5);
             else text_add(s, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">", at, other->from + 17);
-            if (m == 1) chart_number(s, p);
+            if (m == 1) chart_number(s, p, few ? 5 : 3);
             else text_add(s, "%g", v);
             text_add(s, "</text>");
         }
