@@ -25381,7 +25381,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
             return h->e->status;
         direct->bytes_most = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
         if (x->query == HD_QUERY_PAIRS && heat->elim.ctx)   /* the solves' arrays of the first try stay */
-            direct->bytes_most += HDI_CAST(double, hdi_batches_need(heat, x->k));
+            direct->bytes_most += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(&set), x->k));
         if (!heat->poles_asked || method == HD_METHOD_KRYLOV)
             hdi_estimate_krylov(x, model.krylov, held, c + HD_METHOD_KRYLOV);
     }
