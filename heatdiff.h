@@ -4043,7 +4043,7 @@ HDI_PART void HDI_OF(pack_up_cols)(const int n_cols, const hdi_pack_sweep *g, in
     for (i = 0; i < g->n + g->u; i++, l += g->row) {
         double *to = i < g->n ? g->y + g->x_row * i : g->t + g->x_row * (i - g->n);
         HDI_OF(pack_many_zero)(n_cols, s);
-        HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, HDI_PACK * HDI_PACK_AHEAD, hdi_least(i, g->width),
+        HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, HDI_CAST(int32_t, HDI_PACK) * HDI_PACK_AHEAD, hdi_least(i, g->width),
                               g->y + at, g->x_row, NULL);
         HDI_OF(pack_many_put)(n_cols, to + at, s);
     }
@@ -12630,7 +12630,7 @@ static int hdi_factor_within(hdi_factor *f, const hdi_factor *pack) {
 /* The arrays of a factor of the given width; all that factoring and refactoring need. */
 static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
     const uint64_t n_parts = hdi_factor_parts(sym), n_chunks = hdi_factor_chunks(sym);
-    const uint64_t tops = (sym->n_top > 0) + (n_chunks > 0);
+    const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
     *f = hdi_factor_of(sym, width);
     hdi_factor_take_numbers(f, s);
     f->work = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->work) * HDI_CAST(uint64_t, width));
@@ -16899,7 +16899,7 @@ enum { HDI_LANCZOS_MAX = 4096 };
  * and to see that no step helps any more takes a third more and 20. */
 static int32_t hdi_lanczos_most(double t, double lambda_max) {
     const double most = 100 + 12 * sqrt(t * lambda_max);
-    return most < HDI_LANCZOS_MAX ? HDI_CAST(int32_t, most) : HDI_LANCZOS_MAX;
+    return most < HDI_CAST(double, HDI_LANCZOS_MAX) ? HDI_CAST(int32_t, most) : HDI_LANCZOS_MAX;
 }
 
 /* The state of a Lanczos process in the B inner product. */
@@ -17877,7 +17877,7 @@ static void hdi_batch_full(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
     hdi_check c[HDI_CHECK_BATCH], *list[HDI_CHECK_BATCH];
     int32_t r;
     for (r = 0; r < HDI_CHECK_BATCH; r++) {
-        c[r] = hdi_batch_check(m, i, lane[r], b->x + HDI_PACK * r, HDI_PACK * HDI_CHECK_BATCH);
+        c[r] = hdi_batch_check(m, i, lane[r], b->x + HDI_PACK * r, HDI_CAST(int32_t, HDI_PACK) * HDI_CHECK_BATCH);
         list[r] = c + r;
     }
     hdi_check_512_batch(list, xr, &real);
@@ -19086,7 +19086,7 @@ static void hdi_silan_sum_task(void *arg, int64_t first, int64_t last) {
     int32_t p;
     for (begin = first; begin < last; begin += HDI_SILAN_BLOCK) {
         const int64_t end = begin + HDI_SILAN_BLOCK < last ? begin + HDI_SILAN_BLOCK : last;
-        double s[HDI_SILAN_WIDE * HDI_SILAN_BLOCK];
+        double s[HDI_CAST(int32_t, HDI_SILAN_WIDE) * HDI_SILAN_BLOCK];
         memset(s, 0, sizeof s);
         hdi_silan_sum_block(job->z, a, begin, end, s);
         for (p = 0; p < a->count; p++)
@@ -20149,7 +20149,7 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
         }
         s->off_ritz[i] = d2 > 0 ? sqrt(sum) / d2 : HUGE_VAL;
         reached = hdi_spec_converged(s, i);
-        s->off_ritz[i] += d2 > 0 ? (HDI_SPEC_WIDE * DBL_EPSILON * largest + s->lost) / d2 : 0;
+        s->off_ritz[i] += d2 > 0 ? (HDI_CAST(double, HDI_SPEC_WIDE) * DBL_EPSILON * largest + s->lost) / d2 : 0;
         s->stuck += reached && !hdi_spec_converged(s, i);
     }
     return HD_OK;
@@ -21489,7 +21489,7 @@ typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
 #define HDI_STEPS_HANDED_ON 3
 
 static double hdi_krylov_steps(double ratio, int goes_on) {
-    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), 0.9 * HDI_SILAN_MAX);
+    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), 0.9 * HDI_CAST(double, HDI_SILAN_MAX));
 }
 
 /* The number of windows of equal ratio that costs least. */
@@ -24242,13 +24242,13 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 
 /* Bytes that finding so many pairs takes; a guess before the analysis. */
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
-    const double n = heat->source->n_active, wide = HDI_SPEC_WIDE;
+    const double n = heat->source->n_active, wide = HDI_SPEC_WIDE, widest = HDI_SPEC_MOST;
     const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(heat->source->n_active);
-    const double most = hdi_min(n, hdi_min(HDI_SPEC_MOST, 2.0 * count + HDI_SPEC_SPARE));
-    const double h = (HDI_SPEC_MOST + wide) * wide * HDI_SPEC_GROUP * (HDI_SPEC_CHUNKS + 1);
-    double doubles = tiles * (most + wide) + 3 * n + 3.0 * HDI_SPEC_MOST * HDI_SPEC_MOST + h;
-    doubles += 3 * wide * n + 2 * wide * HDI_SPEC_GROUP * n + 2 * tiles * (count + HDI_SPEC_GAPS) +
-               2.0 * heat->source->n;
+    const double group = HDI_SPEC_GROUP, chunks = HDI_SPEC_CHUNKS, spare = HDI_SPEC_SPARE, gaps = HDI_SPEC_GAPS;
+    const double most = hdi_min(n, hdi_min(widest, 2.0 * count + spare));
+    double doubles = tiles * (most + wide) + 3 * n + 3 * widest * widest;
+    doubles += (widest + wide) * wide * group * (chunks + 1);
+    doubles += 3 * wide * n + 2 * wide * group * n + 2 * tiles * (count + gaps) + 2.0 * heat->source->n;
     if (!heat->elim.ctx) return 8 * doubles + 8 * hdi_heat_fill(heat).real_stored;
     return 8 * (doubles + HDI_CAST(double, hdi_sweep_size(&heat->elim.sym, 1, HDI_SPEC_WIDE))) +
            HDI_CAST(double, hdi_factor_bytes(&heat->elim.sym, 1));
@@ -25414,7 +25414,7 @@ static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_
     bytes = hdi_bytes_direct(x, &set, after, 2, HDI_PROBES, held);
     bytes = hdi_max(bytes, hdi_bytes_direct(x, &set, HDI_AFTER_SOLVES, 0, solves, held - 16 * n + later));
     hdi_cost_direct(h->heat, hdi_set_packs(&set), hdi_set_lone(&set), after,
-                    HDI_PROBES + (distance ? 2.0 * x->k : 0), c);
+                    HDI_CAST(double, HDI_PROBES) + (distance ? 2.0 * x->k : 0), c);
     hdi_cost_add(c, 0, 0, bytes);
     return h->e->status;
 }
@@ -25435,7 +25435,7 @@ static hd_status hdi_estimate_windows(const hdi_estimate *x, int32_t windows, do
         memset(&set, 0, sizeof set);
         if (!hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), tol)) return h->e->status;
         /* sets, weights and values; then a vector of a diagonal, or the columns of distances */
-        held = q * (HDI_CAST(double, sizeof set) + 32.0 * HD_MAX_POLES + 16 * n) + 8 * n;
+        held = q * (HDI_CAST(double, sizeof set) + 32.0 * HDI_CAST(double, HD_MAX_POLES) + 16 * n) + 8 * n;
         if (distance) held += (16 * q + 128 + (full ? 16 : 0)) * n + 8.0 * lap->n;
         if (distance && h->heat->elim.ctx)
             held += 8 * HDI_CAST(double, hdi_sweep_size(&h->heat->elim.sym, HDI_PACK, 1));
@@ -25479,7 +25479,7 @@ static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c)
     const hd_heat *heat = x->h->heat;
     const hdi_fill f = hdi_heat_fill(heat);
     const double n = heat->source->n_active, runs = 2 + ceil(count / HDI_CAST(double, HDI_SPEC_HALF));
-    const double solves = 2.5 * count + HDI_SPEC_HALF, pairs = count + HDI_MODES_BEGIN;
+    const double solves = 2.5 * count + HDI_CAST(double, HDI_SPEC_HALF), pairs = count + HDI_MODES_BEGIN;
     const double seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * pairs;
     const double flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
     const double need = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
