@@ -4043,8 +4043,8 @@ HDI_PART void HDI_OF(pack_up_cols)(const int n_cols, const hdi_pack_sweep *g, in
     for (i = 0; i < g->n + g->u; i++, l += g->row) {
         double *to = i < g->n ? g->y + g->x_row * i : g->t + g->x_row * (i - g->n);
         HDI_OF(pack_many_zero)(n_cols, s);
-        HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, HDI_CAST(int32_t, HDI_PACK) * HDI_PACK_AHEAD, hdi_least(i, g->width),
-                              g->y + at, g->x_row, NULL);
+        HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, HDI_CAST(int32_t, HDI_PACK) * HDI_PACK_AHEAD,
+                              hdi_least(i, g->width), g->y + at, g->x_row, NULL);
         HDI_OF(pack_many_put)(n_cols, to + at, s);
     }
 }
@@ -17877,7 +17877,8 @@ static void hdi_batch_full(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
     hdi_check c[HDI_CHECK_BATCH], *list[HDI_CHECK_BATCH];
     int32_t r;
     for (r = 0; r < HDI_CHECK_BATCH; r++) {
-        c[r] = hdi_batch_check(m, i, lane[r], b->x + HDI_PACK * r, HDI_CAST(int32_t, HDI_PACK) * HDI_CHECK_BATCH);
+        c[r] = hdi_batch_check(m, i, lane[r], b->x + HDI_PACK * r,
+                               HDI_CAST(int32_t, HDI_PACK) * HDI_CHECK_BATCH);
         list[r] = c + r;
     }
     hdi_check_512_batch(list, xr, &real);
@@ -20149,7 +20150,8 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
         }
         s->off_ritz[i] = d2 > 0 ? sqrt(sum) / d2 : HUGE_VAL;
         reached = hdi_spec_converged(s, i);
-        s->off_ritz[i] += d2 > 0 ? (HDI_CAST(double, HDI_SPEC_WIDE) * DBL_EPSILON * largest + s->lost) / d2 : 0;
+        if (d2 > 0)
+            s->off_ritz[i] += (HDI_CAST(double, HDI_SPEC_WIDE) * DBL_EPSILON * largest + s->lost) / d2;
         s->stuck += reached && !hdi_spec_converged(s, i);
     }
     return HD_OK;
@@ -21489,7 +21491,8 @@ typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
 #define HDI_STEPS_HANDED_ON 3
 
 static double hdi_krylov_steps(double ratio, int goes_on) {
-    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), 0.9 * HDI_CAST(double, HDI_SILAN_MAX));
+    const double most = 0.9 * HDI_CAST(double, HDI_SILAN_MAX);
+    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
 }
 
 /* The number of windows of equal ratio that costs least. */
@@ -24244,7 +24247,8 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const double n = heat->source->n_active, wide = HDI_SPEC_WIDE, widest = HDI_SPEC_MOST;
     const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(heat->source->n_active);
-    const double group = HDI_SPEC_GROUP, chunks = HDI_SPEC_CHUNKS, spare = HDI_SPEC_SPARE, gaps = HDI_SPEC_GAPS;
+    const double group = HDI_SPEC_GROUP, chunks = HDI_SPEC_CHUNKS;
+    const double spare = HDI_SPEC_SPARE, gaps = HDI_SPEC_GAPS;
     const double most = hdi_min(n, hdi_min(widest, 2.0 * count + spare));
     double doubles = tiles * (most + wide) + 3 * n + 3 * widest * widest;
     doubles += (widest + wide) * wide * group * (chunks + 1);
