@@ -276,17 +276,20 @@ static int by_size(const void *a, const void *b) {
     return (x->n > y->n) - (x->n < y->n);
 }
 
-/* 2e-8, and not 2e-08. */
-static const char *as_error(double v, char text_of[16]) {
-    char *zero;
-    snprintf(text_of, 16, "%.0e", v);
-    zero = strstr(text_of, "e-0");
-    if (zero) memmove(zero + 2, zero + 3, strlen(zero + 3) + 1);
+enum { ERROR_TEXT = 24 };
+
+/* 2e-8, and not 2e-08, with a hyphen at which no line ends. */
+static const char *as_error(double v, char text_of[ERROR_TEXT]) {
+    const int power = v > 0 ? (int)floor(log10(v)) : 0;
+    const double digit = v / pow(10, power);
+    if (digit < 9.5)
+        snprintf(text_of, ERROR_TEXT, "%.0fe%s%d", digit, power < 0 ? "&#8209;" : "", abs(power));
+    else snprintf(text_of, ERROR_TEXT, "1e%s%d", power + 1 < 0 ? "&#8209;" : "", abs(power + 1));
     return text_of;
 }
 
 static void page_error(page *p, const char *of, double v) {
-    char number[16];
+    char number[ERROR_TEXT];
     page_number(p, p->table, of, p->columns[p->column], "row", (double)p->row + 1, "value", v);
     page_cell(p, "", as_error(v, number));
 }
@@ -362,10 +365,10 @@ static void pay_back_table(page *p) {
                                         "1000 h&#178;", "10&#8308; h&#178;", "16 times at once"};
     int k, m;
     page_table_begin(p, "table-pay-back", "Number of sources from which on the eigenbasis costs less in all "
-                     "than the direct method at this one time, or than the default at 16 times from h&#178; to "
-                     "10&#8308; h&#178;. Never: not even with all vertices as sources. In brackets: columns "
-                     "from the eigenpairs are off by more than a thousandth, so that it does not pay at any "
-                     "number; 16 times: at the smallest of them.", 8, names);
+                     "than the direct method at this one time, or than the default at 16 times from h&#178; "
+                     "to 10&#8308; h&#178;. Never: not even with all vertices as sources. In brackets: "
+                     "columns from the eigenpairs are off by more than a thousandth, so that it does not pay "
+                     "at any number; 16 times: at the smallest of them.", 8, names);
     for (k = 0; k < n_subjects; k++) {
         const subject *q = subjects + k;
         page_cell(p, "", q->name);
@@ -380,17 +383,17 @@ static void pay_back_table(page *p) {
 }
 
 static void close_table(page *p, const subject *q) {
-    static const char *const names[] = {"t / h&#178;", "one column by default, ms", "error",
+    static const char *const names[] = {"t", "one column by default, ms", "error",
         "error from eigenpairs", "eigenpairs / column", "further column, direct, ms",
         "further column, eigenpairs, ms"};
-    char caption[300], t[20];
+    char caption[300], t[40];
     int m;
     snprintf(caption, sizeof caption, "%s, %d vertices: one column against %d eigenpairs, which took %.3g s. "
              "Sums over them run at %.1f GF/s.", q->name, (int)q->n, (int)n_pairs, q->pairs_seconds,
              2e-9 * q->n * n_pairs / q->from_pairs[MIDDLE]);
     page_table_begin(p, "table-times", caption, 7, names);
     for (m = 0; m < TIMES; m++) {
-        snprintf(t, sizeof t, "%g", IN_H2[m]);
+        snprintf(t, sizeof t, "%g h&#178;", IN_H2[m]);
         page_cell(p, "", t);
         page_value(p, "", t, 1e3 * q->one[m], "%.0f");
         page_error(p, t, q->one_error[m]);
@@ -448,7 +451,7 @@ static void seconds_chart(page *p) {
 
 static void summary(page *p) {
     const subject *q = looked_at();
-    char of_pairs[TIMES][16], of_one[TIMES][16];
+    char of_pairs[TIMES][ERROR_TEXT], of_one[TIMES][ERROR_TEXT];
     double least = 1e300;
     int m, worse = 0;
     for (m = 0; m <= MIDDLE; m++) {
@@ -497,7 +500,7 @@ static shape subject_of_file(const char *path) {
 static void how_measured(page *p) {
     double residual = 0;
     int k, proven = 0;
-    char gap[16], most[16];
+    char gap[ERROR_TEXT], most[ERROR_TEXT];
     for (k = 0; k < n_subjects; k++) {
         residual = fmax(residual, subjects[k].pairs_residual);
         proven += subjects[k].pairs_proven != 0;
