@@ -172,6 +172,7 @@ static void test_tmp_remove(void) {
 #include "test_view.h"
 #include "test_estimate.h"
 #include "test_spectrum.h"
+#include "test_borders.h"
 #include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
@@ -184,6 +185,7 @@ static const test_group test_groups[] = {
     {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"moving", test_moving},
     {"platform", test_platform}, {"view", test_view},     {"estimate", test_estimate}, {"spectrum", test_spectrum},
+    {"borders", test_borders},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
