@@ -486,16 +486,17 @@ typedef struct hd_laplacian {
     int32_t *row;               /* [n] vertex -> row, or HD_ROW_INERT or HD_ROW_HELD */
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
     double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices */
-    double *component_mass;     /* [n_components] sum of mass */
+    double *component_mass;     /* [n_components] sum of mass; see conserves */
     /* B >= b_ratio diag(B): 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to itself).
      * Matrices: proven by Gershgorin's circles or by factorisations. 0: unknown. */
     double b_ratio;
-    /* 1: L 1 = 0, so that heat is conserved. Always so for meshes and points, unless heat leaves through
-     * vertices held at zero on some component. Matrices: up to 4 DBL_EPSILON sum_j |L_ij| in each row.
-     * Rounding in the row sums is then treated as zero, and t may be large. With 0, K_t f may fade like
-     * exp(-lambda_1 t), and bounds relative to the answer grow by as much: from t = 15/lambda_1 or so on they
-     * say little, and hd_spectrum serves better. A component that conserves its heat beside others that do
-     * not keeps it to the accuracy of the answer rather than to rounding. */
+    /* 1: L 1 = 0, so that heat is conserved. Always so for meshes and points of which no vertex is held.
+     * Matrices: up to 4 DBL_EPSILON sum_j |L_ij| in each row. Rounding in the row sums is then treated as
+     * zero, and t may be large.
+     * 2: so on some components. The others lose heat to vertices held at zero, and their component_mass is
+     * infinite, as what they had is spread over ever more.
+     * 0: on none, or unknown. K_t f may fade like exp(-lambda_1 t) then, and bounds relative to the answer
+     * grow by as much: from t = 15/lambda_1 or so on they say little, and hd_spectrum serves better. */
     int32_t conserves;
     /* Matrices and points: only n_inert. Tufted points: the triangles of their stars. */
     hd_mesh_report mesh;
@@ -8380,17 +8381,15 @@ static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_cs
  * positive semi-definite and B >= b_ratio diag(B), as parts of the whole that are cut out by rows and
  * columns. */
 
-/* The rows of the whole on the columns that are left. Fills all of L, B, mass, b_diag and conserves. */
+/* The rows of the whole on the columns that are left. Fills all of L, B, mass and b_diag. */
 static void hdi_held_values(hd_laplacian *lap, const hd_laplacian *whole) {
     int64_t p, q = 0;
     int32_t i;
-    lap->conserves = whole->conserves;
     for (i = 0; i < lap->n_active; i++) {
         const int32_t from = whole->row[lap->vertex[i]];
         double sum = 0;
         for (p = whole->L.row_ptr[from]; p < whole->L.row_ptr[from + 1]; p++) {
             const int32_t j = lap->row[whole->vertex[whole->L.col[p]]];
-            if (j < 0 && whole->L.val[p] != 0) lap->conserves = 0;
             if (j < 0) continue;
             lap->L.col[q] = j;
             lap->L.val[q] = whole->L.val[p];
@@ -8401,6 +8400,38 @@ static void hdi_held_values(hd_laplacian *lap, const hd_laplacian *whole) {
         lap->mass[i] = lap->B ? sum : whole->mass[from];
         lap->b_diag[i] = whole->b_diag[from];
     }
+}
+
+/* Masses of the components. */
+static void hdi_lap_component_masses(hd_laplacian *lap) {
+    int32_t i;
+    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
+}
+
+/* Does an entry of L lead from this row to a vertex that is held? */
+static int hdi_held_leaks(const hd_laplacian *lap, const hd_laplacian *whole, int32_t i) {
+    const int32_t from = whole->row[lap->vertex[i]];
+    int64_t p;
+    for (p = whole->L.row_ptr[from]; p < whole->L.row_ptr[from + 1]; p++)
+        if (whole->L.val[p] != 0 && lap->row[whole->vertex[whole->L.col[p]]] < 0) return 1;
+    return 0;
+}
+
+/* Masses of the components, and which of them conserve their heat. An infinite mass takes the constants out
+ * of all formulas: their part of K_t f is the heat divided by the mass. */
+static void hdi_held_components(hd_laplacian *lap, const hd_laplacian *whole) {
+    int32_t i, leaks = 0;
+    hdi_lap_component_masses(lap);
+    lap->conserves = whole->conserves;
+    for (i = 0; i < lap->n_active && whole->conserves; i++) {
+        double *mass = lap->component_mass + lap->component[i];
+        if (!hdi_finite(*mass) || !hdi_held_leaks(lap, whole, i)) continue;
+        *mass = HUGE_VAL;
+        leaks++;
+    }
+    if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
+    if (!lap->conserves) hdi_lap_component_masses(lap);
 }
 
 /* Rows for the vertices with mass that are not held. */
@@ -8446,7 +8477,7 @@ static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_
     for (i = 0; i < n && xyz; i++)
         hdi_copy3(xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
     hdi_held_values(lap, whole);
-    (void)hdi_lap_components(lap, e);
+    if (hdi_lap_components(lap, e) >= 0) hdi_held_components(lap, whole);
     return hdi_scope_end(&s);
 }
 
@@ -8501,8 +8532,7 @@ static void hdi_held_update(hd_laplacian *lap) {
     for (i = 0; i < lap->n_active && lap->xyz; i++)
         hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
     hdi_held_values(lap, whole);
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
-    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
+    hdi_held_components(lap, whole);
     lap->version++;
 }
 
@@ -19048,7 +19078,7 @@ static void hdi_ground_free(hdi_ground *g, hd_context *ctx) {
 static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
     int32_t i;
     int64_t p;
-    memset(loose, 1, HDI_CAST(size_t, lap->n_components));
+    for (i = 0; i < lap->n_components; i++) loose[i] = hdi_finite(lap->component_mass[i]) != 0;
     for (i = 0; i < lap->n_active && !lap->conserves; i++) {
         double sum = 0, size = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
@@ -19101,6 +19131,7 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
     if (off) memset(off, 0, HDI_CAST(size_t, lap->n_components) * sizeof *off);
     for (i = 0; i < lap->n_active; i++) {
         const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
+        const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
         double size = fabs(b[i]), rest = 0;
         r[i] = b[i];
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && !g->held[i]; p++) {
@@ -19110,8 +19141,8 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
             rest += lap->L.val[p];
         }
         if (g->held[i]) r[i] = 0;
-        else if (!lap->conserves) r[i] -= rest * x[i];
-        size += lap->conserves ? 0 : fabs(rest * x[i]);
+        else if (!conserves) r[i] -= rest * x[i];
+        size += conserves ? 0 : fabs(rest * x[i]);
         if (!g->held[i] && off)
             off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) *
                 sqrt(hdi_max(0, g->diag[i]));
@@ -20758,10 +20789,12 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(lane->u[i]));
+        if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
         heat += lap->mass[i] * lane->u[i];
         heat_abs += fabs(lap->mass[i] * lane->u[i]);
     }
-    for (i = 0; i < lap->n_components; i++) heat_in += lane->target[i];
+    for (i = 0; i < lap->n_components; i++)
+        if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
         hdi_parts off = hdi_lane_bound(lap, lane, reach);

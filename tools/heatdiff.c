@@ -1725,7 +1725,7 @@ static double auto_time(const run *r, int i, int count)
 {
     double area = 0;
     int c;
-    for (c = 0; c < r->lap->n_components; c++) area += r->lap->component_mass[c];
+    for (c = 0; c < r->lap->n_active; c++) area += r->lap->mass[c];
     /* B^-1 L tends to Laplacian/area */
     if (r->lap->kind == HD_LAPLACIAN_EXP) area = r->lap->area * r->lap->area;
     return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST,
@@ -2555,7 +2555,7 @@ static void print_errors(const run *r)
     } else {
         fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm)", w->error_bound,
                 w->error_bound_b);
-        if (r->lap->conserves) fprintf(stderr, ", heat conserved to %.1e\n", w->mass_drift);
+        if (r->lap->conserves == 1) fprintf(stderr, ", heat conserved to %.1e\n", w->mass_drift);
         else fprintf(stderr, ", heat leaves at the border\n");
     }
     if (w->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(w->status));
