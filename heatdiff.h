@@ -38,7 +38,8 @@
      kernels  K_t is not symmetric. Its column i diffuses the indicator of vertex i, whose heat is the mass
               b_i. k_t = K_t B^-1 is symmetric, the pointwise heat kernel k_t(x,y). Its column i diffuses one
               unit of heat placed at vertex i.
-     border   natural (Neumann): no heat leaves through a border. Separate components exchange no heat at all.
+     border   natural (Neumann): no heat leaves through a border. On request the border, or any vertices, are
+              held at zero (Dirichlet), and heat leaves there. Separate components exchange no heat at all.
      mass     Vertices without mass (in no face, or only in faces of zero area) are inert: K_t leaves their
               values as they are.
      norm     |f|_B = sqrt(f' B f). Errors are relative in this norm or relative to the largest value; each
@@ -340,6 +341,18 @@ typedef enum hd_laplacian_kind {
     HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
 } hd_laplacian_kind;
 
+/* Conditions at the border of the surface: the ends of edges with one face. */
+typedef enum hd_border {
+    HD_BORDER_NATURAL = 0,      /* Neumann: no heat leaves */
+    HD_BORDER_DIRICHLET         /* all its vertices are held at zero */
+} hd_border;
+
+/* What hd_laplacian.row says of a vertex that has no row. */
+enum {
+    HD_ROW_INERT = -1,          /* without mass: K_t leaves its value as it is */
+    HD_ROW_HELD = -2            /* held at zero: K_t f is zero there, for any f and t */
+};
+
 typedef struct hd_laplacian_opts {
     int32_t begin_zero;
     hd_laplacian_kind kind;     /* ignored by hd_laplacian_matrices */
@@ -369,6 +382,15 @@ typedef struct hd_laplacian_opts {
      * Takes 100 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
      * hd_laplacian_update_matrices may be called. Takes 24 bytes more for each entry. Points refuse it. */
     int32_t updatable;
+    /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. Points and
+     * matrices have no border that could be told for certain, and refuse Dirichlet: use held. */
+    hd_border border;
+    /* Further vertices that are held at zero, with any Laplacian: [n_held] ids, repeated ones do no harm. L
+     * and B lose the rows and columns of all held vertices, so that K_t is the exponential of what is left
+     * and heat flows out there. A mesh without border takes HD_BORDER_DIRICHLET and holds nothing.
+     * With updatable the whole pair is kept too, which takes twice the memory. */
+    int32_t n_held;
+    const int32_t *held;
     int32_t end_zero;
 } hd_laplacian_opts;
 
@@ -406,7 +428,7 @@ typedef struct hd_mesh_report {
     int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed */
     int64_t n_misoriented_edges;     /* with two faces that run along the edge in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
-    int32_t n_inert;                 /* vertices without mass */
+    int32_t n_inert;                 /* vertices without mass, held or not */
     /* Edges whose cotangent weight is negative. They are legitimate, but the maximum principle does not hold
      * then. Polygons: pairs of vertices, joined by edges or diagonals, whose entry of L is positive. Nearly
      * every face with more than three corners has some. */
@@ -442,10 +464,11 @@ typedef struct hd_point_report {
 } hd_point_report;
 
 /* A discrete surface: the pair (L, B) on one pattern. The library makes and frees it. Read all fields freely,
- * change none. Rows are the vertices that have mass, in the caller's order. */
+ * change none. Rows are the vertices that have mass and are not held at zero, in the caller's order. */
 typedef struct hd_laplacian {
     int32_t n;                  /* vertices of the caller */
-    int32_t n_active;           /* rows: vertices with mass */
+    int32_t n_active;           /* rows: vertices with mass that are not held */
+    int32_t n_held;             /* vertices held at zero */
     int32_t n_components;       /* connected components of the rows */
     hd_laplacian_kind kind;
     /* Mean length of the distinct edges, before any flip. Points: mean distance of a place to the nearest
@@ -455,18 +478,25 @@ typedef struct hd_laplacian {
     double area;
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B = diag(mass) */
-    double *mass;               /* [n_active] b = B 1, the masses of the vertices */
+    /* [n_active] b = B 1, the masses of the vertices. A full B without the columns of held vertices leaves
+     * less next to them; the heat that is there is b'u with the b of the Laplacian that holds none. */
+    double *mass;
     double *b_diag;             /* [n_active] diagonal of B; the same array as mass if B is diagonal */
     int32_t *vertex;            /* [n_active] row -> vertex */
-    int32_t *row;               /* [n] vertex -> row, -1 without mass */
+    int32_t *row;               /* [n] vertex -> row, or HD_ROW_INERT or HD_ROW_HELD */
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
     double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices */
-    double *component_mass;     /* [n_components] sum of mass */
+    double *component_mass;     /* [n_components] sum of mass; see conserves */
     /* B >= b_ratio diag(B): 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to itself).
      * Matrices: proven by Gershgorin's circles or by factorisations. 0: unknown. */
     double b_ratio;
-    /* 1: L 1 = 0, so that heat is conserved. Always so for meshes and points. Matrices: up to 4 DBL_EPSILON
-     * sum_j |L_ij| in each row. Rounding in the row sums is then treated as zero, and t may be large. */
+    /* 1: L 1 = 0, so that heat is conserved. Always so for meshes and points of which no vertex is held.
+     * Matrices: up to 4 DBL_EPSILON sum_j |L_ij| in each row. Rounding in the row sums is then treated as
+     * zero, and t may be large.
+     * 2: so on some components. The others lose heat to vertices held at zero, and their component_mass is
+     * infinite, as what they had is spread over ever more.
+     * 0: on none, or unknown. K_t f may fade like exp(-lambda_1 t) then, and bounds relative to the answer
+     * grow by as much: from t = 15/lambda_1 or so on they say little, and hd_spectrum serves better. */
     int32_t conserves;
     /* Matrices and points: only n_inert. Tufted points: the triangles of their stars. */
     hd_mesh_report mesh;
@@ -476,6 +506,7 @@ typedef struct hd_laplacian {
     hd_context *context;
     int64_t version;            /* number of updates */
     struct hd_moving *moving;   /* private: what hd_laplacian_update needs, or NULL */
+    struct hd_holding *holding; /* private: what is held, while it is made, or for updates; or NULL */
 } hd_laplacian;
 
 typedef enum hd_pole_kind {
@@ -5756,8 +5787,9 @@ static void hdi_pass_edges(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* Joins the vertices of all edges, in border those of boundary edges, whose marks are taken away. */
-static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border) {
+/* Joins the vertices of all edges, in border those of boundary edges, whose marks are taken away. mark [n]:
+ * becomes 1 at their ends, unless NULL. */
+static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border, char *mark) {
     int32_t i, p;
     hdi_fill_own(border, n);
     for (i = 0; i < n; i++) {
@@ -5765,6 +5797,7 @@ static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border) {
             if (g->to[p] < 0) {
                 g->to[p] = ~g->to[p];
                 hdi_unite(border, i, g->to[p]);
+                if (mark) mark[i] = mark[g->to[p]] = 1;
             }
             hdi_edges_join(g, i, g->to[p]);
         }
@@ -5792,6 +5825,7 @@ typedef struct hdi_mesh_wants {
     int weights, areas;         /* of edges: cotangents, and areas for a full B */
     hdi_lump lump;
     double *mass;               /* [n] masses of the vertices; NULL: not wanted */
+    char *border;               /* [n] becomes 1 at vertices of the boundary; NULL: not wanted */
 } hdi_mesh_wants;
 
 static hd_status hdi_pass_run(hdi_pass *pass, const hdi_mesh_wants *want, hd_mesh_report *rep,
@@ -5806,7 +5840,7 @@ static hd_status hdi_pass_run(hdi_pass *pass, const hdi_mesh_wants *want, hd_mes
         if (pass->sides.ptr[i + 1] - pass->sides.ptr[i] > HDI_SHORT_LIST) hdi_sides_sort(&pass->sides, i);
     hdi_parallel_ranges(own->ctx, mesh->n, HDI_CAST(int64_t, 1) << pass->shift, hdi_pass_edges, pass);
     for (i = 0; i < HDI_BLOCKS_MOST; i++) hdi_edge_tally_add(&tally, &pass->block[i].edges);
-    hdi_pass_join(pass->edges, mesh->n, border);
+    hdi_pass_join(pass->edges, mesh->n, border, want->border);
     pass->edges->length = tally.length;
     hdi_edge_report(&tally, border, mesh->n, rep);
     return HD_OK;
@@ -7326,6 +7360,18 @@ typedef struct hd_moving {
     double *mass;               /* [n] by vertices */
 } hdi_moving;
 
+/* Vertices held at zero. */
+typedef struct hd_holding {
+    int border;                 /* those of the boundary too */
+    char *mark;                 /* [n] 1: held */
+    hd_laplacian *whole;        /* for updates: the Laplacian that holds none */
+} hdi_holding;
+
+/* [n] where a mesh marks the vertices of its boundary; NULL: they are not asked for. */
+static char *hdi_lap_border(const hd_laplacian *lap) {
+    return lap->holding && lap->holding->border ? lap->holding->mark : NULL;
+}
+
 static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
     if (!x) return;
     while (x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
@@ -7338,8 +7384,8 @@ static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
     hdi_free(ctx, x);
 }
 
-static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
-    if (!lap) return;
+/* Frees what a Laplacian points to. */
+static void hdi_lap_clear(hd_laplacian *lap, hd_context *ctx) {
     hdi_moving_free(lap->moving, ctx);
     hdi_csr_free(ctx, &lap->L);
     if (lap->b_diag != lap->mass) hdi_free(ctx, lap->b_diag);
@@ -7350,6 +7396,20 @@ static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     hdi_free(ctx, lap->component);
     hdi_free(ctx, lap->xyz);
     hdi_free(ctx, lap->component_mass);
+}
+
+static void hdi_holding_free(hdi_holding *x, hd_context *ctx) {
+    if (!x) return;
+    if (x->whole) hdi_lap_clear(x->whole, ctx);
+    hdi_free(ctx, x->whole);
+    hdi_free(ctx, x->mark);
+    hdi_free(ctx, x);
+}
+
+static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
+    if (!lap) return;
+    hdi_holding_free(lap->holding, ctx);
+    hdi_lap_clear(lap, ctx);
     hdi_free(ctx, lap);
 }
 
@@ -7365,7 +7425,7 @@ static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_e
     hd_context *ctx = lap->context;
     lap->row = HDI_NEW(ctx, int32_t, lap->n, e);
     if (!lap->row) return e->status;
-    for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : -1;
+    for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : HD_ROW_INERT;
     lap->n_active = k;
     lap->mesh.n_inert = lap->n - k;
     if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
@@ -7560,6 +7620,7 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_s
     want.areas = full && lap->kind == HD_LAPLACIAN_FEM;
     want.lump = hdi_lap_lump(lap->kind);
     want.mass = vertex_mass;
+    want.border = hdi_lap_border(lap);
     if (!vertex_mass || hdi_mesh_faces(mesh, &edges, &want, &lap->mesh, s) < 0) return hdi_scope_end(&own);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
         return hdi_scope_end(&own);
@@ -7841,6 +7902,7 @@ static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i,
 static void hdi_poly_row_edges(hd_laplacian *lap, const double *xyz, int32_t i,
                                const hdi_poly_work *work, hdi_edge_tally *all, int32_t *border) {
     const int64_t begin = lap->L.row_ptr[i];
+    char *mark = hdi_lap_border(lap);
     hdi_edge_tally tally = {0, 0, 0, 0, 0};
     int64_t p;
     for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
@@ -7851,6 +7913,7 @@ static void hdi_poly_row_edges(hd_laplacian *lap, const double *xyz, int32_t i,
         hdi_edge_count(&tally, faces, work->forward[p - begin],
                        hdi_edge_length(xyz, lap->vertex[i], lap->vertex[j]));
         if (faces == 1) hdi_unite(border, i, j);
+        if (faces == 1 && mark) mark[lap->vertex[i]] = mark[lap->vertex[j]] = 1;
     }
     hdi_edge_tally_add(all, &tally);
 }
@@ -8026,6 +8089,7 @@ static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const double *xyz, const i
     hdi_mesh_wants want;
     hdi_soup soup;
     memset(&want, 0, sizeof want);
+    want.border = hdi_lap_border(lap);
     hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
     if (hdi_mesh_faces(&mesh, &edges, &want, rep, &s) < 0) return hdi_scope_end(&s);
     if (rep->n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
@@ -8429,6 +8493,166 @@ static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_cs
     return HD_OK;
 }
 
+/* ---- vertices held at zero ----
+ * Dirichlet conditions: what is held has no row and no column, in L nor in B. What is left is again a pair, L
+ * positive semi-definite and B >= b_ratio diag(B), as parts of the whole that are cut out by rows and
+ * columns. */
+
+/* The rows of the whole on the columns that are left. Fills all of L, B, mass and b_diag. */
+static void hdi_held_values(hd_laplacian *lap, const hd_laplacian *whole) {
+    int64_t p, q = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t from = whole->row[lap->vertex[i]];
+        double sum = 0;
+        for (p = whole->L.row_ptr[from]; p < whole->L.row_ptr[from + 1]; p++) {
+            const int32_t j = lap->row[whole->vertex[whole->L.col[p]]];
+            if (j < 0) continue;
+            lap->L.col[q] = j;
+            lap->L.val[q] = whole->L.val[p];
+            if (lap->B) sum += lap->B[q] = whole->B[p];
+            q++;
+        }
+        lap->L.row_ptr[i + 1] = q;
+        lap->mass[i] = lap->B ? sum : whole->mass[from];
+        lap->b_diag[i] = whole->b_diag[from];
+    }
+}
+
+/* Masses of the components. */
+static void hdi_lap_component_masses(hd_laplacian *lap) {
+    int32_t i;
+    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
+}
+
+/* Does an entry of L lead from this row to a vertex that is held? */
+static int hdi_held_leaks(const hd_laplacian *lap, const hd_laplacian *whole, int32_t i) {
+    const int32_t from = whole->row[lap->vertex[i]];
+    int64_t p;
+    for (p = whole->L.row_ptr[from]; p < whole->L.row_ptr[from + 1]; p++)
+        if (whole->L.val[p] != 0 && lap->row[whole->vertex[whole->L.col[p]]] < 0) return 1;
+    return 0;
+}
+
+/* Masses of the components, and which of them conserve their heat. An infinite mass takes the constants out
+ * of all formulas: their part of K_t f is the heat divided by the mass. */
+static void hdi_held_components(hd_laplacian *lap, const hd_laplacian *whole) {
+    int32_t i, leaks = 0;
+    hdi_lap_component_masses(lap);
+    lap->conserves = whole->conserves;
+    for (i = 0; i < lap->n_active && whole->conserves; i++) {
+        double *mass = lap->component_mass + lap->component[i];
+        if (!hdi_finite(*mass) || !hdi_held_leaks(lap, whole, i)) continue;
+        *mass = HUGE_VAL;
+        leaks++;
+    }
+    if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
+    if (!lap->conserves) hdi_lap_component_masses(lap);
+}
+
+/* Rows for the vertices with mass that are not held. */
+static hd_status hdi_held_rows(hd_laplacian *lap, const hd_laplacian *whole, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const char *mark = lap->holding->mark;
+    double *left = HDI_TAKE(&s, double, lap->n);
+    int32_t v, n = 0;
+    if (!left) return hdi_scope_end(&s);
+    for (v = 0; v < lap->n; v++) {
+        left[v] = whole->row[v] >= 0 && !mark[v];
+        n += left[v] > 0;
+    }
+    if (n == 0) hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
+    if (n == 0 || hdi_lap_rows(lap, left, e) < 0) return hdi_scope_end(&s);
+    lap->mesh.n_inert = whole->mesh.n_inert;
+    for (v = 0; v < lap->n; v++)
+        if (mark[v]) lap->row[v] = HD_ROW_HELD;
+    return hdi_scope_end(&s);
+}
+
+/* Room for the pair, its places if the whole has some, and all that follows from the values. */
+static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int32_t n = lap->n_active;
+    int64_t nnz = 0, p;
+    int32_t i;
+    double *B, *b_diag, *xyz;
+    hd_csr L;
+    for (p = 0; p < whole->L.nnz; p++) nnz += lap->row[whole->vertex[whole->L.col[p]]] >= 0;
+    for (i = 0; i < whole->n_active; i++)        /* rows that go, on columns that stay */
+        for (p = whole->L.row_ptr[i]; p < whole->L.row_ptr[i + 1] && lap->row[whole->vertex[i]] < 0; p++)
+            nnz -= lap->row[whole->vertex[whole->L.col[p]]] >= 0;
+    L = hdi_csr_take(&s, n, n, nnz, 1);
+    B = whole->B ? HDI_TAKE(&s, double, nnz) : NULL;
+    b_diag = whole->B ? HDI_TAKE(&s, double, n) : NULL;
+    xyz = whole->xyz ? HDI_TAKE(&s, double, hdi_triple(n)) : NULL;
+    if (e->status < 0) return hdi_scope_end(&s);
+    lap->L = hdi_csr_keep(&s, L);
+    lap->B = HDI_CAST(double *, hdi_keep(&s, B));
+    lap->xyz = HDI_CAST(double *, hdi_keep(&s, xyz));
+    if (b_diag) lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    for (i = 0; i < n && xyz; i++)
+        hdi_copy3(xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
+    hdi_held_values(lap, whole);
+    if (hdi_lap_components(lap, e) >= 0) hdi_held_components(lap, whole);
+    return hdi_scope_end(&s);
+}
+
+/* The pair of lap becomes that of a Laplacian of its own, the whole. */
+static hd_laplacian *hdi_held_whole(hd_laplacian *lap, hd_error *e) {
+    hd_laplacian *whole = HDI_CAST(hd_laplacian *, hdi_alloc(lap->context, 1, sizeof *whole, e));
+    if (!whole) return NULL;
+    *whole = *lap;
+    whole->holding = NULL;
+    memset(&lap->L, 0, sizeof lap->L);
+    lap->B = lap->mass = lap->b_diag = lap->xyz = lap->component_mass = NULL;
+    lap->vertex = lap->row = lap->component = NULL;
+    lap->moving = NULL;
+    lap->n_components = 0;
+    return lap->holding->whole = whole;
+}
+
+/* Ends the making of a Laplacian, which holds no vertex so far: takes out those that are marked. */
+static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
+    hdi_holding *x = lap->holding;
+    int32_t v, rows = 0;
+    if (!x || e->status < 0) return e->status;
+    for (v = 0; v < lap->n; v++) {
+        lap->n_held += x->mark[v];
+        rows += x->mark[v] && lap->row[v] >= 0;
+        if (x->mark[v] && lap->row[v] < 0) lap->row[v] = HD_ROW_HELD;
+    }
+    if (rows > 0) {
+        const hd_laplacian *whole = hdi_held_whole(lap, e);
+        if (!whole || hdi_held_rows(lap, whole, e) < 0 || hdi_held_fill(lap, whole, e) < 0) return e->status;
+        if (whole->moving) return HD_OK;
+    }
+    hdi_holding_free(x, lap->context);
+    lap->holding = NULL;
+    return HD_OK;
+}
+
+/* What updates change: the Laplacian itself, or the one that holds none. */
+static hd_laplacian *hdi_lap_moved(hd_laplacian *lap) {
+    return lap->holding ? lap->holding->whole : lap;
+}
+
+/* Takes over what an update has changed in the whole. */
+static void hdi_held_update(hd_laplacian *lap) {
+    const hd_laplacian *whole = hdi_lap_moved(lap);
+    int32_t i;
+    if (whole == lap) return;
+    lap->h = whole->h;
+    lap->area = whole->area;
+    lap->b_ratio = whole->b_ratio;
+    lap->mesh = whole->mesh;
+    for (i = 0; i < lap->n_active && lap->xyz; i++)
+        hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
+    hdi_held_values(lap, whole);
+    hdi_held_components(lap, whole);
+    lap->version++;
+}
+
 /* ---- pairs renumbered ---- */
 
 static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
@@ -8561,6 +8785,7 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     out->B = NULL;
     out->xyz = NULL;                             /* an order has been found */
     out->moving = NULL;
+    out->holding = NULL;
     out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
     out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
     out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
@@ -19280,7 +19505,7 @@ static void hdi_ground_free(hdi_ground *g, hd_context *ctx) {
 static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
     int32_t i;
     int64_t p;
-    memset(loose, 1, HDI_CAST(size_t, lap->n_components));
+    for (i = 0; i < lap->n_components; i++) loose[i] = hdi_finite(lap->component_mass[i]) != 0;
     for (i = 0; i < lap->n_active && !lap->conserves; i++) {
         double sum = 0, size = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
@@ -19333,6 +19558,7 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
     if (off) memset(off, 0, HDI_CAST(size_t, lap->n_components) * sizeof *off);
     for (i = 0; i < lap->n_active; i++) {
         const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
+        const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
         double size = fabs(b[i]), rest = 0;
         r[i] = b[i];
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && !g->held[i]; p++) {
@@ -19342,8 +19568,8 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
             rest += lap->L.val[p];
         }
         if (g->held[i]) r[i] = 0;
-        else if (!lap->conserves) r[i] -= rest * x[i];
-        size += lap->conserves ? 0 : fabs(rest * x[i]);
+        else if (!conserves) r[i] -= rest * x[i];
+        size += conserves ? 0 : fabs(rest * x[i]);
         if (!g->held[i] && off)
             off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) *
                 sqrt(hdi_max(0, g->diag[i]));
@@ -20898,7 +21124,7 @@ static void hdi_spec_sum_run(hdi_spec_sum *a, int32_t vertex, double inert, doub
         a->whole = a->mass ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
     }
     for (q = 0; q < s->n; q++) {
-        a->out[q] = inert;
+        a->out[q] = lap->row[q] == HD_ROW_HELD ? 0 : inert;
         if (a->bound) a->bound[q] = 0;
     }
     hdi_parallel_ranges(ctx, lap->n_active, 1024, hdi_spec_sum_task, a);
@@ -21015,10 +21241,12 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(lane->u[i]));
+        if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
         heat += lap->mass[i] * lane->u[i];
         heat_abs += fabs(lap->mass[i] * lane->u[i]);
     }
-    for (i = 0; i < lap->n_components; i++) heat_in += lane->target[i];
+    for (i = 0; i < lap->n_components; i++)
+        if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
         hdi_parts off = hdi_lane_bound(lap, lane, reach);
@@ -21841,8 +22069,9 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         const int32_t v = list->rows[at.id], row = lap->row[v];
         hdi_parts off;
         memset(&off, 0, sizeof off);
-        values[at.id] = row < 0 ? 0 : unit * lane->u[row];
-        if (lane->skip) values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && HDI_CAST(uint64_t, v) == at.key;
+        values[at.id] = row < 0 || lane->skip ? 0 : unit * lane->u[row];
+        if (row == HD_ROW_INERT)
+            values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && HDI_CAST(uint64_t, v) == at.key;
         if (!lane->skip && row >= 0)
             off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
@@ -21865,6 +22094,8 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
         memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
         if (lane->skip) u[hdi_heat_source(h, q)] = h->ask.query == HDI_QUERY_OPERATOR;
     }
+    for (i = 0; i < lap->n && lap->n_held > 0; i++)
+        if (lap->row[i] == HD_ROW_HELD) u[i] = 0;
     for (i = 0; i < lap->n_active && !lane->skip; i++)
         u[lap->vertex[i]] = lane->exponent ? ldexp(lane->u[i], lane->exponent) : unit * lane->u[i];
 }
@@ -23035,7 +23266,7 @@ static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, double 
     double most = 0;
     int32_t i, v;
     h->relative = 1;
-    for (v = 0; v < lap->n; v++) out[v] = d->kernel == HD_KERNEL_OPERATOR && lap->row[v] < 0;
+    for (v = 0; v < lap->n; v++) out[v] = d->kernel == HD_KERNEL_OPERATOR && lap->row[v] == HD_ROW_INERT;
     for (i = 0; i < lap->n_active; i++) {
         const double value = d->value[i], seen = rounding > 0 ? unit * rounding * fabs(d->size[i]) : 0;
         hdi_parts part;
@@ -24787,7 +25018,7 @@ static double hdi_pairs_entry(const hd_laplacian *lap, const hdi_pairs *x, int64
     double sum = 0;
     int64_t p;
     if (x->kind == HD_DISTANCE_WEIGHTED) return uj[i];
-    if (row < 0) return i == j;
+    if (row < 0) return i == j && row == HD_ROW_INERT;
     if (!lap->B) return ui[j] * lap->mass[row];
     for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++)
         sum += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
@@ -26807,6 +27038,35 @@ typedef struct hdi_laplacian {
     hd_context context;
 } hdi_laplacian;
 
+/* Marks the vertices that the options hold at zero. */
+static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_error *e) {
+    hdi_holding *x;
+    int32_t q;
+    hdi_refuse(o && (o->border < HD_BORDER_NATURAL || o->border > HD_BORDER_DIRICHLET),
+               "laplacian options: border is natural or Dirichlet", e);
+    hdi_refuse(o && (o->n_held < 0 || (o->n_held > 0 && !o->held)),
+               "laplacian options: n_held is negative, or held is missing", e);
+    if (e->status < 0 || !o || (o->border == HD_BORDER_NATURAL && o->n_held == 0)) return e->status;
+    for (q = 0; q < o->n_held; q++)
+        if (o->held[q] < 0 || o->held[q] >= lap->n)
+            return hdi_fail_row(e, HD_ERR_INDEX, "laplacian options: a vertex to hold is not in the mesh", q,
+                                -1, o->held[q]);
+    lap->holding = x = HDI_NEW(lap->context, hdi_holding, 1, e);
+    if (!x) return e->status;
+    memset(x, 0, sizeof *x);
+    x->border = o->border == HD_BORDER_DIRICHLET;
+    x->mark = HDI_NEW(lap->context, char, lap->n, e);
+    if (x->mark) memset(x->mark, 0, HDI_CAST(size_t, lap->n));
+    for (q = 0; q < o->n_held && x->mark; q++) x->mark[o->held[q]] = 1;
+    return e->status;
+}
+
+/* Points and matrices cannot tell their border. */
+static void hdi_no_border(const hd_laplacian_opts *o, hd_error *e) {
+    hdi_refuse(o && o->border == HD_BORDER_DIRICHLET,
+               "laplacian options: only meshes know their border; list the vertices in held", e);
+}
+
 /* A Laplacian without content. */
 static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind,
                                  hd_error *err, hdi_call *c) {
@@ -26822,6 +27082,7 @@ static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_la
     shell->lap.kind = kind;
     shell->lap.context = hdi_enter_keep(c, &shell->context);
     hdi_hold(c->ctx);
+    (void)hdi_lap_held(&shell->lap, opts, c->e);
     return &shell->lap;
 }
 
@@ -26840,6 +27101,11 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
     if (status >= 0) *out = lap;
     else hdi_lap_drop(lap);
     return status;
+}
+
+/* The same once the pair of all vertices is there. */
+static hd_status hdi_lap_end(hd_laplacian **out, hd_laplacian *lap, hd_status status, hd_error *e) {
+    return hdi_lap_done(out, lap, status < 0 ? status : hdi_lap_hold(lap, e));
 }
 
 /* Ends the checks: returns their first failure, else reports that the assembly begins. */
@@ -26885,8 +27151,8 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
                "laplacian of triangles: an intrinsic triangulation is not updatable", c.e);
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     if (HDI_HAS_INTRINSIC && intrinsic)
-        return hdi_lap_done(out, lap, hdi_lap_intrinsic(lap, xyz, tri, n_tri, &task, c.e));
-    return hdi_lap_done(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, opts && opts->updatable, c.e));
+        return hdi_lap_end(out, lap, hdi_lap_intrinsic(lap, xyz, tri, n_tri, &task, c.e), c.e);
+    return hdi_lap_end(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, opts && opts->updatable, c.e), c.e);
 }
 
 /* ---- views of vertex and index buffers ---- */
@@ -26990,8 +27256,8 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     hdi_refuse(flips && updatable, "laplacian of polygons: an intrinsic triangulation is not updatable", c.e);
     if (hdi_lap_begin(&c) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, updatable, c.e)
-                                         : hdi_lap_polygons(lap, &poly, updatable, c.e));
+    return hdi_lap_end(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, updatable, c.e)
+                                        : hdi_lap_polygons(lap, &poly, updatable, c.e), c.e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h,
@@ -27001,6 +27267,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (!lap) return c.e->status;
     if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
     hdi_refuse(!hdi_finite(h) || h < 0, "laplacian of matrices: h is negative or not finite", c.e);
+    hdi_no_border(opts, c.e);
     if (c.e->status < 0 || hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
     if (L->n_rows != B->n_rows)
@@ -27012,7 +27279,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < HDI_RATIO_POOR && HDI_HAS_DIRECT)
         (void)hdi_lap_ratio(lap, c.e);
     if (c.e->status >= 0 && opts && opts->updatable) (void)hdi_moving_pair_make(lap, c.e);
-    return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_end(out, lap, c.e->status, c.e);
 }
 
 static void hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
@@ -27049,7 +27316,8 @@ HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz
     if (!HDI_HAS_POINTS) return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POINTS, "points"));
     if (!out || (n > 0 && !xyz)) hdi_missing(c.e);
     hdi_point_opts(lap, opts, c.e);
-    return hdi_lap_done(out, lap, hdi_lap_begin(&c) < 0 ? c.e->status : hdi_lap_points(lap, xyz, c.e));
+    hdi_no_border(opts, c.e);
+    return hdi_lap_end(out, lap, hdi_lap_begin(&c) < 0 ? c.e->status : hdi_lap_points(lap, xyz, c.e), c.e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n,
@@ -27070,8 +27338,9 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
     hdi_refuse(opts && opts->updatable,
                "tufted laplacian of points: not updatable, because new places make new triangles", c.e);
     if (!nbr_ptr) hdi_point_neighbours(&lap->points, opts, c.e);
+    hdi_no_border(opts, c.e);
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_done(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e));
+    return hdi_lap_end(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e), c.e);
 }
 
 /* Checks points, queries and sizes. *m becomes the number of queries. */
@@ -27146,35 +27415,42 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
 }
 
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err) {
+    hd_laplacian *all;
     hdi_call c;
     if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
     if (!lap || !xyz) return hdi_missing(c.e);
-    hdi_refuse(!lap->moving, "update: the Laplacian was not made with the option updatable", c.e);
-    hdi_refuse(lap->moving && lap->moving->pair,
+    all = hdi_lap_moved(lap);
+    hdi_refuse(!all->moving, "update: the Laplacian was not made with the option updatable", c.e);
+    hdi_refuse(all->moving && all->moving->pair,
                "update: matrices of your own take hd_laplacian_update_matrices", c.e);
     if (c.e->status < 0) return c.e->status;
-    return lap->moving->poly ? hdi_moving_poly_update(lap, xyz, c.e) : hdi_lap_update(lap, xyz, c.e);
+    if ((all->moving->poly ? hdi_moving_poly_update(all, xyz, c.e) : hdi_lap_update(all, xyz, c.e)) >= 0)
+        hdi_held_update(lap);
+    return c.e->status;
 }
 
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
                                                     double h, hd_error *err) {
+    hd_laplacian *all;
     hdi_call c;
     if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
     if (!lap || !L || !B || !L->val || !B->val) return hdi_missing(c.e);
-    hdi_refuse(!lap->moving || !lap->moving->pair,
+    all = hdi_lap_moved(lap);
+    hdi_refuse(!all->moving || !all->moving->pair,
                "update of matrices: the Laplacian was not made of matrices with the option updatable", c.e);
     hdi_refuse(!hdi_finite(h) || h < 0, "update of matrices: h is negative or not finite", c.e);
     hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
                "update of matrices: a matrix has another size", c.e);
     if (c.e->status < 0 || hdi_csr_check(L, 0, c.ctx, c.e) < 0 || hdi_csr_check(B, 0, c.ctx, c.e) < 0 ||
-        hdi_pair_update(lap, L, B, c.e) < 0)
+        hdi_pair_update(all, L, B, c.e) < 0)
         return c.e->status;
-    if (lap->b_ratio < HDI_RATIO_POOR && hdi_lap_ratio(lap, c.e) < 0) {
-        hdi_moving_pair_restore(lap);
+    if (all->b_ratio < HDI_RATIO_POOR && hdi_lap_ratio(all, c.e) < 0) {
+        hdi_moving_pair_restore(all);
         return c.e->status;
     }
-    lap->h = h;
-    lap->version++;
+    all->h = h;
+    all->version++;
+    hdi_held_update(lap);
     return HD_OK;
 }
 
@@ -27700,7 +27976,7 @@ HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kerne
                            bound);
             h.sum.f = hdi_spec_filter_of(s, t[m], 0);
             hdi_spec_sum_run(&h.sum, sources[q], 0, h.work, h.c.ctx);
-            if (h.sum.mass && s->lap->row[sources[q]] < 0) h.sum.out[sources[q]] = 1;
+            if (h.sum.mass && s->lap->row[sources[q]] == HD_ROW_INERT) h.sum.out[sources[q]] = 1;
         }
     }
     return hdi_sum_end(&h);

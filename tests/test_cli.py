@@ -786,6 +786,53 @@ class Intrinsic(Case):
         self.bad(2, "render", "--tufted", self.book)
 
 
+class Borders(Case):
+    """A square of n x n cells: with voronoi-cot its Laplacian is the five-point one, whose eigenvectors are products of sines."""
+    N = 12
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        n = cls.N
+        v = [(i / n, j / n, 0) for j in range(n + 1) for i in range(n + 1)]
+        low = [j * (n + 1) + i for j in range(n) for i in range(n)]
+        cls.square = cls.file("square.obj", obj_text(v, [t for a in low for t in ((a, a + 1, a + n + 2), (a, a + n + 2, a + n + 1))]))
+        cls.points = cls.file("square.xyz", "".join("%.9g %.9g %.9g\n" % p for p in v))
+
+    def kernel(self, i, j, t):
+        """K_t between two vertices: a product over both directions."""
+        n, k = self.N, 1.0
+        for a, b in ((i % (n + 1), j % (n + 1)), (i // (n + 1), j // (n + 1))):
+            k *= sum(2 / n * math.sin(m * math.pi * a / n) * math.sin(m * math.pi * b / n) *
+                     math.exp(-t * 4 * n * n * math.sin(m * math.pi / 2 / n) ** 2) for m in range(1, n))
+        return k
+
+    def test_kernel(self):
+        n, t, source = self.N, 0.02, 5 * (self.N + 1) + 4
+        for method in ("direct", "krylov", "iterative"):
+            u = self.field("kernel", self.square, "--border", "dirichlet", "--laplacian", "voronoi-cot", "--source", source, "--t", t, "--method", method)
+            want = [self.kernel(i, source, t) for i in range((n + 1) ** 2)]
+            self.assertLess(max(abs(a[0] - b) for a, b in zip(u, want)), 1e-7 * max(want))
+            self.assertTrue(all(u[i][0] == 0 for i in range((n + 1) ** 2) if i % (n + 1) in (0, n) or i // (n + 1) in (0, n)))
+        u = self.field("hks", self.square, "--border", "dirichlet", "--laplacian", "voronoi-cot", "--t", t)
+        self.assertLess(max(abs(a[0] / n ** 2 - self.kernel(i, i, t)) for i, a in enumerate(u)), 1e-7 * max(want))
+        natural = self.field("hks", self.square, "--border", "natural", "--laplacian", "voronoi-cot", "--t", t)
+        self.assertTrue(all(a[0] < b[0] for a, b in zip(u, natural)))
+
+    def test_report(self):
+        text = self.good("info", self.square, "--border", "dirichlet").stdout.decode()
+        self.assertRegex(text, "vertices held at zero +%d" % (4 * self.N))
+        r = json.loads(self.good("kernel", self.square, "--border", "dirichlet", "--source", 30, "--t", "0.02", "--json", "-o", self.path("b.txt")).stderr)
+        self.assertEqual((r["held"], r["inert"], r["mass_drift"]), (4 * self.N, 0, 0))
+        text = self.good("kernel", self.square, "--border", "dirichlet", "--source", 30, "--t", "0.02", "-o", self.path("b.txt")).stderr.decode()
+        self.assertIn("heat leaves at the border", text)
+
+    def test_refused(self):
+        self.assertIn("natural or dirichlet", self.bad(2, "info", self.square, "--border", "neumann"))
+        self.assertIn("--border dirichlet needs faces", self.bad(1, "info", self.points, "--border", "dirichlet"))
+        self.bad(2, "geodesic", self.square, "--border", "dirichlet", "--source", 0)
+
+
 class Methods(Case):
     """Every method computes the same, on whatever mesh."""
     @classmethod

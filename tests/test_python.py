@@ -147,6 +147,45 @@ class Dense(unittest.TestCase):
         self.check(hd.triangles(xyz, tri, kind="HD_LAPLACIAN_VORONOI_COT"), L, voronoi(xyz, tri), times)
         self.check(hd.triangles(xyz, tri, kind="HD_LAPLACIAN_COT"), L, np.eye(len(xyz)), [0.1, 10])
 
+    def test_held(self):
+        """The border and one more vertex held at zero: the exponential of what is left of L and B, zero elsewhere."""
+        xyz, tri, _ = bumpy(11)
+        xyz = xyz + 0.02 * np.random.default_rng(1).standard_normal(xyz.shape)
+        L, B = cotangents(xyz, tri)
+        free = np.array([v for v in range(121) if 0 < v % 11 < 10 and 0 < v // 11 < 10 and v != 60])
+        part, sources = np.ix_(free, free), [17, 3]
+        for kind, M in (("FEM", B), ("VORONOI_COT", voronoi(xyz, tri)), ("COT", np.eye(121))):
+            lap = hd.triangles(xyz, tri, kind="HD_LAPLACIAN_" + kind, border="HD_BORDER_DIRICHLET", held=[60, 3])
+            self.assertTrue(np.array_equal(lap.vertex, free) and lap.info.n_held == 41 and not lap.info.conserves)
+            self.assertLess(abs(lap.L - L[part]).max(), 1e-12 * abs(L).max())
+            self.assertLess(abs(lap.B - M[part]).max(), 1e-13 * abs(M).max())
+            heat = hd.Heat(lap)
+            for t in np.array([0.3, 3, 10]) * (1 if kind == "COT" else lap.h ** 2):
+                K, k, W = np.zeros((3, 121, 121))
+                K[part] = scipy.linalg.expm(-t * np.linalg.solve(M[part], L[part]))
+                k[part] = np.linalg.solve(M[part], K[part].T)
+                W[part] = M[part] @ K[part] @ K[part]
+                f = np.sin(np.arange(121))
+                self.assertLess(abs(heat.columns(t, sources) - K[:, sources]).max(), 1e-7 * K[:, 17].max())
+                self.assertLess(abs(heat.columns(t, sources, symmetric=True) - k[:, sources]).max(), 1e-7 * k[:, 17].max())
+                self.assertLess(abs(heat.diagonal(t)[:, 0] - np.diag(k)).max(), 1e-6 * np.diag(k).max())
+                self.assertLess(abs(heat.apply(t, f)[:, 0] - K @ f).max(), 1e-7)
+                i, j = np.array([17, 3, 17, 3]), np.array([29, 17, 3, 3])
+                self.assertLess(abs(heat.entries(t, i, j)[:, 0] - K[i, j]).max(), 1e-7 * abs(K[17, 29]))
+                for name, G in (("CLASSICAL", K @ k), ("WEIGHTED", W)):
+                    want = np.sqrt(np.maximum(np.diag(G)[:, None] - 2 * G + np.diag(G), 0))
+                    d = heat.distance(t, sources, kind="HD_DISTANCE_" + name)
+                    self.assertLess(abs(d - want[:, sources]).max(), 1e-5 * want.max(), (t, kind, name))
+                    pairs = heat.pairs(t, i, j, kind="HD_DISTANCE_" + name)[:, 0]
+                    self.assertLess(abs(pairs - want[i, j]).max(), 1e-6 * want.max(), (t, kind, name))
+            G = np.linalg.inv(L[part])
+            for name, g in (("COMMUTE", G), ("BIHARMONIC", G @ M[part] @ G)):
+                r = list(free).index(17)
+                want = np.sqrt(g[r, r] - 2 * g[r] + np.diag(g))
+                d = heat.distance(None, 17, kind="HD_DISTANCE_" + name)[:, 0]
+                self.assertLess(abs(d[free] - want).max(), 1e-9 * want.max())
+                self.assertEqual(np.isinf(d).sum(), 41)
+
     def test_points(self):
         """Points with matrices of one's own."""
         p = np.random.default_rng(2).standard_normal((150, 3))

@@ -581,7 +581,8 @@ static int truth_make(truth *T, const hd_laplacian *lap, int exact) {
     for (c = 0; c < T->n_comp && ok; c++) {
         for (i = 0, m = 0; i < n; i++)
             if (T->comp[i] == c) rows[m++] = i;
-        ok = truth_component(T, lap, rows, m, T->first[c], exact);
+        ok = truth_component(T, lap, rows, m, T->first[c],
+                             exact && isfinite(lap->component_mass[lap->component[rows[0]]]));
         T->first[c + 1] = T->first[c] + m;
     }
     for (i = 0; i < n * n; i++) {
@@ -1023,6 +1024,7 @@ static hd_status pair_make(hd_laplacian **out, const char *spec, const char *op,
     hd_laplacian_opts o;
     hd_status st;
     body b;
+    int32_t held;
     int i;
     if (!body_make(&b, spec)) {
         fprintf(stderr, "bounds: no such shape: %s\n", spec);
@@ -1038,16 +1040,22 @@ static hd_status pair_make(hd_laplacian **out, const char *spec, const char *op,
     o.kind = strncmp(op, "fem", 3) == 0   ? HD_LAPLACIAN_FEM
              : strncmp(op, "vor", 3) == 0 ? HD_LAPLACIAN_VORONOI_COT
              : strncmp(op, "cot", 3) == 0 ? HD_LAPLACIAN_COT
-             : strcmp(op, "vexp") == 0    ? HD_LAPLACIAN_VORONOI_EXP
-             : strcmp(op, "exp") == 0     ? HD_LAPLACIAN_EXP
+             : strncmp(op, "vexp", 4) == 0 ? HD_LAPLACIAN_VORONOI_EXP
+             : strncmp(op, "exp", 3) == 0 ? HD_LAPLACIAN_EXP
                                           : HD_LAPLACIAN_DEFAULT;
     o.intrinsic_delaunay = strstr(op, "+id") != NULL;
     o.tufted = strstr(op, "+tuft") != NULL;
+    if (strstr(op, "+held")) {                   /* a vertex, and the border of a mesh */
+        o.n_held = 1;
+        o.held = &held;
+        o.border = b.points ? HD_BORDER_NATURAL : HD_BORDER_DIRICHLET;
+        held = b.s.n / 3;
+    }
     for (i = 0; i < 3 * b.s.n; i++) b.s.xyz[i] *= scale;
     if (b.points) {
-        if (strcmp(op, "tuft") == 0) st = hd_laplacian_tufted_points(out, b.s.xyz, b.s.n, NULL, NULL, &o, e);
+        if (strncmp(op, "tuft", 4) == 0) st = hd_laplacian_tufted_points(out, b.s.xyz, b.s.n, NULL, NULL, &o, e);
         else st = hd_laplacian_points(out, b.s.xyz, b.s.n, &o, e);
-    } else if (strcmp(op, "poly") == 0) {
+    } else if (strncmp(op, "poly", 4) == 0) {
         shape_poly q = b.p.xyz ? b.p : shape_poly_of(&b.s);
         st = hd_laplacian_polygons(out, b.s.xyz, q.n, q.face_ptr, q.face_idx, q.n_faces, &o, e);
         if (!b.p.xyz) shape_poly_free(&q);
@@ -1577,7 +1585,7 @@ static void want_rows(work *w, int left_y, double beyond, const double *inert) {
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         const int32_t r = lap->row[v];
-        w->want[v] = inert ? inert[v] : 0;
+        w->want[v] = inert && r != HD_ROW_HELD ? inert[v] : 0;
         w->off[v] = 0;
         if (r < 0) continue;
         w->want[v] = truth_sum(T, &w->s->f, T->comp[r], (left_y ? T->y : T->x) + r * T->n,
@@ -1605,7 +1613,7 @@ static void want_column(work *w, int32_t source, int symmetric, double *inert) {
     const truth *T = w->T;
     const int32_t r = lap->row[source];
     int32_t v;
-    for (v = 0; v < lap->n; v++) inert[v] = !symmetric && v == source && r < 0;
+    for (v = 0; v < lap->n; v++) inert[v] = !symmetric && v == source && r == HD_ROW_INERT;
     if (r >= 0) {
         weigh(w, (symmetric ? T->x : T->y) + r * T->n, NULL);
     } else {
@@ -1648,7 +1656,7 @@ static quad want_entry(work *w, int32_t i, int32_t j, int left_y, int right_y, i
     quad sum = 0;
     int32_t l;
     *off = 0;
-    if (a < 0 || b < 0) return inert_one && i == j;
+    if (a < 0 || b < 0) return inert_one && i == j && a == HD_ROW_INERT;
     if (T->comp[a] != T->comp[b]) return 0;
     *off = f->cut * T->n * (left_y ? T->y_most : T->x_most) * (right_y ? T->y_most : T->x_most);
     for (l = T->first[T->comp[a]]; l < f->last[T->comp[a]]; l++) {
@@ -2286,7 +2294,16 @@ static const family large[] = {{"grid/9/%d", 1, 10, "fem vor cot poly"},
                                {"leak/40/1e-%d", 1, 14, "I diag"},
                                {"turned/24", 0, 0, "I"},
                                {"star/40", 0, 0, "I diag near"},
-                               {"none/%d", 1, 5, "I diag"}};
+                               {"none/%d", 1, 5, "I diag"},
+                               {"grid/9/%d", 1, 10, "fem+held vor+held poly+held"},
+                               {"strip/8/%d", 2, 8, "vor+tuft+held"},
+                               {"bump/8/%d", 1, 3, "fem+held cot+held fem+id+held"},
+                               {"sphere/%d", 1, 3, "fem+held vor+held"},
+                               {"sliver/2/%d", 3, 13, "fem+held"},
+                               {"two/2/%d", 0, 8, "fem+held vor+held"},
+                               {"split/%d/2", 6, 8, "fem+held"},
+                               {"inert/%d/1", 5, 7, "fem+held vor+held"},
+                               {"points/60/%d/1", 0, 2, "vexp+held exp+held tuft+held"}};
 static const family small[] = {{"grid/5/%d", 2, 10, "fem vor"},
                                {"grid/5/3", 0, 0, "poly cot"},
                                {"sphere/%d", 1, 2, "fem vor"},
@@ -2304,7 +2321,10 @@ static const family small[] = {{"grid/5/%d", 2, 10, "fem vor"},
                                {"path/30", 0, 0, "I near"},
                                {"weak/24/%d", 12, 40, "I"},
                                {"penalty/24/%d", 3, 9, "I"},
-                               {"leak/24/1e-%d", 4, 12, "I"}};
+                               {"leak/24/1e-%d", 4, 12, "I"},
+                               {"bump/6/1", 0, 0, "fem+held vor+held"},
+                               {"two/1/%d", 0, 7, "fem+held"},
+                               {"inert/5/1", 0, 0, "vor+held"}};
 
 typedef struct settings {
     int quick;

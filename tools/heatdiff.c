@@ -289,6 +289,8 @@ static uint64_t machine_bytes(void)
 
 typedef struct word { const char *name; int value; } word;
 
+static const word BORDERS[] = {
+    { "natural", HD_BORDER_NATURAL }, { "dirichlet", HD_BORDER_DIRICHLET }, { NULL, 0 } };
 static const word LAPLACIANS[] = {
     { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT },
     { "polygon", HD_LAPLACIAN_POLYGON }, { "voronoi-exp", HD_LAPLACIAN_VORONOI_EXP },
@@ -379,7 +381,7 @@ typedef struct options {
     const char *input, *output, *title;
     int has_bandwidth;
     time_spec bandwidth;             /* absolute or h2 */
-    int laplacian, poles, method, ordering, simd, solver, precond, kernel, definition;
+    int laplacian, border, poles, method, ordering, simd, solver, precond, kernel, definition;
     long degree, max_iterations, threads, count;
     double tol, lambda, weight_cut, below;
     uint64_t memory_limit;
@@ -669,6 +671,9 @@ static const option_def OPTIONS[] = {
     { "tufted", 0, CMD_LAPLACIAN, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
       "the same for any triangles, also with borders and where\n"
       "three and more faces meet; of points, with triangles made\nfrom their neighbours" },
+    { "border", 0, CMD_LAPLACIAN, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
+      "of meshes: natural (default): no heat leaves through a border;\n"
+      "dirichlet: the vertices of borders are held at zero" },
     { "lambda", 0, CMD_LAPLACIAN, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
       "of polygon: weight of its stabilising part (1)" },
     { "bandwidth", 0, CMD_LAPLACIAN, 0, parse_bandwidth, 0, NULL, 0, 0, "S",
@@ -1655,6 +1660,7 @@ static hd_status run_laplacian(run *r, hd_error *err)
     opts.context = &r->context;
     opts.intrinsic_delaunay = r->o->intrinsic_delaunay;
     opts.tufted = r->o->tufted;
+    opts.border = (hd_border)r->o->border;
     interrupt.patient = 1;
     if (is_points(r)) status = run_points(r, &opts, err);
     else if (opts.kind == HD_LAPLACIAN_POLYGON)
@@ -1687,6 +1693,9 @@ static int check_laplacian(const run *r)
         return fail(FAILED,
                     "%s: --%s is for points (--laplacian voronoi-exp or exp), and this file has faces",
                     r->mesh_name, r->o->has_bandwidth ? "bandwidth" : "weight-cut");
+    if (r->o->border == HD_BORDER_DIRICHLET && is_points(r))
+        return fail(FAILED, "%s: --border dirichlet needs faces: points do not tell where their border is",
+                    r->mesh_name);
     if (r->o->lambda > 0 && is_points(r))
         return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
     if (r->o->lambda > 0 && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
@@ -1716,7 +1725,7 @@ static double auto_time(const run *r, int i, int count)
 {
     double area = 0;
     int c;
-    for (c = 0; c < r->lap->n_components; c++) area += r->lap->component_mass[c];
+    for (c = 0; c < r->lap->n_active; c++) area += r->lap->mass[c];
     /* B^-1 L tends to Laplacian/area */
     if (r->lap->kind == HD_LAPLACIAN_EXP) area = r->lap->area * r->lap->area;
     return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST,
@@ -2356,6 +2365,7 @@ static void json_laplacian(json *j, const hd_laplacian *lap)
     json_number(j, "h", lap->h);
     json_number(j, "area", lap->area);
     json_integer(j, "inert", lap->mesh.n_inert);
+    json_integer(j, "held", lap->n_held);
     json_text(j, "laplacian", word_of(LAPLACIANS, (int)lap->kind));
     if (lap->points.neighbours) json_points(j, &lap->points);
 }
@@ -2495,6 +2505,7 @@ static void print_surface(const run *r)
             (long)r->mesh.n, (long)r->mesh.n_faces, (long)lap->n_components, plural(lap->n_components),
             lap->h, lap->area);
     if (lap->mesh.n_inert) fprintf(stderr, ", %ld without area", (long)lap->mesh.n_inert);
+    if (lap->n_held) fprintf(stderr, ", %ld held at zero", (long)lap->n_held);
     fprintf(stderr, "\n");
 }
 
@@ -2541,9 +2552,12 @@ static void print_errors(const run *r)
             fprintf(stderr, "note: %lld distances are error for the most part, "
                     "far smaller than what they are the difference of; pairs finds them\n",
                     (long long)w->n_lost);
-    } else fprintf(stderr,
-                   "error at most %.1e of the largest value (%.1e in the B norm), heat conserved to %.1e\n",
-                   w->error_bound, w->error_bound_b, w->mass_drift);
+    } else {
+        fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm)", w->error_bound,
+                w->error_bound_b);
+        if (r->lap->conserves == 1) fprintf(stderr, ", heat conserved to %.1e\n", w->mass_drift);
+        else fprintf(stderr, ", heat leaves at the border\n");
+    }
     if (w->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(w->status));
 }
 
@@ -3193,6 +3207,7 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     printf("%-22s %.9g\n%-22s %.9g\n%-22s %.4g degrees\n", "area", lap->area, "mean edge length h", lap->h,
            "smallest angle", m->smallest_angle * DEGREES);
     print_count("vertices without area", m->n_inert, "no heat reaches them");
+    print_count("vertices held at zero", lap->n_held, "all vertices of borders");
     print_count("faces left out", r->mesh.file.n_small_faces, "fewer than three corners");
     print_count("faces left out", m->n_repeated_corner, "a corner twice");
     print_count("faces left out", m->n_zero_area, "area zero");

@@ -65,8 +65,8 @@ def _structs(text, constants, kinds):
                     of = ctypes.c_char_p if kind == "char" else ctypes.c_void_p
                     fields.append((one.lstrip("* "), of))
                     continue
-                m = re.match(r"(\w+)(?:\[(\w+)\])?$", one)
-                count = m.group(2) and int(constants.get(m.group(2), m.group(2)))
+                m = re.match(r"(\w+)(?:\[([\w +]+)\])?$", one)
+                count = m.group(2) and sum(int(constants.get(x.strip(), x)) for x in m.group(2).split("+"))
                 fields.append((m.group(1), base * count if count else base))
         made[name] = type(name, (ctypes.Structure,), {"_fields_": fields})
     return made
@@ -119,11 +119,13 @@ def _options(name, values):
 
 
 class Laplacian:
-    """The pair (L, B) of a surface. L and B are scipy.sparse matrices by rows; vertex gives the vertex of each row."""
+    """The pair (L, B) of a surface. L and B are scipy.sparse matrices by rows; vertex gives the vertex of each row.
+    held: vertices that are held at zero; border="HD_BORDER_DIRICHLET" holds those of the border."""
 
-    def __init__(self, function, *args, **options):
+    def __init__(self, function, *args, held=(), **options):
+        held = _ints(held)
         self._free, self._as_parameter_ = _lib.hd_laplacian_free, ctypes.c_void_p()
-        self._options = _options("hd_laplacian_opts", options)
+        self._options = _options("hd_laplacian_opts", dict(options, n_held=len(held), held=_at(held)))
         _call(function, ctypes.byref(self._as_parameter_), *args, ctypes.byref(self._options))
         self.info = S["hd_laplacian"].from_address(self._as_parameter_.value)
         self.n, self.h, self.area = self.info.n, self.info.h, self.info.area
