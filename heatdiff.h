@@ -21073,36 +21073,60 @@ static double hdi_spec_root_off(double a, double off) {
     return off > 0 ? off / hdi_max(sqrt(hdi_max(a, 0)), sqrt(off)) : 0;
 }
 
-static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_sum *a = HDI_CAST(const hdi_spec_sum *, arg);
+/* Rows whose sums are made together, so that vectors are read along their columns. */
+enum { HDI_SPEC_ROWS = 512 };
+
+/* The sums of n rows from the given one on. */
+static void hdi_spec_sum_rows(const hdi_spec_sum *a, int32_t row, int32_t n, double *sum) {
+    const int32_t *vertex = a->f.of->lap->vertex + row;
+    const int mass = a->distance && a->mass;     /* of the vectors; of one factor only for diagonals */
+    int32_t q, i;
+    for (i = 0; i < n; i++) sum[i] = 0;
+    for (q = 0; q < a->f.of->count; q++) {
+        const double *x = a->f.of->vector + HDI_CAST(int64_t, q) * a->f.of->n;
+        const double w = a->weight[q], at = a->x[q];
+        for (i = 0; i < n && !mass && !a->diagonal && !a->distance; i++) sum[i] += w * x[vertex[i]] * at;
+        for (i = 0; i < n && a->diagonal; i++)
+            sum[i] += w * x[vertex[i]] * (a->mass ? hdi_spec_entry(a, q, row + i, 1) : x[vertex[i]]);
+        for (i = 0; i < n && a->distance; i++) {
+            const double d = (mass ? hdi_spec_entry(a, q, row + i, 1) : x[vertex[i]]) - at;
+            sum[i] += w * d * d;
+        }
+    }
+}
+
+/* The value of a row and its bound, from its sum. */
+static void hdi_spec_sum_store(const hdi_spec_sum *a, int32_t row, double sum) {
     const hd_spectrum *s = a->f.of;
     const hd_laplacian *lap = s->lap;
+    const int32_t v = lap->vertex[row];
+    const int other = a->distance && a->mass;
+    const double left = other ? s->left_mass[v] : s->left[v];
+    const double whole = other ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
+    double off;
+    if (a->distance) {
+        const double far_left = sqrt(left) + sqrt(a->left), far_all = sqrt(whole) + sqrt(a->whole);
+        off = a->f.rest * far_left * far_left + a->f.error * far_all * far_all;
+        off = hdi_spec_root_off(sum, off);
+        sum = sqrt(sum);
+    } else {
+        const double l = a->diagonal ? a->mass ? s->left_mass[v] : left : a->left;
+        const double w = a->diagonal ? a->mass ? lap->b_diag[row] : whole : a->whole;
+        off = a->f.rest * sqrt(left * l) + a->f.error * sqrt(whole * w);
+    }
+    a->out[v] = sum;
+    if (a->bound) a->bound[v] = off;
+}
+
+static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_spec_sum *a = HDI_CAST(const hdi_spec_sum *, arg);
+    double sum[HDI_SPEC_ROWS];
     int64_t i;
-    int32_t q;
-    for (i = begin; i < end; i++) {
-        const int32_t row = HDI_CAST(int32_t, i), v = lap->vertex[row];
-        const int other = a->distance && a->mass;
-        const double left = other ? s->left_mass[v] : s->left[v];
-        const double whole = other ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
-        double sum = 0, off;
-        for (q = 0; q < s->count; q++) {
-            const double x = hdi_spec_entry(a, q, row, other);
-            if (a->diagonal) sum += a->weight[q] * x * (a->mass ? hdi_spec_entry(a, q, row, 1) : x);
-            else if (a->distance) sum += a->weight[q] * (x - a->x[q]) * (x - a->x[q]);
-            else sum += a->weight[q] * x * a->x[q];
-        }
-        if (a->distance) {
-            const double far_left = sqrt(left) + sqrt(a->left), far_all = sqrt(whole) + sqrt(a->whole);
-            off = a->f.rest * far_left * far_left + a->f.error * far_all * far_all;
-            off = hdi_spec_root_off(sum, off);
-            sum = sqrt(sum);
-        } else {
-            const double l = a->diagonal ? a->mass ? s->left_mass[v] : left : a->left;
-            const double w = a->diagonal ? a->mass ? lap->b_diag[row] : whole : a->whole;
-            off = a->f.rest * sqrt(left * l) + a->f.error * sqrt(whole * w);
-        }
-        a->out[v] = sum;
-        if (a->bound) a->bound[v] = off;
+    int32_t k, n;
+    for (i = begin; i < end; i += n) {
+        n = HDI_CAST(int32_t, hdi_least(end - i, HDI_SPEC_ROWS));
+        hdi_spec_sum_rows(a, HDI_CAST(int32_t, i), n, sum);
+        for (k = 0; k < n; k++) hdi_spec_sum_store(a, HDI_CAST(int32_t, i) + k, sum[k]);
     }
 }
 
