@@ -1263,15 +1263,20 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
  * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1
  * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n)
  * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
- *        about one sure digit: at t so large that all vertices look alike, or next to the source at small t.
- *        If there are any, the status is HD_WARN_ACCURACY. Nothing is ever NaN. hd_heat_pairs loses no
- *        digits there
+ *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
  * Vertices without mass are treated as having a zero kernel row. Between components commute and biharmonic
  * are infinite (HUGE_VAL). With poles and degree by default, degree 14 takes over if the error bound relative
- * to the largest distance is, or will be, above 2.5e-6. Many times then share one set of poles.
+ * to the largest distance is, or will be, above 3.5e-7. Many times then share one set of poles.
+ * At large t few eigenpairs are left, and distances of the first two kinds are sums over them: without
+ * cancellation, to a part in 1e7 of the largest one, even if that is 1e-300. They are taken where few are
+ * expected to do, and where the bound by poles is above 1e-6 and at most 180 are. What is left out is proven
+ * small by counting eigenvalues (error_rational), residuals of the eigenpairs are in error_solver, and reason
+ * says so. The plan keeps the eigenpairs, and uses them for any t they reach. Where they do not fit the byte
+ * limit poles go on. On meshes of more than about 100K vertices the bound may reach 1e-5 between the two.
  * Errors as hd_heat_diagonal
  * Cost   one diagonal at 2t, shared by all sources, and one column for each source. HD_DISTANCE_WEIGHTED with
- *        a full B: the diagonal is that of B K_2t and takes about twice as long. Commute: one real
+ *        a full B: the diagonal is that of B K_2t and takes about twice as long. Eigenpairs: as
+ *        hd_spectrum_create the first time, later 4 n flops for each. Commute: one real
  *        factorisation and its inversion; biharmonic: the same, and those of one pole */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                         const double *t, int32_t k, const int32_t *sources,
@@ -1281,7 +1286,7 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
  * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
  * K, d   [n_pairs n_times], time by time; each may be NULL. K is not written for commute and biharmonic
  * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
- * cancellation. If these columns would take more than half a GiB, it comes from entries and the diagonal at
+ * cancellation, or from eigenpairs as above. Where its bound is above 1e-6 degree 14 takes over. If these columns would take more than half a GiB, it comes from entries and the diagonal at
  * 2t, one column at a time; then sort the pairs by i. Commute and biharmonic always work that way, and need
  * the direct method. */
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
@@ -20615,7 +20620,7 @@ static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, in
         (void)hdi_spec_measure(s, value, x, bx, norm);
         hdi_wide_norms(x, s->noise, s->n, HDI_SPEC_WIDE, noise);
         for (r = 0; r < here; r++) {
-            if (twin[at + r] > 0.1) continue;    /* found before */
+            if (twin[at + r] > 0.1 || s->found == s->n) continue;   /* found before */
             s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + noise[r];
             hdi_spec_enter(s, value[r], norm[r], first + at + r);
         }
@@ -24222,6 +24227,8 @@ static hd_status hdi_distance_once(hd_heat *heat, const hdi_distances *to, doubl
 #define HDI_MODES_FIRST 20
 #define HDI_MODES_MOST 180
 #define HDI_MODES_REASON "at such a t few eigenpairs are left: distances are sums over them"
+/* Vectors further from orthonormal are not what they should be: one may be there twice. */
+#define HDI_MODES_ORTHO 1e-6
 /* From this t low on distances are among the smallest doubles. */
 #define HDI_MODES_FADED 650
 
@@ -24529,7 +24536,8 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     x->s.lap = lap;
     x->s.context = heat->ctx;
     if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
-        x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0)
+        x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0 &&
+        x->off_gram <= HDI_MODES_ORTHO)
         return 1;
     hdi_modes_free(x, heat->ctx);
     x->barred = e->status != HD_ERR_MEMORY_LIMIT;

@@ -150,6 +150,49 @@ static void large_run(const char *name, hd_laplacian *lap) {
     large_free(&c);
 }
 
+/* Eigenpairs are kept, made again after an update, and given up where they do not fit. */
+static void large_kept(void) {
+    shape ball = shape_bumpy(3, 5);
+    hd_context ctx;
+    hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
+    hd_laplacian *lap = test_laplacian_at(&ball, ball.xyz, HD_LAPLACIAN_FEM, 1, NULL), *fresh;
+    double *d = DENSE_NEW(double, 3 * (int64_t)ball.n), *again = d + ball.n, *moved = again + ball.n, t = 1000 * lap->h * lap->h;
+    const int32_t source = 5;
+    hd_heat *heat, *other;
+    hd_estimate e;
+    hd_report r;
+    int32_t i;
+    memset(&ctx, 0, sizeof ctx);
+    o.context = &ctx;
+    heat = eng_create(lap, &o);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_DISTANCE, 1, &t, 1, &e, NULL) == HD_OK && strstr(e.reason, "eigenpairs") != NULL);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r) == HD_OK && strstr(r.reason, "eigenpairs") != NULL && r.n_lost == 0);
+    CHECK(r.evidence_rational == HD_EVIDENCE_PROVEN && r.evidence_solver == HD_EVIDENCE_PROVEN && r.error_solver > 0);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, again, 0, &r) == HD_OK && memcmp(d, again, (size_t)ball.n * sizeof *d) == 0);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_DISTANCE, 1, &t, 1, &e, NULL) == HD_OK && e.cost[0].seconds == 0);
+    for (i = 0; i < 3 * ball.n; i++) ball.xyz[i] *= i % 3 ? 1 : 1.5;
+    CHECK(hd_laplacian_update(lap, ball.xyz, NULL) >= 0);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, again, 0, &r) == HD_OK);
+    fresh = test_laplacian_at(&ball, ball.xyz, HD_LAPLACIAN_FEM, 1, NULL);
+    other = eng_plan(fresh, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
+    CHECK(heat_distance(other, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, moved, 0, &r) == HD_OK);
+    for (i = 0; i < ball.n; i++) CHECK(fabs(again[i] - moved[i]) <= 1e-8 * dense_max_abs(moved, ball.n));
+    CHECK(dense_max_diff(again, d, ball.n) > 0.01 * dense_max_abs(again, ball.n));
+    hd_heat_free(heat);
+    CHECK(ctx.bytes_in_use == 0);
+    ctx.byte_limit = 9500000;                    /* room for poles only */
+    heat = eng_create(lap, &o);
+    i = heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r);
+    CHECK_MSG(i == HD_WARN_ACCURACY && strstr(r.reason, "eigenpairs") == NULL, "%d, %s: %s", (int)i, r.reason, r.error.text);
+    hd_heat_free(heat);
+    CHECK(ctx.bytes_in_use == 0);
+    hd_heat_free(other);
+    hd_laplacian_free(fresh);
+    hd_laplacian_free(lap);
+    shape_free(&ball);
+    free(d);
+}
+
 static void test_large_t(void) {
     const double offset[3] = {4, 0, 0};
     shape ball = shape_bumpy(2, 5), torus = shape_torus(18, 10, 1, 0.4), grid = shape_grid(15, 11, 0.2);
@@ -162,6 +205,7 @@ static void test_large_t(void) {
     large_run("inert", test_laplacian(&inert, HD_LAPLACIAN_FEM));
     large_run("dirichlet", kry_dirichlet(60));
     large_run("leaking", eng_leaking(12, 9));
+    large_kept();
     shape_free(&ball);
     shape_free(&torus);
     shape_free(&grid);
