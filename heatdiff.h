@@ -4071,33 +4071,32 @@ HDI_PART void HDI_OF(pack_many_put)(const int n_cols, double *y, const HDI_OF(to
     HDI_EACH(c, n_cols) HDI_OF(total_put)(y + HDI_PACK * c, &s[c], 0);
 }
 
-/* at: doubles from the first right-hand side's first number to that of these */
-HDI_PART void HDI_OF(pack_up_cols)(const int n_cols, const hdi_pack_sweep *g, int64_t at) {
+HDI_PART void HDI_OF(pack_up_cols)(const int n_cols, const hdi_pack_sweep *g) {
     HDI_OF(total) s[HDI_OF(sweep_many)];
-    const double *l = g->l + at % HDI_PACK;
+    const double *l = g->l;
     int64_t i;
     for (i = 0; i < g->n + g->u; i++, l += g->row) {
         double *to = i < g->n ? g->y + g->x_row * i : g->t + g->x_row * (i - g->n);
         HDI_OF(pack_many_zero)(n_cols, s);
         HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, HDI_CAST(int32_t, HDI_PACK) * HDI_PACK_AHEAD,
-                              hdi_least(i, g->width), g->y + at, g->x_row, NULL);
-        HDI_OF(pack_many_put)(n_cols, to + at, s);
+                              hdi_least(i, g->width), g->y, g->x_row, NULL);
+        HDI_OF(pack_many_put)(n_cols, to, s);
     }
 }
 
 /* Rows in chunks from below: for the pivots that come before a chunk, and to the pivots in it, one by one. */
-HDI_PART void HDI_OF(pack_down_cols)(const int n_cols, const hdi_pack_sweep *g, int64_t at) {
+HDI_PART void HDI_OF(pack_down_cols)(const int n_cols, const hdi_pack_sweep *g) {
     HDI_OF(total) s[HDI_OF(sweep_many)];
-    const double *l = g->l + at % HDI_PACK, *below = l + g->row * g->n;
+    const double *l = g->l, *below = l + g->row * g->n;
     const int64_t ahead = -HDI_PACK_CHUNK * g->row;
     int64_t c, end = g->u, begin = g->n > HDI_PACK_CHUNK ? 0 : hdi_least(g->u, HDI_PACK_CHUNK);
-    double *y = g->y + at;
+    double *y = g->y;
     for (; end > begin; end -= hdi_least(end - begin, HDI_PACK_CHUNK)) {
         const int64_t from = end - hdi_least(end - begin, HDI_PACK_CHUNK);
         for (c = 0; c < g->width; c++) {
             HDI_OF(pack_many_zero)(n_cols, s);
             HDI_OF(pack_many_sum)(n_cols, 1, s, below + g->row * from + HDI_PACK * c, g->row, ahead,
-                                  end - from, g->x + at, g->x_row, g->below + from);
+                                  end - from, g->x, g->x_row, g->below + from);
             HDI_OF(pack_many_put)(n_cols, y + g->x_row * c, s);
         }
     }
@@ -4107,7 +4106,7 @@ HDI_PART void HDI_OF(pack_down_cols)(const int n_cols, const hdi_pack_sweep *g, 
         for (c = hdi_least(end, g->width) - 1; c >= 0; c--) {
             const int64_t first = c < begin ? begin : c + 1;
             HDI_OF(pack_many_zero)(n_cols, s);
-            HDI_OF(pack_many_sum)(n_cols, 1, s, below + HDI_PACK * c, g->row, ahead, rest, g->x + at,
+            HDI_OF(pack_many_sum)(n_cols, 1, s, below + HDI_PACK * c, g->row, ahead, rest, g->x,
                                   g->x_row, g->below);
             HDI_OF(pack_many_sum)(n_cols, 0, s, l + g->row * first + HDI_PACK * c, g->row, ahead,
                                   end - first, y + g->x_row * first, g->x_row, NULL);
@@ -4116,23 +4115,42 @@ HDI_PART void HDI_OF(pack_down_cols)(const int n_cols, const hdi_pack_sweep *g, 
     }
 }
 
+/* Half h of all entries; and then all but n right-hand sides. */
+HDI_PART hdi_pack_sweep HDI_OF(pack_many_part)(const hdi_pack_sweep *g, int h) {
+    hdi_pack_sweep part = *g;
+    part.l += h;
+    part.x += h;
+    part.y += h;
+    if (part.t) part.t += h;
+    return part;
+}
+
+HDI_PART void HDI_OF(pack_many_next)(hdi_pack_sweep *g, int n) {
+    g->x += HDI_PACK * n;
+    g->y += HDI_PACK * n;
+    if (g->t) g->t += HDI_PACK * n;
+    g->k -= n;
+}
+
 HDI_KERNEL void HDI_OF(pack_up)(const hdi_pack_sweep *g) {
     enum { most = HDI_OF(sweep_many) };
-    int64_t c, h;
+    int h;
     for (h = 0; h < 4; h += HDI_ABREAST) {
-        for (c = 0; c + most <= g->k; c += most) HDI_OF(pack_up_cols)(most, g, HDI_PACK * c + h);
-        if (most > 4 && c + 4 <= g->k) HDI_OF(pack_up_cols)(4, g, HDI_PACK * c + h), c += 4;
-        for (; c < g->k; c++) HDI_OF(pack_up_cols)(1, g, HDI_PACK * c + h);
+        hdi_pack_sweep part = HDI_OF(pack_many_part)(g, h);
+        for (; part.k >= most; HDI_OF(pack_many_next)(&part, most)) HDI_OF(pack_up_cols)(most, &part);
+        for (; most > 4 && part.k >= 4; HDI_OF(pack_many_next)(&part, 4)) HDI_OF(pack_up_cols)(4, &part);
+        for (; part.k > 0; HDI_OF(pack_many_next)(&part, 1)) HDI_OF(pack_up_cols)(1, &part);
     }
 }
 
 HDI_KERNEL void HDI_OF(pack_down)(const hdi_pack_sweep *g) {
     enum { most = HDI_OF(sweep_many) };
-    int64_t c, h;
+    int h;
     for (h = 0; h < 4; h += HDI_ABREAST) {
-        for (c = 0; c + most <= g->k; c += most) HDI_OF(pack_down_cols)(most, g, HDI_PACK * c + h);
-        if (most > 4 && c + 4 <= g->k) HDI_OF(pack_down_cols)(4, g, HDI_PACK * c + h), c += 4;
-        for (; c < g->k; c++) HDI_OF(pack_down_cols)(1, g, HDI_PACK * c + h);
+        hdi_pack_sweep part = HDI_OF(pack_many_part)(g, h);
+        for (; part.k >= most; HDI_OF(pack_many_next)(&part, most)) HDI_OF(pack_down_cols)(most, &part);
+        for (; most > 4 && part.k >= 4; HDI_OF(pack_many_next)(&part, 4)) HDI_OF(pack_down_cols)(4, &part);
+        for (; part.k > 0; HDI_OF(pack_many_next)(&part, 1)) HDI_OF(pack_down_cols)(1, &part);
     }
 }
 
@@ -13056,7 +13074,7 @@ typedef struct hdi_sweep {
     int32_t k;                   /* right-hand sides side by side: packs any, real 1 or 8 */
     int32_t backward;
     const char *active;          /* forward */
-    const double *const *rhs;    /* packs: [k][n] real right-hand sides, the same for all matrices; NULL in
+    const double *const *rhs;    /* [k][n] real right-hand sides, the same for all matrices of a pack; NULL in
                                     it: zero. NULL: they are in x, which otherwise is only written */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
@@ -13151,6 +13169,31 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
     else hdi_sweep_forward_pack(z, v, y, t);
 }
 
+/* The pivots' part of the right-hand sides, where they are given apart from x. */
+static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
+    const int32_t *super = z->f->sym->super + v;
+    const int width = hdi_is_real(z->f) ? 1 : HDI_PACK;
+    int32_t i, r;
+    if (!z->rhs) return;
+    for (i = super[0]; i < super[1]; i++) {
+        for (r = 0; r < z->k; r++, y += width) {
+            y[0] = z->rhs[r] ? z->rhs[r][i] : 0;
+            if (width == 1) continue;
+            y[1] = y[2] = y[3] = y[0];
+            y[4] = y[5] = y[6] = y[7] = 0;
+        }
+    }
+}
+
+/* Backward: a front that no right-hand side has touched has zeros. They are written only now, to be used at
+ * once. Returns whether it is such a front. */
+static int hdi_sweep_clear(const hdi_sweep *z, int32_t v, double *y) {
+    const int64_t entries = HDI_CAST(int64_t, z->f->width) * z->k * hdi_front_pivots(z->f->sym, v);
+    if (!z->rhs || !z->active || z->active[v]) return 0;
+    memset(y, 0, HDI_CAST(size_t, entries) * sizeof *y);
+    return 1;
+}
+
 /* y = D^-1 y */
 static void hdi_sweep_divide_pack(const hdi_sweep *z, int32_t v, double *y) {
     const hdi_symbolic *s = z->f->sym;
@@ -13170,9 +13213,7 @@ static void hdi_sweep_backward_pack(const hdi_sweep *z, int32_t v, double *y) {
     const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
     const int32_t *idx = f->sym->row + f->sym->row_ptr[v];
     int64_t i, q;
-    if (z->rhs && z->active && !z->active[v])    /* written only now, to be used at once */
-        memset(y, 0, HDI_CAST(size_t, p * HDI_PACK * z->k) * sizeof *y);
-    else hdi_sweep_divide_pack(z, v, y);
+    if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide_pack(z, v, y);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
         const hdi_block b = hdi_block_of(f->panel + HDI_PACK * f->panel_at[v], p + u, p, q);
         double *l = b.at, *w = y + HDI_PACK * b.begin;
@@ -13193,7 +13234,8 @@ static void hdi_sweep_backward_real(const hdi_sweep *z, int32_t v, double *y, do
     const hdi_symbolic *s = f->sym;
     const int32_t p = hdi_front_pivots(s, v), *idx = s->row + s->row_ptr[v];
     const int64_t m = hdi_front_rows(s, v);
-    const double *panel = f->panel + f->panel_at[v], *dinv = f->dinv + s->super[v];
+    const double *panel = f->panel + f->panel_at[v];
+    const double *dinv = hdi_sweep_clear(z, v, y) ? NULL : f->dinv + s->super[v];
     if (z->k == 1) hdi_real_backward(f->real, panel, m, p, dinv, y, z->x, idx, gather);
     else hdi_real_backward8(f->real, panel, m, p, dinv, y, z->x, idx);
 }
@@ -13209,20 +13251,6 @@ static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int back
     int64_t i;
     if (first < 0 || last > end || last - first > MOST) return;
     for (i = first; i < last; i += 8) HDI_PREFETCH(f->panel + i);
-}
-
-/* The pivots' part of the right-hand sides, where they are given apart from x. */
-static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
-    const int32_t *super = z->f->sym->super + v;
-    int32_t i, r;
-    if (!z->rhs) return;
-    for (i = super[0]; i < super[1]; i++) {
-        for (r = 0; r < z->k; r++, y += HDI_PACK) {
-            const double b = z->rhs[r] ? z->rhs[r][i] : 0;
-            y[0] = y[1] = y[2] = y[3] = b;
-            y[4] = y[5] = y[6] = y[7] = 0;
-        }
-    }
 }
 
 /* Backward, the front's vector has been handed on, and its place is free to gather the rows below. */
@@ -17118,8 +17146,8 @@ static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
  * Batches at a time. Right-hand sides that one check of residuals takes. */
 enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 8, HDI_BATCHES = 3, HDI_CHECK_MOST = 4 };
 
-/* Right-hand sides of a full batch, which AVX-512 checks in one pass. */
-enum { HDI_CHECK_BATCH = 8 };
+/* Right-hand sides of a full batch, which AVX-512 checks in one pass, and rows that it fetches ahead. */
+enum { HDI_CHECK_BATCH = HDI_LANES_BATCH, HDI_CHECK_AHEAD = 8 };
 
 enum { HDI_LANCZOS_MAX = 4096 };
 
@@ -17712,6 +17740,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const 
         hdi_v8 l[HDI_CHECK_BATCH], b[HDI_CHECK_BATCH], lr = zero, br = zero, u, bu;
         HDI_UNROLL
         for (r = 0; r < HDI_CHECK_BATCH; r++) {
+            HDI_PREFETCH_AT(at, HDI_CHECK_AHEAD * stride + HDI_PACK * r);
             l[r] = zero;
             b[r] = _mm512_mul_pd(mass, _mm512_loadu_pd(at + HDI_PACK * r));
         }
@@ -18099,16 +18128,15 @@ static int hdi_batch_is_full(const hdi_elim *m, int32_t n_list) {
 #endif
 }
 
-/* A full batch in one pass over L and B: pack i, and with the first the lone real pole. */
-static void hdi_batch_full(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const hdi_batch *b) {
+/* Eight lanes in one pass over L and B: pack i, and with xr the lone real pole. */
+static void hdi_batch_full(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const double *x,
+                           int64_t stride, const double *xr) {
 #if HDI_X86
-    const double *xr = i == 0 && m->lone >= 0 ? b->xr : NULL;
     hdi_real_check real = hdi_batch_real_check(m);
     hdi_check c[HDI_CHECK_BATCH], *list[HDI_CHECK_BATCH];
     int32_t r;
     for (r = 0; r < HDI_CHECK_BATCH; r++) {
-        c[r] = hdi_batch_check(m, i, lane[r], b->x + HDI_PACK * r,
-                               HDI_CAST(int32_t, HDI_PACK) * HDI_CHECK_BATCH);
+        c[r] = hdi_batch_check(m, i, lane[r], x + HDI_PACK * r, stride);
         list[r] = c + r;
     }
     hdi_check_512_batch(list, xr, &real);
@@ -18117,31 +18145,57 @@ static void hdi_batch_full(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
         hdi_batch_note(m, i, c + r, lane[r]);
     }
 #else
-    (void)m, (void)i, (void)lane, (void)b;
+    (void)m, (void)i, (void)lane, (void)x, (void)stride, (void)xr;
 #endif
+}
+
+/* Checks the solutions of pack i, and with the first those of the lone real pole. */
+static void hdi_batch_check_all(const hdi_elim *m, int32_t i, const hdi_batch *b, hdi_lane *lane, int32_t k) {
+    const double *xr = i == 0 && m->lone >= 0 ? b->xr : NULL;
+    const int64_t stride = HDI_PACK * HDI_CAST(int64_t, k);
+    hdi_lane *list[HDI_CHECK_BATCH] = {NULL};
+    int32_t r, n_list = 0, at[HDI_CHECK_BATCH];
+    for (r = 0; r < k; r++) {
+        if (lane[r].skip) continue;
+        list[n_list] = lane + r;
+        at[n_list++] = r;
+    }
+    if (hdi_batch_is_full(m, n_list)) {
+        hdi_batch_full(m, i, list, b->x, stride, xr);
+        return;
+    }
+    for (r = 0; r < k && xr; r++)
+        if (!lane[r].skip) hdi_batch_real(m, r, lane + r, xr, k > 1 ? 8 : 1);
+    for (r = 0; r < n_list && i < m->n_used; r += HDI_CHECK_MOST)
+        hdi_batch_pack(m, i, list + r, at + r, hdi_low32(n_list - r, HDI_CHECK_MOST), b->x, stride);
+}
+
+/* Solves for the lone real pole. */
+static void hdi_batch_solve_real(const hdi_elim *m, const hdi_batch *b, const hdi_lane *lane, int32_t k,
+                                 const char *active, hd_context *ctx) {
+    hdi_sweep z = hdi_sweep_open(&m->real, k > 1 ? 8 : 1, b->xr, b->work);
+    const double *rhs[HDI_CHECK_BATCH] = {NULL};
+    int32_t r;
+    for (r = 0; r < k; r++) rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
+    z.rhs = rhs;
+    z.active = active;
+    hdi_sweep_run(&z, ctx);
 }
 
 /* u = a0 f - sum a_i x_i for k lanes. Lanes that are skipped are solved for zero. ctx: threads for the
  * sweeps, NULL within a task. */
 static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane, int32_t k, hd_context *ctx) {
     const hdi_symbolic *s = &m->sym;
-    const int32_t n = s->n, wide = k > 1 ? 8 : 1;
-    int64_t j, touched = 0;
-    int32_t i, r, n_list = 0, at[HDI_LANES_BATCH];
-    int full;
+    const int32_t n = s->n;
     const double *rhs[HDI_LANES_BATCH];
-    hdi_lane *list[HDI_LANES_BATCH];
+    const char *active;
+    int64_t j, touched = 0;
+    int32_t i, r;
     hdi_sweep z;
-    for (r = 0; r < k; r++) {
-        rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
-        if (lane[r].skip) continue;
-        list[n_list] = lane + r;
-        at[n_list++] = r;
-    }
-    full = hdi_batch_is_full(m, n_list);
     memset(b->active, 0, HDI_CAST(size_t, s->n_super));
     for (r = 0; r < k; r++) {
         double norm2 = 0;
+        rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
         for (j = 0; j < n; j++) {
             const double v = lane[r].skip ? 0 : lane[r].rhs[j];
             if (!lane[r].skip) {
@@ -18156,24 +18210,16 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         hdi_lane_clear_off(lane + r);
         lane[r].energy = lane[r].f_norm * lane[r].f_norm;
     }
-    if (m->lone >= 0) {
-        for (j = 0; j < n; j++)
-            for (r = 0; r < wide; r++) b->xr[wide * j + r] = r < k && !lane[r].skip ? lane[r].rhs[j] : 0;
-        z = hdi_sweep_open(&m->real, wide, b->xr, b->work);
-        z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
-        hdi_sweep_run(&z, ctx);
-        for (r = 0; r < k && !full; r++)
-            if (!lane[r].skip) hdi_batch_real(m, r, lane + r, b->xr, wide);
-    }
-    for (i = 0; i < m->n_used; i++) {
-        z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
-        z.rhs = rhs;
-        z.active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
-        hdi_sweep_run(&z, ctx);
-        if (full) hdi_batch_full(m, i, list, b);
-        for (r = 0; r < n_list && !full; r += HDI_CHECK_MOST)
-            hdi_batch_pack(m, i, list + r, at + r, hdi_low32(n_list - r, HDI_CHECK_MOST), b->x,
-                           HDI_PACK * HDI_CAST(int64_t, k));
+    active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
+    if (m->lone >= 0) hdi_batch_solve_real(m, b, lane, k, active, ctx);
+    for (i = 0; i < hdi_high32(m->n_used, 1); i++) {
+        if (i < m->n_used) {                     /* or there is none beside the lone pole */
+            z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
+            z.rhs = rhs;
+            z.active = active;
+            hdi_sweep_run(&z, ctx);
+        }
+        hdi_batch_check_all(m, i, b, lane, k);
     }
 }
 
@@ -22340,8 +22386,8 @@ static hd_status hdi_direct_growth(hdi_heat_call *h) {
     return HD_OK;
 }
 
-/* How many items are solved at the same time, with k in all: see hdi_batches. The batches take no more room
- * than a pack of factors. Returns the number of batches. */
+/* How many items are solved at the same time, with k in all: see hdi_batches. There are no more batches than
+ * threads, and they take no more room than a pack of factors. Returns the number of batches. */
 static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, uint64_t *doubles) {
     const uint64_t n = HDI_CAST(uint64_t, m->sym.n), most = 8 * HDI_CAST(uint64_t, m->sym.stored);
     int32_t count;
@@ -22350,6 +22396,7 @@ static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, u
     *doubles = (hdi_batch_size(m, *width, &x, &xr) + 7) / 8 * 8;
     count = (k + *width - 1) / *width;
     if (count > HDI_BATCHES) count = HDI_BATCHES;
+    if (!m->ctx->parallel_for) count = hdi_low32(count, hdi_context_width(m->ctx));
     while (count > 1 && HDI_CAST(uint64_t, count) * (*doubles + 7 * n * HDI_CAST(uint64_t, *width)) > most)
         count--;
     return count;

@@ -1599,7 +1599,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
  * among the others. */
 static void int_batches(void) {
     static const int32_t degrees[7] = {1, 2, 3, 8, 9, 11, 14};
-    static const char skips[4][7] = {"0", "00", "0100", "101001"};
+    static const char skips[5][9] = {"0", "00", "0100", "101001", "00000000"};
     hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
     const int32_t n = lap->n_active;
     dense_c64 *a = DENSE_NEW(dense_c64, n * n), *x = DENSE_NEW(dense_c64, n);
@@ -1612,7 +1612,7 @@ static void int_batches(void) {
     CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
     for (q = 0; q < n; q++) CHECK(fabs(m.weight[q] * m.lap->b_diag[q] - 1) < 1e-15);
     for (q = 0; q < 7; q++) {
-        for (z = 0; z < 4; z++) {
+        for (z = 0; z < 5; z++) {
             const int32_t k = (int32_t)strlen(skips[z]);
             const double t = 5 * lap->h * lap->h * m.scale;
             hdi_lane *lane = int_lanes(m.lap, k, &ctx);
