@@ -41,7 +41,8 @@
      border   natural (Neumann): no heat leaves through a border. On request the border, or any vertices, are
               held at zero (Dirichlet), and heat leaves there. Separate components exchange no heat at all.
      mass     Vertices without mass (in no face, or only in faces of zero area) are inert: K_t leaves their
-              values as they are.
+              values as they are. What is said of them below holds for vertices held at zero as well, except
+              that K_t f is zero there.
      norm     |f|_B = sqrt(f' B f). Errors are relative in this norm or relative to the largest value; each
               report field says which.
 
@@ -1219,7 +1220,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
 /* Columns of the kernel. That of K_t for a source s is K_t e_s: the field at time t that starts as 1 at s and
  * 0 elsewhere; its total heat 1'B u is the mass of s.
  * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
- *        for K_t, and zero for k_t
+ *        for K_t, and zero for k_t. That of a held vertex is zero
  * Errors and cost as above; HD_ERR_INDEX (vertex, column: which source). The first column at a time t carries
  * the factorisation. */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
@@ -1234,7 +1235,8 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * also called auto-diffusion function (Gebal et al. 2009). It comes from selected inversion, without
  * eigenvectors and without columns.
  * t      > 0
- * D      n x n_times, column q for t[q], columns ldd apart (0: n). A vertex without mass has 0 (K_t: 1)
+ * D      n x n_times, column q for t[q], columns ldd apart (0: n). A vertex without mass has 0 (K_t: 1),
+ *        a held one 0
  * report the rational part is proven at every vertex. Rounding is measured by solves whose residuals are
  *        known, at the vertices where it is largest; with many times, at each time
  * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set. It is as large as the set's
@@ -1264,9 +1266,11 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
  * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n)
  * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
  *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
- * Vertices without mass are treated as having a zero kernel row. Between components commute and biharmonic
- * are infinite (HUGE_VAL). With poles and degree by default, degree 14 takes over if the error bound relative
- * to the largest distance is, or will be, above 3.5e-7. Many times then share one set of poles.
+ * Vertices without mass are treated as having a zero kernel row, and so are held ones. Between components,
+ * and to vertices without a row, commute and biharmonic are infinite (HUGE_VAL). On components that lose heat
+ * they are those of the inverse of L. With poles and degree by default, degree 14 takes over if the error
+ * bound relative to the largest distance is, or will be, above 3.5e-7. Many times then share one set of
+ * poles.
  * At large t few eigenpairs are left, and distances of the first two kinds are sums over them: without
  * cancellation, to a part in 1e7 of the largest one, even if that is 1e-300. They are taken where few are
  * expected to do, and where the bound by poles is above 1e-6 and at most 180 are. What is left out is proven

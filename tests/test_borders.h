@@ -441,6 +441,27 @@ static void bord_queries(void) {
     shape_free(&odd);
 }
 
+/* At a time when only means are left: of the component that keeps its heat. */
+static void bord_mixed_late(const hd_laplacian *lap, int32_t n_first) {
+    const double t = 1e11 * lap->h * lap->h;
+    const int32_t sources[2] = {2, n_first + 11};
+    hd_heat *heat = eng_create(lap, NULL);
+    double *u = DENSE_NEW(double, 2 * lap->n), off = 0, most = 0;
+    hd_report rep;
+    int32_t v;
+    CHECK(lap->component_mass[0] == HUGE_VAL && hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 2, sources, u, 0, &rep, NULL) >= 0);
+    for (v = 0; v < lap->n; v++) {
+        off = fmax(off, fmax(fabs(u[v]), fabs(u[lap->n + v] - (v < n_first ? 0 : 1 / lap->component_mass[1]))));
+        most = fmax(most, u[lap->n + v]);
+    }
+    CHECK_MSG(off <= 1e-10 * most && off <= (rep.error_bound + 1e-13) * most, "late columns: off by %g of %g, bound %g", off, most, rep.error_bound);
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, u, 0, &rep, NULL) >= 0);
+    for (off = 0, v = 0; v < lap->n; v++) off = fmax(off, fabs(u[v] - (v < n_first ? 0 : 1 / lap->component_mass[1])));
+    CHECK_MSG(off <= 1e-10 * most && off <= (rep.error_bound + 1e-13) * most, "late diagonal: off by %g of %g, bound %g", off, most, rep.error_bound);
+    hd_heat_free(heat);
+    free(u);
+}
+
 /* One component is held, the other one is not: bounds hold, and the other one keeps its heat. */
 static void bord_mixed(void) {
     static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
@@ -470,6 +491,7 @@ static void bord_mixed(void) {
         }
         hd_heat_free(heat);
     }
+    bord_mixed_late(lap, disk.n);
     free(u);
     heat_case_free(&c);
     shape_free(&disk);
