@@ -1291,9 +1291,9 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
  * K, d   [n_pairs n_times], time by time; each may be NULL. K is not written for commute and biharmonic
  * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
  * cancellation, or from eigenpairs as above. Where its bound is above 1e-6 degree 14 takes over. If these
- * columns would take more than half a GiB, it comes from entries and the diagonal at 2t, one column at a time;
- * then sort the pairs by i. Commute and biharmonic always work that way, and need
- * the direct method. */
+ * columns would take more than half a GiB, it comes from entries and the diagonal at 2t, one column at a
+ * time; then sort the pairs by i. Commute and biharmonic always work that way, and need the direct
+ * method. */
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                      const double *t, int64_t n_pairs, const int32_t *i,
                                      const int32_t *j, double *K, double *d, hd_report *report,
