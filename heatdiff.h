@@ -21018,6 +21018,30 @@ static void hdi_spec_left_out(const hd_laplacian *lap, hd_spectrum *out, hd_cont
     hdi_parallel_ranges(ctx, lap->n_active, 1024, hdi_spec_left_task, &a);
 }
 
+/* A pair found twice, with another one missing, would deceive the count of pivots. Are all vectors different?
+ * They are, if X'B X c = c, where the signs c are as good as random. Uses left and left_mass as work. */
+#define HDI_SPEC_DISTINCT 1e-6
+
+static int hdi_spec_distinct(const hd_laplacian *lap, const hd_spectrum *out) {
+    double *sum = out->left, *mass = out->left_mass;
+    int32_t q, v;
+    memset(sum, 0, HDI_CAST(size_t, out->n) * sizeof *sum);
+    for (q = 0; q < out->count; q++) {
+        const double *x = out->vector + HDI_CAST(int64_t, q) * out->n;
+        const int plus = HDI_CAST(uint32_t, q) * 2654435761u >> 31 & 1;   /* Knuth's multiplicative hash */
+        for (v = 0; v < out->n; v++) sum[v] += plus ? x[v] : -x[v];
+    }
+    for (v = 0; v < out->n; v++) mass[v] = lap->row[v] < 0 ? 0 : hdi_spec_mass_row(lap, sum, lap->row[v]);
+    for (q = 0; q < out->count; q++) {
+        const double *x = out->vector + HDI_CAST(int64_t, q) * out->n;
+        const double c = HDI_CAST(uint32_t, q) * 2654435761u >> 31 & 1 ? 1 : -1;
+        double dot = 0;
+        for (v = 0; v < out->n; v++) dot += x[v] * mass[v];
+        if (!(fabs(dot - c) <= HDI_SPEC_DISTINCT)) return 0;
+    }
+    return 1;
+}
+
 /* What one call computed, into arrays that are there. */
 static void hdi_spec_report(const hdi_spec *s, hd_spectrum *out) {
     out->n_constant = hdi_low32(s->n_null, out->count);
@@ -21055,6 +21079,7 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
             out->left_mass = out->left + n;
             hdi_spec_vectors(&s, out);
             hdi_spec_report(&s, out);
+            out->proven = out->proven && hdi_spec_distinct(m->source, out);
             hdi_spec_left_out(m->source, out, m->ctx);
         }
     }

@@ -296,6 +296,25 @@ static void spec_tampered(void) {
     shape_free(&s);
 }
 
+/* The same pair twice is seen, wherever the two stand. */
+static void spec_twice(void) {
+    shape s = shape_icosphere(3);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    int32_t i, j;
+    for (i = 3; i < 30; i += 7) {
+        for (j = i + 1; j < 30; j += 5) {
+            hd_spectrum *z = spec_make(lap, 30, 0, HD_OK);
+            if (!z) continue;
+            CHECK(hdi_spec_distinct(lap, z));
+            memcpy(z->vector + (size_t)j * (size_t)z->n, z->vector + (size_t)i * (size_t)z->n, (size_t)z->n * sizeof(double));
+            CHECK(!hdi_spec_distinct(lap, z));
+            hd_spectrum_free(z);
+        }
+    }
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 /* f(lambda) of the exact pair at two rows: sum over pairs, of B x where mass is 1. */
 static double spec_exact(const dense_pair *p, const double *B, int power, double t, int32_t i, int32_t j, int mass_i, int mass_j) {
     const int32_t n = p->n;
@@ -509,6 +528,7 @@ static void test_spectrum(void) {
     spec_own();
     spec_rounding();
     spec_tampered();
+    spec_twice();
     spec_kernels();
     spec_against_heat();
     spec_threads();
