@@ -25143,6 +25143,13 @@ static double hdi_pairs_entry_off(const hd_laplacian *lap, const hdi_pairs *x, i
     return weighted ? hdi_ratio_root(lap) / sqrt(lap->b_diag[row]) : sqrt(lap->b_diag[row]);
 }
 
+/* The error of the column of v, whose size is given, in the norm of B: relative errors are below bound. That
+ * of a vertex without a row is exact. */
+static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double size, double bound) {
+    if (lap->row[v] < 0) return 0;
+    return size > 0 ? bound * size : hdi_finite(bound) ? 0 : HUGE_VAL;
+}
+
 /* Columns of the distinct vertices of pairs, and which of them each pair's two are. */
 typedef struct hdi_pair_columns {
     double *U;
@@ -25170,17 +25177,20 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
         const double *uj = c->U + n * HDI_CAST(size_t, c->place[2 * q + 1]);
         const double size_i = hdi_vertex_norm(lap, ui, NULL, c->work, heat->scale);
         const double size_j = hdi_vertex_norm(lap, uj, NULL, c->work, heat->scale);
+        const double off_i = hdi_pairs_column_off(lap, x->i[q], size_i, bound_b);
+        const double off_j = hdi_pairs_column_off(lap, x->j[q], size_j, bound_b);
         if (x->K) {
-            const double off = bound_b * (x->kind == HD_DISTANCE_WEIGHTED ? size_j : size_i);
+            const double entry = hdi_pairs_entry_off(lap, x, q);
+            const double off = x->kind == HD_DISTANCE_WEIGHTED ? off_j : off_i;
             x->K[q] = hdi_pairs_entry(lap, x, q, ui, uj);
-            part.rounding = off * hdi_pairs_entry_off(lap, x, q) + 8 * DBL_EPSILON * fabs(x->K[q]);
+            part.rounding = (entry > 0 ? off * entry : 0) + 8 * DBL_EPSILON * fabs(x->K[q]);
             hdi_ledger_note(&of_k, x->K[q], part);
         }
         if (!x->d) continue;
         x->d[q] = 0;
         if (x->i[q] == x->j[q]) continue;
         x->d[q] = hdi_vertex_norm(lap, ui, uj, c->work, heat->scale);
-        part.rounding = (bound_b + 4 * DBL_EPSILON) * (size_i + size_j);
+        part.rounding = off_i + off_j + 4 * DBL_EPSILON * (size_i + size_j);
         n_lost += x->d[q] < 10 * part.rounding;
         hdi_ledger_note(&of_d, x->d[q], part);
     }

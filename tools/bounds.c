@@ -10,14 +10,15 @@
    the diagonal is minus the sum of the others, exactly. (A caller's own L whose rows sum to more than their
    rounding is taken as it is.)
 
-   bounds [--quick] [--count N] [--seed S] [--query NAME] [--shape NAME] [--method NAME] [--csv FILE]
+   bounds [--quick] [--count N] [--seed S] [--query NAME] [--shape NAME] [--method NAME] [--op NAME]
+          [--csv FILE]
    bounds --case "shape=grid/9/6 op=fem query=column t=1e-3 ..."
    bounds --self
 
    --quick    the small version: the fixed cases and some thousand comparisons on the smaller shapes
    --count    comparisons, in all; default 1000000
    --seed     of the cases that are drawn; default 1
-   --query, --shape, --method   only cases whose query, shape or method contains this
+   --query, --shape, --method, --op   only cases whose query, shape, method or operator contains this
    --csv      a line for every comparison goes to this file
    --case     one case, as the table's footnotes and the lines of the file name it; what is left out is the
               default. Everything about it is printed
@@ -1018,8 +1019,8 @@ static hd_status graph_pair(hd_laplacian **out, const body *b, const char *op, d
     return st;
 }
 
-/* The pair of a shape by an operator: fem, vor, cot, poly with +id or +tuft; vexp, exp, tuft for points; I,
- * diag, tri, near for graphs. */
+/* The pair of a shape by an operator: fem, vor, cot, poly with +id or +tuft; vexp, exp, tuft for points; all
+ * these also with +held; I, diag, tri, near for graphs. */
 static hd_status pair_make(hd_laplacian **out, const char *spec, const char *op, double scale, hd_error *e) {
     hd_laplacian_opts o;
     hd_status st;
@@ -2330,7 +2331,7 @@ typedef struct settings {
     int quick;
     int64_t count;
     uint64_t seed;
-    const char *query, *shape, *method;
+    const char *query, *shape, *method, *op;
 } settings;
 
 static int64_t compared_in_all(void) {
@@ -2344,7 +2345,8 @@ static int wanted(const settings *o, const trial *c) {
     const char *method =
         c->method == HD_METHOD_ITERATIVE && c->solver ? solver_names[c->solver] : method_names[c->method];
     return (!o->query || strstr(query_names[c->query], o->query)) &&
-           (!o->shape || strstr(c->shape, o->shape)) && (!o->method || strstr(method, o->method));
+           (!o->shape || strstr(c->shape, o->shape)) && (!o->op || strstr(c->op, o->op)) &&
+           (!o->method || strstr(method, o->method));
 }
 
 static void run_fixed(const settings *o) {
@@ -2472,6 +2474,7 @@ int main(int argc, char **argv) {
         else if (strcmp(argv[i], "--query") == 0) o.query = argument(argc, argv, &i);
         else if (strcmp(argv[i], "--shape") == 0) o.shape = argument(argc, argv, &i);
         else if (strcmp(argv[i], "--method") == 0) o.method = argument(argc, argv, &i);
+        else if (strcmp(argv[i], "--op") == 0) o.op = argument(argc, argv, &i);
         else if (strcmp(argv[i], "--case") == 0) only = argument(argc, argv, &i);
         else if (strcmp(argv[i], "--shrink") == 0) shrink = strtod(argument(argc, argv, &i), NULL);
         else if (strcmp(argv[i], "--csv") == 0) {
@@ -2481,7 +2484,7 @@ int main(int argc, char **argv) {
                          "below_b,below_relative,useless,bad\n");
         } else {
             fprintf(stderr, "usage: bounds [--quick] [--count N] [--seed S] [--query NAME] [--shape NAME] "
-                            "[--method NAME] [--csv FILE] [--case CASE] [--shrink F] [--self]\n");
+                            "[--method NAME] [--op NAME] [--csv FILE] [--case CASE] [--shrink F] [--self]\n");
             return 2;
         }
     }
