@@ -20895,7 +20895,8 @@ static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
 
 /* The first run: the low end, from a shift below all eigenvalues. */
 static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error *e) {
-    const int32_t beyond = hdi_low32(HDI_SPEC_HALF, goal->count - hdi_low32(goal->count, s->n_null) + 2);
+    const int32_t more = goal->count - hdi_low32(goal->count, s->n_null);
+    const int32_t beyond = hdi_low32(HDI_SPEC_HALF - 2, more) + 2;
     double sum = 0;
     int32_t i;
     for (i = 0; i < s->n; i++) {                 /* the harmonic mean, which slivers do not make large */
