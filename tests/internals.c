@@ -1834,6 +1834,7 @@ static void int_pairs_by_entries(void) {
             hd_report rep;
             hdi_pairs pairs;
             memset(&rep, 0, sizeof rep);
+            memset(&pairs, 0, sizeof pairs);
             for (q = 0; q < PAIRS; q++) {
                 i[q] = q % 3 ? i[q - 1] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
                 j[q] = q % 11 == 5 ? i[q] : (int32_t)(dense_random(&seed) % (uint64_t)lap->n);
