@@ -21023,22 +21023,25 @@ static void hdi_spec_left_out(const hd_laplacian *lap, hd_spectrum *out, hd_cont
  * They are, if X'B X c = c, where the signs c are as good as random. Uses left and left_mass as work. */
 #define HDI_SPEC_DISTINCT 1e-6
 
+static double hdi_spec_sign(int32_t q) {
+    return ((HDI_CAST(uint32_t, q) * 2654435761u) >> 31) != 0 ? 1 : -1;   /* Knuth's multiplicative hash */
+}
+
 static int hdi_spec_distinct(const hd_laplacian *lap, const hd_spectrum *out) {
     double *sum = out->left, *mass = out->left_mass;
     int32_t q, v;
     memset(sum, 0, HDI_CAST(size_t, out->n) * sizeof *sum);
     for (q = 0; q < out->count; q++) {
         const double *x = out->vector + HDI_CAST(int64_t, q) * out->n;
-        const int plus = HDI_CAST(uint32_t, q) * 2654435761u >> 31 & 1;   /* Knuth's multiplicative hash */
-        for (v = 0; v < out->n; v++) sum[v] += plus ? x[v] : -x[v];
+        const double c = hdi_spec_sign(q);
+        for (v = 0; v < out->n; v++) sum[v] += c * x[v];
     }
     for (v = 0; v < out->n; v++) mass[v] = lap->row[v] < 0 ? 0 : hdi_spec_mass_row(lap, sum, lap->row[v]);
     for (q = 0; q < out->count; q++) {
         const double *x = out->vector + HDI_CAST(int64_t, q) * out->n;
-        const double c = HDI_CAST(uint32_t, q) * 2654435761u >> 31 & 1 ? 1 : -1;
         double dot = 0;
         for (v = 0; v < out->n; v++) dot += x[v] * mass[v];
-        if (!(fabs(dot - c) <= HDI_SPEC_DISTINCT)) return 0;
+        if (!(fabs(dot - hdi_spec_sign(q)) <= HDI_SPEC_DISTINCT)) return 0;
     }
     return 1;
 }
