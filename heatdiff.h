@@ -28002,6 +28002,7 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
                        opts && opts->context ? opts->context : lap ? lap->context : NULL,
                        "spectrum options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !lap || !opts) return hdi_missing(c.e);
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c.e, DIRECT, "factorisations");
     if (hdi_spectrum_check(lap, opts, c.e) < 0) return c.e->status;
     shell = HDI_CAST(hdi_spectrum *, hdi_alloc(c.ctx, 1, sizeof *shell, c.e));
     if (!shell) return c.e->status;
