@@ -21470,6 +21470,7 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
 
 /* The copy of the pair in elimination order, analysed. */
 static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(e, DIRECT, "factorisations");
     if (heat->elim.ctx) return HD_OK;
     return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, heat->perm, heat->scale, heat->ctx,
                          e);
@@ -24608,7 +24609,7 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     hdi_spec_goal goal;
     hdi_modes_free(x, heat->ctx);
-    if (hdi_heat_analysed(heat, e) < 0) return 0;
+    if (!HDI_HAS_DIRECT || hdi_heat_analysed(heat, e) < 0) return 0;
     if (heat->ctx->byte_limit && hdi_modes_need(heat, count) > HDI_CAST(double, heat->ctx->byte_limit) -
                                                                HDI_CAST(double, heat->ctx->bytes_in_use))
         return 0;
