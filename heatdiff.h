@@ -27568,7 +27568,7 @@ HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_
     if (c.e->status < 0 || hdi_csr_check(L, 0, c.ctx, c.e) < 0 || hdi_csr_check(B, 0, c.ctx, c.e) < 0 ||
         hdi_pair_update(all, L, B, c.e) < 0)
         return c.e->status;
-    if (all->b_ratio < HDI_RATIO_POOR && hdi_lap_ratio(all, c.e) < 0) {
+    if (HDI_HAS_DIRECT && all->b_ratio < HDI_RATIO_POOR && hdi_lap_ratio(all, c.e) < 0) {
         hdi_moving_pair_restore(all);
         return c.e->status;
     }
