@@ -2503,7 +2503,7 @@ int main(int argc, char **argv) {
     run_fixed(&o);
     if (o.quick) {
         const int n = sizeof small / sizeof *small;
-        run_families(&o, small, n, 4000 / run_families(&o, small, n, 0));
+        run_families(&o, small, n, 1 + 800 / run_families(&o, small, n, 0));
     } else {
         const int n = sizeof large / sizeof *large;
         const int64_t members = run_families(&o, large, n, 0);
