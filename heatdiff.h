@@ -5319,6 +5319,24 @@ static const int32_t *hdi_view_corners(const hd_mesh_view *v, const double *xyz,
     return tri;
 }
 
+/* The arrays of a view: the caller's where they are as we want them, else copies. */
+typedef struct hdi_view {
+    hdi_scope s;
+    const double *xyz;
+    const int32_t *tri;
+    int32_t n, n_tri;
+} hdi_view;
+
+/* Reads a view whose sizes are checked. faces: its indices are wanted too. */
+static hd_status hdi_view_read(hdi_view *out, const hd_mesh_view *v, int faces) {
+    out->n = HDI_CAST(int32_t, v->n);
+    out->xyz = hdi_view_places(v, &out->s);
+    if (!faces || out->s.e->status < 0) return out->s.e->status;
+    out->n_tri = HDI_CAST(int32_t, v->n_indices / 3);
+    out->tri = hdi_view_corners(v, out->xyz, &out->s);
+    return out->s.e->status;
+}
+
 /* ---- faces ---- */
 
 /* What a block of faces adds to the report. */
@@ -7432,6 +7450,21 @@ static void hdi_holding_free(hdi_holding *x, hd_context *ctx) {
     hdi_free(ctx, x->whole);
     hdi_free(ctx, x->mark);
     hdi_free(ctx, x);
+}
+
+/* Marks the vertices that are to be held; border: those at the border too, once it is known. */
+static hd_status hdi_holding_make(hd_laplacian *lap, int border, const int32_t *held, int32_t n_held,
+                                  hd_error *e) {
+    hdi_holding *x = HDI_NEW(lap->context, hdi_holding, 1, e);
+    int32_t q;
+    lap->holding = x;
+    if (!x) return e->status;
+    memset(x, 0, sizeof *x);
+    x->border = border;
+    x->mark = HDI_NEW(lap->context, char, lap->n, e);
+    if (x->mark) memset(x->mark, 0, HDI_CAST(size_t, lap->n));
+    for (q = 0; q < n_held && x->mark; q++) x->mark[held[q]] = 1;
+    return e->status;
 }
 
 static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
@@ -21253,6 +21286,61 @@ static void hdi_spec_sum_inert(hdi_spec_sum *a, int32_t source) {
     }
 }
 
+/* Sums of a query: kernels or distances of k sources at n_times times, or a diagonal. */
+typedef struct hdi_spec_sums {
+    hdi_spec_sum sum;            /* says which */
+    const hd_spectrum *of;
+    int32_t n_times, k, power;   /* power: of 1/lambda, for distances without a time */
+    const double *t;
+    const int32_t *sources;      /* [k], or NULL: the diagonal */
+    double *work;                /* [2 count + 1] */
+    double *out, *bound;         /* column q n_times + m for source q and time m, ld apart */
+    size_t ld;
+} hdi_spec_sums;
+
+static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, double *out, double *bound,
+                                      size_t ld) {
+    hdi_spec_sums x;
+    memset(&x, 0, sizeof x);
+    x.n_times = n_times;
+    x.t = t;
+    x.out = out;
+    x.bound = bound;
+    x.ld = ld;
+    return x;
+}
+
+/* Without a time, other components are out of reach. */
+static void hdi_spec_sum_apart(const hd_laplacian *lap, int32_t source, double *out, double *bound) {
+    const int32_t own = lap->row[source] < 0 ? -1 : lap->component[lap->row[source]];
+    int32_t v;
+    for (v = 0; v < lap->n; v++) {
+        const int32_t row = lap->row[v];
+        if (v == source || (row >= 0 && lap->component[row] == own)) continue;
+        out[v] = HUGE_VAL;
+        if (bound) bound[v] = 0;
+    }
+}
+
+static void hdi_spec_sums_run(hdi_spec_sums *x, hd_context *ctx) {
+    hdi_spec_sum *a = &x->sum;
+    const hd_laplacian *lap = x->of->lap;
+    int32_t q, m;
+    for (q = 0; q < x->k; q++) {
+        const int32_t source = a->diagonal ? -1 : x->sources[q];
+        for (m = 0; m < x->n_times; m++) {
+            const size_t at = HDI_CAST(size_t, q) * HDI_CAST(size_t, x->n_times) + HDI_CAST(size_t, m);
+            a->out = x->out + at * x->ld;
+            a->bound = x->bound ? x->bound + at * x->ld : NULL;
+            a->f = hdi_spec_filter_of(x->of, a->distance ? 2 * x->t[m] : x->t[m], x->power);
+            hdi_spec_sum_run(a, source, a->diagonal && a->mass, x->work, ctx);
+            if (x->power) hdi_spec_sum_apart(lap, source, a->out, a->bound);
+            else if (a->distance) hdi_spec_sum_inert(a, source);
+            else if (source >= 0 && a->mass && lap->row[source] == HD_ROW_INERT) a->out[source] = 1;
+        }
+    }
+}
+
 /* ==== [26] plan ====
  * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors and bases that are
  * kept, the run of a request, and the report. May call [24] and [23].
@@ -27162,9 +27250,8 @@ typedef struct hdi_laplacian {
     hd_context context;
 } hdi_laplacian;
 
-/* Marks the vertices that the options hold at zero. */
+/* Checks and marks the vertices that the options hold at zero. */
 static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_error *e) {
-    hdi_holding *x;
     int32_t q;
     hdi_refuse(o && (o->border < HD_BORDER_NATURAL || o->border > HD_BORDER_DIRICHLET),
                "laplacian options: border is natural or Dirichlet", e);
@@ -27175,14 +27262,7 @@ static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_
         if (o->held[q] < 0 || o->held[q] >= lap->n)
             return hdi_fail_row(e, HD_ERR_INDEX, "laplacian options: a vertex to hold is not in the mesh", q,
                                 -1, o->held[q]);
-    lap->holding = x = HDI_NEW(lap->context, hdi_holding, 1, e);
-    if (!x) return e->status;
-    memset(x, 0, sizeof *x);
-    x->border = o->border == HD_BORDER_DIRICHLET;
-    x->mark = HDI_NEW(lap->context, char, lap->n, e);
-    if (x->mark) memset(x->mark, 0, HDI_CAST(size_t, lap->n));
-    for (q = 0; q < o->n_held && x->mark; q++) x->mark[o->held[q]] = 1;
-    return e->status;
+    return hdi_holding_make(lap, o->border == HD_BORDER_DIRICHLET, o->held, o->n_held, e);
 }
 
 /* Points and matrices cannot tell their border. */
@@ -27281,14 +27361,6 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
 
 /* ---- views of vertex and index buffers ---- */
 
-/* The arrays of a view: the caller's where they are as we want them, else copies. */
-typedef struct hdi_view {
-    hdi_scope s;
-    const double *xyz;
-    const int32_t *tri;
-    int32_t n, n_tri;
-} hdi_view;
-
 /* Sizes. No position may lie beyond the address space. */
 static hd_status hdi_view_sizes(const hd_mesh_view *v, int faces, hd_error *e) {
     const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
@@ -27323,13 +27395,7 @@ static hd_status hdi_view_open(hdi_view *out, const hd_mesh_view *v, int faces, 
     memset(out, 0, sizeof *out);
     out->s = hdi_scope_begin(c->ctx, c->e);
     if (!v) return hdi_missing(c->e);
-    if (hdi_view_check(v, faces, c->e) < 0) return c->e->status;
-    out->n = HDI_CAST(int32_t, v->n);
-    out->xyz = hdi_view_places(v, &out->s);
-    if (!faces || c->e->status < 0) return c->e->status;
-    out->n_tri = HDI_CAST(int32_t, v->n_indices / 3);
-    out->tri = hdi_view_corners(v, out->xyz, &out->s);
-    return c->e->status;
+    return hdi_view_check(v, faces, c->e) < 0 ? c->e->status : hdi_view_read(out, v, faces);
 }
 
 /* Opens a view of new positions for n vertices. */
@@ -28032,140 +28098,80 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
     hdi_let_go(ctx);
 }
 
-/* A call for sums over the pairs. */
-typedef struct hdi_sum_call {
-    hdi_call c;
-    hdi_spec_sum sum;
-    int32_t n_times, k;
-    const double *t;
-    const int32_t *sources;      /* [k], or NULL: the diagonal */
-    double *work;
-    size_t ld;
-} hdi_sum_call;
-
-static hdi_sum_call hdi_sum_call_of(int32_t n_times, const double *t, int32_t k, const int32_t *sources) {
-    hdi_sum_call h;
-    memset(&h, 0, sizeof h);
-    h.n_times = n_times;
-    h.t = t;
-    h.k = k;
-    h.sources = sources;
-    return h;
-}
-
-/* Checks the arguments. */
-static hd_status hdi_sum_begin(hdi_sum_call *h, const hd_spectrum *s, const double *out, size_t ld,
-                               hd_error *err) {
-    const int needed = !h->sum.diagonal;
+/* Checks the arguments of sums over the pairs, and makes room for them. */
+static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum *s, hd_error *err) {
     int32_t q;
-    if (hdi_enter(&h->c, s ? s->context : NULL, err) < 0) return h->c.e->status;
-    if (!s || (h->n_times > 0 && !h->t) || (needed && h->k > 0 && !h->sources) || (h->k > 0 && !out))
-        return hdi_missing(h->c.e);
-    hdi_refuse(h->n_times < 1, "spectrum: there is no time", h->c.e);
-    hdi_refuse(h->k < 0, "spectrum: a number of columns is negative", h->c.e);
-    hdi_refuse(ld != 0 && ld < HDI_CAST(size_t, s->n), "spectrum: columns would overlap", h->c.e);
-    for (q = 0; q < h->n_times; q++)
-        hdi_refuse_value(!hdi_finite(h->t[q]) || h->t[q] < 0, "spectrum: t is negative or not finite",
-                         h->t[q], h->c.e);
-    if (h->c.e->status < 0) return h->c.e->status;
-    if (needed && hdi_vertices_check(s->lap, h->k, h->sources, &h->c.e->column, h->c.e) < 0)
-        return h->c.e->status;
-    h->ld = ld ? ld : HDI_CAST(size_t, s->n);
-    h->work = HDI_NEW(h->c.ctx, double, 2 * HDI_CAST(uint64_t, s->count) + 1, h->c.e);
-    return h->c.e->status;
+    if (hdi_enter(c, s ? s->context : NULL, err) < 0) return c->e->status;
+    if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c->e);
+    if (!x->sum.diagonal && x->k > 0 && !x->sources) return hdi_missing(c->e);
+    hdi_refuse(x->n_times < 1, "spectrum: there is no time", c->e);
+    hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c->e);
+    hdi_refuse(x->ld != 0 && x->ld < HDI_CAST(size_t, s->n), "spectrum: columns would overlap", c->e);
+    for (q = 0; q < x->n_times; q++)
+        hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
+                         x->t[q], c->e);
+    if (c->e->status < 0) return c->e->status;
+    if (x->sources && hdi_vertices_check(s->lap, x->k, x->sources, &c->e->column, c->e) < 0)
+        return c->e->status;
+    x->of = s;
+    x->ld = x->ld ? x->ld : HDI_CAST(size_t, s->n);
+    x->work = HDI_NEW(c->ctx, double, 2 * HDI_CAST(uint64_t, s->count) + 1, c->e);
+    return c->e->status;
 }
 
-static hd_status hdi_sum_end(hdi_sum_call *h) {
-    hdi_free(h->c.ctx, h->work);
-    return h->c.e->status;
+static hd_status hdi_sum_end(hdi_call *c, hdi_spec_sums *x) {
+    if (c->e->status >= 0) hdi_spec_sums_run(x, c->ctx);
+    hdi_free(c->ctx, x->work);
+    return c->e->status;
 }
 
-/* Where column q of the answer goes. */
-static void hdi_sum_column(hdi_sum_call *h, size_t q, double *out, double *bound) {
-    h->sum.out = out + q * h->ld;
-    h->sum.bound = bound ? bound + q * h->ld : NULL;
+static void hdi_sum_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_error *e) {
+    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel", e);
+    x->sum.mass = kernel == HD_KERNEL_OPERATOR;
 }
 
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, int32_t k, const int32_t *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    hdi_sum_call h = hdi_sum_call_of(n_times, t, k, sources);
-    int32_t q, m;
-    if (hdi_sum_begin(&h, s, U, ldu, err) < 0) return h.c.e->status;
-    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
-               h.c.e);
-    h.sum.mass = kernel == HD_KERNEL_OPERATOR;
-    for (q = 0; q < k && h.c.e->status >= 0; q++) {
-        for (m = 0; m < n_times; m++) {
-            hdi_sum_column(&h, HDI_CAST(size_t, q) * HDI_CAST(size_t, n_times) + HDI_CAST(size_t, m), U,
-                           bound);
-            h.sum.f = hdi_spec_filter_of(s, t[m], 0);
-            hdi_spec_sum_run(&h.sum, sources[q], 0, h.work, h.c.ctx);
-            if (h.sum.mass && s->lap->row[sources[q]] == HD_ROW_INERT) h.sum.out[sources[q]] = 1;
-        }
-    }
-    return hdi_sum_end(&h);
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, U, bound, ldu);
+    hdi_call c;
+    x.k = k;
+    x.sources = sources;
+    if (hdi_sum_begin(&c, &x, s, err) < 0) return c.e->status;
+    hdi_sum_kernel(&x, kernel, c.e);
+    return hdi_sum_end(&c, &x);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    hdi_sum_call h = hdi_sum_call_of(n_times, t, 1, NULL);
-    int32_t m;
-    h.sum.diagonal = 1;
-    if (hdi_sum_begin(&h, s, D, ldd, err) < 0) return h.c.e->status;
-    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
-               h.c.e);
-    h.sum.mass = kernel == HD_KERNEL_OPERATOR;
-    for (m = 0; m < n_times && h.c.e->status >= 0; m++) {
-        hdi_sum_column(&h, HDI_CAST(size_t, m), D, bound);
-        h.sum.f = hdi_spec_filter_of(s, t[m], 0);
-        hdi_spec_sum_run(&h.sum, -1, h.sum.mass, h.work, h.c.ctx);
-    }
-    return hdi_sum_end(&h);
-}
-
-/* Without a time, other components are out of reach. */
-static void hdi_sum_apart(const hd_laplacian *lap, int32_t source, double *out, double *bound) {
-    const int32_t own = lap->row[source] < 0 ? -1 : lap->component[lap->row[source]];
-    int32_t v;
-    for (v = 0; v < lap->n; v++) {
-        const int32_t row = lap->row[v];
-        if (v == source || (row >= 0 && lap->component[row] == own)) continue;
-        out[v] = HUGE_VAL;
-        if (bound) bound[v] = 0;
-    }
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
+    hdi_call c;
+    x.k = 1;
+    x.sum.diagonal = 1;
+    if (hdi_sum_begin(&c, &x, s, err) < 0) return c.e->status;
+    hdi_sum_kernel(&x, kernel, c.e);
+    return hdi_sum_end(&c, &x);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, int32_t k, const int32_t *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
     const int power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
+    const int none = power && n_times <= 1;      /* no time */
     const double zero = 0;
-    hdi_sum_call h;
-    int32_t q, m;
-    if (power && n_times <= 1) {                 /* no time */
-        n_times = 1;
-        t = &zero;
-    }
-    h = hdi_sum_call_of(n_times, t, k, sources);
-    if (hdi_sum_begin(&h, s, D, ldd, err) < 0) return h.c.e->status;
+    hdi_spec_sums x = hdi_spec_sums_of(none ? 1 : n_times, none ? &zero : t, D, bound, ldd);
+    hdi_call c;
+    x.k = k;
+    x.sources = sources;
+    x.power = power;
+    if (hdi_sum_begin(&c, &x, s, err) < 0) return c.e->status;
     hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
-               h.c.e);
-    hdi_refuse(power && n_times > 1, "spectrum: this distance has no time", h.c.e);
-    h.sum.mass = kind == HD_DISTANCE_WEIGHTED;
-    h.sum.distance = 1;
-    for (q = 0; q < k && h.c.e->status >= 0; q++) {
-        for (m = 0; m < n_times; m++) {
-            hdi_sum_column(&h, HDI_CAST(size_t, q) * HDI_CAST(size_t, n_times) + HDI_CAST(size_t, m), D,
-                           bound);
-            h.sum.f = hdi_spec_filter_of(s, 2 * t[m], power);
-            hdi_spec_sum_run(&h.sum, sources[q], 0, h.work, h.c.ctx);
-            if (power) hdi_sum_apart(s->lap, sources[q], h.sum.out, h.sum.bound);
-            else hdi_spec_sum_inert(&h.sum, sources[q]);
-        }
-    }
-    return hdi_sum_end(&h);
+               c.e);
+    hdi_refuse(power && n_times > 1, "spectrum: this distance has no time", c.e);
+    x.sum.mass = kind == HD_DISTANCE_WEIGHTED;
+    x.sum.distance = 1;
+    return hdi_sum_end(&c, &x);
 }
 
 /* Moves fields that lie ldf apart to where their answers will be, ldu apart in the same array. */
