@@ -19007,6 +19007,8 @@ typedef struct hdi_silan {
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double *probe;               /* [2 n] a solution and its residual */
     double *ahead;               /* [8][n] answers at several times, wide == 1 */
+    double *y;                   /* [y_size] coefficients of answers */
+    int32_t y_size;
     double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
     double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
@@ -19034,6 +19036,7 @@ static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
     hdi_free(ctx, z->c);
     hdi_free(ctx, z->work);
     hdi_free(ctx, z->ahead);
+    hdi_free(ctx, z->y);
     memset(z, 0, sizeof *z);
 }
 
@@ -19358,16 +19361,27 @@ static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, double t, doubl
     return HD_OK;
 }
 
+/* Room for the coefficients of so many answers. */
+static hd_status hdi_silan_places(hdi_silan *z, int32_t count, hd_context *ctx, hd_error *e) {
+    const int32_t size = count * z->steps + 1;
+    if (z->y_size >= size) return HD_OK;
+    hdi_free(ctx, z->y);
+    z->y_size = 0;
+    z->y = HDI_NEW(ctx, double, size, e);
+    if (z->y) z->y_size = size;
+    return e->status;
+}
+
 /* Answers that are summed up in one pass over the basis: of one right-hand side at several times, or of
  * several at one time. */
 typedef struct hdi_silan_sum {
     int32_t count;
-    double y[HDI_SILAN_WIDE][HDI_SILAN_MAX];
+    const double *y[HDI_SILAN_WIDE];   /* [steps] coefficients of each */
     double *u[HDI_SILAN_WIDE];   /* [n], or NULL: not wanted */
     const double *means[HDI_SILAN_WIDE];   /* [n_components] the constants of each */
 } hdi_silan_sum;
 
-enum { HDI_SILAN_BLOCK = 128 };  /* rows whose sums stay in the first cache */
+enum { HDI_SILAN_BLOCK = 64 };  /* rows whose sums stay in the first cache */
 
 /* Rows [begin, end) of all sums, side by side: s [rows][8]. */
 static void hdi_silan_sum_block(const hdi_silan *z, const hdi_silan_sum *a, int64_t begin, int64_t end,
@@ -22764,12 +22778,13 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
     hdi_silan *z = h->heat->silan;
     const int64_t rows = h->lap->n_active;
     const int abreast = z->wide > 1;             /* else one item, at several times */
+    const int32_t places = abreast ? n : hdi_low32(q1 - q0, HDI_SILAN_WIDE);
     hdi_silan_sum a;
     int32_t p, q, n_here;
     memset(&a, 0, sizeof a);
     if (!abreast && q1 - q0 > 1 && !z->ahead)
         z->ahead = HDI_NEW(ctx, double, HDI_SILAN_WIDE * HDI_CAST(uint64_t, rows), h->e);
-    if (h->e->status < 0) return h->e->status;
+    if (h->e->status < 0 || hdi_silan_places(z, places, ctx, h->e) < 0) return h->e->status;
     for (q = q0; q < q1; q += n_here) {
         n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_SILAN_WIDE);
         a.count = n * n_here;
@@ -22778,7 +22793,9 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
             const double t = h->times[abreast ? q : q + p] - z->from;
             a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
             a.means[p] = lane->sums;
-            if (hdi_silan_coefficients(z, abreast ? p : 0, t, a.y[p], h->e) < 0) return h->e->status;
+            a.y[p] = z->y + z->steps * p;
+            if (hdi_silan_coefficients(z, abreast ? p : 0, t, z->y + z->steps * p, h->e) < 0)
+                return h->e->status;
         }
         hdi_silan_sum_run(z, &a, ctx);
         for (p = 0; p < n_here; p++)

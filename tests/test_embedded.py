@@ -22,7 +22,7 @@ QEMU = ["qemu-system-arm", "-M", "mps2-an500", "-nographic", "-monitor", "none",
 SKIP = 77
 FORBIDDEN = re.compile(r"^_?_?(malloc|calloc|realloc|free|sbrk|brk|v?s?n?f?i?printf|v?f?scanf|f?puts|f?putc|putchar|fopen|fwrite|"
                        r"fflush|fclose|write|read|open|s[wf]?setup|sinit|sfp|srget|sread|swrite)(_r)?$")
-STACK_MOST, STACK_ITERATIONS = 29 << 10, 8 << 10
+STACK_MOST, STACK_ITERATIONS = 16 << 10, 8 << 10
 TOLERANCE = 1e-12
 
 passed = failed = 0
