@@ -19864,6 +19864,7 @@ enum {
     HDI_SPEC_GAPS = 16,              /* pairs beyond those wanted among which a gap is looked for */
     HDI_SPEC_TRIES = 6,              /* of shifts in a row, and of runs that find nothing */
     HDI_SPEC_PASSES = 16,            /* most, until a block is orthogonal; two are the rule */
+    HDI_SPEC_IDLE = 40,              /* shifts in a row with nothing below them; the last is 2^780 away */
     HDI_SPEC_PROOFS = 4              /* shifts that may fail to prove that all is found */
 };
 
@@ -20060,6 +20061,7 @@ typedef struct hdi_spec {
     double tol;
     double edge;                 /* all below are found */
     double share;                /* how much of the work is done */
+    int32_t idle;                /* shifts in a row with nothing new below them */
     hdi_slab *slab;              /* [n_slabs] locked vectors */
     char *beside;                /* [n_slabs] 1: the run under way is orthogonal to it */
     int32_t n_slabs, room_slabs;
@@ -20886,8 +20888,9 @@ static double hdi_spec_gap(const hdi_spec *s, int32_t n, double least, double na
     return at;
 }
 
-/* The next shift: in a gap above what is wanted if that much is found, else some way up. failed: proofs that
- * did not succeed; each takes some more pairs. */
+/* The next shift: in a gap above what is wanted if that much is found, else some way up, and every time much
+ * farther where nothing was: parts of unlike scales may be 10^11 apart. failed: proofs that did not succeed;
+ * each takes some more pairs. */
 static double hdi_spec_next(const hdi_spec *s, const hdi_spec_goal *goal, int32_t failed, int32_t half) {
     int all;
     const int32_t n = hdi_spec_wanted(s, goal, &all) + failed * HDI_SPEC_GAPS;
@@ -20899,7 +20902,8 @@ static double hdi_spec_next(const hdi_spec *s, const hdi_spec_goal *goal, int32_
         at = hdi_spec_gap(s, n, at, HDI_SPEC_NARROW * step);
         if (at < HUGE_VAL) return at;
     }
-    at = from + step * hdi_max(1, hdi_min(half, HDI_CAST(double, goal->count) - s->found + 3));
+    at = hdi_min(half, HDI_CAST(double, goal->count) - s->found + 3);
+    at = from + ldexp(step, s->idle * (s->idle + 1) / 2) * hdi_max(1, at);
     if (at >= goal->below) at = hdi_max(goal->below, from + 0.3 * step);
     return at;
 }
@@ -20953,7 +20957,10 @@ static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error
     s->unit = sum > 0 ? 1 / sum : 1;
     s->edge = -s->unit;
     if (hdi_spec_constants(s, goal->count, e) < 0 || hdi_spec_shift(s, -s->unit, 0, e) < 0) return e->status;
-    if (s->below) return hdi_not_semidefinite(e);
+    if (s->below && s->off < s->unit) return hdi_not_semidefinite(e);
+    if (s->below)
+        return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: the entries of L differ by so much that rounding "
+                        "hides the smallest eigenvalues");
     if (goal->count <= s->n_null || s->found == s->n) return HD_OK;
     hdi_spec_nearby(s);
     return hdi_spec_lanczos(s, 0, beyond, e) < 0 ? e->status : hdi_spec_lock(s, e);
@@ -20976,7 +20983,7 @@ static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t 
     int all = 0;
     if (hdi_spec_start(s, goal, e) < 0) return e->status;
     s->proven = s->found == s->n || goal->count <= s->n_null;
-    while (!s->proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES) {
+    while (!s->proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
         const int32_t before = s->found;
         if (hdi_spec_move(s, goal, failed, half, &missing, e) < 0) return e->status;
         if (missing > 0) {
@@ -20984,6 +20991,7 @@ static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t 
             stalls = s->found > before ? 0 : stalls + 1;
             half = stalls ? half / 2 + 1 : half;
         }
+        s->idle = missing == 0 ? s->idle + 1 : 0;
         if (missing == 0) s->edge = hdi_max(s->edge, s->sigma);
         if (s->below == hdi_spec_rank(s, s->sigma) &&
             (s->below >= goal->count || s->sigma >= goal->below)) {

@@ -1511,6 +1511,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     static const double factors[5] = {0.03, 0.3, 1, 3, 30};
     const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
     double *u = DENSE_NEW(double, n), *want = DENSE_NEW(double, n), *L = DENSE_NEW(double, n * n), *B = DENSE_NEW(double, n * n), loosest = 0;
+    double *y = DENSE_NEW(double, 45 * 8);
     hdi_silan *z = DENSE_NEW(hdi_silan, 1);
     hdi_ritz ritz;
     hdi_silan_sum sum;
@@ -1557,7 +1558,8 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 memset(sum.u, 0, sizeof sum.u);
                 sum.u[r] = lane[r].u;
                 sum.means[r] = lane[r].sums;
-                CHECK(hdi_silan_coefficients(z, r, at, sum.y[r], &e) == HD_OK);
+                for (i = 0; i <= r; i++) sum.y[i] = y + 45 * i;
+                CHECK(hdi_silan_coefficients(z, r, at, y + 45 * r, &e) == HD_OK);
                 hdi_silan_sum_run(z, &sum, &ctx);
                 CHECK(hdi_silan_answer(z, r, at, sum.y[r], 0, lane + r, &e) == HD_OK);
                 z->done[r] = 0;
@@ -1592,6 +1594,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     free(lane);
     free(z);
     free(u);
+    free(y);
     free(want);
 }
 

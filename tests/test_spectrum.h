@@ -178,6 +178,33 @@ static void spec_copies(void) {
     free(one);
 }
 
+/* Two rings, one of them stiffer by so much that shifts have far to go from the last value of the one to the
+ * first of the other. */
+static void spec_far_apart(void) {
+    enum { N = 12 };
+    static const double stiff[4] = {1e3, 1e11, 1e60, 1e150};   /* beyond the digits there is an error */
+    int32_t a[2 * N], b[2 * N], i, c;
+    double w[2 * N], want[2 * N], *one = spec_lattice_values(N, 1, 1);
+    for (c = 0; c < 4; c++) {
+        hd_laplacian *lap;
+        hd_spectrum *z;
+        for (i = 0; i < 2 * N; i++) {
+            a[i] = i;
+            b[i] = i / N * N + (i + 1) % N;
+            w[i] = i < N ? 1 : stiff[c];
+            want[i] = i < 2 ? 0 : i < N + 1 ? one[i - 1] : stiff[c] * one[i - N];
+        }
+        lap = bnd_graph(2 * N, 2 * N, a, b, w, NULL, 1);
+        z = spec_make(lap, N + 4, 0, stiff[c] > 1e16 ? HD_ERR_NOT_CONVERGED : HD_OK);
+        if (z) spec_check_values(z, want, 2 * N, "far apart");
+        if (z) spec_check_vectors(lap, z, 2e-10, "far apart");
+        if (z) CHECK_MSG(z->proven && z->n_factors <= 50, "%g: proven %d, %d factors", stiff[c], z->proven, (int)z->n_factors);
+        hd_spectrum_free(z);
+        hd_laplacian_free(lap);
+    }
+    free(one);
+}
+
 /* The spherical harmonics: groups of 2l + 1, near l (l + 1). */
 static void spec_sphere(void) {
     shape s = shape_icosphere(4);
@@ -523,6 +550,7 @@ static void test_spectrum(void) {
     spec_against_dense();
     spec_closed_forms();
     spec_copies();
+    spec_far_apart();
     spec_sphere();
     spec_below();
     spec_own();
