@@ -1217,6 +1217,34 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
+/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area.
+ * t      >= 0
+ * F, U   as above. The derivative is 0 at vertices without mass and at held ones
+ * report bounds are relative to the derivative, which fades faster than K_t F: where t is so large that only
+ *        means are left it is 0, and the bound is infinite
+ * With poles t dK_t/dt comes by other weights a_i on the same poles,
+ *     x c(x) = sum a_i + sum a_i theta_i/(x - theta_i),
+ * which is off by no more than max (1 + |x|)|exp(x) - c(x)|. Kernel sets (or diagonal ones, if asked for)
+ * have that small; the default is degree 14. Krylov, Lanczos and t = 0 take -K_(t-s) B^-1 L K_s F with s half
+ * the least time.
+ * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply,
+ * hd_heat_derivative and hd_heat_adjoint at one t share the factors of the direct method, and the adjoint is
+ * that of the very matrix applied, up to rounding. For a loss with gradient G by U = K_t F, its gradient by F
+ * is K_t' G, and its derivative by t the sum of all G_ij (dK_t/dt F)_ij.
+ * Errors as above; HD_ERR_ARGUMENT with a pole set of your own
+ * Cost   as above; krylov and Lanczos take two runs */
+HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
+                                          int32_t k, const double *F, size_t ldf, double *U,
+                                          size_t ldu, hd_report *report, hd_error *err);
+
+/* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g.
+ * G, U   as F and U above. The sum over G is kept, and what is at vertices without mass stays; held ones: 0
+ * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
+ * Errors and cost as hd_heat_apply; a full B takes some 30 products with B for each field besides */
+HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                       const double *G, size_t ldg, double *U, size_t ldu,
+                                       hd_report *report, hd_error *err);
+
 /* Columns of the kernel. That of K_t for a source s is K_t e_s: the field at time t that starts as 1 at s and
  * 0 elsewhere; its total heat 1'B u is the mass of s.
  * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
@@ -16191,6 +16219,20 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
     return sum;
 }
 
+/* Turns a kernel or diagonal set, c, into the set x c(x) for x exp(x) on the same poles:
+ *   x a/(x - theta) = a + a theta/(x - theta).
+ * It is off by |x e(x)| <= max (1 + |x|)|e(x)|, and 0 at 0. Nothing better is known of large |x|. */
+static void hdi_rational_rate(hd_rational *set) {
+    int32_t i;
+    set->max_error = set->max_weighted_error;
+    set->max_weighted_error = 0;
+    set->a0 = 0;
+    for (i = 0; i < set->n_poles; i++) {
+        set->a0 += hdi_rat_count(set, i) * set->a[i].re;
+        set->a[i] = hdi_cmul(set->a[i], set->theta[i]);
+    }
+}
+
 static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     int32_t i;
     if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES)
@@ -17097,11 +17139,18 @@ static void hdi_family_free(hdi_family *fam) {
     fam->filled = 0;
 }
 
+/* Do two sets have the same poles? Their weights may differ. */
+static int hdi_set_same_poles(const hd_rational *a, const hd_rational *b) {
+    return a->n_poles == b->n_poles &&
+           memcmp(a->theta, b->theta, HDI_CAST(size_t, a->n_poles) * sizeof *a->theta) == 0;
+}
+
 /* Takes up a set and a time. When filled is 0, hdi_family_fill must follow. */
 static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
-    if (fam->filled && fam->t == t && memcmp(&fam->set, set, sizeof *set) == 0) return;
+    const int held = fam->filled && fam->t == t && hdi_set_same_poles(&fam->set, set);
+    fam->set = *set;                             /* weights cost nothing */
+    if (held) return;
     fam->filled = 0;
-    fam->set = *set;
     fam->t = t;
     hdi_noise_weights(fam->lap, t, hdi_rat_reach(set), fam->noise, fam->noise_work);
 }
@@ -17224,6 +17273,7 @@ typedef struct hdi_lane {
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
+    int32_t dual;                /* what is asked for is B u, which goes to tmp in the end */
     double f_off, rhs_off;       /* what f, and B^-1 times the right-hand side, are off by in the B norm */
     /* outcome, norms absolute */
     double f_norm, u_norm;
@@ -17965,9 +18015,7 @@ static void hdi_elim_take(hdi_elim *m, const hd_rational *set, double t) {
 
 /* Are the factors of this set and time there? */
 static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
-    const size_t bytes = HDI_CAST(size_t, set->n_poles) * sizeof *set->theta;
-    return m->filled && m->t == t && m->set.n_poles == set->n_poles &&
-           memcmp(m->set.theta, set->theta, bytes) == 0;
+    return m->filled && m->t == t && hdi_set_same_poles(&m->set, set);
 }
 
 /* Factors of all poles of a set at a time. */
@@ -21425,6 +21473,20 @@ struct hd_heat {
     double *sums;                /* [2 n_components] work */
 };
 
+/* What the caller gets, by rows. */
+static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ? lane->tmp : lane->u; }
+
+/* The bounds of the error of B u: |(B d)_v| is at most sqrt(B_vv) times |d| in both norms, for B M^-1 B <= B
+ * if M = B + tL. both: off_m is known. */
+static hdi_parts hdi_lane_bound_dual(const hd_laplacian *lap, const hdi_lane *lane, int both) {
+    double largest_b = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        if (lane->u[i] != 0) largest_b = hdi_max(largest_b, lap->b_diag[i]);
+    return hdi_parts_scale(sqrt(largest_b > 0 ? largest_b : lap->b_diag[0]),
+                           both ? hdi_parts_least(lane->off, lane->off_m) : lane->off);
+}
+
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm,
  * and by the norm of B + tL where reach is known. reach: a bound of diag((B + tL)^-1), or NULL. */
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
@@ -21448,10 +21510,11 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
  * values are noted elsewhere. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
                            const double *reach, int own, hd_report *rep) {
+    const double *out = hdi_lane_answer(lane);
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
-        largest = hdi_max(largest, fabs(lane->u[i]));
+        largest = hdi_max(largest, fabs(out[i]));
         if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
         heat += lap->mass[i] * lane->u[i];
         heat_abs += fabs(lap->mass[i] * lane->u[i]);
@@ -21460,7 +21523,8 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
-        hdi_parts off = hdi_lane_bound(lap, lane, reach);
+        hdi_parts off =
+            lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL) : hdi_lane_bound(lap, lane, reach);
         if (total > 0) off.rounding += DBL_EPSILON * largest;    /* of the value itself */
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
@@ -21699,7 +21763,22 @@ static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
     return hdi_lanczos_steps(heat, t) <= HDI_LANCZOS_WORTH ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
-typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
+/* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
+typedef enum hdi_query {
+    HDI_QUERY_FIELD, HDI_QUERY_ADJOINT, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC
+} hdi_query;
+
+/* Does the caller give the fields? */
+static int hdi_query_fields(hdi_query query) {
+    return query == HDI_QUERY_FIELD || query == HDI_QUERY_ADJOINT;
+}
+
+/* Which function of t a request asks for. */
+typedef enum hdi_rate {
+    HDI_RATE_NONE = 0,           /* K_t */
+    HDI_RATE_POLES,              /* its derivative, by weights on the poles */
+    HDI_RATE_OPEN                /* its derivative, how is to be found */
+} hdi_rate;
 
 /* Single entries of the kernel, sorted by their column: item q is order[begin[q]] to order[begin[q + 1] -
  * 1]. */
@@ -21740,6 +21819,7 @@ typedef struct hdi_heat_call {
     hd_method method;
     double cost;                 /* of this method by the model, where auto picks by it; else 0 */
     int32_t by_habit;            /* auto picks direct because of the calls before */
+    hdi_rate rate;
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
     const hd_rational *set;      /* instead of what the plan would take */
@@ -21870,6 +21950,12 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat) {
     return f;
 }
 
+/* The same for a call; derivatives by poles need them. */
+static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
+    const hd_solver solver = hdi_heat_choose(h->heat, t);
+    return h->rate && solver == HD_SOLVER_LANCZOS ? HD_SOLVER_COCG : solver;
+}
+
 /* Iterating. The steps of COCG grow with sqrt(t)/h up to a limit; a full B costs about a third more. */
 static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
     const hd_heat *heat = h->heat;
@@ -21879,7 +21965,7 @@ static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
     int32_t q;
     for (q = 0; q < h->n_times; q++) {
         const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
-        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) {
+        if (hdi_heat_solver(h, t) == HD_SOLVER_LANCZOS) {
             one = hdi_lanczos_steps(heat, t);
             one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
         } else {
@@ -21910,7 +21996,10 @@ static double hdi_krylov_shift(double from, double first, double last, double la
 
 /* The kind of pole set that the call takes by its query and the options. */
 static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
-    return h->heat->opts.poles ? h->heat->opts.poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM
+    const hd_pole_kind asked = h->heat->opts.poles;
+    /* see hdi_rational_rate: errors of uniform sets do not fall off */
+    if (h->rate) return asked == HD_POLES_DIAGONAL ? asked : HD_POLES_KERNEL;
+    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM
            : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
 }
 
@@ -21991,7 +22080,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
 /* The cheapest method that fits into so many bytes. */
 static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_cost *c, double room) {
     const int no_direct = !HDI_HAS_POLE_FACTORS || c->direct_bytes > room;
-    const int no_krylov = c->krylov_bytes > room || h->heat->poles_asked;
+    const int no_krylov = c->krylov_bytes > room || h->heat->poles_asked || h->rate == HDI_RATE_POLES;
     h->method = HD_METHOD_ITERATIVE;
     h->cost = c->iterative;
     h->rep->reason = "iterations cost less than a factorisation";
@@ -22124,7 +22213,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         if (h->e->status < 0) return h->e->status;
     }
     h->rep->method = h->method;
-    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t)
+    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_solver(h, h->t)
                 : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
     h->rep->solver = h->solver;
     h->rep->precond = HD_PRECOND_NONE;
@@ -22216,6 +22305,19 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     return sum > 0 ? sqrt(sum) * hdi_ratio_root(lap) : 0;
 }
 
+/* Takes the constants out of a field for good: they do not change in time. */
+static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
+    int32_t i;
+    if (!lap->conserves) return;
+    hdi_lane_means(lane, lap);
+    for (i = 0; i < lap->n_active; i++) lane->f[i] -= lane->sums[lap->component[i]];
+    hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+    lane->rhs_off = hdi_lane_rhs_off(lap, lane->f) + DBL_EPSILON * lane->f_norm;
+    hdi_heat_measure(lap, lane);
+    for (i = 0; i < lap->n_components; i++)
+        if (hdi_finite(lap->component_mass[i])) lane->target[i] = 0;
+}
+
 /* Field and right-hand side of item q. A vertex without mass needs no solve, and is skipped. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
@@ -22228,11 +22330,17 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->exponent = 0;
     lane->f_off = lane->rhs_off = 0;
     lane->watch = -1;
-    if (h->ask.query == HDI_QUERY_FIELD) {
+    lane->dual = h->ask.query == HDI_QUERY_ADJOINT;
+    if (hdi_query_fields(h->ask.query)) {
         hdi_gather(lap, h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf, lane->f);
         hdi_lane_unit(lap, lane);
-        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-        lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        if (lane->dual) {
+            memcpy(lane->rhs, lane->f, bytes);
+            if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
+        } else {
+            hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+            lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        }
     } else {
         row = lap->row[hdi_heat_source(h, q)];
         lane->skip = row < 0;
@@ -22259,13 +22367,15 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         }
     }
     hdi_heat_measure(lap, lane);
-    if (h->ask.query == HDI_QUERY_SYMMETRIC && lap->B)
+    if ((lane->dual || h->ask.query == HDI_QUERY_SYMMETRIC) && lap->B)
         lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
+    if (h->rate) hdi_lane_moving(lap, lane);
     return HD_OK;
 }
 
 /* The unit of answers in terms of the method's copy of the pair: k_t has that of B^-1. */
 static double hdi_heat_unit(const hdi_heat_call *h) {
+    if (h->rate) return 1 / h->ask.t[h->now];    /* sets are for t dK_t/dt */
     return h->ask.query == HDI_QUERY_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
 }
 
@@ -22296,30 +22406,31 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, h->now);
     const double unit = hdi_heat_unit(h);
     double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
+    const double *out = hdi_lane_answer(lane);
     int32_t i;
     if (h->ask.list) hdi_heat_store_entries(h, q, lane);
     if (!u) return;
-    if (h->ask.query == HDI_QUERY_FIELD) {       /* vertices without mass keep their value */
+    if (hdi_query_fields(h->ask.query)) {        /* vertices without mass keep their value */
         const double *f = h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf;
         if (u != f) memmove(u, f, HDI_CAST(size_t, lap->n) * sizeof *u);
     } else {
         memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
         if (lane->skip) u[hdi_heat_source(h, q)] = h->ask.query == HDI_QUERY_OPERATOR;
     }
-    for (i = 0; i < lap->n && lap->n_held > 0; i++)
-        if (lap->row[i] == HD_ROW_HELD) u[i] = 0;
+    for (i = 0; i < lap->n && (lap->n_held > 0 || h->rate); i++)
+        if (h->rate || lap->row[i] == HD_ROW_HELD) u[i] = 0;
     for (i = 0; i < lap->n_active && !lane->skip; i++)
-        u[lap->vertex[i]] = lane->exponent ? ldexp(lane->u[i], lane->exponent) : unit * lane->u[i];
+        u[lap->vertex[i]] = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
 }
 
 /* The degree of a uniform set that serves all fields. Columns get the highest degree, because their constants
  * are small. */
 static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
+    const int fields = hdi_query_fields(h->ask.query);
     int32_t q, r;
-    *degree = h->ask.query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
-    if (h->ask.query == HDI_QUERY_FIELD && hdi_lane_make(h->lane, h->lap, h->heat->ctx, h->e) < 0)
-        return h->e->status;
-    for (q = 0; q < h->ask.k && h->ask.query == HDI_QUERY_FIELD; q++) {
+    *degree = fields ? 8 : HDI_RAT_UNIFORM_MAX;
+    if (fields && hdi_lane_make(h->lane, h->lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    for (q = 0; q < h->ask.k && fields; q++) {
         if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
         r = hdi_uniform_degree(h->lap, h->lane, h->method == HD_METHOD_DIRECT);
         if (r > *degree) *degree = r;
@@ -22333,16 +22444,17 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_pole_kind kind = hdi_heat_kind(h);
     /* four pairs fill a pack, a real pole costs little */
     int32_t degree = h->method == HD_METHOD_DIRECT ? 9 : 10;
-    if (h->heat->exacting) degree = HDI_RAT_KERNEL_MAX;
+    if (h->heat->exacting || h->rate) degree = HDI_RAT_KERNEL_MAX;
     if (h->degree) degree = h->degree;
-    if (o->degree) degree = o->degree;
+    if (o->degree) degree = h->rate ? hdi_high32(o->degree, HDI_RAT_KERNEL_MIN) : o->degree;
     if (h->set || o->rational) {
         *set = h->set ? *h->set : *o->rational;
         return HD_OK;
     }
     if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0)
         return h->e->status;
-    return hdi_rational_get(set, kind, degree, h->e);
+    if (hdi_rational_get(set, kind, degree, h->e) >= 0 && h->rate) hdi_rational_rate(set);
+    return h->e->status;
 }
 
 static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
@@ -22393,11 +22505,12 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
 
 /* Judges lane i of the batch. */
 static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
-    const hdi_lane *lane = h->lane + i;
+    hdi_lane *lane = h->lane + i;
     const hdi_elim *m = &h->heat->elim;
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal;
     const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
+    if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
     if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
@@ -22690,7 +22803,7 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     if (hdi_direct_factors(h, h->diagonal ? HDI_AFTER_SOLVES : HDI_AFTER_BOUND, 0) < 0) return h->e->status;
     if (HDI_HAS_DIAGONAL && !h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
     if (hdi_batches_make(&b, h) < 0) return h->e->status;
-    h->deflated = !h->watching && (h->ask.query == HDI_QUERY_FIELD || h->t * heat->lambda_max > HDI_DEFLATE);
+    h->deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
     for (h->batch = 0; h->batch < h->ask.k; h->batch += b.n_here) {
         if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0)
             return h->e->status;
@@ -22900,7 +23013,7 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
         return 0;
     if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
     /* fields may have been overwritten by their answers */
-    if (h->batch > 0 && h->ask.query == HDI_QUERY_FIELD) return 0;
+    if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
     hdi_heat_free_lanes(heat);
     if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
     hdi_elim_free(&heat->elim);
@@ -22936,7 +23049,7 @@ static hd_status hdi_heat_plain(hdi_heat_call *h) {
                              : lane->f[i];
             lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
             if (h->equal)
-                hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->ask.query == HDI_QUERY_FIELD));
+                hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
             else hdi_lane_rounding(lane, h->still * lane->f_norm);
             if (!h->equal && h->ask.query == HDI_QUERY_SYMMETRIC)
                 hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
@@ -23132,6 +23245,216 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
     if (h->ask.n_times == 1) (void)hdi_heat_single(h);
     else if (!hdi_heat_together(h)) (void)hdi_heat_each_time(h);
+    return hdi_heat_end(h);
+}
+
+/* ---- derivatives in time ---- */
+
+/* Where there are poles, t dK_t/dt comes by other weights on them, see hdi_rational_rate. Lanczos has none.
+ * There the derivative is that of a product of two kernels, with one s below all times:
+ *   dK_t/dt f = -K_(t-s) A K_s f,   A = B^-1 L.
+ * An error d of the first answer becomes at most |A K_(t-s) d|_B <= |d|_B/(exp(1) (t - s)); an error of the
+ * product with A grows no more. A is that of the scaled pair. */
+typedef struct hdi_halves {
+    hdi_heat_call *h;
+    double s, *later;            /* [n_times] t - s */
+    double *W;                   /* [n k] fields on vertices */
+    double *x, *work, *noise;    /* [n_active], [4 n_active], [2 n_active] */
+    double *sums;                /* [n_components] */
+    double *size, *slip;         /* [k] |W|_B of the first answers; bounds of what A W is off by */
+    int32_t *exponent;           /* [k] fields are the caller's times 2^-exponent */
+    hd_report first, second;
+} hdi_halves;
+
+static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
+    const hd_laplacian *lap = h->heat->source;
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active);
+    int32_t q;
+    memset(z, 0, sizeof *z);
+    z->h = h;
+    z->W = HDI_TAKE(&h->s, double, HDI_CAST(uint64_t, lap->n) * HDI_CAST(uint64_t, h->ask.k));
+    z->x = HDI_TAKE(&h->s, double, n);
+    z->work = HDI_TAKE(&h->s, double, 4 * n);
+    z->noise = HDI_TAKE(&h->s, double, 2 * n);
+    z->sums = HDI_TAKE(&h->s, double, lap->n_components);
+    z->size = HDI_TAKE(&h->s, double, 2 * HDI_CAST(uint64_t, h->ask.k));
+    z->exponent = HDI_TAKE(&h->s, int32_t, h->ask.k);
+    z->later = HDI_TAKE(&h->s, double, h->ask.n_times);
+    if (h->e->status < 0) return h->e->status;
+    z->slip = z->size + h->ask.k;
+    z->s = h->ask.t[0];
+    for (q = 1; q < h->ask.n_times; q++) z->s = hdi_min(z->s, h->ask.t[q]);
+    z->s /= 2;
+    if (hdi_heat_scaled(h->heat, z->s) * h->heat->lambda_max < HDI_STILL) z->s = 0;
+    for (q = 0; q < h->ask.n_times; q++) z->later[q] = h->ask.t[q] - z->s;
+    hdi_noise_weights(lap, 1 / h->heat->scale, 0, z->noise, z->noise + n);
+    return HD_OK;
+}
+
+/* x goes to field q of W; other vertices have 0. */
+static void hdi_halves_put(hdi_halves *z, int32_t q) {
+    const hd_laplacian *lap = z->h->heat->source;
+    double *w = z->W + HDI_CAST(size_t, q) * HDI_CAST(size_t, lap->n);
+    int32_t i;
+    memset(w, 0, HDI_CAST(size_t, lap->n) * sizeof *w);
+    for (i = 0; i < lap->n_active; i++) w[lap->vertex[i]] = z->x[i];
+}
+
+/* Field q near one and without its constants. */
+static void hdi_halves_load(hdi_halves *z, int32_t q) {
+    const hd_laplacian *lap = z->h->heat->source;
+    double most = 0;
+    int32_t i;
+    hdi_gather(lap, z->h->ask.F + HDI_CAST(size_t, q) * z->h->ask.ldf, z->x);
+    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(z->x[i]));
+    z->exponent[q] = 0;
+    if (most > 0) frexp(most, &z->exponent[q]);
+    for (i = 0; i < lap->n_active; i++) z->x[i] = ldexp(z->x[i], -z->exponent[q]);
+    if (lap->conserves) {
+        hdi_component_sums(lap, lap->mass, z->x, z->sums);
+        for (i = 0; i < lap->n_components; i++) z->sums[i] /= -lap->component_mass[i];
+        hdi_component_add(lap, z->sums, z->x);
+    }
+    hdi_halves_put(z, q);
+}
+
+/* One of the two runs: K_t F on vertices. */
+static hd_status hdi_halves_run(hdi_halves *z, int32_t n_times, const double *t, double *U, size_t ldu,
+                                hd_report *rep) {
+    hdi_heat_call *h = z->h, c;
+    (void)hdi_heat_begin(&c, h->heat, HDI_QUERY_FIELD, rep, NULL);
+    c.ask.n_times = n_times;
+    c.ask.t = t;
+    c.ask.k = h->ask.k;
+    c.ask.F = z->W;
+    c.ask.ldf = HDI_CAST(size_t, h->heat->source->n);
+    c.ask.U = U;
+    c.ask.ldu = ldu;
+    c.t = hdi_heat_scaled(h->heat, t[0]);
+    if (hdi_heat_run(&c) < 0) *h->e = rep->error;
+    return h->e->status;
+}
+
+/* W = -A W for field q. */
+static hd_status hdi_halves_product(hdi_halves *z, int32_t q) {
+    const hd_laplacian *lap = z->h->heat->source;
+    const int64_t n = lap->n_active;
+    double sum = 0, size;
+    int64_t i;
+    hdi_gather(lap, z->W + HDI_CAST(size_t, q) * HDI_CAST(size_t, lap->n), z->x);
+    z->size[q] = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
+    for (i = 0; i < n; i++) sum += z->noise[i] * z->x[i] * z->x[i];
+    hdi_pair_apply(lap, -1 / z->h->heat->scale, 0, z->x, z->work);
+    if (hdi_mass_solve(lap, z->work, z->x, z->work + n, z->h->e) < 0) return z->h->e->status;
+    size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
+    z->slip[q] = hdi_ratio_root(lap) * (sqrt(sum) + (lap->B ? HDI_MASS_TOL : DBL_EPSILON) * size);
+    hdi_halves_put(z, q);
+    return HD_OK;
+}
+
+/* The bound of an answer of this size by a run's report, in the B norm, in the report's parts. */
+static hdi_parts hdi_halves_parts(const hd_report *rep, double size) {
+    const double b = rep->error_bound_b, all = b < 0.5 ? size * b / (1 - b) : HUGE_VAL;
+    const double sum = rep->error_bound;
+    hdi_parts part;
+    memset(&part, 0, sizeof part);
+    if (!(sum > 0) || !hdi_finite(sum)) {
+        part.rounding = size > 0 ? all : 0;
+        return part;
+    }
+    part.rational = rep->error_rational / sum;
+    part.solver = rep->error_solver / sum;
+    part.rounding = rep->error_rounding / sum;
+    return hdi_parts_scale(size > 0 ? all : 0, part);
+}
+
+/* Brings an answer into the caller's units, and notes it with the bound of its error. rep: both runs'. */
+static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_values, hdi_ledger *ledger,
+                              hd_report *rep) {
+    hdi_heat_call *h = z->h;
+    const hd_laplacian *lap = h->heat->source;
+    const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, m);
+    const double grow = 1 / (exp(1) * z->later[m] * h->heat->scale);
+    double *u = h->ask.U + column * h->ask.ldu, size, all, largest = 0;
+    hdi_parts off, one;
+    int32_t i;
+    hdi_gather(lap, u, z->x);
+    size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
+    off = hdi_halves_parts(&z->second, size);
+    one = hdi_parts_scale(z->s > 0 ? grow : 0, hdi_halves_parts(&z->first, z->size[q]));
+    off.rational += one.rational;
+    off.solver += one.solver;
+    off.rounding += one.rounding + z->slip[q] + 4 * DBL_EPSILON * size;
+    for (i = 0; i < lap->n_active; i++) {
+        largest = hdi_max(largest, fabs(z->x[i]));
+        u[lap->vertex[i]] = ldexp(h->heat->scale * z->x[i], z->exponent[q]);
+    }
+    hdi_ledger_note(ledger, largest, hdi_parts_scale(to_values, off));
+    all = hdi_parts_sum(&off);
+    rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(all, size - all));
+    hdi_bound_judge(rep->error_bound_b, rep);
+}
+
+/* The report of both runs, and the answers with their bounds. */
+static void hdi_halves_close(hdi_halves *z) {
+    hdi_heat_call *h = z->h;
+    const hd_laplacian *lap = h->heat->source;
+    hd_report *rep = h->rep;
+    double smallest = HUGE_VAL;
+    int32_t i, q, m;
+    for (i = 0; i < lap->n_active; i++) smallest = hdi_min(smallest, lap->b_diag[i]);
+    *rep = z->second;
+    if (z->s > 0) hdi_report_merge(rep, &z->first);
+    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = 0;
+    rep->error_bound_b = 0;
+    for (q = 0; q < h->ask.k; q++)
+        for (m = 0; m < h->ask.n_times; m++) {
+            hdi_ledger ledger = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver,
+                                                 HD_EVIDENCE_PROVEN, 0);
+            hdi_halves_finish(z, q, m, hdi_ratio_root(lap) / sqrt(smallest), &ledger, rep);
+            hdi_ledger_close(&ledger, rep);
+        }
+}
+
+static hd_status hdi_heat_by_halves(hdi_heat_call *h) {
+    const size_t n = HDI_CAST(size_t, h->heat->source->n);
+    hdi_halves z;
+    int32_t q;
+    if (hdi_halves_make(&z, h) < 0) return h->e->status;
+    for (q = 0; q < h->ask.k; q++) hdi_halves_load(&z, q);
+    if (z.s > 0 && hdi_halves_run(&z, 1, &z.s, z.W, n, &z.first) < 0) return h->e->status;
+    for (q = 0; q < h->ask.k; q++)
+        if (hdi_halves_product(&z, q) < 0) return h->e->status;
+    if (hdi_halves_run(&z, h->ask.n_times, z.later, h->ask.U, h->ask.ldu, &z.second) >= 0)
+        hdi_halves_close(&z);
+    return h->e->status;
+}
+
+/* Is the method one with poles, for all times? Where t = 0 the derivative is a product with A. */
+static int hdi_rate_by_poles(hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    int32_t q;
+    for (q = 0; q < h->ask.n_times; q++)
+        if (hdi_heat_scaled(heat, h->ask.t[q]) * heat->lambda_max < HDI_STILL) return 0;
+    if (heat->opts.solver == HD_SOLVER_LANCZOS) return 0;
+    if (heat->opts.method != HD_METHOD_AUTO) return heat->opts.method != HD_METHOD_KRYLOV;
+    if (hdi_heat_sort_times(h, 1) < 0 || hdi_heat_pick(h) < 0) return 0;
+    h->times = &h->t;
+    h->n_times = 1;
+    h->time_column = NULL;
+    h->t = hdi_heat_scaled(heat, h->ask.t[0]);
+    return h->method != HD_METHOD_KRYLOV;
+}
+
+/* Runs a request for derivatives whose arguments are checked. */
+static hd_status hdi_rate_run(hdi_heat_call *h) {
+    if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
+    h->rate = HDI_RATE_OPEN;
+    if (hdi_rate_by_poles(h)) {
+        h->rate = HDI_RATE_POLES;
+        return hdi_heat_run(h);
+    }
+    if (h->e->status >= 0) (void)hdi_heat_by_halves(h);
     return hdi_heat_end(h);
 }
 
@@ -28201,23 +28524,61 @@ static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     ask->ldf = ask->ldu;
 }
 
+static hdi_request hdi_ask_fields(int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
+                                  double *U, size_t ldu) {
+    hdi_request ask;
+    memset(&ask, 0, sizeof ask);
+    ask.n_times = n_times;
+    ask.t = t;
+    ask.k = k;
+    ask.F = F;
+    ask.ldf = ldf;
+    ask.U = U;
+    ask.ldu = ldu;
+    return ask;
+}
+
+/* Checks a request of fields, and runs it. derivative: in time. */
+static hd_status hdi_fields_run(hd_heat *heat, hdi_query query, const hdi_request *ask, int derivative,
+                                hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_heat_begin(&h, heat, query, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, ask->n_times, ask->t, 0) < 0) return hdi_heat_end(&h);
+    if (ask->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (ask->k > 0 && (!ask->F || !ask->U)) hdi_missing(h.e);
+    else if (derivative && heat->opts.rational)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a pole set of your own has no derivative here");
+    h.ask.k = ask->k;
+    h.ask.F = ask->F;
+    h.ask.U = ask->U;
+    h.ask.ldf = hdi_leading(&h, ask->ldf);
+    h.ask.ldu = hdi_leading(&h, ask->ldu);
+    if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
+    if (ask->U == ask->F && ask->n_times > 1)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
+    else if (ask->U == ask->F) hdi_fields_spread(&h.ask, HDI_CAST(size_t, heat->source->n), ask->U);
+    return derivative ? hdi_rate_run(&h) : hdi_heat_run(&h);
+}
+
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu, hd_report *report,
                                      hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 0) < 0) return hdi_heat_end(&h);
-    if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (k > 0 && (!F || !U)) hdi_missing(h.e);
-    h.ask.k = k;
-    h.ask.F = F;
-    h.ask.U = U;
-    h.ask.ldf = hdi_leading(&h, ldf);
-    h.ask.ldu = hdi_leading(&h, ldu);
-    if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
-    if (U == F && n_times > 1) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
-    else if (U == F) hdi_fields_spread(&h.ask, HDI_CAST(size_t, heat->source->n), U);
-    return hdi_heat_run(&h);
+    const hdi_request ask = hdi_ask_fields(n_times, t, k, F, ldf, U, ldu);
+    return hdi_fields_run(heat, HDI_QUERY_FIELD, &ask, 0, report, err);
+}
+
+HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                          const double *F, size_t ldf, double *U, size_t ldu,
+                                          hd_report *report, hd_error *err) {
+    const hdi_request ask = hdi_ask_fields(n_times, t, k, F, ldf, U, ldu);
+    return hdi_fields_run(heat, HDI_QUERY_FIELD, &ask, 1, report, err);
+}
+
+HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                       const double *G, size_t ldg, double *U, size_t ldu,
+                                       hd_report *report, hd_error *err) {
+    const hdi_request ask = hdi_ask_fields(n_times, t, k, G, ldg, U, ldu);
+    return hdi_fields_run(heat, HDI_QUERY_ADJOINT, &ask, 0, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
