@@ -1278,6 +1278,60 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
                                         const double *t, double *D, size_t ldd, hd_report *report,
                                         hd_error *err);
 
+/* The heat trace tr K_t = sum_i exp(-t lambda_i) over all eigenvalues, as the sum of K_t's diagonal. It is
+ * the integral of k_t(x,x). Vertices without mass and held ones do not count.
+ * t      > 0
+ * Z      [n_times]
+ * bound  [n_times] or NULL: bounds of the absolute error of each
+ * report as hd_heat_diagonal; error_relative is of the least exact of them
+ * Errors as hd_heat_diagonal
+ * Cost   as hd_heat_diagonal; many times share poles whatever B is. Memory for the inverses of each pole: up
+ *        to 48 n doubles, with a full B 250 n */
+HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const double *t, double *Z,
+                                     double *bound, hd_report *report, hd_error *err);
+
+/* Heat kernel signatures normalised by the trace, k_t(x,x)/tr K_t. Their integral is 1 at each time, so that
+ * no time outweighs the others.
+ * D      n x n_times as in hd_heat_diagonal
+ * report bounds are those of the quotients
+ * Errors as hd_heat_diagonal
+ * Cost   that of hd_heat_diagonal and of hd_heat_trace
+ * Source Sun, Ovsjanikov, Guibas 2009, section 4 */
+HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const double *t,
+                                          double *D, size_t ldd, hd_report *report,
+                                          hd_error *err);
+
+/* Signatures that change little if the surface is scaled. Scaling shifts log k_t(x,x) along log t and adds a
+ * constant. A derivative in log t removes the constant, and the modulus of a Fourier transform the shift:
+ *   D(x,k) = |sum_j (log k_(j+1)(x,x) - log k_j(x,x)) exp(-2 pi i jk/m)|,  j = 0 .. m - 1,  m = n_times - 1,
+ * with times t_j = t0 (t1/t0)^(j/m). What is shifted in at one end and out at the other is not the same, so
+ * t0 and t1 should reach far beyond the details to be told apart.
+ * n_times at least 3. The paper takes 385 times from 2 to 2^25 in its units, 16 to an octave
+ * D       n x n_freq, frequency k = 0 .. n_freq - 1 in column k, columns ldd apart (0: n); n_freq at most
+ *         (n_times + 1)/2, the paper takes 6. 0 at vertices without mass and at held ones
+ * report  error_bound from error_relative of the signatures, relative to the largest value
+ * Errors  as hd_heat_diagonal; HD_ERR_ARGUMENT
+ * Cost    hd_heat_diagonal, n n_times doubles, and n n_times n_freq multiply-adds
+ * Source  Bronstein, Kokkinos 2010, eqs. (10) to (13) */
+HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double t1,
+                                               int32_t n_times, int32_t n_freq, double *D,
+                                               size_t ldd, hd_report *report, hd_error *err);
+
+/* Times that suit the area A of the surface, 1'B1: evenly spaced in log t from 0.0024 A to 0.37 A. At the
+ * first about 300 eigenvalues matter, at the last two. With one time it is their geometric mean.
+ * t      [n_times]
+ * Errors HD_ERR_ARGUMENT */
+HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
+                                     hd_error *err);
+
+/* t = c/lambda_1, lambda_1 the smallest eigenvalue but those of constants. The diagonal of k_t at such times
+ * is the auto-diffusion function of Gebal, Baerentzen, Aanaes, Larsen 2009, where c is called t. Small c
+ * (0.1) shows details, c = 1 tips and branches.
+ * c, t   [n_times]; they may be the same
+ * Errors and cost as hd_spectrum_create for one pair more than components */
+HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times,
+                                         const double *c, double *t, hd_error *err);
+
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion.
  * kernel HD_KERNEL_SYMMETRIC. (Entries of K_t = k_t B are not symmetric)
  * t      > 0
@@ -23748,12 +23802,12 @@ static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t
     if (*i >= end) *i = s->row[s->row_ptr[v] + *i - end];
 }
 
-/* diag(k_t B), a0 included, for a full B: from the entries of k_t on the pattern of B. */
-static void hdi_operator_diagonal(const hdi_elim *m, const double *k, double *diag) {
+/* a0 + diag(k B) for a full B, from the entries of k on the pattern of B. */
+static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k, double *diag) {
     const hdi_symbolic *s = &m->sym;
     int32_t v, i, j;
     int64_t n;
-    for (i = 0; i < s->n; i++) diag[i] = m->set.a0;
+    for (i = 0; i < s->n; i++) diag[i] = a0;
     for (v = 0; v < s->n_super; v++) {
         for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
             const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
@@ -23838,7 +23892,7 @@ static void hdi_diagonal_full(const hdi_elim *m, const hdi_entries *x, const hdi
     const hd_laplacian *lap = m->lap;
     int32_t v, i;
     int64_t n;
-    hdi_operator_diagonal(m, x->k, d->value);
+    hdi_operator_diagonal(m, m->set.a0, x->k, d->value);
     for (v = 0; v < s->n_super; v++) {
         for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
             if (s->a_row[n] != s->a_col[n]) continue;
@@ -24294,6 +24348,306 @@ static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D,
         h->t = hdi_heat_scaled(heat, h->ask.t[q]);
         if (hdi_entries_sure(h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h->e->column = q;
     }
+    return h->e->status;
+}
+
+/* ---- traces ---- */
+
+/* tr(K_t) from the traces of (t0 L + theta_p B)^-1 B over the poles: at any time that shares the poles it is
+ * a sum of these with the set's weights. Two sets of an inversion belong to a pole, real and imaginary part.
+ * By rows in elimination order and in the unit of the scaled pair. */
+typedef struct hdi_trace {
+    hdi_window w;                /* its times, and their sets; not its arrays */
+    int64_t size;                /* of a set's values */
+    double *values;              /* [2 n_poles][size] of the inverses: entries or diagonals */
+    double *diag;                /* [2 n_poles][n] diagonals of the inverses times B; in values if B is */
+    double *last;                /* [n] the diagonal of K_t at the last time */
+    hdi_probe probe;
+    double g[HDI_PROBES];        /* [probe.k] diag((B + tL)^-1) at the last time */
+} hdi_trace;
+
+/* The sum over poles of Re(w_p z_p), z_p entry i of the sets at x, stride apart. */
+static double hdi_trace_sum(const hd_c64 *w, int32_t n_poles, const double *x, int64_t stride, int64_t i) {
+    double sum = 0;
+    int32_t p;
+    for (p = 0; p < n_poles; p++)
+        sum += w[p].re * x[2 * p * stride + i] - w[p].im * x[(2 * p + 1) * stride + i];
+    return sum;
+}
+
+/* Weights for K_t and for (B + tL)^-1 at time q; see hdi_window_weights. */
+static void hdi_trace_weights(const hdi_trace *z, int32_t q, hd_c64 *k, hd_c64 *g) {
+    const hd_rational *set = z->w.set + q;
+    const double tau = z->w.t[q] / z->w.t[0];
+    double factor = 1;
+    const int32_t best = hdi_resolvent_pole(set, &factor);
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++) {
+        k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
+        g[p] = hdi_c(p == best ? factor / tau : 0, 0);
+    }
+}
+
+/* Factors at the first time, and the two parts of every pole's inverse. */
+static hd_status hdi_trace_invert(hdi_heat_call *h, hdi_trace *z, hdi_scope *s) {
+    hdi_elim *m = &h->heat->elim;
+    const int full = h->heat->source->B != NULL;
+    const int32_t n_poles = z->w.set->n_poles;
+    hd_c64 *unit = HDI_TAKE_ZERO(s, hd_c64, 2 * n_poles * n_poles);
+    hdi_elim_sums sums;
+    int32_t p;
+    z->size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
+    z->values = HDI_TAKE_ZERO(s, double, HDI_CAST(uint64_t, 2 * n_poles * z->size));
+    z->diag = full ? HDI_TAKE_ZERO(s, double, HDI_CAST(uint64_t, 2 * n_poles) * z->w.n) : z->values;
+    z->last = HDI_TAKE(s, double, z->w.n);
+    if (h->e->status < 0) return h->e->status;
+    for (p = 0; p < n_poles; p++) {
+        unit[2 * p * n_poles + p] = hdi_c(1, 0);
+        unit[(2 * p + 1) * n_poles + p] = hdi_c(0, -1);
+    }
+    h->t = z->w.t[0];
+    h->set = z->w.set;
+    h->lap = m->lap;
+    if (hdi_direct_factors(h, HDI_AFTER_INVERSE, 2 * n_poles) < 0) return h->e->status;
+    h->set = NULL;
+    sums.n_sets = 2 * n_poles;
+    sums.weight = unit;
+    sums.wanted = full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL;
+    sums.values = z->values;
+    sums.stride = z->size;
+    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0) return h->e->status;
+    return hdi_elim_invert(m, &sums, h->e);
+}
+
+/* The diagonal of K_t at the last time, the rows to be probed, and g there. */
+static void hdi_trace_probes(const hdi_elim *m, hdi_trace *z) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_laplacian *lap = m->lap;
+    const int64_t n = HDI_CAST(int64_t, z->w.n);
+    const int32_t n_poles = z->w.set->n_poles, last = z->w.n_times - 1;
+    hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
+    int32_t i, r, v, set;
+    int64_t at;
+    hdi_trace_weights(z, last, k, g);
+    for (i = 0; i < n; i++) z->last[i] = z->w.set[last].a0 + hdi_trace_sum(k, n_poles, z->diag, n, i);
+    for (i = 0, r = -1; i < n; i++)
+        if (r < 0 || z->last[i] * lap->b_diag[r] < z->last[r] * lap->b_diag[i]) r = i;
+    z->probe = hdi_probe_rows(lap, z->last, r);
+    for (r = 0; r < z->probe.k; r++) z->g[r] = hdi_constant_part(lap, z->probe.row[r]);
+    if (!lap->B) {
+        for (r = 0; r < z->probe.k; r++) {
+            i = z->probe.row[r];
+            z->g[r] = hdi_max(z->g[r], hdi_trace_sum(g, n_poles, z->diag, n, i) / lap->mass[i]);
+        }
+        return;
+    }
+    for (v = 0; v < s->n_super; v++)
+        for (at = s->a_ptr[v]; at < s->a_ptr[v + 1]; at++)
+            for (set = 0; set < z->probe.k && s->a_row[at] == s->a_col[at]; set++)
+                if (z->probe.row[set] == s->super[v] + s->a_col[at])
+                    z->g[set] = hdi_max(z->g[set], hdi_trace_sum(g, n_poles, z->values, z->size, at));
+}
+
+/* Diagonals of the inverses times B. */
+static void hdi_trace_diagonals(const hdi_elim *m, const hdi_trace *z) {
+    const hd_laplacian *lap = m->lap;
+    const int64_t n = HDI_CAST(int64_t, z->w.n);
+    int32_t set, i;
+    for (set = 0; set < 2 * z->w.set->n_poles; set++) {
+        double *diag = z->diag + set * n;
+        if (lap->B) hdi_operator_diagonal(m, 0, z->values + set * z->size, diag);
+        for (i = 0; i < n && !lap->B; i++) diag[i] *= lap->mass[i];
+    }
+}
+
+/* The trace at time q of the window and bounds of its errors. */
+static double hdi_trace_at(hdi_heat_call *h, const hdi_trace *z, int32_t q, hdi_parts *off) {
+    const hd_rational *set = z->w.set + q;
+    const hd_laplacian *lap = h->lap;
+    const double weighted = hdi_set_weighted(set), uniform = hdi_set_uniform(set) * lap->n_active;
+    const int32_t n_poles = set->n_poles;
+    double value = set->a0 * lap->n_active, spread = 0, seen = 0;
+    hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
+    int32_t i, r;
+    hdi_trace_weights(z, q, k, g);
+    for (i = 0; i < lap->n_active; i++) {
+        value += hdi_trace_sum(k, n_poles, z->diag, lap->n_active, i);
+        spread += hdi_trace_sum(g, n_poles, z->diag, lap->n_active, i);
+    }
+    for (i = 0, r = 0; i < lap->n_components; i++) r += hdi_finite(lap->component_mass[i]);
+    spread = hdi_max(spread, lap->conserves ? r : 0);
+    for (r = 0; r < z->probe.k; r++) {
+        const int32_t row = z->probe.row[r];
+        const double here = set->a0 + hdi_trace_sum(k, n_poles, z->diag, lap->n_active, row);
+        double by, there = hdi_probe_value(h->heat, &z->probe, r, set, z->w.t[q] / z->w.t[0], 1,
+                                           z->g[r], &by);
+        seen = hdi_max(seen, hdi_probe_seen(there, by, here, here));
+    }
+    if (set->kind == HD_POLES_OWN)
+        seen = HDI_PROBE_OWN * seen + hdi_quotient(hdi_own_near(h->heat, set, h->t), lap->b_ratio);
+    memset(off, 0, sizeof *off);
+    off->rational = hdi_min(uniform, hdi_finite(weighted) ? weighted * spread : HUGE_VAL);
+    off->rounding = seen * hdi_max(fabs(value), set->kind == HD_POLES_OWN ? lap->n_active : 0) +
+                    4 * DBL_EPSILON * fabs(value);
+    return value;
+}
+
+/* Notes a trace, its bound relative to itself. */
+static void hdi_trace_note(hdi_heat_call *h, int32_t q, double value, hdi_parts off, double *Z,
+                           double *bound) {
+    hdi_ledger ledger = hdi_inverse_ledger(h, 1);
+    h->relative = 1;
+    hdi_ledger_note(&ledger, value, off);
+    hdi_ledger_close(&ledger, h->rep);
+    Z[q] = value;
+    if (bound) bound[q] = hdi_parts_sum(&off);
+}
+
+/* Traces at times q0 to q1 - 1 of the call, sorted, by one set of poles: shared, or that of the options for a
+ * single time. */
+static hd_status hdi_trace_window(hdi_heat_call *h, int32_t q0, int32_t q1, double *Z, double *bound) {
+    hdi_elim *m = &h->heat->elim;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    hdi_trace z;
+    hdi_parts off;
+    int32_t q;
+    memset(&z, 0, sizeof z);
+    z.w.n_times = q1 - q0;
+    z.w.t = h->times + q0;
+    z.w.n = HDI_CAST(size_t, m->sym.n);
+    z.w.set = HDI_TAKE(&s, hd_rational, z.w.n_times);
+    if (h->e->status < 0) return hdi_scope_end(&s);
+    if (h->heat->poles_asked || h->heat->exacting) (void)hdi_heat_set(h, z.w.set);
+    else (void)hdi_rational_shared(z.w.set, z.w.n_times, z.w.t, HDI_SHARED_TOL, h->heat->ctx, h->e);
+    if (h->e->status >= 0 && hdi_trace_invert(h, &z, &s) >= 0) {
+        hdi_trace_diagonals(m, &z);
+        hdi_trace_probes(m, &z);
+        (void)hdi_probe_run(h, &z.probe, HD_KERNEL_OPERATOR, z.w.set);
+    }
+    for (q = 0; q < z.w.n_times && h->e->status >= 0; q++) {
+        const double value = hdi_trace_at(h, &z, q, &off);
+        hdi_trace_note(h, h->time_column[q0 + q], value, off, Z, bound);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Where only the means are left: one for each component that keeps its heat. Takes off times from the end.
+ * Returns how many are left. */
+static int32_t hdi_trace_late(hdi_heat_call *h, double *Z, double *bound) {
+    const hd_laplacian *lap = h->heat->source;
+    const hdi_parts off = {0, 0, 0};
+    double count = 0;
+    int32_t n = h->n_times, i;
+    for (i = 0; i < lap->n_components; i++) count += hdi_finite(lap->component_mass[i]);
+    for (; n > 0 && hdi_heat_equal(h->heat, h->times[n - 1], h->e); n--) {
+        h->equal = 1;
+        hdi_trace_note(h, h->time_column[n - 1], count, off, Z, bound);
+    }
+    h->equal = 0;
+    return n;
+}
+
+/* The traces at all times of a call. */
+static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
+    const hd_heat *heat = h->heat;
+    int32_t n, q0, q1, w, windows = 0, packs = 0;
+    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+    hdi_inverse_tell(h);
+    if (hdi_heat_sort_times(h, 1) < 0) return h->e->status;
+    n = hdi_trace_late(h, Z, bound);
+    if (n > 1 && !heat->poles_asked && !heat->exacting)
+        windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
+    if (windows > 0 && hdi_shared_pays(packs, n)) {
+        for (w = 0, q0 = 0; q0 < n; w++, q0 = q1) {
+            q1 = hdi_window_end(h->times, n, q0, w, windows);
+            if (hdi_trace_window(h, q0, q1, Z, bound) < 0) break;
+        }
+        if (h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
+        hdi_heat_forget(h);                      /* one by one takes less */
+        (void)hdi_trace_late(h, Z, bound);
+    }
+    for (q0 = 0; q0 < n && h->e->status >= 0; q0++) (void)hdi_trace_window(h, q0, q0 + 1, Z, bound);
+    return h->e->status;
+}
+
+/* ---- signatures ---- */
+
+/* D [n n_times], ldd apart, by the traces Z: quotients. rep: of D; trace: of Z. */
+static void hdi_signature_normalise(const hd_laplacian *lap, int32_t n_times, double *D, size_t ldd,
+                                    const double *Z, hd_report *rep, const hd_report *trace) {
+    const double r = trace->error_relative, grow = r < 0.5 ? 1 / (1 - r) : HUGE_VAL;
+    int32_t q, v;
+    for (q = 0; q < n_times; q++) {
+        double *d = D + HDI_CAST(size_t, q) * ldd;
+        for (v = 0; v < lap->n; v++) d[v] = d[v] == 0 ? 0 : d[v] / Z[q];
+    }
+    rep->error_rational = hdi_bound_times(grow, rep->error_rational + trace->error_rational);
+    rep->error_rounding = hdi_bound_times(grow, rep->error_rounding + trace->error_rounding);
+    rep->error_bound = hdi_bound_times(grow, rep->error_bound + r);
+    rep->error_relative = hdi_bound_times(grow, rep->error_relative + r);
+    hdi_evidence_worst(&rep->evidence_rational, trace->evidence_rational);
+    hdi_evidence_worst(&rep->evidence_rounding, trace->evidence_rounding);
+    rep->smallest = 0;                           /* of the values before */
+    hdi_bound_judge(rep->error_bound, rep);
+}
+
+/* |sum_j (log h_(j+1) - log h_j) exp(-2 pi i jk/m)| over j < m, h_j at x + stride j, for k < n_freq, into out
+ * + ldd k. Returns 0, and zeros, where a value has no logarithm. circle [2 m]: cosines and sines. */
+static int hdi_signature_spectrum(const double *x, size_t stride, int32_t m, const double *circle,
+                                  int32_t n_freq, double *out, size_t ldd) {
+    int32_t j, k, ok = 1;
+    for (j = 0; j <= m; j++) ok = ok && x[HDI_CAST(size_t, j) * stride] > 0;
+    for (k = 0; k < n_freq; k++) {
+        double re = 0, im = 0;
+        for (j = 0; j < m && ok; j++) {
+            const double *h = x + HDI_CAST(size_t, j) * stride, d = log(h[stride]) - log(h[0]);
+            const int32_t at = HDI_CAST(int32_t, HDI_CAST(int64_t, j) * k % m);
+            re += d * circle[2 * at];
+            im -= d * circle[2 * at + 1];
+        }
+        out[HDI_CAST(size_t, k) * ldd] = hypot(re, im);
+    }
+    return ok;
+}
+
+/* The bound of the report of diagonals becomes that of their spectra. An error of at most r in each logarithm
+ * counts |w^(j-1) - w^j| = 2 sin(pi k/m) for those inside, and 1 for the two at the ends. */
+static void hdi_signature_tell(hd_report *rep, int32_t m, int32_t n_freq, double largest) {
+    const double pi = 3.141592653589793238;
+    const double r = rep->error_relative < 1 ? -log1p(-rep->error_relative) : HUGE_VAL;
+    const double sum = rep->error_rational + rep->error_rounding;
+    const double terms = 2 + (m - 1) * 2 * sin(pi * hdi_min(n_freq - 1, m / 2) / m);
+    rep->error_bound = hdi_quotient(hdi_bound_times(terms, r), largest) + 8 * m * DBL_EPSILON;
+    rep->error_rational = sum > 0 ? rep->error_bound * (rep->error_rational / sum) : 0;
+    rep->error_rounding = hdi_max(0, rep->error_bound - rep->error_rational);
+    rep->error_relative = HUGE_VAL;
+    rep->smallest = 0;
+    rep->status = rep->status > 0 ? HD_OK : rep->status;   /* judged anew */
+    hdi_bound_judge(rep->error_bound, rep);
+}
+
+/* The spectra of k_t(v,v) at n_times times t, evenly spaced in log t. */
+static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, size_t ldd) {
+    const hd_laplacian *lap = h->heat->source;
+    const double two_pi = 6.283185307179586477;
+    const int32_t n_times = h->ask.n_times, m = n_times - 1;
+    const size_t n = HDI_CAST(size_t, lap->n);
+    double *x = HDI_TAKE(&h->s, double, HDI_CAST(uint64_t, n) * HDI_CAST(uint64_t, n_times));
+    double *circle = HDI_TAKE(&h->s, double, 2 * HDI_CAST(uint64_t, m)), largest = 0;
+    size_t v;
+    int32_t j, sure = 1;
+    if (h->e->status < 0 || hdi_diagonal_run(h, HD_KERNEL_SYMMETRIC, x, n) < 0) return h->e->status;
+    for (j = 0; j < m; j++) {
+        circle[2 * j] = cos(two_pi * j / m);
+        circle[2 * j + 1] = sin(two_pi * j / m);
+    }
+    for (v = 0; v < n; v++) {
+        const int ok = hdi_signature_spectrum(x + v, n, m, circle, n_freq, D + v, ldd);
+        sure = sure && (ok || lap->row[v] < 0);
+        for (j = 0; j < n_freq; j++) largest = hdi_max(largest, D[HDI_CAST(size_t, j) * ldd + v]);
+    }
+    if (!sure) h->rep->error_relative = HUGE_VAL;
+    hdi_signature_tell(h->rep, m, n_freq, largest);
     return h->e->status;
 }
 
@@ -28423,6 +28777,54 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     return status;
 }
 
+/* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k/area. At the longest time the 2nd of them
+ * has faded to a ten-thousandth, at the shortest time the 300th. */
+#define HDI_TIMES_SHORTEST 0.0024
+#define HDI_TIMES_LONGEST 0.37
+
+HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t, hd_error *err) {
+    hdi_call c;
+    double area = 0;
+    int32_t q;
+    (void)hdi_enter(&c, lap ? lap->context : NULL, err);
+    hdi_refuse(!lap || !t, "an argument is missing", c.e);
+    hdi_refuse(n_times < 1, "times: there is no time", c.e);
+    if (c.e->status < 0) return c.e->status;
+    for (q = 0; q < lap->n_active; q++) area += lap->mass[q];
+    /* B^-1 L tends to Laplacian/area */
+    if (lap->kind == HD_LAPLACIAN_EXP) area = lap->area * lap->area;
+    for (q = 0; q < n_times; q++)
+        t[q] = area * HDI_TIMES_SHORTEST * pow(HDI_TIMES_LONGEST / HDI_TIMES_SHORTEST,
+                                               n_times > 1 ? q / HDI_CAST(double, n_times - 1) : 0.5);
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times, const double *c,
+                                         double *t, hd_error *err) {
+    hd_spectrum_opts o;
+    hd_spectrum *s = NULL;
+    hd_status status;
+    double first;
+    hdi_call call;
+    int32_t q, constants = 0;
+    (void)hdi_enter(&call, lap ? lap->context : NULL, err);
+    hdi_refuse(!lap || !c || !t, "an argument is missing", call.e);
+    hdi_refuse(n_times < 1, "times: there is no time", call.e);
+    if (call.e->status < 0) return call.e->status;
+    for (q = 0; q < lap->n_components && lap->conserves; q++)
+        constants += hdi_finite(lap->component_mass[q]) ? 1 : 0;
+    hdi_refuse(constants >= lap->n_active, "times: there are no eigenvalues but those of constants", call.e);
+    if (call.e->status < 0) return call.e->status;
+    memset(&o, 0, sizeof o);
+    o.count = constants + 1;
+    status = hd_spectrum_create(&s, lap, &o, err);
+    if (status < 0) return status;
+    first = s->value[s->n_constant];
+    hd_spectrum_free(s);
+    for (q = 0; q < n_times; q++) t[q] = c[q] / first;
+    return status;
+}
+
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
     hd_context own, *ctx;
     if (!s) return;
@@ -28639,6 +29041,57 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
     if (!D) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
     if (h.e->status >= 0) (void)hdi_diagonal_run(&h, kernel, D, ldd);
+    return hdi_heat_end(&h);
+}
+
+HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const double *t, double *Z,
+                                     double *bound, hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_kernel_begin(&h, heat, HD_KERNEL_OPERATOR, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
+        return hdi_heat_end(&h);
+    if (!Z) hdi_missing(h.e);
+    if (h.e->status >= 0) (void)hdi_trace_run(&h, Z, bound);
+    return hdi_heat_end(&h);
+}
+
+HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const double *t, double *D,
+                                          size_t ldd, hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    hd_report trace;
+    double *Z;
+    if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
+        return hdi_heat_end(&h);
+    if (!D) hdi_missing(h.e);
+    ldd = hdi_leading(&h, ldd);
+    Z = HDI_TAKE(&h.s, double, n_times);
+    if (h.e->status >= 0 && hdi_diagonal_run(&h, HD_KERNEL_SYMMETRIC, D, ldd) >= 0) {
+        if (hd_heat_trace(heat, n_times, t, Z, NULL, &trace, NULL) >= 0)
+            hdi_signature_normalise(heat->source, n_times, D, ldd, Z, h.rep, &trace);
+        else *h.e = trace.error;
+    }
+    return hdi_heat_end(&h);
+}
+
+HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double t1, int32_t n_times,
+                                               int32_t n_freq, double *D, size_t ldd, hd_report *report,
+                                               hd_error *err) {
+    hdi_heat_call h;
+    double *t;
+    int32_t q;
+    if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
+    if (!(t0 > 0) || !(t1 > t0) || !hdi_finite(t1))
+        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "signature: times need 0 < t0 < t1", -1, -1, t0 > 0 ? t1 : t0);
+    else if (n_times < 3 || n_freq < 1 || n_freq > (n_times + 1) / 2)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "signature: n_times is 3 or more, n_freq in 1..(n_times + 1)/2");
+    t = h.e->status >= 0 ? HDI_TAKE(&h.s, double, n_times) : NULL;
+    for (q = 0; t && q < n_times; q++) t[q] = t0 * pow(t1 / t0, q / HDI_CAST(double, n_times - 1));
+    if (!t || hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
+        return hdi_heat_end(&h);
+    if (!D) hdi_missing(h.e);
+    ldd = hdi_leading(&h, ldd);
+    if (h.e->status >= 0) (void)hdi_signature_run(&h, n_freq, D, ldd);
     return hdi_heat_end(&h);
 }
 
