@@ -1217,6 +1217,34 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
+/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area.
+ * t      >= 0
+ * F, U   as above. The derivative is 0 at vertices without mass and at held ones
+ * report bounds are relative to the derivative, which fades faster than K_t F: where t is so large that only
+ *        means are left it is 0, and the bound is infinite
+ * With poles t dK_t/dt comes by other weights a_i on the same poles,
+ *     x c(x) = sum a_i + sum a_i theta_i/(x - theta_i),
+ * which is off by no more than max (1 + |x|)|exp(x) - c(x)|. Kernel sets (or diagonal ones, if asked for)
+ * have that small; the default is degree 14. Krylov, Lanczos and t = 0 take -K_(t-s) B^-1 L K_s F with s half
+ * the least time.
+ * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply,
+ * hd_heat_derivative and hd_heat_adjoint at one t share the factors of the direct method, and the adjoint is
+ * that of the very matrix applied, up to rounding. For a loss with gradient G by U = K_t F, its gradient by F
+ * is K_t' G, and its derivative by t the sum of all G_ij (dK_t/dt F)_ij.
+ * Errors as above; HD_ERR_ARGUMENT with a pole set of your own
+ * Cost   as above; krylov and Lanczos take two runs */
+HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
+                                          int32_t k, const double *F, size_t ldf, double *U,
+                                          size_t ldu, hd_report *report, hd_error *err);
+
+/* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g.
+ * G, U   as F and U above. The sum over G is kept, and what is at vertices without mass stays; held ones: 0
+ * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
+ * Errors and cost as hd_heat_apply; a full B takes some 30 products with B for each field besides */
+HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                       const double *G, size_t ldg, double *U, size_t ldu,
+                                       hd_report *report, hd_error *err);
+
 /* Columns of the kernel. That of K_t for a source s is K_t e_s: the field at time t that starts as 1 at s and
  * 0 elsewhere; its total heat 1'B u is the mass of s.
  * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
@@ -1249,6 +1277,60 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, hd_report *report,
                                         hd_error *err);
+
+/* The heat trace tr K_t = sum_i exp(-t lambda_i) over all eigenvalues, as the sum of K_t's diagonal. It is
+ * the integral of k_t(x,x). Vertices without mass and held ones do not count.
+ * t      > 0
+ * Z      [n_times]
+ * bound  [n_times] or NULL: bounds of the absolute error of each
+ * report as hd_heat_diagonal; error_relative is of the least exact of them
+ * Errors as hd_heat_diagonal
+ * Cost   as hd_heat_diagonal; many times share poles whatever B is. Memory for the inverses of each pole: up
+ *        to 48 n doubles, with a full B 250 n */
+HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const double *t, double *Z,
+                                     double *bound, hd_report *report, hd_error *err);
+
+/* Heat kernel signatures normalised by the trace, k_t(x,x)/tr K_t. Their integral is 1 at each time, so that
+ * no time outweighs the others.
+ * D      n x n_times as in hd_heat_diagonal
+ * report bounds are those of the quotients
+ * Errors as hd_heat_diagonal
+ * Cost   that of hd_heat_diagonal and of hd_heat_trace
+ * Source Sun, Ovsjanikov, Guibas 2009, section 4 */
+HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const double *t,
+                                          double *D, size_t ldd, hd_report *report,
+                                          hd_error *err);
+
+/* Signatures that change little if the surface is scaled. Scaling shifts log k_t(x,x) along log t and adds a
+ * constant. A derivative in log t removes the constant, and the modulus of a Fourier transform the shift:
+ *   D(x,k) = |sum_j (log k_(j+1)(x,x) - log k_j(x,x)) exp(-2 pi i jk/m)|,  j = 0 .. m - 1,  m = n_times - 1,
+ * with times t_j = t0 (t1/t0)^(j/m). What is shifted in at one end and out at the other is not the same, so
+ * t0 and t1 should reach far beyond the details to be told apart.
+ * n_times at least 3. The paper takes 385 times from 2 to 2^25 in its units, 16 to an octave
+ * D       n x n_freq, frequency k = 0 .. n_freq - 1 in column k, columns ldd apart (0: n); n_freq at most
+ *         (n_times + 1)/2, the paper takes 6. 0 at vertices without mass and at held ones
+ * report  error_bound from error_relative of the signatures, relative to the largest value
+ * Errors  as hd_heat_diagonal; HD_ERR_ARGUMENT
+ * Cost    hd_heat_diagonal, n n_times doubles, and n n_times n_freq multiply-adds
+ * Source  Bronstein, Kokkinos 2010, eqs. (10) to (13) */
+HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double t1,
+                                               int32_t n_times, int32_t n_freq, double *D,
+                                               size_t ldd, hd_report *report, hd_error *err);
+
+/* Times that suit the area A of the surface, 1'B1: evenly spaced in log t from 0.0024 A to 0.37 A. At the
+ * first about 300 eigenvalues matter, at the last two. With one time it is their geometric mean.
+ * t      [n_times]
+ * Errors HD_ERR_ARGUMENT */
+HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
+                                     hd_error *err);
+
+/* t = c/lambda_1, lambda_1 the smallest eigenvalue but those of constants. The diagonal of k_t at such times
+ * is the auto-diffusion function of Gebal, Baerentzen, Aanaes, Larsen 2009, where c is called t. Small c
+ * (0.1) shows details, c = 1 tips and branches.
+ * c, t   [n_times]; they may be the same
+ * Errors and cost as hd_spectrum_create for one pair more than components */
+HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times,
+                                         const double *c, double *t, hd_error *err);
 
 /* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion.
  * kernel HD_KERNEL_SYMMETRIC. (Entries of K_t = k_t B are not symmetric)
@@ -16191,6 +16273,20 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
     return sum;
 }
 
+/* Turns a kernel or diagonal set, c, into the set x c(x) for x exp(x) on the same poles:
+ *   x a/(x - theta) = a + a theta/(x - theta).
+ * It is off by |x e(x)| <= max (1 + |x|)|e(x)|, and 0 at 0. Nothing better is known of large |x|. */
+static void hdi_rational_rate(hd_rational *set) {
+    int32_t i;
+    set->max_error = set->max_weighted_error;
+    set->max_weighted_error = 0;
+    set->a0 = 0;
+    for (i = 0; i < set->n_poles; i++) {
+        set->a0 += hdi_rat_count(set, i) * set->a[i].re;
+        set->a[i] = hdi_cmul(set->a[i], set->theta[i]);
+    }
+}
+
 static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     int32_t i;
     if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES)
@@ -17097,11 +17193,18 @@ static void hdi_family_free(hdi_family *fam) {
     fam->filled = 0;
 }
 
+/* Do two sets have the same poles? Their weights may differ. */
+static int hdi_set_same_poles(const hd_rational *a, const hd_rational *b) {
+    return a->n_poles == b->n_poles &&
+           memcmp(a->theta, b->theta, HDI_CAST(size_t, a->n_poles) * sizeof *a->theta) == 0;
+}
+
 /* Takes up a set and a time. When filled is 0, hdi_family_fill must follow. */
 static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
-    if (fam->filled && fam->t == t && memcmp(&fam->set, set, sizeof *set) == 0) return;
+    const int held = fam->filled && fam->t == t && hdi_set_same_poles(&fam->set, set);
+    fam->set = *set;                             /* weights cost nothing */
+    if (held) return;
     fam->filled = 0;
-    fam->set = *set;
     fam->t = t;
     hdi_noise_weights(fam->lap, t, hdi_rat_reach(set), fam->noise, fam->noise_work);
 }
@@ -17224,6 +17327,7 @@ typedef struct hdi_lane {
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
+    int32_t dual;                /* what is asked for is B u, which goes to tmp in the end */
     double f_off, rhs_off;       /* what f, and B^-1 times the right-hand side, are off by in the B norm */
     /* outcome, norms absolute */
     double f_norm, u_norm;
@@ -17965,9 +18069,7 @@ static void hdi_elim_take(hdi_elim *m, const hd_rational *set, double t) {
 
 /* Are the factors of this set and time there? */
 static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
-    const size_t bytes = HDI_CAST(size_t, set->n_poles) * sizeof *set->theta;
-    return m->filled && m->t == t && m->set.n_poles == set->n_poles &&
-           memcmp(m->set.theta, set->theta, bytes) == 0;
+    return m->filled && m->t == t && hdi_set_same_poles(&m->set, set);
 }
 
 /* Factors of all poles of a set at a time. */
@@ -21433,6 +21535,20 @@ struct hd_heat {
     double *sums;                /* [2 n_components] work */
 };
 
+/* What the caller gets, by rows. */
+static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ? lane->tmp : lane->u; }
+
+/* The bounds of the error of B u: |(B d)_v| is at most sqrt(B_vv) times |d| in both norms, for B M^-1 B <= B
+ * if M = B + tL. both: off_m is known. */
+static hdi_parts hdi_lane_bound_dual(const hd_laplacian *lap, const hdi_lane *lane, int both) {
+    double largest_b = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        if (lane->u[i] != 0) largest_b = hdi_max(largest_b, lap->b_diag[i]);
+    return hdi_parts_scale(sqrt(largest_b > 0 ? largest_b : lap->b_diag[0]),
+                           both ? hdi_parts_least(lane->off, lane->off_m) : lane->off);
+}
+
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm,
  * and by the norm of B + tL where reach is known. reach: a bound of diag((B + tL)^-1), or NULL. */
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
@@ -21456,10 +21572,11 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
  * values are noted elsewhere. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
                            const double *reach, int own, hd_report *rep) {
+    const double *out = hdi_lane_answer(lane);
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
-        largest = hdi_max(largest, fabs(lane->u[i]));
+        largest = hdi_max(largest, fabs(out[i]));
         if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
         heat += lap->mass[i] * lane->u[i];
         heat_abs += fabs(lap->mass[i] * lane->u[i]);
@@ -21468,7 +21585,8 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
-        hdi_parts off = hdi_lane_bound(lap, lane, reach);
+        hdi_parts off =
+            lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL) : hdi_lane_bound(lap, lane, reach);
         if (total > 0) off.rounding += DBL_EPSILON * largest;    /* of the value itself */
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
@@ -21707,7 +21825,22 @@ static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
     return hdi_lanczos_steps(heat, t) <= HDI_LANCZOS_WORTH ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
-typedef enum hdi_query { HDI_QUERY_FIELD, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC } hdi_query;
+/* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
+typedef enum hdi_query {
+    HDI_QUERY_FIELD, HDI_QUERY_ADJOINT, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC
+} hdi_query;
+
+/* Does the caller give the fields? */
+static int hdi_query_fields(hdi_query query) {
+    return query == HDI_QUERY_FIELD || query == HDI_QUERY_ADJOINT;
+}
+
+/* Which function of t a request asks for. */
+typedef enum hdi_rate {
+    HDI_RATE_NONE = 0,           /* K_t */
+    HDI_RATE_POLES,              /* its derivative, by weights on the poles */
+    HDI_RATE_OPEN                /* its derivative, how is to be found */
+} hdi_rate;
 
 /* Single entries of the kernel, sorted by their column: item q is order[begin[q]] to order[begin[q + 1] -
  * 1]. */
@@ -21748,6 +21881,7 @@ typedef struct hdi_heat_call {
     hd_method method;
     double cost;                 /* of this method by the model, where auto picks by it; else 0 */
     int32_t by_habit;            /* auto picks direct because of the calls before */
+    hdi_rate rate;
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
     const hd_rational *set;      /* instead of what the plan would take */
@@ -21878,6 +22012,12 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat) {
     return f;
 }
 
+/* The same for a call; derivatives by poles need them. */
+static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
+    const hd_solver solver = hdi_heat_choose(h->heat, t);
+    return h->rate && solver == HD_SOLVER_LANCZOS ? HD_SOLVER_COCG : solver;
+}
+
 /* Iterating. The steps of COCG grow with sqrt(t)/h up to a limit; a full B costs about a third more. */
 static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
     const hd_heat *heat = h->heat;
@@ -21887,7 +22027,7 @@ static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
     int32_t q;
     for (q = 0; q < h->n_times; q++) {
         const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
-        if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS) {
+        if (hdi_heat_solver(h, t) == HD_SOLVER_LANCZOS) {
             one = hdi_lanczos_steps(heat, t);
             one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
         } else {
@@ -21918,7 +22058,10 @@ static double hdi_krylov_shift(double from, double first, double last, double la
 
 /* The kind of pole set that the call takes by its query and the options. */
 static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
-    return h->heat->opts.poles ? h->heat->opts.poles : h->ask.query == HDI_QUERY_FIELD ? HD_POLES_UNIFORM
+    const hd_pole_kind asked = h->heat->opts.poles;
+    /* see hdi_rational_rate: errors of uniform sets do not fall off */
+    if (h->rate) return asked == HD_POLES_DIAGONAL ? asked : HD_POLES_KERNEL;
+    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM
            : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
 }
 
@@ -21999,7 +22142,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
 /* The cheapest method that fits into so many bytes. */
 static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_cost *c, double room) {
     const int no_direct = !HDI_HAS_POLE_FACTORS || c->direct_bytes > room;
-    const int no_krylov = c->krylov_bytes > room || h->heat->poles_asked;
+    const int no_krylov = c->krylov_bytes > room || h->heat->poles_asked || h->rate == HDI_RATE_POLES;
     h->method = HD_METHOD_ITERATIVE;
     h->cost = c->iterative;
     h->rep->reason = "iterations cost less than a factorisation";
@@ -22132,7 +22275,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         if (h->e->status < 0) return h->e->status;
     }
     h->rep->method = h->method;
-    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_choose(heat, h->t)
+    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_solver(h, h->t)
                 : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
     h->rep->solver = h->solver;
     h->rep->precond = HD_PRECOND_NONE;
@@ -22224,6 +22367,19 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     return sum > 0 ? sqrt(sum) * hdi_ratio_root(lap) : 0;
 }
 
+/* Takes the constants out of a field for good: they do not change in time. */
+static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
+    int32_t i;
+    if (!lap->conserves) return;
+    hdi_lane_means(lane, lap);
+    for (i = 0; i < lap->n_active; i++) lane->f[i] -= lane->sums[lap->component[i]];
+    hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+    lane->rhs_off = hdi_lane_rhs_off(lap, lane->f) + DBL_EPSILON * lane->f_norm;
+    hdi_heat_measure(lap, lane);
+    for (i = 0; i < lap->n_components; i++)
+        if (hdi_finite(lap->component_mass[i])) lane->target[i] = 0;
+}
+
 /* Field and right-hand side of item q. A vertex without mass needs no solve, and is skipped. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
@@ -22236,11 +22392,17 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->exponent = 0;
     lane->f_off = lane->rhs_off = 0;
     lane->watch = -1;
-    if (h->ask.query == HDI_QUERY_FIELD) {
+    lane->dual = h->ask.query == HDI_QUERY_ADJOINT;
+    if (hdi_query_fields(h->ask.query)) {
         hdi_gather(lap, h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf, lane->f);
         hdi_lane_unit(lap, lane);
-        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-        lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        if (lane->dual) {
+            memcpy(lane->rhs, lane->f, bytes);
+            if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
+        } else {
+            hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+            lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        }
     } else {
         row = lap->row[hdi_heat_source(h, q)];
         lane->skip = row < 0;
@@ -22267,13 +22429,15 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         }
     }
     hdi_heat_measure(lap, lane);
-    if (h->ask.query == HDI_QUERY_SYMMETRIC && lap->B)
+    if ((lane->dual || h->ask.query == HDI_QUERY_SYMMETRIC) && lap->B)
         lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
+    if (h->rate) hdi_lane_moving(lap, lane);
     return HD_OK;
 }
 
 /* The unit of answers in terms of the method's copy of the pair: k_t has that of B^-1. */
 static double hdi_heat_unit(const hdi_heat_call *h) {
+    if (h->rate) return 1 / h->ask.t[h->now];    /* sets are for t dK_t/dt */
     return h->ask.query == HDI_QUERY_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
 }
 
@@ -22304,30 +22468,31 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, h->now);
     const double unit = hdi_heat_unit(h);
     double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
+    const double *out = hdi_lane_answer(lane);
     int32_t i;
     if (h->ask.list) hdi_heat_store_entries(h, q, lane);
     if (!u) return;
-    if (h->ask.query == HDI_QUERY_FIELD) {       /* vertices without mass keep their value */
+    if (hdi_query_fields(h->ask.query)) {        /* vertices without mass keep their value */
         const double *f = h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf;
         if (u != f) memmove(u, f, HDI_CAST(size_t, lap->n) * sizeof *u);
     } else {
         memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
         if (lane->skip) u[hdi_heat_source(h, q)] = h->ask.query == HDI_QUERY_OPERATOR;
     }
-    for (i = 0; i < lap->n && lap->n_held > 0; i++)
-        if (lap->row[i] == HD_ROW_HELD) u[i] = 0;
+    for (i = 0; i < lap->n && (lap->n_held > 0 || h->rate); i++)
+        if (h->rate || lap->row[i] == HD_ROW_HELD) u[i] = 0;
     for (i = 0; i < lap->n_active && !lane->skip; i++)
-        u[lap->vertex[i]] = lane->exponent ? ldexp(lane->u[i], lane->exponent) : unit * lane->u[i];
+        u[lap->vertex[i]] = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
 }
 
 /* The degree of a uniform set that serves all fields. Columns get the highest degree, because their constants
  * are small. */
 static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
+    const int fields = hdi_query_fields(h->ask.query);
     int32_t q, r;
-    *degree = h->ask.query == HDI_QUERY_FIELD ? 8 : HDI_RAT_UNIFORM_MAX;
-    if (h->ask.query == HDI_QUERY_FIELD && hdi_lane_make(h->lane, h->lap, h->heat->ctx, h->e) < 0)
-        return h->e->status;
-    for (q = 0; q < h->ask.k && h->ask.query == HDI_QUERY_FIELD; q++) {
+    *degree = fields ? 8 : HDI_RAT_UNIFORM_MAX;
+    if (fields && hdi_lane_make(h->lane, h->lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    for (q = 0; q < h->ask.k && fields; q++) {
         if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
         r = hdi_uniform_degree(h->lap, h->lane, h->method == HD_METHOD_DIRECT);
         if (r > *degree) *degree = r;
@@ -22341,16 +22506,17 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     const hd_pole_kind kind = hdi_heat_kind(h);
     /* four pairs fill a pack, a real pole costs little */
     int32_t degree = h->method == HD_METHOD_DIRECT ? 9 : 10;
-    if (h->heat->exacting) degree = HDI_RAT_KERNEL_MAX;
+    if (h->heat->exacting || h->rate) degree = HDI_RAT_KERNEL_MAX;
     if (h->degree) degree = h->degree;
-    if (o->degree) degree = o->degree;
+    if (o->degree) degree = h->rate ? hdi_high32(o->degree, HDI_RAT_KERNEL_MIN) : o->degree;
     if (h->set || o->rational) {
         *set = h->set ? *h->set : *o->rational;
         return HD_OK;
     }
     if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0)
         return h->e->status;
-    return hdi_rational_get(set, kind, degree, h->e);
+    if (hdi_rational_get(set, kind, degree, h->e) >= 0 && h->rate) hdi_rational_rate(set);
+    return h->e->status;
 }
 
 static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
@@ -22401,11 +22567,12 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
 
 /* Judges lane i of the batch. */
 static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
-    const hdi_lane *lane = h->lane + i;
+    hdi_lane *lane = h->lane + i;
     const hdi_elim *m = &h->heat->elim;
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal;
     const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
+    if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
     if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
@@ -22698,7 +22865,7 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     if (hdi_direct_factors(h, h->diagonal ? HDI_AFTER_SOLVES : HDI_AFTER_BOUND, 0) < 0) return h->e->status;
     if (HDI_HAS_DIAGONAL && !h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
     if (hdi_batches_make(&b, h) < 0) return h->e->status;
-    h->deflated = !h->watching && (h->ask.query == HDI_QUERY_FIELD || h->t * heat->lambda_max > HDI_DEFLATE);
+    h->deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
     for (h->batch = 0; h->batch < h->ask.k; h->batch += b.n_here) {
         if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0)
             return h->e->status;
@@ -22908,7 +23075,7 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
         return 0;
     if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
     /* fields may have been overwritten by their answers */
-    if (h->batch > 0 && h->ask.query == HDI_QUERY_FIELD) return 0;
+    if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
     hdi_heat_free_lanes(heat);
     if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
     hdi_elim_free(&heat->elim);
@@ -22944,7 +23111,7 @@ static hd_status hdi_heat_plain(hdi_heat_call *h) {
                              : lane->f[i];
             lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
             if (h->equal)
-                hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, h->ask.query == HDI_QUERY_FIELD));
+                hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
             else hdi_lane_rounding(lane, h->still * lane->f_norm);
             if (!h->equal && h->ask.query == HDI_QUERY_SYMMETRIC)
                 hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
@@ -23140,6 +23307,216 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
     if (h->ask.n_times == 1) (void)hdi_heat_single(h);
     else if (!hdi_heat_together(h)) (void)hdi_heat_each_time(h);
+    return hdi_heat_end(h);
+}
+
+/* ---- derivatives in time ---- */
+
+/* Where there are poles, t dK_t/dt comes by other weights on them, see hdi_rational_rate. Lanczos has none.
+ * There the derivative is that of a product of two kernels, with one s below all times:
+ *   dK_t/dt f = -K_(t-s) A K_s f,   A = B^-1 L.
+ * An error d of the first answer becomes at most |A K_(t-s) d|_B <= |d|_B/(exp(1) (t - s)); an error of the
+ * product with A grows no more. A is that of the scaled pair. */
+typedef struct hdi_halves {
+    hdi_heat_call *h;
+    double s, *later;            /* [n_times] t - s */
+    double *W;                   /* [n k] fields on vertices */
+    double *x, *work, *noise;    /* [n_active], [4 n_active], [2 n_active] */
+    double *sums;                /* [n_components] */
+    double *size, *slip;         /* [k] |W|_B of the first answers; bounds of what A W is off by */
+    int32_t *exponent;           /* [k] fields are the caller's times 2^-exponent */
+    hd_report first, second;
+} hdi_halves;
+
+static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
+    const hd_laplacian *lap = h->heat->source;
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active);
+    int32_t q;
+    memset(z, 0, sizeof *z);
+    z->h = h;
+    z->W = HDI_TAKE(&h->s, double, HDI_CAST(uint64_t, lap->n) * HDI_CAST(uint64_t, h->ask.k));
+    z->x = HDI_TAKE(&h->s, double, n);
+    z->work = HDI_TAKE(&h->s, double, 4 * n);
+    z->noise = HDI_TAKE(&h->s, double, 2 * n);
+    z->sums = HDI_TAKE(&h->s, double, lap->n_components);
+    z->size = HDI_TAKE(&h->s, double, 2 * HDI_CAST(uint64_t, h->ask.k));
+    z->exponent = HDI_TAKE(&h->s, int32_t, h->ask.k);
+    z->later = HDI_TAKE(&h->s, double, h->ask.n_times);
+    if (h->e->status < 0) return h->e->status;
+    z->slip = z->size + h->ask.k;
+    z->s = h->ask.t[0];
+    for (q = 1; q < h->ask.n_times; q++) z->s = hdi_min(z->s, h->ask.t[q]);
+    z->s /= 2;
+    if (hdi_heat_scaled(h->heat, z->s) * h->heat->lambda_max < HDI_STILL) z->s = 0;
+    for (q = 0; q < h->ask.n_times; q++) z->later[q] = h->ask.t[q] - z->s;
+    hdi_noise_weights(lap, 1 / h->heat->scale, 0, z->noise, z->noise + n);
+    return HD_OK;
+}
+
+/* x goes to field q of W; other vertices have 0. */
+static void hdi_halves_put(hdi_halves *z, int32_t q) {
+    const hd_laplacian *lap = z->h->heat->source;
+    double *w = z->W + HDI_CAST(size_t, q) * HDI_CAST(size_t, lap->n);
+    int32_t i;
+    memset(w, 0, HDI_CAST(size_t, lap->n) * sizeof *w);
+    for (i = 0; i < lap->n_active; i++) w[lap->vertex[i]] = z->x[i];
+}
+
+/* Field q near one and without its constants. */
+static void hdi_halves_load(hdi_halves *z, int32_t q) {
+    const hd_laplacian *lap = z->h->heat->source;
+    double most = 0;
+    int32_t i;
+    hdi_gather(lap, z->h->ask.F + HDI_CAST(size_t, q) * z->h->ask.ldf, z->x);
+    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(z->x[i]));
+    z->exponent[q] = 0;
+    if (most > 0) frexp(most, &z->exponent[q]);
+    for (i = 0; i < lap->n_active; i++) z->x[i] = ldexp(z->x[i], -z->exponent[q]);
+    if (lap->conserves) {
+        hdi_component_sums(lap, lap->mass, z->x, z->sums);
+        for (i = 0; i < lap->n_components; i++) z->sums[i] /= -lap->component_mass[i];
+        hdi_component_add(lap, z->sums, z->x);
+    }
+    hdi_halves_put(z, q);
+}
+
+/* One of the two runs: K_t F on vertices. */
+static hd_status hdi_halves_run(hdi_halves *z, int32_t n_times, const double *t, double *U, size_t ldu,
+                                hd_report *rep) {
+    hdi_heat_call *h = z->h, c;
+    (void)hdi_heat_begin(&c, h->heat, HDI_QUERY_FIELD, rep, NULL);
+    c.ask.n_times = n_times;
+    c.ask.t = t;
+    c.ask.k = h->ask.k;
+    c.ask.F = z->W;
+    c.ask.ldf = HDI_CAST(size_t, h->heat->source->n);
+    c.ask.U = U;
+    c.ask.ldu = ldu;
+    c.t = hdi_heat_scaled(h->heat, t[0]);
+    if (hdi_heat_run(&c) < 0) *h->e = rep->error;
+    return h->e->status;
+}
+
+/* W = -A W for field q. */
+static hd_status hdi_halves_product(hdi_halves *z, int32_t q) {
+    const hd_laplacian *lap = z->h->heat->source;
+    const int64_t n = lap->n_active;
+    double sum = 0, size;
+    int64_t i;
+    hdi_gather(lap, z->W + HDI_CAST(size_t, q) * HDI_CAST(size_t, lap->n), z->x);
+    z->size[q] = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
+    for (i = 0; i < n; i++) sum += z->noise[i] * z->x[i] * z->x[i];
+    hdi_pair_apply(lap, -1 / z->h->heat->scale, 0, z->x, z->work);
+    if (hdi_mass_solve(lap, z->work, z->x, z->work + n, z->h->e) < 0) return z->h->e->status;
+    size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
+    z->slip[q] = hdi_ratio_root(lap) * (sqrt(sum) + (lap->B ? HDI_MASS_TOL : DBL_EPSILON) * size);
+    hdi_halves_put(z, q);
+    return HD_OK;
+}
+
+/* The bound of an answer of this size by a run's report, in the B norm, in the report's parts. */
+static hdi_parts hdi_halves_parts(const hd_report *rep, double size) {
+    const double b = rep->error_bound_b, all = b < 0.5 ? size * b / (1 - b) : HUGE_VAL;
+    const double sum = rep->error_bound;
+    hdi_parts part;
+    memset(&part, 0, sizeof part);
+    if (!(sum > 0) || !hdi_finite(sum)) {
+        part.rounding = size > 0 ? all : 0;
+        return part;
+    }
+    part.rational = rep->error_rational / sum;
+    part.solver = rep->error_solver / sum;
+    part.rounding = rep->error_rounding / sum;
+    return hdi_parts_scale(size > 0 ? all : 0, part);
+}
+
+/* Brings an answer into the caller's units, and notes it with the bound of its error. rep: both runs'. */
+static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_values, hdi_ledger *ledger,
+                              hd_report *rep) {
+    hdi_heat_call *h = z->h;
+    const hd_laplacian *lap = h->heat->source;
+    const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, m);
+    const double grow = 1 / (exp(1) * z->later[m] * h->heat->scale);
+    double *u = h->ask.U + column * h->ask.ldu, size, all, largest = 0;
+    hdi_parts off, one;
+    int32_t i;
+    hdi_gather(lap, u, z->x);
+    size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
+    off = hdi_halves_parts(&z->second, size);
+    one = hdi_parts_scale(z->s > 0 ? grow : 0, hdi_halves_parts(&z->first, z->size[q]));
+    off.rational += one.rational;
+    off.solver += one.solver;
+    off.rounding += one.rounding + z->slip[q] + 4 * DBL_EPSILON * size;
+    for (i = 0; i < lap->n_active; i++) {
+        largest = hdi_max(largest, fabs(z->x[i]));
+        u[lap->vertex[i]] = ldexp(h->heat->scale * z->x[i], z->exponent[q]);
+    }
+    hdi_ledger_note(ledger, largest, hdi_parts_scale(to_values, off));
+    all = hdi_parts_sum(&off);
+    rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(all, size - all));
+    hdi_bound_judge(rep->error_bound_b, rep);
+}
+
+/* The report of both runs, and the answers with their bounds. */
+static void hdi_halves_close(hdi_halves *z) {
+    hdi_heat_call *h = z->h;
+    const hd_laplacian *lap = h->heat->source;
+    hd_report *rep = h->rep;
+    double smallest = HUGE_VAL;
+    int32_t i, q, m;
+    for (i = 0; i < lap->n_active; i++) smallest = hdi_min(smallest, lap->b_diag[i]);
+    *rep = z->second;
+    if (z->s > 0) hdi_report_merge(rep, &z->first);
+    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = 0;
+    rep->error_bound_b = 0;
+    for (q = 0; q < h->ask.k; q++)
+        for (m = 0; m < h->ask.n_times; m++) {
+            hdi_ledger ledger = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver,
+                                                 HD_EVIDENCE_PROVEN, 0);
+            hdi_halves_finish(z, q, m, hdi_ratio_root(lap) / sqrt(smallest), &ledger, rep);
+            hdi_ledger_close(&ledger, rep);
+        }
+}
+
+static hd_status hdi_heat_by_halves(hdi_heat_call *h) {
+    const size_t n = HDI_CAST(size_t, h->heat->source->n);
+    hdi_halves z;
+    int32_t q;
+    if (hdi_halves_make(&z, h) < 0) return h->e->status;
+    for (q = 0; q < h->ask.k; q++) hdi_halves_load(&z, q);
+    if (z.s > 0 && hdi_halves_run(&z, 1, &z.s, z.W, n, &z.first) < 0) return h->e->status;
+    for (q = 0; q < h->ask.k; q++)
+        if (hdi_halves_product(&z, q) < 0) return h->e->status;
+    if (hdi_halves_run(&z, h->ask.n_times, z.later, h->ask.U, h->ask.ldu, &z.second) >= 0)
+        hdi_halves_close(&z);
+    return h->e->status;
+}
+
+/* Is the method one with poles, for all times? Where t = 0 the derivative is a product with A. */
+static int hdi_rate_by_poles(hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    int32_t q;
+    for (q = 0; q < h->ask.n_times; q++)
+        if (hdi_heat_scaled(heat, h->ask.t[q]) * heat->lambda_max < HDI_STILL) return 0;
+    if (heat->opts.solver == HD_SOLVER_LANCZOS) return 0;
+    if (heat->opts.method != HD_METHOD_AUTO) return heat->opts.method != HD_METHOD_KRYLOV;
+    if (hdi_heat_sort_times(h, 1) < 0 || hdi_heat_pick(h) < 0) return 0;
+    h->times = &h->t;
+    h->n_times = 1;
+    h->time_column = NULL;
+    h->t = hdi_heat_scaled(heat, h->ask.t[0]);
+    return h->method != HD_METHOD_KRYLOV;
+}
+
+/* Runs a request for derivatives whose arguments are checked. */
+static hd_status hdi_rate_run(hdi_heat_call *h) {
+    if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
+    h->rate = HDI_RATE_OPEN;
+    if (hdi_rate_by_poles(h)) {
+        h->rate = HDI_RATE_POLES;
+        return hdi_heat_run(h);
+    }
+    if (h->e->status >= 0) (void)hdi_heat_by_halves(h);
     return hdi_heat_end(h);
 }
 
@@ -23433,12 +23810,12 @@ static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t
     if (*i >= end) *i = s->row[s->row_ptr[v] + *i - end];
 }
 
-/* diag(k_t B), a0 included, for a full B: from the entries of k_t on the pattern of B. */
-static void hdi_operator_diagonal(const hdi_elim *m, const double *k, double *diag) {
+/* a0 + diag(k B) for a full B, from the entries of k on the pattern of B. */
+static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k, double *diag) {
     const hdi_symbolic *s = &m->sym;
     int32_t v, i, j;
     int64_t n;
-    for (i = 0; i < s->n; i++) diag[i] = m->set.a0;
+    for (i = 0; i < s->n; i++) diag[i] = a0;
     for (v = 0; v < s->n_super; v++) {
         for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
             const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
@@ -23523,7 +23900,7 @@ static void hdi_diagonal_full(const hdi_elim *m, const hdi_entries *x, const hdi
     const hd_laplacian *lap = m->lap;
     int32_t v, i;
     int64_t n;
-    hdi_operator_diagonal(m, x->k, d->value);
+    hdi_operator_diagonal(m, m->set.a0, x->k, d->value);
     for (v = 0; v < s->n_super; v++) {
         for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
             if (s->a_row[n] != s->a_col[n]) continue;
@@ -23979,6 +24356,306 @@ static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D,
         h->t = hdi_heat_scaled(heat, h->ask.t[q]);
         if (hdi_entries_sure(h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h->e->column = q;
     }
+    return h->e->status;
+}
+
+/* ---- traces ---- */
+
+/* tr(K_t) from the traces of (t0 L + theta_p B)^-1 B over the poles: at any time that shares the poles it is
+ * a sum of these with the set's weights. Two sets of an inversion belong to a pole, real and imaginary part.
+ * By rows in elimination order and in the unit of the scaled pair. */
+typedef struct hdi_trace {
+    hdi_window w;                /* its times, and their sets; not its arrays */
+    int64_t size;                /* of a set's values */
+    double *values;              /* [2 n_poles][size] of the inverses: entries or diagonals */
+    double *diag;                /* [2 n_poles][n] diagonals of the inverses times B; in values if B is */
+    double *last;                /* [n] the diagonal of K_t at the last time */
+    hdi_probe probe;
+    double g[HDI_PROBES];        /* [probe.k] diag((B + tL)^-1) at the last time */
+} hdi_trace;
+
+/* The sum over poles of Re(w_p z_p), z_p entry i of the sets at x, stride apart. */
+static double hdi_trace_sum(const hd_c64 *w, int32_t n_poles, const double *x, int64_t stride, int64_t i) {
+    double sum = 0;
+    int32_t p;
+    for (p = 0; p < n_poles; p++)
+        sum += w[p].re * x[2 * p * stride + i] - w[p].im * x[(2 * p + 1) * stride + i];
+    return sum;
+}
+
+/* Weights for K_t and for (B + tL)^-1 at time q; see hdi_window_weights. */
+static void hdi_trace_weights(const hdi_trace *z, int32_t q, hd_c64 *k, hd_c64 *g) {
+    const hd_rational *set = z->w.set + q;
+    const double tau = z->w.t[q] / z->w.t[0];
+    double factor = 1;
+    const int32_t best = hdi_resolvent_pole(set, &factor);
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++) {
+        k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
+        g[p] = hdi_c(p == best ? factor / tau : 0, 0);
+    }
+}
+
+/* Factors at the first time, and the two parts of every pole's inverse. */
+static hd_status hdi_trace_invert(hdi_heat_call *h, hdi_trace *z, hdi_scope *s) {
+    hdi_elim *m = &h->heat->elim;
+    const int full = h->heat->source->B != NULL;
+    const int32_t n_poles = z->w.set->n_poles;
+    hd_c64 *unit = HDI_TAKE_ZERO(s, hd_c64, 2 * n_poles * n_poles);
+    hdi_elim_sums sums;
+    int32_t p;
+    z->size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
+    z->values = HDI_TAKE_ZERO(s, double, HDI_CAST(uint64_t, 2 * n_poles * z->size));
+    z->diag = full ? HDI_TAKE_ZERO(s, double, HDI_CAST(uint64_t, 2 * n_poles) * z->w.n) : z->values;
+    z->last = HDI_TAKE(s, double, z->w.n);
+    if (h->e->status < 0) return h->e->status;
+    for (p = 0; p < n_poles; p++) {
+        unit[2 * p * n_poles + p] = hdi_c(1, 0);
+        unit[(2 * p + 1) * n_poles + p] = hdi_c(0, -1);
+    }
+    h->t = z->w.t[0];
+    h->set = z->w.set;
+    h->lap = m->lap;
+    if (hdi_direct_factors(h, HDI_AFTER_INVERSE, 2 * n_poles) < 0) return h->e->status;
+    h->set = NULL;
+    sums.n_sets = 2 * n_poles;
+    sums.weight = unit;
+    sums.wanted = full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL;
+    sums.values = z->values;
+    sums.stride = z->size;
+    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0) return h->e->status;
+    return hdi_elim_invert(m, &sums, h->e);
+}
+
+/* The diagonal of K_t at the last time, the rows to be probed, and g there. */
+static void hdi_trace_probes(const hdi_elim *m, hdi_trace *z) {
+    const hdi_symbolic *s = &m->sym;
+    const hd_laplacian *lap = m->lap;
+    const int64_t n = HDI_CAST(int64_t, z->w.n);
+    const int32_t n_poles = z->w.set->n_poles, last = z->w.n_times - 1;
+    hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
+    int32_t i, r, v, set;
+    int64_t at;
+    hdi_trace_weights(z, last, k, g);
+    for (i = 0; i < n; i++) z->last[i] = z->w.set[last].a0 + hdi_trace_sum(k, n_poles, z->diag, n, i);
+    for (i = 0, r = -1; i < n; i++)
+        if (r < 0 || z->last[i] * lap->b_diag[r] < z->last[r] * lap->b_diag[i]) r = i;
+    z->probe = hdi_probe_rows(lap, z->last, r);
+    for (r = 0; r < z->probe.k; r++) z->g[r] = hdi_constant_part(lap, z->probe.row[r]);
+    if (!lap->B) {
+        for (r = 0; r < z->probe.k; r++) {
+            i = z->probe.row[r];
+            z->g[r] = hdi_max(z->g[r], hdi_trace_sum(g, n_poles, z->diag, n, i) / lap->mass[i]);
+        }
+        return;
+    }
+    for (v = 0; v < s->n_super; v++)
+        for (at = s->a_ptr[v]; at < s->a_ptr[v + 1]; at++)
+            for (set = 0; set < z->probe.k && s->a_row[at] == s->a_col[at]; set++)
+                if (z->probe.row[set] == s->super[v] + s->a_col[at])
+                    z->g[set] = hdi_max(z->g[set], hdi_trace_sum(g, n_poles, z->values, z->size, at));
+}
+
+/* Diagonals of the inverses times B. */
+static void hdi_trace_diagonals(const hdi_elim *m, const hdi_trace *z) {
+    const hd_laplacian *lap = m->lap;
+    const int64_t n = HDI_CAST(int64_t, z->w.n);
+    int32_t set, i;
+    for (set = 0; set < 2 * z->w.set->n_poles; set++) {
+        double *diag = z->diag + set * n;
+        if (lap->B) hdi_operator_diagonal(m, 0, z->values + set * z->size, diag);
+        for (i = 0; i < n && !lap->B; i++) diag[i] *= lap->mass[i];
+    }
+}
+
+/* The trace at time q of the window and bounds of its errors. */
+static double hdi_trace_at(hdi_heat_call *h, const hdi_trace *z, int32_t q, hdi_parts *off) {
+    const hd_rational *set = z->w.set + q;
+    const hd_laplacian *lap = h->lap;
+    const double weighted = hdi_set_weighted(set), uniform = hdi_set_uniform(set) * lap->n_active;
+    const int32_t n_poles = set->n_poles;
+    double value = set->a0 * lap->n_active, spread = 0, seen = 0;
+    hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
+    int32_t i, r;
+    hdi_trace_weights(z, q, k, g);
+    for (i = 0; i < lap->n_active; i++) {
+        value += hdi_trace_sum(k, n_poles, z->diag, lap->n_active, i);
+        spread += hdi_trace_sum(g, n_poles, z->diag, lap->n_active, i);
+    }
+    for (i = 0, r = 0; i < lap->n_components; i++) r += hdi_finite(lap->component_mass[i]);
+    spread = hdi_max(spread, lap->conserves ? r : 0);
+    for (r = 0; r < z->probe.k; r++) {
+        const int32_t row = z->probe.row[r];
+        const double here = set->a0 + hdi_trace_sum(k, n_poles, z->diag, lap->n_active, row);
+        double by, there = hdi_probe_value(h->heat, &z->probe, r, set, z->w.t[q] / z->w.t[0], 1,
+                                           z->g[r], &by);
+        seen = hdi_max(seen, hdi_probe_seen(there, by, here, here));
+    }
+    if (set->kind == HD_POLES_OWN)
+        seen = HDI_PROBE_OWN * seen + hdi_quotient(hdi_own_near(h->heat, set, h->t), lap->b_ratio);
+    memset(off, 0, sizeof *off);
+    off->rational = hdi_min(uniform, hdi_finite(weighted) ? weighted * spread : HUGE_VAL);
+    off->rounding = seen * hdi_max(fabs(value), set->kind == HD_POLES_OWN ? lap->n_active : 0) +
+                    4 * DBL_EPSILON * fabs(value);
+    return value;
+}
+
+/* Notes a trace, its bound relative to itself. */
+static void hdi_trace_note(hdi_heat_call *h, int32_t q, double value, hdi_parts off, double *Z,
+                           double *bound) {
+    hdi_ledger ledger = hdi_inverse_ledger(h, 1);
+    h->relative = 1;
+    hdi_ledger_note(&ledger, value, off);
+    hdi_ledger_close(&ledger, h->rep);
+    Z[q] = value;
+    if (bound) bound[q] = hdi_parts_sum(&off);
+}
+
+/* Traces at times q0 to q1 - 1 of the call, sorted, by one set of poles: shared, or that of the options for a
+ * single time. */
+static hd_status hdi_trace_window(hdi_heat_call *h, int32_t q0, int32_t q1, double *Z, double *bound) {
+    hdi_elim *m = &h->heat->elim;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    hdi_trace z;
+    hdi_parts off;
+    int32_t q;
+    memset(&z, 0, sizeof z);
+    z.w.n_times = q1 - q0;
+    z.w.t = h->times + q0;
+    z.w.n = HDI_CAST(size_t, m->sym.n);
+    z.w.set = HDI_TAKE(&s, hd_rational, z.w.n_times);
+    if (h->e->status < 0) return hdi_scope_end(&s);
+    if (h->heat->poles_asked || h->heat->exacting) (void)hdi_heat_set(h, z.w.set);
+    else (void)hdi_rational_shared(z.w.set, z.w.n_times, z.w.t, HDI_SHARED_TOL, h->heat->ctx, h->e);
+    if (h->e->status >= 0 && hdi_trace_invert(h, &z, &s) >= 0) {
+        hdi_trace_diagonals(m, &z);
+        hdi_trace_probes(m, &z);
+        (void)hdi_probe_run(h, &z.probe, HD_KERNEL_OPERATOR, z.w.set);
+    }
+    for (q = 0; q < z.w.n_times && h->e->status >= 0; q++) {
+        const double value = hdi_trace_at(h, &z, q, &off);
+        hdi_trace_note(h, h->time_column[q0 + q], value, off, Z, bound);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Where only the means are left: one for each component that keeps its heat. Takes off times from the end.
+ * Returns how many are left. */
+static int32_t hdi_trace_late(hdi_heat_call *h, double *Z, double *bound) {
+    const hd_laplacian *lap = h->heat->source;
+    const hdi_parts off = {0, 0, 0};
+    double count = 0;
+    int32_t n = h->n_times, i;
+    for (i = 0; i < lap->n_components; i++) count += hdi_finite(lap->component_mass[i]);
+    for (; n > 0 && hdi_heat_equal(h->heat, h->times[n - 1], h->e); n--) {
+        h->equal = 1;
+        hdi_trace_note(h, h->time_column[n - 1], count, off, Z, bound);
+    }
+    h->equal = 0;
+    return n;
+}
+
+/* The traces at all times of a call. */
+static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
+    const hd_heat *heat = h->heat;
+    int32_t n, q0, q1, w, windows = 0, packs = 0;
+    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+    hdi_inverse_tell(h);
+    if (hdi_heat_sort_times(h, 1) < 0) return h->e->status;
+    n = hdi_trace_late(h, Z, bound);
+    if (n > 1 && !heat->poles_asked && !heat->exacting)
+        windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
+    if (windows > 0 && hdi_shared_pays(packs, n)) {
+        for (w = 0, q0 = 0; q0 < n; w++, q0 = q1) {
+            q1 = hdi_window_end(h->times, n, q0, w, windows);
+            if (hdi_trace_window(h, q0, q1, Z, bound) < 0) break;
+        }
+        if (h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
+        hdi_heat_forget(h);                      /* one by one takes less */
+        (void)hdi_trace_late(h, Z, bound);
+    }
+    for (q0 = 0; q0 < n && h->e->status >= 0; q0++) (void)hdi_trace_window(h, q0, q0 + 1, Z, bound);
+    return h->e->status;
+}
+
+/* ---- signatures ---- */
+
+/* D [n n_times], ldd apart, by the traces Z: quotients. rep: of D; trace: of Z. */
+static void hdi_signature_normalise(const hd_laplacian *lap, int32_t n_times, double *D, size_t ldd,
+                                    const double *Z, hd_report *rep, const hd_report *trace) {
+    const double r = trace->error_relative, grow = r < 0.5 ? 1 / (1 - r) : HUGE_VAL;
+    int32_t q, v;
+    for (q = 0; q < n_times; q++) {
+        double *d = D + HDI_CAST(size_t, q) * ldd;
+        for (v = 0; v < lap->n; v++) d[v] = d[v] == 0 ? 0 : d[v] / Z[q];
+    }
+    rep->error_rational = hdi_bound_times(grow, rep->error_rational + trace->error_rational);
+    rep->error_rounding = hdi_bound_times(grow, rep->error_rounding + trace->error_rounding);
+    rep->error_bound = hdi_bound_times(grow, rep->error_bound + r);
+    rep->error_relative = hdi_bound_times(grow, rep->error_relative + r);
+    hdi_evidence_worst(&rep->evidence_rational, trace->evidence_rational);
+    hdi_evidence_worst(&rep->evidence_rounding, trace->evidence_rounding);
+    rep->smallest = 0;                           /* of the values before */
+    hdi_bound_judge(rep->error_bound, rep);
+}
+
+/* |sum_j (log h_(j+1) - log h_j) exp(-2 pi i jk/m)| over j < m, h_j at x + stride j, for k < n_freq, into out
+ * + ldd k. Returns 0, and zeros, where a value has no logarithm. circle [2 m]: cosines and sines. */
+static int hdi_signature_spectrum(const double *x, size_t stride, int32_t m, const double *circle,
+                                  int32_t n_freq, double *out, size_t ldd) {
+    int32_t j, k, ok = 1;
+    for (j = 0; j <= m; j++) ok = ok && x[HDI_CAST(size_t, j) * stride] > 0;
+    for (k = 0; k < n_freq; k++) {
+        double re = 0, im = 0;
+        for (j = 0; j < m && ok; j++) {
+            const double *h = x + HDI_CAST(size_t, j) * stride, d = log(h[stride]) - log(h[0]);
+            const int32_t at = HDI_CAST(int32_t, HDI_CAST(int64_t, j) * k % m);
+            re += d * circle[2 * at];
+            im -= d * circle[2 * at + 1];
+        }
+        out[HDI_CAST(size_t, k) * ldd] = hypot(re, im);
+    }
+    return ok;
+}
+
+/* The bound of the report of diagonals becomes that of their spectra. An error of at most r in each logarithm
+ * counts |w^(j-1) - w^j| = 2 sin(pi k/m) for those inside, and 1 for the two at the ends. */
+static void hdi_signature_tell(hd_report *rep, int32_t m, int32_t n_freq, double largest) {
+    const double pi = 3.141592653589793238;
+    const double r = rep->error_relative < 1 ? -log1p(-rep->error_relative) : HUGE_VAL;
+    const double sum = rep->error_rational + rep->error_rounding;
+    const double terms = 2 + (m - 1) * 2 * sin(pi * hdi_min(n_freq - 1, m / 2) / m);
+    rep->error_bound = hdi_quotient(hdi_bound_times(terms, r), largest) + 8 * m * DBL_EPSILON;
+    rep->error_rational = sum > 0 ? rep->error_bound * (rep->error_rational / sum) : 0;
+    rep->error_rounding = hdi_max(0, rep->error_bound - rep->error_rational);
+    rep->error_relative = HUGE_VAL;
+    rep->smallest = 0;
+    rep->status = rep->status > 0 ? HD_OK : rep->status;   /* judged anew */
+    hdi_bound_judge(rep->error_bound, rep);
+}
+
+/* The spectra of k_t(v,v) at n_times times t, evenly spaced in log t. */
+static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, size_t ldd) {
+    const hd_laplacian *lap = h->heat->source;
+    const double two_pi = 6.283185307179586477;
+    const int32_t n_times = h->ask.n_times, m = n_times - 1;
+    const size_t n = HDI_CAST(size_t, lap->n);
+    double *x = HDI_TAKE(&h->s, double, HDI_CAST(uint64_t, n) * HDI_CAST(uint64_t, n_times));
+    double *circle = HDI_TAKE(&h->s, double, 2 * HDI_CAST(uint64_t, m)), largest = 0;
+    size_t v;
+    int32_t j, sure = 1;
+    if (h->e->status < 0 || hdi_diagonal_run(h, HD_KERNEL_SYMMETRIC, x, n) < 0) return h->e->status;
+    for (j = 0; j < m; j++) {
+        circle[2 * j] = cos(two_pi * j / m);
+        circle[2 * j + 1] = sin(two_pi * j / m);
+    }
+    for (v = 0; v < n; v++) {
+        const int ok = hdi_signature_spectrum(x + v, n, m, circle, n_freq, D + v, ldd);
+        sure = sure && (ok || lap->row[v] < 0);
+        for (j = 0; j < n_freq; j++) largest = hdi_max(largest, D[HDI_CAST(size_t, j) * ldd + v]);
+    }
+    if (!sure) h->rep->error_relative = HUGE_VAL;
+    hdi_signature_tell(h->rep, m, n_freq, largest);
     return h->e->status;
 }
 
@@ -28108,6 +28785,54 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     return status;
 }
 
+/* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k/area. At the longest time the 2nd of them
+ * has faded to a ten-thousandth, at the shortest time the 300th. */
+#define HDI_TIMES_SHORTEST 0.0024
+#define HDI_TIMES_LONGEST 0.37
+
+HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t, hd_error *err) {
+    hdi_call c;
+    double area = 0;
+    int32_t q;
+    (void)hdi_enter(&c, lap ? lap->context : NULL, err);
+    hdi_refuse(!lap || !t, "an argument is missing", c.e);
+    hdi_refuse(n_times < 1, "times: there is no time", c.e);
+    if (c.e->status < 0) return c.e->status;
+    for (q = 0; q < lap->n_active; q++) area += lap->mass[q];
+    /* B^-1 L tends to Laplacian/area */
+    if (lap->kind == HD_LAPLACIAN_EXP) area = lap->area * lap->area;
+    for (q = 0; q < n_times; q++)
+        t[q] = area * HDI_TIMES_SHORTEST * pow(HDI_TIMES_LONGEST / HDI_TIMES_SHORTEST,
+                                               n_times > 1 ? q / HDI_CAST(double, n_times - 1) : 0.5);
+    return HD_OK;
+}
+
+HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times, const double *c,
+                                         double *t, hd_error *err) {
+    hd_spectrum_opts o;
+    hd_spectrum *s = NULL;
+    hd_status status;
+    double first;
+    hdi_call call;
+    int32_t q, constants = 0;
+    (void)hdi_enter(&call, lap ? lap->context : NULL, err);
+    hdi_refuse(!lap || !c || !t, "an argument is missing", call.e);
+    hdi_refuse(n_times < 1, "times: there is no time", call.e);
+    if (call.e->status < 0) return call.e->status;
+    for (q = 0; q < lap->n_components && lap->conserves; q++)
+        constants += hdi_finite(lap->component_mass[q]) ? 1 : 0;
+    hdi_refuse(constants >= lap->n_active, "times: there are no eigenvalues but those of constants", call.e);
+    if (call.e->status < 0) return call.e->status;
+    memset(&o, 0, sizeof o);
+    o.count = constants + 1;
+    status = hd_spectrum_create(&s, lap, &o, err);
+    if (status < 0) return status;
+    first = s->value[s->n_constant];
+    hd_spectrum_free(s);
+    for (q = 0; q < n_times; q++) t[q] = c[q] / first;
+    return status;
+}
+
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
     hd_context own, *ctx;
     if (!s) return;
@@ -28209,23 +28934,61 @@ static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     ask->ldf = ask->ldu;
 }
 
+static hdi_request hdi_ask_fields(int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
+                                  double *U, size_t ldu) {
+    hdi_request ask;
+    memset(&ask, 0, sizeof ask);
+    ask.n_times = n_times;
+    ask.t = t;
+    ask.k = k;
+    ask.F = F;
+    ask.ldf = ldf;
+    ask.U = U;
+    ask.ldu = ldu;
+    return ask;
+}
+
+/* Checks a request of fields, and runs it. derivative: in time. */
+static hd_status hdi_fields_run(hd_heat *heat, hdi_query query, const hdi_request *ask, int derivative,
+                                hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_heat_begin(&h, heat, query, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, ask->n_times, ask->t, 0) < 0) return hdi_heat_end(&h);
+    if (ask->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (ask->k > 0 && (!ask->F || !ask->U)) hdi_missing(h.e);
+    else if (derivative && heat->opts.rational)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a pole set of your own has no derivative here");
+    h.ask.k = ask->k;
+    h.ask.F = ask->F;
+    h.ask.U = ask->U;
+    h.ask.ldf = hdi_leading(&h, ask->ldf);
+    h.ask.ldu = hdi_leading(&h, ask->ldu);
+    if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
+    if (ask->U == ask->F && ask->n_times > 1)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
+    else if (ask->U == ask->F) hdi_fields_spread(&h.ask, HDI_CAST(size_t, heat->source->n), ask->U);
+    return derivative ? hdi_rate_run(&h) : hdi_heat_run(&h);
+}
+
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu, hd_report *report,
                                      hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_FIELD, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 0) < 0) return hdi_heat_end(&h);
-    if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (k > 0 && (!F || !U)) hdi_missing(h.e);
-    h.ask.k = k;
-    h.ask.F = F;
-    h.ask.U = U;
-    h.ask.ldf = hdi_leading(&h, ldf);
-    h.ask.ldu = hdi_leading(&h, ldu);
-    if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
-    if (U == F && n_times > 1) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
-    else if (U == F) hdi_fields_spread(&h.ask, HDI_CAST(size_t, heat->source->n), U);
-    return hdi_heat_run(&h);
+    const hdi_request ask = hdi_ask_fields(n_times, t, k, F, ldf, U, ldu);
+    return hdi_fields_run(heat, HDI_QUERY_FIELD, &ask, 0, report, err);
+}
+
+HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                          const double *F, size_t ldf, double *U, size_t ldu,
+                                          hd_report *report, hd_error *err) {
+    const hdi_request ask = hdi_ask_fields(n_times, t, k, F, ldf, U, ldu);
+    return hdi_fields_run(heat, HDI_QUERY_FIELD, &ask, 1, report, err);
+}
+
+HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
+                                       const double *G, size_t ldg, double *U, size_t ldu,
+                                       hd_report *report, hd_error *err) {
+    const hdi_request ask = hdi_ask_fields(n_times, t, k, G, ldg, U, ldu);
+    return hdi_fields_run(heat, HDI_QUERY_ADJOINT, &ask, 0, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
@@ -28286,6 +29049,57 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
     if (!D) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
     if (h.e->status >= 0) (void)hdi_diagonal_run(&h, kernel, D, ldd);
+    return hdi_heat_end(&h);
+}
+
+HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const double *t, double *Z,
+                                     double *bound, hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_kernel_begin(&h, heat, HD_KERNEL_OPERATOR, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
+        return hdi_heat_end(&h);
+    if (!Z) hdi_missing(h.e);
+    if (h.e->status >= 0) (void)hdi_trace_run(&h, Z, bound);
+    return hdi_heat_end(&h);
+}
+
+HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const double *t, double *D,
+                                          size_t ldd, hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    hd_report trace;
+    double *Z;
+    if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
+        return hdi_heat_end(&h);
+    if (!D) hdi_missing(h.e);
+    ldd = hdi_leading(&h, ldd);
+    Z = HDI_TAKE(&h.s, double, n_times);
+    if (h.e->status >= 0 && hdi_diagonal_run(&h, HD_KERNEL_SYMMETRIC, D, ldd) >= 0) {
+        if (hd_heat_trace(heat, n_times, t, Z, NULL, &trace, NULL) >= 0)
+            hdi_signature_normalise(heat->source, n_times, D, ldd, Z, h.rep, &trace);
+        else *h.e = trace.error;
+    }
+    return hdi_heat_end(&h);
+}
+
+HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double t1, int32_t n_times,
+                                               int32_t n_freq, double *D, size_t ldd, hd_report *report,
+                                               hd_error *err) {
+    hdi_heat_call h;
+    double *t;
+    int32_t q;
+    if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
+    if (!(t0 > 0) || !(t1 > t0) || !hdi_finite(t1))
+        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "signature: times need 0 < t0 < t1", -1, -1, t0 > 0 ? t1 : t0);
+    else if (n_times < 3 || n_freq < 1 || n_freq > (n_times + 1) / 2)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "signature: n_times is 3 or more, n_freq in 1..(n_times + 1)/2");
+    t = h.e->status >= 0 ? HDI_TAKE(&h.s, double, n_times) : NULL;
+    for (q = 0; t && q < n_times; q++) t[q] = t0 * pow(t1 / t0, q / HDI_CAST(double, n_times - 1));
+    if (!t || hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
+        return hdi_heat_end(&h);
+    if (!D) hdi_missing(h.e);
+    ldd = hdi_leading(&h, ldd);
+    if (h.e->status >= 0) (void)hdi_signature_run(&h, n_freq, D, ldd);
     return hdi_heat_end(&h);
 }
 
