@@ -539,7 +539,46 @@ typedef struct hd_rational {
      * rather than for exp. */
     double max_error;           /* max |exp(x) - c(x)| on (-inf, 0] */
     double max_weighted_error;  /* max (1 + |x|) |exp(x) - c(x)|; 0: unbounded or unknown */
+    /* 0, or a filter f: queries pass this t, and only this. Then c(-t lambda) stands for f(lambda), and
+     * errors are those of f on [0, lambda_max], measured on a grid. See hd_rational_fit. */
+    double t;
+    double lambda_max;          /* filters: queries refuse a Laplacian with larger eigenvalues */
+    double largest;             /* filters: max |f| */
 } hd_rational;
+
+/* Filters f(lambda) of the eigenvalues of B^-1 L, with their parameters a and b. */
+typedef enum hd_filter_kind {
+    HD_FILTER_OWN = 0,          /* f(lambda, user) */
+    HD_FILTER_HEAT,             /* exp(-a lambda) */
+    /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0. a is the energy, b the width sigma. The diagonal divided by
+     * its integral is the wave kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). That integral,
+     * the sum of the filter over all eigenvalues, is the sum of the diagonal of HD_KERNEL_OPERATOR */
+    HD_FILTER_WAVE,
+    HD_FILTER_MEXICAN_HAT,      /* lambda exp(-a lambda): the wavelet -d/dt K_t at t = a (Hou, Qin 2012) */
+    HD_FILTER_RESOLVENT,        /* 1 / (1 + a lambda) */
+    HD_FILTER_FRACTIONAL,       /* exp(-a lambda^b): fractional diffusion */
+    /* 1 / (1 + ((lambda - a b/lambda)/(b - a))^4), 0 at 0: the band from a to b, 1/2 at both (Butterworth
+     * 1930) */
+    HD_FILTER_BAND,
+    HD_FILTER_BIHARMONIC        /* 1 / (lambda^2 + a^2): a floor for the biharmonic kernel */
+} hd_filter_kind;
+
+typedef struct hd_filter {
+    int32_t begin_zero;
+    hd_filter_kind kind;
+    double a, b;                /* finite; a > 0 but for waves, b > 0 where there is a b */
+    double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
+    void *user;
+    double tol;                 /* max |f - c| / max |f|; default 1e-10 */
+    int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
+    /* > 0: there is no eigenvalue between 0 and this, and nothing is asked of c there. Filters that are not
+     * smooth at 0 need half of the poles then. The second value of hd_spectrum is such a number */
+    double lambda_min;
+    /* 1: c may have a constant a0, for filters that do not fade where lambda is large. If B is not diagonal,
+     * diagonals leave a0 B^-1 out, and the bound includes it */
+    int32_t constant;
+    int32_t end_zero;
+} hd_filter;
 
 typedef enum hd_method {
     /* The cheapest by a model of flops and bytes, within the byte limit. It counts what calls for a few
@@ -592,8 +631,8 @@ typedef struct hd_heat_opts {
     /* Default: chosen so that the rational error relative to the answer is below about 1e-8 (direct: degree 9
      * and 3e-8). */
     int32_t degree;
-    /* A set of your own, for any filter of the spectrum. It is copied. poles and degree are then ignored, and
-     * Lanczos is not used. */
+    /* A set of your own, for any filter of the spectrum, such as hd_rational_fit makes. It is copied. poles
+     * and degree are then ignored, and Lanczos is not used. */
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
@@ -998,6 +1037,10 @@ HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
+/* A bound of the largest eigenvalue of B^-1 L, by Gershgorin's circles: on meshes up to some five times as
+ * large. HUGE_VAL if b_ratio is 0. Cost: one pass over L. */
+HEATDIFF_API double hd_laplacian_lambda_max(const hd_laplacian *lap);
+
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
 
 /* ---- neighbours of points ---- */
@@ -1050,6 +1093,24 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 
 /* c(x) for real x <= 0. */
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
+
+/* A set for any filter f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1.
+ * out        c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Give it to hd_heat_opts.rational,
+ *            and out->t to queries as their time
+ * lambda_max of hd_laplacian_lambda_max, or more
+ * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Degrees
+ * rise until tol is reached. No pole lies on the spectrum.
+ * Distances of the first two kinds are d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and the same with B f
+ * for weighted. So f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
+ * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_MEMORY. HD_WARN_ACCURACY: out
+ *            is the best set found, and its error is above tol
+ * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f
+ * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles */
+HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
+                                       hd_context *ctx, hd_error *err);
+
+/* f(lambda) itself, lambda >= 0. */
+HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
 
 /* ---- shifted systems ---- */
 
@@ -15949,7 +16010,7 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
 
 /* ==== [21] rational ====
  * Owns pole sets: their tables, lookup and evaluation; sets that serve many times, and the fit of their
- * weights. May call [06].
+ * weights; sets for any filter of the spectrum. May call [06].
  * This work is based on
  *   W. Cody, G. Meinardus, R. Varga, Chebyshev rational approximations to e^-x in [0, inf), 1969
  *   A. Carpenter, A. Ruttan, R. Varga, Extended numerical computations on the "1/9" conjecture, 1984: the
@@ -16294,6 +16355,9 @@ static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     if (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 ||
         hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0)
         return hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
+    if (!hdi_finite(set->t) || set->t < 0 || !hdi_finite(set->largest) || set->largest < 0 ||
+        (set->t > 0 && !(set->lambda_max > 0)))
+        return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: t, lambda_max or largest is out of its range");
     for (i = 0; i < set->n_poles; i++) {
         const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
         const char *text = bad ? "own pole set: a pole or weight is not finite"
@@ -16304,6 +16368,16 @@ static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
         return e->status;
     }
     return HD_OK;
+}
+
+/* How the errors of a set are known: those of a filter are measured. */
+static hd_evidence hdi_set_evidence(const hd_rational *set) {
+    return set->t > 0 ? HD_EVIDENCE_MEASURED : HD_EVIDENCE_PROVEN;
+}
+
+/* The largest value of what a set stands for. */
+static double hdi_set_largest(const hd_rational *set) {
+    return set->t > 0 && set->largest > 0 ? set->largest : 1;
 }
 
 /* min |x - theta| over x <= 0, which is min |t lambda + theta|: the distance of A from a singular matrix,
@@ -16973,6 +17047,528 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
         }
     }
     return hdi_scope_end(&s);
+}
+
+/* ---- filters of the spectrum ---- */
+/* A set for any function of the eigenvalue. Points on [0, lambda_max] are scaled to [0, 1].
+ * This work is based on
+ *   Y. Nakatsukasa, O. Sete, L. N. Trefethen, The AAA algorithm for rational approximation, 2018
+ *   O. Aberth, Iteration methods for finding all zeros of a polynomial simultaneously, 1973
+ *   M. Hestenes, Inversion of matrices by biorthogonalization and related results, 1958: one-sided rotations
+ * Deviations: infinity is a support point with the value 0, so that a0 = 0 unless the caller asks for it and
+ * diagonals need no B^-1. Poles are the zeros of the denominator by Aberth's iteration. Those on or near the
+ * spectrum are dropped. The weights a then come from least squares, and the set of the degree that does best
+ * is taken. Where a finer grid finds a larger error, its points join the fit. */
+
+enum {
+    HDI_FIT_DEGREE = 24,         /* by default */
+    HDI_FIT_LOG = 1000,          /* points of the fit, evenly in log lambda, and evenly in lambda */
+    HDI_FIT_LINEAR = 400,
+    HDI_FIT_FINER = 30,          /* so many times as many measure the error */
+    HDI_FIT_JOIN = 400,          /* most points that join the fit */
+    HDI_FIT_ROUNDS = 4,
+    HDI_FIT_SWEEPS = 40,         /* of rotations; 5 to 10 are the rule */
+    HDI_FIT_ABERTH = 100,        /* steps; 10 to 30 are the rule */
+    HDI_FIT_ROOM = HDI_FIT_LOG + HDI_FIT_LINEAR + HDI_FIT_JOIN + 2
+};
+#define HDI_FIT_TOL 1e-10
+/* Where nothing is known of the smallest eigenvalue, points begin at the first number times lambda_max. Those
+ * that measure the error begin at the second one times that. */
+#define HDI_FIT_FLOOR 1e-12
+#define HDI_FIT_BELOW 1e-3
+/* A complex pole is dropped where its distance from the spectrum is below this part of its modulus, and any
+ * pole below the second number times lambda_max: the matrices of such poles have lost most of their digits. */
+#define HDI_FIT_NEAR 1e-5
+#define HDI_FIT_LEAST 1e-12
+/* Beyond this times lambda_max a pole is a constant, which is not wanted. */
+#define HDI_FIT_FAR 1e8
+/* The error between the points that measure it, relative to theirs. */
+#define HDI_FIT_BETWEEN 1.05
+/* In the unit of t a pole is at least 1 from the spectrum, unless its distance is below this part of its
+ * modulus. */
+#define HDI_FIT_UNIT 0.1
+
+/* The filter at an eigenvalue. */
+static double hdi_filter_value(const hd_filter *f, double lambda) {
+    const double a = f->a, b = f->b, l = hdi_max(lambda, 0);
+    double d;
+    switch (f->kind) {
+    case HD_FILTER_HEAT: return exp(-a * l);
+    case HD_FILTER_WAVE:
+        d = l > 0 ? (a - log(l)) / b : HUGE_VAL;
+        return exp(-d * d / 2);
+    case HD_FILTER_MEXICAN_HAT: return l * exp(-a * l);
+    case HD_FILTER_RESOLVENT: return 1 / (1 + a * l);
+    case HD_FILTER_FRACTIONAL: return exp(-a * pow(l, b));
+    case HD_FILTER_BAND:
+        d = l > 0 ? (l - a * b / l) / (b - a) : HUGE_VAL;
+        return 1 / (1 + d * d * (d * d));
+    case HD_FILTER_BIHARMONIC: return 1 / (l * l + a * a);
+    default: return f->f(lambda, f->user);
+    }
+}
+
+/* Checks parameters and options. */
+static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_error *e) {
+    const int wave = f->kind == HD_FILTER_WAVE, two = wave || f->kind == HD_FILTER_FRACTIONAL;
+    const char *text = NULL;
+    if (f->begin_zero != 0 || f->end_zero != 0) text = "filter: not cleared before use";
+    else if (f->kind < HD_FILTER_OWN || f->kind > HD_FILTER_BIHARMONIC) text = "filter: unknown kind";
+    else if (f->kind == HD_FILTER_OWN && !f->f) text = "filter: a kind or a function is missing";
+    else if (!hdi_finite(f->a) || !hdi_finite(f->b)) text = "filter: a or b is not finite";
+    else if (f->kind != HD_FILTER_OWN && !wave && !(f->a > 0)) text = "filter: a is not positive";
+    else if (two && !(f->b > 0)) text = "filter: b is not positive";
+    else if (f->kind == HD_FILTER_BAND && !(f->b > f->a)) text = "filter: the band ends before it begins";
+    else if (!hdi_finite(f->tol) || f->tol < 0 || f->tol >= 1) text = "filter: tol is not in [0, 1)";
+    else if (f->max_degree < 0 || f->max_degree > HD_MAX_POLES)
+        text = "filter: max_degree is not in 0..HD_MAX_POLES";
+    else if (!hdi_finite(f->lambda_min) || f->lambda_min < 0) text = "filter: lambda_min is negative";
+    else if (!hdi_finite(lambda_max) || !(lambda_max > 0) || !(f->lambda_min < lambda_max))
+        text = "filter: lambda_max is unknown, not positive, or not above lambda_min";
+    return text ? hdi_fail(e, HD_ERR_ARGUMENT, text) : HD_OK;
+}
+
+/* A fit under way. */
+typedef struct hdi_fit {
+    const hd_filter *filter;
+    double top, floor, tol;      /* lambda_max; floor/top and tol relative to it and to the largest value */
+    double largest;              /* |f| */
+    int32_t n, m, most;          /* points; support points, at most so many */
+    double *x, *f, *r;           /* [HDI_FIT_ROOM] points, values, approximation, all scaled */
+    char *support;               /* [HDI_FIT_ROOM] */
+    double *A, *b;               /* [(HDI_FIT_ROOM + most + 1) (most + 1)], [HDI_FIT_ROOM + most + 1] */
+    double *V;                   /* [2 (most + 1)^2] */
+    double *z, *w, *fz;          /* [most + 1] support points, weights and values; w[m] is that of infinity */
+} hdi_fit;
+
+/* A set in terms of scaled points: a0 + sum a/(x - p). */
+typedef struct hdi_fitted {
+    int32_t n, degree;
+    double a0, error;            /* at the points */
+    hd_c64 p[HD_MAX_POLES], a[HD_MAX_POLES];
+} hdi_fitted;
+
+static double hdi_fitted_value(const hdi_fitted *s, double x) {
+    double sum = s->a0;
+    int32_t i;
+    for (i = 0; i < s->n; i++) {
+        const double d = x - s->p[i].re, im = s->p[i].im, inv = 1 / (d * d + im * im);
+        sum += (im != 0 ? 2 : 1) * (s->a[i].re * d - s->a[i].im * im) * inv;
+    }
+    return sum;
+}
+
+/* f at a scaled point. */
+static double hdi_fit_f(const hdi_fit *k, double x) { return hdi_filter_value(k->filter, x * k->top); }
+
+/* Point i of n that lie evenly in log x from `from` to 1, and then of as many evenly in x. */
+static double hdi_fit_point(int32_t i, int32_t n_log, int32_t n_linear, double from) {
+    if (i < n_log) return from * pow(1 / from, HDI_CAST(double, i) / (n_log - 1));
+    return hdi_max(from, (i - n_log + 0.5) / n_linear);
+}
+
+/* Adds a point, unless it is there. Values are not yet divided by the largest one. */
+static hd_status hdi_fit_add(hdi_fit *k, double x, hd_error *e) {
+    const double f = hdi_fit_f(k, x);
+    int32_t i;
+    for (i = 0; i < k->n; i++)
+        if (k->x[i] == x) return HD_OK;
+    if (!hdi_finite(f)) {
+        hdi_fail(e, HD_ERR_NOT_FINITE, "filter: its value is not finite at an eigenvalue");
+        e->value = x * k->top;
+        return e->status;
+    }
+    k->x[k->n] = x;
+    k->f[k->n++] = f;
+    return HD_OK;
+}
+
+/* The first points, and the largest value. */
+static hd_status hdi_fit_begin(hdi_fit *k, hd_error *e) {
+    int32_t i;
+    (void)hdi_fit_add(k, 0, e);
+    for (i = 0; i < HDI_FIT_LOG + HDI_FIT_LINEAR && e->status >= 0; i++)
+        (void)hdi_fit_add(k, hdi_fit_point(i, HDI_FIT_LOG, HDI_FIT_LINEAR, k->floor), e);
+    for (i = 0; i < k->n; i++) k->largest = hdi_max(k->largest, fabs(k->f[i]));
+    if (e->status >= 0 && !(k->largest > 0 && hdi_finite(1 / k->largest)))
+        return hdi_fail(e, HD_ERR_ARGUMENT, "filter: it is zero on the whole spectrum");
+    for (i = 0; i < k->n && e->status >= 0; i++) k->f[i] /= k->largest;
+    return e->status;
+}
+
+/* ---- the AAA step ---- */
+
+/* Number of unknown weights: those of the support points and, without a0, of infinity. */
+static int32_t hdi_fit_columns(const hdi_fit *k) { return k->m + (k->filter->constant ? 0 : 1); }
+
+/* The point with the largest error becomes a support point. */
+static void hdi_fit_choose(hdi_fit *k) {
+    double most = -1;
+    int32_t i, at = 0;
+    for (i = 0; i < k->n; i++) {
+        const double off = fabs(k->f[i] - k->r[i]);
+        if (k->support[i] || !(off > most)) continue;
+        most = off;
+        at = i;
+    }
+    k->support[at] = 1;
+    k->z[k->m] = k->x[at];
+    k->fz[k->m++] = k->f[at];
+}
+
+/* The right singular vector of the smallest singular value of R [c c], column-major, by rotations of columns
+ * that become orthogonal. V [c c] work. */
+static void hdi_fit_null(double *R, double *V, int32_t c, double *w) {
+    int32_t i, j, sweep, best = 0, turned = 1;
+    double least = HUGE_VAL;
+    memset(V, 0, HDI_CAST(size_t, c) * HDI_CAST(size_t, c) * sizeof *V);
+    for (i = 0; i < c; i++) V[i * c + i] = 1;
+    for (sweep = 0; sweep < HDI_FIT_SWEEPS && turned; sweep++) {
+        turned = 0;
+        for (i = 0; i < c; i++) {
+            for (j = i + 1; j < c; j++) {
+                double *x = R + i * c, *y = R + j * c, *vx = V + i * c, *vy = V + j * c;
+                const double p = hdi_dot(x, x, c), q = hdi_dot(y, y, c), g = hdi_dot(x, y, c);
+                double zeta, t, cs, sn;
+                int32_t r;
+                if (fabs(g) <= DBL_EPSILON * sqrt(p * q)) continue;
+                turned = 1;
+                zeta = (q - p) / (2 * g);
+                t = (zeta >= 0 ? 1 : -1) / (fabs(zeta) + hdi_pythag(1, zeta));
+                cs = 1 / sqrt(1 + t * t);
+                sn = cs * t;
+                for (r = 0; r < c; r++) {
+                    const double a = x[r], b = vx[r];
+                    x[r] = cs * a - sn * y[r];
+                    y[r] = sn * a + cs * y[r];
+                    vx[r] = cs * b - sn * vy[r];
+                    vy[r] = sn * b + cs * vy[r];
+                }
+            }
+        }
+    }
+    for (i = 0; i < c; i++) {
+        const double size = hdi_dot(R + i * c, R + i * c, c);
+        if (size < least) {
+            least = size;
+            best = i;
+        }
+    }
+    memcpy(w, V + best * c, HDI_CAST(size_t, c) * sizeof *w);
+}
+
+/* The weights: those that make f times the denominator nearest to the numerator, over all other points. */
+static void hdi_fit_weights(hdi_fit *k) {
+    const int32_t c = hdi_fit_columns(k);
+    const int64_t rows = k->n - k->m;
+    double *R = k->V + c * c;
+    int64_t row = 0;
+    int32_t i, j;
+    for (i = 0; i < k->n; i++) {
+        if (k->support[i]) continue;
+        for (j = 0; j < k->m; j++) k->A[j * rows + row] = (k->f[i] - k->fz[j]) / (k->x[i] - k->z[j]);
+        if (c > k->m) k->A[k->m * rows + row] = k->f[i];
+        k->b[row++] = 0;
+    }
+    hdi_least_squares(k->A, rows, c, k->b);      /* for its triangle */
+    memset(R, 0, HDI_CAST(size_t, c) * HDI_CAST(size_t, c) * sizeof *R);
+    for (j = 0; j < c; j++)
+        for (i = 0; i <= j; i++) R[j * c + i] = k->A[j * rows + i];
+    k->w[k->m] = 0;
+    hdi_fit_null(R, k->V, c, k->w);
+}
+
+/* The approximation at all points. */
+static void hdi_fit_values(hdi_fit *k) {
+    int32_t i, j;
+    for (i = 0; i < k->n; i++) {
+        double top = 0, bottom = k->w[k->m];
+        k->r[i] = k->f[i];
+        if (k->support[i]) continue;
+        for (j = 0; j < k->m; j++) {
+            const double s = k->w[j] / (k->x[i] - k->z[j]);
+            top += s * k->fz[j];
+            bottom += s;
+        }
+        k->r[i] = bottom != 0 ? top / bottom : 0;
+    }
+}
+
+/* ---- poles ---- */
+
+/* p'/p of the denominator's polynomial p(x) = prod (x - z_j) (w_m + sum w_j/(x - z_j)). */
+static hd_c64 hdi_fit_slope(const hdi_fit *k, hd_c64 x) {
+    hd_c64 d = hdi_c(k->w[k->m], 0), d1 = hdi_c(0, 0), sum = d1;
+    int32_t j;
+    for (j = 0; j < k->m; j++) {
+        const hd_c64 inv = hdi_cdiv(hdi_c(1, 0), hdi_csub(x, hdi_c(k->z[j], 0)));
+        const hd_c64 s = hdi_cscale(k->w[j], inv);
+        d = hdi_cadd(d, s);
+        d1 = hdi_csub(d1, hdi_cmul(s, inv));
+        sum = hdi_cadd(sum, inv);
+    }
+    return hdi_cadd(hdi_cdiv(d1, d), sum);
+}
+
+/* Zeros of that polynomial, p [k->m]. They start beside the support points. A zero that has not settled makes
+ * a pole like any other, as weights are fitted to the poles afterwards. */
+static void hdi_fit_zeros(const hdi_fit *k, hd_c64 *p) {
+    int32_t i, j, step, moving = 1;
+    for (i = 0; i < k->m; i++) {
+        double gap = 1;
+        for (j = 0; j < k->m; j++)
+            if (j != i) gap = hdi_min(gap, fabs(k->z[j] - k->z[i]));
+        p[i] = hdi_c(k->z[i] - 0.3 * gap, (i % 2 ? 0.6 : -0.5) * gap);
+    }
+    for (step = 0; step < HDI_FIT_ABERTH && moving; step++) {
+        moving = 0;
+        for (i = 0; i < k->m; i++) {
+            hd_c64 rest = hdi_fit_slope(k, p[i]), move;
+            for (j = 0; j < k->m; j++)
+                if (j != i) rest = hdi_csub(rest, hdi_cdiv(hdi_c(1, 0), hdi_csub(p[i], p[j])));
+            move = hdi_cdiv(hdi_c(1, 0), rest);
+            if (!hdi_cfinite(move)) continue;
+            p[i] = hdi_csub(p[i], move);
+            if (hdi_cabs(move) > 4 * DBL_EPSILON * hdi_cabs(p[i])) moving = 1;
+        }
+    }
+}
+
+/* The distance of a scaled pole from [0, 1]. */
+static double hdi_fit_distance(hd_c64 p) {
+    const double off = p.re < 0 ? -p.re : p.re > 1 ? p.re - 1 : 0;
+    return hypot(off, p.im);
+}
+
+/* May p be a pole? Real ones lie left of 0. Of a pair the one with Im p < 0 serves, whose theta = -t p has a
+ * positive imaginary part. */
+static int hdi_fit_serves(hd_c64 *p) {
+    const double size = hdi_cabs(*p);
+    if (!hdi_cfinite(*p) || size > HDI_FIT_FAR || size < HDI_FIT_LEAST) return 0;
+    if (fabs(p->im) <= 1e-8 * size) p->im = 0;
+    return p->im == 0 ? p->re < 0 : p->im < 0 && hdi_fit_distance(*p) > HDI_FIT_NEAR * size;
+}
+
+/* The poles of a step. */
+static void hdi_fit_poles(const hdi_fit *k, hdi_fitted *s) {
+    hd_c64 p[HD_MAX_POLES + 1];
+    int32_t i;
+    memset(s, 0, sizeof *s);
+    hdi_fit_zeros(k, p);
+    for (i = 0; i < k->m; i++)
+        if (hdi_fit_serves(p + i)) s->p[s->n++] = p[i];
+}
+
+/* ---- weights ---- */
+
+/* Column c [n] of a fraction; im: of the imaginary part of its weight. Returns its norm. */
+static double hdi_fit_fraction(const hdi_fit *k, hd_c64 p, int im, double *c) {
+    const double count = p.im != 0 ? 2 : 1;
+    int32_t i;
+    for (i = 0; i < k->n; i++) {
+        const double d = k->x[i] - p.re, inv = count / (d * d + p.im * p.im);
+        c[i] = im ? -p.im * inv : d * inv;
+    }
+    return sqrt(hdi_dot(c, c, k->n));
+}
+
+/* Weights by least squares with a little damping, of the size of rounding, which keeps them small in
+ * directions that the error does not feel. */
+static void hdi_fit_residues(hdi_fit *k, hdi_fitted *s) {
+    double scale[2 * HD_MAX_POLES + 1];
+    int64_t c = 0, cols = s->degree = 0, rows;
+    int32_t i, j;
+    for (i = 0; i < s->n; i++) s->degree += s->p[i].im != 0 ? 2 : 1;
+    cols = s->degree + (k->filter->constant ? 1 : 0);
+    rows = k->n + cols;
+    memset(k->A, 0, HDI_CAST(size_t, rows * cols) * sizeof *k->A);
+    memset(k->b, 0, HDI_CAST(size_t, rows) * sizeof *k->b);
+    memcpy(k->b, k->f, HDI_CAST(size_t, k->n) * sizeof *k->b);
+    for (i = 0; i < s->n; i++)
+        for (j = 0; j < (s->p[i].im != 0 ? 2 : 1); j++, c++)
+            scale[c] = hdi_fit_fraction(k, s->p[i], j, k->A + c * rows);
+    if (c < cols) {
+        for (i = 0; i < k->n; i++) k->A[c * rows + i] = 1;
+        scale[c] = sqrt(HDI_CAST(double, k->n));
+    }
+    for (c = 0; c < cols; c++) {
+        for (i = 0; i < k->n; i++) k->A[c * rows + i] /= scale[c];
+        k->A[c * rows + k->n + c] = 2 * DBL_EPSILON;
+    }
+    hdi_least_squares(k->A, rows, cols, k->b);
+    for (c = 0, i = 0; i < s->n; i++, c++) {
+        s->a[i] = hdi_c(k->b[c] / scale[c], 0);
+        if (s->p[i].im == 0) continue;
+        c++;
+        s->a[i].im = k->b[c] / scale[c];
+    }
+    s->a0 = c < cols ? k->b[c] / scale[c] : 0;
+    for (s->error = 0, i = 0; i < k->n; i++)
+        s->error = hdi_max(s->error, fabs(hdi_fitted_value(s, k->x[i]) - k->f[i]));
+}
+
+/* Drops poles that the error would not miss. Returns how many. */
+static int32_t hdi_fit_idle(const hdi_fit *k, hdi_fitted *s) {
+    int32_t i, kept = 0, n = s->n;
+    for (i = 0; i < n; i++) {
+        const double most = (s->p[i].im != 0 ? 2 : 1) * hdi_cabs(s->a[i]) / hdi_fit_distance(s->p[i]);
+        if (most > 0.1 * k->tol) s->p[kept++] = s->p[i];
+    }
+    s->n = kept;
+    return n - kept;
+}
+
+/* The best set that up to `most` support points give at these points. */
+static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
+    hdi_fitted s;
+    int32_t i, known = k->filter->constant ? 1 : 0;
+    memset(best, 0, sizeof *best);
+    memset(k->support, 0, HDI_CAST(size_t, k->n));
+    for (i = 0; i < k->n; i++) {                 /* without poles */
+        k->r[i] = known ? k->f[k->n - 1] : 0;
+        best->error = hdi_max(best->error, fabs(k->f[i]));
+    }
+    for (k->m = 0; k->m < k->most + known && best->error > k->tol;) {
+        hdi_fit_choose(k);
+        hdi_fit_weights(k);
+        hdi_fit_values(k);
+        hdi_fit_poles(k, &s);
+        hdi_fit_residues(k, &s);
+        if (hdi_fit_idle(k, &s) > 0) hdi_fit_residues(k, &s);
+        if (s.error < best->error && s.degree <= k->most) *best = s;
+    }
+}
+
+/* ---- the error, and the set ---- */
+
+/* Largest |f - c| and (1 + t x)|f - c| over the finer points, relative to the largest |f|. Points where it is
+ * above `join` join the fit if there is room: the worst ones between two where it is below. Returns how many. */
+static int32_t hdi_fit_measure(hdi_fit *k, const hdi_fitted *s, double t, double join, double *error,
+                               double *weighted, hd_error *e) {
+    const int32_t n_log = HDI_FIT_FINER * HDI_FIT_LOG, n_linear = HDI_FIT_FINER * HDI_FIT_LINEAR;
+    const double from = k->filter->lambda_min > 0 ? k->floor : HDI_FIT_BELOW * k->floor;
+    double worst = 0, at = 0;
+    int32_t i, before = k->n;
+    *error = *weighted = fabs(hdi_fit_f(k, 0) / k->largest - hdi_fitted_value(s, 0));
+    for (i = 0; i < n_log + n_linear; i++) {
+        const double x = hdi_fit_point(i, n_log, n_linear, from);
+        const double off = fabs(hdi_fit_f(k, x) / k->largest - hdi_fitted_value(s, x));
+        if (!(off <= *error)) *error = off;
+        if (!((1 + t * x) * off <= *weighted)) *weighted = (1 + t * x) * off;
+        if (off > worst) at = x;
+        worst = hdi_max(worst, off);
+        if (off > join && i + 1 < n_log + n_linear) continue;
+        if (worst > join && k->n < HDI_FIT_ROOM && hdi_fit_add(k, at, e) < 0) break;
+        worst = 0;
+    }
+    for (i = before; i < k->n; i++) k->f[i] /= k->largest;
+    return k->n - before;
+}
+
+/* What rounding can add where the set is evaluated. */
+static double hdi_fit_rounding(const hdi_fitted *s) {
+    double sum = 1 + fabs(s->a0);
+    int32_t i;
+    for (i = 0; i < s->n; i++)
+        sum += (s->p[i].im != 0 ? 2 : 1) * hdi_cabs(s->a[i]) / hdi_fit_distance(s->p[i]);
+    return 4 * DBL_EPSILON * sum;
+}
+
+/* The unit of t, in which a pole is at least 1 from the spectrum, see HDI_FIT_UNIT. */
+static double hdi_fit_unit(const hdi_fitted *s) {
+    double least = s->n > 0 ? HUGE_VAL : 1;
+    int32_t i;
+    for (i = 0; i < s->n; i++)
+        least = hdi_min(least, hdi_max(hdi_fit_distance(s->p[i]), HDI_FIT_UNIT * hdi_cabs(s->p[i])));
+    return 1 / least;
+}
+
+/* Small |theta| first, as iterations like it; the first is real where that saves a pack of factors. */
+static void hdi_fit_sort(hd_rational *set) {
+    int32_t i, j, n = set->n_poles;
+    for (i = 1; i < n; i++) {
+        const hd_c64 theta = set->theta[i], a = set->a[i];
+        for (j = i; j > 0 && hdi_cabs(set->theta[j - 1]) > hdi_cabs(theta); j--) {
+            set->theta[j] = set->theta[j - 1];
+            set->a[j] = set->a[j - 1];
+        }
+        set->theta[j] = theta;
+        set->a[j] = a;
+    }
+    for (i = 0; i < n && set->theta[i].im != 0; i++) {}
+    if (i == n) return;
+    for (; i > 0; i--) {
+        const hd_c64 theta = set->theta[i], a = set->a[i];
+        set->theta[i] = set->theta[i - 1];
+        set->a[i] = set->a[i - 1];
+        set->theta[i - 1] = theta;
+        set->a[i - 1] = a;
+    }
+}
+
+/* The set for x = -t lambda. unit: t lambda_max. */
+static void hdi_fit_take(const hdi_fit *k, const hdi_fitted *s, double unit, hd_rational *out) {
+    int32_t i;
+    memset(out, 0, sizeof *out);
+    out->kind = HD_POLES_OWN;
+    out->degree = s->degree;
+    out->n_poles = s->n;
+    out->t = unit / k->top;
+    out->lambda_max = k->top;
+    out->largest = k->largest;
+    out->a0 = k->largest * s->a0;
+    for (i = 0; i < s->n; i++) {
+        out->theta[i] = hdi_cscale(-unit, s->p[i]);
+        out->a[i] = hdi_cscale(-unit * k->largest, s->a[i]);
+        if (s->p[i].im == 0) out->theta[i].im = out->a[i].im = 0;
+    }
+    hdi_fit_sort(out);
+}
+
+/* Work arrays of a fit. */
+static void hdi_fit_room(hdi_fit *k, hdi_scope *s) {
+    const uint64_t cols = HDI_CAST(uint64_t, k->most) + 2, rows = HDI_FIT_ROOM + cols;
+    k->x = HDI_TAKE(s, double, HDI_FIT_ROOM);
+    k->f = HDI_TAKE(s, double, HDI_FIT_ROOM);
+    k->r = HDI_TAKE(s, double, HDI_FIT_ROOM);
+    k->support = HDI_TAKE(s, char, HDI_FIT_ROOM);
+    k->A = HDI_TAKE(s, double, rows * cols);
+    k->b = HDI_TAKE(s, double, rows);
+    k->V = HDI_TAKE(s, double, 2 * cols * cols);
+    k->z = HDI_TAKE(s, double, cols);
+    k->w = HDI_TAKE(s, double, cols);
+    k->fz = HDI_TAKE(s, double, cols);
+}
+
+static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
+                                  hd_context *ctx, hd_error *e) {
+    hdi_scope scope = hdi_scope_begin(ctx, e);
+    double unit = 1, error = 0, weighted = 0;
+    hdi_fitted s;
+    hdi_fit k;
+    int32_t round;
+    if (hdi_filter_check(filter, lambda_max, e) < 0) return e->status;
+    memset(&k, 0, sizeof k);
+    k.filter = filter;
+    k.top = lambda_max;
+    k.floor = filter->lambda_min > 0 ? filter->lambda_min / lambda_max : HDI_FIT_FLOOR;
+    k.tol = filter->tol > 0 ? filter->tol : HDI_FIT_TOL;
+    k.most = filter->max_degree ? filter->max_degree : HDI_FIT_DEGREE;
+    hdi_fit_room(&k, &scope);
+    if (e->status < 0 || hdi_fit_begin(&k, e) < 0) return hdi_scope_end(&scope);
+    for (round = 0; round < HDI_FIT_ROUNDS && e->status >= 0; round++) {
+        hdi_fit_run(&k, &s);
+        unit = hdi_fit_unit(&s);
+        if (!hdi_fit_measure(&k, &s, unit, 1.5 * hdi_max(k.tol, s.error), &error, &weighted, e)) break;
+    }
+    if (e->status >= 0) {
+        hdi_fit_take(&k, &s, unit, out);
+        out->max_error = k.largest * (HDI_FIT_BETWEEN * error + hdi_fit_rounding(&s));
+        out->max_weighted_error =
+            k.largest * (HDI_FIT_BETWEEN * weighted + (1 + unit) * hdi_fit_rounding(&s));
+    }
+    (void)hdi_scope_end(&scope);
+    return e->status < 0 ? e->status : error > k.tol ? HD_WARN_ACCURACY : HD_OK;
 }
 
 /* ==== [22] poles ====
@@ -18571,13 +19167,14 @@ static void hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
 }
 
 /* K_t f through a pole set. The tolerance is relative to the answer, which is not known yet. A first round
- * aims at the tolerance relative to f, which is never too strict because |K_t f|_B <= |f|_B. The next rounds
+ * aims at the tolerance relative to f, which is never too strict because |K_t f|_B <= |f|_B (times the
+ * largest value of a filter). The next rounds
  * go on from there, relative to the answer that came out. */
 static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane,
                                 const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = fam->lap;
     const double c0 = fam->set.kind == HD_POLES_OWN ? hdi_rational_eval(&fam->set, 0) : 1;
-    double aim = tol * lane->f_norm, room;
+    double aim = tol * hdi_set_largest(&fam->set) * lane->f_norm, room;
     hdi_watch part = *watch;
     hd_status status = HD_OK;
     int32_t round;
@@ -21615,6 +22212,14 @@ static double hdi_lambda_bound(const hd_laplacian *lap) {
     return most / hdi_max(lap->b_ratio, 1e-12);
 }
 
+/* The same where it is proven, else HUGE_VAL. */
+static double hdi_lambda_known(const hd_laplacian *lap) {
+    return lap->b_ratio > 0 ? hdi_lambda_bound(lap) : HUGE_VAL;
+}
+
+/* Of two bounds that differ by rounding, after an update that changes nothing. */
+#define HDI_LAMBDA_SLACK (1 + 1e-9)
+
 /* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of (Neumaier 1974).
  * sum [2 n_components]: work. */
 static double hdi_heat_drift(const hd_laplacian *lap, double *sum) {
@@ -22559,7 +23164,7 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     const int lanczos = h->solver == HD_SOLVER_LANCZOS, still = h->t == 0 || h->equal;
     const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
-    const hd_evidence rational = still || lanczos || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN;
+    const hd_evidence rational = still || lanczos || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
     const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
     return hdi_ledger_begin(rational, solver, HD_EVIDENCE_PROVEN, 0);
@@ -23161,6 +23766,22 @@ static hd_status hdi_sources_check(hdi_heat_call *h, int32_t k, const int32_t *s
     return hdi_vertices_check(h->heat->source, k, sources, &h->e->column, h->e);
 }
 
+/* A filter has one time, that of its set, and is known up to an eigenvalue. */
+static hd_status hdi_filter_times(const hd_heat *heat, int32_t n_times, const double *t, hd_error *e) {
+    const hd_rational *set = heat->opts.rational;
+    const double bound = hdi_lambda_known(heat->source);
+    int32_t q;
+    if (!set || set->t == 0) return HD_OK;
+    for (q = 0; q < n_times; q++)
+        if (t[q] != set->t)
+            return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the time of a filter is that of its set", -1, q,
+                                t[q]);
+    if (!(bound <= HDI_LAMBDA_SLACK * set->lambda_max))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the filter's set was made for smaller eigenvalues", -1,
+                            -1, bound);
+    return HD_OK;
+}
+
 /* Checks the times of a call and takes them up. positive: zero is an error. */
 static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t, int positive) {
     int32_t q;
@@ -23175,7 +23796,7 @@ static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double
     h->ask.n_times = n_times;
     h->ask.t = t;
     h->t = hdi_heat_scaled(h->heat, t[0]);
-    return HD_OK;
+    return hdi_filter_times(h->heat, n_times, t, h->e);
 }
 
 /* The start of a query of a kernel. */
@@ -23845,7 +24466,7 @@ static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
     const hd_rational *set = &h->heat->elim.set;
     const int exact_a0 = set->a0 == 0 || !h->heat->source->B;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && exact_a0;
-    const hd_evidence rational = h->equal || itself ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN;
+    const hd_evidence rational = h->equal || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
     return hdi_ledger_begin(rational, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
 }
 
@@ -24684,6 +25305,9 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
 
 /* ---- distances ---- */
 
+/* Does the plan have a filter instead of exp? */
+static int hdi_heat_filter(const hd_heat *heat) { return heat->opts.rational && heat->opts.rational->t > 0; }
+
 /* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source,
  * and bounds of their errors. The rational error of f is at most weighted times a form with diagonal g, and
  * at most uniform times one with diagonal spread. Rounding of a column is at most sqrt(g_v) times a number
@@ -24843,7 +25467,8 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     if (!x->diag) return e->status;
     x->g = x->diag + n;
     x->spread = x->g + n;
-    x->t = hdi_min(2 * hdi_heat_scaled(heat, t), 1e300);
+    /* d^2 of a filter is the sum of the filter itself */
+    x->t = hdi_min((hdi_heat_filter(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
     x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
     scope = hdi_scope_begin(heat->ctx, e);
     if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, rep, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0) {
@@ -25024,7 +25649,7 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, in
 
 static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
     const int none = x->filter || x->equal || (x->uniform == 0 && x->left_out == 0);
-    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE,
+    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(&x->set), HD_EVIDENCE_NONE,
                             HD_EVIDENCE_MEASURED, 1);
 }
 
@@ -26110,7 +26735,8 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
     c.work = HDI_TAKE(&s, double, 2 * n + 1);
     n_list = e.status < 0 ? 0 : hdi_pairs_vertices(x, order, list, place);
     if (e.status >= 0 &&
-        (x->kind >= HD_DISTANCE_COMMUTE || HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES)) {
+        (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filter(heat)) ||
+         HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES)) {
         hdi_scope_end(&s);
         return hdi_pairs_by_entries(heat, x, t, rep);
     }
@@ -28355,6 +28981,8 @@ HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh
     return hdi_scope_end(&v.s);
 }
 
+HEATDIFF_API double hd_laplacian_lambda_max(const hd_laplacian *lap) { return hdi_lambda_known(lap); }
+
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) {
     if (lap) hdi_lap_drop(lap);
 }
@@ -28375,6 +29003,17 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 }
 
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return hdi_rational_eval(set, x); }
+
+HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
+                                       hd_context *ctx, hd_error *err) {
+    hdi_call c;
+    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    return out && filter ? hdi_rational_fit(out, filter, lambda_max, c.ctx, c.e) : hdi_missing(c.e);
+}
+
+HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
+    return hdi_filter_value(filter, lambda);
+}
 
 /* ---- shifted systems ---- */
 
@@ -29155,7 +29794,8 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     h.relative = d != NULL;
-    if (hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
+    if (d && hdi_heat_filter(heat)) (void)hdi_direct_only(&h);
+    if (h.e->status >= 0 && hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
         (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
     return hdi_heat_end(&h);
 }

@@ -176,6 +176,7 @@ static void test_tmp_remove(void) {
 #include "test_borders.h"
 #include "test_adjoints.h"
 #include "test_signatures.h"
+#include "test_filters.h"
 #include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
@@ -190,6 +191,7 @@ static const test_group test_groups[] = {
     {"platform", test_platform}, {"view", test_view},     {"estimate", test_estimate}, {"spectrum", test_spectrum},
     {"large_t", test_large_t},
     {"borders", test_borders},   {"adjoints", test_adjoints}, {"signatures", test_signatures},
+    {"filters", test_filters},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
