@@ -416,6 +416,161 @@ static void src_line(void) {
     free(w);
 }
 
+/* ---- geodesic distances ---- */
+
+static hd_geodesic *src_geodesic(const shape *s, double t) {
+    hd_geodesic_opts o;
+    hd_geodesic *g = NULL;
+    hd_error e;
+    memset(&o, 0, sizeof o);
+    o.t = t;
+    CHECK_MSG(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK, "%s", e.text);
+    return g;
+}
+
+static double src_gap(const double *a, const double *b) { return sqrt(pow(a[0] - b[0], 2) + pow(a[1] - b[1], 2) + pow(a[2] - b[2], 2)); }
+
+/* Points of faces of the sphere: the largest and the mean error in edges, which are those of vertices; and exact corners. */
+static void src_geo_sphere(int levels) {
+    shape s = shape_icosphere(levels);
+    hd_geodesic *g = src_geodesic(&s, 0);
+    double *d = DENSE_NEW(double, s.n), most = 0, mean = 0, h = 0;
+    int q, k, i;
+    for (q = 0; q < 8; q++) {
+        const int32_t f = (7919 * q + 17) % s.n_tri, *v = s.tri + 3 * f;
+        const double b[3] = {0.2 + 0.05 * q, 0.5 - 0.03 * q, 0.3 - 0.02 * q};
+        double p[3] = {0, 0, 0}, flat[3], size;
+        hd_geodesic_report rep;
+        hd_source src;
+        int32_t at;
+        memset(&src, 0, sizeof src);
+        src.count = 1;
+        src.corners = 3;
+        src.vertex = v;
+        src.bary = b;
+        CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-12);
+        h = rep.h;
+        for (k = 0; k < 3; k++)
+            for (i = 0; i < 3; i++) p[i] += b[k] * s.xyz[3 * v[k] + i];
+        memcpy(flat, p, sizeof p);
+        size = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        for (i = 0; i < 3; i++) p[i] /= size;
+        for (k = 0; k < 3; k++) CHECK(fabs(d[v[k]] - src_gap(flat, s.xyz + 3 * v[k])) < 1e-14);
+        for (at = 0; at < s.n; at++) {
+            const double off = fabs(d[at] - 2 * asin(fmin(1, src_gap(p, s.xyz + 3 * at) / 2)));
+            most = fmax(most, off);
+            mean += off / (8 * s.n);
+        }
+    }
+    CHECK_MSG(most < 0.3 * h && mean < 0.06 * h, "sphere %d: off by %g edges, %g on average", levels, most / h, mean / h);
+    hd_geodesic_free(g);
+    shape_free(&s);
+    free(d);
+}
+
+/* Points and a line of the square. */
+static void src_geo_square(void) {
+    enum { N = 41 };
+    shape s = shape_grid(N, N, 0);
+    hd_geodesic *g = src_geodesic(&s, 0);
+    double *d = DENSE_NEW(double, s.n), bary[3 * 2 * N], p[2][2] = {{0.213, 0.307}, {0.751, 0.822}}, off[2] = {0, 0}, x = 0.4127;
+    const double cell = 1.0 / (N - 1), at = x - floor(x / cell) * cell;
+    int32_t vertex[3 * 2 * N], v, q, n = 0;
+    hd_geodesic_report rep;
+    hd_source src;
+    memset(&src, 0, sizeof src);
+    src.corners = 3;
+    src.vertex = vertex;
+    src.bary = bary;
+    for (q = 0; q < 2; q++) src_place(&s, p[q][0], p[q][1], vertex + 3 * q, bary + 3 * q);
+    src.count = 2;
+    CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1);
+    for (v = 0; v < s.n; v++) {
+        const double *a = s.xyz + 3 * v;
+        off[0] += fabs(d[v] - fmin(hypot(a[0] - p[0][0], a[1] - p[0][1]), hypot(a[0] - p[1][0], a[1] - p[1][1]))) / s.n;
+    }
+    for (q = 0; q < N; q++) {
+        src_place(&s, x, q * cell, vertex + 3 * n, bary + 3 * n);
+        n++;
+        if (q + 1 < N) src_place(&s, x, q * cell + at, vertex + 3 * n, bary + 3 * n);
+        n += q + 1 < N;
+    }
+    src.count = n;
+    src.curve = 1;
+    CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1);
+    for (v = 0; v < s.n; v++) off[1] = fmax(off[1], fabs(d[v] - fabs(s.xyz[3 * v] - x)));
+    CHECK_MSG(off[0] < 0.3 * cell && off[1] < 0.1 * cell, "square: points off by %g edges on average, a line by at most %g", off[0] / cell, off[1] / cell);
+    hd_geodesic_free(g);
+    shape_free(&s);
+    free(d);
+}
+
+/* Along a strip heat fades out, and is solved for again. */
+static void src_geo_strip(void) {
+    enum { N = 1201 };
+    shape s = shape_grid(N, 4, 0);
+    hd_geodesic *g = src_geodesic(&s, 0);
+    double *d = DENSE_NEW(double, s.n), bary[3], off = 0;
+    const double x = 10.3 / (N - 1), y = 1.6 / (N - 1);
+    int32_t vertex[3], v;
+    hd_geodesic_report rep;
+    hd_source src;
+    memset(&src, 0, sizeof src);
+    src.count = 1;
+    src.corners = 3;
+    src.vertex = vertex;
+    src.bary = bary;
+    src_place(&s, x, y, vertex, bary);
+    CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages > 1);
+    for (v = 0; v < s.n; v++) off = fmax(off, fabs(d[v] - hypot(s.xyz[3 * v] - x, s.xyz[3 * v + 1] - y)));
+    CHECK_MSG(off < 1.0 / (N - 1), "strip: off by %g edges", off * (N - 1));
+    hd_geodesic_free(g);
+    shape_free(&s);
+    free(d);
+}
+
+/* Vertices give what they give as such, to the last bit; points in no face, and components. */
+static void src_geo_rules(void) {
+    const double apart[3] = {5, 0, 0};
+    shape a = shape_icosphere(2), b = shape_grid(6, 5, 0.2), s = shape_disjoint(&a, &b, apart);
+    hd_geodesic *g = src_geodesic(&s, 0);
+    double *d = DENSE_NEW(double, s.n), *e = DENSE_NEW(double, s.n), bary[6] = {0, 1, 0, 1, 0, 0};
+    int32_t vertex[6] = {0, 5, 1, a.n + 3, 0, 9}, id[2] = {5, a.n + 3}, v;
+    hd_geodesic_report rep;
+    hd_error err;
+    hd_source src;
+    memset(&src, 0, sizeof src);
+    src.count = 2;
+    src.corners = 3;
+    src.vertex = vertex;
+    src.bary = bary;
+    CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && hd_geodesic_distance(g, 2, id, e, NULL, NULL) == HD_OK);
+    CHECK(memcmp(d, e, (size_t)s.n * sizeof *d) == 0);
+    src.count = 1;
+    memcpy(vertex, s.tri, 3 * sizeof *vertex);
+    bary[0] = bary[1] = bary[2] = 1 / 3.0;
+    CHECK(hd_geodesic_distance_from(g, &src, d, NULL, NULL) == HD_OK);
+    for (v = 0; v < s.n; v++) CHECK(v < a.n ? d[v] >= 0 && d[v] < 4 : d[v] == HUGE_VAL);
+    src.count = 2;
+    vertex[4] = a.n + 4;                         /* no face has these three */
+    vertex[5] = a.n + 20;
+    bary[4] = bary[5] = 0.25;
+    bary[3] = 0.5;
+    CHECK(hd_geodesic_distance_from(g, &src, d, &rep, &err) == HD_ERR_ARGUMENT && err.row == 1 && strstr(err.text, "no face") && rep.status == err.status);
+    src.curve = 1;
+    CHECK(hd_geodesic_distance_from(g, &src, d, NULL, &err) == HD_ERR_ARGUMENT && err.row == 0);
+    bary[1] = -1;
+    CHECK(hd_geodesic_distance_from(g, &src, d, NULL, &err) == HD_ERR_ARGUMENT && err.row == 0 && err.vertex == vertex[1]);
+    CHECK(hd_geodesic_distance_from(g, NULL, d, NULL, &err) == HD_ERR_ARGUMENT && hd_geodesic_distance_from(g, &src, NULL, NULL, &err) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance_from(NULL, &src, d, NULL, &err) == HD_ERR_ARGUMENT);
+    hd_geodesic_free(g);
+    shape_free(&a);
+    shape_free(&b);
+    shape_free(&s);
+    free(d);
+    free(e);
+}
+
 /* ---- errors ---- */
 
 static void src_refused(hd_heat *heat, const hd_source *s, hd_status want, int64_t row, int64_t vertex, const char *what) {
@@ -528,6 +683,8 @@ static void src_memory(void) {
         hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_FEM, HD_BORDER_NATURAL, 0, NULL);
         hd_laplacian *lap = NULL;
         hd_heat *heat = NULL;
+        hd_geodesic_opts go;
+        hd_geodesic *geo = NULL;
         const double t[2] = {0.1, 0.3};
         double u[100];
         src_room room[2];
@@ -546,8 +703,14 @@ static void src_memory(void) {
             st = hd_heat_columns_from(heat, HD_KERNEL_SYMMETRIC, 2, t, 2, s, u, 0, NULL, NULL);
         }
         if (st == HD_OK) st = hd_heat_distance_from(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 2, s, u, 0, NULL, NULL);
+        memset(&go, 0, sizeof go);
+        go.context = &ctx;
+        if (st == HD_OK) st = hd_geodesic_create(&geo, g.xyz, g.n, g.tri, g.n_tri, &go, NULL);
+        src_place(&g, 0.6, 0.3, room[0].vertex, room[0].bary);
+        if (st == HD_OK) st = hd_geodesic_distance_from(geo, &room[0].s, u, NULL, NULL);
         CHECK(st == HD_OK || st == HD_ERR_MEMORY);
         done = st == HD_OK;
+        hd_geodesic_free(geo);
         hd_heat_free(heat);
         hd_laplacian_free(lap);
         test_memory_done(&m, &ctx, "sources");
@@ -560,6 +723,11 @@ static void test_sources(void) {
     src_operators();
     src_square();
     src_line();
+    src_geo_sphere(3);
+    src_geo_sphere(4);
+    src_geo_square();
+    src_geo_strip();
+    src_geo_rules();
     src_errors();
     src_memory();
 }
