@@ -27613,7 +27613,8 @@ static hd_status hdi_geo_all(hd_geodesic *g, const int32_t *sources, int32_t k, 
 /* ---- from points of faces, and curves ---- */
 /* Near a source u is a hat, and says little about the direction to a point inside a face. There the distance
  * is known: the corners of a face that the source lies in are as far from it as straight lines are long. In
- * these faces X is the gradient of these distances, linear between the corners. phi is compared with them. On spheres of 642 to 10K vertices the mean error is then 0.05 to 0.13 h; 0.06 to 0.12 h with X by heat
+ * these faces X is the gradient of these distances, linear between the corners. phi is compared with them.
+ * On spheres of 642 to 10K vertices the mean error is then 0.05 to 0.13 h; 0.06 to 0.12 h with X by heat
  * everywhere; and 0.47 to 0.62 h if the interpolated distance at the point itself is made zero, which a cone
  * between three corners is not. */
 
