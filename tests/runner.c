@@ -177,6 +177,7 @@ static void test_tmp_remove(void) {
 #include "test_adjoints.h"
 #include "test_signatures.h"
 #include "test_filters.h"
+#include "test_sources.h"
 #include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
@@ -192,6 +193,7 @@ static const test_group test_groups[] = {
     {"large_t", test_large_t},
     {"borders", test_borders},   {"adjoints", test_adjoints}, {"signatures", test_signatures},
     {"filters", test_filters},
+    {"sources", test_sources},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
