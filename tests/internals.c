@@ -2262,7 +2262,35 @@ static void int_polygon(void) {
     CHECK(!hdi_polygon_clip(&g, 1, 0, 5));
 }
 
+/* ---- [29] geodesic ---- */
+
+/* The gradient on polygons is exact for linear functions, and L is its divergence: div of the unit field down a linear u is -L u / |grad u|, at the border too. */
+static void int_linear_precision(void) {
+    shape_poly s = shape_trominoes(4, 5, 0.3);
+    hd_geodesic *g = NULL;
+    double *u = (double *)calloc(3 * (size_t)s.n, sizeof *u), *b = u + s.n, *want = b + s.n, worst = 0;
+    int32_t v;
+    int way;
+    CHECK(hd_geodesic_create_polygons(&g, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, NULL, NULL) == HD_OK);
+    for (way = 0; way < 5 && g; way++) {
+        const double x = cos(1.1 * way), y = sin(1.1 * way);     /* down along (x, y) by 0.01 a unit */
+        for (v = 0; v < s.n; v++) {
+            u[g->row[v]] = 1 - 0.01 * (x * s.xyz[3 * v] + y * s.xyz[3 * v + 1]);
+            want[g->row[v]] = 0;
+        }
+        hdi_geo_divergence(g, u, 1e-9, b);
+        for (v = 0; v < s.n; v++) u[v] /= 0.01 * g->h;
+        hdi_geo_subtract(g, u, want);
+        for (v = 0; v < s.n; v++) worst = hdi_max(worst, fabs(b[v] - want[v]));
+    }
+    CHECK_MSG(worst < 1e-11, "off by %g", worst);
+    hd_geodesic_free(g);
+    free(u);
+    shape_poly_free(&s);
+}
+
 int main(void) {
+    int_linear_precision();
     int_length_area();
     int_flips();
     int_around();

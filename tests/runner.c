@@ -178,6 +178,7 @@ static void test_tmp_remove(void) {
 #include "test_signatures.h"
 #include "test_filters.h"
 #include "test_sources.h"
+#include "test_geodesic_all.h"
 #include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
@@ -186,7 +187,7 @@ static const test_group test_groups[] = {
     {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
     {"intrinsic", test_intrinsic},
     {"ldl", test_ldl},           {"threads", test_threads}, {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
-    {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic},
+    {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic_all},
     {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
     {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"moving", test_moving},
     {"platform", test_platform}, {"view", test_view},     {"estimate", test_estimate}, {"spectrum", test_spectrum},

@@ -192,6 +192,18 @@ static void check_signatures(const hd_laplacian *lap) {
     hd_heat_free(heat);
 }
 
+/* Of intrinsic triangles, polygons and points, which other switches take away. */
+static void check_geodesic_kinds(void) {
+    static const int64_t ptr[9] = {0, 3, 6, 9, 12, 15, 18, 21, 24};
+    hd_geodesic_opts o;
+    hd_geodesic *g = NULL;
+    memset(&o, 0, sizeof o);
+    o.intrinsic_delaunay = 1;
+    if (BUILT(hd_geodesic_create(&g, xyz, 6, tri, 8, &o, &err), no.intrinsic)) hd_geodesic_free(g);
+    if (BUILT(hd_geodesic_create_polygons(&g, xyz, 6, ptr, tri, 8, NULL, &err), no.polygons)) hd_geodesic_free(g);
+    if (BUILT(hd_geodesic_create_points(&g, xyz, 6, NULL, NULL, NULL, &err), either(no.points, no.intrinsic))) hd_geodesic_free(g);
+}
+
 static void check_geodesic(void) {
     hd_geodesic *g = NULL;
     hd_geodesic_report rep;
@@ -208,6 +220,7 @@ static void check_geodesic(void) {
     CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, &err) == HD_OK);
     CHECK(d[0] == 0 && d[2] > 1 && d[2] < 2 && near_to(d[2], d[5]) && d[1] > d[2] && d[1] < 3);
     hd_geodesic_free(g);
+    check_geodesic_kinds();
 }
 
 static void check_shifted(const hd_laplacian *lap) {

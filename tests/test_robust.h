@@ -413,6 +413,8 @@ static void rob_not_cleared(void) {
         ROB_NOT_CLEARED(hd_ldl_analyse(&f, &L, &fo, NULL, &e));
         ROB_NOT_CLEARED(hd_heat_create(&heat, lap, &ho, &e));
         ROB_NOT_CLEARED(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &go, &e));
+        ROB_NOT_CLEARED(hd_geodesic_create_polygons(&g, s.xyz, s.n, face_ptr, s.tri, 1, &go, &e));
+        ROB_NOT_CLEARED(hd_geodesic_create_points(&g, s.xyz, s.n, NULL, NULL, &go, &e));
     }
 #undef ROB_NOT_CLEARED
     hd_csr_free(&L, NULL);
