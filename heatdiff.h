@@ -20067,7 +20067,7 @@ typedef struct hdi_spec {
     int32_t *slab_of, *col_of;
     int32_t found;
     /* the run under way */
-    hdi_slab basis;
+    hdi_slab basis;              /* from column most + WIDE on: the Ritz vectors nearest to sigma */
     int32_t most;                /* columns that the basis may have */
     int32_t cols, last, width;   /* columns of the basis; first column and width of its last block */
     int32_t before;              /* first column of the block before that */
@@ -20120,7 +20120,7 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     s->ops = hdi_real_ops_get(hdi_simd_level(m->ctx));
     s->most = hdi_low32(2 * hdi_low32(count, HDI_SPEC_MOST) + HDI_SPEC_SPARE, HDI_SPEC_MOST);
     s->most = hdi_low32(s->most, s->n);
-    if (hdi_slab_make(&s->basis, s->n, s->most + HDI_SPEC_WIDE, s->ctx, e) < 0) return e->status;
+    if (hdi_slab_make(&s->basis, s->n, s->most + 2 * HDI_SPEC_WIDE, s->ctx, e) < 0) return e->status;
     s->value = HDI_NEW(s->ctx, double, 2 * n, e);
     if (s->value) s->slab_of = HDI_NEW(s->ctx, int32_t, 2 * n, e);
     if (s->slab_of) s->T = HDI_NEW(s->ctx, double, 3 * most * most + 5 * most, e);
@@ -20640,8 +20640,24 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     return worst;
 }
 
+/* Puts the Ritz vectors nearest to the shift, of which[0..n), after the basis. A step of inverse iteration
+ * enlarges the rounding of a residual in their direction by the quotient of the distances to the shift. */
+static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
+    int32_t near[HDI_SPEC_WIDE], m = 0, i, j;
+    for (i = 0; i < n; i++) {
+        for (j = m; j > 0 && fabs(s->d[near[j - 1]]) < fabs(s->d[which[i]]); j--)
+            if (j < HDI_SPEC_WIDE) near[j] = near[j - 1];
+        if (j < HDI_SPEC_WIDE) near[j] = which[i];
+        m = hdi_low32(m + 1, HDI_SPEC_WIDE);
+    }
+    hdi_spec_coefficients(s, near, m);
+    memset(s->w, 0, 8 * HDI_CAST(size_t, s->n) * sizeof *s->w);
+    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->w, 1), s->h, 0);
+    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, 1), NULL, 1);
+}
+
 /* x - (L - sigma B)^-1 r for the residuals r in tmp of the first n columns: a step of inverse iteration. The
- * change has no part in the slabs nearby. */
+ * change has no part in the slabs nearby, nor in the vectors next to the shift. */
 static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     const int64_t size = 8 * HDI_CAST(int64_t, s->n);
     const int32_t cols = s->cols;
@@ -20650,6 +20666,7 @@ static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     memcpy(s->w, s->tmp, HDI_CAST(size_t, size) * sizeof *s->w);
     hdi_spec_sweep(s, s->w);
     hdi_spec_mass(s, s->w, s->bw);
+    hdi_spec_project(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, s->bw, 1, s->h);
     s->cols = 0;
     hdi_spec_clean(s, removed);
     s->cols = cols;
@@ -20740,6 +20757,7 @@ static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
         which[j] = i;
     }
     if (n == 0 || !hdi_spec_slab(s, n, e)) return e->status;
+    hdi_spec_nearest(s, which, n);
     for (i = 0; i < n; i += 8 * HDI_SPEC_GROUP)
         hdi_spec_lock_group(s, which + i, hdi_low32(n - i, 8 * HDI_SPEC_GROUP), i);
     return HD_OK;

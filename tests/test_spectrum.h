@@ -264,6 +264,19 @@ static void spec_rounding(void) {
     hd_laplacian_free(lap);
 }
 
+/* Shifts next to an eigenvalue: no residual stays above the tolerance. One of these shifts left 1.2e-10 where steps of inverse
+   iteration enlarged rounding in the direction of that eigenvalue's vector. */
+static void spec_next_to_shifts(void) {
+    shape s = shape_bumpy(4, 5);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_spectrum *z = spec_make(lap, 300, 0, HD_OK);
+    if (z) CHECK_MSG(z->n_poor == 0 && z->proven && z->largest_residual <= 1e-10, "%d poor, %g", z->n_poor, z->largest_residual);
+    if (z) spec_check_vectors(lap, z, 1e-10, "next to shifts");
+    hd_spectrum_free(z);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 /* The proof sees a pair that is taken away, and a shift too near. */
 static void spec_tampered(void) {
     shape s = shape_icosphere(3);
@@ -527,6 +540,7 @@ static void test_spectrum(void) {
     spec_below();
     spec_own();
     spec_rounding();
+    spec_next_to_shifts();
     spec_tampered();
     spec_twice();
     spec_kernels();
