@@ -21160,19 +21160,20 @@ typedef struct hdi_spec {
     int32_t *slab_of, *col_of;
     int32_t found;
     /* the run under way */
-    hdi_slab basis;
+    hdi_slab basis;              /* from column most + WIDE on: the Ritz vectors nearest to sigma */
     int32_t most;                /* columns that the basis may have */
+    int32_t n_group;             /* blocks that go through a slab at a time */
     int32_t cols, last, width;   /* columns of the basis; first column and width of its last block */
     int32_t before;              /* first column of the block before that */
     double lost;                 /* largest column of a block that was dropped */
     int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
     int32_t fresh;               /* columns after them: the newest block, which T does not have yet */
     double couple[HDI_SPEC_WIDE * HDI_SPEC_WIDE];   /* the newest block times this lacks in the last one */
-    double *T, *A, *z;           /* [MOST][MOST] projected matrix, twice; eigenvectors */
-    double *d, *off_ritz;        /* [MOST] eigenvalues, residuals */
+    double *T, *A, *z;           /* [most][most] projected matrix, twice; eigenvectors */
+    double *d, *off_ritz;        /* [most] eigenvalues, residuals */
     double *w, *bw, *tmp;        /* [n][8] a block, B times it, and another */
     double *sweep, *h, *part, *work;
-    double *group, *group_b;     /* [GROUP][n][8] */
+    double *group, *group_b;     /* [n_group][n][8] */
     double *noise;               /* [n] weights of rounding in residuals; [n] work */
     int32_t n_poor;              /* residuals above the tolerance and rounding */
     uint64_t seed;
@@ -21180,6 +21181,18 @@ typedef struct hdi_spec {
     double next;                 /* no other eigenvalue is below it */
     int32_t n_null, proven;
 } hdi_spec;
+
+/* Frees what only runs need. */
+static void hdi_spec_runs_free(hdi_spec *s) {
+    hdi_free(s->ctx, s->basis.v);
+    hdi_free(s->ctx, s->T);
+    hdi_free(s->ctx, s->w);
+    hdi_free(s->ctx, s->sweep);
+    hdi_free(s->ctx, s->h);
+    hdi_free(s->ctx, s->group);
+    hdi_factor_free(&s->factor);
+    s->basis.v = s->T = s->w = s->sweep = s->h = s->group = NULL;
+}
 
 static void hdi_spec_free(hdi_spec *s) {
     int32_t i;
@@ -21189,21 +21202,42 @@ static void hdi_spec_free(hdi_spec *s) {
     hdi_free(s->ctx, s->beside);
     hdi_free(s->ctx, s->value);
     hdi_free(s->ctx, s->slab_of);
-    hdi_free(s->ctx, s->basis.v);
-    hdi_free(s->ctx, s->T);
-    hdi_free(s->ctx, s->w);
-    hdi_free(s->ctx, s->sweep);
-    hdi_free(s->ctx, s->h);
-    hdi_free(s->ctx, s->group);
-    hdi_factor_free(&s->factor);
+    hdi_spec_runs_free(s);
     memset(s, 0, sizeof *s);
+}
+
+/* Columns of a basis, and blocks of Ritz vectors made at a time. */
+static int32_t hdi_spec_most(int32_t n, int32_t count) {
+    return hdi_low32(n, hdi_low32(2 * hdi_low32(count, HDI_SPEC_MOST) + HDI_SPEC_SPARE, HDI_SPEC_MOST));
+}
+
+static int32_t hdi_spec_group(int32_t count) { return hdi_low32(count / 8 + 2, HDI_SPEC_GROUP); }
+
+/* Parts of a sum over rows. */
+static int32_t hdi_spec_chunks(int32_t n) {
+    return hdi_low32(HDI_SPEC_CHUNKS, hdi_slab_tiles(n) / 8 + 1);
+}
+
+/* Doubles of the coefficients of a group in a slab. */
+static uint64_t hdi_spec_h(int32_t most, int32_t n_group) {
+    return HDI_CAST(uint64_t, most + HDI_SPEC_WIDE) * HDI_SPEC_WIDE * HDI_CAST(uint64_t, n_group);
+}
+
+/* Doubles that hdi_spec_make takes, but for a sweep. */
+static double hdi_spec_doubles(int32_t n, int32_t count) {
+    const int32_t most = hdi_spec_most(n, count), group = hdi_spec_group(count);
+    const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(n), m = most;
+    return tiles * (m + 2 * HDI_SPEC_WIDE) + 3 * m * (m + 2) +
+           HDI_CAST(double, hdi_spec_h(most, group)) * (hdi_spec_chunks(n) + 1) +
+           HDI_CAST(double, n) * (5 + 3 * HDI_SPEC_WIDE + 2 * HDI_SPEC_WIDE * group);
 }
 
 /* Room for runs. */
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, m->lap->n_active), most = HDI_SPEC_MOST, wide = HDI_SPEC_WIDE;
-    const uint64_t h = (most + wide) * wide * HDI_SPEC_GROUP;
-    const uint64_t group = n * wide * HDI_SPEC_GROUP;
+    const int32_t columns = hdi_spec_most(m->lap->n_active, count), n_group = hdi_spec_group(count);
+    const uint64_t n = HDI_CAST(uint64_t, m->lap->n_active), most = HDI_CAST(uint64_t, columns);
+    const uint64_t wide = HDI_SPEC_WIDE, h = hdi_spec_h(columns, n_group);
+    const uint64_t group = n * wide * HDI_CAST(uint64_t, n_group);
     memset(s, 0, sizeof *s);
     s->ctx = m->ctx;
     s->m = m;
@@ -21211,15 +21245,16 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     s->n = m->lap->n_active;
     s->tol = tol;
     s->ops = hdi_real_ops_get(hdi_simd_level(m->ctx));
-    s->most = hdi_low32(2 * hdi_low32(count, HDI_SPEC_MOST) + HDI_SPEC_SPARE, HDI_SPEC_MOST);
-    s->most = hdi_low32(s->most, s->n);
-    if (hdi_slab_make(&s->basis, s->n, s->most + HDI_SPEC_WIDE, s->ctx, e) < 0) return e->status;
+    s->most = columns;
+    s->n_group = n_group;
+    if (hdi_slab_make(&s->basis, s->n, s->most + 2 * HDI_SPEC_WIDE, s->ctx, e) < 0) return e->status;
     s->value = HDI_NEW(s->ctx, double, 2 * n, e);
     if (s->value) s->slab_of = HDI_NEW(s->ctx, int32_t, 2 * n, e);
     if (s->slab_of) s->T = HDI_NEW(s->ctx, double, 3 * most * most + 5 * most, e);
     if (s->T) s->w = HDI_NEW(s->ctx, double, 3 * n * wide, e);
     if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_SPEC_WIDE), e);
-    if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * (HDI_SPEC_CHUNKS + 1), e);
+    if (s->sweep)
+        s->h = HDI_NEW(s->ctx, double, h * HDI_CAST(uint64_t, hdi_spec_chunks(s->n) + 1), e);
     if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * group + 2 * n, e);
     if (e->status < 0) return e->status;
     s->residual = s->value + n;
@@ -21250,7 +21285,7 @@ static hdi_slab_pass hdi_spec_pass(const hdi_spec *s, const hdi_slab *slab, int3
     p.cols = cols;
     p.w = w;
     p.n_blocks = n_blocks;
-    p.n_chunks = hdi_low32(HDI_SPEC_CHUNKS, hdi_slab_tiles(s->n) / 8 + 1);
+    p.n_chunks = hdi_spec_chunks(s->n);
     return p;
 }
 
@@ -21458,7 +21493,7 @@ static void hdi_spec_local(hdi_spec *s) {
     hdi_spec_project(s, &s->basis, s->before, s->cols - s->before, s->w, s->bw, 1, s->h);
     for (q = 0; q < s->width; q++)
         for (k = 0; k <= q; k++)
-            s->T[HDI_CAST(int64_t, s->last + q) * HDI_SPEC_MOST + s->last + k] =
+            s->T[HDI_CAST(int64_t, s->last + q) * s->most + s->last + k] =
                 0.5 * (s->h[8 * (at + q) + k] + s->h[8 * (at + k) + q]);
     hdi_spec_mass(s, s->w, s->bw);
 }
@@ -21515,8 +21550,8 @@ static void hdi_spec_take(hdi_spec *s) {
         }
     }
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, n, s->w, 1), NULL, 1);
-    for (i = 0; i < n && s->cols + i < HDI_SPEC_MOST; i++) {
-        double *row = s->T + HDI_CAST(int64_t, s->cols + i) * HDI_SPEC_MOST;
+    for (i = 0; i < n && s->cols + i < s->most; i++) {
+        double *row = s->T + HDI_CAST(int64_t, s->cols + i) * s->most;
         memset(row, 0, HDI_CAST(size_t, s->cols + i + 1) * sizeof *row);
         for (k = 0; k < s->width; k++) row[s->last + k] = C[8 * i + k];
     }
@@ -21556,7 +21591,7 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
     int32_t i, j, a, k;
     for (i = 0; i < m; i++)
         for (j = 0; j <= i; j++)
-            s->A[HDI_CAST(int64_t, i) * m + j] = s->T[HDI_CAST(int64_t, i) * HDI_SPEC_MOST + j];
+            s->A[HDI_CAST(int64_t, i) * m + j] = s->T[HDI_CAST(int64_t, i) * s->most + j];
     memset(s->z, 0, HDI_CAST(size_t, m) * HDI_CAST(size_t, r) * sizeof *s->z);
     for (i = 0; i < r; i++) s->z[HDI_CAST(int64_t, i + (full ? 0 : s->last)) * r + i] = 1;
     if (!hdi_spec_eigen(s->A, s->d, s->z, m, r, s->work)) return hdi_lanczos_failed(e);
@@ -21733,8 +21768,24 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     return worst;
 }
 
+/* Puts the Ritz vectors nearest to the shift, of which[0..n), after the basis. A step of inverse iteration
+ * enlarges the rounding of a residual in their direction by the quotient of the distances to the shift. */
+static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
+    int32_t near[HDI_SPEC_WIDE], m = 0, i, j;
+    for (i = 0; i < n; i++) {
+        for (j = m; j > 0 && fabs(s->d[near[j - 1]]) < fabs(s->d[which[i]]); j--)
+            if (j < HDI_SPEC_WIDE) near[j] = near[j - 1];
+        if (j < HDI_SPEC_WIDE) near[j] = which[i];
+        m = hdi_low32(m + 1, HDI_SPEC_WIDE);
+    }
+    hdi_spec_coefficients(s, near, m);
+    memset(s->w, 0, 8 * HDI_CAST(size_t, s->n) * sizeof *s->w);
+    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->w, 1), s->h, 0);
+    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, 1), NULL, 1);
+}
+
 /* x - (L - sigma B)^-1 r for the residuals r in tmp of the first n columns: a step of inverse iteration. The
- * change has no part in the slabs nearby. */
+ * change has no part in the slabs nearby, nor in the vectors next to the shift. */
 static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     const int64_t size = 8 * HDI_CAST(int64_t, s->n);
     const int32_t cols = s->cols;
@@ -21743,6 +21794,7 @@ static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     memcpy(s->w, s->tmp, HDI_CAST(size_t, size) * sizeof *s->w);
     hdi_spec_sweep(s, s->w);
     hdi_spec_mass(s, s->w, s->bw);
+    hdi_spec_project(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, s->bw, 1, s->h);
     s->cols = 0;
     hdi_spec_clean(s, removed);
     s->cols = cols;
@@ -21833,8 +21885,9 @@ static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
         which[j] = i;
     }
     if (n == 0 || !hdi_spec_slab(s, n, e)) return e->status;
-    for (i = 0; i < n; i += 8 * HDI_SPEC_GROUP)
-        hdi_spec_lock_group(s, which + i, hdi_low32(n - i, 8 * HDI_SPEC_GROUP), i);
+    hdi_spec_nearest(s, which, n);
+    for (i = 0; i < n; i += 8 * s->n_group)
+        hdi_spec_lock_group(s, which + i, hdi_low32(n - i, 8 * s->n_group), i);
     return HD_OK;
 }
 
@@ -22219,6 +22272,7 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
     if (hdi_spec_make(&s, m, goal->count, tol, e) >= 0 && hdi_spec_solve(&s, goal, &count, e) >= 0) {
         n = HDI_CAST(uint64_t, m->source->n);
         k = HDI_CAST(uint64_t, count);
+        hdi_spec_runs_free(&s);                  /* before the vectors are there twice */
         out->n = m->source->n;
         out->count = count;
         out->value = HDI_NEW(m->ctx, double, 2 * k, e);
@@ -26560,14 +26614,9 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 
 /* Bytes that finding so many pairs takes; a guess before the analysis. */
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
-    const double n = heat->source->n_active, wide = HDI_SPEC_WIDE, widest = HDI_SPEC_MOST;
-    const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(heat->source->n_active);
-    const double group = HDI_SPEC_GROUP, chunks = HDI_SPEC_CHUNKS;
-    const double spare = HDI_SPEC_SPARE, gaps = HDI_SPEC_GAPS;
-    const double most = hdi_min(n, hdi_min(widest, 2.0 * count + spare));
-    double doubles = tiles * (most + wide) + 3 * n + 3 * widest * widest;
-    doubles += (widest + wide) * wide * group * (chunks + 1);
-    doubles += 3 * wide * n + 2 * wide * group * n + 2 * tiles * (count + gaps) + 2.0 * heat->source->n;
+    const int32_t n = heat->source->n_active;
+    const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(n), gaps = HDI_SPEC_GAPS;
+    const double doubles = hdi_spec_doubles(n, count) + 2 * tiles * (count + gaps) + 2.0 * heat->source->n;
     if (!heat->elim.ctx) return 8 * doubles + 8 * hdi_heat_fill(heat).real_stored;
     return 8 * (doubles + HDI_CAST(double, hdi_sweep_size(&heat->elim.sym, 1, HDI_SPEC_WIDE))) +
            HDI_CAST(double, hdi_factor_bytes(&heat->elim.sym, 1));
