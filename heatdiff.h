@@ -17462,7 +17462,8 @@ enum {
 #define HDI_FIT_FLOOR 1e-12
 #define HDI_FIT_BELOW 1e-3
 /* A complex pole is dropped where its distance from the spectrum is below this part of its modulus, and any
- * pole below the second number times lambda_max: the matrices of such poles have lost most of their digits. */
+ * pole below the second number times lambda_max: the matrices of such poles have lost most of their
+ * digits. */
 #define HDI_FIT_NEAR 1e-5
 #define HDI_FIT_LEAST 1e-12
 /* Beyond this times lambda_max a pole is a constant, which is not wanted. */
@@ -17827,7 +17828,8 @@ static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
 /* ---- the error, and the set ---- */
 
 /* Largest |f - c| and (1 + t x)|f - c| over the finer points, relative to the largest |f|. Points where it is
- * above `join` join the fit if there is room: the worst ones between two where it is below. Returns how many. */
+ * above `join` join the fit if there is room: the worst ones between two where it is below. Returns how
+ * many. */
 static int32_t hdi_fit_measure(hdi_fit *k, const hdi_fitted *s, double t, double join, double *error,
                                double *weighted, hd_error *e) {
     const int32_t n_log = HDI_FIT_FINER * HDI_FIT_LOG, n_linear = HDI_FIT_FINER * HDI_FIT_LINEAR;
