@@ -571,7 +571,11 @@ typedef struct hd_filter {
     double a, b;                /* finite; a > 0 but for waves, b > 0 where there is a b */
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
-    double tol;                 /* max |f - c| / max |f|; default 1e-10 */
+    double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
+    /* >= 0, by default 0. With 1/weight near the eigenvalues that f lets pass, the error is small where most
+     * eigenvalues are, which helps columns and diagonals. Then weight = exp(-a) and tol = 1e-7 give waves
+     * with 16 poles and bounds near 1e-6, and 1e-10 without a weight takes 20 poles for that */
+    double weight;
     int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
     /* > 0: there is no eigenvalue between 0 and this, and nothing is asked of c there. Filters that are not
      * smooth at 0 need half of the poles then. The second value of hd_spectrum is such a number */
@@ -1296,6 +1300,14 @@ typedef struct hd_heat hd_heat;
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
+
+/* Another pole set for a plan, as if it stood in hd_heat_opts.rational. Ordering, analysis and memory stay, so
+ * that one plan serves many filters one after the other.
+ * set    copied; NULL: from now on exp, with poles and degree by default
+ * Errors HD_ERR_ARGUMENT (also if the plan is of method krylov or of Lanczos), HD_ERR_NOT_FINITE; then nothing
+ *        has changed
+ * Cost   none */
+HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_error *err);
 
 /* Common to all queries of a plan:
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
@@ -17506,6 +17518,7 @@ static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_erro
     else if (two && !(f->b > 0)) text = "filter: b is not positive";
     else if (f->kind == HD_FILTER_BAND && !(f->b > f->a)) text = "filter: the band ends before it begins";
     else if (!hdi_finite(f->tol) || f->tol < 0 || f->tol >= 1) text = "filter: tol is not in [0, 1)";
+    else if (!hdi_finite(f->weight) || f->weight < 0) text = "filter: weight is negative or not finite";
     else if (f->max_degree < 0 || f->max_degree > HD_MAX_POLES)
         text = "filter: max_degree is not in 0..HD_MAX_POLES";
     else if (!hdi_finite(f->lambda_min) || f->lambda_min < 0) text = "filter: lambda_min is negative";
@@ -17518,9 +17531,9 @@ static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_erro
 typedef struct hdi_fit {
     const hd_filter *filter;
     double top, floor, tol;      /* lambda_max; floor/top and tol relative to it and to the largest value */
-    double largest;              /* |f| */
+    double largest, weight;      /* |f|; of the error: 1 + weight x */
     int32_t n, m, most;          /* points; support points, at most so many */
-    double *x, *f, *r;           /* [HDI_FIT_ROOM] points, values, approximation, all scaled */
+    double *x, *f, *r, *u;       /* [HDI_FIT_ROOM] points, values, approximation, all scaled; weights */
     char *support;               /* [HDI_FIT_ROOM] */
     double *A, *b;               /* [(HDI_FIT_ROOM + most + 1) (most + 1)], [HDI_FIT_ROOM + most + 1] */
     double *V;                   /* [2 (most + 1)^2] */
@@ -17530,7 +17543,7 @@ typedef struct hdi_fit {
 /* A set in terms of scaled points: a0 + sum a/(x - p). */
 typedef struct hdi_fitted {
     int32_t n, degree;
-    double a0, error;            /* at the points */
+    double a0, error;            /* weighted, at the points */
     hd_c64 p[HD_MAX_POLES], a[HD_MAX_POLES];
 } hdi_fitted;
 
@@ -17564,6 +17577,7 @@ static hd_status hdi_fit_add(hdi_fit *k, double x, hd_error *e) {
         e->value = x * k->top;
         return e->status;
     }
+    k->u[k->n] = 1 + k->weight * x;
     k->x[k->n] = x;
     k->f[k->n++] = f;
     return HD_OK;
@@ -17592,7 +17606,7 @@ static void hdi_fit_choose(hdi_fit *k) {
     double most = -1;
     int32_t i, at = 0;
     for (i = 0; i < k->n; i++) {
-        const double off = fabs(k->f[i] - k->r[i]);
+        const double off = k->u[i] * fabs(k->f[i] - k->r[i]);
         if (k->support[i] || !(off > most)) continue;
         most = off;
         at = i;
@@ -17652,8 +17666,9 @@ static void hdi_fit_weights(hdi_fit *k) {
     int32_t i, j;
     for (i = 0; i < k->n; i++) {
         if (k->support[i]) continue;
-        for (j = 0; j < k->m; j++) k->A[j * rows + row] = (k->f[i] - k->fz[j]) / (k->x[i] - k->z[j]);
-        if (c > k->m) k->A[k->m * rows + row] = k->f[i];
+        for (j = 0; j < k->m; j++)
+            k->A[j * rows + row] = k->u[i] * (k->f[i] - k->fz[j]) / (k->x[i] - k->z[j]);
+        if (c > k->m) k->A[k->m * rows + row] = k->u[i] * k->f[i];
         k->b[row++] = 0;
     }
     hdi_least_squares(k->A, rows, c, k->b);      /* for its triangle */
@@ -17747,12 +17762,12 @@ static void hdi_fit_poles(const hdi_fit *k, hdi_fitted *s) {
 
 /* ---- weights ---- */
 
-/* Column c [n] of a fraction; im: of the imaginary part of its weight. Returns its norm. */
+/* Column c [n] of a fraction, weighted; im: of the imaginary part of its residue. Returns its norm. */
 static double hdi_fit_fraction(const hdi_fit *k, hd_c64 p, int im, double *c) {
     const double count = p.im != 0 ? 2 : 1;
     int32_t i;
     for (i = 0; i < k->n; i++) {
-        const double d = k->x[i] - p.re, inv = count / (d * d + p.im * p.im);
+        const double d = k->x[i] - p.re, inv = k->u[i] * count / (d * d + p.im * p.im);
         c[i] = im ? -p.im * inv : d * inv;
     }
     return sqrt(hdi_dot(c, c, k->n));
@@ -17769,13 +17784,13 @@ static void hdi_fit_residues(hdi_fit *k, hdi_fitted *s) {
     rows = k->n + cols;
     memset(k->A, 0, HDI_CAST(size_t, rows * cols) * sizeof *k->A);
     memset(k->b, 0, HDI_CAST(size_t, rows) * sizeof *k->b);
-    memcpy(k->b, k->f, HDI_CAST(size_t, k->n) * sizeof *k->b);
+    for (i = 0; i < k->n; i++) k->b[i] = k->u[i] * k->f[i];
     for (i = 0; i < s->n; i++)
         for (j = 0; j < (s->p[i].im != 0 ? 2 : 1); j++, c++)
             scale[c] = hdi_fit_fraction(k, s->p[i], j, k->A + c * rows);
     if (c < cols) {
-        for (i = 0; i < k->n; i++) k->A[c * rows + i] = 1;
-        scale[c] = sqrt(HDI_CAST(double, k->n));
+        memcpy(k->A + c * rows, k->u, HDI_CAST(size_t, k->n) * sizeof *k->u);
+        scale[c] = sqrt(hdi_dot(k->u, k->u, k->n));
     }
     for (c = 0; c < cols; c++) {
         for (i = 0; i < k->n; i++) k->A[c * rows + i] /= scale[c];
@@ -17790,7 +17805,7 @@ static void hdi_fit_residues(hdi_fit *k, hdi_fitted *s) {
     }
     s->a0 = c < cols ? k->b[c] / scale[c] : 0;
     for (s->error = 0, i = 0; i < k->n; i++)
-        s->error = hdi_max(s->error, fabs(hdi_fitted_value(s, k->x[i]) - k->f[i]));
+        s->error = hdi_max(s->error, k->u[i] * fabs(hdi_fitted_value(s, k->x[i]) - k->f[i]));
 }
 
 /* Drops poles that the error would not miss. Returns how many. */
@@ -17812,7 +17827,7 @@ static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
     memset(k->support, 0, HDI_CAST(size_t, k->n));
     for (i = 0; i < k->n; i++) {                 /* without poles */
         k->r[i] = known ? k->f[k->n - 1] : 0;
-        best->error = hdi_max(best->error, fabs(k->f[i]));
+        best->error = hdi_max(best->error, k->u[i] * fabs(k->f[i]));
     }
     for (k->m = 0; k->m < k->most + known && best->error > k->tol;) {
         hdi_fit_choose(k);
@@ -17827,21 +17842,30 @@ static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
 
 /* ---- the error, and the set ---- */
 
-/* Largest |f - c| and (1 + t x)|f - c| over the finer points, relative to the largest |f|. Points where it is
- * above `join` join the fit if there is room: the worst ones between two where it is below. Returns how
- * many. */
-static int32_t hdi_fit_measure(hdi_fit *k, const hdi_fitted *s, double t, double join, double *error,
-                               double *weighted, hd_error *e) {
+/* Errors over the finer points, relative to the largest |f|: plain, with the fit's weight, with 1 + t x. */
+typedef struct hdi_fit_errors { double plain, fit, by_t; } hdi_fit_errors;
+
+static double hdi_fit_error(const hdi_fit *k, const hdi_fitted *s, double x, double t, hdi_fit_errors *e) {
+    const double off = fabs(hdi_fit_f(k, x) / k->largest - hdi_fitted_value(s, x));
+    const double fit = (1 + k->weight * x) * off;
+    if (!(off <= e->plain)) e->plain = off;      /* a NaN stays */
+    if (!(fit <= e->fit)) e->fit = fit;
+    if (!((1 + t * x) * off <= e->by_t)) e->by_t = (1 + t * x) * off;
+    return fit;
+}
+
+/* Measures the errors. Points where that of the fit is above `join` join it if there is room: the worst ones
+ * between two where it is below. Returns how many. */
+static int32_t hdi_fit_measure(hdi_fit *k, const hdi_fitted *s, double t, double join, hdi_fit_errors *to,
+                               hd_error *e) {
     const int32_t n_log = HDI_FIT_FINER * HDI_FIT_LOG, n_linear = HDI_FIT_FINER * HDI_FIT_LINEAR;
     const double from = k->filter->lambda_min > 0 ? k->floor : HDI_FIT_BELOW * k->floor;
     double worst = 0, at = 0;
     int32_t i, before = k->n;
-    *error = *weighted = fabs(hdi_fit_f(k, 0) / k->largest - hdi_fitted_value(s, 0));
+    to->plain = to->fit = to->by_t = 0;
+    (void)hdi_fit_error(k, s, 0, t, to);
     for (i = 0; i < n_log + n_linear; i++) {
-        const double x = hdi_fit_point(i, n_log, n_linear, from);
-        const double off = fabs(hdi_fit_f(k, x) / k->largest - hdi_fitted_value(s, x));
-        if (!(off <= *error)) *error = off;
-        if (!((1 + t * x) * off <= *weighted)) *weighted = (1 + t * x) * off;
+        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, s, x, t, to);
         if (off > worst) at = x;
         worst = hdi_max(worst, off);
         if (off > join && i + 1 < n_log + n_linear) continue;
@@ -17918,6 +17942,7 @@ static void hdi_fit_room(hdi_fit *k, hdi_scope *s) {
     k->x = HDI_TAKE(s, double, HDI_FIT_ROOM);
     k->f = HDI_TAKE(s, double, HDI_FIT_ROOM);
     k->r = HDI_TAKE(s, double, HDI_FIT_ROOM);
+    k->u = HDI_TAKE(s, double, HDI_FIT_ROOM);
     k->support = HDI_TAKE(s, char, HDI_FIT_ROOM);
     k->A = HDI_TAKE(s, double, rows * cols);
     k->b = HDI_TAKE(s, double, rows);
@@ -17930,7 +17955,8 @@ static void hdi_fit_room(hdi_fit *k, hdi_scope *s) {
 static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
                                   hd_context *ctx, hd_error *e) {
     hdi_scope scope = hdi_scope_begin(ctx, e);
-    double unit = 1, error = 0, weighted = 0;
+    double unit = 1;
+    hdi_fit_errors off;
     hdi_fitted s;
     hdi_fit k;
     int32_t round;
@@ -17939,6 +17965,7 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
     k.filter = filter;
     k.top = lambda_max;
     k.floor = filter->lambda_min > 0 ? filter->lambda_min / lambda_max : HDI_FIT_FLOOR;
+    k.weight = filter->weight * lambda_max;
     k.tol = filter->tol > 0 ? filter->tol : HDI_FIT_TOL;
     k.most = filter->max_degree ? filter->max_degree : HDI_FIT_DEGREE;
     hdi_fit_room(&k, &scope);
@@ -17946,16 +17973,16 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
     for (round = 0; round < HDI_FIT_ROUNDS && e->status >= 0; round++) {
         hdi_fit_run(&k, &s);
         unit = hdi_fit_unit(&s);
-        if (!hdi_fit_measure(&k, &s, unit, 1.5 * hdi_max(k.tol, s.error), &error, &weighted, e)) break;
+        if (!hdi_fit_measure(&k, &s, unit, 1.5 * hdi_max(k.tol, s.error), &off, e)) break;
     }
     if (e->status >= 0) {
         hdi_fit_take(&k, &s, unit, out);
-        out->max_error = k.largest * (HDI_FIT_BETWEEN * error + hdi_fit_rounding(&s));
+        out->max_error = k.largest * (HDI_FIT_BETWEEN * off.plain + hdi_fit_rounding(&s));
         out->max_weighted_error =
-            k.largest * (HDI_FIT_BETWEEN * weighted + (1 + unit) * hdi_fit_rounding(&s));
+            k.largest * (HDI_FIT_BETWEEN * off.by_t + (1 + unit) * hdi_fit_rounding(&s));
     }
     (void)hdi_scope_end(&scope);
-    return e->status < 0 ? e->status : error > k.tol ? HD_WARN_ACCURACY : HD_OK;
+    return e->status < 0 ? e->status : off.fit > k.tol ? HD_WARN_ACCURACY : HD_OK;
 }
 
 /* ==== [22] poles ====
@@ -25816,7 +25843,7 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
 /* ---- distances ---- */
 
 /* Does the plan have a filter instead of exp? */
-static int hdi_heat_filter(const hd_heat *heat) { return heat->opts.rational && heat->opts.rational->t > 0; }
+static int hdi_heat_filtered(const hd_heat *heat) { return heat->opts.rational && heat->opts.rational->t > 0; }
 
 /* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source,
  * and bounds of their errors. The rational error of f is at most weighted times a form with diagonal g, and
@@ -25979,7 +26006,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     x->g = x->diag + n;
     x->spread = x->g + n;
     /* d^2 of a filter is the sum of the filter itself */
-    x->t = hdi_min((hdi_heat_filter(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
+    x->t = hdi_min((hdi_heat_filtered(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
     x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
     scope = hdi_scope_begin(heat->ctx, e);
     if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, rep, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0) {
@@ -27358,7 +27385,7 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
     c.work = HDI_TAKE(&s, double, 2 * n + 1);
     n_list = e.status < 0 ? 0 : hdi_pairs_vertices(x, order, list, place);
     if (e.status >= 0 &&
-        (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filter(heat)) ||
+        (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filtered(heat)) ||
          HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES)) {
         hdi_scope_end(&s);
         return hdi_pairs_by_entries(heat, x, t, rep);
@@ -30551,6 +30578,27 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     return c.e->status;
 }
 
+HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_error *err) {
+    hd_heat_opts *o = heat ? &heat->opts : NULL;
+    hdi_call c;
+    if (hdi_enter(&c, heat ? heat->ctx : NULL, err) < 0) return c.e->status;
+    if (!heat) return hdi_missing(c.e);
+    hdi_refuse(set && (o->method == HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
+               "heat: krylov and Lanczos have no use for a pole set", c.e);
+    if (c.e->status >= 0 && set) (void)hdi_rational_check(set, c.e);
+    if (c.e->status < 0) return c.e->status;
+    if (set) {
+        heat->own_set = *set;
+        heat->own_set.kind = HD_POLES_OWN;
+    }
+    o->rational = set ? &heat->own_set : NULL;
+    o->poles = HD_POLES_DEFAULT;
+    o->degree = 0;
+    heat->poles_asked = set != NULL;
+    heat->habit_spent = 0;
+    return HD_OK;
+}
+
 HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hd_context *ctx;
     if (!heat) return;
@@ -31061,7 +31109,7 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     h.relative = d != NULL;
-    if (d && hdi_heat_filter(heat)) (void)hdi_direct_only(&h);
+    if (d && hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
     if (h.e->status >= 0 && hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
         (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
     return hdi_heat_end(&h);

@@ -819,6 +819,68 @@ class Borders(Case):
         natural = self.field("hks", self.square, "--border", "natural", "--laplacian", "voronoi-cot", "--t", t)
         self.assertTrue(all(a[0] < b[0] for a, b in zip(u, natural)))
 
+    def filtered(self, i, j, f):
+        """The same for a filter f of the eigenvalues, and the eigenvalues themselves."""
+        n, total, values = self.N, 0.0, []
+        for p in range(1, n):
+            for q in range(1, n):
+                lam = 4 * n * n * (math.sin(p * math.pi / 2 / n) ** 2 + math.sin(q * math.pi / 2 / n) ** 2)
+                values.append(lam)
+                total += f(lam) * 4 / n ** 2 * (math.sin(p * math.pi * (i % (n + 1)) / n) * math.sin(p * math.pi * (j % (n + 1)) / n) *
+                                                math.sin(q * math.pi * (i // (n + 1)) / n) * math.sin(q * math.pi * (j // (n + 1)) / n))
+        return total, values
+
+    def test_filters(self):
+        n, source = self.N, 5 * (self.N + 1) + 4
+        common = [self.square, "--border", "dirichlet", "--laplacian", "voronoi-cot"]
+        filters = {"heat:0.02": lambda x: math.exp(-0.02 * x), "wave:5,0.4": lambda x: math.exp(-(5 - math.log(x)) ** 2 / 0.32),
+                   "mexican-hat:0.02": lambda x: x * math.exp(-0.02 * x), "resolvent:0.02": lambda x: 1 / (1 + 0.02 * x),
+                   "fractional:0.3,0.5": lambda x: math.exp(-0.3 * math.sqrt(x)), "band:50,200": lambda x: 1 / (1 + ((x - 10000 / x) / 150) ** 4),
+                   "biharmonic:30": lambda x: 1 / (x * x + 900)}
+        for name, f in filters.items():
+            want = [self.filtered(i, source, f)[0] for i in range((n + 1) ** 2)]
+            top = max(map(abs, want))
+            for method in ("direct", "iterative"):
+                u = self.field("kernel", *common, "--source", source, "--filter", name, "--method", method)
+                self.assertLess(max(abs(a[0] - b) for a, b in zip(u, want)), 1e-7 * top, name)
+            trace = sum(map(f, self.filtered(0, 0, f)[1]))
+            scale = n ** 2 / (trace if name.startswith("wave") else 1)
+            diagonal = [self.filtered(i, i, f)[0] for i in range((n + 1) ** 2)]
+            u = self.field("hks", *common, "--filter", name)
+            self.assertLess(max(abs(a[0] - scale * b) for a, b in zip(u, diagonal)), 1e-7 * scale * max(diagonal), name)
+            d = self.field("distance", *common, "--source", source, "--filter", name)
+            squares = [n ** 2 * (diagonal[i] + diagonal[source] - 2 * want[i]) for i in range((n + 1) ** 2)]
+            self.assertLess(max(abs(a[0] - math.sqrt(max(0, b))) for a, b in zip(d, squares)), 1e-5 * max(squares) ** 0.5, name)
+            d = self.field("pairs", *common, "--input", self.file("pairs.txt", "%d 40\n%d %d\n" % (source, source, source)), "--filter", name)
+            self.assertLess(abs(d[0][2] - want[40]) + abs(d[0][3] - squares[40] ** 0.5), 1e-6 * (top + max(squares) ** 0.5), name)
+            self.assertEqual(d[1][3], 0)
+
+    def test_filter_report(self):
+        out = self.path("f.csv")
+        r = json.loads(self.good("hks", self.square, "--filter", "wave:5,0.4", "--json", "-o", out).stderr)
+        self.assertEqual((r["filter"], r["poles"], r["times"], r["evidence"]["rational"], r["per_time"][0]["t"]), ("wave:5,0.4", "filter", [], "measured", None))
+        self.assertLess(r["filter_error"], 1.1e-10)
+        self.assertLess(0, r["error_rational"])
+        with open(out) as f:
+            self.assertEqual(f.readline().strip(), "hks_wave")
+        text = self.good("kernel", self.square, "--filter", "resolvent:10h2", "--source", 3, "-o", out).stderr.decode()
+        self.assertIn("filter resolvent:10h2 to ", text)
+        self.assertNotIn("conserved", text)
+        self.good("sample", self.square, "--filter", "heat:10h2", "--count", 3, "-o", out)
+        self.good("diffuse", self.square, "--filter", "band:20,80", "--input", self.file("ones.txt", "1\n" * (self.N + 1) ** 2), "-o", out)
+        self.assertIn("method direct", self.good("hks", self.square, "--filter", "heat:10h2", "--dry-run").stderr.decode())
+
+    def test_filter_refused(self):
+        for bad in ("heat", "heat:", "heat:0", "heat:-1", "heat:1,2", "heat:auto:3", "wave:3", "wave:3,0", "wave:3h2,1", "band:3,2", "band:1h2,2", "sine:3", "fractional:1", "biharmonic:0"):
+            self.assertIn("--filter takes heat:T, wave:E,SIGMA", self.bad(2, "hks", self.square, "--filter", bad))
+        self.assertIn("no --t", self.bad(2, "hks", self.square, "--filter", "heat:1", "--t", 1))
+        self.assertIn("no --degree", self.bad(2, "hks", self.square, "--filter", "heat:1", "--degree", 4))
+        self.assertIn("no --method krylov", self.bad(2, "kernel", self.square, "--source", 1, "--filter", "heat:1", "--method", "krylov"))
+        self.assertIn("no --solver lanczos", self.bad(2, "kernel", self.square, "--source", 1, "--filter", "heat:1", "--solver", "lanczos"))
+        self.assertIn("no --definition", self.bad(2, "distance", self.square, "--source", 1, "--filter", "heat:1", "--definition", "commute"))
+        self.assertIn("read off the factors", self.bad(2, "pairs", self.square, "--input", self.file("p.txt", "0 1\n"), "--filter", "heat:1", "--method", "iterative"))
+        self.bad(2, "geodesic", self.square, "--source", 0, "--filter", "heat:1")
+
     def test_report(self):
         text = self.good("info", self.square, "--border", "dirichlet").stdout.decode()
         self.assertRegex(text, "vertices held at zero +%d" % (4 * self.N))

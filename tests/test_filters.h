@@ -122,6 +122,24 @@ static void filt_honest(void) {
     CHECK(hd_rational_fit(&set, &f, 1e5, NULL, NULL) == HD_OK && set.degree < 16 && set.max_error < 1.06e-4);
 }
 
+/* A weight makes the error small where it is large, and says so. */
+static void filt_weight(void) {
+    hd_filter f = filt_make(HD_FILTER_WAVE, 3, 0.4);
+    hd_rational plain, set;
+    double off = 0;
+    int k;
+    f.tol = 1e-7;
+    CHECK(hd_rational_fit(&plain, &f, 1e5, NULL, NULL) == HD_OK);
+    f.weight = exp(-3);
+    CHECK(hd_rational_fit(&set, &f, 1e5, NULL, NULL) == HD_OK && set.degree <= 17);
+    for (k = 0; k <= 100000; k++) {
+        const double l = 1e5 * pow(10, -k / 1e4), e = fabs(filt_want(&f, l) - hd_rational_eval(&set, -set.t * l));
+        off = fmax(off, (1 + f.weight * l) * e);
+        CHECK(e <= set.max_error && (1 + set.t * l) * e <= set.max_weighted_error);
+    }
+    CHECK_MSG(off <= 1.1e-7 && set.max_weighted_error < 0.02 * plain.max_weighted_error, "error %g, reported %g, plain %g", off, set.max_weighted_error, plain.max_weighted_error);
+}
+
 static double filt_high_pass(double lambda, void *user) { return 1 - exp(-lambda * *(double *)user); }
 static double filt_bad(double lambda, void *user) { return lambda > *(double *)user ? HUGE_VAL : 1; }
 static double filt_zero(double lambda, void *user) { return 0 * lambda + *(double *)user; }
@@ -169,6 +187,7 @@ static void filt_arguments(void) {
     FILT_BAD(f.b = (double)INFINITY);
     FILT_BAD(f.tol = -1);
     FILT_BAD(f.tol = 1);
+    FILT_BAD(f.weight = -1);
     FILT_BAD(f.max_degree = -1);
     FILT_BAD(f.max_degree = HD_MAX_POLES + 1);
     FILT_BAD(f.lambda_min = -1);
@@ -332,6 +351,55 @@ static void filt_distances(const filt_case *x) {
     free(to);
 }
 
+/* One plan, many filters, and heat in between: the answers of plans of their own. */
+static void filt_one_plan(void) {
+    shape s = shape_icosphere(1);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const double top = hd_laplacian_lambda_max(lap), t = 4 * lap->h * lap->h;
+    hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
+    hd_heat *one = eng_create(lap, &o), *krylov;
+    double *D = DENSE_NEW(double, s.n), *want = DENSE_NEW(double, s.n), *u = DENSE_NEW(double, s.n), *heat = DENSE_NEW(double, s.n);
+    hd_filter f[FILT_LIST];
+    hd_rational set;
+    hd_report rep;
+    hd_error e;
+    int q;
+    CHECK(heat_diagonal(one, 1, &t, HD_KERNEL_SYMMETRIC, heat, 0, NULL) == HD_OK);
+    filt_list(f, 1e-3 * top, top);
+    for (q = 0; q < FILT_LIST; q++) {
+        hd_heat *own;
+        if (!CHECK(hd_rational_fit(&set, f + q, top, NULL, &e) == HD_OK)) continue;
+        CHECK(hd_heat_filter(one, &set, &e) == HD_OK);
+        o.rational = &set;
+        own = eng_create(lap, &o);
+        CHECK(heat_diagonal(own, 1, &set.t, HD_KERNEL_SYMMETRIC, want, 0, NULL) >= 0 && heat_diagonal(one, 1, &set.t, HD_KERNEL_SYMMETRIC, D, 0, &rep) >= 0);
+        CHECK(dense_max_diff(D, want, s.n) == 0 && rep.n_poles == set.n_poles);
+        CHECK(heat_column(own, set.t, 5, want, NULL) >= 0 && heat_column(one, set.t, 5, u, NULL) >= 0);
+        CHECK(dense_max_diff(u, want, s.n) <= 1e-8 * dense_max_abs(want, s.n));
+        CHECK(heat_column(one, t, 5, u, NULL) == HD_ERR_ARGUMENT);
+        hd_heat_free(own);
+        if (q % 3) continue;
+        CHECK(hd_heat_filter(one, NULL, &e) == HD_OK && heat_diagonal(one, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_OK);
+        CHECK(dense_max_diff(D, heat, s.n) == 0 && rep.poles != HD_POLES_OWN);
+    }
+    CHECK(hd_heat_filter(NULL, &set, &e) == HD_ERR_ARGUMENT);
+    set.theta[0].im = -1;
+    CHECK(hd_heat_filter(one, &set, &e) == HD_ERR_ARGUMENT && e.pole == 0);
+    set.theta[0].im = 1;
+    o.rational = NULL;
+    o.method = HD_METHOD_KRYLOV;
+    krylov = eng_create(lap, &o);
+    CHECK(hd_heat_filter(krylov, &set, &e) == HD_ERR_ARGUMENT && strstr(e.text, "krylov") && hd_heat_filter(krylov, NULL, &e) == HD_OK);
+    hd_heat_free(krylov);
+    hd_heat_free(one);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(D);
+    free(want);
+    free(u);
+    free(heat);
+}
+
 static void filt_on(const heat_case *c, const hd_filter *f, const char *what) {
     static const hd_method methods[2] = {HD_METHOD_DIRECT, HD_METHOD_ITERATIVE};
     const int32_t n = c->lap->n_active;
@@ -450,9 +518,11 @@ static void test_filters(void) {
     filt_sets();
     filt_known();
     filt_honest();
+    filt_weight();
     filt_own();
     filt_arguments();
     filt_queries();
+    filt_one_plan();
     filt_refused();
 }
 

@@ -319,6 +319,11 @@ static const word DEFINITIONS[] = {
 static const word KERNELS[] = { { "operator", HD_KERNEL_OPERATOR }, { "symmetric", HD_KERNEL_SYMMETRIC },
                                 { NULL, 0 } };
 
+static const word FILTERS[] = {
+    { "heat", HD_FILTER_HEAT }, { "wave", HD_FILTER_WAVE }, { "mexican-hat", HD_FILTER_MEXICAN_HAT },
+    { "resolvent", HD_FILTER_RESOLVENT }, { "fractional", HD_FILTER_FRACTIONAL },
+    { "band", HD_FILTER_BAND }, { "biharmonic", HD_FILTER_BIHARMONIC }, { NULL, 0 } };
+
 static const word COLORMAPS[] = {
     { "ember", PIC_MAP_EMBER }, { "lagoon", PIC_MAP_LAGOON }, { "diverging", PIC_MAP_DIVERGING },
     { "grey", PIC_MAP_GREY }, { NULL, 0 } };
@@ -376,6 +381,10 @@ typedef struct options {
     int n_inputs, n_meshes;
     time_spec *times;                /* as written; absolute times are known once h is */
     int n_times;
+    const char *filter;              /* as written; NULL: none, times are given */
+    int filter_kind;
+    time_spec filter_a;              /* absolute or h2 */
+    double filter_b;
     int64_t *sources;                /* 64 bits, so that ids beyond any mesh are told as what they are */
     int n_sources;
     const char *input, *output, *title;
@@ -591,6 +600,35 @@ static int parse_times(options *o, const option_def *def, const char *text)
     }
 }
 
+/* NAME:A or NAME:A,B. Filters whose A is a time take multiples of h^2 too. */
+static int parse_filter(options *o, const option_def *def, const char *text)
+{
+    const char *colon = strchr(text, ':'), *end;
+    const size_t length = colon ? (size_t)(colon - text) : 0;
+    char name[16] = "";
+    const word *w;
+    int timely, two;
+    if (length == 0 || length >= sizeof name) return 0;
+    memcpy(name, text, length);
+    w = find_word(def->words, name);
+    if (!w) return 0;
+    timely = w->value == HD_FILTER_HEAT || w->value == HD_FILTER_MEXICAN_HAT ||
+             w->value == HD_FILTER_RESOLVENT;
+    two = w->value == HD_FILTER_WAVE || w->value == HD_FILTER_FRACTIONAL || w->value == HD_FILTER_BAND;
+    o->filter = text;
+    o->filter_kind = w->value;
+    if (w->value == HD_FILTER_WAVE) {            /* the logarithm of an eigenvalue has either sign */
+        o->filter_a.unit = TIME_ABSOLUTE;
+        if (!read_number(colon + 1, &o->filter_a.value, &end)) return 0;
+    } else if (!read_time(colon + 1, &o->filter_a, &end) || !(o->filter_a.value > 0)) {
+        return 0;
+    }
+    if (o->filter_a.unit == TIME_AUTO || (o->filter_a.unit == TIME_H2 && !timely)) return 0;
+    if (!two) return *end == 0;
+    return *end == ',' && read_real(end + 1, &o->filter_b) && o->filter_b > 0 &&
+           (w->value != HD_FILTER_BAND || o->filter_b > o->filter_a.value);
+}
+
 static int parse_weight_cut(options *o, const option_def *def, const char *text)
 {
     (void)def;
@@ -629,6 +667,16 @@ static const option_def OPTIONS[] = {
       "times >= 0: numbers such as 0.01, multiples of h^2 such as 10h2, or auto:K for K of them",
       "diffusion times: absolute (0.01), multiples of the squared\n"
       "mean edge length (10h2), or auto:K, K times that suit the area" },
+    { "filter", 0, CMD_HEAT, 1, parse_filter, 0, FILTERS, 0, 0, "NAME:A[,B]",
+      "heat:T, wave:E,SIGMA, mexican-hat:T, resolvent:T, fractional:T,S, band:LOW,HIGH or "
+      "biharmonic:FLOOR",
+      "instead of --t: f(lambda) of the eigenvalues instead of exp. heat:T\n"
+      "exp(-T lambda); wave:E,SIGMA exp(-(E - log lambda)^2/(2 SIGMA^2)),\n"
+      "whose hks is divided by its integral: the wave kernel signature;\n"
+      "mexican-hat:T lambda exp(-T lambda); resolvent:T 1/(1 + T lambda);\n"
+      "fractional:T,S exp(-T lambda^S); band:LOW,HIGH from LOW to HIGH;\n"
+      "biharmonic:FLOOR 1/(lambda^2 + FLOOR^2). T may be 10h2 where it\n"
+      "is a time. d^2 of distances is the sum of f itself" },
     { "t", 0, CMD_GEODESIC, 1, parse_times, 0, NULL, 0, 0, "T",
       "one time > 0: a number such as 0.01, or a multiple of h^2 such as 4h2",
       "how long heat flows, absolute or in h2 (default: 1h2); longer\n"
@@ -951,6 +999,14 @@ static int check_method(const options *o)
     if (o->method == HD_METHOD_KRYLOV && (o->degree || o->poles))
         return fail(USAGE, "%s takes --method auto, direct or iterative: krylov has no poles",
                     o->degree ? "--degree" : "--poles");
+    if (o->filter && (o->degree || o->poles || o->method == HD_METHOD_KRYLOV ||
+                      o->solver == HD_SOLVER_LANCZOS))
+        return fail(USAGE, "--filter takes no %s: its poles are made for it, and it needs them",
+                    o->degree ? "--degree" : o->poles ? "--poles"
+                    : o->solver ? "--solver lanczos" : "--method krylov");
+    if (o->filter && o->command == CMD_PAIRS && (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
+        return fail(USAGE,
+                    "--method takes auto or direct here: distances of a filter are read off the factors");
     if ((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
         return fail(USAGE, "%s takes --method iterative or auto: %s does not iterate over systems", iterating,
                     name);
@@ -973,6 +1029,10 @@ static int check_times(const options *o)
 {
     const char *name = command_name(o->command);
     int i;
+    if (o->filter && (o->times || is_timeless(o)))
+        return fail(USAGE, "--filter takes no %s beside it: the filter says it all",
+                    o->times ? "--t" : "--definition commute or biharmonic");
+    if (o->filter) return DONE;
     if (is_timeless(o)) {
         if (o->times)
             return fail(USAGE, "--t takes --definition classical or weighted: %s has no time",
@@ -1320,10 +1380,9 @@ static const char *precond_name(const hd_report *r)
     return r->precond == HD_PRECOND_AUTO ? "none" : word_of(PRECONDS, (int)r->precond);
 }
 
-/* Commute and biharmonic distances use poles on a circle. */
 static const char *poles_name(const hd_report *r)
 {
-    return r->poles == HD_POLES_DEFAULT ? "none" : r->poles == HD_POLES_OWN ? "circle"
+    return r->poles == HD_POLES_DEFAULT ? "none" : r->poles == HD_POLES_OWN ? "filter"
            : word_of(POLES, (int)r->poles);
 }
 
@@ -1498,6 +1557,7 @@ typedef struct run {
     double *times;                   /* resolved */
     char (*time_names)[NAME_SIZE];   /* "10h2", "0.01" */
     int n_times;
+    hd_rational filter;              /* with --filter */
     int32_t *sources;
     int n_inputs;                    /* sources, or fields given */
     const double *fields;            /* mesh.n x n_inputs, or NULL: the kernel columns of the sources */
@@ -1732,6 +1792,48 @@ static double auto_time(const run *r, int i, int count)
                                       count > 1 ? i / (double)(count - 1) : 0.5);
 }
 
+/* A number that all eigenvalues but those of constants are above, for filters that are not smooth at 0. */
+static int filter_gap(run *r, double *gap)
+{
+    hd_spectrum_opts opts;
+    hd_spectrum *s = NULL;
+    hd_error err;
+    hd_status status;
+    memset(&opts, 0, sizeof opts);
+    opts.count = r->lap->n_components + 1;
+    opts.ordering = (hd_ordering)r->o->ordering;
+    opts.context = &r->context;
+    *gap = 0;
+    if (opts.count > r->lap->n_active) return DONE;
+    status = hd_spectrum_create(&s, r->lap, &opts, &err);
+    if (status < 0) return fail_library(r->mesh_name, &err);
+    if (s->proven && s->n_poor == 0 && s->n_constant < s->count) *gap = 0.99 * s->value[s->n_constant];
+    hd_spectrum_free(s);
+    return DONE;
+}
+
+/* The pole set of --filter, whose time is its own. */
+static int run_filter(run *r)
+{
+    const options *o = r->o;
+    const double h2 = r->lap->h * r->lap->h;
+    hd_filter f;
+    hd_error err;
+    memset(&f, 0, sizeof f);
+    f.kind = (hd_filter_kind)o->filter_kind;
+    f.a = o->filter_a.value * (o->filter_a.unit == TIME_H2 ? h2 : 1);
+    f.b = o->filter_b;
+    if (f.kind == HD_FILTER_FRACTIONAL) {
+        const int code = filter_gap(r, &f.lambda_min);
+        if (code) return code;
+    }
+    if (hd_rational_fit(&r->filter, &f, hd_laplacian_lambda_max(r->lap), &r->context, &err) < 0)
+        return fail_library(r->mesh_name, &err);
+    r->times[0] = r->filter.t;
+    snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s", word_of(FILTERS, o->filter_kind));
+    return DONE;
+}
+
 static int run_times(run *r)
 {
     static const time_spec usual = { TIME_H2, 1 };       /* of geodesic, when --t is not given */
@@ -1744,6 +1846,7 @@ static int run_times(run *r)
     r->time_names = (char (*)[NAME_SIZE])malloc((size_t)total * sizeof *r->time_names);
     r->sum.per_time = (hd_report *)calloc((size_t)total, sizeof *r->sum.per_time);
     if (!r->times || !r->time_names || !r->sum.per_time) return fail_memory("the times");
+    if (o->filter) return run_filter(r);
     if (is_timeless(o)) {                /* a time in name only */
         r->times[0] = 0;
         snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s",
@@ -1809,6 +1912,7 @@ static int run_plan(run *r)
     opts.precond = (hd_precond)o->precond;
     opts.poles = (hd_pole_kind)o->poles;
     opts.degree = (int32_t)o->degree;
+    opts.rational = o->filter ? &r->filter : NULL;
     opts.tol = o->tol;
     opts.max_iterations = (int32_t)o->max_iterations;
     opts.context = &r->context;
@@ -2151,6 +2255,27 @@ static int solved_time(run *r, int k, hd_status status, hd_report *report)
     return DONE;
 }
 
+/* Makes the diagonal of a wave filter the wave kernel signature: divides by the sum of the filter over all
+ * eigenvalues, which is the sum of the diagonal of K. */
+static int normalise_waves(run *r)
+{
+    double *diagonal = new_columns(r->mesh.n, 1), sum = 0;
+    hd_report report;
+    int64_t i;
+    if (!diagonal) return fail_memory("the result");
+    if (hd_heat_diagonal(r->heat, HD_KERNEL_OPERATOR, 1, r->times, diagonal, 0, &report, NULL) < 0) {
+        free(diagonal);
+        return fail_solve(r, &report, 0);
+    }
+    for (i = 0; i < r->mesh.n; i++)
+        if (r->lap->row[i] >= 0) sum += diagonal[i];
+    free(diagonal);
+    for (i = 0; i < r->mesh.n; i++) r->values[i] /= sum;
+    r->sum.worst.smallest /= sum;
+    r->sum.per_time[0].smallest /= sum;
+    return DONE;
+}
+
 /* Signatures, or distances from all sources, at all times together: many times share their factors and cost
  * little more than one. There is one report for all times. */
 static int solve_inverse(run *r)
@@ -2165,7 +2290,7 @@ static int solve_inverse(run *r)
     if (status < 0) return fail_solve(r, &report, 0);
     for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
     summary_add(&r->sum, &report, NULL, 0);
-    return DONE;
+    return o->command == CMD_HKS && o->filter_kind == HD_FILTER_WAVE ? normalise_waves(r) : DONE;
 }
 
 /* Kernel and distance of the pairs at time k, in two columns. Distances without a time have one column. */
@@ -2406,7 +2531,7 @@ static void json_values(json *j, const hd_report *p)
     json_integer(j, "lost", p->n_lost);
 }
 
-/* A distance without a time has NaN as its time, which is written as null. */
+/* A distance without a time and a filter have NaN as their time, which is written as null. */
 static void json_time(FILE *out, double t, const hd_report *p)
 {
     json j;
@@ -2439,7 +2564,11 @@ static void json_query(json *j, const run *r)
     else if (o->input) json_text(j, "input", o->input);
     if (o->command == CMD_PAIRS) json_integer(j, "pairs", r->rows);
     if (o->command == CMD_SAMPLE) json_integer(j, "count", r->rows);
-    json_numbers(j, "times", r->times, is_timeless(o) ? 0 : r->n_times);
+    if (o->filter) {
+        json_text(j, "filter", o->filter);
+        json_number(j, "filter_error", r->filter.max_error / r->filter.largest);
+    }
+    json_numbers(j, "times", r->times, o->filter || is_timeless(o) ? 0 : r->n_times);
 }
 
 static void json_heat(json *j, const run *r)
@@ -2465,7 +2594,7 @@ static void json_heat(json *j, const run *r)
     fputc('[', j->out);
     for (k = 0; k < r->n_times; k++) {
         if (k) fprintf(j->out, ", ");
-        json_time(j->out, is_timeless(r->o) ? (double)NAN : r->times[k], &r->sum.per_time[k]);
+        json_time(j->out, r->o->filter || is_timeless(r->o) ? (double)NAN : r->times[k], &r->sum.per_time[k]);
     }
     fputc(']', j->out);
 }
@@ -2519,7 +2648,10 @@ static void print_query(const run *r)
                 plural(r->rows));
     else if (o->command != CMD_HKS)
         fprintf(stderr, "%d %s%s, ", r->n_inputs, r->sources ? "source" : "field", plural(r->n_inputs));
-    if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
+    if (o->filter)
+        fprintf(stderr, "filter %s to %.1e of its largest value, ", o->filter,
+                r->filter.max_error / r->filter.largest);
+    else if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
     if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
     fprintf(stderr, "%s Laplacian%s\n", word_of(LAPLACIANS, (int)r->lap->kind),
             o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
@@ -2555,7 +2687,8 @@ static void print_errors(const run *r)
     } else {
         fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm)", w->error_bound,
                 w->error_bound_b);
-        if (r->lap->conserves == 1) fprintf(stderr, ", heat conserved to %.1e\n", w->mass_drift);
+        if (r->o->filter) fprintf(stderr, "\n");
+        else if (r->lap->conserves == 1) fprintf(stderr, ", heat conserved to %.1e\n", w->mass_drift);
         else fprintf(stderr, ", heat leaves at the border\n");
     }
     if (w->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(w->status));
@@ -2965,7 +3098,8 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
     char when[64];
     time_text(r->time_names[c % r->n_times], when, sizeof when);
     if (is_timeless(r->o)) snprintf(when, sizeof when, "%s", r->time_names[0]);
-    if (r->o->command == CMD_HKS) snprintf(title, size, "Heat kernel signature, %s", when);
+    if (r->o->filter) snprintf(when, sizeof when, "filter %.40s", r->o->filter);
+    if (r->o->command == CMD_HKS) snprintf(title, size, "%s, %s", r->o->filter ? "Diagonal" : "Heat kernel signature", when);
     else if (r->o->command == CMD_DISTANCE)
         snprintf(title, size, "Diffusion distance from vertex %ld, %s", (long)r->sources[q], when);
     else if (r->o->command == CMD_GEODESIC)
