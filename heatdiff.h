@@ -119,9 +119,10 @@
                                NO_GEODESIC. b_ratio of hd_laplacian_matrices is that of Gershgorin's circles
      HEATDIFF_NO_POLE_FACTORS  factors of complex matrices: method direct, hd_ldl_*_complex; implies
                                NO_DIAGONAL
-     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_heat_edges, hd_ldl_inverse*, diagonal
-                               pole sets; implies NO_DIFFUSION. Bounds of the error of method direct are
-                               larger, and times so large that only the means are left take longer
+     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_heat_normalised, hd_heat_trace,
+                               hd_heat_scale_invariant, hd_heat_edges, hd_ldl_inverse*, diagonal pole sets;
+                               implies NO_DIFFUSION. Bounds of the error of method direct are larger, and
+                               times so large that only the means are left take longer
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample
      HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Pole sets of your choice need
                                method direct then, and factors that do not fit byte_limit are an error
@@ -25743,33 +25744,48 @@ static void hdi_signature_normalise(const hd_laplacian *lap, int32_t n_times, do
                                     const double *Z, hd_report *rep, const hd_report *trace) {
     const double r = trace->error_relative, grow = r < 0.5 ? 1 / (1 - r) : HUGE_VAL;
     int32_t q, v;
+    rep->smallest = HUGE_VAL;
     for (q = 0; q < n_times; q++) {
         double *d = D + HDI_CAST(size_t, q) * ldd;
-        for (v = 0; v < lap->n; v++) d[v] = d[v] == 0 ? 0 : d[v] / Z[q];
+        for (v = 0; v < lap->n; v++) {
+            if (d[v] == 0) continue;
+            d[v] /= Z[q];
+            rep->smallest = hdi_min(rep->smallest, fabs(d[v]));
+        }
     }
+    if (!hdi_finite(rep->smallest)) rep->smallest = 0;
     rep->error_rational = hdi_bound_times(grow, rep->error_rational + trace->error_rational);
     rep->error_rounding = hdi_bound_times(grow, rep->error_rounding + trace->error_rounding);
     rep->error_bound = hdi_bound_times(grow, rep->error_bound + r);
     rep->error_relative = hdi_bound_times(grow, rep->error_relative + r);
     hdi_evidence_worst(&rep->evidence_rational, trace->evidence_rational);
     hdi_evidence_worst(&rep->evidence_rounding, trace->evidence_rounding);
-    rep->smallest = 0;                           /* of the values before */
     hdi_bound_judge(rep->error_bound, rep);
 }
 
 /* |sum_j (log h_(j+1) - log h_j) exp(-2 pi i jk/m)| over j < m, h_j at x + stride j, for k < n_freq, into out
- * + ldd k. Returns 0, and zeros, where a value has no logarithm. circle [2 m]: cosines and sines. */
-static int hdi_signature_spectrum(const double *x, size_t stride, int32_t m, const double *circle,
-                                  int32_t n_freq, double *out, size_t ldd) {
+ * + ldd k. Returns 0, and zeros, where a value has no logarithm. at [2 m]: cosines and sines of the circle;
+ * step [m]: work. */
+typedef struct hdi_circle { int32_t m; double *at, *step; } hdi_circle;
+
+static int hdi_signature_spectrum(const hdi_circle *c, const double *x, size_t stride, int32_t n_freq,
+                                  double *out, size_t ldd) {
+    double before = 0;
     int32_t j, k, ok = 1;
-    for (j = 0; j <= m; j++) ok = ok && x[HDI_CAST(size_t, j) * stride] > 0;
+    for (j = 0; j <= c->m; j++) {
+        const double h = x[HDI_CAST(size_t, j) * stride], now = h > 0 ? log(h) : 0;
+        ok = ok && h > 0;
+        if (j > 0) c->step[j - 1] = now - before;
+        before = now;
+    }
     for (k = 0; k < n_freq; k++) {
         double re = 0, im = 0;
-        for (j = 0; j < m && ok; j++) {
-            const double *h = x + HDI_CAST(size_t, j) * stride, d = log(h[stride]) - log(h[0]);
-            const int32_t at = HDI_CAST(int32_t, HDI_CAST(int64_t, j) * k % m);
-            re += d * circle[2 * at];
-            im -= d * circle[2 * at + 1];
+        int32_t at = 0;
+        for (j = 0; j < c->m && ok; j++) {
+            re += c->step[j] * c->at[2 * at];
+            im -= c->step[j] * c->at[2 * at + 1];
+            at += k;
+            if (at >= c->m) at -= c->m;
         }
         out[HDI_CAST(size_t, k) * ldd] = hypot(re, im);
     }
@@ -25799,7 +25815,8 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     const int32_t n_times = h->ask.n_times, m = n_times - 1;
     const size_t n = HDI_CAST(size_t, lap->n);
     double *x = HDI_TAKE(&h->s, double, HDI_CAST(uint64_t, n) * HDI_CAST(uint64_t, n_times));
-    double *circle = HDI_TAKE(&h->s, double, 2 * HDI_CAST(uint64_t, m)), largest = 0;
+    double *circle = HDI_TAKE(&h->s, double, 3 * HDI_CAST(uint64_t, m)), largest = 0;
+    hdi_circle c;
     size_t v;
     int32_t j, sure = 1;
     if (h->e->status < 0 || hdi_diagonal_run(h, HD_KERNEL_SYMMETRIC, x, n) < 0) return h->e->status;
@@ -25807,8 +25824,11 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
         circle[2 * j] = cos(two_pi * j / m);
         circle[2 * j + 1] = sin(two_pi * j / m);
     }
+    c.m = m;
+    c.at = circle;
+    c.step = circle + 2 * HDI_CAST(size_t, m);
     for (v = 0; v < n; v++) {
-        const int ok = hdi_signature_spectrum(x + v, n, m, circle, n_freq, D + v, ldd);
+        const int ok = hdi_signature_spectrum(&c, x + v, n, n_freq, D + v, ldd);
         sure = sure && (ok || lap->row[v] < 0);
         for (j = 0; j < n_freq; j++) largest = hdi_max(largest, D[HDI_CAST(size_t, j) * ldd + v]);
     }

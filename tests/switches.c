@@ -109,6 +109,12 @@ static double heat_of(int i, int j, double t) {
     return between(i, j, 1, exp(-4 * w * t), exp(-6 * w * t));
 }
 
+/* The derivative in t. */
+static double rate_of(int i, int j, double t) {
+    const double w = 1 / sqrt(3.0);
+    return between(i, j, 0, -4 * w * exp(-4 * w * t), -6 * w * exp(-6 * w * t));
+}
+
 static hd_laplacian *octahedron(hd_laplacian_opts *o) {
     hd_laplacian *lap = NULL;
     o->kind = HD_LAPLACIAN_COT;
@@ -133,6 +139,15 @@ static void check_columns(hd_heat *heat) {
     for (i = 0; i < 6; i++) {
         double sum = 0;
         for (j = 0; j < 6; j++) sum += heat_of(i, j, T) * f[j];
+        CHECK(fabs(u[i] - sum) <= 2e-6);
+    }
+    /* L is symmetric and B is the identity: K_t is its own adjoint */
+    CHECK(hd_heat_adjoint(heat, 1, t, 1, f, 0, u + 6, 0, NULL, &err) == HD_OK);
+    for (i = 0; i < 6; i++) CHECK(fabs(u[i] - u[6 + i]) <= 2e-6);
+    CHECK(hd_heat_derivative(heat, 1, t, 1, f, 0, u, 0, NULL, &err) >= 0);
+    for (i = 0; i < 6; i++) {
+        double sum = 0;
+        for (j = 0; j < 6; j++) sum += rate_of(i, j, T) * f[j];
         CHECK(fabs(u[i] - sum) <= 2e-6);
     }
     CHECK(hd_heat_entries(heat, HD_KERNEL_SYMMETRIC, 1, t, 2, tri, tri + 1, u, NULL, &err) == HD_OK);
@@ -183,6 +198,12 @@ static void check_signatures(const hd_laplacian *lap) {
     else CHECK(rep.status == HD_ERR_NOT_BUILT);
     if (BUILT(hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, 1, &t, values, NULL, &err), no.diagonal))
         CHECK(near_to(values[0], heat_of(0, 0, T)) || near_to(values[0], heat_of(0, 2, T)));
+    if (BUILT(hd_heat_trace(heat, 1, &t, values, NULL, NULL, &err), no.diagonal)) CHECK(near_to(values[0], 6 * heat_of(0, 0, T)));
+    if (BUILT(hd_heat_normalised(heat, 1, &t, d, 0, NULL, &err), no.diagonal)) CHECK(near_to(d[3], 1 / 6.0));
+    if (BUILT(hd_heat_scale_invariant(heat, T, 2 * T, 3, 2, values, 0, NULL, &err), no.diagonal))
+        CHECK(near_to(values[0], log(heat_of(0, 0, T) / heat_of(0, 0, 2 * T))));
+    if (BUILT(hd_times_spectral(lap, 1, &t, values, &err), no.direct)) CHECK(near_to(values[0], T / (4 / sqrt(3.0))));
+    CHECK(hd_times_auto(lap, 2, values, &err) == HD_OK && near_to(values[0], 6 * 0.0024) && near_to(values[1], 6 * 0.37));
     if (BUILT(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, d, 0, NULL, &err), no.diffusion))
         CHECK(d[0] == 0 && near_to(d[2], sqrt(2 * off)) && near_to(d[5], d[2]) && d[1] > d[2]);
     if (BUILT(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, &two, values, d, NULL, &err), no.diffusion))

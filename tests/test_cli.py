@@ -25,7 +25,7 @@ import zlib
 
 TOOL = None
 POSIX = os.name == "posix"
-COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "sample", "geodesic", "spectrum", "render", "demo")
+COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "trace", "sample", "geodesic", "spectrum", "render", "demo")
 
 
 # ---- meshes ----
@@ -1272,6 +1272,77 @@ class Distances(Case):
                     want = matrix(self.L, self.mass(kind), t)
                     for i in range(25):
                         self.assertAlmostEqual(got[i][k] / want[i][i], 1, delta=2e-7)
+
+    def test_trace_and_normalised_signature(self):
+        times = (0.05, 1.0, 30.0)
+        given = ",".join(map(str, times))
+        for kind in ("fem", "cot"):
+            rows = self.field("trace", self.dense, "--laplacian", kind, "--t", given)
+            got = self.field("hks", self.dense, "--laplacian", kind, "--t", given, "--normalise")
+            self.assertEqual((len(rows), len(rows[0])), (3, 3))
+            for k, t in enumerate(times):
+                K, k_t = heat_matrix(self.L, self.mass(kind), t), kernel_matrix(self.L, self.mass(kind), t)
+                trace = sum(K[i][i] for i in range(25))
+                self.assertEqual(rows[k][0], t)
+                self.assertLessEqual(abs(rows[k][1] - trace), rows[k][2] + 1e-12 * trace)
+                self.assertLess(rows[k][2], 1e-6 * trace)
+                for i in range(25):
+                    self.assertAlmostEqual(got[i][k] * trace / k_t[i][i], 1, delta=4e-7)
+        self.assertEqual(self.good("trace", self.dense, "--t", "1,2h2,1/l1", "-o", self.path("trace.csv")).stdout, b"")
+        with open(self.path("trace.csv"), encoding="utf-8") as f:
+            self.assertEqual(f.readline().strip(), "t,trace,bound")
+            self.assertEqual(len(f.readlines()), 3)
+
+    def test_times_by_the_first_eigenvalue(self):
+        """1/l1 is one over the second eigenvalue; times of auto:K lie between 0.0024 and 0.37 of the area."""
+        r = self.report("spectrum", self.torus, "-k", 2)
+        t = self.report("hks", self.torus, "--t", "1/l1,0.1/l1,auto:3")["times"]
+        self.assertAlmostEqual(t[0] * r["eigenvalues"][1], 1, delta=1e-9)
+        self.assertAlmostEqual(t[1] / t[0], 0.1, delta=1e-12)
+        for k, part in enumerate((0.0024, math.sqrt(0.0024 * 0.37), 0.37)):
+            self.assertAlmostEqual(t[2 + k] / r["area"] / part, 1, delta=1e-9)
+        for path, name in ((self.path("l1.csv"), "v3_0.5/l1"),):
+            self.good("kernel", self.torus, "--source", 3, "--t", "0.5/l1", "-o", path)
+            with open(path, encoding="utf-8") as f:
+                self.assertEqual(f.readline().strip(), name)
+
+    def test_scale_invariant_signature(self):
+        """By its definition from signatures at the times told, and nearly the same on a mesh of another size."""
+        args = ("--scale-invariant", 4, "--t", "1e-6,1e4")
+        got, r = self.field("hks", self.dense, *args), self.report("hks", self.dense, *args)
+        times = r["times"]
+        m = len(times) - 1
+        self.assertEqual((len(got[0]), m), (4, round(16 * math.log2(1e10))))
+        logs = [[math.log(x) for x in row] for row in self.field("hks", self.dense, "--t", ",".join(map(repr, times)))]
+        want = [[abs(sum((row[j + 1] - row[j]) * complex(math.cos(2 * math.pi * j * k / m), -math.sin(2 * math.pi * j * k / m)) for j in range(m)))
+                 for k in range(4)] for row in logs]
+        largest = max(map(max, want))
+        self.assertLess(max(abs(a - b) for x, y in zip(got, want) for a, b in zip(x, y)), 1e-5 * largest)
+        self.assertLess(r["error_bound"], 1e-4)
+        scaled = self.file("scaled.obj", obj_text([tuple(3 * c for c in p) for p in self.mesh[0]], self.mesh[1]))
+        moved = self.field("hks", scaled, *args)
+        self.assertLess(max(abs(a - b) for x, y in zip(got, moved) for a, b in zip(x, y)), 1e-2 * largest)
+        self.good("hks", self.dense, *args, "-o", self.path("si.csv"))
+        with open(self.path("si.csv"), encoding="utf-8") as f:
+            self.assertEqual(f.readline().strip(), "si_0,si_1,si_2,si_3")
+
+    def test_forms_of_signatures_refuse(self):
+        def refused(text, *args):
+            self.assertIn(text, self.bad(2, *args))
+        refused("--kernel symmetric", "hks", self.dense, "--t", 1, "--normalise", "--kernel", "operator")
+        refused("beside it", "hks", self.dense, "--t", "1,2", "--normalise", "--scale-invariant", 3)
+        refused("first and the last", "hks", self.dense, "--t", "1", "--scale-invariant", 3)
+        refused("first and the last", "hks", self.dense, "--t", "1,auto:4", "--scale-invariant", 3)
+        refused("--scale-invariant takes", "hks", self.dense, "--t", "1,2", "--scale-invariant", 0)
+        refused("--normalise is not an option", "kernel", self.dense, "--t", 1, "--source", 0, "--normalise")
+        refused("times > 0", "trace", self.dense, "--t", "0")
+        refused("needs --t", "trace", self.dense)
+        refused("--dry-run is not an option", "trace", self.dense, "--t", 1, "--dry-run")
+        refused("--dry-run takes", "hks", self.dense, "--t", 1, "--normalise", "--dry-run")
+        refused("--t takes", "hks", self.dense, "--t", "1/l2")
+        refused("--t takes", "hks", self.dense, "--t", "auto:3/l1")
+        refused("--bandwidth takes", "info", self.dense, "--bandwidth", "1/l1")
+        self.assertIn("not above the first", self.bad(1, "hks", self.dense, "--t", "2,1", "--scale-invariant", 3))
 
     def test_distances_are_dense_ones(self):
         for kind in ("fem", "cot"):

@@ -139,6 +139,55 @@ class Dense(unittest.TestCase):
             d = heat.distance(None, 3, kind="HD_DISTANCE_" + kind)[:, 0]
             self.assertLess(abs(d - want).max(), 1e-6 * want.max(), kind)
 
+    def test_derivatives_and_adjoints(self):
+        """By dense matrices, and the gradients of a loss by differences."""
+        xyz, tri, _ = bumpy(9)
+        L, B = cotangents(xyz, tri)
+        rng = np.random.default_rng(3)
+        for kind, mass in (("FEM", B), ("VORONOI_COT", voronoi(xyz, tri))):
+            lap = hd.triangles(xyz, tri, kind="HD_LAPLACIAN_" + kind)
+            A, t, f = np.linalg.solve(mass, L), np.array([2, 20]) * lap.h ** 2, rng.standard_normal((81, 3))
+            want = [scipy.linalg.expm(-s * A) for s in t]
+            for method in ("DIRECT", "KRYLOV", "ITERATIVE"):
+                heat = hd.Heat(lap, method="HD_METHOD_" + method)
+                rate, dual = heat.derivative(t, f), heat.adjoint(t, f)
+                for m, K in enumerate(want):
+                    self.assertLess(abs(rate[:, m::2] + A @ K @ f).max(), 1e-7 * abs(A @ K @ f).max())
+                    self.assertLess(abs(dual[:, m::2] - K.T @ f).max(), 1e-7 * abs(K.T @ f).max())
+            heat = hd.Heat(lap, method="HD_METHOD_DIRECT", poles="HD_POLES_KERNEL", degree=14)
+            g, d = rng.standard_normal((81, 6)), rng.standard_normal((81, 3))
+            by_t, by_f = heat.vjp(t, f, g)
+            loss = lambda t, f: np.sum(g * heat.apply(t, f))
+            for m in range(2):
+                step = 1e-4 * t[m] * np.eye(2)[m]
+                self.assertAlmostEqual((loss(t + step, f) - loss(t - step, f)) / (2e-4 * t[m]) / by_t[m], 1, delta=1e-6)
+            self.assertAlmostEqual(loss(t, d) / np.sum(by_f * d), 1, delta=1e-10)
+
+    def test_traces_and_signatures(self):
+        xyz, tri, _ = bumpy(9)
+        L, B = cotangents(xyz, tri)
+        lap = hd.triangles(xyz, tri)
+        heat, values = hd.Heat(lap), np.maximum(scipy.linalg.eigh(L, B)[0], 0)
+        t = lap.times(5)
+        self.assertLess(abs(t / lap.area - np.geomspace(0.0024, 0.37, 5)).max(), 1e-12)
+        self.assertLess(abs(lap.spectral_times([1, 0.3]) * values[1] - [1, 0.3]).max(), 1e-8)
+        trace, bound = heat.trace(t)
+        want = np.exp(-np.outer(t, values)).sum(axis=1)
+        self.assertTrue((abs(trace - want) <= bound + 1e-12 * want).all() and (bound < 1e-6 * want).all())
+        k = np.stack([np.diag(kernel(lap, s)) for s in t], axis=1)
+        self.assertLess(abs(heat.normalised(t) * want / k - 1).max(), 4e-7)
+        times = np.geomspace(1e-5, 1e3, 65)
+        steps = np.diff(np.log(np.stack([np.diag(kernel(lap, s)) for s in times], axis=1)), axis=1)
+        want = abs(np.fft.fft(steps, axis=1))[:, :5]
+        self.assertLess(abs(heat.scale_invariant(1e-5, 1e3, 65, 5) - want).max(), 1e-5 * want.max())
+
+    def test_learning_a_time(self):
+        """The example finds the time that made its target, and says so."""
+        out = subprocess.run([sys.executable, os.path.join(TOP, "examples", "python", "learn_time.py"), "--numpy"], check=True,
+                             stdout=subprocess.PIPE, universal_newlines=True).stdout
+        self.assertRegex(out, "found by NumPy")
+        self.assertLess(float(out.split("off by ")[1].split()[0]), 1e-5)
+
     def test_meshes(self):
         xyz, tri, _ = bumpy(11)
         xyz = xyz + 0.02 * np.random.default_rng(1).standard_normal(xyz.shape)

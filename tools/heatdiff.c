@@ -357,17 +357,19 @@ static int output_format(const char *path)
 
 enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32,
        CMD_HKS = 64, CMD_DISTANCE = 128, CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_SPECTRUM = 1024,
-       CMD_ALL = 2047,
-       CMD_TABLES = CMD_PAIRS | CMD_SAMPLE,
+       CMD_TRACE = 2048, CMD_ALL = 4095,
+       CMD_TABLES = CMD_PAIRS | CMD_SAMPLE | CMD_TRACE,
        CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE | CMD_TABLES,
        /* results have a row per vertex */
        CMD_SOLVES = CMD_HEAT | CMD_GEODESIC | CMD_SPECTRUM, CMD_FIELDS = CMD_SOLVES & ~CMD_TABLES,
        /* by selected inversion, which only the direct method has */
-       CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE, CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE,
+       CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
+       CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE,
        CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER,
        CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM };
 
-typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_AUTO } time_unit;
+/* TIME_SPECTRAL: over the first eigenvalue. */
+typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_SPECTRAL, TIME_AUTO } time_unit;
 /* value is the number, or for auto the number of times. */
 typedef struct time_spec { time_unit unit; double value; } time_spec;
 
@@ -391,11 +393,11 @@ typedef struct options {
     int has_bandwidth;
     time_spec bandwidth;             /* absolute or h2 */
     int laplacian, border, poles, method, ordering, simd, solver, precond, kernel, definition;
-    long degree, max_iterations, threads, count;
+    long degree, max_iterations, threads, count, frequencies;
     double tol, lambda, weight_cut, below;
     uint64_t memory_limit;
     int intrinsic_delaunay, tufted;
-    int json, quiet, help, version, no_header, dry_run;
+    int json, quiet, help, version, no_header, dry_run, normalise;
     int colormap;                    /* pictures */
     int log_scale, has_range, has_view, has_isolines;
     long isolines, column, width, height;
@@ -584,6 +586,9 @@ static int read_time(const char *text, time_spec *t, const char **end)
     if (strncmp(*end, "h2", 2) == 0) {
         t->unit = TIME_H2;
         *end += 2;
+    } else if (strncmp(*end, "/l1", 3) == 0) {
+        t->unit = TIME_SPECTRAL;
+        *end += 3;
     }
     return 1;
 }
@@ -640,7 +645,7 @@ static int parse_bandwidth(options *o, const option_def *def, const char *text)
     const char *end;
     (void)def;
     o->has_bandwidth = 1;
-    return read_time(text, &o->bandwidth, &end) && *end == 0 && o->bandwidth.unit != TIME_AUTO &&
+    return read_time(text, &o->bandwidth, &end) && *end == 0 && o->bandwidth.unit < TIME_SPECTRAL &&
            o->bandwidth.value > 0;
 }
 
@@ -666,8 +671,9 @@ static const option_def OPTIONS[] = {
     { "t", 0, CMD_HEAT, 1, parse_times, 0, NULL, 0, 0, "T[,T..]",
       "times >= 0: numbers such as 0.01, multiples of h^2 such as 10h2, or auto:K for K of them",
       "diffusion times: absolute (0.01), multiples of the squared\n"
-      "mean edge length (10h2), or auto:K, K times that suit the area" },
-    { "filter", 0, CMD_HEAT, 1, parse_filter, 0, FILTERS, 0, 0, "NAME:A[,B]",
+      "mean edge length (10h2), or auto:K, K times that suit the area;\n"
+      "0.1/l1 is 0.1 divided by the first eigenvalue" },
+    { "filter", 0, CMD_HEAT & ~CMD_TRACE, 1, parse_filter, 0, FILTERS, 0, 0, "NAME:A[,B]",
       "heat:T, wave:E,SIGMA, mexican-hat:T, resolvent:T, fractional:T,S, band:LOW,HIGH or "
       "biharmonic:FLOOR",
       "instead of --t: f(lambda) of the eigenvalues instead of exp. heat:T\n"
@@ -736,6 +742,12 @@ static const option_def OPTIONS[] = {
       "operator or symmetric", "operator: K_t (default); symmetric: k_t = K_t B^-1" },
     { "kernel", 0, CMD_HKS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
       "symmetric: k_t(x,x) (default); operator: the diagonal of K_t" },
+    { "normalise", 0, CMD_HKS, 0, parse_flag, AT(normalise), NULL, 0, 0, NULL, "no value",
+      "divides by the heat trace at each time: the integral is 1" },
+    { "scale-invariant", 0, CMD_HKS, 0, parse_integer, AT(frequencies), NULL, 1, 1000, "K", "1..1000",
+      "the first K frequencies of the signature over log t, which\n"
+      "change little if the surface is scaled; --t takes the first and\n"
+      "the last time, 16 an octave are taken between them" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
       "degree of the rational approximation, 1..14 (default: by the\n"
       "error); not for krylov, which has none" },
@@ -779,7 +791,7 @@ static const option_def OPTIONS[] = {
     { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES",
       "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
-    { "dry-run", 0, CMD_SOLVES, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
+    { "dry-run", 0, CMD_SOLVES & ~CMD_TRACE, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
       "only tell what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
@@ -858,7 +870,11 @@ static const command_def COMMANDS[] = {
       "them. Without times (commute, biharmonic): i, j and the distance." },
     { "hks", CMD_HKS, "heat kernel signature of every vertex", "--t T[,T..] [OPTIONS] MESH",
       VERTEX_ROWS "A column for each time, in the order of --t: hks_1, hks_2, as .csv and .vtu name them.\n"
-      "Row i of hks_T is k_T(i,i) (--kernel operator: K_T(i,i))." },
+      "Row i of hks_T is k_T(i,i) (--kernel operator: K_T(i,i)). --scale-invariant K gives K columns\n"
+      "instead, si_0, si_1: moduli of the Fourier transform of the steps of log k_T(i,i)." },
+    { "trace", CMD_TRACE, "the heat trace at many times", "--t T[,T..] [OPTIONS] MESH",
+      "A row for each time, in the order of --t: t, the trace of K_t (the sum of exp(-t lambda) over\n"
+      "all eigenvalues), and a bound of its error." },
     { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH",
       "A row for each point, in the order in which they were chosen: vertex, its id counted from 0,\n"
       "and distance, to the nearest of those before it (0 in the first row)." },
@@ -1041,7 +1057,7 @@ static int check_times(const options *o)
     }
     if ((o->command & CMD_HEAT) && !o->times)
         return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
-    for (i = 0; i < o->n_times && (o->command & (CMD_HKS | CMD_METRIC)); i++)
+    for (i = 0; i < o->n_times && (o->command & (CMD_HKS | CMD_METRIC | CMD_TRACE)); i++)
         if (o->times[i].value == 0) return fail(USAGE, "--t takes times > 0 for %s", name);
     if (o->command == CMD_SAMPLE && (o->n_times > 1 ||
                                      (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
@@ -1072,6 +1088,23 @@ static int check_sample(const options *o)
     if (o->n_sources > o->count)
         return fail(USAGE, "--source takes at most --count vertices, which is %ld, not %d", o->count,
                     o->n_sources);
+    return DONE;
+}
+
+/* Forms of the signature. */
+static int check_signature(const options *o)
+{
+    const char *form = o->normalise ? "--normalise" : "--scale-invariant";
+    if (!o->normalise && !o->frequencies) return DONE;
+    if (o->filter) return fail(USAGE, "%s takes no --filter beside it", form);
+    if (o->normalise && o->frequencies)
+        return fail(USAGE, "--normalise takes no --scale-invariant beside it: factors of scale cancel there");
+    if (o->kernel == HD_KERNEL_OPERATOR)
+        return fail(USAGE, "%s takes --kernel symmetric", form);
+    if (o->normalise && o->dry_run) return fail(USAGE, "--dry-run takes no --normalise beside it");
+    if (o->frequencies && (o->n_times != 2 || o->times[0].unit == TIME_AUTO || o->times[1].unit == TIME_AUTO))
+        return fail(USAGE,
+                    "--t takes the first and the last time with --scale-invariant, such as 1h2,10000h2");
     return DONE;
 }
 
@@ -1137,7 +1170,7 @@ static int check_options(const options *o)
                     word_of(LAPLACIANS, o->laplacian));
     if ((code = check_intrinsic(o)) != DONE) return code;
     if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE ||
-        (code = check_method(o)) != DONE)
+        (code = check_signature(o)) != DONE || (code = check_method(o)) != DONE)
         return code;
     if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
         return fail(USAGE,
@@ -1196,6 +1229,7 @@ static void print_help(void)
            "  heatdiff kernel --source 0 --t auto:100 --method krylov bunny.obj -o movie.npy\n"
            "  heatdiff distance --source 0 --t 100h2 bunny.obj -o distance.png\n"
            "  heatdiff hks --t auto:16 bunny.obj -o signature.npy\n"
+           "  heatdiff hks --scale-invariant 6 --t 1h2,100000h2 bunny.obj -o invariant.npy\n"
            "  heatdiff geodesic --source 0 bunny.obj -o geodesic.png\n"
            "  heatdiff spectrum -k 100 bunny.obj -o modes.npy\n"
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
@@ -1776,39 +1810,62 @@ static int run_assemble(run *r)
 
 /* ---- times ---- */
 
-/* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k / area. At the longest time the 2nd of them
- * has faded to a ten-thousandth, at the shortest time the 300th. Times in between show the shape from coarse
- * to fine. The area is that of B, 1'B1. */
-static const double AUTO_SHORTEST = 0.0024, AUTO_LONGEST = 0.37;
-
-static double auto_time(const run *r, int i, int count)
+/* 1/lambda_1, or 1 if no time needs it. */
+static int spectral_unit(run *r, double *unit)
 {
-    double area = 0;
-    int c;
-    for (c = 0; c < r->lap->n_active; c++) area += r->lap->mass[c];
-    /* B^-1 L tends to Laplacian/area */
-    if (r->lap->kind == HD_LAPLACIAN_EXP) area = r->lap->area * r->lap->area;
-    return area * AUTO_SHORTEST * pow(AUTO_LONGEST / AUTO_SHORTEST,
-                                      count > 1 ? i / (double)(count - 1) : 0.5);
+    const double one = 1;
+    hd_error err;
+    int i;
+    *unit = 1;
+    for (i = 0; i < r->o->n_times && r->o->times[i].unit != TIME_SPECTRAL; i++) {}
+    if (i == r->o->n_times || hd_times_spectral(r->lap, 1, &one, unit, &err) >= 0) return DONE;
+    return fail_library(r->mesh_name, &err);
 }
 
-/* A number that all eigenvalues but those of constants are above, for filters that are not smooth at 0. */
-static int filter_gap(run *r, double *gap)
+/* The times of one item of --t, and their names. */
+static int put_times(run *r, time_spec s, double unit)
 {
-    hd_spectrum_opts opts;
-    hd_spectrum *s = NULL;
-    hd_error err;
-    hd_status status;
-    memset(&opts, 0, sizeof opts);
-    opts.count = r->lap->n_components + 1;
-    opts.ordering = (hd_ordering)r->o->ordering;
-    opts.context = &r->context;
-    *gap = 0;
-    if (opts.count > r->lap->n_active) return DONE;
-    status = hd_spectrum_create(&s, r->lap, &opts, &err);
-    if (status < 0) return fail_library(r->mesh_name, &err);
-    if (s->proven && s->n_poor == 0 && s->n_constant < s->count) *gap = 0.99 * s->value[s->n_constant];
-    hd_spectrum_free(s);
+    double *t = &r->times[r->n_times];
+    int k, count = s.unit == TIME_AUTO ? (int)s.value : 1;
+    if (s.unit == TIME_AUTO) (void)hd_times_auto(r->lap, count, t, NULL);
+    else *t = s.unit == TIME_H2 ? s.value * r->lap->h * r->lap->h
+            : s.unit == TIME_SPECTRAL ? s.value * unit : s.value;
+    for (k = 0; k < count; k++, r->n_times++) {
+        char *name = r->time_names[r->n_times];
+        if (!isfinite(t[k]))
+            return fail(FAILED, "%s: the time %g%s is too large for h = %g", r->mesh_name, s.value,
+                        s.unit == TIME_H2 ? "h2" : "/l1", r->lap->h);
+        if (s.unit == TIME_H2) snprintf(name, sizeof *r->time_names, "%.9gh2", s.value);
+        else if (s.unit == TIME_SPECTRAL) snprintf(name, sizeof *r->time_names, "%.9g/l1", s.value);
+        else snprintf(name, sizeof *r->time_names, s.unit == TIME_AUTO ? "%.4g" : "%.9g", t[k]);
+    }
+    return DONE;
+}
+
+/* Times an octave of scale-invariant signatures, as in the paper. */
+enum { PER_OCTAVE = 16, MOST_SIGNATURE_TIMES = 10000 };
+
+/* Fills in the times between the first and the last. */
+static int spread_times(run *r)
+{
+    const double t0 = r->times[0], t1 = r->times[1], octaves = log2(t1 / t0);
+    const int least = 2 * (int)r->o->frequencies + 1;
+    int k, n = octaves > 0 && octaves < MOST_SIGNATURE_TIMES ? 1 + (int)(PER_OCTAVE * octaves + 0.5) : 0;
+    if (!(t1 > t0))
+        return fail(FAILED, "%s: the last time, %g, is not above the first, %g", r->mesh_name, t1, t0);
+    if (n < least) n = least;
+    free(r->times);
+    free(r->time_names);
+    free(r->sum.per_time);
+    r->times = (double *)malloc((size_t)n * sizeof *r->times);
+    r->time_names = (char (*)[NAME_SIZE])malloc((size_t)n * sizeof *r->time_names);
+    r->sum.per_time = (hd_report *)calloc((size_t)n, sizeof *r->sum.per_time);
+    if (!r->times || !r->time_names || !r->sum.per_time) return fail_memory("the times");
+    for (k = 0; k < n; k++) {
+        r->times[k] = t0 * pow(t1 / t0, k / (double)(n - 1));
+        snprintf(r->time_names[k], sizeof *r->time_names, "%.9g", r->times[k]);
+    }
+    r->n_times = n;
     return DONE;
 }
 
@@ -1824,8 +1881,10 @@ static int run_filter(run *r)
     f.a = o->filter_a.value * (o->filter_a.unit == TIME_H2 ? h2 : 1);
     f.b = o->filter_b;
     if (f.kind == HD_FILTER_FRACTIONAL) {
-        const int code = filter_gap(r, &f.lambda_min);
-        if (code) return code;
+        const double one = 1;
+        double unit;                             /* 1/lambda_1: all other eigenvalues are above */
+        if (hd_times_spectral(r->lap, 1, &one, &unit, &err) < 0) return fail_library(r->mesh_name, &err);
+        f.lambda_min = 0.99 / unit;
     }
     if (hd_rational_fit(&r->filter, &f, hd_laplacian_lambda_max(r->lap), &r->context, &err) < 0)
         return fail_library(r->mesh_name, &err);
@@ -1840,7 +1899,8 @@ static int run_times(run *r)
     const options *o = r->o;
     const int n_given = o->times ? o->n_times : 1;
     const time_spec *given = o->times ? o->times : &usual;
-    int i, k, total = 0;
+    double unit = 1;
+    int i, code, total = 0;
     for (i = 0; i < n_given; i++) total += given[i].unit == TIME_AUTO ? (int)given[i].value : 1;
     r->times = (double *)malloc((size_t)total * sizeof *r->times);
     r->time_names = (char (*)[NAME_SIZE])malloc((size_t)total * sizeof *r->time_names);
@@ -1853,23 +1913,9 @@ static int run_times(run *r)
                  word_of(DEFINITIONS, o->definition));
         return DONE;
     }
-    for (i = 0; i < n_given; i++) {
-        const time_spec s = given[i];
-        const int count = s.unit == TIME_AUTO ? (int)s.value : 1;
-        for (k = 0; k < count; k++, r->n_times++) {
-            double *t = &r->times[r->n_times];
-            *t = s.unit == TIME_AUTO ? auto_time(r, k, count)
-               : s.unit == TIME_H2 ? s.value * r->lap->h * r->lap->h : s.value;
-            if (!isfinite(*t))
-                return fail(FAILED, "%s: the time %gh2 is too large for h = %g", r->mesh_name, s.value,
-                            r->lap->h);
-            if (s.unit == TIME_H2)
-                snprintf(r->time_names[r->n_times], sizeof *r->time_names, "%.9gh2", s.value);
-            else snprintf(r->time_names[r->n_times], sizeof *r->time_names,
-                          s.unit == TIME_AUTO ? "%.4g" : "%.9g", *t);
-        }
-    }
-    return DONE;
+    code = o->times ? spectral_unit(r, &unit) : DONE;
+    for (i = 0; i < n_given && !code; i++) code = put_times(r, given[i], unit);
+    return code || !o->frequencies ? code : spread_times(r);
 }
 
 /* "t = 10 h^2" for titles. */
@@ -1877,6 +1923,8 @@ static void time_text(const char *name, char *text, size_t size)
 {
     const size_t n = strlen(name);
     if (n > 2 && strcmp(name + n - 2, "h2") == 0) snprintf(text, size, "t = %.*s h^2", (int)n - 2, name);
+    else if (n > 3 && strcmp(name + n - 3, "/l1") == 0)
+        snprintf(text, size, "t = %.*s / lambda_1", (int)n - 3, name);
     else snprintf(text, size, "t = %s", name);
 }
 
@@ -2284,7 +2332,16 @@ static int solve_inverse(run *r)
     hd_report report;
     hd_status status;
     int k;
-    if (o->command == CMD_HKS)
+    if (o->command == CMD_TRACE) {
+        memcpy(r->values, r->times, (size_t)r->n_times * sizeof *r->values);
+        status = hd_heat_trace(r->heat, r->n_times, r->times, r->values + r->n_times,
+                               r->values + 2 * (size_t)r->n_times, &report, NULL);
+    } else if (o->frequencies) {
+        status = hd_heat_scale_invariant(r->heat, r->times[0], r->times[r->n_times - 1], r->n_times,
+                                         (int32_t)o->frequencies, r->values, 0, &report, NULL);
+    } else if (o->normalise)
+        status = hd_heat_normalised(r->heat, r->n_times, r->times, r->values, 0, &report, NULL);
+    else if (o->command == CMD_HKS)
         status = hd_heat_diagonal(r->heat, (hd_kernel)o->kernel, r->n_times, r->times, r->values, 0, &report, NULL);
     else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->sources, r->values, 0, &report, NULL);
     if (status < 0) return fail_solve(r, &report, 0);
@@ -2334,10 +2391,12 @@ static void run_shape(run *r)
 {
     const options *o = r->o;
     if (o->command == CMD_SAMPLE) r->rows = o->count;
-    else if (o->command != CMD_PAIRS) r->rows = r->mesh.n;
+    else if (o->command != CMD_PAIRS) r->rows = o->command == CMD_TRACE ? r->n_times : r->mesh.n;
     r->n_columns = o->command == CMD_SAMPLE ? 1
                    : (int64_t)(o->command & (CMD_HKS | CMD_PAIRS) ? 1 : r->n_inputs) * r->n_times;
     if (o->command == CMD_PAIRS && !is_timeless(o)) r->n_columns *= 2;
+    if (o->command == CMD_TRACE) r->n_columns = 3;
+    if (o->frequencies) r->n_columns = o->frequencies;
 }
 
 /* Allocates the result, and checks that it has the column to be shown. */
@@ -2557,7 +2616,7 @@ static void json_time(FILE *out, double t, const hd_report *p)
 static void json_query(json *j, const run *r)
 {
     const options *o = r->o;
-    if (o->command != CMD_DISTANCE && o->command != CMD_SAMPLE)
+    if (!(o->command & (CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE)))
         json_text(j, "kernel", word_of(KERNELS, o->kernel));
     if (o->command & CMD_METRIC) json_text(j, "definition", word_of(DEFINITIONS, o->definition));
     if (r->sources) json_integers(j, "sources", o->sources, o->n_sources);
@@ -2643,10 +2702,10 @@ static void print_query(const run *r)
 {
     const options *o = r->o;
     fprintf(stderr, "%s: ", command_name(o->command));
-    if (o->command & CMD_TABLES)
+    if (o->command & (CMD_PAIRS | CMD_SAMPLE))
         fprintf(stderr, "%lld %s%s, ", (long long)r->rows, o->command == CMD_PAIRS ? "pair" : "point",
                 plural(r->rows));
-    else if (o->command != CMD_HKS)
+    else if (!(o->command & (CMD_HKS | CMD_TRACE)))
         fprintf(stderr, "%d %s%s, ", r->n_inputs, r->sources ? "source" : "field", plural(r->n_inputs));
     if (o->filter)
         fprintf(stderr, "filter %s to %.1e of its largest value, ", o->filter,
@@ -3079,7 +3138,10 @@ static int heat_names(run *r)
         const int q = (int)(c / r->n_times);
         char number[12] = "";
         if (twice) snprintf(number, sizeof number, "_c%d", (int)(c % 1000000));
-        if (r->o->command == CMD_HKS)
+        if (r->o->command == CMD_TRACE)
+            snprintf(r->names[c], NAME_SIZE, "%s", c == 0 ? "t" : c == 1 ? "trace" : "bound");
+        else if (r->o->frequencies) snprintf(r->names[c], NAME_SIZE, "si_%d", (int)(c % 1000000));
+        else if (r->o->command == CMD_HKS)
             snprintf(r->names[c], NAME_SIZE, "hks_%.14s%s", r->time_names[c], number);
         else if (r->o->command == CMD_SAMPLE) snprintf(r->names[c], NAME_SIZE, "distance");
         else if (pairs)
@@ -3099,7 +3161,11 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
     time_text(r->time_names[c % r->n_times], when, sizeof when);
     if (is_timeless(r->o)) snprintf(when, sizeof when, "%s", r->time_names[0]);
     if (r->o->filter) snprintf(when, sizeof when, "filter %.40s", r->o->filter);
-    if (r->o->command == CMD_HKS) snprintf(title, size, "%s, %s", r->o->filter ? "Diagonal" : "Heat kernel signature", when);
+    if (r->o->frequencies)
+        snprintf(title, size, "Scale-invariant heat kernel signature, frequency %d", (int)(c % 1000000));
+    else if (r->o->command == CMD_HKS)
+        snprintf(title, size, "%s, %s", r->o->filter ? "Diagonal" : r->o->normalise ?
+                 "Normalised heat kernel signature" : "Heat kernel signature", when);
     else if (r->o->command == CMD_DISTANCE)
         snprintf(title, size, "Diffusion distance from vertex %ld, %s", (long)r->sources[q], when);
     else if (r->o->command == CMD_GEODESIC)
@@ -3202,7 +3268,7 @@ static int write_ids(run *r)
     ids[0] = r->o->command == CMD_PAIRS ? r->pairs : r->sources;
     ids[1] = r->pairs ? r->pairs + r->rows : NULL;
     out.ids = ids;
-    out.n_ids = r->o->command == CMD_PAIRS ? 2 : 1;
+    out.n_ids = r->o->command == CMD_PAIRS ? 2 : r->o->command == CMD_TRACE ? 0 : 1;
     out.id_names = r->o->command == CMD_PAIRS ? pair_names : point_names;
     out.names = r->name_list;
     out.no_header = r->o->no_header;
@@ -3237,9 +3303,9 @@ static void bounding_box(const mesh_data *m, double low[3], double high[3])
 static void info_json(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_mesh_report *m = &lap->mesh;
-    const double unit = lap->kind == HD_LAPLACIAN_EXP ? lap->area * lap->area : lap->area;
-    const double meaningful[2] = { AUTO_SHORTEST * unit, AUTO_LONGEST * unit };
+    double meaningful[2];
     json j;
+    (void)hd_times_auto(lap, 2, meaningful, NULL);
     json_begin(&j, r, stdout);
     json_laplacian(&j, lap);
     if (lap->kind == HD_LAPLACIAN_POLYGON) json_integer(&j, "faces_used", m->n_faces_used);
@@ -3270,14 +3336,13 @@ static void print_count(const char *what, int64_t n, const char *note)
 
 static void info_times(const hd_laplacian *lap)
 {
-    const double area_h2 = lap->area / (lap->h * lap->h);
-    if (lap->kind == HD_LAPLACIAN_EXP)
-        printf("%-22s %.3g to %.3g; --t auto:K takes K of them\n", "meaningful times",
-               AUTO_SHORTEST * lap->area * lap->area, AUTO_LONGEST * lap->area * lap->area);
-    else if (lap->area > 0)
-        printf("%-22s %.3g to %.3g  (%.3gh2 to %.3gh2); --t auto:K takes K of them\n", "meaningful times",
-               AUTO_SHORTEST * lap->area, AUTO_LONGEST * lap->area, AUTO_SHORTEST * area_h2,
-               AUTO_LONGEST * area_h2);
+    const double h2 = lap->h * lap->h;
+    double t[2];
+    (void)hd_times_auto(lap, 2, t, NULL);
+    if (!(t[1] > 0)) return;
+    printf("%-22s %.3g to %.3g", "meaningful times", t[0], t[1]);
+    if (lap->kind != HD_LAPLACIAN_EXP) printf("  (%.3gh2 to %.3gh2)", t[0] / h2, t[1] / h2);
+    printf("; --t auto:K takes K of them\n");
 }
 
 static void info_laplacian(const run *r, const hd_laplacian *lap)
@@ -3453,6 +3518,14 @@ static int command_pairs(run *r)
 {
     int code = run_load(r);
     if (!code) code = run_pairs(r);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_times(r);
+    return code ? code : command_finish(r, write_ids, report_heat);
+}
+
+static int command_trace(run *r)
+{
+    int code = run_load(r);
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     return code ? code : command_finish(r, write_ids, report_heat);
@@ -3908,6 +3981,7 @@ static int run_command(const options *o)
     case CMD_KERNEL: case CMD_DISTANCE: case CMD_HKS: code = command_columns(&r); break;
     case CMD_PAIRS: code = command_pairs(&r); break;
     case CMD_SAMPLE: code = command_sample(&r); break;
+    case CMD_TRACE: code = command_trace(&r); break;
     case CMD_DIFFUSE: code = command_diffuse(&r); break;
     case CMD_GEODESIC: code = command_geodesic(&r); break;
     case CMD_SPECTRUM: code = command_spectrum(&r); break;

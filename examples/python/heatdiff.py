@@ -13,6 +13,7 @@ NumPy arrays of doubles; columns of results are columns of Fortran-ordered array
     signature = heat.diagonal([t1, t2])                 # k_t(v,v)
     d = heat.distance(t, [0])                           # diffusion distance from vertex 0
     d = heat.pairs(t, [0, 1], [5, 7])                   # of pairs; entries and sample: single entries, farthest points
+    by_t, by_f = heat.vjp(t, f, g)                      # gradients for training; see learn_time.py
     far = hd.Geodesic(xyz, tri).distance([0])           # along the surface
 """
 import ctypes
@@ -160,6 +161,19 @@ class Laplacian:
         import scipy.sparse
         return self._matrix(self.info.B) if self.info.B else scipy.sparse.diags(self.mass).tocsr()
 
+    def times(self, n):
+        """n times that suit the area, from small details to the whole."""
+        t = np.zeros(n)
+        _call("hd_times_auto", self, ctypes.c_int32(n), _at(t))
+        return t
+
+    def spectral_times(self, c):
+        """c divided by the first eigenvalue that does not belong to constants."""
+        c = np.atleast_1d(_doubles(c))
+        t = np.zeros(len(c))
+        _call("hd_times_spectral", self, ctypes.c_int32(len(c)), _at(c), _at(t))
+        return t
+
     def update(self, xyz):
         """New coordinates for the same faces; made with updatable=1."""
         _call("hd_laplacian_update", self, _at(_doubles(xyz)))
@@ -222,10 +236,32 @@ class Heat:
 
     def apply(self, t, f):
         """K_t f for each column of f and each time: column q n_times + m for field q and time m."""
+        return self._fields("hd_heat_apply", t, f)
+
+    def derivative(self, t, f):
+        """dK_t/dt f, in the same order."""
+        return self._fields("hd_heat_derivative", t, f)
+
+    def adjoint(self, t, g):
+        """K_t' g, in the same order."""
+        return self._fields("hd_heat_adjoint", t, g)
+
+    def vjp(self, t, f, g):
+        """The gradients by t and by f of sum(g * apply(t, f)): a number for each time, and a column for each field."""
+        f, g = (np.atleast_2d(np.asarray(x, dtype=np.float64).T).T for x in (f, g))
+        t = np.atleast_1d(_doubles(t))
+        by_t, by_f = np.zeros(len(t)), np.zeros(f.shape)
+        for m in range(len(t)):
+            part = g[:, m::len(t)]
+            by_t[m] = np.sum(part * self.derivative(t[m], f))
+            by_f += self.adjoint(t[m], part)                    # by the factors of the derivative
+        return by_t, by_f
+
+    def _fields(self, name, t, f):
         f = np.asfortranarray(np.atleast_2d(np.asarray(f, dtype=np.float64).T).T)
         t, times = self._times(t)
         out, to = self._room(f.shape[1] * len(t))
-        self._query("hd_heat_apply", *times, ctypes.c_int32(f.shape[1]), _at(f), ctypes.c_size_t(0), *to)
+        self._query(name, *times, ctypes.c_int32(f.shape[1]), _at(f), ctypes.c_size_t(0), *to)
         return out
 
     def columns(self, t, sources, symmetric=False):
@@ -241,6 +277,27 @@ class Heat:
         t, times = self._times(t)
         out, to = self._room(len(t))
         self._query("hd_heat_diagonal", C["HD_KERNEL_SYMMETRIC" if symmetric else "HD_KERNEL_OPERATOR"], *times, *to)
+        return out
+
+    def trace(self, t):
+        """The sum of exp(-t lambda) over all eigenvalues for each time, and bounds of its error."""
+        t, times = self._times(t)
+        out = np.zeros((2, len(t)))
+        self._query("hd_heat_trace", *times, _at(out), _at(out[1]))
+        return out[0], out[1]
+
+    def normalised(self, t):
+        """k_t(v,v)/trace: a column for each time."""
+        t, times = self._times(t)
+        out, to = self._room(len(t))
+        self._query("hd_heat_normalised", *times, *to)
+        return out
+
+    def scale_invariant(self, t0, t1, n_times=257, n_freq=6):
+        """Moduli of Fourier coefficients of the steps of log k_t(v,v) over log t: a column for each frequency."""
+        out, to = self._room(n_freq)
+        self._query("hd_heat_scale_invariant", ctypes.c_double(t0), ctypes.c_double(t1), ctypes.c_int32(n_times),
+                    ctypes.c_int32(n_freq), *to)
         return out
 
     def distance(self, t, sources, kind="HD_DISTANCE_CLASSICAL"):

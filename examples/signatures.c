@@ -1,0 +1,103 @@
+/* signatures.c - signatures in the forms that other programs take: normalised, scale-invariant, auto-diffusion
+
+   Build and run from the project's folder:
+
+       cc -O2 examples/signatures.c -o signatures -lm && ./signatures
+
+   Two wavy sheets are made in memory, the second one 3 times as large. Plain heat kernel signatures differ
+   between the two at the same times. Divided by the heat trace they are alike as soon as the times suit each
+   sheet; scale-invariant ones are alike at the same times, without any choice. */
+
+#define HEATDIFF_IMPLEMENTATION
+#include "../heatdiff.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SIDE = 40, N = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1), TIMES = 6, STEPS = 161, FREQUENCIES = 6 };
+
+static double xyz[3 * N], plain[2][TIMES * N], normalised[2][TIMES * N], invariant[2][FREQUENCIES * N];
+static int32_t tri[3 * FACES];
+
+static void make_sheet(double scale) {
+    int32_t i, j, *t = tri;
+    for (i = 0; i < SIDE; i++) {
+        for (j = 0; j < SIDE; j++) {
+            const double x = i / (SIDE - 1.0), y = j / (SIDE - 1.0);
+            double *p = xyz + 3 * (i * SIDE + j);
+            p[0] = scale * x;
+            p[1] = scale * y;
+            p[2] = scale * 0.15 * sin(9 * x) * cos(6 * y * y);
+            if (i + 1 == SIDE || j + 1 == SIDE) continue;
+            t[0] = t[3] = i * SIDE + j;
+            t[1] = t[0] + SIDE;
+            t[2] = t[4] = t[1] + 1;
+            t[5] = t[0] + 1;
+            t += 6;
+        }
+    }
+}
+
+static int fail(const hd_error *e) {
+    fprintf(stderr, "signatures: %s: %s\n", hd_status_name(e->status), e->text);
+    return 1;
+}
+
+/* Largest difference relative to the largest value. */
+static double differ(const double *a, const double *b, int count) {
+    double off = 0, most = 0;
+    int i;
+    for (i = 0; i < count; i++) {
+        off = fmax(off, fabs(a[i] - b[i]));
+        most = fmax(most, fabs(a[i]));
+    }
+    return off / most;
+}
+
+int main(void) {
+    const double t0 = 1e-6, t1 = 1e4, one = 1;
+    double t[TIMES], trace[TIMES], slow, diffusion[N];
+    hd_error err;
+    hd_report report;
+    int which, k;
+    for (which = 0; which < 2; which++) {
+        hd_laplacian *lap = NULL;
+        hd_heat *heat = NULL;
+        make_sheet(which ? 3 : 1);
+        if (hd_laplacian_triangles(&lap, xyz, N, tri, FACES, NULL, &err) < 0) return fail(&err);
+        if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
+
+        /* times that suit the area, the heat trace, and signatures whose integral is 1 */
+        if (hd_times_auto(lap, TIMES, t, &err) < 0) return fail(&err);
+        if (hd_heat_trace(heat, TIMES, t, trace, NULL, &report, &err) < 0) return fail(&err);
+        printf("area %.4f\n", lap->area);
+        for (k = 0; k < TIMES; k++) printf("  t = %8.5f: trace %9.4f\n", t[k], trace[k]);
+        printf("  traces are off by %.0e at most\n", report.error_relative);
+        if (hd_heat_normalised(heat, TIMES, t, normalised[which], 0, &report, &err) < 0) return fail(&err);
+        for (k = 0; k < TIMES * N; k++) normalised[which][k] *= lap->area;
+
+        /* the same times for both sheets */
+        for (k = 0; k < TIMES; k++) t[k] = 0.003 * pow(4, k);
+        if (hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, TIMES, t, plain[which], 0, NULL, &err) < 0)
+            return fail(&err);
+        if (hd_heat_scale_invariant(heat, t0, t1, STEPS, FREQUENCIES, invariant[which], 0, &report, &err) < 0)
+            return fail(&err);
+        printf("  scale-invariant signatures are off by %.0e at most\n", report.error_bound);
+
+        /* the auto-diffusion function: the signature at 1 over the first eigenvalue */
+        if (hd_times_spectral(lap, 1, &one, &slow, &err) < 0) return fail(&err);
+        if (hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &slow, diffusion, 0, NULL, &err) < 0)
+            return fail(&err);
+        printf("  auto-diffusion at t = %.4f: %.4f at a corner, %.4f in the middle\n", slow,
+               diffusion[0] * lap->area, diffusion[N / 2 + SIDE / 2] * lap->area);
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+    }
+    printf("differences between the sheet and its enlargement:\n");
+    printf("  plain, at the same times             %.0e\n", differ(plain[0], plain[1], TIMES * N));
+    printf("  normalised, times that suit the area %.0e\n", differ(normalised[0], normalised[1], TIMES * N));
+    printf("  scale-invariant, at the same times   %.0e\n",
+           differ(invariant[0], invariant[1], FREQUENCIES * N));
+    return 0;
+}
