@@ -489,7 +489,7 @@ typedef struct hd_laplacian {
     int32_t *vertex;            /* [n_active] row -> vertex */
     int32_t *row;               /* [n] vertex -> row, or HD_ROW_INERT or HD_ROW_HELD */
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
-    double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices */
+    double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices and lengths */
     double *component_mass;     /* [n_components] sum of mass; see conserves */
     /* B >= b_ratio diag(B): 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to itself).
      * Matrices: proven by Gershgorin's circles or by factorisations. 0: unknown. */
@@ -966,6 +966,24 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
  *        and aligned doubles, are read in place */
 HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view *view,
                                          const hd_laplacian_opts *opts, hd_error *err);
+
+/* The Laplacian of triangles that are known by the lengths of their sides alone: a surface that need not have
+ * a shape in space, such as a flat torus, or one whose lengths were scaled conformally.
+ * lengths [3 n_tri] lengths[3 f + q] is that of the side from corner q to the next one (q + 1, after 2 comes
+ *         0), finite and not negative. All faces at an edge must agree up to 1e-12 of it; two vertices have
+ *         one edge only. No side may be longer than the two others together; faces where one is as long have
+ *         no area and are left out
+ * opts    as in hd_laplacian_triangles, without updatable. intrinsic_delaunay and tufted take the sheets at
+ *         an edge of three faces or more in the order of the faces: their angles in space are not known
+ * Everything that works on a Laplacian works on this one. lap->xyz is NULL: there is no nested dissection,
+ * and curves (hd_source) need their lengths. With the distances of vertices in space as lengths, L and B are
+ * those of hd_laplacian_triangles to rounding.
+ * Errors  as hd_laplacian_triangles; HD_ERR_ARGUMENT or HD_ERR_NOT_FINITE (face, value: a length; vertex, if
+ *         two faces do not agree: where their edge begins), also if a face breaks the triangle inequality
+ * Cost    as hd_laplacian_triangles */
+HEATDIFF_API hd_status hd_laplacian_lengths(hd_laplacian **out, const double *lengths, int32_t n,
+                                            const int32_t *tri, int32_t n_tri,
+                                            const hd_laplacian_opts *opts, hd_error *err);
 
 /* The Laplacian of a mesh of polygons. Faces may have any number of corners, and may be triangles, non-planar
  * or non-convex.
@@ -1616,6 +1634,10 @@ typedef struct hd_geodesic hd_geodesic;
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n,
                                           const int32_t *tri, int32_t n_tri,
                                           const hd_geodesic_opts *opts, hd_error *err);
+/* The same for triangles that are known by the lengths of their sides, see hd_laplacian_lengths. */
+HEATDIFF_API hd_status hd_geodesic_create_lengths(hd_geodesic **out, const double *lengths, int32_t n,
+                                                  const int32_t *tri, int32_t n_tri,
+                                                  const hd_geodesic_opts *opts, hd_error *err);
 /* The same for a mesh in a vertex and an index buffer. Errors and cost of the view: see hd_laplacian_view. */
 HEATDIFF_API hd_status hd_geodesic_create_view(hd_geodesic **out, const hd_mesh_view *view,
                                                const hd_geodesic_opts *opts, hd_error *err);
@@ -5479,6 +5501,7 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query,
 
 typedef struct hdi_mesh {
     const double *xyz;
+    const double *len;  /* [3 m] by the caller's faces, sides from corner to corner; NULL: see xyz */
     const int32_t *tri;
     const int32_t *face;/* [m] the caller's number of each face; NULL: their own */
     int32_t n, m;
@@ -5501,10 +5524,41 @@ static hd_status hdi_corner_fail(int64_t i, int64_t id, hd_error *e) {
                          HDI_CAST(double, id));
 }
 
+/* Lengths of face f. */
+static const double *hdi_mesh_lengths(const hdi_mesh *mesh, int32_t f) {
+    return mesh->len + 3 * HDI_CAST(int64_t, mesh->face ? mesh->face[f] : f);
+}
+
+/* A side may be longer than the two others together by this much of their sum: lengths are rounded. */
+#define HDI_LENGTH_ROUNDING (8 * DBL_EPSILON)
+/* The lengths that faces give one edge may differ by this much of it. */
+#define HDI_LENGTH_AGREE 1e-12
+
+static hd_status hdi_lengths_check(const double *len, int32_t m, hd_error *e) {
+    int32_t f;
+    int q;
+    for (f = 0; f < m; f++, len += 3) {
+        const double sum = len[0] / 2 + len[1] / 2 + len[2] / 2;     /* half of it cannot overflow */
+        for (q = 0; q < 3; q++) {
+            if (!hdi_finite(len[q]))
+                return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a length is not finite", f, -1, len[q]);
+            if (len[q] < 0)
+                return hdi_fail_face(e, HD_ERR_ARGUMENT, "a length is negative", f, -1, len[q]);
+        }
+        for (q = 0; q < 3; q++) {
+            if (len[q] > sum * (1 + HDI_LENGTH_ROUNDING))
+                return hdi_fail_face(e, HD_ERR_ARGUMENT,
+                                     "a side of a face is longer than the two others together", f, -1,
+                                     len[q]);
+        }
+    }
+    return HD_OK;
+}
+
 static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri, int32_t m,
                                 hd_error *e) {
     int64_t i;
-    for (i = 0; i < 3 * HDI_CAST(int64_t, n); i++)
+    for (i = 0; i < 3 * HDI_CAST(int64_t, n) && xyz; i++)
         if (!hdi_finite(xyz[i]))
             return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, xyz[i]);
     for (i = 0; i < 3 * HDI_CAST(int64_t, m); i++)
@@ -5605,21 +5659,56 @@ typedef struct hdi_face_tally {
     double steepest, bad_area;
 } hdi_face_tally;
 
+static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
+
+/* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none (W. Kahan,
+ * Miscalculating area and angles of a needle-like triangle, 2014). */
+static double hdi_length_area(double a, double b, double c) {
+    double t;
+    if (a < b) { t = a; a = b; b = t; }
+    if (b < c) { t = b; b = c; c = t; }
+    if (a < b) { t = a; a = b; b = t; }
+    t = c - (a - b);
+    return t > 0 ? 0.25 * sqrt((a + (b + c)) * t * (c + (a - b)) * (a + (b - c))) : 0;
+}
+
+/* Cotangents at the corners of a triangle with sides len: side q runs from corner q to the next one. */
+static void hdi_length_cots(const double *len, double area, double *cot) {
+    int q;
+    for (q = 0; q < 3; q++) {
+        const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
+        cot[q] = (b * b + c * c - a * a) / (4 * area);
+    }
+}
+
+/* Twice the area of face f by its lengths. len [3]: these in a unit near the longest, which is a power of two
+ * and leaves them exact. */
+static double hdi_face_lengths(const hdi_mesh *mesh, int32_t f, double *len) {
+    const double *given = hdi_mesh_lengths(mesh, f);
+    int q, exponent = 0;
+    frexp(hdi_max(given[0], hdi_max(given[1], given[2])), &exponent);
+    for (q = 0; q < 3; q++) len[q] = ldexp(given[q], -exponent);
+    return ldexp(2 * hdi_length_area(len[0], len[1], len[2]), 2 * exponent);
+}
+
 /* Area of face f, and its cotangents; 0 where it has none or where a cotangent would not be finite. */
 static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot,
                                           hdi_face_tally *tally) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
-    double edge[3][3], cross[3], twice;
+    double edge[3][3], cross[3], len[3], twice;
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
         tally->n_repeated_corner++;
         return 0;
     }
-    /* edge q runs opposite to corner q */
-    hdi_sub3(hdi_at3(mesh->xyz, v[2]), hdi_at3(mesh->xyz, v[1]), edge[0]);
-    hdi_sub3(hdi_at3(mesh->xyz, v[0]), hdi_at3(mesh->xyz, v[2]), edge[1]);
-    hdi_sub3(hdi_at3(mesh->xyz, v[1]), hdi_at3(mesh->xyz, v[0]), edge[2]);
-    hdi_cross3(edge[2], edge[0], cross);
-    twice = hdi_norm3(cross);
+    if (mesh->len) {
+        twice = hdi_face_lengths(mesh, f, len);
+    } else {                                     /* edge q runs opposite to corner q */
+        hdi_sub3(hdi_at3(mesh->xyz, v[2]), hdi_at3(mesh->xyz, v[1]), edge[0]);
+        hdi_sub3(hdi_at3(mesh->xyz, v[0]), hdi_at3(mesh->xyz, v[2]), edge[1]);
+        hdi_sub3(hdi_at3(mesh->xyz, v[1]), hdi_at3(mesh->xyz, v[0]), edge[2]);
+        hdi_cross3(edge[2], edge[0], cross);
+        twice = hdi_norm3(cross);
+    }
     if (!hdi_finite(twice)) {
         const int32_t id = mesh->face ? mesh->face[f] : f;
         if (tally->bad < 0 || id < tally->bad) {
@@ -5629,7 +5718,9 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, doubl
         }
         return 0;
     }
-    if (twice / 24 >= DBL_MIN) {
+    if (mesh->len) {
+        hdi_length_cots(len, hdi_length_area(len[0], len[1], len[2]), cot);
+    } else if (twice / 24 >= DBL_MIN) {
         cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
         cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
         cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
@@ -5681,6 +5772,7 @@ enum { HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };
 /* Asks for the corners of face f. */
 static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
     const int32_t *ahead = mesh->tri + 3 * f;
+    if (mesh->len) return;
     HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[0]));
     HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[1]));
     HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[2]));
@@ -5729,8 +5821,6 @@ typedef struct hdi_sides {
     uint64_t *key;              /* [3 m] larger vertex << 32 | 4 face + corner where the side begins */
     uint64_t *work;             /* [most] */
 } hdi_sides;
-
-static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
 
 static int32_t hdi_key_face(uint64_t key) { return HDI_CAST(int32_t, (key & 0xffffffffu) >> 2); }
 static int hdi_key_corner(uint64_t key) { return HDI_CAST(int, key & 3); }
@@ -5825,6 +5915,28 @@ static void hdi_edge_report(const hdi_edge_tally *t, int32_t *border, int32_t n,
     rep->n_nonmanifold_edges = t->n_nonmanifold;
     rep->n_misoriented_edges = t->n_misoriented;
     rep->n_boundary_loops = t->n_boundary ? hdi_count_sets(border, n) : 0;
+}
+
+/* The length of the edge of this side, from i to j. */
+static HDI_INLINE double hdi_side_length(const hdi_mesh *mesh, uint64_t key, int32_t i, int32_t j) {
+    if (mesh->len) return hdi_mesh_lengths(mesh, hdi_key_face(key))[hdi_key_corner(key)];
+    return hdi_edge_length(mesh->xyz, i, j);
+}
+
+/* Do the faces at each edge agree on its length? The sides are sorted. */
+static hd_status hdi_lengths_agree(const hdi_mesh *mesh, const hdi_sides *g, hd_error *e) {
+    int32_t i, p;
+    for (i = 0; i < mesh->n; i++)
+        for (p = g->ptr[i] + 1; p < g->ptr[i + 1]; p++) {
+            const double a = hdi_side_length(mesh, g->key[p - 1], 0, 0);
+            const double b = hdi_side_length(mesh, g->key[p], 0, 0);
+            const int32_t f = hdi_key_face(g->key[p]);
+            if (hdi_key_vertex(g->key[p]) != hdi_key_vertex(g->key[p - 1])) continue;
+            if (fabs(a - b) > HDI_LENGTH_AGREE * hdi_max(a, b))
+                return hdi_fail_face(e, HD_ERR_ARGUMENT, "two faces give their edge different lengths",
+                                     mesh->face ? mesh->face[f] : f, i, b);
+        }
+    return HD_OK;
 }
 
 /* The edges of a mesh from each vertex to later ones, in order. */
@@ -6067,7 +6179,7 @@ static HDI_INLINE void hdi_pass_edge(const hdi_pass *s, int32_t p, int32_t q, in
     g->to[at] = n == 1 ? ~j : j;
     if (g->w) g->w[at] = w;
     if (g->b) g->b[at] = b / 12;
-    hdi_edge_count(tally, n, forward, hdi_edge_length(mesh->xyz, i, j));
+    hdi_edge_count(tally, n, forward, hdi_side_length(mesh, key[q - 1], i, j));
 }
 
 /* The edges of a block of vertices; boundary edges are marked by ~. */
@@ -6143,6 +6255,7 @@ static hd_status hdi_pass_run(hdi_pass *pass, const hdi_mesh_wants *want, hd_mes
     for (i = 0; i < mesh->n; i++)                /* short ones need no work array */
         if (pass->sides.ptr[i + 1] - pass->sides.ptr[i] > HDI_SHORT_LIST) hdi_sides_sort(&pass->sides, i);
     hdi_parallel_ranges(own->ctx, mesh->n, HDI_CAST(int64_t, 1) << pass->shift, hdi_pass_edges, pass);
+    if (mesh->len && hdi_lengths_agree(mesh, &pass->sides, own->e) < 0) return own->e->status;
     for (i = 0; i < HDI_BLOCKS_MOST; i++) hdi_edge_tally_add(&tally, &pass->block[i].edges);
     hdi_pass_join(pass->edges, mesh->n, border, want->border);
     pass->edges->length = tally.length;
@@ -6164,7 +6277,8 @@ static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, const hdi_mesh
     pass.shift = hdi_block_shift(mesh->n);
     rep->n_faces = mesh->m;
     if (n_corners > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0)
+    if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0 ||
+        (mesh->len && hdi_lengths_check(mesh->len, mesh->m, s->e) < 0))
         return hdi_scope_end(&own);
     if (hdi_edges_take(edges, mesh->n, n_corners, want->weights, want->areas, s) < 0)
         return hdi_scope_end(&own);
@@ -6851,26 +6965,6 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
 static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
 static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
 
-/* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none (Kahan
- * 2014). */
-static double hdi_length_area(double a, double b, double c) {
-    double t;
-    if (a < b) { t = a; a = b; b = t; }
-    if (b < c) { t = b; b = c; c = t; }
-    if (a < b) { t = a; a = b; b = t; }
-    t = c - (a - b);
-    return t > 0 ? 0.25 * sqrt((a + (b + c)) * t * (c + (a - b)) * (a + (b - c))) : 0;
-}
-
-/* Cotangents at the corners of a triangle with sides len: side q runs from corner q to the next one. */
-static void hdi_length_cots(const double *len, double area, double *cot) {
-    int q;
-    for (q = 0; q < 3; q++) {
-        const double a = len[hdi_next3[q]], b = len[q], c = len[hdi_prev3[q]];
-        cot[q] = (b * b + c * c - a * a) / (4 * area);
-    }
-}
-
 /* ---- soups ----
  * Different faces, each of which comes once, as in meshes, or several times, as in the stars of points,
  * where a triangle comes from all its three corners if these agree. */
@@ -6969,7 +7063,7 @@ static hdi_edge_tally hdi_soup_edges(hdi_soup *soup, int32_t *border) {
                 copies += all;
                 forward += hdi_key_corner(g->key[q]) < 2 ? all - odd : odd;
             }
-            hdi_edge_count(&tally, copies, forward, hdi_edge_length(mesh->xyz, i, j));
+            hdi_edge_count(&tally, copies, forward, hdi_side_length(mesh, g->key[p], i, j));
             if (copies == 1) hdi_unite(border, i, j);
         }
     }
@@ -6995,7 +7089,9 @@ static void hdi_soup_length_task(void *arg, int64_t begin, int64_t end) {
         const int32_t *v = mesh->tri + 3 * f;
         double *len = soup->len + 3 * f, spare;
         if (!(mesh->area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) len[q] = hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]]) / soup->unit;
+        for (q = 0; q < 3; q++)
+            len[q] = (mesh->len ? hdi_mesh_lengths(mesh, HDI_CAST(int32_t, f))[q]
+                                : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / soup->unit;
         spare = hdi_min(len[0] + len[1] - len[2],
                         hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
         if (job->delta < 0) continue;
@@ -7267,7 +7363,7 @@ static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
         c->list[i].id = hdi_triple(f) + hdi_key_corner(key[p + i]);
         most = hdi_high32(most, hdi_soup_copies(c->soup, f));
     }
-    if (n > 2) hdi_sort_around(mesh, v, hdi_key_vertex(key[p]), c->list, n);
+    if (n > 2 && mesh->xyz) hdi_sort_around(mesh, v, hdi_key_vertex(key[p]), c->list, n);
     for (layer = 0; layer < most; layer++) {
         /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
         for (i = 0; i < n; i++) {
@@ -7918,9 +8014,10 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_erro
     return hdi_scope_end(&s);
 }
 
-/* Copies the places of the rows. */
+/* Copies the places of the rows, where there are any. */
 static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
     int32_t i;
+    if (!xyz) return HD_OK;
     lap->xyz = HDI_NEW(lap->context, double, hdi_triple(lap->n_active), e);
     if (!lap->xyz) return e->status;
     for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
@@ -8098,14 +8195,12 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
-static hd_status hdi_lap_triangles(hd_laplacian *lap, const double *xyz, const int32_t *tri,
-                                   int32_t m, int updatable, hd_error *e) {
+static hd_status hdi_lap_triangles(hd_laplacian *lap, const hdi_mesh *given, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh;
+    hdi_mesh mesh = *given;
     int32_t f;
-    hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
     if (hdi_lap_mesh(lap, &mesh, 1, &s) < 0) return hdi_scope_end(&s);
-    for (f = 0; f < m; f++) lap->area += mesh.area[f];
+    for (f = 0; f < mesh.m; f++) lap->area += mesh.area[f];
     if (updatable && hdi_moving_make(lap, &mesh, e) < 0) return hdi_scope_end(&s);
     /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;
@@ -8443,21 +8538,20 @@ static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mes
     return hdi_progress(lap->context, "assemble", 0.8, e);
 }
 
-static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const double *xyz, const int32_t *tri,
-                                   int32_t m, const hdi_intrinsic_task *task, hd_error *e) {
+static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *given, const hdi_intrinsic_task *task,
+                                   hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh;
+    hdi_mesh mesh = *given;
     hdi_flat flat;
-    hdi_mesh_clear(&mesh, xyz, lap->n, tri, m);
     (void)hdi_lap_unfold(lap, &flat, &mesh, task, &s);
     return hdi_scope_end(&s);
 }
 
 /* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
-static hd_status hdi_lap_faces(hd_laplacian *lap, const double *xyz, const int32_t *tri, int32_t m,
-                               const hdi_intrinsic_task *task, int updatable, hd_error *e) {
-    if (HDI_HAS_INTRINSIC && task) return hdi_lap_intrinsic(lap, xyz, tri, m, task, e);
-    return hdi_lap_triangles(lap, xyz, tri, m, updatable, e);
+static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_intrinsic_task *task,
+                               int updatable, hd_error *e) {
+    if (HDI_HAS_INTRINSIC && task) return hdi_lap_intrinsic(lap, mesh, task, e);
+    return hdi_lap_triangles(lap, mesh, updatable, e);
 }
 
 /* Errors of an update name the polygons that the triangles of x come from. */
@@ -8477,9 +8571,11 @@ static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly,
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int64_t m = hdi_poly_fans(poly->ptr, poly->idx, poly->m, NULL);
     int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
+    hdi_mesh mesh;
     if (!tri) return hdi_scope_end(&s);
     hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
-    if (hdi_lap_faces(lap, poly->xyz, tri, HDI_CAST(int32_t, m), task, updatable, e) < 0 && e->face >= 0)
+    hdi_mesh_clear(&mesh, poly->xyz, lap->n, tri, HDI_CAST(int32_t, m));
+    if (hdi_lap_faces(lap, &mesh, task, updatable, e) < 0 && e->face >= 0)
         e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
     if (e->status >= 0 && lap->moving) hdi_moving_fans(lap->moving, poly);
     return hdi_scope_end(&s);
@@ -28120,6 +28216,7 @@ typedef struct hdi_geo_polygons {
 /* What a plan is made of. */
 typedef struct hdi_geo_input {
     const double *xyz;
+    const double *len;           /* [3 m] lengths of the sides of triangles, in place of xyz */
     const int32_t *tri;          /* [3 m] triangles; or */
     const int64_t *ptr;          /* [m + 1] polygons with their corners in idx; or neither: points, */
     const int32_t *idx;
@@ -28243,6 +28340,10 @@ static char *hdi_geo_bytes(hd_geodesic *g, int64_t count, hd_error *e) {
     return HDI_CAST(char *, hdi_geo_alloc(g, count, 1, e));
 }
 
+/* How far along the longest side a of a triangle the corner opposite to it lies, whose side c leads back to
+ * where a begins. */
+static double hdi_geo_along(double a, double b, double c) { return (a + (c - b) * ((c + b) / a)) / 2; }
+
 /* Face f in its plane with the longest edge on the axis. The height is then as small as it can be and
  * keeps its relative precision. */
 static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h) {
@@ -28250,7 +28351,11 @@ static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t
     double edge[3][3], length[3];
     hdi_geo_face out;
     int i, q, k = 0;
-    for (q = 0; q < 3; q++) {                    /* edge q leaves corner q */
+    for (q = 0; q < 3 && mesh->len; q++) {
+        length[q] = hdi_mesh_lengths(mesh, f)[q] / h;
+        if (length[q] > length[k]) k = q;
+    }
+    for (q = 0; q < 3 && !mesh->len; q++) {      /* edge q leaves corner q */
         hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[q]),
                  edge[q]);
         for (i = 0; i < 3; i++) edge[q][i] /= h;
@@ -28258,7 +28363,8 @@ static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t
         if (length[q] > length[k]) k = q;
     }
     out.l = length[k] / 2;
-    out.p = -hdi_dot3(edge[k], edge[(k + 2) % 3]) / length[k] / 2;
+    out.p = mesh->len ? hdi_geo_along(length[k], length[(k + 1) % 3], length[(k + 2) % 3]) / 2
+                      : -hdi_dot3(edge[k], edge[(k + 2) % 3]) / length[k] / 2;
     out.q = mesh->area[f] / h / h / length[k];   /* half the height */
     for (q = 0; q < 3; q++) out.v[q] = row[v[(k + q) % 3]];
     out.copies = 1;
@@ -28527,6 +28633,7 @@ static hd_status hdi_geo_surface_make(hd_laplacian *lap, hdi_geo_surface *z, con
                                       hdi_scope *s) {
     memset(z, 0, sizeof *z);
     hdi_mesh_clear(&z->mesh, in->xyz, lap->n, in->tri, in->m);
+    z->mesh.len = in->len;
     if (hdi_progress(lap->context, "assemble", 0, s->e) < 0) return s->e->status;
     if (HDI_HAS_INTRINSIC && in->flips) return hdi_geo_unfold(lap, z, in, s);
     if (!HDI_HAS_POLYGONS || !in->ptr) return hdi_lap_mesh(lap, &z->mesh, 0, s);
@@ -29947,16 +30054,17 @@ static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task 
     return 1;
 }
 
-HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
-                                              const int32_t *tri, int32_t n_tri,
-                                              const hd_laplacian_opts *opts, hd_error *err) {
+/* Of a mesh by coordinates, or by lengths. missing: neither is there. */
+static hd_status hdi_triangles_make(hd_laplacian **out, const hdi_mesh *mesh, int missing,
+                                    const hd_laplacian_opts *opts, hd_error *err) {
     hdi_intrinsic_task task;
     hdi_call c;
-    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
+    hd_laplacian *lap = hdi_lap_new(opts, mesh->n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
     int intrinsic;
     if (!lap) return c.e->status;
-    if (!out || (n > 0 && !xyz) || (n_tri > 0 && !tri)) hdi_missing(c.e);
-    hdi_refuse(n_tri < 0, "laplacian: a size is negative", c.e);
+    if (!out || missing || (mesh->m > 0 && !mesh->tri)) hdi_missing(c.e);
+    hdi_refuse(mesh->m < 0, "laplacian: a size is negative", c.e);
+    hdi_refuse(mesh->len && opts && opts->updatable, "laplacian of lengths: it is not updatable", c.e);
     hdi_refuse(!hdi_kind_of_triangles(lap->kind),
                "laplacian of triangles: the kind is fem, voronoi-cot or cot", c.e);
     intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
@@ -29964,8 +30072,25 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
                "laplacian of triangles: an intrinsic triangulation is not updatable", c.e);
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     if (HDI_HAS_INTRINSIC && intrinsic)
-        return hdi_lap_end(out, lap, hdi_lap_intrinsic(lap, xyz, tri, n_tri, &task, c.e), c.e);
-    return hdi_lap_end(out, lap, hdi_lap_triangles(lap, xyz, tri, n_tri, opts && opts->updatable, c.e), c.e);
+        return hdi_lap_end(out, lap, hdi_lap_intrinsic(lap, mesh, &task, c.e), c.e);
+    return hdi_lap_end(out, lap, hdi_lap_triangles(lap, mesh, opts && opts->updatable, c.e), c.e);
+}
+
+HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
+                                              const int32_t *tri, int32_t n_tri,
+                                              const hd_laplacian_opts *opts, hd_error *err) {
+    hdi_mesh mesh;
+    hdi_mesh_clear(&mesh, xyz, n, tri, n_tri);
+    return hdi_triangles_make(out, &mesh, n > 0 && !xyz, opts, err);
+}
+
+HEATDIFF_API hd_status hd_laplacian_lengths(hd_laplacian **out, const double *lengths, int32_t n,
+                                            const int32_t *tri, int32_t n_tri, const hd_laplacian_opts *opts,
+                                            hd_error *err) {
+    hdi_mesh mesh;
+    hdi_mesh_clear(&mesh, NULL, n, tri, n_tri);
+    mesh.len = lengths;
+    return hdi_triangles_make(out, &mesh, !lengths, opts, err);
 }
 
 /* ---- views of vertex and index buffers ---- */
@@ -31205,6 +31330,7 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_
                "geodesic: points cannot tell their border", e);
     hdi_refuse(in->ptr && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
                "geodesic: Voronoi areas are of triangles, not of polygons", e);
+    hdi_refuse(in->len && o->updatable, "geodesic: a plan of lengths is not updatable", e);
     hdi_refuse(o->updatable && (in->flips || in->ptr),
                "geodesic: only plans of triangles in space are updatable", e);
     return e->status;
@@ -31305,6 +31431,21 @@ HEATDIFF_API hd_status hd_geodesic_create_points(hd_geodesic **out, const double
     if (hdi_geo_open_plan(out, opts, &o, there, err, &c) < 0 || !HDI_HAS_GEODESIC) return c.e->status;
     if (!HDI_HAS_POINTS) return HDI_LEFT_OUT(c.e, POINTS, "points");
     if (!HDI_HAS_INTRINSIC) return HDI_LEFT_OUT(c.e, INTRINSIC, "intrinsic triangulations");
+    return hdi_geo_create(out, n, &in, &o, &c);
+}
+
+HEATDIFF_API hd_status hd_geodesic_create_lengths(hd_geodesic **out, const double *lengths, int32_t n,
+                                                  const int32_t *tri, int32_t n_tri,
+                                                  const hd_geodesic_opts *opts, hd_error *err) {
+    hd_geodesic_opts o;
+    hdi_geo_input in;
+    hdi_call c;
+    memset(&in, 0, sizeof in);
+    in.len = lengths;
+    in.tri = tri;
+    in.m = n_tri;
+    if (hdi_geo_open_plan(out, opts, &o, lengths && !(n_tri > 0 && !tri), err, &c) < 0 || !HDI_HAS_GEODESIC)
+        return c.e->status;
     return hdi_geo_create(out, n, &in, &o, &c);
 }
 

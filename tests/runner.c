@@ -179,6 +179,7 @@ static void test_tmp_remove(void) {
 #include "test_filters.h"
 #include "test_sources.h"
 #include "test_geodesic_all.h"
+#include "test_lengths.h"
 #include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
@@ -195,6 +196,7 @@ static const test_group test_groups[] = {
     {"borders", test_borders},   {"adjoints", test_adjoints}, {"signatures", test_signatures},
     {"filters", test_filters},
     {"sources", test_sources},
+    {"lengths", test_lengths},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
