@@ -1764,11 +1764,13 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
 #endif
 
 /* ---- work and critical path ---- */
-/* A factor on more threads than the machine has: tasks of the plan take their flops as time, and each thread
- * that is free claims the task that has been ready longest, as the library's threads do. Waking and the
- * limits of memory are not in it. */
+/* A factor and its inversion on more threads than the machine has: tasks of the plan take their multiply-adds
+ * as time, and each thread that is free claims the task that has been ready longest, as the library's threads
+ * do. Waking, copying and the limits of memory are not in it. */
 
-typedef struct sim { double *thread; int32_t n; double end; } sim;   /* thread [n]: when each is free */
+enum { SIM_MOST = 1024 };                        /* threads: more than there are tasks at a time */
+
+typedef struct sim { double thread[SIM_MOST]; int32_t n; double end; } sim;   /* thread: when each is free */
 
 /* The task goes to the thread that is free first. Returns when it is done. */
 static double sim_claim(sim *s, double ready, double work) {
@@ -1782,11 +1784,15 @@ static double sim_claim(sim *s, double ready, double work) {
     return done;
 }
 
-/* All threads meet. */
-static void sim_meet(sim *s) {
+/* All threads meet, and one of them works before the others go on. */
+static void sim_meet(sim *s, double work) {
     int32_t k;
+    s->end += work;
     for (k = 0; k < s->n; k++) s->thread[k] = s->end;
 }
+
+/* The factor of a front with p pivots and u rows below, as a whole. */
+static double sim_front_work(double p, double u) { return p * p * p / 6 + p * p * u / 2 + p * u * u / 2; }
 
 /* A front that threads share, by blocks of pivots and chunks of rows; the next pivots begin when their rows are done. */
 static void sim_front(sim *s, double m, double p, double nb) {
@@ -1807,53 +1813,120 @@ static void sim_front(sim *s, double m, double p, double nb) {
             all = hdi_max(all, done[c]);
         }
     }
-    sim_meet(s);
+    sim_meet(s, 0);
     for (c = (int32_t)ceil((m - p) / HDI_FRONT_CHUNK); c-- > 0;) {
         const double r0 = c * (double)HDI_FRONT_CHUNK, r1 = hdi_min(m - p, r0 + HDI_FRONT_CHUNK);
         sim_claim(s, s->thread[0], p * (r1 * r1 - r0 * r0) / 2);
     }
-    sim_meet(s);
+    sim_meet(s, 0);
 }
 
 /* Time of a factor of packs on n threads, in multiply-adds. */
 static double sim_factor(const hdi_symbolic *f, int32_t n) {
-    double thread[64];
     sim s;
     int32_t k, v;
-    memset(thread, 0, sizeof thread);
-    s.thread = thread;
+    memset(&s, 0, sizeof s);
     s.n = n;
-    s.end = 0;
     for (k = 0; k < f->n_tasks; k++) {
         double work = 0;
-        for (v = f->task_begin[k]; v < f->task_end[k]; v++) {
-            const double p = hdi_front_pivots(f, v), u = (double)hdi_front_below(f, v);
-            work += p * p * p / 6 + p * p * u / 2 + p * u * u / 2;
-        }
+        for (v = f->task_begin[k]; v < f->task_end[k]; v++)
+            work += sim_front_work(hdi_front_pivots(f, v), (double)hdi_front_below(f, v));
         sim_claim(&s, 0, work);
     }
-    sim_meet(&s);
-    for (k = 0; k < f->n_top; k++)
-        sim_front(&s, (double)hdi_front_rows(f, f->top[k]), hdi_front_pivots(f, f->top[k]), HDI_PACK_BLOCK);
+    sim_meet(&s, 0);
+    for (k = 0; k < f->n_top; k++) {
+        const double p = hdi_front_pivots(f, f->top[k]), u = (double)hdi_front_below(f, f->top[k]);
+        if (hdi_factor_shared(f, f->top[k])) sim_front(&s, p + u, p, HDI_PACK_BLOCK);
+        else sim_meet(&s, sim_front_work(p, u));
+    }
+    return s.end;
+}
+
+/* Rows [r0,r1) of a stage of the inversion with b pivots and r rows below them. */
+static double sim_stage_work(int stage, double b, double r, double r0, double r1) {
+    if (stage == HDI_INVERSE_M) return (r1 - r0) * b * b / 2;
+    if (stage == HDI_INVERSE_BELOW) return (r1 - r0) * r * b;
+    return stage == HDI_INVERSE_CORNER ? r * (r1 * r1 - r0 * r0) / 2 : 0;
+}
+
+/* T and the first part of Z11 of a block of b pivots, by one thread. */
+static double sim_pivots_work(double b) { return b * b * b / 3; }
+
+/* The inversion of a front as a whole. */
+static double sim_inverse_front(double m, double p) {
+    double work = 0, k0, k1 = p;
+    for (k0 = floor((p - 1) / HDI_PANEL) * HDI_PANEL; k1 > 0; k0 -= HDI_PANEL) {
+        const double b = k1 - k0, r = m - k1;
+        work += sim_pivots_work(b) + sim_stage_work(HDI_INVERSE_M, b, r, 0, r) +
+                sim_stage_work(HDI_INVERSE_BELOW, b, r, 0, r) + sim_stage_work(HDI_INVERSE_CORNER, b, r, 0, b);
+        k1 = k0;
+    }
+    return work;
+}
+
+/* Time of the inversion of a pack on n threads: the stages of the top, in the order of the library, then the subtrees. */
+static double sim_inverse(const hdi_symbolic *f, int32_t n) {
+    hdi_inverse_step c = hdi_inverse_step_begin(f);
+    hdi_inverse z;
+    sim s;
+    int32_t k, v;
+    memset(&s, 0, sizeof s);
+    memset(&z, 0, sizeof z);
+    s.n = n;
+    z.wanted = HDI_WANT_DIAGONAL;
+    while (f->n_top > 0 && hdi_inverse_step_next(&z, f, &c)) {
+        const double m = (double)hdi_front_rows(f, f->top[c.top]), b = (double)(c.k1 - c.k0), r = m - (double)c.k1;
+        int64_t i, from = c.stage == HDI_INVERSE_CORNER ? 0 : c.k1;
+        if (c.stage == HDI_INVERSE_WHOLE) sim_meet(&s, sim_inverse_front(m, hdi_front_pivots(f, f->top[c.top])));
+        if (c.stage == HDI_INVERSE_M) sim_meet(&s, sim_pivots_work(b));
+        if (c.stage > HDI_INVERSE_CORNER) continue;
+        for (i = hdi_inverse_step_nodes(&c); i-- > 0;) {
+            const int64_t r0 = c.begin + i * c.rows - from, r1 = hdi_least(r0 + c.rows, c.end - from);
+            sim_claim(&s, 0, sim_stage_work(c.stage, b, r, (double)r0, (double)r1));
+        }
+        sim_meet(&s, 0);
+    }
+    for (k = f->n_tasks; k-- > 0;) {
+        double work = 0;
+        for (v = f->task_begin[k]; v < f->task_end[k]; v++)
+            work += sim_inverse_front((double)hdi_front_rows(f, v), hdi_front_pivots(f, v));
+        sim_claim(&s, 0, work);
+    }
     return s.end;
 }
 
 static void sim_print(const hd_laplacian *lap) {
     static const int32_t n[] = {2, 4, 8, 16};
+    double (*const run[2])(const hdi_symbolic *, int32_t) = {sim_factor, sim_inverse};
     hd_ldl_opts o;
     hd_ldl *f = NULL;
-    double one;
-    int k;
+    int k, q;
     memset(&o, 0, sizeof o);
     o.xyz = lap->xyz;
     if (hd_ldl_analyse(&f, &lap->L, &o, NULL, NULL) >= 0) {
-        one = sim_factor(&f->sym, 1);
-        printf("  factor by the plan's tasks: %.3g G multiply-adds, %d subtrees and %d shared fronts; parallel efficiency on",
-               1e-9 * one, (int)f->sym.n_tasks, (int)f->sym.n_top);
-        for (k = 0; k < 4; k++) printf(" %d: %.2f", (int)n[k], one / sim_factor(&f->sym, n[k]) / n[k]);
-        printf(" threads\n");
+        printf("  %d subtrees, %d fronts above them\n", (int)f->sym.n_tasks, (int)f->sym.n_top);
+        for (q = 0; q < 2; q++) {
+            const double work = run[q](&f->sym, 1), path = run[q](&f->sym, SIM_MOST);
+            printf("  %s by the plan's tasks: %.3g G multiply-adds, critical path %.3g G (1/%.1f); parallel efficiency on",
+                   q ? "inversion" : "factor", 1e-9 * work, 1e-9 * path, work / path);
+            for (k = 0; k < 4; k++) printf(" %d: %.2f", (int)n[k], work / run[q](&f->sym, n[k]) / n[k]);
+            printf(" threads\n");
+        }
     }
     hd_ldl_free(f);
+}
+
+/* The tasks of the plan for meshes, without any clock. */
+static void tasks_mesh(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, &e) < 0) {
+        fprintf(stderr, "bench: %s: %s\n", name, e.text);
+        return;
+    }
+    printf("%s, %d rows\n", name, (int)lap->n_active);
+    sim_print(lap);
+    hd_laplacian_free(lap);
 }
 
 #ifdef BENCH_BUSY
@@ -2011,8 +2084,10 @@ static void busy_mesh(const settings *set, const char *name, const double *xyz, 
 }
 #endif
 
-/* A mesh from a file, for the parts (set NULL) or for the contests. */
-static int bench_file(const settings *set, const char *path, const double *peak) {
+typedef void (*mesh_job)(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri);
+
+/* A mesh from a file, for a job (set NULL) or for the contests. */
+static int bench_file(const settings *set, mesh_job job, const char *path, const double *peak) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     mio_mesh mesh;
     mio_error e;
@@ -2025,7 +2100,7 @@ static int bench_file(const settings *set, const char *path, const double *peak)
     if (!set) printf("%s: loaded in %.1f ms\n", path, 1e3 * (now() - t0));
     if (mio_triangulate(&mesh, &tri, &n_tri, &face, &e) >= 0) {
         if (set) (set->busy ? busy_mesh : bench_mesh)(set, name, mesh.xyz, mesh.n, tri, n_tri, peak);
-        else parts_mesh(path, mesh.xyz, mesh.n, tri, n_tri);
+        else job(path, mesh.xyz, mesh.n, tri, n_tri);
     }
     free(tri);
     free(face);
@@ -2033,9 +2108,9 @@ static int bench_file(const settings *set, const char *path, const double *peak)
     return 1;
 }
 
-static void bench_shape(const settings *set, const char *name, shape s, const double *peak) {
+static void bench_shape(const settings *set, mesh_job job, const char *name, shape s, const double *peak) {
     if (set) (set->busy ? busy_mesh : bench_mesh)(set, name, s.xyz, s.n, s.tri, s.n_tri, peak);
-    else parts_mesh(name, s.xyz, s.n, s.tri, s.n_tri);
+    else job(name, s.xyz, s.n, s.tri, s.n_tri);
     shape_free(&s);
 }
 
@@ -2046,6 +2121,7 @@ static int usage(const char *what) {
     fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] "
                     "[--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
+                    "       bench tasks [MESH ...]\n"
                     "       bench busy [--threads N] [--seconds S] [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
                     "  --jobs LIST     of "
@@ -2148,13 +2224,16 @@ static void keep_memory(void) {
 #endif
 }
 
-static int bench_parts(int argc, char **argv) {
+/* A job that is no contest, for the meshes given or for two shapes. */
+static int bench_job(int argc, char **argv, mesh_job job) {
+    const int tasks = job == tasks_mesh;
     int i, fine = 1;
-    printf("memcpy of 256 MB: %.1f GB/s, read and written counted\n", 1e-9 * copy_speed(256000000));
-    for (i = 2; i < argc; i++) fine &= bench_file(NULL, argv[i], NULL);
+    for (i = 2; i < argc; i++) fine &= bench_file(NULL, job, argv[i], NULL);
     if (argc == 2) {
-        bench_shape(NULL, "torus", shape_torus(1000, 500, 1, 0.4), NULL);
-        bench_shape(NULL, "bumpy", shape_bumpy(7, 1), NULL);
+        bench_shape(NULL, job, "torus", tasks ? shape_torus(500, 300, 1, 0.4) : shape_torus(1000, 500, 1, 0.4), NULL);
+        bench_shape(NULL, job, "bumpy", shape_bumpy(7, 1), NULL);
+        if (tasks) bench_shape(NULL, job, "torus", shape_torus(1250, 800, 1, 0.4), NULL);
+        if (tasks) bench_shape(NULL, job, "demo", shape_demo(1000000), NULL);
     }
     return fine ? 0 : 1;
 }
@@ -2163,7 +2242,11 @@ int main(int argc, char **argv) {
     settings set;
     double peak[32];
     int i, first, fine = 1;
-    if (argc > 1 && !strcmp(argv[1], "parts")) return bench_parts(argc, argv);
+    if (argc > 1 && !strcmp(argv[1], "parts")) {
+        printf("memcpy of 256 MB: %.1f GB/s, read and written counted\n", 1e-9 * copy_speed(256000000));
+        return bench_job(argc, argv, parts_mesh);
+    }
+    if (argc > 1 && !strcmp(argv[1], "tasks")) return bench_job(argc, argv, tasks_mesh);
     memset(&set, 0, sizeof set);
     set.jobs = (1 << JOBS) - 1;
     set.columns = 100;
@@ -2182,10 +2265,10 @@ int main(int argc, char **argv) {
                "rival_error,gflops,peak_share,gbytes,nnz,bytes,"
                "bytes_per_64nnz,rival_nnz,rival_bytes\n");
     fflush(stdout);
-    for (i = first; i < argc; i++) fine &= bench_file(&set, argv[i], peak);
+    for (i = first; i < argc; i++) fine &= bench_file(&set, NULL, argv[i], peak);
     if (first == argc) {
-        bench_shape(&set, "torus", shape_torus(250, 200, 1, 0.4), peak);
-        bench_shape(&set, "bumpy", shape_bumpy(7, 1), peak);
+        bench_shape(&set, NULL, "torus", shape_torus(250, 200, 1, 0.4), peak);
+        bench_shape(&set, NULL, "bumpy", shape_bumpy(7, 1), peak);
     }
     return fine ? 0 : 1;
 }
