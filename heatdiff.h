@@ -1320,11 +1320,11 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 
-/* Another pole set for a plan, as if it stood in hd_heat_opts.rational. Ordering, analysis and memory stay, so
- * that one plan serves many filters one after the other.
+/* Another pole set for a plan, as if it stood in hd_heat_opts.rational. Ordering, analysis and memory stay,
+ * so that one plan serves many filters one after the other.
  * set    copied; NULL: from now on exp, with poles and degree by default
- * Errors HD_ERR_ARGUMENT (also if the plan is of method krylov or of Lanczos), HD_ERR_NOT_FINITE; then nothing
- *        has changed
+ * Errors HD_ERR_ARGUMENT (also if the plan is of method krylov or of Lanczos), HD_ERR_NOT_FINITE; then
+ *        nothing has changed
  * Cost   none */
 HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_error *err);
 
@@ -1635,9 +1635,10 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, 
                                           const int32_t *tri, int32_t n_tri,
                                           const hd_geodesic_opts *opts, hd_error *err);
 /* The same for triangles that are known by the lengths of their sides, see hd_laplacian_lengths. */
-HEATDIFF_API hd_status hd_geodesic_create_lengths(hd_geodesic **out, const double *lengths, int32_t n,
-                                                  const int32_t *tri, int32_t n_tri,
-                                                  const hd_geodesic_opts *opts, hd_error *err);
+HEATDIFF_API hd_status hd_geodesic_create_lengths(hd_geodesic **out, const double *lengths,
+                                                  int32_t n, const int32_t *tri, int32_t n_tri,
+                                                  const hd_geodesic_opts *opts,
+                                                  hd_error *err);
 /* The same for a mesh in a vertex and an index buffer. Errors and cost of the view: see hd_laplacian_view. */
 HEATDIFF_API hd_status hd_geodesic_create_view(hd_geodesic **out, const hd_mesh_view *view,
                                                const hd_geodesic_opts *opts, hd_error *err);
@@ -23588,6 +23589,7 @@ static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c,
     lane->skip = norm == 0;
     if (lane->skip) return HD_OK;
     if (!plain && hdi_lane_bounded(h)) {
+        memset(lane->f, 0, HDI_CAST(size_t, lap->n_active) * sizeof *lane->f);   /* a0 = 0 times it is 0 */
         hdi_component_sums(lap, NULL, lane->rhs, lane->target);
         lane->f_norm = norm / hdi_ratio_root(lap);
         lane->rhs_off = sums * lane->f_norm;
@@ -25959,7 +25961,9 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
 /* ---- distances ---- */
 
 /* Does the plan have a filter instead of exp? */
-static int hdi_heat_filtered(const hd_heat *heat) { return heat->opts.rational && heat->opts.rational->t > 0; }
+static int hdi_heat_filtered(const hd_heat *heat) {
+    return heat->opts.rational && heat->opts.rational->t > 0;
+}
 
 /* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source,
  * and bounds of their errors. The rational error of f is at most weighted times a form with diagonal g, and
