@@ -75,7 +75,7 @@
      [18] selinv     selected inversion: entries of the inverse, quadratic forms
      [19] precond    Jacobi, SSOR and incomplete L D L'
      [20] iterative  COCG, COCR, CS-MINRES
-     [21] rational   pole sets: tables, evaluation, sets shared by many times
+     [21] rational   pole sets: tables, evaluation, sets shared by many times, fits of filters
      [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
      [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
      [24] ground     L with one vertex of each component held: distances without a time
@@ -1257,17 +1257,18 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 
-/* Another pole set for a plan, as if it stood in hd_heat_opts.rational. Ordering, analysis and memory stay, so
- * that one plan serves many filters one after the other.
+/* Another pole set for a plan, as if it stood in hd_heat_opts.rational. Ordering, analysis and memory stay,
+ * so that one plan serves many filters one after the other.
  * set    copied; NULL: from now on exp, with poles and degree by default
- * Errors HD_ERR_ARGUMENT (also if the plan is of method krylov or of Lanczos), HD_ERR_NOT_FINITE; then nothing
- *        has changed
+ * Errors HD_ERR_ARGUMENT (also if the plan is of method krylov or of Lanczos), HD_ERR_NOT_FINITE; then
+ *        nothing has changed
  * Cost   none */
 HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_error *err);
 
 /* Common to all queries of a plan:
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
- * t      [n_times], n_times >= 1, in any order; unit length^2. One time: n_times = 1 and the address of t
+ * t      [n_times], n_times >= 1, in any order; unit length^2. One time: n_times = 1 and the address of t.
+ *        With a filter: the t of its set
  * report NULL, or what happened; with several columns or times the worst of them
  * err    NULL, or the error, which report->error has as well */
 
@@ -1335,7 +1336,8 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
                                      hd_error *err);
 
 /* Diffusion distances from each of k sources to every vertex.
- * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1
+ * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1. With a filter d^2 is the
+ *        sum of the filter itself, see hd_rational_fit
  * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n)
  * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
  *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
@@ -16993,7 +16995,7 @@ enum {
 #define HDI_FIT_FLOOR 1e-12
 #define HDI_FIT_BELOW 1e-3
 /* A complex pole is dropped where its distance from the spectrum is below this part of its modulus, and any
- * pole below the second number times lambda_max: the matrices of such poles have lost most of their digits. */
+ * pole below the second number times lambda_max. The matrices of such poles have lost most digits. */
 #define HDI_FIT_NEAR 1e-5
 #define HDI_FIT_LEAST 1e-12
 /* Beyond this times lambda_max a pole is a constant, which is not wanted. */
@@ -24649,7 +24651,9 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
 /* ---- distances ---- */
 
 /* Does the plan have a filter instead of exp? */
-static int hdi_heat_filtered(const hd_heat *heat) { return heat->opts.rational && heat->opts.rational->t > 0; }
+static int hdi_heat_filtered(const hd_heat *heat) {
+    return heat->opts.rational && heat->opts.rational->t > 0;
+}
 
 /* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source,
  * and bounds of their errors. The rational error of f is at most weighted times a form with diagonal g, and
@@ -28667,6 +28671,12 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
     if (!heat) return hdi_missing(c.e);
     hdi_refuse(set && (o->method == HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
                "heat: krylov and Lanczos have no use for a pole set", c.e);
+    if (c.e->status >= 0 && set) {
+        hd_heat_opts asked = *o;
+        asked.rational = set;
+        asked.precond = HD_PRECOND_AUTO;         /* by now it has its default */
+        hdi_heat_built(&asked, c.e);
+    }
     if (c.e->status >= 0 && set) (void)hdi_rational_check(set, c.e);
     if (c.e->status < 0) return c.e->status;
     if (set) {
