@@ -75,7 +75,7 @@
      [18] selinv     selected inversion: entries of the inverse, quadratic forms
      [19] precond    Jacobi, SSOR and incomplete L D L'
      [20] iterative  COCG, COCR, CS-MINRES
-     [21] rational   pole sets: tables, evaluation, sets shared by many times
+     [21] rational   pole sets: tables, evaluation, sets shared by many times, fits of filters
      [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
      [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
      [24] ground     L with one vertex of each component held: distances without a time
@@ -1330,7 +1330,8 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
 
 /* Common to all queries of a plan:
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
- * t      [n_times], n_times >= 1, in any order; unit length^2. One time: n_times = 1 and the address of t
+ * t      [n_times], n_times >= 1, in any order; unit length^2. One time: n_times = 1 and the address of t.
+ *        With a filter: the t of its set
  * report NULL, or what happened; with several columns or times the worst of them
  * err    NULL, or the error, which report->error has as well */
 
@@ -1495,7 +1496,8 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
                                      hd_error *err);
 
 /* Diffusion distances from each of k sources to every vertex.
- * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1
+ * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1. With a filter d^2 is the
+ *        sum of the filter itself, see hd_rational_fit
  * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n)
  * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
  *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
@@ -17572,8 +17574,7 @@ enum {
 #define HDI_FIT_FLOOR 1e-12
 #define HDI_FIT_BELOW 1e-3
 /* A complex pole is dropped where its distance from the spectrum is below this part of its modulus, and any
- * pole below the second number times lambda_max: the matrices of such poles have lost most of their
- * digits. */
+ * pole below the second number times lambda_max. The matrices of such poles have lost most digits. */
 #define HDI_FIT_NEAR 1e-5
 #define HDI_FIT_LEAST 1e-12
 /* Beyond this times lambda_max a pole is a constant, which is not wanted. */
@@ -30734,6 +30735,12 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
     if (!heat) return hdi_missing(c.e);
     hdi_refuse(set && (o->method == HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
                "heat: krylov and Lanczos have no use for a pole set", c.e);
+    if (c.e->status >= 0 && set) {
+        hd_heat_opts asked = *o;
+        asked.rational = set;
+        asked.precond = HD_PRECOND_AUTO;         /* by now it has its default */
+        hdi_heat_built(&asked, c.e);
+    }
     if (c.e->status >= 0 && set) (void)hdi_rational_check(set, c.e);
     if (c.e->status < 0) return c.e->status;
     if (set) {

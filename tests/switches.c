@@ -351,12 +351,43 @@ static void check_points(void) {
     }
 }
 
-static void check_poles(void) {
+/* 1/(1 + lambda) of the octahedron, with whatever a plan has for it. */
+static void check_filter(const hd_laplacian *lap) {
+    const char *lacking = no.iterative && no.pole_factors ? no.pole_factors : NULL;
+    hd_filter f;
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    hd_rational set;
+    const double w = 1 / sqrt(3.0), f4 = 1 / (1 + 4 * w), f6 = 1 / (1 + 6 * w);
+    double u[6];
+    int i;
+    memset(&f, 0, sizeof f);
+    memset(&o, 0, sizeof o);
+    f.kind = HD_FILTER_RESOLVENT;
+    f.a = 1;
+    CHECK(hd_rational_fit(&set, &f, hd_laplacian_lambda_max(lap), NULL, &err) == HD_OK && near_to(hd_rational_eval(&set, -2 * set.t), 1 / 3.0));
+    o.rational = &set;
+    if (BUILT(hd_heat_create(&heat, lap, &o, &err), lacking)) {
+        CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, set.t, 0, u, NULL, &err) >= 0);
+        for (i = 0; i < 6; i++) CHECK(near_to(u[i], between(i, 0, 1, f4, f6)));
+        hd_heat_free(heat);
+    }
+    heat = NULL;
+    CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
+    if (BUILT(hd_heat_filter(heat, &set, &err), lacking)) {
+        if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &set.t, u, 0, NULL, &err), no.diagonal))
+            for (i = 0; i < 6; i++) CHECK(near_to(u[i], between(i, i, 1, f4, f6)));
+    }
+    hd_heat_free(heat);
+}
+
+static void check_poles(const hd_laplacian *lap) {
     hd_rational set;
     CHECK(hd_rational_get(&set, HD_POLES_UNIFORM, 7, &err) == HD_OK && near_to(hd_rational_eval(&set, -1), exp(-1.0)));
     CHECK(hd_rational_get(&set, HD_POLES_KERNEL, 10, &err) == HD_OK && near_to(hd_rational_eval(&set, -2), exp(-2.0)));
     if (BUILT(hd_rational_get(&set, HD_POLES_DIAGONAL, 10, &err), no.diagonal))
         CHECK(near_to(hd_rational_eval(&set, -2), exp(-2.0)));
+    check_filter(lap);
 }
 
 int main(void) {
@@ -372,7 +403,7 @@ int main(void) {
     check_ldl();
     check_surfaces();
     check_points();
-    check_poles();
+    check_poles(lap);
     hd_laplacian_free(lap);
     printf("%d passed, %d failed\n", n_checks - n_failed, n_failed);
     return n_failed != 0;
