@@ -116,7 +116,8 @@
      answers HD_ERR_NOT_BUILT, with the name of the switch in the text of the error. The choice by default
      (HD_METHOD_AUTO) is among what is there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_POLE_FACTORS,
-                               NO_GEODESIC, NO_SPECTRUM. b_ratio of hd_laplacian_matrices is that of Gershgorin's circles
+                               NO_GEODESIC, NO_SPECTRUM. b_ratio of hd_laplacian_matrices is that of
+                               Gershgorin's circles
      HEATDIFF_NO_POLE_FACTORS  factors of complex matrices: method direct, hd_ldl_*_complex; implies
                                NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_heat_edges, hd_ldl_inverse*, diagonal
