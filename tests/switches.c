@@ -33,6 +33,11 @@
 #else
 #define NO_GEODESIC NULL
 #endif
+#ifdef HEATDIFF_NO_SPECTRUM
+#define NO_SPECTRUM "HEATDIFF_NO_SPECTRUM"
+#else
+#define NO_SPECTRUM NULL
+#endif
 #ifdef HEATDIFF_NO_ITERATIVE
 #define NO_ITERATIVE "HEATDIFF_NO_ITERATIVE"
 #else
@@ -56,7 +61,7 @@
 
 /* The switch that takes a part away, by itself or because it implies that; NULL if the part is there. */
 static struct {
-    const char *direct, *pole_factors, *diagonal, *diffusion, *geodesic, *iterative, *intrinsic, *points, *polygons;
+    const char *direct, *pole_factors, *diagonal, *diffusion, *geodesic, *spectrum, *iterative, *intrinsic, *points, *polygons;
 } no;
 
 static const char *either(const char *first, const char *second) { return first ? first : second; }
@@ -67,6 +72,7 @@ static void find_switches(void) {
     no.diagonal = either(NO_DIAGONAL, no.pole_factors);
     no.diffusion = either(NO_DIFFUSION, no.diagonal);
     no.geodesic = either(NO_GEODESIC, no.direct);
+    no.spectrum = either(NO_SPECTRUM, no.direct);
     no.iterative = NO_ITERATIVE;
     no.intrinsic = NO_INTRINSIC;
     no.points = NO_POINTS;
@@ -223,6 +229,37 @@ static void check_geodesic_kinds(void) {
     if (BUILT(hd_geodesic_create(&g, xyz, 6, tri, 8, &o, &err), no.intrinsic)) hd_geodesic_free(g);
     if (BUILT(hd_geodesic_create_polygons(&g, xyz, 6, ptr, tri, 8, NULL, &err), no.polygons)) hd_geodesic_free(g);
     if (BUILT(hd_geodesic_create_points(&g, xyz, 6, NULL, NULL, NULL, &err), either(no.points, no.intrinsic))) hd_geodesic_free(g);
+}
+
+/* The smallest eigenpairs, and distances at a time where few are left. */
+static void check_spectrum(const hd_laplacian *lap) {
+    const int32_t zero = 0;
+    const double t = 2, w = 1 / sqrt(3.0), f4 = exp(-8 * w * t), f6 = exp(-12 * w * t);
+    const double far = sqrt(2 * (between(0, 0, 1, f4, f6) - between(0, 1, 1, f4, f6)));
+    hd_spectrum_opts o;
+    hd_spectrum *s = NULL;
+    hd_heat *heat = NULL;
+    hd_report rep;
+    double u[6] = {0}, d[6];
+    int i;
+    memset(&o, 0, sizeof o);
+    o.count = 5;
+    if (BUILT(hd_spectrum_create(&s, lap, &o, &err), no.spectrum)) {
+        CHECK(s->proven && s->n_constant == 1 && near_to(s->value[1], 4 * w) && near_to(s->value[4], 6 * w));
+        CHECK(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 1, &t, 1, &zero, u, NULL, 0, &err) == HD_OK);
+        for (i = 0; i < 6; i++) CHECK(near_to(u[i], heat_of(i, 0, t)));
+    } else {
+        (void)BUILT(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 1, &t, 1, &zero, u, NULL, 0, &err), no.spectrum);
+        (void)BUILT(hd_spectrum_diagonal(s, HD_KERNEL_OPERATOR, 1, &t, u, NULL, 0, &err), no.spectrum);
+        (void)BUILT(hd_spectrum_distance(s, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, u, NULL, 0, &err), no.spectrum);
+    }
+    hd_spectrum_free(s);
+    if (no.diffusion) return;
+    CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, d, 0, &rep, &err) >= 0);
+    CHECK((strstr(rep.reason, "eigenpairs") != NULL) == !no.spectrum && fabs(d[1] - far) <= rep.error_bound * far);
+    CHECK(no.spectrum || fabs(d[1] - far) <= 1e-12 * far);
+    hd_heat_free(heat);
 }
 
 static void check_geodesic(void) {
@@ -398,6 +435,7 @@ int main(void) {
     lap = octahedron(&o);
     check_plans(lap);
     check_signatures(lap);
+    check_spectrum(lap);
     check_geodesic();
     check_shifted(lap);
     check_ldl();

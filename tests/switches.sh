@@ -15,9 +15,10 @@ cp "$work/static.c" "$work/static.cpp"
 gone() {
   case $1 in
     DIRECT) echo "hdi_front_factor hdi_nd_split hdi_amd_run hdi_symbolic_order hdi_sweep_run hdi_elim_make hdi_silan_run hdi_real_tiles_plain" \
-                 "$(gone POLE_FACTORS) $(gone GEODESIC)" ;;
+                 "$(gone POLE_FACTORS) $(gone GEODESIC) $(gone SPECTRUM)" ;;
     POLE_FACTORS) echo "hdi_pack_multiply_plain hdi_front_pivots_pack hdi_batch_run hdi_elim_poles $(gone DIAGONAL)" ;;
     DIAGONAL) echo "hdi_inverse_run hdi_form_task hdi_ground_make hdi_diagonal_run hdi_trace_run hdi_edges_run $(gone DIFFUSION)" ;;
+    SPECTRUM) echo "hdi_spec_run hdi_spec_sums_run hdi_modes_distance hdi_modes_pairs hdi_pairs_by_modes hdi_sample_modes hdi_slab_dots_task" ;;
     DIFFUSION) echo "hdi_metric_make hdi_pairs_once hdi_sample_run" ;;
     ITERATIVE) echo "hdi_krylov_run hdi_precond_ordered hdi_fill_task hdi_lanczos_first hdi_family_run" ;;
     GEODESIC) echo "hdi_geo_make hdi_geo_sweep hdi_geo_free" ;;
@@ -59,12 +60,13 @@ DIAGONAL
 DIFFUSION
 ITERATIVE
 GEODESIC
+SPECTRUM
 INTRINSIC
 POINTS
 POLYGONS
 THREADS SIMD
 ITERATIVE POLE_FACTORS INTRINSIC
-ITERATIVE DIAGONAL INTRINSIC
+ITERATIVE DIAGONAL SPECTRUM INTRINSIC
 ITERATIVE DIFFUSION
 ITERATIVE DIAGONAL GEODESIC INTRINSIC POINTS POLYGONS THREADS SIMD
 DIRECT INTRINSIC POINTS POLYGONS THREADS SIMD
