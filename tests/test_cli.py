@@ -355,7 +355,8 @@ class Usage(Case):
                 self.assertIn("--t takes", self.kernel("--source", 0, *form))
 
     def test_sources(self):
-        for s in ("-3", "1.5", "a", "", "1,,2", "1,", "0x1", "1e3", " 1", "1-2"):
+        for s in ("-3", "1.5", "a", "", "1,,2", "1,", "0x1", "1e3", " 1", "1-2", "1+", "+,1", "2:", "2:0.5", "2:0.5,", "2:0.7,0.4", "2:-0.1,0.4", "2:a,b", "*3", "0.5*", "nan*3",
+                  "1:0.2,0.3,0.5:1,1"):
             for form in (["--source=" + s], ["--source", s]):
                 self.assertIn("--source takes", self.kernel("--t", 1, *form))
 
@@ -527,6 +528,43 @@ class Failures(Case):
                 name = self.path("x" * (size - len(e) - 1) + "." + e)
                 self.good("kernel", self.patch, "--source", 0, "--t", "1h2", "-o", name)
                 os.remove(name)
+
+    def test_sources_anywhere(self):
+        mesh = self.file("roof.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3\nf 1 3 4\nf 2 5 6 3\n")
+        for command, more in (("kernel", ("--t", "0.1")), ("kernel", ("--t", "0.1,0.2", "--kernel", "symmetric", "--method", "krylov")), ("distance", ("--t", "0.1")),
+                              ("geodesic", ())):
+            want = self.field(command, mesh, "--source", "0,3", *more)
+            self.assertEqual(want, self.field(command, mesh, "--source", "0:1,0,1:0,0", *more))   # corners of faces
+        one, two, three = (columns(self.field("kernel", mesh, "--source", s, "--t", 0.1), 0) for s in (0, 1, 2))
+        got = self.field("kernel", mesh, "--source", "0:0.2,0.3", "--t", 0.1)
+        self.close(got, [[0.2 * a[0] + 0.3 * b[0] + 0.5 * c[0]] for a, b, c in zip(one, two, three)], 1e-7)
+        got = self.field("kernel", mesh, "--source", "2*0+0.5*2,1", "--t", 0.1)
+        self.close(got, [[2 * a[0] + 0.5 * c[0], b[0]] for a, b, c in zip(one, two, three)], 1e-7)
+        points = self.file("points.txt", "# a line\n0:0.5,0.5   # its beginning\n\n0:0,0.5\n")
+        got = self.field("kernel", mesh, "--source-file", points, "--curve", "--t", 0.1)
+        self.close(got, [[math.sqrt(0.5) * (0.25 * a[0] + 0.5 * b[0] + 0.25 * c[0])] for a, b, c in zip(one, two, three)], 1e-7)
+        got = self.field("geodesic", mesh, "--source-file", points, "--curve")
+        self.close(got[:3], [[0.5], [math.sqrt(0.125)], [0.5]], 1e-12)
+        text = self.good("kernel", mesh, "--source", "0:0.2,0.3,5", "--t", 0.1, "-o", self.path("s.csv"), "--json").stderr
+        self.assertEqual(json.loads(text)["source"], "0:0.2,0.3,5")
+        with open(self.path("s.csv")) as f:
+            self.assertEqual(f.readline().strip(), "s0_0.1,s1_0.1")
+        self.good("kernel", mesh, "--source", "0:0.2,0.3,5", "--t", 0.1, "-o", self.path("s.png"))
+
+        def bad(*args):
+            return self.bad(1, "kernel", mesh, "--t", 0.1, *args)
+        self.assertRegex(bad("--source", "3:0.1,0.2"), "3 is beyond.* 3 faces")
+        self.assertRegex(bad("--source", "1+6"), "6 is beyond.* 6 vertices")
+        self.assertRegex(bad("--source", "2:0.1,0.2"), "2 is no triangle")
+        self.assertRegex(bad("--source", "0*1"), "source 0: .*weight")
+        self.assertIn("one point", bad("--source", "1", "--curve"))
+        self.assertRegex(bad("--source-file", self.file("bad.txt", "1\n0:0.5\n")), r"bad\.txt:2.*0:0\.5")
+        self.assertRegex(bad("--source-file", self.file("bad.txt", "1\n\n12\n")), r"bad\.txt:3.*12")
+        self.assertIn("no point", bad("--source-file", self.file("bad.txt", "# nothing\n")))
+        self.assertIn("not-there", bad("--source-file", self.path("not-there.txt")))
+        self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0,0+5"), "source (0|1)")
+        self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0+1,0+2+4"), "source 1, point 1.*no face")
+        self.assertIn("--source takes", self.bad(2, "sample", mesh, "--t", 1, "--count", 3, "--source", "0:0.2,0.3"))
 
     def test_source_beyond_the_mesh(self):
         for s in (12, 10 ** 7, 10 ** 18, 10 ** 30, "0,12"):

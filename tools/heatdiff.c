@@ -366,7 +366,8 @@ enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO =
        CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
        CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE,
        CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER,
-       CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM };
+       CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM,
+       CMD_ANYWHERE = CMD_KERNEL | CMD_DISTANCE | CMD_GEODESIC };
 
 /* TIME_SPECTRAL: over the first eigenvalue. */
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_SPECTRAL, TIME_AUTO } time_unit;
@@ -374,6 +375,15 @@ typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_SPECTRAL, TIME_AUTO } time
 typedef struct time_spec { time_unit unit; double value; } time_spec;
 
 enum { MAX_PANELS = 12 };            /* of a picture */
+
+/* A point of a source: a vertex, or a place in a face. */
+typedef struct source_point {
+    int64_t id;                      /* of the vertex or the face; 64 bits, as sources below */
+    int in_face;
+    double bary[2], weight;          /* of the first two corners */
+    int source;                      /* which one it is a point of */
+    int64_t line;                    /* of the file it was read from, 0: the command line */
+} source_point;
 
 typedef struct options {
     unsigned command;
@@ -389,6 +399,9 @@ typedef struct options {
     double filter_b;
     int64_t *sources;                /* 64 bits, so that ids beyond any mesh are told as what they are */
     int n_sources;
+    source_point *points;            /* the same, if one of them is more than a vertex */
+    int n_points, anywhere, curve;
+    const char *source_text, *source_file;
     const char *input, *output, *title;
     int has_bandwidth;
     time_spec bandwidth;             /* absolute or h2 */
@@ -649,23 +662,51 @@ static int parse_bandwidth(options *o, const option_def *def, const char *text)
            o->bandwidth.value > 0;
 }
 
+/* "17", "12:0.2,0.3", or either after a weight and *. */
+static int read_point(const char *text, source_point *p, const char **end)
+{
+    const char *after;
+    memset(p, 0, sizeof *p);
+    p->weight = 1;
+    if (read_number(text, &p->weight, &after) && *after == '*') text = after + 1;
+    else p->weight = 1;
+    if (!read_integer(text, &p->id, end) || p->id < 0) return 0;
+    if (**end != ':') return 1;
+    p->in_face = 1;
+    return read_number(*end + 1, &p->bary[0], end) && **end == ',' && read_number(*end + 1, &p->bary[1], end) &&
+           p->bary[0] >= 0 && p->bary[1] >= 0 && p->bary[0] + p->bary[1] <= 1 + 1e-9;
+}
+
+/* Points, those of one source joined by +. */
 static int parse_sources(options *o, const option_def *def, const char *text)
 {
-    int64_t v;
+    size_t most = count_items(text), i;
     (void)def;
-    if (count_items(text) > 10000000) return 0;
-    o->sources = (int64_t *)calloc(count_items(text), sizeof *o->sources);
-    if (!o->sources) return 0;
+    for (i = 0; text[i]; i++) most += text[i] == '+';
+    if (most > 10000000) return 0;
+    o->source_text = text;
+    o->sources = (int64_t *)calloc(most, sizeof *o->sources);
+    o->points = (source_point *)calloc(most, sizeof *o->points);
+    if (!o->sources || !o->points) return 0;
     for (;; text++) {
-        if (!read_integer(text, &v, &text) || v < 0) return 0;
-        o->sources[o->n_sources++] = v;
-        if (*text != ',') return *text == 0;
+        source_point *p = &o->points[o->n_points++];
+        const int joined = o->n_points > 1 && text[-1] == '+';
+        if (!read_point(text, p, &text)) return 0;
+        o->anywhere |= joined || p->in_face || p->weight != 1;
+        if (!joined) o->sources[o->n_sources++] = p->id;
+        p->source = o->n_sources - 1;
+        if (*text != ',' && *text != '+') return *text == 0;
     }
 }
 
 /* ---- the table ---- */
 
 #define AT(field) offsetof(options, field)
+
+#define SOURCE_FORMS \
+    "0, or F:A,B inside triangle F, with weights A, B and 1 - A - B of\n" \
+    "its corners. + joins points to one source, with weights in front:\n" \
+    "0.5*12:0.2,0.3+7"
 
 static const option_def OPTIONS[] = {
     { "t", 0, CMD_HEAT, 1, parse_times, 0, NULL, 0, 0, "T[,T..]",
@@ -687,12 +728,23 @@ static const option_def OPTIONS[] = {
       "one time > 0: a number such as 0.01, or a multiple of h^2 such as 4h2",
       "how long heat flows, absolute or in h2 (default: 1h2); longer\n"
       "makes distances smoother and less exact" },
-    { "source", 0, CMD_GEODESIC, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]",
-      "vertex ids from 0, such as 0,17", "vertices to measure from, counted from 0; a column for each" },
-    { "source", 0, CMD_KERNEL, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
-      "vertices where the heat starts, counted from 0" },
-    { "source", 0, CMD_DISTANCE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]",
-      "vertex ids from 0, such as 0,17", "vertices from which distances are measured, counted from 0" },
+    { "source", 0, CMD_GEODESIC, 1, parse_sources, 0, NULL, 0, 0, "S[,S..]",
+      "vertices such as 0,17, places in faces such as 12:0.2,0.3, or sums such as 0.5*3+7",
+      "where to measure from, a column for each: vertices, counted from\n"
+      SOURCE_FORMS },
+    { "source", 0, CMD_KERNEL, 1, parse_sources, 0, NULL, 0, 0, "S[,S..]",
+      "vertices such as 0,17, places in faces such as 12:0.2,0.3, or sums such as 0.5*3+7",
+      "where the heat starts, a column for each: vertices, counted from\n"
+      SOURCE_FORMS },
+    { "source", 0, CMD_DISTANCE, 1, parse_sources, 0, NULL, 0, 0, "S[,S..]",
+      "vertices such as 0,17, places in faces such as 12:0.2,0.3, or sums such as 0.5*3+7",
+      "where to measure from, a column for each: vertices, counted from\n"
+      SOURCE_FORMS },
+    { "source-file", 0, CMD_ANYWHERE, 1, parse_text, AT(source_file), NULL, 0, 0, "F", "a file name",
+      "one source more: its points, one on each line of F" },
+    { "curve", 0, CMD_ANYWHERE, 0, parse_flag, AT(curve), NULL, 0, 0, NULL, "no value",
+      "the points of each source are joined to a curve, of weight 1 for\n"
+      "each unit of length; two in turn lie in one face" },
     { "source", 0, CMD_SAMPLE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
       "vertices to begin with (default: the first that has mass)" },
     { "count", 0, CMD_SAMPLE, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
@@ -843,13 +895,14 @@ typedef struct command_def {
 
 #define VERTEX_ROWS "A row for each vertex, in the order of the file, vertices in no face included.\n"
 #define SOURCE_COLUMNS "A column for each source and time, sources outermost: --source 3,8 --t 1,2 gives\n" \
-                       "v3_1, v3_2, v8_1, v8_2, as .csv and .vtu name them. Row i of vV_T is "
+                       "v3_1, v3_2, v8_1, v8_2, as .csv and .vtu name them (s0_1 and so on where sources are\n" \
+                       "more than vertices). Row i of vV_T is "
 
 static const command_def COMMANDS[] = {
     { "info", CMD_INFO, "counts, area, edge length and defects of a mesh", "[OPTIONS] MESH",
       "A report on standard output: a name and a value on each line, or with --json one object." },
     { "kernel", CMD_KERNEL, "columns of the heat kernel: heat from single vertices",
-      "--source V[,V..] --t T[,T..] [OPTIONS] MESH",
+      "--source S[,S..] --t T[,T..] [OPTIONS] MESH",
       VERTEX_ROWS SOURCE_COLUMNS "K_T(i,V), the\n"
       "heat at vertex i after the time T from 1 at vertex V (--kernel symmetric: k_T(i,V))." },
     { "diffuse", CMD_DIFFUSE, "diffuses your own fields", "--input F --t T[,T..] [OPTIONS] MESH",
@@ -857,11 +910,11 @@ static const command_def COMMANDS[] = {
       "--t 1,2 give f0_1, f0_2, f1_1, f1_2, as .csv and .vtu name them. Row i of fC_T is K_T f at\n"
       "vertex i, f column C of F, counted from 0." },
     { "geodesic", CMD_GEODESIC, "distances along the surface, by the heat method",
-      "--source V[,V..] [--t T] [OPTIONS] MESH",
+      "--source S[,S..] [--t T] [OPTIONS] MESH",
       VERTEX_ROWS "A column for each source, in the order of --source: v3_1h2, v8_1h2, as .csv and .vtu\n"
       "name them. Row i of vV_T is the distance of vertex i from vertex V, inf where there is no\nway." },
     { "distance", CMD_DISTANCE, "diffusion distances from single vertices to all",
-      "--source V[,V..] --t T[,T..] [OPTIONS] MESH",
+      "--source S[,S..] --t T[,T..] [OPTIONS] MESH",
       VERTEX_ROWS SOURCE_COLUMNS "the\ndistance of vertex i from vertex V at the time T." },
     { "pairs", CMD_PAIRS, "kernel and diffusion distance of pairs of vertices",
       "--input P --t T[,T..] [OPTIONS] MESH",
@@ -1085,6 +1138,7 @@ static int check_definition(const options *o)
 static int check_sample(const options *o)
 {
     if (!o->count) return fail(USAGE, "sample needs --count, which takes a number from 1");
+    if (o->anywhere) return fail(USAGE, "--source takes vertex ids from 0 here, such as 0,17");
     if (o->n_sources > o->count)
         return fail(USAGE, "--source takes at most --count vertices, which is %ld, not %d", o->count,
                     o->n_sources);
@@ -1111,7 +1165,7 @@ static int check_signature(const options *o)
 /* Exactly one time, and not zero. */
 static int check_geodesic(const options *o)
 {
-    if (!o->sources)
+    if (!o->sources && !o->source_file)
         return fail(USAGE, "geodesic needs --source, which takes vertex ids from 0, such as 0,17");
     if (o->times && (o->n_times != 1 || !(o->times[0].value > 0) ||
                      (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
@@ -1156,7 +1210,7 @@ static int check_options(const options *o)
     int code;
     if (!o->mesh && o->command != CMD_DEMO)
         return fail(USAGE, "%s needs a mesh: a file name or - (standard input)", name);
-    if ((o->command & (CMD_KERNEL | CMD_DISTANCE)) && !o->sources)
+    if ((o->command & (CMD_KERNEL | CMD_DISTANCE)) && !o->sources && !o->source_file)
         return fail(USAGE, "%s needs --source, which takes vertex ids from 0, such as 0,17", name);
     if ((o->command & (CMD_DIFFUSE | CMD_RENDER | CMD_PAIRS)) && !o->input)
         return fail(USAGE, "%s needs --input, which takes the file of %s", name,
@@ -1201,6 +1255,7 @@ static void free_options(options *o)
 {
     free(o->times);
     free(o->sources);
+    free(o->points);
 }
 
 /* ---- help ---- */
@@ -1592,8 +1647,13 @@ typedef struct run {
     char (*time_names)[NAME_SIZE];   /* "10h2", "0.01" */
     int n_times;
     hd_rational filter;              /* with --filter */
-    int32_t *sources;
+    int32_t *sources;                /* the nearest vertex of each, if they need not be vertices */
     int n_inputs;                    /* sources, or fields given */
+    hd_source *from;                 /* sources that need not be vertices, or NULL */
+    source_point *points;            /* of these */
+    int n_points;
+    int32_t *corner;                 /* [3 n_points] */
+    double *bary, *point_weight;     /* [3 n_points], [n_points] */
     const double *fields;            /* mesh.n x n_inputs, or NULL: the kernel columns of the sources */
     const char *field_name;          /* for people */
     hd_heat *heat;
@@ -1640,6 +1700,11 @@ static void run_end(run *r)
     free(r->times);
     free(r->time_names);
     free(r->sources);
+    free(r->from);
+    free(r->points);
+    free(r->corner);
+    free(r->bary);
+    free(r->point_weight);
     free(r->pairs);
     free(r->values);
     free(r->names);
@@ -1930,10 +1995,117 @@ static void time_text(const char *name, char *text, size_t size)
 
 /* ---- solving ---- */
 
+/* The points of the command line, and those of the file as one source more. */
+static int read_points(run *r)
+{
+    const options *o = r->o;
+    const char *name = o->source_file, *end;
+    char line[256];
+    size_t room = (size_t)o->n_points + 16;
+    int64_t number = 0;
+    mio_error e;
+    FILE *f = NULL;
+    r->n_points = o->n_points;
+    r->points = (source_point *)malloc(room * sizeof *r->points);
+    if (r->points && o->points) memcpy(r->points, o->points, (size_t)o->n_points * sizeof *r->points);
+    if (name && !(f = strcmp(name, "-") == 0 ? stdin : fopen(name, "r")))
+        return fail(FAILED, "%s: %s", name, strerror(errno));
+    while (f && r->points && fgets(line, sizeof line, f)) {
+        source_point p;
+        char *text = line + strspn(line, " \t");
+        text[strcspn(text, "#\r\n")] = 0;
+        number++;
+        if (!*text) continue;
+        if (!read_point(text, &p, &end) || end[strspn(end, " \t")]) {
+            if (f != stdin) fclose(f);
+            mio_fail_at(&e, display_name(name), number, "'%.60s' is no point: a vertex such as 17, or a place in a face such as 12:0.2,0.3", text);
+            return fail(FAILED, "%s", e.text);
+        }
+        if ((size_t)r->n_points == room) {
+            source_point *more = (source_point *)realloc(r->points, (room *= 2) * sizeof *more);
+            if (!more) free(r->points);
+            r->points = more;
+        }
+        p.source = o->n_sources;
+        p.line = number;
+        if (r->points && r->n_points < 100000000) r->points[r->n_points++] = p;
+    }
+    if (f && f != stdin) fclose(f);
+    if (!r->points) return fail_memory("the sources");
+    return name && r->n_points == o->n_points ? fail(FAILED, "%s: there is no point in it", display_name(name)) : DONE;
+}
+
+/* An error at a point of a source. */
+static int fail_point(const run *r, const source_point *p, const char *what)
+{
+    mio_error e;
+    if (!p->line) return fail(FAILED, "%s: --source %lld %s", r->mesh_name, (long long)p->id, what);
+    mio_fail_at(&e, display_name(r->o->source_file), p->line, "%lld %s", (long long)p->id, what);
+    return fail(FAILED, "%s", e.text);
+}
+
+/* The corners of point i. */
+static int take_point(run *r, int i)
+{
+    const source_point *p = &r->points[i];
+    const mio_mesh *mesh = &r->mesh.file;
+    int32_t *v = r->corner + 3 * (size_t)i;
+    double *b = r->bary + 3 * (size_t)i;
+    const int32_t count = p->in_face ? mesh->n_faces : r->mesh.n;
+    char what[120];
+    if (p->id >= count) {
+        snprintf(what, sizeof what, "is beyond the mesh, which has %ld %s, numbered from 0", (long)count, p->in_face ? "faces" : "vertices");
+        return fail_point(r, p, what);
+    }
+    r->point_weight[i] = p->weight;
+    v[0] = v[1] = v[2] = (int32_t)p->id;
+    b[0] = 1;
+    b[1] = b[2] = 0;
+    if (!p->in_face) return DONE;
+    if (mesh->face_ptr[p->id + 1] - mesh->face_ptr[p->id] != 3)
+        return fail_point(r, p, "is no triangle: give its vertices with weights, such as 0.25*3+0.75*7");
+    memcpy(v, mesh->face_idx + mesh->face_ptr[p->id], 3 * sizeof *v);
+    b[0] = p->bary[0];
+    b[1] = p->bary[1];
+    b[2] = 1 - b[0] - b[1] > 0 ? 1 - b[0] - b[1] : 0;
+    return DONE;
+}
+
+/* Sources that need not be vertices. */
+static int run_places(run *r)
+{
+    const options *o = r->o;
+    int i, code = read_points(r);
+    if (code) return code;
+    r->n_inputs = o->n_sources + (o->source_file != NULL);
+    r->sources = (int32_t *)malloc((size_t)r->n_inputs * sizeof *r->sources);
+    r->from = (hd_source *)calloc((size_t)r->n_inputs, sizeof *r->from);
+    r->corner = (int32_t *)malloc((size_t)r->n_points * 3 * sizeof *r->corner);
+    r->bary = (double *)malloc((size_t)r->n_points * 3 * sizeof *r->bary);
+    r->point_weight = (double *)malloc((size_t)r->n_points * sizeof *r->point_weight);
+    if (!r->sources || !r->from || !r->corner || !r->bary || !r->point_weight) return fail_memory("the sources");
+    for (i = 0; i < r->n_points; i++) {
+        hd_source *s = &r->from[r->points[i].source];
+        const double *b = r->bary + 3 * (size_t)i;
+        if ((code = take_point(r, i)) != DONE) return code;
+        if (s->count++ > 0) continue;
+        s->corners = 3;
+        s->vertex = r->corner + 3 * (size_t)i;
+        s->bary = b;
+        s->weight = o->curve ? NULL : r->point_weight + i;
+        s->curve = o->curve;
+        r->sources[r->points[i].source] = s->vertex[b[0] >= b[1] && b[0] >= b[2] ? 0 : b[1] >= b[2] ? 1 : 2];
+    }
+    for (i = 0; i < r->n_inputs && o->curve; i++)
+        if (r->from[i].count < 2) return fail(FAILED, "--curve: source %d has one point; join several with +", i);
+    return DONE;
+}
+
 static int run_sources(run *r)
 {
     const options *o = r->o;
     int i;
+    if (o->anywhere || o->curve || o->source_file) return run_places(r);
     r->n_inputs = o->n_sources;
     r->sources = (int32_t *)malloc((size_t)(o->command == CMD_SAMPLE ? o->count : o->n_sources)
                                    * sizeof *r->sources);
@@ -2170,9 +2342,22 @@ static double *column_of(const run *r, int q, int k)
     return r->values + ((size_t)q * (size_t)r->n_times + (size_t)k) * (size_t)r->rows;
 }
 
+/* An error at a point of source q, which the library found; point -1: at none. */
+static int fail_source(const run *r, int q, int64_t point, const char *text)
+{
+    const source_point *p = point < 0 ? NULL : &r->points[(r->from[q].vertex - r->corner) / 3 + point];
+    mio_error e;
+    if (!p) return fail(FAILED, "%s: source %d: %s", r->mesh_name, q, text);
+    if (!p->line) return fail(FAILED, "%s: source %d, point %lld: %s", r->mesh_name, q, (long long)point, text);
+    mio_fail_at(&e, display_name(r->o->source_file), p->line, "%s", text);
+    return fail(FAILED, "%s", e.text);
+}
+
 static int fail_solve(run *r, hd_report *report, int q)
 {
     if (report->status == HD_ERR_MEMORY_LIMIT) return fail_limit(r, &report->error);
+    if (r->from && report->status == HD_ERR_ARGUMENT && report->error.column >= 0)
+        return fail_source(r, q + (int)report->error.column, report->error.row, report->error.text);
     if (report->error.row >= 0 && report->error.column >= 0) report->error.column += q;
     return fail_library(report->status == HD_ERR_NOT_FINITE && r->fields ? r->field_name : r->mesh_name,
                         &report->error);
@@ -2188,6 +2373,8 @@ static int solve_time(run *r, int k, int q)
     bar_part("time", k, r->n_times);
     if (r->fields)
         status = hd_heat_apply(r->heat, 1, &r->times[k], count, r->fields + (size_t)q * n, n, column_of(r, q, k), stride, &report, NULL);
+    else if (r->from)
+        status = hd_heat_columns_from(r->heat, (hd_kernel)r->o->kernel, 1, &r->times[k], count, r->from + q, column_of(r, q, k), stride, &report, NULL);
     else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, 1, &r->times[k], count, r->sources + q, column_of(r, q, k), stride, &report, NULL);
     if (status < 0) return fail_solve(r, &report, q);
     summary_add(&r->sum, &report, &k, 1);
@@ -2213,6 +2400,7 @@ static int solve_input(run *r, const time_group *g, int q, hd_report *report)
     int i;
     bar_part(r->fields ? "field" : "source", q, r->n_inputs);
     if (f) status = hd_heat_apply(r->heat, g->n, g->t, 1, f, n, out, n, report, NULL);
+    else if (r->from) status = hd_heat_columns_from(r->heat, (hd_kernel)r->o->kernel, g->n, g->t, 1, r->from + q, out, n, report, NULL);
     else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, g->n, g->t, 1, r->sources + q, out, n, report, NULL);
     if (status < 0) return fail_solve(r, report, q);
     for (i = 0; g->room && i < g->n; i++)
@@ -2343,6 +2531,8 @@ static int solve_inverse(run *r)
         status = hd_heat_normalised(r->heat, r->n_times, r->times, r->values, 0, &report, NULL);
     else if (o->command == CMD_HKS)
         status = hd_heat_diagonal(r->heat, (hd_kernel)o->kernel, r->n_times, r->times, r->values, 0, &report, NULL);
+    else if (r->from)
+        status = hd_heat_distance_from(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->from, r->values, 0, &report, NULL);
     else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->sources, r->values, 0, &report, NULL);
     if (status < 0) return fail_solve(r, &report, 0);
     for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
@@ -2412,6 +2602,27 @@ static int run_columns(run *r)
     return r->values ? DONE : fail_memory("the result");
 }
 
+/* Distances from sources that need not be vertices; the report is that of the worst. */
+static hd_status solve_geodesic_from(run *r)
+{
+    hd_geodesic_report *all = &r->geodesic_report, one;
+    hd_status status = HD_OK;
+    int q;
+    for (q = 0; q < r->n_inputs && status >= 0; q++) {
+        bar_part("source", q, r->n_inputs);
+        status = hd_geodesic_distance_from(r->geodesic, r->from + q, r->values + (size_t)q * (size_t)r->mesh.n, &one, NULL);
+        if (q > 0 && status >= 0) {
+            if (all->residual_heat > one.residual_heat) one.residual_heat = all->residual_heat;
+            if (all->residual_distance > one.residual_distance) one.residual_distance = all->residual_distance;
+            if (all->n_stages > one.n_stages) one.n_stages = all->n_stages;
+            if (all->status > one.status) one.status = all->status;
+        }
+        *all = one;
+        if (status < 0) all->error.column = q;
+    }
+    return status;
+}
+
 /* Distances from all sources, a column each. */
 static int solve_geodesic(run *r)
 {
@@ -2424,7 +2635,10 @@ static int solve_geodesic(run *r)
     opts.context = &r->context;
     if (hd_geodesic_create(&r->geodesic, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, &err) < 0)
         return fail_laplacian(r, &err);
-    if (hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL) >= 0)
+    if (r->from && solve_geodesic_from(r) >= 0) return DONE;
+    if (r->from && r->geodesic_report.status == HD_ERR_ARGUMENT)
+        return fail_source(r, (int)r->geodesic_report.error.column, r->geodesic_report.error.row, r->geodesic_report.error.text);
+    if (!r->from && hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL) >= 0)
         return DONE;
     return fail_library(r->mesh_name, &r->geodesic_report.error);
 }
@@ -2612,6 +2826,15 @@ static void json_time(FILE *out, double t, const hd_report *p)
     json_close(&j);
 }
 
+/* Vertices by their ids, other sources as they were written. */
+static void json_sources(json *j, const run *r)
+{
+    if (!r->from) json_integers(j, "sources", r->o->sources, r->o->n_sources);
+    if (r->from && r->o->source_text) json_text(j, "source", r->o->source_text);
+    if (r->from && r->o->source_file) json_text(j, "source_file", r->o->source_file);
+    if (r->from) json_integer(j, "curve", r->o->curve);
+}
+
 /* What the command asked for. */
 static void json_query(json *j, const run *r)
 {
@@ -2619,7 +2842,7 @@ static void json_query(json *j, const run *r)
     if (!(o->command & (CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE)))
         json_text(j, "kernel", word_of(KERNELS, o->kernel));
     if (o->command & CMD_METRIC) json_text(j, "definition", word_of(DEFINITIONS, o->definition));
-    if (r->sources) json_integers(j, "sources", o->sources, o->n_sources);
+    if (r->sources) json_sources(j, r);
     else if (o->input) json_text(j, "input", o->input);
     if (o->command == CMD_PAIRS) json_integer(j, "pairs", r->rows);
     if (o->command == CMD_SAMPLE) json_integer(j, "count", r->rows);
@@ -2870,7 +3093,7 @@ static void json_geodesic(json *j, const run *r)
 {
     const hd_geodesic_report *g = &r->geodesic_report;
     json_text(j, "method", "direct");
-    json_integers(j, "sources", r->o->sources, r->o->n_sources);
+    json_sources(j, r);
     json_numbers(j, "times", r->times, r->n_times);
     json_text(j, "ordering", word_of(ORDERINGS, (int)g->ordering));
     json_integer(j, "factor_nnz", g->factor_nnz);
@@ -3118,7 +3341,7 @@ static int has_twice(const run *r)
     int i, k;
     for (i = 0; i < r->n_times; i++)
         for (k = 0; k < i; k++) if (strcmp(r->time_names[i], r->time_names[k]) == 0) return 1;
-    for (i = 0; r->sources && i < r->n_inputs; i++)
+    for (i = 0; r->sources && !r->from && i < r->n_inputs; i++)
         for (k = 0; k < i; k++) if (r->sources[i] == r->sources[k]) return 1;
     return 0;
 }
@@ -3147,8 +3370,8 @@ static int heat_names(run *r)
         else if (pairs)
             snprintf(r->names[c], NAME_SIZE, "%c_%.14s%s", c % step < step - 1 ? 'K' : 'd',
                      r->time_names[c / step], number);
-        else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->sources ? 'v' : 'f',
-                      r->sources ? (long)r->sources[q] : (long)q, r->time_names[c % r->n_times], number);
+        else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->from ? 's' : r->sources ? 'v' : 'f',
+                      r->sources && !r->from ? (long)r->sources[q] : (long)q, r->time_names[c % r->n_times], number);
         r->name_list[c] = r->names[c];
     }
     return DONE;
@@ -3157,7 +3380,9 @@ static int heat_names(run *r)
 static void heat_title(const run *r, int64_t c, char *title, size_t size)
 {
     const int q = (int)(c / r->n_times);
-    char when[64];
+    char when[64], where[40] = "";
+    if (r->from) snprintf(where, sizeof where, "source %d", q);
+    else if (r->sources) snprintf(where, sizeof where, "vertex %ld", (long)r->sources[q]);
     time_text(r->time_names[c % r->n_times], when, sizeof when);
     if (is_timeless(r->o)) snprintf(when, sizeof when, "%s", r->time_names[0]);
     if (r->o->filter) snprintf(when, sizeof when, "filter %.40s", r->o->filter);
@@ -3167,10 +3392,10 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
         snprintf(title, size, "%s, %s", r->o->filter ? "Diagonal" : r->o->normalise ?
                  "Normalised heat kernel signature" : "Heat kernel signature", when);
     else if (r->o->command == CMD_DISTANCE)
-        snprintf(title, size, "Diffusion distance from vertex %ld, %s", (long)r->sources[q], when);
+        snprintf(title, size, "Diffusion distance from %s, %s", where, when);
     else if (r->o->command == CMD_GEODESIC)
-        snprintf(title, size, "Geodesic distance from vertex %ld, %s", (long)r->sources[q], when);
-    else if (r->sources) snprintf(title, size, "Heat from vertex %ld, %s", (long)r->sources[q], when);
+        snprintf(title, size, "Geodesic distance from %s, %s", where, when);
+    else if (r->sources) snprintf(title, size, "Heat from %s, %s", where, when);
     else snprintf(title, size, "Field %d diffused, %s", q, when);
 }
 
@@ -3179,7 +3404,7 @@ static int write_heat(run *r)
     const double start = now();
     const int kind = r->o->output ? output_format(r->o->output) : MIO_TXT;
     const int32_t *marker = r->sources ? &r->sources[r->o->column / r->n_times] : NULL;
-    char title[120];
+    char title[160];
     result res;
     int code = heat_names(r);
     hd_heat_free(r->heat);           /* large, and not needed any more */
