@@ -847,7 +847,7 @@ typedef enum hd_geodesic_border {
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
     /* How long heat flows, unit length^2. Larger values give smoother and less accurate distances. Default
-     * h^2, with h the mean edge length. */
+     * h^2, with h the mean edge length. On irregular triangles and points 2 h^2 is often better. */
     double t;
     /* The diagonal of B. It determines how fast heat fades, and has little influence on the distance. */
     hd_geodesic_mass mass;
@@ -866,6 +866,7 @@ typedef struct hd_geodesic_opts {
      * elements. With 1, distances are two to four times as far off. */
     double lambda;
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
+    double t_in_h2;             /* t as a multiple of h^2, where t is 0; default 1 */
     int32_t end_zero;
 } hd_geodesic_opts;
 
@@ -877,8 +878,8 @@ typedef struct hd_geodesic_report {
     int32_t n_components;
     int32_t n_stages;           /* heat solves for a column: several where heat faded below 1e-200 */
     hd_ordering ordering;
-    int64_t factor_nnz;         /* of each of the two factors, diagonal included */
-    double factor_flops;        /* of both */
+    int64_t factor_nnz;         /* of each factor, diagonal included */
+    double factor_flops;        /* of both, or of the three of the mean border */
     /* |b - A x| / |b| of (L + B/t) u and of L phi. They tell how well the systems are solved, and nothing
      * about the error of the method itself. */
     double residual_heat;
@@ -28302,7 +28303,7 @@ struct hd_geodesic {
     int64_t n_staged;            /* fronts visited so far by all stages after the first ones */
     hd_laplacian *lap;           /* of updatable plans, else NULL */
     int32_t *from;               /* [n_faces] which of lap->moving's faces each is; updatable */
-    double t_asked;              /* 0: h^2 */
+    double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
 };
 
@@ -28523,7 +28524,7 @@ static hd_status hdi_geo_poly_rows(hd_geodesic *g, const hd_laplacian *lap, hd_e
 static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     int32_t i;
     g->h = lap->h;
-    g->t = g->t_asked > 0 ? g->t_asked : lap->h * lap->h;
+    g->t = g->t_asked > 0 ? g->t_asked : g->t_in_h2 * (lap->h * lap->h);
     if (!hdi_finite(g->t) || !(g->t > 0))
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
                             "geodesic: the square of the mean edge length is no number to compute with",
@@ -28715,6 +28716,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
     lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
     g->border = o->border;
     g->t_asked = o->t;
+    g->t_in_h2 = o->t_in_h2 > 0 ? o->t_in_h2 : 1;
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 1, NULL, 0, e) >= 0) &&
         hdi_geo_surface_make(lap, &z, in, &s) >= 0) {
         g->n_active = lap->n_active;
@@ -29833,7 +29835,7 @@ static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
     rep->n_components = g->n_components;
     rep->ordering = g->sym.ordering;
     rep->factor_nnz = g->sym.nnz;
-    rep->factor_flops = 2 * g->sym.flops;
+    rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
 }
 
 /* ==== [30] api ====
@@ -31348,6 +31350,8 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_
     like.tufted = o->tufted;
     like.mollify = o->mollify;
     hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
+    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
+                     o->t_in_h2, e);
     hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
                "geodesic: unknown mass", e);
     hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);

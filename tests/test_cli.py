@@ -25,7 +25,8 @@ import zlib
 
 TOOL = None
 POSIX = os.name == "posix"
-COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "trace", "sample", "geodesic", "spectrum", "render", "demo")
+COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "trace", "sample", "geodesic", "spectrum", "levels",
+            "render", "demo")
 
 
 # ---- meshes ----
@@ -930,7 +931,7 @@ class Borders(Case):
     def test_refused(self):
         self.assertIn("natural or dirichlet", self.bad(2, "info", self.square, "--border", "neumann"))
         self.assertIn("--border dirichlet needs faces", self.bad(1, "info", self.points, "--border", "dirichlet"))
-        self.bad(2, "geodesic", self.square, "--border", "dirichlet", "--source", 0)
+        self.assertIn("mean border", self.bad(1, "geodesic", self.square, "--border", "dirichlet", "--source", 0))
 
 
 class Methods(Case):
@@ -2095,6 +2096,201 @@ class Geodesic(Case):
         self.assertEqual(self.field("geodesic", self.patch, "--source", 5, "--threads", 1), self.field("geodesic", self.patch, "--source", 5, "--threads", 2))
 
 
+def sphere(levels):
+    """The icosahedron on the unit sphere, its triangles split in four so many times."""
+    v, f = icosahedron()
+    v = [tuple(x / math.sqrt(dot(p, p)) for x in p) for p in v]
+    for _ in range(levels):
+        middle, finer = {}, []
+        for c in f:
+            m = []
+            for a, b in ((c[0], c[1]), (c[1], c[2]), (c[2], c[0])):
+                key = (min(a, b), max(a, b))
+                if key not in middle:
+                    p = [v[a][k] + v[b][k] for k in range(3)]
+                    middle[key] = len(v)
+                    v.append(tuple(x / math.sqrt(dot(p, p)) for x in p))
+                m.append(middle[key])
+            finer += [(c[0], m[0], m[2]), (c[1], m[1], m[0]), (c[2], m[2], m[1]), tuple(m)]
+        f = finer
+    return v, f
+
+
+def quad_grid(nx, ny, size=1.0):
+    """Squares in the plane: nx by ny of them."""
+    v = [(size * x, size * y, 0.0) for y in range(ny + 1) for x in range(nx + 1)]
+    f = [(y * (nx + 1) + x, y * (nx + 1) + x + 1, (y + 1) * (nx + 1) + x + 1, (y + 1) * (nx + 1) + x) for y in range(ny) for x in range(nx)]
+    return v, f
+
+
+class GeodesicEverywhere(Case):
+    """Polygons, slivers, borders, regions and matrices. The method itself is checked by tests/test_geodesic_all.h."""
+
+    def test_polygons(self):
+        v, f = quad_grid(16, 12)
+        path = self.file("quads.obj", obj_text(v, f))
+        inner = 6 * 17 + 7
+        want = [math.hypot(p[0] - v[inner][0], p[1] - v[inner][1]) for p in v]
+
+        def error(*args):
+            got = self.field("geodesic", path, "--source", inner, *args)
+            return sum(abs(g[0] - w) for g, w in zip(got, want)) / len(want)
+
+        self.assertLess(error(), 0.3)
+        self.assertLess(error("--border", "mean", "--t", "4h2"), 0.5 * error("--t", "4h2"))
+        self.assertNotEqual(error(), error("--laplacian", "fem"))
+        self.assertNotEqual(error(), error("--lambda", 1))
+        self.assertLess(error("--tufted"), 0.3)
+        r = json.loads(self.good("geodesic", path, "--source", inner, "--border", "mean", "--json", "-o", self.path("q.png")).stderr)
+        self.assertEqual((r["laplacian"], r["border"], r["edge"]), ("polygon", "mean", 1))
+        self.assertIn("three factors", self.good("geodesic", path, "--source", inner, "--border", "mean", "-o", self.path("q.txt")).stderr.decode())
+        self.assertIn("mean", self.bad(2, "geodesic", path, "--source", 0, "--border", "neumann"))
+        self.assertIn("squared length", self.bad(2, "geodesic", path, "--source", 0, "--laplacian", "cot"))
+
+    def test_slivers(self):
+        """A grid sheared far: flipped along the surface it is as good as any."""
+        v, f = quad_grid(20, 20)
+        v = [(p[0] + 4 * p[1], p[1], 0.0) for p in v]
+        path = self.file("slivers.obj", obj_text(v, [(a, b, c) for a, b, c, _ in f] + [(a, c, d) for a, _, c, d in f]))
+        want = [math.hypot(p[0] - v[220][0], p[1] - v[220][1]) for p in v]
+        plain, flipped = (sum(abs(g[0] - w) for g, w in zip(self.field("geodesic", path, "--source", 220, *args), want)) / len(v)
+                          for args in ((), ("--intrinsic-delaunay",)))
+        self.assertLess(flipped, 1)
+        self.assertGreater(plain, 4 * flipped)
+
+    def test_nearest(self):
+        """Regions are what the columns say, with any distance."""
+        v, f = quad_grid(9, 5)
+        path = self.file("quads.obj", obj_text(v, f))
+        for args in (("geodesic", path, "--source", "0,9,59,31"), ("distance", path, "--source", "3,50,7", "--t", "1h2,20h2"),
+                     ("distance", path, "--source", "3,50", "--definition", "biharmonic")):
+            all_columns, got = self.field(*args), self.field(*args, "--nearest")
+            times = len(got[0]) // 2
+            sources = len(all_columns[0]) // times
+            for a, g in zip(all_columns, got):
+                for k in range(times):
+                    d = [a[q * times + k] for q in range(sources)]
+                    self.assertEqual(g[2 * k:2 * k + 2], [float(d.index(min(d))), min(d)])
+        self.good("geodesic", path, "--source", "0,9", "--nearest", "-o", self.path("n.csv"))
+        with open(self.path("n.csv")) as file:
+            self.assertEqual(file.readline(), "nearest_1h2,d_1h2\n")
+        self.good("geodesic", path, "--source", "0,9", "--nearest", "--column", 1, "-o", self.path("n.png"))
+        self.assertIn("--column 2", self.bad(1, "geodesic", path, "--source", "0,9,5", "--nearest", "--column", 2))
+        mesh = self.file("apart.obj", obj_text(*apart(bumpy_patch(4), bumpy_patch(3))))
+        got = self.field("geodesic", mesh, "--source", "2", "--nearest")
+        self.assertEqual([g[0] for g in got], [0.0] * 25 + [-1.0] * 16)
+
+    def test_matrix(self):
+        """Symmetric to the bit, zero on the diagonal, and the means of both directions."""
+        sources = [3, 40, 77, 99, 3]
+        for args in (("geodesic", self.patch), ("distance", self.patch, "--t", "2h2,30h2"), ("distance", self.patch, "--definition", "commute")):
+            args = args + ("--source", ",".join(map(str, sources)))
+            all_columns, got = self.field(*args), self.field(*args, "--matrix")
+            times = len(got[0]) // len(sources)
+            self.assertEqual((len(got), len(got[0])), (5, 5 * times))
+            for k in range(times):
+                for i, v in enumerate(sources):
+                    for j, w in enumerate(sources):
+                        self.assertEqual(got[i][j * times + k], got[j][i * times + k])
+                        a, b = all_columns[v][j * times + k], all_columns[w][i * times + k]
+                        self.assertAlmostEqual(got[i][j * times + k], 0 if i == j else (a + b) / 2, delta=1e-14 * max(a, b, 1))
+        r = json.loads(self.good("geodesic", self.patch, "--source", "3,40", "--matrix", "--json", "-o", self.path("m.csv")).stderr)
+        one = self.field("geodesic", self.patch, "--source", "3,40")
+        self.assertAlmostEqual(r["asymmetry"], abs(one[3][1] - one[40][0]))
+        self.assertEqual(r["unreached"], 0)
+        self.assertIn(".csv", self.bad(2, "geodesic", self.patch, "--source", "3,40", "--matrix", "-o", self.path("m.png")))
+        self.assertIn("--nearest", self.bad(2, "geodesic", self.patch, "--source", "3,40", "--matrix", "--nearest"))
+        self.assertIn("--matrix", self.bad(2, "kernel", self.patch, "--source", "3,40", "--t", 1, "--matrix"))
+
+
+class Levels(Case):
+    """Level sets of fields, against lines that are known."""
+
+    def lines(self, *args):
+        """Lists of points, by line, with closed and level."""
+        out = []
+        for row in numbers(self.good("levels", *args).stdout.decode()):
+            if int(row[0]) == len(out):
+                out.append((row[1] == 1, row[2], []))
+            out[int(row[0])][2].append(tuple(row[3:]))
+        return out
+
+    def length(self, line):
+        points = line[2] + line[2][:1] if line[0] else line[2]
+        return sum(math.dist(p, q) for p, q in zip(points, points[1:]))
+
+    def field_file(self, name, values):
+        return self.file(name, "".join("%.17g\n" % x for x in values))
+
+    def test_grid(self):
+        """x on a grid has straight lines, through vertices too, of quadrangles and of triangles."""
+        v, f = quad_grid(7, 4, 0.5)
+        field = self.field_file("x.txt", [p[0] for p in v])
+        for faces in (f, [(a, b, c) for a, b, c, _ in f] + [(a, c, d) for a, _, c, d in f]):
+            path = self.file("grid.obj", obj_text(v, faces))
+            got = self.lines("--input", field, "--levels", "0.2,1.5,3.3", path)
+            self.assertEqual([(c, x) for c, x, _ in got], [(False, 0.2), (False, 1.5), (False, 3.3)])
+            for line in got:
+                self.assertTrue(all(abs(p[0] - line[1]) < 1e-15 and p[2] == 0 for p in line[2]))
+                self.assertEqual(sorted(p[1] for p in line[2]), sorted(set(p[1] for p in line[2])))
+                self.assertAlmostEqual(self.length(line), 2, delta=1e-14)
+            self.assertEqual(self.lines("--input", field, "--levels", "-1,9", path), [])
+            self.assertEqual([x for _, x, _ in self.lines("--input", field, "--levels", "auto:6", path)], [0.5, 1, 1.5, 2, 2.5, 3])
+
+    def test_sphere(self):
+        """Circles of latitude of a fine sphere, closed: 2 pi sqrt(1 - z^2) up to the error of a polygon."""
+        v, f = sphere(3)
+        path = self.file("sphere.obj", obj_text(v, f))
+        field = self.field_file("z.txt", [p[2] for p in v])
+        got = self.lines("--input", field, "--levels", "-0.6,0.01,0.8", path)
+        self.assertEqual([c for c, _, _ in got], [True] * 3)
+        for line in got:
+            self.assertTrue(all(abs(p[2] - line[1]) < 1e-14 for p in line[2]))
+            self.assertAlmostEqual(self.length(line) / (2 * math.pi * math.sqrt(1 - line[1] ** 2)), 1, delta=0.01)
+        r = json.loads(self.good("levels", "--input", field, "--levels", "-0.6,0.8,2", path, "--json", "-o", self.path("l.obj")).stderr)
+        self.assertEqual((r["lines"], r["closed"], r["levels"], r["lengths"][2]), (2, 2, [-0.6, 0.8, 2], 0))
+        self.assertAlmostEqual(r["lengths"][1], self.length(got[2]), delta=1e-12)
+        with open(self.path("l.obj")) as file:
+            rows = [row.split() for row in file]
+        self.assertEqual(sum(row[0] == "v" for row in rows), r["points"])
+        loops = [row[1:] for row in rows if row[0] == "l"]
+        self.assertEqual([float(row[1][6:]) for row in rows if row[0] == "g"], [-0.6, 0.8])
+        self.assertTrue(len(loops) == 2 and all(row[0] == row[-1] and len(set(row)) == len(row) - 1 for row in loops))
+
+    def test_saddle(self):
+        """A quadrangle with two corners above and two below, crosswise: the mean of the corners tells which hang together."""
+        path = self.file("one.obj", obj_text([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)], [(0, 1, 2, 3)]))
+        for high, corners in ((3.0, {(1.0, 0.0), (0.0, 1.0)}), (0.5, {(0.0, 0.0), (1.0, 1.0)})):
+            got = self.lines("--input", self.field_file("s.txt", [high, -1.0, high, -1.0]), "--levels", "0", path)
+            self.assertEqual(len(got), 2)
+            near = {min([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)], key=lambda c: sum(math.dist(c, p[:2]) for p in line[2])) for line in got}
+            self.assertEqual(near, corners)
+
+    def test_of_distances(self):
+        """Any result of the tool is a field: circles around a vertex."""
+        v, f = quad_grid(20, 20)
+        path = self.file("grid.obj", obj_text(v, f))
+        self.good("geodesic", path, "--source", "220,0", "--border", "mean", "--t", "4h2", "-o", self.path("d.npy"))
+        got = self.lines("--input", self.path("d.npy"), "--levels", "6", path)
+        self.assertEqual([c for c, _, _ in got], [True])
+        self.assertAlmostEqual(self.length(got[0]) / (12 * math.pi), 1, delta=0.05)
+        self.assertEqual([c for c, _, _ in self.lines("--input", self.path("d.npy"), "--column", 1, "--levels", "6", path)], [False])
+
+    def test_refused(self):
+        v, f = quad_grid(2, 2)
+        path = self.file("grid.obj", obj_text(v, f))
+        field = self.field_file("x.txt", [p[0] for p in v])
+        self.assertIn("--levels", self.bad(2, "levels", "--input", field, path))
+        self.assertIn("--input", self.bad(2, "levels", "--levels", 1, path))
+        for levels in ("", "1,", "x", "auto:0", "auto:2,1", "inf", "nan", "1;2"):
+            self.assertIn("--levels takes", self.bad(2, "levels", "--input", field, "--levels", levels, path))
+        self.assertIn(".obj", self.bad(2, "levels", "--input", field, "--levels", 1, path, "-o", self.path("l.png")))
+        self.assertIn("--column 1", self.bad(1, "levels", "--input", field, "--levels", 1, "--column", 1, path))
+        self.assertIn("one value", self.bad(1, "levels", "--input", self.field_file("c.txt", [1.0] * 9), "--levels", "auto:2", path))
+        self.bad(1, "levels", "--input", self.field_file("s.txt", [1.0] * 8), "--levels", 1, path)
+        self.assertIn("faces", self.bad(1, "levels", "--input", field, "--levels", 1, self.file("p.xyz", "".join("%g %g %g\n" % p for p in v))))
+
+
 class Spectrum(Case):
     """Eigenpairs: files, report and usage. Numbers are checked by tests/test_spectrum.h."""
 
@@ -2279,7 +2475,13 @@ class Points(Case):
         for more in (("--laplacian", "exp"), ("--laplacian", "voronoi-exp"), ("--laplacian", "polygon"), ("--bandwidth", 1), ("--lambda", 1)):
             self.assertIn("--tufted", self.bad(2, "info", self.xyz, "--tufted", *more))
         self.assertIn("--lambda", self.bad(1, "info", self.xyz, "--lambda", 1))
-        self.assertIn("faces", self.bad(1, "geodesic", self.xyz, "--source", 0))
+        got = self.field("geodesic", self.xyz, "--source", 0)
+        want = [math.acos(max(-1.0, min(1.0, dot(self.v[0], p)))) for p in self.v]
+        self.assertLess(sum(abs(g[0] - w) for g, w in zip(got, want)) / len(want), 0.06)
+        self.assertIn("faces", self.bad(1, "geodesic", self.xyz, "--source", 0, "--border", "mean"))
+        self.assertIn("no gradient", self.bad(2, "geodesic", self.xyz, "--source", 0, "--laplacian", "voronoi-exp"))
+        r = json.loads(self.good("geodesic", self.xyz, "--source", 0, "--t", "4h2", "--json", "-o", self.path("g.txt")).stderr)
+        self.assertAlmostEqual(r["times"][0] / (4 * r["edge"] ** 2), 1)
 
     def test_not_flat(self):
         """Two sheets one spacing apart are told of, a sphere is not."""

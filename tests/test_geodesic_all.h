@@ -180,7 +180,8 @@ static void gall_against_dense(shape_poly s, int32_t inner, const char *what) {
             hd_geodesic_opts o = gall_options();
             hd_geodesic *g;
             hd_geodesic_report rep;
-            o.t = times[k / 2] * h * h;
+            if (k % 2) o.t = times[k / 2] * h * h;
+            else o.t_in_h2 = times[k / 2];
             o.lambda = lambdas[k % 2];
             o.border = b;
             g = gall_polygons(&s, &o);
@@ -484,6 +485,8 @@ static void gall_errors(void) {
     GALL_BAD(updatable, 1, 2);
     GALL_BAD(t, -1, 1);
     GALL_BAD(t, NAN, 2);
+    GALL_BAD(t_in_h2, -1, 0);
+    GALL_BAD(t_in_h2, HUGE_VAL, 1);
     o = gall_options();
     o.updatable = o.tufted = 1;
     CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_ERR_ARGUMENT && strstr(e.text, "updatable"));

@@ -24,6 +24,7 @@
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
+#include "levels.h"
 #include "meshio.h"
 #include "picture.h"
 #include "shapes.h"
@@ -291,6 +292,9 @@ typedef struct word { const char *name; int value; } word;
 
 static const word BORDERS[] = {
     { "natural", HD_BORDER_NATURAL }, { "dirichlet", HD_BORDER_DIRICHLET }, { NULL, 0 } };
+static const word GEODESIC_BORDERS[] = {
+    { "natural", HD_GEODESIC_BORDER_NATURAL }, { "mean", HD_GEODESIC_BORDER_MEAN },
+    { "dirichlet", HD_GEODESIC_BORDER_DIRICHLET }, { NULL, 0 } };
 static const word LAPLACIANS[] = {
     { "fem", HD_LAPLACIAN_FEM }, { "voronoi-cot", HD_LAPLACIAN_VORONOI_COT }, { "cot", HD_LAPLACIAN_COT },
     { "polygon", HD_LAPLACIAN_POLYGON }, { "voronoi-exp", HD_LAPLACIAN_VORONOI_EXP },
@@ -357,7 +361,7 @@ static int output_format(const char *path)
 
 enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32,
        CMD_HKS = 64, CMD_DISTANCE = 128, CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_SPECTRUM = 1024,
-       CMD_TRACE = 2048, CMD_ALL = 4095,
+       CMD_TRACE = 2048, CMD_LEVELS = 4096, CMD_ALL = 8191,
        CMD_TABLES = CMD_PAIRS | CMD_SAMPLE | CMD_TRACE,
        CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE | CMD_TABLES,
        /* results have a row per vertex */
@@ -366,8 +370,8 @@ enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO =
        CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
        CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE,
        CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER,
-       CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM,
-       CMD_ANYWHERE = CMD_KERNEL | CMD_DISTANCE | CMD_GEODESIC };
+       CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM, CMD_SURFACE = CMD_LAPLACIAN | CMD_GEODESIC,
+       CMD_FROM = CMD_DISTANCE | CMD_GEODESIC, CMD_ANYWHERE = CMD_KERNEL | CMD_FROM };
 
 /* TIME_SPECTRAL: over the first eigenvalue. */
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_SPECTRAL, TIME_AUTO } time_unit;
@@ -410,6 +414,9 @@ typedef struct options {
     double tol, lambda, weight_cut, below;
     uint64_t memory_limit;
     int intrinsic_delaunay, tufted;
+    int nearest, matrix;             /* instead of columns of distances */
+    double *levels;                  /* values, or NULL: n_levels of them between the extremes */
+    int n_levels;
     int json, quiet, help, version, no_header, dry_run, normalise;
     int colormap;                    /* pictures */
     int log_scale, has_range, has_view, has_isolines;
@@ -662,6 +669,25 @@ static int parse_bandwidth(options *o, const option_def *def, const char *text)
            o->bandwidth.value > 0;
 }
 
+static int parse_levels(options *o, const option_def *def, const char *text)
+{
+    int64_t count;
+    const char *end;
+    (void)def;
+    if (strncmp(text, "auto:", 5) == 0) {
+        if (!read_integer(text + 5, &count, &end) || *end || count < 1 || count > 1000) return 0;
+        o->n_levels = (int)count;
+        return 1;
+    }
+    if (count_items(text) > 100000) return 0;
+    o->levels = (double *)calloc(count_items(text), sizeof *o->levels);
+    if (!o->levels) return 0;
+    for (;; text++) {
+        if (!read_number(text, &o->levels[o->n_levels++], &text)) return 0;
+        if (*text != ',') return *text == 0;
+    }
+}
+
 /* "17", "12:0.2,0.3", or either after a weight and *. */
 static int read_point(const char *text, source_point *p, const char **end)
 {
@@ -759,6 +785,17 @@ static const option_def OPTIONS[] = {
       "a field: a row per vertex, one or more columns, as text or .npy.\n"
       "Given several times: pictures side by side in the same colours,\n"
       "of one mesh or of as many meshes" },
+    { "input", 0, CMD_LEVELS, 1, parse_text, AT(input), NULL, 0, 0, "F", "a file name",
+      "a field: a row per vertex, one or more columns, as text or .npy" },
+    { "levels", 0, CMD_LEVELS, 1, parse_levels, 0, NULL, 0, 0, "X[,X..]",
+      "numbers such as 0.5,1, or auto:K for K of them",
+      "values of the field, or auto:K, K values spread evenly between\nthe least and the largest" },
+    { "column", 0, CMD_LEVELS, 0, parse_integer, AT(column), NULL, 0, 2000000000, "K",
+      "a column number from 0", "column of the field, counted from 0 (0)" },
+    { "nearest", 0, CMD_FROM, 0, parse_flag, AT(nearest), NULL, 0, 0, NULL, "no value",
+      "instead of a column for each source: which of them is nearest,\nand its distance" },
+    { "matrix", 0, CMD_FROM, 0, parse_flag, AT(matrix), NULL, 0, 0, NULL, "no value",
+      "instead: the distances among the sources, a symmetric matrix" },
     { "input", 0, CMD_PAIRS, 0, parse_text, AT(input), NULL, 0, 0, "P", "a file name",
       "pairs of vertices: two ids a line, as text or .npy" },
     { "definition", 0, CMD_METRIC, 0, parse_words, AT(definition), DEFINITIONS, 0, 0, "NAME",
@@ -770,16 +807,26 @@ static const option_def OPTIONS[] = {
       "fem (default of triangles), voronoi-cot, cot: other faces are\n"
       "split; polygon (default of meshes with other faces); of points:\n"
       "voronoi-exp (default) or exp, which take the vertices of a mesh\nas points" },
-    { "intrinsic-delaunay", 0, CMD_LAPLACIAN, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL,
+    { "laplacian", 0, CMD_GEODESIC, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
+      "fem, voronoi-cot or polygon",
+      "fem (default of triangles) or voronoi-cot: other faces are split;\n"
+      "polygon (default of meshes with other faces). Points have the\ntriangles of their neighbours" },
+    { "intrinsic-delaunay", 0, CMD_SURFACE, 0, parse_flag, AT(intrinsic_delaunay), NULL, 0, 0, NULL,
       "no value",
       "L and B of the surface's own Delaunay triangulation: for bad\n"
       "triangles; with voronoi-cot heat is then never negative" },
-    { "tufted", 0, CMD_LAPLACIAN, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
+    { "tufted", 0, CMD_SURFACE, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
       "the same for any triangles, also with borders and where\n"
       "three and more faces meet; of points, with triangles made\nfrom their neighbours" },
     { "border", 0, CMD_LAPLACIAN, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
       "of meshes: natural (default): no heat leaves through a border;\n"
       "dirichlet: the vertices of borders are held at zero" },
+    { "border", 0, CMD_GEODESIC, 0, parse_words, AT(border), GEODESIC_BORDERS, 0, 0, "NAME",
+      "natural, mean or dirichlet",
+      "while heat flows: natural (default), held at zero (dirichlet), or\n"
+      "the mean of both, with which a longer --t such as 8h2 is best" },
+    { "lambda", 0, CMD_GEODESIC, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
+      "of polygon: weight of its stabilising part (1/6)" },
     { "lambda", 0, CMD_LAPLACIAN, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
       "of polygon: weight of its stabilising part (1)" },
     { "bandwidth", 0, CMD_LAPLACIAN, 0, parse_bandwidth, 0, NULL, 0, 0, "S",
@@ -851,7 +898,9 @@ static const option_def OPTIONS[] = {
       "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n"
       "- or nothing: standard output, as text. In .ply the columns are\n"
       "quality, quality_1, ..; .obj has the colours alone" },
-    { "no-header", 0, CMD_SOLVES, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
+    { "output", 'o', CMD_LEVELS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
+      "where the lines go: .obj, or .txt, .csv or .npy as a table;\n- or nothing: standard output, as text" },
+    { "no-header", 0, CMD_SOLVES | CMD_LEVELS, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
       "of .csv: no first line with the names of the columns" },
     { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",
       "the .png, or - for standard output" },
@@ -935,6 +984,10 @@ static const command_def COMMANDS[] = {
       VERTEX_ROWS "A column for each eigenvector, by ascending eigenvalues, B-orthonormal: x_0, x_1, as .csv\n"
       "and .vtu name them. In text the eigenvalues stand in a first line after #; elsewhere they are\n"
       "in the report of --json." },
+    { "levels", CMD_LEVELS, "level sets of a field, as lines", "--input F --levels X[,X..] [OPTIONS] MESH",
+      "A row for each point of a line: line, its number from 0, closed (1: the first point follows the\n"
+      "last), level, x, y, z. In .obj each line is an element l; closed ones end where they begin, and\n"
+      "the lines of a level are a group." },
     { "render", CMD_RENDER, "a picture of a field on the mesh",
       "--input F [--input F..] -o PICTURE.png [OPTIONS] MESH [MESH..]",
       "A PNG picture, without numbers." },
@@ -1000,7 +1053,7 @@ static const char *option_text(const option_def *def, char *text, size_t size)
     return text;
 }
 
-static int take_option(options *o, uint64_t *seen, int argc, char **argv, int *i)
+static int take_option(options *o, char *seen, int argc, char **argv, int *i)
 {
     const char *value, *arg = argv[*i];
     const option_def *def = find_option(arg, o->command, &value);
@@ -1016,9 +1069,9 @@ static int take_option(options *o, uint64_t *seen, int argc, char **argv, int *i
     if (def->value && !value && ++*i >= argc)
         return fail(USAGE, "%s takes %s, but nothing follows it", name, def->takes);
     if (def->value && !value) value = argv[*i];
-    if (def->is_list && (*seen >> (def - OPTIONS) & 1u))
+    if (def->is_list && seen[def - OPTIONS])
         return fail(USAGE, "%s is given twice; it takes %s", name, def->takes);
-    *seen |= (uint64_t)1 << (def - OPTIONS);
+    seen[def - OPTIONS] = 1;
     if (!def->parse(o, def, value)) return fail(USAGE, "%s takes %s, not '%.80s'", name, def->takes, value);
     return DONE;
 }
@@ -1047,10 +1100,11 @@ static int check_output(const options *o)
         return fail(USAGE, "-o takes a name that ends in .png here, not '%.200s'", o->output);
     }
     if (o->command == CMD_DEMO || !o->output) return DONE;
-    if (o->command & CMD_TABLES) {
-        const int kind = output_format(o->output);
-        if (kind == MIO_TXT || kind == MIO_CSV || kind == MIO_NPY) return DONE;
-        return fail(USAGE, "-o takes a name that ends in .txt, .csv or .npy here, not '%.200s'", o->output);
+    if ((o->command & (CMD_TABLES | CMD_LEVELS)) || o->matrix) {
+        const int kind = output_format(o->output), lines = o->command == CMD_LEVELS;
+        if (kind == MIO_TXT || kind == MIO_CSV || kind == MIO_NPY || (lines && kind == MIO_OBJ)) return DONE;
+        return fail(USAGE, "-o takes a name that ends in %s.txt, .csv or .npy here, not '%.200s'",
+                    lines ? ".obj, " : "", o->output);
     }
     if (output_format(o->output) != MIO_UNKNOWN) return DONE;
     return fail(USAGE,
@@ -1167,6 +1221,12 @@ static int check_geodesic(const options *o)
 {
     if (!o->sources && !o->source_file)
         return fail(USAGE, "geodesic needs --source, which takes vertex ids from 0, such as 0,17");
+    if (o->laplacian == HD_LAPLACIAN_VORONOI_EXP || o->laplacian == HD_LAPLACIAN_EXP)
+        return fail(USAGE, "--laplacian takes fem, voronoi-cot or polygon here: %s has no gradient; without "
+                    "it points get triangles, as with --tufted", word_of(LAPLACIANS, o->laplacian));
+    if (o->laplacian == HD_LAPLACIAN_COT)
+        return fail(USAGE,
+                    "--laplacian takes fem, voronoi-cot or polygon here: with cot t is no squared length");
     if (o->times && (o->n_times != 1 || !(o->times[0].value > 0) ||
                      (o->times[0].unit == TIME_AUTO && o->times[0].value > 1)))
         return fail(USAGE, "--t takes one time above 0 here, such as 4h2");
@@ -1212,11 +1272,17 @@ static int check_options(const options *o)
         return fail(USAGE, "%s needs a mesh: a file name or - (standard input)", name);
     if ((o->command & (CMD_KERNEL | CMD_DISTANCE)) && !o->sources && !o->source_file)
         return fail(USAGE, "%s needs --source, which takes vertex ids from 0, such as 0,17", name);
-    if ((o->command & (CMD_DIFFUSE | CMD_RENDER | CMD_PAIRS)) && !o->input)
+    if (o->nearest && o->matrix)
+        return fail(USAGE, "--nearest takes no --matrix beside it: one table at a time");
+    if (o->matrix && (o->anywhere || o->curve || o->source_file))
+        return fail(USAGE, "--matrix takes vertices as sources");
+    if ((o->command & (CMD_DIFFUSE | CMD_RENDER | CMD_PAIRS | CMD_LEVELS)) && !o->input)
         return fail(USAGE, "%s needs --input, which takes the file of %s", name,
                     o->command == CMD_PAIRS ? "vertex pairs" : "a field");
     if (o->command == CMD_SPECTRUM && !o->count && !(o->below > 0))
         return fail(USAGE, "spectrum needs -k, which takes a number from 1, or --below");
+    if (o->command == CMD_LEVELS && !o->n_levels)
+        return fail(USAGE, "levels needs --levels, which takes numbers such as 0.5,1, or auto:K");
     if (o->command == CMD_SAMPLE && (code = check_sample(o)) != DONE) return code;
     if (o->command == CMD_GEODESIC && (code = check_geodesic(o)) != DONE) return code;
     if (o->lambda > 0 && o->laplacian != HD_LAPLACIAN_DEFAULT && o->laplacian != HD_LAPLACIAN_POLYGON)
@@ -1238,12 +1304,12 @@ static int check_options(const options *o)
 static int read_options(options *o, int argc, char **argv)
 {
     int i, code, only_operands = 0;
-    uint64_t seen = 0;
+    char seen[N_OPTIONS] = { 0 };
     for (i = 2; i < argc; i++) {
         const char *arg = argv[i];
         if (!only_operands && strcmp(arg, "--") == 0) only_operands = 1;
         else {
-            if (!only_operands && arg[0] == '-' && arg[1]) code = take_option(o, &seen, argc, argv, &i);
+            if (!only_operands && arg[0] == '-' && arg[1]) code = take_option(o, seen, argc, argv, &i);
             else code = take_mesh(o, arg);
             if (code) return code;
         }
@@ -1256,6 +1322,7 @@ static void free_options(options *o)
     free(o->times);
     free(o->sources);
     free(o->points);
+    free(o->levels);
 }
 
 /* ---- help ---- */
@@ -1669,6 +1736,7 @@ typedef struct run {
     /* column-major, rows x n_columns; input q after time k is column q n_times + k */
     double *values;
     int64_t n_columns;
+    double asymmetry;                /* --matrix: the largest difference between both directions */
     char (*names)[NAME_SIZE];        /* of the columns, and pointers to them */
     const char **name_list;
     summary sum;
@@ -1747,12 +1815,18 @@ static int run_load(run *r)
     return code;
 }
 
+/* Geodesic distances of points always take the triangles of their neighbours. */
+static int is_tufted(const run *r)
+{
+    return r->o->tufted || (r->o->command == CMD_GEODESIC && r->mesh.n_tri == 0);
+}
+
 /* The Laplacian of the command line. By default it depends on the triangulation options, and on whether the
  * mesh has no faces, other faces than triangles, or triangles only. */
 static hd_laplacian_kind laplacian_kind(const run *r)
 {
     if (r->o->laplacian != HD_LAPLACIAN_DEFAULT) return (hd_laplacian_kind)r->o->laplacian;
-    if (r->o->intrinsic_delaunay || r->o->tufted) return HD_LAPLACIAN_FEM;
+    if (r->o->intrinsic_delaunay || is_tufted(r)) return HD_LAPLACIAN_FEM;
     if (r->mesh.n_tri == 0) return HD_LAPLACIAN_VORONOI_EXP;
     /* no face of the file has fewer than three corners */
     return r->mesh.n_tri != r->mesh.n_faces ? HD_LAPLACIAN_POLYGON : HD_LAPLACIAN_FEM;
@@ -1818,8 +1892,8 @@ static hd_status run_laplacian(run *r, hd_error *err)
     opts.lambda = r->o->lambda;
     opts.context = &r->context;
     opts.intrinsic_delaunay = r->o->intrinsic_delaunay;
-    opts.tufted = r->o->tufted;
-    opts.border = (hd_border)r->o->border;
+    opts.tufted = is_tufted(r);
+    if (r->o->command != CMD_GEODESIC) opts.border = (hd_border)r->o->border;
     interrupt.patient = 1;
     if (is_points(r)) status = run_points(r, &opts, err);
     else if (opts.kind == HD_LAPLACIAN_POLYGON)
@@ -1841,10 +1915,10 @@ static int fail_laplacian(const run *r, hd_error *err)
 /* Do the options fit what the file has? */
 static int check_laplacian(const run *r)
 {
-    if (r->mesh.n_tri == 0 && r->o->intrinsic_delaunay && !r->o->tufted)
+    if (r->mesh.n_tri == 0 && r->o->intrinsic_delaunay && !is_tufted(r))
         return fail(FAILED, "%s: --intrinsic-delaunay needs faces, and there are none; points take --tufted",
                     r->mesh_name);
-    if (r->mesh.n_tri == 0 && !has_exponentials(r) && !r->o->tufted)
+    if (r->mesh.n_tri == 0 && !has_exponentials(r) && !is_tufted(r))
         return fail(FAILED, "%s: --laplacian %s needs faces, and there are none; "
                     "points take voronoi-exp or exp, or --tufted with fem, voronoi-cot or cot",
                     r->mesh_name, word_of(LAPLACIANS, r->o->laplacian));
@@ -1852,9 +1926,10 @@ static int check_laplacian(const run *r)
         return fail(FAILED,
                     "%s: --%s is for points (--laplacian voronoi-exp or exp), and this file has faces",
                     r->mesh_name, r->o->has_bandwidth ? "bandwidth" : "weight-cut");
-    if (r->o->border == HD_BORDER_DIRICHLET && is_points(r))
-        return fail(FAILED, "%s: --border dirichlet needs faces: points do not tell where their border is",
-                    r->mesh_name);
+    if (r->o->border != HD_BORDER_NATURAL && is_points(r))
+        return fail(FAILED, "%s: --border %s needs faces: points do not tell where their border is",
+                    r->mesh_name, r->o->command == CMD_GEODESIC ? word_of(GEODESIC_BORDERS, r->o->border)
+                                                                : "dirichlet");
     if (r->o->lambda > 0 && is_points(r))
         return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
     if (r->o->lambda > 0 && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
@@ -2308,7 +2383,7 @@ static int dry_run(run *r)
 /* Flops per second of real factorisations, and bytes for each vertex, of a plan for geodesic distances. */
 static const double GEODESIC_RATE = 25e9, GEODESIC_VERTEX = 430;
 
-/* The same of geodesic: two real factors on the pattern of L. */
+/* The same of geodesic: two real factors on the pattern of L, or three with the mean border. */
 static int dry_run_geodesic(run *r)
 {
     hd_cost *c = r->estimate.cost;
@@ -2316,7 +2391,6 @@ static int dry_run_geodesic(run *r)
     hd_ldl_report report;
     hd_ldl *f = NULL;
     hd_error err;
-    if (r->mesh.n_tri == 0) return fail(FAILED, "%s: geodesic needs faces, and there are none", r->mesh_name);
     memset(&opts, 0, sizeof opts);
     opts.ordering = (hd_ordering)r->o->ordering;
     opts.xyz = r->lap->xyz;
@@ -2325,7 +2399,7 @@ static int dry_run_geodesic(run *r)
     r->estimate.bytes_in_use = (double)r->context.bytes_in_use;
     hd_ldl_free(f);
     c->possible = r->estimate.analysed = 1;
-    c->flops = 2 * report.factor_flops + r->n_inputs * 8.0 * (double)report.factor_nnz;
+    c->flops = (r->o->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * report.factor_flops + r->n_inputs * 8.0 * (double)report.factor_nnz;
     c->seconds = c->flops / GEODESIC_RATE;
     c->bytes = c->bytes_most = 16.0 * (double)report.stored + GEODESIC_VERTEX * r->lap->n;
     r->estimate.bytes_left = r->context.byte_limit ? (double)r->context.byte_limit - r->estimate.bytes_in_use
@@ -2592,12 +2666,14 @@ static void run_shape(run *r)
 /* Allocates the result, and checks that it has the column to be shown. */
 static int run_columns(run *r)
 {
+    int64_t shown;
     run_shape(r);
     if (r->n_columns > INT32_MAX / 2)
         return fail(FAILED, "%lld columns are too many", (long long)r->n_columns);
-    if (r->o->column >= r->n_columns)
+    shown = r->o->nearest ? 2 * (int64_t)r->n_times : r->n_columns;
+    if (r->o->column >= shown)
         return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column,
-                    (long long)r->n_columns);
+                    (long long)shown);
     r->values = new_columns(r->rows, r->n_columns);
     return r->values ? DONE : fail_memory("the result");
 }
@@ -2623,24 +2699,42 @@ static hd_status solve_geodesic_from(run *r)
     return status;
 }
 
+static hd_status geodesic_plan(run *r, const hd_geodesic_opts *opts, hd_error *err)
+{
+    const mesh_data *m = &r->mesh;
+    if (m->n_tri == 0) return hd_geodesic_create_points(&r->geodesic, m->xyz, m->n, NULL, NULL, opts, err);
+    if (laplacian_kind(r) == HD_LAPLACIAN_POLYGON)
+        return hd_geodesic_create_polygons(&r->geodesic, m->xyz, m->n, m->file.face_ptr, m->file.face_idx,
+                                           m->n_faces, opts, err);
+    return hd_geodesic_create(&r->geodesic, m->xyz, m->n, m->tri, m->n_tri, opts, err);
+}
+
 /* Distances from all sources, a column each. */
 static int solve_geodesic(run *r)
 {
+    const options *o = r->o;
     hd_geodesic_opts opts;
     hd_error err;
-    if (r->mesh.n_tri == 0) return fail(FAILED, "%s: geodesic needs faces, and there are none", r->mesh_name);
     memset(&opts, 0, sizeof opts);
-    opts.t = r->times[0];
-    opts.ordering = (hd_ordering)r->o->ordering;
+    if (!o->times) opts.t_in_h2 = 1;
+    else if (o->times[0].unit == TIME_H2) opts.t_in_h2 = o->times[0].value;
+    else opts.t = r->times[0];
+    if (laplacian_kind(r) == HD_LAPLACIAN_VORONOI_COT) opts.mass = HD_GEODESIC_MASS_VORONOI;
+    opts.border = (hd_geodesic_border)o->border;
+    opts.intrinsic_delaunay = o->intrinsic_delaunay;
+    opts.tufted = o->tufted;
+    opts.lambda = o->lambda;
+    opts.ordering = (hd_ordering)o->ordering;
     opts.context = &r->context;
-    if (hd_geodesic_create(&r->geodesic, r->mesh.xyz, r->mesh.n, r->mesh.tri, r->mesh.n_tri, &opts, &err) < 0)
-        return fail_laplacian(r, &err);
-    if (r->from && solve_geodesic_from(r) >= 0) return DONE;
-    if (r->from && r->geodesic_report.status == HD_ERR_ARGUMENT)
-        return fail_source(r, (int)r->geodesic_report.error.column, r->geodesic_report.error.row, r->geodesic_report.error.text);
-    if (!r->from && hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL) >= 0)
-        return DONE;
-    return fail_library(r->mesh_name, &r->geodesic_report.error);
+    if (geodesic_plan(r, &opts, &err) < 0) return fail_laplacian(r, &err);
+    if (r->from && solve_geodesic_from(r) < 0 && r->geodesic_report.status == HD_ERR_ARGUMENT)
+        return fail_source(r, (int)r->geodesic_report.error.column, r->geodesic_report.error.row,
+                           r->geodesic_report.error.text);
+    if (!r->from)
+        (void)hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL);
+    if (r->geodesic_report.status < 0) return fail_library(r->mesh_name, &r->geodesic_report.error);
+    r->times[0] = r->geodesic_report.t;          /* h of points is that of their triangles */
+    return DONE;
 }
 
 /* Eigenpairs, whose vectors are the result. */
@@ -2665,6 +2759,56 @@ static int solve_spectrum(run *r)
                 (long long)r->n_columns);
 }
 
+/* From a column for each source to the nearest source, by its place in --source, and its distance; -1 where
+ * none can be reached. Of equal ones the first. */
+static int fold_nearest(run *r)
+{
+    double *out = new_columns(r->rows, 2 * (int64_t)r->n_times);
+    int64_t i;
+    int k, q;
+    if (!out) return fail_memory("the result");
+    for (k = 0; k < r->n_times; k++) {
+        double *id = out + 2 * (int64_t)k * r->rows, *d = id + r->rows;
+        for (i = 0; i < r->rows; i++) {
+            id[i] = -1;
+            d[i] = HUGE_VAL;
+            for (q = 0; q < r->n_inputs; q++) {
+                const double x = column_of(r, q, k)[i];
+                if (!(x < d[i])) continue;
+                d[i] = x;
+                id[i] = q;
+            }
+        }
+    }
+    free(r->values);
+    r->values = out;
+    r->n_columns = 2 * (int64_t)r->n_times;
+    return DONE;
+}
+
+/* From a column for each source to the rows of the sources, with the mean of both directions: bits are the
+ * same on both sides of the diagonal. */
+static int fold_matrix(run *r)
+{
+    const int64_t n = r->n_inputs;
+    double *out = new_columns(n, r->n_columns);
+    int64_t i, j;
+    int k;
+    if (!out) return fail_memory("the result");
+    for (k = 0; k < r->n_times; k++)
+        for (j = 0; j < n; j++)
+            for (i = 0; i < n; i++) {
+                const double a = column_of(r, (int)j, k)[r->sources[i]];
+                const double b = column_of(r, (int)i, k)[r->sources[j]];
+                out[(j * r->n_times + k) * n + i] = i == j ? 0 : a / 2 + b / 2;
+                if (isfinite(a - b) && fabs(a - b) > r->asymmetry) r->asymmetry = fabs(a - b);
+            }
+    free(r->values);
+    r->values = out;
+    r->rows = n;
+    return DONE;
+}
+
 /* Leaves the plan in r->heat for further questions. */
 static int run_solve(run *r)
 {
@@ -2682,6 +2826,8 @@ static int run_solve(run *r)
     stages_stop();
     r->sec.assemble += stages.spent[STAGE_ASSEMBLE];
     memcpy(r->sec.stage, stages.spent, sizeof r->sec.stage);
+    if (!code && !r->o->dry_run && r->o->nearest) code = fold_nearest(r);
+    if (!code && !r->o->dry_run && r->o->matrix) code = fold_matrix(r);
     code = leave_computation(code);
     bar_part("", 0, 0);
     bar_hide();
@@ -2715,6 +2861,7 @@ static void json_begin(json *j, const run *r, FILE *out)
     if (r->mesh.file.format) json_text(j, "format", r->mesh.file.format);
     json_integer(j, "n", r->mesh.n);
     json_integer(j, "faces", r->mesh.n_faces);
+    if (r->o->matrix) json_number(j, "asymmetry", r->asymmetry);
 }
 
 static void json_end(json *j, const run *r)
@@ -3085,7 +3232,7 @@ static void report_estimate(const run *r)
 static int64_t count_unreached(const run *r)
 {
     int64_t i, count = 0;
-    for (i = 0; i < r->n_columns * r->mesh.n; i++) count += !isfinite(r->values[i]);
+    for (i = 0; i < r->n_columns * r->rows; i++) count += !isfinite(r->values[i]);
     return count;
 }
 
@@ -3102,6 +3249,8 @@ static void json_geodesic(json *j, const run *r)
                 : g->residual_distance);
     json_number(j, "residual_heat", g->residual_heat);
     json_number(j, "residual_distance", g->residual_distance);
+    json_number(j, "edge", g->h);
+    json_text(j, "border", word_of(GEODESIC_BORDERS, r->o->border));
     json_integer(j, "stages", g->n_stages);
     json_integer(j, "unreached", count_unreached(r));
     json_text(j, "status", hd_status_name(g->status));
@@ -3114,8 +3263,8 @@ static void print_geodesic(const run *r)
     print_surface(r);
     fprintf(stderr, "geodesic: %d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t,
             g->t / (g->h * g->h));
-    fprintf(stderr, "two factors: %.3g non-zeros each; %.3g flops, ordering %s\n", (double)g->factor_nnz,
-            g->factor_flops, word_of(ORDERINGS, (int)g->ordering));
+    fprintf(stderr, "%s factors: %.3g non-zeros each; %.3g flops, ordering %s\n",
+            r->o->border == HD_GEODESIC_BORDER_MEAN ? "three" : "two", (double)g->factor_nnz, g->factor_flops, word_of(ORDERINGS, (int)g->ordering));
     fprintf(stderr, "residuals %.1e and %.1e, heat followed in %ld stage%s\n", g->residual_heat,
             g->residual_distance, (long)g->n_stages, plural(g->n_stages));
     if (unreached)
@@ -3364,6 +3513,9 @@ static int heat_names(run *r)
         if (r->o->command == CMD_TRACE)
             snprintf(r->names[c], NAME_SIZE, "%s", c == 0 ? "t" : c == 1 ? "trace" : "bound");
         else if (r->o->frequencies) snprintf(r->names[c], NAME_SIZE, "si_%d", (int)(c % 1000000));
+        else if (r->o->nearest)
+            snprintf(r->names[c], NAME_SIZE, "%s_%.14s%s", c % 2 ? "d" : "nearest", r->time_names[c / 2],
+                     number);
         else if (r->o->command == CMD_HKS)
             snprintf(r->names[c], NAME_SIZE, "hks_%.14s%s", r->time_names[c], number);
         else if (r->o->command == CMD_SAMPLE) snprintf(r->names[c], NAME_SIZE, "distance");
@@ -3383,10 +3535,13 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
     char when[64], where[40] = "";
     if (r->from) snprintf(where, sizeof where, "source %d", q);
     else if (r->sources) snprintf(where, sizeof where, "vertex %ld", (long)r->sources[q]);
-    time_text(r->time_names[c % r->n_times], when, sizeof when);
+    time_text(r->time_names[r->o->nearest ? c / 2 : c % r->n_times], when, sizeof when);
     if (is_timeless(r->o)) snprintf(when, sizeof when, "%s", r->time_names[0]);
     if (r->o->filter) snprintf(when, sizeof when, "filter %.40s", r->o->filter);
-    if (r->o->frequencies)
+    if (r->o->nearest)
+        snprintf(title, size, "%s of %d sources, %s", c % 2 ? "Distance to the nearest" : "Nearest",
+                 r->n_inputs, when);
+    else if (r->o->frequencies)
         snprintf(title, size, "Scale-invariant heat kernel signature, frequency %d", (int)(c % 1000000));
     else if (r->o->command == CMD_HKS)
         snprintf(title, size, "%s, %s", r->o->filter ? "Diagonal" : r->o->normalise ?
@@ -3403,7 +3558,7 @@ static int write_heat(run *r)
 {
     const double start = now();
     const int kind = r->o->output ? output_format(r->o->output) : MIO_TXT;
-    const int32_t *marker = r->sources ? &r->sources[r->o->column / r->n_times] : NULL;
+    const int32_t *marker = r->sources && !r->o->nearest ? &r->sources[r->o->column / r->n_times] : NULL;
     char title[160];
     result res;
     int code = heat_names(r);
@@ -3487,13 +3642,15 @@ static int write_ids(run *r)
     mio_error e;
     int status = heat_names(r);
     hd_heat_free(r->heat);
+    hd_geodesic_free(r->geodesic);
     r->heat = NULL;
+    r->geodesic = NULL;
     if (status) return status;
     memset(&out, 0, sizeof out);
     ids[0] = r->o->command == CMD_PAIRS ? r->pairs : r->sources;
     ids[1] = r->pairs ? r->pairs + r->rows : NULL;
     out.ids = ids;
-    out.n_ids = r->o->command == CMD_PAIRS ? 2 : r->o->command == CMD_TRACE ? 0 : 1;
+    out.n_ids = r->o->matrix || r->o->command == CMD_TRACE ? 0 : r->o->command == CMD_PAIRS ? 2 : 1;
     out.id_names = r->o->command == CMD_PAIRS ? pair_names : point_names;
     out.names = r->name_list;
     out.no_header = r->o->no_header;
@@ -3693,7 +3850,7 @@ static int command_columns(run *r)
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     if (!code && r->o->command != CMD_HKS) code = run_sources(r);
-    return code ? code : command_finish(r, write_heat, report_heat);
+    return code ? code : command_finish(r, r->o->matrix ? write_ids : write_heat, report_heat);
 }
 
 /* The two ids of a row into r->pairs. */
@@ -3774,7 +3931,7 @@ static int command_geodesic(run *r)
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     if (!code) code = run_sources(r);
-    return code ? code : command_finish(r, write_heat, report_geodesic);
+    return code ? code : command_finish(r, r->o->matrix ? write_ids : write_heat, report_geodesic);
 }
 
 static int command_spectrum(run *r)
@@ -3801,6 +3958,193 @@ static int command_diffuse(run *r)
     r->field_name = r->o->input;
     if (!code) code = command_finish(r, write_heat, report_heat);
     r->fields = NULL;
+    field_free(&field);
+    return code;
+}
+
+/* ---- levels ---- */
+
+/* auto:K becomes K values between the least and the largest finite one. */
+static int levels_resolve(const run *r, const double *f, double *level)
+{
+    const options *o = r->o;
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    int32_t i;
+    int k;
+    for (i = 0; i < r->mesh.n; i++)
+        if (isfinite(f[i])) {
+            least = f[i] < least ? f[i] : least;
+            most = f[i] > most ? f[i] : most;
+        }
+    if (!o->levels && !(least < most))
+        return fail(FAILED, "%s: column %ld has one value only: there is nothing between",
+                    display_name(o->input), o->column);
+    for (k = 0; k < o->n_levels; k++) {
+        const double u = (k + 1.0) / (o->n_levels + 1.0);
+        level[k] = o->levels ? o->levels[k] : least * (1 - u) + most * u;
+    }
+    return DONE;
+}
+
+static void levels_obj(mio_file *f, const lev_set *s)
+{
+    int64_t i, k;
+    int c;
+    for (i = 0; i < s->n_points && f->status == MIO_OK; i++) {
+        mio_put_text(f, "v");
+        for (c = 0; c < 3; c++) {
+            mio_put_text(f, " ");
+            mio_put_double(f, s->xyz[3 * i + c]);
+        }
+        mio_put_text(f, "\n");
+    }
+    for (k = 0; k < s->n_lines && f->status == MIO_OK; k++) {
+        const lev_line *line = s->line + k;
+        if (k == 0 || line->level != line[-1].level) {
+            mio_put_text(f, "g level_");
+            mio_put_double(f, line->level);
+            mio_put_text(f, "\n");
+        }
+        mio_put_text(f, "l");
+        for (i = 0; i < line->count + line->closed; i++) {
+            mio_put_text(f, " ");
+            mio_put_integer(f, line->first + i % line->count + 1);
+        }
+        mio_put_text(f, "\n");
+    }
+}
+
+/* Columns of the table: line, closed, level, x, y, z. */
+static int levels_table(const run *r, const lev_set *s, int kind)
+{
+    static const char *const names[4] = { "level", "x", "y", "z" }, *const id_names[2] = { "line", "closed" };
+    const size_t n = (size_t)s->n_points;
+    int32_t *id = (int32_t *)malloc((2 * n + 1) * sizeof *id);
+    double *values = new_columns(s->n_points, 4);
+    const int32_t *ids[2];
+    mio_output out;
+    mio_error e;
+    int64_t i, k;
+    int code = DONE, status, c;
+    if (!id || !values) code = fail_memory("the table");
+    else {
+        for (k = 0; k < s->n_lines; k++)
+            for (i = s->line[k].first; i < s->line[k].first + s->line[k].count; i++) {
+                id[i] = (int32_t)k;
+                id[(int64_t)n + i] = s->line[k].closed;
+                values[i] = s->line[k].level;
+                for (c = 0; c < 3; c++) values[(c + 1) * (int64_t)n + i] = s->xyz[3 * i + c];
+            }
+        ids[0] = id;
+        ids[1] = id + n;
+        memset(&out, 0, sizeof out);
+        out.rows = out.ld = s->n_points;
+        out.cols = 4;
+        out.values = values;
+        out.n_ids = 2;
+        out.ids = ids;
+        out.id_names = id_names;
+        out.names = names;
+        out.no_header = r->o->no_header;
+        status = mio_write(r->o->output, kind, NULL, &out, &e);
+        if (status < 0) code = fail_file(status, &e);
+    }
+    free(id);
+    free(values);
+    return code;
+}
+
+static int levels_write(const run *r, const lev_set *s)
+{
+    const int kind = r->o->output ? output_format(r->o->output) : MIO_TXT;
+    mio_file f;
+    mio_error e;
+    int status;
+    if (kind != MIO_OBJ) return levels_table(r, s, kind);
+    if (mio_file_open(&f, r->o->output, NULL, &e) == MIO_OK) levels_obj(&f, s);
+    status = mio_file_close(&f);
+    return status < 0 ? fail_file(status, &e) : DONE;
+}
+
+/* Sums over the lines of one level. */
+static void levels_count(const lev_set *s, double level, int64_t *lines, int64_t *closed, double *length)
+{
+    int64_t k;
+    *lines = *closed = 0;
+    *length = 0;
+    for (k = 0; k < s->n_lines; k++) {
+        if (s->line[k].level != level) continue;
+        ++*lines;
+        *closed += s->line[k].closed;
+        *length += s->line[k].length;
+    }
+}
+
+static void levels_report(const run *r, const lev_set *s, const double *level)
+{
+    int64_t lines, closed, all_closed = 0;
+    double length;
+    json j;
+    int k;
+    if (r->o->json) {
+        json_begin(&j, r, stderr);
+        json_numbers(&j, "levels", level, r->o->n_levels);
+        for (lines = 0; lines < s->n_lines; lines++) all_closed += s->line[lines].closed;
+        json_integer(&j, "lines", s->n_lines);
+        json_integer(&j, "closed", all_closed);
+        json_integer(&j, "points", s->n_points);
+        json_key(&j, "lengths");
+        for (k = 0; k < r->o->n_levels; k++) {
+            levels_count(s, level[k], &lines, &closed, &length);
+            fprintf(j.out, k ? ", " : "[");
+            json_value(j.out, length);
+        }
+        fprintf(j.out, "]");
+        json_end(&j, r);
+    } else if (!r->o->quiet)
+        for (k = 0; k < r->o->n_levels; k++) {
+            levels_count(s, level[k], &lines, &closed, &length);
+            fprintf(stderr, "level %.9g: %lld line%s, %lld closed, length %.9g\n", level[k], (long long)lines,
+                    plural(lines), (long long)closed, length);
+        }
+}
+
+static int levels_of(run *r, const field_data *field)
+{
+    const double *f = field->values + (size_t)r->o->column * (size_t)r->mesh.n;
+    double *level = (double *)malloc((size_t)r->o->n_levels * sizeof *level);
+    lev_mesh mesh;
+    lev_set s;
+    int code, k;
+    if (!level) return fail_memory("the levels");
+    mesh.xyz = r->mesh.xyz;
+    mesh.face_ptr = r->mesh.file.face_ptr;
+    mesh.face_idx = r->mesh.file.face_idx;
+    mesh.n_faces = r->mesh.n_faces;
+    memset(&s, 0, sizeof s);
+    code = levels_resolve(r, f, level);
+    for (k = 0; k < r->o->n_levels && !code && !interrupt.asked; k++)
+        if (!lev_trace(&s, &mesh, f, level[k])) code = fail_memory("the lines");
+    if (!code && interrupt.asked) code = INTERRUPTED;
+    if (!code) code = levels_write(r, &s);
+    if (!code) levels_report(r, &s, level);
+    lev_free(&s);
+    free(level);
+    return code;
+}
+
+static int command_levels(run *r)
+{
+    field_data field;
+    int code = run_load(r);
+    memset(&field, 0, sizeof field);
+    if (!code && r->mesh.n_tri == 0)
+        code = fail(FAILED, "%s: levels needs faces, and there are none", r->mesh_name);
+    if (!code) code = field_load(&field, r->o->input, r->mesh_name, r->mesh.n);
+    if (!code && r->o->column >= field.columns)
+        code = fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0",
+                    display_name(r->o->input), r->o->column, (long)field.columns);
+    if (!code) code = levels_of(r, &field);
     field_free(&field);
     return code;
 }
@@ -4210,6 +4554,7 @@ static int run_command(const options *o)
     case CMD_DIFFUSE: code = command_diffuse(&r); break;
     case CMD_GEODESIC: code = command_geodesic(&r); break;
     case CMD_SPECTRUM: code = command_spectrum(&r); break;
+    case CMD_LEVELS: code = command_levels(&r); break;
     case CMD_RENDER: code = command_render(&r); break;
     case CMD_DEMO: code = command_demo(&r); break;
     default: break;
