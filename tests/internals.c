@@ -1557,7 +1557,9 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 memset(sum.u, 0, sizeof sum.u);
                 sum.u[r] = lane[r].u;
                 sum.means[r] = lane[r].sums;
-                CHECK(hdi_silan_coefficients(z, r, at, sum.y[r], &e) == HD_OK);
+                CHECK(hdi_silan_places(z, r + 1, &ctx, &e) == HD_OK);
+                sum.y[r] = z->y + z->steps * r;
+                CHECK(hdi_silan_coefficients(z, r, at, z->y + z->steps * r, &e) == HD_OK);
                 hdi_silan_sum_run(z, &sum, &ctx);
                 CHECK(hdi_silan_answer(z, r, at, sum.y[r], 0, lane + r, &e) == HD_OK);
                 z->done[r] = 0;
