@@ -1372,6 +1372,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
  * hd_heat_derivative and hd_heat_adjoint at one t share the factors of the direct method, and the adjoint is
  * that of the very matrix applied, up to rounding. For a loss with gradient G by U = K_t F, its gradient by F
  * is K_t' G, and its derivative by t the sum of all G_ij (dK_t/dt F)_ij.
+ * Rough fields at large t leave a derivative that is small beside F. Lower degrees lose it first.
  * Errors as above; HD_ERR_ARGUMENT with a pole set of your own
  * Cost   as above; krylov and Lanczos take two runs */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,

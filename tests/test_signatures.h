@@ -248,6 +248,86 @@ static void sign_errors(const hd_laplacian *lap) {
     free(D);
 }
 
+/* ---- limits, cancelling, threads ---- */
+
+enum { SIGN_QUERIES = 7, SIGN_OUT = 8 };
+
+/* One of the new queries with a context, on a mesh of n vertices; out [SIGN_OUT n]. */
+static hd_status sign_query(hd_context *ctx, const shape *s, int which, double *out) {
+    static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
+    hd_heat_opts o = eng_opts(which < 6 && which > 2 ? HD_METHOD_DIRECT : methods[which % 3]);
+    hd_laplacian_opts l = bord_opts(HD_LAPLACIAN_FEM, HD_BORDER_NATURAL, 0, NULL);
+    const double t[3] = {0.05, 0.2, 1};
+    double *f = DENSE_NEW(double, s->n);
+    hd_laplacian *lap = NULL;
+    hd_heat *heat = NULL;
+    hd_status st;
+    int32_t v;
+    for (v = 0; v < s->n; v++) f[v] = cos(0.7 * v);
+    memset(out, 0, SIGN_OUT * (size_t)s->n * sizeof *out);
+    l.context = ctx;
+    st = hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &l, NULL);
+    if (st >= 0) st = hd_heat_create(&heat, lap, &o, NULL);
+    if (st >= 0 && which < 3) st = hd_heat_derivative(heat, 3, t, 1, f, 0, out, 0, NULL, NULL);
+    else if (st >= 0 && which == 3) st = hd_heat_trace(heat, 3, t, out, out + 3, NULL, NULL);
+    else if (st >= 0 && which == 4) st = hd_heat_normalised(heat, 3, t, out, 0, NULL, NULL);
+    else if (st >= 0 && which == 5) st = hd_heat_scale_invariant(heat, 0.01, 10, 9, 3, out, 0, NULL, NULL);
+    else if (st >= 0) st = hd_heat_adjoint(heat, 3, t, 1, f, 0, out, 0, NULL, NULL);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    free(f);
+    return st;
+}
+
+typedef struct sign_stop { int left; } sign_stop;
+
+static hd_progress sign_progress(void *user, const char *stage, double done) {
+    sign_stop *s = (sign_stop *)user;
+    (void)stage;
+    (void)done;
+    return s->left-- > 0 ? HD_PROGRESS_CONTINUE : HD_PROGRESS_CANCEL;
+}
+
+/* Every allocation fails in turn, and every look at progress cancels: nothing stays. Bits do not depend on threads. */
+static void sign_limits(void) {
+    shape s = shape_icosphere(1), large = shape_icosphere(4);
+    double *one = DENSE_NEW(double, SIGN_OUT * large.n), *three = DENSE_NEW(double, SIGN_OUT * large.n);
+    int which, k;
+    for (which = 0; which < SIGN_QUERIES; which++) {
+        hd_context ctx;
+        hd_status st = HD_ERR_MEMORY_LIMIT;
+        sign_stop stop;
+        for (k = 1; st < 0 && k < 2000; k++) {
+            memset(&ctx, 0, sizeof ctx);
+            ctx.n_threads = 1;
+            ctx.allocation_limit = (uint64_t)k;
+            st = sign_query(&ctx, &s, which, one);
+            CHECK_MSG((st >= 0 || st == HD_ERR_MEMORY_LIMIT) && ctx.bytes_in_use == 0, "query %d, %d allocations: %s, %llu bytes stay", which, k,
+                hd_status_name(st), (unsigned long long)ctx.bytes_in_use);
+        }
+        CHECK(st >= 0 && k > 10);
+        for (st = HD_ERR_CANCELLED, k = 0; st < 0 && k < 2000; k++) {
+            memset(&ctx, 0, sizeof ctx);
+            ctx.progress = sign_progress;
+            ctx.progress_user = &stop;
+            stop.left = k;
+            st = sign_query(&ctx, &s, which, one);
+            CHECK_MSG((st >= 0 || st == HD_ERR_CANCELLED) && ctx.bytes_in_use == 0, "query %d, look %d: %s", which, k, hd_status_name(st));
+        }
+        CHECK(st >= 0 && k > 3);
+        memset(&ctx, 0, sizeof ctx);
+        ctx.n_threads = 1;
+        CHECK(sign_query(&ctx, &large, which, one) >= 0);
+        memset(&ctx, 0, sizeof ctx);
+        ctx.n_threads = 3;
+        CHECK(sign_query(&ctx, &large, which, three) >= 0 && memcmp(one, three, SIGN_OUT * (size_t)large.n * sizeof *one) == 0);
+    }
+    free(one);
+    free(three);
+    shape_free(&s);
+    shape_free(&large);
+}
+
 static void test_signatures(void) {
     shape ball = shape_icosphere(2), bumpy = shape_bumpy(2, 3), disk = bord_disk(5, 1), inert = eng_with_inert(&ball);
     const double apart[3] = {4, 1, 0};
@@ -277,6 +357,7 @@ static void test_signatures(void) {
     sign_sphere();
     sign_torus();
     sign_suitable_times();
+    sign_limits();
     shape_free(&ball);
     shape_free(&bumpy);
     shape_free(&disk);
