@@ -128,11 +128,24 @@ static hd_laplacian *octahedron(hd_laplacian_opts *o) {
     return lap;
 }
 
+/* The middle of the first face. */
+static hd_source middle(void) {
+    hd_source s;
+    memset(&s, 0, sizeof s);
+    s.count = 1;
+    s.corners = 3;
+    s.vertex = tri;
+    return s;
+}
+
 /* Columns and fields of a plan are right, at one time, at several, and at t = 0. */
 static void check_columns(hd_heat *heat) {
     const double t[3] = {T, 0.2 * T, 3 * T}, zero = 0, f[6] = {1, 2, 3, 4, 5, 6};
+    const hd_source source = middle();
     double u[18];
     int q, i, j;
+    CHECK(hd_heat_columns_from(heat, HD_KERNEL_OPERATOR, 1, t, 1, &source, u, 0, NULL, &err) == HD_OK);
+    for (i = 0; i < 6; i++) CHECK(near_to(u[i], (heat_of(i, tri[0], T) + heat_of(i, tri[1], T) + heat_of(i, tri[2], T)) / 3));
     CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 3, t, 1, tri, u, 0, NULL, &err) == HD_OK);
     for (q = 0; q < 3; q++)
         for (i = 0; i < 6; i++) CHECK(near_to(u[6 * q + i], heat_of(i, 0, t[q])));
@@ -192,6 +205,7 @@ static void check_plans(const hd_laplacian *lap) {
 /* What comes from selected inversion, and distances. */
 static void check_signatures(const hd_laplacian *lap) {
     const int32_t zero = 0, one = 1, two = 2;
+    const hd_source source = middle();
     const double t = T, off = heat_of(0, 0, 2 * T) - heat_of(0, 2, 2 * T);
     hd_heat *heat = NULL;
     hd_report rep;
@@ -214,6 +228,8 @@ static void check_signatures(const hd_laplacian *lap) {
         CHECK(d[0] == 0 && near_to(d[2], sqrt(2 * off)) && near_to(d[5], d[2]) && d[1] > d[2]);
     if (BUILT(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, &two, values, d, NULL, &err), no.diffusion))
         CHECK(near_to(d[0], sqrt(2 * off)));
+    if (BUILT(hd_heat_distance_from(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, NULL, &err), no.diffusion))
+        CHECK(near_to(d[0], sqrt(off * 2 / 3)) && near_to(d[0], d[tri[1]]) && d[1] > d[0]);
     if (BUILT(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 1, vertex, d, NULL, &err), no.diffusion))
         CHECK(vertex[1] == one);
     hd_heat_free(heat);
@@ -266,17 +282,21 @@ static void check_geodesic(void) {
     hd_geodesic *g = NULL;
     hd_geodesic_report rep;
     const int32_t zero = 0;
+    const hd_source source = middle();
     double d[6] = {0};
     if (!BUILT(hd_geodesic_create(&g, xyz, 6, tri, 8, NULL, &err), no.geodesic)) {
         (void)BUILT(hd_geodesic_distance(NULL, 1, &zero, d, &rep, &err), no.geodesic);
         CHECK(rep.status == HD_ERR_NOT_BUILT && strstr(rep.error.text, no.geodesic) != NULL);
         (void)BUILT(hd_geodesic_distances(NULL, 1, &zero, d, 0, NULL, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_distance_from(NULL, &source, d, NULL, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_create_lengths(&g, d, 6, tri, 8, NULL, &err), no.geodesic);
         (void)BUILT(hd_geodesic_update(NULL, xyz, &err), no.geodesic);
         hd_geodesic_free(g);
         return;
     }
     CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, &err) == HD_OK);
     CHECK(d[0] == 0 && d[2] > 1 && d[2] < 2 && near_to(d[2], d[5]) && d[1] > d[2] && d[1] < 3);
+    CHECK(hd_geodesic_distance_from(g, &source, d, &rep, &err) == HD_OK && near_to(d[0], sqrt(2 / 3.0)) && near_to(d[0], d[tri[1]]) && d[1] > d[0]);
     hd_geodesic_free(g);
     check_geodesic_kinds();
 }
