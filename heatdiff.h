@@ -533,7 +533,7 @@ enum { HD_MAX_POLES = 32 };
 
 /* c(x) = a0 + sum_real a/(x - theta) + 2 Re sum_pairs a/(x - theta) for x = -t lambda <= 0. Of each conjugate
  * pair only the pole with Im theta > 0 is listed. A pole with Im theta = 0 is real and counts once. No pole
- * may lie on (-inf, 0]. */
+ * may lie on (-inf, 0]. Clear the struct before you fill in a set of your own. */
 typedef struct hd_rational {
     hd_pole_kind kind;
     int32_t degree;             /* real poles + 2 pairs */
@@ -700,13 +700,16 @@ typedef enum hd_distance_kind {
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
-    HD_EVIDENCE_MEASURED,       /* measured at some columns or solves of this answer, assumed for all of it */
+    /* measured at some columns or solves of this answer, assumed for all of it; filters: at eigenvalues of a
+     * grid, assumed between them */
+    HD_EVIDENCE_MEASURED,
     HD_EVIDENCE_ESTIMATED       /* a model of rounding */
 } hd_evidence;
 
 /* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
  *
- * The error bound has three parts: the rational approximation of exp, the iterative solver, and rounding.
+ * The error bound has three parts: the rational approximation of exp or of a filter, the iterative solver,
+ * and rounding.
  * error_bound is their sum. It bounds the largest error of any value returned, relative to the largest
  * |value| returned: of each field, column and time, or of the whole list for entries and pairs. Each part has
  * its evidence. HD_EVIDENCE_NONE means that the part does not apply, and that the other parts are complete

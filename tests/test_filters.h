@@ -142,10 +142,11 @@ static void filt_weight(void) {
 
 static double filt_high_pass(double lambda, void *user) { return 1 - exp(-lambda * *(double *)user); }
 static double filt_bad(double lambda, void *user) { return lambda > *(double *)user ? HUGE_VAL : 1; }
+static double filt_spike(double lambda, void *user) { return 1 / (1 + pow((lambda / *(double *)user - 1) / 1e-6, 2)); }
 static double filt_zero(double lambda, void *user) { return 0 * lambda + *(double *)user; }
 
 static void filt_own(void) {
-    double t = 0.5, zero = 0, off = 0;
+    double t = 0.5, zero = 0, off = 0, top = 1e5;
     hd_filter f = filt_make(HD_FILTER_OWN, 0, 0);
     hd_rational set;
     hd_error e;
@@ -158,6 +159,11 @@ static void filt_own(void) {
     CHECK_MSG(off <= set.max_error && off < 1e-9, "error %g, reported %g", off, set.max_error);
     f.f = filt_bad;
     CHECK(hd_rational_fit(&set, &f, 1e5, NULL, &e) == HD_ERR_NOT_FINITE && e.value > 0.5 && e.value <= 1e5);
+    f.constant = 0;
+    f.f = filt_spike;                            /* its pole is too near to be taken, and that is told */
+    f.user = &top;
+    CHECK(hd_rational_fit(&set, &f, top, NULL, &e) == HD_WARN_ACCURACY && set.max_error > 0.1);
+    for (k = 0; k < set.n_poles; k++) CHECK(set.theta[k].re > 0 || set.theta[k].im > 1e-5 * fabs(set.theta[k].re));
     f.f = filt_zero;
     f.user = &zero;
     CHECK(hd_rational_fit(&set, &f, 1e5, NULL, &e) == HD_ERR_ARGUMENT);
