@@ -1449,11 +1449,12 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
  * metric: d from i to j and d from j to i differ by about that error.
  * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED,
  *          HD_ERR_BREAKDOWN (rounding left no number). HD_WARN_ACCURACY, only if a report is given
- * Cost     two solves and two passes over the faces, with several sources in a component a third solve; with a report two more passes. Where heat fades below
- *          1e-200 of the source's, which is about 450 edges away at t = h^2, another solve follows for each
- *          such distance, on the part of the mesh that it reaches (report->n_stages). Such a solve allocates
- *          about 60 bytes for each vertex, for the time of the call. A call with more sources than any before
- *          allocates too; other calls do not
+ * Cost     two solves and two passes over the faces; a third solve with several sources in a component; with
+ *          a report two more passes. Where heat fades below 1e-200 of the source's, which is about 450 edges
+ *          away at t = h^2, another solve follows for each such distance, on the part of the mesh that it
+ *          reaches (report->n_stages). Such a solve allocates about 60 bytes for each vertex, for the time of
+ *          the call. The first call with several sources, or with more than any before, allocates too; other
+ *          calls do not
  * One thread at a time for a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources,
                                             const int32_t *sources, double *d,
