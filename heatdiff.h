@@ -1679,8 +1679,9 @@ HEATDIFF_API hd_status hd_geodesic_update_view(hd_geodesic *g, const hd_mesh_vie
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to the nearest source.
- * d        [n] in the unit of xyz: min |phi - phi_s| over the sources s of the vertex' component. It is zero
- *          at the sources. It is HUGE_VAL where no source can be reached: in components without one, and at
+ * d        [n] in the unit of xyz: |phi - phi_s|, where phi_s of several sources is a mean weighted by their
+ *          heat, almost that of the nearest; beyond the first stage of heat, the nearest value. It is zero at
+ *          the sources. It is HUGE_VAL where no source can be reached: in components without one, and at
  *          vertices without mass
  * sources  [n_sources] at least one; repeated sources count once
  * The method itself has an error of the order of h: a few percent on coarse meshes, about one percent on fine
@@ -1688,11 +1689,12 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
  * metric: d from i to j and d from j to i differ by about that error.
  * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED,
  *          HD_ERR_BREAKDOWN (rounding left no number). HD_WARN_ACCURACY, only if a report is given
- * Cost     two solves and two passes over the faces; with a report two more passes. Where heat fades below
- *          1e-200 of the source's, which is about 450 edges away at t = h^2, another solve follows for each
- *          such distance, on the part of the mesh that it reaches (report->n_stages). Such a solve allocates
- *          about 60 bytes for each vertex, for the time of the call. A call with more sources than any before
- *          allocates too; other calls do not
+ * Cost     two solves and two passes over the faces; a third solve with several sources in a component; with
+ *          a report two more passes. Where heat fades below 1e-200 of the source's, which is about 450 edges
+ *          away at t = h^2, another solve follows for each such distance, on the part of the mesh that it
+ *          reaches (report->n_stages). Such a solve allocates about 60 bytes for each vertex, for the time of
+ *          the call. The first call with several sources, or with more than any before, allocates too; other
+ *          calls do not
  * One thread at a time for a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources,
                                             const int32_t *sources, double *d,
@@ -28299,6 +28301,7 @@ struct hd_geodesic {
     char *reached;               /* [n_components] has a source */
     char *mark;                  /* [n_active] sources; or how far u is known */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
+    double *first;               /* [n_active] u of the first stage, made with the first set of sources */
     double *wide_x, *wide_b, *wide_work;   /* the same for a batch, made when first needed */
     int64_t *value_ptr;          /* [n_components + 1] */
     double *value;               /* [value_size] phi at the sources, by component, ascending */
@@ -28340,6 +28343,7 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_free(ctx, g->reached);
     hdi_free(ctx, g->mark);
     hdi_free(ctx, g->x);
+    hdi_free(ctx, g->first);
     hdi_free(ctx, g->b);
     hdi_free(ctx, g->r);
     hdi_free(ctx, g->work);
@@ -29426,6 +29430,37 @@ static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d)
     return fine;
 }
 
+/* phi is not the same at all sources of a set. With u the heat of the sources and v the heat of the values of
+ * phi at them, v/u is near every source its own value, since heat fades so fast. Distances are measured from
+ * that wherever the first stage knows u. phi is in g->b, u in g->first; g->x and g->r are overwritten. */
+static void hdi_geo_own_source(hd_geodesic *g, const int32_t *sources, int32_t k, double least, double *d) {
+    int32_t q, v, c, several = 0;
+    for (c = 0; c < g->n_components; c++) several |= g->value_ptr[c + 1] - g->value_ptr[c] > 1;
+    if (!several) return;
+    hdi_geo_start(g, sources, k);
+    for (q = 0; q < k; q++) {
+        const int32_t i = g->row[sources[q]];
+        if (i >= 0) g->x[i] = g->b[i] - g->value[g->value_ptr[g->component[i]]];
+    }
+    if (g->border == HD_GEODESIC_BORDER_MEAN) {
+        memset(g->r, 0, HDI_CAST(size_t, g->n_active) * sizeof *g->r);
+        for (v = 0; v < g->n_active; v++) g->r[v] = g->held[v] ? 0 : g->x[v];
+        hdi_geo_sweep(g, &g->cold, 1, g->r, g->active);
+    }
+    hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
+    for (v = 0; v < g->n; v++) {
+        const int32_t i = g->row[v];
+        const double *value;
+        double from;
+        if (i < 0 || !g->reached[g->component[i]] || !(fabs(g->first[i]) >= least)) continue;
+        value = g->value + g->value_ptr[g->component[i]];
+        c = HDI_CAST(int32_t, g->value_ptr[g->component[i] + 1] - g->value_ptr[g->component[i]]);
+        from = (g->x[i] + (g->border == HD_GEODESIC_BORDER_MEAN ? g->r[i] : 0)) / g->first[i];
+        from = value[0] + hdi_min(hdi_max(from, 0), value[c - 1] - value[0]);
+        d[v] = g->h * fabs(g->b[i] - from);
+    }
+}
+
 static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance) {
     rep->residual_heat = hdi_max(rep->residual_heat, heat);
     rep->residual_distance = hdi_max(rep->residual_distance, distance);
@@ -29445,6 +29480,8 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
     double least, heat = 0;
     int32_t i, n_stages = 1;
     if (hdi_geo_values_room(g, hdi_low32(k, g->n_active), e) < 0) return e->status;
+    if (k > 1 && !g->first) g->first = hdi_geo_doubles(g, g->n_active, e);
+    if (k > 1 && !g->first) return e->status;
     hdi_geo_start(g, sources, k);
     hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
     if (rep) heat = hdi_geo_heat_residual(g, sources, k, g->x, g->r);
@@ -29453,6 +29490,7 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
         hdi_geo_add_cold(g, 1, g->x, g->b);
     }
     least = hdi_geo_least(g, sources, k, g->x, 1);
+    if (k > 1) memcpy(g->first, g->x, HDI_CAST(size_t, g->n_active) * sizeof *g->x);
     if (hdi_geo_divergence(g, g->x, least, g->b) && hdi_geo_further(g, least, &n_stages, e) < 0)
         return e->status;
     if (rep) memcpy(g->r, g->b, HDI_CAST(size_t, g->n_active) * sizeof *g->r);
@@ -29460,10 +29498,12 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
     hdi_geo_sweep(g, &g->poisson, 1, g->b, NULL);
     hdi_geo_values(g, sources, k, g->b);
     if (!hdi_geo_distances(g, g->b, d)) return hdi_geo_not_finite(e, -1);
+    if (rep) {
+        rep->n_stages = rep->n_stages > n_stages ? rep->n_stages : n_stages;
+        hdi_geo_judge(rep, heat, hdi_geo_residual(g, g->b));
+    }
+    if (k > 1) hdi_geo_own_source(g, sources, k, least, d);
     for (i = 0; i < k; i++) d[sources[i]] = 0;   /* those without mass too */
-    if (!rep) return HD_OK;
-    rep->n_stages = rep->n_stages > n_stages ? rep->n_stages : n_stages;
-    hdi_geo_judge(rep, heat, hdi_geo_residual(g, g->b));
     return HD_OK;
 }
 

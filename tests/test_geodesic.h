@@ -148,25 +148,49 @@ static void geo_dense_divergence(const shape *s, const double *u, double *b) {
     }
 }
 
+/* Distances from phi: that of each source counts where its heat is. A [n n] Cholesky factor of the heat equation, or NULL: v is given. u: heat. held as there. */
+static void geo_dense_from(const double *A, const double *u, double *v, const double *phi, const int32_t *component, const int32_t *sources, int32_t k, int32_t n, double *d) {
+    double *least = DENSE_NEW(double, n), *most = DENSE_NEW(double, n);
+    int32_t i, q;
+    for (i = 0; i < n; i++) least[i] = HUGE_VAL;
+    for (i = 0; i < n; i++) most[i] = -HUGE_VAL;
+    for (q = 0; q < k; q++) {
+        const int32_t c = component[sources[q]];
+        if (c < 0) continue;
+        least[c] = fmin(least[c], phi[sources[q]]);
+        most[c] = fmax(most[c], phi[sources[q]]);
+    }
+    if (A) {
+        for (i = 0; i < n; i++) v[i] = 0;
+        for (q = 0; q < k; q++)
+            if (component[sources[q]] >= 0) v[sources[q]] = phi[sources[q]] - least[component[sources[q]]];
+        dense_forward(A, v, n);
+        dense_backward(A, v, n);
+    }
+    for (i = 0; i < n; i++) {
+        const int32_t c = component[i];
+        d[i] = HUGE_VAL;
+        if (c >= 0 && least[c] < HUGE_VAL) d[i] = fabs(phi[i] - least[c] - fmin(fmax(v[i] / u[i], 0), most[c] - least[c]));
+    }
+    for (q = 0; q < k; q++) d[sources[q]] = 0;
+    free(least);
+    free(most);
+}
+
 static void geo_dense_distance(const geo_dense *g, const int32_t *sources, int32_t k, double *d) {
     const shape *s = g->s;
-    double *u = DENSE_NEW(double, s->n), *phi = DENSE_NEW(double, s->n);
-    int32_t i, q;
+    double *u = DENSE_NEW(double, s->n), *phi = DENSE_NEW(double, s->n), *v = DENSE_NEW(double, s->n);
+    int32_t q;
     for (q = 0; q < k; q++) u[sources[q]] = 1;
     dense_forward(g->A, u, s->n);
     dense_backward(g->A, u, s->n);
     geo_dense_divergence(s, u, phi);
     dense_forward(g->L, phi, s->n);
     dense_backward(g->L, phi, s->n);
-    for (i = 0; i < s->n; i++) {
-        d[i] = HUGE_VAL;
-        for (q = 0; q < k; q++) {
-            if (sources[q] == i) d[i] = 0;
-            if (g->component[i] >= 0 && g->component[sources[q]] == g->component[i]) d[i] = fmin(d[i], fabs(phi[i] - phi[sources[q]]));
-        }
-    }
+    geo_dense_from(g->A, u, v, phi, g->component, sources, k, s->n, d);
     free(u);
     free(phi);
+    free(v);
 }
 
 /* ---- short forms ---- */

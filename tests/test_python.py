@@ -321,6 +321,12 @@ class Python(unittest.TestCase):
         d = hd.Geodesic(np.stack([x, y, 0 * x], -1).reshape(-1, 3), tri).distance([0])
         self.assertEqual(d[0], 0)
         self.assertLess(abs(d - np.hypot(x, y).ravel()).max(), 1.5)
+        at = np.arange(400).reshape(20, 20)
+        quads = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], -1).reshape(-1, 4)
+        for faces, options in ((quads.tolist(), {}), (quads, {"border": "HD_GEODESIC_BORDER_MEAN", "t_in_h2": 4}), (None, {})):
+            d = hd.Geodesic(np.stack([x, y, 0 * x], -1).reshape(-1, 3), faces, **options).distance([0])
+            self.assertEqual(d[0], 0)
+            self.assertLess(abs(d - np.hypot(x, y).ravel()).mean(), 1)
 
     def test_errors(self):
         xyz, tri, _ = bumpy()

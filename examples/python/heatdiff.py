@@ -334,14 +334,23 @@ class Heat:
 
 
 class Geodesic:
-    """Distances along a triangle mesh by the heat method."""
+    """Distances along a surface by the heat method: of triangles (an array of three columns), of polygons (a list of
+    lists), or of points without faces."""
 
-    def __init__(self, xyz, tri, **options):
-        xyz, tri = _doubles(xyz), _ints(tri)
+    def __init__(self, xyz, faces=None, **options):
+        xyz = _doubles(xyz)
         self.n, self._free, self._as_parameter_ = len(xyz), _lib.hd_geodesic_free, ctypes.c_void_p()
         self._options = _options("hd_geodesic_opts", options)
-        _call("hd_geodesic_create", ctypes.byref(self._as_parameter_), _at(xyz), len(xyz), _at(tri), len(tri),
-              ctypes.byref(self._options))
+        head, tail = (ctypes.byref(self._as_parameter_), _at(xyz), len(xyz)), (ctypes.byref(self._options),)
+        if faces is None:
+            _call("hd_geodesic_create_points", *head, None, None, *tail)
+        elif isinstance(faces, np.ndarray) and faces.ndim == 2 and faces.shape[1] == 3:
+            tri = _ints(faces)
+            _call("hd_geodesic_create", *head, _at(tri), len(tri), *tail)
+        else:
+            ptr = np.concatenate([[0], np.cumsum([len(f) for f in faces])]).astype(np.int64)
+            idx = _ints(np.concatenate(faces))
+            _call("hd_geodesic_create_polygons", *head, _at(ptr), _at(idx), len(faces), *tail)
 
     def __del__(self):
         if getattr(self, "_as_parameter_", None):
