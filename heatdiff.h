@@ -21711,9 +21711,9 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
  * the unmodified ones the square root. What is measured grows with a power between them. Where edges have
  * weights of the wrong sign the factors are poor.
  * Constants were fitted to meshes of 2K to 10K vertices with t from 0.1 h^2 to 1e5 h^2: balls, tori, grids
- * with and without jitter, strips, unevenly sampled ones, noise, thin triangles made Delaunay, points. There
- * the steps of Lanczos are 0.6 to 2.8 times the model's, and those of COCG 0.4 to 2.5, for fair triangles 0.6
- * to 1.6 times. Thin triangles whose obtuse angles are left take up to a hundred times more. */
+ * with jitter, strips, unevenly sampled ones, noise, thin triangles made Delaunay, points. There the model
+ * has 0.6 to 2.8 times the steps that Lanczos takes, and 0.4 to 2.8 times those of COCG; 0.6 to 1.7 times
+ * where triangles are fair. Thin triangles whose obtuse angles are left take up to a hundred times more. */
 #define HDI_LANCZOS_GROWTH 3.3
 #define HDI_LANCZOS_LOWEST 0.22
 #define HDI_LANCZOS_LEAST 3
@@ -22005,7 +22005,7 @@ typedef struct hdi_cost {
 #define HDI_ENTRY_PACK 12e-9
 #define HDI_RATE_REAL 25e9
 #define HDI_RATE_SWEEP 15e9
-#define HDI_SWEEP_SHARED 2
+#define HDI_KRYLOV_SHARED 2.5
 #define HDI_ROW_ANALYSIS 0.8e-6
 #define HDI_FRESH_BYTE 0.2e-9
 
@@ -22093,6 +22093,15 @@ static double hdi_krylov_steps(double ratio, int goes_on) {
     return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
 }
 
+/* The share of the steps that a single late time takes, of which few eigenvalues are left: 25 steps and 12
+ * where t times the smallest eigenvalue is 1 and 14, measured at 2.5K and 10K vertices. */
+#define HDI_STEPS_LATE 0.08
+
+static double hdi_krylov_late(const hdi_heat_call *h) {
+    if (h->n_times > 1) return 1;
+    return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
+}
+
 /* The number of windows of equal ratio that costs least. */
 static hdi_windows hdi_krylov_windows(hdi_fill f, double n, double span) {
     const double factor = f.flops / HDI_RATE_REAL, step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * n;
@@ -22124,14 +22133,15 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0];
     const hdi_windows w = hdi_krylov_windows(f, n, span);
+    const double steps = k * w.steps * hdi_krylov_late(h), shared = k > 3 ? HDI_KRYLOV_SHARED : 1;
     const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
     const double factor =
         packs * (16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz) + (poles % 4 == 1 ? real : 0);
     hdi_cost c;
     hdi_cost_iterative(h, poles, &c);
     c.krylov = f.analysis + w.n * f.flops / HDI_RATE_REAL +
-               k * w.steps * (16 * f.nnz + 100 * n) / (HDI_RATE_SWEEP * (k > 3 ? HDI_SWEEP_SHARED : 1)) +
-               k * h->n_times * w.steps / w.n * 8 * n / HDI_RATE_SWEEP;
+               steps * (16 * f.nnz + 100 * n) / (HDI_RATE_SWEEP * shared) +
+               h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
     if (h->n_times == 1 && heat->elim.shifted.ready &&
         heat->elim.shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max)) c.krylov -= real;
     c.factors = hdi_heat_at_hand(h) ? 0 : f.analysis + h->n_times * factor;
