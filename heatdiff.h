@@ -804,7 +804,8 @@ typedef enum hd_query {
     HD_QUERY_DISTANCE,            /* classical */
     HD_QUERY_DISTANCE_WEIGHTED,
     HD_QUERY_DISTANCE_COMMUTE,
-    HD_QUERY_DISTANCE_BIHARMONIC
+    HD_QUERY_DISTANCE_BIHARMONIC,
+    HD_QUERY_SPECTRUM             /* hd_spectrum_create: eigenpairs; the plan's method is not looked at */
 } hd_query;
 
 /* What a query takes by one method. */
@@ -812,8 +813,8 @@ typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
     double flops;               /* real floating-point operations, of factorisations, inversions and solves */
-    /* By a model of one quiet core: within a factor of about two for factorisations. Iterations with poles on
-     * well-shaped meshes take less, down to a tenth. */
+    /* By a model of one quiet core, within a factor of about two. Iterations may take three times as long,
+     * and with poles on thin triangles whose obtuse angles are left a hundred times. */
     double seconds;
     double bytes;               /* at the peak, beyond what the context has in use now */
     /* The same if poles of degree 14 take over: for demanding fields, and where slivers or the time make the
@@ -1613,7 +1614,7 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
                                             size_t ldd, hd_error *err);
 /* What a query would take, without running it: the method, floating-point operations, bytes and seconds, by
  * that method and by the others.
- * t        [n_times] as in the query; commute and biharmonic: n_times may be 0
+ * t        [n_times] as in the query; commute, biharmonic and spectrum: n_times may be 0
  * k        see hd_query
  * estimate if the memory does not suffice, cost[HD_METHOD_AUTO].fits is 0. That is no error
  * Bytes of the direct method are sums of the arrays that the query will allocate: an upper bound, by a few
@@ -22694,6 +22695,17 @@ static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
     memset(x, 0, sizeof *x);
 }
 
+enum { HDI_STEPS_OCTAVES = 40 };
+
+/* Measures of the pair that the steps of iterations depend on, in units of the scaled pair. */
+typedef struct hdi_steps_scales {
+    double lowest;       /* about the smallest eigenvalue that is not zero */
+    double local;        /* L's diagonal over the masses, a mean of that: about 4 over squared edge lengths */
+    double obtuse;       /* what L has above zero beside its diagonal, relative to it, mean of the rows */
+    /* whose Gershgorin circles end between lambda_max 2^-(k+1) and lambda_max 2^-k */
+    int32_t rows[HDI_STEPS_OCTAVES];
+} hdi_steps_scales;
+
 struct hd_heat {
     hd_context *ctx;
     const hd_laplacian *source;  /* the caller's */
@@ -22722,6 +22734,7 @@ struct hd_heat {
     hdi_lane *lane;              /* [n_lanes] work arrays, kept from call to call; HDI_LANES at most */
     int32_t n_lanes;
     double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
+    hdi_steps_scales scales;
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
     /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
     double drift;
@@ -23009,23 +23022,166 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     return e->status;
 }
 
-/* Steps of Lanczos for the exponential, and how many are worth their while. Tuned on meshes of 1K to 1M
- * vertices. */
-#define HDI_LANCZOS_WORTH 400
+/* ---- what iterations take ---- */
+/* Steps of Lanczos for the exponential. A region of the spectrum that reaches up to lambda takes about 3
+ * sqrt(t lambda) steps for nine digits (Hochbruck, Lubich 1997), fewer for times beyond that of the smallest
+ * eigenvalue. The few eigenvalues above it, of small or thin triangles, are found one by one, a step each
+ * (A. Jennings, Influence of the eigenvalue spectrum on the convergence rate of the conjugate gradient
+ * method, 1977); the least of all such divisions counts.
+ * Steps of COCG with the modified factors: Gustafsson's 1978 bound has the fourth root of t lambda, that of
+ * the unmodified ones the square root. What is measured grows with a power between them. Where edges have
+ * weights of the wrong sign the factors are poor.
+ * Constants were fitted to meshes of 2K to 10K vertices with t from 0.1 h^2 to 1e5 h^2: balls, tori, grids
+ * with jitter, strips, unevenly sampled ones, noise, thin triangles made Delaunay, points. There the model
+ * has 0.6 to 2.8 times the steps that Lanczos takes, and 0.4 to 2.8 times those of COCG; 0.6 to 1.7 times
+ * where triangles are fair. Thin triangles whose obtuse angles are left take up to a hundred times more. */
+#define HDI_LANCZOS_GROWTH 3.3
+#define HDI_LANCZOS_LOWEST 0.22
+#define HDI_LANCZOS_LEAST 3
+#define HDI_COCG_GROWTH 2.4
+#define HDI_COCG_POWER 0.43
+#define HDI_COCG_LOWEST 1.7
+#define HDI_COCG_FULL_B 2          /* more steps where B is full */
+#define HDI_COCG_WIDE 0.65         /* rows of more than seven entries leave less out */
+#define HDI_COCG_OBTUSE 80
+#define HDI_STEPS_DIGITS 9         /* of tol in those runs */
 
-static double hdi_lanczos_steps(const hd_heat *heat, double t) {
-    return 1.2 * sqrt(t * heat->lambda_max) + 10;
+/* The smallest eigenvalue that is not zero, about: of a string as long as the shape or, without coordinates,
+ * of a sphere of its area. */
+static double hdi_steps_lowest(const hd_laplacian *lap) {
+    double extent = 0, mass = 0, lowest;
+    int32_t i, c;
+    for (i = 0; i < lap->n_active; i++) mass += lap->mass[i];
+    for (c = 0; c < 3 && lap->xyz; c++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (i = 0; i < lap->n_active; i++) {
+            low = hdi_min(low, lap->xyz[3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, c)]);
+            high = hdi_max(high, lap->xyz[3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, c)]);
+        }
+        extent = hdi_max(extent, high - low);
+    }
+    lowest = lap->xyz ? 9.87 / (extent * extent) : 25.1 * lap->n_components / mass;
+    return hdi_finite(lowest) ? hdi_max(0, lowest) : 0;
 }
 
-/* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and its steps are
- * few. A step reads L once, streams about ten vectors, and stores one. Through the poles a step reads five
- * times as much, in complex numbers. */
+/* Fills the scales; heat->lambda_max is there. */
+static void hdi_steps_measure(hd_heat *heat) {
+    const hd_laplacian *lap = heat->source;
+    const double top = heat->lambda_max * heat->scale * hdi_max(lap->b_ratio, 1e-12), n = lap->n_active;
+    hdi_steps_scales *s = &heat->scales;
+    int32_t i;
+    int64_t p;
+    memset(s, 0, sizeof *s);
+    for (i = 0; i < lap->n_active; i++) {
+        double diag = 0, sum = 0, positive = 0;
+        int octave = HDI_STEPS_OCTAVES;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            sum += fabs(lap->L.val[p]);
+            if (lap->L.col[p] == i) diag = lap->L.val[p];
+            else positive += hdi_max(0, lap->L.val[p]);
+        }
+        if (diag > 0) {
+            const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
+            s->local += sqrt(sqrt(diag / mass)) / n;
+            s->obtuse += hdi_min(1, positive / diag) / n;
+            frexp(top / (sum / lap->b_diag[i]), &octave);
+        }
+        s->rows[hdi_low32(hdi_high32(octave - 1, 0), HDI_STEPS_OCTAVES - 1)]++;
+    }
+    s->local = s->local * s->local * s->local * s->local / heat->scale;
+    s->lowest = hdi_steps_lowest(lap) / heat->scale;
+}
+
+/* Digits asked for, relative to those of the runs that the constants are fitted to. */
+static double hdi_steps_digits(const hd_heat *heat) {
+    return hdi_max(0.1, -log10(heat->opts.tol) / HDI_STEPS_DIGITS);
+}
+
+static double hdi_lanczos_steps(const hd_heat *heat, double t) {
+    const hdi_steps_scales *s = &heat->scales;
+    const double bounded = hdi_steps_digits(heat) / (1 / hdi_max(t, 1e-300) + HDI_LANCZOS_LOWEST * s->lowest);
+    double lambda = heat->lambda_max, above = 0, least = HUGE_VAL;
+    int k;
+    for (k = 0; k < HDI_STEPS_OCTAVES; k++, lambda /= 2) {
+        least = hdi_min(least, HDI_LANCZOS_GROWTH * sqrt(bounded * lambda) + above);
+        above += s->rows[k];
+    }
+    return HDI_LANCZOS_LEAST + hdi_min(least, HDI_CAST(double, heat->source->n_active));
+}
+
+/* Of all poles together. Solutions at hand give a good start, so that more poles do not take as many times
+ * more steps. */
+static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
+    static const double precond[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
+    const hdi_steps_scales *s = &heat->scales;
+    const hd_laplacian *lap = heat->source;
+    const double wide = hdi_max(1, HDI_CAST(double, lap->L.nnz) / (7.0 * lap->n_active));
+    const double bounded = 1 / (1 / hdi_max(t, 1e-300) + HDI_COCG_LOWEST * s->lowest);
+    double one = HDI_COCG_GROWTH * pow(bounded * s->local / pow(wide, HDI_COCG_WIDE), HDI_COCG_POWER);
+    one += 1 + (lap->B ? HDI_COCG_FULL_B : 0);
+    one *= exp(HDI_COCG_OBTUSE * s->obtuse * s->obtuse) * hdi_steps_digits(heat);
+    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : precond[heat->opts.precond];
+    return hdi_min(one * sqrt(5.0 * poles), HDI_CAST(double, heat->opts.max_iterations) * poles);
+}
+
+/* Seconds of one quiet core for each non-zero and six times each row: a step of Lanczos, and of conjugate
+ * gradients for B; of COCG with factors and without. Those per step squared that looks at the bound cost. For
+ * each non-zero and each non-zero times those of a row: factors of a pole. For each row: the copy of the
+ * pair. Measured on meshes of 2.5K to 1M vertices. */
+#define HDI_STEP_LANCZOS 0.9e-9
+#define HDI_LOOK_LANCZOS 0.4e-6
+#define HDI_STEP_MASS 1e-9
+#define HDI_STEP_COCG 1.7e-9
+#define HDI_STEP_PLAIN 1e-9
+#define HDI_MAKE_PRECOND 20e-9
+#define HDI_MAKE_WIDE 0.75e-9
+#define HDI_ROW_ITERATIVE 0.4e-6
+
+/* Steps, flops and seconds of k items. */
+typedef struct hdi_work { double steps, flops, seconds; } hdi_work;
+
+/* A full B is solved with in every step, to a residual of HDI_MASS_STOP. The ratio of the eigenvalues of B
+ * relative to its diagonal is taken to be 2/b_ratio. */
+static hdi_work hdi_lanczos_work(const hd_heat *heat, double t, double k) {
+    const hd_laplacian *lap = heat->source;
+    const double nnz = HDI_CAST(double, lap->L.nnz), n = lap->n_active, entries = nnz + 6 * n;
+    const double root = sqrt(2 / hdi_max(lap->b_ratio, 1e-12)), rate = log((root + 1) / (root - 1));
+    const double mass = lap->B ? hdi_min(-0.5 * log(HDI_MASS_STOP) / rate, HDI_MASS_STEPS) : 0;
+    hdi_work w;
+    w.steps = hdi_lanczos_steps(heat, t);
+    w.flops = k * w.steps * (2 * nnz + 12 * n + mass * (2 * nnz + 12 * n));
+    w.seconds = k * w.steps * (entries * (HDI_STEP_LANCZOS + mass * HDI_STEP_MASS) +
+                               w.steps * HDI_LOOK_LANCZOS);
+    return w;
+}
+
+static hdi_work hdi_cocg_work(const hd_heat *heat, double t, int32_t poles, double k) {
+    const hd_laplacian *lap = heat->source;
+    const double nnz = HDI_CAST(double, lap->L.nnz), n = lap->n_active, full = lap->B ? 1.2 : 1;
+    const int made = heat->fam.filled && heat->fam.t == t;
+    const int plain = heat->opts.precond == HD_PRECOND_NONE || heat->opts.precond == HD_PRECOND_JACOBI;
+    hdi_work w;
+    w.steps = hdi_cocg_steps(heat, t, poles);
+    w.flops = k * w.steps * ((lap->B ? 8 : 4) * nnz + (plain ? 0 : 8 * nnz) + 40 * n);
+    w.seconds = k * w.steps * (nnz + 6 * n) * full * (plain ? HDI_STEP_PLAIN : HDI_STEP_COCG);
+    if (plain || made) return w;
+    w.flops += poles * 2 * nnz * nnz / n;
+    w.seconds += poles * nnz * (HDI_MAKE_PRECOND + HDI_MAKE_WIDE * nnz / n);
+    return w;
+}
+
+/* Poles that the default of columns has. */
+enum { HDI_POLES_EXPECTED = 5 };
+
+/* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and by the model it
+ * takes less time for one item. */
 static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
     const hd_heat_opts *o = &heat->opts;
     if (o->solver) return o->solver;
     if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B)
         return HD_SOLVER_COCG;
-    return hdi_lanczos_steps(heat, t) <= HDI_LANCZOS_WORTH ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
+    return hdi_lanczos_work(heat, t, 1).seconds <= hdi_cocg_work(heat, t, HDI_POLES_EXPECTED, 1).seconds
+           ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
 /* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
@@ -23115,6 +23271,7 @@ static void hdi_heat_measure_pair(hd_heat *heat) {
     heat->version = lap->version;
     heat->scale = hdi_heat_scale(lap);
     heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
+    hdi_steps_measure(heat);
     heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
 }
 
@@ -23175,22 +23332,20 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 /* Seconds that the methods would take at rates one core has been seen to reach, and the bytes they would
  * hold. factors: the part of direct that makes factors, which later calls at the same t do without. */
 typedef struct hdi_cost {
-    double iterative, direct, krylov, factors, direct_bytes, krylov_bytes;
+    double iterative, iterative_flops, direct, krylov, factors, direct_bytes, krylov_bytes;
 } hdi_cost;
 
 /* Flops per second of packs, with the seconds per non-zero that small fronts cost besides, and of real
- * fronts; bytes per second of sweeps; seconds per non-zero of a step of Lanczos, with what the looks at its
- * bound cost, per step squared, and of COCG; seconds per row of an ordering with its analysis, and of a copy
- * to iterate on. Measured on meshes of 36K to 1M vertices. */
+ * fronts; bytes per second of sweeps, and how many times faster they are where right-hand sides of Lanczos
+ * share them; seconds per row of an ordering with its analysis, and per byte of fresh memory, which the
+ * system clears. Measured on meshes of 10K to 1M vertices. */
 #define HDI_RATE_PACK 70e9
 #define HDI_ENTRY_PACK 12e-9
 #define HDI_RATE_REAL 25e9
 #define HDI_RATE_SWEEP 15e9
-#define HDI_STEP_LANCZOS 1.6e-9
-#define HDI_LOOK_LANCZOS 0.4e-6
-#define HDI_STEP_COCG 4e-9
+#define HDI_KRYLOV_SHARED 2.5
 #define HDI_ROW_ANALYSIS 0.8e-6
-#define HDI_ROW_ITERATIVE 0.4e-6
+#define HDI_FRESH_BYTE 0.2e-9
 
 /* What of the plan is known of factors, or guessed before the analysis. */
 typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hdi_fill;
@@ -23222,25 +23377,20 @@ static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
     return h->rate && solver == HD_SOLVER_LANCZOS ? HD_SOLVER_COCG : solver;
 }
 
-/* Iterating. The steps of COCG grow with sqrt(t)/h up to a limit; a full B costs about a third more. */
-static double hdi_cost_iterative(const hdi_heat_call *h, int32_t poles) {
+/* Iterating, the times one by one. */
+static void hdi_cost_iterative(const hdi_heat_call *h, int32_t poles, hdi_cost *c) {
     const hd_heat *heat = h->heat;
-    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz), k = h->ask.k;
-    const double hh = heat->source->h * heat->source->h * heat->scale;
-    double sum = heat->weight ? 0 : HDI_ROW_ITERATIVE * n, one;
     int32_t q;
+    c->iterative = heat->weight ? 0 : HDI_ROW_ITERATIVE * heat->source->n_active;
+    c->iterative_flops = 0;
     for (q = 0; q < h->n_times; q++) {
-        const double t = h->times[q], tau = hh > 0 ? t / hh : t * heat->lambda_max / 10;
-        if (hdi_heat_solver(h, t) == HD_SOLVER_LANCZOS) {
-            one = hdi_lanczos_steps(heat, t);
-            one *= (entries + 6 * n) * HDI_STEP_LANCZOS + one * HDI_LOOK_LANCZOS;
-        } else {
-            one = poles * (8 + hdi_min(14 * sqrt(tau), 400)) * 0.6 * (entries + 6 * n) *
-                  (heat->source->B ? 1.3 : 1) * HDI_STEP_COCG;
-        }
-        sum += k * one;
+        const double t = h->times[q];
+        const hdi_work w = hdi_heat_solver(h, t) == HD_SOLVER_LANCZOS
+                           ? hdi_lanczos_work(heat, t, h->ask.k) : hdi_cocg_work(heat, t, poles, h->ask.k);
+        c->iterative += w.seconds;
+        c->iterative_flops += w.flops;
     }
-    return sum;
+    if (!HDI_HAS_ITERATIVE) c->iterative = HUGE_VAL;
 }
 
 /* A shift for the times [first, last] of a window that begins with fields, or with answers at `from`. A
@@ -23290,6 +23440,15 @@ static double hdi_krylov_steps(double ratio, int goes_on) {
     return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
 }
 
+/* The share of the steps that a single late time takes, of which few eigenvalues are left: 25 steps and 12
+ * where t times the smallest eigenvalue is 1 and 14, measured at 2.5K and 10K vertices. */
+#define HDI_STEPS_LATE 0.08
+
+static double hdi_krylov_late(const hdi_heat_call *h) {
+    if (h->n_times > 1) return 1;
+    return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
+}
+
 /* The number of windows of equal ratio that costs least. */
 static hdi_windows hdi_krylov_windows(hdi_fill f, double n, double span) {
     const double factor = f.flops / HDI_RATE_REAL, step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * n;
@@ -23315,19 +23474,21 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat_opts *o = &heat->opts;
     const hdi_fill f = hdi_heat_fill(heat);
     const double n = heat->source->n_active, k = h->ask.k;
-    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2 : 5;
+    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2
+                          : HDI_POLES_EXPECTED;
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4;
     const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
     const double span = h->times[h->n_times - 1] / h->times[0];
     const hdi_windows w = hdi_krylov_windows(f, n, span);
+    const double steps = k * w.steps * hdi_krylov_late(h), shared = k > 3 ? HDI_KRYLOV_SHARED : 1;
     const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
     const double factor =
         packs * (16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz) + (poles % 4 == 1 ? real : 0);
     hdi_cost c;
-    c.iterative = HDI_HAS_ITERATIVE ? hdi_cost_iterative(h, poles) : HUGE_VAL;
+    hdi_cost_iterative(h, poles, &c);
     c.krylov = f.analysis + w.n * f.flops / HDI_RATE_REAL +
-               k * w.steps * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP +
-               k * h->n_times * w.steps / w.n * 8 * n / HDI_RATE_SWEEP;
+               steps * (16 * f.nnz + 100 * n) / (HDI_RATE_SWEEP * shared) +
+               h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
     if (h->n_times == 1 && heat->elim.shifted.ready &&
         heat->elim.shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max)) c.krylov -= real;
     c.factors = hdi_heat_at_hand(h) ? 0 : f.analysis + h->n_times * factor;
@@ -23339,6 +23500,9 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     if (k <= 3 && h->n_times > 1) c.krylov_bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
     if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
     if (heat->silan) c.krylov_bytes = 0;
+    c.krylov += HDI_FRESH_BYTE * c.krylov_bytes;
+    c.factors += HDI_FRESH_BYTE * c.direct_bytes;
+    c.direct += HDI_FRESH_BYTE * c.direct_bytes;
     if (!HDI_HAS_POLE_FACTORS) c.direct = c.direct_bytes = HUGE_VAL;
     return c;
 }
@@ -27941,15 +28105,15 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
     x->to->method = method = h->method;
     x->to->reason = h->rep->reason;
     if (hdi_estimate_set(x, &set) < 0) return h->e->status;
-    poles = heat->opts.rational || heat->opts.degree ? set.n_poles : 5;
-    hdi_cost_add(c + HD_METHOD_ITERATIVE, 8 * model.iterative / HDI_STEP_COCG, model.iterative,
+    poles = heat->opts.rational || heat->opts.degree ? set.n_poles : HDI_POLES_EXPECTED;
+    hdi_cost_add(c + HD_METHOD_ITERATIVE, model.iterative_flops, model.iterative,
                  held + hdi_bytes_iterative(heat, h->t, x->k, poles));
     if (!heat->iterations_asked || method != HD_METHOD_ITERATIVE) {
         hd_cost *direct = c + HD_METHOD_DIRECT;
         hdi_cost_direct(heat, hdi_set_packs(&set), hdi_set_lone(&set), HDI_AFTER_BOUND, x->k, direct);
         direct->flops *= n_times;
-        direct->seconds = hdi_max(direct->seconds * n_times, model.direct);
         direct->bytes = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
+        direct->seconds = hdi_max(direct->seconds * n_times + HDI_FRESH_BYTE * direct->bytes, model.direct);
         if (hdi_estimate_open(x) && hdi_rational_get(&set, HD_POLES_UNIFORM, HDI_RAT_UNIFORM_MAX, h->e) < 0)
             return h->e->status;
         if (x->query == HD_QUERY_PAIRS && !heat->poles_asked && !heat->exacting &&
@@ -28050,17 +28214,22 @@ static int32_t hdi_estimate_pairs(const hd_heat *heat, double t) {
     return hdi_modes_count(heat, hdi_modes_expected(heat, hdi_modes_depth(heat) / t));
 }
 
-/* Finding so many eigenpairs, and distances from k sources by them. */
-static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c) {
-    const hd_heat *heat = x->h->heat;
+/* Finding so many eigenpairs. */
+static void hdi_estimate_pairs_cost(const hd_heat *heat, int32_t count, hd_cost *c) {
     const hdi_fill f = hdi_heat_fill(heat);
     const double n = heat->source->n_active, runs = 2 + ceil(count / HDI_CAST(double, HDI_SPEC_HALF));
     const double solves = 2.5 * count + HDI_CAST(double, HDI_SPEC_HALF), pairs = count + HDI_MODES_BEGIN;
     const double seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * pairs;
     const double flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
-    const double need = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
-    if (heat->modes.s.value && heat->modes.s.count >= count) hdi_cost_add(c, 0, 0, 16 * (n + count));
-    else hdi_cost_add(c, flops, seconds, need);
+    hdi_cost_add(c, flops, seconds, hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL);
+}
+
+/* Finding so many eigenpairs, and distances from k sources by them. */
+static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c) {
+    const hd_heat *heat = x->h->heat;
+    const double n = heat->source->n_active;
+    if (!heat->modes.s.value || heat->modes.s.count < count) hdi_estimate_pairs_cost(heat, count, c);
+    else hdi_cost_add(c, 0, 0, 16 * (n + count));
     c->flops += 6 * n * count * x->k;
 }
 
@@ -28142,6 +28311,7 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
         *c = late;
         x->to->reason = HDI_MODES_REASON;
     } else if (windows > 0 && (hdi_estimate_windows(x, windows, tol, c) < 0 || c->bytes <= room)) {
+        c->seconds += HDI_FRESH_BYTE * c->bytes;
         hdi_estimate_join(c, &late, held);
         return h->e->status;
     }
@@ -28164,7 +28334,9 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
                                            (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
         c->bytes_most = hdi_max(c->bytes_most, hdi_max(most.bytes, hdi_estimate_help(x, t)));
     }
-    if (early > 0) hdi_estimate_join(c, &late, held);
+    if (early == 0) return h->e->status;
+    c->seconds += HDI_FRESH_BYTE * c->bytes;
+    hdi_estimate_join(c, &late, held);
     return h->e->status;
 }
 
@@ -28173,13 +28345,18 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
     const int timeless = x->query >= HD_QUERY_DISTANCE_COMMUTE;
+    const int32_t pairs = hdi_low32(x->k, heat->source->n_active);
     const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
     const double columns = HDI_CAST(double, heat->source->n) * x->k;
     hd_estimate *to = x->to;
     if (!timeless && hdi_heat_sort_times(h, distance ? 2 : 1) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
     if (!timeless) h->t = h->times[h->n_times - 1];
-    if (!timeless && h->t * heat->lambda_max < HDI_STILL && x->query <= HD_QUERY_PAIRS) {
+    if (x->query == HD_QUERY_SPECTRUM) {
+        to->method = HD_METHOD_DIRECT;
+        to->reason = "eigenpairs take real factors";
+        if (hdi_estimate_analyse(h) >= 0) hdi_estimate_pairs_cost(heat, pairs, to->cost + to->method);
+    } else if (!timeless && h->t * heat->lambda_max < HDI_STILL && x->query <= HD_QUERY_PAIRS) {
         to->method = heat->opts.method == HD_METHOD_AUTO ? HD_METHOD_ITERATIVE : heat->opts.method;
         to->reason = "t = 0";
         hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
@@ -31357,7 +31534,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
-    const int timeless = query == HD_QUERY_DISTANCE_COMMUTE || query == HD_QUERY_DISTANCE_BIHARMONIC;
+    const int timeless = query >= HD_QUERY_DISTANCE_COMMUTE;
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
     hdi_heat_call h;
     hd_estimate found;
@@ -31370,10 +31547,11 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
     x.k = query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? hdi_high32(k, 1) : 0;
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (query < HD_QUERY_FIELDS || query > HD_QUERY_DISTANCE_BIHARMONIC)
+    else if (query < HD_QUERY_FIELDS || query > HD_QUERY_SPECTRUM)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "estimate: unknown query");
     else if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
-    else if (query > HD_QUERY_PAIRS) (void)hdi_direct_only(&h);
+    else if (query == HD_QUERY_SPECTRUM && !HDI_HAS_DIRECT) (void)HDI_LEFT_OUT(h.e, DIRECT, "factorisations");
+    else if (query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM) (void)hdi_direct_only(&h);
     h.ask.k = x.k;
     if (h.e->status >= 0 && !timeless) (void)hdi_times_check(&h, n_times, t, query > HD_QUERY_PAIRS);
     if (h.e->status >= 0) (void)hdi_estimate_run(&x);

@@ -1211,6 +1211,10 @@ class Methods(Case):
                     self.assertRegex(text.stderr.decode(), r"dry run: method \w+ \(.+\)\n(.|\n)*flops(.|\n)*MB")
         g = self.dry("geodesic", self.large, "--source", "0")
         self.assertTrue(g["analysed"] and g["estimate"]["flops"] > 0 and g["estimate"]["fits"])
+        for more in (["-k", "20"], ["-k", "20", "--below", "30"], ["--below", "30"]):
+            s, r = self.dry("spectrum", self.large, *more), self.report("spectrum", self.large, *more)
+            self.assertTrue(s["analysed"] and s["estimate"]["flops"] > 0 and s["estimate"]["fits"] and list(s["methods"]) == ["direct"])
+            self.assertTrue(0.9 * r["peak_bytes"] <= s["estimate"]["bytes"] <= 1.6 * r["peak_bytes"], (more, s["estimate"], r["peak_bytes"]))
         self.assertIn("--dry-run", self.bad(2, "info", self.large, "--dry-run"))
         self.assertFalse(os.path.exists(self.path("never.npy")))
 
@@ -1240,6 +1244,23 @@ class Methods(Case):
             self.assertTrue(abs(way - other) <= 0.02 * other, (option, way, other))
         self.assertFalse(os.path.exists(out))
         self.good(*run, "--tufted", "--memory-limit", limit, "-o", out)
+        # other methods, and eigenpairs: failing and --dry-run name the same ways
+        for run, ways in ((["kernel", points, "--source", 0, "--t", "10h2", "--method", "krylov"], ["--method iterative", "--tufted", "--weight-cut 1e-4"]),
+                          (["kernel", points, "--source", 0, "--t", "10h2", "--method", "iterative", "--solver", "cocg"],
+                           ["--solver lanczos", "--tufted", "--weight-cut 1e-4"]),
+                          (["spectrum", points, "-k", "40"], ["--tufted", "--weight-cut 1e-4", "-k 10"])):
+            with self.subTest(run=run[0], method=run[-1]):
+                d = self.dry(*run)
+                limit = d["bytes_in_use"] + 0.3 * (d["estimate"]["bytes"] - d["bytes_in_use"])
+                d = self.dry(*run, "--memory-limit", int(limit))
+                self.assertFalse(d["estimate"]["fits"])
+                self.assertEqual(sorted(d["ways_out"]), ways)
+                text = self.bad(1, *run, "--memory-limit", int(limit), "-o", self.path("no.npy"))
+                for way in ways:
+                    self.assertIn(way + " needs ", text)
+        # not even the matrices
+        text = self.bad(1, "spectrum", points, "-k", "4", "--memory-limit", "2M", "-o", self.path("no.npy"))
+        self.assertRegex(text, r"matrices alone need at least [0-9.]+ MB, and 2.1 MB are allowed .*; --tufted and --weight-cut 1e-4 need less")
 
     def points_of(self, path):
         with open(path) as f:

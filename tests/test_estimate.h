@@ -228,6 +228,99 @@ static void est_bad(const hd_laplacian *lap) {
     hd_heat_free(heat);
 }
 
+/* Steps by the model over those taken, with this solver and preconditioner, for t from h^2 to 1000 h^2. */
+static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond precond, double least, double most, const char *what) {
+    static const double tau[] = {1, 10, 100, 1000};
+    double *u = DENSE_NEW(double, lap->n), model;
+    int q;
+    for (q = 0; q < 4; q++) {
+        hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
+        const double t = tau[q] * lap->h * lap->h;
+        hd_heat *heat;
+        hd_report rep;
+        o.solver = solver;
+        o.precond = precond;
+        heat = eng_create(lap, &o);
+        CHECK(eng_ok(heat_column(heat, t, lap->vertex[lap->n_active / 3], u, &rep), &rep, what));
+        model = solver == HD_SOLVER_LANCZOS ? hdi_lanczos_steps(heat, t * heat->scale) : hdi_cocg_steps(heat, t * heat->scale, rep.n_poles);
+        CHECK_MSG(model >= least * (double)rep.iterations && model <= most * (double)rep.iterations, "%s, t = %g h^2: %d steps, %.1f by the model", what,
+                  tau[q], (int)rep.iterations, model);
+        hd_heat_free(heat);
+    }
+    free(u);
+}
+
+/* The model of steps: fair triangles, points, other preconditioners, thin triangles made Delaunay, and a fine patch. */
+static void est_model(void) {
+    shape ball = shape_bumpy(4, 3), sheet = shape_grid(50, 50, 0.35), torus = shape_torus(100, 25, 1, 0.4);
+    hd_laplacian_opts o;
+    hd_laplacian *lap;
+    const shape *s[3];
+    int k, kind, i;
+    s[0] = &ball;
+    s[1] = &sheet;
+    s[2] = &torus;
+    for (k = 0; k < 3; k++) {
+        for (kind = 0; kind < 2; kind++) {
+            lap = test_laplacian(s[k], kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+            est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_AUTO, 0.6, 1.7, "cocg");
+            if (kind) est_steps(lap, HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 0.6, 1.9, "lanczos");
+            if (kind && k == 0) {
+                est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_JACOBI, 0.5, 2, "jacobi");
+                est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_SSOR, 0.5, 2, "ssor");
+                est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_ILDL, 0.5, 2, "ildl");
+            }
+            hd_laplacian_free(lap);
+        }
+    }
+    lap = NULL;
+    CHECK(hd_laplacian_points(&lap, ball.xyz, ball.n, NULL, NULL) >= 0);
+    est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_AUTO, 0.5, 2, "cocg, points");
+    est_steps(lap, HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 0.6, 1.7, "lanczos, points");
+    hd_laplacian_free(lap);
+    for (i = 0; i < sheet.n; i++) sheet.xyz[3 * i] *= 10;
+    memset(&o, 0, sizeof o);
+    o.kind = HD_LAPLACIAN_VORONOI_COT;
+    o.intrinsic_delaunay = 1;
+    lap = NULL;
+    CHECK(hd_laplacian_triangles(&lap, sheet.xyz, sheet.n, sheet.tri, sheet.n_tri, &o, NULL) >= 0);
+    est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_AUTO, 0.4, 2.5, "cocg, thin triangles");
+    hd_laplacian_free(lap);
+    shape_free(&ball);
+    shape_free(&sheet);
+    shape_free(&torus);
+}
+
+/* Eigenpairs: bytes against those of hd_spectrum_create, whatever the plan's method. */
+static void est_spectrum(const hd_laplacian *lap) {
+    static const int32_t counts[] = {1, 20, 150};
+    int q;
+    for (q = 0; q < 6; q++) {
+        const int32_t count = counts[q / 2];
+        hd_context plan, own;
+        hd_heat_opts o = eng_opts(q % 2 ? HD_METHOD_ITERATIVE : HD_METHOD_AUTO);
+        hd_spectrum_opts so;
+        hd_spectrum *s = NULL;
+        hd_estimate e;
+        hd_error err;
+        hd_heat *heat;
+        memset(&plan, 0, sizeof plan);
+        memset(&own, 0, sizeof own);
+        memset(&so, 0, sizeof so);
+        o.context = &plan;
+        heat = eng_create(lap, &o);
+        CHECK_MSG(hd_heat_estimate(heat, HD_QUERY_SPECTRUM, 0, NULL, count, &e, &err) == HD_OK, "%s", err.text);
+        CHECK(e.method == HD_METHOD_DIRECT && e.analysed && e.cost[0].possible && e.cost[0].fits && e.cost[0].seconds > 0 && !e.cost[1].possible);
+        so.count = count;
+        so.context = &own;
+        CHECK(hd_spectrum_create(&s, lap, &so, NULL) >= 0);
+        CHECK_MSG(e.bytes_in_use + e.cost[0].bytes >= 0.95 * (double)own.bytes_peak && e.bytes_in_use + e.cost[0].bytes <= 1.5 * (double)own.bytes_peak,
+                  "%d pairs: %.0f bytes, estimated %.0f", (int)count, (double)own.bytes_peak, e.bytes_in_use + e.cost[0].bytes);
+        hd_spectrum_free(s);
+        hd_heat_free(heat);
+    }
+}
+
 static void test_estimate(void) {
     static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_FEM};
     static const char *const names[4] = {"ball, fem", "ball, voronoi-cot", "sheet, fem", "points"};
@@ -242,8 +335,10 @@ static void test_estimate(void) {
         if (q < 2) est_methods(lap);
         if (q == 0) est_limits(lap);
         if (q == 0) est_bad(lap);
+        if (q == 0) est_spectrum(lap);
         hd_laplacian_free(lap);
     }
+    est_model();
     shape_free(&ball);
     shape_free(&sheet);
     shape_free(&points);

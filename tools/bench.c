@@ -4,6 +4,7 @@
              [MESH ...]
        bench parts [MESH ...]
        bench busy [--threads N] [--seconds S] [MESH ...]
+       bench tasks|estimate|choices [MESH ...]
 
    Build:  cc -O2 tools/bench.c -o bench -lm
    With the rivals (see bench_rivals.h; CMake does this if it finds them):
@@ -34,6 +35,10 @@
                   Errors: largest difference between both, relative to the largest entry
        eigen      Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU.
                   Slow: above 60000 rows only on request
+
+   tasks counts, without any clock, what threads could gain: work, critical path and parallel efficiency of a
+   factor and of its inversion. estimate compares what hd_heat_estimate says with what a run takes. choices
+   times all methods for columns and says how often the default is the fastest.
 
    How it is measured. Both sides start with the same two matrices in memory and use the same number of
    threads. After a warm-up they take turns, and the best run of each counts; only freeing is left out. A
@@ -2084,7 +2089,144 @@ static void busy_mesh(const settings *set, const char *name, const double *xyz, 
 }
 #endif
 
+/* ==== estimates and choices ==== */
+/* What hd_heat_estimate says against what a run takes: processor time on one thread, the less of two runs with
+ * new plans, or of one that takes long; bytes beyond what the plan held before. */
+
 typedef void (*mesh_job)(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri);
+
+enum { TRIAL_MOST = 100 };
+
+typedef struct trial { const char *name; hd_query query; hd_method method; int32_t k; } trial;
+
+static const trial trials[] = {
+    {"column, krylov", HD_QUERY_COLUMNS, HD_METHOD_KRYLOV, 1},
+    {"column, direct", HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 1},
+    {"column, iterative", HD_QUERY_COLUMNS, HD_METHOD_ITERATIVE, 1},
+    {"8 columns, krylov", HD_QUERY_COLUMNS, HD_METHOD_KRYLOV, 8},
+    {"100 columns, direct", HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 100},
+    {"diagonal", HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 0},
+    {"distance", HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1}};
+enum { TRIALS = sizeof trials / sizeof *trials };
+
+typedef struct trial_result {
+    hd_estimate expected;
+    hd_report report;
+    double seconds, bytes;
+} trial_result;
+
+/* U [n k] or [n]. The status of the run; HD_ERR_MEMORY_LIMIT if the estimate is above so many bytes (0: none). */
+static hd_status trial_once(const hd_laplacian *lap, const trial *x, double t, double most, double *U, trial_result *r) {
+    int32_t source[TRIAL_MOST], k;
+    hd_context ctx;
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    hd_status status;
+    clock_t start;
+    uint64_t before;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&o, 0, sizeof o);
+    ctx.n_threads = 1;
+    o.context = &ctx;
+    o.method = x->method;
+    for (k = 0; k < TRIAL_MOST; k++) source[k] = lap->vertex[(int64_t)k * lap->n_active / TRIAL_MOST];
+    start = clock();                             /* the analysis is part of the estimate, or of the run */
+    status = hd_heat_create(&heat, lap, &o, NULL);
+    before = ctx.bytes_in_use;
+    if (status >= 0) status = hd_heat_estimate(heat, x->query, 1, &t, x->k, &r->expected, NULL);
+    if (status >= 0 && most > 0 && r->expected.cost[0].bytes > most) status = HD_ERR_MEMORY_LIMIT;
+    if (status >= 0) {
+        r->expected.cost[0].bytes += (double)ctx.bytes_in_use - (double)before;
+        ctx.bytes_peak = ctx.bytes_in_use;
+        if (x->query == HD_QUERY_COLUMNS)
+            status = hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, x->k, source, U, 0, &r->report, NULL);
+        else if (x->query == HD_QUERY_DIAGONAL)
+            status = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, U, 0, &r->report, NULL);
+        else status = hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, x->k, source, U, 0, &r->report, NULL);
+    }
+    r->seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+    r->bytes = (double)ctx.bytes_peak - (double)before;
+    hd_heat_free(heat);
+    return status;
+}
+
+static hd_status trial_run(const hd_laplacian *lap, const trial *x, double t, double most, double *U, trial_result *r) {
+    hd_status status = trial_once(lap, x, t, most, U, r);
+    trial_result again;
+    if (status < 0 || r->seconds > 2) return status;
+    status = trial_once(lap, x, t, most, U, &again);
+    r->seconds = hdi_min(r->seconds, again.seconds);
+    return status;
+}
+
+static void estimate_mesh(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
+    hd_laplacian *lap = NULL;
+    double *U = (double *)malloc((size_t)n * TRIAL_MOST * sizeof *U);
+    trial_result r;
+    int k;
+    if (!U || hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, NULL) < 0) {
+        fprintf(stderr, "bench: %s: no Laplacian\n", name);
+        free(U);
+        return;
+    }
+    if (n < 20000) printf("| vertices | query, method | MB estimated | measured | ratio | s estimated | measured | ratio |\n"
+                          "|---|---|---|---|---|---|---|---|\n");
+    for (k = 0; k < TRIALS; k++) {
+        const hd_status status = trial_run(lap, trials + k, 100 * lap->h * lap->h, 9e9, U, &r);
+        const hd_cost *c = &r.expected.cost[0];
+        printf("| %d | %s | %.4g | ", (int)lap->n_active, trials[k].name, 1e-6 * c->bytes);
+        if (status < 0) printf("| | %.3g | | |\n", c->seconds);
+        else printf("%.4g | %.3f | %.3g | %.3g | %.2f |\n", 1e-6 * r.bytes, c->bytes / r.bytes, c->seconds, r.seconds,
+                    c->seconds / r.seconds);
+        fflush(stdout);
+    }
+    free(U);
+    hd_laplacian_free(lap);
+}
+
+/* Which method auto takes for columns, and how much longer it takes than the best one. */
+static void choices_mesh(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
+    static const double tau[] = {1, 10, 100, 1000};
+    static const int32_t ks[] = {1, 8, 50};
+    static const char *const methods[] = {"auto", "iterative", "direct", "krylov"};
+    double *U = (double *)malloc((size_t)n * TRIAL_MOST * sizeof *U), worst = 1, log_sum = 0;
+    int kind, i, q, m, cases = 0, right = 0;
+    for (kind = 0; kind < 3 && U; kind++) {
+        hd_laplacian *lap = NULL;
+        hd_laplacian_opts o;
+        hd_status status;
+        memset(&o, 0, sizeof o);
+        o.kind = kind == 0 ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_VORONOI_COT;
+        status = kind < 2 ? hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, NULL)
+                          : hd_laplacian_points(&lap, xyz, n, NULL, NULL);
+        for (i = 0; i < 12 && status >= 0; i++) {
+            const double t = tau[i / 3] * lap->h * lap->h;
+            double seconds[4], best = HUGE_VAL;
+            trial x = {"", HD_QUERY_COLUMNS, HD_METHOD_AUTO, ks[i % 3]};
+            trial_result r;
+            printf("%s %s, t = %g h^2, %d columns:", name, kind == 0 ? "fem" : kind == 1 ? "voronoi-cot" : "points", tau[i / 3],
+                   (int)x.k);
+            for (m = HD_METHOD_ITERATIVE; m <= HD_METHOD_KRYLOV; m++) {
+                x.method = (hd_method)m;
+                seconds[m] = trial_run(lap, &x, t, 9e9, U, &r) < 0 ? HUGE_VAL : r.seconds;
+                best = hdi_min(best, seconds[m]);
+                printf(" %s %.4f (%.4f),", methods[m], seconds[m], r.expected.cost[0].seconds);
+            }
+            x.method = HD_METHOD_AUTO;
+            q = trial_once(lap, &x, t, 1, U, &r) == HD_ERR_MEMORY_LIMIT ? (int)r.expected.method : 0;
+            printf(" auto %s %.2f\n", methods[q], seconds[q ? q : 1] / best);
+            fflush(stdout);
+            cases++;
+            right += seconds[q ? q : 1] <= 1.1 * best;
+            worst = hdi_max(worst, seconds[q ? q : 1] / best);
+            log_sum += log(seconds[q ? q : 1] / best);
+        }
+        hd_laplacian_free(lap);
+    }
+    printf("%s: %d of %d choices within 1.1 of the best, on average %.2f times its time, at most %.2f\n", name, right, cases,
+           exp(log_sum / (cases ? cases : 1)), worst);
+    free(U);
+}
 
 /* A mesh from a file, for a job (set NULL) or for the contests. */
 static int bench_file(const settings *set, mesh_job job, const char *path, const double *peak) {
@@ -2121,7 +2263,7 @@ static int usage(const char *what) {
     fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] "
                     "[--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
-                    "       bench tasks [MESH ...]\n"
+                    "       bench tasks|estimate|choices [MESH ...]\n"
                     "       bench busy [--threads N] [--seconds S] [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
                     "  --jobs LIST     of "
@@ -2224,16 +2366,23 @@ static void keep_memory(void) {
 #endif
 }
 
-/* A job that is no contest, for the meshes given or for two shapes. */
+/* A job that is no contest, for the meshes given or for shapes of its own. */
 static int bench_job(int argc, char **argv, mesh_job job) {
-    const int tasks = job == tasks_mesh;
     int i, fine = 1;
     for (i = 2; i < argc; i++) fine &= bench_file(NULL, job, argv[i], NULL);
-    if (argc == 2) {
-        bench_shape(NULL, job, "torus", tasks ? shape_torus(500, 300, 1, 0.4) : shape_torus(1000, 500, 1, 0.4), NULL);
+    if (argc > 2) return fine ? 0 : 1;
+    if (job == estimate_mesh || job == choices_mesh) {
+        for (i = job == choices_mesh ? 4 : 5; i <= (job == choices_mesh ? 6 : 8); i++)
+            bench_shape(NULL, job, "bumpy", shape_bumpy(i, 5), NULL);
+        if (job == choices_mesh) bench_shape(NULL, job, "grid", shape_grid(100, 100, 0.3), NULL);
+    } else if (job == tasks_mesh) {
+        bench_shape(NULL, job, "torus", shape_torus(500, 300, 1, 0.4), NULL);
         bench_shape(NULL, job, "bumpy", shape_bumpy(7, 1), NULL);
-        if (tasks) bench_shape(NULL, job, "torus", shape_torus(1250, 800, 1, 0.4), NULL);
-        if (tasks) bench_shape(NULL, job, "demo", shape_demo(1000000), NULL);
+        bench_shape(NULL, job, "torus", shape_torus(1250, 800, 1, 0.4), NULL);
+        bench_shape(NULL, job, "demo", shape_demo(1000000), NULL);
+    } else {
+        bench_shape(NULL, job, "torus", shape_torus(1000, 500, 1, 0.4), NULL);
+        bench_shape(NULL, job, "bumpy", shape_bumpy(7, 1), NULL);
     }
     return fine ? 0 : 1;
 }
@@ -2247,6 +2396,8 @@ int main(int argc, char **argv) {
         return bench_job(argc, argv, parts_mesh);
     }
     if (argc > 1 && !strcmp(argv[1], "tasks")) return bench_job(argc, argv, tasks_mesh);
+    if (argc > 1 && !strcmp(argv[1], "estimate")) return bench_job(argc, argv, estimate_mesh);
+    if (argc > 1 && !strcmp(argv[1], "choices")) return bench_job(argc, argv, choices_mesh);
     memset(&set, 0, sizeof set);
     set.jobs = (1 << JOBS) - 1;
     set.columns = 100;

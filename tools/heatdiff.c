@@ -1905,8 +1905,17 @@ static hd_status run_laplacian(run *r, hd_error *err)
     return status;
 }
 
+static const double WIDER_CUT = 1e-4;    /* halves the rows of exponential weights and changes L by 0.1 % */
+
 static int fail_laplacian(const run *r, hd_error *err)
 {
+    /* the ways out that find_ways tries: a run whose matrices do not fit has no plan to ask */
+    if (err->status == HD_ERR_MEMORY_LIMIT && err->value > 0 && has_exponentials(r) &&
+        laplacian_kind(r) == HD_LAPLACIAN_VORONOI_EXP)
+        return fail(FAILED, "%s: the matrices alone need at least %.1f MB, and %.1f MB are allowed (--memory-limit, "
+                    "by default nine tenths of the machine's memory); --tufted%s", r->mesh_name,
+                    1e-6 * err->value, 1e-6 * (double)r->context.byte_limit,
+                    r->o->weight_cut < WIDER_CUT ? " and --weight-cut 1e-4 need less" : " needs less");
     if (err->face >= 0 && r->mesh.face_of && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
         err->face = r->mesh.face_of[err->face];
     return fail_library(r->mesh_name, err);
@@ -2241,12 +2250,28 @@ static int32_t pairs_vertices(const run *r)
     return count;
 }
 
+/* Eigenpairs that are asked for. Below a bound there are about its area / 4 pi many (Weyl 1911). */
+static int32_t spectrum_pairs(const run *r)
+{
+    const double most = r->lap->n_active;
+    double pairs = r->o->count > 0 ? (double)r->o->count : most;
+    int32_t c;
+    if (r->o->below > 0) {
+        double area = 0;
+        for (c = 0; c < r->lap->n_components; c++) area += r->lap->component_mass[c];
+        pairs = fmin(pairs, r->o->below * area / 12.57 + r->lap->n_components);
+    }
+    return (int32_t)fmax(1, fmin(pairs, most));
+}
+
 /* The library's name of the command's query, and how many items it has. */
 static hd_query query_of(const run *r, int32_t *k)
 {
     const options *o = r->o;
     *k = (int32_t)r->n_inputs;
     if (o->command == CMD_KERNEL) return HD_QUERY_COLUMNS;
+    if (o->command == CMD_SPECTRUM) *k = spectrum_pairs(r);
+    if (o->command == CMD_SPECTRUM) return HD_QUERY_SPECTRUM;
     if (o->command == CMD_DIFFUSE) return HD_QUERY_FIELDS;
     if (o->command == CMD_HKS)
         return o->kernel == HD_KERNEL_OPERATOR ? HD_QUERY_DIAGONAL_OPERATOR : HD_QUERY_DIAGONAL;
@@ -2315,8 +2340,6 @@ static void try_options(run *r, const options *o, const char *option)
     interrupt.patient = 1;
 }
 
-static const double WIDER_CUT = 1e-4;    /* halves the rows of exponential weights and changes L by 0.1 % */
-
 /* What else would do for a run that does not fit, each with its need. */
 static void find_ways(run *r)
 {
@@ -2325,6 +2348,7 @@ static void find_ways(run *r)
     hd_estimate one;
     hd_error err;
     options o = *r->o;
+    char fewer[40];
     r->n_ways = 0;
     if (r->o->method != HD_METHOD_ITERATIVE && iterative->possible)
         add_way(r, "--method iterative", e->bytes_in_use + iterative->bytes);
@@ -2337,6 +2361,19 @@ static void find_ways(run *r)
         o.degree = 8;
         try_options(r, &o, "--degree 8");
     }
+    o = *r->o;
+    if (r->o->command == CMD_SPECTRUM && o.count >= 8) {
+        o.count /= 4;
+        snprintf(fewer, sizeof fewer, "-k %ld", o.count);
+        try_options(r, &o, fewer);
+    }
+    o = *r->o;
+    o.precond = HD_PRECOND_AUTO;
+    o.solver = HD_SOLVER_LANCZOS;
+    if (e->method == HD_METHOD_ITERATIVE && !o.degree && !o.poles) try_options(r, &o, "--solver lanczos");
+    o = *r->o;
+    o.precond = HD_PRECOND_JACOBI;
+    if (e->method == HD_METHOD_ITERATIVE && (o.degree || o.poles)) try_options(r, &o, "--precond jacobi");
     o = *r->o;
     o.tufted = 1;
     o.laplacian = HD_LAPLACIAN_DEFAULT;
@@ -2752,6 +2789,10 @@ static int solve_spectrum(run *r)
     opts.ordering = (hd_ordering)r->o->ordering;
     opts.context = &r->context;
     r->spectrum_status = hd_spectrum_create(&r->spectrum, r->lap, &opts, &err);
+    if (r->spectrum_status == HD_ERR_MEMORY_LIMIT) {     /* a plan says what would do */
+        const int code = run_plan(r);
+        return code ? code : fail_limit(r, &err);
+    }
     if (r->spectrum_status < 0) return fail_library(r->mesh_name, &err);
     r->n_columns = r->spectrum->count;
     if (r->o->column < r->n_columns) return DONE;
@@ -3938,10 +3979,7 @@ static int command_spectrum(run *r)
 {
     int code = run_load(r);
     if (!code) code = run_assemble(r);
-    if (!code) code = run_solve(r);
-    if (!code) code = write_spectrum(r);
-    if (!code) report_spectrum(r);
-    return code;
+    return code ? code : command_finish(r, write_spectrum, report_spectrum);
 }
 
 static int command_diffuse(run *r)
