@@ -174,6 +174,7 @@ static void test_tmp_remove(void) {
 #include "test_estimate.h"
 #include "test_spectrum.h"
 #include "test_borders.h"
+#include "test_failures.h"
 #include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
@@ -187,7 +188,7 @@ static const test_group test_groups[] = {
     {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"moving", test_moving},
     {"platform", test_platform}, {"view", test_view},     {"estimate", test_estimate}, {"spectrum", test_spectrum},
     {"large_t", test_large_t},
-    {"borders", test_borders},
+    {"borders", test_borders},   {"failures", test_failures},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
