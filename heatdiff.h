@@ -26980,8 +26980,9 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
         x->off_gram <= HDI_MODES_ORTHO)
         return 1;
     hdi_modes_free(x, heat->ctx);
+    if (e->status == HD_ERR_MEMORY || e->status == HD_ERR_CANCELLED) return 0;
     x->barred = e->status != HD_ERR_MEMORY_LIMIT;
-    if (e->status != HD_ERR_MEMORY && e->status != HD_ERR_CANCELLED) hdi_error_clear(e);
+    hdi_error_clear(e);
     return 0;
 }
 

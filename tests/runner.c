@@ -180,6 +180,7 @@ static void test_tmp_remove(void) {
 #include "test_sources.h"
 #include "test_geodesic_all.h"
 #include "test_lengths.h"
+#include "test_failures.h"
 #include "test_platform.h"
 
 typedef struct test_group { const char *name; void (*run)(void); } test_group;
@@ -197,6 +198,7 @@ static const test_group test_groups[] = {
     {"filters", test_filters},
     {"sources", test_sources},
     {"lengths", test_lengths},
+    {"failures", test_failures},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };

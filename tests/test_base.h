@@ -10,7 +10,20 @@ typedef struct test_memory {
     uint64_t bytes;
     int64_t fail_at;        /* this call gets nothing; 0: none fails */
     int64_t wrong;          /* blocks that came back with another size */
+    int64_t fail_one_in;    /* one call of so many gets nothing, at random; 0: none */
+    int64_t failed;         /* calls that got nothing */
+    uint32_t random;
 } test_memory;
+
+static int test_memory_fails(test_memory *m) {
+    int fails = m->calls == m->fail_at;
+    if (m->fail_one_in) {
+        m->random = m->random * 1664525u + 1013904223u;
+        fails |= (m->random >> 8) % (uint32_t)m->fail_one_in == 0;
+    }
+    m->failed += fails;
+    return fails;
+}
 
 /* Blocks are aligned to 8 bytes and no more, which is all that a library may ask for. */
 static void *test_memory_alloc(void *user, size_t size) {
@@ -18,7 +31,7 @@ static void *test_memory_alloc(void *user, size_t size) {
     uint64_t head = size;
     char *p;
     m->calls++;
-    if (m->calls == m->fail_at) return NULL;
+    if (test_memory_fails(m)) return NULL;
     p = (char *)malloc(size + sizeof head);
     if (!p) return NULL;
     memcpy(p, &head, sizeof head);

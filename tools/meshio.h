@@ -1807,27 +1807,33 @@ static int mio_table_npy(mio_in *in, double **values, int64_t *rows, int32_t *co
     return MIO_OK;
 }
 
-static int mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, int64_t **lines, const char *path, int (*stop)(void), mio_error *e)
+/* The table of an opened file, which is closed. */
+static int mio_parse_table(mio_in *in, double **values, int64_t *rows, int32_t *cols, int64_t **lines)
 {
-    mio_in in;
     mio_numbers t;
     int status;
     memset(&t, 0, sizeof t);
+    if (in->size >= 6 && memcmp(in->data, "\223NUMPY", 6) == 0) status = mio_table_npy(in, values, rows, cols);
+    else if (mio_has_extension(in->path, "npy")) status = mio_fail(in, 0, "not a .npy file: it does not begin as one");
+    else if ((status = mio_refuse(in)) == MIO_OK) status = mio_table_text(in, &t, values, rows, cols);
+    if (status == MIO_OK && lines) { *lines = t.lines; t.lines = NULL; }
+    if (status != MIO_OK) { free(*values); *values = NULL; }
+    free(t.values);
+    free(t.lines);
+    mio_close(in);
+    return status;
+}
+
+static int mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, int64_t **lines, const char *path, int (*stop)(void), mio_error *e)
+{
+    mio_in in;
+    int status;
     *values = NULL;
     *rows = 0;
     *cols = 0;
     if (lines) *lines = NULL;
     status = mio_open(&in, path, stop, e);
-    if (status != MIO_OK) return status;
-    if (in.size >= 6 && memcmp(in.data, "\223NUMPY", 6) == 0) status = mio_table_npy(&in, values, rows, cols);
-    else if (mio_has_extension(path, "npy")) status = mio_fail(&in, 0, "not a .npy file: it does not begin as one");
-    else if ((status = mio_refuse(&in)) == MIO_OK) status = mio_table_text(&in, &t, values, rows, cols);
-    if (status == MIO_OK && lines) { *lines = t.lines; t.lines = NULL; }
-    if (status != MIO_OK) { free(*values); *values = NULL; }
-    free(t.values);
-    free(t.lines);
-    mio_close(&in);
-    return status;
+    return status == MIO_OK ? mio_parse_table(&in, values, rows, cols, lines) : status;
 }
 
 static int mio_load_table(double **values, int64_t *rows, int32_t *cols, const char *path, int (*stop)(void), mio_error *e)

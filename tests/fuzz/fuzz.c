@@ -1,0 +1,1233 @@
+/* fuzz.c - any bytes as files, meshes, matrices, options and queries
+
+   Each target turns bytes into calls, and aborts when an answer is wrong: a value that is not finite with HD_OK, heat
+   that is lost, a bound that does not hold what it says, something left allocated. Sanitizers see the rest.
+
+       bash tests/fuzz/run.sh 60             with clang: libFuzzer, a minute for each target
+       cc tests/fuzz/fuzz.c -I. -lm -o fuzz && ./fuzz tests/fuzz/corpus       any compiler: the kept inputs, once each
+
+   --target=NAME      libFuzzer: which target (the first option)
+   --unpack DIR       without libFuzzer: writes the inputs of the corpus to DIR/NAME/, one file each
+
+   The corpus: CORPUS/NAME.txt, one input a line, in hexadecimal digits; for files also CORPUS/NAME/, as they are. */
+
+#ifndef _DEFAULT_SOURCE
+#define _DEFAULT_SOURCE
+#endif
+#if defined(__GNUC__) || defined(__clang__)
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+
+#include <dirent.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#ifndef HEATDIFF_LIBFUZZER               /* which is compiled apart then */
+#define HEATDIFF_IMPLEMENTATION
+#endif
+#include "../../heatdiff.h"
+#include "../../tools/meshio.h"
+#include "../../tools/shapes.h"
+
+/* ---- bytes as numbers ---- */
+
+typedef struct fz_in { const uint8_t *p, *end; } fz_in;
+
+static const char *fz_what = "";                 /* what is being done, for the message */
+
+static void fz_fail(const char *text, int line) {
+    fprintf(stderr, "fuzz.c:%d: %s: %s\n", line, fz_what, text);
+    abort();
+}
+
+#define FZ(cond) do { if (!(cond)) fz_fail(#cond, __LINE__); } while (0)
+
+static uint8_t fz_byte(fz_in *in) { return in->p < in->end ? *in->p++ : 0; }
+
+static int32_t fz_below(fz_in *in, int32_t n) { return n > 0 ? fz_byte(in) % n : 0; }
+
+static uint64_t fz_raw(fz_in *in, int bytes) {
+    uint64_t u = 0;
+    while (bytes-- > 0) u = u << 8 | fz_byte(in);
+    return u;
+}
+
+/* Small integers, and now and then any. */
+static int32_t fz_int(fz_in *in, int32_t n) {
+    const uint8_t b = fz_byte(in);
+    if (b < 240) return n > 0 ? b % n : (int32_t)b - 120;
+    return b < 244 ? n : b < 248 ? -1 : (int32_t)(uint32_t)fz_raw(in, 4);
+}
+
+/* Steps of 1/16 around zero, numbers of all sizes, and those at the ends. */
+static double fz_number(fz_in *in) {
+    static const double ends[16] = {0, -0.0, 1, -1, DBL_MIN, DBL_MAX, -DBL_MAX, 4.9e-324, 1e154, 1e-154, 1e200, 1e-200, DBL_EPSILON,
+                                    (double)NAN, (double)INFINITY, -(double)INFINITY};
+    const uint8_t b = fz_byte(in);
+    uint64_t u;
+    double x;
+    if (b < 160) return (b - 64) / 16.0;
+    if (b < 176) return ends[b - 160];
+    if (b < 224) return (int16_t)(uint16_t)fz_raw(in, 2) / 4096.0;
+    if (b < 248) {
+        x = (int16_t)(uint16_t)fz_raw(in, 2);
+        return ldexp(x, 8 * (int8_t)fz_byte(in));
+    }
+    u = fz_raw(in, 8);
+    memcpy(&x, &u, sizeof x);
+    return x;
+}
+
+static int fz_finite(const double *x, int64_t n) {
+    int64_t i;
+    for (i = 0; i < n; i++) if (!mio_is_finite(x[i])) return 0;
+    return 1;
+}
+
+static int fz_no_nan(const double *x, int64_t n) {
+    int64_t i;
+    for (i = 0; i < n; i++) if (x[i] != x[i]) return 0;
+    return 1;
+}
+
+/* ---- a context that counts, limits and stops ---- */
+
+typedef struct fz_context {
+    hd_context ctx;
+    int64_t live, calls, fail_at, progress, stop_at;
+} fz_context;
+
+static void *fz_alloc(void *user, size_t size) {
+    fz_context *c = (fz_context *)user;
+    void *p;
+    if (++c->calls == c->fail_at) return NULL;
+    p = malloc(size ? size : 1);
+    if (!p) return NULL;
+    memset(p, 0xa5, size);                       /* whoever reads before writing gets nonsense */
+    c->live++;
+    return p;
+}
+
+static void fz_free(void *user, void *p, size_t size) {
+    fz_context *c = (fz_context *)user;
+    (void)size;
+    c->live--;
+    free(p);
+}
+
+static hd_progress fz_progress(void *user, const char *stage, double done) {
+    fz_context *c = (fz_context *)user;
+    FZ(stage && done >= 0 && done <= 1);
+    return ++c->progress == c->stop_at ? HD_PROGRESS_CANCEL : HD_PROGRESS_CONTINUE;
+}
+
+enum { FZ_BYTES = 64 << 20 };
+
+static void fz_context_make(fz_context *c, fz_in *in) {
+    const uint8_t way = fz_byte(in);
+    memset(c, 0, sizeof *c);
+    c->ctx.allocator.alloc = fz_alloc;
+    c->ctx.allocator.free = fz_free;
+    c->ctx.allocator.user = c;
+    c->ctx.progress = fz_progress;
+    c->ctx.progress_user = c;
+    c->ctx.byte_limit = FZ_BYTES;
+    c->ctx.n_threads = 1 + (way & 1);
+    if (way & 2) c->ctx.simd = (hd_simd)fz_below(in, 5);
+    if (way > 250) c->ctx.byte_limit = 1 + fz_raw(in, 3);
+    if (way == 250) c->fail_at = 1 + (int64_t)fz_raw(in, 2);
+    if (way == 249) c->stop_at = 1 + (int64_t)fz_raw(in, 2);
+}
+
+static void fz_context_done(const fz_context *c) {
+    FZ(c->live == 0);
+    FZ(c->ctx.bytes_in_use == 0);
+    FZ(c->ctx.bytes_peak <= c->ctx.byte_limit);
+    FZ(c->ctx.n_holders == 0 && !c->ctx.threads);
+}
+
+/* One of the list, told alike in the error, with a line of text; memory and cancelling only if they were meant. */
+static hd_status fz_status(hd_status st, const hd_error *e, const fz_context *c) {
+    FZ(st >= HD_ERR_NOT_BUILT && st <= HD_WARN_ACCURACY);
+    if (e) FZ(e->status == (st < 0 ? st : HD_OK) && (st >= 0 || e->text[0]) && !strchr(e->text, '\n'));
+    FZ(st != HD_ERR_MEMORY || c->calls >= c->fail_at);
+    FZ(st != HD_ERR_MEMORY || c->fail_at);
+    FZ(st != HD_ERR_CANCELLED || c->stop_at);
+    return st;
+}
+
+/* ---- files ---- */
+
+/* The bytes as an opened file. */
+static int fz_file(mio_in *in, const char *name, const uint8_t *data, size_t size, mio_error *e) {
+    mio_begin(in, name, NULL, e);
+    in->data = (char *)malloc(size + 1);
+    if (!in->data) return 0;
+    if (size) memcpy(in->data, data, size);
+    in->data[size] = 0;
+    in->size = size;
+    mio_rewind(in);
+    e->text[0] = 0;
+    return 1;
+}
+
+/* A failure is one line that begins with the file's name. */
+static void fz_file_status(int status, const char *name, const mio_error *e) {
+    const char *p;
+    FZ(status == MIO_OK || status == MIO_FAILED);
+    if (status == MIO_OK) return;
+    FZ(strncmp(e->text, name, strlen(name)) == 0 && e->text[strlen(name)] == ':');
+    for (p = e->text; *p; p++) FZ((unsigned char)*p >= ' ' && *p != 127);
+}
+
+static void fz_same_mesh(const mio_mesh *a, const mio_mesh *b) {
+    FZ(a->n == b->n && a->n_faces == b->n_faces);
+    FZ(memcmp(a->xyz, b->xyz, 24 * (size_t)a->n) == 0);
+    FZ(memcmp(a->face_ptr, b->face_ptr, ((size_t)a->n_faces + 1) * sizeof *a->face_ptr) == 0);
+    if (a->n_faces) FZ(memcmp(a->face_idx, b->face_idx, (size_t)a->face_ptr[a->n_faces] * sizeof *a->face_idx) == 0);
+}
+
+/* What is written is read back the same. */
+static void fz_round_trip(const mio_mesh *m) {
+    static const char *const ends[2] = {"ply", "obj"};
+    char path[64];
+    int k;
+    for (k = 0; k < 2; k++) {
+        mio_output o;
+        mio_mesh again;
+        mio_error e;
+        memset(&o, 0, sizeof o);
+        e.text[0] = 0;
+        snprintf(path, sizeof path, "/tmp/heatdiff-fuzz-%ld.%s", (long)getpid(), ends[k]);
+        fz_what = path;
+        FZ(mio_write(path, mio_format_of(path), m, &o, &e) == MIO_OK);
+        if (mio_load(&again, path, NULL, &e) != MIO_OK) fz_fail(e.text, __LINE__);
+        fz_same_mesh(m, &again);
+        mio_free(&again);
+        remove(path);
+    }
+}
+
+static void fz_mesh(const uint8_t *data, size_t size) {
+    static const char *const names[6] = {"x", "x.obj", "x.off", "x.ply", "x.stl", "x.xyz"};
+    int k, status;
+    for (k = 0; k < 6; k++) {
+        mio_in in;
+        mio_mesh m;
+        mio_error e;
+        int32_t *tri, *face, n_tri, f;
+        int64_t c;
+        memset(&m, 0, sizeof m);
+        fz_what = names[k];
+        if (!fz_file(&in, names[k], data, size, &e)) return;
+        status = mio_parse(&in, &m);
+        fz_file_status(status, names[k], &e);
+        FZ(!in.data);
+        if (status < 0) {
+            FZ(!m.xyz && !m.face_ptr && !m.face_idx && !m.n && !m.n_faces);
+            continue;
+        }
+        FZ(m.n > 0 && m.n_faces >= 0 && fz_finite(m.xyz, 3 * (int64_t)m.n) && m.face_ptr && m.face_ptr[0] == 0 && m.format);
+        for (f = 0; f < m.n_faces; f++) FZ(m.face_ptr[f + 1] >= m.face_ptr[f] + 3);
+        for (c = 0; c < m.face_ptr[m.n_faces]; c++) FZ(m.face_idx[c] >= 0 && m.face_idx[c] < m.n);
+        FZ(mio_triangulate(&m, &tri, &n_tri, &face, &e) == MIO_OK && n_tri == m.face_ptr[m.n_faces] - 2 * (int64_t)m.n_faces);
+        for (f = 0; f < n_tri; f++) FZ(face[f] >= 0 && face[f] < m.n_faces && (f == 0 || face[f] >= face[f - 1]));
+        free(tri);
+        free(face);
+        if (k == 0 && size % 8 == 0 && m.n < 100000) fz_round_trip(&m);
+        mio_free(&m);
+    }
+}
+
+static void fz_table(const uint8_t *data, size_t size) {
+    static const char *const names[3] = {"x.txt", "x.csv", "x.npy"};
+    int k, status;
+    for (k = 0; k < 3; k++) {
+        mio_in in;
+        mio_error e;
+        double *values = NULL;
+        int64_t rows = 0, *lines = NULL, r;
+        int32_t cols = 0;
+        fz_what = names[k];
+        if (!fz_file(&in, names[k], data, size, &e)) return;
+        status = mio_parse_table(&in, &values, &rows, &cols, &lines);
+        fz_file_status(status, names[k], &e);
+        FZ(!in.data);
+        if (status < 0) FZ(!values && !lines);
+        else FZ(rows > 0 && cols > 0 && fz_finite(values, rows * cols));
+        for (r = 0; status == MIO_OK && lines && r < rows; r++) FZ(lines[r] > (r ? lines[r - 1] : 0));
+        free(values);
+        free(lines);
+    }
+}
+
+/* ---- Laplacians ---- */
+
+enum { FZ_VERTICES = 48, FZ_FACES = 96, FZ_TIMES = 3, FZ_FIELDS = 3, FZ_PAIRS = 8 };
+
+/* L and B are what the header says of them. */
+static void fz_check_laplacian(const hd_laplacian *lap) {
+    double mass = 0;
+    int32_t r, v, active = 0, held = 0;
+    int64_t p;
+    hd_error e;
+    FZ(lap->n_active > 0 || lap->n_held > 0);
+    FZ(lap->L.n_rows == lap->n_active && lap->L.n_cols == lap->n_active);
+    if (hd_csr_check(&lap->L, 1, NULL, &e) < 0) fz_fail(e.text, __LINE__);
+    FZ(!lap->B || fz_finite(lap->B, lap->L.nnz));
+    FZ(mio_is_finite(lap->h) && lap->h >= 0 && mio_is_finite(lap->area));
+    for (v = 0; v < lap->n; v++) {
+        FZ(lap->row[v] >= HD_ROW_HELD && lap->row[v] < lap->n_active);
+        if (lap->row[v] >= 0) FZ(lap->vertex[lap->row[v]] == v);
+        active += lap->row[v] >= 0;
+        held += lap->row[v] == HD_ROW_HELD;
+    }
+    FZ(active == lap->n_active && held == lap->n_held);
+    for (r = 0; r < lap->n_active; r++) {
+        double sum = 0, size = 0;
+        int diagonal = 0;
+        FZ(lap->component[r] >= 0 && lap->component[r] < lap->n_components);
+        FZ(lap->b_diag[r] > 0 && mio_is_finite(lap->b_diag[r]) && mio_is_finite(lap->mass[r]));
+        for (p = lap->L.row_ptr[r]; p < lap->L.row_ptr[r + 1]; p++) {
+            sum += lap->L.val[p];
+            size += fabs(lap->L.val[p]);
+            diagonal |= lap->L.col[p] == r && lap->L.val[p] >= 0;
+        }
+        FZ(diagonal);
+        if (lap->conserves == 1 && mio_is_finite(size)) FZ(fabs(sum) <= 16 * DBL_EPSILON * size);
+        mass += lap->mass[r];
+    }
+    if (lap->conserves == 1 && (lap->kind == HD_LAPLACIAN_FEM || lap->kind == HD_LAPLACIAN_VORONOI_COT) && !lap->mesh.n_sheets)
+        FZ(fabs(mass - lap->area) <= 1e-9 * lap->area);
+}
+
+static hd_laplacian_opts fz_laplacian_opts(fz_in *in, hd_context *ctx, int32_t *held, int32_t n) {
+    const uint8_t way = fz_byte(in);
+    hd_laplacian_opts o;
+    int32_t k;
+    memset(&o, 0, sizeof o);
+    o.context = ctx;
+    o.kind = (hd_laplacian_kind)fz_int(in, 8);
+    if (way & 1) o.intrinsic_delaunay = 1;
+    if (way & 2) o.tufted = 1;
+    if (way & 4) o.updatable = 1;
+    if (way & 8) o.border = HD_BORDER_DIRICHLET;
+    if (way & 16) o.mollify = fz_number(in);
+    if (way & 32) o.lambda = fz_number(in);
+    if (way & 64) {
+        o.bandwidth = fz_number(in);
+        o.weight_cut = fz_number(in);
+        o.neighbours = fz_int(in, 130);
+    }
+    if (way & 128) {
+        o.n_held = fz_below(in, 4);
+        for (k = 0; k < o.n_held; k++) held[k] = fz_int(in, n);
+        o.held = held;
+    }
+    return o;
+}
+
+/* A grid, a ball, or nothing that is known; then some of its numbers change. */
+static shape fz_soup(fz_in *in) {
+    const uint8_t way = fz_byte(in);
+    shape s;
+    int32_t k, changes;
+    switch (way % 5) {
+    case 0: s = shape_grid(2 + fz_below(in, 4), 2 + fz_below(in, 4), 0.3); break;
+    case 1: s = shape_icosphere(way > 240); break;
+    case 2: s = shape_torus(3 + fz_below(in, 4), 3 + fz_below(in, 4), 1, 0.4); break;
+    default:
+        s = shape_make(1 + fz_below(in, 20), 1 + fz_below(in, 40));
+        for (k = 0; k < 3 * s.n; k++) s.xyz[k] = fz_number(in);
+        for (k = 0; k < 3 * s.n_tri; k++) s.tri[k] = fz_int(in, s.n);
+        return s;
+    }
+    changes = fz_below(in, 8);
+    for (k = 0; k < changes; k++) {
+        const int32_t at = (int32_t)fz_raw(in, 2);
+        if (at & 1) s.tri[at / 2 % (3 * s.n_tri)] = fz_int(in, s.n);
+        else s.xyz[at / 2 % (3 * s.n)] = fz_number(in);
+    }
+    if (way & 128) {                              /* another unit */
+        const double scale = ldexp(1, 8 * (int8_t)fz_byte(in));
+        for (k = 0; k < 3 * s.n; k++) s.xyz[k] *= scale;
+    }
+    return s;
+}
+
+static hd_status fz_polygons(fz_in *in, hd_laplacian **lap, const shape *s, const hd_laplacian_opts *o, hd_error *e) {
+    int64_t ptr[FZ_FACES + 1];
+    int32_t f = 0;
+    ptr[0] = 0;
+    while (f < FZ_FACES && ptr[f] < 3 * (int64_t)s->n_tri) {
+        const int64_t next = ptr[f] + fz_below(in, 9);
+        ptr[f + 1] = next <= 3 * (int64_t)s->n_tri ? next : 3 * (int64_t)s->n_tri;
+        f++;
+        if (in->p == in->end && next == ptr[f - 1]) break;
+    }
+    if (f && fz_byte(in) == 255) ptr[f / 2] = -1;
+    return hd_laplacian_polygons(lap, s->xyz, s->n, ptr, s->tri, f, o, e);
+}
+
+static hd_status fz_tufted(fz_in *in, hd_laplacian **lap, const shape *s, const hd_laplacian_opts *o, hd_error *e) {
+    int64_t ptr[2048];
+    int32_t nbr[2048], v, most = 0;
+    if (fz_byte(in) & 1) return hd_laplacian_tufted_points(lap, s->xyz, s->n, NULL, NULL, o, e);
+    ptr[0] = 0;
+    for (v = 0; v < s->n; v++) {
+        int32_t k, count = fz_below(in, 14);
+        for (k = 0; k < count; k++) nbr[most++] = fz_int(in, s->n);
+        ptr[v + 1] = most;
+    }
+    return hd_laplacian_tufted_points(lap, s->xyz, s->n, ptr, nbr, o, e);
+}
+
+static hd_status fz_laplacian_of(fz_in *in, hd_laplacian **lap, const shape *s, const hd_laplacian_opts *o, hd_error *e) {
+    hd_mesh_view view;
+    float xyz[3 * FZ_VERTICES];
+    int32_t k;
+    switch (fz_byte(in) % 6) {
+    case 0: fz_what = "polygons"; return fz_polygons(in, lap, s, o, e);
+    case 1: fz_what = "points"; return hd_laplacian_points(lap, s->xyz, s->n, o, e);
+    case 2: fz_what = "tufted points"; return fz_tufted(in, lap, s, o, e);
+    case 3:
+        fz_what = "view";
+        memset(&view, 0, sizeof view);
+        for (k = 0; k < 3 * s->n; k++) xyz[k] = fabs(s->xyz[k]) <= (double)FLT_MAX ? (float)s->xyz[k] : 0;
+        view.xyz_float = xyz;
+        view.n = s->n;
+        view.tri_i32 = s->tri;
+        view.n_indices = 3 * (int64_t)s->n_tri;
+        return hd_laplacian_view(lap, &view, o, e);
+    default: fz_what = "triangles"; return hd_laplacian_triangles(lap, s->xyz, s->n, s->tri, s->n_tri, o, e);
+    }
+}
+
+/* ---- queries ---- */
+
+static double fz_time(fz_in *in, const hd_laplacian *lap) {
+    const double h2 = lap->h > 0 ? lap->h * lap->h : 1;
+    const uint8_t b = fz_byte(in);
+    return b < 100 ? h2 * pow(2, (b - 30) / 3.0) : b < 128 ? 0 : fz_number(in);
+}
+
+/* A bound that is told, whatever the answer; and with HD_OK one that says something. */
+static void fz_check_report(hd_status st, const hd_report *rep) {
+    FZ(rep->status == st);
+    if (st < 0) {
+        FZ(rep->error.status == st && rep->error.text[0]);
+        return;
+    }
+    FZ(rep->error_bound >= 0 && rep->error_rational >= 0 && rep->error_solver >= 0 && rep->error_rounding >= 0);
+    if (st == HD_OK) FZ(rep->error_bound <= 1e-2);
+    FZ(rep->reason && rep->reason[0]);
+    FZ(rep->mass_drift == rep->mass_drift);
+}
+
+/* 1'B u = 1'B f for a field and its answer, up to what the bound of the error allows. */
+static void fz_check_mass(const hd_laplacian *lap, const double *f, const double *u, const hd_report *rep) {
+    double before = 0, after = 0, size = 0, most = 0, total = 0;
+    int32_t r;
+    if (lap->conserves != 1) return;
+    for (r = 0; r < lap->n_active; r++) {
+        const int32_t v = lap->vertex[r];
+        before += lap->mass[r] * f[v];
+        after += lap->mass[r] * u[v];
+        size += lap->mass[r] * fabs(f[v]);
+        total += lap->mass[r];
+        if (fabs(u[v]) > most) most = fabs(u[v]);
+    }
+    if (!mio_is_finite(size) || !mio_is_finite(total * most)) return;
+    FZ(fabs(after - before) <= rep->error_bound * most * total + 1e-12 * size + DBL_MIN);
+}
+
+typedef struct fz_query {
+    int32_t n_times, k, n_pairs;
+    double t[FZ_TIMES];
+    int32_t id[FZ_FIELDS], i[FZ_PAIRS], j[FZ_PAIRS];
+    hd_kernel kernel;
+    hd_distance_kind kind;
+    double *f, *u, *v;                            /* [n FIELDS], [n FIELDS TIMES] and entries, distances of pairs */
+    int64_t room;
+} fz_query;
+
+static void fz_query_make(fz_query *q, fz_in *in, const hd_laplacian *lap) {
+    int32_t k;
+    q->n_times = 1 + fz_below(in, FZ_TIMES);
+    q->k = 1 + fz_below(in, FZ_FIELDS);
+    q->n_pairs = 1 + fz_below(in, FZ_PAIRS);
+    for (k = 0; k < q->n_times; k++) q->t[k] = fz_time(in, lap);
+    for (k = 0; k < q->k; k++) q->id[k] = fz_int(in, lap->n);
+    for (k = 0; k < q->n_pairs; k++) {
+        q->i[k] = fz_int(in, lap->n);
+        q->j[k] = fz_int(in, lap->n);
+    }
+    q->kernel = (hd_kernel)fz_int(in, 2);
+    q->kind = (hd_distance_kind)fz_int(in, 4);
+    q->room = (int64_t)lap->n * FZ_FIELDS * FZ_TIMES + lap->L.nnz * FZ_TIMES + FZ_PAIRS * FZ_TIMES;
+    q->f = (double *)calloc((size_t)lap->n * FZ_FIELDS, sizeof *q->f);
+    q->u = (double *)calloc((size_t)q->room, sizeof *q->u);
+    q->v = (double *)calloc((size_t)q->room, sizeof *q->v);
+    if (!q->f || !q->u || !q->v) abort();
+    for (k = 0; k < q->room; k++) q->u[k] = q->v[k] = (double)NAN;
+}
+
+static void fz_query_free(fz_query *q) {
+    free(q->f);
+    free(q->u);
+    free(q->v);
+}
+
+static void fz_field(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *in, const fz_context *c) {
+    const int64_t size = (int64_t)lap->n * q->k * q->n_times;
+    hd_report rep;
+    hd_error e;
+    hd_status st;
+    int32_t k, m;
+    for (k = 0; k < lap->n * q->k; k++) q->f[k] = fz_number(in);
+    st = fz_status(hd_heat_apply(heat, q->n_times, q->t, q->k, q->f, 0, q->u, 0, &rep, &e), &e, c);
+    fz_check_report(st, &rep);
+    if (st != HD_OK) return;
+    FZ(fz_finite(q->u, size));
+    for (k = 0; k < q->k; k++)
+        for (m = 0; m < q->n_times; m++)
+            if (rep.poles != HD_POLES_OWN) fz_check_mass(lap, q->f + (size_t)k * (size_t)lap->n, q->u + (size_t)(k * q->n_times + m) * (size_t)lap->n, &rep);
+}
+
+static void fz_columns(hd_heat *heat, const hd_laplacian *lap, fz_query *q, const fz_context *c) {
+    hd_report rep;
+    hd_error e;
+    const hd_status st = fz_status(hd_heat_columns(heat, q->kernel, q->n_times, q->t, q->k, q->id, q->u, 0, &rep, &e), &e, c);
+    int32_t k, m;
+    fz_check_report(st, &rep);
+    if (st != HD_OK) return;
+    FZ(fz_finite(q->u, (int64_t)lap->n * q->k * q->n_times));
+    for (k = 0; k < q->k && q->kernel == HD_KERNEL_OPERATOR; k++) {
+        memset(q->f, 0, (size_t)lap->n * sizeof *q->f);
+        q->f[q->id[k]] = 1;
+        for (m = 0; m < q->n_times; m++) fz_check_mass(lap, q->f, q->u + (size_t)(k * q->n_times + m) * (size_t)lap->n, &rep);
+    }
+}
+
+static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *in, const fz_context *c) {
+    static const char *const names[] = {"fields", "columns", "diagonal", "edges", "distance", "pairs", "sample", "entries", "estimate"};
+    const int64_t n = lap->n;
+    const uint8_t which = fz_byte(in) % 9;
+    hd_report rep;
+    hd_error e;
+    hd_status st = HD_OK;
+    hd_estimate estimate;
+    int64_t values = 0;
+    int32_t points[8];
+    fz_what = names[which];
+    if (which == 0) { fz_field(heat, lap, q, in, c); return; }
+    if (which == 1) { fz_columns(heat, lap, q, c); return; }
+    if (which == 8) {
+        (void)fz_status(hd_heat_estimate(heat, (hd_query)fz_int(in, 10), q->n_times, q->t, q->k, &estimate, &e), &e, c);
+        return;
+    }
+    if (which == 2) st = hd_heat_diagonal(heat, q->kernel, q->n_times, q->t, q->u, 0, &rep, &e), values = n * q->n_times;
+    if (which == 3) st = hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, q->n_times, q->t, q->u, &rep, &e), values = lap->L.nnz * q->n_times;
+    if (which == 4) {
+        if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
+        st = hd_heat_distance(heat, q->kind, q->n_times, q->t, q->k, q->id, q->u, 0, &rep, &e), values = n * q->n_times * q->k;
+    }
+    if (which == 5) {
+        if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
+        st = hd_heat_pairs(heat, q->kind, q->n_times, q->t, q->n_pairs, q->i, q->j, q->v, q->u, &rep, &e), values = q->n_pairs * q->n_times;
+    }
+    if (which == 6) {
+        points[0] = q->id[0];
+        st = hd_heat_sample(heat, q->kind, q->t[0], 1 + fz_below(in, 8), fz_below(in, 2), points, q->u, &rep, &e), values = 1;
+        if (st >= 0) FZ(points[0] >= 0 && points[0] < lap->n);
+    }
+    if (which == 7) st = hd_heat_entries(heat, q->kernel, q->n_times, q->t, q->n_pairs, q->i, q->j, q->u, &rep, &e), values = q->n_pairs * q->n_times;
+    fz_status(st, &e, c);
+    fz_check_report(st, &rep);
+    if (st < 0) return;
+    FZ(fz_no_nan(q->u, values));
+    if (st == HD_OK && (which < 4 || which == 7 || q->kind < HD_DISTANCE_COMMUTE)) FZ(fz_finite(q->u, values));
+    if (which == 5 && q->kind < HD_DISTANCE_COMMUTE) FZ(fz_no_nan(q->v, values));
+    if (which >= 4 && which < 6) for (; values > 0; values--) FZ(q->u[values - 1] >= 0);
+}
+
+static hd_heat_opts fz_heat_opts(fz_in *in, int32_t *perm, const hd_laplacian *lap) {
+    const uint8_t way = fz_byte(in);
+    hd_heat_opts o;
+    int32_t k, turn;
+    memset(&o, 0, sizeof o);
+    o.method = (hd_method)(way % 4);
+    o.max_iterations = 400;
+    if (way & 4) o.solver = (hd_solver)fz_int(in, 5);
+    if (way & 8) o.precond = (hd_precond)fz_int(in, 6);
+    if (way & 16) o.poles = (hd_pole_kind)fz_int(in, 5);
+    if (way & 32) o.degree = fz_int(in, 16);
+    if (way & 64) o.tol = fabs(fz_number(in));
+    if (way & 128) {
+        o.ordering = (hd_ordering)fz_int(in, 4);
+        turn = fz_below(in, lap->n);
+        for (k = 0; k < lap->n; k++) perm[k] = (k + turn) % lap->n;
+        if (fz_byte(in) > 250) perm[0] = fz_int(in, lap->n);
+        o.perm = perm;
+    }
+    return o;
+}
+
+static void fz_plan(fz_in *in, const hd_laplacian *lap, const fz_context *c) {
+    int32_t *perm = (int32_t *)calloc((size_t)lap->n, sizeof *perm);
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    hd_error e;
+    int k;
+    if (!perm) abort();
+    o = fz_heat_opts(in, perm, lap);
+    fz_what = "plan";
+    if (fz_status(hd_heat_create(&heat, lap, &o, &e), &e, c) >= 0) {
+        for (k = 0; k < 3 && (k == 0 || in->p < in->end); k++) {
+            fz_query q;
+            fz_query_make(&q, in, lap);
+            fz_one(heat, lap, &q, in, c);
+            fz_query_free(&q);
+        }
+    } else {
+        FZ(!heat);
+    }
+    hd_heat_free(heat);
+    free(perm);
+}
+
+static void fz_spectrum(fz_in *in, const hd_laplacian *lap, const fz_context *c) {
+    hd_spectrum_opts o;
+    hd_spectrum *s = NULL;
+    hd_error e;
+    hd_status st;
+    int32_t k;
+    fz_what = "spectrum";
+    memset(&o, 0, sizeof o);
+    o.count = fz_int(in, lap->n_active + 2);
+    if (fz_byte(in) & 1) o.below = fz_number(in);
+    st = fz_status(hd_spectrum_create(&s, lap, &o, &e), &e, c);
+    if (st >= 0) {
+        fz_query q;
+        FZ(s->count >= 0 && s->count <= lap->n_active && fz_finite(s->value, s->count) && fz_finite(s->vector, (int64_t)s->n * s->count));
+        for (k = 1; k < s->count; k++) FZ(s->value[k] >= s->value[k - 1]);
+        if (st == HD_OK) FZ(s->proven && s->n_poor == 0);
+        fz_query_make(&q, in, lap);
+        if (fz_status(hd_spectrum_columns(s, q.kernel, q.n_times, q.t, q.k, q.id, q.u, q.v, 0, &e), &e, c) >= 0)
+            FZ(fz_no_nan(q.u, (int64_t)lap->n * q.k * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.k * q.n_times));
+        if (fz_status(hd_spectrum_diagonal(s, q.kernel, q.n_times, q.t, q.u, q.v, 0, &e), &e, c) >= 0)
+            FZ(fz_no_nan(q.u, (int64_t)lap->n * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.n_times));
+        if (q.kind >= HD_DISTANCE_COMMUTE) q.n_times = 1;
+        if (fz_status(hd_spectrum_distance(s, q.kind, q.n_times, q.t, q.k, q.id, q.u, q.v, 0, &e), &e, c) >= 0)
+            FZ(fz_no_nan(q.u, (int64_t)lap->n * q.k * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.k * q.n_times));
+        fz_query_free(&q);
+    } else {
+        FZ(!s);
+    }
+    hd_spectrum_free(s);
+}
+
+static void fz_shifted(fz_in *in, const hd_laplacian *lap, const fz_context *c) {
+    hd_c64 *x = (hd_c64 *)calloc((size_t)lap->n, sizeof *x), theta;
+    hd_solve_opts o;
+    hd_solve_report rep;
+    hd_error e;
+    hd_status st;
+    double t;
+    int32_t k;
+    if (!x) abort();
+    fz_what = "shifted";
+    memset(&o, 0, sizeof o);
+    o.solver = (hd_solver)fz_int(in, 4);
+    o.precond = (hd_precond)fz_int(in, 6);
+    o.max_iterations = 300;
+    t = fz_time(in, lap);
+    theta.re = fz_number(in);
+    theta.im = fz_number(in);
+    for (k = 0; k < lap->n; k++) {
+        x[k].re = fz_number(in);
+        x[k].im = fz_number(in);
+    }
+    st = fz_status(hd_shifted_solve(lap, t, theta, x, x, &o, &rep, &e), &e, c);
+    if (st == HD_OK) FZ(fz_finite(&x->re, 2 * (int64_t)lap->n) && rep.residual >= 0);
+    free(x);
+}
+
+static void fz_geodesic(fz_in *in, const shape *s, fz_context *c) {
+    hd_geodesic_opts o;
+    hd_geodesic *g = NULL;
+    hd_geodesic_report rep;
+    hd_error e;
+    hd_status st;
+    int32_t id[3], k, count;
+    double *d = (double *)calloc((size_t)(3 * s->n), sizeof *d);
+    if (!d) abort();
+    fz_what = "geodesic";
+    memset(&o, 0, sizeof o);
+    o.context = &c->ctx;
+    o.mass = (hd_geodesic_mass)fz_int(in, 2);
+    o.updatable = fz_byte(in) & 1;
+    if (fz_byte(in) & 1) o.t = fz_number(in);
+    if (fz_status(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e), &e, c) >= 0) {
+        count = 1 + fz_below(in, 3);
+        for (k = 0; k < 3; k++) id[k] = fz_int(in, s->n);
+        st = fz_status(hd_geodesic_distance(g, count, id, d, &rep, &e), &e, c);
+        FZ(rep.status == st);
+        if (st >= 0) for (k = 0; k < s->n; k++) FZ(d[k] >= 0);
+        if (o.updatable && fz_byte(in) & 1) {
+            s->xyz[fz_below(in, 3 * s->n)] = fz_number(in);
+            (void)fz_status(hd_geodesic_update(g, s->xyz, &e), &e, c);
+        }
+        st = fz_status(hd_geodesic_distances(g, count, id, d, 0, &rep, &e), &e, c);
+        if (st >= 0) for (k = 0; k < s->n * count; k++) FZ(d[k] >= 0);
+    } else {
+        FZ(!g);
+    }
+    hd_geodesic_free(g);
+    free(d);
+}
+
+/* What came through is asked. */
+static void fz_ask(fz_in *in, const hd_laplacian *lap, const fz_context *c) {
+    switch (fz_byte(in) % 8) {
+    case 0: fz_spectrum(in, lap, c); break;
+    case 1: fz_shifted(in, lap, c); break;
+    default: fz_plan(in, lap, c); break;
+    }
+}
+
+static void fz_operators(const uint8_t *data, size_t size) {
+    fz_in in;
+    fz_context c;
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    int32_t held[4];
+    shape s;
+    in.p = data;
+    in.end = data + size;
+    fz_context_make(&c, &in);
+    s = fz_soup(&in);
+    if (!s.xyz) return;
+    if (fz_byte(&in) > 230) {
+        fz_geodesic(&in, &s, &c);
+    } else {
+        o = fz_laplacian_opts(&in, &c.ctx, held, s.n);
+        if (fz_status(fz_laplacian_of(&in, &lap, &s, &o, &e), &e, &c) >= 0) {
+            fz_check_laplacian(lap);
+            fz_ask(&in, lap, &c);
+            if (lap->moving && fz_byte(&in) & 1) {
+                s.xyz[fz_below(&in, 3 * s.n)] = fz_number(&in);
+                fz_what = "update";
+                (void)fz_status(hd_laplacian_update(lap, s.xyz, &e), &e, &c);
+                fz_check_laplacian(lap);
+                fz_ask(&in, lap, &c);
+            }
+        } else {
+            FZ(!lap);
+        }
+        hd_laplacian_free(lap);
+    }
+    fz_context_done(&c);
+    shape_free(&s);
+}
+
+/* Well-formed meshes, and every query of them. */
+static void fz_queries(const uint8_t *data, size_t size) {
+    static const double offset[3] = {4, 0, 0};
+    fz_in in;
+    fz_context c;
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    int32_t held = 2;
+    uint8_t way;
+    shape a, b, s;
+    in.p = data;
+    in.end = data + size;
+    fz_context_make(&c, &in);
+    way = fz_byte(&in);
+    a = shape_icosphere(way & 1);
+    b = shape_grid(3 + (way >> 1 & 3), 3, 0.3);
+    s = shape_disjoint(&a, &b, offset);
+    memset(&o, 0, sizeof o);
+    o.context = &c.ctx;
+    o.kind = (hd_laplacian_kind)(way >> 3 & 3);
+    if (way & 32) o.border = HD_BORDER_DIRICHLET;
+    if (way & 64) { o.n_held = 1; o.held = &held; }
+    if (fz_status(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e), &e, &c) >= 0) {
+        fz_ask(&in, lap, &c);
+        fz_ask(&in, lap, &c);
+    }
+    hd_laplacian_free(lap);
+    fz_context_done(&c);
+    shape_free(&a);
+    shape_free(&b);
+    shape_free(&s);
+}
+
+/* ---- matrices ---- */
+
+typedef struct fz_matrix {
+    hd_csr a;
+    int64_t ptr[20];
+    int32_t col[256];
+    double val[256];
+} fz_matrix;
+
+/* Anything, within arrays as long as it says. */
+static void fz_matrix_any(fz_matrix *m, fz_in *in) {
+    int64_t p, at = 0;
+    int32_t i;
+    m->a.n_rows = fz_below(in, 14);
+    m->a.n_cols = fz_byte(in) < 200 ? m->a.n_rows : fz_int(in, 14);
+    for (i = 0; i <= m->a.n_rows; i++) {
+        m->ptr[i] = at;
+        at += fz_below(in, 6);
+    }
+    m->a.nnz = m->ptr[m->a.n_rows];
+    for (p = 0; p < m->a.nnz; p++) {
+        m->col[p] = fz_int(in, m->a.n_cols);
+        m->val[p] = fz_number(in);
+    }
+    if (fz_byte(in) > 230) m->ptr[fz_below(in, m->a.n_rows + 1)] = (int64_t)fz_raw(in, 8);
+    if (fz_byte(in) > 240) m->a.n_rows = -m->a.n_rows;
+    if (fz_byte(in) > 240) m->a.nnz = fz_byte(in) & 1 ? -1 : m->a.nnz / 2;
+}
+
+/* Symmetric: a random pattern, off-diagonal values of one sign or any, a diagonal that is right, or not quite. */
+static void fz_matrix_symmetric(fz_matrix *m, fz_in *in, int32_t n, double diagonal) {
+    double x[14][14];
+    char there[14][14];
+    const uint8_t way = fz_byte(in);
+    int32_t i, j;
+    memset(x, 0, sizeof x);
+    memset(there, 0, sizeof there);
+    for (i = 0; i < n; i++) {
+        for (j = 0; j < i; j++) {
+            const uint8_t b = fz_byte(in);
+            if (b < 128) continue;
+            there[i][j] = there[j][i] = 1;
+            x[i][j] = x[j][i] = way & 1 ? fz_number(in) : -(b - 127) / 64.0;
+        }
+    }
+    for (i = 0; i < n; i++) {
+        double sum = 0;
+        for (j = 0; j < n; j++) sum += fabs(x[i][j]);
+        there[i][i] = 1;
+        x[i][i] = way & 2 ? fz_number(in) : sum + diagonal;
+    }
+    m->a.n_rows = m->a.n_cols = n;
+    m->a.nnz = 0;
+    for (i = 0; i < n; i++) {
+        m->ptr[i] = m->a.nnz;
+        for (j = 0; j < n; j++) {
+            if (!there[i][j]) continue;
+            m->col[m->a.nnz] = j;
+            m->val[m->a.nnz++] = x[i][j];
+        }
+    }
+    m->ptr[n] = m->a.nnz;
+}
+
+static void fz_csr_out(hd_status st, hd_csr *out, const hd_error *e, fz_context *c) {
+    if (fz_status(st, e, c) < 0) return;
+    FZ(hd_csr_check(out, 0, NULL, NULL) == HD_OK);
+    hd_csr_free(out, &c->ctx);
+}
+
+static void fz_csr(fz_in *in, const fz_matrix *m, fz_context *c) {
+    const hd_csr *const a = &m->a;
+    hd_csr out;
+    hd_error e;
+    int32_t perm[20], i[24], j[24], k, n = fz_below(in, 24);
+    double v[24], x[20], y[20];
+    fz_what = "csr";
+    if (fz_status(hd_csr_check(a, fz_byte(in) & 1, &c->ctx, &e), &e, c) == HD_OK && a->n_cols < 20) {
+        for (k = 0; k < 20; k++) x[k] = 1;
+        hd_csr_apply(a, x, y, &c->ctx);
+        FZ(fz_no_nan(y, 0));
+    }
+    fz_csr_out(hd_csr_transpose(&out, a, &c->ctx, &e), &out, &e, c);
+    fz_csr_out(hd_csr_product(&out, a, a, &c->ctx, &e), &out, &e, c);
+    for (k = 0; k < 20; k++) perm[k] = a->n_rows > 0 ? (k + 1) % a->n_rows : 0;
+    if (fz_byte(in) > 200) perm[0] = fz_int(in, a->n_rows);
+    fz_csr_out(hd_csr_permute(&out, a, perm, &c->ctx, &e), &out, &e, c);
+    for (k = 0; k < n; k++) {
+        i[k] = fz_int(in, 9);
+        j[k] = fz_int(in, 7);
+        v[k] = fz_number(in);
+    }
+    fz_csr_out(hd_csr_from_triplets(&out, fz_int(in, 10), fz_int(in, 8), n, i, j, fz_byte(in) > 200 ? NULL : v, &c->ctx, &e), &out, &e, c);
+}
+
+static void fz_ldl(fz_in *in, const fz_matrix *m, fz_context *c) {
+    const int32_t n = m->a.n_rows;
+    hd_ldl_opts o;
+    hd_ldl_report rep;
+    hd_ldl *f = NULL;
+    hd_error e;
+    double b[28], x[28], inverse[256], diag[14];
+    hd_c64 z[512], zx[28], zi[512], zd[28];
+    int32_t i[5], j[5], k;
+    fz_what = "ldl";
+    memset(&o, 0, sizeof o);
+    o.context = &c->ctx;
+    o.ordering = (hd_ordering)fz_int(in, 3);
+    if (fz_status(hd_ldl_analyse(&f, &m->a, &o, &rep, &e), &e, c) < 0) {
+        FZ(!f);
+        return;
+    }
+    FZ(n <= 14 && m->a.nnz <= 256);
+    for (k = 0; k < 5; k++) {
+        i[k] = fz_int(in, n);
+        j[k] = fz_int(in, n);
+    }
+    for (k = 0; k < 2 * n; k++) b[k] = fz_number(in);
+    for (k = 0; k < 2 * m->a.nnz; k++) {
+        z[k].re = m->val[k % m->a.nnz];
+        z[k].im = k & 1 ? 0.5 : -1;
+    }
+    if (fz_status(hd_ldl_factor(f, m->val, &rep, &e), &e, c) >= 0) {
+        FZ(rep.growth >= 0 && rep.smallest_pivot >= 0 && rep.n_negative >= 0 && rep.n_negative <= n);
+        (void)fz_status(hd_ldl_solve(f, 2, b, 0, x, 0, &e), &e, c);
+        (void)fz_status(hd_ldl_inverse(f, inverse, diag, &e), &e, c);
+        (void)fz_status(hd_ldl_inverse_entries(f, 5, i, j, inverse, &e), &e, c);
+    }
+    if (fz_status(hd_ldl_factor_complex(f, 2, z, &rep, &e), &e, c) >= 0) {
+        (void)fz_status(hd_ldl_solve_complex(f, z, 0, zx, 0, &e), &e, c);
+        (void)fz_status(hd_ldl_inverse_complex(f, zi, zd, &e), &e, c);
+        (void)fz_status(hd_ldl_inverse_entries_complex(f, 5, i, j, zi, &e), &e, c);
+    }
+    hd_ldl_free(f);
+}
+
+static void fz_matrices(const uint8_t *data, size_t size) {
+    fz_in in;
+    fz_context c;
+    fz_matrix L, B;
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    int32_t held[4];
+    uint8_t way;
+    int32_t n;
+    in.p = data;
+    in.end = data + size;
+    fz_context_make(&c, &in);
+    memset(&L, 0, sizeof L);
+    memset(&B, 0, sizeof B);
+    L.a.row_ptr = L.ptr;
+    L.a.col = L.col;
+    L.a.val = L.val;
+    B.a.row_ptr = B.ptr;
+    B.a.col = B.col;
+    B.a.val = B.val;
+    way = fz_byte(&in);
+    n = 1 + fz_below(&in, 13);
+    if (way & 1) fz_matrix_any(&L, &in);
+    else fz_matrix_symmetric(&L, &in, n, way & 2 ? 0.25 : 0);
+    if (way & 4) fz_csr(&in, &L, &c);
+    if (way & 8) fz_ldl(&in, &L, &c);
+    if (way & 16) fz_matrix_any(&B, &in);
+    else fz_matrix_symmetric(&B, &in, n, 1);
+    o = fz_laplacian_opts(&in, &c.ctx, held, n);
+    fz_what = "own matrices";
+    if (fz_status(hd_laplacian_matrices(&lap, &L.a, &B.a, way & 32 ? fz_number(&in) : 0, &o, &e), &e, &c) >= 0) {
+        fz_check_laplacian(lap);
+        fz_ask(&in, lap, &c);
+        if (lap->moving && L.a.nnz > 0) {
+            L.val[fz_below(&in, (int32_t)L.a.nnz)] = fz_number(&in);
+            fz_what = "update of matrices";
+            (void)fz_status(hd_laplacian_update_matrices(lap, &L.a, &B.a, 1, &e), &e, &c);
+            fz_check_laplacian(lap);
+            fz_ask(&in, lap, &c);
+        }
+    } else {
+        FZ(!lap);
+    }
+    hd_laplacian_free(lap);
+    fz_context_done(&c);
+}
+
+/* ---- options ---- */
+
+/* Random bytes over a cleared struct. */
+static void fz_scribble(fz_in *in, void *to, size_t size) {
+    uint8_t *const p = (uint8_t *)to;
+    int k, count = fz_below(in, 12);
+    for (k = 0; k < count; k++) {
+        const size_t at = (size_t)fz_raw(in, 1) % size;
+        p[at] = fz_byte(in);
+    }
+}
+
+static void fz_rational(fz_in *in, hd_rational *set) {
+    int32_t k;
+    if (fz_byte(in) & 1) {
+        (void)hd_rational_get(set, (hd_pole_kind)fz_int(in, 5), fz_int(in, 16), NULL);
+        fz_scribble(in, set, sizeof *set);
+        return;
+    }
+    set->kind = HD_POLES_OWN;
+    set->n_poles = fz_int(in, 6);
+    set->a0 = fz_number(in);
+    for (k = 0; k < 6; k++) {
+        set->theta[k].re = fz_number(in);
+        set->theta[k].im = fabs(fz_number(in));
+        set->a[k].re = fz_number(in);
+        set->a[k].im = fz_number(in);
+        set->degree += set->theta[k].im == 0 ? 1 : 2;
+    }
+    if (fz_byte(in) & 1) set->degree = fz_int(in, 20);
+}
+
+static void fz_option_queries(fz_in *in, const hd_laplacian *lap, const fz_context *c) {
+    int32_t perm[16], id[4], k, n = lap->n;
+    double t[4], u[4 * 4 * 24], d[24 * 16];
+    hd_rational set, sets[4];
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    hd_error e;
+    int32_t n_times, sources;
+    size_t ld;
+    memset(&o, 0, sizeof o);
+    memset(&set, 0, sizeof set);
+    fz_scribble(in, &o, sizeof o);
+    o.context = NULL;
+    for (k = 0; k < 16; k++) perm[k] = (k * 5 + 3) % n;
+    o.perm = fz_byte(in) & 1 ? perm : NULL;
+    fz_rational(in, &set);
+    o.rational = fz_byte(in) & 1 ? &set : NULL;
+    o.max_iterations = o.max_iterations > 500 ? 500 : o.max_iterations;
+    if (fz_byte(in) & 7) o.begin_zero = o.end_zero = 0;
+    n_times = fz_int(in, 5);
+    sources = fz_int(in, 5);
+    ld = fz_byte(in) & 1 ? 0 : (size_t)fz_int(in, 24);
+    for (k = 0; k < 4; k++) {
+        t[k] = fz_number(in);
+        id[k] = fz_int(in, n);
+    }
+    fz_what = "options of plans";
+    if (n_times > 4) n_times = 4;
+    if (sources > 4) sources = 4;
+    if ((int64_t)ld < 0 || ld > 24) ld = 24;
+    if (fz_status(hd_heat_create(&heat, lap, &o, &e), &e, c) < 0) {
+        FZ(!heat);
+        return;
+    }
+    for (k = 0; k < 24 * 16; k++) u[k] = d[k] = 0.5;
+    fz_status(hd_heat_columns(heat, (hd_kernel)fz_int(in, 2), n_times, t, sources, id, u, ld, NULL, &e), &e, c);
+    fz_status(hd_heat_apply(heat, n_times, t, sources, d, ld, u, ld, NULL, &e), &e, c);
+    fz_status(hd_heat_diagonal(heat, (hd_kernel)fz_int(in, 2), n_times, t, u, ld, NULL, &e), &e, c);
+    fz_status(hd_heat_distance(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, sources, id, d, ld, NULL, &e), &e, c);
+    fz_status(hd_heat_pairs(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, sources, id, id, u, d, NULL, &e), &e, c);
+    fz_status(hd_heat_entries(heat, (hd_kernel)fz_int(in, 2), n_times, t, sources, id, id, u, NULL, &e), &e, c);
+    fz_status(hd_rational_shared(sets, n_times, t, fz_number(in), NULL, &e), &e, c);
+    if (e.status >= 0) for (k = 0; k < n_times; k++) FZ(mio_is_finite(hd_rational_eval(sets + k, -fabs(t[k]))));
+    hd_heat_free(heat);
+}
+
+static void fz_options_rest(fz_in *in, const shape *s, const hd_laplacian *lap, fz_context *c) {
+    int32_t index[64], n = fz_int(in, 8), m = fz_int(in, 8);
+    double d[64];
+    hd_geodesic_opts go;
+    hd_geodesic *g = NULL;
+    hd_spectrum_opts so;
+    hd_spectrum *p = NULL;
+    hd_csr a;
+    hd_error e;
+    fz_what = "options of eigenpairs";
+    memset(&so, 0, sizeof so);
+    fz_scribble(in, &so, sizeof so);
+    so.context = &c->ctx;
+    so.perm = NULL;
+    if (fz_byte(in) & 7) so.begin_zero = so.end_zero = 0;
+    if (fz_status(hd_spectrum_create(&p, lap, &so, &e), &e, c) >= 0) hd_spectrum_free(p);
+    fz_what = "options of geodesics";
+    memset(&go, 0, sizeof go);
+    fz_scribble(in, &go, sizeof go);
+    go.context = &c->ctx;
+    go.perm = NULL;
+    if (fz_byte(in) & 7) go.begin_zero = go.end_zero = 0;
+    if (fz_status(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &go, &e), &e, c) >= 0) {
+        fz_status(hd_geodesic_distance(g, 1, &(int32_t){1}, d, NULL, &e), &e, c);
+        hd_geodesic_free(g);
+    }
+    fz_what = "neighbours";
+    if (n > 8) n = 8;
+    if (m > 8) m = 8;
+    fz_status(hd_neighbours_nearest(s->xyz, n, fz_byte(in) & 1 ? s->xyz : NULL, m, fz_below(in, 9), index, d, &c->ctx, &e), &e, c);
+    if (fz_status(hd_neighbours_radius(&a, s->xyz, n, s->xyz, m, fz_number(in), &c->ctx, &e), &e, c) >= 0) hd_csr_free(&a, &c->ctx);
+}
+
+static void fz_options(const uint8_t *data, size_t size) {
+    fz_in in;
+    fz_context c;
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    hd_mesh_view view;
+    hd_error e;
+    int32_t held[4] = {0, 3, 7, 11};
+    shape s = shape_icosphere(0);
+    hd_status st;
+    in.p = data;
+    in.end = data + size;
+    fz_context_make(&c, &in);
+    memset(&o, 0, sizeof o);
+    fz_scribble(&in, &o, sizeof o);
+    o.context = &c.ctx;
+    o.held = fz_byte(&in) & 1 ? held : NULL;
+    if (o.n_held > 4) o.n_held = 4;
+    if (fz_byte(&in) & 7) o.begin_zero = o.end_zero = 0;
+    fz_what = "options of Laplacians";
+    if (fz_byte(&in) & 1) {
+        memset(&view, 0, sizeof view);
+        fz_scribble(&in, &view, sizeof view);
+        view.xyz_float = NULL;
+        view.tri_u16 = NULL;
+        view.tri_i16 = NULL;
+        view.xyz_double = s.xyz;
+        view.tri_i32 = fz_byte(&in) & 3 ? s.tri : NULL;
+        view.tri_u32 = fz_byte(&in) & 3 ? NULL : (const uint32_t *)s.tri;
+        if (view.n > 12) view.n = 12;
+        if (view.n_indices > 60 || view.n_indices == 0) view.n_indices = 60;
+        if (view.n == 0) view.n = 12;
+        if (view.stride > 24) view.stride = 0;
+        st = hd_laplacian_view(&lap, &view, &o, &e);
+    } else {
+        st = hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e);
+    }
+    if (fz_status(st, &e, &c) >= 0) {
+        fz_check_laplacian(lap);
+        if (lap->n <= 16 && lap->n > 1) fz_option_queries(&in, lap, &c);
+        fz_options_rest(&in, &s, lap, &c);
+    } else {
+        FZ(!lap);
+    }
+    hd_laplacian_free(lap);
+    fz_context_done(&c);
+    shape_free(&s);
+}
+
+/* ---- targets ---- */
+
+typedef struct fz_target { const char *name; void (*run)(const uint8_t *data, size_t size); } fz_target;
+
+static const fz_target fz_targets[] = {
+    {"mesh", fz_mesh}, {"table", fz_table}, {"operators", fz_operators}, {"queries", fz_queries}, {"matrices", fz_matrices},
+    {"options", fz_options},
+};
+
+enum { FZ_TARGETS = sizeof fz_targets / sizeof *fz_targets };
+
+#ifdef HEATDIFF_LIBFUZZER
+
+static const fz_target *fz_chosen = fz_targets;
+
+int LLVMFuzzerInitialize(int *argc, char ***argv);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+int LLVMFuzzerInitialize(int *argc, char ***argv) {
+    int i, k;
+    for (i = 1; i < *argc; i++)
+        for (k = 0; k < FZ_TARGETS; k++)
+            if (strncmp((*argv)[i], "--target=", 9) == 0 && strcmp((*argv)[i] + 9, fz_targets[k].name) == 0) fz_chosen = fz_targets + k;
+    return 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    fz_chosen->run(data, size);
+    return 0;
+}
+
+#else
+
+static int fz_ran;
+static const char *fz_unpack;                    /* folder, or NULL: run */
+
+static void fz_input(const fz_target *target, const char *name, const uint8_t *data, size_t size) {
+    char path[1024];
+    FILE *f;
+    uint8_t *copy;
+    fz_ran++;
+    if (!fz_unpack) {
+        fz_what = name;
+        copy = (uint8_t *)malloc(size ? size : 1);       /* of its own size, for sanitizers */
+        if (!copy) abort();
+        if (size) memcpy(copy, data, size);
+        target->run(copy, size);
+        free(copy);
+        return;
+    }
+    snprintf(path, sizeof path, "%s/%s", fz_unpack, target->name);
+    (void)mkdir(path, 0700);
+    snprintf(path, sizeof path, "%s/%s/kept-%d", fz_unpack, target->name, fz_ran);
+    f = fopen(path, "wb");
+    if (!f || fwrite(data, 1, size, f) != size || fclose(f) != 0) {
+        perror(path);
+        exit(2);
+    }
+}
+
+static void fz_lines(const fz_target *target, const char *corpus) {
+    char path[1024], line[8200];
+    uint8_t bytes[4100];
+    unsigned u;
+    FILE *f;
+    snprintf(path, sizeof path, "%s/%s.txt", corpus, target->name);
+    f = fopen(path, "rb");
+    while (f && fgets(line, sizeof line, f)) {
+        size_t n = 0;
+        if (line[0] == '#') continue;
+        while (n < sizeof bytes && sscanf(line + 2 * n, "%2x", &u) == 1) bytes[n++] = (uint8_t)u;
+        fz_input(target, path, bytes, n);
+    }
+    if (f) fclose(f);
+}
+
+static void fz_folder(const fz_target *target, const char *corpus) {
+    static uint8_t bytes[1 << 20];
+    char path[512], file[1024];
+    struct dirent *entry;
+    DIR *dir;
+    snprintf(path, sizeof path, "%s/%s", corpus, target->name);
+    dir = opendir(path);
+    while (dir && (entry = readdir(dir)) != NULL) {
+        FILE *f;
+        if (entry->d_name[0] == '.') continue;
+        snprintf(file, sizeof file, "%s/%s", path, entry->d_name);
+        f = fopen(file, "rb");
+        if (!f) continue;
+        fz_input(target, file, bytes, fread(bytes, 1, sizeof bytes, f));
+        fclose(f);
+    }
+    if (dir) closedir(dir);
+}
+
+int main(int argc, char **argv) {
+    int k;
+    if (argc == 4 && strcmp(argv[2], "--unpack") == 0) fz_unpack = argv[3];
+    if (argc != 2 && !fz_unpack) {
+        fprintf(stderr, "usage: fuzz CORPUS [--unpack DIR]\n");
+        return 2;
+    }
+    for (k = 0; k < FZ_TARGETS; k++) {
+        fz_ran = 0;
+        fz_lines(fz_targets + k, argv[1]);
+        fz_folder(fz_targets + k, argv[1]);
+        printf("%-10s %4d inputs\n", fz_targets[k].name, fz_ran);
+        if (!fz_ran) {
+            fprintf(stderr, "fuzz: no inputs of target %s in %s\n", fz_targets[k].name, argv[1]);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+#endif
