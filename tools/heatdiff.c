@@ -2740,7 +2740,7 @@ static hd_status geodesic_plan(run *r, const hd_geodesic_opts *opts, hd_error *e
 {
     const mesh_data *m = &r->mesh;
     if (m->n_tri == 0) return hd_geodesic_create_points(&r->geodesic, m->xyz, m->n, NULL, NULL, opts, err);
-    if (laplacian_kind(r) == HD_LAPLACIAN_POLYGON)
+    if (laplacian_kind(r) == HD_LAPLACIAN_POLYGON && !r->from)   /* places lie in triangles */
         return hd_geodesic_create_polygons(&r->geodesic, m->xyz, m->n, m->file.face_ptr, m->file.face_idx,
                                            m->n_faces, opts, err);
     return hd_geodesic_create(&r->geodesic, m->xyz, m->n, m->tri, m->n_tri, opts, err);
