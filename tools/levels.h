@@ -163,11 +163,10 @@ static int lev_graph(lev_work *w)
 
 static int lev_add_point(lev_set *s, lev_line *line, const double *p)
 {
-    const double *last = s->xyz + 3 * (s->n_points - 1);
     double d[3];
     int c;
     if (line->count > 0) {
-        for (c = 0; c < 3; c++) d[c] = p[c] - last[c];
+        for (c = 0; c < 3; c++) d[c] = p[c] - s->xyz[3 * (s->n_points - 1) + c];
         if (d[0] == 0 && d[1] == 0 && d[2] == 0) return 1;           /* through a vertex */
         line->length += sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     }
