@@ -33,6 +33,10 @@
        assembly   (L, B) from the triangles, masses fem and voronoi-cot, on one thread. The rival is lists of
                   triplets from which Eigen makes two matrices. Ours also finds edges, components and defects.
                   Errors: largest difference between both, relative to the largest entry
+       pairs      the smallest 500 eigenpairs, from (L, B) to the vectors, by hd_spectrum_create with its proof
+                  that none is missing, and by ARPACK on one factor. Both with the tolerance 1e-10. Errors:
+                  the largest |L x - lambda B x| of each, in the norm of diag(B)^-1, relative to lambda.
+                  Above 60000 rows the rival runs only on request
        eigen      Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU.
                   Slow: above 60000 rows only on request
 
@@ -1669,16 +1673,102 @@ static void job_assembly(bench *b) {
     row_print(&row, b);
 }
 
+/* ---- eigenpairs ---- */
+
+enum { PAIRS = 500 };
+
+/* (A x)(row) for A = L or B. */
+static double pair_row(const rival_pair *p, const double *A, const double *x, int32_t row) {
+    double sum = 0;
+    int64_t q;
+    for (q = p->ptr[row]; q < p->ptr[row + 1]; q++) sum += A[q] * x[p->col[q]];
+    return sum;
+}
+
+/* The largest residual of k vectors by rows, beside constants, with the values that suit them best. */
+static double pairs_residual(const bench *b, const double *X, int k) {
+    const rival_pair *p = &b->pair;
+    double worst = 0;
+    int j;
+    int32_t i;
+    for (j = 0; j < k; j++) {
+        const double *x = X + (size_t)j * (size_t)p->n;
+        double up = 0, down = 0, sum = 0, value;
+        for (i = 0; i < p->n; i++) {
+            up += x[i] * pair_row(p, p->L, x, i);
+            down += x[i] * pair_row(p, p->B, x, i);
+        }
+        value = up / down;
+        for (i = 0; i < p->n; i++) {
+            const double r = pair_row(p, p->L, x, i) - value * pair_row(p, p->B, x, i);
+            sum += r * r / b->lap->b_diag[i];
+        }
+        if (value * b->hh > 1e-9) worst = hdi_max(worst, sqrt(sum / down) / value);   /* else a constant */
+    }
+    return worst;
+}
+
+static double pairs_ours(const bench *b, double *X, entry *row) {
+    hd_spectrum *s = NULL;
+    hd_spectrum_opts o;
+    hd_context ctx;
+    double t;
+    memset(&o, 0, sizeof o);
+    memset(&ctx, 0, sizeof ctx);
+    ctx.n_threads = b->threads;
+    o.context = &ctx;
+    o.count = PAIRS;
+    rest();
+    t = now();
+    if (hd_spectrum_create(&s, b->lap, &o, NULL) < 0) return 0;
+    t = now() - t;
+    memcpy(X, s->vector, (size_t)s->n * PAIRS * sizeof *X);
+    vertices_to_rows(b, X, PAIRS);
+    row->error = pairs_residual(b, X, PAIRS);
+    row->nnz = (double)s->factor_nnz;
+    row->bytes = (double)ctx.bytes_peak;
+    snprintf(row->ours, sizeof row->ours, "%d runs, %s", (int)s->n_runs, s->proven ? "proven" : "not proven");
+    hd_spectrum_free(s);
+    return t;
+}
+
+static void job_pairs(bench *b) {
+    const int rival = HAVE_RIVALS && (b->pair.n <= EIGEN_ROWS || b->set->asked);
+    double *X = b->pair.n >= 3 * PAIRS ? answers(b, PAIRS) : NULL;
+    rival_job job;
+    rival_result r;
+    entry row;
+    if (!X) return;
+    memset(&job, 0, sizeof job);
+    memset(&r, 0, sizeof r);
+    row_clear(&row, b, "pairs", NULL, 0);
+    row.seconds = pairs_ours(b, X, &row);
+    job.pair = &b->pair;
+    job.times = &b->hh;                          /* none is wanted; the trial of orderings takes one */
+    job.n_eigen = PAIRS;
+    job.threads = b->threads;
+    rest();
+    if (rival && rival_eigenpairs(&job, X, &r)) {
+        snprintf(row.rival, sizeof row.rival, "ARPACK, %d solves", (int)r.steps);
+        row.rival_seconds = r.total;
+        row.rival_error = pairs_residual(b, X, PAIRS);
+        row.rival_nnz = r.nnz;
+        row.rival_bytes = r.bytes;
+    } else if (rival) snprintf(row.rival, sizeof row.rival, "ARPACK: %.30s", r.note);
+    if (row.seconds > 0) row_print(&row, b);
+    free(X);
+}
+
 /* ==== meshes ==== */
 
 /* of both masses */
-enum { JOB_SMALL = 1, JOB_ASSEMBLY = 9, JOBS = 10, JOBS_OF_BOTH = 1 << JOB_SMALL | 1 << JOB_ASSEMBLY };
+enum { JOB_SMALL = 1, JOB_ASSEMBLY = 9, JOBS = 11, JOBS_OF_BOTH = 1 << JOB_SMALL | 1 << JOB_ASSEMBLY };
 
 static const struct { const char *name; void (*run)(bench *); } jobs[JOBS] = {
     {"one", job_one}, {"small", job_small}, {"columns", job_columns}, {"further", job_further},
     {"times", job_times}, {"stages", job_stages},
     {"geodesic", job_geodesic}, {"signature", job_signature}, {"eigen", job_eigen},
-    {"assembly", job_assembly}};
+    {"assembly", job_assembly}, {"pairs", job_pairs}};
 
 static void bench_open(bench *b, const settings *set, const char *mesh, const rival_mesh *surface,
                        const hd_laplacian *lap, int32_t threads, const double *peak) {

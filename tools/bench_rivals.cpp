@@ -1108,6 +1108,9 @@ void eigenpairs(const Job &job, double *U, rival_result *out) {
             pairs.diagonal(job.times[c], job.threads, f.perm(), U ? U + job.rows() * (size_t)c : scratch.p.get());
             r->further = std::min(r->further, now() - start);
         }
+        if (job.n_times == 0) r->further = 0;
+        for (size_t j = 0; U && job.n_times == 0 && j < (size_t)k; j++)
+            for (size_t i = 0; i < job.rows(); i++) U[job.rows() * j + (size_t)f.perm()[i]] = pairs.X[job.rows() * j + i];
         r->analyse = t1 - t0;
         r->factor = t2 - t1;
         r->first = t3 - t2 + r->further;
@@ -1659,7 +1662,7 @@ int rival_eigenpairs(const rival_job *job, double *U, rival_result *result) {
     return guarded(result, [&](rival_result *r) {
         rival_job whole = *job;
         whole.n_sources = 1;
-        check_job(&whole, false, false);
+        if (whole.n_times > 0) check_job(&whole, false, false);
         eigenpairs(Job(whole), U, r);
     });
 }

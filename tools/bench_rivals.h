@@ -111,7 +111,7 @@ int rival_eigen_lu(const rival_job *job, const rival_poles *poles, double *U, ri
 int rival_eigen_ldlt(const rival_job *job, double *U, rival_result *result);
 
 /* k_t(i,i) at every row i and all times from the smallest eigenpairs: ARPACK's Lanczos with implicit restarts on one CHOLMOD factor, then sums of squares.
- * No sources. U [n x n_times]. first: the eigenpairs and one time, further: one more time, steps: solves, width: eigenpairs. */
+ * No sources. U [n x n_times]; without times U [n x n_eigen] receives the vectors. first: the eigenpairs and one time, further: one more time, steps: solves, width: eigenpairs. */
 int rival_eigenpairs(const rival_job *job, double *U, rival_result *result);
 
 /* Columns to measure others against: shift-invert Lanczos with full reorthogonalisation until nothing changes any more. For one source and all times
