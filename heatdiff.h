@@ -1517,10 +1517,11 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
  * poles.
  * At large t few eigenpairs are left, and distances of the first two kinds are sums over them: without
  * cancellation, to a part in 1e7 of the largest one, even if that is 1e-300. They are taken where few are
- * expected to do, and where the bound by poles is above 1e-6 and at most 180 are. What is left out is proven
+ * expected to do, and where the bound by poles is above 1e-6 and at most 360 are. What is left out is proven
  * small by counting eigenvalues (error_rational), residuals of the eigenpairs are in error_solver, and reason
  * says so. The plan keeps the eigenpairs, and uses them for any t they reach. Where they do not fit the byte
- * limit poles go on. On meshes of more than about 100K vertices the bound may reach 1e-5 between the two.
+ * limit poles go on. On meshes of more than about 170K vertices (weighted) or 240K the bound may go above
+ * 1e-6 between the two.
  * Errors as hd_heat_diagonal
  * Cost   one diagonal at 2t, shared by all sources, and one column for each source. HD_DISTANCE_WEIGHTED with
  *        a full B: the diagonal is that of B K_2t and takes about twice as long. Eigenpairs: as
@@ -26617,10 +26618,11 @@ static hd_status hdi_distance_once(hd_heat *heat, const hdi_distances *to, doubl
 /* The tolerance of the residuals of eigenpairs, far below what the bound allows for at t lambda = 700. */
 #define HDI_MODES_RESIDUAL 1e-12
 /* Eigenpairs are tried before poles when so many are expected to do, and after them up to the second number.
- * On meshes of 642 to 41K vertices the bound by poles goes above 1e-6 where 13 to 80 are expected. 20 take
- * one to two times as long as poles do, once, and the second number about ten times. */
+ * The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of 642 to 41K vertices, and at
+ * 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20 take one to two times as long
+ * as poles do, once, and the second number about ten times. */
 #define HDI_MODES_FIRST 20
-#define HDI_MODES_MOST 180
+#define HDI_MODES_MOST 360
 #define HDI_MODES_REASON "at such a t few eigenpairs are left: distances are sums over them"
 /* Vectors further from orthonormal are not what they should be: one may be there twice. */
 #define HDI_MODES_ORTHO 1e-6
