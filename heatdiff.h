@@ -814,7 +814,7 @@ typedef struct hd_cost {
     int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
     double flops;               /* real floating-point operations, of factorisations, inversions and solves */
     /* By a model of one quiet core, within a factor of about two. Iterations may take three times as long,
-     * and with poles on thin triangles whose obtuse angles are left a hundred times. */
+     * and those with poles on thin triangles whose obtuse angles are left far longer. */
     double seconds;
     double bytes;               /* at the peak, beyond what the context has in use now */
     /* The same if poles of degree 14 take over: for demanding fields, and where slivers or the time make the
@@ -23035,7 +23035,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
  * Constants were fitted to meshes of 2K to 10K vertices with t from 0.1 h^2 to 1e5 h^2: balls, tori, grids
  * with jitter, strips, unevenly sampled ones, noise, thin triangles made Delaunay, points. There the model
  * has 0.6 to 2.8 times the steps that Lanczos takes, and 0.4 to 2.8 times those of COCG; 0.6 to 1.7 times
- * where triangles are fair. Thin triangles whose obtuse angles are left take up to a hundred times more. */
+ * where triangles are fair. Thin triangles whose obtuse angles are left may take ten times more, or for ever. */
 #define HDI_LANCZOS_GROWTH 3.3
 #define HDI_LANCZOS_LOWEST 0.22
 #define HDI_LANCZOS_LEAST 3

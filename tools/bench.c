@@ -2227,6 +2227,8 @@ static hd_status trial_once(const hd_laplacian *lap, const trial *x, double t, d
     if (status >= 0 && most > 0 && r->expected.cost[0].bytes > most) status = HD_ERR_MEMORY_LIMIT;
     if (status >= 0) {
         r->expected.cost[0].bytes += (double)ctx.bytes_in_use - (double)before;
+        if (r->expected.analysed)                /* by the estimate, for the run */
+            r->expected.cost[0].seconds += HDI_ROW_ANALYSIS * lap->n_active;
         ctx.bytes_peak = ctx.bytes_in_use;
         if (x->query == HD_QUERY_COLUMNS)
             status = hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, x->k, source, U, 0, &r->report, NULL);

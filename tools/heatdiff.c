@@ -2289,11 +2289,13 @@ static hd_status estimate_query(const run *r, hd_heat *heat, int n_times, hd_est
     /* the tool takes these one by one; the last is the longest of auto:K and what most people write */
     const int single = r->o->command == CMD_PAIRS || (query <= HD_QUERY_COLUMNS && time_by_time(r, n_times));
     const int again = single && n_times > 1;
-    const double *t = r->times + (again ? n_times - 1 : 0), twice[2] = { *t, *t };
+    const double *t = again ? r->times + n_times - 1 : r->times;     /* NULL for eigenpairs */
+    double twice[2];
     hd_estimate two;
     int m;
     if (hd_heat_estimate(heat, query, single ? 1 : n_times, t, k, e, err) < 0 || !again) return err->status;
     /* while a second time is factorised, work arrays of the first are still there */
+    twice[0] = twice[1] = *t;
     if (hd_heat_estimate(heat, query, 2, twice, k, &two, err) < 0) return err->status;
     e->cost[HD_METHOD_DIRECT].bytes = two.cost[HD_METHOD_DIRECT].bytes;
     e->cost[HD_METHOD_DIRECT].bytes_most = two.cost[HD_METHOD_DIRECT].bytes_most;
@@ -2332,8 +2334,10 @@ static void try_options(run *r, const options *o, const char *option)
     if (!same) other.lap = NULL;
     other.heat = NULL;
     if (!interrupt.asked && (same || run_laplacian(&other, &err) >= 0) && other.lap && !run_plan(&other)) {
+        /* the matrices are the run's own then, and so is the analysis where the run has made one */
         if (estimate_query(&other, other.heat, other.n_times, &e, &err) >= 0)
-            add_way(r, option, e.bytes_in_use + e.cost[0].bytes + (same ? (double)r->context.bytes_in_use : 0));
+            add_way(r, option, e.cost[0].bytes + (same ? (double)r->context.bytes_in_use : 0) +
+                    (same && r->estimate.analysed ? 0 : e.bytes_in_use));
         hd_heat_free(other.heat);
     }
     if (!same) hd_laplacian_free(other.lap);
@@ -3027,7 +3031,7 @@ static void json_sources(json *j, const run *r)
 static void json_query(json *j, const run *r)
 {
     const options *o = r->o;
-    if (!(o->command & (CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE)))
+    if (!(o->command & (CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE | CMD_SPECTRUM)))
         json_text(j, "kernel", word_of(KERNELS, o->kernel));
     if (o->command & CMD_METRIC) json_text(j, "definition", word_of(DEFINITIONS, o->definition));
     if (r->sources) json_sources(j, r);
