@@ -3049,6 +3049,7 @@ static void json_heat(json *j, const run *r)
 {
     const hd_report *w = &r->sum.worst;
     int k;
+    json_intrinsic(j, r, &r->lap->mesh);
     json_text(j, "method", method_text(&r->sum));
     json_text(j, "reason", reason_text(&r->sum));
     json_text(j, "solver", or_none(&r->sum.solver));
@@ -3178,17 +3179,19 @@ static void print_heat(const run *r)
     print_seconds(r);
 }
 
-static void report_heat(const run *r)
+/* As JSON or for people; more: what comes after the Laplacian. */
+static void report(const run *r, void (*more)(json *, const run *), void (*print)(const run *))
 {
     json j;
     if (r->o->json) {
         json_begin(&j, r, stderr);
         json_laplacian(&j, r->lap);
-        json_intrinsic(&j, r, &r->lap->mesh);
-        json_heat(&j, r);
+        more(&j, r);
         json_end(&j, r);
-    } else if (!r->o->quiet) print_heat(r);
+    } else if (!r->o->quiet) print(r);
 }
+
+static void report_heat(const run *r) { report(r, json_heat, print_heat); }
 
 /* ---- of --dry-run ---- */
 
@@ -3229,6 +3232,7 @@ static void json_estimate(json *j, const run *r)
     json_open(&inner, j->out);
     for (m = 0; m < r->n_ways; m++) json_number(&inner, r->ways[m].option, r->ways[m].bytes);
     json_close(&inner);
+    json_query(j, r);
 }
 
 static void print_cost(const run *r, const char *name, const hd_cost *c)
@@ -3259,17 +3263,7 @@ static void print_estimate(const run *r)
         fprintf(stderr, "%s needs %.1f MB\n", r->ways[m].option, 1e-6 * r->ways[m].bytes);
 }
 
-static void report_estimate(const run *r)
-{
-    json j;
-    if (r->o->json) {
-        json_begin(&j, r, stderr);
-        json_laplacian(&j, r->lap);
-        json_estimate(&j, r);
-        json_query(&j, r);
-        json_end(&j, r);
-    } else if (!r->o->quiet) print_estimate(r);
-}
+static void report_estimate(const run *r) { report(r, json_estimate, print_estimate); }
 
 /* ---- of geodesic ---- */
 
@@ -3319,22 +3313,14 @@ static void print_geodesic(const run *r)
     print_seconds(r);
 }
 
-static void report_geodesic(const run *r)
-{
-    json j;
-    if (r->o->json) {
-        json_begin(&j, r, stderr);
-        json_laplacian(&j, r->lap);
-        json_geodesic(&j, r);
-        json_end(&j, r);
-    } else if (!r->o->quiet) print_geodesic(r);
-}
+static void report_geodesic(const run *r) { report(r, json_geodesic, print_geodesic); }
 
 /* ---- of spectrum ---- */
 
 static void json_spectrum(json *j, const run *r)
 {
     const hd_spectrum *s = r->spectrum;
+    json_intrinsic(j, r, &r->lap->mesh);
     json_text(j, "method", "direct");
     json_integer(j, "count", s->count);
     json_numbers(j, "eigenvalues", s->value, s->count);
@@ -3371,17 +3357,7 @@ static void print_spectrum(const run *r)
     print_seconds(r);
 }
 
-static void report_spectrum(const run *r)
-{
-    json j;
-    if (r->o->json) {
-        json_begin(&j, r, stderr);
-        json_laplacian(&j, r->lap);
-        json_intrinsic(&j, r, &r->lap->mesh);
-        json_spectrum(&j, r);
-        json_end(&j, r);
-    } else if (!r->o->quiet) print_spectrum(r);
-}
+static void report_spectrum(const run *r) { report(r, json_spectrum, print_spectrum); }
 
 /* ==== pictures ==== */
 
