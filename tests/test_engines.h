@@ -1455,7 +1455,8 @@ static void eng_limit_lifted(void) {
     ctx.byte_limit = need + need / 8;
     o.context = &ctx;
     heat = eng_create(lap, &o);
-    CHECK(eng_ok(heat_column(heat, t, 7, u, &rep), &rep, "limit") && rep.method == HD_METHOD_ITERATIVE && strcmp(rep.reason, "asked for") != 0);
+    /* another t: iterations at the same one may have cost as much as the factors of the poles */
+    CHECK(eng_ok(heat_column(heat, 1.01 * t, 7, u, &rep), &rep, "limit") && rep.method == HD_METHOD_ITERATIVE && strcmp(rep.reason, "asked for") != 0);
     ctx.byte_limit = 0;
     CHECK(eng_ok(heat_column(heat, t, 7, u, &rep), &rep, "limit lifted") && rep.method != HD_METHOD_ITERATIVE);
     CHECK(memcmp(u, want, (size_t)lap->n * sizeof *u) == 0);
