@@ -9288,7 +9288,7 @@ static hd_status hdi_star_order(hdi_star_job *job, hdi_tree *tree, const double 
 static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n_points,
                                  hd_point_report *rep, hdi_scope *s, hdi_scope *keep) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t k, v;
+    int32_t k, v, j;
     int64_t *ptr;
     hdi_places places;
     hdi_tree tree;
@@ -9303,6 +9303,9 @@ static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (v = 0; v <= places.n; v++) ptr[v] = HDI_CAST(int64_t, v) * k;
     (void)hdi_nearest(&tree, NULL, places.n, k, job->nbr, NULL, s->ctx, s->e);
+    for (v = 0; v < places.n && s->e->status >= 0; v++)   /* too far: its square overflows */
+        for (j = 0; j < k; j++)
+            if (job->nbr[ptr[v] + j] < 0) job->nbr[ptr[v] + j] = v;
     return hdi_scope_end(&own);
 }
 
@@ -24768,7 +24771,7 @@ static int hdi_modes_reach(hd_heat *heat, hd_distance_kind kind, double t, int32
         const double more = hdi_modes_expected(heat, above);
         if (x->s.value && x->s.next - x->low >= above)
             return kind == HD_DISTANCE_CLASSICAL || hdi_modes_mass(heat, e) >= 0;
-        if (more > most || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
+        if (!(more <= most) || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
     }
     return 0;
 }

@@ -860,8 +860,25 @@ static void fail_spectrum_ends(void) {
     shape_free(&w.s);
 }
 
+/* Points so far apart that squares of distances overflow have no neighbours: an error or an answer, and no harm. */
+static void fail_far_points(void) {
+    double xyz[3 * 9];
+    hd_laplacian *lap = NULL;
+    hd_status st;
+    int32_t k;
+    for (k = 0; k < 27; k++) xyz[k] = (k % 7 - 3) * 1e200 + (k % 4) * 1e199;
+    st = hd_laplacian_tufted_points(&lap, xyz, 9, NULL, NULL, NULL, NULL);
+    CHECK(st < 0 ? !lap : lap != NULL);
+    if (st >= 0) hd_laplacian_free(lap);
+    lap = NULL;
+    st = hd_laplacian_points(&lap, xyz, 9, NULL, NULL);
+    CHECK(st < 0 ? !lap : lap != NULL);
+    if (st >= 0) hd_laplacian_free(lap);
+}
+
 static void test_failures(void) {
     int k;
+    fail_far_points();
     fail_spectrum_ends();
     fail_memory = fail_random = fail_cancelled = fail_limited = 0;
     for (k = 0; k < FAIL_CASES; k++) fail_run(fail_cases + k);

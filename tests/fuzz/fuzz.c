@@ -302,7 +302,7 @@ static void fz_check_laplacian(const hd_laplacian *lap) {
             size += fabs(lap->L.val[p]);
             if (lap->L.col[p] == r) diagonal = &lap->L.val[p];
         }
-        FZ(diagonal && *diagonal >= -1.01e-12 * size);      /* rounding of what cancels */
+        FZ(diagonal && (!mio_is_finite(size) || *diagonal >= -1.01e-12 * size));      /* rounding of what cancels */
         if (lap->conserves == 1 && mio_is_finite(size)) FZ(fabs(sum) <= 16 * DBL_EPSILON * size);
         mass += lap->mass[r];
     }
@@ -427,6 +427,8 @@ static void fz_check_report(hd_status st, const hd_report *rep) {
         FZ(rep->error.status == st && rep->error.text[0]);
         return;
     }
+    if (!(rep->error_bound >= 0))
+        fprintf(stderr, "bound %g: %g, %g, %g\n", rep->error_bound, rep->error_rational, rep->error_solver, rep->error_rounding);
     FZ(rep->error_bound >= 0 && rep->error_rational >= 0 && rep->error_solver >= 0 && rep->error_rounding >= 0);
     if (st == HD_OK) FZ(rep->error_bound <= 1e-2);
     FZ(rep->reason && rep->reason[0]);
