@@ -9696,7 +9696,7 @@ static hd_status hdi_star_order(hdi_star_job *job, hdi_tree *tree, const double 
 static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n_points,
                                  hd_point_report *rep, hdi_scope *s, hdi_scope *keep) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t k, v;
+    int32_t k, v, j;
     int64_t *ptr;
     hdi_places places;
     hdi_tree tree;
@@ -9711,6 +9711,9 @@ static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (v = 0; v <= places.n; v++) ptr[v] = HDI_CAST(int64_t, v) * k;
     (void)hdi_nearest(&tree, NULL, places.n, k, job->nbr, NULL, s->ctx, s->e);
+    for (v = 0; v < places.n && s->e->status >= 0; v++)   /* too far: its square overflows */
+        for (j = 0; j < k; j++)
+            if (job->nbr[ptr[v] + j] < 0) job->nbr[ptr[v] + j] = v;
     return hdi_scope_end(&own);
 }
 
@@ -22460,10 +22463,13 @@ typedef struct hdi_spec_filter {
     const double *coef;          /* [count] */
 } hdi_spec_filter;
 
+/* A product of two parts of a bound, each at least 0: nothing times infinity is nothing. */
+static double hdi_spec_times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+
 static double hdi_spec_weight(const hdi_spec_filter *f, int32_t i) {
     const double x = hdi_max(f->of->value[i], 0);
-    if (f->power == 0) return exp(-f->t * x);
-    return i < f->of->n_constant || x == 0 ? 0 : f->power == 1 ? 1 / x : 1 / (x * x);
+    if (f->power == 0) return exp(-hdi_spec_times(f->t, x));
+    return i < f->of->n_constant || x == 0 ? 0 : hdi_min(f->power == 1 ? 1 / x : 1 / (x * x), DBL_MAX);
 }
 
 static hdi_spec_filter hdi_spec_filter_of(const hd_spectrum *s, double t, int power) {
@@ -22477,13 +22483,15 @@ static hdi_spec_filter hdi_spec_filter_of(const hd_spectrum *s, double t, int po
     f.of = s;
     f.t = t;
     f.power = power;
-    f.rest = power == 0 ? exp(-t * next) : next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
+    if (power == 0) f.rest = exp(-hdi_spec_times(t, next));
+    else f.rest = next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
     for (i = 0; i < s->count; i++) {
-        const double x = s->value[i], r = root * s->residual[i] * hdi_max(x, low), w = hdi_spec_weight(&f, i);
-        double by = 0;
+        const double x = s->value[i], w = hdi_spec_weight(&f, i);
+        double by = 0, r = hdi_spec_times(root, hdi_spec_times(s->residual[i], hdi_max(x, low)));
         if (power == 0) by = x > 0 ? hdi_min(t, 1 / x) : t;
         else if (i >= s->n_constant) by = power == 1 ? 1 / (low * x) : (1 / x + 1 / low) / (low * x);
-        sum += r * by * (r * by);
+        r = hdi_spec_times(fabs(r), fabs(by));
+        sum += power && i >= s->n_constant && x <= 0 ? HUGE_VAL : r * r;    /* 1/x is not known at all */
         most = hdi_max(most, w);
     }
     f.error = 2 * sqrt(sum) + 4 * (HDI_NOISE_TERMS + s->count) * DBL_EPSILON * most;
@@ -22509,6 +22517,7 @@ static double hdi_spec_entry(const hdi_spec_sum *a, int32_t q, int32_t row, int 
 
 /* A bound of |sqrt(a) - sqrt(b)| where b differs by at most off from a. */
 static double hdi_spec_root_off(double a, double off) {
+    if (off >= HUGE_VAL) return off;
     return off > 0 ? off / hdi_max(sqrt(hdi_max(a, 0)), sqrt(off)) : 0;
 }
 
@@ -22545,13 +22554,13 @@ static void hdi_spec_sum_store(const hdi_spec_sum *a, int32_t row, double sum) {
     double off;
     if (a->distance) {
         const double far_left = sqrt(left) + sqrt(a->left), far_all = sqrt(whole) + sqrt(a->whole);
-        off = a->f.rest * far_left * far_left + a->f.error * far_all * far_all;
+        off = hdi_spec_times(a->f.rest, far_left * far_left) + hdi_spec_times(a->f.error, far_all * far_all);
         off = hdi_spec_root_off(sum, off);
         sum = sqrt(sum);
     } else {
         const double l = a->diagonal ? a->mass ? s->left_mass[v] : left : a->left;
         const double w = a->diagonal ? a->mass ? lap->b_diag[row] : whole : a->whole;
-        off = a->f.rest * sqrt(left * l) + a->f.error * sqrt(whole * w);
+        off = hdi_spec_times(a->f.rest, sqrt(left * l)) + hdi_spec_times(a->f.error, sqrt(whole * w));
     }
     a->out[v] = sum;
     if (a->bound) a->bound[v] = off;
@@ -22596,7 +22605,7 @@ static void hdi_spec_sum_run(hdi_spec_sum *a, int32_t vertex, double inert, doub
 /* A vertex without mass has a zero kernel row: distances to it are those from the origin. */
 static void hdi_spec_sum_inert(hdi_spec_sum *a, int32_t source) {
     const hd_spectrum *s = a->f.of;
-    const double off = a->f.rest * a->left + a->f.error * a->whole;
+    const double off = hdi_spec_times(a->f.rest, a->left) + hdi_spec_times(a->f.error, a->whole);
     double sum = 0;
     int32_t q;
     for (q = 0; q < s->count; q++) sum += a->weight[q] * a->x[q] * a->x[q];
@@ -27010,7 +27019,7 @@ static int hdi_modes_enough(hd_heat *heat, hd_distance_kind kind, double t, int3
         const double more = hdi_modes_expected(heat, above);
         if (x->s.value && x->s.next - x->low >= above)
             return kind == HD_DISTANCE_CLASSICAL || hdi_modes_mass(heat, e) >= 0;
-        if (more > most || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
+        if (!(more <= most) || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
     }
     return 0;
 }

@@ -522,6 +522,75 @@ class Failures(Case):
             self.assertRegex(p.stderr.decode(), r"^heatdiff: error: .*limit\....: cannot write: .*\n$")
             self.assertEqual(sorted(os.listdir(self.folder)), before)
 
+    def hostile(self, *args):
+        """Runs what must fail in one line, in little memory and time, leaving the folder as it is."""
+        import resource
+        before = sorted(os.listdir(self.folder))
+        most = 2 << 30
+        p = subprocess.run([TOOL, *args], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
+                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
+        text = p.stderr.decode(errors="replace")
+        self.assertEqual(p.returncode, 1, text)
+        self.assertRegex(text, r"^heatdiff: error: [^\n]*\n$")
+        self.assertLess(len(text), 600)
+        self.assertNotIn("memory", text)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+        return text
+
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_hostile_meshes(self):
+        """Counts of 2^60, headers that promise more than is there, lines without an end, zero bytes, devices."""
+        huge = 1 << 60
+        ply = "ply\nformat %s 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n" \
+              "element face %d\nproperty list %s int vertex_indices\nend_header\n"
+        for name, content in (("n.off", "OFF\n%d 1 0\n0 0 0\n" % huge), ("f.off", "OFF\n1 %d 0\n0 0 0\n" % huge),
+                              ("k.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n%d 0 1 2\n" % huge), ("m.off", "OFF\n2147483647 2147483647 0\n0 0 0\n"),
+                              ("a.ply", ply % ("ascii", huge, huge, "uchar")), ("b.ply", ply % ("binary_little_endian", huge, huge, "uchar") + "\0" * 40),
+                              ("c.ply", ply % ("binary_big_endian", 2 ** 31 - 1, 1, "uchar") + "\0" * 40),
+                              ("d.ply", (ply % ("binary_little_endian", 1, 1, "uint")).encode() + b"\0" * 12 + b"\xff" * 8),
+                              ("a.stl", b"x" * 80 + b"\xff" * 4 + b"y" * 50), ("points.xyz", "%d\n0 0 0\n" % huge),
+                              ("zero.obj", b"v 0 0 0\n\0v 1 0 0\nv 0 1 0\nf 1 2 3\n"), ("zeros.obj", b"\0" * 100000),
+                              ("digits.obj", b"v " + b"1" * 20000000), ("corners.obj", b"f " + b"1 " * 5000000), ("word.obj", b"v " + b"x" * 20000000),
+                              ("minus.obj", "v 0 0 0\nf -9223372036854775808 -9223372036854775808 99999999999999999999\n")):
+            with self.subTest(name):
+                self.assertIn(name, self.hostile("info", self.file(name, content)))
+        for device in ("/dev/zero", "/dev/urandom", "/dev/full", "/dev/null"):
+            if os.path.exists(device):
+                self.assertIn(device, self.hostile("info", device))
+
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_hostile_fields(self):
+        shapes = ("(%d, 16)" % (1 << 60), "(12, %d)" % (1 << 60), "(%d, %d)" % (1 << 32, 1 << 32), "(4294967296,)", "(-1, 12)")
+        for shape in shapes:
+            head = "{'descr': '<f8', 'fortran_order': False, 'shape': %s, }" % shape
+            head = head.ljust(117) + "\n"
+            data = b"\x93NUMPY\x01\0" + bytes([len(head) % 256, len(head) // 256]) + head.encode() + b"\0" * 96
+            with self.subTest(shape):
+                self.assertIn("h.npy", self.hostile("diffuse", self.small, "--input", self.file("h.npy", data), "--t", "1"))
+        for content in (b"\x93NUMPY\x02\0\xff\xff\xff\xff{", b"1 " * 5000000, b"1" * 20000000, b"0\0" * 12):
+            self.assertIn("h.txt", self.hostile("diffuse", self.small, "--input", self.file("h.txt", content), "--t", "1"))
+
+    @unittest.skipUnless(POSIX, "needs links")
+    def test_links(self):
+        """A link is replaced by the file, and what it pointed at stays."""
+        keep = self.file("pointed-at.txt", "precious")
+        for name, to in (("link.txt", keep), ("dangling.txt", self.path("no/folder/x.txt"))):
+            link = self.path(name)
+            os.symlink(to, link)
+            self.good("kernel", self.small, "--source", 0, "--t", 1, "-o", link)
+            self.assertFalse(os.path.islink(link))
+            with open(link) as f:
+                self.assertEqual(len(numbers(f.read())), 12)
+            os.remove(link)
+        with open(keep) as f:
+            self.assertEqual(f.read(), "precious")
+        os.remove(keep)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
+    def test_full_device(self):
+        for extra in ((), ("--kernel", "symmetric")):
+            self.assertIn("/dev/full", self.hostile("kernel", self.small, "--source", "0", "--t", "1", "-o", "/dev/full", *extra))
+
     @unittest.skipUnless(POSIX, "names end elsewhere")
     def test_long_names(self):
         for e in ("txt", "csv", "npy", "ply", "obj", "vtu", "png"):

@@ -146,6 +146,7 @@ static hd_status fail_matrices(fail_world *w, int variant) {
     hd_csr L = fail_matrix(0, 0), B = fail_matrix(variant & FAIL_EXP ? 1 : 2, 2.001);
     hd_status st;
     o.kind = HD_LAPLACIAN_DEFAULT;
+    if (o.n_held) o.n_held = 1;                  /* there are nine vertices */
     st = hd_laplacian_matrices(&w->lap, &L, &B, 0.5, &o, &w->e);
     if (st >= 0) fail_show_laplacian(w, w->lap);
     hd_csr_free(&L, NULL);
@@ -830,8 +831,55 @@ static void fail_queries(void) {
     }
 }
 
+/* All eigenpairs, no time and endless times: neither a value nor a bound is NaN (0 times infinity), and the values are
+ * those in closed form. */
+static void fail_spectrum_ends(void) {
+    static const double times[4] = {0, 1, 1e300, DBL_MAX};
+    static const int32_t id[2] = {0, 13};
+    fail_world w;
+    hd_spectrum_opts o;
+    double u[21 * 8], b[21 * 8];
+    int32_t k;
+    memset(&w, 0, sizeof w);
+    memset(&o, 0, sizeof o);
+    CHECK(fail_triangles(&w, FAIL_VORONOI) == HD_OK);
+    o.count = w.lap->n_active;
+    CHECK(hd_spectrum_create(&w.spectrum, w.lap, &o, NULL) >= 0 && w.spectrum->next >= HUGE_VAL);
+    CHECK(hd_spectrum_columns(w.spectrum, HD_KERNEL_OPERATOR, 4, times, 2, id, u, b, 0, NULL) == HD_OK);
+    for (k = 0; k < 21 * 8; k++) CHECK_MSG(fabs(u[k]) <= 1.0001 && b[k] >= 0 && b[k] < 1e-6, "%d: %g, bound %g", (int)k, u[k], b[k]);
+    for (k = 0; k < 21; k++) CHECK_MSG(fabs(u[k] - (k == 0)) < 1e-9 && fabs(u[84 + k] - (k == 13)) < 1e-9, "t = 0, vertex %d: %g, %g", (int)k, u[k], u[84 + k]);
+    CHECK(hd_spectrum_diagonal(w.spectrum, HD_KERNEL_OPERATOR, 4, times, u, b, 0, NULL) == HD_OK);
+    for (k = 0; k < 21 * 4; k++) CHECK_MSG(u[k] >= 0 && u[k] <= 1.0001 && b[k] >= 0 && b[k] < 1e-6, "%d: %g, bound %g", (int)k, u[k], b[k]);
+    CHECK(hd_spectrum_distance(w.spectrum, HD_DISTANCE_CLASSICAL, 3, times + 1, 2, id, u, b, 0, NULL) == HD_OK);
+    for (k = 0; k < 21 * 6; k++) CHECK_MSG(u[k] >= 0 && u[k] < 100 && b[k] >= 0, "%d: %g, bound %g", (int)k, u[k], b[k]);
+    for (k = 0; k < 12; k++) CHECK_MSG(u[42 + k] < 1e-9, "one value on the component, at vertex %d: %g", (int)k, u[42 + k]);
+    CHECK(hd_spectrum_distance(w.spectrum, HD_DISTANCE_BIHARMONIC, 0, NULL, 2, id, u, b, 0, NULL) == HD_OK);
+    for (k = 0; k < 21 * 2; k++) CHECK_MSG(u[k] >= 0 && b[k] >= 0, "%d: %g, bound %g", (int)k, u[k], b[k]);
+    hd_spectrum_free(w.spectrum);
+    hd_laplacian_free(w.lap);
+    shape_free(&w.s);
+}
+
+/* Points so far apart that squares of distances overflow have no neighbours: an error or an answer, and no harm. */
+static void fail_far_points(void) {
+    double xyz[3 * 9];
+    hd_laplacian *lap = NULL;
+    hd_status st;
+    int32_t k;
+    for (k = 0; k < 27; k++) xyz[k] = (k % 7 - 3) * 1e200 + (k % 4) * 1e199;
+    st = hd_laplacian_tufted_points(&lap, xyz, 9, NULL, NULL, NULL, NULL);
+    CHECK(st < 0 ? !lap : lap != NULL);
+    if (st >= 0) hd_laplacian_free(lap);
+    lap = NULL;
+    st = hd_laplacian_points(&lap, xyz, 9, NULL, NULL);
+    CHECK(st < 0 ? !lap : lap != NULL);
+    if (st >= 0) hd_laplacian_free(lap);
+}
+
 static void test_failures(void) {
     int k;
+    fail_far_points();
+    fail_spectrum_ends();
     fail_memory = fail_random = fail_cancelled = fail_limited = 0;
     for (k = 0; k < FAIL_CASES; k++) fail_run(fail_cases + k);
     fail_queries();

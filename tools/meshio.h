@@ -244,8 +244,21 @@ static void mio_close(mio_in *in)
     in->data = NULL;
 }
 
+/* Is this neither a file nor a pipe: one like /dev/zero, which never ends? */
+static int mio_is_device(const char *path)
+{
+#if defined(S_ISCHR)
+    struct stat st;
+    return stat(path, &st) == 0 && S_ISCHR(st.st_mode);
+#else
+    (void)path;
+    return 0;
+#endif
+}
+
 static int mio_read_all(mio_in *in, FILE *f)
 {
+    const size_t longest = (size_t)1 << 24;             /* that a terminal would be believed */
     size_t room = 0, block = 1 << 16, got;
     do {
         char *q = (char *)mio_grow(in->data, &room, in->size + block + 1, 1);
@@ -254,6 +267,7 @@ static int mio_read_all(mio_in *in, FILE *f)
         got = fread(q + in->size, 1, block, f);
         in->size += got;
         if (in->stop && in->stop()) return MIO_STOPPED;
+        if (in->size > longest && mio_is_device(in->path)) return mio_fail(in, 0, "a device that has no end");
         if (got < block && ferror(f)) return mio_fail(in, 0, "cannot read: %s", strerror(errno));
         if (block < (size_t)1 << 24) block *= 2;
     } while (!feof(f));
@@ -1948,7 +1962,11 @@ static int mio_file_open(mio_file *f, const char *path, int (*stop)(void), mio_e
         errno = 0;
         if (mio_file_name_temporary(f) < 0) return mio_file_fail(f, "cannot write");
     }
+#if defined(_WIN32)
     f->stream = fopen(f->temporary ? f->temporary : f->path, "wb");
+#else
+    f->stream = fopen(f->temporary ? f->temporary : f->path, f->temporary ? "wbx" : "wb");   /* x: never through a link that others put there */
+#endif
     if (f->stream) return MIO_OK;
     mio_file_fail(f, "cannot write");
     mio_file_forget_temporary(f);
