@@ -26926,7 +26926,7 @@ static double hdi_modes_depth(const hd_heat *heat) {
     int32_t i;
     for (i = 0; i < lap->n_components; i++) mass = hdi_max(mass, lap->component_mass[i]);
     for (i = 0; i < lap->n_active; i++) inverse = hdi_max(inverse, hdi_inverse_mass(lap, i));
-    return log(2 * sqrt(inverse) * sqrt(mass) / tol);
+    return hdi_max(0, log(2 * sqrt(inverse) * sqrt(mass) / tol));    /* below zero: tol is all there is */
 }
 
 /* How many eigenvalues above the constants are expected below the lowest of them plus `above`: by those that
@@ -27001,7 +27001,7 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
 
 /* Are no more than `most` eigenpairs expected to do at time t? */
 static HDI_INLINE int hdi_modes_near(const hd_heat *heat, hd_distance_kind kind, double t, int32_t most) {
-    return HDI_HAS_MODES && hdi_modes_apply(heat, kind) &&
+    return HDI_HAS_MODES && t > 0 && hdi_modes_apply(heat, kind) &&
            hdi_modes_expected(heat, hdi_modes_depth(heat) / t) <= most;
 }
 
@@ -27012,9 +27012,9 @@ static HDI_INLINE int hdi_modes_first(const hd_heat *heat, hd_distance_kind kind
 
 /* Are there eigenpairs enough for time t, if need be after finding them? At most `most` are looked for. */
 static int hdi_modes_enough(hd_heat *heat, hd_distance_kind kind, double t, int32_t most, hd_error *e) {
-    const double above = hdi_modes_depth(heat) / t;
+    const double above = t > 0 ? hdi_modes_depth(heat) / t : HUGE_VAL;    /* t may be -0 */
     int32_t tries;
-    if (!hdi_modes_apply(heat, kind)) return 0;
+    if (!(t > 0) || !hdi_modes_apply(heat, kind)) return 0;
     for (tries = 0; tries < 4; tries++) {
         const hdi_modes *x = &heat->modes;
         const double more = hdi_modes_expected(heat, above);

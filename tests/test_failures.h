@@ -876,8 +876,25 @@ static void fail_far_points(void) {
     if (st >= 0) hd_laplacian_free(lap);
 }
 
+/* A time of -0 is 0. */
+static void fail_minus_zero(void) {
+    static const int32_t i[2] = {0, 3}, j[2] = {5, 3};
+    static const double t = -0.0;
+    double K[2], d[2];
+    hd_heat *heat = NULL;
+    fail_world w;
+    memset(&w, 0, sizeof w);
+    CHECK(fail_triangles(&w, FAIL_VORONOI) == HD_OK && hd_heat_create(&heat, w.lap, NULL, NULL) == HD_OK);
+    CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 1, &t, 2, i, j, K, d, NULL, NULL) == HD_OK);
+    CHECK(K[0] == 0 && K[1] == 1 && d[0] > 0 && d[1] == 0);
+    hd_heat_free(heat);
+    hd_laplacian_free(w.lap);
+    shape_free(&w.s);
+}
+
 static void test_failures(void) {
     int k;
+    fail_minus_zero();
     fail_far_points();
     fail_spectrum_ends();
     fail_memory = fail_random = fail_cancelled = fail_limited = 0;
