@@ -18202,14 +18202,20 @@ static void hdi_bound_judge(double bound, hd_report *rep) {
     if (!(bound <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
 }
 
+/* An error relative to the largest value; of one that is not a number nothing is known. */
+static double hdi_ledger_part(double off, double largest) {
+    const double part = hdi_quotient(off, largest);
+    return hdi_nan(part) ? HUGE_VAL : part;
+}
+
 /* Enters a ledger into a report. The report keeps the worst of all its ledgers. */
 static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     hdi_parts part = l->off;
     double total;
     if (l->n_values == 0) return;
-    part.rational = hdi_quotient(part.rational, l->largest);
-    part.solver = hdi_quotient(part.solver, l->largest);
-    part.rounding = hdi_quotient(part.rounding, l->largest);
+    part.rational = hdi_ledger_part(part.rational, l->largest);
+    part.solver = hdi_ledger_part(part.solver, l->largest);
+    part.rounding = hdi_ledger_part(part.rounding, l->largest);
     total = hdi_parts_sum(&part);
     rep->error_rational = hdi_max(rep->error_rational, part.rational);
     rep->error_solver = hdi_max(rep->error_solver, part.solver);
@@ -30289,6 +30295,8 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
 
 /* The same once the pair of all vertices is there. */
 static hd_status hdi_lap_end(hd_laplacian **out, hd_laplacian *lap, hd_status status, hd_error *e) {
+    if (status >= 0 && lap->kind != HD_LAPLACIAN_MATRICES && !(hdi_finite(lap->area) && hdi_finite(lap->h)))
+        status = hdi_fail(e, HD_ERR_NOT_FINITE, "coordinates are so large that the area is not finite");
     return hdi_lap_done(out, lap, status < 0 ? status : hdi_lap_hold(lap, e));
 }
 

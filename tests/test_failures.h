@@ -876,6 +876,16 @@ static void fail_far_points(void) {
     if (st >= 0) hd_laplacian_free(lap);
 }
 
+/* Areas of faces that a double can hold, and whose sum it cannot. */
+static void fail_large_area(void) {
+    static const double xyz[12] = {0, 0, 0, 1.5e154, 0, 0, 0, 1.5e154, 0, 1.5e154, 1.5e154, 0};
+    static const int32_t tri[6] = {0, 1, 2, 2, 1, 3};
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && !lap);
+    CHECK(strstr(e.text, "area") != NULL);
+}
+
 /* A time of -0 is 0. */
 static void fail_minus_zero(void) {
     static const int32_t i[2] = {0, 3}, j[2] = {5, 3};
@@ -896,6 +906,7 @@ static void test_failures(void) {
     int k;
     fail_minus_zero();
     fail_far_points();
+    fail_large_area();
     fail_spectrum_ends();
     fail_memory = fail_random = fail_cancelled = fail_limited = 0;
     for (k = 0; k < FAIL_CASES; k++) fail_run(fail_cases + k);
