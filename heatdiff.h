@@ -1720,7 +1720,7 @@ HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const in
  * Heat starts with the functional of the source, see hd_source. A source of vertices only gives the distances
  * of hd_geodesic_distance to the last bit.
  * Errors and cost as above, and those of hd_heat_columns_from; HD_ERR_ARGUMENT (row): a point or a piece is
- *        in no face */
+ *        in no face. Plans of polygons take vertices only */
 HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source *source, double *d,
                                                  hd_geodesic_report *report, hd_error *err);
 
