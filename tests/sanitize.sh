@@ -13,7 +13,7 @@ done
 gcc $flags "$top/tests/runner.c" -o "$work/runner" -lm
 gcc $flags "$top/tests/internals.c" -o "$work/internals" -lm
 # two at a time: the groups that take as long as all others, and those
-long="engines spectrum forms"
+long="engines spectrum forms estimate"
 rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long)")
 mkdir "$work/a" "$work/b"
 { "$work/runner" --tmp "$work/a" $long && "$work/internals"; } >"$work/long.log" 2>&1 &
