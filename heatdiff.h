@@ -23129,7 +23129,7 @@ static double hdi_lanczos_steps(const hd_heat *heat, double t) {
 /* Of all poles together. Solutions at hand give a good start, so that more poles do not take as many times
  * more steps. */
 static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
-    static const double precond[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
+    static const double hdi_steps_of[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
     const hdi_steps_scales *s = &heat->scales;
     const hd_laplacian *lap = heat->source;
     const double wide = hdi_max(1, HDI_CAST(double, lap->L.nnz) / (7.0 * lap->n_active));
@@ -23137,7 +23137,7 @@ static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
     double one = HDI_COCG_GROWTH * pow(bounded * s->local / pow(wide, HDI_COCG_WIDE), HDI_COCG_POWER);
     one += 1 + (lap->B ? HDI_COCG_FULL_B : 0);
     one *= exp(HDI_COCG_OBTUSE * s->obtuse * s->obtuse) * hdi_steps_digits(heat);
-    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : precond[heat->opts.precond];
+    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_steps_of[heat->opts.precond];
     return hdi_min(one * sqrt(5.0 * poles), HDI_CAST(double, heat->opts.max_iterations) * poles);
 }
 
