@@ -21934,14 +21934,14 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
 /* Puts the Ritz vectors nearest to the shift, of which[0..n), after the basis. A step of inverse iteration
  * enlarges the rounding of a residual in their direction by the quotient of the distances to the shift. */
 static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
-    int32_t near[HDI_SPEC_WIDE], m = 0, i, j;
+    int32_t closest[HDI_SPEC_WIDE], m = 0, i, j;
     for (i = 0; i < n; i++) {
-        for (j = m; j > 0 && fabs(s->d[near[j - 1]]) < fabs(s->d[which[i]]); j--)
-            if (j < HDI_SPEC_WIDE) near[j] = near[j - 1];
-        if (j < HDI_SPEC_WIDE) near[j] = which[i];
+        for (j = m; j > 0 && fabs(s->d[closest[j - 1]]) < fabs(s->d[which[i]]); j--)
+            if (j < HDI_SPEC_WIDE) closest[j] = closest[j - 1];
+        if (j < HDI_SPEC_WIDE) closest[j] = which[i];
         m = hdi_low32(m + 1, HDI_SPEC_WIDE);
     }
-    hdi_spec_coefficients(s, near, m);
+    hdi_spec_coefficients(s, closest, m);
     memset(s->w, 0, 8 * HDI_CAST(size_t, s->n) * sizeof *s->w);
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->w, 1), s->h, 0);
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, 1), NULL, 1);
