@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The tests under sanitizers, with asserts and without; first, a planted error proves that the sanitizer is on.   Usage: sanitize.sh WORKFOLDER
+# The tests under sanitizers, with asserts and without; first, a planted error proves that the sanitizer is on.
+#     Usage: sanitize.sh WORKFOLDER [all]      all: the groups forms and estimate too, which take long; what they run others run too
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 work=$1
@@ -13,8 +14,10 @@ done
 gcc $flags "$top/tests/runner.c" -o "$work/runner" -lm
 gcc $flags "$top/tests/internals.c" -o "$work/internals" -lm
 # two at a time: the groups that take as long as all others, and those
-long="engines spectrum forms estimate"
-rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long)")
+long="engines spectrum"
+slow="forms estimate"
+rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long $slow)")
+[ "${2:-}" != all ] || long="$long $slow"
 mkdir "$work/a" "$work/b"
 { "$work/runner" --tmp "$work/a" $long && "$work/internals"; } >"$work/long.log" 2>&1 &
 "$work/runner" --tmp "$work/b" $rest
