@@ -24828,11 +24828,12 @@ static void hdi_halves_load(hdi_halves *z, int32_t q) {
     const hd_laplacian *lap = z->h->heat->source;
     double most = 0;
     int32_t i;
+    int exponent = 0;
     hdi_gather(lap, z->h->ask.F + HDI_CAST(size_t, q) * z->h->ask.ldf, z->x);
     for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(z->x[i]));
-    z->exponent[q] = 0;
-    if (most > 0) frexp(most, &z->exponent[q]);
-    for (i = 0; i < lap->n_active; i++) z->x[i] = ldexp(z->x[i], -z->exponent[q]);
+    if (most > 0) frexp(most, &exponent);
+    z->exponent[q] = exponent;
+    for (i = 0; i < lap->n_active; i++) z->x[i] = ldexp(z->x[i], -exponent);
     if (lap->conserves) {
         hdi_component_sums(lap, lap->mass, z->x, z->sums);
         for (i = 0; i < lap->n_components; i++) z->sums[i] /= -lap->component_mass[i];
