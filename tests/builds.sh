@@ -12,8 +12,8 @@ printf '#define HEATDIFF_STATIC\n#define HEATDIFF_IMPLEMENTATION\n#include "heat
 for f in impl use copy1 copy2; do cp "$work/$f.c" "$work/$f.cpp"; done
 count=0
 for c in "gcc -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "gcc -std=c11" "gcc -std=c99 -O3 -march=native" "gcc -std=c99 -DHEATDIFF_NO_THREADS" "gcc -std=c99 -DNDEBUG -O2" \
-         "clang -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "clang -std=c11" "g++ -std=c++11 -Wold-style-cast" "g++ -std=c++17" "g++ -std=c++20" "g++ -std=c++23" \
-         "clang++ -std=c++11 -Wold-style-cast" "clang++ -std=c++17" "clang++ -std=c++20"; do
+         "clang -std=c99 -Wstrict-prototypes -Wmissing-prototypes" "clang -std=c11" "g++ -std=c++11 -Wold-style-cast" "g++ -std=c++20" "g++ -std=c++23" \
+         "clang++ -std=c++11 -Wold-style-cast" "clang++ -std=c++20"; do
   command -v "${c%% *}" >/dev/null || { echo "not here: ${c%% *}"; continue; }
   case $c in *++*) lang=c++ ;; *) lang=c ;; esac
   $c -x $lang -fsyntax-only /dev/null 2>/dev/null || { echo "not here: $c"; continue; }

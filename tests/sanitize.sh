@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests under sanitizers, with asserts and without; first, a planted error proves that the sanitizer is on.
-#     Usage: sanitize.sh WORKFOLDER [all]      all: the groups forms and estimate too, which take long; what they run others run too
+#     Usage: sanitize.sh WORKFOLDER [all]      all: the slow groups too, whose code the others run as well
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 work=$1
@@ -13,9 +13,9 @@ for cc in gcc clang; do
 done
 gcc $flags "$top/tests/runner.c" -o "$work/runner" -lm
 gcc $flags "$top/tests/internals.c" -o "$work/internals" -lm
-# two at a time: the groups that take as long as all others, and those
-long="engines spectrum"
-slow="forms estimate"
+# two at a time: the groups that take about as long as all others, and those
+long="spectrum failures signatures"
+slow="engines diagonal forms estimate"
 rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long $slow)")
 [ "${2:-}" != all ] || long="$long $slow"
 mkdir "$work/a" "$work/b"
