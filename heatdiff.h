@@ -10123,6 +10123,23 @@ static hdi_terms *hdi_terms_all(int32_t k, const hd_source *sources, const hd_la
     return all;
 }
 
+/* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k/area. At the longest time the 2nd of them
+ * has faded to a ten-thousandth, at the shortest time the 300th. */
+#define HDI_TIMES_SHORTEST 0.0024
+#define HDI_TIMES_LONGEST 0.37
+
+/* Times that suit the area, evenly spaced in log t. */
+static void hdi_lap_times(const hd_laplacian *lap, int32_t n_times, double *t) {
+    double area = 0;
+    int32_t q;
+    for (q = 0; q < lap->n_active; q++) area += lap->mass[q];
+    /* B^-1 L tends to Laplacian/area */
+    if (lap->kind == HD_LAPLACIAN_EXP) area = lap->area * lap->area;
+    for (q = 0; q < n_times; q++)
+        t[q] = area * HDI_TIMES_SHORTEST * pow(HDI_TIMES_LONGEST / HDI_TIMES_SHORTEST,
+                                               n_times > 1 ? q / HDI_CAST(double, n_times - 1) : 0.5);
+}
+
 /* ==== [13] degree ====
  * Minimum degree ordering: eliminates, again and again, a vertex whose elimination joins fewest others. The
  * graph that elimination leaves is never written down: an eliminated vertex becomes an element, the list of
@@ -30080,6 +30097,22 @@ static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
     rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
 }
 
+/* Polygons split into triangles. */
+static hd_status hdi_geo_make_fans(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
+                                   hd_error *e) {
+    hdi_scope s = hdi_scope_begin(g->ctx, e);
+    const int64_t m = hdi_poly_fans(in->ptr, in->idx, in->m, NULL);
+    int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
+    hdi_geo_input split = *in;
+    if (!tri) return hdi_scope_end(&s);
+    split.m = HDI_CAST(int32_t, hdi_poly_fans(in->ptr, in->idx, in->m, tri));
+    split.tri = tri;
+    split.ptr = NULL;
+    if (hdi_geo_make(g, &split, o, e) < 0 && e->face >= 0)
+        e->face = hdi_poly_face_of(in->ptr, in->m, e->face);
+    return hdi_scope_end(&s);
+}
+
 /* ==== [30] api ====
  * Owns argument checks, defaults and lifetimes, and the bodies of the public functions. May call
  * everything. */
@@ -31130,26 +31163,13 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     return status;
 }
 
-/* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k/area. At the longest time the 2nd of them
- * has faded to a ten-thousandth, at the shortest time the 300th. */
-#define HDI_TIMES_SHORTEST 0.0024
-#define HDI_TIMES_LONGEST 0.37
-
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t, hd_error *err) {
     hdi_call c;
-    double area = 0;
-    int32_t q;
     (void)hdi_enter(&c, lap ? lap->context : NULL, err);
     hdi_refuse(!lap || !t, "an argument is missing", c.e);
     hdi_refuse(n_times < 1, "times: there is no time", c.e);
-    if (c.e->status < 0) return c.e->status;
-    for (q = 0; q < lap->n_active; q++) area += lap->mass[q];
-    /* B^-1 L tends to Laplacian/area */
-    if (lap->kind == HD_LAPLACIAN_EXP) area = lap->area * lap->area;
-    for (q = 0; q < n_times; q++)
-        t[q] = area * HDI_TIMES_SHORTEST * pow(HDI_TIMES_LONGEST / HDI_TIMES_SHORTEST,
-                                               n_times > 1 ? q / HDI_CAST(double, n_times - 1) : 0.5);
-    return HD_OK;
+    if (c.e->status >= 0) hdi_lap_times(lap, n_times, t);
+    return c.e->status;
 }
 
 HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times, const double *c,
@@ -31628,22 +31648,6 @@ static hd_status hdi_geo_open_plan(hd_geodesic **out, const hd_geodesic_opts *op
         return c->e->status;
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
     return out && there ? HD_OK : hdi_missing(c->e);
-}
-
-/* Polygons split into triangles. */
-static hd_status hdi_geo_make_fans(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
-                                   hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    const int64_t m = hdi_poly_fans(in->ptr, in->idx, in->m, NULL);
-    int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
-    hdi_geo_input split = *in;
-    if (!tri) return hdi_scope_end(&s);
-    split.m = HDI_CAST(int32_t, hdi_poly_fans(in->ptr, in->idx, in->m, tri));
-    split.tri = tri;
-    split.ptr = NULL;
-    if (hdi_geo_make(g, &split, o, e) < 0 && e->face >= 0)
-        e->face = hdi_poly_face_of(in->ptr, in->m, e->face);
-    return hdi_scope_end(&s);
 }
 
 /* The plan of an input whose arguments are there. */
