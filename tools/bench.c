@@ -531,8 +531,8 @@ static double *reference(const bench *b, const ask *a, int k) {
     return NULL;
 }
 
-/* The largest tol that reaches the target on a kept plan, then on a fresh one. Not timed. 0 where tol has no
- * effect. */
+/* The largest tol that reaches the target on a kept plan, then on a fresh one, which may choose another method
+ * for another tol. Not timed. 0 where tol has no effect. */
 static double find_tol(const bench *b, const ask *a, const double *R, double *U) {
     enum { GRID = 88 };          /* 10^(-1 - q/8) */
     ask probe = *a;
@@ -554,7 +554,7 @@ static double find_tol(const bench *b, const ask *a, const double *R, double *U)
         else low = q;
     }
     plan_close(&p);
-    for (tries = 0; tries < 8; tries++) {
+    for (tries = 0; high + tries <= GRID; tries++) {
         probe.tol = pow(10, -1 - (high + tries) / 8.0);
         run_cold(b, &probe, U, &run);
         if (run.fine && error_of(b, U, R, many(a)) <= TARGET) break;

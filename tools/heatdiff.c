@@ -4558,6 +4558,13 @@ static int command_demo(run *r)
 
 /* ==== main ==== */
 
+/* All files are in their places: what is left is to free memory, and the answer is no longer "interrupted". */
+static void ignore_interrupts(void)
+{
+    signal(SIGINT, SIG_IGN);
+    signal(SIGTERM, SIG_IGN);
+}
+
 static int run_command(const options *o)
 {
     run r;
@@ -4577,6 +4584,7 @@ static int run_command(const options *o)
     case CMD_DEMO: code = command_demo(&r); break;
     default: break;
     }
+    if (code == DONE) ignore_interrupts();
     run_end(&r);
     return code;
 }
