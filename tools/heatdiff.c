@@ -406,6 +406,7 @@ typedef struct options {
     source_point *points;            /* the same, if one of them is more than a vertex */
     int n_points, anywhere, curve;
     const char *source_text, *source_file;
+    const char *lengths;             /* a file with those of the edges, or NULL: positions tell */
     const char *input, *output, *title;
     int has_bandwidth;
     time_spec bandwidth;             /* absolute or h2 */
@@ -818,6 +819,11 @@ static const option_def OPTIONS[] = {
     { "tufted", 0, CMD_SURFACE, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
       "the same for any triangles, also with borders and where\n"
       "three and more faces meet; of points, with triangles made\nfrom their neighbours" },
+    { "lengths", 0, CMD_SURFACE, 0, parse_text, AT(lengths), NULL, 0, 0, "F", "a file name",
+      "of triangles: a row for each face of MESH with the lengths of its\n"
+      "edges, from its first corner to the second, from there to the\n"
+      "third, and back, as text or .npy. The places of the vertices\n"
+      "then serve pictures and files alone" },
     { "border", 0, CMD_LAPLACIAN, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
       "of meshes: natural (default): no heat leaves through a border;\n"
       "dirichlet: the vertices of borders are held at zero" },
@@ -1251,6 +1257,25 @@ static int check_intrinsic(const options *o)
     return DONE;
 }
 
+/* Lengths of edges make triangles, and tell no place in space. */
+static int check_lengths(const options *o)
+{
+    if (!o->lengths) return DONE;
+    if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP ||
+        o->laplacian == HD_LAPLACIAN_EXP)
+        return fail(USAGE, "--lengths takes --laplacian fem, voronoi-cot or cot: %s needs places in space",
+                    word_of(LAPLACIANS, o->laplacian));
+    if (o->lambda > 0 || o->has_bandwidth || o->weight_cut > 0)
+        return fail(USAGE, "--lengths is of triangles, --%s of %s",
+                    o->lambda > 0 ? "lambda" : o->has_bandwidth ? "bandwidth" : "weight-cut",
+                    o->lambda > 0 ? "polygons" : "exponential weights");
+    if (o->ordering == HD_ORDERING_NESTED_DISSECTION)
+        return fail(USAGE, "--ordering takes auto or amd with --lengths: dissection cuts in space");
+    if (o->curve && o->command != CMD_GEODESIC)
+        return fail(USAGE, "--curve takes no --lengths beside it: its own length is measured in space");
+    return DONE;
+}
+
 /* There is one mesh for all fields, or one for each. Standard input can be read only once. */
 static int check_render(const options *o)
 {
@@ -1296,8 +1321,12 @@ static int check_options(const options *o)
         return fail(USAGE,
                     "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
     if (o->command == CMD_RENDER && (code = check_render(o)) != DONE) return code;
+    if ((code = check_lengths(o)) != DONE) return code;
     if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
         return fail(USAGE, "--input takes a file name here: the mesh comes from standard input already");
+    if (o->lengths && strcmp(o->lengths, "-") == 0 &&
+        (strcmp(o->mesh, "-") == 0 || (o->input && strcmp(o->input, "-") == 0)))
+        return fail(USAGE, "--lengths takes a file name here: standard input can be read only once");
     return check_output(o);
 }
 
@@ -1623,6 +1652,8 @@ typedef struct mesh_data {
 
 typedef struct field_data { double *values; int32_t columns; } field_data;
 
+static const char *plural(int64_t n) { return n == 1 ? "" : "s"; }
+
 static const char *display_name(const char *path) { return strcmp(path, "-") == 0 ? "<stdin>" : path; }
 
 static const char *base_name(const char *path)
@@ -1709,6 +1740,8 @@ typedef struct run {
     const char *mesh_name;           /* for people */
     hd_context context;
     mesh_data mesh;
+    double *lengths;                 /* [3 mesh.n_tri] with --lengths */
+    int64_t *length_lines;           /* [mesh.n_tri] of its file; NULL: .npy */
     hd_laplacian *lap;
     double *times;                   /* resolved */
     char (*time_names)[NAME_SIZE];   /* "10h2", "0.01" */
@@ -1765,6 +1798,8 @@ static void run_end(run *r)
     hd_spectrum_free(r->spectrum);
     hd_laplacian_free(r->lap);
     mesh_free(&r->mesh);
+    free(r->lengths);
+    free(r->length_lines);
     free(r->times);
     free(r->time_names);
     free(r->sources);
@@ -1807,10 +1842,43 @@ static int fail_library(const char *file, const hd_error *e)
     return fail(FAILED, "%s:%s %s", file, place, e->text[0] ? e->text : hd_status_text(e->status));
 }
 
+/* Can the faces of the mesh have lengths of edges, and are there as many rows of them? */
+static int check_length_rows(const run *r, int64_t rows, int32_t columns)
+{
+    const mesh_data *m = &r->mesh;
+    const char *file = display_name(r->o->lengths);
+    int32_t f;
+    if (m->n_faces == 0) return fail(FAILED, "%s: --lengths needs faces, and there are none", r->mesh_name);
+    for (f = 0; f < m->n_faces; f++)
+        if (m->file.face_ptr[f + 1] - m->file.face_ptr[f] != 3)
+            return fail(FAILED, "%s: face %ld: --lengths takes triangles, and it has %lld corners", r->mesh_name,
+                        (long)f, (long long)(m->file.face_ptr[f + 1] - m->file.face_ptr[f]));
+    if (columns != 3)
+        return fail(FAILED, "%s: %ld column%s; a face has three edges", file, (long)columns, plural(columns));
+    return rows == m->n_faces ? DONE : fail(FAILED, "%s: %lld rows, but %s has %ld faces", file, (long long)rows,
+                                            r->mesh_name, (long)m->n_faces);
+}
+
+/* --lengths: the three of a face side by side, as the library takes them. */
+static int run_lengths(run *r)
+{
+    mio_error e;
+    double *table = NULL;
+    int64_t rows = 0, f;
+    int32_t columns = 0;
+    const int status = mio_load_table_lines(&table, &rows, &columns, &r->length_lines, r->o->lengths, NULL, &e);
+    int code = status < 0 ? fail_file(status, &e) : check_length_rows(r, rows, columns);
+    if (!code && (r->lengths = new_columns(rows, 3)) == NULL) code = fail_memory("the lengths");
+    for (f = 0; f < 3 * rows && !code; f++) r->lengths[f] = table[f % 3 * rows + f / 3];
+    free(table);
+    return code;
+}
+
 static int run_load(run *r)
 {
     const double start = now();
-    const int code = mesh_load(&r->mesh, r->o->mesh);
+    int code = mesh_load(&r->mesh, r->o->mesh);
+    if (!code && r->o->lengths) code = run_lengths(r);
     r->sec.load = now() - start;
     return code;
 }
@@ -1899,6 +1967,7 @@ static hd_status run_laplacian(run *r, hd_error *err)
     else if (opts.kind == HD_LAPLACIAN_POLYGON)
         status = hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces,
                                        &opts, err);
+    else if (r->lengths) status = hd_laplacian_lengths(&r->lap, r->lengths, m->n, m->tri, m->n_tri, &opts, err);
     else status = hd_laplacian_triangles(&r->lap, m->xyz, m->n, m->tri, m->n_tri, &opts, err);
     interrupt.patient = 0;
     r->sec.assemble = now() - start;
@@ -1907,8 +1976,22 @@ static hd_status run_laplacian(run *r, hd_error *err)
 
 static const double WIDER_CUT = 1e-4;    /* halves the rows of exponential weights and changes L by 0.1 % */
 
+/* An error about the lengths of a face: where they stand. */
+static int fail_length(const run *r, const hd_error *err)
+{
+    const char *file = display_name(r->o->lengths);
+    char edge[48] = "";
+    mio_error e;
+    if (err->vertex >= 0) snprintf(edge, sizeof edge, ", at the edge from vertex %lld", (long long)err->vertex);
+    mio_fail_at(&e, file, r->length_lines ? r->length_lines[err->face] : 0, "face %lld: %s: %.17g%s",
+                (long long)err->face, err->text, err->value, edge);
+    return fail(FAILED, "%s", e.text);
+}
+
 static int fail_laplacian(const run *r, hd_error *err)
 {
+    if (r->lengths && err->face >= 0 && (err->status == HD_ERR_ARGUMENT || err->status == HD_ERR_NOT_FINITE))
+        return fail_length(r, err);
     /* the ways out that find_ways tries: a run whose matrices do not fit has no plan to ask */
     if (err->status == HD_ERR_MEMORY_LIMIT && err->value > 0 && has_exponentials(r) &&
         laplacian_kind(r) == HD_LAPLACIAN_VORONOI_EXP)
@@ -2743,6 +2826,8 @@ static hd_status solve_geodesic_from(run *r)
 static hd_status geodesic_plan(run *r, const hd_geodesic_opts *opts, hd_error *err)
 {
     const mesh_data *m = &r->mesh;
+    if (r->lengths)
+        return hd_geodesic_create_lengths(&r->geodesic, r->lengths, m->n, m->tri, m->n_tri, opts, err);
     if (m->n_tri == 0) return hd_geodesic_create_points(&r->geodesic, m->xyz, m->n, NULL, NULL, opts, err);
     if (laplacian_kind(r) == HD_LAPLACIAN_POLYGON && !r->from)   /* places lie in triangles */
         return hd_geodesic_create_polygons(&r->geodesic, m->xyz, m->n, m->file.face_ptr, m->file.face_idx,
@@ -2906,6 +2991,7 @@ static void json_begin(json *j, const run *r, FILE *out)
     if (r->mesh.file.format) json_text(j, "format", r->mesh.file.format);
     json_integer(j, "n", r->mesh.n);
     json_integer(j, "faces", r->mesh.n_faces);
+    if (r->lengths) json_text(j, "lengths", r->o->lengths);
     if (r->o->matrix) json_number(j, "asymmetry", r->asymmetry);
 }
 
@@ -3074,8 +3160,6 @@ static void json_heat(json *j, const run *r)
     fputc(']', j->out);
 }
 
-static const char *plural(int64_t n) { return n == 1 ? "" : "s"; }
-
 /* What the method did: fill and work of its factorisations, poles, iterations. */
 static void print_method(const run *r)
 {
@@ -3128,8 +3212,9 @@ static void print_query(const run *r)
                 r->filter.max_error / r->filter.largest);
     else if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
     if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
-    fprintf(stderr, "%s Laplacian%s\n", word_of(LAPLACIANS, (int)r->lap->kind),
-            o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+    fprintf(stderr, "%s Laplacian%s%s\n", word_of(LAPLACIANS, (int)r->lap->kind),
+            o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "",
+            r->lengths ? ", from lengths of edges" : "");
 }
 
 /* What the operator made of triangles or points. */
@@ -3726,8 +3811,10 @@ static void info_json(const run *r, const hd_laplacian *lap, const double low[3]
     json_integer(&j, "negative_weights", m->n_negative_weights);
     json_number(&j, "smallest_angle", m->smallest_angle * DEGREES);
     json_intrinsic(&j, r, m);
-    json_numbers(&j, "box_low", low, 3);
-    json_numbers(&j, "box_high", high, 3);
+    if (!r->lengths) {
+        json_numbers(&j, "box_low", low, 3);
+        json_numbers(&j, "box_high", high, 3);
+    }
     json_numbers(&j, "meaningful_times", meaningful, 2);
     json_end(&j, r);
 }
@@ -3752,6 +3839,7 @@ static void info_laplacian(const run *r, const hd_laplacian *lap)
 {
     printf("%-22s %s%s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind),
            r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+    if (r->lengths) printf("%-22s %s\n", "lengths of edges", display_name(r->o->lengths));
 }
 
 static void info_intrinsic(const hd_mesh_report *m)
@@ -3804,8 +3892,9 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     printf("%-22s %lld\n%-22s %ld\n%-22s %ld\n", "edges", (long long)m->n_edges, "components",
            (long)lap->n_components, "boundary loops", (long)m->n_boundary_loops);
     print_count("boundary edges", m->n_boundary_edges, "");
-    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1],
-           high[2] - low[2], low[0], low[1], low[2]);
+    if (!r->lengths)
+        printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0],
+               high[1] - low[1], high[2] - low[2], low[0], low[1], low[2]);
     printf("%-22s %.9g\n%-22s %.9g\n%-22s %.4g degrees\n", "area", lap->area, "mean edge length h", lap->h,
            "smallest angle", m->smallest_angle * DEGREES);
     print_count("vertices without area", m->n_inert, "no heat reaches them");
