@@ -634,7 +634,19 @@ class Failures(Case):
         self.assertIn("not-there", bad("--source-file", self.path("not-there.txt")))
         self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0,0+5"), "source (0|1)")
         self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0+1,0+2+4"), "source 1, point 1.*no face")
-        self.assertIn("--source takes", self.bad(2, "sample", mesh, "--t", 1, "--count", 3, "--source", "0:0.2,0.3"))
+        # farthest from places: the first row is farthest from the source, with its distance
+        for source in (("--source", "1:0.2,0.3"), ("--source", "3,0.5*4+1"), ("--source-file", self.file("from.txt", "1:0.2,0.3\n")),
+                       ("--source", "1:1,0+1:0,1", "--curve")):
+            far = self.field("distance", mesh, "--t", "0.1", *source)
+            far = [min(row) for row in far]
+            got = self.field("sample", mesh, "--t", "0.1", "--count", 3, *source)
+            self.assertEqual(len(got), 3)
+            self.assertEqual(got[0][0], far.index(max(far)))
+            self.assertAlmostEqual(got[0][1], max(far), 6)
+            again = self.field("distance", mesh, "--t", "0.1", "--source", int(got[0][0]))
+            self.assertAlmostEqual(got[1][1], max(min(a, b[0]) for a, b in zip(far, again)), 6)
+        self.assertIn("3 points", self.good("sample", mesh, "--t", "0.1", "--count", 3, "--source", "1:0.2,0.3", "-o", self.path("s.txt")).stderr.decode())
+        self.good("sample", mesh, "--t", "0.1", "--count", 3, "--source", "1:0.2,0.3", "--dry-run")
 
     def test_source_beyond_the_mesh(self):
         for s in (12, 10 ** 7, 10 ** 18, 10 ** 30, "0,12"):
@@ -1819,6 +1831,7 @@ class Distances(Case):
         refused("--count", "sample", "--t", 1)
         refused("--count takes", "sample", "--t", 1, "--count", 0)
         refused("--source takes", "sample", "--t", 1, "--count", 2, "--source", "0,1,2")
+        refused("--source takes", "sample", "--t", 1, "--count", 2, "--source", "0:2,1")
         for t in ("1,2", "auto:2"):
             refused("--t takes", "sample", "--count", 2, "--t", t)
         refused("--kernel", "distance", "--t", 1, "--source", 0, "--kernel", "symmetric")

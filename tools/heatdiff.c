@@ -371,7 +371,7 @@ enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO =
        CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE,
        CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER,
        CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM, CMD_SURFACE = CMD_LAPLACIAN | CMD_GEODESIC,
-       CMD_FROM = CMD_DISTANCE | CMD_GEODESIC, CMD_ANYWHERE = CMD_KERNEL | CMD_FROM };
+       CMD_FROM = CMD_DISTANCE | CMD_GEODESIC, CMD_ANYWHERE = CMD_KERNEL | CMD_FROM | CMD_SAMPLE };
 
 /* TIME_SPECTRAL: over the first eigenvalue. */
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_SPECTRAL, TIME_AUTO } time_unit;
@@ -772,10 +772,13 @@ static const option_def OPTIONS[] = {
     { "curve", 0, CMD_ANYWHERE, 0, parse_flag, AT(curve), NULL, 0, 0, NULL, "no value",
       "the points of each source are joined to a curve, of weight 1 for\n"
       "each unit of length; two in turn lie in one face" },
-    { "source", 0, CMD_SAMPLE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
-      "vertices to begin with (default: the first that has mass)" },
+    { "source", 0, CMD_SAMPLE, 1, parse_sources, 0, NULL, 0, 0, "S[,S..]",
+      "vertices such as 0,17, places in faces such as 12:0.2,0.3, or sums such as 0.5*3+7",
+      "vertices to begin with (default: the first that has mass). If one\n"
+      "is a place in a face or a sum, as of distance, all of them are\n"
+      "what to stay away from, and no rows of the result" },
     { "count", 0, CMD_SAMPLE, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
-      "how many vertices, those of --source included" },
+      "how many vertices; those that --source begins with are included" },
     { "count", 'k', CMD_SPECTRUM, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
       "how many eigenpairs, the smallest" },
     { "below", 0, CMD_SPECTRUM, 0, parse_below, 0, NULL, 0, 0, "X", "a number above 0, such as 100",
@@ -985,7 +988,8 @@ static const command_def COMMANDS[] = {
       "all eigenvalues), and a bound of its error." },
     { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH",
       "A row for each point, in the order in which they were chosen: vertex, its id counted from 0,\n"
-      "and distance, to the nearest of those before it (0 in the first row)." },
+      "and distance, to the nearest of those before it (0 in the first row, unless places in faces\n"
+      "or sums stand before it)." },
     { "spectrum", CMD_SPECTRUM, "the smallest eigenvalues and eigenvectors", "-k K [--below X] [OPTIONS] MESH",
       VERTEX_ROWS "A column for each eigenvector, by ascending eigenvalues, B-orthonormal: x_0, x_1, as .csv\n"
       "and .vtu name them. In text the eigenvalues stand in a first line after #; elsewhere they are\n"
@@ -1198,8 +1202,7 @@ static int check_definition(const options *o)
 static int check_sample(const options *o)
 {
     if (!o->count) return fail(USAGE, "sample needs --count, which takes a number from 1");
-    if (o->anywhere) return fail(USAGE, "--source takes vertex ids from 0 here, such as 0,17");
-    if (o->n_sources > o->count)
+    if (o->n_sources > o->count && !o->anywhere && !o->curve && !o->source_file)
         return fail(USAGE, "--source takes at most --count vertices, which is %ld, not %d", o->count,
                     o->n_sources);
     return DONE;
@@ -2245,7 +2248,7 @@ static int run_places(run *r)
     int i, code = read_points(r);
     if (code) return code;
     r->n_inputs = o->n_sources + (o->source_file != NULL);
-    r->sources = (int32_t *)malloc((size_t)r->n_inputs * sizeof *r->sources);
+    r->sources = (int32_t *)malloc(((size_t)r->n_inputs + (size_t)o->count) * sizeof *r->sources);
     r->from = (hd_source *)calloc((size_t)r->n_inputs, sizeof *r->from);
     r->corner = (int32_t *)malloc((size_t)r->n_points * 3 * sizeof *r->corner);
     r->bary = (double *)malloc((size_t)r->n_points * 3 * sizeof *r->bary);
@@ -2358,7 +2361,7 @@ static hd_query query_of(const run *r, int32_t *k)
     if (o->command == CMD_DIFFUSE) return HD_QUERY_FIELDS;
     if (o->command == CMD_HKS)
         return o->kernel == HD_KERNEL_OPERATOR ? HD_QUERY_DIAGONAL_OPERATOR : HD_QUERY_DIAGONAL;
-    if (o->command == CMD_SAMPLE) *k = (int32_t)o->count;
+    if (o->command == CMD_SAMPLE) *k = (int32_t)o->count + (r->from ? (int32_t)r->n_inputs : 0);
     if (o->command == CMD_PAIRS) *k = pairs_vertices(r);
     if (o->command == CMD_PAIRS && !is_timeless(o)) return HD_QUERY_PAIRS;
     return (hd_query)(HD_QUERY_DISTANCE + o->definition);
@@ -2756,7 +2759,12 @@ static int solve_sample(run *r)
 {
     const options *o = r->o;
     hd_report report;
-    const hd_status status = hd_heat_sample(r->heat, (hd_distance_kind)o->definition, r->times[0], (int32_t)o->count, (int32_t)r->n_inputs, r->sources, r->values, &report, NULL);
+    const hd_distance_kind kind = (hd_distance_kind)o->definition;
+    const int32_t count = (int32_t)o->count, k = (int32_t)r->n_inputs;
+    const double t = r->times[0];
+    const hd_status status = r->from
+        ? hd_heat_sample_from(r->heat, kind, t, k, r->from, count, r->sources, r->values, &report, NULL)
+        : hd_heat_sample(r->heat, kind, t, count, k, r->sources, r->values, &report, NULL);
     return solved_time(r, 0, status, &report);
 }
 
