@@ -800,6 +800,9 @@ typedef enum hd_query {
     HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t; no k */
     HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t; no k */
     HD_QUERY_EDGES,               /* hd_heat_edges; no k */
+    HD_QUERY_TRACE,               /* hd_heat_trace; no k */
+    HD_QUERY_NORMALISED,          /* hd_heat_normalised; no k */
+    HD_QUERY_SCALE_INVARIANT,     /* hd_heat_scale_invariant: t are all its times; no k */
     /* hd_heat_distance: sources, hd_heat_sample: points; commute and biharmonic also hd_heat_pairs */
     HD_QUERY_DISTANCE,            /* classical */
     HD_QUERY_DISTANCE_WEIGHTED,
@@ -28429,6 +28432,68 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     return h->e->status;
 }
 
+/* Traces by a set of poles for so many times: the inverses of each pole stand side by side. held: bytes that
+ * stay from before. */
+static void hdi_estimate_trace_set(const hdi_estimate *x, const hd_rational *set, int32_t n_times,
+                                   double held, hd_cost *c) {
+    const hd_laplacian *lap = x->h->heat->source;
+    const double n = lap->n_active, poles = 2.0 * set->n_poles;
+    const double entries = HDI_CAST(double, (lap->L.nnz - lap->n_active) / 2) + n;
+    const double values = poles * (lap->B ? entries + n : n) + n;
+    double bytes = held + n_times * HDI_CAST(double, sizeof *set) + 8 * values + 16 * poles * set->n_poles;
+    bytes = hdi_bytes_direct(x, set, HDI_AFTER_INVERSE, 2 * set->n_poles, HDI_PROBES, bytes);
+    hdi_cost_direct(x->h->heat, hdi_set_packs(set), hdi_set_lone(set), HDI_AFTER_INVERSE, HDI_PROBES, c);
+    hdi_cost_add(c, 0, 0, bytes);
+}
+
+/* Traces at all times, as hdi_trace_run takes them. held: bytes that stay from before. */
+static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost *c) {
+    hdi_heat_call *h = x->h;
+    const int settled = h->heat->poles_asked || h->heat->exacting;
+    int32_t w, q0, q1, packs = 0, windows = 0;
+    if (h->n_times > 1 && !settled)
+        windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], HDI_SHARED_TOL, h->n_times,
+                                     &packs);
+    if (windows > 0 && !hdi_shared_pays(packs, h->n_times)) windows = 0;
+    for (w = 0, q0 = 0; q0 < h->n_times && h->e->status >= 0; w++, q0 = q1) {
+        hd_rational set;
+        memset(&set, 0, sizeof set);
+        q1 = windows > 0 ? hdi_window_end(h->times, h->n_times, q0, w, windows) : q0 + 1;
+        h->t = h->times[q0];
+        if (settled) (void)hdi_heat_set(h, &set);
+        else (void)hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), HDI_SHARED_TOL);
+        hdi_estimate_trace_set(x, &set, q1 - q0, held, c);
+    }
+    return h->e->status;
+}
+
+/* Traces, and signatures made of diagonals: what the run takes beside them. */
+static hd_status hdi_estimate_signature(const hdi_estimate *x) {
+    const hd_heat *heat = x->h->heat;
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
+    const int normalised = x->query == HD_QUERY_NORMALISED;
+    const double n_times = x->h->n_times;
+    double held = normalised ? 8 * n_times : (8.0 * heat->source->n + 24) * n_times;
+    hdi_estimate diagonal = *x;
+    hd_cost trace;
+    memset(&trace, 0, sizeof trace);
+    diagonal.query = HD_QUERY_DIAGONAL;
+    x->to->method = x->h->method = HD_METHOD_DIRECT;
+    x->to->reason = "diagonals and distances to all vertices need the direct method";
+    x->h->diagonal = 1;
+    if (hdi_estimate_analyse(x->h) < 0) return x->h->e->status;
+    if (x->query == HD_QUERY_TRACE) return hdi_estimate_trace(x, 0, c);
+    if (hdi_estimate_direct(&diagonal) < 0) return x->h->e->status;
+    hdi_estimate_join(c, &trace, held);
+    if (!normalised) return HD_OK;
+    /* lanes and the real factor of the diagonal stay */
+    if (heat->elim.ctx)
+        held += HDI_CAST(double, hdi_batches_need(heat, 1, HDI_PROBES) +
+                                 (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+    if (hdi_estimate_trace(x, held, &trace) >= 0) hdi_cost_add(c, trace.flops, trace.seconds, trace.bytes);
+    return x->h->e->status;
+}
+
 /* The estimate of a query whose arguments are checked. */
 static hd_status hdi_estimate_run(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
@@ -28452,6 +28517,8 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
     } else if (x->query <= HD_QUERY_PAIRS) {
         /* pairs: their columns */
         (void)hdi_estimate_solves(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
+    } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
+        (void)hdi_estimate_signature(x);
     } else {
         (void)hdi_estimate_direct(x);
     }

@@ -1401,6 +1401,11 @@ class Methods(Case):
                     text = self.good(command, self.large, *args, *more, "--dry-run")
                     self.assertEqual(text.stdout, b"")
                     self.assertRegex(text.stderr.decode(), r"dry run: method \w+ \(.+\)\n(.|\n)*flops(.|\n)*MB")
+        for run in (["trace", "--t", "auto:16"], ["hks", "--normalise", "--t", "5h2"], ["hks", "--scale-invariant", "3", "--t", "1h2,100h2"]):
+            d, r = self.dry(run[0], self.large, *run[1:]), self.report(run[0], self.large, *run[1:])
+            e = d["estimate"]
+            self.assertTrue(e["fits"] and e["flops"] > 0 and d["analysed"] and d["method"] == r["method"] == "direct")
+            self.assertTrue(0.999 * r["peak_bytes"] <= e["bytes"] <= 1.3 * r["peak_bytes"], (run, e, r["peak_bytes"]))
         g = self.dry("geodesic", self.large, "--source", "0")
         self.assertTrue(g["analysed"] and g["estimate"]["flops"] > 0 and g["estimate"]["fits"])
         for more in (["-k", "20"], ["-k", "20", "--below", "30"], ["--below", "30"]):
@@ -1589,8 +1594,6 @@ class Distances(Case):
         refused("--normalise is not an option", "kernel", self.dense, "--t", 1, "--source", 0, "--normalise")
         refused("times > 0", "trace", self.dense, "--t", "0")
         refused("needs --t", "trace", self.dense)
-        refused("--dry-run is not an option", "trace", self.dense, "--t", 1, "--dry-run")
-        refused("--dry-run takes", "hks", self.dense, "--t", 1, "--normalise", "--dry-run")
         refused("--t takes", "hks", self.dense, "--t", "1/l2")
         refused("--t takes", "hks", self.dense, "--t", "auto:3/l1")
         refused("--bandwidth takes", "info", self.dense, "--bandwidth", "1/l1")

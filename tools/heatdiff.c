@@ -899,7 +899,7 @@ static const option_def OPTIONS[] = {
     { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES",
       "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
-    { "dry-run", 0, CMD_SOLVES & ~CMD_TRACE, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
+    { "dry-run", 0, CMD_SOLVES, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
       "only tell what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
@@ -1218,7 +1218,6 @@ static int check_signature(const options *o)
         return fail(USAGE, "--normalise takes no --scale-invariant beside it: factors of scale cancel there");
     if (o->kernel == HD_KERNEL_OPERATOR)
         return fail(USAGE, "%s takes --kernel symmetric", form);
-    if (o->normalise && o->dry_run) return fail(USAGE, "--dry-run takes no --normalise beside it");
     if (o->frequencies && (o->n_times != 2 || o->times[0].unit == TIME_AUTO || o->times[1].unit == TIME_AUTO))
         return fail(USAGE,
                     "--t takes the first and the last time with --scale-invariant, such as 1h2,10000h2");
@@ -2359,6 +2358,9 @@ static hd_query query_of(const run *r, int32_t *k)
     if (o->command == CMD_SPECTRUM) *k = spectrum_pairs(r);
     if (o->command == CMD_SPECTRUM) return HD_QUERY_SPECTRUM;
     if (o->command == CMD_DIFFUSE) return HD_QUERY_FIELDS;
+    if (o->command == CMD_TRACE) return HD_QUERY_TRACE;
+    if (o->normalise) return HD_QUERY_NORMALISED;
+    if (o->frequencies) return HD_QUERY_SCALE_INVARIANT;
     if (o->command == CMD_HKS)
         return o->kernel == HD_KERNEL_OPERATOR ? HD_QUERY_DIAGONAL_OPERATOR : HD_QUERY_DIAGONAL;
     if (o->command == CMD_SAMPLE) *k = (int32_t)o->count + (r->from ? (int32_t)r->n_inputs : 0);
