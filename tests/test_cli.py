@@ -1429,6 +1429,7 @@ class Methods(Case):
         points = self.file("points.xyz", "".join("%.17g %.17g %.17g\n" % tuple(p) for p in self.points_of(self.large)))
         run = ["distance", points, "--source", 0, "--t", "3h2"]
         need = self.dry(*run)["estimate"]["bytes"]
+        self.assertEqual(list(self.dry(*run)["ways_out"]), ["--tufted"])   # told in any case: it is a small part
         limit = int(0.5 * need)
         text = self.bad(1, *run, "--memory-limit", limit, "-o", out)
         self.assertRegex(text, r"--tufted needs [0-9.]+ MB, --weight-cut 1e-4 needs [0-9.]+ MB")

@@ -1734,7 +1734,7 @@ static int field_load(field_data *field, const char *path, const char *mesh_name
 enum { NAME_SIZE = 48 };
 
 /* Options with which a run that does not fit the memory would take less. */
-typedef struct way { char option[48]; double bytes; } way;
+typedef struct way { char option[48]; double bytes, seconds; } way;
 enum { MAX_WAYS = 8 };
 
 typedef struct run {
@@ -2399,12 +2399,13 @@ static hd_status estimate_query(const run *r, hd_heat *heat, int n_times, hd_est
 static double bytes_needed(const run *r) { return r->estimate.bytes_in_use + r->estimate.cost[0].bytes; }
 
 /* Notes a way out, if it takes less. */
-static void add_way(run *r, const char *option, double bytes)
+static void add_way(run *r, const char *option, double bytes, double seconds)
 {
     way *w = r->ways + r->n_ways;
     if (r->n_ways == MAX_WAYS || !(bytes < bytes_needed(r))) return;
     snprintf(w->option, sizeof w->option, "%s", option);
     w->bytes = bytes;
+    w->seconds = seconds;
     r->n_ways++;
 }
 
@@ -2425,11 +2426,23 @@ static void try_options(run *r, const options *o, const char *option)
         /* the matrices are the run's own then, and so is the analysis where the run has made one */
         if (estimate_query(&other, other.heat, other.n_times, &e, &err) >= 0)
             add_way(r, option, e.cost[0].bytes + (same ? (double)r->context.bytes_in_use : 0) +
-                    (same && r->estimate.analysed ? 0 : e.bytes_in_use));
+                    (same && r->estimate.analysed ? 0 : e.bytes_in_use), e.cost[0].seconds);
         hd_heat_free(other.heat);
     }
     if (!same) hd_laplacian_free(other.lap);
     interrupt.patient = 1;
+}
+
+/* Points by triangles instead of exponential weights, whose many non-zeros in a row fill up the factors. */
+static void try_tufted(run *r)
+{
+    options o = *r->o;
+    if (!has_exponentials(r) || laplacian_kind(r) != HD_LAPLACIAN_VORONOI_EXP) return;
+    o.tufted = 1;
+    o.laplacian = HD_LAPLACIAN_DEFAULT;
+    o.weight_cut = 0;
+    o.has_bandwidth = 0;
+    try_options(r, &o, "--tufted");
 }
 
 /* What else would do for a run that does not fit, each with its need. */
@@ -2443,12 +2456,13 @@ static void find_ways(run *r)
     char fewer[40];
     r->n_ways = 0;
     if (r->o->method != HD_METHOD_ITERATIVE && iterative->possible)
-        add_way(r, "--method iterative", e->bytes_in_use + iterative->bytes);
+        add_way(r, "--method iterative", e->bytes_in_use + iterative->bytes, iterative->seconds);
     if (r->o->method == HD_METHOD_DIRECT && krylov->possible && !r->o->degree && !r->o->poles)
-        add_way(r, "--method krylov", e->bytes_in_use + krylov->bytes);
+        add_way(r, "--method krylov", e->bytes_in_use + krylov->bytes, krylov->seconds);
     if (r->n_times > 1 && r->heat && estimate_query(r, r->heat, 1, &one, &err) >= 0 &&
         one.cost[0].bytes < 0.95 * e->cost[0].bytes)
-        add_way(r, "one time after the other", one.bytes_in_use + one.cost[0].bytes);
+        add_way(r, "one time after the other", one.bytes_in_use + one.cost[0].bytes,
+                one.cost[0].seconds * r->n_times);
     if (o.degree > 9) {
         o.degree = 8;
         try_options(r, &o, "--degree 8");
@@ -2466,12 +2480,7 @@ static void find_ways(run *r)
     o = *r->o;
     o.precond = HD_PRECOND_JACOBI;
     if (e->method == HD_METHOD_ITERATIVE && (o.degree || o.poles)) try_options(r, &o, "--precond jacobi");
-    o = *r->o;
-    o.tufted = 1;
-    o.laplacian = HD_LAPLACIAN_DEFAULT;
-    o.weight_cut = 0;
-    o.has_bandwidth = 0;
-    if (has_exponentials(r) && laplacian_kind(r) == HD_LAPLACIAN_VORONOI_EXP) try_options(r, &o, "--tufted");
+    try_tufted(r);
     o = *r->o;
     o.weight_cut = WIDER_CUT;
     if (has_exponentials(r) && r->o->weight_cut < WIDER_CUT) try_options(r, &o, "--weight-cut 1e-4");
@@ -2498,7 +2507,8 @@ static int fail_limit(run *r, const hd_error *e)
                 "tenths of the machine's memory)%s", r->mesh_name, 1e-6 * needed, 1e-6 * allowed, ways);
 }
 
-/* --dry-run: the estimate, and what else would fit if the run does not. */
+/* --dry-run: the estimate, and what else would fit if the run does not. Of points, what triangles would take
+ * in any case: often a small part. */
 static int dry_run(run *r)
 {
     hd_error err;
@@ -2506,6 +2516,7 @@ static int dry_run(run *r)
     if (code) return code;
     if (estimate_query(r, r->heat, r->n_times, &r->estimate, &err) < 0) return fail_library(r->mesh_name, &err);
     if (!r->estimate.cost[0].fits) find_ways(r);
+    else try_tufted(r);
     return interrupt.asked ? INTERRUPTED : DONE;
 }
 
@@ -3355,7 +3366,8 @@ static void print_estimate(const run *r)
     for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_KRYLOV; m++)
         if (e->cost[m].possible && r->o->command != CMD_GEODESIC) print_cost(r, word_of(METHODS, m), &e->cost[m]);
     for (m = 0; m < r->n_ways; m++)
-        fprintf(stderr, "%s needs %.1f MB\n", r->ways[m].option, 1e-6 * r->ways[m].bytes);
+        fprintf(stderr, "%s needs %.1f MB and about %.3g s\n", r->ways[m].option, 1e-6 * r->ways[m].bytes,
+                r->ways[m].seconds);
 }
 
 static void report_estimate(const run *r) { report(r, json_estimate, print_estimate); }
@@ -3876,8 +3888,9 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
     if (p->bandwidth > 0 && lap->n_active > 0) {
         printf("%-22s %.9g  (%.4gh2%s)\n", "bandwidth", p->bandwidth, p->bandwidth / (lap->h * lap->h),
                r->o->has_bandwidth ? "" : ", from the sampling");
-        printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld\n", "weights reach",
-               p->cut_radius, p->weight_cut, (double)lap->L.nnz / lap->n_active, (long)p->most_in_row);
+        printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld (7 to 13 with --tufted)\n",
+               "weights reach", p->cut_radius, p->weight_cut, (double)lap->L.nnz / lap->n_active,
+               (long)p->most_in_row);
     }
     print_count("coincident points", p->n_coincident,
                 r->o->tufted ? "in the place of an earlier one, left out"
