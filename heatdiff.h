@@ -124,7 +124,7 @@
                                hd_heat_scale_invariant, hd_heat_edges, hd_ldl_inverse*, diagonal pole sets;
                                implies NO_DIFFUSION. Bounds of the error of method direct are larger, and
                                times so large that only the means are left take longer
-     HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample
+     HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample, also _from sources
      HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. Distances at large t are less accurate, with bounds
                                that say so, and need factors of their poles
      HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Pole sets of your choice need
@@ -800,6 +800,9 @@ typedef enum hd_query {
     HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t; no k */
     HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t; no k */
     HD_QUERY_EDGES,               /* hd_heat_edges; no k */
+    HD_QUERY_TRACE,               /* hd_heat_trace; no k */
+    HD_QUERY_NORMALISED,          /* hd_heat_normalised; no k */
+    HD_QUERY_SCALE_INVARIANT,     /* hd_heat_scale_invariant: t are all its times; no k */
     /* hd_heat_distance: sources, hd_heat_sample: points; commute and biharmonic also hd_heat_pairs */
     HD_QUERY_DISTANCE,            /* classical */
     HD_QUERY_DISTANCE_WEIGHTED,
@@ -1566,6 +1569,19 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       int32_t n_given, int32_t *vertex, double *distance,
                                       hd_report *report, hd_error *err);
 
+/* The same with k sources before the first point, which need not be vertices: every point, the first one too,
+ * is the vertex farthest from all sources and from all points before it. Distances from sources are those of
+ * hd_heat_distance_from.
+ * sources  [k]. With k = 0 this is hd_heat_sample without given points
+ * vertex   [count] all are found
+ * distance [count] or NULL: distance to the sources and the points before it
+ * Errors   also those of hd_heat_columns_from
+ * Cost     a diagonal, and one column for each source and point */
+HEATDIFF_API hd_status hd_heat_sample_from(hd_heat *heat, hd_distance_kind kind, double t,
+                                           int32_t k, const hd_source *sources, int32_t count,
+                                           int32_t *vertex, double *distance,
+                                           hd_report *report, hd_error *err);
+
 /* Single entries of K_t or k_t.
  * t      >= 0
  * values [n_pairs n_times], time by time: the entry (i[q], j[q])
@@ -1613,6 +1629,17 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
                                             int32_t n_times, const double *t, int32_t k,
                                             const int32_t *sources, double *D, double *bound,
                                             size_t ldd, hd_error *err);
+/* The same from sources that need not be vertices, as in hd_heat_columns_from and hd_heat_distance_from. A
+ * source that is one vertex gives that vertex' values to the last bit. */
+HEATDIFF_API hd_status hd_spectrum_columns_from(const hd_spectrum *s, hd_kernel kernel,
+                                                int32_t n_times, const double *t, int32_t k,
+                                                const hd_source *sources, double *U,
+                                                double *bound, size_t ldu, hd_error *err);
+HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distance_kind kind,
+                                                 int32_t n_times, const double *t, int32_t k,
+                                                 const hd_source *sources, double *D,
+                                                 double *bound, size_t ldd, hd_error *err);
+
 /* What a query would take, without running it: the method, floating-point operations, bytes and seconds, by
  * that method and by the others.
  * t        [n_times] as in the query; commute, biharmonic and spectrum: n_times may be 0
@@ -22601,23 +22628,45 @@ static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* Sets the source of a sum, -1: none, and runs it. work [2 count]. inert: what vertices without mass get. */
-static void hdi_spec_sum_run(hdi_spec_sum *a, int32_t vertex, double inert, double *work, hd_context *ctx) {
+/* The source's entries in the vectors, and what bounds follow from: of a sum of vertices by the triangle
+ * inequality. Those without a row count nothing. */
+static void hdi_spec_sum_from(hdi_spec_sum *a, const hdi_terms *from) {
     const hd_spectrum *s = a->f.of;
     const hd_laplacian *lap = s->lap;
-    const int32_t row = vertex >= 0 ? lap->row[vertex] : -1;
+    double left = 0, whole = 0, most = 0;
+    int32_t q, i;
+    for (q = 0; q < s->count; q++) {
+        a->weight[q] = hdi_spec_weight(&a->f, q);
+        a->x[q] = 0;
+        most = hdi_max(most, a->weight[q]);
+    }
+    for (i = 0; i < from->n; i++) {
+        const int32_t v = hdi_terms_at(from, i), row = lap->row[v];
+        const double w = hdi_terms_weight(from, i);
+        if (row < 0) continue;
+        for (q = 0; q < s->count; q++) a->x[q] += w * hdi_spec_entry(a, q, row, a->mass);
+        a->left = a->mass ? s->left_mass[v] : s->left[v];
+        a->whole = a->mass ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
+        left += fabs(w) * sqrt(a->left);
+        whole += fabs(w) * sqrt(a->whole);
+    }
+    if (!from->weight) return;
+    a->left = left * left;
+    a->whole = whole * whole;
+    a->f.error += 4 * from->n * DBL_EPSILON * most;   /* rounding of the sums */
+}
+
+/* Runs a sum. from: its source, without a vertex for diagonals. work [2 count]. inert: what vertices without
+ * mass get. */
+static void hdi_spec_sum_run(hdi_spec_sum *a, const hdi_terms *from, double inert, double *work,
+                             hd_context *ctx) {
+    const hd_spectrum *s = a->f.of;
+    const hd_laplacian *lap = s->lap;
     int32_t q;
     a->x = work;
     a->weight = work + s->count;
     a->left = a->whole = 0;
-    for (q = 0; q < s->count; q++) {
-        a->weight[q] = hdi_spec_weight(&a->f, q);
-        a->x[q] = row >= 0 ? hdi_spec_entry(a, q, row, a->mass) : 0;
-    }
-    if (row >= 0) {
-        a->left = a->mass ? s->left_mass[vertex] : s->left[vertex];
-        a->whole = a->mass ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
-    }
+    hdi_spec_sum_from(a, from);
     for (q = 0; q < s->n; q++) {
         a->out[q] = lap->row[q] == HD_ROW_HELD ? 0 : inert;
         if (a->bound) a->bound[q] = 0;
@@ -22626,14 +22675,14 @@ static void hdi_spec_sum_run(hdi_spec_sum *a, int32_t vertex, double inert, doub
 }
 
 /* A vertex without mass has a zero kernel row: distances to it are those from the origin. */
-static void hdi_spec_sum_inert(hdi_spec_sum *a, int32_t source) {
+static void hdi_spec_sum_inert(hdi_spec_sum *a) {
     const hd_spectrum *s = a->f.of;
     const double off = hdi_spec_times(a->f.rest, a->left) + hdi_spec_times(a->f.error, a->whole);
     double sum = 0;
     int32_t q;
     for (q = 0; q < s->count; q++) sum += a->weight[q] * a->x[q] * a->x[q];
     for (q = 0; q < s->n; q++) {
-        if (s->lap->row[q] >= 0 || s->lap->row[source] < 0) continue;
+        if (s->lap->row[q] >= 0) continue;
         a->out[q] = sqrt(sum);
         if (a->bound) a->bound[q] = hdi_spec_root_off(sum, off);
     }
@@ -22645,7 +22694,10 @@ typedef struct hdi_spec_sums {
     const hd_spectrum *of;
     int32_t n_times, k, power;   /* power: of 1/lambda, for distances without a time */
     const double *t;
-    const int32_t *sources;      /* [k], or NULL: the diagonal */
+    const int32_t *sources;      /* [k], or NULL: the diagonal, or terms */
+    const hd_source *from;       /* [k] sources that need not be vertices, instead; they become terms */
+    const hdi_terms *terms;
+    hdi_scope scope;
     double *work;                /* [2 count + 1] */
     double *out, *bound;         /* column q n_times + m for source q and time m, ld apart */
     size_t ld;
@@ -22664,12 +22716,12 @@ static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, double *
 }
 
 /* Without a time, other components are out of reach. */
-static void hdi_spec_sum_apart(const hd_laplacian *lap, int32_t source, double *out, double *bound) {
-    const int32_t own = lap->row[source] < 0 ? -1 : lap->component[lap->row[source]];
+static void hdi_spec_sum_apart(const hd_laplacian *lap, const hdi_terms *from, double *out, double *bound) {
+    const int32_t own = hdi_terms_component(lap, from);
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         const int32_t row = lap->row[v];
-        if (v == source || (row >= 0 && lap->component[row] == own)) continue;
+        if ((!from->weight && v == from->one) || (row >= 0 && lap->component[row] == own)) continue;
         out[v] = HUGE_VAL;
         if (bound) bound[v] = 0;
     }
@@ -22678,18 +22730,23 @@ static void hdi_spec_sum_apart(const hd_laplacian *lap, int32_t source, double *
 static void hdi_spec_sums_run(hdi_spec_sums *x, hd_context *ctx) {
     hdi_spec_sum *a = &x->sum;
     const hd_laplacian *lap = x->of->lap;
-    int32_t q, m;
+    hdi_terms from;
+    int32_t q, m, i;
+    memset(&from, 0, sizeof from);
     for (q = 0; q < x->k; q++) {
-        const int32_t source = a->diagonal ? -1 : x->sources[q];
+        if (!a->diagonal) from = x->terms ? x->terms[q] : hdi_terms_vertex(x->sources[q]);
         for (m = 0; m < x->n_times; m++) {
             const size_t at = HDI_CAST(size_t, q) * HDI_CAST(size_t, x->n_times) + HDI_CAST(size_t, m);
             a->out = x->out + at * x->ld;
             a->bound = x->bound ? x->bound + at * x->ld : NULL;
             a->f = hdi_spec_filter_of(x->of, a->distance ? 2 * x->t[m] : x->t[m], x->power);
-            hdi_spec_sum_run(a, source, a->diagonal && a->mass, x->work, ctx);
-            if (x->power) hdi_spec_sum_apart(lap, source, a->out, a->bound);
-            else if (a->distance) hdi_spec_sum_inert(a, source);
-            else if (source >= 0 && a->mass && lap->row[source] == HD_ROW_INERT) a->out[source] = 1;
+            hdi_spec_sum_run(a, &from, a->diagonal && a->mass, x->work, ctx);
+            if (x->power) hdi_spec_sum_apart(lap, &from, a->out, a->bound);
+            else if (a->distance) hdi_spec_sum_inert(a);
+            for (i = 0; i < from.n && a->mass && !a->distance; i++) {
+                const int32_t v = hdi_terms_at(&from, i);
+                if (lap->row[v] == HD_ROW_INERT) a->out[v] = hdi_terms_weight(&from, i);
+            }
         }
     }
 }
@@ -27873,25 +27930,27 @@ typedef struct hdi_samples {
     hd_distance_kind kind;
     double t;
     int32_t count, n_given, *vertex;
+    int32_t n_from;              /* sources that come before all vertices */
+    const hdi_terms *terms;      /* [n_from] */
     double *distance, *nearest, *u;
     const hdi_metric *x;
     hdi_mode_sum *sum;
 } hdi_samples;
 
-/* Distances from a vertex into u. */
-static hd_status hdi_sample_distances(hd_heat *heat, const hdi_samples *a, const int32_t *vertex,
+/* Distances from a source into u. */
+static hd_status hdi_sample_distances(hd_heat *heat, const hdi_samples *a, const hdi_terms *from,
                                       hd_report *rep, hd_error *e) {
-    const hdi_distances to = hdi_distances_one(heat, a->kind, vertex, a->u);
-    const hdi_terms from = hdi_terms_vertex(*vertex);
+    hdi_distances to = hdi_distances_one(heat, a->kind, NULL, a->u);
     hdi_metric_column c;
     hdi_ledger ledger;
+    to.terms = from;
     if (a->sum) {
         ledger = hdi_modes_ledger();
-        hdi_mode_sum_run(a->sum, from, a->u, &ledger, rep, heat->ctx);
+        hdi_mode_sum_run(a->sum, *from, a->u, &ledger, rep, heat->ctx);
     } else {
         if (hdi_metric_columns(heat, a->x, &to, &c, rep, e) < 0) return e->status;
         ledger = hdi_metric_ledger(a->x);
-        hdi_metric_distance(heat->source, a->x, &from, &c, NULL, rep, &ledger);
+        hdi_metric_distance(heat->source, a->x, from, &c, NULL, rep, &ledger);
     }
     hdi_ledger_close(&ledger, rep);
     return HD_OK;
@@ -27904,15 +27963,19 @@ static hd_status hdi_sample_points(hd_heat *heat, const hdi_samples *a, hd_repor
     int32_t *vertex = a->vertex, q, v;
     rep->error_relative = 0;
     for (v = 0; v < lap->n; v++) a->nearest[v] = HUGE_VAL;
-    for (q = 0; q < a->count && e->status >= 0; q++) {
-        if (q >= a->n_given) vertex[q] = q == 0 ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
-        if (a->distance) a->distance[q] = q == 0 ? 0 : hdi_max(0, a->nearest[vertex[q]]);
-        if (q + 1 == a->count ||
-            hdi_progress(heat->ctx, "sample", HDI_CAST(double, q) / a->count, e) < 0)
+    for (q = -a->n_from; q < a->count && e->status >= 0; q++) {
+        const int first = q == -a->n_from;
+        hdi_terms from;
+        if (q >= 0) {
+            if (q >= a->n_given) vertex[q] = first ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
+            if (a->distance) a->distance[q] = first ? 0 : hdi_max(0, a->nearest[vertex[q]]);
+        }
+        if (q + 1 == a->count || hdi_progress(heat->ctx, "sample", hdi_max(0, q) / a->count, e) < 0)
             break;
-        if (hdi_sample_distances(heat, a, vertex + q, rep, e) < 0) break;
+        from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
+        if (hdi_sample_distances(heat, a, &from, rep, e) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
-        a->nearest[vertex[q]] = -1;              /* not again, even when no distance is left */
+        if (q >= 0) a->nearest[vertex[q]] = -1;  /* not again, even when no distance is left */
     }
     return e->status;
 }
@@ -27966,21 +28029,12 @@ static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep
     return hdi_sample_poles(heat, a, rep, e);
 }
 
-static hd_status hdi_sample_run(hdi_heat_call *h, hd_distance_kind kind, double t, int32_t count,
-                                int32_t n_given, int32_t *vertex, double *distance) {
-    hdi_samples a;
+static hd_status hdi_sample_run(hdi_heat_call *h, hdi_samples *a) {
     hd_report one;
     memset(&one, 0, sizeof one);
-    memset(&a, 0, sizeof a);
-    a.kind = kind;
-    a.t = t;
-    a.count = count;
-    a.n_given = n_given;
-    a.vertex = vertex;
-    a.distance = distance;
-    a.nearest = HDI_TAKE(&h->s, double, h->heat->source->n);
-    a.u = HDI_TAKE(&h->s, double, h->heat->source->n);
-    if (h->e->status >= 0) (void)hdi_sample_either(h->heat, &a, &one, h->e);
+    a->nearest = HDI_TAKE(&h->s, double, h->heat->source->n);
+    a->u = HDI_TAKE(&h->s, double, h->heat->source->n);
+    if (h->e->status >= 0) (void)hdi_sample_either(h->heat, a, &one, h->e);
     one.error = *h->e;
     *h->rep = one;
     return h->e->status;
@@ -28378,6 +28432,68 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     return h->e->status;
 }
 
+/* Traces by a set of poles for so many times: the inverses of each pole stand side by side. held: bytes that
+ * stay from before. */
+static void hdi_estimate_trace_set(const hdi_estimate *x, const hd_rational *set, int32_t n_times,
+                                   double held, hd_cost *c) {
+    const hd_laplacian *lap = x->h->heat->source;
+    const double n = lap->n_active, poles = 2.0 * set->n_poles;
+    const double entries = HDI_CAST(double, (lap->L.nnz - lap->n_active) / 2) + n;
+    const double values = poles * (lap->B ? entries + n : n) + n;
+    double bytes = held + n_times * HDI_CAST(double, sizeof *set) + 8 * values + 16 * poles * set->n_poles;
+    bytes = hdi_bytes_direct(x, set, HDI_AFTER_INVERSE, 2 * set->n_poles, HDI_PROBES, bytes);
+    hdi_cost_direct(x->h->heat, hdi_set_packs(set), hdi_set_lone(set), HDI_AFTER_INVERSE, HDI_PROBES, c);
+    hdi_cost_add(c, 0, 0, bytes);
+}
+
+/* Traces at all times, as hdi_trace_run takes them. held: bytes that stay from before. */
+static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost *c) {
+    hdi_heat_call *h = x->h;
+    const int settled = h->heat->poles_asked || h->heat->exacting;
+    int32_t w, q0, q1, packs = 0, windows = 0;
+    if (h->n_times > 1 && !settled)
+        windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], HDI_SHARED_TOL, h->n_times,
+                                     &packs);
+    if (windows > 0 && !hdi_shared_pays(packs, h->n_times)) windows = 0;
+    for (w = 0, q0 = 0; q0 < h->n_times && h->e->status >= 0; w++, q0 = q1) {
+        hd_rational set;
+        memset(&set, 0, sizeof set);
+        q1 = windows > 0 ? hdi_window_end(h->times, h->n_times, q0, w, windows) : q0 + 1;
+        h->t = h->times[q0];
+        if (settled) (void)hdi_heat_set(h, &set);
+        else (void)hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), HDI_SHARED_TOL);
+        hdi_estimate_trace_set(x, &set, q1 - q0, held, c);
+    }
+    return h->e->status;
+}
+
+/* Traces, and signatures made of diagonals: what the run takes beside them. */
+static hd_status hdi_estimate_signature(const hdi_estimate *x) {
+    const hd_heat *heat = x->h->heat;
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
+    const int normalised = x->query == HD_QUERY_NORMALISED;
+    const double n_times = x->h->n_times;
+    double held = normalised ? 8 * n_times : (8.0 * heat->source->n + 24) * n_times;
+    hdi_estimate diagonal = *x;
+    hd_cost trace;
+    memset(&trace, 0, sizeof trace);
+    diagonal.query = HD_QUERY_DIAGONAL;
+    x->to->method = x->h->method = HD_METHOD_DIRECT;
+    x->to->reason = "diagonals and distances to all vertices need the direct method";
+    x->h->diagonal = 1;
+    if (hdi_estimate_analyse(x->h) < 0) return x->h->e->status;
+    if (x->query == HD_QUERY_TRACE) return hdi_estimate_trace(x, 0, c);
+    if (hdi_estimate_direct(&diagonal) < 0) return x->h->e->status;
+    hdi_estimate_join(c, &trace, held);
+    if (!normalised) return HD_OK;
+    /* lanes and the real factor of the diagonal stay */
+    if (heat->elim.ctx)
+        held += HDI_CAST(double, hdi_batches_need(heat, 1, HDI_PROBES) +
+                                 (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+    if (hdi_estimate_trace(x, held, &trace) >= 0) hdi_cost_add(c, trace.flops, trace.seconds, trace.bytes);
+    return x->h->e->status;
+}
+
 /* The estimate of a query whose arguments are checked. */
 static hd_status hdi_estimate_run(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
@@ -28401,6 +28517,8 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
     } else if (x->query <= HD_QUERY_PAIRS) {
         /* pairs: their columns */
         (void)hdi_estimate_solves(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
+    } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
+        (void)hdi_estimate_signature(x);
     } else {
         (void)hdi_estimate_direct(x);
     }
@@ -31219,7 +31337,7 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
     if (hdi_enter(c, s ? s->context : NULL, err) < 0) return c->e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c->e, SPECTRUM, "eigenpairs");
     if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c->e);
-    if (!x->sum.diagonal && x->k > 0 && !x->sources) return hdi_missing(c->e);
+    if (!x->sum.diagonal && x->k > 0 && !x->sources && !x->from) return hdi_missing(c->e);
     hdi_refuse(x->n_times < 1, "spectrum: there is no time", c->e);
     hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c->e);
     hdi_refuse(x->ld != 0 && x->ld < HDI_CAST(size_t, s->n), "spectrum: columns would overlap", c->e);
@@ -31231,14 +31349,15 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
         return c->e->status;
     x->of = s;
     x->ld = x->ld ? x->ld : HDI_CAST(size_t, s->n);
-    x->work = HDI_NEW(c->ctx, double, 2 * HDI_CAST(uint64_t, s->count) + 1, c->e);
-    return c->e->status;
+    x->scope = hdi_scope_begin(c->ctx, c->e);
+    x->work = HDI_TAKE(&x->scope, double, 2 * HDI_CAST(uint64_t, s->count) + 1);
+    if (x->from && x->work) x->terms = hdi_terms_all(x->k, x->from, s->lap, x->sum.distance, &x->scope);
+    return c->e->status < 0 ? hdi_scope_end(&x->scope) : HD_OK;
 }
 
 static hd_status hdi_sum_end(hdi_call *c, hdi_spec_sums *x) {
     if (c->e->status >= 0) hdi_spec_sums_run(x, c->ctx);
-    hdi_free(c->ctx, x->work);
-    return c->e->status;
+    return hdi_scope_end(&x->scope);
 }
 
 static void hdi_sum_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_error *e) {
@@ -31246,48 +31365,76 @@ static void hdi_sum_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_error *e) {
     x->sum.mass = kernel == HD_KERNEL_OPERATOR;
 }
 
+static hd_status hdi_sum_columns(hdi_spec_sums *x, const hd_spectrum *s, hd_kernel kernel, hd_error *err) {
+    hdi_call c;
+    if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
+    hdi_sum_kernel(x, kernel, c.e);
+    return hdi_sum_end(&c, x);
+}
+
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, int32_t k, const int32_t *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
     hdi_spec_sums x = hdi_spec_sums_of(n_times, t, U, bound, ldu);
-    hdi_call c;
     x.k = k;
     x.sources = sources;
-    if (hdi_sum_begin(&c, &x, s, err) < 0) return c.e->status;
-    hdi_sum_kernel(&x, kernel, c.e);
-    return hdi_sum_end(&c, &x);
+    return hdi_sum_columns(&x, s, kernel, err);
+}
+
+HEATDIFF_API hd_status hd_spectrum_columns_from(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
+                                                const double *t, int32_t k, const hd_source *sources,
+                                                double *U, double *bound, size_t ldu, hd_error *err) {
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, U, bound, ldu);
+    x.k = k;
+    x.from = sources;
+    return hdi_sum_columns(&x, s, kernel, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
     hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
-    hdi_call c;
     x.k = 1;
     x.sum.diagonal = 1;
-    if (hdi_sum_begin(&c, &x, s, err) < 0) return c.e->status;
-    hdi_sum_kernel(&x, kernel, c.e);
-    return hdi_sum_end(&c, &x);
+    return hdi_sum_columns(&x, s, kernel, err);
+}
+
+static hd_status hdi_sum_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_distance_kind kind,
+                                  hd_error *err) {
+    const int power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
+    const double zero = 0;
+    hdi_call c;
+    x->power = power;
+    x->sum.distance = 1;
+    if (power && x->n_times <= 1) {              /* no time */
+        x->n_times = 1;
+        x->t = &zero;
+    }
+    if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
+    hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
+               c.e);
+    hdi_refuse(power && x->n_times > 1, "spectrum: this distance has no time", c.e);
+    x->sum.mass = kind == HD_DISTANCE_WEIGHTED;
+    return hdi_sum_end(&c, x);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, int32_t k, const int32_t *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    const int power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
-    const int none = power && n_times <= 1;      /* no time */
-    const double zero = 0;
-    hdi_spec_sums x = hdi_spec_sums_of(none ? 1 : n_times, none ? &zero : t, D, bound, ldd);
-    hdi_call c;
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
     x.k = k;
     x.sources = sources;
-    x.power = power;
-    if (hdi_sum_begin(&c, &x, s, err) < 0) return c.e->status;
-    hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
-               c.e);
-    hdi_refuse(power && n_times > 1, "spectrum: this distance has no time", c.e);
-    x.sum.mass = kind == HD_DISTANCE_WEIGHTED;
-    x.sum.distance = 1;
-    return hdi_sum_end(&c, &x);
+    return hdi_sum_distance(&x, s, kind, err);
+}
+
+HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distance_kind kind,
+                                                 int32_t n_times, const double *t, int32_t k,
+                                                 const hd_source *sources, double *D, double *bound,
+                                                 size_t ldd, hd_error *err) {
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
+    x.k = k;
+    x.from = sources;
+    return hdi_sum_distance(&x, s, kind, err);
 }
 
 /* Moves fields that lie ldf apart to where their answers will be, ldu apart in the same array. */
@@ -31560,19 +31707,49 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
     return hdi_heat_end(&h);
 }
 
+/* What is asked for; sources and given vertices have to be set. */
+static hdi_samples hdi_samples_of(hd_distance_kind kind, double t, int32_t count, int32_t *vertex,
+                                  double *distance) {
+    hdi_samples a;
+    memset(&a, 0, sizeof a);
+    a.kind = kind;
+    a.t = t;
+    a.count = count;
+    a.vertex = vertex;
+    a.distance = distance;
+    return a;
+}
+
+static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_source *sources, hd_report *report,
+                                   hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
+        !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
+    if (a->count < 1 || a->n_given < 0 || a->n_given > a->count || a->count > heat->source->n_active)
+        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
+    else if (a->n_from < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "sample: a number of sources is negative");
+    else if (!a->vertex || (a->n_from > 0 && !sources)) hdi_missing(h.e);
+    if (h.e->status >= 0 && hdi_sources_check(&h, a->n_given, a->vertex) >= 0 && a->n_from > 0)
+        a->terms = hdi_terms_all(a->n_from, sources, heat->source, 1, &h.s);
+    if (h.e->status >= 0) (void)hdi_sample_run(&h, a);
+    return hdi_heat_end(&h);
+}
+
 HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count,
                                       int32_t n_given, int32_t *vertex, double *distance, hd_report *report,
                                       hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, kind, 1, &t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION)
-        return hdi_heat_end(&h);
-    if (count < 1 || n_given < 0 || n_given > count || count > heat->source->n_active)
-        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, count);
-    else if (!vertex) hdi_missing(h.e);
-    if (h.e->status >= 0 && hdi_sources_check(&h, n_given, vertex) >= 0)
-        (void)hdi_sample_run(&h, kind, t, count, n_given, vertex, distance);
-    return hdi_heat_end(&h);
+    hdi_samples a = hdi_samples_of(kind, t, count, vertex, distance);
+    a.n_given = n_given;
+    return hdi_sample_answer(heat, &a, NULL, report, err);
+}
+
+HEATDIFF_API hd_status hd_heat_sample_from(hd_heat *heat, hd_distance_kind kind, double t, int32_t k,
+                                           const hd_source *sources, int32_t count, int32_t *vertex,
+                                           double *distance, hd_report *report, hd_error *err) {
+    hdi_samples a = hdi_samples_of(kind, t, count, vertex, distance);
+    a.n_from = k;
+    return hdi_sample_answer(heat, &a, sources, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,

@@ -232,6 +232,8 @@ static void check_signatures(const hd_laplacian *lap) {
         CHECK(near_to(d[0], sqrt(off * 2 / 3)) && near_to(d[0], d[tri[1]]) && d[1] > d[0]);
     if (BUILT(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 1, vertex, d, NULL, &err), no.diffusion))
         CHECK(vertex[1] == one);
+    if (BUILT(hd_heat_sample_from(heat, HD_DISTANCE_CLASSICAL, t, 1, &source, 2, vertex, d, NULL, &err), no.diffusion))
+        CHECK(d[0] > d[1] && d[1] > 0);
     hd_heat_free(heat);
 }
 

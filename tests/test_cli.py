@@ -634,7 +634,19 @@ class Failures(Case):
         self.assertIn("not-there", bad("--source-file", self.path("not-there.txt")))
         self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0,0+5"), "source (0|1)")
         self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0+1,0+2+4"), "source 1, point 1.*no face")
-        self.assertIn("--source takes", self.bad(2, "sample", mesh, "--t", 1, "--count", 3, "--source", "0:0.2,0.3"))
+        # farthest from places: the first row is farthest from the source, with its distance
+        for source in (("--source", "1:0.2,0.3"), ("--source", "3,0.5*4+1"), ("--source-file", self.file("from.txt", "1:0.2,0.3\n")),
+                       ("--source", "1:1,0+1:0,1", "--curve")):
+            far = self.field("distance", mesh, "--t", "0.1", *source)
+            far = [min(row) for row in far]
+            got = self.field("sample", mesh, "--t", "0.1", "--count", 3, *source)
+            self.assertEqual(len(got), 3)
+            self.assertEqual(got[0][0], far.index(max(far)))
+            self.assertAlmostEqual(got[0][1], max(far), 6)
+            again = self.field("distance", mesh, "--t", "0.1", "--source", int(got[0][0]))
+            self.assertAlmostEqual(got[1][1], max(min(a, b[0]) for a, b in zip(far, again)), 6)
+        self.assertIn("3 points", self.good("sample", mesh, "--t", "0.1", "--count", 3, "--source", "1:0.2,0.3", "-o", self.path("s.txt")).stderr.decode())
+        self.good("sample", mesh, "--t", "0.1", "--count", 3, "--source", "1:0.2,0.3", "--dry-run")
 
     def test_source_beyond_the_mesh(self):
         for s in (12, 10 ** 7, 10 ** 18, 10 ** 30, "0,12"):
@@ -1003,6 +1015,117 @@ class Borders(Case):
         self.assertIn("mean border", self.bad(1, "geodesic", self.square, "--border", "dirichlet", "--source", 0))
 
 
+class Lengths(Case):
+    """A flat torus of n x n cells, which has no shape in space: with voronoi-cot its Laplacian is the five-point one."""
+    N = 10
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        n = cls.N
+        faces, rows = [], []
+        for j in range(n):
+            for i in range(n):
+                a, b, c, d = j * n + i, j * n + (i + 1) % n, (j + 1) % n * n + (i + 1) % n, (j + 1) % n * n + i
+                faces += [(a, b, c), (a, c, d)]
+                rows += [(1 / n, 1 / n, math.sqrt(2) / n), (math.sqrt(2) / n, 1 / n, 1 / n)]
+        cls.rows = rows
+        # places that say nothing about the surface
+        cls.torus = cls.file("flat.obj", obj_text([(i, i * i % 7, i % 3) for i in range(n * n)], faces))
+        cls.text = cls.file("flat.txt", cls.table(rows))
+        cls.npy = cls.file("flat.npy", npy_bytes(rows))
+
+    @staticmethod
+    def table(rows):
+        return "# lengths\n" + "".join("%.17g %.17g %.17g\n" % r for r in rows)
+
+    def kernel(self, i, j, t):
+        """K_t between two vertices: a product over both directions."""
+        n, k = self.N, 1.0
+        for a in (i % n - j % n, i // n - j // n):
+            k *= sum(math.cos(2 * math.pi * m * a / n) * math.exp(-t * 4 * n * n * math.sin(m * math.pi / n) ** 2) for m in range(n)) / n
+        return k
+
+    def test_flat_torus(self):
+        n, source = self.N, 23
+        for lengths in (self.text, self.npy):
+            common = [self.torus, "--lengths", lengths, "--laplacian", "voronoi-cot"]
+            u = self.field("kernel", *common, "--source", source, "--t", "0.01,0.05")
+            for k, t in enumerate((0.01, 0.05)):
+                want = [self.kernel(i, source, t) for i in range(n * n)]
+                self.assertLess(max(abs(a[k] - b) for a, b in zip(u, want)), 1e-7 * max(want))
+            u = self.field("hks", *common, "--t", 0.02)
+            self.assertLess(max(abs(a[0] / n ** 2 - self.kernel(0, 0, 0.02)) for a in u), 1e-7 * self.kernel(0, 0, 0.02))
+        u = self.field("kernel", self.torus, "--lengths", "-", "--laplacian", "voronoi-cot", "--source", source, "--t", 0.05,
+                       stdin=self.table(self.rows).encode())
+        self.assertLess(max(abs(a[0] - b) for a, b in zip(u, want)), 1e-7 * max(want))
+        d = self.field("geodesic", self.torus, "--lengths", self.text, "--source", source)
+        far = [math.hypot(*(min(abs(x), n - abs(x)) / n for x in (i % n - source % n, i // n - source // n))) for i in range(n * n)]
+        self.assertLess(max(abs(a[0] - b) for a, b in zip(d, far)), 0.12)     # the heat method on ten cells
+
+    def test_same_as_in_space(self):
+        """The lengths of a mesh in space give its answers, also where MESH holds other places."""
+        v, f = bumpy_patch(7)
+        space = self.file("space.obj", obj_text(v, f))
+        squashed = self.file("squashed.obj", obj_text([(0, 0, 0)] * len(v), f))
+        lengths = self.file("space.txt", self.table([tuple(math.dist(v[t[q]], v[t[(q + 1) % 3]]) for q in range(3)) for t in f]))
+        pairs = self.file("pairs.txt", "0 9\n5 60\n")
+        for command in (("kernel", "--source", "3,40", "--t", "1h2,0.7"), ("hks", "--t", "5h2"), ("trace", "--t", "2"),
+                        ("distance", "--source", "5:0.2,0.3", "--t", "2"), ("distance", "--source", "5", "--definition", "biharmonic"),
+                        ("pairs", "--input", pairs, "--t", "2"), ("sample", "--count", "5", "--t", "2"), ("geodesic", "--source", "0:0.2,0.2+20"),
+                        ("geodesic", "--source", "0:0.2,0.2+0:0.3,0.3", "--curve"), ("kernel", "--source", "3", "--t", "1", "--border", "dirichlet"),
+                        ("kernel", "--source", "3", "--t", "1", "--intrinsic-delaunay"), ("hks", "--t", "1", "--tufted")):
+            self.close(self.field(*command, squashed, "--lengths", lengths), self.field(*command, space), 1e-7)
+        a, b = (json.loads(self.good("info", *m, "--json").stdout) for m in ((squashed, "--lengths", lengths), (space,)))
+        self.assertEqual(a["lengths"], lengths)
+        self.assertNotIn("box_low", a)
+        for name in ("h", "area", "smallest_angle"):
+            self.assertAlmostEqual(a[name], b[name], 12)
+        text = self.good("info", squashed, "--lengths", lengths).stdout.decode()
+        self.assertRegex(text, "lengths of edges +" + re.escape(lengths))
+        self.assertNotIn("box", text)
+        out = self.path("length.png")
+        text = self.good("kernel", space, "--lengths", lengths, "--source", 0, "--t", 1, "-o", out).stderr.decode()
+        self.assertIn("fem Laplacian, from lengths of edges", text)
+        self.assertIn("method", self.good("hks", squashed, "--lengths", lengths, "--t", 1, "--dry-run").stderr.decode())
+        self.assertIn("real factors", self.good("geodesic", squashed, "--lengths", lengths, "--source", 1, "--dry-run").stderr.decode())
+
+    def test_refused(self):
+        def table(change):
+            rows = list(self.rows)
+            rows[7] = change
+            return self.file("bad.txt", self.table(rows))
+
+        def refused(lengths, mesh=self.torus, code=1):
+            return self.bad(code, "info", mesh, "--lengths", lengths)
+        a, b, c = self.rows[7]
+        for row, what in (((a, b, 2 * a), "face 7: a side of a face is longer than the two others together: "), ((a, b, -c), "face 7: a length is negative: -"),
+                          ((a, b, c * 1.01), "give their edge different lengths")):
+            text = refused(table(row))
+            self.assertIn(what, text)
+            # the comment is line 1; an edge has two faces, and the later one is told
+            self.assertRegex(text, re.escape(self.path("bad.txt")) + (r":\d+: face \d+: " if "different" in what else ":9: "))
+        self.assertIn("bad.txt:9: ", refused(table((a, b, float("nan")))))
+        text = refused(self.file("bad.npy", npy_bytes([(a, b, 3 * a)] + self.rows[1:])))
+        self.assertIn("bad.npy: face 0: a side of a face is longer", text)
+        self.assertIn("bad.npy: row 0, column 2: nan is not a finite number", refused(self.file("bad.npy", npy_bytes([(a, b, float("nan"))] + self.rows[1:]))))
+        self.assertIn("199 rows, but %s has 200 faces" % self.torus, refused(self.file("bad.txt", self.table(self.rows[1:]))))
+        self.assertIn("2 columns; a face has three edges", refused(self.file("bad.txt", "1 1\n" * 200)))
+        self.assertIn("face 0: --lengths takes triangles, and it has 4 corners",
+                      refused(self.text, self.file("quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")))
+        self.assertIn("--lengths needs faces", refused(self.text, self.file("points.xyz", "0 0 0\n1 0 0\n0 1 0\n")))
+        self.assertIn("No such file", refused(self.path("none.txt")))
+        self.assertIn("standard input can be read only once", refused("-", "-", 2))
+        kernel = ("kernel", "--source", "0", "--t", "1", self.torus, "--lengths", self.text)
+        self.assertIn("takes --laplacian fem, voronoi-cot or cot", self.bad(2, *kernel, "--laplacian", "voronoi-exp"))
+        self.assertIn("takes --laplacian fem, voronoi-cot or cot", self.bad(2, *kernel, "--laplacian", "polygon"))
+        self.assertIn("--bandwidth of exponential weights", self.bad(2, *kernel, "--bandwidth", "1"))
+        self.assertIn("--lambda of polygons", self.bad(2, *kernel, "--lambda", "2"))
+        self.assertIn("dissection cuts in space", self.bad(2, *kernel, "--ordering", "dissection"))
+        self.assertIn("--curve takes no --lengths", self.bad(2, *kernel, "--curve"))
+        self.bad(2, "render", self.torus, "--input", self.text, "--lengths", self.text, "-o", "a.png")
+
+
 class Methods(Case):
     """Every method computes the same, on whatever mesh."""
     @classmethod
@@ -1278,6 +1401,11 @@ class Methods(Case):
                     text = self.good(command, self.large, *args, *more, "--dry-run")
                     self.assertEqual(text.stdout, b"")
                     self.assertRegex(text.stderr.decode(), r"dry run: method \w+ \(.+\)\n(.|\n)*flops(.|\n)*MB")
+        for run in (["trace", "--t", "auto:16"], ["hks", "--normalise", "--t", "5h2"], ["hks", "--scale-invariant", "3", "--t", "1h2,100h2"]):
+            d, r = self.dry(run[0], self.large, *run[1:]), self.report(run[0], self.large, *run[1:])
+            e = d["estimate"]
+            self.assertTrue(e["fits"] and e["flops"] > 0 and d["analysed"] and d["method"] == r["method"] == "direct")
+            self.assertTrue(0.999 * r["peak_bytes"] <= e["bytes"] <= 1.3 * r["peak_bytes"], (run, e, r["peak_bytes"]))
         g = self.dry("geodesic", self.large, "--source", "0")
         self.assertTrue(g["analysed"] and g["estimate"]["flops"] > 0 and g["estimate"]["fits"])
         for more in (["-k", "20"], ["-k", "20", "--below", "30"], ["--below", "30"]):
@@ -1301,6 +1429,7 @@ class Methods(Case):
         points = self.file("points.xyz", "".join("%.17g %.17g %.17g\n" % tuple(p) for p in self.points_of(self.large)))
         run = ["distance", points, "--source", 0, "--t", "3h2"]
         need = self.dry(*run)["estimate"]["bytes"]
+        self.assertEqual(list(self.dry(*run)["ways_out"]), ["--tufted"])   # told in any case: it is a small part
         limit = int(0.5 * need)
         text = self.bad(1, *run, "--memory-limit", limit, "-o", out)
         self.assertRegex(text, r"--tufted needs [0-9.]+ MB, --weight-cut 1e-4 needs [0-9.]+ MB")
@@ -1466,8 +1595,6 @@ class Distances(Case):
         refused("--normalise is not an option", "kernel", self.dense, "--t", 1, "--source", 0, "--normalise")
         refused("times > 0", "trace", self.dense, "--t", "0")
         refused("needs --t", "trace", self.dense)
-        refused("--dry-run is not an option", "trace", self.dense, "--t", 1, "--dry-run")
-        refused("--dry-run takes", "hks", self.dense, "--t", 1, "--normalise", "--dry-run")
         refused("--t takes", "hks", self.dense, "--t", "1/l2")
         refused("--t takes", "hks", self.dense, "--t", "auto:3/l1")
         refused("--bandwidth takes", "info", self.dense, "--bandwidth", "1/l1")
@@ -1708,6 +1835,7 @@ class Distances(Case):
         refused("--count", "sample", "--t", 1)
         refused("--count takes", "sample", "--t", 1, "--count", 0)
         refused("--source takes", "sample", "--t", 1, "--count", 2, "--source", "0,1,2")
+        refused("--source takes", "sample", "--t", 1, "--count", 2, "--source", "0:2,1")
         for t in ("1,2", "auto:2"):
             refused("--t takes", "sample", "--count", 2, "--t", t)
         refused("--kernel", "distance", "--t", 1, "--source", 0, "--kernel", "symmetric")

@@ -17,6 +17,12 @@ static const est_case EST_CASES[] = {
     {HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 2, 0, 1, 3},
     {HD_QUERY_DIAGONAL_OPERATOR, HD_METHOD_AUTO, 1, 0, 5, 1},
     {HD_QUERY_EDGES, HD_METHOD_AUTO, 2, 0, 5, 2},
+    {HD_QUERY_TRACE, HD_METHOD_AUTO, 1, 0, 5, 1},
+    {HD_QUERY_TRACE, HD_METHOD_DIRECT, 16, 0, 1, 1000},
+    {HD_QUERY_TRACE, HD_METHOD_AUTO, 2, 0, 1, 3},
+    {HD_QUERY_NORMALISED, HD_METHOD_AUTO, 1, 0, 5, 1},
+    {HD_QUERY_NORMALISED, HD_METHOD_AUTO, 16, 0, 1, 1000},
+    {HD_QUERY_SCALE_INVARIANT, HD_METHOD_AUTO, 16, 0, 1, 1000},
     {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 3, 5, 1},
     {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 1, 100, 1},
     {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 50, 5, 1},
@@ -50,6 +56,9 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
             return hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, c->n_times, t, c->k / 2, source, source + c->k / 2, U, U + c->k / 2, rep, NULL);
         case HD_QUERY_DIAGONAL: return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, 0, rep, NULL);
         case HD_QUERY_DIAGONAL_OPERATOR: return hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, c->n_times, t, U, 0, rep, NULL);
+        case HD_QUERY_TRACE: return hd_heat_trace(heat, c->n_times, t, U, NULL, rep, NULL);
+        case HD_QUERY_NORMALISED: return hd_heat_normalised(heat, c->n_times, t, U, 0, rep, NULL);
+        case HD_QUERY_SCALE_INVARIANT: return hd_heat_scale_invariant(heat, t[0], t[c->n_times - 1], c->n_times, 4, U, 0, rep, NULL);
         case HD_QUERY_EDGES: return hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, rep, NULL);
         default: return hd_heat_distance(heat, (hd_distance_kind)(c->query - HD_QUERY_DISTANCE), c->n_times, t, c->k, source, U, 0, rep, NULL);
     }

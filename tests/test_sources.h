@@ -192,6 +192,175 @@ static void src_distances(const heat_case *c, hd_heat *heat, hd_distance_kind ki
     free(D);
 }
 
+/* ---- from eigenpairs, and farthest points ---- */
+
+/* Columns from two thirds of the pairs: what is left out is within the bound, and that says something at late times. */
+static void src_pair_columns(const heat_case *c, const hd_spectrum *z, const hd_source *s) {
+    const hd_laplacian *lap = c->lap;
+    const double unit = all_unit(lap), times[3] = {2 * unit, (lap->conserves ? 200 : 10) * unit, 0};
+    const int32_t n = lap->n, m = lap->n_active;
+    double *U = DENSE_NEW(double, 3 * SRC_KINDS * n), *bound = DENSE_NEW(double, 3 * SRC_KINDS * n), *rows = DENSE_NEW(double, m), *rhs = DENSE_NEW(double, m);
+    int32_t i, j, v;
+    int k, w, q;
+    for (k = 0; k < 2; k++) {
+        CHECK(hd_spectrum_columns_from(z, k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, 3, times, SRC_KINDS, s, U, bound, 0, NULL) == HD_OK);
+        for (w = 0; w < SRC_KINDS; w++) {
+            double *load = src_load(s + w, n);
+            for (i = 0; i < m; i++) rows[i] = load[lap->vertex[i]];
+            if (k) memcpy(rhs, rows, (size_t)m * sizeof *rhs);
+            else dense_apply(c->pair.B, rows, rhs, m);
+            for (q = 0; q < 3; q++) {
+                const double *u = U + (size_t)(3 * w + q) * (size_t)n, *b = bound + (size_t)(3 * w + q) * (size_t)n;
+                double size = 0;
+                for (j = 0; j < m; j++) {
+                    double want = 0;
+                    for (i = 0; i < m; i++) {
+                        const double *x = c->pair.x + (size_t)i * (size_t)m;
+                        want += exp(-times[q] * c->pair.lambda[i]) * x[j] * dense_dot(rhs, x, m);
+                    }
+                    size = fmax(size, fabs(want));
+                    CHECK_MSG(fabs(u[lap->vertex[j]] - want) <= b[lap->vertex[j]] + 1e-12 * size, "%s, source %d, t %g: %g for %g, bound %g", c->what, w, times[q],
+                              u[lap->vertex[j]], want, b[lap->vertex[j]]);
+                }
+                for (v = 0; v < n; v++) {
+                    if (q == 1) CHECK_MSG(b[v] <= 1e-2 * size, "%s, source %d: bound %g of %g", c->what, w, b[v], size);
+                    if (lap->row[v] < 0) CHECK(u[v] == (lap->row[v] == HD_ROW_INERT && !k ? load[v] : 0));
+                }
+            }
+            free(load);
+        }
+    }
+    free(U);
+    free(bound);
+    free(rows);
+    free(rhs);
+}
+
+static void src_pair_distances(const heat_case *c, const hd_spectrum *z, const hd_source *s) {
+    const hd_laplacian *lap = c->lap;
+    const double t = (lap->conserves ? 100 : 5) * all_unit(lap);
+    const int32_t n = lap->n;
+    double *D = DENSE_NEW(double, SRC_KINDS * n), *bound = DENSE_NEW(double, SRC_KINDS * n);
+    int32_t v;
+    int kind, w;
+    for (kind = 0; kind < 4; kind++) {
+        double *H = diag_gram(c, (hd_distance_kind)kind, t);
+        const double noise = all_slack(c, (hd_distance_kind)kind, t) * all_largest(H, lap->n_active);
+        CHECK(hd_spectrum_distance_from(z, (hd_distance_kind)kind, kind < 2, &t, SRC_KINDS, s, D, bound, 0, NULL) == HD_OK);
+        for (w = 0; w < SRC_KINDS; w++) {
+            double *load = src_load(s + w, n);
+            src_normalise(load, n);
+            for (v = 0; v < n; v++) {
+                const double d = D[(size_t)w * (size_t)n + (size_t)v], want = src_distance(H, lap, (hd_distance_kind)kind, load, v);
+                CHECK_MSG(all_off(d, want, noise) <= bound[(size_t)w * (size_t)n + (size_t)v], "%s, distance %d from source %d: %g for %g, bound %g", c->what, kind, w, d, want,
+                          bound[(size_t)w * (size_t)n + (size_t)v]);
+            }
+            free(load);
+        }
+        free(H);
+    }
+    free(D);
+    free(bound);
+}
+
+/* A source that is a vertex is that vertex, to the last bit. */
+static void src_pair_same(const heat_case *c, const hd_spectrum *z) {
+    const int32_t n = c->lap->n, id[2] = {c->lap->vertex[c->lap->n_active / 2], n - 1};
+    const double times[2] = {all_unit(c->lap), 30 * all_unit(c->lap)};
+    double *room = DENSE_NEW(double, 16 * n), *U = room, *V = room + 4 * n, *a = room + 8 * n, *b = room + 12 * n;
+    const size_t bytes = 4 * (size_t)n * sizeof *U;
+    hd_source s[2];
+    int k;
+    memset(s, 0, sizeof s);
+    for (k = 0; k < 2; k++) {
+        s[k].count = 1;
+        s[k].vertex = id + k;
+    }
+    for (k = 0; k < 2; k++) {
+        const hd_kernel kernel = k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
+        CHECK(hd_spectrum_columns(z, kernel, 2, times, 2, id, U, a, 0, NULL) == HD_OK && hd_spectrum_columns_from(z, kernel, 2, times, 2, s, V, b, 0, NULL) == HD_OK);
+        CHECK(memcmp(U, V, bytes) == 0 && memcmp(a, b, bytes) == 0);
+    }
+    for (k = 0; k < 4; k++) {
+        const int32_t n_times = k < 2 ? 2 : 1;
+        CHECK(hd_spectrum_distance(z, (hd_distance_kind)k, n_times, times, 2, id, U, a, 0, NULL) == HD_OK &&
+              hd_spectrum_distance_from(z, (hd_distance_kind)k, n_times, times, 2, s, V, b, 0, NULL) == HD_OK);
+        CHECK(memcmp(U, V, bytes / (k < 2 ? 1 : 2)) == 0 && memcmp(a, b, bytes / (k < 2 ? 1 : 2)) == 0);
+    }
+    free(room);
+}
+
+/* Farthest points from two sources: those of brute force with dense distances. */
+static void src_samples(const heat_case *c, const hd_source *s) {
+    enum { COUNT = 6, FROM = 2 };
+    const hd_laplacian *lap = c->lap;
+    const double t = (lap->conserves ? 10 : 3) * all_unit(lap);
+    const int32_t n = lap->n;
+    int kind, q, k;
+    for (kind = 0; kind < 4; kind++) {
+        double *H = diag_gram(c, (hd_distance_kind)kind, t), *load[FROM], distance[COUNT];
+        const double noise = all_slack(c, (hd_distance_kind)kind, t) * all_largest(H, lap->n_active);
+        hd_heat *heat = diag_plan(lap, HD_POLES_DIAGONAL, 14);
+        int32_t vertex[COUNT], again[COUNT], v;
+        hd_source one;
+        hd_report rep;
+        for (k = 0; k < FROM; k++) src_normalise(load[k] = src_load(s + k, n), n);
+        CHECK(eng_ok(hd_heat_sample_from(heat, (hd_distance_kind)kind, t, FROM, s, COUNT, vertex, distance, &rep, NULL), &rep, c->what));
+        for (q = 0; q < COUNT; q++) {
+            double best = -1, own = -1;
+            for (v = 0; v < n; v++) {
+                double near = HUGE_VAL;
+                if (lap->row[v] < 0) continue;
+                for (k = 0; k < FROM; k++) near = fmin(near, src_distance(H, lap, (hd_distance_kind)kind, load[k], v));
+                for (k = 0; k < q; k++) {
+                    const int32_t r = lap->row[vertex[k]], w = lap->row[v];
+                    const size_t m = (size_t)lap->n_active;
+                    const int apart = kind > 1 && lap->component[r] != lap->component[w];
+                    near = apart ? near : fmin(near, sqrt(fmax(0, H[(size_t)r * m + (size_t)r] - 2 * H[(size_t)r * m + (size_t)w] + H[(size_t)w * m + (size_t)w])));
+                }
+                best = fmax(best, near);
+                if (v == vertex[q]) own = near;
+            }
+            CHECK_MSG(own == best || own >= best * (1 - 1e-5), "%s, distance %d, point %d: %g is not the largest, %g", c->what, kind, q, own, best);
+            CHECK_MSG(all_off(distance[q], own, noise) <= 1e-5 * own || distance[q] == own, "%s, distance %d, point %d: distance %g, not %g", c->what, kind, q, distance[q], own);
+        }
+        for (k = 0; k < FROM; k++) free(load[k]);
+        memset(&one, 0, sizeof one);             /* a vertex as a source is that vertex given */
+        one.count = 1;
+        one.vertex = again;
+        again[0] = lap->vertex[lap->n_active / 3];
+        CHECK(heat_sample(heat, (hd_distance_kind)kind, t, COUNT, 1, again, distance, &rep) >= 0);
+        CHECK(hd_heat_sample_from(heat, (hd_distance_kind)kind, t, 1, &one, COUNT - 1, vertex, NULL, &rep, NULL) >= 0 && memcmp(vertex, again + 1, sizeof vertex - sizeof *vertex) == 0);
+        CHECK(hd_heat_sample_from(heat, (hd_distance_kind)kind, t, 0, NULL, 2, vertex, NULL, &rep, NULL) >= 0 && vertex[0] == lap->vertex[0]);
+        hd_heat_free(heat);
+        free(H);
+    }
+}
+
+static void src_pairs(void) {
+    int k;
+    for (k = 0; k < 4; k++) {
+        const int32_t held[2] = {3, 40};
+        const hd_laplacian_opts o = bord_opts(k == 1 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM, k == 2 ? HD_BORDER_DIRICHLET : HD_BORDER_NATURAL, k == 2 ? 2 : 0, held);
+        hd_laplacian *lap = k < 3 ? all_triangles(shape_grid(9, 8, 0.3), o) : all_laplacian(0);
+        heat_case c = heat_case_of(lap, k == 3 ? all_names[0] : k == 2 ? "fem, held" : k == 1 ? "voronoi-cot" : "fem");
+        src_room room[SRC_KINDS];
+        hd_source s[SRC_KINDS];
+        hd_spectrum *z = spec_make(lap, 2 * lap->n_active / 3, 0, HD_OK);
+        int w;
+        for (w = 0; w < SRC_KINDS; w++) {
+            src_make(room + w, lap, w);
+            s[w] = room[w].s;
+        }
+        src_pair_columns(&c, z, s);
+        src_pair_distances(&c, z, s);
+        src_pair_same(&c, z);
+        src_samples(&c, s + 2);
+        hd_spectrum_free(z);
+        heat_case_free(&c);
+    }
+}
+
 /* ---- a source that is a vertex is that vertex, to the last bit ---- */
 
 static void src_same(const heat_case *c, hd_method method) {
@@ -600,6 +769,7 @@ static void src_errors(void) {
     double bary[6] = {0.5, 0.25, 0.25, 0.5, 0.25, 0.25}, weight[2] = {1, 2}, t = 1, u[75];
     hd_source s, ok;
     hd_report rep;
+    hd_error err;
     memset(&ok, 0, sizeof ok);
     ok.count = 2;
     ok.corners = 3;
@@ -667,6 +837,20 @@ static void src_errors(void) {
     CHECK(hd_heat_columns_from(heat, HD_KERNEL_OPERATOR, 1, &t, 1, NULL, u, 0, NULL, NULL) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_distance_from(heat, HD_DISTANCE_CLASSICAL, 1, &t, 0, NULL, NULL, 0, NULL, NULL) == HD_OK);
     CHECK(hd_heat_distance_from(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &ok, NULL, 0, NULL, NULL) == HD_ERR_ARGUMENT);
+    {
+        hd_spectrum *z = spec_make(lap, 5, 0, HD_OK);
+        hd_source bad = ok;
+        int32_t chosen[3];
+        bad.begin_zero = 1;
+        CHECK(hd_heat_sample_from(heat, HD_DISTANCE_CLASSICAL, t, -1, &ok, 2, chosen, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
+        CHECK(hd_heat_sample_from(heat, HD_DISTANCE_CLASSICAL, t, 1, NULL, 2, chosen, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
+        CHECK(hd_heat_sample_from(heat, HD_DISTANCE_CLASSICAL, t, 1, &bad, 2, chosen, NULL, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 0);
+        CHECK(hd_spectrum_columns_from(z, HD_KERNEL_OPERATOR, 1, &t, 1, &bad, u, NULL, 0, &err) == HD_ERR_ARGUMENT && err.column == 0);
+        CHECK(hd_spectrum_columns_from(z, HD_KERNEL_OPERATOR, 1, &t, 1, NULL, u, NULL, 0, NULL) == HD_ERR_ARGUMENT);
+        CHECK(hd_spectrum_distance_from(z, HD_DISTANCE_COMMUTE, 2, NULL, 1, &ok, u, NULL, 0, NULL) == HD_ERR_ARGUMENT);
+        CHECK(hd_spectrum_distance_from(z, HD_DISTANCE_COMMUTE, 0, NULL, 0, NULL, NULL, NULL, 0, NULL) == HD_OK);
+        hd_spectrum_free(z);
+    }
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     shape_free(&g);
@@ -685,6 +869,8 @@ static void src_memory(void) {
         hd_heat *heat = NULL;
         hd_geodesic_opts go;
         hd_geodesic *geo = NULL;
+        hd_spectrum_opts so;
+        hd_spectrum *z = NULL;
         const double t[2] = {0.1, 0.3};
         double u[100];
         src_room room[2];
@@ -703,6 +889,12 @@ static void src_memory(void) {
             st = hd_heat_columns_from(heat, HD_KERNEL_SYMMETRIC, 2, t, 2, s, u, 0, NULL, NULL);
         }
         if (st == HD_OK) st = hd_heat_distance_from(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 2, s, u, 0, NULL, NULL);
+        if (st == HD_OK) st = hd_heat_sample_from(heat, HD_DISTANCE_BIHARMONIC, 0, 2, s, 3, room[1].vertex, u, NULL, NULL);
+        memset(&so, 0, sizeof so);
+        so.count = 4;
+        if (st == HD_OK) st = hd_spectrum_create(&z, lap, &so, NULL);
+        if (st == HD_OK) st = hd_spectrum_columns_from(z, HD_KERNEL_SYMMETRIC, 1, t, 1, s, u, NULL, 0, NULL);
+        if (st == HD_OK) st = hd_spectrum_distance_from(z, HD_DISTANCE_COMMUTE, 0, NULL, 1, s, u, NULL, 0, NULL);
         memset(&go, 0, sizeof go);
         go.context = &ctx;
         if (st == HD_OK) st = hd_geodesic_create(&geo, g.xyz, g.n, g.tri, g.n_tri, &go, NULL);
@@ -711,6 +903,7 @@ static void src_memory(void) {
         CHECK(st == HD_OK || st == HD_ERR_MEMORY);
         done = st == HD_OK;
         hd_geodesic_free(geo);
+        hd_spectrum_free(z);
         hd_heat_free(heat);
         hd_laplacian_free(lap);
         test_memory_done(&m, &ctx, "sources");
@@ -721,6 +914,7 @@ static void src_memory(void) {
 
 static void test_sources(void) {
     src_operators();
+    src_pairs();
     src_square();
     src_line();
     src_geo_sphere(3);

@@ -371,7 +371,7 @@ enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO =
        CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE,
        CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER,
        CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM, CMD_SURFACE = CMD_LAPLACIAN | CMD_GEODESIC,
-       CMD_FROM = CMD_DISTANCE | CMD_GEODESIC, CMD_ANYWHERE = CMD_KERNEL | CMD_FROM };
+       CMD_FROM = CMD_DISTANCE | CMD_GEODESIC, CMD_ANYWHERE = CMD_KERNEL | CMD_FROM | CMD_SAMPLE };
 
 /* TIME_SPECTRAL: over the first eigenvalue. */
 typedef enum time_unit { TIME_ABSOLUTE, TIME_H2, TIME_SPECTRAL, TIME_AUTO } time_unit;
@@ -406,6 +406,7 @@ typedef struct options {
     source_point *points;            /* the same, if one of them is more than a vertex */
     int n_points, anywhere, curve;
     const char *source_text, *source_file;
+    const char *lengths;             /* a file with those of the edges, or NULL: positions tell */
     const char *input, *output, *title;
     int has_bandwidth;
     time_spec bandwidth;             /* absolute or h2 */
@@ -771,10 +772,13 @@ static const option_def OPTIONS[] = {
     { "curve", 0, CMD_ANYWHERE, 0, parse_flag, AT(curve), NULL, 0, 0, NULL, "no value",
       "the points of each source are joined to a curve, of weight 1 for\n"
       "each unit of length; two in turn lie in one face" },
-    { "source", 0, CMD_SAMPLE, 1, parse_sources, 0, NULL, 0, 0, "V[,V..]", "vertex ids from 0, such as 0,17",
-      "vertices to begin with (default: the first that has mass)" },
+    { "source", 0, CMD_SAMPLE, 1, parse_sources, 0, NULL, 0, 0, "S[,S..]",
+      "vertices such as 0,17, places in faces such as 12:0.2,0.3, or sums such as 0.5*3+7",
+      "vertices to begin with (default: the first that has mass). If one\n"
+      "is a place in a face or a sum, as of distance, all of them are\n"
+      "what to stay away from, and no rows of the result" },
     { "count", 0, CMD_SAMPLE, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
-      "how many vertices, those of --source included" },
+      "how many vertices; those that --source begins with are included" },
     { "count", 'k', CMD_SPECTRUM, 0, parse_integer, AT(count), NULL, 1, 2147483647, "K", "a number from 1",
       "how many eigenpairs, the smallest" },
     { "below", 0, CMD_SPECTRUM, 0, parse_below, 0, NULL, 0, 0, "X", "a number above 0, such as 100",
@@ -818,6 +822,11 @@ static const option_def OPTIONS[] = {
     { "tufted", 0, CMD_SURFACE, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
       "the same for any triangles, also with borders and where\n"
       "three and more faces meet; of points, with triangles made\nfrom their neighbours" },
+    { "lengths", 0, CMD_SURFACE, 0, parse_text, AT(lengths), NULL, 0, 0, "F", "a file name",
+      "of triangles: a row for each face of MESH with the lengths of its\n"
+      "edges, from its first corner to the second, from there to the\n"
+      "third, and back, as text or .npy. The places of the vertices\n"
+      "then serve pictures and files alone" },
     { "border", 0, CMD_LAPLACIAN, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
       "of meshes: natural (default): no heat leaves through a border;\n"
       "dirichlet: the vertices of borders are held at zero" },
@@ -890,7 +899,7 @@ static const option_def OPTIONS[] = {
     { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES",
       "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
-    { "dry-run", 0, CMD_SOLVES & ~CMD_TRACE, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
+    { "dry-run", 0, CMD_SOLVES, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
       "only tell what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
@@ -979,7 +988,8 @@ static const command_def COMMANDS[] = {
       "all eigenvalues), and a bound of its error." },
     { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH",
       "A row for each point, in the order in which they were chosen: vertex, its id counted from 0,\n"
-      "and distance, to the nearest of those before it (0 in the first row)." },
+      "and distance, to the nearest of those before it (0 in the first row, unless places in faces\n"
+      "or sums stand before it)." },
     { "spectrum", CMD_SPECTRUM, "the smallest eigenvalues and eigenvectors", "-k K [--below X] [OPTIONS] MESH",
       VERTEX_ROWS "A column for each eigenvector, by ascending eigenvalues, B-orthonormal: x_0, x_1, as .csv\n"
       "and .vtu name them. In text the eigenvalues stand in a first line after #; elsewhere they are\n"
@@ -1192,8 +1202,7 @@ static int check_definition(const options *o)
 static int check_sample(const options *o)
 {
     if (!o->count) return fail(USAGE, "sample needs --count, which takes a number from 1");
-    if (o->anywhere) return fail(USAGE, "--source takes vertex ids from 0 here, such as 0,17");
-    if (o->n_sources > o->count)
+    if (o->n_sources > o->count && !o->anywhere && !o->curve && !o->source_file)
         return fail(USAGE, "--source takes at most --count vertices, which is %ld, not %d", o->count,
                     o->n_sources);
     return DONE;
@@ -1209,7 +1218,6 @@ static int check_signature(const options *o)
         return fail(USAGE, "--normalise takes no --scale-invariant beside it: factors of scale cancel there");
     if (o->kernel == HD_KERNEL_OPERATOR)
         return fail(USAGE, "%s takes --kernel symmetric", form);
-    if (o->normalise && o->dry_run) return fail(USAGE, "--dry-run takes no --normalise beside it");
     if (o->frequencies && (o->n_times != 2 || o->times[0].unit == TIME_AUTO || o->times[1].unit == TIME_AUTO))
         return fail(USAGE,
                     "--t takes the first and the last time with --scale-invariant, such as 1h2,10000h2");
@@ -1248,6 +1256,25 @@ static int check_intrinsic(const options *o)
     if (o->has_bandwidth || o->weight_cut > 0)
         return fail(USAGE, "--%s is of triangles, --%s of exponential weights", name,
                     o->has_bandwidth ? "bandwidth" : "weight-cut");
+    return DONE;
+}
+
+/* Lengths of edges make triangles, and tell no place in space. */
+static int check_lengths(const options *o)
+{
+    if (!o->lengths) return DONE;
+    if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP ||
+        o->laplacian == HD_LAPLACIAN_EXP)
+        return fail(USAGE, "--lengths takes --laplacian fem, voronoi-cot or cot: %s needs places in space",
+                    word_of(LAPLACIANS, o->laplacian));
+    if (o->lambda > 0 || o->has_bandwidth || o->weight_cut > 0)
+        return fail(USAGE, "--lengths is of triangles, --%s of %s",
+                    o->lambda > 0 ? "lambda" : o->has_bandwidth ? "bandwidth" : "weight-cut",
+                    o->lambda > 0 ? "polygons" : "exponential weights");
+    if (o->ordering == HD_ORDERING_NESTED_DISSECTION)
+        return fail(USAGE, "--ordering takes auto or amd with --lengths: dissection cuts in space");
+    if (o->curve && o->command != CMD_GEODESIC)
+        return fail(USAGE, "--curve takes no --lengths beside it: its own length is measured in space");
     return DONE;
 }
 
@@ -1296,8 +1323,12 @@ static int check_options(const options *o)
         return fail(USAGE,
                     "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
     if (o->command == CMD_RENDER && (code = check_render(o)) != DONE) return code;
+    if ((code = check_lengths(o)) != DONE) return code;
     if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
         return fail(USAGE, "--input takes a file name here: the mesh comes from standard input already");
+    if (o->lengths && strcmp(o->lengths, "-") == 0 &&
+        (strcmp(o->mesh, "-") == 0 || (o->input && strcmp(o->input, "-") == 0)))
+        return fail(USAGE, "--lengths takes a file name here: standard input can be read only once");
     return check_output(o);
 }
 
@@ -1623,6 +1654,8 @@ typedef struct mesh_data {
 
 typedef struct field_data { double *values; int32_t columns; } field_data;
 
+static const char *plural(int64_t n) { return n == 1 ? "" : "s"; }
+
 static const char *display_name(const char *path) { return strcmp(path, "-") == 0 ? "<stdin>" : path; }
 
 static const char *base_name(const char *path)
@@ -1701,7 +1734,7 @@ static int field_load(field_data *field, const char *path, const char *mesh_name
 enum { NAME_SIZE = 48 };
 
 /* Options with which a run that does not fit the memory would take less. */
-typedef struct way { char option[48]; double bytes; } way;
+typedef struct way { char option[48]; double bytes, seconds; } way;
 enum { MAX_WAYS = 8 };
 
 typedef struct run {
@@ -1709,6 +1742,8 @@ typedef struct run {
     const char *mesh_name;           /* for people */
     hd_context context;
     mesh_data mesh;
+    double *lengths;                 /* [3 mesh.n_tri] with --lengths */
+    int64_t *length_lines;           /* [mesh.n_tri] of its file; NULL: .npy */
     hd_laplacian *lap;
     double *times;                   /* resolved */
     char (*time_names)[NAME_SIZE];   /* "10h2", "0.01" */
@@ -1765,6 +1800,8 @@ static void run_end(run *r)
     hd_spectrum_free(r->spectrum);
     hd_laplacian_free(r->lap);
     mesh_free(&r->mesh);
+    free(r->lengths);
+    free(r->length_lines);
     free(r->times);
     free(r->time_names);
     free(r->sources);
@@ -1807,10 +1844,43 @@ static int fail_library(const char *file, const hd_error *e)
     return fail(FAILED, "%s:%s %s", file, place, e->text[0] ? e->text : hd_status_text(e->status));
 }
 
+/* Can the faces of the mesh have lengths of edges, and are there as many rows of them? */
+static int check_length_rows(const run *r, int64_t rows, int32_t columns)
+{
+    const mesh_data *m = &r->mesh;
+    const char *file = display_name(r->o->lengths);
+    int32_t f;
+    if (m->n_faces == 0) return fail(FAILED, "%s: --lengths needs faces, and there are none", r->mesh_name);
+    for (f = 0; f < m->n_faces; f++)
+        if (m->file.face_ptr[f + 1] - m->file.face_ptr[f] != 3)
+            return fail(FAILED, "%s: face %ld: --lengths takes triangles, and it has %lld corners", r->mesh_name,
+                        (long)f, (long long)(m->file.face_ptr[f + 1] - m->file.face_ptr[f]));
+    if (columns != 3)
+        return fail(FAILED, "%s: %ld column%s; a face has three edges", file, (long)columns, plural(columns));
+    return rows == m->n_faces ? DONE : fail(FAILED, "%s: %lld rows, but %s has %ld faces", file, (long long)rows,
+                                            r->mesh_name, (long)m->n_faces);
+}
+
+/* --lengths: the three of a face side by side, as the library takes them. */
+static int run_lengths(run *r)
+{
+    mio_error e;
+    double *table = NULL;
+    int64_t rows = 0, f;
+    int32_t columns = 0;
+    const int status = mio_load_table_lines(&table, &rows, &columns, &r->length_lines, r->o->lengths, NULL, &e);
+    int code = status < 0 ? fail_file(status, &e) : check_length_rows(r, rows, columns);
+    if (!code && (r->lengths = new_columns(rows, 3)) == NULL) code = fail_memory("the lengths");
+    for (f = 0; f < 3 * rows && !code; f++) r->lengths[f] = table[f % 3 * rows + f / 3];
+    free(table);
+    return code;
+}
+
 static int run_load(run *r)
 {
     const double start = now();
-    const int code = mesh_load(&r->mesh, r->o->mesh);
+    int code = mesh_load(&r->mesh, r->o->mesh);
+    if (!code && r->o->lengths) code = run_lengths(r);
     r->sec.load = now() - start;
     return code;
 }
@@ -1899,6 +1969,7 @@ static hd_status run_laplacian(run *r, hd_error *err)
     else if (opts.kind == HD_LAPLACIAN_POLYGON)
         status = hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces,
                                        &opts, err);
+    else if (r->lengths) status = hd_laplacian_lengths(&r->lap, r->lengths, m->n, m->tri, m->n_tri, &opts, err);
     else status = hd_laplacian_triangles(&r->lap, m->xyz, m->n, m->tri, m->n_tri, &opts, err);
     interrupt.patient = 0;
     r->sec.assemble = now() - start;
@@ -1907,8 +1978,22 @@ static hd_status run_laplacian(run *r, hd_error *err)
 
 static const double WIDER_CUT = 1e-4;    /* halves the rows of exponential weights and changes L by 0.1 % */
 
+/* An error about the lengths of a face: where they stand. */
+static int fail_length(const run *r, const hd_error *err)
+{
+    const char *file = display_name(r->o->lengths);
+    char edge[48] = "";
+    mio_error e;
+    if (err->vertex >= 0) snprintf(edge, sizeof edge, ", at the edge from vertex %lld", (long long)err->vertex);
+    mio_fail_at(&e, file, r->length_lines ? r->length_lines[err->face] : 0, "face %lld: %s: %.17g%s",
+                (long long)err->face, err->text, err->value, edge);
+    return fail(FAILED, "%s", e.text);
+}
+
 static int fail_laplacian(const run *r, hd_error *err)
 {
+    if (r->lengths && err->face >= 0 && (err->status == HD_ERR_ARGUMENT || err->status == HD_ERR_NOT_FINITE))
+        return fail_length(r, err);
     /* the ways out that find_ways tries: a run whose matrices do not fit has no plan to ask */
     if (err->status == HD_ERR_MEMORY_LIMIT && err->value > 0 && has_exponentials(r) &&
         laplacian_kind(r) == HD_LAPLACIAN_VORONOI_EXP)
@@ -2162,7 +2247,7 @@ static int run_places(run *r)
     int i, code = read_points(r);
     if (code) return code;
     r->n_inputs = o->n_sources + (o->source_file != NULL);
-    r->sources = (int32_t *)malloc((size_t)r->n_inputs * sizeof *r->sources);
+    r->sources = (int32_t *)malloc(((size_t)r->n_inputs + (size_t)o->count) * sizeof *r->sources);
     r->from = (hd_source *)calloc((size_t)r->n_inputs, sizeof *r->from);
     r->corner = (int32_t *)malloc((size_t)r->n_points * 3 * sizeof *r->corner);
     r->bary = (double *)malloc((size_t)r->n_points * 3 * sizeof *r->bary);
@@ -2273,9 +2358,12 @@ static hd_query query_of(const run *r, int32_t *k)
     if (o->command == CMD_SPECTRUM) *k = spectrum_pairs(r);
     if (o->command == CMD_SPECTRUM) return HD_QUERY_SPECTRUM;
     if (o->command == CMD_DIFFUSE) return HD_QUERY_FIELDS;
+    if (o->command == CMD_TRACE) return HD_QUERY_TRACE;
+    if (o->normalise) return HD_QUERY_NORMALISED;
+    if (o->frequencies) return HD_QUERY_SCALE_INVARIANT;
     if (o->command == CMD_HKS)
         return o->kernel == HD_KERNEL_OPERATOR ? HD_QUERY_DIAGONAL_OPERATOR : HD_QUERY_DIAGONAL;
-    if (o->command == CMD_SAMPLE) *k = (int32_t)o->count;
+    if (o->command == CMD_SAMPLE) *k = (int32_t)o->count + (r->from ? (int32_t)r->n_inputs : 0);
     if (o->command == CMD_PAIRS) *k = pairs_vertices(r);
     if (o->command == CMD_PAIRS && !is_timeless(o)) return HD_QUERY_PAIRS;
     return (hd_query)(HD_QUERY_DISTANCE + o->definition);
@@ -2311,12 +2399,13 @@ static hd_status estimate_query(const run *r, hd_heat *heat, int n_times, hd_est
 static double bytes_needed(const run *r) { return r->estimate.bytes_in_use + r->estimate.cost[0].bytes; }
 
 /* Notes a way out, if it takes less. */
-static void add_way(run *r, const char *option, double bytes)
+static void add_way(run *r, const char *option, double bytes, double seconds)
 {
     way *w = r->ways + r->n_ways;
     if (r->n_ways == MAX_WAYS || !(bytes < bytes_needed(r))) return;
     snprintf(w->option, sizeof w->option, "%s", option);
     w->bytes = bytes;
+    w->seconds = seconds;
     r->n_ways++;
 }
 
@@ -2337,11 +2426,23 @@ static void try_options(run *r, const options *o, const char *option)
         /* the matrices are the run's own then, and so is the analysis where the run has made one */
         if (estimate_query(&other, other.heat, other.n_times, &e, &err) >= 0)
             add_way(r, option, e.cost[0].bytes + (same ? (double)r->context.bytes_in_use : 0) +
-                    (same && r->estimate.analysed ? 0 : e.bytes_in_use));
+                    (same && r->estimate.analysed ? 0 : e.bytes_in_use), e.cost[0].seconds);
         hd_heat_free(other.heat);
     }
     if (!same) hd_laplacian_free(other.lap);
     interrupt.patient = 1;
+}
+
+/* Points by triangles instead of exponential weights, whose many non-zeros in a row fill up the factors. */
+static void try_tufted(run *r)
+{
+    options o = *r->o;
+    if (!has_exponentials(r) || laplacian_kind(r) != HD_LAPLACIAN_VORONOI_EXP) return;
+    o.tufted = 1;
+    o.laplacian = HD_LAPLACIAN_DEFAULT;
+    o.weight_cut = 0;
+    o.has_bandwidth = 0;
+    try_options(r, &o, "--tufted");
 }
 
 /* What else would do for a run that does not fit, each with its need. */
@@ -2355,12 +2456,13 @@ static void find_ways(run *r)
     char fewer[40];
     r->n_ways = 0;
     if (r->o->method != HD_METHOD_ITERATIVE && iterative->possible)
-        add_way(r, "--method iterative", e->bytes_in_use + iterative->bytes);
+        add_way(r, "--method iterative", e->bytes_in_use + iterative->bytes, iterative->seconds);
     if (r->o->method == HD_METHOD_DIRECT && krylov->possible && !r->o->degree && !r->o->poles)
-        add_way(r, "--method krylov", e->bytes_in_use + krylov->bytes);
+        add_way(r, "--method krylov", e->bytes_in_use + krylov->bytes, krylov->seconds);
     if (r->n_times > 1 && r->heat && estimate_query(r, r->heat, 1, &one, &err) >= 0 &&
         one.cost[0].bytes < 0.95 * e->cost[0].bytes)
-        add_way(r, "one time after the other", one.bytes_in_use + one.cost[0].bytes);
+        add_way(r, "one time after the other", one.bytes_in_use + one.cost[0].bytes,
+                one.cost[0].seconds * r->n_times);
     if (o.degree > 9) {
         o.degree = 8;
         try_options(r, &o, "--degree 8");
@@ -2378,12 +2480,7 @@ static void find_ways(run *r)
     o = *r->o;
     o.precond = HD_PRECOND_JACOBI;
     if (e->method == HD_METHOD_ITERATIVE && (o.degree || o.poles)) try_options(r, &o, "--precond jacobi");
-    o = *r->o;
-    o.tufted = 1;
-    o.laplacian = HD_LAPLACIAN_DEFAULT;
-    o.weight_cut = 0;
-    o.has_bandwidth = 0;
-    if (has_exponentials(r) && laplacian_kind(r) == HD_LAPLACIAN_VORONOI_EXP) try_options(r, &o, "--tufted");
+    try_tufted(r);
     o = *r->o;
     o.weight_cut = WIDER_CUT;
     if (has_exponentials(r) && r->o->weight_cut < WIDER_CUT) try_options(r, &o, "--weight-cut 1e-4");
@@ -2410,7 +2507,8 @@ static int fail_limit(run *r, const hd_error *e)
                 "tenths of the machine's memory)%s", r->mesh_name, 1e-6 * needed, 1e-6 * allowed, ways);
 }
 
-/* --dry-run: the estimate, and what else would fit if the run does not. */
+/* --dry-run: the estimate, and what else would fit if the run does not. Of points, what triangles would take
+ * in any case: often a small part. */
 static int dry_run(run *r)
 {
     hd_error err;
@@ -2418,6 +2516,7 @@ static int dry_run(run *r)
     if (code) return code;
     if (estimate_query(r, r->heat, r->n_times, &r->estimate, &err) < 0) return fail_library(r->mesh_name, &err);
     if (!r->estimate.cost[0].fits) find_ways(r);
+    else try_tufted(r);
     return interrupt.asked ? INTERRUPTED : DONE;
 }
 
@@ -2673,7 +2772,12 @@ static int solve_sample(run *r)
 {
     const options *o = r->o;
     hd_report report;
-    const hd_status status = hd_heat_sample(r->heat, (hd_distance_kind)o->definition, r->times[0], (int32_t)o->count, (int32_t)r->n_inputs, r->sources, r->values, &report, NULL);
+    const hd_distance_kind kind = (hd_distance_kind)o->definition;
+    const int32_t count = (int32_t)o->count, k = (int32_t)r->n_inputs;
+    const double t = r->times[0];
+    const hd_status status = r->from
+        ? hd_heat_sample_from(r->heat, kind, t, k, r->from, count, r->sources, r->values, &report, NULL)
+        : hd_heat_sample(r->heat, kind, t, count, k, r->sources, r->values, &report, NULL);
     return solved_time(r, 0, status, &report);
 }
 
@@ -2743,6 +2847,8 @@ static hd_status solve_geodesic_from(run *r)
 static hd_status geodesic_plan(run *r, const hd_geodesic_opts *opts, hd_error *err)
 {
     const mesh_data *m = &r->mesh;
+    if (r->lengths)
+        return hd_geodesic_create_lengths(&r->geodesic, r->lengths, m->n, m->tri, m->n_tri, opts, err);
     if (m->n_tri == 0) return hd_geodesic_create_points(&r->geodesic, m->xyz, m->n, NULL, NULL, opts, err);
     if (laplacian_kind(r) == HD_LAPLACIAN_POLYGON && !r->from)   /* places lie in triangles */
         return hd_geodesic_create_polygons(&r->geodesic, m->xyz, m->n, m->file.face_ptr, m->file.face_idx,
@@ -2906,6 +3012,7 @@ static void json_begin(json *j, const run *r, FILE *out)
     if (r->mesh.file.format) json_text(j, "format", r->mesh.file.format);
     json_integer(j, "n", r->mesh.n);
     json_integer(j, "faces", r->mesh.n_faces);
+    if (r->lengths) json_text(j, "lengths", r->o->lengths);
     if (r->o->matrix) json_number(j, "asymmetry", r->asymmetry);
 }
 
@@ -3074,8 +3181,6 @@ static void json_heat(json *j, const run *r)
     fputc(']', j->out);
 }
 
-static const char *plural(int64_t n) { return n == 1 ? "" : "s"; }
-
 /* What the method did: fill and work of its factorisations, poles, iterations. */
 static void print_method(const run *r)
 {
@@ -3128,8 +3233,9 @@ static void print_query(const run *r)
                 r->filter.max_error / r->filter.largest);
     else if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
     if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
-    fprintf(stderr, "%s Laplacian%s\n", word_of(LAPLACIANS, (int)r->lap->kind),
-            o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+    fprintf(stderr, "%s Laplacian%s%s\n", word_of(LAPLACIANS, (int)r->lap->kind),
+            o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "",
+            r->lengths ? ", from lengths of edges" : "");
 }
 
 /* What the operator made of triangles or points. */
@@ -3260,7 +3366,8 @@ static void print_estimate(const run *r)
     for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_KRYLOV; m++)
         if (e->cost[m].possible && r->o->command != CMD_GEODESIC) print_cost(r, word_of(METHODS, m), &e->cost[m]);
     for (m = 0; m < r->n_ways; m++)
-        fprintf(stderr, "%s needs %.1f MB\n", r->ways[m].option, 1e-6 * r->ways[m].bytes);
+        fprintf(stderr, "%s needs %.1f MB and about %.3g s\n", r->ways[m].option, 1e-6 * r->ways[m].bytes,
+                r->ways[m].seconds);
 }
 
 static void report_estimate(const run *r) { report(r, json_estimate, print_estimate); }
@@ -3726,8 +3833,10 @@ static void info_json(const run *r, const hd_laplacian *lap, const double low[3]
     json_integer(&j, "negative_weights", m->n_negative_weights);
     json_number(&j, "smallest_angle", m->smallest_angle * DEGREES);
     json_intrinsic(&j, r, m);
-    json_numbers(&j, "box_low", low, 3);
-    json_numbers(&j, "box_high", high, 3);
+    if (!r->lengths) {
+        json_numbers(&j, "box_low", low, 3);
+        json_numbers(&j, "box_high", high, 3);
+    }
     json_numbers(&j, "meaningful_times", meaningful, 2);
     json_end(&j, r);
 }
@@ -3752,6 +3861,7 @@ static void info_laplacian(const run *r, const hd_laplacian *lap)
 {
     printf("%-22s %s%s\n", "Laplacian", word_of(LAPLACIANS, (int)lap->kind),
            r->o->tufted ? ", tufted" : r->o->intrinsic_delaunay ? ", intrinsic Delaunay" : "");
+    if (r->lengths) printf("%-22s %s\n", "lengths of edges", display_name(r->o->lengths));
 }
 
 static void info_intrinsic(const hd_mesh_report *m)
@@ -3778,8 +3888,9 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
     if (p->bandwidth > 0 && lap->n_active > 0) {
         printf("%-22s %.9g  (%.4gh2%s)\n", "bandwidth", p->bandwidth, p->bandwidth / (lap->h * lap->h),
                r->o->has_bandwidth ? "" : ", from the sampling");
-        printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld\n", "weights reach",
-               p->cut_radius, p->weight_cut, (double)lap->L.nnz / lap->n_active, (long)p->most_in_row);
+        printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld (7 to 13 with --tufted)\n",
+               "weights reach", p->cut_radius, p->weight_cut, (double)lap->L.nnz / lap->n_active,
+               (long)p->most_in_row);
     }
     print_count("coincident points", p->n_coincident,
                 r->o->tufted ? "in the place of an earlier one, left out"
@@ -3804,8 +3915,9 @@ static void info_print(const run *r, const hd_laplacian *lap, const double low[3
     printf("%-22s %lld\n%-22s %ld\n%-22s %ld\n", "edges", (long long)m->n_edges, "components",
            (long)lap->n_components, "boundary loops", (long)m->n_boundary_loops);
     print_count("boundary edges", m->n_boundary_edges, "");
-    printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1],
-           high[2] - low[2], low[0], low[1], low[2]);
+    if (!r->lengths)
+        printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0],
+               high[1] - low[1], high[2] - low[2], low[0], low[1], low[2]);
     printf("%-22s %.9g\n%-22s %.9g\n%-22s %.4g degrees\n", "area", lap->area, "mean edge length h", lap->h,
            "smallest angle", m->smallest_angle * DEGREES);
     print_count("vertices without area", m->n_inert, "no heat reaches them");
