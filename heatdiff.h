@@ -18192,9 +18192,15 @@ static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_
 
 static double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : HUGE_VAL; }
 
+/* A bound. Of one that is not a number nothing is known. */
+static double hdi_bound_of(double off) { return hdi_nan(off) ? HUGE_VAL : off; }
+
 /* Notes a value and the bound of its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     const double size = fabs(value);
+    off.rational = hdi_bound_of(off.rational);
+    off.solver = hdi_bound_of(off.solver);
+    off.rounding = hdi_bound_of(off.rounding);
     l->off.rational = hdi_max(l->off.rational, off.rational);
     l->off.solver = hdi_max(l->off.solver, off.solver);
     l->off.rounding = hdi_max(l->off.rounding, off.rounding);
@@ -18219,11 +18225,8 @@ static void hdi_bound_judge(double bound, hd_report *rep) {
     if (!(bound <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
 }
 
-/* An error relative to the largest value; of one that is not a number nothing is known. */
-static double hdi_ledger_part(double off, double largest) {
-    const double part = hdi_quotient(off, largest);
-    return hdi_nan(part) ? HUGE_VAL : part;
-}
+/* An error relative to the largest value. */
+static double hdi_ledger_part(double off, double largest) { return hdi_bound_of(hdi_quotient(off, largest)); }
 
 /* Enters a ledger into a report. The report keeps the worst of all its ledgers. */
 static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
@@ -26254,6 +26257,8 @@ static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
         const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
         x->rounding = hdi_max(x->rounding, hdi_quotient(seen, value[row]));
     }
+    for (i = 0; i < m->sym.n; i++)               /* rounding has left nothing of what is positive */
+        if (!g->held[i] && !(value[i] > 0)) x->rounding = HUGE_VAL;
     return HD_OK;
 }
 
@@ -26558,7 +26563,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, co
             const double by_m = hdi_bound_times(hdi_finite(gv) ? sqrt(hdi_max(0, gv)) : HUGE_VAL, c->off_m);
             rounding = 2 * hdi_min(by_m, hdi_bound_times(hdi_finite(sv) ? sqrt(sv) : HUGE_VAL, c->off_b));
         }
-        if (x->rounding > 0)
+        if (!hdi_finite(x->rounding)) rounding = HUGE_VAL;
+        else if (x->rounding > 0)
             rounding += x->rounding *
                 ((s->weight ? 0 : x->own ? hdi_own_size(gs, ss) : fabs(fs)) +
                  (x->own ? hdi_own_size(gv, sv) : fabs(f)));
