@@ -16567,6 +16567,9 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
         for (i = 0; i < n; i++) p[i] = r[i] / lap->b_diag[i] + rho_new / rho * p[i];
         rho = rho_new;
     }
+    if (!hdi_finite(rho) || !hdi_finite(start))
+        return hdi_fail(e, HD_ERR_BREAKDOWN,
+                        "conjugate gradients on B leave the range of doubles, because masses differ by so much");
     if (rho > HDI_MASS_FAILED * start)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
     return HD_OK;
@@ -18219,9 +18222,15 @@ static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_
 
 static double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : HUGE_VAL; }
 
+/* A bound. Of one that is not a number nothing is known. */
+static double hdi_bound_of(double off) { return hdi_nan(off) ? HUGE_VAL : off; }
+
 /* Notes a value and the bound of its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     const double size = fabs(value);
+    off.rational = hdi_bound_of(off.rational);
+    off.solver = hdi_bound_of(off.solver);
+    off.rounding = hdi_bound_of(off.rounding);
     l->off.rational = hdi_max(l->off.rational, off.rational);
     l->off.solver = hdi_max(l->off.solver, off.solver);
     l->off.rounding = hdi_max(l->off.rounding, off.rounding);
@@ -18246,11 +18255,8 @@ static void hdi_bound_judge(double bound, hd_report *rep) {
     if (!(bound <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
 }
 
-/* An error relative to the largest value; of one that is not a number nothing is known. */
-static double hdi_ledger_part(double off, double largest) {
-    const double part = hdi_quotient(off, largest);
-    return hdi_nan(part) ? HUGE_VAL : part;
-}
+/* An error relative to the largest value. */
+static double hdi_ledger_part(double off, double largest) { return hdi_bound_of(hdi_quotient(off, largest)); }
 
 /* Enters a ledger into a report. The report keeps the worst of all its ledgers. */
 static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
@@ -19752,6 +19758,16 @@ static void hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
         lane->b[i] = hdi_c(lane->rhs[i] - lap->mass[i] * lane->sums[lap->component[i]], 0);
 }
 
+/* Squares of a right-hand side whose largest part is below this underflow, or its residuals' do. */
+#define HDI_LANE_LEAST 1e-140
+
+static int hdi_lane_vanishes(const hdi_lane *lane, int32_t n) {
+    double most = 0;
+    int32_t i;
+    for (i = 0; i < n; i++) most = hdi_max(most, fabs(lane->b[i].re));
+    return most > 0 && most < HDI_LANE_LEAST;
+}
+
 /* K_t f through a pole set. The tolerance is relative to the answer, which is not known yet. A first round
  * aims at the tolerance relative to f, which is never too strict because |K_t f|_B <= |f|_B (times the
  * largest value of a filter). The next rounds
@@ -19765,6 +19781,9 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
     hd_status status = HD_OK;
     int32_t round;
     hdi_lane_rhs(lane, lap);
+    if (hdi_lane_vanishes(lane, lap->n_active))
+        return hdi_fail(e, HD_ERR_BREAKDOWN,
+                        "the iteration broke down: masses or values differ by so much that squares underflow");
     for (round = 0; round < 6; round++) {
         part.from = watch->from + watch->share * (round ? 0.7 : 0);
         part.share = watch->share * (round ? 0.3 : 0.7);
@@ -20099,6 +20118,7 @@ typedef struct hdi_lanczos_task {
     double t, tol;
     double drift;                        /* change of a constant in unit time */
     int32_t max_iterations;
+    int cut;                             /* t stands for a longer time */
 } hdi_lanczos_task;
 
 /* A start: v of B norm one, c = B v. */
@@ -20143,6 +20163,9 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
             norm += w[i] * v[i];
         }
     }
+    if (!hdi_finite(alpha) || !hdi_finite(norm))
+        return hdi_fail(e, HD_ERR_BREAKDOWN,
+                        "Lanczos: numbers leave the range of doubles, because masses differ by so much");
     z->alpha[j] = alpha;
     z->beta[j + 1] = norm > 0 ? sqrt(norm) : 0;
     z->noise = hdi_max(z->noise, off + 8 * DBL_EPSILON * (fabs(alpha) + z->beta[j] + z->beta[j + 1]));
@@ -20210,6 +20233,8 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
         lane->off.solver = f0_norm * bound;
         /* the coefficients are by poles */
         lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t) + set.max_error);
+        if (task->cut)                           /* what is left may fade, and never grows */
+            lane->off.rounding += f0_norm * sqrt(hdi_dot(z->y, z->y, z->m));
         if (lane->off.solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
         if (bound < best / 2) {
             best = bound;
@@ -22610,7 +22635,9 @@ static void hdi_spec_sum_store(const hdi_spec_sum *a, int32_t row, double sum) {
     } else {
         const double l = a->diagonal ? a->mass ? s->left_mass[v] : left : a->left;
         const double w = a->diagonal ? a->mass ? lap->b_diag[row] : whole : a->whole;
-        off = hdi_spec_times(a->f.rest, sqrt(left * l)) + hdi_spec_times(a->f.error, sqrt(whole * w));
+        /* roots first: products of inverse masses may leave the range of doubles */
+        off = hdi_spec_times(a->f.rest, sqrt(left) * sqrt(l)) +
+              hdi_spec_times(a->f.error, sqrt(whole) * sqrt(w));
     }
     a->out[v] = sum;
     if (a->bound) a->bound[v] = off;
@@ -23860,6 +23887,25 @@ static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double
     return sqrt(norm2);
 }
 
+/* Brings a column near one in the norm of B, by a power of two. A small mass beside large ones has a column
+ * whose squares could leave the range of doubles. */
+static void hdi_lane_even(const hd_laplacian *lap, hdi_lane *lane) {
+    const double least = ldexp(1, -64);          /* no bits change; columns nearer to one stay as they are */
+    int32_t i;
+    int exponent = 0;
+    if (lane->f_norm >= least && lane->f_norm <= 1 / least) return;
+    frexp(lane->f_norm, &exponent);
+    lane->exponent = exponent;
+    for (i = 0; i < lap->n_active; i++) {
+        lane->f[i] = ldexp(lane->f[i], -exponent);
+        lane->rhs[i] = ldexp(lane->rhs[i], -exponent);
+    }
+    for (i = 0; i < lap->n_components; i++) lane->target[i] = ldexp(lane->target[i], -exponent);
+    lane->f_norm = ldexp(lane->f_norm, -exponent);
+    lane->rhs_off = ldexp(lane->rhs_off, -exponent);
+    lane->f_off = ldexp(lane->f_off, -exponent);
+}
+
 /* The same as hdi_heat_load of a source of several vertices. */
 static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
@@ -23885,6 +23931,7 @@ static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c,
     hdi_heat_measure(lap, lane);
     lane->rhs_off += sums * lane->f_norm;
     if (!plain && lap->B) lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
+    if (h->method == HD_METHOD_ITERATIVE && !h->ask.list) hdi_lane_even(lap, lane);
     return HD_OK;
 }
 
@@ -23942,6 +23989,8 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     hdi_heat_measure(lap, lane);
     if ((lane->dual || h->ask.query == HDI_QUERY_SYMMETRIC) && lap->B)
         lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
+    if (h->method == HD_METHOD_ITERATIVE && !h->ask.list && !hdi_query_fields(h->ask.query))
+        hdi_lane_even(lap, lane);
     if (h->rate) hdi_lane_moving(lap, lane);
     return HD_OK;
 }
@@ -24038,13 +24087,18 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
     return h->e->status;
 }
 
+/* t times the largest eigenvalue is at most this in Lanczos: it is squared. By then all that moves is gone,
+ * unless eigenvalues differ by as much. */
+#define HDI_LANCZOS_REACH 1e140
+
 static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
     hdi_lanczos_task task;
+    const double most = heat->lambda_max > 0 ? HDI_LANCZOS_REACH / heat->lambda_max : t;
     task.lap = heat->lap;
     task.weight = heat->weight;
     task.noise = heat->noise;
-    /* beyond, all that moves is gone */
-    task.t = heat->lambda_max > 0 ? hdi_min(t, 1e100 / heat->lambda_max) : t;
+    task.t = hdi_min(t, most);
+    task.cut = t > most;
     task.tol = heat->opts.tol;
     task.drift = heat->drift;
     task.max_iterations = heat->opts.max_iterations;
@@ -26311,6 +26365,8 @@ static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
         const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
         x->rounding = hdi_max(x->rounding, hdi_quotient(seen, value[row]));
     }
+    for (i = 0; i < m->sym.n; i++)               /* rounding has left nothing of what is positive */
+        if (!g->held[i] && !(value[i] > 0)) x->rounding = HUGE_VAL;
     return HD_OK;
 }
 
@@ -26615,7 +26671,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, co
             const double by_m = hdi_bound_times(hdi_finite(gv) ? sqrt(hdi_max(0, gv)) : HUGE_VAL, c->off_m);
             rounding = 2 * hdi_min(by_m, hdi_bound_times(hdi_finite(sv) ? sqrt(sv) : HUGE_VAL, c->off_b));
         }
-        if (x->rounding > 0)
+        if (!hdi_finite(x->rounding)) rounding = HUGE_VAL;
+        else if (x->rounding > 0)
             rounding += x->rounding *
                 ((s->weight ? 0 : x->own ? hdi_own_size(gs, ss) : fabs(fs)) +
                  (x->own ? hdi_own_size(gv, sv) : fabs(f)));
