@@ -125,8 +125,9 @@
                                implies NO_DIFFUSION. Bounds of the error of method direct are larger, and
                                times so large that only the means are left take longer
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample
-     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. Distances at large t are less accurate, with bounds
-                               that say so, and need factors of their poles
+     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. At large t distances, and all answers where heat
+                               flows out, are less accurate, with bounds that say so, and need factors of
+                               their poles
      HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Pole sets of your choice need
                                method direct then, and factors that do not fit byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
@@ -1346,6 +1347,10 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
 /* U = K_t F at each time.
  * t      >= 0. t = 0 copies F. For large t the answer tends to the mean over each component; t may be
  *        arbitrarily large
+ *        Where all heat flows out (every component has held vertices, or L of your own does not conserve it)
+ *        the answer falls like exp(-t lambda_1) instead, and what poles are off by does not. With the method
+ *        auto or direct it then comes from the few eigenpairs left, as distances do: see hd_heat_distance.
+ *        So do columns, entries, diagonals and the trace. Values that underflow are 0, with an infinite bound
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
@@ -18487,6 +18492,7 @@ typedef struct hdi_lane {
     /* outcome, norms absolute */
     double f_norm, u_norm;
     hdi_parts off, off_m;        /* bounds of the error in the norms of B and of B + tL */
+    hdi_parts off_value;         /* the same of each value of u, where answers are sums over eigenpairs */
     hd_evidence rounding;        /* how the part of rounding is known */
     double residual;
     double b_norm;               /* of the right-hand side, in the norm of diag(B)^-1 */
@@ -22812,7 +22818,7 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
  * values are noted elsewhere. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
-                           const double *reach, int own, hd_report *rep) {
+                           const double *reach, int own, int by_value, hd_report *rep) {
     const double *out = hdi_lane_answer(lane);
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
     int32_t i;
@@ -22827,7 +22833,8 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
         hdi_parts off =
-            lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL) : hdi_lane_bound(lap, lane, reach);
+            lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL)
+                       : by_value ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         if (total > 0) off.rounding += DBL_EPSILON * largest;    /* of the value itself */
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
@@ -23913,7 +23920,8 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         if (row == HD_ROW_INERT)
             values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && HDI_CAST(uint64_t, v) == at.key;
         if (!lane->skip && row >= 0)
-            off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
+            off = h->by_pairs ? lane->off_value
+                              : hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
 }
@@ -24039,7 +24047,7 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
-    hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->rep);
+    hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
     if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
     if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
@@ -24750,6 +24758,7 @@ typedef struct hdi_decay {
     double scale, depth;         /* exp(-t low), t low */
     double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
     double rounding;             /* factor of |y| */
+    double t, next;              /* all eigenvalues of the complement of the pairs are at least next */
 } hdi_decay;
 
 /* work [2 count] */
@@ -24773,6 +24782,8 @@ static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
     a.cut = next < HUGE_VAL ? exp(-t * gap) : 0;
     a.mixed = of->off_norm * (next < HUGE_VAL ? hdi_min(t, gap > 0 ? 1 / gap : t) : 0);
     a.rounding = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
+    a.t = t;
+    a.next = next;
     return a;
 }
 
@@ -24807,7 +24818,16 @@ static void hdi_packs_drop(hd_heat *heat) {
  * fast. With A = B^-1 L, Q f = f - X c and R = A X - X Theta, the bound of room [28] for distances holds
  * without its constants, and for the same reasons: |K_t f - X exp(-t Theta) c| is at most
  *     exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i|
- *                  + (exp(-t (next - |R| - low)) + |R|/(next - |R| - low)) |Q f|). */
+ *                  + (exp(-t (next - |R| - low)) + |R|/(next - |R| - low)) |Q f|).
+ * That is in the B norm. A single value is an inner product with g = B^-1 e_v, of which little is in the span
+ * of X. On that and its complement A has the blocks A_11, A_22 >= a = next - |R| and |A_21| <= |R|, and by
+ * variation of constants (m = |R|/(a - low), |A_21 x_i| <= |r_i|)
+ *     |exp(-t A)_21 c| <= exp(-t low) s(c),
+ *         s(c) = sum_i |r_i| exp(-t (theta_i - low)) min(t, 1/(a - theta_i)) |c_i| + m t |R| |c|,
+ *     |exp(-t A)_22| <= exp(-t low) (exp(-t (a - low)) + m^2),
+ *     |exp(-t A)_11 c - exp(-t Theta) c| <= exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i| + m t |R| |c|).
+ * So a value is off by no more than exp(-t low) times
+ *     (exp(-t (a - low)) + m^2) |Q g| |Q f| + s(c_g) |Q f| + s(c) |Q g| + |c_g| (the last sum). */
 
 /* Eigenpairs come first from a time on that is this many times 1/lambda_1: with the border of a square held,
  * bounds by poles of degree 9 are 4e-7 at t lambda_1 = 0.4 and 6e-5 at 7, those of krylov 4e-7 there. */
@@ -24843,6 +24863,44 @@ static HDI_INLINE int hdi_fading_first(const hdi_heat_call *h, double t) {
            hdi_fading_near(h->heat, t, HDI_MODES_FIRST);
 }
 
+/* The factor of |c_q| in s(c), and what s(c) and the last sum have besides for each |c|. */
+static double hdi_decay_side(const hdi_modes *of, const hdi_decay *x, int32_t q) {
+    const double gap = x->next - of->s.value[q];
+    if (x->next >= HUGE_VAL) return 0;
+    return x->weight[q] * of->off[q] * hdi_min(x->t, gap > 0 ? 1 / gap : x->t);
+}
+
+static double hdi_decay_twice(const hdi_modes *of, const hdi_decay *x) {
+    return x->mixed * of->off_norm * x->t;
+}
+
+/* The largest |Q g|, s(c_g) and |c_g| of all vertices. */
+typedef struct hdi_fading_far { double left, side, found; } hdi_fading_far;
+
+/* work [2 n] */
+static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, double *work) {
+    const hd_spectrum *s = &of->s;
+    const hd_laplacian *lap = s->lap;
+    double *side = work, *found = work + s->n;
+    hdi_fading_far far = {0, 0, 0};
+    int32_t q, v;
+    for (v = 0; v < s->n; v++) side[v] = found[v] = 0;
+    for (q = 0; q < s->count; q++) {
+        const double *y = s->vector + HDI_CAST(int64_t, q) * s->n, w = hdi_decay_side(of, x, q);
+        for (v = 0; v < s->n; v++) {
+            side[v] += w * fabs(y[v]);
+            found[v] += y[v] * y[v];
+        }
+    }
+    for (v = 0; v < s->n; v++) {
+        const double all = lap->row[v] < 0 ? 0 : hdi_inverse_mass(lap, lap->row[v]), c = sqrt(found[v]);
+        far.left = hdi_max(far.left, sqrt(s->left[v] + of->off_gram * all));
+        far.side = hdi_max(far.side, side[v] + hdi_decay_twice(of, x) * c);
+        far.found = hdi_max(far.found, c);
+    }
+    return far;
+}
+
 /* A sum over the pairs by rows of the caller's pair. */
 typedef struct hdi_fading_sum { const hdi_modes *of; const double *c; double scale, *u; } hdi_fading_sum;
 
@@ -24860,52 +24918,65 @@ static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
     for (i = begin; i < end; i++) a->u[i] *= a->scale;
 }
 
-/* The bounds of a lane's answer. found, left2 and solver: |c|^2, |w c|^2 and the sum of |r_i| ... |c_i|. */
-static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const double *size, hdi_lane *lane) {
+/* What the coefficients of a field sum up to: |c|^2, |w c|^2, the sum of |r_i| min(t, ...) |c_i|, and s(c). */
+typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
+
+/* The bounds of a lane's answer. */
+static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *far,
+                             const hdi_fading_size *c, hdi_lane *lane) {
     const hdi_modes *of = &h->heat->modes;
     const double terms = hdi_query_fields(h->ask.query) ? HDI_CAST(double, h->lap->n_active) / 2 : 0;
-    const double root = hdi_ratio_root(h->lap), f2 = lane->f_norm * lane->f_norm;
+    const double f2 = lane->f_norm * lane->f_norm, twice = hdi_decay_twice(of, x) * sqrt(c->found);
     const double rounding = x->rounding + terms * DBL_EPSILON;
-    const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * size[0]) + rounding * f2);
+    const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * c->found) + rounding * f2);
+    const double sums = x->scale * (2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
+    const double itself = 8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON;
     hdi_lane_clear_off(lane);
-    lane->u_norm = x->scale * sqrt(size[1]);
+    lane->u_norm = x->scale * sqrt(c->kept);
     lane->off.rational = x->scale * x->cut * left;
-    lane->off.solver = x->scale * (size[2] + x->mixed * left);
-    lane->off.rounding = x->scale * (root * rounding * lane->f_norm + lane->rhs_off) + 4 * DBL_MIN * DBL_EPSILON +
-                         8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * lane->u_norm;
+    lane->off.solver = x->scale * (c->inner + x->mixed * left);
+    lane->off.rounding = sums + itself * lane->u_norm + 4 * DBL_MIN * DBL_EPSILON;
+    lane->off_value.rational = lane->off.rational * far->left;
+    lane->off_value.solver = x->scale * (x->mixed * x->mixed * far->left * left + far->side * left +
+                                         (c->side + twice) * far->left + far->found * (c->inner + twice));
+    lane->off_value.rounding = far->found * (sums + itself * lane->u_norm) + 4 * DBL_MIN * DBL_EPSILON;
     lane->off_m = lane->off;
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
 
 /* The answer of a lane from the pairs. work [count] */
-static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, hdi_lane *lane, double *work) {
+static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *far,
+                            hdi_lane *lane, double *work) {
     const hd_laplacian *lap = h->lap;
-    const hd_spectrum *s = &h->heat->modes.s;
-    double size[3] = {0, 0, 0};
+    const hdi_modes *of = &h->heat->modes;
+    hdi_fading_size size = {0, 0, 0, 0};
     hdi_fading_sum a;
     int32_t q, i;
-    for (q = 0; q < s->count; q++) {
-        const double *v = s->vector + HDI_CAST(int64_t, q) * s->n;
+    for (q = 0; q < of->s.count; q++) {
+        const double *v = of->s.vector + HDI_CAST(int64_t, q) * of->s.n;
         double c = 0;
         for (i = 0; i < lap->n_active; i++) c += lane->rhs[i] * v[lap->vertex[i]];
         work[q] = x->weight[q] * c;
-        size[0] += c * c;
-        size[1] += work[q] * work[q];
-        size[2] += x->off[q] * fabs(c);
+        size.found += c * c;
+        size.kept += work[q] * work[q];
+        size.inner += x->off[q] * fabs(c);
+        size.side += hdi_decay_side(of, x, q) * fabs(c);
     }
-    a.of = &h->heat->modes;
+    a.of = of;
     a.c = work;
     a.scale = x->scale;
     a.u = lane->u;
     hdi_parallel_ranges(h->heat->ctx, lap->n_active, 1024, hdi_fading_task, &a);
-    hdi_fading_bound(h, x, size, lane);
+    hdi_fading_bound(h, x, far, &size, lane);
 }
 
 /* The request at one time from the pairs that are there. */
 static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     hd_heat *heat = h->heat;
     const int32_t count = heat->modes.s.count;
-    double *work = HDI_NEW(heat->ctx, double, 3 * HDI_CAST(uint64_t, count), h->e);
+    double *work = HDI_NEW(heat->ctx, double,
+                           3 * HDI_CAST(uint64_t, count) + 2 * HDI_CAST(uint64_t, heat->source->n), h->e);
+    hdi_fading_far far;
     hdi_decay x;
     h->lap = heat->source;
     h->by_pairs = 1;
@@ -24914,11 +24985,12 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     hdi_modes_tell(heat, h->rep);
     if (work && hdi_heat_lanes(h, 1) >= 0) {
         x = hdi_decay_at(&heat->modes, t, work + count);
+        far = hdi_fading_reach(&heat->modes, &x, work + 3 * HDI_CAST(int64_t, count));
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
             if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0 ||
                 hdi_heat_load(h, h->batch, h->lane) < 0)
                 break;
-            if (!h->lane->skip) hdi_fading_lane(h, &x, h->lane, work);
+            if (!h->lane->skip) hdi_fading_lane(h, &x, &far, h->lane, work);
             if (hdi_heat_store_some(h, 1) < 0) break;
         }
         if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
@@ -26594,15 +26666,15 @@ static hd_status hdi_trace_poles(hdi_heat_call *h, double *Z, double *bound, con
 /* ---- heat that fades ---- */
 
 /* The diagonal from the pairs that are there: an entry is <B^-1 e_v, K_t f> with f = B^-1 e_v or e_v. With the
- * remainders Q of both and c, c' their coefficients it is off by at most exp(-t low) times
- *     (cut + mixed) |Q B^-1 e_v| |Q f| + sum off_i (|c_i| |Q f| + |B^-1 e_v| |c'_i|),
- * see hdi_fading. K_t is self-adjoint, so that the tail is cut on both sides. */
+ * remainders Q of both and their coefficients it is off by as much as a value of a column, see [26]. */
 typedef struct hdi_fading_diagonal {
     const hdi_modes *of;
     const hd_laplacian *lap;
     hdi_decay decay;
     int mass;                    /* of K_t */
-    double *value, *off;         /* [n] the sums, and sums of off_i |c_i| and off_i |c'_i|, [2 n] */
+    double *value;               /* [n] the sums */
+    hdi_fading_size *c;          /* [n] what the coefficients of f sum up to */
+    hdi_fading_size *g;          /* [n] of B^-1 e_v; the same for k_t */
 } hdi_fading_diagonal;
 
 /* Vector q at a vertex, times B where the other side of K_t is meant. */
@@ -26611,37 +26683,48 @@ static double hdi_fading_other(const hdi_fading_diagonal *a, int32_t q, int32_t 
     return !a->mass ? a->of->s.vector[at] : a->of->bx ? a->of->bx[at] : a->of->by[v] * a->of->s.vector[at];
 }
 
+static void hdi_fading_size_add(hdi_fading_size *c, const hdi_decay *x, int32_t q, double side, double y) {
+    c->found += y * y;
+    c->inner += x->off[q] * fabs(y);
+    c->side += side * fabs(y);
+}
+
 static void hdi_fading_diagonal_task(void *arg, int64_t begin, int64_t end) {
     const hdi_fading_diagonal *a = HDI_CAST(const hdi_fading_diagonal *, arg);
     const hd_spectrum *s = &a->of->s;
-    double *off = a->off, *other = a->off + a->lap->n_active;
     int64_t i;
     int32_t q;
-    for (i = begin; i < end; i++) a->value[i] = off[i] = other[i] = 0;
-    for (q = 0; q < s->count; q++)
+    memset(a->value + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->value);
+    memset(a->c + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->c);
+    if (a->mass) memset(a->g + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->g);
+    for (q = 0; q < s->count; q++) {
+        const double side = hdi_decay_side(a->of, &a->decay, q);
         for (i = begin; i < end; i++) {
             const int32_t v = a->lap->vertex[i];
             const double x = s->vector[HDI_CAST(int64_t, q) * s->n + v], y = hdi_fading_other(a, q, v);
             a->value[i] += a->decay.weight[q] * x * y;
-            off[i] += a->decay.off[q] * fabs(x);
-            other[i] += a->decay.off[q] * fabs(y);
+            hdi_fading_size_add(a->c + i, &a->decay, q, side, y);
+            if (a->mass) hdi_fading_size_add(a->g + i, &a->decay, q, side, x);
         }
+    }
 }
 
 /* Gives row i to its vertex, and its errors to the report. */
 static void hdi_fading_diagonal_note(const hdi_fading_diagonal *a, int32_t i, double *out,
                                      hdi_ledger *ledger) {
     const hdi_decay *x = &a->decay;
+    const hdi_fading_size *c = a->c + i, *g = a->g + i;
     const int32_t v = a->lap->vertex[i];
     const double inverse = hdi_inverse_mass(a->lap, i), b = a->mass ? a->lap->b_diag[i] : inverse;
-    const double gram = a->of->off_gram, left = sqrt(a->of->s.left[v] + gram * inverse);
-    const double left_f = a->mass ? sqrt(a->of->s.left_mass[v] + gram * b) : left;
+    const double gram = a->of->off_gram, left_g = sqrt(a->of->s.left[v] + gram * inverse);
+    const double left = a->mass ? sqrt(a->of->s.left_mass[v] + gram * b) : left_g;
+    const double twice = hdi_decay_twice(a->of, x), found_g = sqrt(g->found), found = sqrt(c->found);
     hdi_parts part;
     out[v] = x->scale * a->value[i];
-    part.rational = x->scale * x->cut * left * left_f;
-    part.solver = x->scale * (x->mixed * left * left_f + a->off[i] * left_f +
-                              sqrt(inverse) * a->off[a->lap->n_active + i]);
-    part.rounding = x->scale * x->rounding * sqrt(inverse * b) + 4 * DBL_MIN * DBL_EPSILON +
+    part.rational = x->scale * x->cut * left_g * left;
+    part.solver = x->scale * (x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
+                              (c->side + twice * found) * left_g + found_g * (c->inner + twice * found));
+    part.rounding = 2 * x->scale * x->rounding * found_g * sqrt(b) + 4 * DBL_MIN * DBL_EPSILON +
                     8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[v]);
     hdi_ledger_note(ledger, out[v], part);
 }
@@ -26651,7 +26734,7 @@ static hd_status hdi_fading_diagonal_run(hdi_heat_call *h, double t, hd_kernel k
     const hd_laplacian *lap = heat->source;
     const uint64_t n = HDI_CAST(uint64_t, lap->n_active), count = HDI_CAST(uint64_t, heat->modes.s.count);
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    double *work = HDI_TAKE(&s, double, 2 * count + 3 * n);
+    double *work = HDI_TAKE(&s, double, 2 * count + n);
     hdi_ledger ledger = hdi_modes_ledger();
     hdi_fading_diagonal a;
     int32_t i;
@@ -26659,9 +26742,10 @@ static hd_status hdi_fading_diagonal_run(hdi_heat_call *h, double t, hd_kernel k
     a.of = &heat->modes;
     a.lap = lap;
     a.mass = kernel == HD_KERNEL_OPERATOR;
-    if (!work || (a.mass && hdi_modes_mass(heat, h->e) < 0)) return hdi_scope_end(&s);
+    a.c = HDI_TAKE(&s, hdi_fading_size, a.mass ? 2 * n : n);
+    if (h->e->status < 0 || (a.mass && hdi_modes_mass(heat, h->e) < 0)) return hdi_scope_end(&s);
     a.value = work + 2 * count;
-    a.off = a.value + n;
+    a.g = a.mass ? a.c + n : a.c;
     a.decay = hdi_decay_at(a.of, t, work);
     hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_diagonal_task, &a);
     for (i = 0; i < lap->n; i++) out[i] = a.mass && lap->row[i] == HD_ROW_INERT;
