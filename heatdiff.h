@@ -23920,8 +23920,8 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         if (row == HD_ROW_INERT)
             values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && HDI_CAST(uint64_t, v) == at.key;
         if (!lane->skip && row >= 0)
-            off = h->by_pairs ? lane->off_value
-                              : hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
+            off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
+        if (!lane->skip && row >= 0 && h->by_pairs) off = lane->off_value;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
 }
@@ -24750,8 +24750,8 @@ static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most,
     return 0;
 }
 
-/* What is left of the pairs at time t, and what that is off by per |c_i| and |Q y|: see the sums in which they
- * are used. */
+/* What is left of the pairs at time t, and what that is off by per |c_i| and |Q y|: see the sums in which
+ * they are used. */
 typedef struct hdi_decay {
     int32_t first;               /* of the pairs that are not constants */
     double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds of the errors per |c_i| */
@@ -24825,7 +24825,8 @@ static void hdi_packs_drop(hd_heat *heat) {
  *     |exp(-t A)_21 c| <= exp(-t low) s(c),
  *         s(c) = sum_i |r_i| exp(-t (theta_i - low)) min(t, 1/(a - theta_i)) |c_i| + m t |R| |c|,
  *     |exp(-t A)_22| <= exp(-t low) (exp(-t (a - low)) + m^2),
- *     |exp(-t A)_11 c - exp(-t Theta) c| <= exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i| + m t |R| |c|).
+ *     |exp(-t A)_11 c - exp(-t Theta) c|
+ *         <= exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i| + m t |R| |c|).
  * So a value is off by no more than exp(-t low) times
  *     (exp(-t (a - low)) + m^2) |Q g| |Q f| + s(c_g) |Q f| + s(c) |Q g| + |c_g| (the last sum). */
 
@@ -24918,7 +24919,8 @@ static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
     for (i = begin; i < end; i++) a->u[i] *= a->scale;
 }
 
-/* What the coefficients of a field sum up to: |c|^2, |w c|^2, the sum of |r_i| min(t, ...) |c_i|, and s(c). */
+/* What the coefficients of a field sum up to: |c|^2, |w c|^2, the sum of |r_i| min(t, ...) |c_i|, and s(c)
+ * but for its last term. */
 typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
 
 /* The bounds of a lane's answer. */
@@ -26665,8 +26667,8 @@ static hd_status hdi_trace_poles(hdi_heat_call *h, double *Z, double *bound, con
 
 /* ---- heat that fades ---- */
 
-/* The diagonal from the pairs that are there: an entry is <B^-1 e_v, K_t f> with f = B^-1 e_v or e_v. With the
- * remainders Q of both and their coefficients it is off by as much as a value of a column, see [26]. */
+/* The diagonal from the pairs that are there: an entry is <B^-1 e_v, K_t f> with f = B^-1 e_v or e_v. It is
+ * off by as much as a value of a column, see [26]. */
 typedef struct hdi_fading_diagonal {
     const hdi_modes *of;
     const hd_laplacian *lap;
@@ -26771,7 +26773,8 @@ static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *boun
         off.solver += t * x->off_norm * exp(-t * least);
     }
     if (others > 0) off.rational = others * exp(-t * hdi_max(0, x->s.next));
-    off.rounding = 8 * (2 + hdi_min(t * x->low, HDI_EQUAL_BEYOND)) * DBL_EPSILON * value + 4 * DBL_MIN * DBL_EPSILON;
+    off.rounding = 8 * (2 + hdi_min(t * x->low, HDI_EQUAL_BEYOND)) * DBL_EPSILON * value +
+                   4 * DBL_MIN * DBL_EPSILON;
     h->relative = 1;
     *Z = value;
     if (bound) *bound = hdi_parts_sum(&off);
@@ -27627,7 +27630,7 @@ static hdi_mode_sum hdi_mode_sum_at(const hd_heat *heat, hd_distance_kind kind, 
 /* How far eigenvalues have to reach above the lowest one, times t: exp of it is |y| over the part that may be
  * left out. The largest distance is at least about 1/sqrt(mass) times exp(-t low). */
 static double hdi_modes_depth(const hd_heat *heat) {
-    return hdi_max(0, log(2 * hdi_modes_span(heat) / hdi_modes_tol(heat)));    /* below zero: tol is all there is */
+    return hdi_max(0, log(2 * hdi_modes_span(heat) / hdi_modes_tol(heat)));    /* 0: tol is all there is */
 }
 
 /* May eigenpairs serve distances of this kind? */
@@ -28822,9 +28825,21 @@ static hd_distance_kind hdi_estimate_kind(const hdi_estimate *x) {
     return x->query == HD_QUERY_DISTANCE ? HD_DISTANCE_CLASSICAL : HD_DISTANCE_WEIGHTED;
 }
 
-/* Eigenpairs for distances at time t. */
-static int32_t hdi_estimate_pairs(const hd_heat *heat, double t) {
-    return hdi_modes_count(heat, hdi_modes_expected(heat, hdi_modes_depth(heat) / t));
+static int hdi_estimate_distance(const hdi_estimate *x) {
+    return x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
+}
+
+/* Eigenpairs for time t. */
+static int32_t hdi_estimate_pairs(const hdi_estimate *x, double t) {
+    const hd_heat *heat = x->h->heat;
+    const double depth = hdi_estimate_distance(x) ? hdi_modes_depth(heat) : hdi_fading_depth(heat);
+    return hdi_modes_count(heat, hdi_modes_expected(heat, depth / t));
+}
+
+/* Do eigenpairs come first at time t? */
+static int hdi_estimate_first(const hdi_estimate *x, double t) {
+    return hdi_estimate_distance(x) ? hdi_modes_first(x->h->heat, hdi_estimate_kind(x), t)
+                                    : hdi_fading_first(x->h, t);
 }
 
 /* Finding so many eigenpairs. */
@@ -28837,7 +28852,7 @@ static void hdi_estimate_pairs_cost(const hd_heat *heat, int32_t count, hd_cost 
     hdi_cost_add(c, flops, seconds, hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL);
 }
 
-/* Finding so many eigenpairs, and distances from k sources by them. */
+/* Finding so many eigenpairs, and distances from k sources, or k columns, by them. */
 static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c) {
     const hd_heat *heat = x->h->heat;
     const double n = heat->source->n_active;
@@ -28850,13 +28865,13 @@ static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c)
  * stay. */
 static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held) {
     const hd_heat *heat = x->h->heat;
-    const double n = heat->source->n, unit = 2 * heat->scale;
+    const double n = heat->source->n, unit = (hdi_estimate_distance(x) ? 2 : 1) * heat->scale;
     const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && heat->source->B;
     int32_t early = x->h->n_times, count;
-    while (early > 0 && hdi_modes_first(heat, hdi_estimate_kind(x), x->h->times[early - 1] / unit)) early--;
+    while (early > 0 && hdi_estimate_first(x, x->h->times[early - 1] / unit)) early--;
     *held = 0;
     if (early == x->h->n_times) return early;
-    count = hdi_estimate_pairs(heat, x->h->times[early] / unit);
+    count = hdi_estimate_pairs(x, x->h->times[early] / unit);
     if (hdi_modes_need(heat, count) > hdi_estimate_room(heat->ctx)) return x->h->n_times;
     hdi_estimate_modes(x, count, c);
     if (!heat->modes.s.value) *held = 8 * n * ((twice ? 2 : 1) * count + 5);
@@ -28866,9 +28881,10 @@ static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held
 /* Bytes that eigenpairs need which may come after poles at time t. */
 static double hdi_estimate_help(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
-    if (x->query < HD_QUERY_DISTANCE || !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST))
+    if (hdi_estimate_distance(x) ? !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST)
+                                 : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST))
         return 0;
-    return hdi_modes_need(heat, hdi_estimate_pairs(heat, t));
+    return hdi_modes_need(heat, hdi_estimate_pairs(x, t));
 }
 
 /* Commute and biharmonic distances. */
@@ -28917,7 +28933,7 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
         hdi_estimate_ground(x, c);
         return HD_OK;
     }
-    if (distance) early = hdi_estimate_late(x, &late, &held);
+    early = hdi_estimate_late(x, &late, &held);
     h->n_times = early;
     windows = hdi_estimate_shared(x, tol);
     if (early == 0) {
@@ -28953,6 +28969,31 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     return h->e->status;
 }
 
+/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades. */
+static hd_status hdi_estimate_columns(const hdi_estimate *x, double held) {
+    hdi_heat_call *h = x->h;
+    hd_estimate *to = x->to;
+    hd_cost late;
+    double stay = 0;
+    int32_t early = h->n_times;
+    memset(&late, 0, sizeof late);
+    if (x->query < HD_QUERY_PAIRS && HDI_HAS_MODES && hdi_fading(h)) {
+        if (hdi_fading_first(h, h->times[early - 1] / h->heat->scale) && hdi_estimate_analyse(h) < 0)
+            return h->e->status;
+        early = hdi_estimate_late(x, &late, &stay);
+    }
+    h->n_times = early;
+    if (early > 0) {
+        h->t = h->times[early - 1];
+        if (hdi_estimate_solves(x, held) >= 0) hdi_estimate_join(to->cost + to->method, &late, stay);
+        return h->e->status;
+    }
+    to->method = HD_METHOD_DIRECT;
+    to->reason = HDI_MODES_REASON;
+    to->cost[HD_METHOD_DIRECT] = late;
+    return HD_OK;
+}
+
 /* The estimate of a query whose arguments are checked. */
 static hd_status hdi_estimate_run(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
@@ -28974,8 +29015,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
         to->reason = "t = 0";
         hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
     } else if (x->query <= HD_QUERY_PAIRS) {
-        /* pairs: their columns */
-        (void)hdi_estimate_solves(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
+        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
     } else {
         (void)hdi_estimate_direct(x);
     }
