@@ -24875,28 +24875,31 @@ static double hdi_decay_twice(const hdi_modes *of, const hdi_decay *x) {
     return x->mixed * of->off_norm * x->t;
 }
 
-/* The largest |Q g|, s(c_g) and |c_g| of all vertices. */
-typedef struct hdi_fading_far { double left, side, found; } hdi_fading_far;
+/* The largest |Q g|, s(c_g), |c_g| and last sum of all vertices. */
+typedef struct hdi_fading_far { double left, side, found, inner; } hdi_fading_far;
 
-/* work [2 n] */
+/* work [3 n] */
 static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, double *work) {
     const hd_spectrum *s = &of->s;
     const hd_laplacian *lap = s->lap;
-    double *side = work, *found = work + s->n;
-    hdi_fading_far far = {0, 0, 0};
+    double *side = work, *found = work + s->n, *inner = found + s->n;
+    hdi_fading_far far = {0, 0, 0, 0};
     int32_t q, v;
-    for (v = 0; v < s->n; v++) side[v] = found[v] = 0;
+    for (v = 0; v < s->n; v++) side[v] = found[v] = inner[v] = 0;
     for (q = 0; q < s->count; q++) {
         const double *y = s->vector + HDI_CAST(int64_t, q) * s->n, w = hdi_decay_side(of, x, q);
         for (v = 0; v < s->n; v++) {
             side[v] += w * fabs(y[v]);
+            inner[v] += x->off[q] * fabs(y[v]);
             found[v] += y[v] * y[v];
         }
     }
     for (v = 0; v < s->n; v++) {
         const double all = lap->row[v] < 0 ? 0 : hdi_inverse_mass(lap, lap->row[v]), c = sqrt(found[v]);
+        const double twice = hdi_decay_twice(of, x) * c;
         far.left = hdi_max(far.left, sqrt(s->left[v] + of->off_gram * all));
-        far.side = hdi_max(far.side, side[v] + hdi_decay_twice(of, x) * c);
+        far.side = hdi_max(far.side, side[v] + twice);
+        far.inner = hdi_max(far.inner, inner[v] + twice);
         far.found = hdi_max(far.found, c);
     }
     return far;
@@ -24977,7 +24980,7 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     hd_heat *heat = h->heat;
     const int32_t count = heat->modes.s.count;
     double *work = HDI_NEW(heat->ctx, double,
-                           3 * HDI_CAST(uint64_t, count) + 2 * HDI_CAST(uint64_t, heat->source->n), h->e);
+                           3 * (HDI_CAST(uint64_t, count) + HDI_CAST(uint64_t, heat->source->n)), h->e);
     hdi_fading_far far;
     hdi_decay x;
     h->lap = heat->source;
@@ -26783,8 +26786,74 @@ static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *boun
     hdi_ledger_close(&ledger, h->rep);
 }
 
-/* A diagonal or, with Z, a trace. */
-typedef struct hdi_fading_to { hd_kernel kernel; double *D; size_t ldd; double *Z, *bound; } hdi_fading_to;
+/* k_t on the pattern of L, by rows. */
+typedef struct hdi_fading_edges {
+    const hdi_modes *of;
+    const hd_laplacian *lap;
+    const double *w;             /* [count] exp(-t (theta_i - low)) */
+    double *out;
+} hdi_fading_edges;
+
+static void hdi_fading_edges_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_fading_edges *a = HDI_CAST(const hdi_fading_edges *, arg);
+    const hd_spectrum *s = &a->of->s;
+    const hd_csr *L = &a->lap->L;
+    int64_t i, p;
+    int32_t q;
+    for (p = L->row_ptr[begin]; p < L->row_ptr[end]; p++) a->out[p] = 0;
+    for (q = 0; q < s->count; q++) {
+        const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
+        for (i = begin; i < end; i++) {
+            const double own = a->w[q] * x[a->lap->vertex[i]];
+            for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
+                a->out[p] += own * x[a->lap->vertex[L->col[p]]];
+        }
+    }
+}
+
+/* All edges from the pairs that are there; one bound for all of them. */
+static hd_status hdi_fading_edges_run(hdi_heat_call *h, double t, double *out) {
+    hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const uint64_t n = HDI_CAST(uint64_t, lap->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    double *work = HDI_TAKE(&s, double, 3 * count + 3 * n);
+    hdi_ledger ledger = hdi_modes_ledger();
+    hdi_parts off;
+    hdi_fading_far far;
+    hdi_fading_edges a;
+    hdi_decay x;
+    int64_t p;
+    if (!work) return hdi_scope_end(&s);
+    x = hdi_decay_at(&heat->modes, t, work);
+    far = hdi_fading_reach(&heat->modes, &x, work + 3 * count);
+    a.of = &heat->modes;
+    a.lap = lap;
+    a.w = x.weight;
+    a.out = out;
+    hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_edges_task, &a);
+    off.rational = x.scale * x.cut * far.left * far.left;
+    off.solver = x.scale * ((x.mixed * x.mixed * far.left + 2 * far.side) * far.left + far.found * far.inner);
+    for (p = 0; p < lap->L.nnz; p++) {
+        out[p] *= x.scale;
+        off.rounding = 2 * x.scale * x.rounding * far.found * (far.found + far.left) +
+                       8 * (1 + hdi_min(x.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[p]) +
+                       4 * DBL_MIN * DBL_EPSILON;
+        hdi_ledger_note(&ledger, out[p], off);
+    }
+    hdi_modes_tell(heat, h->rep);
+    hdi_ledger_close(&ledger, h->rep);
+    return hdi_scope_end(&s);
+}
+
+/* A diagonal or, with Z, a trace, or edges. */
+typedef struct hdi_fading_to {
+    hd_kernel kernel;
+    int edges;
+    double *D;
+    size_t ldd;
+    double *Z, *bound;
+} hdi_fading_to;
 
 /* It at time q of the call from at most `most` pairs. Returns 0 where its bound is not as it should be. */
 static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hdi_fading_to *to) {
@@ -26795,6 +26864,7 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     if (!hdi_modes_enough(h->heat, t, hdi_fading_depth(h->heat), most, h->e)) return 0;
     *h->rep = one;
     if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
+    else if (to->edges) (void)hdi_fading_edges_run(h, t, to->D + HDI_CAST(size_t, q) * to->ldd);
     else (void)hdi_fading_diagonal_run(h, t, to->kernel, to->D + HDI_CAST(size_t, q) * to->ldd);
     if (h->e->status < 0) return 0;
     one = *h->rep;
@@ -26804,7 +26874,23 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     return 1;
 }
 
+/* Edges at the times of a call that are not done. */
+static hd_status hdi_edges_poles(hdi_heat_call *h, double *values, const char *done) {
+    const size_t nnz = HDI_CAST(size_t, h->heat->source->L.nnz);
+    int32_t q;
+    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+    hdi_inverse_tell(h);
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
+        if (done && done[q]) continue;
+        h->t = hdi_heat_scaled(h->heat, h->ask.t[q]);
+        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + HDI_CAST(size_t, q) * nnz) < 0)
+            h->e->column = q;
+    }
+    return h->e->status;
+}
+
 static hd_status hdi_fading_poles(hdi_heat_call *h, const hdi_fading_to *to, const char *done) {
+    if (to->edges) return hdi_edges_poles(h, to->D, done);
     return to->Z ? hdi_trace_poles(h, to->Z, to->bound, done)
                  : hdi_diagonal_poles(h, to->kernel, to->D, to->ldd, done);
 }
@@ -26866,6 +26952,15 @@ static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
     memset(&to, 0, sizeof to);
     to.Z = Z;
     to.bound = bound;
+    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+}
+
+static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
+    hdi_fading_to to;
+    memset(&to, 0, sizeof to);
+    to.edges = 1;
+    to.D = values;
+    to.ldd = HDI_CAST(size_t, h->heat->source->L.nnz);
     return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
 }
 
@@ -26975,20 +27070,6 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     }
     if (!sure) h->rep->error_relative = HUGE_VAL;
     hdi_signature_tell(h->rep, m, n_freq, largest);
-    return h->e->status;
-}
-
-/* k_t on the pattern of L at all times of a call, nnz(L) values each. */
-static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
-    const size_t nnz = HDI_CAST(size_t, h->heat->source->L.nnz);
-    int32_t q;
-    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
-    hdi_inverse_tell(h);
-    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
-        h->t = hdi_heat_scaled(h->heat, h->ask.t[q]);
-        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + HDI_CAST(size_t, q) * nnz) < 0)
-            h->e->column = q;
-    }
     return h->e->status;
 }
 

@@ -294,7 +294,26 @@ static void large_fading_fields(large_case *c, hd_heat *heat, double x) {
     free(f);
 }
 
-/* Columns of a source, entries, diagonals and the trace. */
+static void large_fading_edges(large_case *c, hd_heat *heat, double x) {
+    const hd_csr *L = &c->lap->L;
+    const double t = x / c->low;
+    double *values = DENSE_NEW(double, L->nnz), most = 0, worst = 0;
+    hd_report r;
+    int32_t i;
+    int64_t p;
+    CHECK(heat_edges(heat, t, values, &r) == HD_OK && r.error_bound <= 1e-6);
+    for (i = 0; i < L->n_rows; i++)
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) {
+            const double want = large_kernel(c, t, i, L->col[p], 0);
+            most = fmax(most, fabs(want));
+            worst = fmax(worst, fabs(values[p] * exp(x) - want));
+        }
+    CHECK_MSG(worst <= 1e-7 * most && worst <= (r.error_bound + 4e-13 * (1 + x)) * most, "%s, edges, t lambda = %g: error %g, bound %g", c->name, x,
+              worst / most, r.error_bound);
+    free(values);
+}
+
+/* Columns of a source, entries, diagonals, edges and the trace. */
 static void large_fading_at(large_case *c, hd_heat *heat, double x, int32_t row) {
     const hd_laplacian *lap = c->lap;
     const double t = x / c->low;
@@ -317,6 +336,7 @@ static void large_fading_at(large_case *c, hd_heat *heat, double x, int32_t row)
         CHECK(heat_diagonal(heat, 1, &t, which, u, 0, &r) == HD_OK);
         large_check(c, x, u, want, &r, kernel ? "diagonal of K" : "diagonal of k");
     }
+    large_fading_edges(c, heat, x);
     for (i = 0; i < m; i++) sum += exp(-t * (c->p.lambda[i] - c->low));
     CHECK(hd_heat_trace(heat, 1, &t, &Z, &bound, &r, NULL) == HD_OK && r.error_bound <= 1e-6);
     CHECK_MSG(fabs(Z * exp(x) - sum) <= 1e-7 * sum && fabs(Z * exp(x) - sum) <= bound * exp(x) + 4e-13 * (1 + x) * sum, "%s: trace %g, not %g at %g", c->name, Z * exp(x), sum, x);
