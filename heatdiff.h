@@ -125,8 +125,9 @@
                                implies NO_DIFFUSION. Bounds of the error of method direct are larger, and
                                times so large that only the means are left take longer
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample, also _from sources
-     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. Distances at large t are less accurate, with bounds
-                               that say so, and need factors of their poles
+     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. At large t distances, and all answers where heat
+                               flows out, are less accurate, with bounds that say so, and need factors of
+                               their poles
      HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Pole sets of your choice need
                                method direct then, and factors that do not fit byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
@@ -1349,6 +1350,10 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
 /* U = K_t F at each time.
  * t      >= 0. t = 0 copies F. For large t the answer tends to the mean over each component; t may be
  *        arbitrarily large
+ *        Where all heat flows out (every component has held vertices, or L of your own does not conserve it)
+ *        the answer falls like exp(-t lambda_1) instead, and what poles are off by does not. With the method
+ *        auto or direct it then comes from the few eigenpairs left, as distances do: see hd_heat_distance.
+ *        So do columns, entries, diagonals and the trace. Values that underflow are 0, with an infinite bound
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
@@ -1888,7 +1893,7 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_HAS_SPECTRUM HDI_HAS_DIRECT
 #define HDI_WHY_SPECTRUM HDI_WHY_DIRECT
 #endif
-#define HDI_HAS_MODES (HDI_HAS_DIFFUSION && HDI_HAS_SPECTRUM)   /* distances from eigenpairs */
+#define HDI_HAS_MODES HDI_HAS_SPECTRUM   /* answers at large t from eigenpairs */
 #ifdef HEATDIFF_NO_ITERATIVE
 #define HDI_HAS_ITERATIVE 0
 #define HDI_WHY_ITERATIVE "HEATDIFF_NO_ITERATIVE"
@@ -18520,6 +18525,7 @@ typedef struct hdi_lane {
     /* outcome, norms absolute */
     double f_norm, u_norm;
     hdi_parts off, off_m;        /* bounds of the error in the norms of B and of B + tL */
+    hdi_parts off_value;         /* the same of each value of u, where answers are sums over eigenpairs */
     hd_evidence rounding;        /* how the part of rounding is known */
     double residual;
     double b_norm;               /* of the right-hand side, in the norm of diag(B)^-1 */
@@ -22896,7 +22902,7 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
  * values are noted elsewhere. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
-                           const double *reach, int own, hd_report *rep) {
+                           const double *reach, int own, int by_value, hd_report *rep) {
     const double *out = hdi_lane_answer(lane);
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
     int32_t i;
@@ -22911,7 +22917,8 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
         hdi_parts off =
-            lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL) : hdi_lane_bound(lap, lane, reach);
+            lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL)
+                       : by_value ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         if (total > 0) off.rounding += DBL_EPSILON * largest;    /* of the value itself */
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
@@ -23370,6 +23377,7 @@ typedef struct hdi_heat_call {
     /* t = 0 stands for a t so small that K_t f is f to rounding; |K_t - 1| <= this */
     double still;
     int32_t equal;               /* t is so large that each component has its mean */
+    int32_t by_pairs;            /* answers are sums over eigenpairs */
     /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
     double *off_b, *off_m;
     hdi_lane *lane;              /* the plan's */
@@ -23869,6 +23877,7 @@ static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
 
 /* Is a bound of the norm of B^-1 e all that a column of k_t needs, and not B^-1 e? */
 static int hdi_lane_bounded(const hdi_heat_call *h) {
+    if (h->by_pairs) return h->lap->b_ratio > 0;
     return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
 }
 
@@ -24018,6 +24027,7 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
             values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && HDI_CAST(uint64_t, v) == at.key;
         if (!lane->skip && row >= 0)
             off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
+        if (!lane->skip && row >= 0 && h->by_pairs) off = lane->off_value;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
 }
@@ -24135,6 +24145,8 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     const hd_evidence rational = still || lanczos || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
     const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
+    if (h->by_pairs)
+        return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 0);
     return hdi_ledger_begin(rational, solver, HD_EVIDENCE_PROVEN, 0);
 }
 
@@ -24142,11 +24154,11 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
 static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
     hdi_lane *lane = h->lane + i;
     const hdi_elim *m = &h->heat->elim;
-    const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal;
+    const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
     const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
-    hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->rep);
+    hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
     if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
     if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
@@ -24637,6 +24649,524 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     return h->e->status;
 }
 
+/* ---- the smallest eigenpairs ---- */
+
+/* What is left out is at most this part of the largest value, or less where the caller asks for more. */
+#define HDI_MODES_TOL 1e-7
+/* The tolerance of the residuals of eigenpairs, far below what the bound allows for at t lambda = 700. */
+#define HDI_MODES_RESIDUAL 1e-12
+/* Eigenpairs are tried before poles when so many are expected to do, and after them up to the second number.
+ * The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of 642 to 41K vertices, and at
+ * 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20 take one to two times as long
+ * as poles do, once, and the second number about ten times. */
+#define HDI_MODES_FIRST 20
+#define HDI_MODES_MOST 360
+/* With a larger bound by poles, relative to the largest value, eigenpairs are asked for help. */
+#define HDI_MODES_HELP 1e-6
+#define HDI_MODES_REASON "at such a t few eigenpairs are left: answers are sums over them"
+/* Vectors further from orthonormal are not what they should be: one may be there twice. */
+#define HDI_MODES_ORTHO 1e-6
+/* From this t low on values are among the smallest doubles. */
+#define HDI_MODES_FADED 650
+
+/* The norm of the rounding of B^-1 L x - lambda x, L's rows that sum to zero included. */
+static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double value) {
+    double sum = 0;
+    int32_t i;
+    int64_t p;
+    for (i = 0; i < lap->n_active; i++) {
+        const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON;
+        double row = lap->B ? 0 : value * lap->mass[i] * fabs(x[lap->vertex[i]]);
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            row += (fabs(lap->L.val[p]) + (lap->B ? value * fabs(lap->B[p]) : 0)) *
+                fabs(x[lap->vertex[lap->L.col[p]]]);
+        row *= c;
+        sum += row * (row / lap->b_diag[i]);
+    }
+    return hdi_ratio_root(lap) * sqrt(sum);
+}
+
+/* The largest |X' B X - 1|, in the norm of Frobenius. bx [n] */
+static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, double *bx) {
+    double sum = 0;
+    int32_t i, j, q;
+    for (j = 0; j < s->count; j++) {
+        const double *xj = s->vector + HDI_CAST(int64_t, j) * s->n;
+        memset(bx, 0, HDI_CAST(size_t, s->n) * sizeof *bx);
+        for (q = 0; q < lap->n_active; q++) bx[lap->vertex[q]] = hdi_spec_mass_row(lap, xj, q);
+        for (i = 0; i <= j; i++) {
+            const double g = hdi_dot(s->vector + HDI_CAST(int64_t, i) * s->n, bx, s->n) - (i == j);
+            sum += (i == j ? 1 : 2) * g * g;
+        }
+    }
+    return sqrt(sum);
+}
+
+/* B 1 by vertices in two doubles each (Neumaier 1974). */
+static void hdi_modes_one(const hd_laplacian *lap, double *one) {
+    int32_t i;
+    int64_t p;
+    memset(one, 0, 2 * HDI_CAST(size_t, lap->n) * sizeof *one);
+    for (i = 0; i < lap->n_active; i++) {
+        double sum = 0, rest = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) {
+            const double v = lap->B[p], t = sum + v;
+            rest += fabs(sum) >= fabs(v) ? sum - t + v : v - t + sum;
+            sum = t;
+        }
+        one[lap->vertex[i]] = lap->B ? sum + rest : lap->mass[i];
+        if (lap->B) one[lap->n + lap->vertex[i]] = sum - one[lap->vertex[i]] + rest;
+    }
+}
+
+/* What bounds need of eigenpairs that are there. */
+static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
+    hdi_modes *x = &heat->modes;
+    const hd_spectrum *s = &x->s;
+    const hd_laplacian *lap = heat->source;
+    const uint64_t n = HDI_CAST(uint64_t, s->n);
+    const int32_t first = s->n_constant;
+    int32_t q, i;
+    x->off = HDI_NEW(heat->ctx, double, s->count + 1, e);
+    if (x->off) x->one = HDI_NEW(heat->ctx, double, 3 * n, e);
+    if (e->status < 0) return e->status;
+    x->by = x->one + 2 * n;
+    x->off_gram = hdi_modes_gram(lap, s, x->one);
+    for (q = 0, x->off_norm = 0; q < s->count; q++) {
+        const double value = s->value[q], unit = first < s->count ? s->value[first] : 0;
+        x->off[q] = hdi_ratio_root(lap) * s->residual[q] * hdi_max(value, unit);
+        x->off[q] += hdi_modes_noise(lap, s->vector + HDI_CAST(int64_t, q) * s->n, fabs(value));
+        x->off[q] += x->off_gram * fabs(s->value[s->count - 1]);
+        if (q >= first) x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
+    }
+    x->low = first < s->count ? s->value[first] : s->next < HUGE_VAL ? s->next : 0;
+    x->low = hdi_max(0, x->low - x->off_norm);
+    hdi_modes_one(lap, x->one);
+    memset(x->by, 0, HDI_CAST(size_t, lap->n) * sizeof *x->by);
+    for (i = 0; i < lap->n_active; i++) x->by[lap->vertex[i]] = lap->mass[i];
+    return HD_OK;
+}
+
+/* B times the vectors. */
+static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
+    hdi_modes *x = &heat->modes;
+    const hd_laplacian *lap = heat->source;
+    const int64_t size = HDI_CAST(int64_t, x->s.n) * x->s.count;
+    int64_t at;
+    int32_t i;
+    if (x->bx || !lap->B) return HD_OK;
+    x->bx = HDI_NEW(heat->ctx, double, size, e);
+    if (!x->bx) return e->status;
+    memset(x->bx, 0, HDI_CAST(size_t, size) * sizeof *x->bx);
+    for (at = 0; at < size; at += x->s.n)
+        for (i = 0; i < lap->n_active; i++)
+            x->bx[at + lap->vertex[i]] = hdi_spec_mass_row(lap, x->s.vector + at, i);
+    return HD_OK;
+}
+
+static double hdi_modes_tol(const hd_heat *heat) {
+    return heat->exacting ? hdi_min(HDI_MODES_TOL, 0.1 * heat->opts.tol) : HDI_MODES_TOL;
+}
+
+/* The square root of the largest component's mass times the largest entry of the diagonal of B^-1. */
+static double hdi_modes_span(const hd_heat *heat) {
+    const hd_laplacian *lap = heat->source;
+    double mass = 0, inverse = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_components; i++) mass = hdi_max(mass, lap->component_mass[i]);
+    for (i = 0; i < lap->n_active; i++) inverse = hdi_max(inverse, hdi_inverse_mass(lap, i));
+    return sqrt(inverse) * sqrt(mass);
+}
+
+/* How many eigenvalues above the constants are expected below the lowest of them plus `above`: by those that
+ * are there, or by Weyl's law N(lambda) = area lambda/(4 pi). On regular meshes half the sum of B_ii/L_ii is
+ * 0.072 area with the masses of finite elements and 0.144 area with diagonal ones, which is 0.9 and 1.8 times
+ * area/(4 pi); it needs no lengths, and slivers do not spoil it. */
+static double hdi_modes_expected(const hd_heat *heat, double above) {
+    const hd_laplacian *lap = heat->source;
+    const hd_spectrum *s = &heat->modes.s;
+    double sum = 0;
+    int32_t i;
+    if (s->value) {
+        const double reach = s->next - heat->modes.low, there = s->count - s->n_constant + 1;
+        return reach >= above ? 0 : 1.1 * there * (above / hdi_max(reach, 1e-6 * above));
+    }
+    for (i = 0; i < lap->n_active; i++)
+        sum += hdi_quotient(lap->b_diag[i], hdi_max(0, hdi_row_diagonal(lap, i)));
+    return 0.5 * sum * above;
+}
+
+/* May eigenpairs serve this plan? */
+static int hdi_modes_allowed(const hd_heat *heat) {
+    return !heat->poles_asked && !heat->modes.barred && !heat->iterations_asked &&
+           heat->opts.method != HD_METHOD_ITERATIVE && heat->opts.method != HD_METHOD_KRYLOV &&
+           heat->source->b_ratio > 0 && heat->source->n_components <= HDI_MODES_FIRST;
+}
+
+/* Pairs that are asked for where `more` are expected above the constants. */
+static int32_t hdi_modes_count(const hd_heat *heat, double more) {
+    const hd_laplacian *lap = heat->source;
+    const double constants = lap->conserves ? lap->n_components : 0;
+    return HDI_CAST(int32_t, hdi_min(lap->n_active, ceil(1.25 * more) + 6 + constants));
+}
+
+/* Bytes that finding so many pairs takes; a guess before the analysis. */
+#define HDI_MODES_SURE 0.5       /* this part is taken for sure: 0.67 was seen on a dozen vertices */
+
+static double hdi_modes_need(const hd_heat *heat, int32_t count) {
+    const int32_t n = heat->source->n_active;
+    const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(n), gaps = HDI_SPEC_GAPS;
+    const double doubles = hdi_spec_doubles(n, count) + 2 * tiles * (count + gaps) + 2.0 * heat->source->n;
+    if (!heat->elim.ctx) return 8 * doubles + 8 * hdi_heat_fill(heat).real_stored;
+    return 8 * (doubles + HDI_CAST(double, hdi_sweep_size(&heat->elim.sym, 1, HDI_SPEC_WIDE))) +
+           HDI_CAST(double, hdi_factor_bytes(&heat->elim.sym, 1));
+}
+
+/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven
+ * complete: then poles go on. Only out of memory by the system, and cancelling, are errors. */
+static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
+    hdi_modes *x = &heat->modes;
+    const hd_laplacian *lap = heat->source;
+    hdi_spec_goal goal;
+    hdi_modes_free(x, heat->ctx);
+    if (hdi_heat_analysed(heat, e) < 0) return 0;
+    if (heat->ctx->byte_limit && HDI_MODES_SURE * hdi_modes_need(heat, count) >
+        HDI_CAST(double, heat->ctx->byte_limit) - HDI_CAST(double, heat->ctx->bytes_in_use)) return 0;
+    goal.below = HUGE_VAL;
+    goal.count = count;
+    x->s.lap = lap;
+    x->s.context = heat->ctx;
+    if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
+        x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0 &&
+        x->off_gram <= HDI_MODES_ORTHO)
+        return 1;
+    hdi_modes_free(x, heat->ctx);
+    if (e->status == HD_ERR_MEMORY || e->status == HD_ERR_CANCELLED) return 0;
+    x->barred = e->status != HD_ERR_MEMORY_LIMIT;
+    hdi_error_clear(e);
+    return 0;
+}
+
+/* Are there eigenpairs enough for time t, if need be after finding them? depth: how far they have to reach
+ * above the lowest one, times t. At most `most` are looked for. */
+static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most, hd_error *e) {
+    const double above = depth / t;
+    int32_t tries;
+    for (tries = 0; tries < 4; tries++) {
+        const hdi_modes *x = &heat->modes;
+        const double more = hdi_modes_expected(heat, above);
+        if (x->s.value && x->s.next - x->low >= above) return 1;
+        if (!(more <= most) || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
+    }
+    return 0;
+}
+
+/* What is left of the pairs at time t, and what that is off by per |c_i| and |Q y|: see the sums in which
+ * they are used. */
+typedef struct hdi_decay {
+    int32_t first;               /* of the pairs that are not constants */
+    double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds of the errors per |c_i| */
+    double scale, depth;         /* exp(-t low), t low */
+    double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
+    double rounding;             /* factor of |y| */
+    double t, next;              /* all eigenvalues of the complement of the pairs are at least next */
+} hdi_decay;
+
+/* work [2 count] */
+static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
+    const hd_spectrum *s = &of->s;
+    const double next = s->next < HUGE_VAL ? s->next - of->off_norm : HUGE_VAL;
+    const double gap = hdi_max(0, next - of->low);
+    hdi_decay a;
+    int32_t q;
+    memset(&a, 0, sizeof a);
+    a.weight = work;
+    a.off = work + s->count;
+    a.first = s->n_constant;
+    a.depth = t * of->low;
+    a.scale = exp(-a.depth);
+    for (q = a.first; q < s->count; q++) {
+        const double over = hdi_max(0, s->value[q] - of->low);
+        a.weight[q] = exp(-t * over);
+        a.off[q] = of->off[q] * hdi_min(t, over > 0 ? 1 / over : t);
+    }
+    a.cut = next < HUGE_VAL ? exp(-t * gap) : 0;
+    a.mixed = of->off_norm * (next < HUGE_VAL ? hdi_min(t, gap > 0 ? 1 / gap : t) : 0);
+    a.rounding = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
+    a.t = t;
+    a.next = next;
+    return a;
+}
+
+/* What the report says of answers from eigenpairs. */
+static void hdi_modes_tell(const hd_heat *heat, hd_report *rep) {
+    rep->method = HD_METHOD_DIRECT;
+    rep->reason = HDI_MODES_REASON;
+    rep->ordering = heat->elim.sym.ordering;
+    rep->factor_nnz = heat->elim.sym.nnz;
+    rep->factor_flops = heat->modes.s.factor_flops;
+}
+
+static hdi_ledger hdi_modes_ledger(void) {
+    return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 1);
+}
+
+/* Is a bound by eigenpairs as it should be, or so near zero that nothing else is better? */
+static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
+    return rep->error_bound <= HDI_MODES_HELP || t * heat->modes.low > HDI_MODES_FADED;
+}
+
+/* Frees the factors of poles, which are of no more use. */
+static void hdi_packs_drop(hd_heat *heat) {
+    hdi_elim *m = &heat->elim;
+    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
+    m->filled = 0;
+}
+
+/* ---- heat that fades ---- */
+/* Where heat flows out everything falls like exp(-t lambda_1), but the errors of poles do not. There few
+ * eigenpairs are left too, and K_t f = sum_i exp(-t lambda_i) c_i x_i with c = X' B f has errors that fall as
+ * fast. With A = B^-1 L, Q f = f - X c and R = A X - X Theta, the bound of room [28] for distances holds
+ * without its constants, and for the same reasons: |K_t f - X exp(-t Theta) c| is at most
+ *     exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i|
+ *                  + (exp(-t (next - |R| - low)) + |R|/(next - |R| - low)) |Q f|).
+ * That is in the B norm. A single value is an inner product with g = B^-1 e_v, of which little is in the span
+ * of X. On that and its complement A has the blocks A_11, A_22 >= a = next - |R| and |A_21| <= |R|, and by
+ * variation of constants (m = |R|/(a - low), |A_21 x_i| <= |r_i|)
+ *     |exp(-t A)_21 c| <= exp(-t low) s(c),
+ *         s(c) = sum_i |r_i| exp(-t (theta_i - low)) min(t, 1/(a - theta_i)) |c_i| + m t |R| |c|,
+ *     |exp(-t A)_22| <= exp(-t low) (exp(-t (a - low)) + m^2),
+ *     |exp(-t A)_11 c - exp(-t Theta) c|
+ *         <= exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i| + m t |R| |c|).
+ * So a value is off by no more than exp(-t low) times
+ *     (exp(-t (a - low)) + m^2) |Q g| |Q f| + s(c_g) |Q f| + s(c) |Q g| + |c_g| (the last sum). */
+
+/* Eigenpairs come first from a time on that is this many times 1/lambda_1: with the border of a square held,
+ * bounds by poles of degree 9 are 4e-7 at t lambda_1 = 0.4 and 6e-5 at 7, those of krylov 4e-7 there. */
+#define HDI_FADING_FROM 1
+
+/* Does all heat of the call fade, and may eigenpairs serve it? */
+static HDI_INLINE int hdi_fading(const hdi_heat_call *h) {
+    return HDI_HAS_MODES && !h->heat->source->conserves && !h->rate && hdi_modes_allowed(h->heat);
+}
+
+/* How far eigenvalues have to reach above the lowest one, times t. The largest value of a column is about
+ * b/mass times exp(-t low), and its norm sqrt(b); the last number is for sources near the border, where the
+ * lowest eigenvector is small. */
+#define HDI_FADING_LOW 0.1
+
+static double hdi_fading_depth(const hd_heat *heat) {
+    const double span = hdi_modes_span(heat);
+    return hdi_max(0, log(span * span / (HDI_FADING_LOW * hdi_modes_tol(heat))));
+}
+
+/* Are no more than `most` pairs expected to do at time t? */
+static int hdi_fading_near(const hd_heat *heat, double t, int32_t most) {
+    return t > 0 && hdi_modes_expected(heat, hdi_fading_depth(heat) / t) <= most;
+}
+
+/* t (scaled) times the smallest eigenvalue, which is a guess while no pairs are there. */
+static double hdi_fading_lowest(const hd_heat *heat, double t) {
+    return heat->modes.s.value ? t / heat->scale * heat->modes.low : t * heat->scales.lowest;
+}
+
+static HDI_INLINE int hdi_fading_first(const hdi_heat_call *h, double t) {
+    return hdi_fading(h) && hdi_fading_lowest(h->heat, t * h->heat->scale) >= HDI_FADING_FROM &&
+           hdi_fading_near(h->heat, t, HDI_MODES_FIRST);
+}
+
+/* The factor of |c_q| in s(c), and what s(c) and the last sum have besides for each |c|. */
+static double hdi_decay_side(const hdi_modes *of, const hdi_decay *x, int32_t q) {
+    const double gap = x->next - of->s.value[q];
+    if (x->next >= HUGE_VAL) return 0;
+    return x->weight[q] * of->off[q] * hdi_min(x->t, gap > 0 ? 1 / gap : x->t);
+}
+
+static double hdi_decay_twice(const hdi_modes *of, const hdi_decay *x) {
+    return x->mixed * of->off_norm * x->t;
+}
+
+/* The largest |Q g|, s(c_g), |c_g| and last sum of all vertices. */
+typedef struct hdi_fading_far { double left, side, found, inner; } hdi_fading_far;
+
+/* work [3 n] */
+static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, double *work) {
+    const hd_spectrum *s = &of->s;
+    const hd_laplacian *lap = s->lap;
+    double *side = work, *found = work + s->n, *inner = found + s->n;
+    hdi_fading_far far = {0, 0, 0, 0};
+    int32_t q, v;
+    for (v = 0; v < s->n; v++) side[v] = found[v] = inner[v] = 0;
+    for (q = 0; q < s->count; q++) {
+        const double *y = s->vector + HDI_CAST(int64_t, q) * s->n, w = hdi_decay_side(of, x, q);
+        for (v = 0; v < s->n; v++) {
+            side[v] += w * fabs(y[v]);
+            inner[v] += x->off[q] * fabs(y[v]);
+            found[v] += y[v] * y[v];
+        }
+    }
+    for (v = 0; v < s->n; v++) {
+        const double all = lap->row[v] < 0 ? 0 : hdi_inverse_mass(lap, lap->row[v]), c = sqrt(found[v]);
+        const double twice = hdi_decay_twice(of, x) * c;
+        far.left = hdi_max(far.left, sqrt(s->left[v] + of->off_gram * all));
+        far.side = hdi_max(far.side, side[v] + twice);
+        far.inner = hdi_max(far.inner, inner[v] + twice);
+        far.found = hdi_max(far.found, c);
+    }
+    return far;
+}
+
+/* A sum over the pairs by rows of the caller's pair. */
+typedef struct hdi_fading_sum { const hdi_modes *of; const double *c; double scale, *u; } hdi_fading_sum;
+
+static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_fading_sum *a = HDI_CAST(const hdi_fading_sum *, arg);
+    const hd_spectrum *s = &a->of->s;
+    const int32_t *vertex = s->lap->vertex;
+    int64_t i;
+    int32_t q;
+    for (i = begin; i < end; i++) a->u[i] = 0;
+    for (q = 0; q < s->count; q++) {
+        const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
+        for (i = begin; i < end; i++) a->u[i] += a->c[q] * x[vertex[i]];
+    }
+    for (i = begin; i < end; i++) a->u[i] *= a->scale;
+}
+
+/* What the coefficients of a field sum up to: |c|^2, |w c|^2, the sum of |r_i| min(t, ...) |c_i|, and s(c)
+ * but for its last term. */
+typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
+
+/* The bounds of a lane's answer. */
+static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *far,
+                             const hdi_fading_size *c, hdi_lane *lane) {
+    const hdi_modes *of = &h->heat->modes;
+    const double terms = hdi_query_fields(h->ask.query) ? HDI_CAST(double, h->lap->n_active) / 2 : 0;
+    const double f2 = lane->f_norm * lane->f_norm, twice = hdi_decay_twice(of, x) * sqrt(c->found);
+    const double rounding = x->rounding + terms * DBL_EPSILON;
+    const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * c->found) + rounding * f2);
+    const double sums = x->scale * (2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
+    const double itself = 8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON;
+    hdi_lane_clear_off(lane);
+    lane->u_norm = x->scale * sqrt(c->kept);
+    lane->off.rational = x->scale * x->cut * left;
+    lane->off.solver = x->scale * (c->inner + x->mixed * left);
+    lane->off.rounding = sums + itself * lane->u_norm + 4 * DBL_MIN * DBL_EPSILON;
+    lane->off_value.rational = lane->off.rational * far->left;
+    lane->off_value.solver = x->scale * (x->mixed * x->mixed * far->left * left + far->side * left +
+                                         (c->side + twice) * far->left + far->found * (c->inner + twice));
+    lane->off_value.rounding = far->found * (sums + itself * lane->u_norm) + 4 * DBL_MIN * DBL_EPSILON;
+    lane->off_m = lane->off;
+    lane->rounding = HD_EVIDENCE_ESTIMATED;
+}
+
+/* The answer of a lane from the pairs. work [count] */
+static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *far,
+                            hdi_lane *lane, double *work) {
+    const hd_laplacian *lap = h->lap;
+    const hdi_modes *of = &h->heat->modes;
+    hdi_fading_size size = {0, 0, 0, 0};
+    hdi_fading_sum a;
+    int32_t q, i;
+    for (q = 0; q < of->s.count; q++) {
+        const double *v = of->s.vector + HDI_CAST(int64_t, q) * of->s.n;
+        double c = 0;
+        for (i = 0; i < lap->n_active; i++) c += lane->rhs[i] * v[lap->vertex[i]];
+        work[q] = x->weight[q] * c;
+        size.found += c * c;
+        size.kept += work[q] * work[q];
+        size.inner += x->off[q] * fabs(c);
+        size.side += hdi_decay_side(of, x, q) * fabs(c);
+    }
+    a.of = of;
+    a.c = work;
+    a.scale = x->scale;
+    a.u = lane->u;
+    hdi_parallel_ranges(h->heat->ctx, lap->n_active, 1024, hdi_fading_task, &a);
+    hdi_fading_bound(h, x, far, &size, lane);
+}
+
+/* The request at one time from the pairs that are there. */
+static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
+    hd_heat *heat = h->heat;
+    const int32_t count = heat->modes.s.count;
+    double *work = HDI_NEW(heat->ctx, double,
+                           3 * (HDI_CAST(uint64_t, count) + HDI_CAST(uint64_t, heat->source->n)), h->e);
+    hdi_fading_far far;
+    hdi_decay x;
+    h->lap = heat->source;
+    h->by_pairs = 1;
+    h->method = HD_METHOD_DIRECT;
+    h->solver = HD_SOLVER_AUTO;
+    hdi_modes_tell(heat, h->rep);
+    if (work && hdi_heat_lanes(h, 1) >= 0) {
+        x = hdi_decay_at(&heat->modes, t, work + count);
+        far = hdi_fading_reach(&heat->modes, &x, work + 3 * HDI_CAST(int64_t, count));
+        for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
+            if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0 ||
+                hdi_heat_load(h, h->batch, h->lane) < 0)
+                break;
+            if (!h->lane->skip) hdi_fading_lane(h, &x, &far, h->lane, work);
+            if (hdi_heat_store_some(h, 1) < 0) break;
+        }
+        if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
+    }
+    hdi_free(heat->ctx, work);
+    h->by_pairs = 0;
+    return h->e->status;
+}
+
+/* Where a time begins again. */
+typedef struct hdi_fading_start { hd_report rep; double t; } hdi_fading_start;
+
+static void hdi_fading_again(hdi_heat_call *h, const hdi_fading_start *from) {
+    *h->rep = from->rep;
+    h->t = from->t;
+    h->still = 0;
+    h->lap = h->heat->source;
+    if (!h->ask.list) return;
+    h->ask.list->ledger[h->now] =
+        hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
+}
+
+/* The request at one time from at most `most` pairs, which are found if need be: more of them where those
+ * left out show in the bound. Returns 0 where there are not enough. */
+static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int32_t most) {
+    const double t = h->ask.t[h->now];
+    double depth = hdi_fading_depth(h->heat);
+    int tries, there = 0;
+    for (tries = 0; tries < 3; tries++) {
+        if (!hdi_modes_enough(h->heat, t, depth, most, h->e)) return there && h->e->status >= 0;
+        hdi_fading_again(h, from);
+        if (hdi_fading_answer(h, t) < 0 || hdi_modes_good(h->heat, t, h->rep) ||
+            h->rep->error_rational <= HDI_MODES_TOL)
+            break;
+        depth += log(h->rep->error_rational / HDI_MODES_TOL);
+        there = hdi_finite(depth);
+        if (!there) break;
+    }
+    return 1;
+}
+
+/* Fields that their answers are to overwrite are copied, so that they can be asked for again. Returns 0 where
+ * there is no room. */
+static int hdi_fading_keep(hdi_heat_call *h) {
+    const size_t n = HDI_CAST(size_t, h->heat->source->n);
+    double *copy;
+    int32_t q;
+    if (!hdi_query_fields(h->ask.query) || h->ask.U != h->ask.F) return 1;
+    copy = HDI_TAKE(&h->s, double, n * HDI_CAST(size_t, h->ask.k));
+    if (!copy) {
+        if (h->e->status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+        return 0;
+    }
+    for (q = 0; q < h->ask.k; q++)
+        memcpy(copy + n * HDI_CAST(size_t, q), h->ask.F + h->ask.ldf * HDI_CAST(size_t, q), n * sizeof *copy);
+    h->ask.F = copy;
+    h->ask.ldf = n;
+    return 1;
+}
+
 /* ---- the run ---- */
 
 /* Did a method that auto chose exceed the byte limit? Then what was factorised is freed, and iterations take
@@ -24708,12 +25238,49 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
     return h->e->status;
 }
 
-/* Answers the time under way. If factors do not fit the byte limit, iterations do. */
-static hd_status hdi_heat_single(hdi_heat_call *h) {
+/* Answers the time under way by the method picked. If factors do not fit the byte limit, iterations do. */
+static hd_status hdi_heat_chosen(hdi_heat_call *h) {
     while (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) {}
     if (h->e->status >= 0) hdi_heat_spend(h);
     if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     return h->e->status;
+}
+
+/* One time of heat that fades: from eigenpairs where few are left, else by the method picked for it. Where
+ * the bound is not as it should be the other way is tried too, and the one with the lower bound taken. */
+static hd_status hdi_heat_fading(hdi_heat_call *h) {
+    const double t = h->ask.t[h->now];
+    hdi_fading_start from;
+    double bound = HUGE_VAL;
+    int32_t most = HDI_MODES_FIRST;
+    from.rep = *h->rep;
+    from.t = h->t;
+    if (!hdi_fading_keep(h)) return h->e->status < 0 ? h->e->status : hdi_heat_chosen(h);
+    if (hdi_fading_first(h, t) && hdi_fading_pairs(h, &from, most)) {
+        if (h->e->status < 0 || hdi_modes_good(h->heat, t, h->rep)) return h->e->status;
+        bound = h->rep->error_bound;
+    }
+    if (h->e->status < 0) return h->e->status;
+    hdi_fading_again(h, &from);
+    if (hdi_heat_chosen(h) < 0 || h->rep->error_bound <= HDI_MODES_HELP) return h->e->status;
+    if (bound == HUGE_VAL && hdi_fading(h) && hdi_fading_near(h->heat, t, HDI_MODES_MOST)) {
+        most = HDI_MODES_MOST;
+        bound = h->rep->error_bound;
+        hdi_packs_drop(h->heat);
+        if (hdi_fading_pairs(h, &from, most) && (h->e->status < 0 || h->rep->error_bound <= bound))
+            return h->e->status;
+        if (h->e->status < 0) return h->e->status;
+        hdi_fading_again(h, &from);
+        return hdi_heat_chosen(h);
+    }
+    if (h->rep->error_bound <= bound) return h->e->status;
+    (void)hdi_fading_pairs(h, &from, most);
+    return h->e->status;
+}
+
+/* Answers the time under way. */
+static hd_status hdi_heat_single(hdi_heat_call *h) {
+    return HDI_HAS_MODES && h->t > 0 && hdi_fading(h) ? hdi_heat_fading(h) : hdi_heat_chosen(h);
 }
 
 static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
@@ -24821,9 +25388,21 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     *all = sum;
 }
 
-/* Sorts the times of a call, scaled and times factor, into h->times, and notes which each is. h->t becomes
- * the last. */
-static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor) {
+/* Leaves out of the sorted times those that are done: [ask.n_times] by their columns, or NULL. */
+static void hdi_heat_skip(hdi_heat_call *h, double *times, int32_t *column, const char *done) {
+    int32_t q, n = 0;
+    for (q = 0; q < h->n_times; q++) {
+        if (done && done[column[q]]) continue;
+        times[n] = times[q];
+        column[n++] = column[q];
+    }
+    h->n_times = n;
+    if (n > 0) h->t = times[n - 1];
+}
+
+/* Sorts the times of a call that are not done, scaled and times factor, into h->times, and notes which each
+ * is. h->t becomes the last. */
+static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char *done) {
     const int32_t n = h->ask.n_times;
     hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n);
     double *sorted = HDI_TAKE(&h->s, double, n);
@@ -24843,46 +25422,49 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor) {
     h->times = sorted;
     h->n_times = n;
     h->time_column = column;
-    h->t = sorted[n - 1];
+    hdi_heat_skip(h, sorted, column, done);
     return HD_OK;
 }
 
-/* The times one by one. */
-static hd_status hdi_heat_each_time(hdi_heat_call *h) {
+/* Time q of several into the report of all. begun: it has others already. */
+static hd_status hdi_heat_one_time(hdi_heat_call *h, int32_t q, int *begun) {
+    hdi_heat_call c = *h;
     hd_report one;
+    memset(&one, 0, sizeof one);
+    hdi_error_clear(&one.error);
+    memset(&c.s, 0, sizeof c.s);
+    c.rep = &one;
+    c.e = &one.error;
+    c.err = NULL;
+    c.now = q;
+    c.t = hdi_heat_scaled(h->heat, h->ask.t[q]);
+    c.times = &c.t;
+    c.n_times = 1;
+    c.time_column = NULL;
+    (void)hdi_heat_single(&c);
+    (void)hdi_heat_end(&c);
+    if (one.status < 0 || !*begun) *h->rep = one;
+    else hdi_report_merge(h->rep, &one);
+    if (one.status < 0) h->e->column = q;
+    *begun = 1;
+    return one.status;
+}
+
+/* The times that are not done one by one. */
+static hd_status hdi_heat_each_time(hdi_heat_call *h, const char *done, int begun) {
     int32_t q;
-    for (q = 0; q < h->ask.n_times; q++) {
-        hdi_heat_call c = *h;
-        memset(&one, 0, sizeof one);
-        hdi_error_clear(&one.error);
-        memset(&c.s, 0, sizeof c.s);
-        c.rep = &one;
-        c.e = &one.error;
-        c.err = NULL;
-        c.now = q;
-        c.t = hdi_heat_scaled(h->heat, h->ask.t[q]);
-        c.times = &c.t;
-        c.n_times = 1;
-        c.time_column = NULL;
-        (void)hdi_heat_single(&c);
-        (void)hdi_heat_end(&c);
-        if (one.status < 0) {
-            *h->rep = one;
-            h->e->column = q;
-            return one.status;
-        }
-        if (q == 0) *h->rep = one;
-        else hdi_report_merge(h->rep, &one);
-    }
+    for (q = 0; q < h->ask.n_times; q++)
+        if (!(done && done[q]) && hdi_heat_one_time(h, q, &begun) < 0) break;
     return h->rep->status;
 }
 
 /* Answers many times with one or a few krylov bases, where that is the method. Returns 0 where it is not. */
-static int hdi_heat_together(hdi_heat_call *h) {
+static int hdi_heat_together(hdi_heat_call *h, const char *done) {
     hd_heat *heat = h->heat;
     int32_t q;
     if (!HDI_HAS_DIRECT) return 0;
-    if (hdi_heat_sort_times(h, 1) < 0) return 1;
+    if (hdi_heat_sort_times(h, 1, done) < 0) return 1;
+    if (h->n_times == 0) return 1;
     if (h->times[0] * heat->lambda_max < HDI_STILL || hdi_heat_engine(h) < 0 || h->method != HD_METHOD_KRYLOV)
         return h->e->status < 0 && !hdi_heat_retreat(h);
     if (hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return h->e->status < 0;
@@ -24891,11 +25473,37 @@ static int hdi_heat_together(hdi_heat_call *h) {
     return 1;
 }
 
+/* Many times. Those that few eigenpairs serve come one by one and before the others. */
+static hd_status hdi_heat_several(hdi_heat_call *h) {
+    const hd_report clear = *h->rep;
+    char *done = NULL;
+    hd_report late;
+    int begun = 0, whole;
+    int32_t q;
+    if (HDI_HAS_MODES && hdi_fading(h)) {
+        done = HDI_TAKE(&h->s, char, h->ask.n_times);
+        if (!done) return h->e->status;
+        for (q = 0; q < h->ask.n_times; q++) {
+            done[q] = HDI_CAST(char, hdi_fading_first(h, h->ask.t[q]));
+            if (done[q] && hdi_heat_one_time(h, q, &begun) < 0) return h->rep->status;
+        }
+    }
+    late = *h->rep;
+    *h->rep = clear;
+    whole = hdi_heat_together(h, done);
+    if (h->e->status < 0) return h->e->status;
+    if (whole && begun && h->n_times > 0) hdi_report_merge(h->rep, &late);
+    else if (begun) *h->rep = late;
+    if (whole && !(HDI_HAS_MODES && hdi_fading(h) && h->rep->error_bound > HDI_MODES_HELP)) return HD_OK;
+    if (whole) *h->rep = late;
+    return hdi_heat_each_time(h, done, begun);
+}
+
 /* Runs a request whose arguments are checked. */
 static hd_status hdi_heat_run(hdi_heat_call *h) {
     if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
     if (h->ask.n_times == 1) (void)hdi_heat_single(h);
-    else if (!hdi_heat_together(h)) (void)hdi_heat_each_time(h);
+    else (void)hdi_heat_several(h);
     return hdi_heat_end(h);
 }
 
@@ -25090,7 +25698,7 @@ static int hdi_rate_by_poles(hdi_heat_call *h) {
         if (hdi_heat_scaled(heat, h->ask.t[q]) * heat->lambda_max < HDI_STILL) return 0;
     if (heat->opts.solver == HD_SOLVER_LANCZOS) return 0;
     if (heat->opts.method != HD_METHOD_AUTO) return heat->opts.method != HD_METHOD_KRYLOV;
-    if (hdi_heat_sort_times(h, 1) < 0 || hdi_heat_pick(h) < 0) return 0;
+    if (hdi_heat_sort_times(h, 1, NULL) < 0 || hdi_heat_pick(h) < 0) return 0;
     h->times = &h->t;
     h->n_times = 1;
     h->time_column = NULL;
@@ -25929,22 +26537,23 @@ static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, doubl
  * pack and a real factor, which costs an eighth of a pack. */
 static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 9 * n_times; }
 
-/* All times of a call: with shared poles where that takes fewer packs, else one by one. */
-static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
+/* All times of a call that are not done: with shared poles where that takes fewer packs, else one by one. */
+static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd,
+                                    const char *done) {
     hd_heat *heat = h->heat;
-    const int32_t n_times = h->ask.n_times;
-    int32_t q, packs = 0, windows;
-    if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+    int32_t q, n, packs = 0, windows;
+    if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    if (kernel == HD_KERNEL_SYMMETRIC && n_times > 1 && !heat->poles_asked && !heat->exacting) {
-        if (hdi_heat_sort_times(h, 1) < 0) return h->e->status;
-        windows = hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_TOL, n_times, &packs);
-        if (windows > 0 && hdi_shared_pays(packs, n_times) && !hdi_heat_equal(heat, h->t, h->e)) {
+    n = h->n_times;
+    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && !heat->poles_asked && !heat->exacting) {
+        windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
+        if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e)) {
             if (hdi_diagonal_windows(h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return h->e->status;
             hdi_heat_forget(h);                  /* one by one takes less */
         }
     }
-    for (q = 0; q < n_times && h->e->status >= 0; q++) {
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
+        if (done && done[q]) continue;
         h->t = hdi_heat_scaled(heat, h->ask.t[q]);
         if (hdi_entries_sure(h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h->e->column = q;
     }
@@ -26147,13 +26756,13 @@ static int32_t hdi_trace_late(hdi_heat_call *h, double *Z, double *bound) {
     return n;
 }
 
-/* The traces at all times of a call. */
-static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
+/* The traces at all times of a call that are not done. */
+static hd_status hdi_trace_poles(hdi_heat_call *h, double *Z, double *bound, const char *done) {
     const hd_heat *heat = h->heat;
     int32_t n, q0, q1, w, windows = 0, packs = 0;
     if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    if (hdi_heat_sort_times(h, 1) < 0) return h->e->status;
+    if (hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     n = hdi_trace_late(h, Z, bound);
     if (n > 1 && !heat->poles_asked && !heat->exacting)
         windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
@@ -26168,6 +26777,311 @@ static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
     }
     for (q0 = 0; q0 < n && h->e->status >= 0; q0++) (void)hdi_trace_window(h, q0, q0 + 1, Z, bound);
     return h->e->status;
+}
+
+/* ---- heat that fades ---- */
+
+/* The diagonal from the pairs that are there: an entry is <B^-1 e_v, K_t f> with f = B^-1 e_v or e_v. It is
+ * off by as much as a value of a column, see [26]. */
+typedef struct hdi_fading_diagonal {
+    const hdi_modes *of;
+    const hd_laplacian *lap;
+    hdi_decay decay;
+    int mass;                    /* of K_t */
+    double *value;               /* [n] the sums */
+    hdi_fading_size *c;          /* [n] what the coefficients of f sum up to */
+    hdi_fading_size *g;          /* [n] of B^-1 e_v; the same for k_t */
+} hdi_fading_diagonal;
+
+/* Vector q at a vertex, times B where the other side of K_t is meant. */
+static double hdi_fading_other(const hdi_fading_diagonal *a, int32_t q, int32_t v) {
+    const int64_t at = HDI_CAST(int64_t, q) * a->of->s.n + v;
+    return !a->mass ? a->of->s.vector[at] : a->of->bx ? a->of->bx[at] : a->of->by[v] * a->of->s.vector[at];
+}
+
+static void hdi_fading_size_add(hdi_fading_size *c, const hdi_decay *x, int32_t q, double side, double y) {
+    c->found += y * y;
+    c->inner += x->off[q] * fabs(y);
+    c->side += side * fabs(y);
+}
+
+static void hdi_fading_diagonal_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_fading_diagonal *a = HDI_CAST(const hdi_fading_diagonal *, arg);
+    const hd_spectrum *s = &a->of->s;
+    int64_t i;
+    int32_t q;
+    memset(a->value + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->value);
+    memset(a->c + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->c);
+    if (a->mass) memset(a->g + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->g);
+    for (q = 0; q < s->count; q++) {
+        const double side = hdi_decay_side(a->of, &a->decay, q);
+        for (i = begin; i < end; i++) {
+            const int32_t v = a->lap->vertex[i];
+            const double x = s->vector[HDI_CAST(int64_t, q) * s->n + v], y = hdi_fading_other(a, q, v);
+            a->value[i] += a->decay.weight[q] * x * y;
+            hdi_fading_size_add(a->c + i, &a->decay, q, side, y);
+            if (a->mass) hdi_fading_size_add(a->g + i, &a->decay, q, side, x);
+        }
+    }
+}
+
+/* Gives row i to its vertex, and its errors to the report. */
+static void hdi_fading_diagonal_note(const hdi_fading_diagonal *a, int32_t i, double *out,
+                                     hdi_ledger *ledger) {
+    const hdi_decay *x = &a->decay;
+    const hdi_fading_size *c = a->c + i, *g = a->g + i;
+    const int32_t v = a->lap->vertex[i];
+    const double inverse = hdi_inverse_mass(a->lap, i), b = a->mass ? a->lap->b_diag[i] : inverse;
+    const double gram = a->of->off_gram, left_g = sqrt(a->of->s.left[v] + gram * inverse);
+    const double left = a->mass ? sqrt(a->of->s.left_mass[v] + gram * b) : left_g;
+    const double twice = hdi_decay_twice(a->of, x), found_g = sqrt(g->found), found = sqrt(c->found);
+    hdi_parts part;
+    out[v] = x->scale * a->value[i];
+    part.rational = x->scale * x->cut * left_g * left;
+    part.solver = x->scale * (x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
+                              (c->side + twice * found) * left_g + found_g * (c->inner + twice * found));
+    part.rounding = 2 * x->scale * x->rounding * found_g * sqrt(b) + 4 * DBL_MIN * DBL_EPSILON +
+                    8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[v]);
+    hdi_ledger_note(ledger, out[v], part);
+}
+
+static hd_status hdi_fading_diagonal_run(hdi_heat_call *h, double t, hd_kernel kernel, double *out) {
+    hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    double *work = HDI_TAKE(&s, double, 2 * count + n);
+    hdi_ledger ledger = hdi_modes_ledger();
+    hdi_fading_diagonal a;
+    int32_t i;
+    memset(&a, 0, sizeof a);
+    a.of = &heat->modes;
+    a.lap = lap;
+    a.mass = kernel == HD_KERNEL_OPERATOR;
+    a.c = HDI_TAKE(&s, hdi_fading_size, a.mass ? 2 * n : n);
+    if (h->e->status < 0 || (a.mass && hdi_modes_mass(heat, h->e) < 0)) return hdi_scope_end(&s);
+    a.value = work + 2 * count;
+    a.g = a.mass ? a.c + n : a.c;
+    a.decay = hdi_decay_at(a.of, t, work);
+    hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_diagonal_task, &a);
+    for (i = 0; i < lap->n; i++) out[i] = a.mass && lap->row[i] == HD_ROW_INERT;
+    for (i = 0; i < lap->n_active; i++) hdi_fading_diagonal_note(&a, i, out, &ledger);
+    h->relative = 1;
+    hdi_modes_tell(heat, h->rep);
+    hdi_ledger_close(&ledger, h->rep);
+    return hdi_scope_end(&s);
+}
+
+/* The same for the trace. Of the eigenvalues found each has one of the pair nearby (Weyl), the others are at
+ * least next; there are as many of these as rows that are left. */
+static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *bound) {
+    const hdi_modes *x = &h->heat->modes;
+    const double others = HDI_CAST(double, h->heat->source->n_active) - x->s.count;
+    hdi_ledger ledger = hdi_modes_ledger();
+    hdi_parts off = {0, 0, 0};
+    double value = 0;
+    int32_t q;
+    for (q = 0; q < x->s.count; q++) {
+        const double least = hdi_max(x->low, x->s.value[q] - x->off_norm);
+        value += exp(-t * x->s.value[q]);
+        off.solver += t * x->off_norm * exp(-t * least);
+    }
+    if (others > 0) off.rational = others * exp(-t * hdi_max(0, x->s.next));
+    off.rounding = 8 * (2 + hdi_min(t * x->low, HDI_EQUAL_BEYOND)) * DBL_EPSILON * value +
+                   4 * DBL_MIN * DBL_EPSILON;
+    h->relative = 1;
+    *Z = value;
+    if (bound) *bound = hdi_parts_sum(&off);
+    hdi_modes_tell(h->heat, h->rep);
+    hdi_ledger_note(&ledger, value, off);
+    hdi_ledger_close(&ledger, h->rep);
+}
+
+/* k_t on the pattern of L, by rows. */
+typedef struct hdi_fading_edges {
+    const hdi_modes *of;
+    const hd_laplacian *lap;
+    const double *w;             /* [count] exp(-t (theta_i - low)) */
+    double *out;
+} hdi_fading_edges;
+
+static void hdi_fading_edges_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_fading_edges *a = HDI_CAST(const hdi_fading_edges *, arg);
+    const hd_spectrum *s = &a->of->s;
+    const hd_csr *L = &a->lap->L;
+    int64_t i, p;
+    int32_t q;
+    for (p = L->row_ptr[begin]; p < L->row_ptr[end]; p++) a->out[p] = 0;
+    for (q = 0; q < s->count; q++) {
+        const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
+        for (i = begin; i < end; i++) {
+            const double own = a->w[q] * x[a->lap->vertex[i]];
+            for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
+                a->out[p] += own * x[a->lap->vertex[L->col[p]]];
+        }
+    }
+}
+
+/* All edges from the pairs that are there; one bound for all of them. */
+static hd_status hdi_fading_edges_run(hdi_heat_call *h, double t, double *out) {
+    hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const uint64_t n = HDI_CAST(uint64_t, lap->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    double *work = HDI_TAKE(&s, double, 3 * count + 3 * n);
+    hdi_ledger ledger = hdi_modes_ledger();
+    hdi_parts off;
+    hdi_fading_far far;
+    hdi_fading_edges a;
+    hdi_decay x;
+    int64_t p;
+    if (!work) return hdi_scope_end(&s);
+    x = hdi_decay_at(&heat->modes, t, work);
+    far = hdi_fading_reach(&heat->modes, &x, work + 3 * count);
+    a.of = &heat->modes;
+    a.lap = lap;
+    a.w = x.weight;
+    a.out = out;
+    hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_edges_task, &a);
+    off.rational = x.scale * x.cut * far.left * far.left;
+    off.solver = x.scale * ((x.mixed * x.mixed * far.left + 2 * far.side) * far.left + far.found * far.inner);
+    for (p = 0; p < lap->L.nnz; p++) {
+        out[p] *= x.scale;
+        off.rounding = 2 * x.scale * x.rounding * far.found * (far.found + far.left) +
+                       8 * (1 + hdi_min(x.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[p]) +
+                       4 * DBL_MIN * DBL_EPSILON;
+        hdi_ledger_note(&ledger, out[p], off);
+    }
+    hdi_modes_tell(heat, h->rep);
+    hdi_ledger_close(&ledger, h->rep);
+    return hdi_scope_end(&s);
+}
+
+/* A diagonal or, with Z, a trace, or edges. */
+typedef struct hdi_fading_to {
+    hd_kernel kernel;
+    int edges;
+    double *D;
+    size_t ldd;
+    double *Z, *bound;
+} hdi_fading_to;
+
+/* It at time q of the call from at most `most` pairs. Returns 0 where its bound is not as it should be. */
+static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hdi_fading_to *to) {
+    const double t = h->ask.t[q];
+    const hd_report before = *h->rep;
+    hd_report one;
+    memset(&one, 0, sizeof one);
+    if (!hdi_modes_enough(h->heat, t, hdi_fading_depth(h->heat), most, h->e)) return 0;
+    *h->rep = one;
+    if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
+    else if (to->edges) (void)hdi_fading_edges_run(h, t, to->D + HDI_CAST(size_t, q) * to->ldd);
+    else (void)hdi_fading_diagonal_run(h, t, to->kernel, to->D + HDI_CAST(size_t, q) * to->ldd);
+    if (h->e->status < 0) return 0;
+    one = *h->rep;
+    *h->rep = before;
+    if (!hdi_modes_good(h->heat, t, &one)) return 0;
+    hdi_report_merge(h->rep, &one);
+    return 1;
+}
+
+/* Edges at the times of a call that are not done. */
+static hd_status hdi_edges_poles(hdi_heat_call *h, double *values, const char *done) {
+    const size_t nnz = HDI_CAST(size_t, h->heat->source->L.nnz);
+    int32_t q;
+    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+    hdi_inverse_tell(h);
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
+        if (done && done[q]) continue;
+        h->t = hdi_heat_scaled(h->heat, h->ask.t[q]);
+        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + HDI_CAST(size_t, q) * nnz) < 0)
+            h->e->column = q;
+    }
+    return h->e->status;
+}
+
+static hd_status hdi_fading_poles(hdi_heat_call *h, const hdi_fading_to *to, const char *done) {
+    if (to->edges) return hdi_edges_poles(h, to->D, done);
+    return to->Z ? hdi_trace_poles(h, to->Z, to->bound, done)
+                 : hdi_diagonal_poles(h, to->kernel, to->D, to->ldd, done);
+}
+
+/* May at most `most` pairs serve time t of the call? */
+static int hdi_fading_serves(const hdi_heat_call *h, double t, int32_t most) {
+    return most > HDI_MODES_FIRST ? hdi_fading(h) && hdi_fading_near(h->heat, t, most)
+                                  : hdi_fading_first(h, t);
+}
+
+/* Times that are not done and that at most `most` pairs serve. done [n_times]: of these 1. Returns how many
+ * are tried. */
+static int32_t hdi_fading_some(hdi_heat_call *h, const hdi_fading_to *to, int32_t most, char *done) {
+    int32_t q, tried = 0;
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
+        if (done[q] || !hdi_fading_serves(h, h->ask.t[q], most)) continue;
+        done[q] = HDI_CAST(char, hdi_fading_values(h, q, most, to));
+        if (h->e->status < 0) h->e->column = q;
+        tried++;
+    }
+    return tried;
+}
+
+/* Poles for the times that are not done, after others, into one report. */
+static hd_status hdi_fading_rest(hdi_heat_call *h, const hdi_fading_to *to, const char *done) {
+    hd_report others = *h->rep, rest;
+    int32_t q, n_done = 0;
+    for (q = 0; q < h->ask.n_times; q++) n_done += done[q];
+    if (n_done == h->ask.n_times) return HD_OK;
+    memset(h->rep, 0, sizeof *h->rep);
+    if (hdi_fading_poles(h, to, done) < 0 || n_done == 0) return h->e->status;
+    rest = *h->rep;
+    *h->rep = others;
+    hdi_report_merge(h->rep, &rest);
+    return HD_OK;
+}
+
+/* All times where heat fades: from eigenpairs where few are left, else by poles. If the bound is not as it
+ * should be then, more eigenpairs are asked for help, and poles do what is left once more. */
+static hd_status hdi_fading_times(hdi_heat_call *h, const hdi_fading_to *to) {
+    char *done = HDI_TAKE(&h->s, char, h->ask.n_times);
+    hd_report late, all;
+    if (!done) return h->e->status;
+    memset(done, 0, HDI_CAST(size_t, h->ask.n_times));
+    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+    (void)hdi_fading_some(h, to, HDI_MODES_FIRST, done);
+    late = *h->rep;
+    if (h->e->status < 0 || hdi_fading_rest(h, to, done) < 0) return h->e->status;
+    if (h->rep->error_bound <= HDI_MODES_HELP) return HD_OK;
+    all = *h->rep;
+    *h->rep = late;
+    if (hdi_fading_some(h, to, HDI_MODES_MOST, done) == 0) *h->rep = all;
+    else if (h->e->status >= 0) (void)hdi_fading_rest(h, to, done);
+    return h->e->status;
+}
+
+static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
+    hdi_fading_to to;
+    memset(&to, 0, sizeof to);
+    to.Z = Z;
+    to.bound = bound;
+    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+}
+
+static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
+    hdi_fading_to to;
+    memset(&to, 0, sizeof to);
+    to.edges = 1;
+    to.D = values;
+    to.ldd = HDI_CAST(size_t, h->heat->source->L.nnz);
+    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+}
+
+static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
+    hdi_fading_to to;
+    memset(&to, 0, sizeof to);
+    to.kernel = kernel;
+    to.D = D;
+    to.ldd = ldd;
+    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
 }
 
 /* ---- signatures ---- */
@@ -26267,20 +27181,6 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     }
     if (!sure) h->rep->error_relative = HUGE_VAL;
     hdi_signature_tell(h->rep, m, n_freq, largest);
-    return h->e->status;
-}
-
-/* k_t on the pattern of L at all times of a call, nnz(L) values each. */
-static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
-    const size_t nnz = HDI_CAST(size_t, h->heat->source->L.nnz);
-    int32_t q;
-    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
-    hdi_inverse_tell(h);
-    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
-        h->t = hdi_heat_scaled(h->heat, h->ask.t[q]);
-        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + HDI_CAST(size_t, q) * nnz) < 0)
-            h->e->column = q;
-    }
     return h->e->status;
 }
 
@@ -26701,8 +27601,6 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
  * above the first number. The bound of degree 9 is expected at the second one times sqrt(t)/h, as seen on
  * meshes of 1K to 50K vertices. */
 #define HDI_DISTANCE_SURE 3.5e-7
-/* With a larger bound eigenpairs are asked for help. */
-#define HDI_DISTANCE_MOST 1e-6
 #define HDI_DISTANCE_EXPECTED 4.4e-7
 
 /* Are the poles the caller's choice, or of the highest degree in any case? */
@@ -26761,33 +27659,13 @@ static hd_status hdi_distance_once(hd_heat *heat, const hdi_distances *to, doubl
  *     exp(-t low) (exp(-t (next - |R| - low)) + |R|/(next - |R| - low)) |Q y|.
  * Every term carries exp(-t low), so that the error is small beside distances of 1e-200 as well. */
 
-/* What is left out is at most this part of the largest distance, or less where the caller asks for more. */
-#define HDI_MODES_TOL 1e-7
-/* The tolerance of the residuals of eigenpairs, far below what the bound allows for at t lambda = 700. */
-#define HDI_MODES_RESIDUAL 1e-12
-/* Eigenpairs are tried before poles when so many are expected to do, and after them up to the second number.
- * The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of 642 to 41K vertices, and at
- * 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20 take one to two times as long
- * as poles do, once, and the second number about ten times. */
-#define HDI_MODES_FIRST 20
-#define HDI_MODES_MOST 360
-#define HDI_MODES_REASON "at such a t few eigenpairs are left: distances are sums over them"
-/* Vectors further from orthonormal are not what they should be: one may be there twice. */
-#define HDI_MODES_ORTHO 1e-6
-/* From this t low on distances are among the smallest doubles. */
-#define HDI_MODES_FADED 650
-
 /* The sum over the pairs between one vertex and all others at one time. */
 typedef struct hdi_mode_sum {
     const hdi_modes *of;
     const hd_laplacian *lap;
     int weighted;
     const double *x;             /* [n count] of vectors, or of B times them */
-    int32_t first;               /* of the pairs that are not constants */
-    double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds of the errors per |c_i| */
-    double scale, depth;         /* exp(-t low), t low */
-    double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
-    double rounding;             /* factor of |y| */
+    hdi_decay decay;
     hdi_terms source;
     int32_t own;                 /* its component, -1: none, or several */
     double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
@@ -26839,7 +27717,7 @@ static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
     a->at = hdi_terms_value(&source, a->of->one);
     a->rest = hdi_terms_value(&source, a->of->one + a->lap->n);
     memset(a->share, 0, sizeof a->share);
-    for (q = 0; q < source.n && a->first > 0; q++) {
+    for (q = 0; q < source.n && a->decay.first > 0; q++) {
         const int32_t v = hdi_terms_at(&source, q), row = a->lap->row[v];
         const double w = hdi_terms_weight(&source, q);
         if (row >= 0) a->share[a->lap->component[row]] += a->weighted ? w * a->of->one[v] : w;
@@ -26854,7 +27732,7 @@ static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
     const double *one = a->of->one;
     double bi = 0, bj = 0, sum = 0;
     int32_t c;
-    if (a->first == 0) return 0;
+    if (a->decay.first == 0) return 0;
     for (c = 0; c < lap->n_components && ci < 0; c++) {
         const double by = c == cj ? (a->weighted ? one[v] : 1) : 0;
         sum = hdi_pythag(sum, (a->share[c] - by) / sqrt(lap->component_mass[c]));
@@ -26880,8 +27758,8 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
     int64_t v;
     int32_t q;
     for (v = begin; v < end; v++) sum[v] = off[v] = 0;
-    for (q = a->first; q < a->of->s.count; q++) {
-        const double *x = a->x + q * n, w = a->weight[q], c = a->off[q];
+    for (q = a->decay.first; q < a->of->s.count; q++) {
+        const double *x = a->x + q * n, w = a->decay.weight[q], c = a->decay.off[q];
         const double from = hdi_modes_source_value(a, x, plain);
         for (v = begin; v < end; v++) {
             const double z = (plain ? x[v] : by[v] * x[v]) - from;
@@ -26892,9 +27770,9 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
     for (v = begin; v < end; v++) {
         const int32_t at = HDI_CAST(int32_t, v);
         const double left = far_left + sqrt(hdi_modes_left(a, at));
-        out[v] = a->cut * left;
-        off[v] += a->mixed * left;
-        sum[v] = hdi_pythag(hdi_modes_constant(a, at), sqrt(sum[v]) * a->scale);
+        out[v] = a->decay.cut * left;
+        off[v] += a->decay.mixed * left;
+        sum[v] = hdi_pythag(hdi_modes_constant(a, at), sqrt(sum[v]) * a->decay.scale);
     }
 }
 
@@ -26902,16 +27780,16 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
  * and of numbers below the normal ones. */
 static double hdi_modes_rounding(const hdi_mode_sum *a, int32_t v, double d) {
     const double sums = (a->source.n - 1) * DBL_EPSILON;
-    const double off = a->rounding * (a->whole + sqrt(hdi_modes_whole(a, v))) + sums * a->whole;
-    return a->scale * off + 8 * (1 + hdi_min(a->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d +
+    const double off = a->decay.rounding * (a->whole + sqrt(hdi_modes_whole(a, v))) + sums * a->whole;
+    return a->decay.scale * off + 8 * (1 + hdi_min(a->decay.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d +
            4 * DBL_MIN * DBL_EPSILON;
 }
 
 /* Notes the distance to v and its bound. */
 static void hdi_mode_sum_note(const hdi_mode_sum *a, int32_t v, hdi_ledger *ledger, hd_report *rep) {
     hdi_parts part;
-    part.rational = a->scale * a->part[a->lap->n + v];
-    part.solver = a->scale * a->part[v];
+    part.rational = a->decay.scale * a->part[a->lap->n + v];
+    part.solver = a->decay.scale * a->part[v];
     part.rounding = hdi_modes_rounding(a, v, a->d[v]);
     rep->n_lost += a->d[v] < 10 * hdi_parts_sum(&part);
     hdi_ledger_note(ledger, a->d[v], part);
@@ -26933,208 +27811,26 @@ static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, double *d, hdi_l
 /* The sum at time t. work [2 count + 2 n] */
 static hdi_mode_sum hdi_mode_sum_at(const hd_heat *heat, hd_distance_kind kind, double t, double *work) {
     const hdi_modes *of = &heat->modes;
-    const hd_spectrum *s = &of->s;
-    const double next = s->next < HUGE_VAL ? s->next - of->off_norm : HUGE_VAL;
-    const double gap = hdi_max(0, next - of->low);
     hdi_mode_sum a;
-    int32_t q;
     memset(&a, 0, sizeof a);
     a.of = of;
     a.lap = heat->source;
     a.weighted = kind == HD_DISTANCE_WEIGHTED;
-    a.x = a.weighted && of->bx ? of->bx : s->vector;
-    a.weight = work;
-    a.off = work + s->count;
-    a.part = work + 2 * HDI_CAST(int64_t, s->count);
-    a.first = s->n_constant;
-    a.depth = t * of->low;
-    a.scale = exp(-a.depth);
-    for (q = a.first; q < s->count; q++) {
-        const double over = hdi_max(0, s->value[q] - of->low);
-        a.weight[q] = exp(-t * over);
-        a.off[q] = of->off[q] * hdi_min(t, over > 0 ? 1 / over : t);
-    }
-    a.cut = next < HUGE_VAL ? exp(-t * gap) : 0;
-    a.mixed = of->off_norm * (next < HUGE_VAL ? hdi_min(t, gap > 0 ? 1 / gap : t) : 0);
-    a.rounding = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
+    a.x = a.weighted && of->bx ? of->bx : of->s.vector;
+    a.decay = hdi_decay_at(of, t, work);
+    a.part = work + 2 * HDI_CAST(int64_t, of->s.count);
     return a;
-}
-
-/* The norm of the rounding of B^-1 L x - lambda x, L's rows that sum to zero included. */
-static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double value) {
-    double sum = 0;
-    int32_t i;
-    int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON;
-        double row = lap->B ? 0 : value * lap->mass[i] * fabs(x[lap->vertex[i]]);
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            row += (fabs(lap->L.val[p]) + (lap->B ? value * fabs(lap->B[p]) : 0)) *
-                fabs(x[lap->vertex[lap->L.col[p]]]);
-        row *= c;
-        sum += row * (row / lap->b_diag[i]);
-    }
-    return hdi_ratio_root(lap) * sqrt(sum);
-}
-
-/* The largest |X' B X - 1|, in the norm of Frobenius. bx [n] */
-static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, double *bx) {
-    double sum = 0;
-    int32_t i, j, q;
-    for (j = 0; j < s->count; j++) {
-        const double *xj = s->vector + HDI_CAST(int64_t, j) * s->n;
-        memset(bx, 0, HDI_CAST(size_t, s->n) * sizeof *bx);
-        for (q = 0; q < lap->n_active; q++) bx[lap->vertex[q]] = hdi_spec_mass_row(lap, xj, q);
-        for (i = 0; i <= j; i++) {
-            const double g = hdi_dot(s->vector + HDI_CAST(int64_t, i) * s->n, bx, s->n) - (i == j);
-            sum += (i == j ? 1 : 2) * g * g;
-        }
-    }
-    return sqrt(sum);
-}
-
-/* B 1 by vertices in two doubles each (Neumaier 1974). */
-static void hdi_modes_one(const hd_laplacian *lap, double *one) {
-    int32_t i;
-    int64_t p;
-    memset(one, 0, 2 * HDI_CAST(size_t, lap->n) * sizeof *one);
-    for (i = 0; i < lap->n_active; i++) {
-        double sum = 0, rest = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) {
-            const double v = lap->B[p], t = sum + v;
-            rest += fabs(sum) >= fabs(v) ? sum - t + v : v - t + sum;
-            sum = t;
-        }
-        one[lap->vertex[i]] = lap->B ? sum + rest : lap->mass[i];
-        if (lap->B) one[lap->n + lap->vertex[i]] = sum - one[lap->vertex[i]] + rest;
-    }
-}
-
-/* What bounds need of eigenpairs that are there. */
-static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
-    hdi_modes *x = &heat->modes;
-    const hd_spectrum *s = &x->s;
-    const hd_laplacian *lap = heat->source;
-    const uint64_t n = HDI_CAST(uint64_t, s->n);
-    const int32_t first = s->n_constant;
-    int32_t q, i;
-    x->off = HDI_NEW(heat->ctx, double, s->count + 1, e);
-    if (x->off) x->one = HDI_NEW(heat->ctx, double, 3 * n, e);
-    if (e->status < 0) return e->status;
-    x->by = x->one + 2 * n;
-    x->off_gram = hdi_modes_gram(lap, s, x->one);
-    for (q = 0, x->off_norm = 0; q < s->count; q++) {
-        const double value = s->value[q], unit = first < s->count ? s->value[first] : 0;
-        x->off[q] = hdi_ratio_root(lap) * s->residual[q] * hdi_max(value, unit);
-        x->off[q] += hdi_modes_noise(lap, s->vector + HDI_CAST(int64_t, q) * s->n, fabs(value));
-        x->off[q] += x->off_gram * fabs(s->value[s->count - 1]);
-        if (q >= first) x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
-    }
-    x->low = first < s->count ? s->value[first] : s->next < HUGE_VAL ? s->next : 0;
-    x->low = hdi_max(0, x->low - x->off_norm);
-    hdi_modes_one(lap, x->one);
-    memset(x->by, 0, HDI_CAST(size_t, lap->n) * sizeof *x->by);
-    for (i = 0; i < lap->n_active; i++) x->by[lap->vertex[i]] = lap->mass[i];
-    return HD_OK;
-}
-
-/* B times the vectors. */
-static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
-    hdi_modes *x = &heat->modes;
-    const hd_laplacian *lap = heat->source;
-    const int64_t size = HDI_CAST(int64_t, x->s.n) * x->s.count;
-    int64_t at;
-    int32_t i;
-    if (x->bx || !lap->B) return HD_OK;
-    x->bx = HDI_NEW(heat->ctx, double, size, e);
-    if (!x->bx) return e->status;
-    memset(x->bx, 0, HDI_CAST(size_t, size) * sizeof *x->bx);
-    for (at = 0; at < size; at += x->s.n)
-        for (i = 0; i < lap->n_active; i++)
-            x->bx[at + lap->vertex[i]] = hdi_spec_mass_row(lap, x->s.vector + at, i);
-    return HD_OK;
 }
 
 /* How far eigenvalues have to reach above the lowest one, times t: exp of it is |y| over the part that may be
  * left out. The largest distance is at least about 1/sqrt(mass) times exp(-t low). */
 static double hdi_modes_depth(const hd_heat *heat) {
-    const hd_laplacian *lap = heat->source;
-    const double tol = heat->exacting ? hdi_min(HDI_MODES_TOL, 0.1 * heat->opts.tol) : HDI_MODES_TOL;
-    double mass = 0, inverse = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_components; i++) mass = hdi_max(mass, lap->component_mass[i]);
-    for (i = 0; i < lap->n_active; i++) inverse = hdi_max(inverse, hdi_inverse_mass(lap, i));
-    return hdi_max(0, log(2 * sqrt(inverse) * sqrt(mass) / tol));    /* below zero: tol is all there is */
-}
-
-/* How many eigenvalues above the constants are expected below the lowest of them plus `above`: by those that
- * are there, or by Weyl's law N(lambda) = area lambda/(4 pi). On regular meshes half the sum of B_ii/L_ii is
- * 0.072 area with the masses of finite elements and 0.144 area with diagonal ones, which is 0.9 and 1.8 times
- * area/(4 pi); it needs no lengths, and slivers do not spoil it. */
-static double hdi_modes_expected(const hd_heat *heat, double above) {
-    const hd_laplacian *lap = heat->source;
-    const hd_spectrum *s = &heat->modes.s;
-    double sum = 0;
-    int32_t i;
-    if (s->value) {
-        const double reach = s->next - heat->modes.low, there = s->count - s->n_constant + 1;
-        return reach >= above ? 0 : 1.1 * there * (above / hdi_max(reach, 1e-6 * above));
-    }
-    for (i = 0; i < lap->n_active; i++)
-        sum += hdi_quotient(lap->b_diag[i], hdi_max(0, hdi_row_diagonal(lap, i)));
-    return 0.5 * sum * above;
+    return hdi_max(0, log(2 * hdi_modes_span(heat) / hdi_modes_tol(heat)));    /* 0: tol is all there is */
 }
 
 /* May eigenpairs serve distances of this kind? */
 static int hdi_modes_apply(const hd_heat *heat, hd_distance_kind kind) {
-    return kind <= HD_DISTANCE_WEIGHTED && !heat->poles_asked && !heat->modes.barred &&
-           !heat->iterations_asked && heat->opts.method != HD_METHOD_ITERATIVE &&
-           heat->opts.method != HD_METHOD_KRYLOV && heat->source->b_ratio > 0 &&
-           heat->source->n_components <= HDI_MODES_FIRST;
-}
-
-/* Pairs that are asked for where `more` are expected above the constants. */
-static int32_t hdi_modes_count(const hd_heat *heat, double more) {
-    const hd_laplacian *lap = heat->source;
-    const double constants = lap->conserves ? lap->n_components : 0;
-    return HDI_CAST(int32_t, hdi_min(lap->n_active, ceil(1.25 * more) + 6 + constants));
-}
-
-/* Bytes that finding so many pairs takes; a guess before the analysis. */
-#define HDI_MODES_SURE 0.5       /* this part is taken for sure: 0.67 was seen on a dozen vertices */
-
-static double hdi_modes_need(const hd_heat *heat, int32_t count) {
-    const int32_t n = heat->source->n_active;
-    const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(n), gaps = HDI_SPEC_GAPS;
-    const double doubles = hdi_spec_doubles(n, count) + 2 * tiles * (count + gaps) + 2.0 * heat->source->n;
-    if (!heat->elim.ctx) return 8 * doubles + 8 * hdi_heat_fill(heat).real_stored;
-    return 8 * (doubles + HDI_CAST(double, hdi_sweep_size(&heat->elim.sym, 1, HDI_SPEC_WIDE))) +
-           HDI_CAST(double, hdi_factor_bytes(&heat->elim.sym, 1));
-}
-
-/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven
- * complete: then poles go on. Only out of memory by the system, and cancelling, are errors. */
-static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
-    hdi_modes *x = &heat->modes;
-    const hd_laplacian *lap = heat->source;
-    hdi_spec_goal goal;
-    hdi_modes_free(x, heat->ctx);
-    if (hdi_heat_analysed(heat, e) < 0) return 0;
-    if (heat->ctx->byte_limit && HDI_MODES_SURE * hdi_modes_need(heat, count) >
-        HDI_CAST(double, heat->ctx->byte_limit) - HDI_CAST(double, heat->ctx->bytes_in_use)) return 0;
-    goal.below = HUGE_VAL;
-    goal.count = count;
-    x->s.lap = lap;
-    x->s.context = heat->ctx;
-    if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
-        x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0 &&
-        x->off_gram <= HDI_MODES_ORTHO)
-        return 1;
-    hdi_modes_free(x, heat->ctx);
-    if (e->status == HD_ERR_MEMORY || e->status == HD_ERR_CANCELLED) return 0;
-    x->barred = e->status != HD_ERR_MEMORY_LIMIT;
-    hdi_error_clear(e);
-    return 0;
+    return kind <= HD_DISTANCE_WEIGHTED && hdi_modes_allowed(heat);
 }
 
 /* Are no more than `most` eigenpairs expected to do at time t? */
@@ -27149,41 +27845,11 @@ static HDI_INLINE int hdi_modes_first(const hd_heat *heat, hd_distance_kind kind
 }
 
 /* Are there eigenpairs enough for time t, if need be after finding them? At most `most` are looked for. */
-static int hdi_modes_enough(hd_heat *heat, hd_distance_kind kind, double t, int32_t most, hd_error *e) {
-    const double above = t > 0 ? hdi_modes_depth(heat) / t : HUGE_VAL;    /* t may be -0 */
-    int32_t tries;
-    if (!(t > 0) || !hdi_modes_apply(heat, kind)) return 0;
-    for (tries = 0; tries < 4; tries++) {
-        const hdi_modes *x = &heat->modes;
-        const double more = hdi_modes_expected(heat, above);
-        if (x->s.value && x->s.next - x->low >= above)
-            return kind == HD_DISTANCE_CLASSICAL || hdi_modes_mass(heat, e) >= 0;
-        if (!(more <= most) || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
-    }
-    return 0;
-}
-
 static HDI_INLINE int hdi_modes_reach(hd_heat *heat, hd_distance_kind kind, double t, int32_t most,
                                       hd_error *e) {
-    return HDI_HAS_MODES && hdi_modes_enough(heat, kind, t, most, e);
-}
-
-/* Is a bound of distances by eigenpairs as it should be, or so near zero that nothing else is better? */
-static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
-    return rep->error_bound <= HDI_DISTANCE_MOST || t * heat->modes.low > HDI_MODES_FADED;
-}
-
-/* What the report says of distances from eigenpairs. */
-static void hdi_modes_tell(const hd_heat *heat, hd_report *rep) {
-    rep->method = HD_METHOD_DIRECT;
-    rep->reason = HDI_MODES_REASON;
-    rep->ordering = heat->elim.sym.ordering;
-    rep->factor_nnz = heat->elim.sym.nnz;
-    rep->factor_flops = heat->modes.s.factor_flops;
-}
-
-static hdi_ledger hdi_modes_ledger(void) {
-    return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 1);
+    return HDI_HAS_MODES && t > 0 && hdi_modes_apply(heat, kind) &&   /* t may be -0 */
+           hdi_modes_enough(heat, t, hdi_modes_depth(heat), most, e) &&
+           (kind == HD_DISTANCE_CLASSICAL || hdi_modes_mass(heat, e) >= 0);
 }
 
 /* Distances of all sources at time t from the eigenpairs that are there. */
@@ -27222,19 +27888,12 @@ static hd_status hdi_distance_poles(hd_heat *heat, const hdi_distances *to, doub
     return e->status;
 }
 
-/* Frees the factors of poles, which are of no more use. */
-static void hdi_packs_drop(hd_heat *heat) {
-    hdi_elim *m = &heat->elim;
-    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
-    m->filled = 0;
-}
-
 /* Distances at one time, which poles have made: by eigenpairs after all, if the bound is not as it should be
  * and these have a lower one. */
 static hd_status hdi_distance_help(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
                                    hd_error *e) {
     const double bound = rep->error_bound;
-    if (bound <= HDI_DISTANCE_MOST || !hdi_modes_near(heat, to->kind, t, HDI_MODES_MOST)) return e->status;
+    if (bound <= HDI_MODES_HELP || !hdi_modes_near(heat, to->kind, t, HDI_MODES_MOST)) return e->status;
     hdi_packs_drop(heat);
     if (!hdi_modes_reach(heat, to->kind, t, HDI_MODES_MOST, e)) return e->status;
     if (hdi_modes_distance(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
@@ -27557,7 +28216,7 @@ static hd_status hdi_distance_run(hdi_heat_call *h, hdi_distances to) {
     hd_report one;
     int32_t q;
     int begun = 0;
-    if (done && n_times > 1 && hdi_heat_sort_times(h, 2) >= 0) {
+    if (done && n_times > 1 && hdi_heat_sort_times(h, 2, NULL) >= 0) {
         const int32_t early = hdi_distance_late(h, &to, done, &begun);
         if (early == 0 || h->e->status < 0) return h->e->status;
         if (hdi_distance_windows(h, &to, early) && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
@@ -27899,7 +28558,7 @@ static hd_status hdi_pairs_poles(hd_heat *heat, const hdi_pairs *x, double t, hd
     hdi_pairs y = *x;
     int32_t degree = HDI_RAT_KERNEL_MAX;
     if (hdi_pairs_columns(heat, x, t, 0, rep) < 0 || !x->d || hdi_metric_settled(heat, x->kind) ||
-        *x->bound <= HDI_DISTANCE_MOST || rep->method != HD_METHOD_DIRECT)
+        *x->bound <= HDI_MODES_HELP || rep->method != HD_METHOD_DIRECT)
         return rep->status;
     y.K = NULL;
     y.of_k = NULL;
@@ -27934,7 +28593,7 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
     }
     x.of_k = &of_k;
     x.bound = &bound;
-    if (hdi_pairs_poles(heat, &x, t, rep) < 0 || !x.d || bound <= HDI_DISTANCE_MOST ||
+    if (hdi_pairs_poles(heat, &x, t, rep) < 0 || !x.d || bound <= HDI_MODES_HELP ||
         !hdi_modes_near(heat, x.kind, t, HDI_MODES_MOST))
         return rep->status;
     hdi_packs_drop(heat);
@@ -28075,7 +28734,7 @@ static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep
     if (first && (hdi_sample_modes(heat, a, rep, e) < 0 || hdi_modes_good(heat, a->t, rep))) return e->status;
     bound = first ? rep->error_bound : HUGE_VAL;
     if (e->status < 0 || hdi_sample_poles(heat, a, rep, e) < 0) return e->status;
-    if (rep->error_bound <= HDI_DISTANCE_MOST || (first && bound >= rep->error_bound)) return e->status;
+    if (rep->error_bound <= HDI_MODES_HELP || (first && bound >= rep->error_bound)) return e->status;
     if (!first) {
         if (!hdi_modes_near(heat, a->kind, a->t, HDI_MODES_MOST)) return e->status;
         hdi_packs_drop(heat);
@@ -28358,9 +29017,21 @@ static hd_distance_kind hdi_estimate_kind(const hdi_estimate *x) {
     return x->query == HD_QUERY_DISTANCE ? HD_DISTANCE_CLASSICAL : HD_DISTANCE_WEIGHTED;
 }
 
-/* Eigenpairs for distances at time t. */
-static int32_t hdi_estimate_pairs(const hd_heat *heat, double t) {
-    return hdi_modes_count(heat, hdi_modes_expected(heat, hdi_modes_depth(heat) / t));
+static int hdi_estimate_distance(const hdi_estimate *x) {
+    return x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
+}
+
+/* Eigenpairs for time t. */
+static int32_t hdi_estimate_pairs(const hdi_estimate *x, double t) {
+    const hd_heat *heat = x->h->heat;
+    const double depth = hdi_estimate_distance(x) ? hdi_modes_depth(heat) : hdi_fading_depth(heat);
+    return hdi_modes_count(heat, hdi_modes_expected(heat, depth / t));
+}
+
+/* Do eigenpairs come first at time t? */
+static int hdi_estimate_first(const hdi_estimate *x, double t) {
+    return hdi_estimate_distance(x) ? hdi_modes_first(x->h->heat, hdi_estimate_kind(x), t)
+                                    : hdi_fading_first(x->h, t);
 }
 
 /* Finding so many eigenpairs. */
@@ -28373,7 +29044,7 @@ static void hdi_estimate_pairs_cost(const hd_heat *heat, int32_t count, hd_cost 
     hdi_cost_add(c, flops, seconds, hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL);
 }
 
-/* Finding so many eigenpairs, and distances from k sources by them. */
+/* Finding so many eigenpairs, and distances from k sources, or k columns, by them. */
 static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c) {
     const hd_heat *heat = x->h->heat;
     const double n = heat->source->n_active;
@@ -28386,13 +29057,13 @@ static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c)
  * stay. */
 static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held) {
     const hd_heat *heat = x->h->heat;
-    const double n = heat->source->n, unit = 2 * heat->scale;
+    const double n = heat->source->n, unit = (hdi_estimate_distance(x) ? 2 : 1) * heat->scale;
     const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && heat->source->B;
     int32_t early = x->h->n_times, count;
-    while (early > 0 && hdi_modes_first(heat, hdi_estimate_kind(x), x->h->times[early - 1] / unit)) early--;
+    while (early > 0 && hdi_estimate_first(x, x->h->times[early - 1] / unit)) early--;
     *held = 0;
     if (early == x->h->n_times) return early;
-    count = hdi_estimate_pairs(heat, x->h->times[early] / unit);
+    count = hdi_estimate_pairs(x, x->h->times[early] / unit);
     if (hdi_modes_need(heat, count) > hdi_estimate_room(heat->ctx)) return x->h->n_times;
     hdi_estimate_modes(x, count, c);
     if (!heat->modes.s.value) *held = 8 * n * ((twice ? 2 : 1) * count + 5);
@@ -28402,9 +29073,10 @@ static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held
 /* Bytes that eigenpairs need which may come after poles at time t. */
 static double hdi_estimate_help(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
-    if (x->query < HD_QUERY_DISTANCE || !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST))
+    if (hdi_estimate_distance(x) ? !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST)
+                                 : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST))
         return 0;
-    return hdi_modes_need(heat, hdi_estimate_pairs(heat, t));
+    return hdi_modes_need(heat, hdi_estimate_pairs(x, t));
 }
 
 /* Commute and biharmonic distances. */
@@ -28453,7 +29125,7 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
         hdi_estimate_ground(x, c);
         return HD_OK;
     }
-    if (distance) early = hdi_estimate_late(x, &late, &held);
+    early = hdi_estimate_late(x, &late, &held);
     h->n_times = early;
     windows = hdi_estimate_shared(x, tol);
     if (early == 0) {
@@ -28551,6 +29223,31 @@ static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     return x->h->e->status;
 }
 
+/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades. */
+static hd_status hdi_estimate_columns(const hdi_estimate *x, double held) {
+    hdi_heat_call *h = x->h;
+    hd_estimate *to = x->to;
+    hd_cost late;
+    double stay = 0;
+    int32_t early = h->n_times;
+    memset(&late, 0, sizeof late);
+    if (x->query < HD_QUERY_PAIRS && HDI_HAS_MODES && hdi_fading(h)) {
+        if (hdi_fading_first(h, h->times[early - 1] / h->heat->scale) && hdi_estimate_analyse(h) < 0)
+            return h->e->status;
+        early = hdi_estimate_late(x, &late, &stay);
+    }
+    h->n_times = early;
+    if (early > 0) {
+        h->t = h->times[early - 1];
+        if (hdi_estimate_solves(x, held) >= 0) hdi_estimate_join(to->cost + to->method, &late, stay);
+        return h->e->status;
+    }
+    to->method = HD_METHOD_DIRECT;
+    to->reason = HDI_MODES_REASON;
+    to->cost[HD_METHOD_DIRECT] = late;
+    return HD_OK;
+}
+
 /* The estimate of a query whose arguments are checked. */
 static hd_status hdi_estimate_run(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
@@ -28560,7 +29257,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
     const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
     const double columns = HDI_CAST(double, heat->source->n) * x->k;
     hd_estimate *to = x->to;
-    if (!timeless && hdi_heat_sort_times(h, distance ? 2 : 1) < 0) return h->e->status;
+    if (!timeless && hdi_heat_sort_times(h, distance ? 2 : 1, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
     if (!timeless) h->t = h->times[h->n_times - 1];
     if (x->query == HD_QUERY_SPECTRUM) {
@@ -28572,8 +29269,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
         to->reason = "t = 0";
         hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
     } else if (x->query <= HD_QUERY_PAIRS) {
-        /* pairs: their columns */
-        (void)hdi_estimate_solves(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
+        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
     } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
         (void)hdi_estimate_signature(x);
     } else {

@@ -233,9 +233,212 @@ static void large_kept(void) {
     free(d);
 }
 
+/* ---- heat that fades ---- */
+
+static const double large_fading_x[7] = {1, 4, 8, 16, 30, 100, 600};    /* t lambda_1 */
+
+/* The kernel's entries of rows i and j at time t without exp(-t low); mass: bit 0: B at i, bit 1: B at j. */
+static double large_kernel(const large_case *c, double t, int32_t i, int32_t j, int mass) {
+    const int32_t n = c->lap->n_active;
+    double sum = 0;
+    int32_t k;
+    for (k = 0; k < n; k++) {
+        const size_t at = (size_t)k * (size_t)n;
+        sum += exp(-t * (c->p.lambda[k] - c->low)) * (mass & 1 ? c->bx : c->p.x)[at + (size_t)i] * (mass & 2 ? c->bx : c->p.x)[at + (size_t)j];
+    }
+    return sum;
+}
+
+/* u at the vertices against want [n_active], both times exp(t low). */
+static void large_check(large_case *c, double x, const double *u, const double *want, const hd_report *r, const char *what) {
+    const hd_laplacian *lap = c->lap;
+    const double grow = exp(x);
+    double most = 0, worst = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        most = fmax(most, fabs(want[i]));
+        worst = fmax(worst, fabs(u[lap->vertex[i]] * grow - want[i]));
+    }
+    for (i = 0; i < lap->n; i++)
+        if (lap->row[i] == HD_ROW_HELD) CHECK(u[i] == 0);
+    CHECK_MSG(worst <= r->error_bound * most + 4e-13 * most * (1 + x), "%s, %s, t lambda = %g: error %g, bound %g", c->name, what, x, worst / most, r->error_bound);
+    CHECK_MSG(worst <= 1e-7 * most && r->error_bound <= 1e-6 && r->status == HD_OK, "%s, %s, t lambda = %g: error %g, bound %g: %s", c->name, what, x, worst / most, r->error_bound, r->reason);
+    c->seen = fmax(c->seen, worst / most);
+    c->bound = fmax(c->bound, r->error_bound);
+}
+
+/* A field, or its adjoint, in place and not, two at a time. */
+static void large_fading_fields(large_case *c, hd_heat *heat, double x) {
+    const double t = x / c->low;
+    const int32_t n = c->lap->n, m = c->lap->n_active;
+    double *f = DENSE_NEW(double, 6 * (int64_t)n), *u = f + 2 * n, *want = u + 2 * n;
+    hd_report r;
+    int32_t i, j, q;
+    for (i = 0; i < 2 * n; i++) f[i] = 1 + 0.5 * sin(3.0 * i);
+    for (q = 0; q < 4; q++) {
+        const int adjoint = q > 1, inside = q % 2;
+        double *to = inside ? u : f;
+        memcpy(u, f, 2 * (size_t)n * sizeof *u);
+        to = u;
+        CHECK((adjoint ? hd_heat_adjoint(heat, 1, &t, 2, inside ? u : f, 0, to, 0, &r, NULL)
+                       : heat_apply(heat, t, 2, inside ? u : f, 0, to, 0, &r)) == HD_OK);
+        for (j = 0; j < 2; j++) {
+            for (i = 0; i < m; i++) {
+                int32_t k;
+                want[i] = 0;
+                for (k = 0; k < m; k++) want[i] += large_kernel(c, t, i, k, adjoint ? 1 : 2) * f[j * n + c->lap->vertex[k]];
+            }
+            large_check(c, x, u + j * n, want, &r, adjoint ? "adjoint" : "field");
+        }
+    }
+    free(f);
+}
+
+static void large_fading_edges(large_case *c, hd_heat *heat, double x) {
+    const hd_csr *L = &c->lap->L;
+    const double t = x / c->low;
+    double *values = DENSE_NEW(double, L->nnz), most = 0, worst = 0;
+    hd_report r;
+    int32_t i;
+    int64_t p;
+    CHECK(heat_edges(heat, t, values, &r) == HD_OK && r.error_bound <= 1e-6);
+    for (i = 0; i < L->n_rows; i++)
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) {
+            const double want = large_kernel(c, t, i, L->col[p], 0);
+            most = fmax(most, fabs(want));
+            worst = fmax(worst, fabs(values[p] * exp(x) - want));
+        }
+    CHECK_MSG(worst <= 1e-7 * most && worst <= (r.error_bound + 4e-13 * (1 + x)) * most, "%s, edges, t lambda = %g: error %g, bound %g", c->name, x,
+              worst / most, r.error_bound);
+    free(values);
+}
+
+/* Columns of a source, entries, diagonals, edges and the trace. */
+static void large_fading_at(large_case *c, hd_heat *heat, double x, int32_t row) {
+    const hd_laplacian *lap = c->lap;
+    const double t = x / c->low;
+    const int32_t n = lap->n, m = lap->n_active, source = lap->vertex[row];
+    double *u = DENSE_NEW(double, 2 * (int64_t)n), *want = u + n, Z, bound, sum = 0;
+    int32_t *to = DENSE_NEW(int32_t, 2 * (int64_t)n), kernel, i;
+    hd_report r;
+    for (kernel = 0; kernel < 2; kernel++) {
+        const hd_kernel which = kernel ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+        for (i = 0; i < m; i++) want[i] = large_kernel(c, t, i, row, kernel ? 2 : 0);
+        CHECK(heat_columns(heat, t, which, 1, &source, u, 0, &r) == HD_OK);
+        large_check(c, x, u, want, &r, kernel ? "column of K" : "column of k");
+        for (i = 0; i < n; i++) {
+            to[i] = i;
+            to[n + i] = source;
+        }
+        CHECK(heat_entries(heat, t, which, n, to, to + n, u, &r) == HD_OK);
+        large_check(c, x, u, want, &r, "entries");
+        for (i = 0; i < m; i++) want[i] = large_kernel(c, t, i, i, kernel ? 2 : 0);
+        CHECK(heat_diagonal(heat, 1, &t, which, u, 0, &r) == HD_OK);
+        large_check(c, x, u, want, &r, kernel ? "diagonal of K" : "diagonal of k");
+    }
+    large_fading_edges(c, heat, x);
+    for (i = 0; i < m; i++) sum += exp(-t * (c->p.lambda[i] - c->low));
+    CHECK(hd_heat_trace(heat, 1, &t, &Z, &bound, &r, NULL) == HD_OK && r.error_bound <= 1e-6);
+    CHECK_MSG(fabs(Z * exp(x) - sum) <= 1e-7 * sum && fabs(Z * exp(x) - sum) <= bound * exp(x) + 4e-13 * (1 + x) * sum, "%s: trace %g, not %g at %g", c->name, Z * exp(x), sum, x);
+    free(u);
+    free(to);
+}
+
+/* All times in one call, the last one first. */
+static void large_fading_times(large_case *c, hd_heat *heat, int32_t row) {
+    enum { TIMES = 7 };
+    const hd_laplacian *lap = c->lap;
+    const int32_t n = lap->n, m = lap->n_active, source = lap->vertex[row];
+    double *u = DENSE_NEW(double, (2 * TIMES + 1) * (int64_t)n), *want = u + TIMES * n, *diag = want + n, t[TIMES], Z[TIMES];
+    hd_report r, rd, rz;
+    int32_t q, i;
+    for (q = 0; q < TIMES; q++) t[q] = large_fading_x[TIMES - 1 - q] / c->low;
+    t[1] = 0.05 / c->low;                        /* that is for poles */
+    CHECK(heat_times(heat, TIMES, t, HD_KERNEL_SYMMETRIC, source, NULL, u, 0, &r) == HD_OK);
+    CHECK(heat_diagonal(heat, TIMES, t, HD_KERNEL_SYMMETRIC, diag, 0, &rd) == HD_OK);
+    CHECK(hd_heat_trace(heat, TIMES, t, Z, NULL, &rz, NULL) == HD_OK && rz.error_bound <= 1e-6);
+    for (q = 0; q < TIMES; q++) {
+        double sum = 0;
+        for (i = 0; i < m; i++) want[i] = large_kernel(c, t[q], i, row, 0);
+        large_check(c, t[q] * c->low, u + q * n, want, &r, "column at many times");
+        for (i = 0; i < m; i++) want[i] = large_kernel(c, t[q], i, i, 0);
+        large_check(c, t[q] * c->low, diag + q * n, want, &rd, "diagonal at many times");
+        for (i = 0; i < m; i++) sum += exp(-t[q] * (c->p.lambda[i] - c->low));
+        CHECK(fabs(Z[q] * exp(t[q] * c->low) - sum) <= 1e-7 * sum);
+    }
+    free(u);
+}
+
+/* Where all heat flows out, against a dense eigensolution. */
+static void large_fading(const char *name, hd_laplacian *lap) {
+    static const hd_method methods[2] = {HD_METHOD_AUTO, HD_METHOD_DIRECT};
+    large_case c = large_make(name, lap);
+    int32_t m, q;
+    for (m = 0; m < 2; m++) {
+        for (q = 0; q < 7; q++) {
+            hd_heat *heat = eng_plan(lap, methods[m], HD_POLES_DEFAULT, 0);
+            large_fading_at(&c, heat, large_fading_x[q], lap->n_active / 3);
+            large_fading_at(&c, heat, large_fading_x[q], lap->n_active - 1);
+            if (q % 2 == 0) large_fading_fields(&c, heat, large_fading_x[q]);
+            hd_heat_free(heat);
+        }
+        {
+            hd_heat *heat = eng_plan(lap, methods[m], HD_POLES_DEFAULT, 0);
+            large_fading_times(&c, heat, lap->n_active / 3);
+            hd_heat_free(heat);
+        }
+    }
+    large_free(&c);
+}
+
+/* A square of m x m cells, its border held, with diagonal masses: products of sines are eigenvectors, with the sums of
+   4 sin^2(i pi/(2 m)) m^2. */
+static void large_square(int32_t m) {
+    shape s = shape_grid(m + 1, m + 1, 0);
+    const hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_VORONOI_COT, HD_BORDER_DIRICHLET, 0, NULL);
+    hd_laplacian *lap = bord_triangles(&s, &o);
+    const int32_t from[2] = {s.n / 2, 2 * (m + 1) + 2};     /* the middle, and beside a corner */
+    const double unit = 8 * sin(BORD_PI / (2 * m)) * sin(BORD_PI / (2 * m)) * m * m;
+    double *u = DENSE_NEW(double, s.n);
+    hd_heat *heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
+    hd_report r;
+    int32_t q, w, i, v;
+    for (q = 0; q < 7; q++)
+        for (w = 0; w < 2; w++) {
+            const double t = large_fading_x[q] / unit, *a = s.xyz + 3 * from[w];
+            double most = 0, worst = 0;
+            CHECK(heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, from + w, u, 0, &r) == HD_OK && r.error_bound <= 1e-6);
+            for (v = 0; v < s.n; v++) {
+                const double *b = s.xyz + 3 * v;
+                double x = 0, y = 0;
+                for (i = 1; i < m; i++) {
+                    const double half = sin(i * BORD_PI / (2 * m)), e = 2 * exp(-t * (4 * half * half * m * m - unit / 2));
+                    x += e * sin(i * BORD_PI * a[0]) * sin(i * BORD_PI * b[0]);
+                    y += e * sin(i * BORD_PI * a[1]) * sin(i * BORD_PI * b[1]);
+                }
+                most = fmax(most, x * y);
+                worst = fmax(worst, fabs(u[v] * exp(t * unit) - x * y));
+            }
+            CHECK_MSG(worst <= 1e-7 * most && worst <= (r.error_bound + 1e-12 * (1 + t * unit)) * most, "square, %d, %g: error %g, bound %g", (int)w,
+                      t * unit, worst / most, r.error_bound);
+        }
+    CHECK(heat_columns(heat, 2000 / unit, HD_KERNEL_SYMMETRIC, 1, from, u, 0, &r) == HD_WARN_ACCURACY);
+    for (v = 0; v < s.n; v++) CHECK(u[v] == 0);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(u);
+}
+
+static hd_laplacian *large_held(const shape *s, hd_laplacian_kind kind) {
+    const hd_laplacian_opts o = bord_opts(kind, HD_BORDER_DIRICHLET, 0, NULL);
+    return bord_triangles(s, &o);
+}
+
 static void test_large_t(void) {
     const double offset[3] = {4, 0, 0};
     shape ball = shape_bumpy(2, 5), torus = shape_torus(18, 10, 1, 0.4), grid = shape_grid(15, 11, 0.2);
+    shape disk = bord_disk(6, 0), half = bord_disk(6, 1);
     shape small = shape_icosphere(1), two = shape_disjoint(&small, &small, offset), inert = eng_with_inert(&small);
     large_run("ball, fem", test_laplacian(&ball, HD_LAPLACIAN_FEM));
     large_run("torus, voronoi-cot", test_laplacian(&torus, HD_LAPLACIAN_VORONOI_COT));
@@ -246,6 +449,12 @@ static void test_large_t(void) {
     large_run("dirichlet", kry_dirichlet(60));
     large_run("leaking", eng_leaking(12, 9));
     large_kept();
+    large_fading("square", large_held(&grid, HD_LAPLACIAN_FEM));
+    large_fading("disk", large_held(&disk, HD_LAPLACIAN_FEM));
+    large_fading("hemisphere", large_held(&half, HD_LAPLACIAN_VORONOI_COT));
+    large_square(64);
+    shape_free(&disk);
+    shape_free(&half);
     shape_free(&ball);
     shape_free(&torus);
     shape_free(&grid);

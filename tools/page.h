@@ -297,7 +297,7 @@ static const char page_style[] =
     "figure{max-width:26rem}\ntable{border-collapse:collapse; margin:1rem 0; width:100%; font-size:.92rem; "
     "font-variant-numeric:tabular-nums}caption{text-align:left; padding-bottom:.4rem} th,td{padding:.28rem "
     ".35rem; border-bottom:1px solid var(--line);text-align:right; vertical-align:bottom} "
-    "td,th:first-child{white-space:nowrap} sub{line-height:0} th:first-child,td:first-child{text-align:left; "
+    "td,th:first-child,.whole{white-space:nowrap} sub{line-height:0} th:first-child,td:first-child{text-align:left; "
     "padding-left:0}th{font-weight:600} "
     "td.p{color:var(--soft)}\n@media(max-width:760px){table,tbody,tr,td,caption{display:block} "
     "thead{display:none} tr{background:var(--box);border-radius:6px; padding:.4rem .7rem; margin:.5rem 0} "

@@ -393,7 +393,8 @@ static void close_table(page *p, const subject *q) {
              2e-9 * q->n * n_pairs / q->from_pairs[MIDDLE]);
     page_table_begin(p, "table-times", caption, 7, names);
     for (m = 0; m < TIMES; m++) {
-        snprintf(t, sizeof t, "%g h&#178;", IN_H2[m]);
+        if (IN_H2[m] == 1e4) snprintf(t, sizeof t, "10&#8308; h&#178;");
+        else snprintf(t, sizeof t, "%g h&#178;", IN_H2[m]);
         page_cell(p, "", t);
         page_value(p, "", t, 1e3 * q->one[m], "%.0f");
         page_error(p, t, q->one_error[m]);
