@@ -10632,7 +10632,8 @@ enum {
     HDI_ND_SLACK = 1200,    /* and for a task */
     HDI_ND_LEVELS = 24,     /* most copies of a part */
     HDI_ND_BUCKETS = 128,   /* gains that are told apart, for each side */
-    HDI_ND_TASKS = 64,      /* parts that are ordered in parallel */
+    HDI_ND_TASKS = 64,      /* parts that are ordered in parallel, */
+    HDI_ND_NODES = 2 * HDI_ND_TASKS - 1,   /* with all that were halved to make them */
     HDI_ND_BLOCK = 8192,    /* rows that are read by a task */
     HDI_ND_LARGE = 20000,   /* parts of more vertices are swept in 11 ways, */
     HDI_ND_MIDDLING = 3000, /* those of more than this in 5, others in 2 */
@@ -10673,12 +10674,20 @@ typedef struct hdi_nd_buffer {
     int32_t *cptr, *cadj, *cew, *cid; /* [2 n], [nnz / 4], [nnz / 4], [n] */
 } hdi_nd_buffer;
 
-/* Everything that the tasks share. */
+/* Everything that the tasks share. Parts form a heap: part i is halved into parts 2 i + 1 and 2 i + 2, but
+ * the last HDI_ND_TASKS of them are ordered with all below them. */
 typedef struct hdi_nd {
     hdi_nd_buffer buffer[2];
     float *xyz;
     int32_t *perm, *work;
-    hdi_nd_part *part, *child;       /* of the running loop: part i halves into child[2 i], child[2 i + 1] */
+    hdi_nd_part *part;               /* [HDI_ND_NODES] */
+    int32_t level;                   /* halved in step: the first part of the level under way */
+    hd_threads *threads;             /* in one loop: those who share it, ... */
+    int32_t order[HDI_ND_NODES];     /* ... the parts as they become ready, ... */
+    uint32_t done;                   /* ... and how many are done */
+    int32_t stop;
+    hd_context *ctx;
+    hd_error *error;
 } hdi_nd;
 
 /* Work space left to a task. A step takes from its front; the space is given back when the copy of this
@@ -11483,9 +11492,13 @@ static size_t hdi_nd_words(int32_t n, int32_t n_edges, int64_t tasks) {
         HDI_ND_SLACK * HDI_CAST(size_t, tasks);
 }
 
-static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, const hdi_nd_part *p, int64_t index) {
+/* The space of part i of the heap lies within that of the part it comes from: two parts of which neither
+ * contains the other can be worked on at the same time, whatever their sizes. */
+static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, int64_t i) {
+    const hdi_nd_part *p = nd->part + i;
     hdi_nd_space s;
-    s.at = nd->work + hdi_nd_words(p->first, p->edge, index);
+    while (i < HDI_ND_TASKS - 1) i = 2 * i + 1;
+    s.at = nd->work + hdi_nd_words(p->first, p->edge, i - (HDI_ND_TASKS - 1));
     s.end = s.at + hdi_nd_words(p->n, p->n_edges, 1);
     return s;
 }
@@ -11645,27 +11658,43 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
 }
 
-static void hdi_nd_split_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
-    (void)worker;
-    hdi_nd_split(nd, nd->part + index, nd->child + 2 * index, hdi_nd_space_of(nd, nd->part + index, index));
-}
-
 /* Orders a part and all below it. A child has at most 4/5 of its part's vertices, so the stack grows to less
  * than 100. */
-static void hdi_nd_subtree_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
-    const hdi_nd_space s = hdi_nd_space_of(nd, nd->part + index, index);
+static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
     hdi_nd_part stack[128];
     int32_t n = 1;
-    (void)worker;
-    stack[0] = nd->part[index];
+    stack[0] = *part;
     while (n > 0) {
         const hdi_nd_part p = stack[--n];
         if (!p.n) continue;
         hdi_nd_split(nd, &p, stack + n, s);
         n += 2;
     }
+}
+
+/* Part i of the heap. */
+static void hdi_nd_node(const hdi_nd *nd, int64_t i) {
+    const hdi_nd_space s = hdi_nd_space_of(nd, i);
+    if (i < HDI_ND_TASKS - 1) hdi_nd_split(nd, nd->part + i, nd->part + 2 * i + 1, s);
+    else hdi_nd_subtree(nd, nd->part + i, s);
+}
+
+static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
+    (void)worker;
+    hdi_nd_node(nd, nd->level + index);
+}
+
+/* A part is done: its halves may be claimed. */
+static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
+    hdi_nd *nd = HDI_CAST(hdi_nd *, arg);
+    const double done = 0.1 + 0.8 * HDI_CAST(double, HDI_ATOMIC_GET(&nd->done)) / HDI_ND_NODES;
+    if (worker == 0 && !HDI_LOAD(&nd->stop) && hdi_progress(nd->ctx, "order", done, nd->error) < 0)
+        HDI_STORE(&nd->stop, 1);
+    if (!HDI_LOAD(&nd->stop)) hdi_nd_node(nd, index);
+    HDI_ATOMIC_ADD(&nd->done, 1);
+    if (index < HDI_ND_TASKS - 1)
+        hdi_release_many(nd->threads, HDI_CAST(int32_t, 2 * index + 1), 2, nd->order);
 }
 
 /* order = rows along the curve, those with far too many entries last; inv = its inverse, -1 for these.
@@ -11766,19 +11795,19 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
     b->cew = b->cadj + nnz / 4 + 1;
 }
 
-/* Orders the part: halves in step, in parallel, until there are many; then each with all below it. */
-static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
-    int64_t n_parts = 1;
+/* Orders the whole. Own threads share one loop, in which halves go on without waiting for others; those of
+ * the user take the heap level by level. */
+static void hdi_nd_run(hdi_nd *nd) {
     double done = 0.1;
-    for (; n_parts < HDI_ND_TASKS; n_parts *= 2, done += 0.05) {
-        hdi_nd_part *t = nd->part;
-        if (hdi_progress(ctx, "order", done, e) < 0) return;
-        hdi_parallel(ctx, n_parts, hdi_nd_split_task, nd);
-        nd->part = nd->child;
-        nd->child = t;
+    if (nd->threads) {
+        nd->order[0] = 0;
+        hdi_parallel_ordered(nd->ctx, HDI_ND_NODES, 1, nd->order, hdi_nd_loop_task, nd);
+        return;
     }
-    if (hdi_progress(ctx, "order", done, e) < 0) return;
-    hdi_parallel(ctx, n_parts, hdi_nd_subtree_task, nd);
+    for (nd->level = 0; nd->level < HDI_ND_NODES; nd->level = 2 * nd->level + 1, done += 0.05) {
+        if (hdi_progress(nd->ctx, "order", done, nd->error) < 0) return;
+        hdi_parallel(nd->ctx, nd->level + 1, hdi_nd_level_task, nd);
+    }
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
@@ -11801,11 +11830,13 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     nd.perm = perm;
     nd.xyz = HDI_TAKE(&s, float, 3 * n + 1);
     nd.work = HDI_TAKE(&s, int32_t, hdi_nd_words(a->n_rows, HDI_CAST(int32_t, a->nnz), HDI_ND_TASKS));
-    nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
-    nd.child = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
+    nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_NODES);
     hdi_nd_buffer_make(nd.buffer, a, &s);
     hdi_nd_buffer_make(nd.buffer + 1, a, &s);
     if (e->status < 0) return hdi_scope_end(&s);
+    nd.ctx = ctx;
+    nd.error = e;
+    nd.threads = hdi_threads_own(ctx, HDI_ND_NODES);   /* started now, they share the loops before, too */
     hdi_nd_keys(xyz, a->n_rows, key, unit);
     k = hdi_nd_number(a, key, order, inv, count);
     job.nd = &nd;
@@ -11815,7 +11846,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     job.unit = unit;
     job.n = k;
     nd.part[0] = hdi_nd_load(&job, count, ctx);
-    hdi_nd_run(&nd, ctx, e);
+    hdi_nd_run(&nd);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < k; i++) perm[i] = order[perm[i]];
     for (i = k; i < a->n_rows; i++) perm[i] = order[i];

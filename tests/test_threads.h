@@ -229,6 +229,61 @@ static void thr_release(void) {
     }
 }
 
+/* Cancels at the third report. */
+static hd_progress thr_cancel(void *user, const char *stage, double done) {
+    int64_t *calls = (int64_t *)user;
+    (void)stage;
+    (void)done;
+    return ++*calls < 3 ? HD_PROGRESS_CONTINUE : HD_PROGRESS_CANCEL;
+}
+
+/* Nested dissection and the analysis for any number of threads: the same permutation and the same supernodes, in
+ * one loop for the order. Cancelled, nothing is left behind. */
+static void thr_orders(void) {
+    static const int32_t n_threads[] = {1, 2, 3, 8};
+    shape s = shape_bumpy(5, 2);
+    hd_laplacian *lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL);
+    const int32_t n = lap->n_active;
+    const size_t bytes = (size_t)n * sizeof(int32_t);
+    int32_t *first = DENSE_NEW(int32_t, n), *final = DENSE_NEW(int32_t, n), *perm = DENSE_NEW(int32_t, n);
+    int64_t calls;
+    int q, cancelled;
+    for (q = 0; q < 5; q++) {
+        for (cancelled = 0; cancelled < 2; cancelled++) {
+            hd_context ctx;
+            hdi_symbolic sym;
+            hd_error e;
+            memset(&ctx, 0, sizeof ctx);
+            hdi_error_clear(&e);
+            ctx.n_threads = q < 4 ? n_threads[q] : 0;
+            ctx.parallel_for = q < 4 ? NULL : heat_shuffled_for;
+            ctx.parallel_user = ctx.progress_user = &calls;
+            ctx.progress = cancelled ? thr_cancel : NULL;
+            hdi_hold(&ctx);
+            calls = 0;
+            if (cancelled) {
+                CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_ERR_CANCELLED && calls == 3);
+            } else {
+                CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_OK);
+                if (q > 0 && q < 4) CHECK(ctx.regions > 0 && ctx.threads);
+                if (q == 0) memcpy(first, perm, bytes);
+                CHECK_MSG(memcmp(first, perm, bytes) == 0, "way %d: another permutation", q);
+                CHECK(hdi_symbolic_make(&sym, &lap->L, perm, &ctx, &e) == HD_OK);
+                if (q == 0) memcpy(final, sym.perm, bytes);
+                CHECK_MSG(memcmp(final, sym.perm, bytes) == 0, "way %d: another elimination order", q);
+                hdi_symbolic_free(&ctx, &sym);
+            }
+            hdi_let_go(&ctx);
+            CHECK(ctx.bytes_in_use == 0 && !ctx.threads);
+        }
+    }
+    free(first);
+    free(final);
+    free(perm);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 static void test_threads(void) {
     shape s = shape_bumpy(4, 5), small = shape_bumpy(1, 5);
     double *want = DENSE_NEW(double, s.n), *u = DENSE_NEW(double, s.n);
@@ -250,6 +305,7 @@ static void test_threads(void) {
     thr_nested(&s, want);
 #endif
     thr_release();
+    thr_orders();
     free(want);
     free(u);
     shape_free(&s);
