@@ -646,7 +646,10 @@ typedef struct hd_heat_opts {
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    hd_ordering ordering;       /* of the methods that factorise */
+    /* Of the methods that factorise. Auto: up to three columns by one real factor have a minimum degree order
+     * of their own on meshes of 40K to about 120K vertices, where that is faster in all; a plan that is asked
+     * for more as well keeps both analyses. */
+    hd_ordering ordering;
     /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th. Vertices without mass may stand
      * anywhere. It is copied. */
     const int32_t *perm;
@@ -12782,8 +12785,7 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 
 /* From so many rows on nested dissection pays for itself: it takes three times as long to find as minimum
  * degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some solves
- * gain nothing up to 250K rows, and lose at most 5 %; they share the order all the same, so that no answer
- * depends on which query came first. Wide rows, those of exponential weights, make factors so large that it
+ * gain nothing up to 150K rows: see hdi_heat_light. Wide rows, those of exponential weights, make factors so large that it
  * pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10, 20, 50, 150
  * thousand random points and 233 non-zeros a row. */
 enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
@@ -22787,6 +22789,11 @@ struct hd_heat {
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_ground ground;           /* made when it is first needed; of elim */
+    /* elim and ground of the other order, where one real factor for few columns has its own; light: that is
+     * the one in elim now. See hdi_heat_turn */
+    hdi_elim elim_other;
+    hdi_ground ground_other;
+    int32_t light;
     hdi_modes modes;             /* so too */
     hdi_silan *silan;
     double *batch_room;          /* arrays of the batches */
@@ -22976,13 +22983,45 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     return e->status;
 }
 
-/* The copy of the pair in elimination order, analysed. */
-static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
-    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(e, DIRECT, "factorisations");
-    if (heat->elim.ctx) return HD_OK;
-    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, heat->perm, heat->scale, heat->ctx,
-                         e);
+/* Takes up one of the two elimination orders of a plan: the light one, which is found fast, or the one for
+ * all else. Each is analysed when it is first needed. Which one a query takes depends on the query alone, so
+ * that no answer depends on what was asked before. Bases fit the order that they were made for. */
+static void hdi_heat_turn(hd_heat *heat, int light) {
+    const hdi_elim elim = heat->elim;
+    const hdi_ground ground = heat->ground;
+    if (heat->light == light) return;
+    heat->elim = heat->elim_other;
+    heat->ground = heat->ground_other;
+    heat->elim_other = elim;
+    heat->ground_other = ground;
+    heat->light = light;
+    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, heat->ctx);
 }
+
+static void hdi_heat_free_factors(hd_heat *heat) {
+    hdi_elim_free(&heat->elim);
+    hdi_elim_free(&heat->elim_other);
+    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+    if (HDI_HAS_DIAGONAL && heat->ground_other.diag) hdi_ground_free(&heat->ground_other, heat->ctx);
+}
+
+/* The one for all else. */
+static const hdi_elim *hdi_heat_full(const hd_heat *heat) {
+    return heat->light ? &heat->elim_other : &heat->elim;
+}
+
+/* The copy of the pair in the elimination order taken up, analysed. */
+static hd_status hdi_heat_analysed_as(hd_heat *heat, int light, hd_error *e) {
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(e, DIRECT, "factorisations");
+    hdi_heat_turn(heat, light);
+    if (heat->elim.ctx) return HD_OK;
+    return hdi_elim_make(&heat->elim, heat->source,
+                         light ? HD_ORDERING_MINIMUM_DEGREE : heat->opts.ordering, heat->perm, heat->scale,
+                         heat->ctx, e);
+}
+
+/* The same in the order for all but few columns. */
+static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) { return hdi_heat_analysed_as(heat, 0, e); }
 
 /* Checks a right-hand side. The absolute value of its largest part is between 2^(*exponent - 1) and
  * 2^*exponent. */
@@ -23340,26 +23379,32 @@ static void hdi_heat_measure_pair(hd_heat *heat) {
     heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
 }
 
+/* The copy of the pair in elimination order with new values; factors are made again. */
+static void hdi_elim_renew(hdi_elim *m, const hd_laplacian *lap, int64_t *fill) {
+    int32_t i;
+    hdi_pair_refresh(m->lap, lap, fill);
+    m->scale = hdi_pair_scale(m->lap);
+    for (i = 0; i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
+    m->filled = m->shifted.ready = 0;
+    m->reach_t = -1;
+}
+
 /* Brings the copies of the pair up to date after an update of the Laplacian. Orderings, analyses and all room
  * stay; what depends on values is made again when it is needed. */
 static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
-    hdi_elim *m = &heat->elim;
     int32_t i;
     if (heat->version == lap->version) return HD_OK;
     heat->habit_spent = 0;
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill) return e->status;
     hdi_heat_measure_pair(heat);
-    if (HDI_HAS_DIRECT && m->ctx) {
-        hdi_pair_refresh(m->lap, lap, heat->fill);
-        m->scale = hdi_pair_scale(m->lap);
-        for (i = 0; i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
-        m->filled = m->shifted.ready = 0;
-        m->reach_t = -1;
+    for (i = 0; HDI_HAS_DIRECT && i < 2; i++) {
+        hdi_heat_turn(heat, !heat->light);
+        if (heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
         if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
-        if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
     }
+    if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
     if (heat->lap) {
         hdi_pair_refresh(heat->lap, lap, heat->fill);
         (void)hdi_pair_scale(heat->lap);
@@ -23418,8 +23463,7 @@ typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hd
 /* The guess is what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops. Where rows are wider than
  * 10, so much more of the former and its square of the latter. (Point sets with 233 and 117 entries a row,
  * 20K to 150K points: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
-static hdi_fill hdi_heat_fill(const hd_heat *heat) {
-    const hdi_symbolic *s = &heat->elim.sym;
+static hdi_fill hdi_heat_guess(const hd_heat *heat) {
     const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz);
     const double wide = hdi_max(1, entries / (10 * n));
     hdi_fill f;
@@ -23427,12 +23471,50 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat) {
     f.flops = 22 * n * sqrt(n) * wide * wide;
     f.stored = f.real_stored = 40 * n * wide;
     f.analysis = HDI_ROW_ANALYSIS * n * wide;
-    if (!heat->elim.ctx) return f;
+    return f;
+}
+
+/* What minimum degree adds to the fill of nested dissection, in flops and in non-zeros by rows squared, and
+ * the share of ordering with analysis that it saves. Meshes of 10K, 41K, 50K, 150K, 164K vertices: 0.26,
+ * 0.14, 0.14, 0.13, 0.13 flops, 1.7, 1.8, 1.0, 0.9, 1.0 e-4 non-zeros; a fifth of the time where meshes are
+ * numbered regularly, a third where they are not. */
+#define HDI_DEGREE_FLOPS 0.13
+#define HDI_DEGREE_NNZ 1e-4
+#define HDI_DEGREE_SAVES 0.7
+
+/* The same for an order of the plan, from its analysis where that is there. */
+static hdi_fill hdi_heat_fill_of(const hd_heat *heat, const hdi_elim *m, int light) {
+    const hdi_symbolic *s = &m->sym;
+    const double n = heat->source->n_active;
+    hdi_fill f = hdi_heat_guess(heat);
+    if (light) {
+        f.flops += HDI_DEGREE_FLOPS * n * n;
+        f.nnz += HDI_DEGREE_NNZ * n * n;
+        f.analysis *= 1 - HDI_DEGREE_SAVES;
+    }
+    if (!m->ctx) return f;
     f.nnz = HDI_CAST(double, s->nnz);
     f.flops = s->flops_done;
     f.stored = HDI_CAST(double, s->stored + s->work);
     f.real_stored = HDI_CAST(double, s->panel[s->n_super] + s->work);
     f.analysis = 0;
+    return f;
+}
+
+/* For the order that is taken up. */
+static hdi_fill hdi_heat_fill(const hd_heat *heat) {
+    return hdi_heat_fill_of(heat, &heat->elim, heat->light);
+}
+
+/* For that of the poles. Where only the light one is analysed: what is known of that, less what it adds. */
+static hdi_fill hdi_heat_fill_poles(const hd_heat *heat) {
+    const double n = heat->source->n_active;
+    hdi_fill f = hdi_heat_fill_of(heat, hdi_heat_full(heat), 0), g = hdi_heat_fill(heat);
+    if (!heat->light || f.analysis == 0 || g.analysis > 0) return f;
+    f.nnz = hdi_max(g.nnz / 2, g.nnz - HDI_DEGREE_NNZ * n * n);
+    f.flops = hdi_max(g.flops / 4, g.flops - HDI_DEGREE_FLOPS * n * n);
+    f.stored = g.stored;
+    f.real_stored = g.real_stored;
     return f;
 }
 
@@ -23487,7 +23569,7 @@ static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
 /* Are the factors of the poles there? The degree that a field takes by default is not known yet: it is taken
  * to be that of the last. */
 static int hdi_heat_at_hand(const hdi_heat_call *h) {
-    const hdi_elim *m = &h->heat->elim;
+    const hdi_elim *m = hdi_heat_full(h->heat);
     if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
@@ -23533,11 +23615,36 @@ static hdi_windows hdi_krylov_windows(hdi_fill f, double n, double span) {
     return all;
 }
 
+/* Does shift-and-invert Lanczos take the light order? For few columns that is found and analysed in a third
+ * of the time, and the steps lose less. It is left alone under a byte limit, where a second analysis might
+ * not fit. Totals of one column with 20 steps, one thread, processor time, of the light order and the other:
+ * 62 and 95 ms at 50K vertices, 54 and 75 at 41K, 274 and 347 at 150K, 356 and 395 at 164K. */
+#define HDI_RATE_FRONTS 73e9     /* flops per second of the large fronts that it adds: 73 to 128 e9 */
+
+enum { HDI_LIGHT_COLUMNS = 3 };  /* more are solved side by side, and gain less from a fast order */
+
+static int hdi_heat_light(const hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const hdi_order order = hdi_order_of(heat->opts.ordering, lap->xyz, NULL);
+    const hdi_fill f = hdi_heat_guess(heat);
+    const double n = lap->n_active, wide = hdi_max(1, HDI_CAST(double, lap->L.nnz) / (10 * n));
+    hdi_windows w;
+    double more;
+    if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, &lap->L) != HD_ORDERING_NESTED_DISSECTION ||
+        h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit)
+        return 0;
+    w = hdi_krylov_windows(f, n, h->times[h->n_times - 1] / h->times[0]);
+    more = w.n * HDI_DEGREE_FLOPS * wide / HDI_RATE_FRONTS +
+           h->ask.k * w.steps * hdi_krylov_late(h) * 16 * HDI_DEGREE_NNZ / HDI_RATE_SWEEP;
+    return more * wide * n * n < HDI_DEGREE_SAVES * f.analysis;
+}
+
 /* The model of all methods. */
 static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
-    const hdi_fill f = hdi_heat_fill(heat);
+    const hdi_fill f = hdi_heat_fill(heat), g = hdi_heat_fill_poles(heat);
     const double n = heat->source->n_active, k = h->ask.k;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2
                           : HDI_POLES_EXPECTED;
@@ -23548,7 +23655,8 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const double steps = k * w.steps * hdi_krylov_late(h), shared = k > 3 ? HDI_KRYLOV_SHARED : 1;
     const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
     const double factor =
-        packs * (16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz) + (poles % 4 == 1 ? real : 0);
+        packs * (16 * g.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * g.nnz) +
+        (poles % 4 == 1 ? g.flops / HDI_RATE_REAL : 0);
     hdi_cost c;
     hdi_cost_iterative(h, poles, &c);
     c.krylov = f.analysis + w.n * f.flops / HDI_RATE_REAL +
@@ -23556,14 +23664,14 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
                h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
     if (h->n_times == 1 && heat->elim.shifted.ready &&
         heat->elim.shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max)) c.krylov -= real;
-    c.factors = hdi_heat_at_hand(h) ? 0 : f.analysis + h->n_times * factor;
-    c.direct = c.factors + h->n_times * (k * packs * (64 * f.nnz + 400 * n) / sweep);
-    c.direct_bytes = 64 * packs * f.stored + 200 * n + 8 * f.real_stored;
+    c.factors = hdi_heat_at_hand(h) ? 0 : g.analysis + h->n_times * factor;
+    c.direct = c.factors + h->n_times * (k * packs * (64 * g.nnz + 400 * n) / sweep);
+    c.direct_bytes = 64 * packs * g.stored + 200 * n + 8 * g.real_stored;
     c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * w.longest : w.longest) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
     c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
     if (k <= 3 && h->n_times > 1) c.krylov_bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
-    if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
+    if (hdi_heat_full(heat)->n_packs >= packs) c.direct_bytes = 0;   /* there already */
     if (heat->silan) c.krylov_bytes = 0;
     c.krylov += HDI_FRESH_BYTE * c.krylov_bytes;
     c.factors += HDI_FRESH_BYTE * c.direct_bytes;
@@ -23620,12 +23728,16 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     const hd_context *ctx = heat->ctx;
     const double room = ctx->byte_limit && HDI_HAS_ITERATIVE   /* without iterations there is no retreat */
                         ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
-    hdi_cost c = hdi_heat_cost(h);
+    hdi_cost c;
+    int light;
+    hdi_heat_turn(heat, hdi_heat_light(h));
+    c = hdi_heat_cost(h);
     hdi_heat_cheapest(h, &c, room);
+    light = heat->light && h->method != HD_METHOD_DIRECT;
     if (!heat->elim.ctx && hdi_min(c.direct_bytes, c.krylov_bytes) < room &&
         (c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) ||
          hdi_heat_habit(h, &c, room))) {
-        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+        if (hdi_heat_analysed_as(heat, light, h->e) < 0) return h->e->status;
         c = hdi_heat_cost(h);
         hdi_heat_cheapest(h, &c, room);
     }
@@ -23680,6 +23792,11 @@ static hd_status hdi_heat_sit(hdi_heat_call *h, int32_t n) {
     return h->e->status;
 }
 
+/* The copy of the pair for the method picked. */
+static hd_status hdi_heat_analysed_for(const hdi_heat_call *h) {
+    return hdi_heat_analysed_as(h->heat, h->method == HD_METHOD_KRYLOV && hdi_heat_light(h), h->e);
+}
+
 /* Picks the method and its copy of the pair, and reports them. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
@@ -23700,7 +23817,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
         h->lap = heat->lap;
     } else if (HDI_HAS_DIRECT) {
-        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+        if (hdi_heat_analysed_for(h) < 0) return h->e->status;
         h->lap = heat->elim.lap;
         h->rep->ordering = heat->elim.sym.ordering;
         h->rep->factor_nnz = heat->elim.sym.nnz;
@@ -24570,8 +24687,7 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
     hdi_heat_free_lanes(heat);
-    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
-    hdi_elim_free(&heat->elim);
+    hdi_heat_free_factors(heat);
     if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
     hdi_free(heat->ctx, heat->silan);
     hdi_free(heat->ctx, heat->batch_room);
@@ -27094,8 +27210,8 @@ static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
 static void hdi_modes_tell(const hd_heat *heat, hd_report *rep) {
     rep->method = HD_METHOD_DIRECT;
     rep->reason = HDI_MODES_REASON;
-    rep->ordering = heat->elim.sym.ordering;
-    rep->factor_nnz = heat->elim.sym.nnz;
+    rep->ordering = hdi_heat_full(heat)->sym.ordering;
+    rep->factor_nnz = hdi_heat_full(heat)->sym.nnz;
     rep->factor_flops = heat->modes.s.factor_flops;
 }
 
@@ -28056,7 +28172,7 @@ static void hdi_cost_add(hd_cost *c, double flops, double seconds, double bytes)
  * k items. */
 static void hdi_cost_direct(const hd_heat *heat, int32_t packs, int real, hdi_after after, double k,
                             hd_cost *c) {
-    const hdi_fill f = hdi_heat_fill(heat);
+    const hdi_fill f = hdi_heat_fill_poles(heat);
     const int inverse = after >= HDI_AFTER_INVERSE;
     const double n = heat->source->n_active, invert = inverse ? 1 + HDI_INVERT_FLOPS : 1;
     const double sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
@@ -28094,7 +28210,7 @@ static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hd
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
-    if (hdi_heat_analysed(h->heat, h->e) == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+    if (hdi_heat_analysed_for(h) == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
     if (h->heat->elim.ctx) h->lap = h->heat->elim.lap;
     return h->e->status;
 }
@@ -28441,7 +28557,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
 /* What is known when the call's own arrays are gone. */
 static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     int32_t q;
-    to->analysed = heat->elim.ctx != NULL;
+    to->analysed = heat->elim.ctx != NULL || heat->elim_other.ctx != NULL;
     to->bytes_in_use = HDI_CAST(double, heat->ctx->bytes_in_use);
     to->bytes_left = hdi_estimate_room(heat->ctx);
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
@@ -31096,9 +31212,8 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_upper_free(ctx, &heat->up);
     hdi_free(ctx, heat->weight);
     hdi_laplacian_free(heat->lap, ctx);
-    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, ctx);
     if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, ctx);
-    hdi_elim_free(&heat->elim);
+    hdi_heat_free_factors(heat);
     if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, ctx);
     hdi_free(ctx, heat->silan);
     hdi_free(ctx, heat->batch_room);
