@@ -647,7 +647,10 @@ typedef struct hd_heat_opts {
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    hd_ordering ordering;       /* of the methods that factorise */
+    /* Of the methods that factorise. Auto: up to three columns by one real factor have a minimum degree order
+     * of their own on meshes of 40K to about 120K vertices, where that is faster in all; a plan that is asked
+     * for more as well keeps both analyses. */
+    hd_ordering ordering;
     /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th. Vertices without mass may stand
      * anywhere. It is copied. */
     const int32_t *perm;
@@ -10664,7 +10667,8 @@ enum {
     HDI_ND_SLACK = 1200,    /* and for a task */
     HDI_ND_LEVELS = 24,     /* most copies of a part */
     HDI_ND_BUCKETS = 128,   /* gains that are told apart, for each side */
-    HDI_ND_TASKS = 64,      /* parts that are ordered in parallel */
+    HDI_ND_TASKS = 64,      /* parts that are ordered in parallel, */
+    HDI_ND_NODES = 2 * HDI_ND_TASKS - 1,   /* with all that were halved to make them */
     HDI_ND_BLOCK = 8192,    /* rows that are read by a task */
     HDI_ND_LARGE = 20000,   /* parts of more vertices are swept in 11 ways, */
     HDI_ND_MIDDLING = 3000, /* those of more than this in 5, others in 2 */
@@ -10705,12 +10709,20 @@ typedef struct hdi_nd_buffer {
     int32_t *cptr, *cadj, *cew, *cid; /* [2 n], [nnz / 4], [nnz / 4], [n] */
 } hdi_nd_buffer;
 
-/* Everything that the tasks share. */
+/* Everything that the tasks share. Parts form a heap: part i is halved into parts 2 i + 1 and 2 i + 2, but
+ * the last HDI_ND_TASKS of them are ordered with all below them. */
 typedef struct hdi_nd {
     hdi_nd_buffer buffer[2];
     float *xyz;
     int32_t *perm, *work;
-    hdi_nd_part *part, *child;       /* of the running loop: part i halves into child[2 i], child[2 i + 1] */
+    hdi_nd_part *part;               /* [HDI_ND_NODES] */
+    int32_t level;                   /* halved in step: the first part of the level under way */
+    hd_threads *threads;             /* in one loop: those who share it, ... */
+    int32_t order[HDI_ND_NODES];     /* ... the parts as they become ready, ... */
+    uint32_t done;                   /* ... and how many are done */
+    int32_t stop;
+    hd_context *ctx;
+    hd_error *error;
 } hdi_nd;
 
 /* Work space left to a task. A step takes from its front; the space is given back when the copy of this
@@ -11515,9 +11527,13 @@ static size_t hdi_nd_words(int32_t n, int32_t n_edges, int64_t tasks) {
         HDI_ND_SLACK * HDI_CAST(size_t, tasks);
 }
 
-static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, const hdi_nd_part *p, int64_t index) {
+/* The space of part i of the heap lies within that of the part it comes from: two parts of which neither
+ * contains the other can be worked on at the same time, whatever their sizes. */
+static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, int64_t i) {
+    const hdi_nd_part *p = nd->part + i;
     hdi_nd_space s;
-    s.at = nd->work + hdi_nd_words(p->first, p->edge, index);
+    while (i < HDI_ND_TASKS - 1) i = 2 * i + 1;
+    s.at = nd->work + hdi_nd_words(p->first, p->edge, i - (HDI_ND_TASKS - 1));
     s.end = s.at + hdi_nd_words(p->n, p->n_edges, 1);
     return s;
 }
@@ -11677,27 +11693,43 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
 }
 
-static void hdi_nd_split_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
-    (void)worker;
-    hdi_nd_split(nd, nd->part + index, nd->child + 2 * index, hdi_nd_space_of(nd, nd->part + index, index));
-}
-
 /* Orders a part and all below it. A child has at most 4/5 of its part's vertices, so the stack grows to less
  * than 100. */
-static void hdi_nd_subtree_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
-    const hdi_nd_space s = hdi_nd_space_of(nd, nd->part + index, index);
+static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
     hdi_nd_part stack[128];
     int32_t n = 1;
-    (void)worker;
-    stack[0] = nd->part[index];
+    stack[0] = *part;
     while (n > 0) {
         const hdi_nd_part p = stack[--n];
         if (!p.n) continue;
         hdi_nd_split(nd, &p, stack + n, s);
         n += 2;
     }
+}
+
+/* Part i of the heap. */
+static void hdi_nd_node(const hdi_nd *nd, int64_t i) {
+    const hdi_nd_space s = hdi_nd_space_of(nd, i);
+    if (i < HDI_ND_TASKS - 1) hdi_nd_split(nd, nd->part + i, nd->part + 2 * i + 1, s);
+    else hdi_nd_subtree(nd, nd->part + i, s);
+}
+
+static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
+    (void)worker;
+    hdi_nd_node(nd, nd->level + index);
+}
+
+/* A part is done: its halves may be claimed. */
+static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
+    hdi_nd *nd = HDI_CAST(hdi_nd *, arg);
+    const double done = 0.1 + 0.8 * HDI_CAST(double, HDI_ATOMIC_GET(&nd->done)) / HDI_ND_NODES;
+    if (worker == 0 && !HDI_LOAD(&nd->stop) && hdi_progress(nd->ctx, "order", done, nd->error) < 0)
+        HDI_STORE(&nd->stop, 1);
+    if (!HDI_LOAD(&nd->stop)) hdi_nd_node(nd, index);
+    HDI_ATOMIC_ADD(&nd->done, 1);
+    if (index < HDI_ND_TASKS - 1)
+        hdi_release_many(nd->threads, HDI_CAST(int32_t, 2 * index + 1), 2, nd->order);
 }
 
 /* order = rows along the curve, those with far too many entries last; inv = its inverse, -1 for these.
@@ -11798,19 +11830,19 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
     b->cew = b->cadj + nnz / 4 + 1;
 }
 
-/* Orders the part: halves in step, in parallel, until there are many; then each with all below it. */
-static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
-    int64_t n_parts = 1;
+/* Orders the whole. Own threads share one loop, in which halves go on without waiting for others; those of
+ * the user take the heap level by level. */
+static void hdi_nd_run(hdi_nd *nd) {
     double done = 0.1;
-    for (; n_parts < HDI_ND_TASKS; n_parts *= 2, done += 0.05) {
-        hdi_nd_part *t = nd->part;
-        if (hdi_progress(ctx, "order", done, e) < 0) return;
-        hdi_parallel(ctx, n_parts, hdi_nd_split_task, nd);
-        nd->part = nd->child;
-        nd->child = t;
+    if (nd->threads) {
+        nd->order[0] = 0;
+        hdi_parallel_ordered(nd->ctx, HDI_ND_NODES, 1, nd->order, hdi_nd_loop_task, nd);
+        return;
     }
-    if (hdi_progress(ctx, "order", done, e) < 0) return;
-    hdi_parallel(ctx, n_parts, hdi_nd_subtree_task, nd);
+    for (nd->level = 0; nd->level < HDI_ND_NODES; nd->level = 2 * nd->level + 1, done += 0.05) {
+        if (hdi_progress(nd->ctx, "order", done, nd->error) < 0) return;
+        hdi_parallel(nd->ctx, nd->level + 1, hdi_nd_level_task, nd);
+    }
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
@@ -11833,11 +11865,13 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     nd.perm = perm;
     nd.xyz = HDI_TAKE(&s, float, 3 * n + 1);
     nd.work = HDI_TAKE(&s, int32_t, hdi_nd_words(a->n_rows, HDI_CAST(int32_t, a->nnz), HDI_ND_TASKS));
-    nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
-    nd.child = HDI_TAKE(&s, hdi_nd_part, HDI_ND_TASKS);
+    nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_NODES);
     hdi_nd_buffer_make(nd.buffer, a, &s);
     hdi_nd_buffer_make(nd.buffer + 1, a, &s);
     if (e->status < 0) return hdi_scope_end(&s);
+    nd.ctx = ctx;
+    nd.error = e;
+    nd.threads = hdi_threads_own(ctx, HDI_ND_NODES);   /* started now, they share the loops before, too */
     hdi_nd_keys(xyz, a->n_rows, key, unit);
     k = hdi_nd_number(a, key, order, inv, count);
     job.nd = &nd;
@@ -11847,7 +11881,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     job.unit = unit;
     job.n = k;
     nd.part[0] = hdi_nd_load(&job, count, ctx);
-    hdi_nd_run(&nd, ctx, e);
+    hdi_nd_run(&nd);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < k; i++) perm[i] = order[perm[i]];
     for (i = k; i < a->n_rows; i++) perm[i] = order[i];
@@ -12783,8 +12817,7 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 
 /* From so many rows on nested dissection pays for itself: it takes three times as long to find as minimum
  * degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some solves
- * gain nothing up to 250K rows, and lose at most 5 %; they share the order all the same, so that no answer
- * depends on which query came first. Wide rows, those of exponential weights, make factors so large that it
+ * gain nothing up to 150K rows: see hdi_heat_light. Wide rows, those of exponential weights, make factors so large that it
  * pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10, 20, 50, 150
  * thousand random points and 233 non-zeros a row. */
 enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
@@ -22846,6 +22879,11 @@ struct hd_heat {
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_ground ground;           /* made when it is first needed; of elim */
+    /* elim and ground of the other order, where one real factor for few columns has its own; light: that is
+     * the one in elim now. See hdi_heat_turn */
+    hdi_elim elim_other;
+    hdi_ground ground_other;
+    int32_t light;
     hdi_modes modes;             /* so too */
     hdi_silan *silan;
     double *batch_room;          /* arrays of the batches */
@@ -23036,13 +23074,45 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     return e->status;
 }
 
-/* The copy of the pair in elimination order, analysed. */
-static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
-    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(e, DIRECT, "factorisations");
-    if (heat->elim.ctx) return HD_OK;
-    return hdi_elim_make(&heat->elim, heat->source, heat->opts.ordering, heat->perm, heat->scale, heat->ctx,
-                         e);
+/* Takes up one of the two elimination orders of a plan: the light one, which is found fast, or the one for
+ * all else. Each is analysed when it is first needed. Which one a query takes depends on the query alone, so
+ * that no answer depends on what was asked before. Bases fit the order that they were made for. */
+static void hdi_heat_turn(hd_heat *heat, int light) {
+    const hdi_elim elim = heat->elim;
+    const hdi_ground ground = heat->ground;
+    if (heat->light == light) return;
+    heat->elim = heat->elim_other;
+    heat->ground = heat->ground_other;
+    heat->elim_other = elim;
+    heat->ground_other = ground;
+    heat->light = light;
+    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, heat->ctx);
 }
+
+static void hdi_heat_free_factors(hd_heat *heat) {
+    hdi_elim_free(&heat->elim);
+    hdi_elim_free(&heat->elim_other);
+    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+    if (HDI_HAS_DIAGONAL && heat->ground_other.diag) hdi_ground_free(&heat->ground_other, heat->ctx);
+}
+
+/* The one for all else. */
+static const hdi_elim *hdi_heat_full(const hd_heat *heat) {
+    return heat->light ? &heat->elim_other : &heat->elim;
+}
+
+/* The copy of the pair in the elimination order taken up, analysed. */
+static hd_status hdi_heat_analysed_as(hd_heat *heat, int light, hd_error *e) {
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(e, DIRECT, "factorisations");
+    hdi_heat_turn(heat, light);
+    if (heat->elim.ctx) return HD_OK;
+    return hdi_elim_make(&heat->elim, heat->source,
+                         light ? HD_ORDERING_MINIMUM_DEGREE : heat->opts.ordering, heat->perm, heat->scale,
+                         heat->ctx, e);
+}
+
+/* The same in the order for all but few columns. */
+static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) { return hdi_heat_analysed_as(heat, 0, e); }
 
 /* Checks a right-hand side. The absolute value of its largest part is between 2^(*exponent - 1) and
  * 2^*exponent. */
@@ -23401,26 +23471,32 @@ static void hdi_heat_measure_pair(hd_heat *heat) {
     heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
 }
 
+/* The copy of the pair in elimination order with new values; factors are made again. */
+static void hdi_elim_renew(hdi_elim *m, const hd_laplacian *lap, int64_t *fill) {
+    int32_t i;
+    hdi_pair_refresh(m->lap, lap, fill);
+    m->scale = hdi_pair_scale(m->lap);
+    for (i = 0; i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
+    m->filled = m->shifted.ready = 0;
+    m->reach_t = -1;
+}
+
 /* Brings the copies of the pair up to date after an update of the Laplacian. Orderings, analyses and all room
  * stay; what depends on values is made again when it is needed. */
 static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
-    hdi_elim *m = &heat->elim;
     int32_t i;
     if (heat->version == lap->version) return HD_OK;
     heat->habit_spent = 0;
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill) return e->status;
     hdi_heat_measure_pair(heat);
-    if (HDI_HAS_DIRECT && m->ctx) {
-        hdi_pair_refresh(m->lap, lap, heat->fill);
-        m->scale = hdi_pair_scale(m->lap);
-        for (i = 0; i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
-        m->filled = m->shifted.ready = 0;
-        m->reach_t = -1;
+    for (i = 0; HDI_HAS_DIRECT && i < 2; i++) {
+        hdi_heat_turn(heat, !heat->light);
+        if (heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
         if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
-        if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
     }
+    if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
     if (heat->lap) {
         hdi_pair_refresh(heat->lap, lap, heat->fill);
         (void)hdi_pair_scale(heat->lap);
@@ -23479,8 +23555,7 @@ typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hd
 /* The guess is what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops. Where rows are wider than
  * 10, so much more of the former and its square of the latter. (Point sets with 233 and 117 entries a row,
  * 20K to 150K points: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
-static hdi_fill hdi_heat_fill(const hd_heat *heat) {
-    const hdi_symbolic *s = &heat->elim.sym;
+static hdi_fill hdi_heat_guess(const hd_heat *heat) {
     const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz);
     const double wide = hdi_max(1, entries / (10 * n));
     hdi_fill f;
@@ -23488,12 +23563,50 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat) {
     f.flops = 22 * n * sqrt(n) * wide * wide;
     f.stored = f.real_stored = 40 * n * wide;
     f.analysis = HDI_ROW_ANALYSIS * n * wide;
-    if (!heat->elim.ctx) return f;
+    return f;
+}
+
+/* What minimum degree adds to the fill of nested dissection, in flops and in non-zeros by rows squared, and
+ * the share of ordering with analysis that it saves. Meshes of 10K, 41K, 50K, 150K, 164K vertices: 0.26,
+ * 0.14, 0.14, 0.13, 0.13 flops, 1.7, 1.8, 1.0, 0.9, 1.0 e-4 non-zeros; a fifth of the time where meshes are
+ * numbered regularly, a third where they are not. */
+#define HDI_DEGREE_FLOPS 0.13
+#define HDI_DEGREE_NNZ 1e-4
+#define HDI_DEGREE_SAVES 0.7
+
+/* The same for an order of the plan, from its analysis where that is there. */
+static hdi_fill hdi_heat_fill_of(const hd_heat *heat, const hdi_elim *m, int light) {
+    const hdi_symbolic *s = &m->sym;
+    const double n = heat->source->n_active;
+    hdi_fill f = hdi_heat_guess(heat);
+    if (light) {
+        f.flops += HDI_DEGREE_FLOPS * n * n;
+        f.nnz += HDI_DEGREE_NNZ * n * n;
+        f.analysis *= 1 - HDI_DEGREE_SAVES;
+    }
+    if (!m->ctx) return f;
     f.nnz = HDI_CAST(double, s->nnz);
     f.flops = s->flops_done;
     f.stored = HDI_CAST(double, s->stored + s->work);
     f.real_stored = HDI_CAST(double, s->panel[s->n_super] + s->work);
     f.analysis = 0;
+    return f;
+}
+
+/* For the order that is taken up. */
+static hdi_fill hdi_heat_fill(const hd_heat *heat) {
+    return hdi_heat_fill_of(heat, &heat->elim, heat->light);
+}
+
+/* For that of the poles. Where only the light one is analysed: what is known of that, less what it adds. */
+static hdi_fill hdi_heat_fill_poles(const hd_heat *heat) {
+    const double n = heat->source->n_active;
+    hdi_fill f = hdi_heat_fill_of(heat, hdi_heat_full(heat), 0), g = hdi_heat_fill(heat);
+    if (!heat->light || f.analysis == 0 || g.analysis > 0) return f;
+    f.nnz = hdi_max(g.nnz / 2, g.nnz - HDI_DEGREE_NNZ * n * n);
+    f.flops = hdi_max(g.flops / 4, g.flops - HDI_DEGREE_FLOPS * n * n);
+    f.stored = g.stored;
+    f.real_stored = g.real_stored;
     return f;
 }
 
@@ -23548,7 +23661,7 @@ static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
 /* Are the factors of the poles there? The degree that a field takes by default is not known yet: it is taken
  * to be that of the last. */
 static int hdi_heat_at_hand(const hdi_heat_call *h) {
-    const hdi_elim *m = &h->heat->elim;
+    const hdi_elim *m = hdi_heat_full(h->heat);
     if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
@@ -23594,11 +23707,36 @@ static hdi_windows hdi_krylov_windows(hdi_fill f, double n, double span) {
     return all;
 }
 
+/* Does shift-and-invert Lanczos take the light order? For few columns that is found and analysed in a third
+ * of the time, and the steps lose less. It is left alone under a byte limit, where a second analysis might
+ * not fit. Totals of one column with 20 steps, one thread, processor time, of the light order and the other:
+ * 62 and 95 ms at 50K vertices, 54 and 75 at 41K, 274 and 347 at 150K, 356 and 395 at 164K. */
+#define HDI_RATE_FRONTS 73e9     /* flops per second of the large fronts that it adds: 73 to 128 e9 */
+
+enum { HDI_LIGHT_COLUMNS = 3 };  /* more are solved side by side, and gain less from a fast order */
+
+static int hdi_heat_light(const hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const hdi_order order = hdi_order_of(heat->opts.ordering, lap->xyz, NULL);
+    const hdi_fill f = hdi_heat_guess(heat);
+    const double n = lap->n_active, wide = hdi_max(1, HDI_CAST(double, lap->L.nnz) / (10 * n));
+    hdi_windows w;
+    double more;
+    if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, &lap->L) != HD_ORDERING_NESTED_DISSECTION ||
+        h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit)
+        return 0;
+    w = hdi_krylov_windows(f, n, h->times[h->n_times - 1] / h->times[0]);
+    more = w.n * HDI_DEGREE_FLOPS * wide / HDI_RATE_FRONTS +
+           h->ask.k * w.steps * hdi_krylov_late(h) * 16 * HDI_DEGREE_NNZ / HDI_RATE_SWEEP;
+    return more * wide * n * n < HDI_DEGREE_SAVES * f.analysis;
+}
+
 /* The model of all methods. */
 static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
-    const hdi_fill f = hdi_heat_fill(heat);
+    const hdi_fill f = hdi_heat_fill(heat), g = hdi_heat_fill_poles(heat);
     const double n = heat->source->n_active, k = h->ask.k;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2
                           : HDI_POLES_EXPECTED;
@@ -23609,7 +23747,8 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     const double steps = k * w.steps * hdi_krylov_late(h), shared = k > 3 ? HDI_KRYLOV_SHARED : 1;
     const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
     const double factor =
-        packs * (16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz) + (poles % 4 == 1 ? real : 0);
+        packs * (16 * g.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * g.nnz) +
+        (poles % 4 == 1 ? g.flops / HDI_RATE_REAL : 0);
     hdi_cost c;
     hdi_cost_iterative(h, poles, &c);
     c.krylov = f.analysis + w.n * f.flops / HDI_RATE_REAL +
@@ -23617,14 +23756,14 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
                h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
     if (h->n_times == 1 && heat->elim.shifted.ready &&
         heat->elim.shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max)) c.krylov -= real;
-    c.factors = hdi_heat_at_hand(h) ? 0 : f.analysis + h->n_times * factor;
-    c.direct = c.factors + h->n_times * (k * packs * (64 * f.nnz + 400 * n) / sweep);
-    c.direct_bytes = 64 * packs * f.stored + 200 * n + 8 * f.real_stored;
+    c.factors = hdi_heat_at_hand(h) ? 0 : g.analysis + h->n_times * factor;
+    c.direct = c.factors + h->n_times * (k * packs * (64 * g.nnz + 400 * n) / sweep);
+    c.direct_bytes = 64 * packs * g.stored + 200 * n + 8 * g.real_stored;
     c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * w.longest : w.longest) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
     c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
     if (k <= 3 && h->n_times > 1) c.krylov_bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
-    if (heat->elim.n_packs >= packs) c.direct_bytes = 0;     /* there already */
+    if (hdi_heat_full(heat)->n_packs >= packs) c.direct_bytes = 0;   /* there already */
     if (heat->silan) c.krylov_bytes = 0;
     c.krylov += HDI_FRESH_BYTE * c.krylov_bytes;
     c.factors += HDI_FRESH_BYTE * c.direct_bytes;
@@ -23681,12 +23820,16 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     const hd_context *ctx = heat->ctx;
     const double room = ctx->byte_limit && HDI_HAS_ITERATIVE   /* without iterations there is no retreat */
                         ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
-    hdi_cost c = hdi_heat_cost(h);
+    hdi_cost c;
+    int light;
+    hdi_heat_turn(heat, hdi_heat_light(h));
+    c = hdi_heat_cost(h);
     hdi_heat_cheapest(h, &c, room);
+    light = heat->light && h->method != HD_METHOD_DIRECT;
     if (!heat->elim.ctx && hdi_min(c.direct_bytes, c.krylov_bytes) < room &&
         (c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) ||
          hdi_heat_habit(h, &c, room))) {
-        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+        if (hdi_heat_analysed_as(heat, light, h->e) < 0) return h->e->status;
         c = hdi_heat_cost(h);
         hdi_heat_cheapest(h, &c, room);
     }
@@ -23741,6 +23884,11 @@ static hd_status hdi_heat_sit(hdi_heat_call *h, int32_t n) {
     return h->e->status;
 }
 
+/* The copy of the pair for the method picked. */
+static hd_status hdi_heat_analysed_for(const hdi_heat_call *h) {
+    return hdi_heat_analysed_as(h->heat, h->method == HD_METHOD_KRYLOV && hdi_heat_light(h), h->e);
+}
+
 /* Picks the method and its copy of the pair, and reports them. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
@@ -23761,7 +23909,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
         h->lap = heat->lap;
     } else if (HDI_HAS_DIRECT) {
-        if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+        if (hdi_heat_analysed_for(h) < 0) return h->e->status;
         h->lap = heat->elim.lap;
         h->rep->ordering = heat->elim.sym.ordering;
         h->rep->factor_nnz = heat->elim.sym.nnz;
@@ -24902,8 +25050,8 @@ static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
 static void hdi_modes_tell(const hd_heat *heat, hd_report *rep) {
     rep->method = HD_METHOD_DIRECT;
     rep->reason = HDI_MODES_REASON;
-    rep->ordering = heat->elim.sym.ordering;
-    rep->factor_nnz = heat->elim.sym.nnz;
+    rep->ordering = hdi_heat_full(heat)->sym.ordering;
+    rep->factor_nnz = hdi_heat_full(heat)->sym.nnz;
     rep->factor_flops = heat->modes.s.factor_flops;
 }
 
@@ -24918,7 +25066,7 @@ static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
 
 /* Frees the factors of poles, which are of no more use. */
 static void hdi_packs_drop(hd_heat *heat) {
-    hdi_elim *m = &heat->elim;
+    hdi_elim *m = heat->light ? &heat->elim_other : &heat->elim;
     while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
     m->filled = 0;
 }
@@ -24994,7 +25142,7 @@ static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, 
     const hd_spectrum *s = &of->s;
     const hd_laplacian *lap = s->lap;
     double *side = work, *found = work + s->n, *inner = found + s->n;
-    hdi_fading_far far = {0, 0, 0, 0};
+    hdi_fading_far most = {0, 0, 0, 0};
     int32_t q, v;
     for (v = 0; v < s->n; v++) side[v] = found[v] = inner[v] = 0;
     for (q = 0; q < s->count; q++) {
@@ -25008,12 +25156,12 @@ static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, 
     for (v = 0; v < s->n; v++) {
         const double all = lap->row[v] < 0 ? 0 : hdi_inverse_mass(lap, lap->row[v]), c = sqrt(found[v]);
         const double twice = hdi_decay_twice(of, x) * c;
-        far.left = hdi_max(far.left, sqrt(s->left[v] + of->off_gram * all));
-        far.side = hdi_max(far.side, side[v] + twice);
-        far.inner = hdi_max(far.inner, inner[v] + twice);
-        far.found = hdi_max(far.found, c);
+        most.left = hdi_max(most.left, sqrt(s->left[v] + of->off_gram * all));
+        most.side = hdi_max(most.side, side[v] + twice);
+        most.inner = hdi_max(most.inner, inner[v] + twice);
+        most.found = hdi_max(most.found, c);
     }
-    return far;
+    return most;
 }
 
 /* A sum over the pairs by rows of the caller's pair. */
@@ -25038,7 +25186,7 @@ static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
 typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
 
 /* The bounds of a lane's answer. */
-static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *far,
+static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *most,
                              const hdi_fading_size *c, hdi_lane *lane) {
     const hdi_modes *of = &h->heat->modes;
     const double terms = hdi_query_fields(h->ask.query) ? HDI_CAST(double, h->lap->n_active) / 2 : 0;
@@ -25052,16 +25200,16 @@ static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const h
     lane->off.rational = x->scale * x->cut * left;
     lane->off.solver = x->scale * (c->inner + x->mixed * left);
     lane->off.rounding = sums + itself * lane->u_norm + 4 * DBL_MIN * DBL_EPSILON;
-    lane->off_value.rational = lane->off.rational * far->left;
-    lane->off_value.solver = x->scale * (x->mixed * x->mixed * far->left * left + far->side * left +
-                                         (c->side + twice) * far->left + far->found * (c->inner + twice));
-    lane->off_value.rounding = far->found * (sums + itself * lane->u_norm) + 4 * DBL_MIN * DBL_EPSILON;
+    lane->off_value.rational = lane->off.rational * most->left;
+    lane->off_value.solver = x->scale * (x->mixed * x->mixed * most->left * left + most->side * left +
+                                         (c->side + twice) * most->left + most->found * (c->inner + twice));
+    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm) + 4 * DBL_MIN * DBL_EPSILON;
     lane->off_m = lane->off;
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
 
 /* The answer of a lane from the pairs. work [count] */
-static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *far,
+static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *most,
                             hdi_lane *lane, double *work) {
     const hd_laplacian *lap = h->lap;
     const hdi_modes *of = &h->heat->modes;
@@ -25083,7 +25231,7 @@ static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hd
     a.scale = x->scale;
     a.u = lane->u;
     hdi_parallel_ranges(h->heat->ctx, lap->n_active, 1024, hdi_fading_task, &a);
-    hdi_fading_bound(h, x, far, &size, lane);
+    hdi_fading_bound(h, x, most, &size, lane);
 }
 
 /* The request at one time from the pairs that are there. */
@@ -25092,7 +25240,7 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     const int32_t count = heat->modes.s.count;
     double *work = HDI_NEW(heat->ctx, double,
                            3 * (HDI_CAST(uint64_t, count) + HDI_CAST(uint64_t, heat->source->n)), h->e);
-    hdi_fading_far far;
+    hdi_fading_far most;
     hdi_decay x;
     h->lap = heat->source;
     h->by_pairs = 1;
@@ -25101,12 +25249,12 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     hdi_modes_tell(heat, h->rep);
     if (work && hdi_heat_lanes(h, 1) >= 0) {
         x = hdi_decay_at(&heat->modes, t, work + count);
-        far = hdi_fading_reach(&heat->modes, &x, work + 3 * HDI_CAST(int64_t, count));
+        most = hdi_fading_reach(&heat->modes, &x, work + 3 * HDI_CAST(int64_t, count));
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
             if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0 ||
                 hdi_heat_load(h, h->batch, h->lane) < 0)
                 break;
-            if (!h->lane->skip) hdi_fading_lane(h, &x, &far, h->lane, work);
+            if (!h->lane->skip) hdi_fading_lane(h, &x, &most, h->lane, work);
             if (hdi_heat_store_some(h, 1) < 0) break;
         }
         if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
@@ -25180,8 +25328,7 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
     hdi_heat_free_lanes(heat);
-    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
-    hdi_elim_free(&heat->elim);
+    hdi_heat_free_factors(heat);
     if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
     hdi_free(heat->ctx, heat->silan);
     hdi_free(heat->ctx, heat->batch_room);
@@ -28795,7 +28942,7 @@ static void hdi_cost_add(hd_cost *c, double flops, double seconds, double bytes)
  * k items. */
 static void hdi_cost_direct(const hd_heat *heat, int32_t packs, int real, hdi_after after, double k,
                             hd_cost *c) {
-    const hdi_fill f = hdi_heat_fill(heat);
+    const hdi_fill f = hdi_heat_fill_poles(heat);
     const int inverse = after >= HDI_AFTER_INVERSE;
     const double n = heat->source->n_active, invert = inverse ? 1 + HDI_INVERT_FLOPS : 1;
     const double sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
@@ -28833,7 +28980,7 @@ static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hd
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
-    if (hdi_heat_analysed(h->heat, h->e) == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+    if (hdi_heat_analysed_for(h) == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
     if (h->heat->elim.ctx) h->lap = h->heat->elim.lap;
     return h->e->status;
 }
@@ -29281,7 +29428,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
 /* What is known when the call's own arrays are gone. */
 static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     int32_t q;
-    to->analysed = heat->elim.ctx != NULL;
+    to->analysed = heat->elim.ctx != NULL || heat->elim_other.ctx != NULL;
     to->bytes_in_use = HDI_CAST(double, heat->ctx->bytes_in_use);
     to->bytes_left = hdi_estimate_room(heat->ctx);
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
@@ -31936,9 +32083,8 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hdi_upper_free(ctx, &heat->up);
     hdi_free(ctx, heat->weight);
     hdi_laplacian_free(heat->lap, ctx);
-    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, ctx);
     if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, ctx);
-    hdi_elim_free(&heat->elim);
+    hdi_heat_free_factors(heat);
     if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, ctx);
     hdi_free(ctx, heat->silan);
     hdi_free(ctx, heat->batch_room);

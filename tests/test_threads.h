@@ -229,6 +229,120 @@ static void thr_release(void) {
     }
 }
 
+/* Cancels at the third report. */
+static hd_progress thr_cancel(void *user, const char *stage, double done) {
+    int64_t *calls = (int64_t *)user;
+    (void)stage;
+    (void)done;
+    return ++*calls < 3 ? HD_PROGRESS_CONTINUE : HD_PROGRESS_CANCEL;
+}
+
+/* Nested dissection and the analysis for any number of threads: the same permutation and the same supernodes, in
+ * one loop for the order. Cancelled, nothing is left behind. */
+static void thr_orders(void) {
+    static const int32_t n_threads[] = {1, 2, 3, 8};
+    shape s = shape_bumpy(5, 2);
+    hd_laplacian *lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL);
+    const int32_t n = lap->n_active;
+    const size_t bytes = (size_t)n * sizeof(int32_t);
+    int32_t *first = DENSE_NEW(int32_t, n), *final = DENSE_NEW(int32_t, n), *perm = DENSE_NEW(int32_t, n);
+    int64_t calls;
+    int q, cancelled;
+    for (q = 0; q < 5; q++) {
+        for (cancelled = 0; cancelled < 2; cancelled++) {
+            hd_context ctx;
+            hdi_symbolic sym;
+            hd_error e;
+            memset(&ctx, 0, sizeof ctx);
+            hdi_error_clear(&e);
+            ctx.n_threads = q < 4 ? n_threads[q] : 0;
+            ctx.parallel_for = q < 4 ? NULL : heat_shuffled_for;
+            ctx.parallel_user = ctx.progress_user = &calls;
+            ctx.progress = cancelled ? thr_cancel : NULL;
+            hdi_hold(&ctx);
+            calls = 0;
+            if (cancelled) {
+                CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_ERR_CANCELLED && calls == 3);
+            } else {
+                CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_OK);
+                if (q > 0 && q < 4) CHECK(ctx.regions > 0 && ctx.threads);
+                if (q == 0) memcpy(first, perm, bytes);
+                CHECK_MSG(memcmp(first, perm, bytes) == 0, "way %d: another permutation", q);
+                CHECK(hdi_symbolic_make(&sym, &lap->L, perm, &ctx, &e) == HD_OK);
+                if (q == 0) memcpy(final, sym.perm, bytes);
+                CHECK_MSG(memcmp(final, sym.perm, bytes) == 0, "way %d: another elimination order", q);
+                hdi_symbolic_free(&ctx, &sym);
+            }
+            hdi_let_go(&ctx);
+            CHECK(ctx.bytes_in_use == 0 && !ctx.threads);
+        }
+    }
+    free(first);
+    free(final);
+    free(perm);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
+/* k columns; returns the ordering that the report names. */
+static hd_ordering thr_columns(hd_heat *heat, const hd_laplacian *lap, int32_t k, double *U) {
+    const int32_t sources[4] = {7, 11000, 23000, 40000};
+    const double t = 100 * lap->h * lap->h;
+    hd_report rep;
+    hd_error e;
+    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, k, sources, U, 0, &rep, &e) >= 0 && rep.method == HD_METHOD_KRYLOV);
+    return rep.ordering;
+}
+
+/* Few columns of a large mesh have an elimination order of their own. No answer depends on what a plan was asked
+ * before, nor on the number of threads, nor on an update between; another order gives the same column. */
+static void thr_light(void) {
+    shape s = shape_bumpy(6, 4);
+    const size_t bytes = (size_t)s.n * sizeof(double);
+    double *one = DENSE_NEW(double, s.n), *four = DENSE_NEW(double, 4 * s.n), *u = DENSE_NEW(double, 4 * s.n);
+    double *xyz = DENSE_NEW(double, 3 * s.n);
+    hd_context ctx[2];
+    int q, i;
+    for (i = 0; i < 3 * s.n; i++) xyz[i] = s.xyz[i] * (i % 3 ? 1 : 1.25);
+    for (q = 0; q < 2; q++) {
+        hd_laplacian *lap;
+        hd_heat_opts opts;
+        hd_heat *heat = NULL;
+        hd_error e;
+        memset(ctx + q, 0, sizeof *ctx);
+        memset(&opts, 0, sizeof opts);
+        ctx[q].n_threads = q ? 3 : 1;
+        opts.method = HD_METHOD_KRYLOV;
+        lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_VORONOI_COT, 1, ctx + q);
+        CHECK(hd_heat_create(&heat, lap, &opts, &e) == HD_OK);
+        if (q == 0) CHECK(thr_columns(heat, lap, 1, one) == HD_ORDERING_MINIMUM_DEGREE);
+        CHECK(thr_columns(heat, lap, 4, u) == HD_ORDERING_NESTED_DISSECTION);
+        if (q == 0) memcpy(four, u, 4 * bytes);
+        CHECK_MSG(memcmp(four, u, 4 * bytes) == 0, "way %d: four columns differ", q);
+        CHECK_MSG(dense_max_diff(one, u, s.n) <= 1e-9 * dense_max_abs(one, s.n), "other orders differ by %g",
+                  dense_max_diff(one, u, s.n));
+        CHECK(thr_columns(heat, lap, 1, u) == HD_ORDERING_MINIMUM_DEGREE);
+        CHECK_MSG(memcmp(one, u, bytes) == 0, "way %d: one column differs", q);
+        if (q == 0) {                            /* both copies of the pair follow an update */
+            CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK);
+            CHECK(thr_columns(heat, lap, 1, u) == HD_ORDERING_MINIMUM_DEGREE);
+            hd_heat_free(heat);
+            opts.method = HD_METHOD_AUTO;
+            CHECK(hd_heat_create(&heat, lap, &opts, &e) == HD_OK);
+            CHECK(thr_columns(heat, lap, 1, u + s.n) == HD_ORDERING_MINIMUM_DEGREE);
+            CHECK(memcmp(u, u + s.n, bytes) == 0);
+        }
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+        CHECK(ctx[q].bytes_in_use == 0);
+    }
+    free(one);
+    free(four);
+    free(u);
+    free(xyz);
+    shape_free(&s);
+}
+
 static void test_threads(void) {
     shape s = shape_bumpy(4, 5), small = shape_bumpy(1, 5);
     double *want = DENSE_NEW(double, s.n), *u = DENSE_NEW(double, s.n);
@@ -250,6 +364,8 @@ static void test_threads(void) {
     thr_nested(&s, want);
 #endif
     thr_release();
+    thr_orders();
+    thr_light();
     free(want);
     free(u);
     shape_free(&s);
