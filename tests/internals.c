@@ -1877,6 +1877,85 @@ static void int_pairs_by_entries(void) {
     }
 }
 
+/* f(s, s), f(v, v) and f(s, v) of row s and all rows, f = x g(lambda) x', or B f B; d2[v] = f(s, s) - 2 f(s, v) + f(v, v). */
+static void int_dense_distances(const dense_pair *p, const double *g, int by_b, int32_t source, double *d2) {
+    const int32_t n = p->n;
+    double *x = DENSE_NEW(double, n);
+    int32_t k, v;
+    for (v = 0; v < n; v++) d2[v] = 0;
+    for (k = 0; k < n; k++) {                    /* the sum over k of g_k (y_sk - y_vk)^2, y = x or B x: without cancellation */
+        memcpy(x, p->x + (size_t)k * (size_t)n, (size_t)n * sizeof *x);
+        if (by_b) dense_apply(p->B, p->x + (size_t)k * (size_t)n, x, n);
+        for (v = 0; v < n; v++) d2[v] += g[k] * (x[source] - x[v]) * (x[source] - x[v]);
+    }
+    free(x);
+}
+
+/* Windows of distances: f is exp(-2tA), and g bounds the resolvent 1/(1 + 2tA) from above without being much larger; so do diagonals and columns
+ * together, for every pair of vertices and each of the times. */
+static void int_distance_windows(void) {
+    enum { TIMES = 9 };
+    int form, kind;
+    for (form = 0; form < 2; form++) {
+        hd_laplacian *lap = int_mesh(0, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const int32_t n = lap->n_active;
+        double t[TIMES], *g = DENSE_NEW(double, n), *want = DENSE_NEW(double, 2 * (int64_t)n), *B;
+        dense_pair pair;
+        int32_t i, q, r;
+        B = shared_dense(&lap->L, lap->B ? lap->B : lap->L.val);
+        for (i = 0; i < n * n && !lap->B; i++) B[i] = i % (n + 1) == 0 ? lap->mass[i / (n + 1)] : 0;
+        CHECK(dense_pair_solve(&pair, shared_dense(&lap->L, lap->L.val), B, n));
+        for (q = 0; q < TIMES; q++) t[q] = lap->h * lap->h * pow(10, 0.2 * q);
+        for (kind = 0; kind < 2; kind++) {
+            double off = 0, low = HUGE_VAL, high = 0;
+            hd_heat *heat = NULL;
+            hdi_heat_call h;
+            hdi_scope s;
+            hdi_distance_shared z;
+            CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+            CHECK(hdi_distance_begin(&h, heat, (hd_distance_kind)kind, TIMES, t, 1, NULL, NULL) >= 0);
+            CHECK(hdi_heat_sort_times(&h, 2) >= 0 && hdi_heat_analysed(heat, h.e) >= 0);
+            s = hdi_scope_begin(heat->ctx, h.e);
+            CHECK(hdi_distance_shared_take(&z, &h, (hd_distance_kind)kind, 0, TIMES, &s) >= 0);
+            CHECK(hdi_window_run(&h, &z.w, HDI_SHARED_DISTANCE_TOL, z.full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL) >= 0);
+            for (r = 0; r < 3; r++) {
+                const int32_t at = r * (n - 1) / 2, source = z.m->lap->vertex[at];
+                const hdi_terms one = hdi_terms_vertex(source);
+                hdi_distance_shared_column(&z, &one);
+                for (q = 0; q < TIMES; q++) {
+                    const double *f = hdi_window_at(&z.w, z.w.values, q), *c = hdi_distance_shared_at(&z, q);
+                    const int mass = z.weighted && !z.full;
+                    double size = 0;
+                    for (i = 0; i < n; i++) g[i] = exp(-2 * t[q] * pair.lambda[i]);
+                    int_dense_distances(&pair, g, kind, lap->row[source], want);
+                    for (i = 0; i < n; i++) g[i] = 1 / (1 + 2 * t[q] * pair.lambda[i]);
+                    int_dense_distances(&pair, g, kind, lap->row[source], want + n);
+                    for (i = 0; i < n; i++) size = fmax(size, want[i]);
+                    for (i = 0; i < n; i++) {
+                        const int32_t v = lap->row[z.m->lap->vertex[i]];
+                        const double b = mass ? z.m->lap->mass[i] : 1, bs = mass ? z.m->lap->mass[at] : 1;
+                        const double df = z.unit * (b * b * f[i] + bs * bs * f[at] - 2 * b * bs * c[i]);
+                        const double dg = z.unit * (b * b * f[n + i] + bs * bs * f[n + at] - 2 * b * bs * c[n + i]);
+                        if (i == at) continue;
+                        off = fmax(off, fabs(df - want[v]) / size);
+                        low = fmin(low, dg / want[n + v]);
+                        high = fmax(high, dg / want[n + v]);
+                    }
+                }
+            }
+            CHECK_MSG(off < 1e-6, "kind %d, form %d: squared distances off by %g", kind, form, off);
+            CHECK_MSG(low > 1 - 1e-9 && high < 10, "kind %d, form %d: g is %g to %g times the resolvent", kind, form, low, high);
+            hdi_scope_end(&s);
+            hdi_heat_end(&h);
+            hd_heat_free(heat);
+        }
+        dense_pair_free(&pair);
+        hd_laplacian_free(lap);
+        free(g);
+        free(want);
+    }
+}
+
 /* ---- [11] intrinsic ---- */
 
 /* The area of a needle with sides 1, 1 and x, and of triangles of integer sides. */
@@ -2334,6 +2413,7 @@ int main(void) {
     int_invert();
     int_resolvent_pole();
     int_pairs_by_entries();
+    int_distance_windows();
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }
