@@ -12,7 +12,7 @@ count. One that does not compile does not count either.
 
 Each fault is compiled by tcc, in a tenth of a second. The tests are cut into pieces: every call that stands in the
 body of a group. The pieces that run the line follow, those first that are quick or found other faults of the function,
-until one fails, crashes, or takes ten times as long as without the fault. The pieces of one fault get --each seconds of
+until one fails, crashes, or takes four times as long as without the fault. The pieces of one fault get --each seconds of
 processor time (default 30); the number of pieces that were left then is printed. A line for each fault:
 
     caught by PIECE, or SURVIVED    line, room, what was done, the line as it is now
@@ -102,9 +102,8 @@ def draw(h, lines, count, seed):
     for room in sorted(rooms):
         rng.shuffle(rooms[room])
         choices = [c for c in (faults_of(h, n) for n in rooms[room]) if c]
-        drawn += [rng.choice(c) for c in choices[:count]]
-    rng.shuffle(drawn)
-    return drawn
+        drawn += [(k, room, rng.choice(c)) for k, c in enumerate(choices[:count])]
+    return [f for _, _, f in sorted(drawn)]      # rooms take turns
 
 
 PROGRAMS = ("internals", "runner")
@@ -154,7 +153,8 @@ int main(int argc, char **argv) {      /* NAME LIMIT ... ; without names: all, w
         const double limit = atof(argv[k + 1]);
         struct itimerval timer;
         memset(&timer, 0, sizeof timer);
-        timer.it_value.tv_sec = (long)limit + 1;
+        timer.it_value.tv_sec = (long)limit;
+        timer.it_value.tv_usec = (long)(1e6 * (limit - (double)(long)limit)) + 1;
         fprintf(stderr, "%s\n", argv[k]);
         setitimer(ITIMER_PROF, &timer, NULL);
         alarm((unsigned)(20 * limit) + 60);
@@ -347,7 +347,7 @@ class Bench:
         """The piece that fails, or None."""
         command = ["./" + name]
         for p in pieces:
-            command += [p, "%.2f" % (1 + 10 * seconds.get(p, 1))]
+            command += [p, "%.2f" % (0.5 + 4 * seconds.get(p, 2))]
         done = subprocess.run(["bash", "-c", 'ulimit -c 0 -v 6000000; exec "$@"', "-"] + command, cwd=self.folder,
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
         if done.returncode == 0:
@@ -387,7 +387,7 @@ def order_of(bench, fault, known, hits, budget):
     by = known["by"].get(fault.line, [])
     by = sorted(by, key=lambda p: (known["pieces"][p]["seconds"] + 0.002) / (1 + 20 * hits[p]))
     spent, order, left = 0.0, [], 0
-    for p in new + by:
+    for p in new + by if known["new_first"] else by + new:
         cost = known["pieces"][p]["seconds"] if p in known["pieces"] else 0
         if spent + cost > budget:
             left += 1
@@ -463,6 +463,7 @@ def main():
         bench = Bench(folder, h.raw)
         known = read_map(o, bench, h)
         seconds = {p: v["seconds"] for p, v in known["pieces"].items()}
+        known["new_first"] = bool(o.again or o.line)
         known["by"] = collections.defaultdict(list)
         for p in known["pieces"]:
             if any(p in bench.pieces[name] for name in PROGRAMS):
