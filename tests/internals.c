@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "guard.h"
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
 #include "dense.h"
@@ -92,6 +93,73 @@ static void int_sizes(void) {
     CHECK(!hdi_size(all / 16, 16, 80, all, &out));
     CHECK(!hdi_size(small + 1, 8, 0, small, &out) && !hdi_size(small / 8, 8, 80, small, &out) && !hdi_size(0, 8, 80, 79, &out));
     CHECK(hdi_size(small / 8, 8, 7, small, &out) && out == small);
+}
+
+/* ---- [02] error ---- */
+
+static void int_texts(void) {
+    static const double bytes[8] = {0, 1, 1e5, 100001, 999999, 123456789, 5e9, 9.9e5};
+    static const char *const want[8] = {"0.0 MB", "0.1 MB", "0.1 MB", "0.2 MB", "1.0 MB", "123.5 MB", "5000.0 MB", "1.0 MB"};
+    hd_error e;
+    size_t k;
+    for (k = 0; k < 8; k++) {
+        hdi_error_clear(&e);
+        hdi_text_bytes(&e, bytes[k]);
+        CHECK_MSG(strcmp(e.text, want[k]) == 0, "%g bytes: %s", bytes[k], e.text);
+    }
+    hdi_error_clear(&e);
+    for (k = 0; k < 200; k++) hdi_text_add(&e, "abcdefg");   /* until there is no room: the last letters are left out */
+    CHECK(strlen(e.text) == sizeof e.text - 1);
+    for (k = 0; k + 1 < sizeof e.text; k++) CHECK(e.text[k] == (char)('a' + k % 7));
+}
+
+/* Takes that are only added up: as many bytes as blocks of their own would count, and 2^60 where a number has no meaning. */
+static void int_tally(void) {
+    hd_context ctx;
+    hd_error e;
+    uint64_t bytes;
+    hdi_scope s = hdi_scope_tally(&bytes, &e), real;
+    memset(&ctx, 0, sizeof ctx);
+    real = hdi_scope_begin(&ctx, &e);
+    CHECK(!HDI_TAKE(&s, double, 7) && HDI_TAKE(&real, double, 7));
+    CHECK(!HDI_TAKE(&s, char, 0) && HDI_TAKE(&real, char, 0));
+    CHECK(!HDI_TAKE(&s, hd_c64, 1000) && HDI_TAKE(&real, hd_c64, 1000));
+    CHECK(bytes == ctx.bytes_in_use && e.status == HD_OK);
+    CHECK(hdi_scope_end(&real) == HD_OK && ctx.bytes_in_use == 0);
+    hdi_scope_count(&bytes, UINT64_MAX / 8, 8);
+    CHECK(bytes == UINT64_C(1) << 60);
+    hdi_scope_count(&bytes, 5, 8);
+    CHECK(bytes == UINT64_C(1) << 60);
+    ctx.byte_limit = 1000;
+    ctx.bytes_in_use = 900;
+    CHECK(hdi_need(&ctx, 100, "one more", &e) == HD_OK);
+    CHECK(hdi_need(&ctx, 101, "one more", &e) == HD_ERR_MEMORY_LIMIT && e.value == 1001);
+    CHECK(strcmp(e.text, "one more would bring the memory in use to 0.1 MB, and the byte limit is 0.1 MB") == 0);
+}
+
+/* ---- [05] arrays ---- */
+
+static void int_arrays(void) {
+    static const int32_t rel[9] = {-4, -1, 0, 0, 3, 3, 3, 8, 900};
+    int32_t a[6] = {9, 9, 9, 9, 9, 9}, parent[9] = {0, 0, 1, 3, 4, 4, 4, 7, 7};
+    int64_t count[6] = {2, 0, 5, 1, -7, 77}, ptr[5] = {4, 4, 9, 13, 77};
+    int64_t n, x, at;
+    hdi_fill_i32(a + 1, 4, -3);
+    CHECK(a[0] == 9 && a[1] == -3 && a[2] == -3 && a[3] == -3 && a[4] == -3 && a[5] == 9);
+    hdi_fill_own(a + 1, 4);
+    CHECK(a[0] == 9 && a[1] == 0 && a[2] == 1 && a[3] == 2 && a[4] == 3 && a[5] == 9);
+    CHECK(hdi_prefix_sum(count, 4) == 8);
+    CHECK(count[0] == 0 && count[1] == 2 && count[2] == 2 && count[3] == 7 && count[4] == 8 && count[5] == 77);
+    CHECK(hdi_fullest(count, 4) == 5 && hdi_fullest(count, 2) == 2 && hdi_fullest(count + 1, 1) == 1 && hdi_fullest(count, 0) == 1);
+    hdi_rewind(ptr, 3);
+    CHECK(ptr[0] == 0 && ptr[1] == 4 && ptr[2] == 4 && ptr[3] == 9 && ptr[4] == 77);
+    CHECK(hdi_count_sets(parent, 9) == 3);       /* {0 1 2}, {3}, {4 5 6}, {7 8} */
+    for (n = 0; n <= 9; n++) {
+        for (x = -6; x < 910; x++) {
+            for (at = 0; at < n && rel[at] < x; at++) {}
+            if (hdi_lower_bound(rel, n, x) != at) CHECK_MSG(0, "%d of %d", (int)x, (int)n);
+        }
+    }
 }
 
 /* ---- [03] memory ---- */
@@ -1891,6 +1959,46 @@ static void int_dense_distances(const dense_pair *p, const double *g, int by_b, 
     free(x);
 }
 
+/* What is foretold of memory is what is taken: for the factor of L and its inverse, and for the forms after that. */
+static void int_ground_need(void) {
+    int kind, form;
+    for (kind = 0; kind < 2; kind++) {
+        for (form = 0; form < 2; form++) {
+            hd_laplacian *lap = int_mesh(kind, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+            hd_context ctx;
+            hd_error e;
+            hdi_elim m;
+            hdi_ground g;
+            uint64_t need, before;
+            memset(&ctx, 0, sizeof ctx);
+            memset(&g, 0, sizeof g);
+            CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
+            need = hdi_ground_need(&m, &g, 0);
+            before = ctx.bytes_peak = ctx.bytes_in_use;
+            CHECK(hdi_ground_make(&m, &g, &e) == HD_OK);
+            CHECK_MSG(ctx.bytes_peak - before == need, "mesh %d, form %d: %llu bytes, %llu foretold", kind, form, (unsigned long long)(ctx.bytes_peak - before),
+                      (unsigned long long)need);
+            need = hdi_ground_need(&m, &g, 1);
+            before = ctx.bytes_peak = ctx.bytes_in_use;
+            CHECK(hdi_ground_forms(&m, &g, &e) == HD_OK);
+            CHECK_MSG(ctx.bytes_peak - before == need, "mesh %d, form %d: forms %llu bytes, %llu foretold", kind, form, (unsigned long long)(ctx.bytes_peak - before),
+                      (unsigned long long)need);
+            CHECK(hdi_ground_need(&m, &g, 1) == 0);
+            hdi_ground_free(&g, &ctx);
+            hdi_elim_free(&m);
+            CHECK(ctx.bytes_in_use == 0);
+            hd_laplacian_free(lap);
+        }
+    }
+}
+
+static void int_parts(void) {
+    const hdi_parts a = {1, 5, 3}, b = {2, 4, 6}, least = hdi_parts_least(a, b), twice = hdi_parts_scale(2, a), none = {HUGE_VAL, 0, 1};
+    CHECK(least.rational == 1 && least.solver == 4 && least.rounding == 3);
+    CHECK(twice.rational == 2 && twice.solver == 10 && twice.rounding == 6);
+    CHECK(hdi_parts_scale(0, none).rational == 0 && hdi_parts_scale(3, none).rational == HUGE_VAL && hdi_parts_scale(HUGE_VAL, none).solver == 0);
+}
+
 /* Factors with pivots that are a little wrong: the error of a column is within the bound that its residuals give, which is not much larger. */
 static void int_distance_windows_damaged(hdi_distance_shared *z, const hdi_terms *source, const char *what) {
     const int32_t n = (int32_t)z->w.n, n_times = z->w.n_times;
@@ -2409,6 +2517,9 @@ int main(void) {
     int_division();
     int_complex();
     int_sizes();
+    int_texts();
+    int_tally();
+    int_arrays();
     int_memory();
     int_scope_room();
     int_sorting();
@@ -2440,6 +2551,8 @@ int main(void) {
     int_resolvent_pole();
     int_pairs_by_entries();
     int_distance_windows();
+    int_ground_need();
+    int_parts();
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }

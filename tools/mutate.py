@@ -7,7 +7,7 @@
 
 Up to N faults are drawn in every room (default 500), no two of one line: another sign, comparison, operator, index,
 constant, conjugate, minimum for maximum, a condition turned round, a statement left out. Only lines that tests run in
-a build without threads and vector instructions are drawn. A fault that leaves the compiled code as it was does not
+a build without threads and vector instructions are drawn, and no fault of a prefetch, nor one that takes the other of two equal numbers. A fault that leaves the compiled code as it was does not
 count. One that does not compile does not count either.
 
 Each fault is compiled by tcc, in a tenth of a second. The tests are cut into pieces: every call that stands in the
@@ -17,12 +17,13 @@ processor time (default 30); the number of pieces that were left then is printed
 
     caught by PIECE, or SURVIVED    line, room, what was done, the line as it is now
 
---map is a file that keeps which piece runs which line, made at the first run and again when the header has changed.
+--map is a file that keeps which piece runs which line, made at the first run, which takes some minutes. Lines of the
+header that have changed since are not drawn. Pieces that are new run too.
 Exit 1 when fewer than --least per cent are caught. Needs gcc, binutils, tcc and Python 3."""
 import argparse
 import array
 import collections
-import hashlib
+import difflib
 import json
 import os
 import random
@@ -75,9 +76,24 @@ DECLARES = re.compile(r"^\s*(?:const |static |unsigned )*(?:double|float|int|u?i
 Fault = collections.namedtuple("Fault", "line kind text")
 
 
+WORD = r"[\w.>\[\]-]+"
+EITHER = re.compile(r"(%s) (?:<=?|>=?) (%s)(?: \? (%s) : (%s)|\) (%s) = (%s);)" % ((WORD,) * 6))
+
+
+def no_fault(kind, code, m):
+    """Equal numbers, of which either may be taken: < and <= make no difference in x < y ? x : y and if (x < y) y = x."""
+    for e in EITHER.finditer(code) if kind == "comparison" else ():
+        chosen = [w for w in e.groups()[2:] if w]
+        if e.start() <= m.start() < e.end() and set(chosen) == set(e.groups()[:2]):
+            return True
+    return "HDI_PREFETCH" in code
+
+
 def faults_of(h, n):
     """Every fault of a line."""
-    code, raw = h.code.split("\n")[n - 1].rstrip(), h.raw[n - 1]
+    if not hasattr(h, "code_lines"):
+        h.code_lines = h.code.split("\n")
+    code, raw = h.code_lines[n - 1].rstrip(), h.raw[n - 1]
     found = []
     if '"' in code or code.lstrip().startswith("#"):
         return found
@@ -87,7 +103,7 @@ def faults_of(h, n):
         for m in pattern.finditer(code):
             changed = code[:m.start()] + m.expand(new) + code[m.end():] if isinstance(new, str) else \
                 code[:m.start()] + new(m) + code[m.end():]
-            if changed != raw:
+            if changed != raw and not no_fault(kind, code, m):
                 found.append(Fault(n, kind, changed))
     return found
 
@@ -402,16 +418,26 @@ def order_of(bench, fault, known, hits, budget):
     return [(n, ps) for n, ps in order if ps], left
 
 
+def moved(old, new):
+    """{line of the old text: line of the new one} of lines that are the same."""
+    same = {}
+    for a, b, size in difflib.SequenceMatcher(None, old, new).get_matching_blocks():
+        same.update((a + k + 1, b + k + 1) for k in range(size))
+    return same
+
+
 def read_map(o, bench, h):
-    digest = hashlib.sha256("\n".join(h.raw).encode()).hexdigest()
     if o.map and os.path.exists(o.map):
         with open(o.map, encoding="utf-8") as f:
             known = json.load(f)
-        if known["header"] == digest:
-            return known
+        if known["text"] != h.raw:
+            to = moved(known["text"], h.raw)
+            for piece in known["pieces"].values():
+                piece["lines"] = [to[n] for n in piece["lines"] if n in to]
+        return known
     pieces = bench.measure()
     failing = [p for name in PROGRAMS for p in bench.pieces[name] if p not in pieces]
-    known = {"header": digest, "pieces": pieces, "failing": failing}
+    known = {"text": h.raw, "pieces": pieces, "failing": failing}
     if o.map:
         with open(o.map, "w", encoding="utf-8") as f:
             json.dump(known, f)
