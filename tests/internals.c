@@ -404,6 +404,53 @@ static int32_t int_bandwidth(const hd_csr *a, const int32_t *perm) {
     return width;
 }
 
+/* Rows longer than 10 sqrt(n) are eliminated last: here hubs of leaves, which would be bare after them, before the cycle is half done. In the same
+ * order whether a caller counts by long or by short numbers. */
+static void int_amd_dense(void) {
+    enum { LEAVES = 900, HUBS = 2, CYCLE = 500, N = HUBS * (LEAVES + 1) + CYCLE, NNZ = 2 * (HUBS * LEAVES + CYCLE) };
+    static int32_t from[NNZ], to[NNZ], perm[N], short_perm[N], ptr[N + 1], place[N];
+    static double one[NNZ];
+    hd_csr a;
+    hd_context ctx;
+    hd_error e;
+    hdi_amd_graph g;
+    int32_t i, k = 0, *work;
+    memset(&ctx, 0, sizeof ctx);
+    for (i = 0; i < HUBS * LEAVES; i++) {        /* hubs 0 and 1, the leaves of both, the cycle */
+        from[k] = to[k + 1] = i % HUBS;
+        to[k] = from[k + 1] = HUBS + i;
+        k += 2;
+    }
+    for (i = 0; i < CYCLE; i++) {
+        from[k] = to[k + 1] = HUBS * (LEAVES + 1) + i;
+        to[k] = from[k + 1] = HUBS * (LEAVES + 1) + (i + 1) % CYCLE;
+        k += 2;
+    }
+    for (i = 0; i < NNZ; i++) one[i] = 1;
+    CHECK(hd_csr_from_triplets(&a, N, N, NNZ, from, to, one, NULL, &e) == HD_OK);
+    CHECK(hdi_amd_order(&a, perm, &ctx, &e) == HD_OK);
+    CHECK(perm[N - 1] + perm[N - 2] == 1);
+    for (i = 0; i < N; i++) place[i] = -1;
+    for (i = 0; i < N; i++) place[perm[i]] = i;
+    for (i = 0; i < N; i++) CHECK(place[i] >= 0);
+    g.n = g.inner = N;
+    g.wide = NULL;
+    g.ptr = ptr;
+    g.col = a.col;
+    for (i = 0; i <= N; i++) ptr[i] = (int32_t)a.row_ptr[i];
+    work = DENSE_NEW(int32_t, hdi_amd_part_words(N, 0, NNZ));
+    hdi_amd_part(&g, short_perm, work);
+    CHECK(memcmp(perm, short_perm, sizeof perm) == 0);
+    free(work);
+    hd_csr_free(&a, NULL);
+}
+
+/* The share of the way from the first residual to the target, by powers of ten. */
+static void int_krylov_done(void) {
+    CHECK(fabs(hdi_krylov_done(1e3, 1e1, 1e-5) - 0.25) < 1e-15 && fabs(hdi_krylov_done(1e-2, 1e-8, 1e-10) - 0.75) < 1e-15);
+    CHECK(hdi_krylov_done(5, 5, 1e-3) == 0 && hdi_krylov_done(5, 1e-3, 1e-3) == 1 && hdi_krylov_done(1e-3, 1e-3, 1e-2) == 1 && hdi_krylov_done(5, 1, 0) == 0);
+}
+
 static void int_cuthill_mckee(void) {
     shape s = shape_grid(40, 8, 0.2), two = shape_grid(5, 5, 0), both;
     const double offset[3] = {2, 0, 0};
@@ -2529,6 +2576,8 @@ int main(void) {
     int_collinear();
     int_norm();
     int_cuthill_mckee();
+    int_amd_dense();
+    int_krylov_done();
     int_ildl_trees();
     int_ildl_row_sums();
     int_precond_make();
