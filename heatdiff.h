@@ -15681,13 +15681,14 @@ static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t
     return hdi_scope_end(&keep);
 }
 
-/* The bytes of that. */
+/* The bytes of that, and of the order that hdi_inverse_run takes. */
 static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, const hdi_factor *f) {
     hd_error none;
     uint64_t bytes;
     hdi_scope keep = hdi_scope_tally(&bytes, &none);
     hdi_inverse z;
     hdi_inverse_take(&z, s, width, f, &keep);
+    (void)HDI_TAKE(&keep, int32_t, s->n_top > 0 ? hdi_inverse_count(&z, s) : 0);
     return bytes;
 }
 
@@ -21178,7 +21179,8 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
     if (!g->diag) {
         held = hdi_factor_bytes(&m->sym, 1);
         hdi_scope_count(&held, n, sizeof(char));
-        hdi_scope_count(&held, 3 * n + 2 * n_comp, sizeof(double));
+        hdi_scope_count(&held, 3 * n, sizeof(double));
+        hdi_scope_count(&held, 2 * n_comp, sizeof(double));
         make = hdi_inverse_bytes(&m->sym, 1, NULL);
         hdi_scope_count(&make, nnz, sizeof(double));
         hdi_scope_count(&make, n_comp, sizeof(char));
@@ -21186,7 +21188,8 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
     if (forms && !g->formed) {
         form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, NULL);
         hdi_scope_count(&form, nnz, sizeof(hd_c64));
-        hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1) + 2 * n, sizeof(double));
+        hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1), sizeof(double));
+        hdi_scope_count(&form, 2 * n, sizeof(double));
         hdi_scope_count(&form, n_comp, sizeof(char));
     }
     return held + (make > form ? make : form);

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "guard.h"
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
 #include "dense.h"
@@ -92,6 +93,73 @@ static void int_sizes(void) {
     CHECK(!hdi_size(all / 16, 16, 80, all, &out));
     CHECK(!hdi_size(small + 1, 8, 0, small, &out) && !hdi_size(small / 8, 8, 80, small, &out) && !hdi_size(0, 8, 80, 79, &out));
     CHECK(hdi_size(small / 8, 8, 7, small, &out) && out == small);
+}
+
+/* ---- [02] error ---- */
+
+static void int_texts(void) {
+    static const double bytes[8] = {0, 1, 1e5, 100001, 999999, 123456789, 5e9, 9.9e5};
+    static const char *const want[8] = {"0.0 MB", "0.1 MB", "0.1 MB", "0.2 MB", "1.0 MB", "123.5 MB", "5000.0 MB", "1.0 MB"};
+    hd_error e;
+    size_t k;
+    for (k = 0; k < 8; k++) {
+        hdi_error_clear(&e);
+        hdi_text_bytes(&e, bytes[k]);
+        CHECK_MSG(strcmp(e.text, want[k]) == 0, "%g bytes: %s", bytes[k], e.text);
+    }
+    hdi_error_clear(&e);
+    for (k = 0; k < 200; k++) hdi_text_add(&e, "abcdefg");   /* until there is no room: the last letters are left out */
+    CHECK(strlen(e.text) == sizeof e.text - 1);
+    for (k = 0; k + 1 < sizeof e.text; k++) CHECK(e.text[k] == (char)('a' + k % 7));
+}
+
+/* Takes that are only added up: as many bytes as blocks of their own would count, and 2^60 where a number has no meaning. */
+static void int_tally(void) {
+    hd_context ctx;
+    hd_error e;
+    uint64_t bytes;
+    hdi_scope s = hdi_scope_tally(&bytes, &e), real;
+    memset(&ctx, 0, sizeof ctx);
+    real = hdi_scope_begin(&ctx, &e);
+    CHECK(!HDI_TAKE(&s, double, 7) && HDI_TAKE(&real, double, 7));
+    CHECK(!HDI_TAKE(&s, char, 0) && HDI_TAKE(&real, char, 0));
+    CHECK(!HDI_TAKE(&s, hd_c64, 1000) && HDI_TAKE(&real, hd_c64, 1000));
+    CHECK(bytes == ctx.bytes_in_use && e.status == HD_OK);
+    CHECK(hdi_scope_end(&real) == HD_OK && ctx.bytes_in_use == 0);
+    hdi_scope_count(&bytes, UINT64_MAX / 8, 8);
+    CHECK(bytes == UINT64_C(1) << 60);
+    hdi_scope_count(&bytes, 5, 8);
+    CHECK(bytes == UINT64_C(1) << 60);
+    ctx.byte_limit = 1000;
+    ctx.bytes_in_use = 900;
+    CHECK(hdi_need(&ctx, 100, "one more", &e) == HD_OK);
+    CHECK(hdi_need(&ctx, 101, "one more", &e) == HD_ERR_MEMORY_LIMIT && e.value == 1001);
+    CHECK(strcmp(e.text, "one more would bring the memory in use to 0.1 MB, and the byte limit is 0.1 MB") == 0);
+}
+
+/* ---- [05] arrays ---- */
+
+static void int_arrays(void) {
+    static const int32_t rel[9] = {-4, -1, 0, 0, 3, 3, 3, 8, 900};
+    int32_t a[6] = {9, 9, 9, 9, 9, 9}, parent[9] = {0, 0, 1, 3, 4, 4, 4, 7, 7};
+    int64_t count[6] = {2, 0, 5, 1, -7, 77}, ptr[5] = {4, 4, 9, 13, 77};
+    int64_t n, x, at;
+    hdi_fill_i32(a + 1, 4, -3);
+    CHECK(a[0] == 9 && a[1] == -3 && a[2] == -3 && a[3] == -3 && a[4] == -3 && a[5] == 9);
+    hdi_fill_own(a + 1, 4);
+    CHECK(a[0] == 9 && a[1] == 0 && a[2] == 1 && a[3] == 2 && a[4] == 3 && a[5] == 9);
+    CHECK(hdi_prefix_sum(count, 4) == 8);
+    CHECK(count[0] == 0 && count[1] == 2 && count[2] == 2 && count[3] == 7 && count[4] == 8 && count[5] == 77);
+    CHECK(hdi_fullest(count, 4) == 5 && hdi_fullest(count, 2) == 2 && hdi_fullest(count + 1, 1) == 1 && hdi_fullest(count, 0) == 1);
+    hdi_rewind(ptr, 3);
+    CHECK(ptr[0] == 0 && ptr[1] == 4 && ptr[2] == 4 && ptr[3] == 9 && ptr[4] == 77);
+    CHECK(hdi_count_sets(parent, 9) == 3);       /* {0 1 2}, {3}, {4 5 6}, {7 8} */
+    for (n = 0; n <= 9; n++) {
+        for (x = -6; x < 910; x++) {
+            for (at = 0; at < n && rel[at] < x; at++) {}
+            if (hdi_lower_bound(rel, n, x) != at) CHECK_MSG(0, "%d of %d", (int)x, (int)n);
+        }
+    }
 }
 
 /* ---- [03] memory ---- */
@@ -334,6 +402,53 @@ static int32_t int_bandwidth(const hd_csr *a, const int32_t *perm) {
             if (place[i] - place[a->col[p]] > width) width = place[i] - place[a->col[p]];
     free(place);
     return width;
+}
+
+/* Rows longer than 10 sqrt(n) are eliminated last: here hubs of leaves, which would be bare after them, before the cycle is half done. In the same
+ * order whether a caller counts by long or by short numbers. */
+static void int_amd_dense(void) {
+    enum { LEAVES = 900, HUBS = 2, CYCLE = 500, N = HUBS * (LEAVES + 1) + CYCLE, NNZ = 2 * (HUBS * LEAVES + CYCLE) };
+    static int32_t from[NNZ], to[NNZ], perm[N], short_perm[N], ptr[N + 1], place[N];
+    static double one[NNZ];
+    hd_csr a;
+    hd_context ctx;
+    hd_error e;
+    hdi_amd_graph g;
+    int32_t i, k = 0, *work;
+    memset(&ctx, 0, sizeof ctx);
+    for (i = 0; i < HUBS * LEAVES; i++) {        /* hubs 0 and 1, the leaves of both, the cycle */
+        from[k] = to[k + 1] = i % HUBS;
+        to[k] = from[k + 1] = HUBS + i;
+        k += 2;
+    }
+    for (i = 0; i < CYCLE; i++) {
+        from[k] = to[k + 1] = HUBS * (LEAVES + 1) + i;
+        to[k] = from[k + 1] = HUBS * (LEAVES + 1) + (i + 1) % CYCLE;
+        k += 2;
+    }
+    for (i = 0; i < NNZ; i++) one[i] = 1;
+    CHECK(hd_csr_from_triplets(&a, N, N, NNZ, from, to, one, NULL, &e) == HD_OK);
+    CHECK(hdi_amd_order(&a, perm, &ctx, &e) == HD_OK);
+    CHECK(perm[N - 1] + perm[N - 2] == 1);
+    for (i = 0; i < N; i++) place[i] = -1;
+    for (i = 0; i < N; i++) place[perm[i]] = i;
+    for (i = 0; i < N; i++) CHECK(place[i] >= 0);
+    g.n = g.inner = N;
+    g.wide = NULL;
+    g.ptr = ptr;
+    g.col = a.col;
+    for (i = 0; i <= N; i++) ptr[i] = (int32_t)a.row_ptr[i];
+    work = DENSE_NEW(int32_t, hdi_amd_part_words(N, 0, NNZ));
+    hdi_amd_part(&g, short_perm, work);
+    CHECK(memcmp(perm, short_perm, sizeof perm) == 0);
+    free(work);
+    hd_csr_free(&a, NULL);
+}
+
+/* The share of the way from the first residual to the target, by powers of ten. */
+static void int_krylov_done(void) {
+    CHECK(fabs(hdi_krylov_done(1e3, 1e1, 1e-5) - 0.25) < 1e-15 && fabs(hdi_krylov_done(1e-2, 1e-8, 1e-10) - 0.75) < 1e-15);
+    CHECK(hdi_krylov_done(5, 5, 1e-3) == 0 && hdi_krylov_done(5, 1e-3, 1e-3) == 1 && hdi_krylov_done(1e-3, 1e-3, 1e-2) == 1 && hdi_krylov_done(5, 1, 0) == 0);
 }
 
 static void int_cuthill_mckee(void) {
@@ -1877,6 +1992,151 @@ static void int_pairs_by_entries(void) {
     }
 }
 
+/* f(s, s), f(v, v) and f(s, v) of row s and all rows, f = x g(lambda) x', or B f B; d2[v] = f(s, s) - 2 f(s, v) + f(v, v). */
+static void int_dense_distances(const dense_pair *p, const double *g, int by_b, int32_t source, double *d2) {
+    const int32_t n = p->n;
+    double *x = DENSE_NEW(double, n);
+    int32_t k, v;
+    for (v = 0; v < n; v++) d2[v] = 0;
+    for (k = 0; k < n; k++) {                    /* the sum over k of g_k (y_sk - y_vk)^2, y = x or B x: without cancellation */
+        memcpy(x, p->x + (size_t)k * (size_t)n, (size_t)n * sizeof *x);
+        if (by_b) dense_apply(p->B, p->x + (size_t)k * (size_t)n, x, n);
+        for (v = 0; v < n; v++) d2[v] += g[k] * (x[source] - x[v]) * (x[source] - x[v]);
+    }
+    free(x);
+}
+
+/* What is foretold of memory is what is taken: for the factor of L and its inverse, and for the forms after that. */
+static void int_ground_need(void) {
+    int kind, form;
+    for (kind = 0; kind < 2; kind++) {
+        for (form = 0; form < 2; form++) {
+            hd_laplacian *lap = int_mesh(kind, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+            hd_context ctx;
+            hd_error e;
+            hdi_elim m;
+            hdi_ground g;
+            uint64_t need, before;
+            memset(&ctx, 0, sizeof ctx);
+            memset(&g, 0, sizeof g);
+            CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
+            need = hdi_ground_need(&m, &g, 0);
+            before = ctx.bytes_peak = ctx.bytes_in_use;
+            CHECK(hdi_ground_make(&m, &g, &e) == HD_OK);
+            CHECK_MSG(ctx.bytes_peak - before == need, "mesh %d, form %d: %llu bytes, %llu foretold", kind, form, (unsigned long long)(ctx.bytes_peak - before),
+                      (unsigned long long)need);
+            need = hdi_ground_need(&m, &g, 1);
+            before = ctx.bytes_peak = ctx.bytes_in_use;
+            CHECK(hdi_ground_forms(&m, &g, &e) == HD_OK);
+            CHECK_MSG(ctx.bytes_peak - before == need, "mesh %d, form %d: forms %llu bytes, %llu foretold", kind, form, (unsigned long long)(ctx.bytes_peak - before),
+                      (unsigned long long)need);
+            CHECK(hdi_ground_need(&m, &g, 1) == 0);
+            hdi_ground_free(&g, &ctx);
+            hdi_elim_free(&m);
+            CHECK(ctx.bytes_in_use == 0);
+            hd_laplacian_free(lap);
+        }
+    }
+}
+
+static void int_parts(void) {
+    const hdi_parts a = {1, 5, 3}, b = {2, 4, 6}, least = hdi_parts_least(a, b), twice = hdi_parts_scale(2, a), none = {HUGE_VAL, 0, 1};
+    CHECK(least.rational == 1 && least.solver == 4 && least.rounding == 3);
+    CHECK(twice.rational == 2 && twice.solver == 10 && twice.rounding == 6);
+    CHECK(hdi_parts_scale(0, none).rational == 0 && hdi_parts_scale(3, none).rational == HUGE_VAL && hdi_parts_scale(HUGE_VAL, none).solver == 0);
+}
+
+/* Factors with pivots that are a little wrong: the error of a column is within the bound that its residuals give, which is not much larger. */
+static void int_distance_windows_damaged(hdi_distance_shared *z, const hdi_terms *source, const char *what) {
+    const int32_t n = (int32_t)z->w.n, n_times = z->w.n_times;
+    double *exact = DENSE_NEW(double, (int64_t)n_times * n);
+    uint64_t seed = 77;
+    int32_t i, q;
+    hdi_distance_shared_column(z, source);
+    for (q = 0; q < n_times; q++) memcpy(exact + (size_t)q * z->w.n, hdi_distance_shared_at(z, q), z->w.n * sizeof *exact);
+    for (i = 0; i < z->m->n_used; i++) {
+        hdi_factor *f = z->m->pack + i;
+        for (q = 0; q < f->width * n; q++) f->dinv[q] *= 1 + 1e-5 * dense_signed(&seed);
+    }
+    hdi_distance_shared_column(z, source);
+    for (q = 0; q < n_times; q++) {
+        const double off = hdi_distance_shared_off(z, q), *g = hdi_window_at(&z->w, z->w.values, q) + n, *c = hdi_distance_shared_at(z, q);
+        double most = 0;
+        for (i = 0; i < n; i++) most = fmax(most, fabs(c[i] - exact[(size_t)q * z->w.n + (size_t)i]) / (off * sqrt(g[i])));
+        CHECK_MSG(most <= 1 && most > 1e-4, "%s, time %d: errors are up to %g of the bound", what, (int)q, most);
+    }
+    free(exact);
+}
+
+/* Windows of distances: f is exp(-2tA), and g bounds the resolvent 1/(1 + 2tA) from above without being much larger; so do diagonals and columns
+ * together, for every pair of vertices and each of the times. */
+static void int_distance_windows(void) {
+    enum { TIMES = 9 };
+    int form, kind;
+    for (form = 0; form < 2; form++) {
+        hd_laplacian *lap = int_mesh(0, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const int32_t n = lap->n_active;
+        double t[TIMES], *g = DENSE_NEW(double, n), *want = DENSE_NEW(double, 2 * (int64_t)n), *B;
+        dense_pair pair;
+        int32_t i, q, r;
+        B = shared_dense(&lap->L, lap->B ? lap->B : lap->L.val);
+        for (i = 0; i < n * n && !lap->B; i++) B[i] = i % (n + 1) == 0 ? lap->mass[i / (n + 1)] : 0;
+        CHECK(dense_pair_solve(&pair, shared_dense(&lap->L, lap->L.val), B, n));
+        for (q = 0; q < TIMES; q++) t[q] = lap->h * lap->h * pow(10, 0.2 * q);
+        for (kind = 0; kind < 2; kind++) {
+            double off = 0, low = HUGE_VAL, high = 0;
+            hd_heat *heat = NULL;
+            hdi_heat_call h;
+            hdi_scope s;
+            hdi_distance_shared z;
+            CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+            CHECK(hdi_distance_begin(&h, heat, (hd_distance_kind)kind, TIMES, t, 1, NULL, NULL) >= 0);
+            CHECK(hdi_heat_sort_times(&h, 2) >= 0 && hdi_heat_analysed(heat, h.e) >= 0);
+            s = hdi_scope_begin(heat->ctx, h.e);
+            CHECK(hdi_distance_shared_take(&z, &h, (hd_distance_kind)kind, 0, TIMES, &s) >= 0);
+            CHECK(hdi_window_run(&h, &z.w, HDI_SHARED_DISTANCE_TOL, z.full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL) >= 0);
+            for (r = 0; r < 3; r++) {
+                const int32_t at = r * (n - 1) / 2, source = z.m->lap->vertex[at];
+                const hdi_terms one = hdi_terms_vertex(source);
+                hdi_distance_shared_column(&z, &one);
+                for (q = 0; q < TIMES; q++) {
+                    const double *f = hdi_window_at(&z.w, z.w.values, q), *c = hdi_distance_shared_at(&z, q);
+                    const int mass = z.weighted && !z.full;
+                    double size = 0;
+                    for (i = 0; i < n; i++) g[i] = exp(-2 * t[q] * pair.lambda[i]);
+                    int_dense_distances(&pair, g, kind, lap->row[source], want);
+                    for (i = 0; i < n; i++) g[i] = 1 / (1 + 2 * t[q] * pair.lambda[i]);
+                    int_dense_distances(&pair, g, kind, lap->row[source], want + n);
+                    for (i = 0; i < n; i++) size = fmax(size, want[i]);
+                    for (i = 0; i < n; i++) {
+                        const int32_t v = lap->row[z.m->lap->vertex[i]];
+                        const double b = mass ? z.m->lap->mass[i] : 1, bs = mass ? z.m->lap->mass[at] : 1;
+                        const double df = z.unit * (b * b * f[i] + bs * bs * f[at] - 2 * b * bs * c[i]);
+                        const double dg = z.unit * (b * b * f[n + i] + bs * bs * f[n + at] - 2 * b * bs * c[n + i]);
+                        if (i == at) continue;
+                        off = fmax(off, fabs(df - want[v]) / size);
+                        low = fmin(low, dg / want[n + v]);
+                        high = fmax(high, dg / want[n + v]);
+                    }
+                }
+            }
+            CHECK_MSG(off < 1e-6, "kind %d, form %d: squared distances off by %g", kind, form, off);
+            CHECK_MSG(low > 1 - 1e-9 && high < 10, "kind %d, form %d: g is %g to %g times the resolvent", kind, form, low, high);
+            for (r = 0; r < 3; r++) {
+                const hdi_terms one = hdi_terms_vertex(z.m->lap->vertex[r * (n - 1) / 2]);
+                int_distance_windows_damaged(&z, &one, form ? "diagonal" : "full");
+            }
+            hdi_scope_end(&s);
+            hdi_heat_end(&h);
+            hd_heat_free(heat);
+        }
+        dense_pair_free(&pair);
+        hd_laplacian_free(lap);
+        free(g);
+        free(want);
+    }
+}
+
 /* ---- [11] intrinsic ---- */
 
 /* The area of a needle with sides 1, 1 and x, and of triangles of integer sides. */
@@ -2304,6 +2564,9 @@ int main(void) {
     int_division();
     int_complex();
     int_sizes();
+    int_texts();
+    int_tally();
+    int_arrays();
     int_memory();
     int_scope_room();
     int_sorting();
@@ -2313,6 +2576,8 @@ int main(void) {
     int_collinear();
     int_norm();
     int_cuthill_mckee();
+    int_amd_dense();
+    int_krylov_done();
     int_ildl_trees();
     int_ildl_row_sums();
     int_precond_make();
@@ -2334,6 +2599,9 @@ int main(void) {
     int_invert();
     int_resolvent_pole();
     int_pairs_by_entries();
+    int_distance_windows();
+    int_ground_need();
+    int_parts();
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }

@@ -30,6 +30,7 @@
 #include <unistd.h>
 #endif
 
+#include "guard.h"
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
 #ifdef _WIN32
