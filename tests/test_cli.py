@@ -522,20 +522,93 @@ class Failures(Case):
             self.assertRegex(p.stderr.decode(), r"^heatdiff: error: .*limit\....: cannot write: .*\n$")
             self.assertEqual(sorted(os.listdir(self.folder)), before)
 
-    def hostile(self, *args):
-        """Runs what must fail in one line, in little memory and time, leaving the folder as it is."""
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_file_size_limit_of_every_command(self):
+        """The same for each command and each kind of file that it writes."""
+        import resource
+        values, pairs = self.file("values.txt", "\n".join(map(str, range(12)))), self.file("pairs.txt", "0 1\n2 3\n")
+        fields = ("txt", "csv", "npy", "ply", "obj", "vtu", "png")
+        for name, kinds, *more in (("diffuse", fields, "--input", values, "--t", "1"), ("distance", fields, "--source", "0", "--t", "1"),
+                                   ("pairs", fields[:3], "--input", pairs, "--t", "1"), ("hks", fields, "--t", "1"),
+                                   ("trace", fields[:3], "--t", "1"), ("sample", fields[:3], "--t", "1", "--count", "3"),
+                                   ("geodesic", fields, "--source", "0"), ("spectrum", fields, "--count", "3"),
+                                   ("levels", ("txt", "csv", "npy", "obj"), "--input", values, "--levels", "auto:3"),
+                                   ("render", ("png",), "--input", values)):
+            for kind in kinds:
+                with self.subTest((name, kind)):
+                    run = (name, self.small, *more, "--quiet", "-o", self.path("over." + kind))
+                    text = self.hostile(*run, limit=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10, 10)))
+                    self.assertIn("over.%s: cannot write: " % kind, text)
+
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_outputs_that_cannot_be(self):
+        """A folder nobody may write to, a folder in place of the file, a link to itself, a file in place of the folder."""
+        locked, loop, folder = self.path("locked"), self.path("loop.txt"), self.path("folder.txt")
+        os.mkdir(locked, 0o555)
+        os.mkdir(folder)
+        os.symlink(loop, loop)
+        os.chmod(self.folder, 0o755)
+
+        def nobody():
+            if os.getuid() == 0:
+                os.setuid(65534)
+        try:
+            runnable = subprocess.run([TOOL, "--version"], preexec_fn=nobody, stdout=subprocess.DEVNULL).returncode == 0
+        except (OSError, subprocess.SubprocessError):
+            runnable = False                     # the tool is where only root may look
+        if runnable:
+            self.assertIn("cannot write", self.hostile("kernel", self.small, "--source", "0", "--t", "1", "-o", locked + "/x.txt", limit=nobody))
+        for out in (loop, folder, os.path.join(self.small, "x.txt"), self.path("no/folder/x.txt")):
+            self.assertIn("cannot write", self.hostile("kernel", self.small, "--source", "0", "--t", "1", "-o", out))
+        self.assertEqual(os.listdir(locked) + os.listdir(folder), [])
+        self.assertIn("cannot open", self.hostile("info", loop))
+        os.remove(loop)
+        os.rmdir(locked)
+        os.rmdir(folder)
+
+    def hostile(self, *args, stdin=subprocess.DEVNULL, most=1 << 30, memory=False, limit=None):
+        """Runs what must fail in one line, in little memory and time, leaving the folder as it is. memory: lack of it is told."""
         import resource
         before = sorted(os.listdir(self.folder))
-        most = 2 << 30
-        p = subprocess.run([TOOL, *args], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
-                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
+
+        def limits():
+            resource.setrlimit(resource.RLIMIT_AS, (most, most))
+            if limit:
+                limit()
+        p = subprocess.run([TOOL, *args], stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60, preexec_fn=limits)
         text = p.stderr.decode(errors="replace")
         self.assertEqual(p.returncode, 1, text)
         self.assertRegex(text, r"^heatdiff: error: [^\n]*\n$")
         self.assertLess(len(text), 600)
-        self.assertNotIn("memory", text)
+        self.assertEqual("memory" in text, memory, text)
         self.assertEqual(sorted(os.listdir(self.folder)), before)
         return text
+
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_endless_lines(self):
+        """Lines of 100 and of 20 MB: none is gone through again for each of its bytes."""
+        size, long = 20 << 20, 100 << 20
+        for name, content in (("word.ply", b"ply\nformat ascii 1.0\nelement " + b"x" * size), ("comment.ply", b"ply\ncomment " + b"x" * size),
+                              ("name.stl", b"solid " + b"x" * size), ("blank.obj", b" " * size), ("digits.off", b"OFF\n1 1 0 " + b"1" * size),
+                              ("digits.xyz", b"0 0 " + b"1" * long), ("zero.obj", b"v 0 0 0\0" * (size // 8))):
+            with self.subTest(name):
+                path = self.file(name, content)
+                self.assertIn(name, self.hostile("info", path))
+                os.remove(path)
+        for name, content in (("names.csv", b"a," * (size // 2)), ("commas.csv", b"," * size), ("quotes.csv", b'"' * long),
+                              ("open.csv", b'"' + b"x" * size), ("quoted.csv", b'"a",' * (size // 4))):
+            with self.subTest(name):
+                path = self.file(name, content)
+                self.assertIn(name, self.hostile("diffuse", self.small, "--input", path, "--t", "1"))
+                os.remove(path)
+
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_endless_input(self):
+        """What never ends is read up to the memory that there is."""
+        with open("/dev/zero", "rb") as zeros:
+            self.hostile("info", "-", stdin=zeros, most=1 << 28, memory=True)
+            zeros.seek(0)
+            self.hostile("diffuse", self.small, "--input", "-", "--t", "1", stdin=zeros, most=1 << 28, memory=True)
 
     @unittest.skipUnless(POSIX, "needs limits")
     def test_hostile_meshes(self):
@@ -560,13 +633,20 @@ class Failures(Case):
 
     @unittest.skipUnless(POSIX, "needs limits")
     def test_hostile_fields(self):
-        shapes = ("(%d, 16)" % (1 << 60), "(12, %d)" % (1 << 60), "(%d, %d)" % (1 << 32, 1 << 32), "(4294967296,)", "(-1, 12)")
-        for shape in shapes:
-            head = "{'descr': '<f8', 'fortran_order': False, 'shape': %s, }" % shape
-            head = head.ljust(117) + "\n"
-            data = b"\x93NUMPY\x01\0" + bytes([len(head) % 256, len(head) // 256]) + head.encode() + b"\0" * 96
-            with self.subTest(shape):
-                self.assertIn("h.npy", self.hostile("diffuse", self.small, "--input", self.file("h.npy", data), "--t", "1"))
+        def npy(head):
+            data = b"\x93NUMPY\x01\0" + struct.pack("<H", len(head)) + head + b"\0" * 96
+            return self.hostile("diffuse", self.small, "--input", self.file("h.npy", data), "--t", "1")
+        start = b"{'descr': '<f8', 'fortran_order': False, 'shape': "
+        for shape, text in (("(%d, 16)" % (1 << 60), "1152921504606846976 x 16 numbers"), ("(12, %d)" % (1 << 60), "1152921504606846976 columns"),
+                            ("(%d, %d)" % (1 << 32, 1 << 32), "4294967296 columns"), ("(4294967296,)", "4294967296 x 1 numbers"),
+                            ("(%d, 16)" % 10 ** 16, "10000000000000000 x 16 numbers"), ("(%d,)" % 10 ** 30, "announces 1" + "0" * 30),
+                            ("(12, 1" + "0" * 60000 + ")", "announces 1000"), ("(-1, 12)", "shape"), ("(" * 60000, "shape"),
+                            ("(12" + ", 1" * 20000 + ")", "20001 dimensions"), ("(12\0, 1)", "shape")):
+            with self.subTest(shape[:60]):
+                self.assertRegex(npy(start + shape.encode() + b", }\n"), r"h\.npy: .*" + text)
+        for head in (b"(" * 60000, b"{'descr': " * 6000, b"[[" * 30000, b"{" * 60000):
+            with self.subTest(head[:20]):
+                self.assertIn("h.npy: the type of its numbers", npy(head))
         for content in (b"\x93NUMPY\x02\0\xff\xff\xff\xff{", b"1 " * 5000000, b"1" * 20000000, b"0\0" * 12):
             self.assertIn("h.txt", self.hostile("diffuse", self.small, "--input", self.file("h.txt", content), "--t", "1"))
 

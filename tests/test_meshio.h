@@ -608,6 +608,10 @@ static void tmio_test_table_npy(void)
     tmio_bad_table("x.npy", t.b, t.n, "x.npy", "empty");
     tmio_make_npy(&t, "<f8", "False", "(999999999999999, 999999999)", 1);
     tmio_bad_table("x.npy", t.b, t.n, "x.npy", "announced");
+    tmio_make_npy(&t, "<f8", "False", "(1152921504606846976, 16)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "1152921504606846976 x 16 numbers");
+    tmio_make_npy(&t, "<f8", "False", "(9223372036854775808, 16)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "announces 9223372036854775808, more");
     tmio_make_npy(&t, "<f8", "Maybe", "(1,)", 1);
     tmio_bad_table("x.npy", t.b, t.n, "x.npy", "order");
     tmio_make_npy(&t, "<f8", "False", "(1,)", 9);

@@ -477,15 +477,14 @@ static const char *mio_number(const char *p, double *x)
     return p;
 }
 
-/* Reads an integer at p as mio_number does. Those beyond 10^15 stay there: they are out of any range we have. */
+/* Reads an integer at p as mio_number does. Those beyond INT64_MAX become it: they are out of any range we have. */
 static const char *mio_integer(const char *p, int64_t *x)
 {
-    const int64_t most = 1000000000000000;
     const int minus = *p == '-';
     int64_t v = 0;
     if (*p == '-' || *p == '+') p++;
     if (*p < '0' || *p > '9') return NULL;
-    for (; *p >= '0' && *p <= '9'; p++) if (v < most) v = 10 * v + (*p - '0');
+    for (; *p >= '0' && *p <= '9'; p++) v = v < INT64_MAX / 10 ? 10 * v + (*p - '0') : INT64_MAX;
     *x = minus ? -v : v;
     return p;
 }
@@ -1692,8 +1691,8 @@ static int mio_table_names(const mio_in *in)
     double x;
     if (!((*p | 32) >= 'a' && (*p | 32) <= 'z') && *p != '_' && *p != '"') return 0;
     for (; p < in->end && !mio_eol(*p); p++) {
-        const char *q = p + strcspn(p, ", \t\r\n");
-        if (*p == '"') q = p + 1 + strcspn(p + 1, "\"\r\n");
+        /* one or the other, so that no byte is looked at for each quote before it */
+        const char *const q = *p == '"' ? p + 1 + strcspn(p + 1, "\"\r\n") : p + strcspn(p, ", \t\r\n");
         if (mio_number(p, &x) == q || (mio_not_finite(p) && q - p <= 3 + (*p == '-' || *p == '+'))) return 0;
         p = q;
         if (mio_eol(*p)) break;                         /* else it stands on what ends the item */
@@ -1761,6 +1760,7 @@ static int mio_npy_shape(const mio_in *in, mio_npy *h, const char *p, const char
         const char *const q = mio_integer(p, &v);
         if (*p == ' ' || *p == ',' || *p == 'L') { p++; continue; }
         if (!q || v < 0) return mio_fail(in, 0, "the header does not tell the shape");
+        if (v == INT64_MAX) return mio_fail(in, 0, "the header announces %.*s, more than any file holds", q - p < 40 ? (int)(q - p) : 40, p);
         if (h->dimensions < 2) h->shape[h->dimensions] = v;
         h->dimensions++;
         p = q;
