@@ -1,32 +1,352 @@
 #!/usr/bin/env python3
-"""Compiles and runs the C code of README.md, as C and as C++: test_readme.py [CC]. What the reader sees is what works."""
+"""What the pages say is what works: runs the code and the commands of README.md, examples/README.md, tools/README.md and
+tests/README.md, and looks up every name in them.
+
+    test_readme.py [CC]             CC: the C compiler, by default cc
+    test_readme.py [CC] --pictures  also puts the pictures that the commands make into examples/
+
+The rules, the same for every page:
+
+  C code     is compiled as the reader sees it, as C99 and as C++11, and run.
+  commands   of README.md and then examples/README.md run as a reader would run them, from top to bottom in one folder.
+             `cc` stands for a script here: it takes the implementation out of a program and links the one that is
+             compiled already, at -O1. The programs that CMakeLists.txt lists in hd_examples_timed are built and not run.
+             Output that the page shows below a command must come, line by line, with numbers alike to 2 %. Numbers below
+             1e-6, seconds and milliseconds may differ.
+  others     A block that calls one of the programs in OTHERS needs packages or takes minutes, as do the measurements of
+             tools/README.md and tests/README.md. Such commands are looked up instead: programs must compile, scripts must
+             be there, and each must know the options it is given.
+  pictures   exist and have at most 150 KB. Those that commands make are the same as those in the folder.
+  names      hd_, HD_ and HEATDIFF_ names, options, files, links and headings must exist.
+  sections   of tools/README.md and tests/README.md that have a table have a command, too.
+  length     README.md has at most 180 lines.
+
+Needs Python 3, a C compiler, bash and awk."""
 import os
 import re
+import shutil
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PAGES = ["README.md", "examples/README.md", "tools/README.md", "tests/README.md"]
+RUN = PAGES[:2]
+OTHERS = ("cmake", "ctest", "python3", "mpicc", "mpirun", "bash", "gcc", "c++", "tools/", "tests/")
+LENGTH, PICTURE_BYTES, ALIKE, SMALL = 180, 150000, 0.02, 1e-6
+NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?(?![\w])")
+COMPILER = """#!/bin/bash
+# cc ARGUMENTS: compiles each source without its implementation, at -O1, and links the one that is there
+args=()
+for a in "$@"; do
+  case $a in
+    *.c) sed '/^#define HEATDIFF_IMPLEMENTATION/d' "$a" >"{work}/$(basename "$a")"
+         args+=(-I"$(dirname "$a")" "{work}/$(basename "$a")" "{work}/implementation.o") ;;
+    -O2|-O3) args+=(-O1) ;;
+    *) args+=("$a") ;;
+  esac
+done
+exec "{cc}" -I"{top}" "${{args[@]}}"
+"""
+
+passed, failures = 0, []
+
+
+def check(good, page, what):
+    global passed
+    passed += bool(good)
+    if not good:
+        failures.append("%s: %s" % (page, what))
+    return good
+
+
+def read(path):
+    with open(os.path.join(TOP, path), encoding="utf-8") as f:
+        return f.read()
+
+
+def blocks(text):
+    """(language, lines, the block of text right below or None) of every fenced block."""
+    found = re.findall(r"^```(\w*)\n(.*?)^```$", text, re.S | re.M)
+    places = [m.span() for m in re.finditer(r"^```(\w*)\n(.*?)^```$", text, re.S | re.M)]
+    for k, (language, body) in enumerate(found):
+        below = None
+        if k + 1 < len(found) and found[k + 1][0] == "text" and places[k + 1][0] == places[k][1] + 1:
+            below = found[k + 1][1]
+        yield language, body, below
+
+
+def commands(body):
+    """The commands of a block: continued lines joined, comments left out."""
+    for line in re.sub(r"\\\n", " ", body).splitlines():
+        line = re.sub(r"(^|\s)#\s.*", "", line).strip()
+        if line:
+            yield line
+
+
+def looked_up(page, body):
+    return page not in RUN or any(c.startswith(OTHERS) or " mpirun " in " " + c for c in commands(body))
+
+
+# ---- pictures ----
+
+def pixels(path):
+    """Width, height and bytes of a PNG with three bytes a pixel."""
+    with open(path, "rb") as f:
+        data = f.read()
+    at, packed, size = 8, b"", None
+    while at < len(data):
+        n, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            size = struct.unpack(">IIBB", data[at + 8:at + 18])
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + n]
+        at += 12 + n
+    assert size[2:] == (8, 2), "not RGB"
+    raw, width, rows, above = zlib.decompress(packed), 3 * size[0], [], bytearray(3 * size[0])
+    for y in range(size[1]):
+        kind, row = raw[y * (width + 1)], bytearray(raw[y * (width + 1) + 1:(y + 1) * (width + 1)])
+        for x in range(width):
+            a, b = row[x - 3] if x >= 3 else 0, above[x]
+            c = above[x - 3] if x >= 3 else 0
+            p = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+            row[x] = (row[x] + (0, a, b, (a + b) // 2, p)[kind]) & 255
+        rows.append(row)
+        above = row
+    return size[0], size[1], b"".join(rows)
+
+
+def same_picture(one, other):
+    with open(one, "rb") as f, open(other, "rb") as g:
+        if f.read() == g.read():
+            return True
+    a, b = pixels(one), pixels(other)
+    return a[:2] == b[:2] and sum(abs(x - y) for x, y in zip(a[2], b[2])) <= len(a[2])
+
+
+# ---- commands that run ----
+
+def alike(shown, said):
+    """Whether a line of output is the one that the page shows."""
+    if NUMBER.sub("#", shown).split() != NUMBER.sub("#", said).split():
+        return False
+    for a, b in zip(NUMBER.finditer(shown), NUMBER.finditer(said)):
+        x, y = float(a.group()), float(b.group())
+        if re.match(r" m?s\b", shown[a.end():]) or max(abs(x), abs(y)) < SMALL:
+            continue
+        if abs(x - y) > ALIKE * max(abs(x), abs(y)):
+            return False
+    return True
+
+
+def check_output(page, shown, said):
+    lines = iter(said.splitlines())
+    for line in shown.splitlines():
+        check(any(alike(line, other) for other in lines), page, "the output has no line `%s`" % line)
+
+
+def run_commands(page, text, work, folder, timed, keep):
+    environment = dict(os.environ, PATH=os.path.join(work, "bin") + os.pathsep + os.environ["PATH"])
+    for language, body, below in blocks(text):
+        if language != "sh" or looked_up(page, body):
+            continue
+        names = re.findall(r"examples/(\w+)\.c", body)
+        slow = [n for n in names if n in timed]
+        script = re.sub(r" && \./\w+", "", body) if slow else body
+        done = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=folder, env=environment, timeout=120,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        if check(done.returncode == 0, page, "failed:\n%s%s" % (script, done.stderr)) and below and not slow:
+            check_output(page, below, done.stdout)
+        for name in re.findall(r"-o (\w+\.png)", body):
+            made, kept = os.path.join(folder, name), os.path.join(TOP, "examples", name)
+            if page != "examples/README.md":
+                continue
+            if keep:
+                shutil.copyfile(made, kept)
+            check(os.path.exists(kept) and same_picture(made, kept), page, "examples/%s is another picture" % name)
+
+
+# ---- commands that are looked up ----
+
+def known(option, *texts):
+    return any(re.search(r"(?<![\w-])" + re.escape(option) + r"(?![\w-])", t) for t in texts)
+
+
+def program_text(path):
+    """The source of a program or script, and of the headers of tools/ and examples/ that it includes."""
+    text = read(path)
+    for name in re.findall(r'#include "(\w+\.h)"', text):
+        here = os.path.join(os.path.dirname(path), name)
+        text += read(here) if os.path.exists(os.path.join(TOP, here)) else ""
+    return text
+
+
+def look_up(page, text, cc, work):
+    built = {"heatdiff": "tools/heatdiff.c"}            # programs, by the source they come from
+    cmake, compiled = read("CMakeLists.txt"), set()
+    for name in re.findall(r"hd_program\((\w+) ", cmake):
+        built.setdefault(name, "tools/%s.c" % name)
+    built.update(runner="tests/runner.c", internals="tests/internals.c", fuzz="tests/fuzz/fuzz.c")
+    tests = re.findall(r"add_test\(NAME (\w+)", cmake)
+    for language, body, _ in blocks(text):
+        if language != "sh" or not looked_up(page, body):
+            continue
+        for command in (c for line in commands(body) for c in re.split(r"\s(?:&&|\|)\s", line)):
+            words = [w for w in command.split() if not re.match(r"^[A-Z_]+=", w)]
+            options = [w.split("=")[0] for w in words[1:] if re.match(r"--?[a-zA-Z]", w)]
+            files = [w for w in words if re.match(r"(?:\./)?(?:tools|tests|examples)/[\w./]+$", w)]
+            for f in files:
+                check(os.path.exists(os.path.join(TOP, f)), page, "there is no %s" % f)
+            sources = [f for f in files if f.endswith(".c")]
+            out = re.search(r" -o (\S+)", command)
+            if words and words[0] in ("cc", "gcc", "mpicc", "c++") and sources:
+                if out:
+                    built[out.group(1)] = sources[0]
+                if words[0] in ("cc", "gcc") and sources[0] not in compiled:
+                    compiled.add(sources[0])
+                    good = subprocess.run([os.path.join(work, "bin", "cc"), "-std=gnu99", "-fsyntax-only", os.path.join(TOP, sources[0])] +
+                                          [w for w in words if w.startswith("-D")], stderr=subprocess.PIPE).returncode == 0
+                    check(good, page, "%s does not compile" % sources[0])
+            elif words and words[0] == "cmake":
+                for d in re.findall(r"-D(HEATDIFF_\w+)=", command):
+                    check(d in cmake, page, "CMakeLists.txt has no %s" % d)
+                for t in re.findall(r"--target (\w+)", command):
+                    check(re.search(r"\b%s\b" % t, cmake), page, "CMakeLists.txt has no target %s" % t)
+            elif words and words[0] == "ctest":
+                for r in re.findall(r" -R (\S+)", command):
+                    check(any(re.search(r.strip("'\""), t) for t in tests), page, "no test is called %s" % r)
+            elif words:
+                program = os.path.basename(words[0])
+                source = next((f for f in files if f.endswith((".py", ".sh"))), None)
+                if not source and program in built:
+                    source = built[program]
+                if not source or not check(os.path.exists(os.path.join(TOP, source)), page, "there is no %s" % source):
+                    check(source or words[0] in ("export", "cd", "mkdir", "paste", "mpirun", "qemu-system-arm"), page,
+                          "what is `%s`?" % command)
+                    continue
+                mine = [o for o in options if words[0] not in ("mpirun", "qemu-system-arm")]
+                for option in mine:
+                    check(known(option, program_text(source)), page, "%s does not know %s" % (source, option))
+                if program == "runner":
+                    groups = re.findall(r'\{"(\w+)", test_', read("tests/runner.c"))
+                    for g in [w for w in words[1:] if re.match(r"[a-z_]+$", w)]:
+                        check(any(g in name for name in groups), page, "runner has no group %s" % g)
+
+
+# ---- names, links, lengths ----
+
+def slug(heading):
+    return re.sub(r"[^\w -]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def anchors(text):
+    text = re.sub(r"^```.*?^```$", "", text, flags=re.S | re.M)
+    return set(map(slug, re.findall(r"^#+ (.*)$", text, re.M))) | set(re.findall(r'<a id="([^"]+)">', text))
+
+
+def check_links(page, text):
+    folder = os.path.dirname(page)
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if re.match(r"https?:", target):
+            continue
+        path, _, anchor = target.partition("#")
+        path = os.path.normpath(os.path.join(folder, path)) if path else page
+        if check(os.path.exists(os.path.join(TOP, path)), page, "broken link: %s" % target) and anchor:
+            check(anchor in anchors(read(path)), page, "no such heading: %s" % target)
+        if path.endswith((".png", ".svg")) and os.path.exists(os.path.join(TOP, path)):
+            check(os.path.getsize(os.path.join(TOP, path)) <= PICTURE_BYTES, page, "%s is too large" % path)
+
+
+def check_names(page, text, header, programs):
+    quoted = re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```$", "", text, flags=re.S | re.M))
+    for q in quoted:
+        for name in re.findall(r"(?<![\w/.-])(?:hd|HD|HEATDIFF)_\w+", q):
+            place = programs if name.startswith("HEATDIFF") else header
+            whole = r"\b%s\b" % name if not name.endswith("_") else r"\b%s" % name
+            check(re.search(whole, place), page, "there is no name %s" % name)
+        for option in re.findall(r"(?<![\w-])--[a-z][\w-]*", q):
+            check(known(option, programs), page, "no program knows %s" % option)
+        for path in re.findall(r"^(?:\.\./)?((?:tools|tests|examples)/[\w./]+)", q):
+            check(os.path.exists(os.path.join(TOP, path)), page, "there is no %s" % path)
+
+
+def check_sections(page, text):
+    text = re.sub(r"^```(\w*).*?^```$", r"```\1", text, flags=re.S | re.M)
+    for section in re.split(r"^(?=##? )", text, flags=re.M)[2:]:
+        heading = section.split("\n")[0]
+        if re.search(r"^\|.*\d", section, re.M):
+            check("```sh" in section, page, "no command under `%s`" % heading)
+
+
+def sources():
+    """The text of all programs, scripts and CMake files."""
+    found = []
+    for folder in ("tools", "tests", "tests/fuzz", "tests/consumer", "examples/web", "examples/embedded", "examples/python"):
+        for name in sorted(os.listdir(os.path.join(TOP, folder))):
+            if name.endswith((".c", ".cpp", ".h", ".py", ".sh")):
+                found.append(read(folder + "/" + name))
+    return "\n".join(found)
+
+
+# ---- C code ----
+
+def start_programs(cc, text, work):
+    """Starts to compile the program of the page. As C its object, whose main has another name, is also the implementation
+    that other programs are linked to. As C++ it is compiled without optimisation, which finds the same errors sooner."""
+    code = [body for language, body, _ in blocks(text) if language == "c" and "int main" in body]
+    check(len(code) == 1, "README.md", "has %d programs" % len(code))
+    for name in ("readme.c", "readme.cpp"):
+        with open(os.path.join(work, name), "w", encoding="utf-8") as f:
+            f.write(code[0])
+    with open(os.path.join(work, "main.c"), "w") as f:
+        f.write("int readme_main(void);\nint main(void) { return readme_main(); }\n")
+    warn = ["-Wall", "-Wextra", "-I" + TOP]
+    return [subprocess.Popen([cc] + flags + warn, cwd=work) for flags in (
+        ["-std=c99", "-O1", "-Dmain=readme_main", "-c", "readme.c", "-o", "implementation.o"],
+        ["-x", "c++", "-std=c++11", "-O0", "readme.cpp", "-o", "readme_cpp", "-lm", "-lstdc++"])]
+
+
+def run_programs(cc, work):
+    subprocess.run([cc, "main.c", "implementation.o", "-o", "readme_c", "-lm"], cwd=work, check=True)
+    for name in ("readme_c", "readme_cpp"):
+        out = subprocess.run([os.path.join(work, name)], stdout=subprocess.PIPE, universal_newlines=True, timeout=60)
+        check(out.returncode == 0 and "error at most" in out.stdout, "README.md", "%s said %s" % (name, out.stdout))
+        print("%s: %s" % (name, out.stdout.strip()))
 
 
 def main():
-    cc = sys.argv[1] if len(sys.argv) > 1 else "cc"
-    text = open(os.path.join(TOP, "README.md"), encoding="utf-8").read()
-    programs = [b for b in re.findall(r"```c\n(.*?)```", text, re.S) if "int main" in b]
-    if not programs:
-        sys.exit("README.md holds no program")
-    passed = 0
-    with tempfile.TemporaryDirectory() as d:
-        for code in programs:
-            for lang, std in (("c", "c99"), ("c++", "c++11")):
-                src, exe = os.path.join(d, "readme." + ("c" if lang == "c" else "cpp")), os.path.join(d, "readme")
-                open(src, "w", encoding="utf-8").write(code)
-                compiler = [cc] if lang == "c" else [cc, "-x", "c++"]
-                subprocess.run(compiler + ["-std=" + std, "-O1", "-Wall", "-Wextra", "-I" + TOP, src, "-o", exe, "-lm"], check=True)
-                out = subprocess.run([exe], check=True, stdout=subprocess.PIPE, universal_newlines=True, timeout=60).stdout
-                print("%s: %s" % (std, out.strip()))
-                passed += 1
-    print("%d passed, 0 failed" % passed)
+    cc = next((a for a in sys.argv[1:] if not a.startswith("-")), "cc")
+    cc = shutil.which(cc) or sys.exit("there is no " + cc)      # a path: "cc" will be our own
+    text = {page: read(page) for page in PAGES}
+    header = read("heatdiff.h")
+    programs = header + sources() + read("CMakeLists.txt") + read("LICENSE")
+    timed = re.search(r"set\(hd_examples_timed ([^)]*)\)", read("CMakeLists.txt")).group(1).split()
+    check(text["README.md"].count("\n") <= LENGTH, "README.md", "is longer than %d lines" % LENGTH)
+    with tempfile.TemporaryDirectory() as work:
+        started = start_programs(cc, text["README.md"], work)
+        os.mkdir(os.path.join(work, "bin"))
+        with open(os.path.join(work, "bin", "cc"), "w") as f:
+            f.write(COMPILER.format(work=work, cc=cc, top=TOP))
+        os.chmod(f.name, 0o755)
+        if not all(p.wait() == 0 for p in started):
+            sys.exit("the code of README.md does not compile")
+        run_programs(cc, work)
+        folder = os.path.join(work, "project")
+        os.mkdir(folder)
+        for name in ("examples", "tools", "tests", "heatdiff.h"):
+            os.symlink(os.path.join(TOP, name), os.path.join(folder, name))
+        for page in PAGES:
+            if page in RUN:
+                run_commands(page, text[page], work, folder, timed, "--pictures" in sys.argv)
+            look_up(page, text[page], cc, work)
+            check_links(page, text[page])
+            check_names(page, text[page], header, programs)
+            if page not in RUN:
+                check_sections(page, text[page])
+    print("\n".join(failures + ["%d passed, %d failed" % (passed, len(failures))]))
+    sys.exit(bool(failures))
 
 
 if __name__ == "__main__":
