@@ -2083,6 +2083,30 @@ static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
     return p - q;
 }
 
+/* Products of differences of smaller numbers do not overflow, nor do sums of them. */
+#define HDI_FAR 1e150
+
+static HDI_INLINE int hdi_near3(const double *a) {
+    return (fabs(a[0]) < HDI_FAR) & (fabs(a[1]) < HDI_FAR) & (fabs(a[2]) < HDI_FAR);
+}
+
+/* x 2^exponent and a / b, infinite where they would overflow; a >= 0, b > 0. */
+static double hdi_scale(double x, int exponent) {
+    int own;
+    if (x == 0 || !hdi_finite(x)) return x;
+    frexp(x, &own);
+    return own + exponent <= DBL_MAX_EXP ? ldexp(x, exponent) : x < 0 ? -HUGE_VAL : HUGE_VAL;
+}
+
+static double hdi_divide(double a, double b) { return b >= 1 || a <= DBL_MAX * b ? a / b : HUGE_VAL; }
+
+/* (a - b) 2^-exponent. By halves, whose difference does not overflow. */
+static void hdi_sub3_scaled(const double *a, const double *b, int exponent, double *out) {
+    int q;
+    if (!exponent) hdi_sub3(a, b, out);
+    else for (q = 0; q < 3; q++) out[q] = ldexp(a[q] / 2 - b[q] / 2, 1 - exponent);
+}
+
 static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
     out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
     out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
@@ -2442,7 +2466,7 @@ static void hdi_thread_join(hdi_thread t) { pthread_join(t, NULL); }
 static int32_t hdi_processors(void) {
     long n = 0;
 #if defined(__linux__) && defined(SYS_sched_getaffinity)
-    unsigned long mask[128];
+    unsigned long mask[128] = {0};               /* the call fills a part of it, unseen by MemorySanitizer */
     const long bytes = syscall(SYS_sched_getaffinity, 0, sizeof mask, mask);
     long i;
     for (i = 0; i < bytes / HDI_CAST(long, sizeof *mask); i++)
@@ -5749,23 +5773,58 @@ static double hdi_face_lengths(const hdi_mesh *mesh, int32_t f, double *len) {
     return ldexp(2 * hdi_length_area(len[0], len[1], len[2]), 2 * exponent);
 }
 
+/* The edges of a face, each opposite to its corner, in units of 2^exponent. Returns the exponent: 0 unless
+ * products of edges could overflow. */
+static HDI_INLINE int hdi_face_edges(const double *xyz, const int32_t *v, double edge[3][3]) {
+    const double *const p[3] = {hdi_at3(xyz, v[0]), hdi_at3(xyz, v[1]), hdi_at3(xyz, v[2])};
+    double most = 0;
+    int exponent, c, q;
+    if (hdi_near3(p[0]) & hdi_near3(p[1]) & hdi_near3(p[2])) {
+        hdi_sub3(p[2], p[1], edge[0]);
+        hdi_sub3(p[0], p[2], edge[1]);
+        hdi_sub3(p[1], p[0], edge[2]);
+        return 0;
+    }
+    for (q = 0; q < 9; q++) most = hdi_max(most, fabs(p[q / 3][q % 3] / 2 - p[(q / 3 + 1) % 3][q % 3] / 2));
+    frexp(most, &exponent);
+    exponent = most < HDI_FAR ? 0 : exponent + 1;
+    for (c = 0; c < 3; c++) hdi_sub3_scaled(p[(c + 2) % 3], p[(c + 1) % 3], exponent, edge[c]);
+    return exponent;
+}
+
+/* Cotangents at the corners, of edges and twice the area in units of 2^exponent and of its square. Whether
+ * they and the products of edges are finite. */
+static HDI_INLINE int hdi_face_cots(double edge[3][3], double twice, int exponent, double *cot) {
+    double most, limit = DBL_MAX / 4;
+    cot[0] = -hdi_dot3(edge[1], edge[2]);
+    cot[1] = -hdi_dot3(edge[2], edge[0]);
+    cot[2] = -hdi_dot3(edge[0], edge[1]);
+    most = hdi_max(fabs(cot[0]), hdi_max(fabs(cot[1]), fabs(cot[2])));
+    if (exponent) limit = ldexp(limit, -2 * exponent);
+    if (twice < DBL_MIN || most > limit || most > DBL_MAX / 4 * hdi_min(1, twice)) return 0;
+    cot[0] /= twice;
+    cot[1] /= twice;
+    cot[2] /= twice;
+    return 1;
+}
+
 /* Area of face f, and its cotangents; 0 where it has none or where a cotangent would not be finite. */
 static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot,
                                           hdi_face_tally *tally) {
     const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
-    double edge[3][3], cross[3], len[3], twice;
+    double edge[3][3], cross[3], len[3], twice, scaled = 0;
+    int exponent = 0, good;
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
         tally->n_repeated_corner++;
         return 0;
     }
     if (mesh->len) {
         twice = hdi_face_lengths(mesh, f, len);
-    } else {                                     /* edge q runs opposite to corner q */
-        hdi_sub3(hdi_at3(mesh->xyz, v[2]), hdi_at3(mesh->xyz, v[1]), edge[0]);
-        hdi_sub3(hdi_at3(mesh->xyz, v[0]), hdi_at3(mesh->xyz, v[2]), edge[1]);
-        hdi_sub3(hdi_at3(mesh->xyz, v[1]), hdi_at3(mesh->xyz, v[0]), edge[2]);
+    } else {
+        exponent = hdi_face_edges(mesh->xyz, v, edge);
         hdi_cross3(edge[2], edge[0], cross);
-        twice = hdi_norm3(cross);
+        twice = scaled = hdi_norm3(cross);
+        if (exponent) twice = hdi_scale(scaled, 2 * exponent);
     }
     if (!hdi_finite(twice)) {
         const int32_t id = mesh->face ? mesh->face[f] : f;
@@ -5776,14 +5835,14 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, doubl
         }
         return 0;
     }
-    if (mesh->len) {
+    good = twice / 24 >= DBL_MIN;
+    if (good && mesh->len) {
         hdi_length_cots(len, hdi_length_area(len[0], len[1], len[2]), cot);
-    } else if (twice / 24 >= DBL_MIN) {
-        cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
-        cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
-        cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
+        good = hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]));
+    } else if (good) {
+        good = hdi_face_cots(edge, scaled, exponent, cot);
     }
-    if (twice / 24 < DBL_MIN || !hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) {
+    if (!good) {
         tally->n_zero_area++;
         return 0;
     }
@@ -6414,25 +6473,54 @@ static void hdi_poly_edge(const hdi_poly *poly, int64_t c, double *edge) {
     hdi_sub3(hdi_poly_at(poly, hdi_poly_after(poly, c)), hdi_poly_at(poly, c), edge);
 }
 
+/* Differences of corners of f are below 2^this, as are their products if this is HDI_POLY_MOST at most; 0 if
+ * all are far from overflow. */
+#define HDI_POLY_MOST 510
+static int hdi_poly_exponent(const hdi_poly *poly, int32_t f) {
+    const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
+    double most = 0, spoke[3];
+    int near3 = 1, exponent, q;
+    int64_t c;
+    for (c = begin; c < end; c++) near3 &= hdi_near3(hdi_poly_at(poly, c));
+    if (near3) return 0;
+    for (c = begin + 1; c < end; c++) {
+        hdi_sub3_scaled(hdi_poly_at(poly, c), hdi_poly_at(poly, begin), 1, spoke);
+        for (q = 0; q < 3; q++) most = hdi_max(most, fabs(spoke[q]));
+    }
+    frexp(most, &exponent);
+    return most < HDI_FAR ? 0 : exponent + 2;
+}
+
+/* An area in units of 2^(2 exponent) as one in units of 1. Where products of differences overflow, the face
+ * is a needle without area, or too large. */
+static double hdi_poly_unscale(double area, int exponent) {
+    area = hdi_scale(area, 2 * exponent);
+    if (exponent <= HDI_POLY_MOST) return area;
+    return area < HDI_FAR * HDI_FAR ? 0 : HUGE_VAL;
+}
+
 /* Twice the vector area of face f, as a fan from its first corner. Returns its length, or 0 when nothing
  * but the rounding of the sum is left of it, as in a bow tie. A triangle is one cross product of two
  * edges: 0 only if that is exactly zero. */
 static double hdi_poly_area(const hdi_poly *poly, int32_t f, double *twice) {
     const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
+    const int exponent = hdi_poly_exponent(poly, f);
     double spoke[3], edge[3], cross[3], length, sum = 0;
     int64_t c;
     int q;
     twice[0] = twice[1] = twice[2] = 0;
     for (c = begin + 1; c + 1 < end; c++) {
-        hdi_sub3(hdi_poly_at(poly, c), hdi_poly_at(poly, begin), spoke);
-        hdi_poly_edge(poly, c, edge);
+        hdi_sub3_scaled(hdi_poly_at(poly, c), hdi_poly_at(poly, begin), exponent, spoke);
+        hdi_sub3_scaled(hdi_poly_at(poly, c + 1), hdi_poly_at(poly, c), exponent, edge);
         hdi_cross3(spoke, edge, cross);
         for (q = 0; q < 3; q++) twice[q] += cross[q];
         sum += hdi_norm3(cross);
     }
     length = hdi_norm3(twice);
-    if (!hdi_finite(sum)) return sum;
-    return length <= 4 * DBL_EPSILON * HDI_CAST(double, end - begin - 2) * sum ? 0 : length;
+    if (length <= 4 * DBL_EPSILON * HDI_CAST(double, end - begin - 2) * sum) return 0;
+    if (!exponent) return length;
+    for (q = 0; q < 3; q++) twice[q] = hdi_scale(twice[q], 2 * exponent);
+    return hdi_poly_unscale(length, exponent);
 }
 
 /* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the
@@ -6502,7 +6590,7 @@ static double hdi_poly_angle(const hdi_poly *poly, int32_t f, const double *norm
     return least;
 }
 
-/* g of face f; 0 when a square of it is not finite. */
+/* g of face f; 0 when a square of it could overflow. */
 static int hdi_poly_gradients(const hdi_poly *poly, int32_t f, double area) {
     int64_t c;
     int q, good = 1;
@@ -6510,7 +6598,7 @@ static int hdi_poly_gradients(const hdi_poly *poly, int32_t f, double area) {
         double *g = poly->g + 3 * c;
         hdi_sub3(hdi_poly_at(poly, hdi_poly_before(poly, c)), hdi_poly_at(poly, hdi_poly_after(poly, c)), g);
         for (q = 0; q < 3; q++) g[q] /= 2 * sqrt(area);
-        good &= hdi_finite(hdi_dot3(g, g));
+        good &= hdi_near3(g);
     }
     return good;
 }
@@ -9541,7 +9629,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
     if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
     job.lap = lap;
     job.bandwidth = rep->bandwidth;
-    job.scale = HDI_QUARTER_INV_PI / job.bandwidth / job.bandwidth / lap->n_active;
+    job.scale = hdi_divide(hdi_divide(HDI_QUARTER_INV_PI, job.bandwidth), job.bandwidth) / lap->n_active;
     hdi_parallel_ranges(lap->context, lap->n_active, HDI_CELLS_PER_TASK, hdi_weights_task, &job);
     for (i = 0; i < lap->n_active; i++) {
         const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
@@ -9988,7 +10076,7 @@ static hd_status hdi_source_check_point(const hd_source *s, int32_t q, int32_t n
         const double b = hdi_source_part(s, q, c);
         if (v < 0 || v >= n)
             return hdi_source_fail(e, HD_ERR_INDEX, "source: a vertex is not in the mesh", q, v, v);
-        if (!(b >= 0))                           /* or no number */
+        if (!hdi_finite(b) || b < 0)
             return hdi_source_fail(e, hdi_finite(b) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
                                    "source: a barycentric coordinate is negative or not finite", q, v, b);
         sum += b;
@@ -16016,8 +16104,10 @@ static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u
 /* A pivot that lost nearly all of its diagonal entry, or turned away from it, is replaced by that entry: an
  * incomplete factorisation may break down where the complete one cannot. */
 static hd_c64 hdi_ildl_pivot(hd_c64 d, hd_c64 a) {
-    const double along = d.re * a.re + d.im * a.im;
-    return along > HDI_ILDL_LEAST * hdi_cabs2(a) && hdi_cfinite(d) ? d : a;
+    const double size = hdi_max(fabs(a.re), fabs(a.im)), re = size > 0 ? a.re / size : 0;
+    const double im = size > 0 ? a.im / size : 0;      /* the direction of a, whose square could overflow */
+    if (!hdi_cfinite(d)) return a;
+    return d.re * re + d.im * im > HDI_ILDL_LEAST * (a.re * re + a.im * im) ? d : a;
 }
 
 /* An entry loses w x; a share of what it loses goes to a diagonal entry. */
@@ -16271,7 +16361,8 @@ static double hdi_krylov_noise(const hdi_krylov *k) {
     for (i = 0; i < lap->n_active; i++) {
         double a = theta * lap->b_diag[i];
         for (; p < lap->L.row_ptr[i + 1]; p++) a += k->a.t * fabs(lap->L.val[p]);
-        sum += k->weight[i] * a * a * hdi_cabs2(k->x[i]);
+        a *= hdi_cabs(k->x[i]);                  /* first, since x is small where a is large */
+        sum += k->weight[i] * a * a;
     }
     return DBL_EPSILON * sqrt(sum);
 }
@@ -16332,8 +16423,9 @@ static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c
 
 /* A quotient of the recurrence. The method is marked as broken if it is not finite. */
 static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
-    const hd_c64 q = hdi_cdiv(a, b);
-    if (!hdi_cfinite(q)) k->broken = 1;
+    const int zero = b.re == 0 && b.im == 0;
+    const hd_c64 q = zero ? b : hdi_cdiv(a, b);
+    if (zero || !hdi_cfinite(q)) k->broken = 1;
     return q;
 }
 
@@ -17628,7 +17720,7 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
     double least = HUGE_VAL, most = 0, *room;
     hd_rational set;
     int32_t q, i;
-    if (n_times < 1 || !(tol > 0))
+    if (n_times < 1 || hdi_nan(tol) || !(tol > 0))
         return hdi_fail_row(e, HD_ERR_ARGUMENT, "shared poles: no times, or tol is not positive", -1, -1,
                             n_times < 1 ? n_times : tol);
     for (q = 0; q < n_times; q++) {
@@ -17638,10 +17730,10 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
         least = hdi_min(least, t[q]);
         most = hdi_max(most, t[q]);
     }
-    if (!hdi_shared_pick(&set, most / least, tol))
+    if (!hdi_shared_pick(&set, hdi_divide(most, least), tol))
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
                             "shared poles: no set is that exact over so wide a range of times", -1, -1,
-                                most / least);
+                                hdi_divide(most, least));
     room = HDI_TAKE(&s, double, hdi_shared_room(set.n_poles));
     for (q = 0; room && q < n_times; q++) {
         const double tau = t[q] / least;
@@ -17905,18 +17997,25 @@ static void hdi_fit_values(hdi_fit *k) {
 
 /* ---- poles ---- */
 
-/* p'/p of the denominator's polynomial p(x) = prod (x - z_j) (w_m + sum w_j/(x - z_j)). */
-static hd_c64 hdi_fit_slope(const hdi_fit *k, hd_c64 x) {
+/* a / b; *fine becomes 0 where b is zero or so small that the square of the quotient could overflow. */
+static hd_c64 hdi_fit_quotient(hd_c64 a, hd_c64 b, int *fine) {
+    if (fabs(b.re) + fabs(b.im) > (fabs(a.re) + fabs(a.im)) / HDI_FAR) return hdi_cdiv(a, b);
+    *fine = 0;
+    return hdi_c(0, 0);
+}
+
+/* p'/p of the denominator's polynomial p(x) = prod (x - z_j) (w_m + sum w_j/(x - z_j)). *fine: as above. */
+static hd_c64 hdi_fit_slope(const hdi_fit *k, hd_c64 x, int *fine) {
     hd_c64 d = hdi_c(k->w[k->m], 0), d1 = hdi_c(0, 0), sum = d1;
     int32_t j;
     for (j = 0; j < k->m; j++) {
-        const hd_c64 inv = hdi_cdiv(hdi_c(1, 0), hdi_csub(x, hdi_c(k->z[j], 0)));
+        const hd_c64 inv = hdi_fit_quotient(hdi_c(1, 0), hdi_csub(x, hdi_c(k->z[j], 0)), fine);
         const hd_c64 s = hdi_cscale(k->w[j], inv);
         d = hdi_cadd(d, s);
         d1 = hdi_csub(d1, hdi_cmul(s, inv));
         sum = hdi_cadd(sum, inv);
     }
-    return hdi_cadd(hdi_cdiv(d1, d), sum);
+    return hdi_cadd(hdi_fit_quotient(d1, d, fine), sum);
 }
 
 /* Zeros of that polynomial, p [k->m]. They start beside the support points. A zero that has not settled makes
@@ -17932,11 +18031,13 @@ static void hdi_fit_zeros(const hdi_fit *k, hd_c64 *p) {
     for (step = 0; step < HDI_FIT_ABERTH && moving; step++) {
         moving = 0;
         for (i = 0; i < k->m; i++) {
-            hd_c64 rest = hdi_fit_slope(k, p[i]), move;
+            int fine = 1;
+            hd_c64 rest = hdi_fit_slope(k, p[i], &fine), move;
             for (j = 0; j < k->m; j++)
-                if (j != i) rest = hdi_csub(rest, hdi_cdiv(hdi_c(1, 0), hdi_csub(p[i], p[j])));
-            move = hdi_cdiv(hdi_c(1, 0), rest);
-            if (!hdi_cfinite(move)) continue;
+                if (j != i)
+                    rest = hdi_csub(rest, hdi_fit_quotient(hdi_c(1, 0), hdi_csub(p[i], p[j]), &fine));
+            move = hdi_fit_quotient(hdi_c(1, 0), rest, &fine);
+            if (!fine) continue;
             p[i] = hdi_csub(p[i], move);
             if (hdi_cabs(move) > 4 * DBL_EPSILON * hdi_cabs(p[i])) moving = 1;
         }
@@ -18353,7 +18454,8 @@ static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, d
     for (i = 0; i < lap->n_active; i++) {
         double sum = lap->B ? 0 : theta * lap->mass[i] * work[i];
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            sum += (t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0)) * work[lap->L.col[p]];
+            sum += hdi_min(t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0), 1e140) *
+                   work[lap->L.col[p]];
         noise[i] = hdi_min(sum, 1e300);
     }
 }
@@ -22581,7 +22683,11 @@ typedef struct hdi_spec_filter {
 } hdi_spec_filter;
 
 /* A product of two parts of a bound, each at least 0: nothing times infinity is nothing. */
-static double hdi_spec_times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+static double hdi_spec_times(double a, double b) {
+    if (a == 0 || b == 0) return 0;
+    if (fabs(b) > 1 && fabs(a) > DBL_MAX / fabs(b)) return (a < 0) == (b < 0) ? HUGE_VAL : -HUGE_VAL;
+    return a * b;
+}
 
 static double hdi_spec_weight(const hdi_spec_filter *f, int32_t i) {
     const double x = hdi_max(f->of->value[i], 0);
@@ -22808,7 +22914,8 @@ static void hdi_spec_sums_run(hdi_spec_sums *x, hd_context *ctx) {
             const size_t at = HDI_CAST(size_t, q) * HDI_CAST(size_t, x->n_times) + HDI_CAST(size_t, m);
             a->out = x->out + at * x->ld;
             a->bound = x->bound ? x->bound + at * x->ld : NULL;
-            a->f = hdi_spec_filter_of(x->of, a->distance ? 2 * x->t[m] : x->t[m], x->power);
+            a->f = hdi_spec_filter_of(x->of, a->distance ? 2 * hdi_min(x->t[m], DBL_MAX / 2) : x->t[m],
+                                      x->power);
             hdi_spec_sum_run(a, &from, a->diagonal && a->mass, x->work, ctx);
             if (x->power) hdi_spec_sum_apart(lap, &from, a->out, a->bound);
             else if (a->distance) hdi_spec_sum_inert(a);
@@ -23211,7 +23318,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     frexp(heat->scale, &unit);
     unit += exponent - 1;
     for (v = 0; v < lap->n; v++) {
-        x[v] = hdi_c(ldexp(x[v].re, unit), ldexp(x[v].im, unit));
+        x[v] = hdi_c(hdi_scale(x[v].re, unit), hdi_scale(x[v].im, unit));
         if (!hdi_cfinite(x[v]) && e->status >= 0)
             hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1,
                          x[v].re);
@@ -27081,23 +27188,23 @@ static hd_status hdi_fading_edges_run(hdi_heat_call *h, double t, double *out) {
     double *work = HDI_TAKE(&s, double, 3 * count + 3 * n);
     hdi_ledger ledger = hdi_modes_ledger();
     hdi_parts off;
-    hdi_fading_far far;
+    hdi_fading_far most;
     hdi_fading_edges a;
     hdi_decay x;
     int64_t p;
     if (!work) return hdi_scope_end(&s);
     x = hdi_decay_at(&heat->modes, t, work);
-    far = hdi_fading_reach(&heat->modes, &x, work + 3 * count);
+    most = hdi_fading_reach(&heat->modes, &x, work + 3 * count);
     a.of = &heat->modes;
     a.lap = lap;
     a.w = x.weight;
     a.out = out;
     hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_edges_task, &a);
-    off.rational = x.scale * x.cut * far.left * far.left;
-    off.solver = x.scale * ((x.mixed * x.mixed * far.left + 2 * far.side) * far.left + far.found * far.inner);
+    off.rational = x.scale * x.cut * most.left * most.left;
+    off.solver = x.scale * ((x.mixed * x.mixed * most.left + 2 * most.side) * most.left + most.found * most.inner);
     for (p = 0; p < lap->L.nnz; p++) {
         out[p] *= x.scale;
-        off.rounding = 2 * x.scale * x.rounding * far.found * (far.found + far.left) +
+        off.rounding = 2 * x.scale * x.rounding * most.found * (most.found + most.left) +
                        8 * (1 + hdi_min(x.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[p]) +
                        4 * DBL_MIN * DBL_EPSILON;
         hdi_ledger_note(&ledger, out[p], off);
@@ -29775,7 +29882,7 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, hd_erro
                             -1, -1, lap->h);
     for (i = 0; i < g->n_active; i++) {
         const int32_t from = g->sym.perm[i];
-        g->mass[i] = g->copies * lap->mass[from] / g->t;
+        g->mass[i] = hdi_divide(g->copies * lap->mass[from], g->t);
         if (!hdi_finite(g->mass[i]))
             return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1,
                                  lap->vertex[from], g->t);

@@ -4,6 +4,7 @@
 
    runner [FILTER...]   groups whose name contains one of the filters; none: all
    runner --list        names of the groups
+   runner --traps       the first invalid operation, division by zero or overflow ends the run with SIGFPE (glibc, x86)
    runner --tmp DIR     an existing directory for files that tests write; default: one made here and removed at the end
 
    A failed check says file, line and what it saw, and the run goes on. Exit status 1 when any check failed. */
@@ -38,9 +39,43 @@
 #undef far
 #endif
 
+/* ---- traps ---- */
+
+/* The library does not compute with NaN, divide by zero or overflow: it tests its input first. With --traps each of these ends the run.
+ * Tests that compare with NaN or infinity themselves, and the calls whose sums overflow and are checked afterwards, stand between
+ * TRAPS_OFF and TRAPS_ON. Threads have the traps of the thread that starts them. */
+#if defined(__GLIBC__) && defined(__x86_64__) && !defined(__cplusplus)
+#include <fenv.h>
+extern int feenableexcept(int excepts);     /* glibc declares them under _GNU_SOURCE only */
+extern int fedisableexcept(int excepts);
+#define TEST_TRAPS (FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW)
+
+static int test_traps, test_traps_off;      /* asked for; how often TRAPS_OFF without TRAPS_ON */
+
+static void test_trap(int on) {
+    test_traps_off += on ? -1 : 1;
+    if (!test_traps || test_traps_off != !on) return;
+    if (!on) fedisableexcept(TEST_TRAPS);
+    feclearexcept(TEST_TRAPS);
+    if (on) feenableexcept(TEST_TRAPS);
+}
+
+static int test_traps_start(void) {
+    test_traps = 1;
+    return feenableexcept(TEST_TRAPS) != -1;
+}
+#else
+static void test_trap(int on) { (void)on; }
+static int test_traps_start(void) { return 0; }
+#endif
+
+#define TRAPS_OFF test_trap(0)
+#define TRAPS_ON test_trap(1)
+
 /* ---- checks ---- */
 
 static int64_t test_passed, test_failed, test_failed_in_group;
+static int test_holds;
 enum { TEST_MOST_MESSAGES = 40 };
 
 static void test_count(int ok) {
@@ -56,6 +91,7 @@ __attribute__((format(printf, 5, 6)))
 #endif
 static int test_check_msg(int ok, const char *file, int line, const char *what, const char *fmt, ...) {
     va_list args;
+    TRAPS_ON;                                    /* what follows cond in CHECK_MSG may be no number */
     test_count(ok);
     if (ok || test_failed_in_group > TEST_MOST_MESSAGES) return ok;
     printf("%s:%d: %s\n    ", file, line, what);
@@ -77,7 +113,8 @@ static int test_check(int ok, const char *file, int line, const char *what) {
 
 /* Both are expressions that say whether the check held. */
 #define CHECK(cond) test_check((cond) != 0, __FILE__, __LINE__, #cond)
-#define CHECK_MSG(cond, ...) test_check_msg((cond) != 0, __FILE__, __LINE__, #cond, __VA_ARGS__)
+#define CHECK_MSG(cond, ...) \
+    (test_holds = (cond) != 0, TRAPS_OFF, test_check_msg(test_holds, __FILE__, __LINE__, #cond, __VA_ARGS__))
 
 /* Arithmetic is that of doubles. Not so on x87 registers, which keep more digits for as long as they hold a number: sums that round in a
  * way of their own, and the same bits in another order, are not promised there (see Limits in heatdiff.h). */
@@ -221,7 +258,13 @@ int main(int argc, char **argv) {
             for (k = 0; k < TEST_GROUPS; k++) printf("%s\n", test_groups[k].name);
             return 0;
         }
-        if (strcmp(argv[i], "--tmp") == 0 && i + 1 < argc) {
+        if (strcmp(argv[i], "--traps") == 0) {
+            if (!test_traps_start()) {
+                fprintf(stderr, "runner: there are no traps here\n");
+                return 2;
+            }
+            argv[i] = NULL;
+        } else if (strcmp(argv[i], "--tmp") == 0 && i + 1 < argc) {
             if (strlen(argv[i + 1]) >= sizeof test_tmp_path) {
                 fprintf(stderr, "runner: the name of the directory is too long\n");
                 return 2;
@@ -230,7 +273,7 @@ int main(int argc, char **argv) {
             argv[i] = argv[i + 1] = NULL;
             i++;
         } else if (argv[i][0] == '-') {
-            fprintf(stderr, "usage: runner [--list] [--tmp DIR] [FILTER...]\n");
+            fprintf(stderr, "usage: runner [--list] [--traps] [--tmp DIR] [FILTER...]\n");
             return 2;
         } else {
             filters++;

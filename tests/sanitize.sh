@@ -1,25 +1,105 @@
 #!/usr/bin/env bash
-# The tests under sanitizers, with asserts and without; first, a planted error proves that the sanitizer is on.
-#     Usage: sanitize.sh WORKFOLDER [all]      all: the slow groups too, whose code the others run as well
+# The tests under checkers. In each mode a planted error first proves that the checker is on.
+#     sanitize.sh WORKFOLDER [all]                    addresses, undefined behaviour and traps, as CI does; all: the slow groups too,
+#                                                     whose code the others run as well
+#     sanitize.sh WORKFOLDER memory|threads|traps|valgrind [GROUP...]
+# Those modes print a line per group; the log of a group is WORKFOLDER/MODE.GROUP.log. Groups are those of `runner --list`, and
+# `internals`; none: all, for threads those that start some, for traps all but `internals`. JOBS groups at a time (2; threads: 1).
+#     memory     MemorySanitizer of clang: numbers that nobody wrote
+#     threads    ThreadSanitizer: races
+#     traps      the first invalid operation, division by zero or overflow ends a group (glibc on x86)
+#     valgrind   memcheck; slow: some 20 to 50 times the time of a plain run
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 work=$1
-flags="-std=c99 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -I$top"
-printf '#include <stdlib.h>\nint main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; c = p[3]; free(p); return c; }\n' >"$work/planted.c"
-for cc in gcc clang; do
-  command -v $cc >/dev/null || continue
-  $cc $flags "$work/planted.c" -o "$work/planted"
-  if "$work/planted" >/dev/null 2>&1; then echo "$cc: the sanitizer is not on"; exit 1; fi
-done
-gcc $flags "$top/tests/runner.c" -o "$work/runner" -lm
-gcc $flags "$top/tests/internals.c" -o "$work/internals" -lm
-# two at a time: the groups that take about as long as all others, and those
-long="spectrum failures signatures"
-slow="engines diagonal forms estimate"
-rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long $slow)")
-[ "${2:-}" != all ] || long="$long $slow"
-mkdir "$work/a" "$work/b"
-{ "$work/runner" --tmp "$work/a" $long && "$work/internals"; } >"$work/long.log" 2>&1 &
-"$work/runner" --tmp "$work/b" $rest
-wait $! || { cat "$work/long.log"; exit 1; }
-cat "$work/long.log"
+mode=${2:-}
+
+# planted FLAGS... <source: must end with an error, by itself or under $wrap
+wrap=
+planted() {
+  local cc=$1
+  shift
+  cat >"$work/planted.c"
+  $cc "$@" "$work/planted.c" -o "$work/planted" -lm
+  if $wrap "$work/planted" >/dev/null 2>&1; then echo "$cc: the checker is not on"; exit 1; fi
+}
+
+# one MODE GROUP: runs it, prints its line
+one() {
+  local mode=$1 group=$2 log="$work/$1.$2.log" begin=$SECONDS status=0 run
+  mkdir -p "$work/tmp.$group"
+  if [ "$group" = internals ]; then run="$work/internals.$mode"; else run="$work/runner.$mode $flag --tmp $work/tmp.$group $group"; fi
+  $wrap $run >"$log" 2>&1 || status=$?
+  if [ $status = 0 ]; then word=ok; else word="FAILED ($status)"; fi
+  printf '%-9s %-11s %-12s %5d s   %s\n' "$mode" "$group" "$word" $((SECONDS - begin)) "$(grep -a ' passed, ' "$log" | tail -1)"
+  [ $status = 0 ]
+}
+
+# each COMPILER FLAGS...: builds what is needed, and runs the groups
+each() {
+  local cc=$1 p
+  shift
+  for p in runner internals; do
+    $cc -std=c99 -g -O1 "$@" -I"$top" "$top/tests/$p.c" -o "$work/$p.$mode" -lm
+    [ -n "$groups" ] || groups=$("$work/runner.$mode" --list; [ $mode = traps ] || echo internals)
+    grep -qx internals <<<"$groups" || break
+  done
+  export -f one
+  export work wrap flag
+  xargs -P "${JOBS:-$jobs}" -I{} bash -c "one $mode {}" <<<"$groups"
+}
+
+unwritten='#include <stdio.h>
+int main(int c, char **v) { int a[4]; (void)v; a[c] = 1; return printf(a[c + 1] > 7 ? "a" : "b") < 0; }'
+flag=
+jobs=2
+shift $(($# < 2 ? $# : 2))
+groups=$(printf '%s\n' "$@")
+case "$mode" in
+memory)
+  planted clang -g -fsanitize=memory <<<"$unwritten"
+  each clang -fno-omit-frame-pointer -fsanitize=memory -fsanitize-memory-track-origins ;;
+threads)
+  jobs=1
+  [ -n "$groups" ] || groups=$(printf '%s\n' threads large_t estimate engines spectrum)
+  planted gcc -g -fsanitize=thread -pthread <<'C'
+#include <pthread.h>
+static int n;
+static void *add(void *p) { int i; for (i = 0; i < 1000; i++) n++; return p; }
+int main(void) { pthread_t t; pthread_create(&t, 0, add, 0); add(0); pthread_join(t, 0); return 0; }
+C
+  each gcc -fsanitize=thread ;;
+traps)
+  flag=--traps
+  planted gcc -D_GNU_SOURCE <<'C'
+#include <fenv.h>
+int main(int c, char **v) { volatile double x = c - 1; (void)v; feenableexcept(FE_ALL_EXCEPT); x = 1 / x; return 0; }
+C
+  each gcc ;;
+valgrind)
+  wrap='valgrind --quiet --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all --error-exitcode=9 --fair-sched=try'
+  planted gcc -g <<<"$unwritten"
+  each gcc ;;
+'' | all)
+  flags="-std=c99 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -I$top"
+  for cc in gcc clang; do
+    command -v $cc >/dev/null || continue
+    planted $cc $flags <<<'#include <stdlib.h>
+int main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; c = p[3]; free(p); return c; }'
+  done
+  gcc $flags "$top/tests/runner.c" -o "$work/runner" -lm
+  gcc $flags "$top/tests/internals.c" -o "$work/internals" -lm
+  # two at a time: the groups that take about as long as all others, and those
+  long="spectrum failures signatures"
+  slow="engines diagonal forms estimate"
+  rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long $slow)")
+  [ "$mode" != all ] || long="$long $slow"
+  mkdir "$work/a" "$work/b"
+  { "$work/runner" --traps --tmp "$work/a" $long && "$work/internals"; } >"$work/long.log" 2>&1 &
+  "$work/runner" --traps --tmp "$work/b" $rest
+  wait $! || { cat "$work/long.log"; exit 1; }
+  cat "$work/long.log" ;;
+*)
+  echo "usage: sanitize.sh WORKFOLDER [all | memory | threads | traps | valgrind [GROUP...]]"
+  exit 2 ;;
+esac

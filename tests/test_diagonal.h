@@ -728,6 +728,7 @@ static void diag_judge_distance(const heat_case *c, hd_distance_kind kind, doubl
     const int32_t n = lap->n_active, s = lap->row[source];
     double size = 0, off = 0, relative = 0, scale = 0, slack = kind <= HD_DISTANCE_WEIGHTED ? diag_slack(c, t) : 1e-11;
     int32_t v;
+    TRAPS_OFF;                                   /* distances of 0, or infinite */
     for (v = 0; v < n; v++) scale = fmax(scale, H[(size_t)v * (size_t)n + (size_t)v]);
     for (v = 0; v < lap->n; v++) {
         const int32_t r = lap->row[v];
@@ -749,6 +750,7 @@ static void diag_judge_distance(const heat_case *c, hd_distance_kind kind, doubl
     CHECK_MSG(off <= rep->error_bound * size, "%s, %s, %s, t %g: error %g, bound %g", c->what, diag_kind_name(kind), what, t, off / size, rep->error_bound);
     CHECK_MSG(relative <= rep->error_relative, "%s, %s, %s, t %g: error %g, bound %g (relative)", c->what, diag_kind_name(kind), what, t, relative, rep->error_relative);
     CHECK_MSG(most == 0 || off <= most * size, "%s, %s, %s, t %g: error %g", c->what, diag_kind_name(kind), what, t, off / size);
+    TRAPS_ON;
 }
 
 /* Sources and times in one call; the columns' order; ldd; every one against the dense. */

@@ -167,11 +167,13 @@ static void geo_dense_from(const double *A, const double *u, double *v, const do
         dense_forward(A, v, n);
         dense_backward(A, v, n);
     }
+    TRAPS_OFF;                                   /* 0/0 in components without a source */
     for (i = 0; i < n; i++) {
         const int32_t c = component[i];
         d[i] = HUGE_VAL;
         if (c >= 0 && least[c] < HUGE_VAL) d[i] = fabs(phi[i] - least[c] - fmin(fmax(v[i] / u[i], 0), most[c] - least[c]));
     }
+    TRAPS_ON;
     for (q = 0; q < k; q++) d[sources[q]] = 0;
     free(least);
     free(most);

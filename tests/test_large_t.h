@@ -51,6 +51,7 @@ static double large_truth(const large_case *c, hd_distance_kind kind, double t, 
     const int32_t ci = ri < 0 ? -1 : lap->component[ri], cj = rj < 0 ? -1 : lap->component[rj];
     double sum = 0, one_i = 0, one_j = 0, constant = 0;
     int32_t k;
+    TRAPS_OFF;                                   /* exp may overflow */
     for (k = 0; k < n; k++) {
         const double *z = (weighted ? c->bx : c->p.x) + (size_t)k * (size_t)n;
         const double y = exp(-t * (c->p.lambda[k] - c->low)) * ((ri < 0 ? 0 : z[ri]) - (rj < 0 ? 0 : z[rj]));
@@ -63,7 +64,9 @@ static double large_truth(const large_case *c, hd_distance_kind kind, double t, 
         if (cj >= 0) one_j /= sqrt(lap->component_mass[cj]);
         constant = ci != cj ? hypot(one_i, one_j) : weighted ? fabs(one_i - one_j) : 0;
     }
-    return hypot(constant, sqrt(sum) * exp(-t * c->low));
+    sum = hypot(constant, sqrt(sum) * exp(-t * c->low));
+    TRAPS_ON;
+    return sum;
 }
 
 /* Compares n distances: i, j, value. Returns the largest true one. */

@@ -208,11 +208,13 @@ static void sparse_overflow(void) {
     hd_error e;
     memset(&a, 0x5a, sizeof a);
     mark = a;
+    TRAPS_OFF;                                   /* sums are checked when they are complete */
     CHECK(hd_csr_from_triplets(&a, 3, 4, 5, i, j, v, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 2 && e.column == 3 && e.value == HUGE_VAL);
     CHECK(memcmp(&a, &mark, sizeof a) == 0);
     CHECK(hd_csr_from_triplets(&a, 3, 4, 5, i, j, w, NULL, &e) == HD_OK && hd_csr_from_triplets(&b, 4, 4, 5, p, q, x, NULL, &e) == HD_OK);
     memset(&c, 0x5a, sizeof c);                  /* (0,2) of a times (2,1) of b: 1e200 1e200 */
     CHECK(hd_csr_product(&c, &a, &b, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 0 && e.column == 1 && e.value == HUGE_VAL);
+    TRAPS_ON;
     CHECK(memcmp(&c, &mark, sizeof c) == 0);
     hd_csr_free(&a, NULL);
     hd_csr_free(&b, NULL);

@@ -142,11 +142,15 @@ static void thr_fork(const shape *s, const double *want, double *u) {
 }
 
 #ifdef LDL_THREADS
-typedef struct thr_user { const hd_laplacian *lap; const double *want; int32_t n, n_threads; int good; } thr_user;
+typedef struct thr_user { const hd_laplacian *lap; double *u; hd_method method; int32_t n_threads; int good; } thr_user;
 
+/* A column and a distance, u [2 n], the same bits each time. */
 static void *thr_user_run(void *arg) {
     thr_user *w = (thr_user *)arg;
-    double *u = (double *)malloc((size_t)w->n * sizeof *u);
+    const size_t n = (size_t)w->lap->n;
+    const int32_t source = 5;
+    const double t = 50 * w->lap->h * w->lap->h;
+    double *u = (double *)malloc(2 * n * sizeof *u);
     hd_context ctx;
     hd_heat_opts o;
     hd_heat *heat = NULL;
@@ -155,11 +159,16 @@ static void *thr_user_run(void *arg) {
     memset(&o, 0, sizeof o);
     ctx.n_threads = w->n_threads;
     o.context = &ctx;
-    o.method = HD_METHOD_DIRECT;
+    o.method = w->method;
     w->good = u && hd_heat_create(&heat, w->lap, &o, NULL) == HD_OK;
-    for (k = 0; w->good && k < 3; k++)
-        w->good = hd_heat_column(heat, HD_KERNEL_SYMMETRIC, 50 * w->lap->h * w->lap->h, 5, u, NULL, NULL) >= 0 &&
-                  memcmp(u, w->want, (size_t)w->n * sizeof *u) == 0;
+    for (k = 0; w->good && k < 3; k++) {
+        w->good = hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, source, u, NULL, NULL) >= 0 &&
+                  (w->method == HD_METHOD_ITERATIVE || k > 0 ||
+                   hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, u + n, 0, NULL, NULL) >= 0);
+        if (w->method == HD_METHOD_ITERATIVE) memset(u + n, 0, n * sizeof *u);
+        if (k == 0 && w->good) memcpy(w->u, u, 2 * n * sizeof *u);
+        w->good = w->good && memcmp(u, w->u, 2 * n * sizeof *u) == 0;
+    }
     hd_heat_free(heat);
     w->good = w->good && !ctx.threads && ctx.bytes_in_use == 0;
     free(u);
@@ -168,23 +177,29 @@ static void *thr_user_run(void *arg) {
 
 /* A user's threads, each with a plan and a context of its own, share a Laplacian. */
 static void thr_nested(const shape *s, const double *want) {
-    enum { USERS = 4 };
+    static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
+    enum { USERS = 8 };
     hd_laplacian *lap = test_laplacian_at(s, s->xyz, HD_LAPLACIAN_FEM, 0, NULL);
+    const size_t size = 2 * (size_t)s->n;
+    double *u = DENSE_NEW(double, USERS * size);
     pthread_t thread[USERS];
     thr_user user[USERS];
     int k;
     for (k = 0; k < USERS; k++) {
         user[k].lap = lap;
-        user[k].want = want;
-        user[k].n = s->n;
-        user[k].n_threads = k;                   /* all, one, two, three */
+        user[k].u = u + (size_t)k * size;
+        user[k].method = methods[k % 3];
+        user[k].n_threads = k % 4;               /* all, one, two, three */
         CHECK(pthread_create(thread + k, NULL, thr_user_run, user + k) == 0);
     }
+    for (k = 0; k < USERS; k++) pthread_join(thread[k], NULL);
     for (k = 0; k < USERS; k++) {
-        pthread_join(thread[k], NULL);
         CHECK_MSG(user[k].good, "user %d", k);
+        CHECK_MSG(memcmp(user[k].u, user[k % 3].u, size * sizeof *u) == 0, "user %d, unlike user %d", k, k % 3);
     }
+    CHECK(memcmp(u, want, (size_t)s->n * sizeof *u) == 0);
     hd_laplacian_free(lap);
+    free(u);
 }
 #endif
 

@@ -27,6 +27,7 @@
 
 #include <errno.h>
 #include <float.h>
+#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -473,6 +474,10 @@ static const char *mio_number(const char *p, double *x)
 #else
     (void)ten; (void)mio_scale_wide;
 #endif
+    if (digits < 1000 && digits + exponent > 310) {     /* for certain, and without raising the overflow flag */
+        *x = minus ? -HUGE_VAL : HUGE_VAL;
+        return p;
+    }
     *x = strtod(begin, NULL);           /* in place: the bytes up to p were found to be a number, and what follows ends it */
     return p;
 }

@@ -20,6 +20,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <float.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,7 +77,8 @@ static double pic_min(double a, double b) { return a < b ? a : b; }
 static double pic_max(double a, double b) { return a > b ? a : b; }
 static double pic_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static double pic_smooth(double x) { x = pic_clamp(x, 0, 1); return x * x * (3 - 2 * x); }
-static int pic_finite(double x) { return x - x == 0.0; }
+/* By its bits: arithmetic with infinity raises the invalid flag, as comparing NaN does. */
+static int pic_finite(double x) { uint64_t bits; memcpy(&bits, &x, sizeof bits); return (bits >> 52 & 0x7ff) != 0x7ff; }
 
 /* Scales v to length 1 and returns the length it had; a vector too short stays as it is, and 0 is returned. */
 static double pic_unit(double v[3])
@@ -955,8 +957,9 @@ static void pic_scale_levels(pic_scale *sc, int32_t wanted)
         return;
     }
     lo = sc->is_log ? log10(sc->lo) : sc->lo;
+    if (!sc->is_log && sc->hi / 2 - sc->lo / 2 > DBL_MAX / 2) return;
     range = sc->is_log ? log10(sc->hi) - lo : sc->hi - lo;
-    if (!pic_finite(range) || !(range > 0)) return;
+    if (!(range > 0)) return;
     step = pic_nice_step(range / 14);
     if (!(step > 0) || !pic_finite(step)) return;
     k = ceil(lo / step + 1e-6);
@@ -1824,15 +1827,15 @@ static double pic_line_ink(uint8_t line) { return 1 - 0.70 * line / 255; }
 static int32_t pic_paint_pixel(const pic_paint *pt, int32_t x, int32_t y, double open, double sum[3])
 {
     const pic_buffer *b = pt->buffer;
-    const int32_t ss = pt->ss, first = b->id[(size_t)(y * ss) * (size_t)b->w + (size_t)(x * ss)];
-    int32_t i, j, seen = 0, same = 0;
+    const int32_t ss = pt->ss;
+    int32_t i, j, seen = 0, same = 0, first = -1;    /* id is only set where d > 0 */
     double ink = 0, rgb[3];
     int c;
     sum[0] = sum[1] = sum[2] = 0;
     for (j = y * ss; j < (y + 1) * ss; j++) for (i = x * ss; i < (x + 1) * ss; i++) {
         const size_t k = (size_t)j * (size_t)b->w + (size_t)i;
         if (!(b->d[k] > 0)) continue;
-        seen++;
+        if (seen++ == 0) first = b->id[k];
         same += b->id[k] == first;
         ink += pic_line_ink(b->line[k]);
     }
