@@ -12905,9 +12905,9 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 
 /* From so many rows on nested dissection pays for itself: it takes three times as long to find as minimum
  * degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some solves
- * gain nothing up to 150K rows: see hdi_heat_light. Wide rows, those of exponential weights, make factors so large that it
- * pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10, 20, 50, 150
- * thousand random points and 233 non-zeros a row. */
+ * gain nothing up to 150K rows: see hdi_heat_light. Wide rows, those of exponential weights, make factors so
+ * large that it pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10,
+ * 20, 50, 150 thousand random points and 233 non-zeros a row. */
 enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
 
 /* What order the caller asks for. */
@@ -16700,7 +16700,7 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
     }
     if (!hdi_finite(rho) || !hdi_finite(start))
         return hdi_fail(e, HD_ERR_BREAKDOWN,
-                        "conjugate gradients on B leave the range of doubles, because masses differ by so much");
+                        "conjugate gradients on B leave the range of doubles, as masses differ by so much");
     if (rho > HDI_MASS_FAILED * start)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
     return HD_OK;
@@ -19925,7 +19925,7 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
     hdi_lane_rhs(lane, lap);
     if (hdi_lane_vanishes(lane, lap->n_active))
         return hdi_fail(e, HD_ERR_BREAKDOWN,
-                        "the iteration broke down: masses or values differ by so much that squares underflow");
+                        "the iteration broke down: masses or values differ so much that squares underflow");
     for (round = 0; round < 6; round++) {
         part.from = watch->from + watch->share * (round ? 0.7 : 0);
         part.share = watch->share * (round ? 0.3 : 0.7);
@@ -27201,7 +27201,8 @@ static hd_status hdi_fading_edges_run(hdi_heat_call *h, double t, double *out) {
     a.out = out;
     hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_edges_task, &a);
     off.rational = x.scale * x.cut * most.left * most.left;
-    off.solver = x.scale * ((x.mixed * x.mixed * most.left + 2 * most.side) * most.left + most.found * most.inner);
+    off.solver = x.scale *
+                 ((x.mixed * x.mixed * most.left + 2 * most.side) * most.left + most.found * most.inner);
     for (p = 0; p < lap->L.nnz; p++) {
         out[p] *= x.scale;
         off.rounding = 2 * x.scale * x.rounding * most.found * (most.found + most.left) +

@@ -2091,7 +2091,7 @@ static void int_distance_windows(void) {
             hdi_distance_shared z;
             CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
             CHECK(hdi_distance_begin(&h, heat, (hd_distance_kind)kind, TIMES, t, 1, NULL, NULL) >= 0);
-            CHECK(hdi_heat_sort_times(&h, 2) >= 0 && hdi_heat_analysed(heat, h.e) >= 0);
+            CHECK(hdi_heat_sort_times(&h, 2, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0);
             s = hdi_scope_begin(heat->ctx, h.e);
             CHECK(hdi_distance_shared_take(&z, &h, (hd_distance_kind)kind, 0, TIMES, &s) >= 0);
             CHECK(hdi_window_run(&h, &z.w, HDI_SHARED_DISTANCE_TOL, z.full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL) >= 0);
