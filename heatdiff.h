@@ -11921,7 +11921,8 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
 /* Orders the whole. Own threads share one loop, in which halves go on without waiting for others; those of
  * the user take the heap level by level. */
 static void hdi_nd_run(hdi_nd *nd) {
-    double done = 0.1;
+    double done = 0.15;
+    if (hdi_progress(nd->ctx, "order", 0.1, nd->error) < 0) return;
     if (nd->threads) {
         nd->order[0] = 0;
         hdi_parallel_ordered(nd->ctx, HDI_ND_NODES, 1, nd->order, hdi_nd_loop_task, nd);
@@ -12903,11 +12904,11 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 
 /* ---- the order ---- */
 
-/* From so many rows on nested dissection pays for itself: it takes three times as long to find as minimum
- * degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some solves
- * gain nothing up to 150K rows: see hdi_heat_light. Wide rows, those of exponential weights, make factors so
- * large that it pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49 with 10,
- * 20, 50, 150 thousand random points and 233 non-zeros a row. */
+/* From so many rows on nested dissection pays for itself: it takes four to nine times as long to find as
+ * minimum degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some
+ * solves gain nothing up to 150K rows: see hdi_heat_light. Wide rows, those of exponential weights, make
+ * factors so large that it pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49
+ * with 10, 20, 50, 150 thousand random points and 233 non-zeros a row. */
 enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
 
 /* What order the caller asks for. */
@@ -22972,6 +22973,12 @@ typedef struct hdi_steps_scales {
     int32_t rows[HDI_STEPS_OCTAVES];
 } hdi_steps_scales;
 
+/* An elimination order of a plan, with all that is made in it. */
+typedef struct hdi_heat_order {
+    hdi_elim elim;
+    hdi_ground ground;
+} hdi_heat_order;
+
 struct hd_heat {
     hd_context *ctx;
     const hd_laplacian *source;  /* the caller's */
@@ -22989,10 +22996,9 @@ struct hd_heat {
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_ground ground;           /* made when it is first needed; of elim */
-    /* elim and ground of the other order, where one real factor for few columns has its own; light: that is
-     * the one in elim now. See hdi_heat_turn */
-    hdi_elim elim_other;
-    hdi_ground ground_other;
+    /* elim and ground of the other order, where one real factor for few columns has its own, or NULL; light:
+     * that is the one in elim now. See hdi_heat_turn */
+    hdi_heat_order *other;
     int32_t light;
     hdi_modes modes;             /* so too */
     hdi_silan *silan;
@@ -23187,34 +23193,44 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
 /* Takes up one of the two elimination orders of a plan: the light one, which is found fast, or the one for
  * all else. Each is analysed when it is first needed. Which one a query takes depends on the query alone, so
  * that no answer depends on what was asked before. Bases fit the order that they were made for. */
-static void hdi_heat_turn(hd_heat *heat, int light) {
-    const hdi_elim elim = heat->elim;
-    const hdi_ground ground = heat->ground;
-    if (heat->light == light) return;
-    heat->elim = heat->elim_other;
-    heat->ground = heat->ground_other;
-    heat->elim_other = elim;
-    heat->ground_other = ground;
+static hd_status hdi_heat_turn(hd_heat *heat, int light, hd_error *e) {
+    hdi_heat_order now;
+    if (heat->light == light) return HD_OK;
+    if (!heat->other) {
+        heat->other = HDI_NEW(heat->ctx, hdi_heat_order, 1, e);
+        if (!heat->other) return e->status;
+        memset(heat->other, 0, sizeof *heat->other);
+    }
+    now.elim = heat->elim;
+    now.ground = heat->ground;
+    heat->elim = heat->other->elim;
+    heat->ground = heat->other->ground;
+    *heat->other = now;
     heat->light = light;
     if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, heat->ctx);
+    return HD_OK;
 }
 
 static void hdi_heat_free_factors(hd_heat *heat) {
-    hdi_elim_free(&heat->elim);
-    hdi_elim_free(&heat->elim_other);
     if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
-    if (HDI_HAS_DIAGONAL && heat->ground_other.diag) hdi_ground_free(&heat->ground_other, heat->ctx);
+    hdi_elim_free(&heat->elim);
+    if (!heat->other) return;
+    if (HDI_HAS_DIAGONAL && heat->other->ground.diag) hdi_ground_free(&heat->other->ground, heat->ctx);
+    hdi_elim_free(&heat->other->elim);
+    hdi_free(heat->ctx, heat->other);
+    heat->other = NULL;
+    heat->light = 0;
 }
 
 /* The one for all else. */
 static const hdi_elim *hdi_heat_full(const hd_heat *heat) {
-    return heat->light ? &heat->elim_other : &heat->elim;
+    return heat->light ? &heat->other->elim : &heat->elim;
 }
 
 /* The copy of the pair in the elimination order taken up, analysed. */
 static hd_status hdi_heat_analysed_as(hd_heat *heat, int light, hd_error *e) {
     if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(e, DIRECT, "factorisations");
-    hdi_heat_turn(heat, light);
+    if (hdi_heat_turn(heat, light, e) < 0) return e->status;
     if (heat->elim.ctx) return HD_OK;
     return hdi_elim_make(&heat->elim, heat->source,
                          light ? HD_ORDERING_MINIMUM_DEGREE : heat->opts.ordering, heat->perm, heat->scale,
@@ -23601,10 +23617,10 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill) return e->status;
     hdi_heat_measure_pair(heat);
-    for (i = 0; HDI_HAS_DIRECT && i < 2; i++) {
-        hdi_heat_turn(heat, !heat->light);
+    for (i = heat->other != NULL; HDI_HAS_DIRECT && i >= 0; i--) {
         if (heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
         if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+        if (heat->other) (void)hdi_heat_turn(heat, !heat->light, e);   /* twice, or not at all */
     }
     if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
     if (heat->lap) {
@@ -23932,7 +23948,7 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
                         ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
     hdi_cost c;
     int light;
-    hdi_heat_turn(heat, hdi_heat_light(h));
+    if (hdi_heat_turn(heat, hdi_heat_light(h), h->e) < 0) return h->e->status;
     c = hdi_heat_cost(h);
     hdi_heat_cheapest(h, &c, room);
     light = heat->light && h->method != HD_METHOD_DIRECT;
@@ -29539,7 +29555,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
 /* What is known when the call's own arrays are gone. */
 static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     int32_t q;
-    to->analysed = heat->elim.ctx != NULL || heat->elim_other.ctx != NULL;
+    to->analysed = heat->elim.ctx != NULL || (heat->other && heat->other->elim.ctx);
     to->bytes_in_use = HDI_CAST(double, heat->ctx->bytes_in_use);
     to->bytes_left = hdi_estimate_room(heat->ctx);
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
