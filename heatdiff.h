@@ -1490,10 +1490,13 @@ HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const 
  * D      n x count as in hd_heat_diagonal, the symmetric kernel
  * Z      [count] or NULL: sum of f over all eigenvalues
  * bound  [count] or NULL: bounds of the absolute errors of Z
- * report bounds of D. Rounding is measured at the rows where it may be largest in the first column
+ * report bounds of D. Rounding is measured at the rows where it may be largest in the first column. One t
+ *        serves all sets, so that bounds are looser than those of a filter by itself: with waves over three
+ *        decades 1e-5 to 1e-3 where errors are below 1e-7
  * Errors as hd_heat_diagonal; HD_ERR_ARGUMENT (column: which set has other poles or another time)
  * Cost   as hd_heat_diagonal for one set of as many poles, and 2 n flops for each set and pole. Memory for
- *        the inverses of each pole: 16 n bytes, with a full B about 80 n */
+ *        the inverses of each pole: 16 n bytes, with a full B about 80 n. On 50,000 vertices 16 or 100
+ *        wave filters take three to four times as long as one alone */
 HEATDIFF_API hd_status hd_heat_filter_diagonals(hd_heat *heat, int32_t count,
                                                 const hd_rational *sets, double *D, size_t ldd,
                                                 double *Z, double *bound, hd_report *report,
