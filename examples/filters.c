@@ -1,14 +1,16 @@
 /* filters.c - any filter of the spectrum: wave kernel signatures of every vertex, without eigenvectors
 
    The wave kernel signature at an energy e is the diagonal of exp(-(e - log L)^2 / (2 sigma^2)), divided by
-   its integral (Aubry, Schlickewei, Cremers 2011). hd_rational_fit makes poles for such a filter, and from
-   there every query works as it does for heat. One plan serves all energies. The same sums over the first 100
-   eigenpairs show what they miss at high energies.
+   its integral (Aubry, Schlickewei, Cremers 2011). hd_rational_fit makes poles for one such filter, and from
+   there every query works as it does for heat. Here hd_rational_fit_shared makes poles that all energies share,
+   so that one factorisation serves them all, and hd_heat_filter_diagonals gives the diagonals and their
+   integrals. The same sums over the first 100 eigenpairs show what they miss at high energies.
 
        cc -O2 examples/filters.c -o filters -lm && ./filters
 
-   It prints a row for each energy: the poles and what they are off by, the signature where the torus is thin
-   and where it is thick, its bound, and how far the signature from 100 eigenpairs is off. */
+   It prints the number of poles and the bound of all diagonals, then a row for each energy: what the poles are
+   off by, the signature where the torus is thin and where it is thick, and how far the signature from 100
+   eigenpairs is off. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
@@ -52,46 +54,46 @@ static void from_pairs(const hd_spectrum *s, const hd_filter *f, double *wks) {
 }
 
 int main(void) {
-    double *xyz = (double *)malloc(3 * N * sizeof *xyz), *u = (double *)malloc(3 * N * sizeof *u);
+    double *xyz = (double *)malloc(3 * N * sizeof *xyz), *u = (double *)malloc((ENERGIES + 1) * N * sizeof *u);
     int32_t *tri = (int32_t *)malloc(6 * N * sizeof *tri);
-    double *wks = u, *mass = u + N, *pairs = u + 2 * N;
+    double *pairs = u + ENERGIES * N, integral[ENERGIES];
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_spectrum *spectrum = NULL;
     hd_spectrum_opts opts = {0};
-    hd_laplacian_opts kind = {0};
-    hd_filter f = {0};
-    hd_rational set;
+    hd_filter f[ENERGIES] = {{0}};
+    hd_rational set[ENERGIES];
     hd_report report;
     hd_error err = {0};
     int status = 1, q;
     int32_t v;
     if (!xyz || !u || !tri) goto end;
     make_torus(xyz, tri);
-    kind.kind = HD_LAPLACIAN_VORONOI_COT;        /* B is diagonal: masses make K of k */
     opts.count = PAIRS;
-    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, &kind, &err) < 0) goto end;
+    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, NULL, &err) < 0) goto end;
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) goto end;
     if (hd_spectrum_create(&spectrum, lap, &opts, &err) < 0) goto end;
-    for (v = 0; v < N; v++) mass[v] = lap->row[v] < 0 ? 0 : lap->mass[lap->row[v]];
-    printf("%d vertices\nenergy  poles  off by   thin     thick    bound    %d pairs are off by\n", N, PAIRS);
     for (q = 0; q < ENERGIES; q++) {
-        double integral = 0, most = 0, off = 0;
-        f.kind = HD_FILTER_WAVE;
-        f.a = log(spectrum->value[4]) + 1.1 * q;
-        f.b = 0.3;
-        if (hd_rational_fit(&set, &f, hd_laplacian_lambda_max(lap), NULL, &err) < 0) goto end;
-        if (hd_heat_filter(heat, &set, &err) < 0) goto end;
-        if (hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &set.t, wks, 0, &report, &err) < 0) goto end;
-        for (v = 0; v < N; v++) integral += mass[v] * wks[v];
-        for (v = 0; v < N; v++) wks[v] /= integral;
-        from_pairs(spectrum, &f, pairs);
+        f[q].kind = HD_FILTER_WAVE;
+        f[q].a = log(spectrum->value[4]) + 1.1 * q;
+        f[q].b = 0.3;
+        f[q].tol = 1e-8;
+    }
+    if (hd_rational_fit_shared(set, ENERGIES, f, hd_laplacian_lambda_max(lap), NULL, &err) < 0) goto end;
+    if (hd_heat_filter(heat, set, &err) < 0) goto end;
+    if (hd_heat_filter_diagonals(heat, ENERGIES, set, u, 0, integral, NULL, &report, &err) < 0) goto end;
+    printf("%d vertices, %d poles for all energies, bound %.0e\nenergy  off by   thin     thick    "
+           "%d pairs are off by\n", N, (int)set[0].degree, report.error_bound, PAIRS);
+    for (q = 0; q < ENERGIES; q++) {
+        double *wks = u + q * N, most = 0, off = 0;
+        for (v = 0; v < N; v++) wks[v] /= integral[q];
+        from_pairs(spectrum, f + q, pairs);
         for (v = 0; v < N; v++) {
             most = fmax(most, wks[v]);
             off = fmax(off, fabs(pairs[v] - wks[v]));
         }
-        printf("%6.2f  %5d  %.1e  %.5f  %.5f  %.1e  %.1e\n", f.a, (int)set.degree, set.max_error,
-               wks[3 * RINGS / 12 * SIDES], wks[RINGS / 12 * SIDES], report.error_bound, off / most);
+        printf("%6.2f  %.1e  %.5f  %.5f  %.1e\n", f[q].a, set[q].max_error, wks[3 * RINGS / 12 * SIDES],
+               wks[RINGS / 12 * SIDES], off / most);
     }
     status = 0;
 end:

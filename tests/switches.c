@@ -417,7 +417,7 @@ static void check_filter(const hd_laplacian *lap) {
     hd_heat *heat = NULL;
     hd_rational set;
     const double w = 1 / sqrt(3.0), f4 = 1 / (1 + 4 * w), f6 = 1 / (1 + 6 * w);
-    double u[6];
+    double u[6], sum[1] = {0};
     int i;
     memset(&f, 0, sizeof f);
     memset(&o, 0, sizeof o);
@@ -435,6 +435,9 @@ static void check_filter(const hd_laplacian *lap) {
     if (BUILT(hd_heat_filter(heat, &set, &err), lacking)) {
         if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &set.t, u, 0, NULL, &err), no.diagonal))
             for (i = 0; i < 6; i++) CHECK(near_to(u[i], between(i, i, 1, f4, f6)));
+        CHECK(hd_rational_fit_shared(&set, 1, &f, hd_laplacian_lambda_max(lap), NULL, &err) == HD_OK && hd_heat_filter(heat, &set, &err) == HD_OK);
+        if (BUILT(hd_heat_filter_diagonals(heat, 1, &set, u, 0, sum, NULL, NULL, &err), no.diagonal))
+            CHECK(near_to(sum[0], 1 + 3 * f4 + 2 * f6));
     }
     hd_heat_free(heat);
 }

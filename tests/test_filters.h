@@ -455,6 +455,129 @@ static void filt_queries(void) {
 }
 
 /* A filter of heat is heat, at its own time and at no other. */
+/* ---- filters that share their poles ---- */
+
+enum { FILT_SHARED = 60 };
+
+/* Waves evenly from low to top, and the last two a heat kernel and a Mexican hat. */
+static void filt_many(hd_filter *f, int count, double low, double top) {
+    int q;
+    for (q = 0; q < count; q++) {
+        f[q] = filt_make(HD_FILTER_WAVE, log(low) + (q + 0.5) * log(top / low) / count, 0.07 * log(top / low));
+        if (count > 2 && q >= count - 2) f[q] = filt_make(q % 2 ? HD_FILTER_HEAT : HD_FILTER_MEXICAN_HAT, 3 / sqrt(low * top), 0);
+        f[q].tol = q % 3 ? 1e-7 : 1e-8;
+    }
+}
+
+static void filt_shared_sets(void) {
+    static const int counts[3] = {1, 7, FILT_SHARED};
+    hd_filter f[FILT_SHARED];
+    hd_rational *set = (hd_rational *)calloc(FILT_SHARED, sizeof *set), one;
+    const double top = 1e5;
+    hd_error e;
+    int k, q;
+    for (k = 0; k < 3; k++) {
+        filt_many(f, counts[k], 3, 1e3);
+        CHECK_MSG(hd_rational_fit_shared(set, counts[k], f, top, NULL, &e) == HD_OK, "%d filters: %s", counts[k], e.text);
+        for (q = 0; q < counts[k]; q++) {
+            const double off = filt_error(f + q, set + q, top);
+            CHECK_MSG(off <= set[q].max_error && off <= 1.1 * f[q].tol * set[q].largest, "filter %d of %d: error %g, reported %g, largest %g", q, counts[k], off, set[q].max_error,
+                      set[q].largest);
+            CHECK(set[q].n_poles == set[0].n_poles && set[q].t == set[0].t && memcmp(set[q].theta, set[0].theta, sizeof set[0].theta) == 0 && set[q].kind == HD_POLES_OWN &&
+                  set[q].lambda_max == top && set[q].a0 == 0);
+        }
+    }
+    CHECK_MSG(set[0].n_poles <= 28, "%d filters take %d pairs", FILT_SHARED, (int)set[0].n_poles);   /* one takes 9 */
+    CHECK(hd_rational_fit(&one, f + FILT_SHARED / 2, top, NULL, NULL) == HD_OK && one.n_poles >= 8);
+    f[1].b /= 4;                                 /* too narrow for so small a tolerance: told, and not hidden */
+    f[1].tol = 1e-14;
+    CHECK(hd_rational_fit_shared(set, 3, f, top, NULL, NULL) == HD_WARN_ACCURACY);
+    for (q = 0; q < 3; q++) CHECK(filt_error(f + q, set + q, top) <= set[q].max_error);
+    f[1].b = 0;
+    CHECK(hd_rational_fit_shared(set, 3, f, top, NULL, &e) == HD_ERR_ARGUMENT && e.column == 1);
+    CHECK(hd_rational_fit_shared(set, 0, f, top, NULL, NULL) == HD_ERR_ARGUMENT && hd_rational_fit_shared(NULL, 1, f, top, NULL, NULL) == HD_ERR_ARGUMENT);
+    free(set);
+}
+
+/* Diagonals and traces of all filters at once against dense ones. */
+static void filt_shared_diagonals(const heat_case *c, double low) {
+    enum { COUNT = 9 };
+    const hd_laplacian *lap = c->lap;
+    const int32_t n = lap->n, m = lap->n_active;
+    double *D = DENSE_NEW(double, COUNT * (n + 1)), Z[COUNT], bound[COUNT];
+    hd_filter f[COUNT];
+    hd_rational set[COUNT];
+    hd_heat_opts o;
+    hd_heat *heat;
+    hd_report rep;
+    hd_context ctx;
+    int64_t calls = 0;
+    int q, round;
+    int32_t i, v;
+    memset(&o, 0, sizeof o);
+    memset(&ctx, 0, sizeof ctx);
+    o.context = &ctx;
+    ctx.progress = est_on_progress;
+    ctx.progress_user = &calls;
+    filt_many(f, COUNT, low, c->top);
+    CHECK(hd_rational_fit_shared(set, COUNT, f, hd_laplacian_lambda_max(lap), NULL, NULL) == HD_OK);
+    o.rational = set + 3;
+    heat = eng_create(lap, &o);
+    for (round = 0; round < 2; round++) {
+        for (v = 0; v < COUNT * (n + 1); v++) D[v] = 77;
+        CHECK_MSG(hd_heat_filter_diagonals(heat, COUNT, set, D, (size_t)n + 1, round ? NULL : Z, round ? NULL : bound, &rep, NULL) == HD_OK, "%s: %s", c->what, rep.error.text);
+        CHECK_MSG(rep.error_bound < 2e-5 && rep.method == HD_METHOD_DIRECT && rep.degree == set[0].degree, "%s: bound %g", c->what, rep.error_bound);
+        for (q = 0; q < COUNT; q++) {
+            const double *d = D + (size_t)q * ((size_t)n + 1);
+            double sum = 0, most = 0, off = 0;
+            for (i = 0; i < m; i++) {
+                double want = 0;
+                int32_t k;
+                for (k = 0; k < m; k++) {
+                    const double x = c->pair.x[(size_t)k * (size_t)m + (size_t)i];
+                    want += filt_want(f + q, fmax(0, c->pair.lambda[k])) * x * x;
+                }
+                sum += filt_want(f + q, fmax(0, c->pair.lambda[i]));
+                most = fmax(most, fabs(want));
+                off = fmax(off, fabs(want - d[lap->vertex[i]]));
+            }
+            for (v = 0; v < n; v++) CHECK(lap->row[v] >= 0 || d[v] == 0);
+            CHECK(d[n] == 77);
+            CHECK_MSG(off <= rep.error_bound * most && off <= 2e-7 * most, "%s, filter %d: diagonal off by %g of %g, bound %g", c->what, q, off, most, rep.error_bound);
+            if (round == 0) CHECK_MSG(fabs(Z[q] - sum) <= bound[q] && fabs(Z[q] - sum) <= 1e-6 * sum && bound[q] < 1e-3 * sum, "%s, filter %d: trace %.12g, not %.12g, bound %g", c->what, q,
+                                      Z[q], sum, bound[q]);
+        }
+    }
+    calls = 0;                                   /* the factors serve columns of another filter as well */
+    CHECK(hd_heat_filter(heat, set + 5, NULL) == HD_OK);
+    CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, set[5].t, lap->vertex[2], D, &rep, NULL) == HD_OK && rep.method == HD_METHOD_DIRECT);
+    CHECK_MSG(fabs(D[lap->vertex[2]] - D[(size_t)5 * ((size_t)n + 1) + (size_t)lap->vertex[2]]) <= 1e-7 * dense_max_abs(D, n), "%s: column and diagonal", c->what);
+    set[2].theta[1].re *= 1.0001;
+    CHECK(hd_heat_filter_diagonals(heat, COUNT, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 2);
+    CHECK(hd_heat_filter_diagonals(heat, 0, set, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT && hd_heat_filter_diagonals(heat, 1, NULL, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_filter(heat, NULL, NULL) == HD_OK && hd_heat_filter_diagonals(heat, 1, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
+    hd_heat_free(heat);
+    free(D);
+}
+
+static void filt_shared(void) {
+    int k;
+    filt_shared_sets();
+    for (k = 0; k < 4; k++) {
+        shape s = k == 0 ? shape_torus(16, 8, 2, 0.7) : k == 1 ? shape_grid(11, 9, 0.3) : k == 2 ? shape_icosphere(2) : shape_grid(9, 8, 0.2);
+        const int32_t held[2] = {3, 40};
+        const hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_FEM, HD_BORDER_DIRICHLET, 2, held);
+        heat_case c = heat_case_of(k < 3 ? test_laplacian(&s, op_kinds[k]) : bord_triangles(&s, &o), k == 0 ? "torus fem" : k == 1 ? "grid voronoi" : k == 2 ? "ball cot" : "held");
+        double low = HUGE_VAL;
+        int32_t i;
+        for (i = 0; i < c.lap->n_active; i++)
+            if (c.pair.lambda[i] > 1e-9 * c.top) low = fmin(low, c.pair.lambda[i]);
+        filt_shared_diagonals(&c, 0.9 * low);
+        heat_case_free(&c);
+        shape_free(&s);
+    }
+}
+
 static void filt_refused(void) {
     shape s = shape_grid(9, 7, 0.3);
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM), *small;
@@ -529,6 +652,7 @@ static void test_filters(void) {
     filt_arguments();
     filt_queries();
     filt_one_plan();
+    filt_shared();
     filt_refused();
 }
 

@@ -587,6 +587,17 @@ static void src_line(void) {
 
 /* ---- geodesic distances ---- */
 
+/* Points in triangles. The arrays stay the caller's. */
+static hd_source src_in_triangles(int32_t count, const int32_t *vertex, const double *bary) {
+    hd_source s;
+    memset(&s, 0, sizeof s);
+    s.count = count;
+    s.corners = 3;
+    s.vertex = vertex;
+    s.bary = bary;
+    return s;
+}
+
 static hd_geodesic *src_geodesic(const shape *s, double t) {
     hd_geodesic_opts o;
     hd_geodesic *g = NULL;
@@ -610,13 +621,8 @@ static void src_geo_sphere(int levels) {
         const double b[3] = {0.2 + 0.05 * q, 0.5 - 0.03 * q, 0.3 - 0.02 * q};
         double p[3] = {0, 0, 0}, flat[3], size;
         hd_geodesic_report rep;
-        hd_source src;
+        const hd_source src = src_in_triangles(1, v, b);
         int32_t at;
-        memset(&src, 0, sizeof src);
-        src.count = 1;
-        src.corners = 3;
-        src.vertex = v;
-        src.bary = b;
         CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-12);
         h = rep.h;
         for (k = 0; k < 3; k++)
@@ -646,13 +652,8 @@ static void src_geo_square(void) {
     const double cell = 1.0 / (N - 1), at = x - floor(x / cell) * cell;
     int32_t vertex[3 * 2 * N], v, q, n = 0;
     hd_geodesic_report rep;
-    hd_source src;
-    memset(&src, 0, sizeof src);
-    src.corners = 3;
-    src.vertex = vertex;
-    src.bary = bary;
+    hd_source src = src_in_triangles(2, vertex, bary);
     for (q = 0; q < 2; q++) src_place(&s, p[q][0], p[q][1], vertex + 3 * q, bary + 3 * q);
-    src.count = 2;
     CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1);
     for (v = 0; v < s.n; v++) {
         const double *a = s.xyz + 3 * v;
@@ -683,12 +684,7 @@ static void src_geo_strip(void) {
     const double x = 10.3 / (N - 1), y = 1.6 / (N - 1);
     int32_t vertex[3], v;
     hd_geodesic_report rep;
-    hd_source src;
-    memset(&src, 0, sizeof src);
-    src.count = 1;
-    src.corners = 3;
-    src.vertex = vertex;
-    src.bary = bary;
+    const hd_source src = src_in_triangles(1, vertex, bary);
     src_place(&s, x, y, vertex, bary);
     CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages > 1);
     for (v = 0; v < s.n; v++) off = fmax(off, fabs(d[v] - hypot(s.xyz[3 * v] - x, s.xyz[3 * v + 1] - y)));
@@ -707,12 +703,7 @@ static void src_geo_rules(void) {
     int32_t vertex[6] = {0, 5, 1, a.n + 3, 0, 9}, id[2] = {5, a.n + 3}, v;
     hd_geodesic_report rep;
     hd_error err;
-    hd_source src;
-    memset(&src, 0, sizeof src);
-    src.count = 2;
-    src.corners = 3;
-    src.vertex = vertex;
-    src.bary = bary;
+    hd_source src = src_in_triangles(2, vertex, bary);
     CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && hd_geodesic_distance(g, 2, id, e, NULL, NULL) == HD_OK);
     CHECK(memcmp(d, e, (size_t)s.n * sizeof *d) == 0);
     src.count = 1;

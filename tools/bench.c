@@ -412,6 +412,14 @@ typedef struct ours {
 /* A plan and what it reports to. */
 typedef struct plan { hd_context ctx; watch w; hd_heat *heat; } plan;
 
+/* A context of as many threads as are measured. */
+static hd_context bench_context(const bench *b) {
+    hd_context ctx;
+    memset(&ctx, 0, sizeof ctx);
+    ctx.n_threads = b->threads;
+    return ctx;
+}
+
 static hd_status plan_open(plan *p, const bench *b, const ask *a) {
     hd_heat_opts o;
     memset(p, 0, sizeof *p);
@@ -1409,10 +1417,9 @@ static void real_solve(const bench *b, double g, int32_t row, double *x, real_ru
     hd_ldl_opts o;
     hd_context ctx;
     int64_t p;
-    memset(&ctx, 0, sizeof ctx);
+    ctx = bench_context(b);
     memset(&o, 0, sizeof o);
     memset(out, 0, sizeof *out);
-    ctx.n_threads = b->threads;
     o.context = &ctx;
     o.xyz = b->lap->xyz;
     for (p = 0; val && p < L->nnz; p++) val[p] = b->pair.B[p] + g * L->val[p];
@@ -1533,9 +1540,8 @@ static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run 
     double t0 = now();
     int q;
     memset(&o, 0, sizeof o);
-    memset(&ctx, 0, sizeof ctx);
+    ctx = bench_context(b);
     memset(r, 0, sizeof *r);
-    ctx.n_threads = b->threads;
     o.context = &ctx;
     r->fine = hd_geodesic_create(&g, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o,
                                  NULL) >= 0 &&
@@ -1642,8 +1648,7 @@ static void job_assembly(bench *b) {
         hd_context ctx;
         double t;
         memset(&o, 0, sizeof o);
-        memset(&ctx, 0, sizeof ctx);
-        ctx.n_threads = b->threads;
+        ctx = bench_context(b);
         o.context = &ctx;
         o.kind = voronoi ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
         rest();
@@ -1714,8 +1719,7 @@ static double pairs_ours(const bench *b, double *X, entry *row) {
     hd_context ctx;
     double t;
     memset(&o, 0, sizeof o);
-    memset(&ctx, 0, sizeof ctx);
-    ctx.n_threads = b->threads;
+    ctx = bench_context(b);
     o.context = &ctx;
     o.count = PAIRS;
     rest();
