@@ -2040,8 +2040,9 @@ static void int_ground_need(void) {
 }
 
 static void int_parts(void) {
-    const hdi_parts a = {1, 5, 3}, b = {2, 4, 6}, least = hdi_parts_least(a, b), twice = hdi_parts_scale(2, a), none = {HUGE_VAL, 0, 1};
+    const hdi_parts a = {1, 5, 3}, b = {2, 4, 6}, least = hdi_parts_least(a, b), other = hdi_parts_least(b, a), twice = hdi_parts_scale(2, a), none = {HUGE_VAL, 0, 1};
     CHECK(least.rational == 1 && least.solver == 4 && least.rounding == 3);
+    CHECK(other.rational == 1 && other.solver == 4 && other.rounding == 3);
     CHECK(twice.rational == 2 && twice.solver == 10 && twice.rounding == 6);
     CHECK(hdi_parts_scale(0, none).rational == 0 && hdi_parts_scale(3, none).rational == HUGE_VAL && hdi_parts_scale(HUGE_VAL, none).solver == 0);
 }
