@@ -62,6 +62,7 @@ static void int_division(void) {
         }
     }
     CHECK(!hdi_cfinite(hdi_cdiv(hdi_c(1, 1), hdi_c(0, 0))));
+    CHECK(hdi_nan((double)NAN) && hdi_nan(-(double)NAN) && !hdi_nan((double)INFINITY) && !hdi_nan(-(double)INFINITY) && !hdi_nan(-DBL_MAX) && !hdi_nan(0));
     CHECK(!hdi_finite((double)NAN) && !hdi_finite((double)INFINITY) && !hdi_finite(-(double)INFINITY) && hdi_finite(DBL_MAX) && hdi_finite(0));
 }
 

@@ -1745,6 +1745,38 @@ static void eng_survives(void) {
     shape_free(&s);
 }
 
+/* The same call again takes the same number of iterations, and finds the same bits: nothing is left of the first. */
+static void eng_again(void) {
+    static const hd_method methods[3] = {HD_METHOD_ITERATIVE, HD_METHOD_ITERATIVE, HD_METHOD_KRYLOV};
+    shape ball = shape_icosphere(2);
+    hd_laplacian *lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
+    double *f = DENSE_NEW(double, ball.n), *u = DENSE_NEW(double, 2 * (int64_t)ball.n);
+    uint64_t seed = 5;
+    int32_t k, v;
+    for (v = 0; v < ball.n; v++) f[v] = dense_signed(&seed);
+    for (k = 0; k < 3; k++) {
+        hd_heat_opts o = eng_opts(methods[k]);
+        hd_report rep[2];
+        hd_heat *heat;
+        if (k == 1) o.solver = HD_SOLVER_COCG;   /* pole by pole; else Lanczos */
+        heat = eng_create(lap, &o);
+        for (v = 0; v < 2; v++) CHECK(heat_apply(heat, 3 * lap->h * lap->h, 1, f, 0, u + v * ball.n, 0, rep + v) >= 0);
+        CHECK_MSG(rep[0].iterations > 0 && rep[1].iterations == rep[0].iterations, "%lld iterations, then %lld", (long long)rep[0].iterations,
+                  (long long)rep[1].iterations);
+        CHECK(memcmp(u, u + ball.n, (size_t)ball.n * sizeof *u) == 0);
+        hd_heat_free(heat);
+        if (k != 1) continue;
+        for (v = 0; v < rep[0].n_poles; v++) o.max_iterations = (int32_t)fmax(o.max_iterations, (double)rep[0].pole_iterations[v]);
+        heat = eng_create(lap, &o);              /* as many as the longest takes are enough, each time */
+        for (v = 0; v < 3; v++) CHECK(heat_apply(heat, 3 * lap->h * lap->h, 1, f, 0, u, 0, rep) == HD_OK);
+        hd_heat_free(heat);
+    }
+    hd_laplacian_free(lap);
+    shape_free(&ball);
+    free(f);
+    free(u);
+}
+
 static void test_engines(void) {
     eng_dense_cases();
     eng_large();
@@ -1753,6 +1785,7 @@ static void test_engines(void) {
     eng_own_sets();
     eng_counts();
     eng_reuse();
+    eng_again();
     eng_switch();
     eng_times();
     eng_times_columns();

@@ -448,7 +448,7 @@ static void src_geo_sphere(int levels) {
         src.corners = 3;
         src.vertex = v;
         src.bary = b;
-        CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-12);
+        CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_heat > 0 && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-12);
         h = rep.h;
         for (k = 0; k < 3; k++)
             for (i = 0; i < 3; i++) p[i] += b[k] * s.xyz[3 * v[k] + i];
