@@ -2070,6 +2070,23 @@ static void int_distance_windows_damaged(hdi_distance_shared *z, const hdi_terms
     free(exact);
 }
 
+/* Traces at times that share their poles, and at one, within their bounds of the sums over eigenvalues. */
+static void int_traces(const hd_laplacian *lap, const dense_pair *pair, int32_t n_times, const double *t) {
+    double Z[16], bound[16], one, one_bound;
+    hd_heat *heat = NULL;
+    int32_t q, i;
+    CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+    CHECK(hd_heat_trace(heat, n_times, t, Z, bound, NULL, NULL) >= 0);
+    for (q = 0; q < n_times; q++) {
+        double want = 0;
+        for (i = 0; i < pair->n; i++) want += exp(-t[q] * pair->lambda[i]);
+        CHECK(hd_heat_trace(heat, 1, t + q, &one, &one_bound, NULL, NULL) >= 0);
+        CHECK_MSG(fabs(Z[q] - want) <= bound[q] + 1e-12 * want && bound[q] < 1e-5 * want, "trace %.12g, not %.12g, bound %g", Z[q], want, bound[q]);
+        CHECK_MSG(fabs(one - want) <= one_bound + 1e-12 * want && one_bound < 1e-5 * want, "one trace %.12g, not %.12g, bound %g", one, want, one_bound);
+    }
+    hd_heat_free(heat);
+}
+
 /* Windows of distances: f is exp(-2tA), and g bounds the resolvent 1/(1 + 2tA) from above without being much larger; so do diagonals and columns
  * together, for every pair of vertices and each of the times. */
 static void int_distance_windows(void) {
@@ -2085,6 +2102,7 @@ static void int_distance_windows(void) {
         for (i = 0; i < n * n && !lap->B; i++) B[i] = i % (n + 1) == 0 ? lap->mass[i / (n + 1)] : 0;
         CHECK(dense_pair_solve(&pair, shared_dense(&lap->L, lap->L.val), B, n));
         for (q = 0; q < TIMES; q++) t[q] = lap->h * lap->h * pow(10, 0.2 * q);
+        int_traces(lap, &pair, TIMES, t);
         for (kind = 0; kind < 2; kind++) {
             double off = 0, low = HUGE_VAL, high = 0;
             hd_heat *heat = NULL;
