@@ -2130,7 +2130,7 @@ static void int_distance_windows(void) {
     for (form = 0; form < 2; form++) {
         hd_laplacian *lap = int_mesh(0, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
         const int32_t n = lap->n_active;
-        double t[TIMES], *g = DENSE_NEW(double, n), *want = DENSE_NEW(double, 2 * (int64_t)n), *B;
+        double t[TIMES], *g = DENSE_NEW(double, n), *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, 2 * (int64_t)n), *B;
         dense_pair pair;
         int32_t i, q, r;
         B = shared_dense(&lap->L, lap->B ? lap->B : lap->L.val);
@@ -2150,6 +2150,7 @@ static void int_distance_windows(void) {
             s = hdi_scope_begin(heat->ctx, h.e);
             CHECK(hdi_distance_shared_take(&z, &h, (hd_distance_kind)kind, 0, TIMES, &s) >= 0);
             CHECK(hdi_window_run(&h, &z.w, HDI_SHARED_DISTANCE_TOL, z.full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL) >= 0);
+            hdi_distance_shared_probe(&z);
             for (r = 0; r < 3; r++) {
                 const int32_t at = r * (n - 1) / 2, source = z.m->lap->vertex[at];
                 const hdi_terms one = hdi_terms_vertex(source);
@@ -2173,10 +2174,19 @@ static void int_distance_windows(void) {
                         low = fmin(low, dg / want[n + v]);
                         high = fmax(high, dg / want[n + v]);
                     }
+                    hdi_distance_shared_judge(&z, q, &one, u);   /* the bounds are made of the same columns, by vertices */
+                    for (i = 0; i < n; i++) {
+                        const int32_t v = lap->vertex[i];
+                        const double dg = z.metric.g[i] + z.metric.g[lap->row[source]] - 2 * z.g[v];
+                        if (v == source) continue;
+                        off = fmax(off, fabs(u[v] * u[v] - want[i]) / size);
+                        low = fmin(low, dg / want[n + i]);
+                        high = fmax(high, dg / want[n + i]);
+                    }
                 }
             }
             CHECK_MSG(off < 1e-6, "kind %d, form %d: squared distances off by %g", kind, form, off);
-            CHECK_MSG(low > 1 - 1e-9 && high < 10, "kind %d, form %d: g is %g to %g times the resolvent", kind, form, low, high);
+            CHECK_MSG(low > 1 - 1e-9 && high < 7, "kind %d, form %d: g is %g to %g times the resolvent", kind, form, low, high);
             for (r = 0; r < 3; r++) {
                 const hdi_terms one = hdi_terms_vertex(z.m->lap->vertex[r * (n - 1) / 2]);
                 int_distance_windows_damaged(&z, &one, form ? "diagonal" : "full");
@@ -2188,6 +2198,7 @@ static void int_distance_windows(void) {
         dense_pair_free(&pair);
         hd_laplacian_free(lap);
         free(g);
+        free(u);
         free(want);
     }
 }
