@@ -25381,7 +25381,7 @@ static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
 
 /* Frees the factors of poles, which are of no more use. */
 static void hdi_packs_drop(hd_heat *heat) {
-    hdi_elim *m = heat->light ? &heat->elim_other : &heat->elim;
+    hdi_elim *m = heat->light ? &heat->other->elim : &heat->elim;
     while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
     m->filled = 0;
 }

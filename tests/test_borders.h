@@ -169,6 +169,43 @@ static void bord_split(void) {
     shape_free(&s);
 }
 
+/* Masses of components by the order of those that have rows: the first is held altogether; of the third a vertex is held (which conserves nothing
+ * there), and then none. */
+static void bord_masses(void) {
+    shape ball = shape_icosphere(1), disk = bord_disk(5, 0), small = bord_disk(3, 0);
+    const double apart[3] = {4, 1, 0}, further[3] = {9, 1, 0};
+    shape two = shape_disjoint(&ball, &disk, apart), three = shape_disjoint(&two, &small, further);
+    int32_t *held = DENSE_NEW(int32_t, ball.n + 1), q, more, round;
+    double *xyz = DENSE_NEW(double, 3 * (int64_t)three.n);
+    for (q = 0; q < ball.n; q++) held[q] = q;
+    held[ball.n] = two.n;
+    for (more = 1; more >= 0; more--) {
+        hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_VORONOI_COT, HD_BORDER_NATURAL, ball.n + more, held);
+        hd_laplacian *lap;
+        o.updatable = 1;
+        lap = bord_triangles(&three, &o);
+        for (round = 0; round < 2; round++) {    /* the second time all is of three times the size */
+            double mass[2] = {0, 0};
+            CHECK(lap->n_components == 2 && lap->conserves == 1 + more);
+            for (q = 0; q < lap->n_active; q++) mass[lap->component[q]] += lap->mass[q];
+            if (more) mass[1] = HUGE_VAL;
+            for (q = 0; q < 2; q++)
+                CHECK_MSG(fabs(lap->component_mass[q] - mass[q]) < 1e-13 || lap->component_mass[q] == mass[q], "component %d: %g, not %g", (int)q,
+                          lap->component_mass[q], mass[q]);
+            for (q = 0; q < 3 * three.n; q++) xyz[q] = 3 * three.xyz[q];
+            CHECK(hd_laplacian_update(lap, xyz, NULL) == HD_OK);
+        }
+        hd_laplacian_free(lap);
+    }
+    shape_free(&ball);
+    shape_free(&disk);
+    shape_free(&small);
+    shape_free(&two);
+    shape_free(&three);
+    free(held);
+    free(xyz);
+}
+
 static void bord_pairs_polygons(void) {
     shape_poly s = shape_trominoes(3, 3, 0.1);
     char *ends = bord_ends(s.n, s.face_ptr, s.face_idx, s.n_faces);
@@ -771,6 +808,7 @@ static void bord_memory(void) {
 static void test_borders(void) {
     bord_pairs_triangles();
     bord_split();
+    bord_masses();
     bord_pairs_polygons();
     bord_pairs_points();
     bord_queries();

@@ -674,6 +674,7 @@ static void geo_errors(void) {
     CHECK(hd_geodesic_distance(g, 1, NULL, d, &rep, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, 1, beyond, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
     CHECK(hd_geodesic_distance(NULL, 1, beyond, d, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.text[0]);
     CHECK(hd_geodesic_distances(g, -1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distances(g, 1, beyond, d, 41, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distances(NULL, 1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distances(g, 1, NULL, d, 0, NULL, NULL) == HD_ERR_ARGUMENT);
     CHECK(hd_geodesic_distances(g, 0, NULL, NULL, 0, &rep, NULL) == HD_OK && rep.h > 0);
     CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, NULL) == HD_OK && d[0] == 0 && d[1] > 0);     /* and is as good as before */
     hd_geodesic_free(g);

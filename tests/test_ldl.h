@@ -1391,7 +1391,6 @@ static void ldl_breakdown(void) {
     enum { N = 12 };
     const double huge[4] = {1e-200, 1e200, 1e200, 1};
     const hd_c64 nil[8] = {{1, 1}, {2, 2}, {2, 2}, {4, 4}, {0, 2}, {1, 0}, {1, 0}, {0, -0.5}};
-    const double zero[4] = {0, 0, 0, 0};
     const int32_t natural[2] = {0, 1};
     int32_t perm[N], i;
     hd_csr path = test_path_csr(N, 0), two = ldl_shape(LDL_PATH, 2, 1, 1);

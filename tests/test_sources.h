@@ -623,7 +623,7 @@ static void src_geo_sphere(int levels) {
         hd_geodesic_report rep;
         const hd_source src = src_in_triangles(1, v, b);
         int32_t at;
-        CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-12);
+        CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_heat > 0 && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-12);
         h = rep.h;
         for (k = 0; k < 3; k++)
             for (i = 0; i < 3; i++) p[i] += b[k] * s.xyz[3 * v[k] + i];

@@ -5,10 +5,10 @@
     mutate.py --line NUMBER        every fault of one line
     mutate.py --again FILE         the survivors that an earlier run has printed, after tests were added
 
-Up to N faults are drawn in every room (default 500), no two of one line: another sign, comparison, operator, index,
-constant, conjugate, minimum for maximum, a condition turned round, a statement left out. Only lines that tests run in
-a build without threads and vector instructions are drawn, and no fault of a prefetch, nor one that takes the other of two equal numbers. A fault that leaves the compiled code as it was does not
-count. One that does not compile does not count either.
+Up to N faults are drawn in every room (default 500), no two of one line, rooms in turn: another sign, comparison,
+operator, index, constant, conjugate, minimum for maximum, a condition turned round, a statement left out. Only lines
+that tests run in a build without threads and vector instructions are drawn. No faults are those of a prefetch, one that
+takes the other of two equal numbers, one that leaves the compiled code as it was, and one that does not compile.
 
 Each fault is compiled by tcc, in a tenth of a second. The tests are cut into pieces: every call that stands in the
 body of a group. The pieces that run the line follow, those first that are quick or found other faults of the function,
