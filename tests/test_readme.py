@@ -29,6 +29,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import zlib
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -52,14 +53,11 @@ done
 exec "{cc}" -I"{top}" "${{args[@]}}"
 """
 
-passed, failures = 0, []
+passed, failures = [], []
 
 
 def check(good, page, what):
-    global passed
-    passed += bool(good)
-    if not good:
-        failures.append("%s: %s" % (page, what))
+    (passed if good else failures).append("%s: %s" % (page, what))
     return good
 
 
@@ -341,15 +339,16 @@ def main():
         os.mkdir(folder)
         for name in ("examples", "tools", "tests", "heatdiff.h"):
             os.symlink(os.path.join(TOP, name), os.path.join(folder, name))
-        for page in PAGES:
-            if page in RUN:
-                run_commands(page, text[page], work, folder, timed, "--pictures" in sys.argv)
-            look_up(page, text[page], cc)
-            check_links(page, text[page])
-            check_names(page, text[page], header, programs)
-            if page == "tools/README.md":
-                check_sections(page, text[page])
-    print("\n".join(failures + ["%d passed, %d failed" % (passed, len(failures))]))
+        reader = threading.Thread(target=lambda: [look_up(page, text[page], cc) for page in PAGES])
+        reader.start()
+        for page in RUN:
+            run_commands(page, text[page], work, folder, timed, "--pictures" in sys.argv)
+        reader.join()
+    for page in PAGES:
+        check_links(page, text[page])
+        check_names(page, text[page], header, programs)
+    check_sections("tools/README.md", text["tools/README.md"])
+    print("\n".join(failures + ["%d passed, %d failed" % (len(passed), len(failures))]))
     sys.exit(bool(failures))
 
 
