@@ -166,7 +166,7 @@ def mean_error(xyz, faces, **options):
 
 def edge(xyz, faces):
     if isinstance(faces, np.ndarray):
-        return np.mean([np.linalg.norm(xyz[faces[:, k]] - xyz[faces[:, k - 1]], axis=1).mean() for k in range(faces.shape[1])])
+        return np.linalg.norm(xyz[faces] - xyz[np.roll(faces, 1, axis=1)], axis=2).mean()
     return np.mean([np.linalg.norm(xyz[f] - xyz[np.roll(f, 1)], axis=1).mean() for f in faces])
 
 
@@ -198,7 +198,8 @@ def geodesic():
 def grounded():
     head("w", "commute", "biharmonic")
     n, m = 40, 1600
-    grid = [(i * n + j, i * n + j + d) for i in range(n) for j in range(n) for d in ((1,) if j < n - 1 else ()) + ((n,) if i < n - 1 else ())]
+    k = np.arange(m).reshape(n, n)
+    grid = list(zip(k[:, :-1].ravel(), k[:, 1:].ravel())) + list(zip(k[:-1].ravel(), k[1:].ravel()))
     edges = np.array(grid + [(a + m, b + m) for a, b in grid] + [(m - 1, m)])
     for w in (1, 1e-3, 1e-6, 1e-9):
         weight = np.ones(len(edges))
@@ -217,15 +218,16 @@ def grounded():
 
 
 def derivatives():
-    u, v = (a.ravel() for a in np.meshgrid(np.arange(350 if not QUICK else 70), np.arange(100 if not QUICK else 20), indexing="ij"))
-    nu, nv = u.max() + 1, v.max() + 1
+    nu, nv = (70, 20) if QUICK else (350, 100)
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(nu), np.arange(nv), indexing="ij"))
     a, b = 2 * np.pi * u / nu, 2 * np.pi * v / nv
     xyz = np.stack([(2 + 0.7 * np.cos(b)) * np.cos(a), (2 + 0.7 * np.cos(b)) * np.sin(a), 0.7 * np.sin(b)], 1)
     p, q, r, s = u * nv + v, (u + 1) % nu * nv + v, (u + 1) % nu * nv + (v + 1) % nv, u * nv + (v + 1) % nv
     lap = hd.triangles(xyz, np.concatenate([np.stack([p, q, r], 1), np.stack([p, r, s], 1)]))
     one = np.zeros(lap.n)
     one[0] = 1
-    fields = {"smooth": xyz[:, 0] + np.sin(3 * xyz[:, 1]), "single vertex": one, "noise": np.random.default_rng(1).normal(size=lap.n)}
+    fields = {"smooth": xyz[:, 0] + np.sin(3 * xyz[:, 1]), "single vertex": one,
+              "noise": np.random.default_rng(1).normal(size=lap.n)}
     times = (3, 100, 1000, 10000)
     head("field", *("%g h²" % t for t in times))
     for name, f in fields.items():
