@@ -50,7 +50,7 @@ each() {
 }
 
 unwritten='#include <stdio.h>
-int main(int c, char **v) { int a[4]; (void)v; a[c] = 1; return printf(a[c + 1] > 7 ? "a" : "b") < 0; }'
+int main(int c, char **v) { int a[4]; (void)v; a[c] = 1; if (a[c + 1] > 7) puts("a"); return 0; }'
 flag=
 jobs=2
 shift $(($# < 2 ? $# : 2))
