@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests under checkers. In each mode a planted error first proves that the checker is on.
-#     sanitize.sh WORKFOLDER [all]                    addresses, undefined behaviour and traps, as CI does; all: the slow groups too,
+#     sanitize.sh WORKFOLDER [all]                    addresses and undefined behaviour, as CI does; all: the slow groups too,
 #                                                     whose code the others run as well
 #     sanitize.sh WORKFOLDER memory|threads|traps|valgrind [GROUP...]
 # Those modes print a line per group; the log of a group is WORKFOLDER/MODE.GROUP.log. Groups are those of `runner --list`, and
@@ -14,14 +14,14 @@ top=$(cd "$(dirname "$0")/.." && pwd)
 work=$1
 mode=${2:-}
 
-# planted FLAGS... <source: must end with an error, by itself or under $wrap
+# planted COMPILER FLAGS... <source: must end with an error, by itself or under $wrap
 wrap=
 planted() {
   local cc=$1
   shift
   cat >"$work/planted.c"
   $cc "$@" "$work/planted.c" -o "$work/planted" -lm
-  if $wrap "$work/planted" >/dev/null 2>&1; then echo "$cc: the checker is not on"; exit 1; fi
+  if { $wrap "$work/planted"; } >/dev/null 2>&1; then echo "$cc: the checker is not on"; exit 1; fi
 }
 
 # one MODE GROUP: runs it, prints its line
@@ -50,7 +50,7 @@ each() {
 }
 
 unwritten='#include <stdio.h>
-int main(int c, char **v) { int a[4]; (void)v; a[c] = 1; return printf(a[c + 1] > 7 ? "a" : "b") < 0; }'
+int main(int c, char **v) { int a[4]; (void)v; a[c] = 1; if (a[c + 1] > 7) puts("a"); return 0; }'
 flag=
 jobs=2
 shift $(($# < 2 ? $# : 2))
@@ -95,8 +95,8 @@ int main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; 
   rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long $slow)")
   [ "$mode" != all ] || long="$long $slow"
   mkdir "$work/a" "$work/b"
-  { "$work/runner" --traps --tmp "$work/a" $long && "$work/internals"; } >"$work/long.log" 2>&1 &
-  "$work/runner" --traps --tmp "$work/b" $rest
+  { "$work/runner" --tmp "$work/a" $long && "$work/internals"; } >"$work/long.log" 2>&1 &
+  "$work/runner" --tmp "$work/b" $rest
   wait $! || { cat "$work/long.log"; exit 1; }
   cat "$work/long.log" ;;
 *)

@@ -333,15 +333,13 @@ static void kry_sizes(void) {
                 memset(&rep, 0, sizeof rep);
                 CHECK(hd_shifted_solve(lap, 3 * h2, test_c(-1, 2), rhs, q ? x : want, &o, &rep, &e) == HD_OK);
                 CHECK_MSG(rep.residual > 0 && rep.residual <= 1e-10 && rep.error_b > 0 && rep.error_b < 1e-8, "size %g: residual %g, error %g", size, rep.residual, rep.error_b);
-                TRAPS_OFF;                       /* 0/0 at a vertex without area */
                 for (v = 0; v < s.n && q; v++) off = fmax(off, hypot(x[v].re / sizes[q] - want[v].re, x[v].im / sizes[q] - want[v].im) / hypot(want[v].re, want[v].im));
-                TRAPS_ON;
                 CHECK_MSG(off < 1e-8, "size %g, scale %g, solver %d: off by %g", size, scales[pick], k, off);
             }
             for (q = 0; q < 4; q++) {
                 const double bad = q % 2 ? (double)NAN : -(double)INFINITY;
                 rhs[7] = test_c(q < 2 ? bad : 1, q < 2 ? 0 : bad);
-                CHECK(hd_shifted_solve(lap, 3 * h2, test_c(-1, 2), rhs, x, &o, &rep, &e) == HD_ERR_NOT_FINITE && e.row == 7 && !(fabs(e.value) <= DBL_MAX));
+                CHECK(hd_shifted_solve(lap, 3 * h2, test_c(-1, 2), rhs, x, &o, &rep, &e) == HD_ERR_NOT_FINITE && e.row == 7 && !hdi_finite(e.value));
             }
             rhs[7] = test_c(0, 0);
         }

@@ -467,6 +467,31 @@ static void op_errors(void) {
     xyz[3] = -1e200;
     CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && e.face == 0);
     CHECK(lap == NULL);
+    xyz[3] = -DBL_MAX;                           /* nor is the difference of two corners */
+    xyz[6] = DBL_MAX;
+    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && e.face == 0 && lap == NULL);
+}
+
+/* A mesh near the largest doubles, and one far from the origin: weights are those of the mesh at its own size and place, bit for
+ * bit, since sizes are a power of two apart; far from the origin lengths of normals take another way. */
+static void op_largest(void) {
+    int i, kind;
+    for (kind = 0; kind < 4; kind++) {
+        const int far_off = kind > 1;
+        shape s = shape_icosphere(1);
+        hd_laplacian *lap, *big;
+        int64_t p;
+        for (i = 0; i < 3 * s.n && far_off; i++) s.xyz[i] = floor(ldexp(s.xyz[i], 20));       /* exact after the move */
+        lap = test_laplacian(&s, kind % 2 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        for (i = 0; i < 3 * s.n; i++) s.xyz[i] = far_off ? ldexp(s.xyz[i] + (i % 3 == 1 ? ldexp(1, 40) : 0), 468) : ldexp(s.xyz[i], 506);
+        big = test_laplacian(&s, kind % 2 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        CHECK(big->L.nnz == lap->L.nnz && big->mesh.n_zero_area == 0 && big->mesh.n_faces_used == s.n_tri);
+        for (p = 0; p < lap->L.nnz; p++) CHECK_MSG(fabs(big->L.val[p] - lap->L.val[p]) <= (far_off ? 1e-14 : 0), "kind %d: %.17g, not %.17g", kind, big->L.val[p], lap->L.val[p]);
+        CHECK(fabs(big->area / ldexp(lap->area, far_off ? 936 : 1012) - 1) <= 1e-15);
+        hd_laplacian_free(lap);
+        hd_laplacian_free(big);
+        shape_free(&s);
+    }
 }
 
 /* Heat on a small ball of a given size. What the library says it is, or an error. */
@@ -840,6 +865,7 @@ static void test_operators(void) {
     op_star();
     op_errors();
     op_extreme_scale();
+    op_largest();
     op_matrices_good();
     op_matrices_inert();
     op_matrices_zeros();

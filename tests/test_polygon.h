@@ -599,6 +599,8 @@ static void poly_long_and_notched(void) {
     static const int32_t corner[7] = {0, 1, 2, 3, 4, 5, 6};
     shape_poly s = shape_poly_make(11, 2, 11);
     hd_laplacian *lap;
+    hd_error e;
+    double area;
     int32_t i;
     memcpy(s.xyz, notch, sizeof notch);
     for (i = 7; i < 11; i++) {
@@ -611,7 +613,16 @@ static void poly_long_and_notched(void) {
     lap = poly_make(&s, 0);
     CHECK(lap->mesh.n_zero_area == 1 && lap->mesh.n_inert == 4 && lap->mesh.n_faces_used == 1);
     CHECK_MSG(fabs(lap->mesh.smallest_angle - 1.5707963267948966) < 1e-15, "%.17g", lap->mesh.smallest_angle);
+    area = lap->area;
     hd_laplacian_free(lap);
+    for (i = 0; i < 21; i++) s.xyz[i] = ldexp(s.xyz[i], 505);
+    lap = poly_make(&s, 0);                      /* the notch near the largest doubles, and the needle */
+    CHECK(lap->mesh.n_zero_area == 1 && fabs(area - 15.3) < 1e-13 && lap->area == ldexp(area, 1010));
+    CHECK_MSG(fabs(lap->mesh.smallest_angle - 1.5707963267948966) < 1e-15, "%.17g", lap->mesh.smallest_angle);
+    hd_laplacian_free(lap);
+    s.xyz[3] = -(s.xyz[6] = DBL_MAX);            /* nor are differences of corners doubles */
+    s.xyz[7] *= 2;
+    CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, 0, &e) == HD_ERR_NOT_FINITE && e.face == 0);
     shape_poly_free(&s);
 }
 

@@ -144,7 +144,7 @@ static void thr_fork(const shape *s, const double *want, double *u) {
 #ifdef LDL_THREADS
 typedef struct thr_user { const hd_laplacian *lap; double *u; hd_method method; int32_t n_threads; int good; } thr_user;
 
-/* A column and a distance, u [2 n], the same bits each time. */
+/* A column, the same bits each time, and for direct a distance: u [2 n]. */
 static void *thr_user_run(void *arg) {
     thr_user *w = (thr_user *)arg;
     const size_t n = (size_t)w->lap->n;
@@ -163,9 +163,9 @@ static void *thr_user_run(void *arg) {
     w->good = u && hd_heat_create(&heat, w->lap, &o, NULL) == HD_OK;
     for (k = 0; w->good && k < 3; k++) {
         w->good = hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, source, u, NULL, NULL) >= 0 &&
-                  (w->method == HD_METHOD_ITERATIVE || k > 0 ||
+                  (w->method != HD_METHOD_DIRECT || k > 0 ||
                    hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, u + n, 0, NULL, NULL) >= 0);
-        if (w->method == HD_METHOD_ITERATIVE) memset(u + n, 0, n * sizeof *u);
+        if (w->method != HD_METHOD_DIRECT) memset(u + n, 0, n * sizeof *u);
         if (k == 0 && w->good) memcpy(w->u, u, 2 * n * sizeof *u);
         w->good = w->good && memcmp(u, w->u, 2 * n * sizeof *u) == 0;
     }
