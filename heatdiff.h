@@ -1536,7 +1536,7 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
 /* t = c/lambda_1, lambda_1 the smallest eigenvalue but those of constants. The diagonal of k_t at such times
  * is the auto-diffusion function of Gebal, Baerentzen, Aanaes, Larsen 2009, where c is called t. Small c
  * (0.1) shows details, c = 1 tips and branches.
- * c, t   [n_times]; they may be the same
+ * c, t   [n_times] c > 0; they may be the same
  * Errors and cost as hd_spectrum_create for one pair more than components */
 HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times,
                                          const double *c, double *t, hd_error *err);
@@ -16622,8 +16622,10 @@ static hd_status hdi_watch_look(const hdi_watch *w, double done, hd_error *e) {
 /* The share of the work that is done when a residual has come from start down to now, on a logarithmic
  * scale. */
 static double hdi_krylov_done(double start, double now, double target) {
+    double done;
     if (!(now > target) || !(start > target)) return 1;
-    return target > 0 ? log(start / now) / log(start / target) : 0;
+    done = target > 0 ? log(start / now) / log(start / target) : 0;
+    return done > 0 ? done : 0;                  /* no number where bounds are infinite */
 }
 
 /* Iterates until the recurrence says |r| <= target, or until it gains no more. Near the level of rounding it
@@ -26372,9 +26374,11 @@ static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel k
     return x->k > 0 ? hdi_direct_columns(h->heat, &c, h->rep, h->e) : h->e->status;
 }
 
-/* Rounding of a value, relative to size, by a probe whose own error is at most off. */
+/* Rounding of a value, relative to size, by a probe whose own error is at most off. Of a probe that is not a
+ * number nothing is known; a maximum would forget it. */
 static double hdi_probe_seen(double probe, double off, double value, double size) {
-    return hdi_quotient(HDI_PROBE_SAFETY * fabs(probe - value) + off, fabs(size));
+    const double seen = hdi_quotient(HDI_PROBE_SAFETY * fabs(probe - value) + off, fabs(size));
+    return hdi_nan(seen) ? HUGE_VAL : seen;
 }
 
 /* Probe q's own entry by the weights of `set`, a set in terms of a time that is tau times that of the
@@ -27179,6 +27183,7 @@ static double hdi_trace_at(hdi_heat_call *h, const hdi_trace *z, int32_t q, hdi_
     off->rational = hdi_min(uniform, hdi_finite(weighted) ? weighted * spread : HUGE_VAL);
     off->rounding = seen * hdi_max(fabs(value), set->kind == HD_POLES_OWN ? lap->n_active : 0) +
                     4 * DBL_EPSILON * fabs(value);
+    if (!hdi_finite(off->rounding)) off->rounding = HUGE_VAL;    /* where 0 times infinity is no number */
     return value;
 }
 
@@ -32656,6 +32661,9 @@ HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_time
     (void)hdi_enter(&call, lap ? lap->context : NULL, err);
     hdi_refuse(!lap || !c || !t, "an argument is missing", call.e);
     hdi_refuse(n_times < 1, "times: there is no time", call.e);
+    for (q = 0; q < n_times && call.e->status >= 0; q++)
+        if (!hdi_finite(c[q]) || c[q] <= 0)
+            hdi_fail_row(call.e, HD_ERR_ARGUMENT, "times: c is not positive and finite", -1, q, c[q]);
     if (call.e->status < 0) return call.e->status;
     for (q = 0; q < lap->n_components && lap->conserves; q++)
         constants += hdi_finite(lap->component_mass[q]) ? 1 : 0;

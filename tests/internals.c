@@ -2615,7 +2615,17 @@ static void int_linear_precision(void) {
     shape_poly_free(&s);
 }
 
+/* What is known of an error by numbers that are none, or infinite: nothing, and of progress that it has begun. */
+static void int_no_numbers(void) {
+    const double none = (double)NAN, endless = (double)INFINITY;
+    CHECK(hdi_probe_seen(none, 0, 1, 1) >= HUGE_VAL && hdi_probe_seen(1, none, 1, 1) >= HUGE_VAL && hdi_probe_seen(endless, 0, endless, 1) >= HUGE_VAL);
+    CHECK(hdi_probe_seen(1, 0, 1, 1) == 0 && hdi_probe_seen(1, 1e-9, 1, 2) == 5e-10);
+    CHECK(hdi_krylov_done(endless, endless, 1) == 0 && hdi_krylov_done(endless, 2, 1) == 0 && hdi_krylov_done(endless, endless, endless) == 1);
+    CHECK(hdi_krylov_done(1, 1e-3, 1e-6) == 0.5 && hdi_krylov_done(1, 2, 1e-6) == 0 && hdi_krylov_done(1, 1, 0) == 0);
+}
+
 int main(void) {
+    int_no_numbers();
     int_linear_precision();
     int_length_area();
     int_flips();

@@ -2537,6 +2537,13 @@ class Levels(Case):
             self.assertEqual(self.lines("--input", field, "--levels", "-1,9", path), [])
             self.assertEqual([x for _, x, _ in self.lines("--input", field, "--levels", "auto:6", path)], [0.5, 1, 1.5, 2, 2.5, 3])
 
+    def test_far_apart(self):
+        """Points of a line lie between the ends of its edges, also where the difference of these overflows."""
+        path = self.file("far.obj", "v -1.7e308 0 0\nv 1.7e308 0 0\nv 0 1 0\nf 1 2 3\n")
+        line, = self.lines("--input", self.field_file("far.txt", [0, 1, 1]), "--levels", "0.25", path)
+        for got, want in zip(sorted(p[0] for p in line[2]), (-1.275, -0.85)):
+            self.assertAlmostEqual(got / 1e308, want, delta=1e-14)
+
     def test_sphere(self):
         """Circles of latitude of a fine sphere, closed: 2 pi sqrt(1 - z^2) up to the error of a polygon."""
         v, f = sphere(3)

@@ -223,6 +223,11 @@ static void sign_suitable_times(void) {
     for (first = HUGE_VAL, q = 0; q < pair.pair.n; q++) first = pair.pair.lambda[q] > 0 ? fmin(first, pair.pair.lambda[q]) : first;
     CHECK(hd_times_spectral(both, 1, c, t, &e) == HD_OK && fabs(t[0] * first - 1) < 1e-9);
     CHECK(hd_times_spectral(both, 0, c, t, &e) == HD_ERR_ARGUMENT && hd_times_spectral(both, 1, NULL, t, &e) == HD_ERR_ARGUMENT);
+    for (q = 0; q < 4; q++) {
+        const double wrong[4] = {0, -1, (double)NAN, (double)INFINITY};
+        const double two[2] = {1, wrong[q]};
+        CHECK(hd_times_spectral(both, 2, two, t, &e) == HD_ERR_ARGUMENT && e.column == 1);
+    }
     heat_case_free(&k);
     heat_case_free(&pair);
     hd_laplacian_free(lap);

@@ -74,6 +74,13 @@ static uint64_t lev_edge(int32_t i, int32_t j)
     return i < j ? (uint64_t)i << 32 | (uint32_t)j : (uint64_t)j << 32 | (uint32_t)i;
 }
 
+/* The point at share s of the way from x to y, in between also where rounding or overflow would lead outside. */
+static double lev_between(double x, double y, double s)
+{
+    const double p = isfinite(y - x) ? x + s * (y - x) : (1 - s) * x + s * y, low = x < y ? x : y, high = x < y ? y : x;
+    return p < low ? low : p > high ? high : p;
+}
+
 static void lev_point(const lev_work *w, uint64_t edge, double *p)
 {
     const size_t i = (size_t)(edge >> 32), j = (size_t)(edge & 0xffffffffu);
@@ -83,7 +90,7 @@ static void lev_point(const lev_work *w, uint64_t edge, double *p)
     const double s = isfinite(b - a) ? u : (w->level / 2 - a / 2) / (b / 2 - a / 2);
     for (c = 0; c < 3; c++) {
         const double x = w->mesh->xyz[3 * i + (size_t)c], y = w->mesh->xyz[3 * j + (size_t)c];
-        p[c] = s <= 0 ? x : s >= 1 ? y : x + s * (y - x);
+        p[c] = s <= 0 ? x : s >= 1 ? y : lev_between(x, y, s);
     }
 }
 

@@ -35,6 +35,7 @@
 #define HEATDIFF_IMPLEMENTATION
 #endif
 #include "../../heatdiff.h"
+#include "../../tools/levels.h"
 #include "../../tools/meshio.h"
 #include "../../tools/shapes.h"
 
@@ -268,6 +269,51 @@ static void fz_table(const uint8_t *data, size_t size) {
         free(values);
         free(lines);
     }
+}
+
+/* Level sets of any values on any faces: within the box of the mesh, each line of two points at least. */
+static void fz_levels(const uint8_t *data, size_t size) {
+    fz_in in;
+    lev_set set;
+    lev_mesh mesh;
+    double xyz[3 * 24], f[24], low = HUGE_VAL, high = -HUGE_VAL;
+    int64_t ptr[25], at = 0, k;
+    int32_t idx[200], n, j;
+    uint8_t way;
+    in.p = data;
+    in.end = data + size;
+    way = fz_byte(&in);
+    n = 1 + fz_below(&in, 24);
+    memset(&set, 0, sizeof set);
+    memset(&mesh, 0, sizeof mesh);
+    for (k = 0; k < 3 * n; k++) {
+        do xyz[k] = fz_number(&in); while (!mio_is_finite(xyz[k]));
+        low = xyz[k] < low ? xyz[k] : low;
+        high = xyz[k] > high ? xyz[k] : high;
+    }
+    for (k = 0; k < n; k++) f[k] = fz_number(&in);
+    mesh.n_faces = fz_below(&in, 24);
+    for (k = 0, ptr[0] = 0; k < mesh.n_faces; k++) {
+        const int32_t corners = way & 1 ? 3 : 3 + fz_below(&in, 5);
+        for (j = 0; j < corners; j++) idx[at++] = fz_below(&in, n);
+        ptr[k + 1] = at;
+    }
+    mesh.xyz = xyz;
+    mesh.face_ptr = way & 1 ? NULL : ptr;
+    mesh.face_idx = idx;
+    fz_what = "level sets";
+    for (k = 0; k < 2; k++) {
+        double level;
+        do level = fz_number(&in); while (!mio_is_finite(level));
+        FZ(lev_trace(&set, &mesh, f, way & 2 ? f[0] : level));
+    }
+    for (k = at = 0; k < set.n_lines; k++) {
+        FZ(set.line[k].first == at && set.line[k].count >= 2 + (set.line[k].closed != 0) && set.line[k].length >= 0);
+        at += set.line[k].count;
+    }
+    FZ(at == set.n_points);
+    for (k = 0; k < 3 * set.n_points; k++) FZ(set.xyz[k] >= low && set.xyz[k] <= high);
+    lev_free(&set);
 }
 
 /* ---- Laplacians ---- */
@@ -514,23 +560,56 @@ static void fz_columns(hd_heat *heat, const hd_laplacian *lap, fz_query *q, cons
     fz_check_report(st, &rep);
     if (st != HD_OK) return;
     FZ(fz_finite(q->u, (int64_t)lap->n * q->k * q->n_times));
-    for (k = 0; k < q->k && q->kernel == HD_KERNEL_OPERATOR; k++) {
+    for (k = 0; k < q->k && q->kernel == HD_KERNEL_OPERATOR && rep.poles != HD_POLES_OWN; k++) {
         memset(q->f, 0, (size_t)lap->n * sizeof *q->f);
         q->f[q->id[k]] = 1;
         for (m = 0; m < q->n_times; m++) fz_check_mass(lap, q->f, q->u + (size_t)(k * q->n_times + m) * (size_t)lap->n, &rep);
     }
 }
 
+/* Signatures, times, derivatives and adjoints. */
+static void fz_one_more(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *in, const fz_context *c) {
+    static const char *const names[] = {"derivative", "adjoint", "trace", "normalised", "scale invariant", "times"};
+    const int64_t n = lap->n;
+    const int which = fz_byte(in) % 6;
+    hd_report rep;
+    hd_error e;
+    hd_status st;
+    double t[3];
+    int64_t values = n * q->k * q->n_times;
+    int32_t k;
+    fz_what = names[which];
+    for (k = 0; k < lap->n * q->k && which < 2; k++) q->f[k] = fz_number(in);
+    switch (which) {
+    case 0: st = hd_heat_derivative(heat, q->n_times, q->t, q->k, q->f, 0, q->u, 0, &rep, &e); break;
+    case 1: st = hd_heat_adjoint(heat, q->n_times, q->t, q->k, q->f, 0, q->u, 0, &rep, &e); break;
+    case 2: st = hd_heat_trace(heat, q->n_times, q->t, q->u, q->v, &rep, &e), values = q->n_times; break;
+    case 3: st = hd_heat_normalised(heat, q->n_times, q->t, q->u, 0, &rep, &e), values = n * q->n_times; break;
+    case 4: st = hd_heat_scale_invariant(heat, q->t[0], q->t[1], fz_int(in, 9), fz_below(in, 4), q->u, 0, &rep, &e), values = n; break;
+    default:
+        if (fz_status(hd_times_auto(lap, q->n_times, t, &e), &e, c) >= 0) FZ(fz_no_nan(t, q->n_times));
+        if (fz_status(hd_times_spectral(lap, q->n_times, q->t, t, &e), &e, c) >= 0) FZ(fz_no_nan(t, q->n_times));
+        return;
+    }
+    fz_status(st, &e, c);
+    fz_check_report(st, &rep);
+    if (st < 0) return;
+    FZ(fz_no_nan(q->u, values));
+    if (st == HD_OK) FZ(fz_finite(q->u, values));
+    if (which == 2) for (k = 0; k < values; k++) FZ(q->v[k] >= 0);
+}
+
 static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *in, const fz_context *c) {
     static const char *const names[] = {"fields", "columns", "diagonal", "edges", "distance", "pairs", "sample", "entries", "estimate"};
     const int64_t n = lap->n;
-    const uint8_t which = fz_byte(in) % 9;
+    const uint8_t way = fz_byte(in), which = way % 9;
     hd_report rep;
     hd_error e;
     hd_status st = HD_OK;
     hd_estimate estimate;
     int64_t values = 0;
     int32_t points[8];
+    if (way >= 216) { fz_one_more(heat, lap, q, in, c); return; }
     fz_what = names[which];
     if (which == 0) { fz_field(heat, lap, q, in, c); return; }
     if (which == 1) { fz_columns(heat, lap, q, c); return; }
@@ -775,6 +854,287 @@ static void fz_queries(const uint8_t *data, size_t size) {
     fz_context_done(&c);
     shape_free(&a);
     shape_free(&b);
+    shape_free(&s);
+}
+
+/* ---- lengths ---- */
+
+/* Sides as long as in space, some of them changed; or any. */
+static void fz_sides(fz_in *in, const shape *s, double *lengths) {
+    const uint8_t way = fz_byte(in);
+    int32_t f, q, changes = fz_below(in, 6);
+    for (f = 0; f < s->n_tri; f++) {
+        for (q = 0; q < 3; q++) {
+            const int32_t i = s->tri[3 * f + q], j = s->tri[3 * f + (q + 1) % 3];
+            const int in_range = i >= 0 && j >= 0 && i < s->n && j < s->n;
+            lengths[3 * f + q] = way > 200 || !in_range ? fz_number(in) : shape_distance(s->xyz + 3 * i, s->xyz + 3 * j);
+            if (way & 1 && in_range) lengths[3 * f + q] = 1 + ((i + 1) * (j + 1) % 7) / 16.0;
+        }
+    }
+    for (; changes > 0 && s->n_tri > 0; changes--) lengths[fz_byte(in) % (3 * s->n_tri)] = fz_number(in);
+}
+
+static void fz_lengths(const uint8_t *data, size_t size) {
+    fz_in in;
+    fz_context c;
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    double *lengths;
+    int32_t held[4];
+    shape s;
+    in.p = data;
+    in.end = data + size;
+    fz_context_make(&c, &in);
+    s = fz_soup(&in);
+    if (!s.xyz) return;
+    lengths = (double *)malloc((3 * (size_t)s.n_tri + 1) * sizeof *lengths);
+    if (!lengths) abort();
+    fz_sides(&in, &s, lengths);
+    o = fz_laplacian_opts(&in, &c.ctx, held, s.n);
+    fz_what = "lengths";
+    if (fz_status(hd_laplacian_lengths(&lap, lengths, s.n, s.tri, s.n_tri, &o, &e), &e, &c) >= 0) {
+        FZ(!lap->xyz);
+        fz_check_laplacian(lap);
+        FZ(hd_laplacian_lambda_max(lap) >= 0);
+        fz_ask(&in, lap, &c);
+    } else {
+        FZ(!lap);
+    }
+    hd_laplacian_free(lap);
+    fz_context_done(&c);
+    free(lengths);
+    shape_free(&s);
+}
+
+/* ---- sources ---- */
+
+enum { FZ_SOURCE_POINTS = 8, FZ_SOURCE_CORNERS = 5 };
+
+typedef struct fz_source {
+    hd_source source;
+    int32_t vertex[FZ_SOURCE_POINTS * FZ_SOURCE_CORNERS];
+    double bary[FZ_SOURCE_POINTS * FZ_SOURCE_CORNERS], weight[FZ_SOURCE_POINTS], length[FZ_SOURCE_POINTS];
+} fz_source;
+
+/* Points between the corners of faces, or between any; with coordinates that sum to one, or any. */
+static void fz_source_make(fz_source *p, fz_in *in, const shape *s) {
+    const uint8_t way = fz_byte(in);
+    hd_source *const o = &p->source;
+    int32_t k, q, corners;
+    memset(p, 0, sizeof *p);
+    o->count = way > 250 ? fz_int(in, 4) : 1 + fz_below(in, FZ_SOURCE_POINTS);
+    if (o->count > FZ_SOURCE_POINTS) o->count = FZ_SOURCE_POINTS;
+    o->corners = way > 246 ? fz_int(in, 5) : fz_below(in, 4);
+    if (o->corners > FZ_SOURCE_CORNERS) o->corners = FZ_SOURCE_CORNERS;
+    corners = o->corners > 0 ? o->corners : 1;
+    for (k = 0; k < FZ_SOURCE_POINTS; k++) {
+        const int32_t f = way & 1 && s->n_tri > 0 ? fz_below(in, s->n_tri) : -1;
+        double sum = 0;
+        for (q = 0; q < corners; q++) {
+            p->vertex[k * corners + q] = f >= 0 ? s->tri[3 * f + (q + way) % 3] : fz_int(in, s->n);
+            p->bary[k * corners + q] = way & 2 ? fz_byte(in) / 255.0 : fz_number(in);
+            sum += p->bary[k * corners + q];
+        }
+        for (q = 0; q < corners && way & 2 && sum > 0; q++) p->bary[k * corners + q] /= sum;
+        p->weight[k] = fz_number(in);
+        p->length[k] = fz_number(in);
+    }
+    o->vertex = way == 4 ? NULL : p->vertex;
+    o->bary = way & 4 ? p->bary : NULL;
+    o->weight = way & 8 && !(way & 16) ? p->weight : NULL;
+    o->curve = way & 16 ? (way == 16 ? fz_int(in, 3) : 1) : 0;
+    o->length = way & 32 ? p->length : NULL;
+    if (way == 255) o->end_zero = 1;
+}
+
+/* Columns of k_t hold as much heat as their sources weigh. */
+static void fz_source_heat(const hd_laplacian *lap, const hd_source *o, const double *u, const hd_report *rep) {
+    double heat = 0, weight = 0, size = 0, total = 0, most = 0;
+    int32_t k, r;
+    if (lap->conserves != 1 || lap->n_active < lap->n || o->curve) return;
+    for (k = 0; k < o->count; k++) {
+        weight += o->weight ? o->weight[k] : 1;
+        size += o->weight ? fabs(o->weight[k]) : 1;
+    }
+    for (r = 0; r < lap->n_active; r++) {
+        heat += lap->mass[r] * u[lap->vertex[r]];
+        total += lap->mass[r];
+        if (fabs(u[lap->vertex[r]]) > most) most = fabs(u[lap->vertex[r]]);
+    }
+    if (mio_is_finite(total * most)) FZ(fabs(heat - weight) <= rep->error_bound * most * total + 2e-6 * size);
+}
+
+static void fz_sources_ask(fz_in *in, const shape *s, const hd_laplacian *lap, hd_geodesic *g, const fz_context *c) {
+    fz_source from[FZ_FIELDS];
+    hd_source list[FZ_FIELDS];
+    hd_heat *heat = NULL;
+    hd_heat_opts o;
+    hd_report rep;
+    hd_error e;
+    hd_status st;
+    fz_query q;
+    int32_t k, m;
+    memset(&o, 0, sizeof o);
+    o.method = (hd_method)fz_below(in, 4);
+    o.max_iterations = 400;
+    if (fz_status(hd_heat_create(&heat, lap, &o, &e), &e, c) < 0) return;
+    fz_query_make(&q, in, lap);
+    for (k = 0; k < q.k; k++) {
+        fz_source_make(from + k, in, s);
+        list[k] = from[k].source;
+    }
+    fz_what = "columns from sources";
+    st = fz_status(hd_heat_columns_from(heat, q.kernel, q.n_times, q.t, q.k, list, q.u, 0, &rep, &e), &e, c);
+    fz_check_report(st, &rep);
+    if (st == HD_OK) FZ(fz_finite(q.u, (int64_t)lap->n * q.k * q.n_times));
+    for (k = 0; k < q.k && st == HD_OK && q.kernel == HD_KERNEL_SYMMETRIC; k++)
+        for (m = 0; m < q.n_times; m++) fz_source_heat(lap, list + k, q.u + (size_t)(k * q.n_times + m) * (size_t)lap->n, &rep);
+    fz_what = "distance from sources";
+    if (q.kind >= HD_DISTANCE_COMMUTE) q.n_times = 1;
+    st = fz_status(hd_heat_distance_from(heat, q.kind, q.n_times, q.t, q.k, list, q.u, 0, &rep, &e), &e, c);
+    fz_check_report(st, &rep);
+    if (st >= 0) for (k = 0; k < lap->n * q.k * q.n_times; k++) FZ(q.u[k] >= 0);
+    fz_what = "geodesic distance from sources";
+    for (k = 0; k < q.k && g; k++)
+        if (fz_status(hd_geodesic_distance_from(g, list + k, q.u, NULL, &e), &e, c) >= 0) for (m = 0; m < s->n; m++) FZ(q.u[m] >= 0);
+    fz_query_free(&q);
+    hd_heat_free(heat);
+}
+
+static void fz_sources(const uint8_t *data, size_t size) {
+    static const double offset[3] = {4, 0, 0};
+    fz_in in;
+    fz_context c;
+    hd_laplacian_opts o;
+    hd_geodesic_opts go;
+    hd_laplacian *lap = NULL;
+    hd_geodesic *g = NULL;
+    hd_error e;
+    int32_t held = 2;
+    uint8_t way;
+    shape a, b, s;
+    in.p = data;
+    in.end = data + size;
+    fz_context_make(&c, &in);
+    way = fz_byte(&in);
+    a = shape_icosphere(0);
+    b = shape_grid(3 + (way & 1), 3, 0.3);
+    s = way < 200 ? shape_disjoint(&a, &b, offset) : fz_soup(&in);
+    memset(&o, 0, sizeof o);
+    memset(&go, 0, sizeof go);
+    o.context = go.context = &c.ctx;
+    o.kind = (hd_laplacian_kind)(way >> 1 & 3);
+    if (way & 8) o.border = HD_BORDER_DIRICHLET;
+    if (way & 16) { o.n_held = 1; o.held = &held; }
+    if (way & 32) o.tufted = go.tufted = 1;
+    go.border = (hd_geodesic_border)fz_below(&in, 3);
+    fz_what = "sources";
+    if (fz_status(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e), &e, &c) >= 0) {
+        if (way & 64) (void)fz_status(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &go, &e), &e, &c);
+        fz_sources_ask(&in, &s, lap, g, &c);
+    }
+    hd_geodesic_free(g);
+    hd_laplacian_free(lap);
+    fz_context_done(&c);
+    shape_free(&a);
+    shape_free(&b);
+    shape_free(&s);
+}
+
+/* ---- geodesic distance of everything ---- */
+
+static hd_geodesic_opts fz_geodesic_opts(fz_in *in, fz_context *c, int32_t n, int32_t *perm) {
+    const uint8_t way = fz_byte(in);
+    hd_geodesic_opts o;
+    int32_t k;
+    memset(&o, 0, sizeof o);
+    o.context = &c->ctx;
+    o.border = (hd_geodesic_border)fz_int(in, 3);
+    if (way & 1) o.t = fz_number(in);
+    if (way & 2) o.t_in_h2 = fz_number(in);
+    if (way & 4) o.mass = (hd_geodesic_mass)fz_int(in, 2);
+    if (way & 8) o.updatable = 1;
+    if (way & 16) o.intrinsic_delaunay = 1;
+    if (way & 32) o.tufted = 1;
+    if (way & 64) {
+        o.mollify = fz_number(in);
+        o.lambda = fz_number(in);
+        o.neighbours = fz_int(in, 130);
+    }
+    if (way & 128) {
+        o.ordering = (hd_ordering)fz_int(in, 4);
+        for (k = 0; k < n; k++) perm[k] = n - 1 - k;
+        if (fz_byte(in) > 250) perm[0] = fz_int(in, n);
+        o.perm = perm;
+    }
+    return o;
+}
+
+static hd_status fz_geodesic_of(fz_in *in, hd_geodesic **g, const shape *s, const hd_geodesic_opts *o, hd_error *e) {
+    double lengths[3 * FZ_FACES];
+    int64_t ptr[FZ_FACES + 1];
+    hd_mesh_view view;
+    int32_t f = 0;
+    switch (fz_byte(in) % 5) {
+    case 0: return hd_geodesic_create(g, s->xyz, s->n, s->tri, s->n_tri, o, e);
+    case 1:
+        if (s->n_tri > FZ_FACES) return hd_geodesic_create_lengths(g, NULL, s->n, s->tri, s->n_tri, o, e);
+        fz_sides(in, s, lengths);
+        return hd_geodesic_create_lengths(g, lengths, s->n, s->tri, s->n_tri, o, e);
+    case 2:
+        memset(&view, 0, sizeof view);
+        view.xyz_double = s->xyz;
+        view.n = s->n;
+        view.tri_u32 = (const uint32_t *)s->tri;
+        view.n_indices = 3 * (int64_t)s->n_tri;
+        return hd_geodesic_create_view(g, &view, o, e);
+    case 3:
+        for (ptr[0] = 0; f < FZ_FACES && ptr[f] < 3 * (int64_t)s->n_tri; f++) {
+            const int64_t next = ptr[f] + fz_below(in, 9) + (in->p == in->end ? 3 : 0);
+            ptr[f + 1] = next < 3 * (int64_t)s->n_tri ? next : 3 * (int64_t)s->n_tri;
+        }
+        return hd_geodesic_create_polygons(g, s->xyz, s->n, ptr, s->tri, f, o, e);
+    default: return hd_geodesic_create_points(g, s->xyz, s->n, NULL, NULL, o, e);
+    }
+}
+
+static void fz_geodesics(const uint8_t *data, size_t size) {
+    static const char *const names[] = {"geodesic", "geodesic of lengths", "geodesic of a view", "geodesic of polygons", "geodesic of points"};
+    fz_in in;
+    fz_context c;
+    hd_geodesic_opts o;
+    hd_geodesic *g = NULL;
+    hd_error e;
+    fz_source from;
+    double *d;
+    int32_t perm[FZ_VERTICES + 2], id[3], k, turn;
+    shape s;
+    in.p = data;
+    in.end = data + size;
+    fz_context_make(&c, &in);
+    s = fz_soup(&in);
+    if (!s.xyz) return;
+    d = (double *)calloc(3 * (size_t)s.n, sizeof *d);
+    if (!d) abort();
+    o = fz_geodesic_opts(&in, &c, s.n, perm);
+    fz_what = names[in.p < in.end ? *in.p % 5 : 0];
+    if (fz_status(fz_geodesic_of(&in, &g, &s, &o, &e), &e, &c) >= 0) {
+        for (turn = 0; turn < 2; turn++) {
+            for (k = 0; k < 3; k++) id[k] = fz_int(&in, s.n);
+            if (fz_status(hd_geodesic_distance(g, 1 + fz_below(&in, 3), id, d, NULL, &e), &e, &c) >= 0) for (k = 0; k < s.n; k++) FZ(d[k] >= 0);
+            if (fz_status(hd_geodesic_distances(g, 3, id, d, 0, NULL, &e), &e, &c) >= 0) for (k = 0; k < 3 * s.n; k++) FZ(d[k] >= 0);
+            fz_source_make(&from, &in, &s);
+            if (fz_status(hd_geodesic_distance_from(g, &from.source, d, NULL, &e), &e, &c) >= 0) for (k = 0; k < s.n; k++) FZ(d[k] >= 0);
+            s.xyz[fz_below(&in, 3 * s.n)] = fz_number(&in);
+            if (turn == 0) (void)fz_status(hd_geodesic_update(g, s.xyz, &e), &e, &c);
+        }
+    } else {
+        FZ(!g);
+    }
+    hd_geodesic_free(g);
+    fz_context_done(&c);
+    free(d);
     shape_free(&s);
 }
 
@@ -1122,13 +1482,108 @@ static void fz_options(const uint8_t *data, size_t size) {
     shape_free(&s);
 }
 
+/* ---- filters ---- */
+
+/* A filter of the caller's: a polynomial in 1/(1 + lambda), or what is in the table, which may be no number. */
+static double fz_filter_own(double lambda, void *user) {
+    const double *const p = (const double *)user, x = 1 / (1 + fabs(lambda));
+    if (p[4] > 2) return p[(int)(4 * x) & 3];
+    return p[0] + x * (p[1] + x * (p[2] + x * p[3]));
+}
+
+static hd_filter fz_filter(fz_in *in, double *own) {
+    const uint8_t way = fz_byte(in);
+    hd_filter f;
+    int k;
+    memset(&f, 0, sizeof f);
+    f.kind = (hd_filter_kind)fz_int(in, 8);
+    f.a = fz_number(in);
+    f.b = fz_number(in);
+    if (way & 1) f.a = fabs(f.a), f.b = f.kind == HD_FILTER_BAND ? 2 * f.a : fabs(f.b);
+    if (way & 2) f.tol = fz_byte(in) & 1 ? fz_number(in) : pow(10, -fz_below(in, 12));
+    if (way & 4) f.weight = fz_number(in);
+    f.max_degree = way & 8 ? fz_int(in, HD_MAX_POLES + 1) : 8;            /* large degrees take long */
+    if (way & 16) f.lambda_min = fz_number(in);
+    if (way & 32) f.constant = 1;
+    for (k = 0; k < 5; k++) own[k] = way & 64 ? fz_byte(in) / 64.0 : fz_number(in);
+    f.f = way == 255 ? NULL : fz_filter_own;
+    f.user = own;
+    if (way == 128) f.end_zero = 1;
+    return f;
+}
+
+/* What the set says of its error is so: between the points that it was measured at, up to a few times as much. */
+static void fz_filter_check(const hd_filter *f, const hd_rational *set, double lambda_max) {
+    int k;
+    FZ(set->kind == HD_POLES_OWN && set->n_poles >= 0 && set->n_poles <= HD_MAX_POLES && set->degree <= HD_MAX_POLES);
+    FZ(set->max_error >= 0 && set->max_weighted_error >= set->max_error && set->largest >= 0 && set->t > 0);
+    FZ(fz_finite(&set->theta->re, 2 * set->n_poles) && fz_finite(&set->a->re, 2 * set->n_poles) && mio_is_finite(set->a0));
+    for (k = 0; k < set->n_poles; k++) FZ(set->theta[k].im > 0 || (set->theta[k].im == 0 && set->theta[k].re > 0));
+    if (f->kind == HD_FILTER_OWN) return;
+    for (k = 0; k <= 40; k++) {
+        const double x = lambda_max * (k < 20 ? pow(2, -2.5 * k) : (40 - k) / 20.0);
+        const double off = fabs(hd_filter_eval(f, x) - hd_rational_eval(set, -x * set->t));
+        if (x >= f->lambda_min) FZ(off <= 4 * set->max_error + 1e-13 * set->largest);
+    }
+}
+
+static void fz_filters(const uint8_t *data, size_t size) {
+    fz_in in;
+    fz_context c;
+    hd_filter f;
+    hd_rational set, before;
+    hd_laplacian_opts lo;
+    hd_laplacian *lap = NULL;
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    hd_error e;
+    double own[5], top;
+    int k;
+    shape s = shape_icosphere(0);
+    in.p = data;
+    in.end = data + size;
+    fz_context_make(&c, &in);
+    memset(&lo, 0, sizeof lo);
+    memset(&o, 0, sizeof o);
+    memset(&set, 0x6b, sizeof set);
+    before = set;
+    lo.context = &c.ctx;
+    lo.kind = (hd_laplacian_kind)fz_below(&in, 4);
+    fz_what = "filters";
+    if (fz_status(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, &e), &e, &c) >= 0) {
+        o.method = (hd_method)fz_below(&in, 3);
+        o.max_iterations = 400;
+        (void)fz_status(hd_heat_create(&heat, lap, &o, &e), &e, &c);
+        for (k = 0; k < 2 && heat; k++) {
+            f = fz_filter(&in, own);
+            top = fz_byte(&in) < 224 ? hd_laplacian_lambda_max(lap) : fz_number(&in);
+            if (fz_status(hd_rational_fit(&set, &f, top, &c.ctx, &e), &e, &c) >= 0) fz_filter_check(&f, &set, top);
+            else FZ(k || memcmp(&set, &before, sizeof set) == 0);
+            if (e.status < 0) continue;
+            if (fz_byte(&in) > 240) set.theta[fz_below(&in, HD_MAX_POLES)].re = fz_number(&in);
+            if (fz_status(hd_heat_filter(heat, fz_byte(&in) > 250 ? NULL : &set, &e), &e, &c) >= 0) {
+                fz_query q;
+                fz_query_make(&q, &in, lap);
+                if (fz_byte(&in) < 240) q.t[0] = set.t, q.n_times = 1;
+                fz_one(heat, lap, &q, &in, &c);
+                fz_query_free(&q);
+            }
+        }
+        hd_heat_free(heat);
+    }
+    hd_laplacian_free(lap);
+    fz_context_done(&c);
+    shape_free(&s);
+}
+
 /* ---- targets ---- */
 
 typedef struct fz_target { const char *name; void (*run)(const uint8_t *data, size_t size); } fz_target;
 
 static const fz_target fz_targets[] = {
     {"mesh", fz_mesh}, {"table", fz_table}, {"operators", fz_operators}, {"queries", fz_queries}, {"matrices", fz_matrices},
-    {"options", fz_options},
+    {"options", fz_options}, {"filters", fz_filters}, {"sources", fz_sources}, {"lengths", fz_lengths}, {"geodesics", fz_geodesics},
+    {"levels", fz_levels},
 };
 
 enum { FZ_TARGETS = sizeof fz_targets / sizeof *fz_targets };
