@@ -16542,7 +16542,7 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
     }
     if (!hdi_finite(rho) || !hdi_finite(start))
         return hdi_fail(e, HD_ERR_BREAKDOWN,
-                        "conjugate gradients on B leave the range of doubles, because masses differ by so much");
+                        "conjugate gradients on B leave the range of doubles: masses differ too much");
     if (rho > HDI_MASS_FAILED * start)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
     return HD_OK;
@@ -19756,7 +19756,7 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
     hdi_lane_rhs(lane, lap);
     if (hdi_lane_vanishes(lane, lap->n_active))
         return hdi_fail(e, HD_ERR_BREAKDOWN,
-                        "the iteration broke down: masses or values differ by so much that squares underflow");
+                        "the iteration broke down: masses or values differ so much that squares underflow");
     for (round = 0; round < 6; round++) {
         part.from = watch->from + watch->share * (round ? 0.7 : 0);
         part.share = watch->share * (round ? 0.3 : 0.7);
@@ -22818,8 +22818,8 @@ static hdi_parts hdi_lane_bound_dual(const hd_laplacian *lap, const hdi_lane *la
 }
 
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero, or of all if
- * it is zero: by the B norm,
- * and by the norm of B + tL where reach is known. reach: a bound of diag((B + tL)^-1), or NULL. */
+ * it is zero: by the B norm, and by the norm of B + tL where reach is known. reach: a bound of
+ * diag((B + tL)^-1), or NULL. */
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
     double smallest_b = HUGE_VAL, largest_g = 0, *touched = lane->spare_sums;
     hdi_parts by_b;

@@ -704,7 +704,7 @@ static void check_spectrum(work *w, const answer *a) {
         all_finite(w, s->value, s->count);
         all_finite(w, s->vector, (int64_t)s->count * w->n);
         for (i = 0; i < s->count; i++)
-            if (s->value[i] < -rounding || (i > 0 && s->value[i] < s->value[i - 1]))
+            if ((s->value[i] < -rounding && s->n_poor == 0) || (i > 0 && s->value[i] < s->value[i - 1]))
                 contradiction(w, "eigenvalue", s->value[i], i > 0 ? s->value[i - 1] : 0);
         if (ended(w, QUERY_SPECTRUM, hd_spectrum_columns(s, HD_KERNEL_SYMMETRIC, 1, &w->t, 3, w->source, u, bound, 0, &e),
                   &e) && a->k && s->proven)
