@@ -1440,7 +1440,7 @@ typedef struct tally {
     char worst_case[400];
 } tally;
 
-enum { ROWS = 128 };
+enum { ROWS = 256 };
 static tally rows_of_table[ROWS];
 static int n_rows_of_table;
 static double shrink = 1;
