@@ -16740,7 +16740,7 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
     }
     if (!hdi_finite(rho) || !hdi_finite(start))
         return hdi_fail(e, HD_ERR_BREAKDOWN,
-                        "conjugate gradients on B leave the range of doubles, as masses differ by so much");
+                        "conjugate gradients on B leave the range of doubles: masses differ too much");
     if (rho > HDI_MASS_FAILED * start)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
     return HD_OK;
@@ -23225,21 +23225,21 @@ static hdi_parts hdi_lane_bound_dual(const hd_laplacian *lap, const hdi_lane *la
                            both ? hdi_parts_least(lane->off, lane->off_m) : lane->off);
 }
 
-/* The bounds of a lane's error at the vertices of the components where the answer is not zero: by the B norm,
- * and by the norm of B + tL where reach is known. reach: a bound of diag((B + tL)^-1), or NULL. */
+/* The bounds of a lane's error at the vertices of the components where the answer is not zero, or of all if
+ * it is zero: by the B norm, and by the norm of B + tL where reach is known. reach: a bound of
+ * diag((B + tL)^-1), or NULL. */
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
     double smallest_b = HUGE_VAL, largest_g = 0, *touched = lane->spare_sums;
     hdi_parts by_b;
-    int32_t i;
+    int32_t i, any = 0;
     memset(touched, 0, HDI_CAST(size_t, lap->n_components) * sizeof *touched);
     for (i = 0; i < lap->n_active; i++)
-        if (lane->u[i] != 0) touched[lap->component[i]] = 1;
+        if (lane->u[i] != 0) touched[lap->component[i]] = any = 1;
     for (i = 0; i < lap->n_active; i++) {
-        if (touched[lap->component[i]] == 0) continue;
+        if (any && touched[lap->component[i]] == 0) continue;
         smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
         if (reach) largest_g = hdi_max(largest_g, reach[i]);
     }
-    if (!hdi_finite(smallest_b)) smallest_b = lap->b_diag[0];   /* nothing came out */
     by_b = hdi_parts_scale(hdi_ratio_root(lap) / sqrt(smallest_b), lane->off);
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
@@ -28268,6 +28268,7 @@ typedef struct hdi_mode_sum {
     int32_t own;                 /* its component, -1: none, or several */
     double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
     double left, whole;          /* |Q y| and |y| there, or bounds */
+    double constant_off;         /* what rounding of the sums over the source makes of the constants' part */
     double at, rest;             /* B 1 there, in two doubles */
     double *d;                   /* [n] */
     double *part;                /* [2 n] the errors by residuals, then by what is left out, without scale */
@@ -28315,10 +28316,15 @@ static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
     a->at = hdi_terms_value(&source, a->of->one);
     a->rest = hdi_terms_value(&source, a->of->one + a->lap->n);
     memset(a->share, 0, sizeof a->share);
+    a->constant_off = 0;
     for (q = 0; q < source.n && a->decay.first > 0; q++) {
         const int32_t v = hdi_terms_at(&source, q), row = a->lap->row[v];
-        const double w = hdi_terms_weight(&source, q);
-        if (row >= 0) a->share[a->lap->component[row]] += a->weighted ? w * a->of->one[v] : w;
+        const double w = hdi_terms_weight(&source, q), by = a->weighted ? w * a->of->one[v] : w;
+        if (row < 0) continue;
+        a->share[a->lap->component[row]] += by;
+        if (source.weight && (a->weighted || a->own < 0))
+            a->constant_off += (source.n + 1) * DBL_EPSILON * fabs(by) /
+                sqrt(a->lap->component_mass[a->lap->component[row]]);
     }
 }
 
@@ -28379,8 +28385,8 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
 static double hdi_modes_rounding(const hdi_mode_sum *a, int32_t v, double d) {
     const double sums = (a->source.n - 1) * DBL_EPSILON;
     const double off = a->decay.rounding * (a->whole + sqrt(hdi_modes_whole(a, v))) + sums * a->whole;
-    return a->decay.scale * off + 8 * (1 + hdi_min(a->decay.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d +
-           4 * DBL_MIN * DBL_EPSILON;
+    return a->decay.scale * off + a->constant_off +
+           8 * (1 + hdi_min(a->decay.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d + 4 * DBL_MIN * DBL_EPSILON;
 }
 
 /* Notes the distance to v and its bound. */

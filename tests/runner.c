@@ -218,6 +218,7 @@ static void test_tmp_remove(void) {
 #include "test_sources.h"
 #include "test_geodesic_all.h"
 #include "test_lengths.h"
+#include "test_deep.h"
 #include "test_failures.h"
 #include "test_platform.h"
 
@@ -236,6 +237,7 @@ static const test_group test_groups[] = {
     {"filters", test_filters},
     {"sources", test_sources},
     {"lengths", test_lengths},
+    {"deep", test_deep},
     {"failures", test_failures},
 };
 

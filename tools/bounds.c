@@ -604,13 +604,21 @@ static int truth_make(truth *T, const hd_laplacian *lap, int exact) {
     return ok;
 }
 
-/* What the truth is to be made for: exp(-t lambda), a filter, 1/lambda, 1/lambda^2; or the square of the
- * first two. */
-typedef enum form { FORM_HEAT, FORM_COMMUTE, FORM_BIHARMONIC } form;
+/* What the truth is to be made for: exp(-t lambda) or poles of one's own, 1/lambda, 1/lambda^2, the
+ * derivative -lambda exp(-t lambda), a filter by its formula; or the square of the first. */
+typedef enum form { FORM_HEAT, FORM_COMMUTE, FORM_BIHARMONIC, FORM_DERIVATIVE, FORM_FILTER } form;
+
+/* Filters are evaluated in doubles. */
+#define FILTER_OFF 1e-13
 
 /* A function of every lambda, and what each term is off by relative to itself; last: where the modes of a
  * component end that count. */
-typedef struct filter { quad *g; double *off; int32_t *last; double cut; } filter;
+typedef struct filter {
+    quad *g;
+    double *off, cut;
+    int32_t *last;
+    hd_filter of;                /* FORM_FILTER */
+} filter;
 
 static filter filter_make(const truth *T) {
     filter f;
@@ -618,6 +626,7 @@ static filter filter_make(const truth *T) {
     f.off = ROOM(double, T->n);
     f.last = ROOM(int32_t, T->n_comp);
     f.cut = 0;
+    memset(&f.of, 0, sizeof f.of);
     return f;
 }
 
@@ -654,17 +663,24 @@ static void filter_fill(filter *f, const truth *T, form what, double t, const hd
             quad g;
             if (what == FORM_COMMUTE) g = lambda == 0 ? 0 : 1 / lambda;
             else if (what == FORM_BIHARMONIC) g = lambda == 0 ? 0 : 1 / (lambda * lambda);
-            else if (own) g = rational(own, x, &off);
+            else if (what == FORM_FILTER) {
+                g = hd_filter_eval(&f->of, (double)lambda > 0 ? (double)lambda : 0);
+                off = FILTER_OFF;
+            } else if (own) g = rational(own, x, &off);
             else {
                 off = (double)(fabsq(x) * 0x1p-108Q + (lambda == 0 ? 0 : (quad)t * (quad)T->off)) + 0x1p-104;
                 g = x < -11000 ? 0 : expq(x);
+                if (what == FORM_DERIVATIVE) {
+                    off += lambda == 0 ? 0 : T->off / (double)fabsq(lambda);
+                    g *= -lambda;
+                }
             }
             if (squared) g *= g;
             f->g[l] = g;
             f->off[l] = (2 * off + 0x1p-104) * (double)fabsq(g);
-            if (what == FORM_HEAT && !own && x < -200) {   /* ascending: what follows is smaller */
+            if ((what == FORM_HEAT || what == FORM_DERIVATIVE) && !own && x < -200) {   /* smaller from here on */
                 f->last[c] = l;
-                f->cut = 1.4e-87;
+                f->cut = what == FORM_HEAT ? 1.4e-87 : 1.4e-87 * T->top;
                 break;
             }
         }
@@ -1082,14 +1098,15 @@ static double unit_time(const hd_laplacian *lap) {
 
 /* ==== [5] cases ==== */
 
-enum { QUERY_APPLY, QUERY_COLUMN, QUERY_TIMES, QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES,
-       QUERY_DISTANCE, QUERIES };
+enum { QUERY_APPLY, QUERY_COLUMN, QUERY_TIMES, QUERY_DERIVATIVE, QUERY_ADJOINT, QUERY_FROM, QUERY_FILTER,
+       QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERIES };
 enum { OWN_NONE, OWN_COPY, OWN_COPY0, OWN_LOOSE, OWN_NEAR, OWN_RANDOM, OWN_RESOLVENT, OWN_A0, OWNS };
 enum { FIELD_RANDOM, FIELD_SMOOTH, FIELD_NEARLY, FIELD_HUGE, FIELD_TINY, FIELD_DELTA, FIELD_ALTERNATE,
        FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELDS };
 
-static const char *const query_names[] = {"apply",    "column", "times",    "entries", "pairs",
-                                          "diagonal", "edges",  "distance", NULL};
+static const char *const query_names[] = {"apply",    "column", "times",    "derivative",    "adjoint",
+                                          "from",     "filter", "entries",  "pairs",         "diagonal",
+                                          "edges",    "distance", "distance_from", NULL};
 static const char *const kernel_names[] = {"operator", "symmetric", NULL};
 static const char *const kind_names[] = {"classical", "weighted", "commute", "biharmonic", NULL};
 static const char *const method_names[] = {"auto", "iterative", "direct", "krylov", NULL};
@@ -1398,7 +1415,7 @@ static double draw_time(uint64_t *seed, double unit) {
 }
 
 static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
-    static const int queries[] = {8, 8, 4, 6, 6, 8, 2, 10}, methods[] = {5, 6, 5, 5},
+    static const int queries[] = {8, 8, 4, 4, 4, 4, 3, 6, 6, 8, 2, 10, 4}, methods[] = {5, 6, 5, 5},
                      fields[] = {6, 4, 3, 1, 1, 2, 2, 2, 1, 2, 1, 1};
     static const double tols[] = {0, 0, 0, 1e-6, 1e-11, 1e-13};
     trial c = *from;
@@ -1408,28 +1425,32 @@ static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
     c.seed = (int64_t)(shape_random(seed) >> 44);
     c.t = draw_time(seed, unit);
     c.tol = tols[draw(seed, 6)];
-    c.kind = c.query == QUERY_DISTANCE ? draw(seed, 4) : c.query == QUERY_PAIRS ? draw(seed, 8) % 5 : 0;
+    c.kind = c.query == QUERY_DISTANCE || c.query == QUERY_DISTANCE_FROM ? draw(seed, 4) : c.query == QUERY_PAIRS ? draw(seed, 8) % 5 : 0;
     if (c.kind == 4) c.kind = 0;
     direct = c.query >= QUERY_DIAGONAL || (c.query == QUERY_PAIRS && c.kind >= 2);
-    c.method = direct ? 2 * draw(seed, 2) : among(seed, methods, 4);
+    c.method = direct ? 2 * draw(seed, 2) : among(seed, methods, c.query == QUERY_FILTER ? 3 : 4);
     if (c.method == HD_METHOD_ITERATIVE) {
-        c.solver = draw(seed, 5);
+        c.solver = draw(seed, c.query == QUERY_FILTER ? 4 : 5);
         if (c.solver != HD_SOLVER_LANCZOS) c.precond = draw(seed, 5);
     }
     if (c.method != HD_METHOD_KRYLOV && c.solver != HD_SOLVER_LANCZOS && c.kind < 2) {
         static const int which[] = {10, 3, 4, 0, 2};
         c.poles = among(seed, which, 5);
         if (chance(seed, c.poles ? 0.6 : 0.1)) c.degree = 2 + draw(seed, 13);
-        if (chance(seed, 0.1)) {
+        if (c.query == QUERY_DERIVATIVE) c.poles = c.degree = 0;
+        if (c.query != QUERY_DERIVATIVE && chance(seed, 0.1)) {   /* sets of one's own have none */
             c.poles = 0;
             c.own = 1 + draw(seed, OWNS - 1);
             c.degree = 2 + draw(seed, 13);
             c.own_x = 1 + draw(seed, 7);
         }
     }
-    c.field = c.query == QUERY_APPLY || (c.query == QUERY_TIMES && chance(seed, 0.5))
+    if (c.query == QUERY_FILTER) c.poles = c.degree = c.own = 0;
+    c.field = c.query == QUERY_APPLY || c.query == QUERY_DERIVATIVE || c.query == QUERY_ADJOINT || (c.query == QUERY_TIMES && chance(seed, 0.5))
                   ? among(seed, fields, FIELDS)
                   : 0;
+    /* rounding of huge fields over tiny times leaves the range of doubles */
+    if (c.query == QUERY_DERIVATIVE && c.field == FIELD_HUGE) c.field = FIELD_RANDOM;
     if (c.query == QUERY_TIMES) c.kind = chance(seed, 0.5);   /* a field or a column */
     c.k = c.query == QUERY_ENTRIES || c.query == QUERY_PAIRS  ? 1 + draw(seed, chance(seed, 0.5) ? 2 : 20)
           : c.query == QUERY_APPLY || c.query == QUERY_COLUMN ? (chance(seed, 0.05) ? 40 : 1 + draw(seed, 6))
@@ -1455,7 +1476,7 @@ typedef struct tally {
     char worst_case[400];
 } tally;
 
-enum { ROWS = 128 };
+enum { ROWS = 256 };
 static tally rows_of_table[ROWS];
 static int n_rows_of_table;
 static double shrink = 1;
@@ -1665,24 +1686,25 @@ static void want_column(work *w, int32_t source, int symmetric, double *inert) {
         if (lap->row[v] >= 0 && T->comp[lap->row[v]] != T->comp[r]) w->want[v] = w->off[v] = 0;
 }
 
-static void want_field(work *w, const double *f) {
+/* dual: of the transpose, Y g X' f instead of X g Y' f. */
+static void want_field(work *w, const double *f, const double *inert, int dual) {
     const hd_laplacian *lap = w->s->lap;
     const truth *T = w->T;
     quad *z = ROOM(quad, T->n);
     double *off = ROOM(double, T->n), beyond = 0;
     int32_t r, l;
     for (r = 0; r < T->n; r++) {
-        const quad *y = T->y + r * T->n;
-        const double *yd = T->yd + r * T->n, x = f[lap->vertex[r]];
+        const quad *y = (dual ? T->x : T->y) + r * T->n;
+        const double *yd = (dual ? T->xd : T->yd) + r * T->n, x = f[lap->vertex[r]];
         if (x == 0) continue;
         for (l = T->first[T->comp[r]]; l < T->first[T->comp[r] + 1]; l++) {
             z[l] += y[l] * x;
             off[l] += 0x1p-106 * yd[l] * fabs(x);
         }
-        beyond += T->y_most * fabs(x);
+        beyond += (dual ? T->x_most : T->y_most) * fabs(x);
     }
     weigh(w, z, off);
-    want_rows(w, 0, T->n * beyond, f);
+    want_rows(w, dual, T->n * beyond, inert);
     free(z);
     free(off);
 }
@@ -1816,7 +1838,7 @@ static void run_columns(work *w, hd_heat *heat) {
     if (!failed(w)) {
         filter_for(w, c->t, 0);
         for (q = 0; q < k; q++) {
-            if (c->query == QUERY_APPLY) want_field(w, F + q * n);
+            if (c->query == QUERY_APPLY) want_field(w, F + q * n, F + q * n, 0);
             else want_column(w, source[q], symmetric, inert);
             compare(w, U + q * n, n, 1, 0, -1);
         }
@@ -1824,6 +1846,82 @@ static void run_columns(work *w, hd_heat *heat) {
     free(F);
     free(U);
     free(inert);
+}
+
+/* The derivative in t and the transpose, of a field. */
+static void run_training(work *w, hd_heat *heat) {
+    const trial *c = w->c;
+    const int32_t n = w->s->lap->n;
+    const int dual = c->query == QUERY_ADJOINT;
+    uint64_t seed = (uint64_t)c->seed + 1;
+    double *f = ROOM(double, 2 * n), *u = f + n;
+    make_field(w, c->field, &seed, f);
+    row_name(w, dual ? "adjoint" : "derivative");
+    if (dual) hd_heat_adjoint(heat, 1, &c->t, 1, f, 0, u, 0, &w->rep, NULL);
+    else hd_heat_derivative(heat, 1, &c->t, 1, f, 0, u, 0, &w->rep, NULL);
+    if (!failed(w)) {
+        filter_fill(&w->s->f, w->T, dual ? FORM_HEAT : FORM_DERIVATIVE, c->t, w->own, 0);
+        want_field(w, f, dual ? f : NULL, dual);
+        compare(w, u, n, !dual, 0, -1);          /* error_bound_b of the transpose is in another norm */
+    }
+    free(f);
+}
+
+/* Points at one to four vertices of one component, with weights: c as a field. */
+static hd_source draw_source(const work *w, uint64_t *seed, int32_t *vertex, double *weight, double *c) {
+    const hd_laplacian *lap = w->s->lap;
+    const int32_t first = draw(seed, lap->n_active);
+    hd_source s;
+    int32_t v;
+    memset(&s, 0, sizeof s);
+    s.count = 1 + draw(seed, 4);
+    s.vertex = vertex;
+    s.weight = weight;
+    for (v = 0; v < s.count; v++) {
+        int32_t row = draw(seed, lap->n_active);
+        if (lap->component[row] != lap->component[first]) row = first;
+        vertex[v] = lap->vertex[row];
+        weight[v] = 0.1 + shape_uniform(seed);
+        c[vertex[v]] += weight[v];
+    }
+    return s;
+}
+
+/* Columns of several vertices at once, and columns of filters. */
+static void run_from(work *w, hd_heat *heat) {
+    const trial *c = w->c;
+    const hd_laplacian *lap = w->s->lap;
+    const int32_t n = lap->n;
+    const int symmetric = c->kernel == HD_KERNEL_SYMMETRIC, by_filter = c->query == QUERY_FILTER;
+    const double t = by_filter ? w->set.t : c->t;
+    uint64_t seed = (uint64_t)c->seed + 1;
+    double *u = ROOM(double, 3 * n), *field = u + n, *inert = field + n, weight[4];
+    int32_t vertex[4];
+    hd_source s = draw_source(w, &seed, vertex, weight, field);
+    row_name(w, by_filter ? symmetric ? "filter, k_t" : "filter, K_t" : symmetric ? "k_t from" : "K_t from");
+    hd_heat_columns_from(heat, (hd_kernel)c->kernel, 1, &t, 1, &s, u, 0, &w->rep, NULL);
+    if (!failed(w)) {
+        filter_fill(&w->s->f, w->T, by_filter ? FORM_FILTER : FORM_HEAT, c->t, w->own, 0);
+        if (symmetric) {                         /* x g x' c: as the transpose, and x on the left */
+            quad *z = ROOM(quad, w->T->n);
+            double *off = ROOM(double, w->T->n), beyond = 0;
+            int32_t r, l;
+            for (r = 0; r < w->T->n; r++) {
+                const double f = field[lap->vertex[r]];
+                for (l = w->T->first[w->T->comp[r]]; f != 0 && l < w->T->first[w->T->comp[r] + 1]; l++) {
+                    z[l] += w->T->x[r * w->T->n + l] * f;
+                    off[l] += 0x1p-106 * w->T->xd[r * w->T->n + l] * fabs(f);
+                }
+                beyond += w->T->x_most * fabs(f);
+            }
+            weigh(w, z, off);
+            want_rows(w, 0, w->T->n * beyond, inert);
+            free(z);
+            free(off);
+        } else want_field(w, field, field, 0);
+        compare(w, u, n, 1, 0, -1);
+    }
+    free(u);
 }
 
 static double *times_of(const trial *c) {
@@ -1859,7 +1957,7 @@ static void run_times(work *w, hd_heat *heat) {
     for (q = 0; q < m && !failed(w); q++) {
         filter_for(w, t[q], 0);
         if (by_column) want_column(w, source, symmetric, inert);
-        else want_field(w, f);
+        else want_field(w, f, f, 0);
         compare(w, U + q * n, n, 1, 0, -1);
     }
     free(f);
@@ -1994,6 +2092,85 @@ static void run_distance(work *w, hd_heat *heat) {
     free(t);
 }
 
+/* The distance of a source of several vertices, c of sum 1, to v: the root of sum g (z_v - sum c_q z_q)^2. */
+static quad want_distance_from(work *w, const quad *c, int32_t v, int weighted, double *off) {
+    const hd_laplacian *lap = w->s->lap;
+    const truth *T = w->T;
+    const filter *f = &w->s->f;
+    const quad *z = weighted ? T->y : T->x;
+    const double most = weighted ? T->y_most : T->x_most;
+    quad sum = 0, root;
+    double err = 4 * f->cut * T->n * most * most;
+    int32_t part, l, r;
+    for (part = 0; part < T->n_comp; part++)
+        for (l = T->first[part]; l < f->last[part]; l++) {
+            quad d = 0, size = 0;
+            for (r = 0; r < T->n; r++) {
+                const int there = lap->vertex[r] == v;
+                const quad x = T->comp[r] == part ? z[r * T->n + l] * (there - c[lap->vertex[r]]) : 0;
+                d += x;
+                size += fabsq(x);
+            }
+            sum += f->g[l] * d * d;
+            err += f->off[l] * (double)(d * d) + (double)fabsq(f->g[l] * d) * 0x1p-104 * (double)size;
+        }
+    root = sum > 0 ? sqrtq(sum) : 0;
+    *off = root > 0 ? (double)fminq(err / root, sqrtq(err)) : sqrt(err);
+    return root;
+}
+
+static void run_distance_from(work *w, hd_heat *heat) {
+    const trial *c = w->c;
+    const hd_laplacian *lap = w->s->lap;
+    const int32_t n = lap->n;
+    uint64_t seed = (uint64_t)c->seed + 1;
+    double *d = ROOM(double, 2 * n), *field = d + n, weight[4];
+    quad *share = ROOM(quad, n), sum = 0;
+    int32_t vertex[4], v, count = 0;
+    hd_source s = draw_source(w, &seed, vertex, weight, field);
+    char name[32];
+    snprintf(name, sizeof name, "from, %s", kind_names[c->kind]);
+    row_name(w, name);
+    hd_heat_distance_from(heat, (hd_distance_kind)c->kind, 1, &c->t, 1, &s, d, 0, &w->rep, NULL);
+    if (!failed(w)) {
+        if (c->kind >= HD_DISTANCE_COMMUTE)
+            filter_fill(&w->s->f, w->T, c->kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
+        else filter_for(w, 2 * c->t, 0);
+        for (v = 0; v < n; v++) sum += field[v];
+        for (v = 0; v < n; v++) share[v] = field[v] / sum;
+        for (v = 0; v < n; v++) {
+            const int32_t r = lap->row[v];
+            if (share[v] == 1) continue;         /* the source is this vertex */
+            if (c->kind >= HD_DISTANCE_COMMUTE &&
+                (r < 0 || w->T->comp[r] != w->T->comp[lap->row[vertex[0]]])) continue;
+            w->want[count] = want_distance_from(w, share, v, c->kind == HD_DISTANCE_WEIGHTED, w->off + count);
+            d[count++] = d[v];
+        }
+        if (count > 0) compare(w, d, count, 0, 1, -1);
+    }
+    free(share);
+    free(d);
+}
+
+/* A filter of the spectrum near 1/t, fitted; 0: there is none. */
+static int make_filter(work *w) {
+    const trial *c = w->c;
+    const double lambda_max = hd_laplacian_lambda_max(w->s->lap);
+    hd_filter *f = &w->s->f.of;
+    memset(f, 0, sizeof *f);
+    if (!(c->t > 1e-100 && c->t < 1e100 && lambda_max > 0 && lambda_max < 1e100)) return 0;
+    f->a = c->t;
+    f->b = 0.5;
+    switch (c->seed % 5) {
+    case 0: f->kind = HD_FILTER_WAVE; f->a = -log(c->t); f->b = 0.7; break;
+    case 1: f->kind = HD_FILTER_MEXICAN_HAT; break;
+    case 2: f->kind = HD_FILTER_RESOLVENT; break;
+    case 3: f->kind = HD_FILTER_FRACTIONAL; break;
+    default: f->kind = HD_FILTER_BAND; f->a = 1 / c->t; f->b = 4 / c->t;
+    }
+    return hd_rational_fit(&w->set, f, lambda_max, &serial, NULL) >= 0;
+}
+
 /* A set of the caller's own; 0: this one cannot be had. */
 static int make_own(work *w) {
     const trial *c = w->c;
@@ -2003,6 +2180,7 @@ static int make_own(work *w) {
     int32_t p;
     memset(s, 0, sizeof *s);
     w->own = NULL;
+    if (c->query == QUERY_FILTER) return make_filter(w);
     if (c->own == OWN_NONE) return 1;
     if (c->own == OWN_COPY || c->own == OWN_COPY0 || c->own == OWN_LOOSE || c->own == OWN_A0) {
         if (hd_rational_get(s, HD_POLES_KERNEL, degree, NULL) < 0) return 0;
@@ -2064,7 +2242,7 @@ static void run_one(subject *s, const trial *c, const char *text, int stored) {
     o.degree = c->own ? 0 : c->degree;
     o.tol = c->tol;
     o.max_iterations = 5000;
-    o.rational = c->own ? &w.set : NULL;
+    o.rational = c->own || c->query == QUERY_FILTER ? &w.set : NULL;
     o.context = &serial;
     if (hd_heat_create(&heat, s->lap, &o, &e) < 0) {
         if (verbose) printf("  no plan: %s\n", e.text);
@@ -2077,6 +2255,9 @@ static void run_one(subject *s, const trial *c, const char *text, int stored) {
     switch (c->query) {
     case QUERY_APPLY: case QUERY_COLUMN: run_columns(&w, heat); break;
     case QUERY_TIMES: run_times(&w, heat); break;
+    case QUERY_DERIVATIVE: case QUERY_ADJOINT: run_training(&w, heat); break;
+    case QUERY_FROM: case QUERY_FILTER: run_from(&w, heat); break;
+    case QUERY_DISTANCE_FROM: run_distance_from(&w, heat); break;
     case QUERY_ENTRIES: case QUERY_PAIRS: run_entries(&w, heat); break;
     case QUERY_DIAGONAL: run_diagonal(&w, heat); break;
     case QUERY_EDGES: run_edges(&w, heat); break;

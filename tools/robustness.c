@@ -10,7 +10,7 @@
    --seed     of the first case, default 1. Case number i has the seed S + i, which determines everything
    --kind     only cases whose kind contains this
    --case     one case by its seed; every call is printed
-   --named    only the cases that once found a fault, see below
+   --named    only the cases that once found a fault, see below; other runs begin with them
    --shrink   bounds are multiplied by this before comparisons: far below one, they must find fault
 
    A case is a small bad surface, an operator on it, a time and some vertices. The library may refuse the
@@ -704,7 +704,7 @@ static void check_spectrum(work *w, const answer *a) {
         all_finite(w, s->value, s->count);
         all_finite(w, s->vector, (int64_t)s->count * w->n);
         for (i = 0; i < s->count; i++)
-            if (s->value[i] < -rounding || (i > 0 && s->value[i] < s->value[i - 1]))
+            if ((s->value[i] < -rounding && s->n_poor == 0) || (i > 0 && s->value[i] < s->value[i - 1]))
                 contradiction(w, "eigenvalue", s->value[i], i > 0 ? s->value[i - 1] : 0);
         if (ended(w, QUERY_SPECTRUM, hd_spectrum_columns(s, HD_KERNEL_SYMMETRIC, 1, &w->t, 3, w->source, u, bound, 0, &e),
                   &e) && a->k && s->proven)
@@ -992,7 +992,16 @@ static void run_case(uint64_t seed) {
 }
 
 /* Cases that once ended in a contradiction, with what it was. */
-static const struct named { uint64_t seed; const char *what; } named[] = {{1, "the first"}};
+static const struct named { uint64_t seed; const char *what; } named[] = {
+    {1113, "bounds of eigenpairs underflowed where masses are 1e295"},
+    {1541, "biharmonic distances with a bound of zero where rounding left nothing of their diagonal"},
+    {1568, "Lanczos cut a time short that was not long for the slow part of the mesh"},
+    {2075, "Lanczos and CG on B overflowed beside a part 1e82 times as large, and said that all was well"},
+    {3847, "COCG lost a column whose squares underflow"},
+    {4662, "bounds of eigenpairs"},
+    {5065, "COCG beside a large part"},
+    {6070, "biharmonic distances on weights of 1e15"},
+    {6611, "biharmonic distances beside a face without area"}};
 
 static void run_named(void) {
     size_t i;
