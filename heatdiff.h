@@ -1346,11 +1346,12 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
 
 /* U = K_t F at each time.
  * t      >= 0. t = 0 copies F. For large t the answer tends to the mean over each component; t may be
- *        arbitrarily large
+ *        arbitrarily large.
  *        Where all heat flows out (every component has held vertices, or L of your own does not conserve it)
  *        the answer falls like exp(-t lambda_1) instead, and what poles are off by does not. With the method
  *        auto or direct it then comes from the few eigenpairs left, as distances do: see hd_heat_distance.
- *        So do columns, entries, diagonals and the trace. Values that underflow are 0, with an infinite bound
+ *        So do columns, entries, diagonals, edges and the trace, but not derivatives. Values that underflow
+ *        are 0, with an infinite bound and HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
@@ -22701,8 +22702,8 @@ static void hdi_spec_sums_run(hdi_spec_sums *x, hd_context *ctx) {
 }
 
 /* ==== [26] plan ====
- * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors and bases that are
- * kept, the run of a request, and the report. May call [24] and [23].
+ * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors, bases and eigenpairs
+ * that are kept, the run of a request, and the report. May call [25], [24] and [23].
  * This work is based on
  *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013,
  *   eqs. (8) and (9)
