@@ -1369,11 +1369,12 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
 
 /* U = K_t F at each time.
  * t      >= 0. t = 0 copies F. For large t the answer tends to the mean over each component; t may be
- *        arbitrarily large
+ *        arbitrarily large.
  *        Where all heat flows out (every component has held vertices, or L of your own does not conserve it)
  *        the answer falls like exp(-t lambda_1) instead, and what poles are off by does not. With the method
  *        auto or direct it then comes from the few eigenpairs left, as distances do: see hd_heat_distance.
- *        So do columns, entries, diagonals and the trace. Values that underflow are 0, with an infinite bound
+ *        So do columns, entries, diagonals, edges and the trace, but not derivatives. Values that underflow
+ *        are 0, with an infinite bound and HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
@@ -23120,8 +23121,8 @@ static void hdi_spec_sums_run(hdi_spec_sums *x, hd_context *ctx) {
 }
 
 /* ==== [26] plan ====
- * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors and bases that are
- * kept, the run of a request, and the report. May call [24] and [23].
+ * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors, bases and eigenpairs
+ * that are kept, the run of a request, and the report. May call [25], [24] and [23].
  * This work is based on
  *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013,
  *   eqs. (8) and (9)
@@ -25412,7 +25413,9 @@ static void hdi_packs_drop(hd_heat *heat) {
 
 /* Does all heat of the call fade, and may eigenpairs serve it? */
 static HDI_INLINE int hdi_fading(const hdi_heat_call *h) {
-    return HDI_HAS_MODES && !h->heat->source->conserves && !h->rate && hdi_modes_allowed(h->heat);
+    const hd_heat *heat = h->heat;
+    if (heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit) return 0;
+    return HDI_HAS_MODES && !heat->source->conserves && !h->rate && hdi_modes_allowed(heat);
 }
 
 /* How far eigenvalues have to reach above the lowest one, times t. The largest value of a column is about
@@ -25594,6 +25597,13 @@ static void hdi_fading_again(hdi_heat_call *h, const hdi_fading_start *from) {
         hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
 }
 
+/* Are there pairs enough? Where they do not fit the byte limit the other methods go on. */
+static int hdi_fading_enough(hdi_heat_call *h, double t, double depth, int32_t most) {
+    const int there = hdi_modes_enough(h->heat, t, depth, most, h->e);
+    if (!there && h->e->status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+    return there;
+}
+
 /* The request at one time from at most `most` pairs, which are found if need be: more of them where those
  * left out show in the bound. Returns 0 where there are not enough. */
 static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int32_t most) {
@@ -25601,7 +25611,7 @@ static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int3
     double depth = hdi_fading_depth(h->heat);
     int tries, there = 0;
     for (tries = 0; tries < 3; tries++) {
-        if (!hdi_modes_enough(h->heat, t, depth, most, h->e)) return there && h->e->status >= 0;
+        if (!hdi_fading_enough(h, t, depth, most)) return there && h->e->status >= 0;
         hdi_fading_again(h, from);
         if (hdi_fading_answer(h, t) < 0 || hdi_modes_good(h->heat, t, h->rep) ||
             h->rep->error_rational <= HDI_MODES_TOL)
@@ -25719,7 +25729,8 @@ static hd_status hdi_heat_fading(hdi_heat_call *h) {
     int32_t most = HDI_MODES_FIRST;
     from.rep = *h->rep;
     from.t = h->t;
-    if (!hdi_fading_keep(h)) return h->e->status < 0 ? h->e->status : hdi_heat_chosen(h);
+    if (!hdi_fading_near(h->heat, t, HDI_MODES_MOST) || !hdi_fading_keep(h))
+        return h->e->status < 0 ? h->e->status : hdi_heat_chosen(h);
     if (hdi_fading_first(h, t) && hdi_fading_pairs(h, &from, most)) {
         if (h->e->status < 0 || hdi_modes_good(h->heat, t, h->rep)) return h->e->status;
         bound = h->rep->error_bound;
@@ -25727,7 +25738,7 @@ static hd_status hdi_heat_fading(hdi_heat_call *h) {
     if (h->e->status < 0) return h->e->status;
     hdi_fading_again(h, &from);
     if (hdi_heat_chosen(h) < 0 || h->rep->error_bound <= HDI_MODES_HELP) return h->e->status;
-    if (bound == HUGE_VAL && hdi_fading(h) && hdi_fading_near(h->heat, t, HDI_MODES_MOST)) {
+    if (bound == HUGE_VAL && hdi_fading(h)) {
         most = HDI_MODES_MOST;
         bound = h->rep->error_bound;
         hdi_packs_drop(h->heat);
@@ -27459,7 +27470,7 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     const hd_report before = *h->rep;
     hd_report one;
     memset(&one, 0, sizeof one);
-    if (!hdi_modes_enough(h->heat, t, hdi_fading_depth(h->heat), most, h->e)) return 0;
+    if (!hdi_fading_enough(h, t, hdi_fading_depth(h->heat), most)) return 0;
     *h->rep = one;
     if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
     else if (to->edges) (void)hdi_fading_edges_run(h, t, to->D + HDI_CAST(size_t, q) * to->ldd);

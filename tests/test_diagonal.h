@@ -554,7 +554,7 @@ static void diag_against_dense(const heat_case *c, hd_heat *heat, double t, int3
         }
     CHECK_MSG(most == 0 || off <= (most + diag_slack(c, t)) * size, "%s, %s, t %g: edges are off by %g", c->what, what, t, off / size);
     CHECK_MSG(off <= (rep.error_bound + diag_slack(c, t)) * size, "%s, %s, t %g: edges are off by %g, bound %g", c->what, what, t, off / size, rep.error_bound);
-    CHECK_MSG(rep.error_rounding > 0 && rep.error_rounding < 1e-6 && rep.residual > 0, "%s, %s: rounding of edges %g, residual %g", c->what, what, rep.error_rounding, rep.residual);
+    CHECK_MSG(rep.error_rounding > 0 && rep.error_rounding < 1e-6 && (rep.residual > 0 || strstr(rep.reason, "eigenpairs")), "%s, %s: rounding of edges %g, residual %g", c->what, what, rep.error_rounding, rep.residual);
     for (i = 0; i < n && degree; i++)            /* the same set: the same numbers but for rounding */
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             if (lap->L.col[p] == i) CHECK_MSG(fabs(E[p] - D[lap->vertex[i]]) <= 1e-10 * size, "%s, %s: edges and diagonal", c->what, what);

@@ -257,6 +257,10 @@ static void fail_sources(hd_source sources[2]) {
     sources[1].curve = 1;
 }
 
+/* What few eigenpairs serve where heat fades, as a variant of its own. */
+enum { FAIL_FADING = 1000, FAIL_FADING_INSIDE = 1000, FAIL_FADING_COLUMNS, FAIL_FADING_ENTRIES, FAIL_FADING_DIAGONAL, FAIL_FADING_DIAGONAL_K,
+       FAIL_FADING_EDGES, FAIL_FADING_TRACE, FAIL_FADING_ESTIMATE, FAIL_FADING_END };
+
 /* A variant above the list: many times. */
 static hd_status fail_ask(fail_world *w, int variant) {
     static const int32_t id[6] = {0, 5, 13, 14, 2, 20}, other[6] = {3, 5, 1, 17, 20, 20};
@@ -309,6 +313,38 @@ static hd_status fail_ask(fail_world *w, int variant) {
         u[0] = estimate.cost[HD_METHOD_DIRECT].flops;
         u[1] = estimate.cost[HD_METHOD_ITERATIVE].flops;
         return (hd_status)k;
+    }
+}
+
+static hd_status fail_fading(fail_world *w, int variant) {
+    static const int32_t id[6] = {0, 5, 13, 14, 3, 20}, other[6] = {3, 5, 1, 17, 20, 20};
+    const double unit = w->lap->h * w->lap->h, t[3] = {40 * unit, unit, 10 * unit};
+    hd_heat *const h = w->heat;
+    double *const u = w->out;
+    hd_report *const r = &w->rep;
+    hd_error *const e = &w->e;
+    hd_estimate estimate;
+    hd_status st;
+    int32_t k;
+    w->has_report = variant != FAIL_FADING_ESTIMATE;
+    w->n_out = 63;
+    switch (variant) {
+    case FAIL_FADING_INSIDE:
+        w->n_out = 21;
+        for (k = 0; k < 21; k++) u[k] = 1 + k % 3;
+        return hd_heat_apply(h, 1, t, 1, u, 0, u, 0, r, e);
+    case FAIL_FADING_COLUMNS: w->n_out = 6 * 63; return hd_heat_columns(h, HD_KERNEL_SYMMETRIC, 3, t, 6, id, u, 0, r, e);
+    case FAIL_FADING_ENTRIES: w->n_out = 18; return hd_heat_entries(h, HD_KERNEL_OPERATOR, 3, t, 6, id, other, u, r, e);
+    case FAIL_FADING_DIAGONAL: return hd_heat_diagonal(h, HD_KERNEL_SYMMETRIC, 3, t, u, 0, r, e);
+    case FAIL_FADING_DIAGONAL_K: return hd_heat_diagonal(h, HD_KERNEL_OPERATOR, 3, t, u, 0, r, e);
+    case FAIL_FADING_EDGES: w->n_out = (size_t)(w->lap->L.nnz * 3); return hd_heat_edges(h, HD_KERNEL_SYMMETRIC, 3, t, u, r, e);
+    case FAIL_FADING_TRACE: w->n_out = 3; return hd_heat_trace(h, 3, t, u, NULL, r, e);
+    default:
+        memset(&estimate, 0, sizeof estimate);
+        st = hd_heat_estimate(h, HD_QUERY_DIAGONAL, 3, t, 0, &estimate, e);
+        w->n_out = 1;
+        u[0] = estimate.cost[HD_METHOD_DIRECT].flops;
+        return st;
     }
 }
 
@@ -958,6 +994,25 @@ static void fail_queries(void) {
     }
 }
 
+static void fail_fading_queries(void) {
+    static const int laplacians[2] = {FAIL_HELD, FAIL_HELD | FAIL_BORDER | FAIL_VORONOI};
+    char name[64];
+    fail_case c;
+    int q, w;
+    memset(&c, 0, sizeof c);
+    c.name = name;
+    c.prepare = fail_plan;
+    c.call = fail_fading;
+    c.goes_on = 1;                               /* with poles */
+    for (q = FAIL_FADING; q < FAIL_FADING_END; q++)
+        for (w = 0; w < 2; w++) {
+            c.variant = q;
+            c.prepare_variant = FAIL_LAP * laplacians[w];
+            snprintf(name, sizeof name, "fading, query %d, Laplacian %d", q, laplacians[w]);
+            fail_run(&c);
+        }
+}
+
 /* All eigenpairs, no time and endless times: neither a value nor a bound is NaN (0 times infinity), and the values are
  * those in closed form. */
 static void fail_spectrum_ends(void) {
@@ -1038,6 +1093,7 @@ static void test_failures(void) {
     fail_memory = fail_random = fail_cancelled = fail_limited = 0;
     for (k = 0; k < FAIL_CASES; k++) fail_run(fail_cases + k);
     fail_queries();
+    fail_fading_queries();
     printf("failures: %lld allocations in turn, %lld at random, %lld cancelled, %lld by limits\n", (long long)fail_memory, (long long)fail_random,
            (long long)fail_cancelled, (long long)fail_limited);
     CHECK(fail_memory > 1000 && fail_random > 100 && fail_cancelled > 100 && fail_limited > 100);

@@ -18,8 +18,9 @@ COMPILE = ["--target=wasm32-wasi", "-std=c99", "-Oz", "-msimd128", "-mbulk-memor
            # 6 % of the module: small functions stay calls, and loops keep their plain counters. Times of
            # test_web.py --large in node change by no more than from run to run.
            "-mllvm", "-inline-threshold=-50", "-mllvm", "-disable-lsr"]
-# What the page does not use. Its plans are direct or krylov, and its distances come from columns and signatures.
-SWITCHES = ["-DHEATDIFF_NO_ITERATIVE", "-DHEATDIFF_NO_DIFFUSION"]
+# What the page does not use. Its plans are direct or krylov, its distances come from columns and signatures, and its
+# surfaces hold no vertices.
+SWITCHES = ["-DHEATDIFF_NO_ITERATIVE", "-DHEATDIFF_NO_DIFFUSION", "-DHEATDIFF_NO_SPECTRUM"]
 # Compiled and linked in two steps, without -O on the link: there clang would run wasm-opt, which lacks the features.
 LINK = ["--target=wasm32-wasi", "-mexec-model=reactor", "-Wl,--gc-sections", "-Wl,--strip-all",
         "-Wl,-z,stack-size=1048576", "-Wl,--global-base=1024"]
