@@ -26,6 +26,10 @@ enum {
 
 typedef struct guard_head { char *raw; size_t size; } guard_head;
 
+/* The size of the library's threads, which are no array: they stand where malloc would put them. */
+static size_t guard_threads;
+#define GUARD_THREADS(size) (guard_threads = (size))
+
 /* At an address for which the library leaves the most room before its array, and with that a byte behind it. */
 static void *guard_malloc(size_t size) {
     const size_t before = 2 * GUARD_ALIGN;
@@ -37,6 +41,7 @@ static void *guard_malloc(size_t size) {
     if (!head.raw) return NULL;
     p = head.raw + before - ((size_t)head.raw + GUARD_HEADER) % GUARD_ALIGN + 1 - GUARD_ALIGN;
     if (p < head.raw + (int)sizeof head) p += GUARD_ALIGN;
+    if (size == guard_threads) p = head.raw + before;
     memcpy(p - sizeof head, &head, sizeof head);
     memset(p + size, 0xA5, GUARD_BYTES);
     return p;
@@ -59,6 +64,8 @@ static void guard_free(void *block) {
 #define HEATDIFF_MALLOC(size) guard_malloc(size)
 #define HEATDIFF_FREE(p) guard_free(p)
 
+#else
+#define GUARD_THREADS(size) ((void)(size))
 #endif
 
 #endif

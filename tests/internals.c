@@ -2625,6 +2625,9 @@ static void int_no_numbers(void) {
 }
 
 int main(void) {
+#if HDI_THREADS
+    GUARD_THREADS(sizeof(hd_threads));
+#endif
     int_no_numbers();
     int_linear_precision();
     int_length_area();

@@ -255,6 +255,9 @@ static void test_run(const test_group *group) {
 
 int main(int argc, char **argv) {
     int i, k, filters = 0, ran = 0;
+#if HDI_THREADS
+    GUARD_THREADS(sizeof(hd_threads));
+#endif
     for (i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--list") == 0) {
             for (k = 0; k < TEST_GROUPS; k++) printf("%s\n", test_groups[k].name);
