@@ -15503,12 +15503,14 @@ static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t wid
     return hdi_scope_end(&temp);                 /* what keep holds is q's own now */
 }
 
-/* The bytes of that, its temporary array with them. That array is made to find out. */
-static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, hd_context *ctx, hd_error *e) {
+/* The bytes of that, and what its temporary array takes beyond bytes that come later. That array is made to
+ * find out. */
+static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, uint64_t later, hd_context *ctx,
+                                hd_error *e) {
     hdi_scope temp = hdi_scope_begin(ctx, e), tally;
     const int64_t count = HDI_CAST(int64_t, s->n_super) + 1;
     int64_t *need = HDI_TAKE(&temp, int64_t, count);
-    uint64_t bytes = 0;
+    uint64_t bytes = 0, first = 0;
     hd_error none;
     hdi_forms q;
     memset(&q, 0, sizeof q);
@@ -15516,7 +15518,8 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, hd_context
     if (need) {
         hdi_forms_size(&q, s, width, need);
         (void)hdi_forms_take(&q, s, &tally);
-        (void)HDI_TAKE(&tally, int64_t, count);
+        hdi_scope_count(&first, HDI_CAST(uint64_t, count), sizeof *need);
+        bytes += first > later ? first - later : 0;
     }
     hdi_scope_end(&temp);
     return bytes;
@@ -15808,15 +15811,17 @@ static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t
     return hdi_scope_end(&keep);
 }
 
-/* The bytes of that, and of the order that hdi_inverse_run takes. */
-static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, const hdi_factor *f) {
+/* The bytes of that, and of the order that hdi_inverse_run takes: of this alone to *order, unless NULL. */
+static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, const hdi_factor *f,
+                                  uint64_t *order) {
     hd_error none;
-    uint64_t bytes;
+    uint64_t bytes, later = 0;
     hdi_scope keep = hdi_scope_tally(&bytes, &none);
     hdi_inverse z;
     hdi_inverse_take(&z, s, width, f, &keep);
-    (void)HDI_TAKE(&keep, int32_t, s->n_top > 0 ? hdi_inverse_count(&z, s) : 0);
-    return bytes;
+    hdi_scope_count(&later, HDI_CAST(uint64_t, s->n_top > 0 ? hdi_inverse_count(&z, s) : 0), sizeof(int32_t));
+    if (order) *order = later;
+    return bytes + later;
 }
 
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
@@ -20345,19 +20350,23 @@ static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, 
 static uint64_t hdi_elim_inverse_need(const hdi_elim *m, const hd_rational *set, hdi_after after,
                                       int32_t n_sets, hd_error *e) {
     const int forms = after == HDI_AFTER_FORMS;
-    uint64_t real = 0, pack = 0, bytes = 0;
+    const int32_t widths[2] = {hdi_set_lone(set) ? 1 : 0, hdi_set_packs(set) > 0 ? HDI_PACK : 0};
+    uint64_t most = 0, bytes = 0, order;
     hdi_factor within;
+    int q;
     if (after == HDI_AFTER_SOLVES) return 0;
     if (after == HDI_AFTER_BOUND)
-        return hdi_inverse_bytes(&m->sym, 1, hdi_elim_bound_within(m, set, &within) ? &within : NULL);
-    if (hdi_set_lone(set))
-        real = hdi_inverse_bytes(&m->sym, 1, NULL) + (forms ? hdi_forms_bytes(&m->sym, 1, m->ctx, e) : 0);
-    if (e->status >= 0 && hdi_set_packs(set) > 0)
-        pack = hdi_inverse_bytes(&m->sym, HDI_PACK, NULL) +
-               (forms ? hdi_forms_bytes(&m->sym, HDI_PACK, m->ctx, e) : 0);
+        return hdi_inverse_bytes(&m->sym, 1, hdi_elim_bound_within(m, set, &within) ? &within : NULL, NULL);
+    for (q = 0; q < 2 && e->status >= 0; q++) {
+        uint64_t need;
+        if (!widths[q]) continue;
+        need = hdi_inverse_bytes(&m->sym, widths[q], NULL, &order);
+        if (forms) need += hdi_forms_bytes(&m->sym, widths[q], order, m->ctx, e);
+        if (most < need) most = need;
+    }
     hdi_scope_count(&bytes, HDI_PACK * HDI_CAST(uint64_t, n_sets), sizeof(double));
     if (forms) hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->source->L.nnz), sizeof(double));
-    return bytes + (real > pack ? real : pack);
+    return bytes + most;
 }
 
 /* The pole whose Re (tL + theta B)^-1 times *factor bounds (B + tL)^-1 best: Re 1/(x + theta) >= 1/(factor (1
@@ -21476,12 +21485,12 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
         hdi_scope_count(&held, n, sizeof(char));
         hdi_scope_count(&held, 3 * n, sizeof(double));
         hdi_scope_count(&held, 2 * n_comp, sizeof(double));
-        make = hdi_inverse_bytes(&m->sym, 1, NULL);
+        make = hdi_inverse_bytes(&m->sym, 1, NULL, NULL);
         hdi_scope_count(&make, nnz, sizeof(double));
         hdi_scope_count(&make, n_comp, sizeof(char));
     }
     if (forms && !g->formed) {
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, NULL);
+        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, NULL, NULL);
         hdi_scope_count(&form, nnz, sizeof(hd_c64));
         hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1), sizeof(double));
         hdi_scope_count(&form, 2 * n, sizeof(double));
@@ -25368,6 +25377,7 @@ static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
 static void hdi_modes_tell(const hd_heat *heat, hd_report *rep) {
     rep->method = HD_METHOD_DIRECT;
     rep->reason = HDI_MODES_REASON;
+    rep->precond = HD_PRECOND_NONE;
     rep->ordering = hdi_heat_full(heat)->sym.ordering;
     rep->factor_nnz = hdi_heat_full(heat)->sym.nnz;
     rep->factor_flops = heat->modes.s.factor_flops;

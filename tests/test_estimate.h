@@ -101,8 +101,7 @@ static void est_early(const hd_laplacian *lap, const est_case *c, uint64_t befor
         ctx.byte_limit = (uint64_t)rep.error.value;
         st = est_run(heat, lap, c, U, &rep);
     }
-    /* the need is a sum over stages of which each knows its own largest: up to a kilobyte more than all ever held */
-    CHECK_MSG(st >= 0 && ctx.byte_limit <= before + truth + 1024, "%s: a limit of %g of %g: %s", what, (double)ctx.byte_limit, (double)(before + truth), rep.error.text);
+    CHECK_MSG(st >= 0 && ctx.byte_limit <= before + truth, "%s: a limit of %g of %g: %s", what, (double)ctx.byte_limit, (double)(before + truth), rep.error.text);
     hd_heat_free(heat);
     CHECK(ctx.bytes_in_use == 0);
     free(U);
