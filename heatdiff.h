@@ -11849,7 +11849,8 @@ static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
 /* A part is done: its halves may be claimed. */
 static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = HDI_CAST(hdi_nd *, arg);
-    const double done = 0.1 + 0.8 * HDI_CAST(double, HDI_ATOMIC_GET(&nd->done)) / HDI_ND_NODES;
+    const double done = 0.1 + 0.8 * HDI_CAST(double, HDI_ATOMIC_GET(&nd->done)) /
+                              HDI_CAST(double, HDI_ND_NODES);
     if (worker == 0 && !HDI_LOAD(&nd->stop) && hdi_progress(nd->ctx, "order", done, nd->error) < 0)
         HDI_STORE(&nd->stop, 1);
     if (!HDI_LOAD(&nd->stop)) hdi_nd_node(nd, index);
