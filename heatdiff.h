@@ -24535,8 +24535,15 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     }
     for (i = 0; i < lap->n && (lap->n_held > 0 || h->rate); i++)
         if (h->rate || lap->row[i] == HD_ROW_HELD) u[i] = 0;
-    for (i = 0; i < lap->n_active && !lane->skip; i++)
-        u[lap->vertex[i]] = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
+    for (i = 0; i < lap->n_active && !lane->skip; i++) {
+        const double value = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
+        u[lap->vertex[i]] = value;
+        if (lane->exponent > 0 && !hdi_finite(value)) {
+            hdi_fail_face(h->e, HD_ERR_BREAKDOWN, "heat: an answer leaves the range of doubles", -1,
+                          lap->vertex[i], value);
+            return;
+        }
+    }
 }
 
 /* The degree of a uniform set that serves all fields. Columns get the highest degree, because their constants

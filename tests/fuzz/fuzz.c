@@ -330,7 +330,8 @@ static void fz_check_laplacian(const hd_laplacian *lap) {
     FZ(lap->L.n_rows == lap->n_active && lap->L.n_cols == lap->n_active);
     if (hd_csr_check(&lap->L, 1, NULL, &e) < 0) fz_fail(e.text, __LINE__);
     FZ(!lap->B || fz_finite(lap->B, lap->L.nnz));
-    FZ(mio_is_finite(lap->h) && lap->h >= 0 && mio_is_finite(lap->area));
+    FZ(mio_is_finite(lap->h) && lap->h >= 0 && lap->area == lap->area);
+    FZ(lap->kind == HD_LAPLACIAN_MATRICES || mio_is_finite(lap->area));   /* sums of one's own masses may overflow */
     for (v = 0; v < lap->n; v++) {
         FZ(lap->row[v] >= HD_ROW_HELD && lap->row[v] < lap->n_active);
         if (lap->row[v] >= 0) FZ(lap->vertex[lap->row[v]] == v);

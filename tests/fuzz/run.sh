@@ -52,7 +52,7 @@ if clang -fsanitize=fuzzer "$work/probe.c" -o "$work/probe" 2>/dev/null; then
   for t in "${targets[@]}"; do
     ok=clean
     unpack "$t"
-    "$work/fuzz" --target="$t" -max_total_time="$seconds" -timeout=25 -max_len=1024 -print_final_stats=1 -artifact_prefix="$work/$t-" \
+    "$work/fuzz" --target="$t" -max_total_time="$seconds" -timeout=25 -max_len=1024 -seed="${FUZZ_SEED:-0}" -print_final_stats=1 -artifact_prefix="$work/$t-" \
       "$work/found/$t" "$work/seeds/$t" >"$work/$t.log" 2>&1 || { ok=FAILED; failed=1; }
     echo "$t: $(sed -n 's/^stat::number_of_executed_units: *//p' "$work/$t.log") inputs, $ok"
     if [ $ok = FAILED ]; then
