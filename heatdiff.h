@@ -9173,10 +9173,11 @@ static void hdi_held_components(hd_laplacian *lap, const hd_laplacian *whole) {
     lap->conserves = whole->conserves;
     for (i = 0; i < lap->n_active && whole->conserves; i++) {
         double *mass = lap->component_mass + lap->component[i];
-        if (!hdi_finite(*mass) || !hdi_held_leaks(lap, whole, i)) continue;
-        *mass = HUGE_VAL;
+        if (*mass < 0 || !hdi_held_leaks(lap, whole, i)) continue;
+        *mass = -HUGE_VAL;                       /* not what a sum that overflows is */
         leaks++;
     }
+    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] = fabs(lap->component_mass[i]);
     if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
     if (!lap->conserves) hdi_lap_component_masses(lap);
 }
@@ -27774,8 +27775,12 @@ static void hdi_signature_tell(hd_report *rep, int32_t m, int32_t n_freq, double
     const double sum = rep->error_rational + rep->error_rounding;
     const double terms = 2 + (m - 1) * 2 * sin(pi * hdi_min(n_freq - 1, m / 2) / m);
     rep->error_bound = hdi_quotient(hdi_bound_times(terms, r), largest) + 8 * m * DBL_EPSILON;
-    rep->error_rational = sum > 0 ? rep->error_bound * (rep->error_rational / sum) : 0;
-    rep->error_rounding = hdi_max(0, rep->error_bound - rep->error_rational);
+    if (hdi_finite(rep->error_bound)) {
+        rep->error_rational = sum > 0 ? rep->error_bound * (rep->error_rational / sum) : 0;
+        rep->error_rounding = hdi_max(0, rep->error_bound - rep->error_rational);
+    } else {
+        rep->error_rational = rep->error_rounding = HUGE_VAL;
+    }
     rep->error_relative = HUGE_VAL;
     rep->smallest = 0;
     rep->status = rep->status > 0 ? HD_OK : rep->status;   /* judged anew */
