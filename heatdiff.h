@@ -32759,7 +32759,7 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
 }
 
 static hd_status hdi_sum_end(hdi_call *c, hdi_spec_sums *x) {
-    if (c->e->status >= 0) hdi_spec_sums_run(x, c->ctx);
+    if (HDI_HAS_SPECTRUM && c->e->status >= 0) hdi_spec_sums_run(x, c->ctx);
     return hdi_scope_end(&x->scope);
 }
 
