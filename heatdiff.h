@@ -2227,6 +2227,15 @@ static hd_status hdi_missing(hd_error *e) {
     return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
 }
 
+/* Refuses the call if an argument is bad. Of several refusals the first one stays. */
+static void hdi_refuse(int bad, const char *text, hd_error *e) {
+    if (bad && e->status >= 0) (void)hdi_fail(e, HD_ERR_ARGUMENT, text);
+}
+
+static void hdi_refuse_value(int bad, const char *text, double value, hd_error *e) {
+    if (bad && e->status >= 0) (void)hdi_fail_row(e, HD_ERR_ARGUMENT, text, -1, -1, value);
+}
+
 /* For what this build has no code for: room is one of HDI_HAS_..., what says it in the field's words. */
 #define HDI_LEFT_OUT(e, room, what) \
     hdi_fail(e, HD_ERR_NOT_BUILT, "this build leaves out " what " (" HDI_WHY_##room ")")
@@ -2882,6 +2891,41 @@ static int hdi_simd_level(const hd_context *ctx) {
     const int asked = ctx->simd == HD_SIMD_NONE ? 0 : ctx->simd == HD_SIMD_AVX2 ? 1 : 2;
     const int best = hdi_simd_best();
     return asked < best ? asked : best;
+}
+
+/* ---- calls of public functions ---- */
+
+/* An error and a context for the body of a public function: the caller's, or own ones if the caller gave
+ * none. */
+typedef struct hdi_call {
+    hd_error error;
+    hd_error *e;
+    hd_context context;
+    hd_context *ctx;
+} hdi_call;
+
+static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
+    memset(&c->context, 0, sizeof c->context);
+    c->e = err ? err : &c->error;
+    c->ctx = ctx ? ctx : &c->context;
+    hdi_error_clear(c->e);
+    return hdi_context_check(c->ctx, c->e);
+}
+
+#define HDI_CLEARED(opts) (!(opts)->begin_zero && !(opts)->end_zero)
+
+/* The same where options may name the context. Options that were not cleared are an error, and nothing in
+ * them is used. */
+static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
+    if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
+    return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
+}
+
+/* The context of an object that outlives the call: the caller's, or own, to which the counts so far move. */
+static hd_context *hdi_enter_keep(hdi_call *c, hd_context *own) {
+    if (c->ctx != &c->context) return c->ctx;
+    *own = c->context;
+    return c->ctx = own;
 }
 
 /* ==== [05] arrays ====
@@ -5614,6 +5658,25 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query,
     return hdi_scope_end(&s);
 }
 
+/* Checks points, queries and sizes. *m becomes the number of queries. */
+static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m,
+                                      hd_error *e) {
+    if (!HDI_HAS_POINTS) return HDI_LEFT_OUT(e, POINTS, "the search of neighbours");
+    if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
+    if (!query) *m = n;
+    if (n > 0 && !xyz) return hdi_missing(e);
+    return hdi_points_check(xyz, n, query, *m, e);
+}
+
+static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t n, const hdi_call *c,
+                                     hdi_scope *s) {
+    *s = hdi_scope_begin(c->ctx, c->e);
+    hdi_hold(c->ctx);
+    if (hdi_progress(c->ctx, "neighbours", 0, c->e) < 0 || hdi_tree_make(tree, xyz, n, s) < 0)
+        return c->e->status;
+    return hdi_progress(c->ctx, "neighbours", 0.1, c->e);
+}
+
 /* ==== [10] geometry ====
  * What is known of faces and points before there is an operator: checks, areas and cotangents, which
  * faces are left out, edges and masses of triangle meshes; polygons; cells and tangent planes of points.
@@ -5767,6 +5830,50 @@ static hd_status hdi_view_read(hdi_view *out, const hd_mesh_view *v, int faces) 
     out->n_tri = HDI_CAST(int32_t, v->n_indices / 3);
     out->tri = hdi_view_corners(v, out->xyz, &out->s);
     return out->s.e->status;
+}
+
+/* Sizes. No position may lie beyond the address space. */
+static hd_status hdi_view_sizes(const hd_mesh_view *v, int faces, hd_error *e) {
+    const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
+    hdi_refuse(v->n < 0 || (faces && v->n_indices < 0), "mesh view: a count is negative", e);
+    hdi_refuse_value(stride < wide, "mesh view: the stride is shorter than a position",
+                     HDI_CAST(double, stride), e);
+    hdi_refuse_value(faces && v->n_indices % 3 != 0,
+                     "mesh view: the number of indices is not a multiple of three",
+                     HDI_CAST(double, v->n_indices), e);
+    if (e->status < 0) return e->status;
+    if (v->n > INT32_MAX || (faces && v->n_indices / 3 > INT32_MAX))
+        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: more than 2^31 - 1 vertices or faces");
+    if (v->n > 1 && HDI_CAST(uint64_t, v->n - 1) > (SIZE_MAX / 2 - wide) / stride)
+        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: positions lie beyond the address space");
+    return HD_OK;
+}
+
+static hd_status hdi_view_check(const hd_mesh_view *v, int faces, hd_error *e) {
+    const int places = (v->xyz_float != NULL) + (v->xyz_double != NULL);
+    const int indices = (v->tri_u16 != NULL) + (v->tri_u32 != NULL) + (v->tri_i16 != NULL)
+                      + (v->tri_i32 != NULL);
+    hdi_refuse(!HDI_CLEARED(v), "mesh view: not cleared before use", e);
+    hdi_refuse(places > 1 || (v->n > 0 && places < 1),
+               "mesh view: set one of xyz_float and xyz_double", e);
+    hdi_refuse(faces && (indices > 1 || (v->n_indices > 0 && indices < 1)),
+               "mesh view: set one of tri_u16, tri_u32, tri_i16 and tri_i32", e);
+    return e->status < 0 ? e->status : hdi_view_sizes(v, faces, e);
+}
+
+/* Opens a view; its scope is to be ended in any case. faces: its indices are wanted too. */
+static hd_status hdi_view_open(hdi_view *out, const hd_mesh_view *v, int faces, const hdi_call *c) {
+    memset(out, 0, sizeof *out);
+    out->s = hdi_scope_begin(c->ctx, c->e);
+    if (!v) return hdi_missing(c->e);
+    return hdi_view_check(v, faces, c->e) < 0 ? c->e->status : hdi_view_read(out, v, faces);
+}
+
+/* Opens a view of new positions for n vertices. */
+static hd_status hdi_view_positions(hdi_view *out, const hd_mesh_view *v, int32_t n, const hdi_call *c) {
+    if (hdi_view_open(out, v, 0, c) < 0 || out->n == n) return c->e->status;
+    return hdi_fail_row(c->e, HD_ERR_ARGUMENT, "mesh view: the mesh has another number of vertices", -1, -1,
+                        HDI_CAST(double, v->n));
 }
 
 /* ---- faces ---- */
@@ -8005,6 +8112,21 @@ static hd_status hdi_holding_make(hd_laplacian *lap, int border, const int32_t *
     return e->status;
 }
 
+/* Checks and marks the vertices that the options hold at zero. */
+static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_error *e) {
+    int32_t q;
+    hdi_refuse(o && (o->border < HD_BORDER_NATURAL || o->border > HD_BORDER_DIRICHLET),
+               "laplacian options: border is natural or Dirichlet", e);
+    hdi_refuse(o && (o->n_held < 0 || (o->n_held > 0 && !o->held)),
+               "laplacian options: n_held is negative, or held is missing", e);
+    if (e->status < 0 || !o || (o->border == HD_BORDER_NATURAL && o->n_held == 0)) return e->status;
+    for (q = 0; q < o->n_held; q++)
+        if (o->held[q] < 0 || o->held[q] >= lap->n)
+            return hdi_fail_row(e, HD_ERR_INDEX, "laplacian options: a vertex to hold is not in the mesh", q,
+                                -1, o->held[q]);
+    return hdi_holding_make(lap, o->border == HD_BORDER_DIRICHLET, o->held, o->n_held, e);
+}
+
 static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     if (!lap) return;
     hdi_holding_free(lap->holding, ctx);
@@ -8736,6 +8858,22 @@ static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *mesh, const hd
                                int updatable, hd_error *e) {
     if (HDI_HAS_INTRINSIC && task) return hdi_lap_intrinsic(lap, mesh, task, e);
     return hdi_lap_triangles(lap, mesh, updatable, e);
+}
+
+/* Defaults of options, as their declarations state. */
+#define HDI_MOLLIFY_DELTA 1e-5
+
+/* Checks the options of intrinsic triangulations and resolves them into task. Returns whether one is asked
+ * for. */
+static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
+    task->close = opts && opts->tufted;
+    task->delta = opts && opts->mollify != 0 ? opts->mollify : HDI_MOLLIFY_DELTA;
+    hdi_refuse(hdi_nan(task->delta) || task->delta > 1,
+               "laplacian options: mollify is above 1 or not a number", e);
+    if (HDI_HAS_INTRINSIC || !opts || !(opts->intrinsic_delaunay || opts->tufted))
+        return opts && (opts->intrinsic_delaunay || opts->tufted);
+    if (e->status >= 0) (void)HDI_LEFT_OUT(e, INTRINSIC, "intrinsic triangulations");
+    return 1;
 }
 
 /* Errors of an update name the polygons that the triangles of x come from. */
@@ -9732,6 +9870,35 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     return hdi_scope_end(&s);
 }
 
+#define HDI_WEIGHT_CUT 1e-8
+enum { HDI_NEIGHBOURS = 30 };
+
+static void hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
+    rep->neighbours = opts && opts->neighbours ? opts->neighbours : HDI_NEIGHBOURS;
+    hdi_refuse(rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS,
+               "laplacian of points: neighbours lies in 6..128", e);
+}
+
+/* Checks the options of point sets and resolves them into lap->points. */
+static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
+    hd_point_report *rep = &lap->points;
+    rep->bandwidth = opts ? opts->bandwidth : 0;
+    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : HDI_WEIGHT_CUT;
+    hdi_refuse(lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP,
+               "laplacian of points: the kind is voronoi-exp or exp "
+               "(hd_laplacian_tufted_points has fem, voronoi-cot and cot)", e);
+    hdi_refuse(opts && opts->updatable,
+               "laplacian of points: not updatable, because new places of points make a new pattern", e);
+    hdi_refuse(opts && (opts->intrinsic_delaunay || opts->tufted),
+               "laplacian of points: exponential weights know no triangles; "
+               "hd_laplacian_tufted_points makes some", e);
+    hdi_refuse(!hdi_finite(rep->bandwidth) || rep->bandwidth < 0,
+               "laplacian of points: the bandwidth is negative or not finite", e);
+    hdi_refuse(!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1),
+               "laplacian of points: weight_cut lies in (0, 1)", e);
+    hdi_point_neighbours(rep, opts, e);
+}
+
 /* ---- point sets: the tufted Laplacian of the points' stars ---- */
 
 enum { HDI_STAR_POINTS = 1024 };        /* points per task */
@@ -10300,6 +10467,20 @@ static void hdi_lap_times(const hd_laplacian *lap, int32_t n_times, double *t) {
     for (q = 0; q < n_times; q++)
         t[q] = area * HDI_TIMES_SHORTEST * pow(HDI_TIMES_LONGEST / HDI_TIMES_SHORTEST,
                                                n_times > 1 ? q / HDI_CAST(double, n_times - 1) : 0.5);
+}
+
+static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
+    if (v >= 0 && v < lap->n) return HD_OK;
+    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
+}
+
+/* Checks sources, or vertices of pairs. *which becomes the index of one that is not in the mesh. */
+static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
+                                    hd_error *e) {
+    int64_t q;
+    for (q = 0; q < k && e->status >= 0; q++)
+        if (hdi_vertex_check(lap, vertex[q], e) < 0) *which = q;
+    return e->status;
 }
 
 /* ==== [13] degree ====
@@ -12978,6 +13159,11 @@ static hd_status hdi_order_check(const int32_t *perm, int32_t n, hd_context *ctx
     return hdi_scope_end(&s);
 }
 
+static void hdi_refuse_ordering(hd_ordering ordering, const int32_t *perm, const char *text, hd_error *e) {
+    hdi_refuse(ordering < HD_ORDERING_AUTO || ordering > HD_ORDERING_OWN, text, e);
+    hdi_refuse(ordering == HD_ORDERING_OWN && !perm, "ordering: own, but no permutation is given", e);
+}
+
 /* The kind for a pattern where the caller leaves the choice. */
 static hd_ordering hdi_order_kind(const hdi_order *o, const hd_csr *a) {
     int32_t from = HDI_DISSECT_FROM;
@@ -14510,6 +14696,32 @@ static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb
                     at[q + HDI_PACK_LANES]);
 }
 
+/* Begins a call that factors. */
+static hd_status hdi_ldl_enter(hdi_call *c, hd_ldl *f, const void *val, hd_error *err) {
+    if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
+    return !f || (f->nnz > 0 && !val) ? hdi_missing(c->e) : HD_OK;
+}
+
+/* Begins a call that needs the real factor, or the packs. given: no array is missing. */
+static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
+    if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
+    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
+    if (packs && !HDI_HAS_POLE_FACTORS)
+        return HDI_LEFT_OUT(c->e, POLE_FACTORS, "factorisations of complex matrices");
+    if (!f || !given) return hdi_missing(c->e);
+    if (!packs && !f->real.ready)
+        return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a real one");
+    if (packs && !f->n_matrices)
+        return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a complex one");
+    return HD_OK;
+}
+
+static hd_status hdi_ldl_leading(const hd_ldl *f, size_t ldb, size_t ldx, hd_error *e) {
+    if (ldb >= HDI_CAST(size_t, f->n) && ldx >= HDI_CAST(size_t, f->n)) return HD_OK;
+    return hdi_fail(e, HD_ERR_ARGUMENT, "ldl: a leading dimension is smaller than n");
+}
+
 /* ==== [18] selinv ====
  * Entries of the inverse on the pattern of the factor, from the root down. May call [17].
  * This work is based on
@@ -15995,6 +16207,24 @@ static hd_status hdi_ldl_inverse_entries(hd_ldl *f, int packs, int64_t n, const 
     for (p = 0; packs && HDI_PACK_LANES * p < f->n_matrices; p++)
         hdi_ldl_some(f, f->pack + p, &t, hdi_ldl_lanes(f, p), values + HDI_PACK * p * n);
     return hdi_scope_end(&s);
+}
+
+static hd_status hdi_ldl_enter_inverse(hdi_call *c, const hd_ldl *f, int packs, hd_error *err) {
+    if (hdi_ldl_enter_factored(c, f, packs, 1, err) < 0 || HDI_HAS_DIAGONAL) return c->e->status;
+    return HDI_LEFT_OUT(c->e, DIAGONAL, "selected inversion");
+}
+
+static hd_status hdi_ldl_entries_check(const hd_ldl *f, int64_t n, const int32_t *i, const int32_t *j,
+                                       const void *values, hd_error *e) {
+    int64_t q;
+    if (n < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ldl: the number of entries is negative");
+    if (n > 0 && (!i || !j || !values)) return hdi_missing(e);
+    for (q = 0; q < n; q++) {
+        const int32_t worst = i[q] < 0 || i[q] >= f->n ? i[q] : j[q];
+        if (worst < 0 || worst >= f->n)
+            return hdi_fail_row(e, HD_ERR_INDEX, "ldl: an entry is not in the matrix", q, -1, worst);
+    }
+    return HD_OK;
 }
 
 /* ==== [19] precond ====
@@ -22871,6 +23101,45 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
     return e->status;
 }
 
+/* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
+static double hdi_heat_scale(const hd_laplacian *lap) {
+    double largest = 0;
+    int32_t i;
+    int exponent;
+    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
+    frexp(largest, &exponent);
+    return ldexp(1, -2 * (exponent / 2));
+}
+
+#define HDI_TOL_SPECTRUM 1e-10
+
+static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_opts *o, hd_error *e) {
+    hdi_refuse(o->count < 0 || (o->count == 0 && o->below == 0), "spectrum: neither a count nor a bound", e);
+    hdi_refuse_value(o->count > lap->n_active, "spectrum: more pairs than rows", o->count, e);
+    hdi_refuse_value(!hdi_finite(o->below) || o->below < 0, "spectrum: below is negative or not finite",
+                     o->below, e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "spectrum: tol is not in [0, 1)", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "spectrum: unknown ordering", e);
+    return e->status;
+}
+
+static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd_error *e) {
+    hdi_spec_goal goal;
+    hdi_elim m;
+    const double scale = hdi_heat_scale(s->lap), tol = o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM;
+    goal.count = o->count > 0 ? o->count : INT32_MAX;
+    goal.below = o->below > 0 ? o->below / scale : HUGE_VAL;
+    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, s->lap->n, s->context, e) < 0)
+        return e->status;
+    memset(&m, 0, sizeof m);
+    if (hdi_elim_make(&m, s->lap, o->ordering, o->ordering == HD_ORDERING_OWN ? o->perm : NULL, scale,
+                      s->context, e) >= 0)
+        (void)hdi_spec_run(&m, &goal, tol, s, e);
+    hdi_elim_free(&m);
+    if (e->status < 0) return e->status;
+    return s->proven && s->n_poor == 0 ? HD_OK : HD_WARN_ACCURACY;
+}
+
 /* ---- kernels from eigenpairs ---- */
 
 /* A function of the eigenvalues at one time: exp(-t lambda), 1/lambda or 1/lambda^2, the last two for values
@@ -23131,6 +23400,66 @@ static void hdi_spec_sums_run(hdi_spec_sums *x, hd_context *ctx) {
     }
 }
 
+/* Checks the arguments of sums over the pairs, and makes room for them. */
+static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum *s, hd_error *err) {
+    int32_t q;
+    if (hdi_enter(c, s ? s->context : NULL, err) < 0) return c->e->status;
+    if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c->e, SPECTRUM, "eigenpairs");
+    if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c->e);
+    if (!x->sum.diagonal && x->k > 0 && !x->sources && !x->from) return hdi_missing(c->e);
+    hdi_refuse(x->n_times < 1, "spectrum: there is no time", c->e);
+    hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c->e);
+    hdi_refuse(x->ld != 0 && x->ld < HDI_CAST(size_t, s->n), "spectrum: columns would overlap", c->e);
+    for (q = 0; q < x->n_times; q++)
+        hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
+                         x->t[q], c->e);
+    if (c->e->status < 0) return c->e->status;
+    if (x->sources && hdi_vertices_check(s->lap, x->k, x->sources, &c->e->column, c->e) < 0)
+        return c->e->status;
+    x->of = s;
+    x->ld = x->ld ? x->ld : HDI_CAST(size_t, s->n);
+    x->scope = hdi_scope_begin(c->ctx, c->e);
+    x->work = HDI_TAKE(&x->scope, double, 2 * HDI_CAST(uint64_t, s->count) + 1);
+    if (x->from && x->work) x->terms = hdi_terms_all(x->k, x->from, s->lap, x->sum.distance, &x->scope);
+    return c->e->status < 0 ? hdi_scope_end(&x->scope) : HD_OK;
+}
+
+static hd_status hdi_sum_end(hdi_call *c, hdi_spec_sums *x) {
+    if (HDI_HAS_SPECTRUM && c->e->status >= 0) hdi_spec_sums_run(x, c->ctx);
+    return hdi_scope_end(&x->scope);
+}
+
+static void hdi_sum_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_error *e) {
+    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel", e);
+    x->sum.mass = kernel == HD_KERNEL_OPERATOR;
+}
+
+static hd_status hdi_sum_columns(hdi_spec_sums *x, const hd_spectrum *s, hd_kernel kernel, hd_error *err) {
+    hdi_call c;
+    if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
+    hdi_sum_kernel(x, kernel, c.e);
+    return hdi_sum_end(&c, x);
+}
+
+static hd_status hdi_sum_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_distance_kind kind,
+                                  hd_error *err) {
+    const int power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
+    const double zero = 0;
+    hdi_call c;
+    x->power = power;
+    x->sum.distance = 1;
+    if (power && x->n_times <= 1) {              /* no time */
+        x->n_times = 1;
+        x->t = &zero;
+    }
+    if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
+    hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
+               c.e);
+    hdi_refuse(power && x->n_times > 1, "spectrum: this distance has no time", c.e);
+    x->sum.mass = kind == HD_DISTANCE_WEIGHTED;
+    return hdi_sum_end(&c, x);
+}
+
 /* ==== [26] plan ====
  * Owns the plan hd_heat: which method a request takes, the copies of the pair, factors, bases and eigenpairs
  * that are kept, the run of a request, and the report. May call [25], [24] and [23].
@@ -23332,16 +23661,6 @@ static double hdi_heat_drift(const hd_laplacian *lap, double *sum) {
     return drift;
 }
 
-/* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
-static double hdi_heat_scale(const hd_laplacian *lap) {
-    double largest = 0;
-    int32_t i;
-    int exponent;
-    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    frexp(largest, &exponent);
-    return ldexp(1, -2 * (exponent / 2));
-}
-
 static void hdi_heat_free_lanes(hd_heat *heat) {
     int32_t i;
     for (i = 0; i < heat->n_lanes; i++) hdi_lane_free(heat->lane + i, heat->ctx);
@@ -23499,6 +23818,19 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     if (hdi_lane_make(heat->lane, heat->lap, heat->ctx, e) < 0) return e->status;
     if (hdi_lane_systems(heat->lane, fam, e) < 0) return e->status;
     return hdi_family_fill(fam, heat->lane->b, e);
+}
+
+static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
+    hdi_refuse_value(!hdi_finite(t) || t < 0, "solve: t is negative or not finite", t, e);
+    hdi_refuse(!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0),
+               "solve: theta lies on (-inf, 0] or is not finite", e);
+    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES,
+               "solve: the solver is cocg, cocr or minres", e);
+    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "solve: unknown preconditioner",
+               e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "solve: tol is not in [0, 1)", e);
+    hdi_refuse(o->max_iterations < 0, "solve: max_iterations is negative", e);
+    return e->status;
 }
 
 /* One system with a plan made for it. */
@@ -25777,20 +26109,6 @@ static hd_status hdi_heat_single(hdi_heat_call *h) {
     return HDI_HAS_MODES && h->t > 0 && hdi_fading(h) ? hdi_heat_fading(h) : hdi_heat_chosen(h);
 }
 
-static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
-    if (v >= 0 && v < lap->n) return HD_OK;
-    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
-}
-
-/* Checks sources, or vertices of pairs. *which becomes the index of one that is not in the mesh. */
-static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
-                                    hd_error *e) {
-    int64_t q;
-    for (q = 0; q < k && e->status >= 0; q++)
-        if (hdi_vertex_check(lap, vertex[q], e) < 0) *which = q;
-    return e->status;
-}
-
 static hd_status hdi_sources_check(hdi_heat_call *h, int32_t k, const int32_t *sources) {
     return hdi_vertices_check(h->heat->source, k, sources, &h->e->column, h->e);
 }
@@ -26235,6 +26553,147 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
         list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
     h->ask.list = list;
     return HD_OK;
+}
+
+/* ---- requests, and plans by their options ---- */
+
+/* Moves fields that lie ldf apart to where their answers will be, ldu apart in the same array. */
+static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
+    int32_t q;
+    for (q = 1; q < ask->k && ask->ldu != ask->ldf; q++) {
+        const size_t at = HDI_CAST(size_t, ask->ldu > ask->ldf ? ask->k - q : q);
+        memmove(U + at * ask->ldu, U + at * ask->ldf, n * sizeof *U);
+    }
+    ask->ldf = ask->ldu;
+}
+
+static hdi_request hdi_ask_fields(int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
+                                  double *U, size_t ldu) {
+    hdi_request ask;
+    memset(&ask, 0, sizeof ask);
+    ask.n_times = n_times;
+    ask.t = t;
+    ask.k = k;
+    ask.F = F;
+    ask.ldf = ldf;
+    ask.U = U;
+    ask.ldu = ldu;
+    return ask;
+}
+
+/* Checks a request of fields, and runs it. derivative: in time. */
+static hd_status hdi_fields_run(hd_heat *heat, hdi_query query, const hdi_request *ask, int derivative,
+                                hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_heat_begin(&h, heat, query, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_times_check(&h, ask->n_times, ask->t, 0) < 0) return hdi_heat_end(&h);
+    if (ask->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (ask->k > 0 && (!ask->F || !ask->U)) hdi_missing(h.e);
+    else if (derivative && heat->opts.rational)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a pole set of your own has no derivative here");
+    h.ask.k = ask->k;
+    h.ask.F = ask->F;
+    h.ask.U = ask->U;
+    h.ask.ldf = hdi_leading(&h, ask->ldf);
+    h.ask.ldu = hdi_leading(&h, ask->ldu);
+    if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
+    if (ask->U == ask->F && ask->n_times > 1)
+        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
+    else if (ask->U == ask->F) hdi_fields_spread(&h.ask, HDI_CAST(size_t, heat->source->n), ask->U);
+    return derivative ? hdi_rate_run(&h) : hdi_heat_run(&h);
+}
+
+/* What queries of columns ask for, but for the sources. given: they are not NULL. */
+static hd_status hdi_columns_ask(hdi_heat_call *h, int32_t n_times, const double *t, int32_t k, int given,
+                                 double *U, size_t ldu) {
+    if (hdi_times_check(h, n_times, t, 0) < 0) return h->e->status;
+    if (k < 0) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (k > 0 && (!given || !U)) hdi_missing(h->e);
+    h->ask.k = k;
+    h->ask.U = U;
+    h->ask.ldu = hdi_leading(h, ldu);
+    return h->e->status;
+}
+
+/* Checks pairs of vertices. */
+static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_t *i, const int32_t *j) {
+    const hd_laplacian *lap = h->heat->source;
+    if (n_pairs < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
+    if (n_pairs > 0 && (!i || !j)) return hdi_missing(h->e);
+    if (hdi_vertices_check(lap, n_pairs, i, &h->e->row, h->e) < 0) return h->e->status;
+    return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
+}
+
+#define HDI_TOL_HEAT 1e-9
+enum { HDI_MAX_ITERATIONS = 20000 };
+
+/* Is what the options ask for in this build? */
+static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
+    const int poles = o->rational || o->poles || o->degree;
+    if (!HDI_HAS_DIRECT && (o->method == HD_METHOD_DIRECT || o->method == HD_METHOD_KRYLOV))
+        (void)HDI_LEFT_OUT(e, DIRECT, "factorisations");
+    else if (!HDI_HAS_POLE_FACTORS && o->method == HD_METHOD_DIRECT)
+        (void)HDI_LEFT_OUT(e, POLE_FACTORS, "method direct");
+    else if (!HDI_HAS_ITERATIVE && (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
+        (void)HDI_LEFT_OUT(e, ITERATIVE, "iterations");
+    else if (!HDI_HAS_ITERATIVE && !HDI_HAS_POLE_FACTORS && poles)
+        (void)HDI_LEFT_OUT(e, POLE_FACTORS, "all that uses poles, with HEATDIFF_NO_ITERATIVE");
+}
+
+static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
+    const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
+    hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
+    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS, "heat: unknown solver", e);
+    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "heat: unknown preconditioner",
+               e);
+    hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
+               "heat: poles are uniform, kernel or diagonal; own sets go into rational", e);
+    hdi_refuse_value(o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX, "heat: the degree is not in 1..14",
+                     o->degree, e);
+    hdi_refuse_value(from_two && o->degree && o->degree < HDI_RAT_KERNEL_MIN,
+                     "heat: kernel and diagonal sets have degrees 2 to 14", o->degree, e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
+    hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
+    hdi_refuse(o->method == HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
+               "heat: the krylov method has no use for poles or a degree", e);
+    hdi_refuse((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond),
+               "heat: solver and precond belong to the iterative method", e);
+    hdi_refuse(o->rational && o->solver == HD_SOLVER_LANCZOS, "heat: Lanczos has no use for a pole set", e);
+    if (e->status >= 0) hdi_heat_built(o, e);
+    return e->status < 0 || !o->rational ? e->status : hdi_rational_check(o->rational, e);
+}
+
+/* Takes up the options, with defaults for those that are zero. */
+static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
+    hd_heat_opts *o = &heat->opts;
+    if (opts) *o = *opts;
+    if (o->rational) {
+        heat->own_set = *o->rational;
+        heat->own_set.kind = HD_POLES_OWN;
+        o->rational = &heat->own_set;
+    }
+    heat->iterations_asked = o->solver || o->precond;
+    heat->poles_asked = o->rational || o->poles || o->degree;
+    heat->exacting = o->tol > 0 && o->tol < HDI_TOL_HEAT;
+    heat->limit = o->tol > 0 ? o->tol : HDI_ROUNDING_LIMIT;
+    o->precond = o->precond ? o->precond : HD_PRECOND_MILDL;
+    o->tol = o->tol > 0 ? o->tol : HDI_TOL_HEAT;
+    o->max_iterations = o->max_iterations ? o->max_iterations : HDI_MAX_ITERATIONS;
+}
+
+/* Computes what every query needs: scale, spectrum, drift. Copies the caller's permutation. */
+static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
+    hd_context *ctx = heat->ctx;
+    heat->source = lap;
+    heat->sums = HDI_NEW(ctx, double, 2 * HDI_CAST(uint64_t, lap->n_components), e);
+    if (!heat->sums) return e->status;
+    hdi_heat_measure_pair(heat);
+    if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
+        heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n),
+                                                  sizeof *heat->perm, ctx, e));
+    heat->opts.perm = heat->perm;
+    return e->status;
 }
 
 /* ==== [27] kernel ====
@@ -27816,6 +28275,27 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     return h->e->status;
 }
 
+/* Checks that there is selected inversion, and that the direct method is allowed. */
+static hd_status hdi_diagonal_check(hdi_heat_call *h) {
+    return HDI_HAS_DIAGONAL ? hdi_direct_only(h) : HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
+}
+
+/* Has the plan a set, and have all sets its poles and time? */
+static hd_status hdi_filters_check(const hd_heat *heat, int32_t count, const hd_rational *sets, hd_error *e) {
+    const hd_rational *own = heat->opts.rational;
+    int32_t q;
+    hdi_refuse(!own || !(own->t > 0), "filters: the plan has no set of a filter", e);
+    hdi_refuse(count < 1, "filters: there is none", e);
+    for (q = 0; q < count && e->status >= 0; q++) {
+        if (hdi_rational_check(sets + q, e) >= 0)
+            hdi_refuse(sets[q].t != own->t || sets[q].lambda_max != own->lambda_max ||
+                       !hdi_set_same_poles(sets + q, own),
+                       "filters: a set has not the poles, t and lambda_max of the plan's", e);
+        if (e->status < 0) e->column = q;
+    }
+    return e->status;
+}
+
 /* ==== [28] diffusion ====
  * Owns distances: the metric of a kind and a time, one to all, pairs, farthest points; and estimates of what
  * queries take. May call [27] and
@@ -29392,6 +29872,65 @@ static hd_status hdi_sample_run(hdi_heat_call *h, hdi_samples *a) {
     one.error = *h->e;
     *h->rep = one;
     return h->e->status;
+}
+
+/* ---- queries of distances ---- */
+
+/* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
+ * and t is not read. */
+static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                    const double *t, int positive, hd_report *report, hd_error *err) {
+    if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
+    h->relative = 1;
+    if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
+    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC)
+        return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
+    if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
+    if (n_times > 1 || n_times < 0)
+        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1,
+                            n_times);
+    return hdi_direct_only(h);
+}
+
+/* Distances to all vertices from the vertices in to, or from sources where that is NULL. */
+static hd_status hdi_distance_answer(hdi_heat_call *h, hdi_distances *to, const hd_source *sources) {
+    if (!HDI_HAS_DIFFUSION || h->e->status < 0 || hdi_direct_only(h) < 0) return hdi_heat_end(h);
+    if (to->k < 0) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (to->k > 0 && ((!to->sources && !sources) || !to->D)) hdi_missing(h->e);
+    to->ld = hdi_leading(h, to->ld);
+    if (h->e->status >= 0 && sources) to->terms = hdi_terms_all(to->k, sources, h->heat->source, 1, &h->s);
+    else if (h->e->status >= 0) (void)hdi_sources_check(h, to->k, to->sources);
+    if (h->e->status >= 0 && to->k > 0) (void)hdi_distance_run(h, *to);
+    return hdi_heat_end(h);
+}
+
+/* What is asked for; sources and given vertices have to be set. */
+static hdi_samples hdi_samples_of(hd_distance_kind kind, double t, int32_t count, int32_t *vertex,
+                                  double *distance) {
+    hdi_samples a;
+    memset(&a, 0, sizeof a);
+    a.kind = kind;
+    a.t = t;
+    a.count = count;
+    a.vertex = vertex;
+    a.distance = distance;
+    return a;
+}
+
+static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_source *sources, hd_report *report,
+                                   hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
+        !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
+    if (a->count < 1 || a->n_given < 0 || a->n_given > a->count || a->count > heat->source->n_active)
+        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
+    else if (a->n_from < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "sample: a number of sources is negative");
+    else if (!a->vertex || (a->n_from > 0 && !sources)) hdi_missing(h.e);
+    if (h.e->status >= 0 && hdi_sources_check(&h, a->n_given, a->vertex) >= 0 && a->n_from > 0)
+        a->terms = hdi_terms_all(a->n_from, sources, heat->source, 1, &h.s);
+    if (h.e->status >= 0) (void)hdi_sample_run(&h, a);
+    return hdi_heat_end(&h);
 }
 
 /* ---- estimates ---- */
@@ -31622,6 +32161,106 @@ static hd_status hdi_geo_make_fans(hd_geodesic *g, const hdi_geo_input *in, cons
     return hdi_scope_end(&s);
 }
 
+/* ---- options and arguments ---- */
+
+#define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
+
+/* Checks the options, and resolves into in what they say about the faces. */
+static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_error *e) {
+    hd_laplacian_opts like;
+    memset(&like, 0, sizeof like);
+    like.intrinsic_delaunay = o->intrinsic_delaunay;
+    like.tufted = o->tufted;
+    like.mollify = o->mollify;
+    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
+    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
+                     o->t_in_h2, e);
+    hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
+               "geodesic: unknown mass", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
+    hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
+               "geodesic: unknown border", e);
+    in->flips = hdi_intrinsic_opts(&like, &in->task, e) || in->points;
+    in->lambda = o->lambda != 0 ? o->lambda : HDI_LAMBDA_GEODESIC;
+    in->neighbours = o->neighbours ? o->neighbours : HDI_NEIGHBOURS;
+    hdi_refuse(!hdi_finite(in->lambda) || !(in->lambda > 0 && in->lambda <= 1e100),
+               "geodesic: lambda is not between 0 and 1e100", e);
+    hdi_refuse(in->neighbours < 6 || in->neighbours > HDI_MOST_NEIGHBOURS,
+               "geodesic: neighbours lies in 6..128", e);
+    hdi_refuse(in->points && o->border != HD_GEODESIC_BORDER_NATURAL,
+               "geodesic: points cannot tell their border", e);
+    hdi_refuse(in->ptr && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
+               "geodesic: Voronoi areas are of triangles, not of polygons", e);
+    hdi_refuse(in->len && o->updatable, "geodesic: a plan of lengths is not updatable", e);
+    hdi_refuse(o->updatable && (in->flips || in->ptr),
+               "geodesic: only plans of triangles in space are updatable", e);
+    return e->status;
+}
+
+/* Begins a plan: checks that its input and options are there. */
+static hd_status hdi_geo_open_plan(hd_geodesic **out, const hd_geodesic_opts *opts, hd_geodesic_opts *o,
+                                   int there, hd_error *err, hdi_call *c) {
+    memset(o, 0, sizeof *o);
+    if (opts) *o = *opts;
+    if (hdi_enter_with(c, HDI_CLEARED(o), o->context, "geodesic options: not cleared before use", err) < 0)
+        return c->e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
+    return out && there ? HD_OK : hdi_missing(c->e);
+}
+
+/* The plan of an input whose arguments are there. */
+static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in, const hd_geodesic_opts *o,
+                                hdi_call *c) {
+    hd_geodesic *g;
+    hdi_refuse(n < 0 || in->m < 0, "geodesic: a size is negative", c->e);
+    if (hdi_geo_check(o, in, c->e) < 0) return c->e->status;
+    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, n, c->ctx, c->e) < 0) return c->e->status;
+    if (in->ptr && hdi_poly_check(in->xyz, n, in->ptr, in->idx, in->m, c->e) < 0) return c->e->status;
+    g = HDI_CAST(hd_geodesic *, hdi_alloc(c->ctx, 1, sizeof *g, c->e));
+    if (!g) return c->e->status;
+    memset(g, 0, sizeof *g);
+    g->ctx = hdi_enter_keep(c, &g->context);
+    hdi_hold(g->ctx);
+    g->n = n;
+    if (in->ptr && in->flips) (void)hdi_geo_make_fans(g, in, o, c->e);
+    else (void)hdi_geo_make(g, in, o, c->e);
+    if (c->e->status >= 0) *out = g;
+    else hdi_geo_free(g);
+    return c->e->status;
+}
+
+static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
+    if (rep && e->status < 0) {
+        rep->status = e->status;
+        rep->error = *e;
+    }
+    return rep ? rep->status : e->status;
+}
+
+/* Checks the arguments of a query, and fills the report with what the plan says. */
+static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d,
+                               hd_geodesic_report *rep, hd_error *err, hdi_call *c) {
+    int32_t q;
+    if (rep) {
+        memset(rep, 0, sizeof *rep);
+        hdi_error_clear(&rep->error);
+    }
+    if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
+    if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
+    if (!g->ready) return hdi_fail(c->e, HD_ERR_ARGUMENT, "geodesic: the last update failed");
+    if (rep) hdi_geo_tell_plan(g, rep);
+    for (q = 0; q < k; q++) {
+        if (sources[q] >= 0 && sources[q] < g->n) continue;
+        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q],
+                      sources[q]);
+        c->e->column = q;
+        return c->e->status;
+    }
+    if (hdi_geo_off_border(g, sources, k, c->e) < 0) return c->e->status;
+    return hdi_progress(g->ctx, "solve", 0, c->e);
+}
+
 /* ==== [30] api ====
  * Owns argument checks, defaults and lifetimes, and the bodies of the public functions. May call
  * everything. */
@@ -31650,53 +32289,6 @@ HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx) {
     hd_context own;
     memset(&own, 0, sizeof own);
     return hdi_context_width(ctx ? ctx : &own);
-}
-
-/* An error and a context for the body of a public function: the caller's, or own ones if the caller gave
- * none. */
-typedef struct hdi_call {
-    hd_error error;
-    hd_error *e;
-    hd_context context;
-    hd_context *ctx;
-} hdi_call;
-
-static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
-    memset(&c->context, 0, sizeof c->context);
-    c->e = err ? err : &c->error;
-    c->ctx = ctx ? ctx : &c->context;
-    hdi_error_clear(c->e);
-    return hdi_context_check(c->ctx, c->e);
-}
-
-#define HDI_CLEARED(opts) (!(opts)->begin_zero && !(opts)->end_zero)
-
-/* The same where options may name the context. Options that were not cleared are an error, and nothing in
- * them is used. */
-static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
-    if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
-    return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
-}
-
-/* The context of an object that outlives the call: the caller's, or own, to which the counts so far move. */
-static hd_context *hdi_enter_keep(hdi_call *c, hd_context *own) {
-    if (c->ctx != &c->context) return c->ctx;
-    *own = c->context;
-    return c->ctx = own;
-}
-
-/* Refuses the call if an argument is bad. Of several refusals the first one stays. */
-static void hdi_refuse(int bad, const char *text, hd_error *e) {
-    if (bad && e->status >= 0) (void)hdi_fail(e, HD_ERR_ARGUMENT, text);
-}
-
-static void hdi_refuse_value(int bad, const char *text, double value, hd_error *e) {
-    if (bad && e->status >= 0) (void)hdi_fail_row(e, HD_ERR_ARGUMENT, text, -1, -1, value);
-}
-
-static void hdi_refuse_ordering(hd_ordering ordering, const int32_t *perm, const char *text, hd_error *e) {
-    hdi_refuse(ordering < HD_ORDERING_AUTO || ordering > HD_ORDERING_OWN, text, e);
-    hdi_refuse(ordering == HD_ORDERING_OWN && !perm, "ordering: own, but no permutation is given", e);
 }
 
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n_triplets,
@@ -31763,13 +32355,7 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
 
 /* ---- operators ---- */
 
-/* Defaults of options, as their declarations state. */
-#define HDI_MOLLIFY_DELTA 1e-5
-#define HDI_WEIGHT_CUT 1e-8
-#define HDI_TOL_HEAT 1e-9
 #define HDI_TOL_SOLVE 1e-10
-#define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
-enum { HDI_NEIGHBOURS = 30, HDI_MAX_ITERATIONS = 20000 };
 /* a smaller b_ratio by Gershgorin's circles is worth a proof by factorisations */
 #define HDI_RATIO_POOR 0.01
 
@@ -31778,21 +32364,6 @@ typedef struct hdi_laplacian {
     hd_laplacian lap;
     hd_context context;
 } hdi_laplacian;
-
-/* Checks and marks the vertices that the options hold at zero. */
-static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_error *e) {
-    int32_t q;
-    hdi_refuse(o && (o->border < HD_BORDER_NATURAL || o->border > HD_BORDER_DIRICHLET),
-               "laplacian options: border is natural or Dirichlet", e);
-    hdi_refuse(o && (o->n_held < 0 || (o->n_held > 0 && !o->held)),
-               "laplacian options: n_held is negative, or held is missing", e);
-    if (e->status < 0 || !o || (o->border == HD_BORDER_NATURAL && o->n_held == 0)) return e->status;
-    for (q = 0; q < o->n_held; q++)
-        if (o->held[q] < 0 || o->held[q] >= lap->n)
-            return hdi_fail_row(e, HD_ERR_INDEX, "laplacian options: a vertex to hold is not in the mesh", q,
-                                -1, o->held[q]);
-    return hdi_holding_make(lap, o->border == HD_BORDER_DIRICHLET, o->held, o->n_held, e);
-}
 
 /* Points and matrices cannot tell their border. */
 static void hdi_no_border(const hd_laplacian_opts *o, hd_error *e) {
@@ -31856,19 +32427,6 @@ static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
     return kind == HD_LAPLACIAN_FEM || kind == HD_LAPLACIAN_VORONOI_COT || kind == HD_LAPLACIAN_COT;
 }
 
-/* Checks the options of intrinsic triangulations and resolves them into task. Returns whether one is asked
- * for. */
-static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
-    task->close = opts && opts->tufted;
-    task->delta = opts && opts->mollify != 0 ? opts->mollify : HDI_MOLLIFY_DELTA;
-    hdi_refuse(hdi_nan(task->delta) || task->delta > 1,
-               "laplacian options: mollify is above 1 or not a number", e);
-    if (HDI_HAS_INTRINSIC || !opts || !(opts->intrinsic_delaunay || opts->tufted))
-        return opts && (opts->intrinsic_delaunay || opts->tufted);
-    if (e->status >= 0) (void)HDI_LEFT_OUT(e, INTRINSIC, "intrinsic triangulations");
-    return 1;
-}
-
 /* Of a mesh by coordinates, or by lengths. missing: neither is there. */
 static hd_status hdi_triangles_make(hd_laplacian **out, const hdi_mesh *mesh, int missing,
                                     const hd_laplacian_opts *opts, hd_error *err) {
@@ -31909,50 +32467,6 @@ HEATDIFF_API hd_status hd_laplacian_lengths(hd_laplacian **out, const double *le
 }
 
 /* ---- views of vertex and index buffers ---- */
-
-/* Sizes. No position may lie beyond the address space. */
-static hd_status hdi_view_sizes(const hd_mesh_view *v, int faces, hd_error *e) {
-    const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
-    hdi_refuse(v->n < 0 || (faces && v->n_indices < 0), "mesh view: a count is negative", e);
-    hdi_refuse_value(stride < wide, "mesh view: the stride is shorter than a position",
-                     HDI_CAST(double, stride), e);
-    hdi_refuse_value(faces && v->n_indices % 3 != 0,
-                     "mesh view: the number of indices is not a multiple of three",
-                     HDI_CAST(double, v->n_indices), e);
-    if (e->status < 0) return e->status;
-    if (v->n > INT32_MAX || (faces && v->n_indices / 3 > INT32_MAX))
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: more than 2^31 - 1 vertices or faces");
-    if (v->n > 1 && HDI_CAST(uint64_t, v->n - 1) > (SIZE_MAX / 2 - wide) / stride)
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: positions lie beyond the address space");
-    return HD_OK;
-}
-
-static hd_status hdi_view_check(const hd_mesh_view *v, int faces, hd_error *e) {
-    const int places = (v->xyz_float != NULL) + (v->xyz_double != NULL);
-    const int indices = (v->tri_u16 != NULL) + (v->tri_u32 != NULL) + (v->tri_i16 != NULL)
-                      + (v->tri_i32 != NULL);
-    hdi_refuse(!HDI_CLEARED(v), "mesh view: not cleared before use", e);
-    hdi_refuse(places > 1 || (v->n > 0 && places < 1),
-               "mesh view: set one of xyz_float and xyz_double", e);
-    hdi_refuse(faces && (indices > 1 || (v->n_indices > 0 && indices < 1)),
-               "mesh view: set one of tri_u16, tri_u32, tri_i16 and tri_i32", e);
-    return e->status < 0 ? e->status : hdi_view_sizes(v, faces, e);
-}
-
-/* Opens a view; its scope is to be ended in any case. faces: its indices are wanted too. */
-static hd_status hdi_view_open(hdi_view *out, const hd_mesh_view *v, int faces, const hdi_call *c) {
-    memset(out, 0, sizeof *out);
-    out->s = hdi_scope_begin(c->ctx, c->e);
-    if (!v) return hdi_missing(c->e);
-    return hdi_view_check(v, faces, c->e) < 0 ? c->e->status : hdi_view_read(out, v, faces);
-}
-
-/* Opens a view of new positions for n vertices. */
-static hd_status hdi_view_positions(hdi_view *out, const hd_mesh_view *v, int32_t n, const hdi_call *c) {
-    if (hdi_view_open(out, v, 0, c) < 0 || out->n == n) return c->e->status;
-    return hdi_fail_row(c->e, HD_ERR_ARGUMENT, "mesh view: the mesh has another number of vertices", -1, -1,
-                        HDI_CAST(double, v->n));
-}
 
 HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view *view,
                                          const hd_laplacian_opts *opts, hd_error *err) {
@@ -32021,32 +32535,6 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     return hdi_lap_end(out, lap, c.e->status, c.e);
 }
 
-static void hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
-    rep->neighbours = opts && opts->neighbours ? opts->neighbours : HDI_NEIGHBOURS;
-    hdi_refuse(rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS,
-               "laplacian of points: neighbours lies in 6..128", e);
-}
-
-/* Checks the options of point sets and resolves them into lap->points. */
-static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
-    hd_point_report *rep = &lap->points;
-    rep->bandwidth = opts ? opts->bandwidth : 0;
-    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : HDI_WEIGHT_CUT;
-    hdi_refuse(lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP,
-               "laplacian of points: the kind is voronoi-exp or exp "
-               "(hd_laplacian_tufted_points has fem, voronoi-cot and cot)", e);
-    hdi_refuse(opts && opts->updatable,
-               "laplacian of points: not updatable, because new places of points make a new pattern", e);
-    hdi_refuse(opts && (opts->intrinsic_delaunay || opts->tufted),
-               "laplacian of points: exponential weights know no triangles; "
-               "hd_laplacian_tufted_points makes some", e);
-    hdi_refuse(!hdi_finite(rep->bandwidth) || rep->bandwidth < 0,
-               "laplacian of points: the bandwidth is negative or not finite", e);
-    hdi_refuse(!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1),
-               "laplacian of points: weight_cut lies in (0, 1)", e);
-    hdi_point_neighbours(rep, opts, e);
-}
-
 HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n,
                                            const hd_laplacian_opts *opts, hd_error *err) {
     hdi_call c;
@@ -32080,25 +32568,6 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
     hdi_no_border(opts, c.e);
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_end(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e), c.e);
-}
-
-/* Checks points, queries and sizes. *m becomes the number of queries. */
-static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m,
-                                      hd_error *e) {
-    if (!HDI_HAS_POINTS) return HDI_LEFT_OUT(e, POINTS, "the search of neighbours");
-    if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
-    if (!query) *m = n;
-    if (n > 0 && !xyz) return hdi_missing(e);
-    return hdi_points_check(xyz, n, query, *m, e);
-}
-
-static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t n, const hdi_call *c,
-                                     hdi_scope *s) {
-    *s = hdi_scope_begin(c->ctx, c->e);
-    hdi_hold(c->ctx);
-    if (hdi_progress(c->ctx, "neighbours", 0, c->e) < 0 || hdi_tree_make(tree, xyz, n, s) < 0)
-        return c->e->status;
-    return hdi_progress(c->ctx, "neighbours", 0.1, c->e);
 }
 
 HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m,
@@ -32248,19 +32717,6 @@ HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
 
 /* ---- shifted systems ---- */
 
-static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
-    hdi_refuse_value(!hdi_finite(t) || t < 0, "solve: t is negative or not finite", t, e);
-    hdi_refuse(!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0),
-               "solve: theta lies on (-inf, 0] or is not finite", e);
-    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES,
-               "solve: the solver is cocg, cocr or minres", e);
-    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "solve: unknown preconditioner",
-               e);
-    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "solve: tol is not in [0, 1)", e);
-    hdi_refuse(o->max_iterations < 0, "solve: max_iterations is negative", e);
-    return e->status;
-}
-
 /* ---- direct solver ---- */
 
 HEATDIFF_API void hd_ldl_free(hd_ldl *f) {
@@ -32325,27 +32781,6 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     return HD_OK;
 }
 
-/* Begins a call that factors. */
-static hd_status hdi_ldl_enter(hdi_call *c, hd_ldl *f, const void *val, hd_error *err) {
-    if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
-    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
-    return !f || (f->nnz > 0 && !val) ? hdi_missing(c->e) : HD_OK;
-}
-
-/* Begins a call that needs the real factor, or the packs. given: no array is missing. */
-static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
-    if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
-    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
-    if (packs && !HDI_HAS_POLE_FACTORS)
-        return HDI_LEFT_OUT(c->e, POLE_FACTORS, "factorisations of complex matrices");
-    if (!f || !given) return hdi_missing(c->e);
-    if (!packs && !f->real.ready)
-        return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a real one");
-    if (packs && !f->n_matrices)
-        return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a complex one");
-    return HD_OK;
-}
-
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
     hdi_call c;
     if (hdi_ldl_enter(&c, f, val, err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
@@ -32367,11 +32802,6 @@ HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 
     if (hdi_ldl_factor_complex(f, k, val, &all, c.e) < 0) return c.e->status;
     if (report) *report = all;
     return HD_OK;
-}
-
-static hd_status hdi_ldl_leading(const hd_ldl *f, size_t ldb, size_t ldx, hd_error *e) {
-    if (ldb >= HDI_CAST(size_t, f->n) && ldx >= HDI_CAST(size_t, f->n)) return HD_OK;
-    return hdi_fail(e, HD_ERR_ARGUMENT, "ldl: a leading dimension is smaller than n");
 }
 
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x, size_t ldx,
@@ -32405,11 +32835,6 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
     return HD_OK;
 }
 
-static hd_status hdi_ldl_enter_inverse(hdi_call *c, const hd_ldl *f, int packs, hd_error *err) {
-    if (hdi_ldl_enter_factored(c, f, packs, 1, err) < 0 || HDI_HAS_DIAGONAL) return c->e->status;
-    return HDI_LEFT_OUT(c->e, DIAGONAL, "selected inversion");
-}
-
 HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, hd_error *err) {
     hdi_call c;
     if (hdi_ldl_enter_inverse(&c, f, 0, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
@@ -32424,19 +32849,6 @@ HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 
         const int64_t first = HDI_CAST(int64_t, HDI_PACK_LANES) * p;
         if (hdi_ldl_invert(f, f->pack + p, hdi_ldl_lanes(f, p), values ? &values[first * f->nnz].re : NULL,
                            diag ? &diag[first * f->n].re : NULL, c.e) < 0) return c.e->status;
-    }
-    return HD_OK;
-}
-
-static hd_status hdi_ldl_entries_check(const hd_ldl *f, int64_t n, const int32_t *i, const int32_t *j,
-                                       const void *values, hd_error *e) {
-    int64_t q;
-    if (n < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ldl: the number of entries is negative");
-    if (n > 0 && (!i || !j || !values)) return hdi_missing(e);
-    for (q = 0; q < n; q++) {
-        const int32_t worst = i[q] < 0 || i[q] >= f->n ? i[q] : j[q];
-        if (worst < 0 || worst >= f->n)
-            return hdi_fail_row(e, HD_ERR_INDEX, "ldl: an entry is not in the matrix", q, -1, worst);
     }
     return HD_OK;
 }
@@ -32458,75 +32870,6 @@ HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entri
 }
 
 /* ---- heat ---- */
-
-/* Is what the options ask for in this build? */
-static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
-    const int poles = o->rational || o->poles || o->degree;
-    if (!HDI_HAS_DIRECT && (o->method == HD_METHOD_DIRECT || o->method == HD_METHOD_KRYLOV))
-        (void)HDI_LEFT_OUT(e, DIRECT, "factorisations");
-    else if (!HDI_HAS_POLE_FACTORS && o->method == HD_METHOD_DIRECT)
-        (void)HDI_LEFT_OUT(e, POLE_FACTORS, "method direct");
-    else if (!HDI_HAS_ITERATIVE && (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
-        (void)HDI_LEFT_OUT(e, ITERATIVE, "iterations");
-    else if (!HDI_HAS_ITERATIVE && !HDI_HAS_POLE_FACTORS && poles)
-        (void)HDI_LEFT_OUT(e, POLE_FACTORS, "all that uses poles, with HEATDIFF_NO_ITERATIVE");
-}
-
-static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
-    const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
-    hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
-    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS, "heat: unknown solver", e);
-    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "heat: unknown preconditioner",
-               e);
-    hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
-               "heat: poles are uniform, kernel or diagonal; own sets go into rational", e);
-    hdi_refuse_value(o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX, "heat: the degree is not in 1..14",
-                     o->degree, e);
-    hdi_refuse_value(from_two && o->degree && o->degree < HDI_RAT_KERNEL_MIN,
-                     "heat: kernel and diagonal sets have degrees 2 to 14", o->degree, e);
-    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
-    hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
-    hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
-    hdi_refuse(o->method == HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
-               "heat: the krylov method has no use for poles or a degree", e);
-    hdi_refuse((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond),
-               "heat: solver and precond belong to the iterative method", e);
-    hdi_refuse(o->rational && o->solver == HD_SOLVER_LANCZOS, "heat: Lanczos has no use for a pole set", e);
-    if (e->status >= 0) hdi_heat_built(o, e);
-    return e->status < 0 || !o->rational ? e->status : hdi_rational_check(o->rational, e);
-}
-
-/* Takes up the options, with defaults for those that are zero. */
-static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
-    hd_heat_opts *o = &heat->opts;
-    if (opts) *o = *opts;
-    if (o->rational) {
-        heat->own_set = *o->rational;
-        heat->own_set.kind = HD_POLES_OWN;
-        o->rational = &heat->own_set;
-    }
-    heat->iterations_asked = o->solver || o->precond;
-    heat->poles_asked = o->rational || o->poles || o->degree;
-    heat->exacting = o->tol > 0 && o->tol < HDI_TOL_HEAT;
-    heat->limit = o->tol > 0 ? o->tol : HDI_ROUNDING_LIMIT;
-    o->precond = o->precond ? o->precond : HD_PRECOND_MILDL;
-    o->tol = o->tol > 0 ? o->tol : HDI_TOL_HEAT;
-    o->max_iterations = o->max_iterations ? o->max_iterations : HDI_MAX_ITERATIONS;
-}
-
-/* Computes what every query needs: scale, spectrum, drift. Copies the caller's permutation. */
-static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
-    hd_context *ctx = heat->ctx;
-    heat->source = lap;
-    heat->sums = HDI_NEW(ctx, double, 2 * HDI_CAST(uint64_t, lap->n_components), e);
-    if (!heat->sums) return e->status;
-    hdi_heat_measure_pair(heat);
-    if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
-        heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n),
-                                                  sizeof *heat->perm, ctx, e));
-    heat->opts.perm = heat->perm;
-    return e->status;
-}
 
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts,
                                       hd_error *err) {
@@ -32623,40 +32966,11 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 
 /* ---- eigenpairs ---- */
 
-#define HDI_TOL_SPECTRUM 1e-10
-
 /* A spectrum with a context that lives as long. */
 typedef struct hdi_spectrum {
     hd_spectrum s;
     hd_context context;
 } hdi_spectrum;
-
-static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_opts *o, hd_error *e) {
-    hdi_refuse(o->count < 0 || (o->count == 0 && o->below == 0), "spectrum: neither a count nor a bound", e);
-    hdi_refuse_value(o->count > lap->n_active, "spectrum: more pairs than rows", o->count, e);
-    hdi_refuse_value(!hdi_finite(o->below) || o->below < 0, "spectrum: below is negative or not finite",
-                     o->below, e);
-    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "spectrum: tol is not in [0, 1)", e);
-    hdi_refuse_ordering(o->ordering, o->perm, "spectrum: unknown ordering", e);
-    return e->status;
-}
-
-static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd_error *e) {
-    hdi_spec_goal goal;
-    hdi_elim m;
-    const double scale = hdi_heat_scale(s->lap), tol = o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM;
-    goal.count = o->count > 0 ? o->count : INT32_MAX;
-    goal.below = o->below > 0 ? o->below / scale : HUGE_VAL;
-    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, s->lap->n, s->context, e) < 0)
-        return e->status;
-    memset(&m, 0, sizeof m);
-    if (hdi_elim_make(&m, s->lap, o->ordering, o->ordering == HD_ORDERING_OWN ? o->perm : NULL, scale,
-                      s->context, e) >= 0)
-        (void)hdi_spec_run(&m, &goal, tol, s, e);
-    hdi_elim_free(&m);
-    if (e->status < 0) return e->status;
-    return s->proven && s->n_poor == 0 ? HD_OK : HD_WARN_ACCURACY;
-}
 
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err) {
@@ -32734,47 +33048,6 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
     hdi_let_go(ctx);
 }
 
-/* Checks the arguments of sums over the pairs, and makes room for them. */
-static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum *s, hd_error *err) {
-    int32_t q;
-    if (hdi_enter(c, s ? s->context : NULL, err) < 0) return c->e->status;
-    if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c->e, SPECTRUM, "eigenpairs");
-    if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c->e);
-    if (!x->sum.diagonal && x->k > 0 && !x->sources && !x->from) return hdi_missing(c->e);
-    hdi_refuse(x->n_times < 1, "spectrum: there is no time", c->e);
-    hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c->e);
-    hdi_refuse(x->ld != 0 && x->ld < HDI_CAST(size_t, s->n), "spectrum: columns would overlap", c->e);
-    for (q = 0; q < x->n_times; q++)
-        hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
-                         x->t[q], c->e);
-    if (c->e->status < 0) return c->e->status;
-    if (x->sources && hdi_vertices_check(s->lap, x->k, x->sources, &c->e->column, c->e) < 0)
-        return c->e->status;
-    x->of = s;
-    x->ld = x->ld ? x->ld : HDI_CAST(size_t, s->n);
-    x->scope = hdi_scope_begin(c->ctx, c->e);
-    x->work = HDI_TAKE(&x->scope, double, 2 * HDI_CAST(uint64_t, s->count) + 1);
-    if (x->from && x->work) x->terms = hdi_terms_all(x->k, x->from, s->lap, x->sum.distance, &x->scope);
-    return c->e->status < 0 ? hdi_scope_end(&x->scope) : HD_OK;
-}
-
-static hd_status hdi_sum_end(hdi_call *c, hdi_spec_sums *x) {
-    if (HDI_HAS_SPECTRUM && c->e->status >= 0) hdi_spec_sums_run(x, c->ctx);
-    return hdi_scope_end(&x->scope);
-}
-
-static void hdi_sum_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_error *e) {
-    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel", e);
-    x->sum.mass = kernel == HD_KERNEL_OPERATOR;
-}
-
-static hd_status hdi_sum_columns(hdi_spec_sums *x, const hd_spectrum *s, hd_kernel kernel, hd_error *err) {
-    hdi_call c;
-    if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
-    hdi_sum_kernel(x, kernel, c.e);
-    return hdi_sum_end(&c, x);
-}
-
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, int32_t k, const int32_t *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
@@ -32802,25 +33075,6 @@ HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kern
     return hdi_sum_columns(&x, s, kernel, err);
 }
 
-static hd_status hdi_sum_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_distance_kind kind,
-                                  hd_error *err) {
-    const int power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
-    const double zero = 0;
-    hdi_call c;
-    x->power = power;
-    x->sum.distance = 1;
-    if (power && x->n_times <= 1) {              /* no time */
-        x->n_times = 1;
-        x->t = &zero;
-    }
-    if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
-    hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
-               c.e);
-    hdi_refuse(power && x->n_times > 1, "spectrum: this distance has no time", c.e);
-    x->sum.mass = kind == HD_DISTANCE_WEIGHTED;
-    return hdi_sum_end(&c, x);
-}
-
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, int32_t k, const int32_t *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
@@ -32838,52 +33092,6 @@ HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distan
     x.k = k;
     x.from = sources;
     return hdi_sum_distance(&x, s, kind, err);
-}
-
-/* Moves fields that lie ldf apart to where their answers will be, ldu apart in the same array. */
-static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
-    int32_t q;
-    for (q = 1; q < ask->k && ask->ldu != ask->ldf; q++) {
-        const size_t at = HDI_CAST(size_t, ask->ldu > ask->ldf ? ask->k - q : q);
-        memmove(U + at * ask->ldu, U + at * ask->ldf, n * sizeof *U);
-    }
-    ask->ldf = ask->ldu;
-}
-
-static hdi_request hdi_ask_fields(int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
-                                  double *U, size_t ldu) {
-    hdi_request ask;
-    memset(&ask, 0, sizeof ask);
-    ask.n_times = n_times;
-    ask.t = t;
-    ask.k = k;
-    ask.F = F;
-    ask.ldf = ldf;
-    ask.U = U;
-    ask.ldu = ldu;
-    return ask;
-}
-
-/* Checks a request of fields, and runs it. derivative: in time. */
-static hd_status hdi_fields_run(hd_heat *heat, hdi_query query, const hdi_request *ask, int derivative,
-                                hd_report *report, hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_heat_begin(&h, heat, query, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, ask->n_times, ask->t, 0) < 0) return hdi_heat_end(&h);
-    if (ask->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (ask->k > 0 && (!ask->F || !ask->U)) hdi_missing(h.e);
-    else if (derivative && heat->opts.rational)
-        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a pole set of your own has no derivative here");
-    h.ask.k = ask->k;
-    h.ask.F = ask->F;
-    h.ask.U = ask->U;
-    h.ask.ldf = hdi_leading(&h, ask->ldf);
-    h.ask.ldu = hdi_leading(&h, ask->ldu);
-    if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
-    if (ask->U == ask->F && ask->n_times > 1)
-        hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
-    else if (ask->U == ask->F) hdi_fields_spread(&h.ask, HDI_CAST(size_t, heat->source->n), ask->U);
-    return derivative ? hdi_rate_run(&h) : hdi_heat_run(&h);
 }
 
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
@@ -32905,18 +33113,6 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
                                        hd_report *report, hd_error *err) {
     const hdi_request ask = hdi_ask_fields(n_times, t, k, G, ldg, U, ldu);
     return hdi_fields_run(heat, HDI_QUERY_ADJOINT, &ask, 0, report, err);
-}
-
-/* What queries of columns ask for, but for the sources. given: they are not NULL. */
-static hd_status hdi_columns_ask(hdi_heat_call *h, int32_t n_times, const double *t, int32_t k, int given,
-                                 double *U, size_t ldu) {
-    if (hdi_times_check(h, n_times, t, 0) < 0) return h->e->status;
-    if (k < 0) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (k > 0 && (!given || !U)) hdi_missing(h->e);
-    h->ask.k = k;
-    h->ask.U = U;
-    h->ask.ldu = hdi_leading(h, ldu);
-    return h->e->status;
 }
 
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
@@ -32945,15 +33141,6 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
     return hd_heat_columns(heat, kernel, 1, &t, 1, &source, u, 0, report, err);
 }
 
-/* Checks pairs of vertices. */
-static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_t *i, const int32_t *j) {
-    const hd_laplacian *lap = h->heat->source;
-    if (n_pairs < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
-    if (n_pairs > 0 && (!i || !j)) return hdi_missing(h->e);
-    if (hdi_vertices_check(lap, n_pairs, i, &h->e->row, h->e) < 0) return h->e->status;
-    return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
-}
-
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
                                        int64_t n_pairs, const int32_t *i, const int32_t *j, double *values,
                                        hd_report *report, hd_error *err) {
@@ -32966,11 +33153,6 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
     list.values = values;
     if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
     return hdi_heat_run(&h);
-}
-
-/* Checks that there is selected inversion, and that the direct method is allowed. */
-static hd_status hdi_diagonal_check(hdi_heat_call *h) {
-    return HDI_HAS_DIAGONAL ? hdi_direct_only(h) : HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
 }
 
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
@@ -32994,22 +33176,6 @@ HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const doubl
     if (!Z) hdi_missing(h.e);
     if (h.e->status >= 0) (void)hdi_trace_run(&h, Z, bound);
     return hdi_heat_end(&h);
-}
-
-/* Has the plan a set, and have all sets its poles and time? */
-static hd_status hdi_filters_check(const hd_heat *heat, int32_t count, const hd_rational *sets, hd_error *e) {
-    const hd_rational *own = heat->opts.rational;
-    int32_t q;
-    hdi_refuse(!own || !(own->t > 0), "filters: the plan has no set of a filter", e);
-    hdi_refuse(count < 1, "filters: there is none", e);
-    for (q = 0; q < count && e->status >= 0; q++) {
-        if (hdi_rational_check(sets + q, e) >= 0)
-            hdi_refuse(sets[q].t != own->t || sets[q].lambda_max != own->lambda_max ||
-                       !hdi_set_same_poles(sets + q, own),
-                       "filters: a set has not the poles, t and lambda_max of the plan's", e);
-        if (e->status < 0) e->column = q;
-    }
-    return e->status;
 }
 
 HEATDIFF_API hd_status hd_heat_filter_diagonals(hd_heat *heat, int32_t count, const hd_rational *sets,
@@ -33080,34 +33246,6 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
     return hdi_heat_end(&h);
 }
 
-/* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
- * and t is not read. */
-static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                    const double *t, int positive, hd_report *report, hd_error *err) {
-    if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
-    h->relative = 1;
-    if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
-    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC)
-        return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
-    if (n_times > 1 || n_times < 0)
-        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1,
-                            n_times);
-    return hdi_direct_only(h);
-}
-
-/* Distances to all vertices from the vertices in to, or from sources where that is NULL. */
-static hd_status hdi_distance_answer(hdi_heat_call *h, hdi_distances *to, const hd_source *sources) {
-    if (!HDI_HAS_DIFFUSION || h->e->status < 0 || hdi_direct_only(h) < 0) return hdi_heat_end(h);
-    if (to->k < 0) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (to->k > 0 && ((!to->sources && !sources) || !to->D)) hdi_missing(h->e);
-    to->ld = hdi_leading(h, to->ld);
-    if (h->e->status >= 0 && sources) to->terms = hdi_terms_all(to->k, sources, h->heat->source, 1, &h->s);
-    else if (h->e->status >= 0) (void)hdi_sources_check(h, to->k, to->sources);
-    if (h->e->status >= 0 && to->k > 0) (void)hdi_distance_run(h, *to);
-    return hdi_heat_end(h);
-}
-
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                         const double *t, int32_t k, const int32_t *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err) {
@@ -33137,35 +33275,6 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
     if (d && hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
     if (h.e->status >= 0 && hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
         (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
-    return hdi_heat_end(&h);
-}
-
-/* What is asked for; sources and given vertices have to be set. */
-static hdi_samples hdi_samples_of(hd_distance_kind kind, double t, int32_t count, int32_t *vertex,
-                                  double *distance) {
-    hdi_samples a;
-    memset(&a, 0, sizeof a);
-    a.kind = kind;
-    a.t = t;
-    a.count = count;
-    a.vertex = vertex;
-    a.distance = distance;
-    return a;
-}
-
-static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_source *sources, hd_report *report,
-                                   hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION)
-        return hdi_heat_end(&h);
-    if (a->count < 1 || a->n_given < 0 || a->n_given > a->count || a->count > heat->source->n_active)
-        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
-    else if (a->n_from < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "sample: a number of sources is negative");
-    else if (!a->vertex || (a->n_from > 0 && !sources)) hdi_missing(h.e);
-    if (h.e->status >= 0 && hdi_sources_check(&h, a->n_given, a->vertex) >= 0 && a->n_from > 0)
-        a->terms = hdi_terms_all(a->n_from, sources, heat->source, 1, &h.s);
-    if (h.e->status >= 0) (void)hdi_sample_run(&h, a);
     return hdi_heat_end(&h);
 }
 
@@ -33216,70 +33325,6 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 }
 
 /* ---- geodesic distance ---- */
-
-/* Checks the options, and resolves into in what they say about the faces. */
-static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_error *e) {
-    hd_laplacian_opts like;
-    memset(&like, 0, sizeof like);
-    like.intrinsic_delaunay = o->intrinsic_delaunay;
-    like.tufted = o->tufted;
-    like.mollify = o->mollify;
-    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
-    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
-                     o->t_in_h2, e);
-    hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
-               "geodesic: unknown mass", e);
-    hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
-    hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
-               "geodesic: unknown border", e);
-    in->flips = hdi_intrinsic_opts(&like, &in->task, e) || in->points;
-    in->lambda = o->lambda != 0 ? o->lambda : HDI_LAMBDA_GEODESIC;
-    in->neighbours = o->neighbours ? o->neighbours : HDI_NEIGHBOURS;
-    hdi_refuse(!hdi_finite(in->lambda) || !(in->lambda > 0 && in->lambda <= 1e100),
-               "geodesic: lambda is not between 0 and 1e100", e);
-    hdi_refuse(in->neighbours < 6 || in->neighbours > HDI_MOST_NEIGHBOURS,
-               "geodesic: neighbours lies in 6..128", e);
-    hdi_refuse(in->points && o->border != HD_GEODESIC_BORDER_NATURAL,
-               "geodesic: points cannot tell their border", e);
-    hdi_refuse(in->ptr && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
-               "geodesic: Voronoi areas are of triangles, not of polygons", e);
-    hdi_refuse(in->len && o->updatable, "geodesic: a plan of lengths is not updatable", e);
-    hdi_refuse(o->updatable && (in->flips || in->ptr),
-               "geodesic: only plans of triangles in space are updatable", e);
-    return e->status;
-}
-
-/* Begins a plan: checks that its input and options are there. */
-static hd_status hdi_geo_open_plan(hd_geodesic **out, const hd_geodesic_opts *opts, hd_geodesic_opts *o,
-                                   int there, hd_error *err, hdi_call *c) {
-    memset(o, 0, sizeof *o);
-    if (opts) *o = *opts;
-    if (hdi_enter_with(c, HDI_CLEARED(o), o->context, "geodesic options: not cleared before use", err) < 0)
-        return c->e->status;
-    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
-    return out && there ? HD_OK : hdi_missing(c->e);
-}
-
-/* The plan of an input whose arguments are there. */
-static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in, const hd_geodesic_opts *o,
-                                hdi_call *c) {
-    hd_geodesic *g;
-    hdi_refuse(n < 0 || in->m < 0, "geodesic: a size is negative", c->e);
-    if (hdi_geo_check(o, in, c->e) < 0) return c->e->status;
-    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, n, c->ctx, c->e) < 0) return c->e->status;
-    if (in->ptr && hdi_poly_check(in->xyz, n, in->ptr, in->idx, in->m, c->e) < 0) return c->e->status;
-    g = HDI_CAST(hd_geodesic *, hdi_alloc(c->ctx, 1, sizeof *g, c->e));
-    if (!g) return c->e->status;
-    memset(g, 0, sizeof *g);
-    g->ctx = hdi_enter_keep(c, &g->context);
-    hdi_hold(g->ctx);
-    g->n = n;
-    if (in->ptr && in->flips) (void)hdi_geo_make_fans(g, in, o, c->e);
-    else (void)hdi_geo_make(g, in, o, c->e);
-    if (c->e->status >= 0) *out = g;
-    else hdi_geo_free(g);
-    return c->e->status;
-}
 
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri,
                                           int32_t n_tri, const hd_geodesic_opts *opts, hd_error *err) {
@@ -33378,38 +33423,6 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_
 
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) {
     if (HDI_HAS_GEODESIC) hdi_geo_free(g);
-}
-
-static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
-    if (rep && e->status < 0) {
-        rep->status = e->status;
-        rep->error = *e;
-    }
-    return rep ? rep->status : e->status;
-}
-
-/* Checks the arguments of a query, and fills the report with what the plan says. */
-static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d,
-                               hd_geodesic_report *rep, hd_error *err, hdi_call *c) {
-    int32_t q;
-    if (rep) {
-        memset(rep, 0, sizeof *rep);
-        hdi_error_clear(&rep->error);
-    }
-    if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
-    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
-    if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
-    if (!g->ready) return hdi_fail(c->e, HD_ERR_ARGUMENT, "geodesic: the last update failed");
-    if (rep) hdi_geo_tell_plan(g, rep);
-    for (q = 0; q < k; q++) {
-        if (sources[q] >= 0 && sources[q] < g->n) continue;
-        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q],
-                      sources[q]);
-        c->e->column = q;
-        return c->e->status;
-    }
-    if (hdi_geo_off_border(g, sources, k, c->e) < 0) return c->e->status;
-    return hdi_progress(g->ctx, "solve", 0, c->e);
 }
 
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources,
