@@ -2332,6 +2332,12 @@ static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e
     return raw + offset;
 }
 
+static void *hdi_alloc_zero(hd_context *ctx, uint64_t count, size_t size, hd_error *e) {
+    void *p = hdi_alloc(ctx, count, size, e);
+    if (p) memset(p, 0, HDI_CAST(size_t, count) * size);
+    return p;
+}
+
 static void hdi_free(hd_context *ctx, void *block) {
     uint64_t head[2];
     char *raw;
@@ -2926,6 +2932,13 @@ static hd_context *hdi_enter_keep(hdi_call *c, hd_context *own) {
     if (c->ctx != &c->context) return c->ctx;
     *own = c->context;
     return c->ctx = own;
+}
+
+/* The context to free an object with: where it is the object's own, a copy that outlives it. */
+static hd_context *hdi_outlive(hd_context *ctx, const hd_context *own, hd_context *copy) {
+    if (ctx != own) return ctx;
+    *copy = *own;
+    return copy;
 }
 
 /* ==== [05] arrays ====
@@ -8100,14 +8113,12 @@ static void hdi_holding_free(hdi_holding *x, hd_context *ctx) {
 /* Marks the vertices that are to be held; border: those at the border too, once it is known. */
 static hd_status hdi_holding_make(hd_laplacian *lap, int border, const int32_t *held, int32_t n_held,
                                   hd_error *e) {
-    hdi_holding *x = HDI_NEW(lap->context, hdi_holding, 1, e);
+    hdi_holding *x = HDI_CAST(hdi_holding *, hdi_alloc_zero(lap->context, 1, sizeof *x, e));
     int32_t q;
     lap->holding = x;
     if (!x) return e->status;
-    memset(x, 0, sizeof *x);
     x->border = border;
-    x->mark = HDI_NEW(lap->context, char, lap->n, e);
-    if (x->mark) memset(x->mark, 0, HDI_CAST(size_t, lap->n));
+    x->mark = HDI_CAST(char *, hdi_alloc_zero(lap->context, HDI_CAST(uint64_t, lap->n), 1, e));
     for (q = 0; q < n_held && x->mark; q++) x->mark[held[q]] = 1;
     return e->status;
 }
@@ -8132,6 +8143,19 @@ static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     hdi_holding_free(lap->holding, ctx);
     hdi_lap_clear(lap, ctx);
     hdi_free(ctx, lap);
+}
+
+/* A Laplacian with a context that lives as long. */
+typedef struct hdi_laplacian {
+    hd_laplacian lap;
+    hd_context context;
+} hdi_laplacian;
+
+static void hdi_lap_drop(hd_laplacian *lap) {
+    hd_context own, *own_in = &HDI_CAST(hdi_laplacian *, HDI_CAST(void *, lap))->context;
+    hd_context *ctx = hdi_outlive(lap->context, own_in, &own);
+    hdi_laplacian_free(lap, ctx);
+    hdi_let_go(ctx);
 }
 
 static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
@@ -8364,8 +8388,7 @@ static int64_t hdi_lap_entry(const hd_laplacian *lap, int32_t i, int32_t j) {
 
 /* Freed with the Laplacian, whatever comes. */
 static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
-    hdi_moving *x = HDI_NEW(lap->context, hdi_moving, 1, e);
-    if (x) memset(x, 0, sizeof *x);
+    hdi_moving *x = HDI_CAST(hdi_moving *, hdi_alloc_zero(lap->context, 1, sizeof *x, e));
     return lap->moving = x;
 }
 
@@ -10182,10 +10205,9 @@ static hd_status hdi_lap_unfold_points(hd_laplacian *lap, hdi_flat *flat, const 
     if (hdi_star_soup(&flat->soup, &job, lap, xyz, nbr_ptr, nbr, delta, s) < 0) return e->status;
     if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
     if (e->status >= 0 && hdi_soup_delaunay(&flat->mesh, &flat->soup, 0, &lap->mesh, s) >= 0)
-        inner = HDI_CAST(hd_laplacian *, hdi_alloc(lap->context, 1, sizeof *inner, e));
+        inner = HDI_CAST(hd_laplacian *, hdi_alloc_zero(lap->context, 1, sizeof *inner, e));
     if (!inner) return e->status;
     flat->name = job.name;
-    memset(inner, 0, sizeof *inner);
     inner->n = job.n;
     inner->kind = lap->kind;
     inner->context = lap->context;
@@ -14694,6 +14716,30 @@ static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb
         for (q = 0; q < lanes; q++)
             x[HDI_CAST(size_t, q) * ldx + HDI_CAST(size_t, f->sym.perm[i])] = hdi_c(at[q],
                     at[q + HDI_PACK_LANES]);
+}
+
+static void hdi_ldl_free(hd_ldl *f) {
+    hd_context own, *ctx;
+    int32_t i;
+    if (!f) return;
+    ctx = hdi_outlive(f->ctx, &f->context, &own);
+    f->real.ctx = f->real.ctx ? ctx : NULL;
+    hdi_factor_free(&f->real);
+    for (i = 0; i < f->n_packs; i++) {
+        f->pack[i].ctx = f->pack[i].ctx ? ctx : NULL;
+        hdi_factor_free(f->pack + i);
+    }
+    hdi_free(ctx, f->pack);
+    for (i = 0; i < 2; i++) {
+        hdi_free(ctx, f->x[i]);
+        hdi_free(ctx, f->work[i]);
+    }
+    hdi_free(ctx, f->row_ptr);
+    hdi_free(ctx, f->col);
+    hdi_free(ctx, f->inv);
+    hdi_symbolic_free(ctx, &f->sym);
+    hdi_free(ctx, f);
+    hdi_let_go(ctx);
 }
 
 /* Begins a call that factors. */
@@ -20128,6 +20174,19 @@ static void hdi_gather(const hd_laplacian *lap, const double *on_vertices, doubl
     for (i = 0; i < lap->n_active; i++) on_rows[i] = on_vertices[lap->vertex[i]];
 }
 
+/* y = (alpha L + beta B) x on vertices. */
+static hd_status hdi_lap_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y,
+                               hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *in = HDI_TAKE(&s, double, lap->n_active), *out = HDI_TAKE(&s, double, lap->n_active);
+    int32_t v;
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_gather(lap, x, in);
+    hdi_pair_apply(lap, alpha, beta, in, out);
+    for (v = 0; v < lap->n; v++) y[v] = lap->row[v] >= 0 ? out[lap->row[v]] : 0;
+    return hdi_scope_end(&s);
+}
+
 /* B without the zeros that the common pattern has. */
 static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
     int64_t nnz = 0, p;
@@ -20200,6 +20259,27 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     hdi_factor_free(&f);
     hdi_symbolic_free(lap->context, &sym);
     return hdi_scope_end(&s);
+}
+
+/* A smaller b_ratio by Gershgorin's circles is worth a proof by factorisations. */
+#define HDI_RATIO_POOR 0.01
+
+static hd_status hdi_lap_ratio_known(hd_laplacian *lap, hd_error *e) {
+    if (HDI_HAS_DIRECT && e->status >= 0 && lap->b_ratio < HDI_RATIO_POOR) (void)hdi_lap_ratio(lap, e);
+    return e->status;
+}
+
+/* Takes the values of new matrices, or leaves all as it was. */
+static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double h,
+                                  hd_error *e) {
+    if (hdi_pair_update(lap, L, B, e) < 0) return e->status;
+    if (hdi_lap_ratio_known(lap, e) < 0) {
+        hdi_moving_pair_restore(lap);
+        return e->status;
+    }
+    lap->h = h;
+    lap->version++;
+    return HD_OK;
 }
 
 /* The means of the right-hand side, where constants are conserved, into lane->sums; else zeros. */
@@ -23140,6 +23220,23 @@ static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd
     return s->proven && s->n_poor == 0 ? HD_OK : HD_WARN_ACCURACY;
 }
 
+/* A spectrum with a context that lives as long. */
+typedef struct hdi_spectrum {
+    hd_spectrum s;
+    hd_context context;
+} hdi_spectrum;
+
+static void hdi_spectrum_free(hd_spectrum *s) {
+    hd_context own, *ctx;
+    if (!s) return;
+    ctx = hdi_outlive(s->context, &HDI_CAST(hdi_spectrum *, HDI_CAST(void *, s))->context, &own);
+    hdi_free(ctx, s->value);
+    hdi_free(ctx, s->vector);
+    hdi_free(ctx, s->left);
+    hdi_free(ctx, s);
+    hdi_let_go(ctx);
+}
+
 /* ---- kernels from eigenpairs ---- */
 
 /* A function of the eigenvalues at one time: exp(-t lambda), 1/lambda or 1/lambda^2, the last two for values
@@ -23351,10 +23448,11 @@ typedef struct hdi_spec_sums {
     size_t ld;
 } hdi_spec_sums;
 
-static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, double *out, double *bound,
+static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, int32_t k, double *out, double *bound,
                                       size_t ld) {
     hdi_spec_sums x;
     memset(&x, 0, sizeof x);
+    x.k = k;
     x.n_times = n_times;
     x.t = t;
     x.out = out;
@@ -23429,15 +23527,12 @@ static hd_status hdi_sum_end(hdi_call *c, hdi_spec_sums *x) {
     return hdi_scope_end(&x->scope);
 }
 
-static void hdi_sum_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_error *e) {
-    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel", e);
-    x->sum.mass = kernel == HD_KERNEL_OPERATOR;
-}
-
 static hd_status hdi_sum_columns(hdi_spec_sums *x, const hd_spectrum *s, hd_kernel kernel, hd_error *err) {
     hdi_call c;
     if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
-    hdi_sum_kernel(x, kernel, c.e);
+    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
+               c.e);
+    x->sum.mass = kernel == HD_KERNEL_OPERATOR;
     return hdi_sum_end(&c, x);
 }
 
@@ -23719,9 +23814,8 @@ static hd_status hdi_heat_turn(hd_heat *heat, int light, hd_error *e) {
     hdi_heat_order now;
     if (heat->light == light) return HD_OK;
     if (!heat->other) {
-        heat->other = HDI_NEW(heat->ctx, hdi_heat_order, 1, e);
+        heat->other = HDI_CAST(hdi_heat_order *, hdi_alloc_zero(heat->ctx, 1, sizeof *heat->other, e));
         if (!heat->other) return e->status;
-        memset(heat->other, 0, sizeof *heat->other);
     }
     now.elim = heat->elim;
     now.ground = heat->ground;
@@ -25448,9 +25542,8 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     int32_t n;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
-        heat->silan = HDI_NEW(heat->ctx, hdi_silan, 1, h->e);
+        heat->silan = HDI_CAST(hdi_silan *, hdi_alloc_zero(heat->ctx, 1, sizeof *heat->silan, h->e));
         if (!heat->silan) return h->e->status;
-        memset(heat->silan, 0, sizeof *heat->silan);
     }
     heat->silan->wide = wide;
     heat->silan->m = &heat->elim;
@@ -26694,6 +26787,41 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
                                                   sizeof *heat->perm, ctx, e));
     heat->opts.perm = heat->perm;
     return e->status;
+}
+
+static void hdi_heat_free(hd_heat *heat) {
+    hd_context *ctx;
+    if (!heat) return;
+    ctx = heat->ctx;
+    hdi_heat_free_lanes(heat);
+    hdi_family_free(&heat->fam);
+    hdi_upper_free(ctx, &heat->up);
+    hdi_free(ctx, heat->weight);
+    hdi_laplacian_free(heat->lap, ctx);
+    if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, ctx);
+    hdi_heat_free_factors(heat);
+    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, ctx);
+    hdi_free(ctx, heat->silan);
+    hdi_free(ctx, heat->batch_room);
+    hdi_free(ctx, heat->perm);
+    hdi_free(ctx, heat->fill);
+    hdi_free(ctx, heat->sums);
+    hdi_free(ctx, heat);
+    hdi_let_go(ctx);
+}
+
+/* Takes up a checked pole set in place of the plan's own choice, or with NULL that choice. */
+static void hdi_heat_take_set(hd_heat *heat, const hd_rational *set) {
+    hd_heat_opts *o = &heat->opts;
+    if (set) {
+        heat->own_set = *set;
+        heat->own_set.kind = HD_POLES_OWN;
+    }
+    o->rational = set ? &heat->own_set : NULL;
+    o->poles = HD_POLES_DEFAULT;
+    o->degree = 0;
+    heat->poles_asked = set != NULL;
+    heat->habit_spent = 0;
 }
 
 /* ==== [27] kernel ====
@@ -28278,6 +28406,16 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
 /* Checks that there is selected inversion, and that the direct method is allowed. */
 static hd_status hdi_diagonal_check(hdi_heat_call *h) {
     return HDI_HAS_DIAGONAL ? hdi_direct_only(h) : HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
+}
+
+/* The start of a query that only selected inversion answers, at positive times. given: the array for its
+ * answers is there. */
+static hd_status hdi_diagonal_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                    const double *t, int given, hd_report *report, hd_error *err) {
+    if (hdi_kernel_begin(h, heat, kernel, report, err) < 0 || hdi_times_check(h, n_times, t, 1) < 0 ||
+        hdi_diagonal_check(h) < 0)
+        return h->e->status;
+    return given ? HD_OK : hdi_missing(h->e);
 }
 
 /* Has the plan a set, and have all sets its poles and time? */
@@ -29893,15 +30031,19 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
 }
 
 /* Distances to all vertices from the vertices in to, or from sources where that is NULL. */
-static hd_status hdi_distance_answer(hdi_heat_call *h, hdi_distances *to, const hd_source *sources) {
-    if (!HDI_HAS_DIFFUSION || h->e->status < 0 || hdi_direct_only(h) < 0) return hdi_heat_end(h);
-    if (to->k < 0) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (to->k > 0 && ((!to->sources && !sources) || !to->D)) hdi_missing(h->e);
-    to->ld = hdi_leading(h, to->ld);
-    if (h->e->status >= 0 && sources) to->terms = hdi_terms_all(to->k, sources, h->heat->source, 1, &h->s);
-    else if (h->e->status >= 0) (void)hdi_sources_check(h, to->k, to->sources);
-    if (h->e->status >= 0 && to->k > 0) (void)hdi_distance_run(h, *to);
-    return hdi_heat_end(h);
+static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_source *sources,
+                                     int32_t n_times, const double *t, hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
+        !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
+    if (to->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
+    else if (to->k > 0 && ((!to->sources && !sources) || !to->D)) hdi_missing(h.e);
+    to->ld = hdi_leading(&h, to->ld);
+    if (h.e->status >= 0 && sources) to->terms = hdi_terms_all(to->k, sources, heat->source, 1, &h.s);
+    else if (h.e->status >= 0) (void)hdi_sources_check(&h, to->k, to->sources);
+    if (h.e->status >= 0 && to->k > 0) (void)hdi_distance_run(&h, *to);
+    return hdi_heat_end(&h);
 }
 
 /* What is asked for; sources and given vertices have to be set. */
@@ -30466,6 +30608,15 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
         to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
 }
 
+static hd_status hdi_estimate_check(hdi_heat_call *h, hd_query query, int32_t k) {
+    if (query < HD_QUERY_FIELDS || query > HD_QUERY_SPECTRUM)
+        return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
+    if (k < 0)
+        return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
+    if (query == HD_QUERY_SPECTRUM && !HDI_HAS_DIRECT) return HDI_LEFT_OUT(h->e, DIRECT, "factorisations");
+    return query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM ? hdi_direct_only(h) : HD_OK;
+}
+
 /* ==== [29] geodesic ====
  * Owns geodesic distances on meshes and points by the heat method: two real factors, and everything a query
  * does with them. May call [18].
@@ -30527,6 +30678,15 @@ typedef struct hdi_geo_input {
     int32_t neighbours;
 } hdi_geo_input;
 
+static hdi_geo_input hdi_geo_input_of(const double *xyz, const int32_t *tri, int32_t m) {
+    hdi_geo_input in;
+    memset(&in, 0, sizeof in);
+    in.xyz = xyz;
+    in.tri = tri;
+    in.m = m;
+    return in;
+}
+
 /* What is known of its faces while the plan is made. */
 typedef struct hdi_geo_surface {
     hdi_mesh mesh;
@@ -30582,8 +30742,7 @@ struct hd_geodesic {
 static void hdi_geo_free(hd_geodesic *g) {
     hd_context own, *ctx;
     if (!g) return;
-    own = g->context;
-    ctx = g->ctx == &g->context ? &own : g->ctx;
+    ctx = hdi_outlive(g->ctx, &g->context, &own);
     g->heat.ctx = g->heat.ctx ? ctx : NULL;
     g->poisson.ctx = g->poisson.ctx ? ctx : NULL;
     g->cold.ctx = g->cold.ctx ? ctx : NULL;
@@ -30978,10 +31137,9 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    hd_laplacian *lap = HDI_CAST(hd_laplacian *, hdi_alloc(g->ctx, 1, sizeof *lap, e));
+    hd_laplacian *lap = HDI_CAST(hd_laplacian *, hdi_alloc_zero(g->ctx, 1, sizeof *lap, e));
     hdi_geo_surface z;
     if (!lap) return hdi_scope_end(&s);
-    memset(lap, 0, sizeof *lap);
     lap->n = g->n;
     lap->context = g->ctx;                       /* the row sums of fem are the lumped mass */
     lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
@@ -32197,17 +32355,6 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_
     return e->status;
 }
 
-/* Begins a plan: checks that its input and options are there. */
-static hd_status hdi_geo_open_plan(hd_geodesic **out, const hd_geodesic_opts *opts, hd_geodesic_opts *o,
-                                   int there, hd_error *err, hdi_call *c) {
-    memset(o, 0, sizeof *o);
-    if (opts) *o = *opts;
-    if (hdi_enter_with(c, HDI_CLEARED(o), o->context, "geodesic options: not cleared before use", err) < 0)
-        return c->e->status;
-    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
-    return out && there ? HD_OK : hdi_missing(c->e);
-}
-
 /* The plan of an input whose arguments are there. */
 static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in, const hd_geodesic_opts *o,
                                 hdi_call *c) {
@@ -32216,9 +32363,8 @@ static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in,
     if (hdi_geo_check(o, in, c->e) < 0) return c->e->status;
     if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, n, c->ctx, c->e) < 0) return c->e->status;
     if (in->ptr && hdi_poly_check(in->xyz, n, in->ptr, in->idx, in->m, c->e) < 0) return c->e->status;
-    g = HDI_CAST(hd_geodesic *, hdi_alloc(c->ctx, 1, sizeof *g, c->e));
+    g = HDI_CAST(hd_geodesic *, hdi_alloc_zero(c->ctx, 1, sizeof *g, c->e));
     if (!g) return c->e->status;
-    memset(g, 0, sizeof *g);
     g->ctx = hdi_enter_keep(c, &g->context);
     hdi_hold(g->ctx);
     g->n = n;
@@ -32227,6 +32373,23 @@ static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in,
     if (c->e->status >= 0) *out = g;
     else hdi_geo_free(g);
     return c->e->status;
+}
+
+/* The plan of an input. there: no array is missing. */
+static hd_status hdi_geo_plan(hd_geodesic **out, int32_t n, hdi_geo_input *in, int there,
+                              const hd_geodesic_opts *opts, hd_error *err) {
+    hd_geodesic_opts o;
+    hdi_call c;
+    memset(&o, 0, sizeof o);
+    if (opts) o = *opts;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0)
+        return c.e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
+    if (!out || !there) return hdi_missing(c.e);
+    if (!HDI_HAS_POLYGONS && in->ptr) return HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
+    if (!HDI_HAS_POINTS && in->points) return HDI_LEFT_OUT(c.e, POINTS, "points");
+    if (!HDI_HAS_INTRINSIC && in->points) return HDI_LEFT_OUT(c.e, INTRINSIC, "intrinsic triangulations");
+    return hdi_geo_create(out, n, in, &o, &c);
 }
 
 static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
@@ -32356,14 +32519,6 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
 /* ---- operators ---- */
 
 #define HDI_TOL_SOLVE 1e-10
-/* a smaller b_ratio by Gershgorin's circles is worth a proof by factorisations */
-#define HDI_RATIO_POOR 0.01
-
-/* A Laplacian with a context that lives as long. */
-typedef struct hdi_laplacian {
-    hd_laplacian lap;
-    hd_context context;
-} hdi_laplacian;
 
 /* Points and matrices cannot tell their border. */
 static void hdi_no_border(const hd_laplacian_opts *o, hd_error *e) {
@@ -32379,26 +32534,14 @@ static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_la
                        "laplacian options: not cleared before use", err) < 0) return NULL;
     hdi_refuse(n < 0, "laplacian: a size is negative", c->e);
     if (c->e->status < 0) return NULL;
-    shell = HDI_CAST(hdi_laplacian *, hdi_alloc(c->ctx, 1, sizeof *shell, c->e));
+    shell = HDI_CAST(hdi_laplacian *, hdi_alloc_zero(c->ctx, 1, sizeof *shell, c->e));
     if (!shell) return NULL;
-    memset(shell, 0, sizeof *shell);
     shell->lap.n = n;
     shell->lap.kind = kind;
     shell->lap.context = hdi_enter_keep(c, &shell->context);
     hdi_hold(c->ctx);
     (void)hdi_lap_held(&shell->lap, opts, c->e);
     return &shell->lap;
-}
-
-static void hdi_lap_drop(hd_laplacian *lap) {
-    hd_context ctx;
-    hd_context *use = lap->context;
-    if (use == &HDI_CAST(hdi_laplacian *, HDI_CAST(void *, lap))->context) {   /* about to be freed itself */
-        ctx = *use;
-        use = &ctx;
-    }
-    hdi_laplacian_free(lap, use);
-    hdi_let_go(use);
 }
 
 static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status status) {
@@ -32444,9 +32587,8 @@ static hd_status hdi_triangles_make(hd_laplacian **out, const hdi_mesh *mesh, in
     hdi_refuse(intrinsic && opts->updatable,
                "laplacian of triangles: an intrinsic triangulation is not updatable", c.e);
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
-    if (HDI_HAS_INTRINSIC && intrinsic)
-        return hdi_lap_end(out, lap, hdi_lap_intrinsic(lap, mesh, &task, c.e), c.e);
-    return hdi_lap_end(out, lap, hdi_lap_triangles(lap, mesh, opts && opts->updatable, c.e), c.e);
+    return hdi_lap_end(out, lap, hdi_lap_faces(lap, mesh, intrinsic ? &task : NULL, opts && opts->updatable,
+                                               c.e), c.e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
@@ -32529,9 +32671,8 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
                                          "laplacian of matrices: L and B differ in size",
                                                    L->n_rows, B->n_rows, 0));
     lap->h = h;
-    if (hdi_lap_matrices(lap, L, B, c.e) >= 0 && lap->b_ratio < HDI_RATIO_POOR && HDI_HAS_DIRECT)
-        (void)hdi_lap_ratio(lap, c.e);
-    if (c.e->status >= 0 && opts && opts->updatable) (void)hdi_moving_pair_make(lap, c.e);
+    (void)hdi_lap_matrices(lap, L, B, c.e);
+    if (hdi_lap_ratio_known(lap, c.e) >= 0 && opts && opts->updatable) (void)hdi_moving_pair_make(lap, c.e);
     return hdi_lap_end(out, lap, c.e->status, c.e);
 }
 
@@ -32591,15 +32732,14 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
     hdi_call c;
     hdi_scope s;
     hdi_tree tree;
-    double r;
     if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0 || !HDI_HAS_POINTS)
         return c.e->status;
     if (!out) return hdi_missing(c.e);
     if (hdi_nan(radius) || radius < 0)
         return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
-    r = hdi_min(radius, 1e152);                  /* its square does not overflow */
+    radius = hdi_min(radius, 1e152);             /* its square does not overflow */
     if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
-        (void)hdi_within(out, &tree, query, m, r * r, c.ctx, c.e);
+        (void)hdi_within(out, &tree, query, m, radius * radius, c.ctx, c.e);
     hdi_let_go(c.ctx);
     return hdi_scope_end(&s);
 }
@@ -32607,19 +32747,8 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x,
                                           double *y, hd_error *err) {
     hdi_call c;
-    hdi_scope s;
-    double *in, *out;
-    int32_t v;
     if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
-    if (!lap || !x || !y) return hdi_missing(c.e);
-    s = hdi_scope_begin(c.ctx, c.e);
-    in = HDI_TAKE(&s, double, lap->n_active);
-    out = HDI_TAKE(&s, double, lap->n_active);
-    if (c.e->status < 0) return hdi_scope_end(&s);
-    hdi_gather(lap, x, in);
-    hdi_pair_apply(lap, alpha, beta, in, out);
-    for (v = 0; v < lap->n; v++) y[v] = lap->row[v] >= 0 ? out[lap->row[v]] : 0;
-    return hdi_scope_end(&s);
+    return lap && x && y ? hdi_lap_apply(lap, alpha, beta, x, y, c.e) : hdi_missing(c.e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err) {
@@ -32649,17 +32778,10 @@ HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_
     hdi_refuse(!hdi_finite(h) || h < 0, "update of matrices: h is negative or not finite", c.e);
     hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
                "update of matrices: a matrix has another size", c.e);
-    if (c.e->status < 0 || hdi_csr_check(L, 0, c.ctx, c.e) < 0 || hdi_csr_check(B, 0, c.ctx, c.e) < 0 ||
-        hdi_pair_update(all, L, B, c.e) < 0)
-        return c.e->status;
-    if (HDI_HAS_DIRECT && all->b_ratio < HDI_RATIO_POOR && hdi_lap_ratio(all, c.e) < 0) {
-        hdi_moving_pair_restore(all);
-        return c.e->status;
-    }
-    all->h = h;
-    all->version++;
-    hdi_held_update(lap);
-    return HD_OK;
+    if (c.e->status >= 0 && hdi_csr_check(L, 0, c.ctx, c.e) >= 0 && hdi_csr_check(B, 0, c.ctx, c.e) >= 0 &&
+        hdi_pair_replace(all, L, B, h, c.e) >= 0)
+        hdi_held_update(lap);
+    return c.e->status;
 }
 
 HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh_view *view, hd_error *err) {
@@ -32719,30 +32841,7 @@ HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
 
 /* ---- direct solver ---- */
 
-HEATDIFF_API void hd_ldl_free(hd_ldl *f) {
-    hd_context own, *ctx;
-    int32_t i;
-    if (!f) return;
-    own = f->context;
-    ctx = f->ctx == &f->context ? &own : f->ctx;
-    f->real.ctx = f->real.ctx ? ctx : NULL;
-    hdi_factor_free(&f->real);
-    for (i = 0; i < f->n_packs; i++) {
-        f->pack[i].ctx = f->pack[i].ctx ? ctx : NULL;
-        hdi_factor_free(f->pack + i);
-    }
-    hdi_free(ctx, f->pack);
-    for (i = 0; i < 2; i++) {
-        hdi_free(ctx, f->x[i]);
-        hdi_free(ctx, f->work[i]);
-    }
-    hdi_free(ctx, f->row_ptr);
-    hdi_free(ctx, f->col);
-    hdi_free(ctx, f->inv);
-    hdi_symbolic_free(ctx, &f->sym);
-    hdi_free(ctx, f);
-    hdi_let_go(ctx);
-}
+HEATDIFF_API void hd_ldl_free(hd_ldl *f) { hdi_ldl_free(f); }
 
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
                                       hd_ldl_report *report, hd_error *err) {
@@ -32760,25 +32859,20 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     shape = *a;
     shape.val = NULL;
     if (hdi_csr_check(&shape, 1, c.ctx, c.e) < 0) return c.e->status;
-    f = HDI_CAST(hd_ldl *, hdi_alloc(c.ctx, 1, sizeof *f, c.e));
+    f = HDI_CAST(hd_ldl *, hdi_alloc_zero(c.ctx, 1, sizeof *f, c.e));
     if (!f) return c.e->status;
-    memset(f, 0, sizeof *f);
-    if (c.ctx == &c.context) {
-        f->context = c.context;
-        c.ctx = &f->context;
-    }
-    f->ctx = c.ctx;
+    f->ctx = hdi_enter_keep(&c, &f->context);
     hdi_hold(f->ctx);
     f->n = a->n_rows;
     f->nnz = a->nnz;
     order = hdi_order_of(o.ordering, o.xyz, o.perm);
-    if (hdi_ldl_analyse(f, &shape, &order, c.e) < 0) {
-        hd_ldl_free(f);
-        return c.e->status;
+    if (hdi_ldl_analyse(f, &shape, &order, c.e) >= 0) {
+        hdi_ldl_tell(f, NULL, report);
+        *out = f;
+    } else {
+        hdi_ldl_free(f);
     }
-    hdi_ldl_tell(f, NULL, report);
-    *out = f;
-    return HD_OK;
+    return c.e->status;
 }
 
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
@@ -32880,9 +32974,8 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
                        "heat options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !lap) return hdi_missing(c.e);
     if (opts && hdi_heat_check(opts, c.e) < 0) return c.e->status;
-    heat = HDI_CAST(hd_heat *, hdi_alloc(c.ctx, 1, sizeof *heat, c.e));
+    heat = HDI_CAST(hd_heat *, hdi_alloc_zero(c.ctx, 1, sizeof *heat, c.e));
     if (!heat) return c.e->status;
-    memset(heat, 0, sizeof *heat);
     heat->ctx = c.ctx;
     hdi_hold(heat->ctx);
     hdi_heat_defaults(heat, opts);
@@ -32905,39 +32998,11 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
         hdi_heat_built(&asked, c.e);
     }
     if (c.e->status >= 0 && set) (void)hdi_rational_check(set, c.e);
-    if (c.e->status < 0) return c.e->status;
-    if (set) {
-        heat->own_set = *set;
-        heat->own_set.kind = HD_POLES_OWN;
-    }
-    o->rational = set ? &heat->own_set : NULL;
-    o->poles = HD_POLES_DEFAULT;
-    o->degree = 0;
-    heat->poles_asked = set != NULL;
-    heat->habit_spent = 0;
-    return HD_OK;
+    if (c.e->status >= 0) hdi_heat_take_set(heat, set);
+    return c.e->status;
 }
 
-HEATDIFF_API void hd_heat_free(hd_heat *heat) {
-    hd_context *ctx;
-    if (!heat) return;
-    ctx = heat->ctx;
-    hdi_heat_free_lanes(heat);
-    hdi_family_free(&heat->fam);
-    hdi_upper_free(ctx, &heat->up);
-    hdi_free(ctx, heat->weight);
-    hdi_laplacian_free(heat->lap, ctx);
-    if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, ctx);
-    hdi_heat_free_factors(heat);
-    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, ctx);
-    hdi_free(ctx, heat->silan);
-    hdi_free(ctx, heat->batch_room);
-    hdi_free(ctx, heat->perm);
-    hdi_free(ctx, heat->fill);
-    hdi_free(ctx, heat->sums);
-    hdi_free(ctx, heat);
-    hdi_let_go(ctx);
-}
+HEATDIFF_API void hd_heat_free(hd_heat *heat) { hdi_heat_free(heat); }
 
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs,
                                         hd_c64 *x, const hd_solve_opts *opts, hd_solve_report *report,
@@ -32966,12 +33031,6 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 
 /* ---- eigenpairs ---- */
 
-/* A spectrum with a context that lives as long. */
-typedef struct hdi_spectrum {
-    hd_spectrum s;
-    hd_context context;
-} hdi_spectrum;
-
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err) {
     hdi_call c;
@@ -32983,9 +33042,8 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     if (!out || !lap || !opts) return hdi_missing(c.e);
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
     if (hdi_spectrum_check(lap, opts, c.e) < 0) return c.e->status;
-    shell = HDI_CAST(hdi_spectrum *, hdi_alloc(c.ctx, 1, sizeof *shell, c.e));
+    shell = HDI_CAST(hdi_spectrum *, hdi_alloc_zero(c.ctx, 1, sizeof *shell, c.e));
     if (!shell) return c.e->status;
-    memset(shell, 0, sizeof *shell);
     shell->s.lap = lap;
     shell->s.context = hdi_enter_keep(&c, &shell->context);
     hdi_hold(shell->s.context);
@@ -33033,26 +33091,12 @@ HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_time
     return status;
 }
 
-HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
-    hd_context own, *ctx;
-    if (!s) return;
-    ctx = s->context;
-    if (ctx == &HDI_CAST(hdi_spectrum *, HDI_CAST(void *, s))->context) {   /* about to be freed itself */
-        own = *ctx;
-        ctx = &own;
-    }
-    hdi_free(ctx, s->value);
-    hdi_free(ctx, s->vector);
-    hdi_free(ctx, s->left);
-    hdi_free(ctx, s);
-    hdi_let_go(ctx);
-}
+HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) { hdi_spectrum_free(s); }
 
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, int32_t k, const int32_t *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, U, bound, ldu);
-    x.k = k;
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, k, U, bound, ldu);
     x.sources = sources;
     return hdi_sum_columns(&x, s, kernel, err);
 }
@@ -33060,8 +33104,7 @@ HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kerne
 HEATDIFF_API hd_status hd_spectrum_columns_from(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                                 const double *t, int32_t k, const hd_source *sources,
                                                 double *U, double *bound, size_t ldu, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, U, bound, ldu);
-    x.k = k;
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, k, U, bound, ldu);
     x.from = sources;
     return hdi_sum_columns(&x, s, kernel, err);
 }
@@ -33069,8 +33112,7 @@ HEATDIFF_API hd_status hd_spectrum_columns_from(const hd_spectrum *s, hd_kernel 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
-    x.k = 1;
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, 1, D, bound, ldd);
     x.sum.diagonal = 1;
     return hdi_sum_columns(&x, s, kernel, err);
 }
@@ -33078,8 +33120,7 @@ HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kern
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, int32_t k, const int32_t *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
-    x.k = k;
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, k, D, bound, ldd);
     x.sources = sources;
     return hdi_sum_distance(&x, s, kind, err);
 }
@@ -33088,8 +33129,7 @@ HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distan
                                                  int32_t n_times, const double *t, int32_t k,
                                                  const hd_source *sources, double *D, double *bound,
                                                  size_t ldd, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
-    x.k = k;
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, k, D, bound, ldd);
     x.from = sources;
     return hdi_sum_distance(&x, s, kind, err);
 }
@@ -33146,9 +33186,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
                                        hd_report *report, hd_error *err) {
     hdi_heat_call h;
     hdi_entry_list list;
-    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 0) < 0 || hdi_pairs_check(&h, n_pairs, i, j) < 0)
-        return hdi_heat_end(&h);
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 0) < 0 ||
+        hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
     if (n_pairs > 0 && !values) hdi_missing(h.e);
     list.values = values;
     if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
@@ -33158,10 +33197,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
                                         double *D, size_t ldd, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
-        return hdi_heat_end(&h);
-    if (!D) hdi_missing(h.e);
+    if (hdi_diagonal_begin(&h, heat, kernel, n_times, t, D != NULL, report, err) < 0 ||
+        !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
     if (h.e->status >= 0) (void)hdi_diagonal_run(&h, kernel, D, ldd);
     return hdi_heat_end(&h);
@@ -33170,10 +33207,8 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
 HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const double *t, double *Z,
                                      double *bound, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_kernel_begin(&h, heat, HD_KERNEL_OPERATOR, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
-        return hdi_heat_end(&h);
-    if (!Z) hdi_missing(h.e);
+    if (hdi_diagonal_begin(&h, heat, HD_KERNEL_OPERATOR, n_times, t, Z != NULL, report, err) < 0 ||
+        !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     if (h.e->status >= 0) (void)hdi_trace_run(&h, Z, bound);
     return hdi_heat_end(&h);
 }
@@ -33197,10 +33232,8 @@ HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const 
     hdi_heat_call h;
     hd_report trace;
     double *Z;
-    if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
-        return hdi_heat_end(&h);
-    if (!D) hdi_missing(h.e);
+    if (hdi_diagonal_begin(&h, heat, HD_KERNEL_SYMMETRIC, n_times, t, D != NULL, report, err) < 0 ||
+        !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
     Z = HDI_TAKE(&h.s, double, n_times);
     if (h.e->status >= 0 && hdi_diagonal_run(&h, HD_KERNEL_SYMMETRIC, D, ldd) >= 0) {
@@ -33235,11 +33268,9 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
                                      double *values, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
-        return hdi_heat_end(&h);
-    if (!values) hdi_missing(h.e);
-    else if (kernel != HD_KERNEL_SYMMETRIC)
+    if (hdi_diagonal_begin(&h, heat, kernel, n_times, t, values != NULL, report, err) < 0 ||
+        !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
+    if (kernel != HD_KERNEL_SYMMETRIC)
         hdi_fail(h.e, HD_ERR_ARGUMENT,
                  "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
     if (h.e->status >= 0) (void)hdi_edges_run(&h, values);
@@ -33250,19 +33281,15 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         const double *t, int32_t k, const int32_t *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err) {
     hdi_distances to = hdi_distances_to(kind, k, D, ldd);
-    hdi_heat_call h;
     to.sources = sources;
-    (void)hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err);
-    return hdi_distance_answer(&h, &to, NULL);
+    return hdi_distance_answer(heat, &to, NULL, n_times, t, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                              const double *t, int32_t k, const hd_source *sources, double *D,
                                              size_t ldd, hd_report *report, hd_error *err) {
     hdi_distances to = hdi_distances_to(kind, k, D, ldd);
-    hdi_heat_call h;
-    (void)hdi_distance_begin(&h, heat, kind, n_times, t, 1, report, err);
-    return hdi_distance_answer(&h, &to, sources);
+    return hdi_distance_answer(heat, &to, sources, n_times, t, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
@@ -33296,7 +33323,6 @@ HEATDIFF_API hd_status hd_heat_sample_from(hd_heat *heat, hd_distance_kind kind,
 
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
-    const int timeless = query >= HD_QUERY_DISTANCE_COMMUTE;
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
     hdi_heat_call h;
     hd_estimate found;
@@ -33309,13 +33335,9 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
     x.k = query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? hdi_high32(k, 1) : 0;
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (query < HD_QUERY_FIELDS || query > HD_QUERY_SPECTRUM)
-        hdi_fail(h.e, HD_ERR_ARGUMENT, "estimate: unknown query");
-    else if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
-    else if (query == HD_QUERY_SPECTRUM && !HDI_HAS_DIRECT) (void)HDI_LEFT_OUT(h.e, DIRECT, "factorisations");
-    else if (query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM) (void)hdi_direct_only(&h);
+    else if (hdi_estimate_check(&h, query, k) >= 0 && query < HD_QUERY_DISTANCE_COMMUTE)
+        (void)hdi_times_check(&h, n_times, t, query > HD_QUERY_PAIRS);
     h.ask.k = x.k;
-    if (h.e->status >= 0 && !timeless) (void)hdi_times_check(&h, n_times, t, query > HD_QUERY_PAIRS);
     if (h.e->status >= 0) (void)hdi_estimate_run(&x);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
@@ -33328,67 +33350,37 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri,
                                           int32_t n_tri, const hd_geodesic_opts *opts, hd_error *err) {
-    hd_geodesic_opts o;
-    hdi_geo_input in;
-    hdi_call c;
-    memset(&in, 0, sizeof in);
-    in.xyz = xyz;
-    in.tri = tri;
-    in.m = n_tri;
-    if (hdi_geo_open_plan(out, opts, &o, !(n > 0 && !xyz) && !(n_tri > 0 && !tri), err, &c) < 0 ||
-        !HDI_HAS_GEODESIC) return c.e->status;
-    return hdi_geo_create(out, n, &in, &o, &c);
+    hdi_geo_input in = hdi_geo_input_of(xyz, tri, n_tri);
+    return hdi_geo_plan(out, n, &in, !(n > 0 && !xyz) && !(n_tri > 0 && !tri), opts, err);
 }
 
 HEATDIFF_API hd_status hd_geodesic_create_polygons(hd_geodesic **out, const double *xyz, int32_t n,
                                                    const int64_t *face_ptr, const int32_t *face_idx,
                                                    int32_t n_faces, const hd_geodesic_opts *opts,
                                                    hd_error *err) {
-    hd_geodesic_opts o;
-    hdi_geo_input in;
-    hdi_call c;
-    memset(&in, 0, sizeof in);
-    in.xyz = xyz;
+    hdi_geo_input in = hdi_geo_input_of(xyz, NULL, n_faces);
     in.ptr = face_ptr;
     in.idx = face_idx;
-    in.m = n_faces;
-    if (hdi_geo_open_plan(out, opts, &o, !(n > 0 && !xyz) && face_ptr, err, &c) < 0 || !HDI_HAS_GEODESIC)
-        return c.e->status;
-    if (!HDI_HAS_POLYGONS) return HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
-    return hdi_geo_create(out, n, &in, &o, &c);
+    return hdi_geo_plan(out, n, &in, !(n > 0 && !xyz) && face_ptr, opts, err);
 }
 
 HEATDIFF_API hd_status hd_geodesic_create_points(hd_geodesic **out, const double *xyz, int32_t n,
                                                  const int64_t *nbr_ptr, const int32_t *nbr,
                                                  const hd_geodesic_opts *opts, hd_error *err) {
     const int lists = nbr_ptr ? n < 0 || nbr_ptr[n] == 0 || nbr : !nbr, there = (n <= 0 || xyz) && lists;
-    hd_geodesic_opts o;
-    hdi_geo_input in;
-    hdi_call c;
-    memset(&in, 0, sizeof in);
-    in.xyz = xyz;
+    hdi_geo_input in = hdi_geo_input_of(xyz, NULL, 0);
     in.points = 1;
     in.nbr_ptr = nbr_ptr;
     in.nbr = nbr;
-    if (hdi_geo_open_plan(out, opts, &o, there, err, &c) < 0 || !HDI_HAS_GEODESIC) return c.e->status;
-    if (!HDI_HAS_POINTS) return HDI_LEFT_OUT(c.e, POINTS, "points");
-    if (!HDI_HAS_INTRINSIC) return HDI_LEFT_OUT(c.e, INTRINSIC, "intrinsic triangulations");
-    return hdi_geo_create(out, n, &in, &o, &c);
+    return hdi_geo_plan(out, n, &in, there, opts, err);
 }
 
 HEATDIFF_API hd_status hd_geodesic_create_lengths(hd_geodesic **out, const double *lengths, int32_t n,
                                                   const int32_t *tri, int32_t n_tri,
                                                   const hd_geodesic_opts *opts, hd_error *err) {
-    hd_geodesic_opts o;
-    hdi_geo_input in;
-    hdi_call c;
-    memset(&in, 0, sizeof in);
+    hdi_geo_input in = hdi_geo_input_of(NULL, tri, n_tri);
     in.len = lengths;
-    in.tri = tri;
-    in.m = n_tri;
-    if (hdi_geo_open_plan(out, opts, &o, lengths && !(n_tri > 0 && !tri), err, &c) < 0 || !HDI_HAS_GEODESIC)
-        return c.e->status;
-    return hdi_geo_create(out, n, &in, &o, &c);
+    return hdi_geo_plan(out, n, &in, lengths && !(n_tri > 0 && !tri), opts, err);
 }
 
 HEATDIFF_API hd_status hd_geodesic_create_view(hd_geodesic **out, const hd_mesh_view *view,
