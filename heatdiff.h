@@ -84,7 +84,7 @@
      [27] kernel     diagonals and edges, by selected inversion
      [28] diffusion  diffusion distances, pairs, sampling; what a query would take
      [29] geodesic   the heat method
-     [30] api        argument checks, defaults, lifetimes, bodies of the public functions
+     [30] api        arguments, lifetimes and bodies of the public functions
      [31] closing    end of the implementation, licence
 
    Options (macros)
@@ -2430,7 +2430,7 @@ static hd_status hdi_scope_end(hdi_scope *s) {
     HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
 
 /* ==== [04] context ====
- * Progress, cancelling, threads and parallel loops. May call [03]. */
+ * Progress, cancelling, threads, parallel loops, and how public functions are entered. May call [03]. */
 
 static hd_status hdi_context_check(const hd_context *ctx, hd_error *e) {
     if (!ctx->allocator.alloc != !ctx->allocator.free)
@@ -8883,7 +8883,7 @@ static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *mesh, const hd
     return hdi_lap_triangles(lap, mesh, updatable, e);
 }
 
-/* Defaults of options, as their declarations state. */
+/* The default of the option, as its declaration states. */
 #define HDI_MOLLIFY_DELTA 1e-5
 
 /* Checks the options of intrinsic triangulations and resolves them into task. Returns whether one is asked
@@ -23914,6 +23914,8 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     return hdi_family_fill(fam, heat->lane->b, e);
 }
 
+#define HDI_TOL_SOLVE 1e-10
+
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
     hdi_refuse_value(!hdi_finite(t) || t < 0, "solve: t is negative or not finite", t, e);
     hdi_refuse(!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0),
@@ -32425,8 +32427,8 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
 }
 
 /* ==== [30] api ====
- * Owns argument checks, defaults and lifetimes, and the bodies of the public functions. May call
- * everything. */
+ * Owns the bodies of the public functions, with checks of arguments and lifetimes. What concerns one room
+ * only stands there. May call everything. */
 
 HEATDIFF_API const char *hd_status_name(hd_status status) {
     switch (status) {
@@ -32517,8 +32519,6 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
 }
 
 /* ---- operators ---- */
-
-#define HDI_TOL_SOLVE 1e-10
 
 /* Points and matrices cannot tell their border. */
 static void hdi_no_border(const hd_laplacian_opts *o, hd_error *e) {
@@ -32668,8 +32668,8 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (L->n_rows != B->n_rows)
         return hdi_lap_done(out, lap,
                             hdi_fail_row(c.e, HD_ERR_ARGUMENT,
-                                         "laplacian of matrices: L and B differ in size",
-                                                   L->n_rows, B->n_rows, 0));
+                                         "laplacian of matrices: L and B differ in size", L->n_rows,
+                                         B->n_rows, 0));
     lap->h = h;
     (void)hdi_lap_matrices(lap, L, B, c.e);
     if (hdi_lap_ratio_known(lap, c.e) >= 0 && opts && opts->updatable) (void)hdi_moving_pair_make(lap, c.e);
@@ -32700,8 +32700,7 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
         return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, INTRINSIC, "intrinsic triangulations"));
     if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) hdi_missing(c.e);
     hdi_refuse(!hdi_kind_of_triangles(lap->kind),
-               "tufted laplacian of points: the kind is fem, voronoi-cot or cot",
-               c.e);
+               "tufted laplacian of points: the kind is fem, voronoi-cot or cot", c.e);
     (void)hdi_intrinsic_opts(opts, &task, c.e);
     hdi_refuse(opts && opts->updatable,
                "tufted laplacian of points: not updatable, because new places make new triangles", c.e);
@@ -32795,9 +32794,7 @@ HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh
 
 HEATDIFF_API double hd_laplacian_lambda_max(const hd_laplacian *lap) { return hdi_lambda_known(lap); }
 
-HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) {
-    if (lap) hdi_lap_drop(lap);
-}
+HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) { if (lap) hdi_lap_drop(lap); }
 
 /* ---- rational approximations ---- */
 
@@ -32836,8 +32833,6 @@ HEATDIFF_API hd_status hd_rational_fit_shared(hd_rational *out, int32_t count, c
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
     return hdi_filter_value(filter, lambda);
 }
-
-/* ---- shifted systems ---- */
 
 /* ---- direct solver ---- */
 
@@ -33413,9 +33408,7 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_
     return hdi_geo_update(g, xyz, c.e);
 }
 
-HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) {
-    if (HDI_HAS_GEODESIC) hdi_geo_free(g);
-}
+HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { if (HDI_HAS_GEODESIC) hdi_geo_free(g); }
 
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources,
                                             double *d, hd_geodesic_report *report, hd_error *err) {
