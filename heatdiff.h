@@ -23276,7 +23276,9 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         hdi_parts off =
             lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL)
                        : by_value ? lane->off_value : hdi_lane_bound(lap, lane, reach);
-        if (total > 0) off.rounding += DBL_EPSILON * largest;    /* of the value itself */
+        /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
+        if (lane->dual) off.rounding += 2 * DBL_EPSILON * largest;
+        else if (total > 0) off.rounding += DBL_EPSILON * largest;
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
@@ -26013,11 +26015,25 @@ typedef struct hdi_halves {
     double s, *later;            /* [n_times] t - s */
     double *W;                   /* [n k] fields on vertices */
     double *x, *work, *noise;    /* [n_active], [4 n_active], [2 n_active] */
+    double noise_unit;           /* what products with A are off by, in terms of noise */
     double *sums;                /* [n_components] */
     double *size, *slip;         /* [k] |W|_B of the first answers; bounds of what A W is off by */
     int32_t *exponent;           /* [k] fields are the caller's times 2^-exponent */
     hd_report first, second;
 } hdi_halves;
+
+/* Weights of rounding of products with A, in a unit that keeps them within the range of doubles. */
+static void hdi_halves_weigh(hdi_halves *z) {
+    const hd_laplacian *lap = z->h->heat->source;
+    const double scale = z->h->heat->scale;
+    double most = 0, t;
+    int64_t p;
+    for (p = 0; p < lap->L.nnz; p++) most = hdi_max(most, fabs(lap->L.val[p]));
+    if (!(most > 0)) most = 1;
+    t = hdi_max(1e-130, hdi_min(sqrt(most) / sqrt(scale), 1e130)) / most;
+    z->noise_unit = 1 / scale / t;
+    hdi_noise_weights(lap, t, 0, z->noise, z->noise + lap->n_active);
+}
 
 static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
     const hd_laplacian *lap = h->heat->source;
@@ -26040,7 +26056,7 @@ static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
     z->s /= 2;
     if (hdi_heat_scaled(h->heat, z->s) * h->heat->lambda_max < HDI_STILL) z->s = 0;
     for (q = 0; q < h->ask.n_times; q++) z->later[q] = h->ask.t[q] - z->s;
-    hdi_noise_weights(lap, 1 / h->heat->scale, 0, z->noise, z->noise + n);
+    hdi_halves_weigh(z);
     return HD_OK;
 }
 
@@ -26101,7 +26117,8 @@ static hd_status hdi_halves_product(hdi_halves *z, int32_t q) {
     hdi_pair_apply(lap, -1 / z->h->heat->scale, 0, z->x, z->work);
     if (hdi_mass_solve(lap, z->work, z->x, z->work + n, z->h->e) < 0) return z->h->e->status;
     size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
-    z->slip[q] = hdi_ratio_root(lap) * (sqrt(sum) + (lap->B ? HDI_MASS_TOL : DBL_EPSILON) * size);
+    z->slip[q] = hdi_ratio_root(lap) *
+                 (z->noise_unit * sqrt(sum) + (lap->B ? HDI_MASS_TOL : DBL_EPSILON) * size);
     hdi_halves_put(z, q);
     return HD_OK;
 }
@@ -26113,13 +26130,13 @@ static hdi_parts hdi_halves_parts(const hd_report *rep, double size) {
     hdi_parts part;
     memset(&part, 0, sizeof part);
     if (!(sum > 0) || !hdi_finite(sum)) {
-        part.rounding = size > 0 ? all : 0;
+        part.rounding = b > 0 ? all : 0;
         return part;
     }
     part.rational = rep->error_rational / sum;
     part.solver = rep->error_solver / sum;
     part.rounding = rep->error_rounding / sum;
-    return hdi_parts_scale(size > 0 ? all : 0, part);
+    return hdi_parts_scale(all, part);
 }
 
 /* Brings an answer into the caller's units, and notes it with the bound of its error. rep: both runs'. */

@@ -2511,6 +2511,7 @@ static void check_comparison(void) {
     free(rows_of_table[0].ratio_b);
     memset(rows_of_table, 0, sizeof *rows_of_table);
     n_rows_of_table = 0;
+    n_records = 0;
     subject_free(&s);
 }
 
