@@ -24405,7 +24405,7 @@ static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c,
     if (!plain && hdi_lane_bounded(h)) {
         memset(lane->f, 0, HDI_CAST(size_t, lap->n_active) * sizeof *lane->f);   /* a0 = 0 times it is 0 */
         hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-        lane->f_norm = norm / hdi_ratio_root(lap);
+        lane->f_norm = norm * hdi_ratio_root(lap);
         lane->rhs_off = sums * lane->f_norm;
         return HD_OK;
     }
