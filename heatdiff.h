@@ -17829,6 +17829,11 @@ enum {
  * that measure the error begin at the second one times that. */
 #define HDI_FIT_FLOOR 1e-12
 #define HDI_FIT_BELOW 1e-3
+/* They begin lower where the filter still differs from its value at 0 by this part of its largest value,
+ * which is looked for down to so many times lambda_max. A sliver can raise lambda_max as far above the
+ * eigenvalues that count. */
+#define HDI_FIT_SETTLED 1e-3
+#define HDI_FIT_LOWEST 1e-40
 /* A complex pole is dropped where its distance from the spectrum is below this part of its modulus, and any
  * pole below the second number times lambda_max. The matrices of such poles have lost most digits. */
 #define HDI_FIT_NEAR 1e-5
@@ -18393,21 +18398,31 @@ static void hdi_fit_room(hdi_fit *k, int32_t count, hdi_scope *s) {
     k->fz = HDI_TAKE(s, double, sets * cols);
 }
 
+/* Where the points of a filter begin, relative to lambda_max. */
+static double hdi_fit_floor(const hd_filter *filter, double lambda_max) {
+    double x, most = 0, floor = HDI_FIT_FLOOR;
+    const double zero = hdi_filter_value(filter, 0);
+    if (filter->lambda_min > 0) return filter->lambda_min / lambda_max;
+    for (x = 1; x > HDI_FIT_LOWEST; x /= 2) most = hdi_max(most, fabs(hdi_filter_value(filter, x * lambda_max)));
+    for (x = HDI_FIT_FLOOR; x > HDI_FIT_LOWEST; x /= 2)
+        if (fabs(hdi_filter_value(filter, x * lambda_max) - zero) > HDI_FIT_SETTLED * most) floor = x;
+    return floor;
+}
+
 /* A fit of poles for the first so many filters, whose arrays and points are still to come. */
 static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filter, double lambda_max) {
-    double low = filter[0]->lambda_min;
     int32_t q;
     memset(k, 0, sizeof *k);
     k->count = count;
     k->top = lambda_max;
+    k->floor = 1;
     k->tol = hdi_fit_tol(filter[0]);
     k->most = filter[0]->max_degree ? filter[0]->max_degree : HDI_FIT_DEGREE;
     for (q = 0; q < count; q++) {
         k->filter[q] = filter[q];
         k->constant |= filter[q]->constant != 0;
-        low = hdi_min(low, filter[q]->lambda_min);
+        k->floor = hdi_min(k->floor, hdi_fit_floor(filter[q], lambda_max));
     }
-    k->floor = low > 0 ? low / lambda_max : HDI_FIT_FLOOR;
 }
 
 static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
@@ -18478,8 +18493,7 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
     for (q = 0; q < count; q++) {
         k.constant |= filters[q].constant != 0;
         k.tol = hdi_min(k.tol, hdi_fit_tol(filters + q));
-        if (filters[q].lambda_min < k.floor * lambda_max)
-            k.floor = filters[q].lambda_min > 0 ? filters[q].lambda_min / lambda_max : HDI_FIT_FLOOR;
+        k.floor = hdi_min(k.floor, hdi_fit_floor(filters + q, lambda_max));
     }
     k.most = 2 * HD_MAX_POLES - 2;
     hdi_fit_room(&k, HDI_FIT_MOST, &scope);
