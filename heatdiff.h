@@ -18105,6 +18105,11 @@ enum {
  * that measure the error begin at the second one times that. */
 #define HDI_FIT_FLOOR 1e-12
 #define HDI_FIT_BELOW 1e-3
+/* They begin lower where the filter still differs from its value at 0 by this part of its largest value,
+ * which is looked for down to so many times lambda_max. A sliver can raise lambda_max as far above the
+ * eigenvalues that count. */
+#define HDI_FIT_SETTLED 1e-3
+#define HDI_FIT_LOWEST 1e-40
 /* A complex pole is dropped where its distance from the spectrum is below this part of its modulus, and any
  * pole below the second number times lambda_max. The matrices of such poles have lost most digits. */
 #define HDI_FIT_NEAR 1e-5
@@ -18669,21 +18674,31 @@ static void hdi_fit_room(hdi_fit *k, int32_t count, hdi_scope *s) {
     k->fz = HDI_TAKE(s, double, sets * cols);
 }
 
+/* Where the points of a filter begin, relative to lambda_max. */
+static double hdi_fit_floor(const hd_filter *filter, double lambda_max) {
+    double x, most = 0, floor = HDI_FIT_FLOOR;
+    const double zero = hdi_filter_value(filter, 0);
+    if (filter->lambda_min > 0) return filter->lambda_min / lambda_max;
+    for (x = 1; x > HDI_FIT_LOWEST; x /= 2) most = hdi_max(most, fabs(hdi_filter_value(filter, x * lambda_max)));
+    for (x = HDI_FIT_FLOOR; x > HDI_FIT_LOWEST; x /= 2)
+        if (fabs(hdi_filter_value(filter, x * lambda_max) - zero) > HDI_FIT_SETTLED * most) floor = x;
+    return floor;
+}
+
 /* A fit of poles for the first so many filters, whose arrays and points are still to come. */
 static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filter, double lambda_max) {
-    double low = filter[0]->lambda_min;
     int32_t q;
     memset(k, 0, sizeof *k);
     k->count = count;
     k->top = lambda_max;
+    k->floor = 1;
     k->tol = hdi_fit_tol(filter[0]);
     k->most = filter[0]->max_degree ? filter[0]->max_degree : HDI_FIT_DEGREE;
     for (q = 0; q < count; q++) {
         k->filter[q] = filter[q];
         k->constant |= filter[q]->constant != 0;
-        low = hdi_min(low, filter[q]->lambda_min);
+        k->floor = hdi_min(k->floor, hdi_fit_floor(filter[q], lambda_max));
     }
-    k->floor = low > 0 ? low / lambda_max : HDI_FIT_FLOOR;
 }
 
 static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
@@ -18754,8 +18769,7 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
     for (q = 0; q < count; q++) {
         k.constant |= filters[q].constant != 0;
         k.tol = hdi_min(k.tol, hdi_fit_tol(filters + q));
-        if (filters[q].lambda_min < k.floor * lambda_max)
-            k.floor = filters[q].lambda_min > 0 ? filters[q].lambda_min / lambda_max : HDI_FIT_FLOOR;
+        k.floor = hdi_min(k.floor, hdi_fit_floor(filters + q, lambda_max));
     }
     k.most = 2 * HD_MAX_POLES - 2;
     hdi_fit_room(&k, HDI_FIT_MOST, &scope);
@@ -23700,7 +23714,9 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         hdi_parts off =
             lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL)
                        : by_value ? lane->off_value : hdi_lane_bound(lap, lane, reach);
-        if (total > 0) off.rounding += DBL_EPSILON * largest;    /* of the value itself */
+        /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
+        if (lane->dual) off.rounding += 2 * DBL_EPSILON * largest;
+        else if (total > 0) off.rounding += DBL_EPSILON * largest;
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
@@ -24831,7 +24847,7 @@ static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c,
     if (!plain && hdi_lane_bounded(h)) {
         memset(lane->f, 0, HDI_CAST(size_t, lap->n_active) * sizeof *lane->f);   /* a0 = 0 times it is 0 */
         hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-        lane->f_norm = norm / hdi_ratio_root(lap);
+        lane->f_norm = norm * hdi_ratio_root(lap);
         lane->rhs_off = sums * lane->f_norm;
         return HD_OK;
     }
@@ -26426,11 +26442,25 @@ typedef struct hdi_halves {
     double s, *later;            /* [n_times] t - s */
     double *W;                   /* [n k] fields on vertices */
     double *x, *work, *noise;    /* [n_active], [4 n_active], [2 n_active] */
+    double noise_unit;           /* what products with A are off by, in terms of noise */
     double *sums;                /* [n_components] */
     double *size, *slip;         /* [k] |W|_B of the first answers; bounds of what A W is off by */
     int32_t *exponent;           /* [k] fields are the caller's times 2^-exponent */
     hd_report first, second;
 } hdi_halves;
+
+/* Weights of rounding of products with A, in a unit that keeps them within the range of doubles. */
+static void hdi_halves_weigh(hdi_halves *z) {
+    const hd_laplacian *lap = z->h->heat->source;
+    const double scale = z->h->heat->scale;
+    double most = 0, t;
+    int64_t p;
+    for (p = 0; p < lap->L.nnz; p++) most = hdi_max(most, fabs(lap->L.val[p]));
+    if (!(most > 0)) most = 1;
+    t = hdi_max(1e-130, hdi_min(sqrt(most) / sqrt(scale), 1e130)) / most;
+    z->noise_unit = 1 / scale / t;
+    hdi_noise_weights(lap, t, 0, z->noise, z->noise + lap->n_active);
+}
 
 static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
     const hd_laplacian *lap = h->heat->source;
@@ -26453,7 +26483,7 @@ static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
     z->s /= 2;
     if (hdi_heat_scaled(h->heat, z->s) * h->heat->lambda_max < HDI_STILL) z->s = 0;
     for (q = 0; q < h->ask.n_times; q++) z->later[q] = h->ask.t[q] - z->s;
-    hdi_noise_weights(lap, 1 / h->heat->scale, 0, z->noise, z->noise + n);
+    hdi_halves_weigh(z);
     return HD_OK;
 }
 
@@ -26514,7 +26544,8 @@ static hd_status hdi_halves_product(hdi_halves *z, int32_t q) {
     hdi_pair_apply(lap, -1 / z->h->heat->scale, 0, z->x, z->work);
     if (hdi_mass_solve(lap, z->work, z->x, z->work + n, z->h->e) < 0) return z->h->e->status;
     size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
-    z->slip[q] = hdi_ratio_root(lap) * (sqrt(sum) + (lap->B ? HDI_MASS_TOL : DBL_EPSILON) * size);
+    z->slip[q] = hdi_ratio_root(lap) *
+                 (z->noise_unit * sqrt(sum) + (lap->B ? HDI_MASS_TOL : DBL_EPSILON) * size);
     hdi_halves_put(z, q);
     return HD_OK;
 }
@@ -26526,13 +26557,13 @@ static hdi_parts hdi_halves_parts(const hd_report *rep, double size) {
     hdi_parts part;
     memset(&part, 0, sizeof part);
     if (!(sum > 0) || !hdi_finite(sum)) {
-        part.rounding = size > 0 ? all : 0;
+        part.rounding = b > 0 ? all : 0;
         return part;
     }
     part.rational = rep->error_rational / sum;
     part.solver = rep->error_solver / sum;
     part.rounding = rep->error_rounding / sum;
-    return hdi_parts_scale(size > 0 ? all : 0, part);
+    return hdi_parts_scale(all, part);
 }
 
 /* Brings an answer into the caller's units, and notes it with the bound of its error. rep: both runs'. */

@@ -11,7 +11,7 @@
    rounding is taken as it is.)
 
    bounds [--quick] [--count N] [--seed S] [--query NAME] [--shape NAME] [--method NAME] [--op NAME]
-          [--csv FILE]
+          [--table ROWS:COLUMNS] [--csv FILE]
    bounds --case "shape=grid/9/6 op=fem query=column t=1e-3 ..."
    bounds --self
 
@@ -19,6 +19,9 @@
    --count    comparisons, in all; default 1000000
    --seed     of the cases that are drawn; default 1
    --query, --shape, --method, --op   only cases whose query, shape, method or operator contains this
+   --table    also prints a Markdown table with these rows and columns, each shape, op, t, query or method.
+              A cell says how many answers were compared, the largest true error / bound and its median. May
+              be given several times
    --csv      a line for every comparison goes to this file
    --case     one case, as the table's footnotes and the lines of the file name it; what is left out is the
               default. Everything about it is printed
@@ -35,7 +38,7 @@
      below rel  the same of error_relative, of each value relative to itself
      useless    HD_OK together with a bound above 0.01 or not finite: must be 0
      bad        a value or a bound that is not a number where the truth is one: must be 0
-     worst      the largest true error / bound, of the three
+     worst      the largest true error / bound, of the three, without what the truth itself may be wrong by
      median     of true error / error_bound, and of true error / error_bound_b
      stored     for every eighth case on a shape with rows that sum to zero: how often error_bound is below
    the truth of L as it is stored, rounded diagonal included (only told, not a fault) The exit status is 1
@@ -1503,6 +1506,53 @@ static void keep_ratio(float **list, int64_t *n, int64_t *most, double value) {
     (*list)[(*n)++] = (float)value;
 }
 
+/* ---- tables by any two properties of a case ---- */
+
+enum { AXIS_SHAPE, AXIS_OP, AXIS_T, AXIS_QUERY, AXIS_METHOD, AXES };
+static const char *const axis_names[] = {"shape", "op", "t", "query", "method", NULL};
+enum { VALUES = 64, VALUE_SIZE = 24 };
+static char axis_values[AXES][VALUES][VALUE_SIZE];
+static int n_axis_values[AXES];
+
+typedef struct record { unsigned char value[AXES]; float ratio; } record;
+static record *records;
+static int64_t n_records, most_records;
+
+static unsigned char axis_value(int axis, const char *text) {
+    int i;
+    for (i = 0; i < n_axis_values[axis]; i++)
+        if (strcmp(axis_values[axis][i], text) == 0) return (unsigned char)i;
+    if (i == VALUES) stop("a table has too many rows or columns");
+    snprintf(axis_values[axis][i], VALUE_SIZE, "%s", text);
+    n_axis_values[axis]++;
+    return (unsigned char)i;
+}
+
+/* A letter before a range of times sorts it. */
+static void keep_record(const trial *c, double unit, double ratio) {
+    static const char *const ranges[] = {"a below 1e-2", "b 1e-2 to 1", "c 1 to 1e2", "d 1e2 to 1e4",
+                                         "e 1e4 to 1e6", "f above 1e6"};
+    static const double limits[] = {1e-2, 1, 1e2, 1e4, 1e6};
+    const int timeless = c->query >= QUERY_PAIRS && c->kind >= HD_DISTANCE_COMMUTE;
+    char shape[VALUE_SIZE];
+    record r;
+    int range = 0;
+    while (range < 5 && !(c->t / unit < limits[range])) range++;
+    snprintf(shape, sizeof shape, "%.*s", (int)strcspn(c->shape, "/"), c->shape);
+    r.value[AXIS_SHAPE] = axis_value(AXIS_SHAPE, shape);
+    r.value[AXIS_OP] = axis_value(AXIS_OP, c->op);
+    r.value[AXIS_T] = axis_value(AXIS_T, timeless ? "g no time" : ranges[range]);
+    r.value[AXIS_QUERY] = axis_value(AXIS_QUERY, query_names[c->query]);
+    r.value[AXIS_METHOD] = axis_value(AXIS_METHOD, method_names[c->method]);
+    r.ratio = (float)ratio;
+    if (n_records == most_records) {
+        most_records = most_records ? 2 * most_records : 1024;
+        records = (record *)realloc(records, (size_t)most_records * sizeof *records);
+        if (!records) stop("out of memory");
+    }
+    records[n_records++] = r;
+}
+
 /* A shape with its truths, and room for answers. */
 typedef struct subject {
     hd_laplacian *lap;
@@ -1572,12 +1622,12 @@ static void compare(work *w, const double *value, int64_t n, int has_b, int rela
         if ((quad)w->off[i] > own) own = w->off[i];
         if (relative && i != skip && finite_rel) {
             if (sure > rel * (quad)fabs(value[i]) * (1 + 1e-12Q)) below_rel = 1;
-            if (sure > 0 && ratio_of(e, rel * (quad)fabs(value[i])) > worst_rel)
-                worst_rel = ratio_of(e, rel * (quad)fabs(value[i]));
+            if (sure > 0 && ratio_of(sure, rel * (quad)fabs(value[i])) > worst_rel)
+                worst_rel = ratio_of(sure, rel * (quad)fabs(value[i]));
         }
     }
     below = !bad && finite && worst > vertex * largest * (1 + 1e-12Q);
-    ratio = !finite || worst <= 0 ? 0 : ratio_of(worst_plain, vertex * largest);
+    ratio = !finite || worst <= 0 ? 0 : ratio_of(worst, vertex * largest);
     ratio_rel = finite_rel ? worst_rel : 0;
     if (has_b && !bad) {
         const hd_laplacian *lap = w->s->lap;
@@ -1590,7 +1640,7 @@ static void compare(work *w, const double *value, int64_t n, int has_b, int rela
         /* entries of B are not all positive, but dominated by the diagonal */
         off = 2 * norm_b(lap, e);
         below_b = finite_b && error - off > b * size * (1 + 1e-12Q);
-        ratio_b = finite_b && error > off ? ratio_of(error, b * size) : 0;
+        ratio_b = finite_b && error > off ? ratio_of(error - off, b * size) : 0;
         free(e);
     }
     useless = w->rep.status == HD_OK &&
@@ -1615,6 +1665,7 @@ static void compare(work *w, const double *value, int64_t n, int has_b, int rela
     if (ratio < ratio_b) ratio = ratio_b;
     if (ratio < ratio_rel) ratio = ratio_rel;
     if (bad) ratio = 2e30Q;
+    keep_record(w->c, w->s->unit, (double)ratio);
     if ((double)ratio > r->worst) {
         r->worst = (double)ratio;
         snprintf(r->worst_case, sizeof r->worst_case, "%s", w->text);
@@ -2460,6 +2511,7 @@ static void check_comparison(void) {
     free(rows_of_table[0].ratio_b);
     memset(rows_of_table, 0, sizeof *rows_of_table);
     n_rows_of_table = 0;
+    n_records = 0;
     subject_free(&s);
 }
 
@@ -2670,6 +2722,54 @@ static int print_table(void) {
     return wrong + useless > 0;
 }
 
+static int by_text(const void *a, const void *b) { return strcmp((const char *)a, (const char *)b); }
+
+/* "2599; 0.91; 2e-4" of the records with these two values; "" if there are none */
+static void print_cell(int rows, int row, int columns, int column, float *list) {
+    int64_t i, n = 0;
+    for (i = 0; i < n_records; i++)
+        if (records[i].value[rows] == row && records[i].value[columns] == column) list[n++] = records[i].ratio;
+    printf(" |");
+    if (n == 0) return;
+    median(list, n);      /* sorts them */
+    printf(" %lld; %.2g; %.1g", (long long)n, list[n - 1], list[n / 2]);
+}
+
+static void print_axes(int rows, int columns) {
+    char head[VALUES][VALUE_SIZE], side[VALUES][VALUE_SIZE];
+    float *list = ROOM(float, n_records);
+    const int n = n_axis_values[columns], m = n_axis_values[rows];
+    int i, k;
+    memcpy(head, axis_values[columns], sizeof head);
+    memcpy(side, axis_values[rows], sizeof side);
+    qsort(head, (size_t)n, VALUE_SIZE, by_text);
+    qsort(side, (size_t)m, VALUE_SIZE, by_text);
+    printf("\n| %s", axis_names[rows]);
+    for (k = 0; k < n; k++) printf(" | %s", head[k] + (columns == AXIS_T ? 2 : 0));
+    printf(" |\n|");
+    for (k = 0; k <= n; k++) printf("---|");
+    for (i = 0; i < m; i++) {
+        printf("\n| %s", side[i] + (rows == AXIS_T ? 2 : 0));
+        for (k = 0; k < n; k++) print_cell(rows, axis_value(rows, side[i]), columns, axis_value(columns, head[k]), list);
+        printf(" |");
+    }
+    printf("\n");
+    free(list);
+}
+
+/* The two axes of ROWS:COLUMNS; 0 if the text is something else. */
+static int parse_axes(const char *text, int *axes) {
+    int k, i;
+    for (k = 0; k < 2; k++) {
+        const size_t size = strcspn(text, ":");
+        for (i = 0; i < AXES && (strlen(axis_names[i]) != size || strncmp(axis_names[i], text, size) != 0);) i++;
+        if (i == AXES || (text[size] == ':') != (k == 0)) return 0;
+        axes[k] = i;
+        text += size + (k == 0);
+    }
+    return 1;
+}
+
 static const char *argument(int argc, char **argv, int *i) {
     if (*i + 1 >= argc) {
         fprintf(stderr, "bounds: %s takes a value\n", argv[*i]);
@@ -2681,7 +2781,7 @@ static const char *argument(int argc, char **argv, int *i) {
 int main(int argc, char **argv) {
     settings o;
     const char *only = NULL;
-    int i, self = 0;
+    int i, self = 0, axes[8][2], n_tables = 0, wrong;
     memset(&o, 0, sizeof o);
     o.count = 1000000;
     o.seed = 1;
@@ -2697,14 +2797,20 @@ int main(int argc, char **argv) {
         else if (strcmp(argv[i], "--op") == 0) o.op = argument(argc, argv, &i);
         else if (strcmp(argv[i], "--case") == 0) only = argument(argc, argv, &i);
         else if (strcmp(argv[i], "--shrink") == 0) shrink = strtod(argument(argc, argv, &i), NULL);
-        else if (strcmp(argv[i], "--csv") == 0) {
+        else if (strcmp(argv[i], "--table") == 0) {
+            if (n_tables == 8 || !parse_axes(argument(argc, argv, &i), axes[n_tables++])) {
+                fprintf(stderr, "bounds: --table takes two of shape, op, t, query, method, as in shape:t\n");
+                return 2;
+            }
+        } else if (strcmp(argv[i], "--csv") == 0) {
             csv = fopen(argument(argc, argv, &i), "w");
             if (!csv) stop("the csv file cannot be written");
             fprintf(csv, "row,case,column,status,true,error_bound,true_b,error_bound_b,error_relative,below,"
                          "below_b,below_relative,useless,bad\n");
         } else {
             fprintf(stderr, "usage: bounds [--quick] [--count N] [--seed S] [--query NAME] [--shape NAME] "
-                            "[--method NAME] [--op NAME] [--csv FILE] [--case CASE] [--shrink F] [--self]\n");
+                            "[--method NAME] [--op NAME] [--table ROWS:COLUMNS] [--csv FILE]\n"
+                            "              [--case CASE] [--shrink F] [--self]\n");
             return 2;
         }
     }
@@ -2730,5 +2836,7 @@ int main(int argc, char **argv) {
         run_families(&o, large, n, (o.count + members - 1) / members);
     }
     if (csv) fclose(csv);
-    return print_table();
+    wrong = print_table();
+    for (i = 0; i < n_tables; i++) print_axes(axes[i][0], axes[i][1]);
+    return wrong;
 }
