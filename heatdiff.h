@@ -18679,7 +18679,8 @@ static double hdi_fit_floor(const hd_filter *filter, double lambda_max) {
     double x, most = 0, floor = HDI_FIT_FLOOR;
     const double zero = hdi_filter_value(filter, 0);
     if (filter->lambda_min > 0) return filter->lambda_min / lambda_max;
-    for (x = 1; x > HDI_FIT_LOWEST; x /= 2) most = hdi_max(most, fabs(hdi_filter_value(filter, x * lambda_max)));
+    for (x = 1; x > HDI_FIT_LOWEST; x /= 2)
+        most = hdi_max(most, fabs(hdi_filter_value(filter, x * lambda_max)));
     for (x = HDI_FIT_FLOOR; x > HDI_FIT_LOWEST; x /= 2)
         if (fabs(hdi_filter_value(filter, x * lambda_max) - zero) > HDI_FIT_SETTLED * most) floor = x;
     return floor;

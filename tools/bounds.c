@@ -1240,6 +1240,14 @@ static trial trial_parse(const char *text) {
 
 /* The programs that once found bounds too small, as far as shapes of this size show them. */
 static const char *const fixed_cases[] = {
+    /* adjoints without diffusion, derivatives in extreme units and of what has faded, several sources with a
+       full B, a filter whose peak is far below lambda_max */
+    "shape=none/3 op=I scale=1e-05 query=adjoint kernel=symmetric poles=uniform t=6278.213696441455 field=nearly seed=306889",
+    "shape=none/4 op=diag query=adjoint method=direct t=123627245.05210805 field=smooth seed=199966",
+    "shape=weak/66/43/6 op=I scale=1e+80 query=derivative kernel=symmetric t=5e-324 field=smooth seed=940513",
+    "shape=leak/40/1e-9 op=diag scale=1e+05 query=derivative kernel=symmetric method=krylov tol=1e-06 t=5604461452.496679 field=mode seed=772598",
+    "shape=graph/30/1 op=near query=filter kernel=symmetric method=direct t=1240.377498234705 seed=380473",
+    "shape=two/2/8 op=fem query=filter method=direct t=4.501707098294611 seed=461665",
     /* commute time and biharmonic beside a small component, and with a sliver */
     "shape=two/2/3/5 query=distance kind=commute",
     "shape=two/2/6/5 query=distance kind=commute",
