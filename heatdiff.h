@@ -1371,8 +1371,8 @@ typedef struct hd_heat hd_heat;
 
 /* A plan for heat on lap, which must outlive the plan. Creating it is cheap: whatever a method needs is made
  * at its first use. So the first column, field or diagonal at a time t pays for the factorisation, and
- * further ones at the same t are much faster. The plan keeps the renumbered pair, the analysis, work arrays, and the
- * factors or preconditioners of the last pole set and time.
+ * further ones at the same t are much faster. The plan keeps the renumbered pair, the analysis, work arrays,
+ * and the factors or preconditioners of the last pole set and time.
  * Only one thread at a time may use a plan. Plans with contexts of their own may share lap, see Threads at
  * the top of the file.
  * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: perm is not a permutation), HD_ERR_MEMORY */
@@ -25659,6 +25659,7 @@ static void hdi_fading_again(hdi_heat_call *h, const hdi_fading_start *from) {
     *h->rep = from->rep;
     h->t = from->t;
     h->still = 0;
+    h->batch = 0;                                /* the fields are as they were: iterations may take over */
     h->lap = h->heat->source;
     if (!h->ask.list) return;
     h->ask.list->ledger[h->now] =
@@ -27538,6 +27539,7 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     const hd_report before = *h->rep;
     hd_report one;
     memset(&one, 0, sizeof one);
+    hdi_error_clear(&one.error);
     if (!hdi_fading_enough(h, t, hdi_fading_depth(h->heat), most)) return 0;
     *h->rep = one;
     if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
@@ -27598,6 +27600,7 @@ static hd_status hdi_fading_rest(hdi_heat_call *h, const hdi_fading_to *to, cons
     for (q = 0; q < h->ask.n_times; q++) n_done += done[q];
     if (n_done == h->ask.n_times) return HD_OK;
     memset(h->rep, 0, sizeof *h->rep);
+    hdi_error_clear(h->e);
     if (hdi_fading_poles(h, to, done) < 0 || n_done == 0) return h->e->status;
     rest = *h->rep;
     *h->rep = others;
@@ -33251,7 +33254,7 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
     else if (query < HD_QUERY_FIELDS || query > HD_QUERY_SPECTRUM)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "estimate: unknown query");
     else if (k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
-    else if (query == HD_QUERY_SPECTRUM && !HDI_HAS_DIRECT) (void)HDI_LEFT_OUT(h.e, DIRECT, "factorisations");
+    else if (query == HD_QUERY_SPECTRUM && !HDI_HAS_SPECTRUM) (void)HDI_LEFT_OUT(h.e, SPECTRUM, "eigenpairs");
     else if (query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM) (void)hdi_direct_only(&h);
     h.ask.k = x.k;
     if (h.e->status >= 0 && !timeless) (void)hdi_times_check(&h, n_times, t, query > HD_QUERY_PAIRS);

@@ -390,6 +390,7 @@ typedef struct source_point {
 } source_point;
 
 typedef struct options {
+    const char *program;             /* as it was called */
     unsigned command;
     const char *mesh;
     /* of render: all of them; input and mesh are the first */
@@ -4599,7 +4600,7 @@ static int demo_files(const run *r)
 
 static void demo_print(const run *r, const demo_checks *c)
 {
-    const char *folder = demo_folder(r);
+    const char *folder = demo_folder(r), *program = r->o->program;
     const hd_laplacian *lap = r->lap;
     double spent = 0;
     int q, k;
@@ -4621,7 +4622,7 @@ static void demo_print(const run *r, const demo_checks *c)
     for (q = 0; q < DEMO_SOURCES; q++)
         printf("  %s/heat-%s.png  the four times side by side\n", folder, DEMO_NAMES[q]);
     printf("  %s/isolines.png  one of them, large, with lines of equal heat\n", folder);
-    printf("  %s/distance.png  the diffusion distance from the trunk to every vertex, exactly\n", folder);
+    printf("  %s/distance.png  the diffusion distance from the trunk to every vertex\n", folder);
     printf("  %s/signature.png  the heat kernel signature: what the surface looks like from each vertex\n",
            folder);
     printf("  %s/distance-signature.ply  the mesh with both\n", folder);
@@ -4629,12 +4630,12 @@ static void demo_print(const run *r, const demo_checks *c)
         printf("  %s/heat-%s.ply  the mesh with all values, for MeshLab, Blender or ParaView\n", folder,
                DEMO_NAMES[q]);
     printf("\nNext, on this mesh or one of your own\n");
-    printf("  heatdiff info %s/heat-trunk.ply\n", folder);
-    printf("  heatdiff kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", folder);
-    printf("  heatdiff kernel --source 0,100 --t auto:4 %s/heat-trunk.ply > columns.txt\n", folder);
-    printf("  heatdiff distance --source 0 --t 500h2 %s/heat-trunk.ply -o distance.ply\n", folder);
-    printf("  heatdiff sample --count 10 --t 500h2 %s/heat-trunk.ply\n", folder);
-    printf("  heatdiff --help\n");
+    printf("  %s info %s/heat-trunk.ply\n", program, folder);
+    printf("  %s kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", program, folder);
+    printf("  %s kernel --source 0,100 --t auto:4 %s/heat-trunk.ply > columns.txt\n", program, folder);
+    printf("  %s distance --source 0 --t 500h2 %s/heat-trunk.ply -o distance.ply\n", program, folder);
+    printf("  %s sample --count 10 --t 500h2 %s/heat-trunk.ply\n", program, folder);
+    printf("  %s --help\n", program);
 }
 
 static int command_demo(run *r)
@@ -4734,6 +4735,7 @@ int main(int argc, char **argv)
     if (answer_questions(argc, argv, command)) return close_stdout();
     if (!command) return fail_command(argc > 1 ? argv[1] : NULL);
     memset(&o, 0, sizeof o);
+    o.program = argv[0];
     o.command = command->bit;
     o.kernel = o.command == CMD_HKS ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
     code = read_options(&o, argc, argv);
