@@ -9636,7 +9636,7 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
         if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
             hdi_fail_face(
                 s->e, HD_ERR_ARGUMENT,
-                "two points are too close together: the square of their distance is no normal number", -1,
+                "two points are too close together: the square of their distance is too small", -1,
                 cloud->first[i], d2[1]);
             return hdi_scope_end(&own);
         }
@@ -17829,7 +17829,7 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
     }
     if (!hdi_shared_pick(&set, hdi_divide(most, least), tol))
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "shared poles: no set is that exact over so wide a range of times", -1, -1,
+                            "shared poles: no set is that accurate over so wide a range of times", -1, -1,
                                 hdi_divide(most, least));
     room = HDI_TAKE(&s, double, hdi_shared_room(set.n_poles));
     for (q = 0; room && q < n_times; q++) {
@@ -30310,7 +30310,7 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, hd_erro
     g->t = g->t_asked > 0 ? g->t_asked : g->t_in_h2 * (lap->h * lap->h);
     if (!hdi_finite(g->t) || !(g->t > 0))
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "geodesic: the square of the mean edge length is no number to compute with",
+                            "geodesic: the square of the mean edge length overflows or underflows",
                             -1, -1, lap->h);
     for (i = 0; i < g->n_active; i++) {
         const int32_t from = g->sym.perm[i];
@@ -31244,7 +31244,7 @@ static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance)
 
 static hd_status hdi_geo_not_finite(hd_error *e, int32_t column) {
     hdi_fail(e, HD_ERR_BREAKDOWN,
-             "geodesic: rounding has eaten the answer: the mesh has faces that are too thin");
+             "geodesic: rounding leaves nothing of the answer: the mesh has faces that are too thin");
     e->column = column;
     return e->status;
 }
@@ -31633,7 +31633,7 @@ static hd_status hdi_geo_from(hd_geodesic *g, const hd_source *s, double *d, hd_
             (void)hdi_geo_one(g, list, s->count, d, rep, e);
         return hdi_scope_end(&scope);
     }
-    if (g->poly.ptr) (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons a source must be vertices");
+    if (g->poly.ptr) (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
     z.item = HDI_TAKE(&scope, hdi_geo_item, z.n_items);
     z.component = HDI_TAKE(&scope, int32_t, z.n_items);
     z.value = HDI_TAKE(&scope, double, z.n_items);
@@ -32075,7 +32075,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
 static void hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
     rep->neighbours = opts && opts->neighbours ? opts->neighbours : HDI_NEIGHBOURS;
     hdi_refuse(rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS,
-               "laplacian of points: neighbours lies in 6..128", e);
+               "laplacian of points: neighbours is not in 6..128", e);
 }
 
 /* Checks the options of point sets and resolves them into lap->points. */
@@ -32089,12 +32089,12 @@ static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_
     hdi_refuse(opts && opts->updatable,
                "laplacian of points: not updatable, because new places of points make a new pattern", e);
     hdi_refuse(opts && (opts->intrinsic_delaunay || opts->tufted),
-               "laplacian of points: exponential weights know no triangles; "
+               "laplacian of points: exponential weights use no triangles; "
                "hd_laplacian_tufted_points makes some", e);
     hdi_refuse(!hdi_finite(rep->bandwidth) || rep->bandwidth < 0,
                "laplacian of points: the bandwidth is negative or not finite", e);
     hdi_refuse(!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1),
-               "laplacian of points: weight_cut lies in (0, 1)", e);
+               "laplacian of points: weight_cut is not in (0, 1)", e);
     hdi_point_neighbours(rep, opts, e);
 }
 
@@ -32758,7 +32758,7 @@ HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_time
     if (call.e->status < 0) return call.e->status;
     for (q = 0; q < lap->n_components && lap->conserves; q++)
         constants += hdi_finite(lap->component_mass[q]) ? 1 : 0;
-    hdi_refuse(constants >= lap->n_active, "times: there are no eigenvalues but those of constants", call.e);
+    hdi_refuse(constants >= lap->n_active, "times: the only eigenvalues are those of constants", call.e);
     if (call.e->status < 0) return call.e->status;
     memset(&o, 0, sizeof o);
     o.count = constants + 1;
@@ -33057,7 +33057,7 @@ static hd_status hdi_filters_check(const hd_heat *heat, int32_t count, const hd_
         if (hdi_rational_check(sets + q, e) >= 0)
             hdi_refuse(sets[q].t != own->t || sets[q].lambda_max != own->lambda_max ||
                        !hdi_set_same_poles(sets + q, own),
-                       "filters: a set has not the poles, t and lambda_max of the plan's", e);
+                       "filters: a set differs from the plan's in poles, t or lambda_max", e);
         if (e->status < 0) e->column = q;
     }
     return e->status;
@@ -33142,8 +33142,8 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
     if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
     if (n_times > 1 || n_times < 0)
-        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1,
-                            n_times);
+        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
+                            -1, -1, n_times);
     return hdi_direct_only(h);
 }
 
@@ -33289,7 +33289,7 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_
     hdi_refuse(!hdi_finite(in->lambda) || !(in->lambda > 0 && in->lambda <= 1e100),
                "geodesic: lambda is not between 0 and 1e100", e);
     hdi_refuse(in->neighbours < 6 || in->neighbours > HDI_MOST_NEIGHBOURS,
-               "geodesic: neighbours lies in 6..128", e);
+               "geodesic: neighbours is not in 6..128", e);
     hdi_refuse(in->points && o->border != HD_GEODESIC_BORDER_NATURAL,
                "geodesic: points cannot tell their border", e);
     hdi_refuse(in->ptr && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,

@@ -769,7 +769,7 @@ static const option_def OPTIONS[] = {
       "where to measure from, a column for each: vertices, counted from\n"
       SOURCE_FORMS },
     { "source-file", 0, CMD_ANYWHERE, 1, parse_text, AT(source_file), NULL, 0, 0, "F", "a file name",
-      "one source more: its points, one on each line of F" },
+      "one more source: its points, one on each line of F" },
     { "curve", 0, CMD_ANYWHERE, 0, parse_flag, AT(curve), NULL, 0, 0, NULL, "no value",
       "the points of each source are joined to a curve, of weight 1 for\n"
       "each unit of length; two in turn lie in one face" },
@@ -822,12 +822,12 @@ static const option_def OPTIONS[] = {
       "triangles; with voronoi-cot heat is then never negative" },
     { "tufted", 0, CMD_SURFACE, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
       "the same for any triangles, also with borders and where\n"
-      "three and more faces meet; of points, with triangles made\nfrom their neighbours" },
+      "three or more faces meet; of points, with triangles made\nfrom their neighbours" },
     { "lengths", 0, CMD_SURFACE, 0, parse_text, AT(lengths), NULL, 0, 0, "F", "a file name",
       "of triangles: a row for each face of MESH with the lengths of its\n"
       "edges, from its first corner to the second, from there to the\n"
-      "third, and back, as text or .npy. The places of the vertices\n"
-      "then serve pictures and files alone" },
+      "third, and back, as text or .npy. The coordinates of the\n"
+      "vertices then serve only pictures and files" },
     { "border", 0, CMD_LAPLACIAN, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
       "of meshes: natural (default): no heat leaves through a border;\n"
       "dirichlet: the vertices of borders are held at zero" },
@@ -901,13 +901,13 @@ static const option_def OPTIONS[] = {
       "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
     { "dry-run", 0, CMD_SOLVES, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
-      "only tell what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
+      "only say what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n"
       "- or nothing: standard output, as text. In .ply the columns are\n"
-      "quality, quality_1, ..; .obj has the colours alone" },
+      "quality, quality_1, ..; .obj has only the colours" },
     { "output", 'o', CMD_LEVELS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the lines go: .obj, or .txt, .csv or .npy as a table;\n- or nothing: standard output, as text" },
     { "no-header", 0, CMD_SOLVES | CMD_LEVELS, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
@@ -1253,9 +1253,9 @@ static int check_intrinsic(const options *o)
         o->laplacian == HD_LAPLACIAN_EXP)
         return fail(USAGE, "--%s takes --laplacian fem, voronoi-cot or cot: %s has no triangles", name,
                     word_of(LAPLACIANS, o->laplacian));
-    if (o->lambda > 0) return fail(USAGE, "--%s is of triangles, --lambda of polygons", name);
+    if (o->lambda > 0) return fail(USAGE, "--%s is for triangles, --lambda for polygons", name);
     if (o->has_bandwidth || o->weight_cut > 0)
-        return fail(USAGE, "--%s is of triangles, --%s of exponential weights", name,
+        return fail(USAGE, "--%s is for triangles, --%s for exponential weights", name,
                     o->has_bandwidth ? "bandwidth" : "weight-cut");
     return DONE;
 }
@@ -1266,10 +1266,10 @@ static int check_lengths(const options *o)
     if (!o->lengths) return DONE;
     if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP ||
         o->laplacian == HD_LAPLACIAN_EXP)
-        return fail(USAGE, "--lengths takes --laplacian fem, voronoi-cot or cot: %s needs places in space",
+        return fail(USAGE, "--lengths takes --laplacian fem, voronoi-cot or cot: %s needs coordinates",
                     word_of(LAPLACIANS, o->laplacian));
     if (o->lambda > 0 || o->has_bandwidth || o->weight_cut > 0)
-        return fail(USAGE, "--lengths is of triangles, --%s of %s",
+        return fail(USAGE, "--lengths is for triangles, --%s for %s",
                     o->lambda > 0 ? "lambda" : o->has_bandwidth ? "bandwidth" : "weight-cut",
                     o->lambda > 0 ? "polygons" : "exponential weights");
     if (o->ordering == HD_ORDERING_NESTED_DISSECTION)
@@ -1374,7 +1374,7 @@ static void print_help(void)
     printf("heatdiff - heat diffusion kernels on meshes\n\nUse:  heatdiff COMMAND [OPTIONS] MESH\n\n"
            "Commands\n");
     for (i = 0; i < N_COMMANDS; i++) printf("  %-9s %s\n", COMMANDS[i].name, COMMANDS[i].help);
-    printf("\nOptions\n  heatdiff COMMAND --help lists those of a command; --version tells the version\n"
+    printf("\nOptions\n  heatdiff COMMAND --help lists those of a command; --version prints the version\n"
            "\nExamples\n"
            "  heatdiff demo\n"
            "  heatdiff info bunny.obj\n"
@@ -2028,7 +2028,7 @@ static int check_laplacian(const run *r)
     if (r->o->lambda > 0 && is_points(r))
         return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
     if (r->o->lambda > 0 && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
-        return fail(FAILED, "%s: --lambda is of --laplacian polygon, and triangles have %s by default; "
+        return fail(FAILED, "%s: --lambda is for --laplacian polygon, and triangles have %s by default; "
                     "on triangles it changes nothing", r->mesh_name,
                     word_of(LAPLACIANS, (int)laplacian_kind(r)));
     return DONE;
