@@ -9,8 +9,9 @@
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
-   which takes a handful of sparse complex-symmetric systems. No eigenvectors are computed and none are left
-   out. Every answer comes with a bound of its error. The method is that of G. Patane and M. Spagnuolo, "Heat
+   which takes a handful of sparse complex-symmetric systems. It needs no eigenvectors and cuts no part of the
+   spectrum off. Eigenpairs serve only where t is so large that few of them are left. Every answer comes with
+   a bound of its error. The method is that of G. Patane and M. Spagnuolo, "Heat
    diffusion kernel and distance on surface meshes and point sets", Computers & Graphics 37, 2013, called the
    paper below.
 
@@ -19,8 +20,8 @@
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. Give the implementation a file of its own: it takes some 12 s to compile at -O2, the
-   declarations take none. Two calls make a heat kernel of a triangle mesh:
+   and link with -lm. Give the implementation a file of its own: it takes about 12 s to compile at -O2, while
+   the declarations take almost no time. Two calls make a heat kernel of a triangle mesh:
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, &err) < 0) return fail(&err);
@@ -96,9 +97,8 @@
      HEATDIFF_NO_THREADS       no threads of the library's own. They need POSIX threads or Windows, and
                                atomic operations of GCC, Clang or MSVC; anything else is serial by itself,
                                as is WebAssembly without threads
-     HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. It is needed
-                               only where that is neither heatdiff.h nor what the compiler says
-                               (__FILE_NAME__)
+     HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. Define it only
+                               if you renamed the file and the compiler has no __FILE_NAME__
      HEATDIFF_NO_SIMD          plain C only, no kernels for AVX2 and AVX-512, no NEON
      HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, where only
                                plain C kernels exist. It is twice as fast as those. The kernels for AVX2 and
@@ -111,26 +111,26 @@
      No macro changes a public type or prototype.
 
    Smaller builds (macros beside the implementation)
-     What nobody calls the linker drops by itself (gcc -ffunction-sections -Wl,--gc-sections). These switches
-     drop what an option could still ask for. All functions stay declared and defined. What is left out
-     answers HD_ERR_NOT_BUILT, with the name of the switch in the text of the error. The choice by default
-     (HD_METHOD_AUTO) is among what is there.
+     The linker drops functions that nobody calls (gcc -ffunction-sections -Wl,--gc-sections). These switches
+     also drop code that an option could still ask for. All functions stay declared and defined. What is left
+     out returns HD_ERR_NOT_BUILT, and the text of the error names the switch. HD_METHOD_AUTO chooses among
+     the methods that are there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_POLE_FACTORS,
-                               NO_GEODESIC, NO_SPECTRUM. b_ratio of hd_laplacian_matrices is that of
-                               Gershgorin's circles
+                               NO_GEODESIC, NO_SPECTRUM. For hd_laplacian_matrices b_ratio then comes
+                               from Gershgorin's circles alone
      HEATDIFF_NO_POLE_FACTORS  factors of complex matrices: method direct, hd_ldl_*_complex; implies
                                NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_heat_normalised, hd_heat_trace,
                                hd_heat_scale_invariant, hd_heat_filter_diagonals, hd_heat_edges,
-                               hd_ldl_inverse*, diagonal pole sets; implies NO_DIFFUSION. Bounds of the error
-                               of method direct are larger, and times so large that only the means are left
-                               take longer
-     HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample, also _from sources
-     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. At large t distances, and all answers where heat
-                               flows out, are less accurate, with bounds that say so, and need factors of
-                               their poles
-     HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Pole sets of your choice need
-                               method direct then, and factors that do not fit byte_limit are an error
+                               hd_ldl_inverse*, diagonal pole sets; implies NO_DIFFUSION. The error bounds of
+                               method direct are larger then, and times so large that only the means are
+                               left take longer
+     HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample, and their _from versions
+     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. Without them, distances at large t and all answers
+                               where heat flows out need factors of their poles and are less accurate; their
+                               bounds say so
+     HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Your choice of poles then needs
+                               method direct, and factors that do not fit byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
      HEATDIFF_NO_INTRINSIC     options intrinsic_delaunay and tufted, hd_laplacian_tufted_points,
                                hd_geodesic_create_points
@@ -143,8 +143,8 @@
      no file and never exits.
      Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). x87 registers keep more digits now and then:
      results are as accurate, but neither bits nor bounds of the error near rounding are promised. On 32-bit
-     x86 compile with -msse2 -mfpmath=sse. -ffast-math takes away the same promises. Coordinates, matrices,
-     fields and times that are not finite are still refused then, options are not.
+     x86 compile with -msse2 -mfpmath=sse. -ffast-math takes away the same promises. Even then coordinates,
+     matrices, fields and times that are not finite are refused, but options are not.
 
    Threads
      There is no global or thread-local state. One object serves one thread at a time, and so does one
@@ -159,11 +159,11 @@
      Threads claim small tasks. The calling thread works too, and never waits for a thread that has not begun.
      Results are the same to the last bit for any number of threads.
      Nested use: if your own threads each have a plan with a context, set hd_context.n_threads = 1 there, or
-     share the processors out. Every other number is correct too, only slower.
+     share the processors out. Any other number gives the same results, only more slowly.
      fork: the child process may use and free the objects of its parent. The parent's threads do not exist in
      it; new ones start when work needs them. Do not fork while another thread is inside the library.
-     Systems with a C library older than glibc 2.34 need -lpthread; without it programs link and are serial.
-     On Windows the implementation includes windows.h for them, with its macros (near, far).
+     With glibc older than 2.34 link with -lpthread; without it programs link, but they run on one thread.
+     On Windows the implementation includes windows.h for its threads, and so the macros near and far.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -234,8 +234,8 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or of a field */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value; 0 if there is none. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small. It
-     * is the whole need of a factorisation and what follows it, which is known before it begins. */
+    /* The offending value; 0 if there is none. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small. For
+     * a factorisation this is all that it and what follows need, which is known before it begins. */
     double value;
 } hd_error;
 
@@ -245,7 +245,7 @@ typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x
 
 /* Memory functions. alloc returns NULL if there is no memory; its blocks must be aligned to 8 bytes. free
  * receives the size that the block was allocated with. Blocks are never resized, so there is no realloc. The
- * library calls both functions from the calling thread only. Threads do not take their memory from them. */
+ * library calls both functions from the calling thread only. The stacks of threads do not come from them. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
@@ -269,9 +269,9 @@ typedef enum hd_simd {
 typedef struct hd_threads hd_threads;            /* started and ended by the library */
 
 /* Memory, progress and threads of a computation. All zeros are good defaults: malloc, no limits, no progress,
- * as many threads as there are processors. The context belongs to the caller and must outlive every object
- * made with it; do not copy it in the meantime. Wherever a function takes a context, NULL means one with
- * these defaults. */
+ * as many threads as the process may use processors. The context belongs to the caller and must outlive
+ * every object made with it; do not copy it in the meantime. Wherever a function takes a context, NULL means
+ * one with all defaults. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
     uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit */
@@ -312,7 +312,7 @@ typedef struct hd_context {
 } hd_context;
 
 /* How many threads work for this context: n_threads, or by default the processors that the process may use.
- * 1 if the library has no threads here. NULL: of a context of defaults. */
+ * 1 if this build has no threads. For NULL: that of a context with all defaults. Cost: O(1). */
 HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
 /* A sparse matrix by compressed rows. In every row the columns ascend and occur once. val may be NULL in a
@@ -391,13 +391,13 @@ typedef struct hd_laplacian_opts {
      * Takes 100 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
      * hd_laplacian_update_matrices may be called. Takes 24 bytes more for each entry. Points refuse it. */
     int32_t updatable;
-    /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. Points and
-     * matrices have no border that could be told for certain, and refuse Dirichlet: use held. */
+    /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. The border
+     * of points and matrices is not known for certain, so they refuse Dirichlet: list vertices in held. */
     hd_border border;
     /* Further vertices that are held at zero, with any Laplacian: [n_held] ids, repeated ones do no harm. L
      * and B lose the rows and columns of all held vertices, so that K_t is the exponential of what is left
-     * and heat flows out there. A mesh without border takes HD_BORDER_DIRICHLET and holds nothing.
-     * With updatable the whole pair is kept too, which takes twice the memory. */
+     * and heat flows out there. On a mesh without border HD_BORDER_DIRICHLET holds nothing.
+     * With updatable the pair of all vertices is kept as well, which doubles the memory. */
     int32_t n_held;
     const int32_t *held;
     int32_t end_zero;
@@ -500,12 +500,12 @@ typedef struct hd_laplacian {
      * Matrices: proven by Gershgorin's circles or by factorisations. 0: unknown. */
     double b_ratio;
     /* 1: L 1 = 0, so that heat is conserved. Always so for meshes and points of which no vertex is held.
-     * Matrices: up to 4 DBL_EPSILON sum_j |L_ij| in each row. Rounding in the row sums is then treated as
-     * zero, and t may be large.
-     * 2: so on some components. The others lose heat to vertices held at zero, and their component_mass is
-     * infinite, as what they had is spread over ever more.
-     * 0: on none, or unknown. K_t f may fade like exp(-lambda_1 t) then, and bounds relative to the answer
-     * grow by as much: from t = 15/lambda_1 or so on they say little, and hd_spectrum serves better. */
+     * Matrices: if it holds up to 4 DBL_EPSILON sum_j |L_ij| in each row. Such row sums are treated as zero,
+     * and t may be large.
+     * 2: only on some components. The others lose heat to vertices held at zero, so that the mean they tend
+     * to is 0; their component_mass is infinite.
+     * 0: on none, or unknown. Then K_t f may fade like exp(-lambda_1 t), while the errors of poles do not:
+     * from about t = 15/lambda_1 on their bounds say little. hd_heat_apply says how auto and direct go on. */
     int32_t conserves;
     /* Matrices and points: only n_inert. Tufted points: the triangles of their stars. */
     hd_mesh_report mesh;
@@ -559,8 +559,8 @@ typedef enum hd_filter_kind {
     HD_FILTER_OWN = 0,          /* f(lambda, user) */
     HD_FILTER_HEAT,             /* exp(-a lambda) */
     /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0. a is the energy, b the width sigma. The diagonal divided by
-     * its integral is the wave kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). That integral,
-     * the sum of the filter over all eigenvalues, is the sum of the diagonal of HD_KERNEL_OPERATOR */
+     * its integral is the wave kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). That integral is
+     * the sum of the filter over all eigenvalues, and the sum of the diagonal of HD_KERNEL_OPERATOR. */
     HD_FILTER_WAVE,
     HD_FILTER_MEXICAN_HAT,      /* lambda exp(-a lambda): the wavelet -d/dt K_t at t = a (Hou, Qin 2012) */
     HD_FILTER_RESOLVENT,        /* 1 / (1 + a lambda) */
@@ -574,20 +574,20 @@ typedef enum hd_filter_kind {
 typedef struct hd_filter {
     int32_t begin_zero;
     hd_filter_kind kind;
-    double a, b;                /* finite; a > 0 but for waves, b > 0 where there is a b */
+    double a, b;                /* finite; a > 0 except for waves, b > 0 where there is a b */
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
     /* >= 0, by default 0. With 1/weight near the eigenvalues that f lets pass, the error is small where most
-     * eigenvalues are, which helps columns and diagonals. Then weight = exp(-a) and tol = 1e-7 give waves
-     * with 16 poles and bounds near 1e-6, and 1e-10 without a weight takes 20 poles for that */
+     * eigenvalues are, which helps columns and diagonals. For a wave, weight = exp(-a) and tol = 1e-7 give
+     * bounds near 1e-6 with 16 poles; without a weight that takes tol = 1e-10 and 20 poles. */
     double weight;
     int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
-    /* > 0: there is no eigenvalue between 0 and this, and nothing is asked of c there. Filters that are not
-     * smooth at 0 need half of the poles then. The second value of hd_spectrum is such a number */
+    /* > 0: there is no eigenvalue between 0 and this, and c may take any value there. Filters that are not
+     * smooth at 0 then need half of the poles. The second value of hd_spectrum is such a number. */
     double lambda_min;
     /* 1: c may have a constant a0, for filters that do not fade where lambda is large. If B is not diagonal,
-     * diagonals leave a0 B^-1 out, and the bound includes it */
+     * diagonals leave a0 B^-1 out, and the bound includes it. */
     int32_t constant;
     int32_t end_zero;
 } hd_filter;
@@ -648,9 +648,9 @@ typedef struct hd_heat_opts {
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    /* Of the methods that factorise. Auto: up to three columns by one real factor have a minimum degree order
-     * of their own on meshes of 40K to about 120K vertices, where that is faster in all; a plan that is asked
-     * for more as well keeps both analyses. */
+    /* Of the methods that factorise. Auto: on meshes of 40K to about 120K vertices, one to three columns by
+     * one real factor take a minimum degree order, because that is faster altogether. A plan that is also
+     * asked for other answers keeps both orders and their analyses. */
     hd_ordering ordering;
     /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th. Vertices without mass may stand
      * anywhere. It is copied. */
@@ -705,8 +705,8 @@ typedef enum hd_distance_kind {
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
-    /* measured at some columns or solves of this answer, assumed for all of it; filters: at eigenvalues of a
-     * grid, assumed between them */
+    /* Measured at some columns or solves of this answer, and assumed for all of it. Filters: measured at the
+     * points of a grid, and assumed between them. */
     HD_EVIDENCE_MEASURED,
     HD_EVIDENCE_ESTIMATED       /* a model of rounding */
 } hd_evidence;
@@ -773,7 +773,7 @@ typedef struct hd_spectrum {
     int32_t count;              /* pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
     /* [n count] column-major, B-orthonormal, 0 at vertices without mass. The entry with the largest absolute
-     * value is positive */
+     * value is positive. */
     double *vector;
     /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 relative to
      * the first eigenvalue that does not belong to constants */
@@ -783,11 +783,11 @@ typedef struct hd_spectrum {
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
     /* 1: proven complete. No pair is missing: L - shift B has as many negative pivots as there are
      * eigenvalues found below the shift, and rounding cannot change the count, because no eigenvalue found is
-     * within shift_margin of the shift. 0: the count was not reliable; the status is HD_WARN_ACCURACY */
+     * within shift_margin of the shift. 0: the count was not reliable; the status is HD_WARN_ACCURACY. */
     int32_t proven;
     double shift, shift_margin;
     double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
-    double *left, *left_mass;   /* [n] what the pairs leave of the diagonals of B^-1 (a bound) and of B */
+    double *left, *left_mass;   /* [n] diagonals of B^-1 (a bound of it) and of B, less the pairs' share */
     int32_t n_factors, n_runs;  /* factorisations; runs of Lanczos */
     int64_t n_solves;           /* right-hand sides solved for */
     hd_ordering ordering;
@@ -797,7 +797,7 @@ typedef struct hd_spectrum {
     hd_context *context;
 } hd_spectrum;
 
-/* Queries of a plan, as hd_heat_estimate knows them. k is a number of what is named. */
+/* Queries of a plan, for hd_heat_estimate. Its k is the number of what stands behind each query's name. */
 typedef enum hd_query {
     HD_QUERY_FIELDS = 0,          /* hd_heat_apply: fields. The default degree is taken as 9 */
     HD_QUERY_COLUMNS,             /* hd_heat_columns: sources. hd_heat_entries: distinct j */
@@ -813,7 +813,7 @@ typedef enum hd_query {
     HD_QUERY_DISTANCE_WEIGHTED,
     HD_QUERY_DISTANCE_COMMUTE,
     HD_QUERY_DISTANCE_BIHARMONIC,
-    HD_QUERY_SPECTRUM             /* hd_spectrum_create: eigenpairs; the plan's method is not looked at */
+    HD_QUERY_SPECTRUM             /* hd_spectrum_create: eigenpairs; the plan's method is ignored */
 } hd_query;
 
 /* What a query takes by one method. */
@@ -821,13 +821,13 @@ typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
     double flops;               /* real floating-point operations, of factorisations, inversions and solves */
-    /* By a model of one quiet core, within a factor of about two. Iterations may take three times as long,
-     * and those with poles on thin triangles whose obtuse angles are left far longer. */
+    /* By a model of one otherwise idle core, within a factor of about two. Iterations may take three times as
+     * long, and those with poles far longer on thin triangles with obtuse angles. */
     double seconds;
     double bytes;               /* at the peak, beyond what the context has in use now */
     /* The same if poles of degree 14 take over: for demanding fields, and where slivers or the time make the
-     * bound of a diagonal, of edges or of distances too large. Without room for that the last three do with
-     * bytes, and a looser bound. */
+     * bound of a diagonal, of edges or of distances too large. Without room for that, these three get by with
+     * bytes and have a looser bound. */
     double bytes_most;
 } hd_cost;
 
@@ -849,11 +849,11 @@ typedef enum hd_geodesic_mass {
 
 /* How heat meets the border while it flows. Distances themselves always have a natural border. */
 typedef enum hd_geodesic_border {
-    HD_GEODESIC_BORDER_NATURAL = 0, /* Neumann: no heat leaves; fronts are drawn towards meeting the border at
-                                       right angles */
-    HD_GEODESIC_BORDER_MEAN,        /* the mean of both others (Crane et al. 2013, section 3.4), with a third
-                                       factor. Fronts are hardly drawn, and t may be larger, as 8 h^2 */
-    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border: fronts are drawn towards following it */
+    HD_GEODESIC_BORDER_NATURAL = 0, /* Neumann: no heat leaves; fronts bend to meet the border at a right
+                                       angle */
+    HD_GEODESIC_BORDER_MEAN,        /* the mean of the two others (Crane et al. 2013, section 3.4). Takes a
+                                       third factor. Fronts hardly bend, and t may be larger, such as 8 h^2 */
+    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border: fronts bend to follow it */
 } hd_geodesic_border;
 
 typedef struct hd_geodesic_opts {
@@ -875,7 +875,7 @@ typedef struct hd_geodesic_opts {
     int32_t intrinsic_delaunay, tufted;
     double mollify;
     /* Polygons: as in hd_laplacian_opts, but by default 1/6. On squares L is then that of bilinear finite
-     * elements. With 1, distances are two to four times as far off. */
+     * elements. With 1, errors of distances are two to four times as large. */
     double lambda;
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
     double t_in_h2;             /* t as a multiple of h^2, where t is 0; default 1 */
@@ -900,19 +900,25 @@ typedef struct hd_geodesic_report {
 
 /* ==== [D] functions ==== */
 /* Common to all functions. Arguments come in this order: the object that is made, or that the function works
- * on; what is asked for; the input; the output; report; err. A count stands before its array, but for
+ * on; what is asked for; the input; the output; report; err. A count stands before its array, except for
  * meshes and points, which are xyz, n. Functions return hd_status. After an error nothing
  * is left allocated, *out is unchanged, and output arrays hold unspecified numbers.
- * err and report may be NULL. */
+ * opts, ctx, report and err may be NULL.
+ * Errors lists what says where in the input the fault lies, or has a special cause. Besides, any function may
+ * return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its range or was not
+ * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
 
 /* ---- statuses ---- */
 
+/* Static strings; of numbers that are no status "HD_UNKNOWN_STATUS" and "unknown status". */
 HEATDIFF_API const char *hd_status_name(hd_status status);  /* "HD_ERR_MEMORY" */
 HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" */
 
 /* ---- sparse matrices ---- */
 
-/* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given.
+/* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given. Free out
+ * with hd_csr_free and the same ctx, as the results of the functions below.
+ * i, j   [n_triplets] in [0, n_rows) and [0, n_cols)
  * v      [n_triplets], or NULL: a pattern
  * Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE (row: index of the triplet; if a sum
  *        overflows, its row and column)
@@ -929,22 +935,30 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
 HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx,
                                     hd_error *err);
 
-/* out = A'. Cost O(nnz). */
+/* out = A'.
+ * Errors as hd_csr_check
+ * Cost   O(n_rows + n_cols + nnz) */
 HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx,
                                         hd_error *err);
 
-/* out = A B (Gustavson 1978).
- * Errors HD_ERR_NOT_FINITE (row, column: an entry overflows)
- * Cost   O(flops), and sorting the rows */
+/* out = A B.
+ * Errors HD_ERR_ARGUMENT (row, column: the inner sizes, if they differ), HD_ERR_NOT_FINITE (row,
+ *        column: an entry overflows), and as hd_csr_check
+ * Cost   O(flops), and sorting the rows
+ * Source Gustavson 1978 */
 HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b,
                                       hd_context *ctx, hd_error *err);
 
 /* out = P A P' for a square A: row i of out is row perm[i] of A, and columns likewise.
- * Errors HD_ERR_INDEX if perm is not a permutation */
+ * perm   [n_rows] a permutation
+ * Errors HD_ERR_INDEX (row: perm is not a permutation there), HD_ERR_ARGUMENT: A is not square; and as
+ *        hd_csr_check
+ * Cost   O(n_rows + nnz) */
 HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm,
                                       hd_context *ctx, hd_error *err);
 
-/* y = A x. x [n_cols] and y [n_rows] must not overlap. ctx is for threads. A checked matrix never fails. */
+/* y = A x. x [n_cols] and y [n_rows] must not overlap. ctx is for threads. A is not checked: see
+ * hd_csr_check. Cost: 2 nnz flops. */
 HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx);
 
 /* Frees what the library allocated with the same ctx, and clears the struct. */
@@ -989,13 +1003,15 @@ HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view 
  *         0), finite and not negative. All faces at an edge must agree up to 1e-12 of it; two vertices have
  *         one edge only. No side may be longer than the two others together; faces where one is as long have
  *         no area and are left out
- * opts    as in hd_laplacian_triangles, without updatable. intrinsic_delaunay and tufted take the sheets at
- *         an edge of three faces or more in the order of the faces: their angles in space are not known
+ * opts    as in hd_laplacian_triangles, without updatable. At an edge of three faces or more
+ *         intrinsic_delaunay and tufted take the sheets in the order of the faces, because their angles in
+ *         space are not known
  * Everything that works on a Laplacian works on this one. lap->xyz is NULL: there is no nested dissection,
  * and curves (hd_source) need their lengths. With the distances of vertices in space as lengths, L and B are
  * those of hd_laplacian_triangles to rounding.
- * Errors  as hd_laplacian_triangles; HD_ERR_ARGUMENT or HD_ERR_NOT_FINITE (face, value: a length; vertex, if
- *         two faces do not agree: where their edge begins), also if a face breaks the triangle inequality
+ * Errors  as hd_laplacian_triangles; HD_ERR_ARGUMENT or HD_ERR_NOT_FINITE (face, value: a length) if a length
+ *         is negative or not finite, if a face breaks the triangle inequality, or if two faces do not agree
+ *         (vertex: where their edge begins)
  * Cost    as hd_laplacian_triangles */
 HEATDIFF_API hd_status hd_laplacian_lengths(hd_laplacian **out, const double *lengths, int32_t n,
                                             const int32_t *tri, int32_t n_tri,
@@ -1085,8 +1101,10 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
                                              double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
-/* y = (alpha L + beta B) x for a field on the vertices. x and y [n] must not overlap. y is 0 at vertices
- * without mass. Uses the Laplacian's context. */
+/* y = (alpha L + beta B) x for a field on the vertices. y is 0 at vertices without mass. Uses the Laplacian's
+ * context.
+ * x, y   [n]; they must not overlap
+ * Cost   one pass over L and B; allocates 16 bytes for each row, for the time of the call */
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
@@ -1103,15 +1121,16 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  *        faces has an area any more). After an error nothing has changed
  * Cost   one pass over faces and entries; allocates nothing. Not while a plan on lap is at work */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err);
-/* The same for positions in a vertex buffer. view->n must be lap->n; indices are not looked at. Allocates 24
- * bytes for each vertex for the time of the call, unless the positions are packed and aligned doubles. */
+/* The same for positions in a vertex buffer. view->n must be lap->n; indices are ignored. Errors also as
+ * hd_laplacian_view. Cost: also 24 bytes for each vertex for the time of the call, unless the positions are
+ * packed and aligned doubles. */
 HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh_view *view,
                                                 hd_error *err);
 
 /* New values of the caller's own matrices, of a Laplacian made by hd_laplacian_matrices with the option
  * updatable. Plans notice as above.
- * L, B   n x n. Entries that were not there must be zero; those that are missing now become zeros. Inert
- *        vertices stay inert. If B was diagonal it stays so
+ * L, B   n x n. Entries that the pattern does not have must be zero; those that are missing become zeros.
+ *        Inert vertices stay inert. If B was diagonal it stays so
  * h      as in hd_laplacian_matrices
  * The pair is that of a new Laplacian of these matrices, to the last bit, if that has the same pattern.
  * Errors as hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: an entry that was not there). After
@@ -1120,8 +1139,8 @@ HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
-/* A bound of the largest eigenvalue of B^-1 L, by Gershgorin's circles: on meshes up to some five times as
- * large. HUGE_VAL if b_ratio is 0. Cost: one pass over L. */
+/* A bound of the largest eigenvalue of B^-1 L in 1/area, by Gershgorin's circles. On meshes it is up to about
+ * five times as large as that eigenvalue. HUGE_VAL if b_ratio is 0. Cost: one pass over L. */
 HEATDIFF_API double hd_laplacian_lambda_max(const hd_laplacian *lap);
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
@@ -1143,8 +1162,8 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
                                              double *distance2, hd_context *ctx, hd_error *err);
 
 /* All points within a radius of each query point. Row i of out, m x n, lists by id the points at distance d
- * from query i with d^2 <= radius^2; its values are d^2. Arguments and errors as above. Free out with
- * hd_csr_free and the same ctx. */
+ * from query i with d^2 <= radius^2; its values are d^2. Arguments and errors as above; radius >= 0, HUGE_VAL
+ * for all. Free out with hd_csr_free and the same ctx. Cost: O((n + m) log n + nnz), and sorting the rows. */
 HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n,
                                             const double *query, int32_t m, double radius,
                                             hd_context *ctx, hd_error *err);
@@ -1154,6 +1173,7 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
 /* A built-in set: HD_POLES_UNIFORM of degree 1..14, HD_POLES_KERNEL of degree 2..14, or HD_POLES_DIAGONAL of
  * degree 2..14. tools/poles.py computes and checks the constants.
  * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
+ * Cost   O(1): a table
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
@@ -1165,8 +1185,7 @@ HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int3
  * ctx    for scratch memory
  * theta_i/t[q] is the same for all q. So the factors of L + (theta_i/t[q]) B serve every time, and only the
  * weights differ. The number of pole pairs is the smallest multiple of four that reaches tol for all times.
- * At tol = 1e-6 it is 8 if the largest time is 10 times the smallest, 12 if it is 100 times, and 16 if it is
- * 1000 times.
+ * At tol = 1e-6 it is 8 for times that differ by a factor of 10, 12 for a factor of 100, and 16 for 1000.
  * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set
  *        (value: the ratio of the times); HD_ERR_MEMORY
  * Cost   under a millisecond for each time
@@ -1174,17 +1193,17 @@ HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int3
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
                                           double tol, hd_context *ctx, hd_error *err);
 
-/* c(x) for real x <= 0. */
+/* c(x) for real x <= 0; for a filter's set x = -t lambda. Cost: one division for each pole. */
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
 /* A set for any filter f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1.
  * out        c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Give it to hd_heat_opts.rational,
  *            and out->t to queries as their time
- * lambda_max of hd_laplacian_lambda_max, or more
+ * lambda_max that of hd_laplacian_lambda_max, or more; 1/area
  * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Degrees
  * rise until tol is reached. No pole lies on the spectrum.
- * Distances of the first two kinds are d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and the same with B f
- * for weighted. So f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
+ * Classical distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and weighted ones the same with
+ * B f(B^-1 L). So f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_MEMORY. HD_WARN_ACCURACY: out
  *            is the best set found, and its error is above tol
  * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f
@@ -1195,10 +1214,10 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, const hd_filter *filter
 /* Sets for several filters that share their poles, so that one set of factors serves them all: see
  * hd_heat_filter.
  * out     [count] of one t and the same theta; only the weights a differ
- * filters [count] count >= 1. max_degree is not looked at: up to HD_MAX_POLES pairs are taken
- * Poles are found for at most 20 of the filters, and weights for all. Wave filters of the widths usual for a
- * hundred of them, over three decades of eigenvalues, take 24 to 28 pairs, whether they are 16 or 100. One of
- * them takes 8 to 10.
+ * filters [count] count >= 1. max_degree is ignored: up to HD_MAX_POLES pairs are taken
+ * Poles are found for at most 20 of the filters, and weights for all. Wave filters over three decades of
+ * eigenvalues, as wide as is usual for a hundred of them, take 24 to 28 pairs, whether they are 16 or 100.
+ * One of them alone takes 8 to 10.
  * Errors  as hd_rational_fit (column: which filter). HD_WARN_ACCURACY: an error is above its tol; max_error
  *         of each set says how large it is
  * Cost    a second for 16 filters, three to seven for 100
@@ -1207,7 +1226,7 @@ HEATDIFF_API hd_status hd_rational_fit_shared(hd_rational *out, int32_t count,
                                               const hd_filter *filters, double lambda_max,
                                               hd_context *ctx, hd_error *err);
 
-/* f(lambda) itself, lambda >= 0. */
+/* f(lambda) itself, lambda >= 0 in 1/area. Cost: one value of f. */
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
 
 /* ---- shifted systems ---- */
@@ -1228,14 +1247,16 @@ typedef struct hd_solve_report {
     double error_b;             /* bound of |x - exact|_B / |x|_B; infinite if nothing is known about B */
 } hd_solve_report;
 
-/* Solves (t L + theta B) x = rhs, a complex-symmetric system.
- * t      >= 0
- * theta  not on (-inf, 0]
+/* Solves (t L + theta B) x = rhs, a complex-symmetric system, by iterations.
+ * t      >= 0, unit length^2
+ * theta  not on (-inf, 0]; no unit
  * rhs, x [n] on the vertices; they may be the same array. x is 0 at vertices without mass
  * report filled also if the status is HD_ERR_NOT_CONVERGED
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED,
  *        HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
- * Cost   every call makes its own ordering and preconditioner */
+ * Cost   an ordering and a preconditioner, which every call makes anew; one product with t L + theta B and
+ *        one preconditioner solve for each iteration
+ * Source see hd_solver */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta,
                                         const hd_c64 *rhs, hd_c64 *x, const hd_solve_opts *opts,
                                         hd_solve_report *report, hd_error *err);
@@ -1279,32 +1300,40 @@ typedef struct hd_ldl_report {
  * a      n x n with a symmetric pattern. Its values are ignored, and diagonal entries may be missing
  * Errors as hd_csr_check; HD_ERR_INDEX (row) if perm is not a permutation; HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE,
  *        HD_ERR_MEMORY, HD_ERR_CANCELLED
- * Cost   nearly linear in the non-zeros of A, plus the ordering */
+ * Cost   nearly linear in the non-zeros of A, plus the ordering
+ * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
                                       hd_ldl_report *report, hd_error *err);
 
 /* Factorises a real matrix.
  * val    [nnz] in the order of the analysed pattern. Of each pair (i,j), (j,i) one entry is read
  * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by),
- *        HD_ERR_MEMORY, HD_ERR_CANCELLED */
+ *        HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Cost   hd_ldl_report.factor_flops; 8 bytes for each stored entry
+ * Source Duff, Reid 1983; Liu 1992: multifrontal */
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report,
                                      hd_error *err);
 
 /* Factorises k complex-symmetric matrices in one sweep. Four at a time are stored side by side, so three cost
  * as much as four.
  * val    [k nnz], one matrix after the other
- * Errors as above; pole is the index of the matrix */
+ * Errors as above; pole is the index of the matrix
+ * Cost   for each four matrices 16 times the flops and 8 times the bytes of one real factor
+ * Source Higham 1998 for the missing pivoting */
 HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val,
                                              hd_ldl_report *report, hd_error *err);
 
-/* Solves A x = b for k real right-hand sides. Columns are ldb and ldx apart (0: n). x may be b. The first
- * call of a kind allocates its work arrays. */
+/* Solves A x = b for k real right-hand sides, with the last real factorisation. Columns are ldb and ldx apart
+ * (0: n). x may be b.
+ * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed), HD_ERR_MEMORY
+ * Cost   4 factor_nnz flops for each right-hand side; the factor is read once for eight of them. The first
+ *        call allocates work arrays */
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x,
                                     size_t ldx, hd_error *err);
 
 /* Solves A_q x_q = b_q for all matrices of the last complex factorisation. The arrays are
  * b_q = b + q ldb and x_q = x + q ldx. ldx = 0 means n. ldb = 0 means the same b for all. x may be b if
- * ldb is ldx or 0. */
+ * ldb is ldx or 0. Errors as above; cost: as above for each matrix, four times the flops. */
 HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x,
                                             size_t ldx, hd_error *err);
 
@@ -1318,16 +1347,16 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
 HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, hd_error *err);
 
 /* The same for all k matrices of the last complex factorisation: values [k nnz], diag [k n]. A^-1 is complex
- * symmetric like A. */
+ * symmetric like A. Errors and cost as above. */
 HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag,
                                               hd_error *err);
 
 /* Single entries of A^-1: values[q] is the entry (i[q], j[q]).
  * values [n_entries] for the last real factorisation, [k n_entries] for all matrices of the last complex one
- * Each distinct j takes a forward sweep from j up the elimination tree and a backward sweep down to the
- * rows i. Fronts off these paths are not touched. For entries on the pattern, hd_ldl_inverse is faster from
- * some hundred columns on.
- * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: which entry), HD_ERR_MEMORY */
+ * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: which entry), HD_ERR_MEMORY
+ * Cost   for each distinct j a forward sweep from j up the elimination tree and a backward sweep down to the
+ *        rows i. Fronts off these paths are not touched. For entries on the pattern, hd_ldl_inverse is faster
+ *        from some hundred columns on */
 HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i,
                                               const int32_t *j, double *values, hd_error *err);
 HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries,
@@ -1341,11 +1370,11 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 typedef struct hd_heat hd_heat;
 
 /* A plan for heat on lap, which must outlive the plan. Creating it is cheap: whatever a method needs is made
- * at its first use. So the first column, field or diagonal at a time t carries the factorisation, and further
- * ones at the same t are much faster. The plan keeps the renumbered pair, the analysis, work arrays, and the
- * factors or preconditioners of the last pole set and time.
- * One thread at a time for a plan. Plans with contexts of their own may share lap, see Threads at the top of
- * the file.
+ * at its first use. So the first column, field or diagonal at a time t pays for the factorisation, and
+ * further ones at the same t are much faster. The plan keeps the renumbered pair, the analysis, work arrays,
+ * and the factors or preconditioners of the last pole set and time.
+ * Only one thread at a time may use a plan. Plans with contexts of their own may share lap, see Threads at
+ * the top of the file.
  * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: perm is not a permutation), HD_ERR_MEMORY */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
@@ -1357,7 +1386,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
  * set    copied; NULL: from now on exp, with poles and degree by default
  * Errors HD_ERR_ARGUMENT (also if the plan is of method krylov or of Lanczos), HD_ERR_NOT_FINITE; then
  *        nothing has changed
- * Cost   none */
+ * Cost   O(1) */
 HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_error *err);
 
 /* Common to all queries of a plan:
@@ -1370,11 +1399,11 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
 /* U = K_t F at each time.
  * t      >= 0. t = 0 copies F. For large t the answer tends to the mean over each component; t may be
  *        arbitrarily large.
- *        Where all heat flows out (every component has held vertices, or L of your own does not conserve it)
- *        the answer falls like exp(-t lambda_1) instead, and what poles are off by does not. With the method
- *        auto or direct it then comes from the few eigenpairs left, as distances do: see hd_heat_distance.
- *        So do columns, entries, diagonals, edges and the trace, but not derivatives. Values that underflow
- *        are 0, with an infinite bound and HD_WARN_ACCURACY
+ *        Where all heat flows out (every component has held vertices, or an L of your own does not conserve
+ *        it) the answer falls like exp(-t lambda_1) instead, while the error of poles does not. With the
+ *        method auto or direct it then comes from the few eigenpairs left, as in hd_heat_distance. The same
+ *        holds for columns, entries, diagonals, edges and the trace, but not for derivatives. Values that
+ *        underflow are 0, with an infinite bound and HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
@@ -1396,16 +1425,17 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
  * F, U   as above. The derivative is 0 at vertices without mass and at held ones
  * report bounds are relative to the derivative, which fades faster than K_t F: where t is so large that only
  *        means are left it is 0, and the bound is infinite
- * With poles t dK_t/dt comes by other weights a_i on the same poles,
+ * With poles, t dK_t/dt takes other weights on the same poles,
  *     x c(x) = sum a_i + sum a_i theta_i/(x - theta_i),
- * which is off by no more than max (1 + |x|)|exp(x) - c(x)|. Kernel sets (or diagonal ones, if asked for)
- * have that small; the default is degree 14. Krylov, Lanczos and t = 0 take -K_(t-s) B^-1 L K_s F with s half
- * the least time.
+ * whose error is at most max (1 + |x|)|exp(x) - c(x)|. Kernel sets (or diagonal ones, if asked for) keep that
+ * small; the default is degree 14. Krylov, Lanczos and t = 0 take -K_(t-s) B^-1 L K_s F, with s half of the
+ * smallest time.
  * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply,
  * hd_heat_derivative and hd_heat_adjoint at one t share the factors of the direct method, and the adjoint is
- * that of the very matrix applied, up to rounding. For a loss with gradient G by U = K_t F, its gradient by F
- * is K_t' G, and its derivative by t the sum of all G_ij (dK_t/dt F)_ij.
- * Rough fields at large t leave a derivative that is small beside F. Lower degrees lose it first.
+ * that of the very matrix applied, up to rounding. Let G be the gradient of a loss with respect to U = K_t F.
+ * Then its gradient with respect to F is K_t' G, and its derivative in t is the sum of all
+ * G_ij (dK_t/dt F)_ij. For rough fields at large t the derivative is small beside F, and low degrees lose it
+ * first.
  * Errors as above; HD_ERR_ARGUMENT with a pole set of your own
  * Cost   as above; krylov and Lanczos take two runs */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
@@ -1413,9 +1443,10 @@ HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const 
                                           size_t ldu, hd_report *report, hd_error *err);
 
 /* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g.
- * G, U   as F and U above. The sum over G is kept, and what is at vertices without mass stays; held ones: 0
+ * G, U   as F and U above. The sum of the values is kept. Vertices without mass keep their values; held ones
+ *        have 0
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
- * Errors and cost as hd_heat_apply; a full B takes some 30 products with B for each field besides */
+ * Errors and cost as hd_heat_apply; a full B takes about 30 further products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
@@ -1424,13 +1455,12 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
  * 0 elsewhere; its total heat 1'B u is the mass of s.
  * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
  *        for K_t, and zero for k_t. That of a held vertex is zero
- * Errors and cost as above; HD_ERR_INDEX (vertex, column: which source). The first column at a time t carries
- * the factorisation. */
+ * Errors and cost as hd_heat_apply; HD_ERR_INDEX (vertex, column: which source) */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int32_t k, const int32_t *sources,
                                        double *U, size_t ldu, hd_report *report, hd_error *err);
 
-/* One column at one time. u [n]. */
+/* One column at one time. u [n]. Errors and cost as hd_heat_columns. */
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
                                       double *u, hd_report *report, hd_error *err);
 
@@ -1439,11 +1469,11 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * placed where the source is, as much as its weight: the value at v is the mean of k_t(v,.) over the source.
  * sources [k]
  * U      as above. A source that is one vertex with weight 1 gives that vertex' column to the last bit
- * Errors and cost as of hd_heat_columns; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which
+ * Errors and cost as hd_heat_columns; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which
  *        source, row: which of its points, vertex): a source was not cleared, coordinates of a point are
  *        negative or do not sum to 1, a curve has one point or no length, it needs coordinates that the
- *        Laplacian has not (of held vertices, or of your own matrices), or all weights are 0
- * Weights, or the length of a curve, must sum to between 1e-100 and 1e100 in size. */
+ *        Laplacian does not have (of held vertices, or of your own matrices), or all weights are 0
+ * The absolute values of the weights, or the length of a curve, must sum to between 1e-100 and 1e100. */
 HEATDIFF_API hd_status hd_heat_columns_from(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                             const double *t, int32_t k, const hd_source *sources,
                                             double *U, size_t ldu, hd_report *report,
@@ -1453,8 +1483,8 @@ HEATDIFF_API hd_status hd_heat_columns_from(hd_heat *heat, hd_kernel kernel, int
  * also called auto-diffusion function (Gebal et al. 2009). It comes from selected inversion, without
  * eigenvectors and without columns.
  * t      > 0
- * D      n x n_times, column q for t[q], columns ldd apart (0: n). A vertex without mass has 0 (K_t: 1),
- *        a held one 0
+ * D      n x n_times, column q for t[q], columns ldd apart (0: n); k_t: unit 1/area. A vertex without mass
+ *        has 0 (K_t: 1), a held one 0
  * report the rational part is proven at every vertex. Rounding is measured by solves whose residuals are
  *        known, at the vertices where it is largest; with many times, at each time
  * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set. It is as large as the set's
@@ -1463,7 +1493,8 @@ HEATDIFF_API hd_status hd_heat_columns_from(hd_heat *heat, hd_kernel kernel, int
  *        HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
  * Cost   for each t the factors of all poles, and about twice as much again. Many times share one set of
  *        poles if neither poles nor a degree are chosen: 16 or 100 times over three decades cost four or five
- *        times as much as one */
+ *        times as much as one
+ * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 for the inversion */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, hd_report *report,
                                         hd_error *err);
@@ -1471,9 +1502,9 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
 /* The heat trace tr K_t = sum_i exp(-t lambda_i) over all eigenvalues, as the sum of K_t's diagonal. It is
  * the integral of k_t(x,x). Vertices without mass and held ones do not count.
  * t      > 0
- * Z      [n_times]
+ * Z      [n_times]; no unit
  * bound  [n_times] or NULL: bounds of the absolute error of each
- * report as hd_heat_diagonal; error_relative is of the least exact of them
+ * report as hd_heat_diagonal; error_relative is that of the least accurate time
  * Errors as hd_heat_diagonal
  * Cost   as hd_heat_diagonal; many times share poles whatever B is. Memory for the inverses of each pole: up
  *        to 48 n doubles, with a full B 250 n */
@@ -1482,7 +1513,7 @@ HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const doubl
 
 /* Heat kernel signatures normalised by the trace, k_t(x,x)/tr K_t. Their integral is 1 at each time, so that
  * no time outweighs the others.
- * D      n x n_times as in hd_heat_diagonal
+ * D      n x n_times as in hd_heat_diagonal; unit 1/area
  * report bounds are those of the quotients
  * Errors as hd_heat_diagonal
  * Cost   that of hd_heat_diagonal and of hd_heat_trace
@@ -1516,9 +1547,9 @@ HEATDIFF_API hd_status hd_heat_filter_diagonals(hd_heat *heat, int32_t count,
  *   D(x,k) = |sum_j (log k_(j+1)(x,x) - log k_j(x,x)) exp(-2 pi i jk/m)|,  j = 0 .. m - 1,  m = n_times - 1,
  * with times t_j = t0 (t1/t0)^(j/m). What is shifted in at one end and out at the other is not the same, so
  * t0 and t1 should reach far beyond the details to be told apart.
- * n_times at least 3. The paper takes 385 times from 2 to 2^25 in its units, 16 to an octave
+ * n_times at least 3. Bronstein and Kokkinos take 385 times from 2 to 2^25 in their units, 16 to an octave
  * D       n x n_freq, frequency k = 0 .. n_freq - 1 in column k, columns ldd apart (0: n); n_freq at most
- *         (n_times + 1)/2, the paper takes 6. 0 at vertices without mass and at held ones
+ *         (n_times + 1)/2; they take 6. 0 at vertices without mass and at held ones
  * report  error_bound from error_relative of the signatures, relative to the largest value
  * Errors  as hd_heat_diagonal; HD_ERR_ARGUMENT
  * Cost    hd_heat_diagonal, n n_times doubles, and n n_times n_freq multiply-adds
@@ -1529,26 +1560,29 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
 
 /* Times that suit the area A of the surface, 1'B1: evenly spaced in log t from 0.0024 A to 0.37 A. At the
  * first about 300 eigenvalues matter, at the last two. With one time it is their geometric mean.
- * t      [n_times]
- * Errors HD_ERR_ARGUMENT */
+ * t      [n_times] length^2, or the unit that t has for this Laplacian (kind exp: A is the squared area)
+ * Errors HD_ERR_ARGUMENT
+ * Cost   one pass over the masses
+ * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
 
-/* t = c/lambda_1, lambda_1 the smallest eigenvalue but those of constants. The diagonal of k_t at such times
- * is the auto-diffusion function of Gebal, Baerentzen, Aanaes, Larsen 2009, where c is called t. Small c
- * (0.1) shows details, c = 1 tips and branches.
- * c, t   [n_times] c > 0; they may be the same
+/* t = c/lambda_1, with lambda_1 the smallest eigenvalue except those of constants. The diagonal of k_t at
+ * such times is the auto-diffusion function of Gebal, Baerentzen, Aanaes, Larsen 2009, where c is called t.
+ * Small c (0.1) shows details, c = 1 tips and branches.
+ * c, t   [n_times] c > 0 without unit, t in length^2; both may be the same array
  * Errors and cost as hd_spectrum_create for one pair more than components */
 HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times,
                                          const double *c, double *t, hd_error *err);
 
-/* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the same inversion.
- * kernel HD_KERNEL_SYMMETRIC. (Entries of K_t = k_t B are not symmetric)
+/* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the inversion of hd_heat_diagonal.
+ * kernel HD_KERNEL_SYMMETRIC, because entries of K_t = k_t B are not symmetric
  * t      > 0
  * values [L.nnz n_times], time by time, on the pattern of the Laplacian's L; indices are rows, not vertices
- * If B is not diagonal, a0 B^-1 is left out as above. With poles and degree by default, degree 14 takes over
- * if the rational part of the bound is above 5e-7. Rounding is measured in the rows where it is largest.
- * Errors and cost as above. */
+ * If B is not diagonal, a0 B^-1 is left out as in hd_heat_diagonal. With default poles and degree, degree 14
+ * takes over if the rational part of the bound is above 5e-7. Rounding is measured in the rows where it is
+ * largest.
+ * Errors and cost as hd_heat_diagonal */
 HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                      const double *t, double *values, hd_report *report,
                                      hd_error *err);
@@ -1556,38 +1590,40 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
 /* Diffusion distances from each of k sources to every vertex.
  * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1. With a filter d^2 is the
  *        sum of the filter itself, see hd_rational_fit
- * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n)
+ * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n). Unit:
+ *        classical 1/length, weighted length, commute none, biharmonic length
  * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
  *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
  * Vertices without mass are treated as having a zero kernel row, and so are held ones. Between components,
  * and to vertices without a row, commute and biharmonic are infinite (HUGE_VAL). On components that lose heat
- * they are those of the inverse of L. With poles and degree by default, degree 14 takes over if the error
+ * they are those of the inverse of L. With default poles and degree, degree 14 takes over if the error
  * bound relative to the largest distance is, or will be, above 3.5e-7. Many times then share one set of
  * poles.
- * At large t few eigenpairs are left, and distances of the first two kinds are sums over them: without
- * cancellation, to a part in 1e7 of the largest one, even if that is 1e-300. They are taken where few are
- * expected to do, and where the bound by poles is above 1e-6 and at most 360 are. What is left out is proven
- * small by counting eigenvalues (error_rational), residuals of the eigenpairs are in error_solver, and reason
- * says so. The plan keeps the eigenpairs, and uses them for any t they reach. Where they do not fit the byte
- * limit poles go on. On meshes of more than about 170K vertices (weighted) or 240K the bound may go above
- * 1e-6 between the two.
- * Errors as hd_heat_diagonal
+ * At large t few eigenpairs are left, and classical and weighted distances are sums over them: without
+ * cancellation, to a part in 1e7 of the largest one, even if that is 1e-300. This is done where few
+ * eigenpairs are expected to suffice, and also where the bound by poles is above 1e-6 and at most 360
+ * suffice. What is left out is proven small by counting eigenvalues (error_rational), residuals of the
+ * eigenpairs are in error_solver, and reason says so. The plan keeps the eigenpairs, and uses them for any t
+ * they reach. If they do not fit the byte limit, poles are used. On meshes of more than about 170K vertices
+ * (weighted) or 240K (classical) the bound may be above 1e-6 at times between the two.
+ * Errors as hd_heat_diagonal; HD_ERR_INDEX (vertex, column: which source)
  * Cost   one diagonal at 2t, shared by all sources, and one column for each source. HD_DISTANCE_WEIGHTED with
  *        a full B: the diagonal is that of B K_2t and takes about twice as long. Eigenpairs: as
  *        hd_spectrum_create the first time, later 4 n flops for each. Commute: one real
- *        factorisation and its inversion; biharmonic: the same, and those of one pole */
+ *        factorisation and its inversion; biharmonic: the same, and those of one pole
+ * Source see hd_distance_kind */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                         const double *t, int32_t k, const int32_t *sources,
                                         double *D, size_t ldd, hd_report *report, hd_error *err);
 
 /* Distances from sources that need not be vertices: with the functional c of a source, divided by the sum of
- * its weights, d^2 = (e_v - c)' F (e_v - c), where F is k_2t, B K_2t and so on of the kind. This is the
- * distance between what diffuses from v and from the source. It falls to zero only at a vertex that is the
- * source.
+ * its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on. This
+ * is the distance between what diffuses from v and what diffuses from the source. It is zero only at a vertex
+ * that is the source itself.
  * sources [k], of positive weight. One that reaches into several components, or contains vertices without
  *        mass or held ones, has infinite commute and biharmonic distances
  * D      as above. A source that is one vertex gives that vertex' distances to the last bit
- * Errors as of hd_heat_columns_from. Bounds and cost as above */
+ * Errors as hd_heat_diagonal and hd_heat_columns_from. Bounds and cost as above */
 HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                              const double *t, int32_t k, const hd_source *sources,
                                              double *D, size_t ldd, hd_report *report,
@@ -1597,18 +1633,23 @@ HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kin
  * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
  * K, d   [n_pairs n_times], time by time; each may be NULL. K is not written for commute and biharmonic
  * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
- * cancellation, or from eigenpairs as above. Where its bound is above 1e-6 degree 14 takes over. If these
+ * cancellation, or from eigenpairs as above. Where its bound is above 1e-6, degree 14 takes over. If these
  * columns would take more than half a GiB, it comes from entries and the diagonal at 2t, one column at a
- * time; then sort the pairs by i. Commute and biharmonic always work that way, and need the direct
- * method. */
+ * time; sort the pairs by i in that case. Commute and biharmonic always work that way.
+ * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
+ *        distances of a filter need the direct method
+ * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                      const double *t, int64_t n_pairs, const int32_t *i,
                                      const int32_t *j, double *K, double *d, hd_report *report,
                                      hd_error *err);
 
 /* Farthest points: each is the vertex farthest from all points before it, under the given distance.
- * vertex   [count] the first n_given are given. With n_given = 0 the first vertex with mass begins
- * distance [count] or NULL: distance to the points before it (0 for the first)
+ * t        > 0; ignored by commute and biharmonic
+ * vertex   [count] the first n_given are given. With n_given = 0 the first vertex with mass comes first
+ * distance [count] or NULL: distance of each point to those before it (0 for the first)
+ * Errors   as hd_heat_distance (column: which given vertex); HD_ERR_ARGUMENT (value: count is more than there
+ *          are vertices with mass)
  * Cost     a diagonal, and one column for each point
  * Source   Gonzalez 1985 */
 HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count,
@@ -1620,7 +1661,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
  * hd_heat_distance_from.
  * sources  [k]. With k = 0 this is hd_heat_sample without given points
  * vertex   [count] all are found
- * distance [count] or NULL: distance to the sources and the points before it
+ * distance [count] or NULL: distance of each point to the sources and the points before it
  * Errors   also those of hd_heat_columns_from
  * Cost     a diagonal, and one column for each source and point */
 HEATDIFF_API hd_status hd_heat_sample_from(hd_heat *heat, hd_distance_kind kind, double t,
@@ -1633,6 +1674,7 @@ HEATDIFF_API hd_status hd_heat_sample_from(hd_heat *heat, hd_distance_kind kind,
  * values [n_pairs n_times], time by time: the entry (i[q], j[q])
  * report the bound is relative to the largest |value| in the list. Far from the source, where the kernel is
  *        nearly zero, it may say nothing about a single value
+ * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair)
  * Cost   one column for each distinct j, with n doubles of memory at a time */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int64_t n_pairs, const int32_t *i,
@@ -1643,7 +1685,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 
 /* The smallest eigenpairs of L x = lambda B x: all copies of multiple eigenvalues, and those of all
  * components.
- * opts   count, below, or both: then whichever ends first. count may be all n_active. NULL is an error
+ * opts   count, below, or both: then whichever ends first. count may be as large as n_active. opts must not
+ *        be NULL
  * Errors HD_ERR_ARGUMENT (also: more pairs than rows), HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED,
  *        HD_ERR_INDEX (row: perm is not a permutation), HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
  *        with a result: n_poor is not 0, or completeness is not proven
@@ -1658,10 +1701,11 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
  * x_i(y) and the like. Definitions, kinds, shapes and vertices without mass are those of hd_heat_columns,
  * hd_heat_diagonal and hd_heat_distance. What is left out is bounded.
- * bound  of the shape of the output and ldu or ldd, or NULL: bounds of the error of each value. The part of
- *        the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That of
- *        residuals follows from their sizes, rounding is estimated. For large t the bound is small, for small
- *        t it tells how many pairs are missing
+ * t      >= 0, unit length^2; commute and biharmonic ignore it
+ * bound  NULL, or as large as the output, with the same ldu or ldd: bounds of the error of each value. The
+ *        part of the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That
+ *        of residuals follows from their sizes, and rounding is estimated. The bound is small for large t;
+ *        for small t it shows how much the missing pairs count
  * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column), HD_ERR_MEMORY
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
@@ -1675,8 +1719,8 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
                                             int32_t n_times, const double *t, int32_t k,
                                             const int32_t *sources, double *D, double *bound,
                                             size_t ldd, hd_error *err);
-/* The same from sources that need not be vertices, as in hd_heat_columns_from and hd_heat_distance_from. A
- * source that is one vertex gives that vertex' values to the last bit. */
+/* The same from sources that need not be vertices, as in hd_heat_columns_from and hd_heat_distance_from, with
+ * their errors. A source that is one vertex gives that vertex' values to the last bit. */
 HEATDIFF_API hd_status hd_spectrum_columns_from(const hd_spectrum *s, hd_kernel kernel,
                                                 int32_t n_times, const double *t, int32_t k,
                                                 const hd_source *sources, double *U,
@@ -1690,7 +1734,7 @@ HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distan
  * that method and by the others.
  * t        [n_times] as in the query; commute, biharmonic and spectrum: n_times may be 0
  * k        see hd_query
- * estimate if the memory does not suffice, cost[HD_METHOD_AUTO].fits is 0. That is no error
+ * estimate if there is not enough memory, cost[HD_METHOD_AUTO].fits is 0. That is no error
  * Bytes of the direct method are sums of the arrays that the query will allocate: an upper bound, by a few
  * percent. Those of the other two methods depend on their steps and are estimates. Output arrays are the
  * caller's and not counted.
@@ -1709,8 +1753,8 @@ typedef struct hd_geodesic hd_geodesic;
  * xyz    [3 n] coordinates, finite
  * tri    [3 n_tri] vertex ids in [0, n). Neither xyz nor tri is used after this call. Faces are left out as
  *        in hd_laplacian_triangles. Paths lead around holes
- * opts   NULL: t = h^2, barycentric masses, natural border. Slivers want intrinsic_delaunay: on a plane of
- *        cells squeezed 1:20, mean errors fall from 0.19 to 0.003 of its width
+ * opts   NULL: t = h^2, barycentric masses, natural border. Use intrinsic_delaunay if there are slivers: on a
+ *        plane of cells squeezed 1:20 it lowers mean errors from 0.19 to 0.003 of the width
  * Errors as hd_laplacian_triangles; HD_ERR_ARGUMENT, HD_ERR_BREAKDOWN (vertex: a pivot too small to
  *        divide by)
  * Cost   assembly, one analysis, two real factorisations on one pattern. The plan keeps both: 16 bytes for
@@ -1719,7 +1763,8 @@ typedef struct hd_geodesic hd_geodesic;
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n,
                                           const int32_t *tri, int32_t n_tri,
                                           const hd_geodesic_opts *opts, hd_error *err);
-/* The same for triangles that are known by the lengths of their sides, see hd_laplacian_lengths. */
+/* The same for triangles that are known by the lengths of their sides, with the errors of
+ * hd_laplacian_lengths. */
 HEATDIFF_API hd_status hd_geodesic_create_lengths(hd_geodesic **out, const double *lengths,
                                                   int32_t n, const int32_t *tri, int32_t n_tri,
                                                   const hd_geodesic_opts *opts,
@@ -1729,11 +1774,12 @@ HEATDIFF_API hd_status hd_geodesic_create_view(hd_geodesic **out, const hd_mesh_
                                                const hd_geodesic_opts *opts, hd_error *err);
 /* The same for polygons, and for points. Faces and neighbours are given as in hd_laplacian_polygons and
  * hd_laplacian_tufted_points, and are not used after this call. Errors are those of these functions.
- * Gradients on polygons are those of Alexa and Wardetzky 2011, whose divergence is L but for its stabilising
+ * Gradients on polygons are those of Alexa and Wardetzky 2011, whose divergence is L without its stabilising
  * part; masses are equal parts of the areas. Points get the triangles of the tufted cover; points in the same
- * place have the same distance. Exponential weights know no gradient: there is no plan for them. On spheres
- * of quadrangles, hexagons and evenly spread points distances are as accurate as on triangles with edges as
- * long. Cost: 28 bytes more for each corner of a polygon, and 12 for each non-zero of L */
+ * place have the same distance. Exponential weights have no gradient, so there is no plan for them. On
+ * spheres of quadrangles, hexagons and evenly spread points, distances are as accurate as on triangles with
+ * edges of the same length.
+ * Cost: 28 bytes more for each corner of a polygon, and 12 for each non-zero of L. */
 HEATDIFF_API hd_status hd_geodesic_create_polygons(hd_geodesic **out, const double *xyz, int32_t n,
                                                    const int64_t *face_ptr, const int32_t *face_idx,
                                                    int32_t n_faces, const hd_geodesic_opts *opts,
@@ -1748,16 +1794,16 @@ HEATDIFF_API hd_status hd_geodesic_create_points(hd_geodesic **out, const double
  *        query until an update succeeds
  * Cost   one pass over faces and entries, and the two factorisations */
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_error *err);
-/* The same for positions in a vertex buffer, as in hd_laplacian_update_view. */
+/* The same for positions in a vertex buffer. Errors and cost of the view: see hd_laplacian_update_view. */
 HEATDIFF_API hd_status hd_geodesic_update_view(hd_geodesic *g, const hd_mesh_view *view,
                                                hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to the nearest source.
- * d        [n] in the unit of xyz: |phi - phi_s|, where phi_s of several sources is a mean weighted by their
- *          heat, almost that of the nearest; beyond the first stage of heat, the nearest value. It is zero at
- *          the sources. It is HUGE_VAL where no source can be reached: in components without one, and at
- *          vertices without mass
+ * d        [n] in the unit of xyz: |phi - phi_s|. For several sources phi_s is a mean weighted by their heat,
+ *          which is almost the value of the nearest source; beyond the first stage of heat it is that value.
+ *          d is zero at the sources, and HUGE_VAL where no source can be reached: in components without one,
+ *          and at vertices without mass
  * sources  [n_sources] at least one; repeated sources count once
  * The method itself has an error of the order of h: a few percent on coarse meshes, about one percent on fine
  * ones, and most where fronts meet. Near a source the relative error can be much larger. The result is not a
@@ -1770,26 +1816,29 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
  *          reaches (report->n_stages). Such a solve allocates about 60 bytes for each vertex, for the time of
  *          the call. The first call with several sources, or with more than any before, allocates too; other
  *          calls do not
- * One thread at a time for a plan. */
+ * Only one thread at a time may use a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources,
                                             const int32_t *sources, double *d,
                                             hd_geodesic_report *report, hd_error *err);
 
-/* The same for k sources, each by itself. Column q of D, n x k, columns ldd apart (0: n), holds the distances
- * to sources[q]. Eight sources are solved side by side, in a third of the time of eight calls. The first call
- * with three sources or more allocates about 150 bytes for each vertex. */
+/* The same for k sources, each by itself.
+ * sources [k]
+ * D       n x k, columns ldd apart (0: n): column q holds the distances to sources[q]
+ * Errors  as above
+ * Cost    eight sources are solved side by side, in a third of the time of eight calls. The first call with
+ *         three sources or more allocates about 150 bytes for each vertex */
 HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources,
                                              double *D, size_t ldd, hd_geodesic_report *report,
                                              hd_error *err);
 
 /* The distance of every vertex to a source that need not be a vertex: to the nearest of its points, or to its
- * curve. Weights are not looked at.
+ * curve. Weights are ignored.
  * source every point of it, and every piece of a curve, must lie in a face that is used, its edges and
- *        corners included. Coordinates below 1e-9 count as zero. Lengths of curves are not looked at
- * d      [n] as above. It is exact, along straight lines within these faces, at their corners: there the
- *        gradient of these distances takes the place of that of heat. They also say how far phi is from the
- *        distance: a point has the mean of phi_v - d_v at its corners by its barycentric coordinates, a curve
- *        one mean along its length
+ *        corners included. Coordinates below 1e-9 count as zero. Lengths of curves are ignored
+ * d      [n] as above. At the corners of these faces it is exact, along straight lines within the faces, and
+ *        inside them the gradient of these distances takes the place of that of heat. The constant in phi
+ *        follows from them too: for a point the mean of phi_v - d_v at its corners, by its barycentric
+ *        coordinates; for a curve one mean along its length
  * Heat starts with the functional of the source, see hd_source. A source of vertices only gives the distances
  * of hd_geodesic_distance to the last bit.
  * Errors and cost as above, and those of hd_heat_columns_from; HD_ERR_ARGUMENT (row): a point or a piece is
@@ -9748,7 +9797,7 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
         if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
             hdi_fail_face(
                 s->e, HD_ERR_ARGUMENT,
-                "two points are too close together: the square of their distance is no normal number", -1,
+                "two points are too close together: the square of their distance is too small", -1,
                 cloud->first[i], d2[1]);
             return hdi_scope_end(&own);
         }
@@ -9899,7 +9948,7 @@ enum { HDI_NEIGHBOURS = 30 };
 static void hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
     rep->neighbours = opts && opts->neighbours ? opts->neighbours : HDI_NEIGHBOURS;
     hdi_refuse(rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS,
-               "laplacian of points: neighbours lies in 6..128", e);
+               "laplacian of points: neighbours is not in 6..128", e);
 }
 
 /* Checks the options of point sets and resolves them into lap->points. */
@@ -9913,12 +9962,12 @@ static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_
     hdi_refuse(opts && opts->updatable,
                "laplacian of points: not updatable, because new places of points make a new pattern", e);
     hdi_refuse(opts && (opts->intrinsic_delaunay || opts->tufted),
-               "laplacian of points: exponential weights know no triangles; "
+               "laplacian of points: exponential weights use no triangles; "
                "hd_laplacian_tufted_points makes some", e);
     hdi_refuse(!hdi_finite(rep->bandwidth) || rep->bandwidth < 0,
                "laplacian of points: the bandwidth is negative or not finite", e);
     hdi_refuse(!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1),
-               "laplacian of points: weight_cut lies in (0, 1)", e);
+               "laplacian of points: weight_cut is not in (0, 1)", e);
     hdi_point_neighbours(rep, opts, e);
 }
 
@@ -18056,7 +18105,7 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
     }
     if (!hdi_shared_pick(&set, hdi_divide(most, least), tol))
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "shared poles: no set is that exact over so wide a range of times", -1, -1,
+                            "shared poles: no set is that accurate over so wide a range of times", -1, -1,
                                 hdi_divide(most, least));
     room = HDI_TAKE(&s, double, hdi_shared_room(set.n_poles));
     for (q = 0; room && q < n_times; q++) {
@@ -26054,6 +26103,7 @@ static void hdi_fading_again(hdi_heat_call *h, const hdi_fading_start *from) {
     *h->rep = from->rep;
     h->t = from->t;
     h->still = 0;
+    h->batch = 0;                                /* the fields are as they were: iterations may take over */
     h->lap = h->heat->source;
     if (!h->ask.list) return;
     h->ask.list->ledger[h->now] =
@@ -28110,6 +28160,7 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     const hd_report before = *h->rep;
     hd_report one;
     memset(&one, 0, sizeof one);
+    hdi_error_clear(&one.error);
     if (!hdi_fading_enough(h, t, hdi_fading_depth(h->heat), most)) return 0;
     *h->rep = one;
     if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
@@ -28170,6 +28221,7 @@ static hd_status hdi_fading_rest(hdi_heat_call *h, const hdi_fading_to *to, cons
     for (q = 0; q < h->ask.n_times; q++) n_done += done[q];
     if (n_done == h->ask.n_times) return HD_OK;
     memset(h->rep, 0, sizeof *h->rep);
+    hdi_error_clear(h->e);
     if (hdi_fading_poles(h, to, done) < 0 || n_done == 0) return h->e->status;
     rest = *h->rep;
     *h->rep = others;
@@ -28462,7 +28514,7 @@ static hd_status hdi_filters_check(const hd_heat *heat, int32_t count, const hd_
         if (hdi_rational_check(sets + q, e) >= 0)
             hdi_refuse(sets[q].t != own->t || sets[q].lambda_max != own->lambda_max ||
                        !hdi_set_same_poles(sets + q, own),
-                       "filters: a set has not the poles, t and lambda_max of the plan's", e);
+                       "filters: a set differs from the plan's in poles, t or lambda_max", e);
         if (e->status < 0) e->column = q;
     }
     return e->status;
@@ -28470,8 +28522,7 @@ static hd_status hdi_filters_check(const hd_heat *heat, int32_t count, const hd_
 
 /* ==== [28] diffusion ====
  * Owns distances: the metric of a kind and a time, one to all, pairs, farthest points; and estimates of what
- * queries take. May call [27] and
- * [24].
+ * queries take. May call [27] and [24].
  * This work is based on
  *   R. Coifman, S. Lafon, Diffusion maps, 2006
  *   G. Patane, M. Spagnuolo, Heat diffusion kernel and distance on surface meshes and point sets, 2013,
@@ -30059,8 +30110,8 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
     if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
     if (n_times > 1 || n_times < 0)
-        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: commute and biharmonic have one time", -1, -1,
-                            n_times);
+        return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
+                            -1, -1, n_times);
     return hdi_direct_only(h);
 }
 
@@ -30647,7 +30698,7 @@ static hd_status hdi_estimate_check(hdi_heat_call *h, hd_query query, int32_t k)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
     if (k < 0)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
-    if (query == HD_QUERY_SPECTRUM && !HDI_HAS_DIRECT) return HDI_LEFT_OUT(h->e, DIRECT, "factorisations");
+    if (query == HD_QUERY_SPECTRUM && !HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
     return query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM ? hdi_direct_only(h) : HD_OK;
 }
 
@@ -30991,7 +31042,7 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, hd_erro
     g->t = g->t_asked > 0 ? g->t_asked : g->t_in_h2 * (lap->h * lap->h);
     if (!hdi_finite(g->t) || !(g->t > 0))
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "geodesic: the square of the mean edge length is no number to compute with",
+                            "geodesic: the square of the mean edge length overflows or underflows",
                             -1, -1, lap->h);
     for (i = 0; i < g->n_active; i++) {
         const int32_t from = g->sym.perm[i];
@@ -31924,7 +31975,7 @@ static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance)
 
 static hd_status hdi_geo_not_finite(hd_error *e, int32_t column) {
     hdi_fail(e, HD_ERR_BREAKDOWN,
-             "geodesic: rounding has eaten the answer: the mesh has faces that are too thin");
+             "geodesic: rounding leaves nothing of the answer: the mesh has faces that are too thin");
     e->column = column;
     return e->status;
 }
@@ -32313,7 +32364,7 @@ static hd_status hdi_geo_from(hd_geodesic *g, const hd_source *s, double *d, hd_
             (void)hdi_geo_one(g, list, s->count, d, rep, e);
         return hdi_scope_end(&scope);
     }
-    if (g->poly.ptr) (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons a source must be vertices");
+    if (g->poly.ptr) (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
     z.item = HDI_TAKE(&scope, hdi_geo_item, z.n_items);
     z.component = HDI_TAKE(&scope, int32_t, z.n_items);
     z.value = HDI_TAKE(&scope, double, z.n_items);
@@ -32378,7 +32429,7 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_
     hdi_refuse(!hdi_finite(in->lambda) || !(in->lambda > 0 && in->lambda <= 1e100),
                "geodesic: lambda is not between 0 and 1e100", e);
     hdi_refuse(in->neighbours < 6 || in->neighbours > HDI_MOST_NEIGHBOURS,
-               "geodesic: neighbours lies in 6..128", e);
+               "geodesic: neighbours is not in 6..128", e);
     hdi_refuse(in->points && o->border != HD_GEODESIC_BORDER_NATURAL,
                "geodesic: points cannot tell their border", e);
     hdi_refuse(in->ptr && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
@@ -33106,7 +33157,7 @@ HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_time
     if (call.e->status < 0) return call.e->status;
     for (q = 0; q < lap->n_components && lap->conserves; q++)
         constants += hdi_finite(lap->component_mass[q]) ? 1 : 0;
-    hdi_refuse(constants >= lap->n_active, "times: there are no eigenvalues but those of constants", call.e);
+    hdi_refuse(constants >= lap->n_active, "times: the only eigenvalues are those of constants", call.e);
     if (call.e->status < 0) return call.e->status;
     memset(&o, 0, sizeof o);
     o.count = constants + 1;

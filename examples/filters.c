@@ -8,9 +8,9 @@
 
        cc -O2 examples/filters.c -o filters -lm && ./filters
 
-   It prints the number of poles and the bound of all diagonals, then a row for each energy: what the poles are
-   off by, the signature where the torus is thin and where it is thick, and how far the signature from 100
-   eigenpairs is off. */
+   It prints the number of poles and the bound of all diagonals, then a row for each energy: the error of the
+   poles, the signature where the torus is thin and where it is thick, and the error of the signature from 100
+   eigenpairs. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"

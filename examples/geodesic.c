@@ -5,8 +5,8 @@
        cc -O2 examples/geodesic.c -o geodesic -lm && ./geodesic
 
    A torus is made in memory, and one plan answers all questions. First, distances around the tube are
-   compared with the exact ones. Then eight vertices are chosen, each the farthest from those before it. At
-   last the distances from all eight are computed at once, to print how close the two nearest samples are. */
+   compared with the exact ones. Then eight vertices are chosen, each the farthest from those before it.
+   Finally the distances from all eight are computed at once, to print how close the two nearest samples are. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"

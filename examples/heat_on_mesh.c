@@ -4,9 +4,9 @@
 
        cc -O2 examples/heat_on_mesh.c -o heat_on_mesh -lm && ./heat_on_mesh
 
-   A torus is made in memory. Heat starts at one vertex and diffuses for three times. For each time the
-   example prints how warm it is at the source and on the far side, the total heat (it is conserved), and the
-   bound of the error. */
+   A torus is made in memory. Heat starts at one vertex and is followed up to three times t. For each t
+   the example prints how warm it is at the source and on the far side, the total heat (it is conserved), and
+   the bound of the error. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"

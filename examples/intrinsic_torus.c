@@ -7,8 +7,8 @@
    A flat torus is a rectangle whose opposite sides are joined. It cannot stand in space without being bent or
    stretched, but its triangles are known by the lengths of their sides, and nothing else is needed. Heat
    starts inside a face rather than at a vertex. Heat, diffusion distance and geodesic distance are compared
-   with the exact ones. At last the same torus is cut into long triangles: flips of edges along the surface
-   make good ones of them. */
+   with the exact ones. Finally the same torus is cut into long triangles, and flips of edges along the surface
+   turn these into good ones. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"

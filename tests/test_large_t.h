@@ -342,6 +342,7 @@ static void large_fading_at(large_case *c, hd_heat *heat, double x, int32_t row)
     large_fading_edges(c, heat, x);
     for (i = 0; i < m; i++) sum += exp(-t * (c->p.lambda[i] - c->low));
     CHECK(hd_heat_trace(heat, 1, &t, &Z, &bound, &r, NULL) == HD_OK && r.error_bound <= 1e-6);
+    CHECK(r.error.status == HD_OK && r.error.face == -1 && r.error.column == -1);
     CHECK_MSG(fabs(Z * exp(x) - sum) <= 1e-7 * sum && fabs(Z * exp(x) - sum) <= bound * exp(x) + 4e-13 * (1 + x) * sum, "%s: trace %g, not %g at %g", c->name, Z * exp(x), sum, x);
     free(u);
     free(to);

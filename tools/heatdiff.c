@@ -390,6 +390,7 @@ typedef struct source_point {
 } source_point;
 
 typedef struct options {
+    const char *program;             /* as it was called */
     unsigned command;
     const char *mesh;
     /* of render: all of them; input and mesh are the first */
@@ -768,7 +769,7 @@ static const option_def OPTIONS[] = {
       "where to measure from, a column for each: vertices, counted from\n"
       SOURCE_FORMS },
     { "source-file", 0, CMD_ANYWHERE, 1, parse_text, AT(source_file), NULL, 0, 0, "F", "a file name",
-      "one source more: its points, one on each line of F" },
+      "one more source: its points, one on each line of F" },
     { "curve", 0, CMD_ANYWHERE, 0, parse_flag, AT(curve), NULL, 0, 0, NULL, "no value",
       "the points of each source are joined to a curve, of weight 1 for\n"
       "each unit of length; two in turn lie in one face" },
@@ -821,12 +822,12 @@ static const option_def OPTIONS[] = {
       "triangles; with voronoi-cot heat is then never negative" },
     { "tufted", 0, CMD_SURFACE, 0, parse_flag, AT(tufted), NULL, 0, 0, NULL, "no value",
       "the same for any triangles, also with borders and where\n"
-      "three and more faces meet; of points, with triangles made\nfrom their neighbours" },
+      "three or more faces meet; of points, with triangles made\nfrom their neighbours" },
     { "lengths", 0, CMD_SURFACE, 0, parse_text, AT(lengths), NULL, 0, 0, "F", "a file name",
       "of triangles: a row for each face of MESH with the lengths of its\n"
       "edges, from its first corner to the second, from there to the\n"
-      "third, and back, as text or .npy. The places of the vertices\n"
-      "then serve pictures and files alone" },
+      "third, and back, as text or .npy. The coordinates of the\n"
+      "vertices then serve only pictures and files" },
     { "border", 0, CMD_LAPLACIAN, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
       "of meshes: natural (default): no heat leaves through a border;\n"
       "dirichlet: the vertices of borders are held at zero" },
@@ -900,13 +901,13 @@ static const option_def OPTIONS[] = {
       "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
     { "dry-run", 0, CMD_SOLVES, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
-      "only tell what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
+      "only say what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv .npy .ply .obj .vtu or .png;\n"
       "- or nothing: standard output, as text. In .ply the columns are\n"
-      "quality, quality_1, ..; .obj has the colours alone" },
+      "quality, quality_1, ..; .obj has only the colours" },
     { "output", 'o', CMD_LEVELS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the lines go: .obj, or .txt, .csv or .npy as a table;\n- or nothing: standard output, as text" },
     { "no-header", 0, CMD_SOLVES | CMD_LEVELS, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
@@ -1252,9 +1253,9 @@ static int check_intrinsic(const options *o)
         o->laplacian == HD_LAPLACIAN_EXP)
         return fail(USAGE, "--%s takes --laplacian fem, voronoi-cot or cot: %s has no triangles", name,
                     word_of(LAPLACIANS, o->laplacian));
-    if (o->lambda > 0) return fail(USAGE, "--%s is of triangles, --lambda of polygons", name);
+    if (o->lambda > 0) return fail(USAGE, "--%s is for triangles, --lambda for polygons", name);
     if (o->has_bandwidth || o->weight_cut > 0)
-        return fail(USAGE, "--%s is of triangles, --%s of exponential weights", name,
+        return fail(USAGE, "--%s is for triangles, --%s for exponential weights", name,
                     o->has_bandwidth ? "bandwidth" : "weight-cut");
     return DONE;
 }
@@ -1265,10 +1266,10 @@ static int check_lengths(const options *o)
     if (!o->lengths) return DONE;
     if (o->laplacian == HD_LAPLACIAN_POLYGON || o->laplacian == HD_LAPLACIAN_VORONOI_EXP ||
         o->laplacian == HD_LAPLACIAN_EXP)
-        return fail(USAGE, "--lengths takes --laplacian fem, voronoi-cot or cot: %s needs places in space",
+        return fail(USAGE, "--lengths takes --laplacian fem, voronoi-cot or cot: %s needs coordinates",
                     word_of(LAPLACIANS, o->laplacian));
     if (o->lambda > 0 || o->has_bandwidth || o->weight_cut > 0)
-        return fail(USAGE, "--lengths is of triangles, --%s of %s",
+        return fail(USAGE, "--lengths is for triangles, --%s for %s",
                     o->lambda > 0 ? "lambda" : o->has_bandwidth ? "bandwidth" : "weight-cut",
                     o->lambda > 0 ? "polygons" : "exponential weights");
     if (o->ordering == HD_ORDERING_NESTED_DISSECTION)
@@ -1373,7 +1374,7 @@ static void print_help(void)
     printf("heatdiff - heat diffusion kernels on meshes\n\nUse:  heatdiff COMMAND [OPTIONS] MESH\n\n"
            "Commands\n");
     for (i = 0; i < N_COMMANDS; i++) printf("  %-9s %s\n", COMMANDS[i].name, COMMANDS[i].help);
-    printf("\nOptions\n  heatdiff COMMAND --help lists those of a command; --version tells the version\n"
+    printf("\nOptions\n  heatdiff COMMAND --help lists those of a command; --version prints the version\n"
            "\nExamples\n"
            "  heatdiff demo\n"
            "  heatdiff info bunny.obj\n"
@@ -2027,7 +2028,7 @@ static int check_laplacian(const run *r)
     if (r->o->lambda > 0 && is_points(r))
         return fail(FAILED, "%s: --lambda is for faces, and these are points", r->mesh_name);
     if (r->o->lambda > 0 && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
-        return fail(FAILED, "%s: --lambda is of --laplacian polygon, and triangles have %s by default; "
+        return fail(FAILED, "%s: --lambda is for --laplacian polygon, and triangles have %s by default; "
                     "on triangles it changes nothing", r->mesh_name,
                     word_of(LAPLACIANS, (int)laplacian_kind(r)));
     return DONE;
@@ -4599,7 +4600,7 @@ static int demo_files(const run *r)
 
 static void demo_print(const run *r, const demo_checks *c)
 {
-    const char *folder = demo_folder(r);
+    const char *folder = demo_folder(r), *program = r->o->program;
     const hd_laplacian *lap = r->lap;
     double spent = 0;
     int q, k;
@@ -4621,7 +4622,7 @@ static void demo_print(const run *r, const demo_checks *c)
     for (q = 0; q < DEMO_SOURCES; q++)
         printf("  %s/heat-%s.png  the four times side by side\n", folder, DEMO_NAMES[q]);
     printf("  %s/isolines.png  one of them, large, with lines of equal heat\n", folder);
-    printf("  %s/distance.png  the diffusion distance from the trunk to every vertex, exactly\n", folder);
+    printf("  %s/distance.png  the diffusion distance from the trunk to every vertex\n", folder);
     printf("  %s/signature.png  the heat kernel signature: what the surface looks like from each vertex\n",
            folder);
     printf("  %s/distance-signature.ply  the mesh with both\n", folder);
@@ -4629,12 +4630,12 @@ static void demo_print(const run *r, const demo_checks *c)
         printf("  %s/heat-%s.ply  the mesh with all values, for MeshLab, Blender or ParaView\n", folder,
                DEMO_NAMES[q]);
     printf("\nNext, on this mesh or one of your own\n");
-    printf("  heatdiff info %s/heat-trunk.ply\n", folder);
-    printf("  heatdiff kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", folder);
-    printf("  heatdiff kernel --source 0,100 --t auto:4 %s/heat-trunk.ply > columns.txt\n", folder);
-    printf("  heatdiff distance --source 0 --t 500h2 %s/heat-trunk.ply -o distance.ply\n", folder);
-    printf("  heatdiff sample --count 10 --t 500h2 %s/heat-trunk.ply\n", folder);
-    printf("  heatdiff --help\n");
+    printf("  %s info %s/heat-trunk.ply\n", program, folder);
+    printf("  %s kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", program, folder);
+    printf("  %s kernel --source 0,100 --t auto:4 %s/heat-trunk.ply > columns.txt\n", program, folder);
+    printf("  %s distance --source 0 --t 500h2 %s/heat-trunk.ply -o distance.ply\n", program, folder);
+    printf("  %s sample --count 10 --t 500h2 %s/heat-trunk.ply\n", program, folder);
+    printf("  %s --help\n", program);
 }
 
 static int command_demo(run *r)
@@ -4734,6 +4735,7 @@ int main(int argc, char **argv)
     if (answer_questions(argc, argv, command)) return close_stdout();
     if (!command) return fail_command(argc > 1 ? argv[1] : NULL);
     memset(&o, 0, sizeof o);
+    o.program = argv[0];
     o.command = command->bit;
     o.kernel = o.command == CMD_HKS ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
     code = read_options(&o, argc, argv);
