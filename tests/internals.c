@@ -1645,6 +1645,47 @@ static hdi_lane *int_lanes(const hd_laplacian *lap, int32_t k, hd_context *ctx) 
 }
 
 /* After every number of steps the bound against the error of the answer, times from a third to three times the middle one, and far from it. */
+/* What is missed at several times is the largest of the bounds, relative to |f| and to what is asked for. */
+static void int_silan_miss(const hdi_silan *z, int32_t r, double t, const hdi_ritz *ritz) {
+    const double times[2] = {0.7 * t, 1.6 * t};
+    double miss[2], bound = 0, share = 0;
+    hd_error e;
+    int q;
+    hdi_error_clear(&e);
+    for (q = 0; q < 2; q++) {
+        const double one = hdi_ritz_bound(ritz, times[q] / z->g);
+        bound = fmax(bound, one);
+        share = fmax(share, one / (1e-5 * hdi_ritz_size(ritz, times[q] / z->g)));
+    }
+    CHECK(hdi_silan_miss(z, r, times, 2, 1e-5, 0, miss, &e) == HD_OK && bound > 0);
+    CHECK_MSG(fabs(miss[1] / bound - 1) < 1e-12 && fabs(miss[0] / share - 1) < 1e-12, "%g, %g missed, not %g, %g", miss[0], miss[1], share, bound);
+}
+
+/* The next look at a bound that falls by half in each step comes after half of the steps that are left. */
+static void int_lanczos_pace(void) {
+    CHECK(hdi_lanczos_pace(194, 190, ldexp(1, -14), ldexp(1, -10), ldexp(1, -23)) == 4);
+    CHECK(hdi_lanczos_pace(194, 190, ldexp(1, -14), ldexp(1, -10), ldexp(1, -15)) == 1);
+    CHECK(hdi_lanczos_pace(194, 190, ldexp(1, -14), ldexp(1, -10), ldexp(1, -90)) == 6 && hdi_lanczos_pace(194, 190, 1, 1, 1e-9) == 6);
+}
+
+/* Eigenvalues 1/(1 + g lambda) above one show that L is not semidefinite, but not where the solves themselves are off by as much. */
+static void int_ritz_above(void) {
+    hdi_silan *z = DENSE_NEW(hdi_silan, 1);
+    hdi_ritz s;
+    hd_error e;
+    double known[2] = {1.05, 1};                 /* an eigenvalue, and its vector */
+    hdi_error_clear(&e);
+    z->eigen[0] = known;
+    z->eigen_m[0] = 1;
+    z->f_norm[0] = z->whole[0] = 1;
+    z->solved = 9;
+    z->noise[0][0] = 1e-3;
+    CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) == HD_OK);
+    z->noise[0][0] = 1e-5;
+    CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) < 0);
+    free(z);
+}
+
 static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const char *what) {
     static const double factors[5] = {0.03, 0.3, 1, 3, 30};
     const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
@@ -1691,6 +1732,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 CHECK(hdi_silan_ritz(z, r, step, &ritz, &e) == HD_OK);
                 bound = hdi_ritz_bound(&ritz, at / z->g);
                 size = hdi_ritz_size(&ritz, at / z->g);
+                if (step == 3 && q == 0) int_silan_miss(z, r, t, &ritz);
                 z->done[r] = step;
                 sum.count = r + 1;               /* of several abreast, only this one is wanted */
                 memset(sum.u, 0, sizeof sum.u);
@@ -2451,6 +2493,52 @@ static void int_ground_probes(void) {
     free(work);
 }
 
+/* Biharmonic columns by arrays that are apart: G B G c, the means taken out, and the bounds of both solves. */
+static void int_ground_apart(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    const int32_t n = lap->n_active;
+    hd_context ctx;
+    hd_error e;
+    hdi_elim m;
+    hdi_ground g;
+    double *room, *x = DENSE_NEW(double, 6 * (int64_t)n), *b = x + n, *u = b + n, *y = u + n, *extra = y + n, *r = extra + n, *sweep;
+    int32_t i, k;
+    int64_t p;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&g, 0, sizeof g);
+    CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK && hdi_ground_make(&m, &g, &e) == HD_OK && hdi_ground_forms(&m, &g, &e) == HD_OK);
+    room = DENSE_NEW(double, (int64_t)hdi_ground_room(&m));
+    sweep = DENSE_NEW(double, (int64_t)hdi_sweep_size(&m.sym, 1, 1));
+    for (k = 0; k < n; k += 13) {
+        const hdi_terms at = hdi_terms_vertex(m.lap->vertex[k]);
+        const double bound = hdi_ground_column(&m, &g, &at, 1, x, room);
+        double first, second, want, ws = g.mean[k], worst = 0, root = sqrt(fmax(0, g.diag[k]));
+        memset(b, 0, (size_t)n * sizeof *b);
+        if (!g.held[k]) b[k] = 1;
+        hdi_ground_refined(&m, &g, b, NULL, u, &first, r, sweep);
+        for (i = 0; i < n; i++) {
+            b[i] = extra[i] = 0;
+            for (p = m.lap->L.row_ptr[i]; p < m.lap->L.row_ptr[i + 1]; p++) {
+                b[i] += m.lap->B[p] * u[m.lap->L.col[p]];
+                extra[i] += fabs(m.lap->B[p] * u[m.lap->L.col[p]]);
+            }
+            extra[i] *= ((double)(m.lap->L.row_ptr[i + 1] - m.lap->L.row_ptr[i]) + 2) * DBL_EPSILON / 8;
+            if (g.held[i]) b[i] = 0;
+        }
+        hdi_ground_refined(&m, &g, b, extra, y, &second, r, sweep);
+        want = g.trace[0] * first + second + g.mean_off[0] * (fabs(ws) / m.lap->component_mass[0] + sqrt(g.trace[0] / m.lap->component_mass[0]) * root);
+        for (i = 0; i < n; i++) worst = fmax(worst, fabs(x[i] - y[i] + ws * g.mean[i] / m.lap->component_mass[0]));
+        CHECK_MSG(worst <= 1e-12 * dense_max_abs(y, n) && bound <= 1.01 * want && want <= 1.01 * bound, "column %d: off by %g, bound %g, not %g", (int)k, worst, bound, want);
+    }
+    hdi_ground_free(&g, &ctx);
+    hdi_elim_free(&m);
+    CHECK(ctx.bytes_in_use == 0);
+    hd_laplacian_free(lap);
+    free(room);
+    free(x);
+    free(sweep);
+}
+
 /* Parts of the bounds where heat fades: with X the pairs found and g = e_v/b_v, |X' B g| = |x(v)|, and |Q g|^2 = 1/b_v - |x(v)|^2. */
 static void int_fading_reach(void) {
     shape s = shape_grid(12, 9, 0.2);
@@ -2905,6 +2993,25 @@ static void int_linear_precision(void) {
     shape_poly_free(&s);
 }
 
+/* The residual of the heat equation stays within its arrays. */
+static void int_geo_heat_off(void) {
+    shape s = shape_grid(6, 5, 0.2);
+    hd_geodesic *g = NULL;
+    double *u = DENSE_NEW(double, s.n + 1), *r = DENSE_NEW(double, s.n + 1);
+    int32_t i;
+    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK && g->n_active == s.n);
+    for (i = 0; i < s.n; i++) {                  /* what a constant makes: no more than the masses */
+        u[i] = 2;
+        r[i] = 2 * g->mass[i];
+    }
+    u[s.n] = r[s.n] = 1e9;
+    CHECK(hdi_geo_heat_off(g, u, r) < 1e-12 && r[s.n] == 1e9);
+    hd_geodesic_free(g);
+    shape_free(&s);
+    free(u);
+    free(r);
+}
+
 /* What is known of an error by numbers that are none, or infinite: nothing, and of progress that it has begun. */
 static void int_no_numbers(void) {
     const double none = (double)NAN, endless = (double)INFINITY;
@@ -2920,6 +3027,7 @@ int main(void) {
 #endif
     int_no_numbers();
     int_linear_precision();
+    int_geo_heat_off();
     int_length_area();
     int_flips();
     int_around();
@@ -2963,6 +3071,8 @@ int main(void) {
     int_check_plain();
     int_silan_slopes();
     int_silan_bounds();
+    int_lanczos_pace();
+    int_ritz_above();
     int_batches();
     test_shared();
     int_invert();
@@ -2977,6 +3087,7 @@ int main(void) {
     int_many_packs();
     int_window_probes();
     int_ground_probes();
+    int_ground_apart();
     int_fading_reach();
     int_ground_need();
     int_ground_refined();

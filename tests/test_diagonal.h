@@ -136,6 +136,7 @@ static void diag_entries_of(hd_ldl *f, int32_t n, int32_t k, uint64_t seed, cons
     }
     i[SOME - 1] = n;
     CHECK(k > 0 || hd_ldl_inverse_entries(f, SOME, i, j, real, NULL) == HD_ERR_INDEX);
+    CHECK(k > 0 || hd_ldl_inverse_entries(f, 0, NULL, NULL, NULL, NULL) == HD_OK);
     free(rhs);
     free(x);
     free(zrhs);
