@@ -2581,6 +2581,61 @@ static void int_fading_reach(void) {
     free(work);
 }
 
+/* A diagonal where heat fades: the bound written out above the pairs' sums, with numbers of which each part is large. */
+static void int_fading_note(void) {
+    hd_laplacian *lap = int_path(3);
+    hdi_modes of;
+    hdi_fading_diagonal a;
+    hdi_fading_size c[3];
+    hdi_ledger ledger = hdi_modes_ledger();
+    double left[3] = {0.09, 0.09, 0.09}, value[3] = {5, 5, 5}, out[3];
+    const double s_c = 0.2 + 0.3 * 2, last = 0.7 + 0.3 * 2;   /* s(c) and the last sum, with m t |R| |c| = 0.3 times 2 */
+    memset(&of, 0, sizeof of);
+    memset(&a, 0, sizeof a);
+    memset(c, 0, sizeof c);
+    of.s.left = left;
+    of.off_norm = 0.5;
+    a.of = &of;
+    a.lap = lap;
+    a.value = value;
+    a.c = a.g = c;
+    a.decay.scale = 1;
+    a.decay.mixed = 0.3;
+    a.decay.t = 2;
+    c[1].found = 4;
+    c[1].inner = 0.7;
+    c[1].side = 0.2;
+    hdi_fading_diagonal_note(&a, 1, out, &ledger);
+    CHECK_MSG(fabs(ledger.off.solver - (0.3 * 0.3 * 0.09 + 2 * s_c * 0.3 + 2 * last)) < 1e-12 && ledger.off.rational == 0, "bound %g", ledger.off.solver);
+    hd_laplacian_free(lap);
+}
+
+/* The rows at which rounding is measured, by search. */
+static void int_probe_rows(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    const int32_t n = lap->n_active;
+    double *k = DENSE_NEW(double, 2 * (int64_t)n), *g = k + n;
+    uint64_t seed = 8;
+    int32_t i, round, p;
+    for (round = 0; round < 20; round++) {
+        int32_t first = 0, second = 0, least = 0, found = 0;
+        hdi_probe probe;
+        for (i = 0; i < n; i++) {
+            k[i] = 1.5 + dense_signed(&seed);
+            g[i] = 1.5 + dense_signed(&seed);
+            if (hdi_row_diagonal(lap, i) / lap->b_diag[i] > hdi_row_diagonal(lap, first) / lap->b_diag[first]) first = i;
+            if (hdi_row_diagonal(lap, i) * k[i] > hdi_row_diagonal(lap, second) * k[second]) second = i;
+            if (k[i] / g[i] < k[least] / g[least]) least = i;
+        }
+        CHECK(hdi_window_worst(k, g, n) == least);
+        probe = hdi_probe_rows(lap, k, least);
+        for (p = 0; p < probe.k; p++) found |= (probe.row[p] == first) + 2 * (probe.row[p] == second) + 4 * (probe.row[p] == least);
+        CHECK_MSG(found == 7 && probe.k <= 3, "rows %d, %d, %d: %d", (int)first, (int)second, (int)least, (int)found);
+    }
+    hd_laplacian_free(lap);
+    free(k);
+}
+
 /* ---- [11] intrinsic ---- */
 
 /* The area of a needle with sides 1, 1 and x, and of triangles of integer sides. */
@@ -3089,6 +3144,8 @@ int main(void) {
     int_ground_probes();
     int_ground_apart();
     int_fading_reach();
+    int_fading_note();
+    int_probe_rows();
     int_ground_need();
     int_ground_refined();
     int_parts();
