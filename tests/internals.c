@@ -2610,6 +2610,23 @@ static void int_fading_note(void) {
     hd_laplacian_free(lap);
 }
 
+/* An inversion keeps nothing beside the factors, and the bound of columns a number for each row. */
+static void int_factor_need(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    hd_context ctx;
+    hd_error e;
+    hdi_elim m;
+    hd_rational set;
+    uint64_t solves;
+    memset(&ctx, 0, sizeof ctx);
+    CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK && hdi_rational_get(&set, HD_POLES_KERNEL, 8, &e) == HD_OK);
+    solves = hdi_elim_factor_need(&m, &set, HDI_AFTER_SOLVES);
+    CHECK(solves > 0 && hdi_elim_factor_need(&m, &set, HDI_AFTER_INVERSE) == solves && hdi_elim_factor_need(&m, &set, HDI_AFTER_FORMS) == solves);
+    CHECK(hdi_elim_factor_need(&m, &set, HDI_AFTER_BOUND) >= solves + 8 * (uint64_t)lap->n_active);
+    hdi_elim_free(&m);
+    hd_laplacian_free(lap);
+}
+
 /* The rows at which rounding is measured, by search. */
 static void int_probe_rows(void) {
     hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
@@ -3067,6 +3084,27 @@ static void int_geo_heat_off(void) {
     free(r);
 }
 
+/* A matrix that has no factors: the error names a vertex, as rows are none of the caller's. */
+static void int_geo_no_factor(void) {
+    shape s = shape_grid(6, 5, 0.2);
+    hd_laplacian *lap = NULL;
+    hd_geodesic *g = NULL;
+    hdi_factor f;
+    hd_error e;
+    double *val;
+    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK && hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
+    val = DENSE_NEW(double, lap->L.nnz);
+    memset(&f, 0, sizeof f);
+    hdi_error_clear(&e);
+    CHECK(hdi_geo_factor(g, &f, lap, val, &e) == HD_ERR_BREAKDOWN);
+    CHECK_MSG(e.row == -1 && e.vertex >= 0 && e.vertex < s.n, "row %lld, vertex %lld", (long long)e.row, (long long)e.vertex);
+    hdi_factor_free(&f);
+    hd_geodesic_free(g);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(val);
+}
+
 /* What is known of an error by numbers that are none, or infinite: nothing, and of progress that it has begun. */
 static void int_no_numbers(void) {
     const double none = (double)NAN, endless = (double)INFINITY;
@@ -3083,6 +3121,7 @@ int main(void) {
     int_no_numbers();
     int_linear_precision();
     int_geo_heat_off();
+    int_geo_no_factor();
     int_length_area();
     int_flips();
     int_around();
@@ -3146,6 +3185,7 @@ int main(void) {
     int_fading_reach();
     int_fading_note();
     int_probe_rows();
+    int_factor_need();
     int_ground_need();
     int_ground_refined();
     int_parts();
