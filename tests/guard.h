@@ -1,7 +1,8 @@
 /* guard.h - memory for heatdiff.h that notices what is written beside a block, in any build, by any compiler
 
    Included before the implementation. A block ends where the library's own array ends, but for a byte: it aligns its arrays, and rounds up what
-   it asks for. Sanitizers see more, as reads; with them this stays out of the way. */
+   it asks for. A new block and what stands behind it hold numbers so large that an answer made of them is wrong, or the program crashes.
+   Sanitizers see more; with them this stays out of the way. */
 
 #ifndef GUARD_H
 #define GUARD_H
@@ -20,6 +21,7 @@
 
 enum {
     GUARD_BYTES = 64,            /* after each block */
+    GUARD_FILL = 0x7E,           /* in them, and in a new block: numbers above 1e300, indices above 2e9 */
     GUARD_ALIGN = 64,            /* HDI_ALIGN: the library's arrays begin at multiples of this, ... */
     GUARD_HEADER = 16            /* ... HDI_HEADER: after so many bytes of its own */
 };
@@ -43,7 +45,7 @@ static void *guard_malloc(size_t size) {
     if (p < head.raw + (int)sizeof head) p += GUARD_ALIGN;
     if (size == guard_threads) p = head.raw + before;
     memcpy(p - sizeof head, &head, sizeof head);
-    memset(p + size, 0xA5, GUARD_BYTES);
+    memset(p, GUARD_FILL, size + GUARD_BYTES);
     return p;
 }
 
@@ -54,7 +56,7 @@ static void guard_free(void *block) {
     if (!p) return;
     memcpy(&head, p - sizeof head, sizeof head);
     for (i = 0; i < GUARD_BYTES; i++) {
-        if ((unsigned char)p[head.size + (size_t)i] == 0xA5) continue;
+        if ((unsigned char)p[head.size + (size_t)i] == GUARD_FILL) continue;
         fprintf(stderr, "guard.h: byte %d behind a block of %lu bytes was written to\n", i, (unsigned long)head.size);
         abort();
     }

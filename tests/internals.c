@@ -452,6 +452,25 @@ static void int_krylov_done(void) {
     CHECK(hdi_krylov_done(5, 5, 1e-3) == 0 && hdi_krylov_done(5, 1e-3, 1e-3) == 1 && hdi_krylov_done(1e-3, 1e-3, 1e-2) == 1 && hdi_krylov_done(5, 1, 0) == 0);
 }
 
+/* The order by its definition: each vertex follows its first neighbour in the order, and those that follow the same one stand by degree.
+ * Returns how often that does not hold. a is connected, or its components come one after the other. */
+static int32_t int_not_cuthill_mckee(const hd_csr *a, const int32_t *perm) {
+    int32_t *at = DENSE_NEW(int32_t, a->n_rows), *parent = DENSE_NEW(int32_t, a->n_rows), i, wrong = 0;
+    int64_t p;
+    for (i = 0; i < a->n_rows; i++) at[perm[i]] = i;
+    for (i = 0; i < a->n_rows; i++) {
+        parent[i] = i;
+        for (p = a->row_ptr[perm[i]]; p < a->row_ptr[perm[i] + 1]; p++)
+            if (at[a->col[p]] < parent[i]) parent[i] = at[a->col[p]];
+        if (i == 0 || parent[i] == i) continue;
+        wrong += parent[i] < parent[i - 1];
+        wrong += parent[i] == parent[i - 1] && a->row_ptr[perm[i] + 1] - a->row_ptr[perm[i]] < a->row_ptr[perm[i - 1] + 1] - a->row_ptr[perm[i - 1]];
+    }
+    free(at);
+    free(parent);
+    return wrong;
+}
+
 static void int_cuthill_mckee(void) {
     shape s = shape_grid(40, 8, 0.2), two = shape_grid(5, 5, 0), both;
     const double offset[3] = {2, 0, 0};
@@ -473,6 +492,7 @@ static void int_cuthill_mckee(void) {
         if (perm[i] >= 0 && perm[i] < both.n) seen[perm[i]]++;
     for (i = 0; i < both.n; i++) missing += seen[i] != 1;
     CHECK_MSG(missing == 0, "not a permutation: %d", (int)missing);
+    CHECK_MSG(int_not_cuthill_mckee(&shuffled, perm) == 0, "%d vertices out of order", (int)int_not_cuthill_mckee(&shuffled, perm));
     CHECK_MSG(int_bandwidth(&shuffled, perm) <= 20, "bandwidth %d of a strip 8 wide", (int)int_bandwidth(&shuffled, perm));
     hd_csr_free(&shuffled, NULL);
     hd_laplacian_free(lap);
@@ -682,7 +702,7 @@ static void int_precond_make(void) {
     hdi_system a;
     hdi_precond m;
     hd_c64 u[N], d[N], work[N], x[N], ax[N], back[N];
-    int64_t mark[N];
+    int64_t mark[N + 1];
     uint64_t seed = 7;
     int32_t i;
     int kind;
@@ -700,7 +720,9 @@ static void int_precond_make(void) {
         m.kind = (hd_precond)kind;
         m.u = kind == HD_PRECOND_JACOBI ? NULL : u;
         m.d_inv = d;
+        mark[N] = 4711;
         hdi_precond_make(&m, &a, work, mark);
+        CHECK(mark[N] == 4711);
         if (kind >= HD_PRECOND_ILDL) {
             hdi_precond_apply(&m, ax, back);
             for (i = 0; i < N; i++) worst = hdi_max(worst, hdi_cabs(hdi_csub(back[i], x[i])));
@@ -1623,6 +1645,47 @@ static hdi_lane *int_lanes(const hd_laplacian *lap, int32_t k, hd_context *ctx) 
 }
 
 /* After every number of steps the bound against the error of the answer, times from a third to three times the middle one, and far from it. */
+/* What is missed at several times is the largest of the bounds, relative to |f| and to what is asked for. */
+static void int_silan_miss(const hdi_silan *z, int32_t r, double t, const hdi_ritz *ritz) {
+    const double times[2] = {0.7 * t, 1.6 * t};
+    double miss[2], bound = 0, share = 0;
+    hd_error e;
+    int q;
+    hdi_error_clear(&e);
+    for (q = 0; q < 2; q++) {
+        const double one = hdi_ritz_bound(ritz, times[q] / z->g);
+        bound = fmax(bound, one);
+        share = fmax(share, one / (1e-5 * hdi_ritz_size(ritz, times[q] / z->g)));
+    }
+    CHECK(hdi_silan_miss(z, r, times, 2, 1e-5, 0, miss, &e) == HD_OK && bound > 0);
+    CHECK_MSG(fabs(miss[1] / bound - 1) < 1e-12 && fabs(miss[0] / share - 1) < 1e-12, "%g, %g missed, not %g, %g", miss[0], miss[1], share, bound);
+}
+
+/* The next look at a bound that falls by half in each step comes after half of the steps that are left. */
+static void int_lanczos_pace(void) {
+    CHECK(hdi_lanczos_pace(194, 190, ldexp(1, -14), ldexp(1, -10), ldexp(1, -23)) == 4);
+    CHECK(hdi_lanczos_pace(194, 190, ldexp(1, -14), ldexp(1, -10), ldexp(1, -15)) == 1);
+    CHECK(hdi_lanczos_pace(194, 190, ldexp(1, -14), ldexp(1, -10), ldexp(1, -90)) == 6 && hdi_lanczos_pace(194, 190, 1, 1, 1e-9) == 6);
+}
+
+/* Eigenvalues 1/(1 + g lambda) above one show that L is not semidefinite, but not where the solves themselves are off by as much. */
+static void int_ritz_above(void) {
+    hdi_silan *z = DENSE_NEW(hdi_silan, 1);
+    hdi_ritz s;
+    hd_error e;
+    double known[2] = {1.05, 1};                 /* an eigenvalue, and its vector */
+    hdi_error_clear(&e);
+    z->eigen[0] = known;
+    z->eigen_m[0] = 1;
+    z->f_norm[0] = z->whole[0] = 1;
+    z->solved = 9;
+    z->noise[0][0] = 1e-3;
+    CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) == HD_OK);
+    z->noise[0][0] = 1e-5;
+    CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) < 0);
+    free(z);
+}
+
 static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const char *what) {
     static const double factors[5] = {0.03, 0.3, 1, 3, 30};
     const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
@@ -1669,6 +1732,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
                 CHECK(hdi_silan_ritz(z, r, step, &ritz, &e) == HD_OK);
                 bound = hdi_ritz_bound(&ritz, at / z->g);
                 size = hdi_ritz_size(&ritz, at / z->g);
+                if (step == 3 && q == 0) int_silan_miss(z, r, t, &ritz);
                 z->done[r] = step;
                 sum.count = r + 1;               /* of several abreast, only this one is wanted */
                 memset(sum.u, 0, sizeof sum.u);
@@ -1928,6 +1992,16 @@ static void int_resolvent_pole(void) {
             }
         }
     }
+}
+
+/* An imaginary pole bounds nothing: Re 1/(x + i y) vanishes at x = 0. */
+static void int_resolvent_imaginary(void) {
+    hd_rational set;
+    double factor = 1;
+    memset(&set, 0, sizeof set);
+    set.n_poles = 1;
+    set.theta[0] = hdi_c(0, 1);
+    CHECK(hdi_resolvent_pole(&set, &factor) == -1);
 }
 
 static hd_progress int_stop_at(void *user, const char *stage, double done) {
@@ -2201,6 +2275,382 @@ static void int_distance_windows(void) {
         free(u);
         free(want);
     }
+}
+
+/* ---- [22] to [28]: bounds, sizes and what is kept, each by itself ---- */
+
+/* A plan, and a call of it that is ready for queries with shared poles or without. */
+static hd_heat *int_plan(const hd_laplacian *lap) {
+    hd_heat *heat = NULL;
+    CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+    return heat;
+}
+
+/* The definition, dense: noise_j = sum_i M_ij c_i^2/D_i sum_k M_ik with M = t |L| + theta |B|, and c_i half a unit for each term and eight more. */
+static void int_noise_weights(void) {
+    int form;
+    for (form = 0; form < 2; form++) {
+        hd_laplacian *lap = int_mesh(1, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const int32_t n = lap->n_active;
+        const double t = 0.3, theta = 1.7;
+        double *M = shared_dense(&lap->L, lap->L.val), *B = shared_dense(&lap->L, lap->B ? lap->B : lap->L.val), *noise = DENSE_NEW(double, 2 * (int64_t)n), worst = 0;
+        int32_t i, j, k;
+        for (i = 0; i < n; i++)
+            for (j = 0; j < n; j++) M[i * n + j] = t * fabs(M[i * n + j]) + theta * (lap->B ? fabs(B[i * n + j]) : i == j ? lap->mass[i] : 0);
+        hdi_noise_weights(lap, t, theta, noise, noise + n);
+        for (j = 0; j < n; j++) {
+            double want = 0;
+            for (i = 0; i < n; i++) {
+                const double c = ((double)(lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]) + 8) * DBL_EPSILON / 2;
+                double sum = 0;
+                for (k = 0; k < n && M[i * n + j] > 0; k++) sum += M[i * n + k];
+                want += M[i * n + j] * c * c / (lap->B ? B[i * n + i] : lap->mass[i]) * sum;
+            }
+            worst = fmax(worst, fabs(noise[j] / want - 1));
+        }
+        CHECK_MSG(worst < 1e-12, "form %d: off by %g", form, worst);
+        hd_laplacian_free(lap);
+        free(M);
+        free(B);
+        free(noise);
+    }
+}
+
+/* No eigenvalue lies above the bound, which is not much larger than the largest. */
+static void int_lambda_bound(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    const int32_t n = lap->n_active;
+    dense_pair pair;
+    double top, bound = hdi_lambda_bound(lap);
+    CHECK(dense_pair_solve(&pair, shared_dense(&lap->L, lap->L.val), shared_dense(&lap->L, lap->B), n));
+    top = dense_max_abs(pair.lambda, n);
+    CHECK_MSG(bound >= top && bound <= 20 * top, "bound %g, eigenvalue %g", bound, top);
+    dense_pair_free(&pair);
+    hd_laplacian_free(lap);
+}
+
+/* The heat of a field becomes the target, and the means that are kept stay as they are. */
+static void int_conserve_sums(void) {
+    hd_laplacian *lap = int_path(12);
+    hdi_lane lane;
+    double u[12], target = 3, sums = 77, spare = 0, heat = 0;
+    int32_t i;
+    memset(&lane, 0, sizeof lane);
+    lane.u = u;
+    lane.target = &target;
+    lane.sums = &sums;
+    lane.spare_sums = &spare;
+    for (i = 0; i < 12; i++) u[i] = 1 + 0.1 * i;
+    hdi_conserve_sums(lap, &lane);
+    for (i = 0; i < 12; i++) heat += lap->mass[i] * u[i];
+    CHECK_MSG(fabs(heat - 3) < 1e-14 && fabs(u[11] - u[0] - 1.1) < 1e-14 && sums == 77 && lane.sums == &sums, "heat %.17g", heat);
+    hd_laplacian_free(lap);
+}
+
+/* Both elimination orders of a plan are freed. */
+static void int_turned(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    hd_heat_opts o;
+    hd_context ctx;
+    hd_heat *heat = NULL;
+    hd_error e;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&o, 0, sizeof o);
+    hdi_error_clear(&e);
+    o.context = &ctx;
+    CHECK(hd_heat_create(&heat, lap, &o, &e) == HD_OK && hdi_heat_analysed_as(heat, 0, &e) == HD_OK && hdi_heat_analysed_as(heat, 1, &e) == HD_OK);
+    CHECK(heat->other && heat->light == 1);
+    hd_heat_free(heat);
+    CHECK_MSG(ctx.bytes_in_use == 0, "%lld bytes are left", (long long)ctx.bytes_in_use);
+    hd_laplacian_free(lap);
+}
+
+/* Each pole in four parts is the same set, with as many packs as there may be. */
+static void int_many_packs(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    const double t = 5 * lap->h * lap->h;
+    double *u = DENSE_NEW(double, 2 * (int64_t)lap->n);
+    hd_rational set, parts;
+    hd_heat_opts o;
+    hd_report rep;
+    hd_heat *heat;
+    int32_t i, way;
+    CHECK(hd_rational_get(&set, HD_POLES_KERNEL, 14, NULL) == HD_OK && set.n_poles == 7);
+    set.kind = HD_POLES_OWN;
+    parts = set;
+    parts.n_poles = 28;
+    parts.degree = 56;
+    for (i = 0; i < 28; i++) {
+        parts.theta[i] = set.theta[i / 4];
+        parts.a[i] = hdi_cscale(0.25, set.a[i / 4]);
+    }
+    memset(&o, 0, sizeof o);
+    o.method = HD_METHOD_DIRECT;
+    for (way = 0; way < 2; way++) {
+        o.rational = way ? &parts : &set;
+        heat = NULL;
+        CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK && heat_column(heat, t, 11, u + way * lap->n, &rep) >= 0 && rep.n_poles == o.rational->n_poles);
+        hd_heat_free(heat);
+    }
+    CHECK(dense_max_diff(u, u + lap->n, lap->n) < 1e-9 * dense_max_abs(u, lap->n));
+    hd_laplacian_free(lap);
+    free(u);
+}
+
+/* Diagonals that are off are seen by the probes, and those below what the constants alone make; at every time of a window. */
+static void int_window_probes(void) {
+    enum { TIMES = 4 };
+    int kind;
+    for (kind = 0; kind < 2; kind++) {
+        hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+        hd_heat *heat = int_plan(lap);
+        hdi_heat_call h;
+        hdi_scope s;
+        hdi_distance_shared z;
+        double t[TIMES], *at, *keep;
+        int32_t q, i;
+        for (q = 0; q < TIMES; q++) t[q] = lap->h * lap->h * pow(3, q);
+        CHECK(hdi_distance_begin(&h, heat, (hd_distance_kind)kind, TIMES, t, 1, NULL, NULL) >= 0);
+        CHECK(hdi_heat_sort_times(&h, 2, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0);
+        s = hdi_scope_begin(heat->ctx, h.e);
+        CHECK(hdi_distance_shared_take(&z, &h, (hd_distance_kind)kind, 0, TIMES, &s) >= 0);
+        CHECK(hdi_window_run(&h, &z.w, HDI_SHARED_DISTANCE_TOL, z.full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL) >= 0);
+        hdi_distance_shared_probe(&z);
+        for (q = 0; q < TIMES; q++) CHECK_MSG(z.rounding[q] > 0 && z.rounding[q] < 1e-6, "kind %d, time %d: %g", kind, (int)q, z.rounding[q]);
+        keep = DENSE_NEW(double, (int64_t)z.w.n);
+        for (q = 0; q < TIMES; q++) {            /* all by a thousandth, at one time */
+            at = hdi_window_at(&z.w, z.w.values, q);
+            for (i = 0; i < (int32_t)z.w.n; i++) {
+                keep[i] = at[i];
+                at[i] *= 1.001;
+            }
+            memset(z.rounding, 0, TIMES * sizeof *z.rounding);
+            hdi_distance_shared_probe(&z);
+            CHECK_MSG(z.rounding[q] >= 0.00099, "kind %d, time %d: %g", kind, (int)q, z.rounding[q]);
+            memcpy(at, keep, z.w.n * sizeof *keep);
+        }
+        for (i = 0; i < z.m->sym.n; i++) {       /* one at which no probe looks, below the constants */
+            const hdi_probe probe = hdi_probe_rows(z.m->lap, hdi_window_at(&z.w, z.w.values, TIMES - 1), -1);
+            int32_t p, probed = 0;
+            for (p = 0; p < probe.k; p++) probed |= probe.row[p] == i;
+            if (!probed) break;
+        }
+        at = hdi_window_at(&z.w, z.w.values, 1);
+        at[i] = 0.1 / z.m->lap->component_mass[0] * (kind ? z.m->lap->mass[i] * z.m->lap->mass[i] : 1);
+        memset(z.rounding, 0, TIMES * sizeof *z.rounding);
+        hdi_distance_shared_probe(&z);
+        CHECK_MSG(z.rounding[1] >= 8.99, "kind %d: %g", kind, z.rounding[1]);
+        free(keep);
+        hdi_scope_end(&s);
+        hdi_heat_end(&h);
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+    }
+}
+
+/* Resistances: what the residual of a column admits is part of rounding even where the column agrees with the diagonal, and a diagonal that is not
+ * positive is of no use. */
+static void int_ground_probes(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    hd_heat *heat = int_plan(lap);
+    const hdi_elim *m = &heat->elim;
+    hdi_ground *g = &heat->ground;
+    hdi_heat_call h;
+    hdi_metric x;
+    hdi_scope s;
+    double *room = DENSE_NEW(double, 4 * (int64_t)lap->n), *work, off = 0;
+    int32_t i, far = 0;
+    CHECK(hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, NULL, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0);
+    s = hdi_scope_begin(heat->ctx, h.e);
+    memset(&x, 0, sizeof x);
+    x.kind = HD_DISTANCE_COMMUTE;
+    x.diag = room;
+    x.g = room + lap->n;
+    x.spread = x.g + lap->n;
+    CHECK(hdi_metric_ground(&h, &x, &s) == HD_OK && x.rounding > 0 && x.rounding < 1e-8);
+    work = DENSE_NEW(double, hdi_ground_room(m));
+    for (i = 0; i < m->sym.n; i++) {             /* the diagonal by columns */
+        const hdi_terms at = hdi_terms_vertex(m->lap->vertex[i]);
+        const double bound = hdi_ground_column(m, g, &at, 0, x.spread + lap->n, work);
+        CHECK(fabs(g->diag[i] - x.spread[lap->n + i]) <= 1e-9 * g->diag[i]);
+        g->diag[i] = x.spread[lap->n + i];
+        if (g->diag[i] < g->diag[far]) continue;
+        far = i;
+        off = bound * sqrt(g->diag[i]);
+    }
+    x.rounding = 0;
+    CHECK(hdi_metric_ground(&h, &x, &s) == HD_OK);
+    CHECK_MSG(off > 0 && x.rounding >= 0.999 * off / g->diag[far], "%g, the residual gives %g", x.rounding, off / g->diag[far]);
+    for (i = 0; g->held[i] || i == far; i++) {}
+    g->diag[i] = 0;
+    x.rounding = 0;
+    CHECK(hdi_metric_ground(&h, &x, &s) == HD_OK && x.rounding >= HUGE_VAL);
+    hdi_scope_end(&s);
+    hdi_heat_end(&h);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    free(room);
+    free(work);
+}
+
+/* Biharmonic columns by arrays that are apart: G B G c, the means taken out, and the bounds of both solves. */
+static void int_ground_apart(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    const int32_t n = lap->n_active;
+    hd_context ctx;
+    hd_error e;
+    hdi_elim m;
+    hdi_ground g;
+    double *room, *x = DENSE_NEW(double, 6 * (int64_t)n), *b = x + n, *u = b + n, *y = u + n, *extra = y + n, *r = extra + n, *sweep;
+    int32_t i, k;
+    int64_t p;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&g, 0, sizeof g);
+    CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK && hdi_ground_make(&m, &g, &e) == HD_OK && hdi_ground_forms(&m, &g, &e) == HD_OK);
+    room = DENSE_NEW(double, (int64_t)hdi_ground_room(&m));
+    sweep = DENSE_NEW(double, (int64_t)hdi_sweep_size(&m.sym, 1, 1));
+    for (k = 0; k < n; k += 13) {
+        const hdi_terms at = hdi_terms_vertex(m.lap->vertex[k]);
+        const double bound = hdi_ground_column(&m, &g, &at, 1, x, room);
+        double first, second, want, ws = g.mean[k], worst = 0, root = sqrt(fmax(0, g.diag[k]));
+        memset(b, 0, (size_t)n * sizeof *b);
+        if (!g.held[k]) b[k] = 1;
+        hdi_ground_refined(&m, &g, b, NULL, u, &first, r, sweep);
+        for (i = 0; i < n; i++) {
+            b[i] = extra[i] = 0;
+            for (p = m.lap->L.row_ptr[i]; p < m.lap->L.row_ptr[i + 1]; p++) {
+                b[i] += m.lap->B[p] * u[m.lap->L.col[p]];
+                extra[i] += fabs(m.lap->B[p] * u[m.lap->L.col[p]]);
+            }
+            extra[i] *= ((double)(m.lap->L.row_ptr[i + 1] - m.lap->L.row_ptr[i]) + 2) * DBL_EPSILON / 8;
+            if (g.held[i]) b[i] = 0;
+        }
+        hdi_ground_refined(&m, &g, b, extra, y, &second, r, sweep);
+        want = g.trace[0] * first + second + g.mean_off[0] * (fabs(ws) / m.lap->component_mass[0] + sqrt(g.trace[0] / m.lap->component_mass[0]) * root);
+        for (i = 0; i < n; i++) worst = fmax(worst, fabs(x[i] - y[i] + ws * g.mean[i] / m.lap->component_mass[0]));
+        CHECK_MSG(worst <= 1e-12 * dense_max_abs(y, n) && bound <= 1.01 * want && want <= 1.01 * bound, "column %d: off by %g, bound %g, not %g", (int)k, worst, bound, want);
+    }
+    hdi_ground_free(&g, &ctx);
+    hdi_elim_free(&m);
+    CHECK(ctx.bytes_in_use == 0);
+    hd_laplacian_free(lap);
+    free(room);
+    free(x);
+    free(sweep);
+}
+
+/* Parts of the bounds where heat fades: with X the pairs found and g = e_v/b_v, |X' B g| = |x(v)|, and |Q g|^2 = 1/b_v - |x(v)|^2. */
+static void int_fading_reach(void) {
+    shape s = shape_grid(12, 9, 0.2);
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts o;
+    hd_heat *heat;
+    hd_error e;
+    hdi_decay x;
+    hdi_fading_far most;
+    double *work, left = 0, found = 0, inner = 0, t;
+    int32_t v, q;
+    memset(&o, 0, sizeof o);
+    o.kind = HD_LAPLACIAN_VORONOI_COT;
+    o.border = HD_BORDER_DIRICHLET;
+    hdi_error_clear(&e);
+    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_OK);
+    heat = int_plan(lap);
+    t = 20 * lap->h * lap->h;
+    CHECK(hdi_modes_enough(heat, t, 5, HDI_MODES_MOST, &e) && e.status == HD_OK && heat->modes.s.count > 2 && heat->modes.s.count < lap->n_active / 2);
+    work = DENSE_NEW(double, 2 * (int64_t)heat->modes.s.count + 3 * (int64_t)lap->n);
+    x = hdi_decay_at(&heat->modes, t, work);
+    most = hdi_fading_reach(&heat->modes, &x, work + 2 * heat->modes.s.count);
+    for (v = 0; v < lap->n; v++) {
+        double sum = 0, off = 0;
+        if (lap->row[v] < 0) continue;
+        for (q = 0; q < heat->modes.s.count; q++) {
+            const double at = heat->modes.s.vector[(size_t)q * (size_t)lap->n + (size_t)v];
+            sum += at * at;
+            off += x.off[q] * fabs(at);
+        }
+        left = fmax(left, sqrt(fmax(0, 1 / lap->mass[lap->row[v]] - sum)));
+        found = fmax(found, sqrt(sum));
+        inner = fmax(inner, off);
+    }
+    CHECK_MSG(most.left >= left * (1 - 1e-9) && most.left <= 1.001 * left, "left %g, not %g", most.left, left);
+    CHECK_MSG(fabs(most.found / found - 1) < 1e-9 && most.inner >= inner * (1 - 1e-9), "found %g, not %g; inner %g, not %g", most.found, found, most.inner, inner);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(work);
+}
+
+/* A diagonal where heat fades: the bound written out above the pairs' sums, with numbers of which each part is large. */
+static void int_fading_note(void) {
+    hd_laplacian *lap = int_path(3);
+    hdi_modes of;
+    hdi_fading_diagonal a;
+    hdi_fading_size c[3];
+    hdi_ledger ledger = hdi_modes_ledger();
+    double left[3] = {0.09, 0.09, 0.09}, value[3] = {5, 5, 5}, out[3];
+    const double s_c = 0.2 + 0.3 * 2, last = 0.7 + 0.3 * 2;   /* s(c) and the last sum, with m t |R| |c| = 0.3 times 2 */
+    memset(&of, 0, sizeof of);
+    memset(&a, 0, sizeof a);
+    memset(c, 0, sizeof c);
+    of.s.left = left;
+    of.off_norm = 0.5;
+    a.of = &of;
+    a.lap = lap;
+    a.value = value;
+    a.c = a.g = c;
+    a.decay.scale = 1;
+    a.decay.mixed = 0.3;
+    a.decay.t = 2;
+    c[1].found = 4;
+    c[1].inner = 0.7;
+    c[1].side = 0.2;
+    hdi_fading_diagonal_note(&a, 1, out, &ledger);
+    CHECK_MSG(fabs(ledger.off.solver - (0.3 * 0.3 * 0.09 + 2 * s_c * 0.3 + 2 * last)) < 1e-12 && ledger.off.rational == 0, "bound %g", ledger.off.solver);
+    hd_laplacian_free(lap);
+}
+
+/* An inversion keeps nothing beside the factors, and the bound of columns a number for each row. */
+static void int_factor_need(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    hd_context ctx;
+    hd_error e;
+    hdi_elim m;
+    hd_rational set;
+    uint64_t solves;
+    memset(&ctx, 0, sizeof ctx);
+    CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK && hdi_rational_get(&set, HD_POLES_KERNEL, 8, &e) == HD_OK);
+    solves = hdi_elim_factor_need(&m, &set, HDI_AFTER_SOLVES);
+    CHECK(solves > 0 && hdi_elim_factor_need(&m, &set, HDI_AFTER_INVERSE) == solves && hdi_elim_factor_need(&m, &set, HDI_AFTER_FORMS) == solves);
+    CHECK(hdi_elim_factor_need(&m, &set, HDI_AFTER_BOUND) >= solves + 8 * (uint64_t)lap->n_active);
+    hdi_elim_free(&m);
+    hd_laplacian_free(lap);
+}
+
+/* The rows at which rounding is measured, by search. */
+static void int_probe_rows(void) {
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    const int32_t n = lap->n_active;
+    double *k = DENSE_NEW(double, 2 * (int64_t)n), *g = k + n;
+    uint64_t seed = 8;
+    int32_t i, round, p;
+    for (round = 0; round < 20; round++) {
+        int32_t first = 0, second = 0, least = 0, found = 0;
+        hdi_probe probe;
+        for (i = 0; i < n; i++) {
+            k[i] = 1.5 + dense_signed(&seed);
+            g[i] = 1.5 + dense_signed(&seed);
+            if (hdi_row_diagonal(lap, i) / lap->b_diag[i] > hdi_row_diagonal(lap, first) / lap->b_diag[first]) first = i;
+            if (hdi_row_diagonal(lap, i) * k[i] > hdi_row_diagonal(lap, second) * k[second]) second = i;
+            if (k[i] / g[i] < k[least] / g[least]) least = i;
+        }
+        CHECK(hdi_window_worst(k, g, n) == least);
+        probe = hdi_probe_rows(lap, k, least);
+        for (p = 0; p < probe.k; p++) found |= (probe.row[p] == first) + 2 * (probe.row[p] == second) + 4 * (probe.row[p] == least);
+        CHECK_MSG(found == 7 && probe.k <= 3, "rows %d, %d, %d: %d", (int)first, (int)second, (int)least, (int)found);
+    }
+    hd_laplacian_free(lap);
+    free(k);
 }
 
 /* ---- [11] intrinsic ---- */
@@ -2615,6 +3065,46 @@ static void int_linear_precision(void) {
     shape_poly_free(&s);
 }
 
+/* The residual of the heat equation stays within its arrays. */
+static void int_geo_heat_off(void) {
+    shape s = shape_grid(6, 5, 0.2);
+    hd_geodesic *g = NULL;
+    double *u = DENSE_NEW(double, s.n + 1), *r = DENSE_NEW(double, s.n + 1);
+    int32_t i;
+    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK && g->n_active == s.n);
+    for (i = 0; i < s.n; i++) {                  /* what a constant makes: no more than the masses */
+        u[i] = 2;
+        r[i] = 2 * g->mass[i];
+    }
+    u[s.n] = r[s.n] = 1e9;
+    CHECK(hdi_geo_heat_off(g, u, r) < 1e-12 && r[s.n] == 1e9);
+    hd_geodesic_free(g);
+    shape_free(&s);
+    free(u);
+    free(r);
+}
+
+/* A matrix that has no factors: the error names a vertex, as rows are none of the caller's. */
+static void int_geo_no_factor(void) {
+    shape s = shape_grid(6, 5, 0.2);
+    hd_laplacian *lap = NULL;
+    hd_geodesic *g = NULL;
+    hdi_factor f;
+    hd_error e;
+    double *val;
+    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK && hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
+    val = DENSE_NEW(double, lap->L.nnz);
+    memset(&f, 0, sizeof f);
+    hdi_error_clear(&e);
+    CHECK(hdi_geo_factor(g, &f, lap, val, &e) == HD_ERR_BREAKDOWN);
+    CHECK_MSG(e.row == -1 && e.vertex >= 0 && e.vertex < s.n, "row %lld, vertex %lld", (long long)e.row, (long long)e.vertex);
+    hdi_factor_free(&f);
+    hd_geodesic_free(g);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(val);
+}
+
 /* What is known of an error by numbers that are none, or infinite: nothing, and of progress that it has begun. */
 static void int_no_numbers(void) {
     const double none = (double)NAN, endless = (double)INFINITY;
@@ -2630,6 +3120,8 @@ int main(void) {
 #endif
     int_no_numbers();
     int_linear_precision();
+    int_geo_heat_off();
+    int_geo_no_factor();
     int_length_area();
     int_flips();
     int_around();
@@ -2673,12 +3165,27 @@ int main(void) {
     int_check_plain();
     int_silan_slopes();
     int_silan_bounds();
+    int_lanczos_pace();
+    int_ritz_above();
     int_batches();
     test_shared();
     int_invert();
     int_resolvent_pole();
+    int_resolvent_imaginary();
     int_pairs_by_entries();
     int_distance_windows();
+    int_noise_weights();
+    int_lambda_bound();
+    int_conserve_sums();
+    int_turned();
+    int_many_packs();
+    int_window_probes();
+    int_ground_probes();
+    int_ground_apart();
+    int_fading_reach();
+    int_fading_note();
+    int_probe_rows();
+    int_factor_need();
     int_ground_need();
     int_ground_refined();
     int_parts();

@@ -343,7 +343,30 @@ static void adj_sets(void) {
         }
 }
 
+/* A method that is chosen works as the same one asked for. */
+static void adj_chosen(void) {
+    enum { FIELDS = 36 };
+    shape s = shape_bumpy(2, 5);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    double *u = DENSE_NEW(double, 2 * FIELDS * (int64_t)s.n), *out = u + FIELDS * s.n;
+    const double t = 10 * lap->h * lap->h;
+    hd_report rep[2];
+    int32_t i;
+    for (i = 0; i < FIELDS * s.n; i++) u[i] = sin(i);
+    for (i = 0; i < 2; i++) {
+        hd_heat *heat = eng_plan(lap, i ? HD_METHOD_DIRECT : HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
+        CHECK(hd_heat_derivative(heat, 1, &t, FIELDS, u, 0, out, 0, rep + i, NULL) >= 0);
+        hd_heat_free(heat);
+    }
+    CHECK(rep[0].method == HD_METHOD_DIRECT && rep[1].method == HD_METHOD_DIRECT);
+    CHECK_MSG(rep[0].poles == rep[1].poles && rep[0].degree == rep[1].degree, "poles %d, %d", (int)rep[0].poles, (int)rep[1].poles);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(u);
+}
+
 static void test_adjoints(void) {
+    adj_chosen();
     shape ball = shape_icosphere(2), bumpy = shape_bumpy(2, 3), disk = bord_disk(5, 1), inert = eng_with_inert(&ball), soup = eng_soup(60, 90, 9);
     const double apart[3] = {4, 1, 0};
     shape two = shape_disjoint(&disk, &ball, apart);

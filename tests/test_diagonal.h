@@ -136,6 +136,7 @@ static void diag_entries_of(hd_ldl *f, int32_t n, int32_t k, uint64_t seed, cons
     }
     i[SOME - 1] = n;
     CHECK(k > 0 || hd_ldl_inverse_entries(f, SOME, i, j, real, NULL) == HD_ERR_INDEX);
+    CHECK(k > 0 || hd_ldl_inverse_entries(f, 0, NULL, NULL, NULL, NULL) == HD_OK);
     free(rhs);
     free(x);
     free(zrhs);
@@ -1420,7 +1421,33 @@ static void diag_limits_by_default(void) {
     shape_free(&s);
 }
 
+/* Cells of very unlike size: diagonals and edges take the highest degree, and at the same degree rounding shows in edges as it does in diagonals. */
+static void diag_graded(void) {
+    shape s = shape_grid(14, 11, 0.2);
+    int32_t i;
+    int kind;
+    for (i = 0; i < 3 * s.n; i++) s.xyz[i] *= s.xyz[i] * s.xyz[i] * s.xyz[i] + 0.001;
+    for (kind = 0; kind < 2; kind++) {
+        hd_laplacian *lap = test_laplacian(&s, kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        double *D = DENSE_NEW(double, lap->L.nnz);
+        const double t = 0.3 * lap->h * lap->h;
+        hd_heat *heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
+        hd_report one, all;
+        CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &one) == HD_OK && one.degree == 14 && one.error_rational < 1e-9);
+        CHECK(heat_edges(heat, t, D, &all) == HD_OK && all.degree == 14 && all.error_rational < 1e-9);
+        hd_heat_free(heat);
+        heat = eng_plan(lap, HD_METHOD_DIRECT, HD_POLES_UNIFORM, 9);
+        CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &one) >= 0 && heat_edges(heat, t, D, &all) >= 0);
+        CHECK_MSG(all.error_rounding <= 5 * one.error_rounding && one.error_rounding > 0, "kind %d: rounding %g of edges, %g of the diagonal", kind, all.error_rounding, one.error_rounding);
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+        free(D);
+    }
+    shape_free(&s);
+}
+
 static void test_diagonal(void) {
+    diag_graded();
     diag_inverse_shapes();
     diag_inverse_levels();
     diag_inverse_no_diagonal();

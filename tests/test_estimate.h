@@ -336,7 +336,37 @@ enum { EST_EACH = 3 };       /* under the sanitizers the ball and the points do:
 enum { EST_EACH = 1 };
 #endif
 
+/* Work by iterations is a sum over the times that starts at zero. */
+static void est_flops(void) {
+    shape s = shape_icosphere(2);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_heat *heat = eng_create(lap, NULL);
+    const double t[2] = {3 * lap->h * lap->h * heat->scale, 9 * lap->h * lap->h * heat->scale};
+    hdi_heat_call h;
+    hdi_cost one[2], both;
+    int q;
+    memset(&h, 0, sizeof h);
+    h.heat = heat;
+    h.ask.k = 1;
+    for (q = 0; q < 2; q++) {
+        h.times = t + q;
+        h.n_times = 1;
+        memset(one + q, 0x7E, sizeof *one);
+        hdi_cost_iterative(&h, 5, one + q);
+    }
+    h.times = t;
+    h.n_times = 2;
+    memset(&both, 0x7E, sizeof both);
+    hdi_cost_iterative(&h, 5, &both);
+    CHECK_MSG(one[0].iterative_flops > 0 && fabs(both.iterative_flops - one[0].iterative_flops - one[1].iterative_flops) <= 1e-12 * both.iterative_flops, "%g and %g, together %g",
+              one[0].iterative_flops, one[1].iterative_flops, both.iterative_flops);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 static void test_estimate(void) {
+    est_flops();
     static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_FEM};
     static const char *const names[4] = {"ball, fem", "ball, voronoi-cot", "sheet, fem", "points"};
     shape ball = shape_bumpy(4, 5), sheet = shape_grid(53, 41, 0.3), points = shape_bumpy(3, 5);

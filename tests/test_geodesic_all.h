@@ -631,7 +631,83 @@ static void gall_robust(void) {
     }
 }
 
+/* Two squares of four cells: a component without a source has no heat, and that is no reason for stages. Each plan holds its context. */
+static void gall_cold(void) {
+    shape_poly p = shape_poly_make(18, 8, 32);
+    hd_geodesic_opts o = gall_options();
+    hd_geodesic_report rep;
+    hd_context ctx;
+    hd_geodesic *g;
+    double d[18];
+    const int32_t source = 4, both[2] = {4, 13};
+    uint64_t made[2];
+    int32_t i, f;
+    memset(&ctx, 0, sizeof ctx);
+    o.context = &ctx;
+    for (i = 0; i < 18; i++) {
+        p.xyz[3 * i] = i % 3 + i / 9 * 10;
+        p.xyz[3 * i + 1] = i % 9 / 3;
+        p.xyz[3 * i + 2] = 0;
+    }
+    for (f = 0; f < 8; f++) {
+        const int32_t v = f / 4 * 9 + f % 4 / 2 * 3 + f % 2;
+        const int32_t corner[4] = {v, v + 1, v + 4, v + 3};
+        shape_put_face(&p, 4, corner);
+    }
+    g = gall_polygons(&p, &o);
+    CHECK(ctx.n_holders == 1);
+    CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK);
+    CHECK_MSG(rep.n_stages == 1 && d[4] == 0 && d[0] > 1 && d[0] < 2 && d[13] == HUGE_VAL, "%d stages, %g, %g", (int)rep.n_stages, d[0], d[13]);
+    for (i = 0; i < 4; i++) {                    /* warm in both components or one: as many allocations, after the first */
+        const uint64_t before = ctx.allocations;
+        CHECK(hd_geodesic_distance(g, 2 - i % 2, both, d, NULL, NULL) == HD_OK);
+        made[i % 2] = ctx.allocations - before;
+    }
+    CHECK_MSG(made[0] == made[1], "%d allocations with two sources, %d with one", (int)made[0], (int)made[1]);
+    hd_geodesic_free(g);
+    CHECK(ctx.n_holders == 0 && ctx.bytes_in_use == 0);
+    shape_poly_free(&p);
+}
+
+/* Rings of cells that double in size, small ones listed beside large ones: what is flat is so beside its own face. */
+static void gall_face_orders(void) {
+    enum { RINGS = 25, AROUND = 8 };
+    double d[2][(RINGS + 1) * AROUND];
+    const int32_t source = 0;
+    int32_t i, r, way;
+    for (way = 0; way < 2; way++) {
+        shape_poly p = shape_poly_make((RINGS + 1) * AROUND, RINGS * AROUND, 4 * RINGS * AROUND);
+        hd_geodesic *g;
+        for (i = 0; i < p.n; i++) {
+            p.xyz[3 * i] = ldexp(cos(i % AROUND * 6.283185307179586 / AROUND), i / AROUND);
+            p.xyz[3 * i + 1] = ldexp(sin(i % AROUND * 6.283185307179586 / AROUND), i / AROUND);
+            p.xyz[3 * i + 2] = 0;
+        }
+        for (i = 0; i < RINGS; i++) {
+            const int32_t ring = way == 0 ? i : i % 2 ? RINGS - 1 - i / 2 : i / 2;
+            for (r = 0; r < 2 * AROUND; r++) {   /* every other ring goes in between */
+                const int32_t v = ring * AROUND + r / 2, w = ring * AROUND + (r / 2 + 1) % AROUND;
+                const int32_t corner[4] = {v, w, w + AROUND, v + AROUND};
+                const int32_t other = RINGS - 1 - ring, v2 = other * AROUND + r / 2, w2 = other * AROUND + (r / 2 + 1) % AROUND;
+                const int32_t corner2[4] = {v2, w2, w2 + AROUND, v2 + AROUND};
+                if (way == 0 && r % 2 == 0) shape_put_face(&p, 4, corner);
+                if (way == 1 && ring < other && r % 2 == 0) shape_put_face(&p, 4, corner);
+                if (way == 1 && ring < other && r % 2 == 1) shape_put_face(&p, 4, corner2);
+                if (way == 1 && ring == other && r % 2 == 0) shape_put_face(&p, 4, corner);
+            }
+        }
+        CHECK(p.n_faces == RINGS * AROUND);
+        g = gall_polygons(&p, NULL);
+        CHECK(hd_geodesic_distance(g, 1, &source, d[way], NULL, NULL) == HD_OK);
+        hd_geodesic_free(g);
+        shape_poly_free(&p);
+    }
+    for (i = 0; i < (RINGS + 1) * AROUND; i++) CHECK_MSG(fabs(d[0][i] - d[1][i]) <= 1e-3 * d[0][i], "vertex %d: %g, %g", (int)i, d[0][i], d[1][i]);
+}
+
 static void test_geodesic_all(void) {
+    gall_cold();
+    gall_face_orders();
     test_geodesic();
     gall_against_dense(shape_trominoes(3, 3, 0.25), 24, "trominoes");
     gall_against_dense(poly_mixed(), 7, "mixed");

@@ -356,7 +356,29 @@ static void kry_sizes(void) {
     free(want);
 }
 
+/* The preconditioner asked for is the one that works: an exact factor of a path takes few steps, the diagonal many. */
+static void kry_precond_asked(void) {
+    hd_laplacian *lap = kry_dirichlet(60);
+    hd_c64 *x = DENSE_NEW(hd_c64, lap->n);
+    int64_t steps[2];
+    int k;
+    for (k = 0; k < 2; k++) {
+        hd_solve_opts o;
+        hd_solve_report rep;
+        memset(&o, 0, sizeof o);
+        memset(x, 0, (size_t)lap->n * sizeof *x);
+        x[7] = test_c(1, 2);
+        o.precond = k ? HD_PRECOND_ILDL : HD_PRECOND_JACOBI;
+        CHECK(hd_shifted_solve(lap, 30, test_c(0.1, 1), x, x, &o, &rep, NULL) == HD_OK);
+        steps[k] = rep.iterations;
+    }
+    CHECK_MSG(steps[1] <= 4 && steps[0] >= 12, "%d steps with the diagonal, %d with a factor", (int)steps[0], (int)steps[1]);
+    hd_laplacian_free(lap);
+    free(x);
+}
+
 static void test_krylov(void) {
+    kry_precond_asked();
     kry_against_dense();
     kry_tiny();
     kry_special();

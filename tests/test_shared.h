@@ -183,6 +183,36 @@ static void shared_single(void) {
     }
 }
 
+/* Two columns that are the same share a weight: damping decides, as nothing else does. */
+static void shared_damped(void) {
+    hdi_shared_work k;
+    double A[20] = {0}, b[5] = {1, 1, 0, 0, 0}, M[24], x[8], w[5] = {1, 1, 1, 1, 1}, e[5];
+    memset(&k, 0, sizeof k);
+    k.n = 2;
+    k.rows = 5;
+    k.A = A;
+    k.b = b;
+    k.M = M;
+    k.x = x;
+    k.w = w;
+    k.e = e;
+    A[5] = A[11] = A[16] = 1;                    /* columns 1, 2, 3 of four; the first unknown is zero */
+    CHECK(hdi_shared_step(&k) < 1e-14);
+    CHECK_MSG(fabs(x[0] - 1) < 1e-14 && fabs(x[1] - 0.5) < 1e-3 && fabs(x[2] - 0.5) < 1e-3, "weights %g, %g, %g", x[0], x[1], x[2]);
+}
+
+/* What stands behind the last pole of a set is nothing to its error. */
+static void shared_no_more_poles(void) {
+    hd_rational set;
+    double before, after, size, more;
+    CHECK(hd_rational_get(&set, HD_POLES_KERNEL, 8, NULL) == HD_OK);
+    before = hdi_shared_error(&set, 1, 0.7, 1, &size);
+    set.theta[set.n_poles] = hdi_c(1, 2);
+    set.a[set.n_poles] = hdi_c(1, 1);
+    after = hdi_shared_error(&set, 1, 0.7, 1, &more);
+    CHECK(before == after && size == more);
+}
+
 /* The bound holds for any weights, poles and times: times outside the range, poles that nearly touch the half line, weights that are no fit at all. */
 static void shared_bounds(void) {
     uint64_t seed = 77;
@@ -386,6 +416,8 @@ static void test_shared(void) {
     shared_known();
     shared_pick();
     shared_single();
+    shared_damped();
+    shared_no_more_poles();
     shared_bounds();
     shared_exp_rest();
     shared_public();

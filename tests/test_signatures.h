@@ -333,7 +333,23 @@ static void sign_limits(void) {
     shape_free(&large);
 }
 
+/* The report of traces says how they were found. */
+static void sign_report(void) {
+    shape s = shape_bumpy(2, 5);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const double t = 3 * lap->h * lap->h;
+    double Z;
+    hd_heat *heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
+    hd_report rep;
+    CHECK(hd_heat_trace(heat, 1, &t, &Z, NULL, &rep, NULL) == HD_OK);
+    CHECK_MSG(rep.method == HD_METHOD_DIRECT && rep.factor_nnz >= lap->n && strstr(rep.reason, "selected inversion") != NULL, "%s", rep.reason);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 static void test_signatures(void) {
+    sign_report();
     shape ball = shape_icosphere(2), bumpy = shape_bumpy(2, 3), disk = bord_disk(5, 1), inert = eng_with_inert(&ball);
     const double apart[3] = {4, 1, 0};
     shape two = shape_disjoint(&disk, &ball, apart);

@@ -460,6 +460,70 @@ static void src_operators(void) {
     }
 }
 
+/* From eigenpairs, late, where sources lie in two components of unlike vertices. */
+static void src_two(void) {
+    const double offset[3] = {4, 0, 0};
+    shape ball = shape_bumpy(1, 5), other = shape_bumpy(1, 9), two = shape_disjoint(&ball, &other, offset);
+    int kind;
+    for (kind = 0; kind < 2; kind++) {
+        heat_case c = heat_case_of(test_laplacian(&two, kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM), "two");
+        const double t = 2000 * all_unit(c.lap);
+        hd_heat *heat = eng_create(c.lap, NULL);
+        src_distances(&c, heat, HD_DISTANCE_CLASSICAL, 1, &t);
+        src_distances(&c, heat, HD_DISTANCE_WEIGHTED, 1, &t);
+        hd_heat_free(heat);
+        heat_case_free(&c);
+    }
+    shape_free(&ball);
+    shape_free(&other);
+    shape_free(&two);
+}
+
+/* The report of farthest points is one of distances: the same evidence, and a bound as small. */
+static void src_sample_report(void) {
+    shape s = shape_bumpy(2, 5);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const double t[2] = {3 * lap->h * lap->h, 1000 * lap->h * lap->h};
+    double *d = DENSE_NEW(double, s.n), far[5];
+    int32_t vertex[5];
+    int kind, q;
+    for (kind = 0; kind < 4; kind++)
+        for (q = 0; q < (kind < 2 ? 2 : 1); q++) {
+            hd_heat *heat = eng_create(lap, NULL);
+            hd_report one, all;
+            vertex[0] = 7;
+            CHECK(heat_sample(heat, (hd_distance_kind)kind, t[q], 5, 1, vertex, far, &all) >= 0);
+            CHECK(heat_distance(heat, (hd_distance_kind)kind, 1, t + q, 1, vertex, d, 0, &one) >= 0);
+            CHECK_MSG(all.evidence_rational == one.evidence_rational && all.evidence_solver == one.evidence_solver && all.evidence_rounding == one.evidence_rounding,
+                      "kind %d, t %d: evidence %d %d %d, of distances %d %d %d", kind, q, (int)all.evidence_rational, (int)all.evidence_solver, (int)all.evidence_rounding,
+                      (int)one.evidence_rational, (int)one.evidence_solver, (int)one.evidence_rounding);
+            CHECK_MSG(all.error_bound > 0 && all.error_bound <= 1e-6 && all.error_bound <= 10 * one.error_bound,
+                      "kind %d, t %d: bound %g, of distances %g", kind, q, all.error_bound, one.error_bound);
+            hd_heat_free(heat);
+        }
+    hd_laplacian_free(lap);
+    shape_free(&s);
+    free(d);
+}
+
+/* Pairs whose bound by the usual degree is too large take the highest one, as distances do. */
+static void src_pairs_degree(void) {
+    shape s = shape_bumpy(3, 5);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const double t = 150 * lap->h * lap->h;
+    const int32_t i[3] = {5, 80, 300}, j[3] = {300, 81, 600};
+    double d[3];
+    hd_report rep;
+    hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
+    hd_heat *heat = eng_create(lap, &o);
+    heat->modes.barred = 1;                      /* which would do better here */
+    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 3, i, j, NULL, d, &rep) == HD_OK);
+    CHECK_MSG(rep.error_bound <= 1e-6 && rep.degree == 14, "degree %d, bound %g: %s", (int)rep.degree, rep.error_bound, rep.reason);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 /* ---- closed forms ---- */
 
 /* The kernel of an interval of length 1 with isolated ends. */
@@ -904,6 +968,9 @@ static void src_memory(void) {
 }
 
 static void test_sources(void) {
+    src_two();
+    src_sample_report();
+    src_pairs_degree();
     src_operators();
     src_pairs();
     src_square();

@@ -599,7 +599,23 @@ static void spec_errors(void) {
     }
 }
 
+/* A run looks for all that are asked for while these are few: one from below, and a factor that counts. */
+static void spec_one_run(void) {
+    shape s = shape_bumpy(3, 5);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_spectrum *z = NULL;
+    hd_spectrum_opts o;
+    memset(&o, 0, sizeof o);
+    o.count = 20;
+    CHECK(hd_spectrum_create(&z, lap, &o, NULL) == HD_OK && z->proven && z->count >= 20);
+    CHECK_MSG(z->n_runs == 1 && z->n_factors == 2, "%d runs, %d factors", (int)z->n_runs, (int)z->n_factors);
+    hd_spectrum_free(z);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 static void test_spectrum(void) {
+    spec_one_run();
     spec_against_dense();
     spec_closed_forms();
     spec_copies();

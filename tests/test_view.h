@@ -195,6 +195,7 @@ static void view_bad_views(void) {
     VIEW_REFUSES(v.stride = SIZE_MAX / 2 / (size_t)(s.n - 1), HD_ERR_TOO_LARGE, "address space");
     VIEW_REFUSES(v.n_indices = 0, HD_ERR_EMPTY, "");
     VIEW_REFUSES(v.n = 0, HD_ERR_INDEX, "does not exist");
+    VIEW_REFUSES((v.n = v.n_indices = 0, v.stride = 0, v.xyz_float = NULL, v.tri_u16 = NULL), HD_ERR_EMPTY, "");
 #undef VIEW_REFUSES
     for (k = 0; k < 2; k++) {                    /* a stride without a second vertex to go to */
         v = b.view;
