@@ -23855,7 +23855,7 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->rep->reason = "nothing was asked for";
     h->lap = heat->source;
     h->lane = heat->lane;
-    return hdi_heat_renew(heat, h->e);
+    return hdi_context_check(heat->ctx, h->e) < 0 ? h->e->status : hdi_heat_renew(heat, h->e);
 }
 
 /* ---- choice of the method ---- */
