@@ -557,6 +557,20 @@ static void doors_spectra(doors *d) {
     DOORS_AT(hd_times_spectral(d->lap, 2, bad, u, &d->e), HD_ERR_ARGUMENT, "c is not positive", column, 1);
 }
 
+/* The Laplacian exp is divided by the area, and its times come in the square of it: the mean of the logs is one time. */
+static void doors_times_exp(doors *d) {
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts o;
+    double t[3];
+    memset(&o, 0, sizeof o);
+    o.kind = HD_LAPLACIAN_EXP;
+    CHECK(hd_laplacian_points(&lap, d->s.xyz, d->s.n, &o, &d->e) >= 0);
+    CHECK(hd_times_auto(lap, 3, t, &d->e) == HD_OK);
+    CHECK(fabs(t[0] / (0.0024 * lap->area * lap->area) - 1) < 1e-12 && fabs(t[2] / (0.37 * lap->area * lap->area) - 1) < 1e-12);
+    CHECK(fabs(t[1] / sqrt(t[0] * t[2]) - 1) < 1e-12 && hd_times_auto(lap, 1, t, &d->e) == HD_OK && fabs(t[0] / t[1] - 1) < 1e-12);
+    hd_laplacian_free(lap);
+}
+
 /* One vertex has no eigenvalue but that of the constants, and no time follows from it. */
 static void doors_one_vertex(doors *d) {
     const hd_csr L = test_diagonal_csr(1, NULL);
@@ -828,6 +842,7 @@ static void doors_arguments(void) {
     doors_neighbours(d);
     doors_spectra(d);
     doors_one_vertex(d);
+    doors_times_exp(d);
     doors_rationals(d);
     doors_plans(d);
     doors_queries(d);
