@@ -32625,12 +32625,6 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 
 #define HDI_TOL_SPECTRUM 1e-10
 
-/* A spectrum with a context that lives as long. */
-typedef struct hdi_spectrum {
-    hd_spectrum s;
-    hd_context context;
-} hdi_spectrum;
-
 static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_opts *o, hd_error *e) {
     hdi_refuse(o->count < 0 || (o->count == 0 && o->below == 0), "spectrum: neither a count nor a bound", e);
     hdi_refuse_value(o->count > lap->n_active, "spectrum: more pairs than rows", o->count, e);
@@ -32661,7 +32655,7 @@ static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err) {
     hdi_call c;
-    hdi_spectrum *shell;
+    hd_spectrum *s;
     hd_status status;
     if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
                        opts && opts->context ? opts->context : lap ? lap->context : NULL,
@@ -32669,15 +32663,15 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     if (!out || !lap || !opts) return hdi_missing(c.e);
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
     if (hdi_spectrum_check(lap, opts, c.e) < 0) return c.e->status;
-    shell = HDI_CAST(hdi_spectrum *, hdi_alloc(c.ctx, 1, sizeof *shell, c.e));
-    if (!shell) return c.e->status;
-    memset(shell, 0, sizeof *shell);
-    shell->s.lap = lap;
-    shell->s.context = hdi_enter_keep(&c, &shell->context);
-    hdi_hold(shell->s.context);
-    status = hdi_spectrum_make(&shell->s, opts, c.e);
-    if (status >= 0) *out = &shell->s;
-    else hd_spectrum_free(&shell->s);
+    s = HDI_CAST(hd_spectrum *, hdi_alloc(c.ctx, 1, sizeof *s, c.e));
+    if (!s) return c.e->status;
+    memset(s, 0, sizeof *s);
+    s->lap = lap;
+    s->context = c.ctx;                          /* the caller's: every Laplacian has one */
+    hdi_hold(s->context);
+    status = hdi_spectrum_make(s, opts, c.e);
+    if (status >= 0) *out = s;
+    else hd_spectrum_free(s);
     return status;
 }
 
@@ -32720,13 +32714,9 @@ HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_time
 }
 
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
-    hd_context own, *ctx;
+    hd_context *ctx;
     if (!s) return;
     ctx = s->context;
-    if (ctx == &HDI_CAST(hdi_spectrum *, HDI_CAST(void *, s))->context) {   /* about to be freed itself */
-        own = *ctx;
-        ctx = &own;
-    }
     hdi_free(ctx, s->value);
     hdi_free(ctx, s->vector);
     hdi_free(ctx, s->left);
