@@ -108,6 +108,12 @@ static void int_texts(void) {
         hdi_text_bytes(&e, bytes[k]);
         CHECK_MSG(strcmp(e.text, want[k]) == 0, "%g bytes: %s", bytes[k], e.text);
     }
+    {
+        char longer[400];
+        memset(longer, 'x', sizeof longer);
+        longer[sizeof longer - 1] = 0;
+        CHECK(hdi_fail(&e, HD_ERR_ARGUMENT, longer) == HD_ERR_ARGUMENT && strlen(e.text) == sizeof e.text - 1 && e.text[0] == 'x');
+    }
     hdi_error_clear(&e);
     for (k = 0; k < 200; k++) hdi_text_add(&e, "abcdefg");   /* until there is no room: the last letters are left out */
     CHECK(strlen(e.text) == sizeof e.text - 1);

@@ -830,6 +830,107 @@ static void doors_geodesics(doors *d) {
     CHECK(!g && u[0] == 0);
 }
 
+/* ---- what is taken ---- */
+
+/* An order of one's own and columns farther apart change places, not values. */
+static void doors_spectrum_taken(doors *d) {
+    const double t = 0.3;
+    const int32_t v[2] = {2, 9};
+    double u[2 * DOORS_N], apart[2 * (DOORS_N + 3)];
+    int32_t perm[DOORS_N], q;
+    hd_spectrum_opts o;
+    hd_spectrum *own = NULL;
+    memset(&o, 0, sizeof o);
+    for (q = 0; q < DOORS_N; q++) perm[q] = DOORS_N - 1 - q;
+    o.count = 4;
+    o.tol = 1e-9;
+    o.ordering = HD_ORDERING_OWN;
+    o.perm = perm;
+    if (!CHECK_MSG(hd_spectrum_create(&own, d->lap, &o, &d->e) == HD_OK, "%s", d->e.text)) return;
+    for (q = 0; q < 4; q++) CHECK(fabs(own->value[q] - d->spectrum->value[q]) <= 1e-9 * d->spectrum->value[3]);
+    CHECK(hd_spectrum_columns(own, HD_KERNEL_OPERATOR, 1, &t, 2, v, u, NULL, 0, &d->e) == HD_OK);
+    CHECK(hd_spectrum_columns(own, HD_KERNEL_OPERATOR, 1, &t, 2, v, apart, NULL, DOORS_N + 3, &d->e) == HD_OK);
+    CHECK(memcmp(u, apart, DOORS_N * sizeof *u) == 0 && memcmp(u + DOORS_N, apart + DOORS_N + 3, DOORS_N * sizeof *u) == 0);
+    hd_spectrum_free(own);
+}
+
+/* Fields that lie farther apart than their answers, in one array. */
+static void doors_in_place(doors *d) {
+    enum { K = 3, WIDE = DOORS_N + 4 };
+    const double t = 0.2;
+    double F[K * WIDE], U[K * DOORS_N];
+    int32_t q;
+    for (q = 0; q < K * WIDE; q++) F[q] = q % 11 - 3;
+    CHECK(hd_heat_apply(d->heat, 1, &t, K, F, WIDE, U, DOORS_N, NULL, &d->e) == HD_OK);
+    CHECK(hd_heat_apply(d->heat, 1, &t, K, F, WIDE, F, DOORS_N, NULL, &d->e) == HD_OK && memcmp(F, U, sizeof U) == 0);
+}
+
+/* A plan takes sets of one time, one lambda_max and the same poles; Lanczos takes none. */
+static void doors_filter_sets(doors *d) {
+    const double top = hd_laplacian_lambda_max(d->lap);
+    double D[2 * DOORS_N];
+    hd_rational sets[2];
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    hd_filter f;
+    int k;
+    memset(&o, 0, sizeof o);
+    memset(&f, 0, sizeof f);
+    f.kind = HD_FILTER_HEAT;
+    f.a = 1;
+    CHECK(hd_rational_fit(sets, &f, top, NULL, &d->e) == HD_OK);
+    o.rational = sets;
+    if (!CHECK(hd_heat_create(&heat, d->lap, &o, &d->e) == HD_OK)) return;
+    DOORS_BAD(hd_heat_filter_diagonals(heat, 0, sets, D, 0, NULL, NULL, NULL, &d->e), "there is none");
+    for (k = 0; k < 5; k++) {
+        sets[1] = sets[0];
+        if (k == 0) CHECK(hd_heat_filter_diagonals(heat, 2, sets, D, 0, NULL, NULL, NULL, &d->e) >= 0 && D[0] > 0 && memcmp(D, D + DOORS_N, sizeof D / 2) == 0);
+        if (k == 1) sets[1].t *= 2;
+        if (k == 2) sets[1].lambda_max *= 2;
+        if (k == 3) sets[1].theta[0].re += 1;
+        if (k == 4) sets[1].theta[0].im = -1;
+        if (k > 0 && k < 4) DOORS_AT(hd_heat_filter_diagonals(heat, 2, sets, D, 0, NULL, NULL, NULL, &d->e), HD_ERR_ARGUMENT, "has not the poles", column, 1);
+        if (k == 4) DOORS_AT(hd_heat_filter_diagonals(heat, 2, sets, D, 0, NULL, NULL, NULL, &d->e), HD_ERR_ARGUMENT, "theta needs", column, 1);
+    }
+    hd_heat_free(heat);
+    heat = NULL;
+    o.rational = NULL;
+    o.method = HD_METHOD_ITERATIVE;
+    o.solver = HD_SOLVER_LANCZOS;
+    CHECK(hd_heat_create(&heat, d->lap, &o, &d->e) == HD_OK);
+    DOORS_BAD(hd_heat_filter(heat, sets, &d->e), "");
+    hd_heat_free(heat);
+}
+
+static hd_progress doors_stop(void *user, const char *stage, double done) {
+    int *left = (int *)user;
+    (void)stage;
+    (void)done;
+    return (*left)-- > 0 ? HD_PROGRESS_CONTINUE : HD_PROGRESS_CANCEL;
+}
+
+/* An update that is cancelled half way leaves a plan that says so until the next one. */
+static void doors_half_updated(doors *d) {
+    const int32_t v = 3;
+    double before[DOORS_N], after[DOORS_N];
+    int k, left, told = 0, st = HD_ERR_CANCELLED;
+    CHECK(hd_geodesic_update(d->geodesic, d->s.xyz, &d->e) >= 0 && hd_geodesic_distance(d->geodesic, 1, &v, before, NULL, &d->e) >= 0);
+    d->ctx.progress = doors_stop;
+    d->ctx.progress_user = &left;
+    for (k = 0; k < 100 && st == HD_ERR_CANCELLED; k++) {
+        left = k;
+        st = hd_geodesic_update(d->geodesic, d->s.xyz, &d->e);
+        left = 1 << 20;
+        if (st != HD_ERR_CANCELLED) break;
+        if (hd_geodesic_distance(d->geodesic, 1, &v, after, NULL, &d->e) >= 0) continue;       /* nothing had changed yet */
+        CHECK(d->e.status == HD_ERR_ARGUMENT && strstr(d->e.text, "the last update failed"));
+        told++;
+    }
+    CHECK(st >= 0 && told > 0);
+    d->ctx.progress = NULL;
+    CHECK(hd_geodesic_distance(d->geodesic, 1, &v, after, NULL, &d->e) >= 0 && memcmp(before, after, sizeof before) == 0);
+}
+
 static void doors_arguments(void) {
     doors all, *const d = &all;
     doors_open(d);
@@ -848,6 +949,10 @@ static void doors_arguments(void) {
     doors_queries(d);
     doors_distances(d);
     doors_geodesics(d);
+    doors_spectrum_taken(d);
+    doors_in_place(d);
+    doors_filter_sets(d);
+    doors_half_updated(d);
     doors_close(d);
 }
 
