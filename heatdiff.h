@@ -23284,16 +23284,10 @@ static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd
     return s->proven && s->n_poor == 0 ? HD_OK : HD_WARN_ACCURACY;
 }
 
-/* A spectrum with a context that lives as long. */
-typedef struct hdi_spectrum {
-    hd_spectrum s;
-    hd_context context;
-} hdi_spectrum;
-
 static void hdi_spectrum_free(hd_spectrum *s) {
-    hd_context own, *ctx;
+    hd_context *ctx;
     if (!s) return;
-    ctx = hdi_outlive(s->context, &HDI_CAST(hdi_spectrum *, HDI_CAST(void *, s))->context, &own);
+    ctx = s->context;
     hdi_free(ctx, s->value);
     hdi_free(ctx, s->vector);
     hdi_free(ctx, s->left);
@@ -24349,7 +24343,7 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->rep->reason = "nothing was asked for";
     h->lap = heat->source;
     h->lane = heat->lane;
-    return hdi_heat_renew(heat, h->e);
+    return hdi_context_check(heat->ctx, h->e) < 0 ? h->e->status : hdi_heat_renew(heat, h->e);
 }
 
 /* ---- choice of the method ---- */
@@ -33112,7 +33106,7 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err) {
     hdi_call c;
-    hdi_spectrum *shell;
+    hd_spectrum *s;
     hd_status status;
     if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
                        opts && opts->context ? opts->context : lap ? lap->context : NULL,
@@ -33120,14 +33114,14 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     if (!out || !lap || !opts) return hdi_missing(c.e);
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
     if (hdi_spectrum_check(lap, opts, c.e) < 0) return c.e->status;
-    shell = HDI_CAST(hdi_spectrum *, hdi_alloc_zero(c.ctx, 1, sizeof *shell, c.e));
-    if (!shell) return c.e->status;
-    shell->s.lap = lap;
-    shell->s.context = hdi_enter_keep(&c, &shell->context);
-    hdi_hold(shell->s.context);
-    status = hdi_spectrum_make(&shell->s, opts, c.e);
-    if (status >= 0) *out = &shell->s;
-    else hd_spectrum_free(&shell->s);
+    s = HDI_CAST(hd_spectrum *, hdi_alloc_zero(c.ctx, 1, sizeof *s, c.e));
+    if (!s) return c.e->status;
+    s->lap = lap;
+    s->context = c.ctx;                          /* the caller's: every Laplacian has one */
+    hdi_hold(s->context);
+    status = hdi_spectrum_make(s, opts, c.e);
+    if (status >= 0) *out = s;
+    else hd_spectrum_free(s);
     return status;
 }
 

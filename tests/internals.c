@@ -108,6 +108,12 @@ static void int_texts(void) {
         hdi_text_bytes(&e, bytes[k]);
         CHECK_MSG(strcmp(e.text, want[k]) == 0, "%g bytes: %s", bytes[k], e.text);
     }
+    {
+        char longer[400];
+        memset(longer, 'x', sizeof longer);
+        longer[sizeof longer - 1] = 0;
+        CHECK(hdi_fail(&e, HD_ERR_ARGUMENT, longer) == HD_ERR_ARGUMENT && strlen(e.text) == sizeof e.text - 1 && e.text[0] == 'x');
+    }
     hdi_error_clear(&e);
     for (k = 0; k < 200; k++) hdi_text_add(&e, "abcdefg");   /* until there is no room: the last letters are left out */
     CHECK(strlen(e.text) == sizeof e.text - 1);
@@ -364,6 +370,8 @@ static void int_tridiagonal_odd(void) {
     }
     CHECK(fabs(got - trace) < 1e-14 && fabs(first - 1) < 1e-14);
     CHECK(hdi_tridiag_eigen(g, off, y0, y1, 0));
+    g[0] = g[1] = off[0] = (double)NAN;           /* nothing ever gets small */
+    CHECK(!hdi_tridiag_eigen(g, off, y0, y1, 2));
 }
 
 /* ---- [09] geometry ---- */
@@ -738,6 +746,156 @@ static void int_precond_make(void) {
     }
     hdi_upper_free(&ctx, &up);
     hd_laplacian_free(lap);
+}
+
+/* ---- [14] dissection ---- */
+
+/* A path of ten vertices, each end with one neighbour outside of the part; no weights. */
+enum { INT_ND = 10, INT_ND_ROOM = 600 };
+
+typedef struct int_nd {
+    hdi_nd_graph g;
+    int32_t ptr[INT_ND + 1], adj[2 * INT_ND], id[INT_ND], map[INT_ND], room[INT_ND_ROOM];
+    int8_t side[INT_ND];
+    hdi_nd_space space;
+} int_nd;
+
+static void int_nd_make(int_nd *t) {
+    int32_t v, z = 0;
+    memset(t, 0, sizeof *t);
+    for (v = 0; v < INT_ND; v++) {
+        t->ptr[v] = z;
+        t->adj[z++] = v > 0 ? v - 1 : ~100;
+        t->adj[z++] = v + 1 < INT_ND ? v + 1 : ~101;
+        t->id[v] = 50 + v;
+    }
+    t->ptr[INT_ND] = z;
+    t->g.n = INT_ND;
+    t->g.ptr = t->ptr;
+    t->g.adj = t->adj;
+    t->g.id = t->id;
+    t->g.map = t->map;
+    t->g.side = t->side;
+    t->space.at = t->room;
+    t->space.end = t->room + INT_ND_ROOM;
+}
+
+static int32_t int_nd_cut(const int_nd *t) {
+    int32_t v, cut = 0;
+    for (v = 0; v + 1 < INT_ND; v++) cut += t->side[v] != t->side[v + 1];
+    return cut;
+}
+
+/* Gains, weights and moves on a path by hand; passes that begin badly end within their limit. */
+static void int_nd_moves(void) {
+    int_nd t;
+    hdi_nd_mover m;
+    hdi_nd_cut cut;
+    hdi_nd_space s;
+    int32_t v, k, best;
+    int_nd_make(&t);
+    for (v = 5; v < INT_ND; v++) t.side[v] = 1;
+    s = t.space;
+    m = hdi_nd_mover_make(&t.g, &s);
+    hdi_nd_mover_start(&m, &cut);
+    CHECK(cut.cut == 1 && cut.weight[0] == 5 && cut.weight[1] == 5);
+    for (v = 0; v < INT_ND; v++) CHECK(m.gain[v] == (v == 4 || v == 5 ? 0 : v == 0 || v == 9 ? -1 : -2));
+    cut.most = 5;
+    CHECK(hdi_nd_mover_next(&m, &cut) == -1);
+    cut.most = 6;
+    best = hdi_nd_mover_next(&m, &cut);
+    CHECK(best == 4 || best == 5);
+    hdi_nd_queue_remove(&m.q, 4);
+    m.locked[4] = 1;
+    hdi_nd_mover_move(&m, 4, &cut);
+    CHECK(t.side[4] == 1 && cut.cut == 1 && cut.weight[0] == 4 && cut.weight[1] == 6 && m.gain[3] == 0 && m.gain[4] == 0 && m.gain[5] == -2);
+    for (k = 0; k < 2; k++) {                    /* every other vertex; nearly all on one side */
+        for (v = 0; v < INT_ND; v++) t.side[v] = (int8_t)(k ? v == 0 : v % 2);
+        s = t.space;
+        m = hdi_nd_mover_make(&t.g, &s);
+        cut.most = 6;
+        hdi_nd_refine_edges(&m, &cut, 4);
+        CHECK_MSG(cut.cut == int_nd_cut(&t) && cut.cut < 4 && cut.weight[0] + cut.weight[1] == INT_ND && hdi_max(cut.weight[0], cut.weight[1]) <= 6,
+                  "%d: cut %g, weights %g and %g", (int)k, cut.cut, cut.weight[0], cut.weight[1]);
+    }
+}
+
+/* Clusters of a path, their graph, and what does not fit. */
+static void int_nd_clusters(void) {
+    int_nd t;
+    hdi_nd_graph c;
+    int32_t weight[INT_ND], member[INT_ND], start[INT_ND + 1], mark[INT_ND], ptr[INT_ND + 1], adj[2 * INT_ND], ew[2 * INT_ND], id[INT_ND];
+    int32_t v, p, sum = 0, between = 0;
+    int_nd_make(&t);
+    memset(&c, 0, sizeof c);
+    c.ptr = ptr;
+    c.adj = adj;
+    c.ew = ew;
+    c.id = id;
+    c.n = hdi_nd_cluster(&t.g, 3, weight);
+    CHECK(c.n >= 4 && c.n <= 6);
+    for (v = 0; v < c.n; v++) {
+        CHECK(weight[v] > 0 && weight[v] <= 3);
+        sum += weight[v];
+    }
+    CHECK(sum == INT_ND);
+    CHECK(!hdi_nd_contract(&t.g, &c, 2, member, start, mark));
+    CHECK(hdi_nd_contract(&t.g, &c, 2 * INT_ND, member, start, mark) && ptr[c.n] == 2 * (c.n - 1));
+    for (v = 0; v < c.n; v++) {
+        CHECK(t.map[id[v] - 50] == v);
+        for (p = ptr[v]; p < ptr[v + 1]; p++) {
+            CHECK(adj[p] == v - 1 || adj[p] == v + 1);
+            between += ew[p];
+        }
+    }
+    CHECK(between == 2 * (c.n - 1));             /* each of a path's edges between clusters, from both ends */
+}
+
+/* Steps along a path, the place where a sweep cuts it, and sides by number. */
+static void int_nd_sides(void) {
+    int_nd t;
+    hdi_pair key[INT_ND];
+    int32_t dist[INT_ND], queue[INT_ND], size[3], v;
+    int_nd_make(&t);
+    CHECK(hdi_nd_steps(&t.g, 0, dist, queue) == INT_ND - 1);
+    for (v = 0; v < INT_ND; v++) {
+        CHECK(dist[v] == v);
+        key[v].key = (uint64_t)v;
+        key[v].id = (uint32_t)v;
+    }
+    hdi_nd_sweep(&t.g, key, INT_ND);
+    for (v = 0; v < INT_ND; v++) CHECK(t.side[v] == (v >= 5));
+    CHECK(hdi_nd_touches(&t.g, 4) && hdi_nd_touches(&t.g, 5) && !hdi_nd_touches(&t.g, 0) && !hdi_nd_touches(&t.g, 9));
+    hdi_nd_halve(&t.g);
+    CHECK(hdi_nd_measure(&t.g, size) && size[0] == 4 && size[1] == 5 && size[2] == 1 && t.side[4] == 2);
+    memset(t.side, 0, sizeof t.side);
+    CHECK(!hdi_nd_measure(&t.g, size) && size[0] == INT_ND);
+    memset(t.side, 1, sizeof t.side);
+    CHECK(!hdi_nd_measure(&t.g, size) && size[1] == INT_ND);
+    for (v = 0; v < INT_ND; v++) t.side[v] = (int8_t)(v < 6 ? 2 : v % 2);
+    CHECK(!hdi_nd_measure(&t.g, size) && size[2] == 6);
+}
+
+/* The halo gets numbers behind the part's, or is left out; without any room a leaf keeps its order. */
+static void int_nd_leaves(void) {
+    const hdi_nd_part part = {3, INT_ND, 0, 2 * INT_ND, 0, 0};
+    int32_t perm[3 + INT_ND], v, p;
+    hdi_nd_space none;
+    hdi_nd nd;
+    int_nd t;
+    memset(&nd, 0, sizeof nd);
+    nd.perm = perm;
+    int_nd_make(&t);
+    none.at = none.end = t.room;
+    CHECK(hdi_nd_halo(&part, t.adj, none) == part.n_edges && t.adj[0] == ~100);
+    CHECK(hdi_nd_halo(&part, t.adj, t.space) == 2 && t.adj[0] == INT_ND && t.adj[2 * INT_ND - 1] == INT_ND + 1);
+    hdi_nd_bare(&t.g);
+    CHECK(t.ptr[INT_ND] == 2 * (INT_ND - 1));
+    for (v = 0; v < INT_ND; v++)
+        for (p = t.ptr[v]; p < t.ptr[v + 1]; p++) CHECK(t.adj[p] == v - 1 || t.adj[p] == v + 1);
+    int_nd_make(&t);
+    hdi_nd_leaf(&nd, &part, &t.g, none);
+    for (v = 0; v < INT_ND; v++) CHECK(perm[3 + v] == 50 + v);
 }
 
 /* ---- [15] krylov: directions without constants ---- */
@@ -3148,6 +3306,10 @@ int main(void) {
     int_norm();
     int_cuthill_mckee();
     int_amd_dense();
+    int_nd_moves();
+    int_nd_clusters();
+    int_nd_sides();
+    int_nd_leaves();
     int_krylov_done();
     int_ildl_trees();
     int_ildl_row_sums();

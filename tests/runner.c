@@ -219,6 +219,7 @@ static void test_tmp_remove(void) {
 #include "test_geodesic_all.h"
 #include "test_lengths.h"
 #include "test_deep.h"
+#include "test_doors.h"
 #include "test_failures.h"
 #include "test_platform.h"
 
@@ -238,6 +239,7 @@ static const test_group test_groups[] = {
     {"sources", test_sources},
     {"lengths", test_lengths},
     {"deep", test_deep},
+    {"doors", test_doors},
     {"failures", test_failures},
 };
 

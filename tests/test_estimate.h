@@ -330,6 +330,108 @@ static void est_spectrum(const hd_laplacian *lap) {
     }
 }
 
+/* Each query of each plan, with few times and many, small and large: what may be asked is answered, in figures that make sense and grow
+   with the work; what this plan cannot answer is refused. Then once more, when some of it has been done. */
+static void est_sweep_one(hd_heat *heat, const hd_heat_opts *o, hd_query query, int32_t n_times, const double *t, int limited, const char *what) {
+    static const int32_t ks[3] = {1, 5, 40};
+    const int direct = query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM, timeless = query >= HD_QUERY_DISTANCE_COMMUTE;
+    const int refused = (direct && (o->method == HD_METHOD_ITERATIVE || o->method == HD_METHOD_KRYLOV)) ||
+                        (query > HD_QUERY_PAIRS && !timeless && t[0] == 0);
+    double flops = 0;
+    hd_estimate e;
+    hd_error err;
+    int q;
+    for (q = 0; q < 3; q++) {
+        const hd_status st = hd_heat_estimate(heat, query, n_times, t, ks[q], &e, &err);
+        if (refused) {
+            CHECK_MSG(st == HD_ERR_ARGUMENT && err.status == st && err.text[0], "%s, query %d: %s", what, (int)query, hd_status_name(st));
+            continue;
+        }
+        if (!CHECK_MSG(st == HD_OK, "%s, query %d: %s: %s", what, (int)query, hd_status_name(st), err.text)) continue;
+        CHECK_MSG(e.method >= HD_METHOD_ITERATIVE && e.method <= HD_METHOD_KRYLOV && memcmp(&e.cost[0], &e.cost[e.method], sizeof e.cost[0]) == 0,
+                  "%s, query %d: method %d", what, (int)query, (int)e.method);
+        CHECK_MSG(o->method == HD_METHOD_AUTO || query == HD_QUERY_SPECTRUM || e.method == o->method, "%s, query %d: %s", what, (int)query, e.reason);
+        CHECK_MSG(e.cost[0].flops >= 0 && e.cost[0].flops < 1e15 && e.cost[0].seconds >= 0 && e.cost[0].seconds < 1e6 && e.cost[0].bytes >= 0 &&
+                  e.cost[0].bytes_most >= e.cost[0].bytes && e.cost[0].bytes_most < 1e12 && e.reason && e.reason[0],
+                  "%s, query %d: %g flops, %g s, %g to %g bytes", what, (int)query, e.cost[0].flops, e.cost[0].seconds, e.cost[0].bytes, e.cost[0].bytes_most);
+        CHECK(e.cost[0].fits == (e.cost[0].bytes <= e.bytes_left) && (limited || e.cost[0].fits));
+        CHECK_MSG(o->method == HD_METHOD_AUTO || e.cost[0].flops >= flops * (1 - 1e-12), "%s, query %d, k = %d: %g flops after %g", what, (int)query,
+                  (int)ks[q], e.cost[0].flops, flops);
+        flops = e.cost[0].flops;
+    }
+}
+
+enum { EST_PLANS = 14 };
+
+/* One plan of the list below. */
+static hd_heat_opts est_sweep_opts(int which, const hd_rational *set) {
+    hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
+    switch (which) {
+    case 1: o.method = HD_METHOD_DIRECT; break;
+    case 2: o.method = HD_METHOD_ITERATIVE; break;
+    case 3: o.method = HD_METHOD_KRYLOV; break;
+    case 4: o.tol = 1e-8; break;
+    case 5: o.poles = HD_POLES_UNIFORM; break;
+    case 6: o.poles = HD_POLES_KERNEL; o.degree = 6; break;
+    case 7: o.poles = HD_POLES_DIAGONAL; break;
+    case 8: o.degree = 7; o.method = HD_METHOD_DIRECT; break;
+    case 9: o.rational = set; break;
+    case 10: o.method = HD_METHOD_ITERATIVE; o.precond = HD_PRECOND_NONE; break;
+    case 11: o.method = HD_METHOD_ITERATIVE; o.precond = HD_PRECOND_JACOBI; o.solver = HD_SOLVER_MINRES; break;
+    case 12: o.method = HD_METHOD_ITERATIVE; o.solver = HD_SOLVER_LANCZOS; break;
+    case 13: o.tol = 1e-6; o.method = HD_METHOD_DIRECT; break;
+    default: break;
+    }
+    return o;
+}
+
+static void est_sweep(const hd_laplacian *lap, uint64_t limit, const char *name) {
+    double t[4][EST_MOST_TIMES] = {{1}, {0, 1, 2}, {1}, {1e7}}, *u = DENSE_NEW(double, lap->n);
+    static const int32_t n_times[4] = {1, 3, EST_MOST_TIMES, 1};
+    hd_rational set;
+    int which, w, pass, query, q;
+    CHECK(hd_rational_get(&set, HD_POLES_UNIFORM, 5, NULL) == HD_OK);
+    for (q = 0; q < EST_MOST_TIMES; q++) t[2][q] = pow(10, 0.3 * q);
+    for (w = 0; w < 4; w++) for (q = 0; q < n_times[w]; q++) t[w][q] *= lap->h * lap->h;
+    for (which = 0; which < EST_PLANS; which++) {
+        hd_heat_opts o = est_sweep_opts(which, &set);
+        hd_context ctx;
+        hd_heat *heat = NULL;
+        char what[80];
+        memset(&ctx, 0, sizeof ctx);
+        o.context = &ctx;
+        ctx.byte_limit = limit;
+        if (!CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK)) continue;
+        for (pass = 0; pass < 2; pass++) {
+            snprintf(what, sizeof what, "%s, plan %d, pass %d", name, which, pass);
+            for (query = HD_QUERY_FIELDS; query <= HD_QUERY_SPECTRUM; query++)
+                for (w = 0; w < 4; w++) est_sweep_one(heat, &o, (hd_query)query, n_times[w], t[w], limit > 0, what);
+            CHECK(limit || heat_column(heat, t[0][0], lap->vertex[3], u, NULL) >= 0);
+        }
+        hd_heat_free(heat);
+        CHECK(ctx.bytes_in_use == 0);
+    }
+    free(u);
+}
+
+static void est_sweeps(void) {
+    shape ball = shape_icosphere(1), grid = shape_grid(9, 8, 0.2);
+    hd_laplacian_opts held;
+    hd_laplacian *lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
+    memset(&held, 0, sizeof held);
+    held.kind = HD_LAPLACIAN_VORONOI_COT;
+    held.border = HD_BORDER_DIRICHLET;
+    est_sweep(lap, 0, "ball");
+    est_sweep(lap, 30000, "ball with little room");
+    hd_laplacian_free(lap);
+    lap = NULL;
+    CHECK(hd_laplacian_triangles(&lap, grid.xyz, grid.n, grid.tri, grid.n_tri, &held, NULL) == HD_OK);
+    est_sweep(lap, 0, "held grid");
+    hd_laplacian_free(lap);
+    shape_free(&ball);
+    shape_free(&grid);
+}
+
 #if defined(__SANITIZE_ADDRESS__)
 enum { EST_EACH = 3 };       /* under the sanitizers the ball and the points do: it takes a minute for all */
 #else
@@ -384,6 +486,7 @@ static void test_estimate(void) {
         hd_laplacian_free(lap);
     }
     est_model();
+    est_sweeps();
     shape_free(&ball);
     shape_free(&sheet);
     shape_free(&points);

@@ -198,6 +198,10 @@ static void filt_arguments(void) {
     FILT_BAD(f.max_degree = HD_MAX_POLES + 1);
     FILT_BAD(f.lambda_min = -1);
     FILT_BAD(f.lambda_min = 10);
+    FILT_BAD(f.kind = (hd_filter_kind)-1);
+    FILT_BAD(f.tol = (double)NAN);
+    FILT_BAD(f.weight = (double)INFINITY);
+    FILT_BAD(f.lambda_min = (double)NAN);
     FILT_BAD((f.kind = HD_FILTER_WAVE, f.b = 0));
     FILT_BAD((f.kind = HD_FILTER_FRACTIONAL, f.b = -1));
 #undef FILT_BAD
@@ -323,6 +327,7 @@ static void filt_distances(const filt_case *x) {
     const hd_laplacian *lap = x->c->lap;
     const int32_t n = lap->n_active, row = n / 3, source = lap->vertex[row];
     double *d = DENSE_NEW(double, lap->n), *KB = diag_product(x->K, x->c->pair.B, n), *BKB = diag_product(x->c->pair.B, KB, n);
+    double *K = DENSE_NEW(double, lap->n), *both = DENSE_NEW(double, lap->n);
     int32_t *from = DENSE_NEW(int32_t, lap->n), *to = DENSE_NEW(int32_t, lap->n), i;
     hd_report rep;
     int q;
@@ -348,6 +353,16 @@ static void filt_distances(const filt_case *x) {
     }
     if (CHECK(heat_pairs(x->heat, HD_DISTANCE_CLASSICAL, x->set.t, n, from, to, d, NULL, &rep) >= 0))
         for (i = 0; i < n; i++) CHECK(fabs(d[i] - KB[(size_t)lap->row[from[i]] * (size_t)n + (size_t)i]) <= 1e-7 * dense_max_abs(KB, (int64_t)n * n));
+    for (q = 0; q < 2; q++) {                    /* entries and distances at once: the distances as they come alone */
+        const hd_distance_kind kind = q ? HD_DISTANCE_WEIGHTED : HD_DISTANCE_CLASSICAL;
+        const double most = dense_max_abs(KB, (int64_t)n * n);
+        CHECK(heat_pairs(x->heat, kind, x->set.t, n, from, to, NULL, d, &rep) >= 0);
+        if (!CHECK(heat_pairs(x->heat, kind, x->set.t, n, from, to, K, both, &rep) >= 0)) continue;
+        CHECK(dense_max_diff(both, d, n) == 0);
+        for (i = 0; i < n; i++) CHECK(fabs(K[i] - KB[(size_t)lap->row[from[i]] * (size_t)n + (size_t)i]) <= 1e-7 * most);
+    }
+    free(K);
+    free(both);
     CHECK(heat_entries(x->heat, x->set.t, HD_KERNEL_SYMMETRIC, n, from, to, d, &rep) >= 0);
     for (i = 0; i < n; i++) CHECK(fabs(d[i] - x->K[(size_t)lap->row[from[i]] * (size_t)n + (size_t)i]) <= 1e-7 * dense_max_abs(x->K, (int64_t)n * n));
     free(d);

@@ -352,6 +352,45 @@ static void mov_matrix_frames(const shape *s, hd_laplacian_kind kind, const char
     free(xyz);
 }
 
+/* A vertex without mass stays one, and a diagonal B stays diagonal; entries of zero may lie outside of the pattern. */
+static void mov_matrix_pattern(void) {
+    enum { N = 5, E = 13 };
+    static const int32_t I[E] = {0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 4, 0, 3}, J[E] = {0, 1, 0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 0};
+    static const double l[E] = {1, -1, -1, 2, -1, -1, 2, -1, -1, 1, 0, 0, 0}, b[N] = {1, 2, 3, 4, 0};
+    static const int32_t D[N + 2] = {0, 1, 2, 3, 4, 3, 4}, C[N + 2] = {0, 1, 2, 3, 4, 4, 3}, M[N + 2] = {0, 1, 2, 3, 4, 0, 1}, W[N + 2] = {0, 1, 2, 3, 4, 1, 0};
+    double more[N + 2] = {1, 2, 3, 4, 0, 0.1, 0.1};
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts o;
+    hd_csr L, wide, B, bad;
+    hd_error e;
+    double x[N] = {1, 0, 0, 0, 0}, y[N];
+    memset(&o, 0, sizeof o);
+    o.updatable = 1;
+    CHECK(hd_csr_from_triplets(&L, N, N, E - 2, I, J, l, NULL, &e) == HD_OK && hd_csr_from_triplets(&wide, N, N, E, I, J, l, NULL, &e) == HD_OK);
+    CHECK(hd_csr_from_triplets(&B, N, N, N, D, C, b, NULL, &e) == HD_OK && wide.nnz == L.nnz + 2);
+    CHECK_MSG(hd_laplacian_matrices(&lap, &L, &B, 1, &o, &e) >= 0 && lap->n_active == 4, "%s", e.text);
+    CHECK(hd_laplacian_update_matrices(lap, &wide, &B, 1, &e) == HD_OK && lap->version == 1);
+    CHECK(hd_laplacian_apply(lap, 1, 10, x, y, &e) == HD_OK && y[0] == 11 && y[1] == -1 && y[2] == 0 && y[3] == 0 && y[4] == 0);
+    B.val[4] = 1;
+    CHECK(hd_laplacian_update_matrices(lap, &L, &B, 1, &e) == HD_ERR_STRUCTURE && e.row == 4 && e.column == 4 && e.value == 1 && strstr(e.text, "without mass"));
+    B.val[4] = 0;
+    CHECK(hd_csr_from_triplets(&bad, N, N, N + 2, D, C, more, NULL, &e) == HD_OK);
+    CHECK(hd_laplacian_update_matrices(lap, &L, &bad, 1, &e) == HD_ERR_STRUCTURE && e.row == 3 && e.column == 4 && e.value == 0.1);
+    hd_csr_free(&bad, NULL);
+    CHECK(hd_csr_from_triplets(&bad, N, N, N + 2, M, W, more, NULL, &e) == HD_OK);
+    CHECK(hd_laplacian_update_matrices(lap, &L, &bad, 1, &e) == HD_ERR_STRUCTURE && strstr(e.text, "B was diagonal"));
+    hd_csr_free(&bad, NULL);
+    more[6] = 0.2;
+    CHECK(hd_csr_from_triplets(&bad, N, N, N + 2, M, W, more, NULL, &e) == HD_OK);
+    CHECK(hd_laplacian_update_matrices(lap, &L, &bad, 1, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 1 && e.column == 0);
+    hd_csr_free(&bad, NULL);
+    CHECK(hd_laplacian_apply(lap, 1, 10, x, y, &e) == HD_OK && y[0] == 11 && y[1] == -1 && lap->version == 1);
+    hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&wide, NULL);
+    hd_csr_free(&B, NULL);
+}
+
 /* Points are refused, and told why. */
 static void mov_points(const shape *s) {
     hd_laplacian_opts o;
@@ -382,6 +421,7 @@ static void test_moving(void) {
     }
     mov_matrix_frames(&ball, HD_LAPLACIAN_FEM, "matrices of fem");
     mov_matrix_frames(&ball, HD_LAPLACIAN_VORONOI_COT, "matrices of voronoi-cot");
+    mov_matrix_pattern();
     mov_points(&ball);
     mov_geodesic(&ball, "ball");
     mov_geodesic(&sheet, "sheet");

@@ -123,6 +123,13 @@ static void rat_own_checks(void) {
     RAT_BAD(set.a0 = (double)NAN, HD_ERR_NOT_FINITE, -1);
     RAT_BAD(set.max_error = -1, HD_ERR_NOT_FINITE, -1);
     RAT_BAD(set.max_weighted_error = (double)NAN, HD_ERR_NOT_FINITE, -1);
+    RAT_BAD(set.max_error = (double)NAN, HD_ERR_NOT_FINITE, -1);
+    RAT_BAD(set.max_weighted_error = -1, HD_ERR_NOT_FINITE, -1);
+    RAT_BAD(set.t = (double)INFINITY, HD_ERR_ARGUMENT, -1);
+    RAT_BAD(set.t = -1, HD_ERR_ARGUMENT, -1);
+    RAT_BAD(set.largest = (double)NAN, HD_ERR_ARGUMENT, -1);
+    RAT_BAD(set.largest = -1, HD_ERR_ARGUMENT, -1);
+    RAT_BAD((set.t = 1, set.lambda_max = 0), HD_ERR_ARGUMENT, -1);
     RAT_BAD(set.theta[1].re = (double)INFINITY, HD_ERR_NOT_FINITE, 1);
     RAT_BAD(set.a[2].im = (double)NAN, HD_ERR_NOT_FINITE, 2);
     RAT_BAD(set.theta[1].im = -1, HD_ERR_ARGUMENT, 1);

@@ -814,6 +814,67 @@ static void src_refused(hd_heat *heat, const hd_source *s, hd_status want, int64
     CHECK(hd_heat_distance_from(heat, HD_DISTANCE_CLASSICAL, 1, &t, 2, two, u, 0, &rep, NULL) == want);
 }
 
+/* One vertex of weight 2 is twice its column, and a vertex that is held has no heat to give, whatever its weight. */
+static void src_one_vertex(const hd_laplacian *lap, hd_heat *heat, int32_t held) {
+    const int32_t id[2] = {3, held};
+    const double t = 1, two = 2;
+    double u[25], v[25];
+    hd_source s;
+    int32_t i;
+    int q;
+    memset(&s, 0, sizeof s);
+    s.count = 1;
+    s.weight = &two;
+    CHECK(lap->n == 25);
+    for (q = 0; q < 2; q++) {
+        const hd_kernel kernel = q ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
+        s.vertex = id;
+        CHECK(hd_heat_columns_from(heat, kernel, 1, &t, 1, &s, u, 0, NULL, NULL) == HD_OK);
+        CHECK(hd_heat_columns(heat, kernel, 1, &t, 1, id, v, 0, NULL, NULL) == HD_OK);
+        for (i = 0; i < 25; i++) CHECK(fabs(u[i] - 2 * v[i]) <= 1e-9 * fabs(v[3]));
+        s.vertex = id + 1;
+        CHECK(hd_heat_columns_from(heat, kernel, 1, &t, 1, &s, u, 0, NULL, NULL) == HD_OK);
+        for (i = 0; i < 25; i++) CHECK(u[i] == 0);
+    }
+}
+
+/* Weights near both ends of what is allowed: the answer is that of weight 1, times the weight, by every method. */
+static void src_far_weights(void) {
+    static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_ITERATIVE, HD_METHOD_KRYLOV};
+    shape ball = shape_icosphere(1);
+    hd_laplacian *lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
+    const int32_t id[2] = {3, 11};
+    const double t = 3 * lap->h * lap->h;
+    double *u = DENSE_NEW(double, ball.n), *one = DENSE_NEW(double, ball.n), weight[2];
+    hd_source s;
+    int32_t i;
+    int q, k;
+    memset(&s, 0, sizeof s);
+    s.count = 2;
+    s.vertex = id;
+    s.weight = weight;
+    for (q = 0; q < 6; q++) {
+        const hd_kernel kernel = q % 2 ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
+        hd_heat *heat = eng_plan(lap, methods[q / 2], HD_POLES_DEFAULT, 0);
+        for (k = 0; k < 3; k++) {
+            const int exponent = k == 0 ? 0 : k == 1 ? 300 : -300;
+            double most = 0;
+            hd_report rep;
+            weight[0] = ldexp(1, exponent);
+            weight[1] = ldexp(0.5, exponent);
+            CHECK(hd_heat_columns_from(heat, kernel, 1, &t, 1, &s, k ? u : one, 0, &rep, NULL) == HD_OK && rep.error_bound <= 1e-6);
+            for (i = 0; i < ball.n; i++) most = fmax(most, fabs(one[i]));
+            for (i = 0; i < ball.n && k; i++)
+                CHECK_MSG(fabs(ldexp(u[i], -exponent) - one[i]) <= 1e-12 * most, "method %d, 2^%d: %.17g, %.17g", q, exponent, ldexp(u[i], -exponent), one[i]);
+        }
+        hd_heat_free(heat);
+    }
+    hd_laplacian_free(lap);
+    shape_free(&ball);
+    free(u);
+    free(one);
+}
+
 static void src_errors(void) {
     shape g = shape_grid(5, 5, 0);
     const int32_t held = 7;
@@ -869,8 +930,19 @@ static void src_errors(void) {
     src_refused(heat, &s, HD_ERR_ARGUMENT, 0, -1, "a negative length");
     weight[0] = 0;
     src_refused(heat, &s, HD_ERR_ARGUMENT, -1, -1, "no length");
+    weight[0] = HUGE_VAL;
+    src_refused(heat, &s, HD_ERR_NOT_FINITE, 0, -1, "an infinite length");
+    weight[0] = 1e200;
+    src_refused(heat, &s, HD_ERR_ARGUMENT, -1, -1, "a length beyond all");
     s.count = 1;
     src_refused(heat, &s, HD_ERR_ARGUMENT, -1, -1, "one point of a curve");
+    s = ok;
+    s.end_zero = 1;
+    src_refused(heat, &s, HD_ERR_ARGUMENT, -1, -1, "not cleared at its end");
+    s = ok;
+    s.count = 1 << 30;
+    src_refused(heat, &s, HD_ERR_TOO_LARGE, -1, -1, "too many points");
+    src_one_vertex(lap, heat, held);
     s = ok;
     s.vertex = NULL;
     CHECK(hd_heat_columns_from(heat, HD_KERNEL_OPERATOR, 1, &t, 1, &s, u, 0, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 0);
@@ -980,6 +1052,7 @@ static void test_sources(void) {
     src_geo_square();
     src_geo_strip();
     src_geo_rules();
+    src_far_weights();
     src_errors();
     src_memory();
 }
