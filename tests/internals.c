@@ -446,6 +446,245 @@ static void int_amd_dense(void) {
     hd_csr_free(&a, NULL);
 }
 
+/* ---- [13] degree: every step by definition ---- */
+
+/* A graph that vertices are eliminated from: joined[i n + j]. done[i]: it is gone. */
+typedef struct int_elimination { int32_t n; char *joined, *done; } int_elimination;
+
+static void int_eliminate(int_elimination *x, int32_t k) {
+    int32_t i, j;
+    x->done[k] = 1;
+    for (i = 0; i < x->n; i++)
+        for (j = 0; !x->done[i] && x->joined[k * x->n + i] && j < x->n; j++)
+            if (!x->done[j] && j != i && x->joined[k * x->n + j]) x->joined[i * x->n + j] = 1;
+}
+
+static int int_amd_lives(const hdi_amd *g, int32_t i) { return g->v[i].weight > 0 && g->v[i].elen != HDI_AMD_PIVOT; }
+
+/* The vertex that i was merged or eliminated with, or i. */
+static int32_t int_amd_root(const hdi_amd *g, int32_t i) {
+    while (g->v[i].weight == 0 && g->v[i].elen != HDI_AMD_PIVOT) i = g->v[i].at;
+    return i;
+}
+
+/* near[j] = 1 for the variables j that the lists of i join to it: its own, and those of its elements. Returns their weight. */
+static int32_t int_amd_near(const hdi_amd *g, int32_t i, char *near) {
+    const hdi_amd_node *v = g->v;
+    int32_t p, q, weight = 0;
+    memset(near, 0, (size_t)g->n);
+    for (p = 0; p < v[i].len; p++) {
+        const int32_t e = g->list[v[i].at + p];
+        for (q = 0; p < v[i].elen && q < v[e].len; q++) near[g->list[v[e].at + q]] = 1;
+        if (p >= v[i].elen) near[e] = 1;
+        else CHECK(v[e].elen == HDI_AMD_PIVOT && v[e].mark > 0);
+    }
+    near[i] = 0;
+    for (p = 0; p < g->n; p++) {
+        near[p] = near[p] && int_amd_lives(g, p);
+        weight += near[p] ? v[p].weight : 0;
+    }
+    return weight;
+}
+
+/* Weight of what i is joined to outside of l: the sum of its elements and variables, each counted by itself (Amestoy, Davis, Duff 1996, (4)). */
+static int32_t int_amd_outside(const hdi_amd *g, int32_t i, int32_t me, const char *l) {
+    const hdi_amd_node *v = g->v;
+    int32_t p, q, sum = 0;
+    for (p = 0; p < v[i].len; p++) {
+        const int32_t e = g->list[v[i].at + p];
+        if (p >= v[i].elen) {
+            CHECK(!l[e] && int_amd_lives(g, e));
+            sum += v[e].weight;
+        } else if (e != me) {
+            int32_t more = 0;
+            for (q = 0; q < v[e].len; q++) {
+                const int32_t j = g->list[v[e].at + q];
+                more += int_amd_lives(g, j) && !l[j] ? v[j].weight : 0;
+            }
+            CHECK(more > 0);                     /* an element within the new one is absorbed */
+            sum += more;
+        }
+    }
+    return sum;
+}
+
+/* Whether two variables have the same lists but for the order. */
+static int int_amd_alike(const hdi_amd *g, int32_t i, int32_t j) {
+    const hdi_amd_node *a = g->v + i, *b = g->v + j;
+    int32_t p, q;
+    if (a->len != b->len || a->elen != b->elen || (i < g->inner) != (j < g->inner)) return 0;
+    for (p = 0; p < a->len; p++) {
+        for (q = 0; q < b->len && g->list[b->at + q] != g->list[a->at + p]; q++) {}
+        if (q == b->len) return 0;
+    }
+    return 1;
+}
+
+/* All variables of the graph as it is: the lists and weights stand for x, the degrees are bounds. */
+static void int_amd_state(const hdi_amd *g, const int_elimination *x, char *near) {
+    const int32_t n = g->n;
+    int32_t *weight = DENSE_NEW(int32_t, n), i, j, wrong = 0, exact, left = 0;
+    for (i = 0; i < n; i++) {
+        weight[int_amd_root(g, i)]++;
+        left += !x->done[i];
+    }
+    CHECK(g->left == left && g->flag > 0);
+    for (i = 0; i < n; i++) {
+        const hdi_amd_node *v = g->v + i;
+        if (!v->weight) continue;                /* merged, or without neighbours from the beginning */
+        CHECK_MSG(v->weight == weight[i], "vertex %d stands for %d, not %d", (int)i, (int)weight[i], (int)v->weight);
+        CHECK(v->mark >= 0 && v->mark <= g->flag);
+        if (!int_amd_lives(g, i)) continue;
+        CHECK(!x->done[i] && (i >= g->inner || v->len > 1 || (v->elen == 0 && v->len == 1)));   /* not one that should have gone with the pivot */
+        exact = int_amd_near(g, i, near);
+        if (i < g->inner) CHECK_MSG(v->degree >= exact, "degree %d, at least %d", (int)v->degree, (int)exact);
+        for (j = 0; j < n; j++) {
+            const int32_t r = int_amd_root(g, j);
+            if (!x->done[j] && r != i) wrong += near[r] != x->joined[i * n + j];
+            if (!x->done[j] && r == i && j != i) wrong += memcmp(x->joined + i * n, x->joined + j * n, (size_t)n) != 0 && !x->joined[i * n + j];
+        }
+    }
+    CHECK_MSG(wrong == 0, "%d edges wrong with %d vertices left", (int)wrong, (int)left);
+    free(weight);
+}
+
+/* After the pivot me: what is in its list has the degree that the paper gives, from the degrees before; twins are merged. */
+static void int_amd_degrees(const hdi_amd *g, int32_t me, const int32_t *before, char *l) {
+    const hdi_amd_node *v = g->v;
+    int32_t p, q, i, all = 0;
+    memset(l, 0, (size_t)g->n);
+    for (p = 0; p < v[me].len; p++) {
+        i = g->list[v[me].at + p];
+        CHECK(int_amd_lives(g, i) && !l[i]);
+        l[i] = 1;
+        all += v[i].weight;
+    }
+    CHECK_MSG(v[me].degree == all, "the pivot's list weighs %d, not %d", (int)all, (int)v[me].degree);
+    for (p = 0; p < v[me].len; p++) {
+        int32_t want;
+        i = g->list[v[me].at + p];
+        for (q = 0; q < p; q++) CHECK(!int_amd_alike(g, i, g->list[v[me].at + q]));
+        CHECK(v[i].elen > 0 && g->list[v[i].at] == me);
+        if (i >= g->inner) continue;
+        want = int_amd_outside(g, i, me, l);
+        want = (want < before[i] ? want : before[i]) + all - v[i].weight;
+        if (want > g->left - v[i].weight) want = g->left - v[i].weight;
+        CHECK_MSG(v[i].degree == want, "degree %d, not %d", (int)v[i].degree, (int)want);
+    }
+    for (i = 0; i < g->inner; i++) CHECK(!int_amd_lives(g, i) || l[i] || v[i].degree == before[i]);
+}
+
+/* Moves the lists together: they stay what they are, and nothing else is kept. */
+static void int_amd_compacted(hdi_amd *g, const int_elimination *x, char *near) {
+    int32_t i, p, size = 0;
+    memset(near, 0, (size_t)g->n);               /* elements that a variable has */
+    for (i = 0; i < g->n; i++)
+        for (p = 0; int_amd_lives(g, i) && p < g->v[i].elen; p++) near[g->list[g->v[i].at + p]] = 1;
+    for (i = 0; i < g->n; i++) size += int_amd_lives(g, i) || near[i] ? g->v[i].len : 0;
+    hdi_amd_compact(g);
+    CHECK_MSG(g->free == size, "lists of %d words, not %d", (int)g->free, (int)size);
+    int_amd_state(g, x, near);
+}
+
+/* Orders a graph step by step. Every pivot is of the least degree, and stands for vertices that are alike. wrap: the marks run out again and again. */
+static void int_amd_steps_of(const hdi_amd_graph *a, int wrap) {
+    const int32_t n = a->n;
+    const int64_t nnz = a->ptr[a->inner];
+    const int64_t words = hdi_amd_part_words(a->inner, n - a->inner, nnz) - (n > a->inner ? 2 * nnz : nnz) / 5;
+    int32_t *work = DENSE_NEW(int32_t, words), *before = DENSE_NEW(int32_t, n), *perm = DENSE_NEW(int32_t, n), *when = DENSE_NEW(int32_t, n);
+    char *l = DENSE_NEW(char, n);
+    int_elimination x;
+    hdi_amd g;
+    int32_t i, p, me, done, least, count;
+    x.n = n;
+    x.joined = DENSE_NEW(char, n * n);
+    x.done = DENSE_NEW(char, n);
+    for (i = 0; i < a->inner; i++)
+        for (p = a->ptr[i]; p < a->ptr[i + 1]; p++)
+            if (a->col[p] != i) x.joined[i * n + a->col[p]] = x.joined[a->col[p] * n + i] = 1;
+    memset(work, 0x80, (size_t)words * sizeof *work);    /* not places of lists */
+    hdi_amd_begin(&g, n, a->inner, work, words);
+    hdi_amd_load(&g, a);
+    count = hdi_amd_start(&g);
+    CHECK(count == a->inner);
+    for (i = 0; i < a->inner; i++) {             /* those without neighbours are in the order already */
+        x.done[i] = g.v[i].elen == HDI_AMD_PIVOT;
+        if (x.done[i]) when[g.v[i].prev] = i;
+    }
+    int_amd_state(&g, &x, l);
+    while (g.done < count && int_failed < 50) {
+        done = g.done;
+        for (i = 0, least = n; i < n; i++) {
+            before[i] = g.v[i].degree;
+            if (i < a->inner && int_amd_lives(&g, i) && before[i] < least) least = before[i];
+        }
+        if (wrap && g.flag < INT32_MAX / 2) g.flag = INT32_MAX - 4 * n - wrap;
+        hdi_amd_run(&g, done + 1);
+        for (me = 0; me < a->inner && (g.v[me].elen != HDI_AMD_PIVOT || g.v[me].prev != done); me++) {}
+        CHECK_MSG(me < a->inner && before[me] == least, "pivot %d of degree %d, not %d", (int)me, (int)before[me], (int)least);
+        if (me == a->inner) break;
+        for (i = 0, p = 0; i < n; i++) {
+            if (int_amd_root(&g, i) != me) continue;
+            int_eliminate(&x, i);
+            when[done + p++] = me;
+        }
+        CHECK(done + p == g.done && p == g.v[me].weight);
+        int_amd_state(&g, &x, l);
+        int_amd_degrees(&g, me, before, l);
+        if (done % 5 == 0) int_amd_compacted(&g, &x, l);
+    }
+    for (p = 0; p < n; p++) x.done[p] = 0;
+    for (p = 0; p < count; p++) before[p] = when[p];
+    for (i = 0; i < a->inner; i++) when[i] = int_amd_root(&g, i);
+    if (int_failed < 50) hdi_amd_number(&g, perm);
+    for (p = 0; p < count && int_failed < 50; p++) {     /* in the order of the pivots, with what each stands for */
+        CHECK(!x.done[perm[p]] && when[perm[p]] == before[p]);
+        x.done[perm[p]] = 1;
+    }
+    free(work);
+    free(before);
+    free(perm);
+    free(when);
+    free(l);
+    free(x.joined);
+    free(x.done);
+}
+
+static void int_amd_steps(void) {
+    enum { N = 110, MOST = 16 };
+    static int32_t ptr[N + 1], col[N * N];
+    static char joined[N][N];
+    uint64_t seed = 3;
+    hdi_amd_graph a;
+    int32_t i, j, way;
+    for (way = 0; way < 24; way++) {             /* random, of cliques, grids; alone or with a halo */
+        const int32_t n = 30 + 5 * (way % 12) + way, inner = way % 2 ? n - n / 4 : n, kind = way / 2 % 3, w = 7;
+        memset(joined, 0, sizeof joined);
+        for (i = 0; i < n; i++) {
+            if (kind == 2 && i % w) joined[i][i - 1] = 1;
+            if (kind == 2 && i >= w) joined[i][i - w] = joined[i][i - w + (i % w ? -1 : 0)] = 1;
+        }
+        for (i = 0; kind == 0 && i < (way < 12 ? 2 : 5) * n; i++) joined[dense_random(&seed) % (uint64_t)n][dense_random(&seed) % (uint64_t)n] = 1;
+        for (i = 0; kind == 1 && i < n / 2; i++) {
+            int32_t some[MOST];
+            const int32_t m = 2 + (int32_t)(dense_random(&seed) % (way < 12 ? 4 : 7));
+            for (j = 0; j < m; j++) some[j] = (int32_t)(dense_random(&seed) % (uint64_t)n);
+            for (j = 0; j < m * m; j++) joined[some[j / m]][some[j % m]] = 1;
+        }
+        a.n = n;
+        a.inner = inner;
+        a.wide = NULL;
+        a.ptr = ptr;
+        a.col = col;
+        for (i = 0, ptr[0] = 0; i < inner; i++) {
+            ptr[i + 1] = ptr[i];
+            for (j = 0; j < n; j++)
+                if (joined[i][j] || joined[j][i]) col[ptr[i + 1]++] = j;
+        }
+        int_amd_steps_of(&a, way % 4 / 2 * (way % 5));
+    }
+}
+
 /* The share of the way from the first residual to the target, by powers of ten. */
 static void int_krylov_done(void) {
     CHECK(fabs(hdi_krylov_done(1e3, 1e1, 1e-5) - 0.25) < 1e-15 && fabs(hdi_krylov_done(1e-2, 1e-8, 1e-10) - 0.75) < 1e-15);
@@ -2656,6 +2895,7 @@ int main(void) {
     int_norm();
     int_cuthill_mckee();
     int_amd_dense();
+    int_amd_steps();
     int_krylov_done();
     int_ildl_trees();
     int_ildl_row_sums();
