@@ -685,6 +685,519 @@ static void int_amd_steps(void) {
     }
 }
 
+/* ---- [14] dissection: its steps by definition ---- */
+
+/* A graph with weights (heavy), or of the finest copy with some entries that leave the part. wide > 0: a grid of so many columns; else a path and
+ * random edges. Freed as one block by its ptr. */
+static hdi_nd_graph int_nd_graph(int32_t n, int32_t wide, int heavy, uint64_t *seed) {
+    const int32_t most = 12 * n;
+    int32_t *room = DENSE_NEW(int32_t, 5 * n + 2 + 2 * most), i, j, k, z = 0, *weight;
+    char *joined = DENSE_NEW(char, n * n);
+    hdi_nd_graph g;
+    memset(&g, 0, sizeof g);
+    g.n = n;
+    g.ptr = room;
+    g.w = heavy ? g.ptr + n + 1 : NULL;
+    g.id = room + 2 * n + 1;
+    g.map = g.id + n;
+    g.side = (int8_t *)(g.map + n);
+    g.adj = room + 5 * n + 2;
+    g.ew = heavy ? g.adj + most : NULL;
+    weight = DENSE_NEW(int32_t, n * n);
+    for (i = 1; i < n; i++) {
+        if (wide == 0 || i % wide) joined[i * n + i - 1] = 1;
+        if (wide > 0 && i >= wide) joined[i * n + i - wide] = 1;
+    }
+    for (i = 0; wide == 0 && i < 2 * n; i++) {
+        j = (int32_t)(dense_random(seed) % (uint64_t)n);
+        k = (int32_t)(dense_random(seed) % (uint64_t)n);
+        if (j != k) joined[(j > k ? j : k) * n + (j > k ? k : j)] = 1;
+    }
+    for (i = 0; i < n; i++)
+        for (j = 0; j < i; j++) weight[i * n + j] = weight[j * n + i] = 1 + (int32_t)(dense_random(seed) % (wide == 0 ? 60 : 3));
+    for (i = 0; i < n; i++) {
+        g.ptr[i] = z;
+        g.id[i] = i;
+        if (heavy) g.w[i] = 1 + (int32_t)(dense_random(seed) % 4);
+        for (j = 0; j < n && z < most; j++) {
+            if (!(i > j ? joined[i * n + j] : joined[j * n + i])) continue;
+            if (heavy) g.ew[z] = weight[i * n + j];
+            g.adj[z++] = j;
+        }
+        if (!heavy && i % 7 == 3) g.adj[z++] = ~(n + i);
+    }
+    g.ptr[n] = z;
+    free(joined);
+    free(weight);
+    return g;
+}
+
+static hdi_nd_space int_nd_space(int32_t words) {
+    hdi_nd_space s;
+    s.at = DENSE_NEW(int32_t, words);
+    s.end = s.at + words;
+    return s;
+}
+
+static int32_t int_nd_weight(const hdi_nd_graph *g, int32_t v) { return g->w ? g->w[v] : 1; }
+
+/* Weight of the edges of v to its own side and to the other. */
+static void int_nd_edges(const hdi_nd_graph *g, int32_t v, int32_t sum[2]) {
+    int32_t p;
+    sum[0] = sum[1] = 0;
+    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+        if (g->adj[p] >= 0) sum[g->side[g->adj[p]] != g->side[v]] += g->ew ? g->ew[p] : 1;
+}
+
+static hdi_nd_cut int_nd_cut(const hdi_nd_graph *g) {
+    hdi_nd_cut c;
+    int32_t v, sum[2];
+    memset(&c, 0, sizeof c);
+    for (v = 0; v < g->n; v++) {
+        int_nd_edges(g, v, sum);
+        c.cut += 0.5 * sum[1];
+        c.weight[g->side[v]] += int_nd_weight(g, v);
+    }
+    return c;
+}
+
+/* Gains, weights and queues of a mover by definition. */
+static void int_nd_mover_state(const hdi_nd_mover *m, const hdi_nd_cut *cut) {
+    const hdi_nd_graph *g = m->g;
+    const hdi_nd_cut c = int_nd_cut(g);
+    int32_t v, b, i, sum[2], queued = 0, wrong = 0;
+    CHECK(c.cut == cut->cut && c.weight[0] == cut->weight[0] && c.weight[1] == cut->weight[1]);
+    for (b = 0; b < 2 * HDI_ND_BUCKETS; b++) {
+        const int32_t side = b / HDI_ND_BUCKETS;
+        for (i = m->q.head[b], v = -1 - b; i >= 0 && queued <= g->n; v = i, i = m->q.next[i]) {
+            int32_t k = HDI_ND_BUCKETS / 2 + m->gain[i] / (1 << m->shift);
+            k = k < 0 ? 0 : k < HDI_ND_BUCKETS ? k : HDI_ND_BUCKETS - 1;
+            wrong += m->q.prev[i] != v || g->side[i] != side || m->locked[i] || b % HDI_ND_BUCKETS != k || b % HDI_ND_BUCKETS > m->q.top[side];
+            queued++;
+        }
+    }
+    for (v = 0; v < g->n; v++) {
+        int_nd_edges(g, v, sum);
+        queued -= m->q.prev[v] != HDI_ND_NONE;
+        wrong += m->gain[v] != sum[1] - sum[0] || (sum[1] > 0 && !m->locked[v] && m->q.prev[v] == HDI_ND_NONE);
+    }
+    CHECK_MSG(wrong == 0 && queued == 0, "%d gains or places wrong", (int)wrong);
+}
+
+static int int_nd_may_move(const hdi_nd_mover *m, const hdi_nd_cut *cut, int32_t v) {
+    const double after = cut->weight[1 - m->g->side[v]] + int_nd_weight(m->g, v);
+    return after <= cut->most || after < cut->weight[m->g->side[v]];
+}
+
+/* The vertex to be moved: each side offers one of its highest list. */
+static void int_nd_mover_offer(hdi_nd_mover *m, const hdi_nd_cut *cut, int32_t v) {
+    int32_t s, best[2];
+    for (s = 0; s < 2; s++) {
+        int32_t b = HDI_ND_BUCKETS - 1;
+        while (b >= 0 && m->q.head[s * HDI_ND_BUCKETS + b] < 0) b--;
+        best[s] = b < 0 ? -1 : m->q.head[s * HDI_ND_BUCKETS + b];
+        if (best[s] >= 0 && !int_nd_may_move(m, cut, best[s])) best[s] = -1;
+    }
+    if (best[0] < 0 || best[1] < 0) CHECK(v == (best[0] < 0 ? best[1] : best[0]));
+    else if (m->gain[best[0]] != m->gain[best[1]]) CHECK(v == best[m->gain[best[1]] > m->gain[best[0]]]);
+    else CHECK(v == best[cut->weight[1] > cut->weight[0]]);
+}
+
+/* Random moves, then those that the mover offers: its numbers are right after each. */
+static void int_nd_moves(void) {
+    uint64_t seed = 5;
+    int32_t way, v, n;
+    for (way = 0; way < 12; way++) {
+        hdi_nd_graph g = int_nd_graph(30 + 9 * way, way % 3 ? 0 : 6, way % 2, &seed);
+        hdi_nd_space s = int_nd_space(6 * g.n + 10), rest = s;
+        hdi_nd_mover m = hdi_nd_mover_make(&g, &rest);
+        hdi_nd_cut cut, c;
+        int32_t largest = 1, sum[2];
+        for (v = 0; v < g.n; v++) g.side[v] = (int8_t)(way < 6 ? v > g.n / 2 : (int)(dense_random(&seed) % 2));
+        c = int_nd_cut(&g);
+        cut.most = (way % 4 ? 0.55 : 0.7) * (c.weight[0] + c.weight[1]);
+        hdi_nd_mover_start(&m, &cut);
+        int_nd_mover_state(&m, &cut);
+        for (v = 0; v < g.n; v++) {
+            int_nd_edges(&g, v, sum);
+            CHECK((m.q.prev[v] == HDI_ND_NONE) == (sum[1] == 0));        /* those on the cut */
+            if (sum[1] > 0) largest = hdi_high32(largest, hdi_high32(sum[0], sum[1]));
+        }
+        CHECK((largest >> m.shift) < HDI_ND_BUCKETS / 2 && (m.shift == 0 || (largest >> (m.shift - 1)) >= HDI_ND_BUCKETS / 2));
+        for (n = 0; n < g.n && (v = hdi_nd_mover_next(&m, &cut)) >= 0; n++) {
+            int_nd_mover_offer(&m, &cut, v);
+            hdi_nd_queue_remove(&m.q, v);
+            m.locked[v] = 1;
+            hdi_nd_mover_move(&m, v, &cut);
+            int_nd_mover_state(&m, &cut);
+        }
+        CHECK(n > 2);
+        if (n < g.n) int_nd_mover_offer(&m, &cut, -1);
+        for (v = 0; v < g.n; v++) g.side[v] = (int8_t)(way < 6 ? v > g.n / 2 : (int)(dense_random(&seed) % 2));
+        c = int_nd_cut(&g);
+        hdi_nd_refine_edges(&m, &cut, HDI_ND_PASSES);
+        CHECK(cut.cut == int_nd_cut(&g).cut && cut.weight[0] == int_nd_cut(&g).weight[0]);
+        CHECK(hdi_nd_cost(cut.cut, cut.weight[0], cut.weight[1]) <= hdi_nd_cost(c.cut, c.weight[0], c.weight[1]) ||
+              hdi_max(c.weight[0], c.weight[1]) > cut.most);
+        CHECK(hdi_max(cut.weight[0], cut.weight[1]) <= cut.most);
+        free(s.at);
+        free(g.ptr);
+    }
+}
+
+/* Of a grid the shortest cut is a straight line; of two grids joined by an edge it is that edge, unless one of them is too heavy. */
+static void int_nd_refined(void) {
+    enum { W = 8, H = 20 };
+    uint64_t seed = 6;
+    int32_t v, way, p;
+    for (way = 0; way < 6; way++) {
+        hdi_nd_graph g = int_nd_graph(W * H, W, 0, &seed);
+        hdi_nd_space s = int_nd_space(6 * g.n + 10), rest = s;
+        hdi_nd_mover m = hdi_nd_mover_make(&g, &rest);
+        const int32_t edge = way == 4 ? 10 : 14;
+        hdi_nd_cut cut;
+        cut.most = HDI_ND_HEAVIER * g.n;
+        if (way >= 4) {
+            for (v = 0; v < g.n; v++)
+                for (p = g.ptr[v]; p < g.ptr[v + 1]; p++)
+                    if (g.adj[p] >= 0 && (g.adj[p] / W < edge) != (v / W < edge) && v % W) g.adj[p] = ~g.n;
+        }
+        for (v = 0; v < g.n; v++) g.side[v] = (int8_t)(way >= 4 ? v / W >= edge : v / W >= 9 + (int)(dense_random(&seed) % 3));
+        hdi_nd_refine_edges(&m, &cut, HDI_ND_PASSES);
+        CHECK(hdi_max(cut.weight[0], cut.weight[1]) <= cut.most);
+        if (way < 4) CHECK_MSG(cut.cut == W, "a cut of %g edges", cut.cut);
+        if (way == 4) CHECK_MSG(cut.cut == 1 && cut.weight[0] == edge * W, "a cut of %g edges", cut.cut);
+        free(s.at);
+        free(g.ptr);
+    }
+}
+
+/* A swept cut is the cheapest of those at most a fifth off the middle, by trying all. */
+static void int_nd_sweeps(void) {
+    enum { MOST = 90 };
+    static hdi_pair key[MOST];
+    uint64_t seed = 8;
+    int32_t way, v, n, k;
+    for (way = 0; way < 20; way++) {
+        hdi_nd_graph g = int_nd_graph(20 + 3 * way, way % 3 ? 0 : 6, way % 2, &seed);
+        int32_t order[MOST], right = 1;
+        double total = 0, least = DBL_MAX, found;
+        hdi_nd_cut c;
+        for (v = 0; v < g.n; v++) order[v] = v;
+        if (way % 4 == 2) dense_shuffle(order, g.n, &seed);
+        if (way == 0) for (v = 0; v < g.n; v++) g.adj[v] = 0, g.ptr[v + 1] = 0;
+        if (way == 0)                            /* a path of 20: all edges count 2 but the last that is allowed */
+            for (v = k = 0, g.n = 20; v < 20; v++) {
+                for (n = -1; n < 2; n++) {
+                    if (n == 0 || v + n < 0 || v + n == 20) continue;
+                    g.adj[k++] = v + n;
+                    if (v + (n > 0) != 12) g.adj[k++] = v + n;
+                }
+                g.ptr[v + 1] = k;
+            }
+        for (v = 0; v < g.n; v++) {
+            key[v].id = order[v];
+            total += int_nd_weight(&g, v);
+        }
+        for (n = 1; n < g.n; n++) {
+            for (v = 0; v < g.n; v++) g.side[order[v]] = v >= n;
+            c = int_nd_cut(&g);
+            if (fabs(c.weight[0] - c.weight[1]) > HDI_ND_SWEPT * total) continue;
+            least = fmin(least, (c.cut + 1) * (1 + HDI_ND_UNEVEN * pow((c.weight[0] - c.weight[1]) / total, 2)));
+        }
+        hdi_nd_sweep(&g, key, total);
+        c = int_nd_cut(&g);
+        found = (c.cut + 1) * (1 + HDI_ND_UNEVEN * pow((c.weight[0] - c.weight[1]) / total, 2));
+        for (v = 1; v < g.n; v++) right &= g.side[order[v]] >= g.side[order[v - 1]];
+        CHECK_MSG(right && g.side[order[0]] == 0 && fabs(found - least) < 1e-12 * least, "a cost of %g, not %g", found, least);
+        if (way == 0) CHECK(c.weight[0] == 12);
+        free(g.ptr);
+    }
+}
+
+/* The values of a sweep: a straight line, distances in the graph, axes. All equal, or not. */
+static void int_nd_sweep_values(void) {
+    enum { N = 40 };
+    static float xyz[3 * N];
+    static hdi_pair key[N + 1];
+    static int32_t work[3 * N];
+    static const double values[9] = {-DBL_MAX, -3, -2.5, -1e-300, 0, 1e-300, 2, 2.5, DBL_MAX};
+    uint64_t seed = 4;
+    hdi_nd_graph g = int_nd_graph(N, N, 0, &seed);       /* a path */
+    int32_t kind, v, i;
+    hdi_nd nd;
+    memset(&nd, 0, sizeof nd);
+    nd.xyz = xyz;
+    for (i = 1; i < 9; i++) CHECK(hdi_nd_key(values[i - 1]) < hdi_nd_key(values[i]));
+    for (kind = 0; kind < 11; kind++) {
+        for (v = 0; v < N; v++) xyz[3 * v] = xyz[3 * v + 1] = xyz[3 * v + 2] = 1;
+        memset(key, 0xff, sizeof key);
+        CHECK(hdi_nd_sweep_keys(&nd, &g, kind, key, work) == (kind == 1));
+        for (i = 0; i < N && kind != 1; i++) {           /* one that differs */
+            xyz[3 * i] = xyz[3 * i + 1] = xyz[3 * i + 2] = 2;
+            if (kind >= 2) xyz[3 * i + 1] = 5;
+            if (kind >= 2) xyz[3 * i + 2] = 13;
+            memset(key, 0xff, sizeof key);
+            CHECK(hdi_nd_sweep_keys(&nd, &g, kind, key, work) == 1);
+            for (v = 0; v < N; v++) CHECK(key[v].id == (uint64_t)v && (v == i) == (key[v].key != key[i ? 0 : 1].key));
+            xyz[3 * i] = xyz[3 * i + 1] = xyz[3 * i + 2] = 1;
+        }
+        for (v = 0; v < N; v++) {                        /* along a path of points on a curve */
+            xyz[3 * v] = (float)v;
+            xyz[3 * v + 1] = (float)(v * v) / N;
+            xyz[3 * v + 2] = (float)(-3 * v);
+        }
+        if (kind > 4) continue;
+        hdi_nd_sweep_keys(&nd, &g, kind, key, work);
+        for (v = 2; v < N; v++) CHECK((key[v].key > key[v - 1].key) == (key[1].key > key[0].key) && key[v].key != key[v - 1].key);
+    }
+    free(g.ptr);
+}
+
+/* The first cut of a grid, with places and without: its shorter side. */
+static void int_nd_first_cuts(void) {
+    enum { W = 6, H = 18 };
+    static float xyz[3 * W * H];
+    uint64_t seed = 4;
+    int32_t v, way;
+    hdi_nd nd;
+    memset(&nd, 0, sizeof nd);
+    nd.xyz = xyz;
+    for (way = 0; way < 4; way++) {
+        hdi_nd_graph g = int_nd_graph(W * H, W, 0, &seed);
+        hdi_nd_space s = int_nd_space(12 * g.n + 40);
+        hdi_nd_cut c;
+        for (v = 0; v < g.n && way < 3; v++) {
+            xyz[3 * v + (way + 1) % 3] = (float)(v % W);
+            xyz[3 * v + way] = (float)(v / W);
+        }
+        if (way == 3) memset(xyz, 0, sizeof xyz);
+        hdi_nd_first_cut(&nd, &g, g.n, s);
+        c = int_nd_cut(&g);
+        CHECK_MSG(c.cut == W && hdi_max(c.weight[0], c.weight[1]) <= HDI_ND_HEAVIER * g.n, "%g edges between %g and %g", c.cut, c.weight[0], c.weight[1]);
+        free(s.at);
+        free(g.ptr);
+    }
+}
+
+/* Clusters: none too heavy, each in one piece or of single vertices; and their graph, in whatever room. */
+static void int_nd_clusters(void) {
+    enum { GUARD = 8 };
+    uint64_t seed = 9;
+    int32_t way, v, p, i, j, space;
+    for (way = 0; way < 12; way++) {
+        hdi_nd_graph g = int_nd_graph(24 + 4 * way, way % 3 ? 0 : 5, way % 2, &seed), c;
+        const int32_t n = g.n, limit = 4 + way;
+        int32_t *weight = DENSE_NEW(int32_t, n), *sum = DENSE_NEW(int32_t, n * n), *work = DENSE_NEW(int32_t, 5 * n + 5), entries = 0, fitted = 0, longest = 0;
+        int32_t *adj = DENSE_NEW(int32_t, g.ptr[n] + GUARD), *ew = DENSE_NEW(int32_t, g.ptr[n] + GUARD), *of = DENSE_NEW(int32_t, n), alone = 0;
+        memset(&c, 0, sizeof c);
+        c.n = hdi_nd_cluster(&g, limit, weight);
+        CHECK(c.n > 0 && c.n < n);
+        for (v = 0; v < n; v++) {
+            CHECK(g.map[v] >= 0 && g.map[v] < c.n);
+            of[g.map[v]] += int_nd_weight(&g, v);
+            for (p = g.ptr[v], i = 0; p < g.ptr[v + 1]; p++) i += g.adj[p] >= 0 && g.map[g.adj[p]] == g.map[v];
+            alone += i == 0;
+        }
+        for (i = 0; i < c.n; i++) CHECK(of[i] == weight[i] && of[i] > 0 && (of[i] <= limit + limit / 4 || of[i] <= 4));
+        CHECK_MSG(alone <= n / 4, "%d of %d without a neighbour in their cluster", (int)alone, (int)n);
+        for (v = 0; v < n; v++) {
+            longest = hdi_high32(longest, g.ptr[v + 1] - g.ptr[v]);
+            for (p = g.ptr[v]; p < g.ptr[v + 1]; p++)
+                if (g.adj[p] >= 0 && g.map[v] != g.map[g.adj[p]]) sum[g.map[v] * n + g.map[g.adj[p]]] += g.ew ? g.ew[p] : 1;
+        }
+        for (i = 0; i < n * n; i++) entries += sum[i] > 0;
+        c.ptr = work;
+        c.id = work + n + 1;
+        c.adj = adj;
+        c.ew = ew;
+        for (space = 1; space <= g.ptr[n]; space++) {
+            int32_t wrong = 0, right = 0;
+            memset(adj, 0x55, (size_t)(g.ptr[n] + GUARD) * sizeof *adj);
+            memset(ew, 0x55, (size_t)(g.ptr[n] + GUARD) * sizeof *ew);
+            if (hdi_nd_contract(&g, &c, space, work + 2 * n + 1, work + 3 * n + 1, work + 4 * n + 3)) {
+                fitted++;
+                for (i = 0; i < c.n; i++) {
+                    CHECK(g.map[c.id[i]] == i);
+                    for (p = c.ptr[i]; p < c.ptr[i + 1]; p++) {
+                        j = c.adj[p];
+                        wrong += j < 0 || j >= c.n || sum[i * n + j] != c.ew[p];
+                        right++;
+                    }
+                }
+                CHECK_MSG(wrong == 0 && right == entries && c.ptr[c.n] == entries, "%d entries, %d wrong", (int)right, (int)wrong);
+            } else CHECK_MSG(space <= entries + longest, "no room in %d for %d entries", (int)space, (int)entries);
+            for (i = space; i < g.ptr[n] + GUARD; i++) CHECK(adj[i] == 0x55555555 && ew[i] == 0x55555555);
+        }
+        CHECK(fitted > 0 && fitted < g.ptr[n]);
+        free(weight);
+        free(sum);
+        free(work);
+        free(adj);
+        free(ew);
+        free(of);
+        free(g.ptr);
+    }
+}
+
+/* reached [2 n]: the states of a band, its vertices' ins (2 v) and outs (2 v + 1), that a search from `begin` comes to beside the paths in flow [2 n 2 n];
+ * up [2 n] the state before each. Returns the out at which one more path leaves the band, or -1. */
+static int32_t int_nd_residual(const hdi_nd_graph *g, const char *band, const char *begin, const char *end, const char *flow, char *reached, int32_t *up) {
+    const int32_t n = g->n;
+    int32_t *stack = DENSE_NEW(int32_t, 2 * n), top = 0, v, p, found = -1;
+    memset(reached, 0, 2 * (size_t)n);
+    for (v = 0; v < n; v++) {
+        if (!begin[v]) continue;
+        reached[2 * v] = 1;
+        up[2 * v] = -1;
+        stack[top++] = 2 * v;
+    }
+    while (top > 0 && found < 0) {
+        const int32_t x = stack[--top], out = x % 2;
+        v = x / 2;
+        if (out && end[v]) found = x;
+        for (p = g->ptr[v] - 1; p < g->ptr[v + 1]; p++) {                /* first within v, then to its neighbours */
+            const int32_t u = p < g->ptr[v] ? v : g->adj[p], y = u == v ? x + 1 - 2 * out : 2 * u + 1 - out;
+            if (u < 0 || !band[u] || reached[y]) continue;
+            if (u == v && flow[2 * v * 2 * n + 2 * v + 1] != out) continue;
+            if (u != v && !out && !flow[y * 2 * n + x]) continue;
+            reached[y] = 1;
+            up[y] = x;
+            stack[top++] = y;
+        }
+    }
+    free(stack);
+    return found;
+}
+
+/* The sides of a band that the smallest separator leaves, the one nearest to side from: by paths found one by one, and what they leave open. */
+static int32_t int_nd_smallest(const hdi_nd_graph *g, const char *band, int8_t from, int8_t *side) {
+    const int32_t n = g->n;
+    char *begin = DENSE_NEW(char, n), *end = DENSE_NEW(char, n), *flow = DENSE_NEW(char, 4 * n * n), *reached = DENSE_NEW(char, 2 * n);
+    int32_t *up = DENSE_NEW(int32_t, 2 * n), v, p, paths = 0;
+    for (v = 0; v < n; v++)
+        for (p = g->ptr[v]; band[v] && p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p];
+            if (u >= 0 && !band[u] && g->side[u] == from) begin[v] = 1;
+            if (u >= 0 && !band[u] && g->side[u] != from) end[v] = 1;
+        }
+    while ((v = int_nd_residual(g, band, begin, end, flow, reached, up)) >= 0) {
+        for (; up[v] >= 0; v = up[v]) {
+            char *back = flow + v * 2 * n + up[v];
+            if (*back) *back = 0;
+            else flow[up[v] * 2 * n + v] = 1;
+        }
+        paths++;
+    }
+    for (v = 0; v < n; v++)
+        if (band[v]) side[v] = (int8_t)(reached[2 * v + 1] ? from : reached[2 * v] ? 2 : 1 - from);
+    free(begin);
+    free(end);
+    free(flow);
+    free(reached);
+    free(up);
+    return paths;
+}
+
+static void int_nd_flow_of(const hdi_nd_graph *g, int32_t most, int32_t layers) {
+    const int32_t n = g->n;
+    hdi_nd_space s = int_nd_space(13 * n + 20), rest = s;
+    int32_t *far_off = DENSE_NEW(int32_t, n), v, p, i, n_list = 0, size[3], wrong = 0, inside[3] = {0, 0, 0}, cut = 0;
+    int8_t *before = (int8_t *)DENSE_NEW(char, n), *want = (int8_t *)DENSE_NEW(char, n);
+    char *band = DENSE_NEW(char, n);
+    hdi_nd_flow f;
+    memcpy(before, g->side, (size_t)n);
+    memset(&f, 0, sizeof f);
+    f.g = g;
+    f.band = hdi_nd_take(&rest, 2 * n);
+    f.prev = hdi_nd_take(&rest, n);
+    f.seen = hdi_nd_take(&rest, 2 * n);
+    f.up = hdi_nd_take(&rest, 2 * n);
+    f.link = hdi_nd_take(&rest, 2 * n);
+    f.log = hdi_nd_take(&rest, 2 * n);
+    f.inside = hdi_nd_take_bytes(&rest, n);
+    hdi_nd_measure(g, size);
+    f.from = size[1] > size[0];
+    for (v = 0; v < n; v++) {
+        far_off[v] = hdi_nd_touches(g, v) && g->side[v] == 0 ? 0 : n;
+        if (far_off[v] == 0) f.band[n_list++] = v;
+    }
+    for (i = 0; i < layers; i++)
+        for (v = 0; v < n; v++)
+            for (p = g->ptr[v]; far_off[v] == i && p < g->ptr[v + 1]; p++)
+                if (g->adj[p] >= 0 && far_off[g->adj[p]] > i) far_off[g->adj[p]] = i + 1;
+    hdi_nd_flow_run(&f, n_list, most, layers);
+    for (v = 0; v < n; v++) {
+        band[v] = f.inside[v] != 0;
+        want[v] = before[v];
+        inside[far_off[v] == 0 ? 2 : before[v]] += band[v];
+        if (most >= n) wrong += band[v] != (far_off[v] <= layers);
+        else wrong += band[v] && far_off[v] > layers;
+    }
+    CHECK_MSG(wrong == 0 && inside[0] <= most && inside[1] <= most && inside[2] == n_list, "%d vertices in or out of the band", (int)wrong);
+    {
+        hdi_nd_graph old = *g;
+        old.side = before;
+        i = int_nd_smallest(&old, band, f.from, want);
+    }
+    for (v = 0; v < n; v++) {
+        cut += g->side[v] == 2;
+        wrong += g->side[v] != want[v];
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) wrong += g->adj[p] >= 0 && g->side[v] + g->side[g->adj[p]] == 1;
+    }
+    CHECK_MSG(wrong == 0 && cut == i && cut <= n_list, "a separator of %d vertices, not %d; %d on a wrong side", (int)cut, (int)i, (int)wrong);
+    free(s.at);
+    free(far_off);
+    free(before);
+    free(want);
+    free(band);
+}
+
+/* The separator in a band is the smallest there is, and of these the nearest to the lighter side, by another search for paths. */
+static void int_nd_flows(void) {
+    uint64_t seed = 12;
+    int32_t way, v;
+    for (way = 0; way < 60; way++) {
+        const int32_t wide = way % 2 ? 4 + way % 9 : 0;
+        hdi_nd_graph g = int_nd_graph(40 + way, wide, 0, &seed);
+        for (v = 0; v < g.n; v++) {
+            const int32_t x = wide ? v / wide : v / 5, m = wide ? g.n / wide : g.n / 5;
+            g.side[v] = (int8_t)(2 * x + (int32_t)(dense_random(&seed) % 5) > m + way % 3);
+        }
+        int_nd_flow_of(&g, way % 3 ? g.n : 2 + way / 4, 1 + way % HDI_ND_LAYERS);
+        free(g.ptr);
+    }
+}
+
+/* Keys along the Morton curve bit by bit, and the rows in their order. */
+static void int_nd_curve(void) {
+    enum { N = 500 };
+    static double xyz[3 * N];
+    static uint32_t key[N];
+    static float unit[3 * N];
+    static int32_t order[N], spare[N], count[1024];
+    uint64_t seed = 2;
+    int32_t i, d, b, wrong = 0;
+    double lo[3] = {1e9, 1e9, 1e9}, width = 0;
+    for (i = 0; i < 3 * N; i++) xyz[i] = (i % 3 + 1) * dense_signed(&seed) + 10;
+    for (i = 0; i < 30; i++) memcpy(xyz + 3 * (N - 30 + i), xyz + 3 * (7 * i), 3 * sizeof *xyz);      /* equal keys */
+    for (i = 0; i < 3 * N; i++) lo[i % 3] = fmin(lo[i % 3], xyz[i]);
+    for (i = 0; i < 3 * N; i++) width = fmax(width, xyz[i] - lo[i % 3]);
+    hdi_nd_keys(xyz, N, key, unit);
+    for (i = 0; i < N; i++) {
+        uint32_t want = 0;
+        for (d = 0; d < 3; d++) {
+            const double u = (0.5 * xyz[3 * i + d] - 0.5 * lo[d]) / (0.5 * width);
+            wrong += fabs((double)unit[3 * i + d] - u) > 1e-6;
+            for (b = 0; b < 10; b++) want |= ((uint32_t)(u * 1023) >> b & 1u) << (3 * b + d);
+        }
+        wrong += key[i] != want;
+    }
+    CHECK_MSG(wrong == 0, "%d keys or places", (int)wrong);
+    hdi_nd_sort(key, N, order, spare, count);
+    for (i = 1; i < N; i++) CHECK(key[order[i - 1]] < key[order[i]] || (key[order[i - 1]] == key[order[i]] && order[i - 1] < order[i]));
+}
+
 /* The share of the way from the first residual to the target, by powers of ten. */
 static void int_krylov_done(void) {
     CHECK(fabs(hdi_krylov_done(1e3, 1e1, 1e-5) - 0.25) < 1e-15 && fabs(hdi_krylov_done(1e-2, 1e-8, 1e-10) - 0.75) < 1e-15);
@@ -2896,6 +3409,14 @@ int main(void) {
     int_cuthill_mckee();
     int_amd_dense();
     int_amd_steps();
+    int_nd_moves();
+    int_nd_refined();
+    int_nd_sweeps();
+    int_nd_sweep_values();
+    int_nd_first_cuts();
+    int_nd_clusters();
+    int_nd_flows();
+    int_nd_curve();
     int_krylov_done();
     int_ildl_trees();
     int_ildl_row_sums();
