@@ -11120,7 +11120,6 @@ static int32_t hdi_nd_bucket(const hdi_nd_mover *m, int32_t gain) {
 static hdi_nd_mover hdi_nd_mover_make(const hdi_nd_graph *g, hdi_nd_space *s) {
     hdi_nd_mover m;
     m.g = g;
-    m.shift = 0;
     m.gain = hdi_nd_take(s, g->n);
     m.q.next = hdi_nd_take(s, g->n);
     m.q.prev = hdi_nd_take(s, g->n);
@@ -11221,11 +11220,7 @@ static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes
                 keep = n;
             }
         }
-        while (n > keep) {
-            v = m->moved[--n];
-            m->locked[v] = 1;
-            hdi_nd_mover_move(m, v, cut);
-        }
+        while (n > keep) hdi_nd_mover_move(m, m->moved[--n], cut);
         if (!(best < first)) break;
     }
 }

@@ -736,6 +736,7 @@ static hdi_nd_space int_nd_space(int32_t words) {
     hdi_nd_space s;
     s.at = DENSE_NEW(int32_t, words);
     s.end = s.at + words;
+    memset(s.at, 0x7f, (size_t)words * sizeof *s.at);    /* as memory comes, not zero */
     return s;
 }
 
@@ -816,6 +817,7 @@ static void int_nd_moves(void) {
         for (v = 0; v < g.n; v++) g.side[v] = (int8_t)(way < 6 ? v > g.n / 2 : (int)(dense_random(&seed) % 2));
         c = int_nd_cut(&g);
         cut.most = (way % 4 ? 0.55 : 0.7) * (c.weight[0] + c.weight[1]);
+        m.shift = 9;
         hdi_nd_mover_start(&m, &cut);
         int_nd_mover_state(&m, &cut);
         for (v = 0; v < g.n; v++) {
@@ -834,7 +836,14 @@ static void int_nd_moves(void) {
         CHECK(n > 2);
         if (n < g.n) int_nd_mover_offer(&m, &cut, -1);
         for (v = 0; v < g.n; v++) g.side[v] = (int8_t)(way < 6 ? v > g.n / 2 : (int)(dense_random(&seed) % 2));
-        c = int_nd_cut(&g);
+        cut = c = int_nd_cut(&g);
+        cut.most = (way % 4 ? 0.55 : 0.7) * (c.weight[0] + c.weight[1]);
+        hdi_nd_refine_edges(&m, &cut, 0);
+        CHECK(cut.cut == c.cut && int_nd_cut(&g).cut == c.cut);
+        memset(m.moved, 0xff, (size_t)g.n * sizeof *m.moved);
+        memset(g.map, 0, (size_t)g.n * sizeof *g.map);
+        hdi_nd_refine_edges(&m, &cut, 1);
+        for (n = 0; n < g.n && m.moved[n] >= 0; n++) CHECK(g.map[m.moved[n]]++ == 0);       /* none twice */
         hdi_nd_refine_edges(&m, &cut, HDI_ND_PASSES);
         CHECK(cut.cut == int_nd_cut(&g).cut && cut.weight[0] == int_nd_cut(&g).weight[0]);
         CHECK(hdi_nd_cost(cut.cut, cut.weight[0], cut.weight[1]) <= hdi_nd_cost(c.cut, c.weight[0], c.weight[1]) ||
@@ -845,28 +854,55 @@ static void int_nd_moves(void) {
     }
 }
 
+/* What a cut costs, and the lists of gains: 64 need two of each, larger ones are in the last. */
+static void int_nd_buckets(void) {
+    int32_t ptr[3] = {0, 1, 2}, adj[2] = {1, 0}, ew[2], e;
+    int8_t side[2] = {0, 1};
+    hdi_nd_graph g;
+    memset(&g, 0, sizeof g);
+    g.n = 2;
+    g.ptr = ptr;
+    g.adj = adj;
+    g.ew = ew;
+    g.side = side;
+    for (e = 62; e < 67; e++) {
+        hdi_nd_space s = int_nd_space(20), rest = s;
+        hdi_nd_mover m = hdi_nd_mover_make(&g, &rest);
+        hdi_nd_cut cut;
+        ew[0] = ew[1] = e;
+        hdi_nd_mover_start(&m, &cut);
+        CHECK(m.shift == (e >= 64) && cut.cut == e);
+        CHECK(hdi_nd_bucket(&m, 100000) == HDI_ND_BUCKETS - 1 && hdi_nd_bucket(&m, -100000) == 0 && hdi_nd_bucket(&m, 0) == HDI_ND_BUCKETS / 2);
+        free(s.at);
+    }
+    CHECK(hdi_nd_cost(0, 5, 5) < hdi_nd_cost(0, 6, 4) && hdi_nd_cost(0, 9, 1) < hdi_nd_cost(1, 5, 5) && hdi_nd_cost(7, 5, 5) < hdi_nd_cost(7, 4, 6));
+    CHECK(fabs(hdi_nd_cost(9, 3, 0) / hdi_nd_cost(9, 2, 2) - 1 - HDI_ND_UNEVEN) < 1e-14);
+}
+
 /* Of a grid the shortest cut is a straight line; of two grids joined by an edge it is that edge, unless one of them is too heavy. */
 static void int_nd_refined(void) {
     enum { W = 8, H = 20 };
     uint64_t seed = 6;
     int32_t v, way, p;
-    for (way = 0; way < 6; way++) {
+    for (way = 0; way < 8; way++) {
         hdi_nd_graph g = int_nd_graph(W * H, W, 0, &seed);
         hdi_nd_space s = int_nd_space(6 * g.n + 10), rest = s;
         hdi_nd_mover m = hdi_nd_mover_make(&g, &rest);
-        const int32_t edge = way == 4 ? 10 : 14;
+        const int32_t edge = way == 4 ? 10 : way == 5 ? 14 : way == 6 ? 12 : 0;
         hdi_nd_cut cut;
         cut.most = HDI_ND_HEAVIER * g.n;
-        if (way >= 4) {
+        if (edge > 0) {
             for (v = 0; v < g.n; v++)
                 for (p = g.ptr[v]; p < g.ptr[v + 1]; p++)
                     if (g.adj[p] >= 0 && (g.adj[p] / W < edge) != (v / W < edge) && v % W) g.adj[p] = ~g.n;
         }
-        for (v = 0; v < g.n; v++) g.side[v] = (int8_t)(way >= 4 ? v / W >= edge : v / W >= 9 + (int)(dense_random(&seed) % 3));
+        for (v = 0; v < g.n; v++)
+            g.side[v] = (int8_t)(way >= 6 ? v / W >= 11 : way >= 4 ? v / W >= edge : v / W >= 9 + (int)(dense_random(&seed) % 3));
+        if (way == 7) g.side[0] = 1;             /* on the wrong side all alone */
         hdi_nd_refine_edges(&m, &cut, HDI_ND_PASSES);
         CHECK(hdi_max(cut.weight[0], cut.weight[1]) <= cut.most);
-        if (way < 4) CHECK_MSG(cut.cut == W, "a cut of %g edges", cut.cut);
-        if (way == 4) CHECK_MSG(cut.cut == 1 && cut.weight[0] == edge * W, "a cut of %g edges", cut.cut);
+        if (edge == 0) CHECK_MSG(cut.cut == W, "a cut of %g edges", cut.cut);
+        if (edge == 10 || edge == 12) CHECK_MSG(cut.cut == 1 && cut.weight[0] == edge * W, "a cut of %g edges", cut.cut);
         free(s.at);
         free(g.ptr);
     }
@@ -897,22 +933,48 @@ static void int_nd_sweeps(void) {
             }
         for (v = 0; v < g.n; v++) {
             key[v].id = order[v];
+            if (way % 6 == 5 && v == g.n / 3) g.w[v] = 50 * g.n;        /* no cut is near the middle */
             total += int_nd_weight(&g, v);
         }
         for (n = 1; n < g.n; n++) {
             for (v = 0; v < g.n; v++) g.side[order[v]] = v >= n;
             c = int_nd_cut(&g);
+            if (way % 6 == 5) least = fmin(least, fabs(c.weight[0] - c.weight[1]));
             if (fabs(c.weight[0] - c.weight[1]) > HDI_ND_SWEPT * total) continue;
             least = fmin(least, (c.cut + 1) * (1 + HDI_ND_UNEVEN * pow((c.weight[0] - c.weight[1]) / total, 2)));
         }
         hdi_nd_sweep(&g, key, total);
         c = int_nd_cut(&g);
-        found = (c.cut + 1) * (1 + HDI_ND_UNEVEN * pow((c.weight[0] - c.weight[1]) / total, 2));
+        found = way % 6 == 5 ? fabs(c.weight[0] - c.weight[1]) : (c.cut + 1) * (1 + HDI_ND_UNEVEN * pow((c.weight[0] - c.weight[1]) / total, 2));
         for (v = 1; v < g.n; v++) right &= g.side[order[v]] >= g.side[order[v - 1]];
         CHECK_MSG(right && g.side[order[0]] == 0 && fabs(found - least) < 1e-12 * least, "a cost of %g, not %g", found, least);
         if (way == 0) CHECK(c.weight[0] == 12);
         free(g.ptr);
     }
+}
+
+static int32_t int_nd_farthest(const float *xyz, int32_t n, int32_t from) {
+    int32_t v, i, best = 0;
+    double most = -1;
+    for (v = 0; v < n; v++) {
+        double d = 0;
+        for (i = 0; i < 3; i++) d += pow((double)xyz[3 * v + i] - (double)xyz[3 * from + i], 2);
+        if (d > most) best = v;
+        most = fmax(most, d);
+    }
+    return best;
+}
+
+/* Whether keys ascend in direction d. */
+static int int_nd_in_order(const float *xyz, int32_t n, const hdi_pair *key, const double *d) {
+    int32_t u, v, i, wrong = 0;
+    for (u = 0; u < n; u++)
+        for (v = 0; v < n; v++) {
+            double x = 0;
+            for (i = 0; i < 3; i++) x += d[i] * ((double)xyz[3 * v + i] - (double)xyz[3 * u + i]);
+            wrong += x > 1e-9 && key[v].key <= key[u].key;
+        }
+    return wrong == 0;
 }
 
 /* The values of a sweep: a straight line, distances in the graph, axes. All equal, or not. */
@@ -924,10 +986,13 @@ static void int_nd_sweep_values(void) {
     static const double values[9] = {-DBL_MAX, -3, -2.5, -1e-300, 0, 1e-300, 2, 2.5, DBL_MAX};
     uint64_t seed = 4;
     hdi_nd_graph g = int_nd_graph(N, N, 0, &seed);       /* a path */
-    int32_t kind, v, i;
+    int32_t kind, v, i, a, b;
+    char seen[27];
+    double d[3];
     hdi_nd nd;
     memset(&nd, 0, sizeof nd);
     nd.xyz = xyz;
+    memset(seen, 0, sizeof seen);
     for (i = 1; i < 9; i++) CHECK(hdi_nd_key(values[i - 1]) < hdi_nd_key(values[i]));
     for (kind = 0; kind < 11; kind++) {
         for (v = 0; v < N; v++) xyz[3 * v] = xyz[3 * v + 1] = xyz[3 * v + 2] = 1;
@@ -942,40 +1007,73 @@ static void int_nd_sweep_values(void) {
             for (v = 0; v < N; v++) CHECK(key[v].id == (uint64_t)v && (v == i) == (key[v].key != key[i ? 0 : 1].key));
             xyz[3 * i] = xyz[3 * i + 1] = xyz[3 * i + 2] = 1;
         }
-        for (v = 0; v < N; v++) {                        /* along a path of points on a curve */
-            xyz[3 * v] = (float)v;
-            xyz[3 * v + 1] = (float)(v * v) / N;
-            xyz[3 * v + 2] = (float)(-3 * v);
-        }
-        if (kind > 4) continue;
+        for (v = 0; v < N; v++)                          /* a path of points on a curve */
+            for (i = 0; i < 3; i++) xyz[3 * v + i] = i == 0 ? (float)v : (float)dense_signed(&seed) * 20;
         hdi_nd_sweep_keys(&nd, &g, kind, key, work);
-        for (v = 2; v < N; v++) CHECK((key[v].key > key[v - 1].key) == (key[1].key > key[0].key) && key[v].key != key[v - 1].key);
+        if (kind == 0) {
+            a = int_nd_farthest(xyz, N, 0);
+            b = int_nd_farthest(xyz, N, a);
+            for (i = 0; i < 3; i++) d[i] = (double)xyz[3 * b + i] - (double)xyz[3 * a + i];
+            CHECK(int_nd_in_order(xyz, N, key, d));
+        } else if (kind == 1) {
+            for (v = 2; v < N; v++) CHECK((key[v].key > key[v - 1].key) == (key[1].key > key[0].key) && key[v].key != key[v - 1].key);
+        } else {
+            int32_t found = 0;
+            for (i = 0; i < 27; i++) {
+                for (v = 0; v < 3; v++) d[v] = (v == 0 ? i : v == 1 ? i / 3 : i / 9) % 3 - 1;
+                if (fabs(d[0]) + fabs(d[1]) + fabs(d[2]) > 2.5 || i == 13 || !int_nd_in_order(xyz, N, key, d)) continue;
+                CHECK(!seen[i] && !seen[26 - i]);
+                seen[i] = 1;
+                found++;
+            }
+            CHECK(found == 1);                           /* each of the nine once */
+        }
     }
     free(g.ptr);
 }
 
-/* The first cut of a grid, with places and without: its shorter side. */
+/* The first cut of a grid, with places and without: its shorter side. Of a random graph, the best of what each way of sweeping leads to. */
 static void int_nd_first_cuts(void) {
-    enum { W = 6, H = 18 };
+    enum { W = 40, H = 9 };
     static float xyz[3 * W * H];
     uint64_t seed = 4;
-    int32_t v, way;
+    int32_t v, way, total, t;
     hdi_nd nd;
     memset(&nd, 0, sizeof nd);
     nd.xyz = xyz;
-    for (way = 0; way < 4; way++) {
-        hdi_nd_graph g = int_nd_graph(W * H, W, 0, &seed);
-        hdi_nd_space s = int_nd_space(12 * g.n + 40);
+    for (way = 0; way < 10; way++) {
+        hdi_nd_graph g = int_nd_graph(way < 4 ? W * H : 60 + 20 * way, way < 4 ? W : 0, way >= 4, &seed);
+        hdi_nd_space s = int_nd_space(16 * g.n + 40), rest = s;
+        int32_t *work = DENSE_NEW(int32_t, 3 * g.n);
+        hdi_pair *key = DENSE_NEW(hdi_pair, g.n);
+        double least = DBL_MAX;
+        hdi_nd_mover m;
         hdi_nd_cut c;
-        for (v = 0; v < g.n && way < 3; v++) {
-            xyz[3 * v + (way + 1) % 3] = (float)(v % W);
-            xyz[3 * v + way] = (float)(v / W);
+        for (v = 0; v < 3 * W * H; v++) xyz[v] = way < 4 ? 0 : (float)dense_signed(&seed);
+        for (v = total = 0; v < g.n; v++) {
+            if (way < 3) xyz[3 * v + (way + 1) % 3] = (float)(v % W);
+            if (way < 3) xyz[3 * v + way] = (float)(v / W);
+            if (way >= 4) g.w[v] *= way < 6 ? 1 : way < 8 ? 20 : 200;
+            total += int_nd_weight(&g, v);
         }
-        if (way == 3) memset(xyz, 0, sizeof xyz);
-        hdi_nd_first_cut(&nd, &g, g.n, s);
+        m = hdi_nd_mover_make(&g, &rest);
+        c.most = HDI_ND_HEAVIER * total;
+        for (t = 0; t < (total > HDI_ND_LARGE ? 11 : total > HDI_ND_MIDDLING ? 5 : 2); t++) {
+            if (!hdi_nd_sweep_keys(&nd, &g, t, key, work)) continue;
+            hdi_sort_pairs(key, g.n);
+            hdi_nd_sweep(&g, key, total);
+            hdi_nd_refine_edges(&m, &c, HDI_ND_PASSES);
+            c.cut = int_nd_cut(&g).cut;
+            least = fmin(least, hdi_nd_cost(c.cut, c.weight[0], c.weight[1]));
+        }
+        hdi_nd_first_cut(&nd, &g, total, s);
         c = int_nd_cut(&g);
-        CHECK_MSG(c.cut == W && hdi_max(c.weight[0], c.weight[1]) <= HDI_ND_HEAVIER * g.n, "%g edges between %g and %g", c.cut, c.weight[0], c.weight[1]);
+        if (way < 4) CHECK_MSG(c.cut == H, "%g edges", c.cut);
+        CHECK_MSG(fabs(c.weight[0] - c.weight[1]) <= (2 * HDI_ND_HEAVIER - 1) * total, "parts of %g and %g", c.weight[0], c.weight[1]);
+        CHECK(hdi_nd_cost(c.cut, c.weight[0], c.weight[1]) == least);
         free(s.at);
+        free(work);
+        free(key);
         free(g.ptr);
     }
 }
@@ -1001,6 +1099,15 @@ static void int_nd_clusters(void) {
         }
         for (i = 0; i < c.n; i++) CHECK(of[i] == weight[i] && of[i] > 0 && (of[i] <= limit + limit / 4 || of[i] <= 4));
         CHECK_MSG(alone <= n / 4, "%d of %d without a neighbour in their cluster", (int)alone, (int)n);
+        for (v = 0; v < n; v++) {                /* who is alone found no room */
+            for (p = g.ptr[v], i = j = 0; p < g.ptr[v + 1]; p++) {
+                if (g.adj[p] < 0) continue;
+                i += g.map[g.adj[p]] == g.map[v];
+                j += of[g.map[g.adj[p]]] + int_nd_weight(&g, v) <= limit + limit / 4;
+            }
+            CHECK(i > 0 || j == 0);
+            CHECK(g.side[v] == 0);               /* not written past the end of map */
+        }
         for (v = 0; v < n; v++) {
             longest = hdi_high32(longest, g.ptr[v + 1] - g.ptr[v]);
             for (p = g.ptr[v]; p < g.ptr[v + 1]; p++)
@@ -1068,6 +1175,83 @@ static int32_t int_nd_residual(const hdi_nd_graph *g, const char *band, const ch
     }
     free(stack);
     return found;
+}
+
+/* Vertices without edges fill clusters one after the other. */
+static void int_nd_alone(void) {
+    enum { N = 23, LIMIT = 5 };
+    int32_t ptr[N + 1], adj[1] = {0}, map[N], weight[N], key[N + 1], list[N + 2], start[6], v, i, first;
+    hdi_nd_graph g;
+    memset(ptr, 0, sizeof ptr);
+    memset(&g, 0, sizeof g);
+    g.n = N;
+    g.ptr = ptr;
+    g.adj = adj;
+    g.map = map;
+    CHECK(hdi_nd_cluster(&g, LIMIT, weight) == 5);
+    for (v = 0; v < N; v++) CHECK(map[v] == v / LIMIT && weight[v / LIMIT] == (v < 20 ? 5 : 3));
+    for (v = 0; v < N; v++) key[v] = v % 7 - 2;  /* groups, some in none */
+    key[N] = 3;
+    list[N + 1] = -7;
+    memset(start, 0xff, sizeof start);
+    hdi_group(key, N, 5, start, list);
+    for (i = first = 0; i < 5; i++) {
+        CHECK(start[i] == first);
+        for (v = 0; v < N; v++)
+            if (key[v] == i) CHECK(list[first++] == v);
+    }
+    CHECK(start[5] == first);
+    for (v = 0; v < 5; v++) weight[v] = v + 1;
+    CHECK(hdi_nd_sums(weight, 4) == 10 && weight[4] == 5);
+    for (v = 0; v < 4; v++) CHECK(weight[v] == v * (v + 1) / 2);
+}
+
+/* Copies and copies of copies: each has at most two thirds of the vertices, light ones, and the edges between their clusters. */
+static void int_nd_copies(void) {
+    uint64_t seed = 19;
+    int32_t way, l, v, p, q;
+    for (way = 0; way < 6; way++) {
+        hdi_nd_graph level[12];
+        const int32_t n = 500;
+        int32_t *sum = DENSE_NEW(int32_t, n * n), most = 0;
+        hdi_nd_space s = int_nd_space(20 * n + 400), rest = s;
+        hdi_nd_room room;
+        memset(level, 0, sizeof level);
+        level[0] = int_nd_graph(n, way % 2 ? 0 : 20, 0, &seed);
+        room.n = level->ptr[n];
+        room.adj = DENSE_NEW(int32_t, room.n);
+        room.ew = DENSE_NEW(int32_t, room.n);
+        q = room.n;
+        for (l = 0; l < 10 && hdi_nd_coarser(level + l, n, &room, &rest); l++) q -= level[l + 1].ptr[level[l + 1].n];
+        CHECK(l >= 2 && q == room.n);
+        for (v = 0; v < l; v++) {
+            const hdi_nd_graph *g = level + v, *c = g + 1;
+            int32_t i, total = 0, entries = 0, wrong = 0;
+            const int32_t mean = n / g->n, limit = 8 * mean < n / HDI_ND_CLUSTERS ? 8 * mean : n / HDI_ND_CLUSTERS;
+            most = 0;
+            memset(sum, 0, (size_t)n * (size_t)n * sizeof *sum);
+            CHECK(c->n <= g->n - g->n / 3);
+            for (i = 0; i < g->n; i++) {
+                sum[g->map[i] * n + g->map[i]] += int_nd_weight(g, i);
+                for (p = g->ptr[i]; p < g->ptr[i + 1]; p++)
+                    if (g->adj[p] >= 0 && g->map[g->adj[p]] != g->map[i]) sum[g->map[i] * n + g->map[g->adj[p]]] += g->ew ? g->ew[p] : 1;
+            }
+            for (i = 0; i < n * n; i++) entries += sum[i] > 0;
+            for (i = 0; i < c->n; i++) {
+                total += c->w[i];
+                most = hdi_high32(most, c->w[i]);
+                wrong += c->w[i] != sum[i * n + i];
+                for (p = c->ptr[i]; p < c->ptr[i + 1]; p++) wrong += c->adj[p] == i || c->ew[p] != sum[i * n + c->adj[p]];
+            }
+            CHECK_MSG(total == n && wrong == 0 && entries == c->n + c->ptr[c->n] && most <= limit + limit / 4, "copy %d: %d wrong, the heaviest %d", (int)v,
+                      (int)wrong, (int)most);
+        }
+        free(sum);
+        free(room.adj - (level->ptr[n] - room.n));
+        free(room.ew - (level->ptr[n] - room.n));
+        free(s.at);
+        free(level->ptr);
+    }
 }
 
 /* The sides of a band that the smallest separator leaves, the one nearest to side from: by paths found one by one, and what they leave open. */
@@ -1175,7 +1359,7 @@ static void int_nd_curve(void) {
     static double xyz[3 * N];
     static uint32_t key[N];
     static float unit[3 * N];
-    static int32_t order[N], spare[N], count[1024];
+    static int32_t order[N + 1], spare[N + 1], count[1025];
     uint64_t seed = 2;
     int32_t i, d, b, wrong = 0;
     double lo[3] = {1e9, 1e9, 1e9}, width = 0;
@@ -1183,6 +1367,7 @@ static void int_nd_curve(void) {
     for (i = 0; i < 30; i++) memcpy(xyz + 3 * (N - 30 + i), xyz + 3 * (7 * i), 3 * sizeof *xyz);      /* equal keys */
     for (i = 0; i < 3 * N; i++) lo[i % 3] = fmin(lo[i % 3], xyz[i]);
     for (i = 0; i < 3 * N; i++) width = fmax(width, xyz[i] - lo[i % 3]);
+    memset(key, 0xff, sizeof key);
     hdi_nd_keys(xyz, N, key, unit);
     for (i = 0; i < N; i++) {
         uint32_t want = 0;
@@ -1194,8 +1379,335 @@ static void int_nd_curve(void) {
         wrong += key[i] != want;
     }
     CHECK_MSG(wrong == 0, "%d keys or places", (int)wrong);
+    order[N] = spare[N] = count[1024] = -7;
     hdi_nd_sort(key, N, order, spare, count);
+    CHECK(order[N] == -7 && spare[N] == -7 && count[1024] == -7);
     for (i = 1; i < N; i++) CHECK(key[order[i - 1]] < key[order[i]] || (key[order[i - 1]] == key[order[i]] && order[i - 1] < order[i]));
+    for (i = 0; i < 6; i++) xyz[i] = 2.5;        /* all at one point */
+    hdi_nd_keys(xyz, 2, key, unit);
+    CHECK(key[0] == 0 && key[1] == 0);
+    for (i = 0; i < 6; i++) CHECK(unit[i] == 0.0f);
+}
+
+/* Clusters with vertices on one side, as they were, in whatever room. */
+static void int_nd_halves_of_clusters(void) {
+    enum { GUARD = 4 };
+    uint64_t seed = 15;
+    int32_t way, v, p, i, side, space;
+    for (way = 0; way < 6; way++) {
+        hdi_nd_graph g[2], half[2];
+        const int32_t n = 40 + 10 * way, most = 12 * n;
+        hdi_nd_space s = int_nd_space(2 * n + 9);
+        int32_t *work = DENSE_NEW(int32_t, 9 * n + 9), *room = DENSE_NEW(int32_t, 2 * most), *adj = DENSE_NEW(int32_t, most + GUARD);
+        int32_t *ew = DENSE_NEW(int32_t, most + GUARD), *number = DENSE_NEW(int32_t, n), *want = DENSE_NEW(int32_t, n), fitted = 0;
+        g[0] = int_nd_graph(n, way % 2 ? 0 : 8, way % 3 == 0, &seed);
+        memset(g + 1, 0, sizeof *g);
+        memset(half, 0, sizeof half);
+        g[1].n = hdi_nd_cluster(g, 6, work);
+        g[1].ptr = work + n;
+        g[1].id = work + 2 * n + 1;
+        g[1].adj = room;
+        g[1].ew = room + most;
+        CHECK(hdi_nd_contract(g, g + 1, most, work + 3 * n + 1, work + 4 * n + 1, work + 5 * n + 2));
+        for (v = 0; v < n; v++) g->side[v] = (int8_t)(v < n / 2 - 2 ? 0 : v > n / 2 + 2 ? 1 : 2);
+        half[0].map = work + 6 * n + 2;
+        half[1].ptr = work + 7 * n + 2;
+        half[1].id = work + 8 * n + 3;
+        half[1].adj = adj;
+        half[1].ew = ew;
+        for (side = 0; side < 2; side++) {
+            int32_t count = 0, entries = 0, longest = 0;
+            memset(number, 0, (size_t)n * sizeof *number);
+            for (v = 0; v < n; v++)
+                if (g->side[v] == side) number[g->map[v]] = 1;
+            for (i = 0; i < g[1].n; i++) {
+                count += number[i];
+                if (number[i]) longest = hdi_high32(longest, g[1].ptr[i + 1] - g[1].ptr[i]);
+                for (p = g[1].ptr[i]; p < g[1].ptr[i + 1]; p++) entries += number[i] && number[g[1].adj[p]];
+            }
+            for (space = 1; space < most; space += space < g[1].ptr[g[1].n] + 2 ? 1 : 50) {
+                int32_t found, wrong = 0;
+                memset(adj, 0x55, (size_t)(most + GUARD) * sizeof *adj);
+                memset(ew, 0x55, (size_t)(most + GUARD) * sizeof *ew);
+                found = hdi_nd_extract_clusters(g, (int8_t)side, half, space, s);
+                for (i = space; i < most + GUARD; i++) wrong += adj[i] != 0x55555555 || ew[i] != 0x55555555;
+                CHECK(wrong == 0 && (found == count || (found == 0 && space <= entries + longest)));
+                if (found == 0) continue;
+                fitted++;
+                for (v = i = 0; v < n; v++) {
+                    if (g->side[v] != side) continue;
+                    want[g->map[v]] = half[0].map[i++];
+                    CHECK(want[g->map[v]] >= 0 && want[g->map[v]] < count);
+                    wrong += half[1].id[want[g->map[v]]] != g[1].id[g->map[v]];
+                }
+                for (v = i = 0; v < n; v++) wrong += g->side[v] == side && half[0].map[i++] != want[g->map[v]];
+                for (i = 0; i < g[1].n; i++) {
+                    if (!number[i]) continue;
+                    for (p = g[1].ptr[i], v = half[1].ptr[want[i]]; p < g[1].ptr[i + 1]; p++) {
+                        if (!number[g[1].adj[p]]) continue;
+                        wrong += half[1].adj[v] != want[g[1].adj[p]] || half[1].ew[v] != g[1].ew[p];
+                        v++;
+                    }
+                    wrong += v != half[1].ptr[want[i] + 1];
+                }
+                CHECK_MSG(wrong == 0 && half[1].ptr[count] == entries, "%d entries or names", (int)wrong);
+            }
+        }
+        CHECK(fitted > 0);
+        free(g->ptr);
+        free(s.at);
+        free(work);
+        free(room);
+        free(adj);
+        free(ew);
+        free(number);
+        free(want);
+    }
+}
+
+/* A dissection step by step: what hdi_nd_order sets up, and where each row is: its part, or -1 - the part that it separates. */
+typedef struct int_nd_steps { hdi_nd nd; const hd_csr *a; int32_t *order, *inv, *where, *perm; hdi_scope s; hd_context ctx; hd_error e; } int_nd_steps;
+
+static void int_nd_begin(int_nd_steps *x, const hd_csr *a, const double *xyz) {
+    const uint64_t n = (uint64_t)a->n_rows;
+    hdi_nd_load_job job;
+    uint32_t *key;
+    int32_t *count;
+    float *unit;
+    memset(x, 0, sizeof *x);
+    x->s = hdi_scope_begin(&x->ctx, &x->e);
+    x->a = a;
+    x->order = HDI_TAKE(&x->s, int32_t, n + 1);
+    x->inv = HDI_TAKE(&x->s, int32_t, n + 1);
+    x->where = HDI_TAKE(&x->s, int32_t, n + 1);
+    x->perm = HDI_TAKE(&x->s, int32_t, n + 1);
+    count = HDI_TAKE(&x->s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
+    key = HDI_TAKE(&x->s, uint32_t, n + 1);
+    unit = HDI_TAKE(&x->s, float, 3 * n + 1);
+    x->nd.perm = x->perm;
+    x->nd.xyz = HDI_TAKE(&x->s, float, 3 * n + 1);
+    x->nd.work = HDI_TAKE(&x->s, int32_t, hdi_nd_words(a->n_rows, (int32_t)a->nnz, HDI_ND_TASKS));
+    x->nd.part = HDI_TAKE(&x->s, hdi_nd_part, HDI_ND_NODES);
+    hdi_nd_buffer_make(x->nd.buffer, a, &x->s);
+    hdi_nd_buffer_make(x->nd.buffer + 1, a, &x->s);
+    CHECK(x->e.status == HD_OK);
+    memset(x->where, 0, n * sizeof *x->where);
+    hdi_nd_keys(xyz, a->n_rows, key, unit);
+    job.nd = &x->nd;
+    job.a = a;
+    job.order = x->order;
+    job.inv = x->inv;
+    job.unit = unit;
+    job.n = hdi_nd_number(a, key, x->order, x->inv, count);
+    CHECK(job.n == a->n_rows);
+    x->nd.part[0] = hdi_nd_load(&job, count, &x->ctx);
+}
+
+/* The graph of a part is that of the matrix, and its clusters have a graph with weights. */
+static void int_nd_part_right(const int_nd_steps *x, int32_t i) {
+    const hdi_nd_part *part = x->nd.part + i;
+    const hd_csr *a = x->a;
+    hdi_nd_graph g[2];
+    int32_t v, p, q, wrong = 0, *mark = DENSE_NEW(int32_t, a->n_rows + 1), z = 0;
+    hdi_nd_graphs_of(&x->nd, part, g);
+    for (v = 0; v < part->n; v++) wrong += x->where[g->id[v]] != i;
+    for (v = 0; v < part->n; v++) {
+        const int32_t r = x->order[g->id[v]];
+        int64_t k;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p], row = u < 0 ? ~u : g->id[u];
+            mark[row] = v + 1;
+            wrong += u >= part->n || (u < 0 && x->where[row] >= 0);
+        }
+        for (k = a->row_ptr[r]; k < a->row_ptr[r + 1]; k++) wrong += a->col[k] != r && mark[x->inv[a->col[k]]] != v + 1;
+        z += g->ptr[v + 1] - g->ptr[v];
+        wrong += g->ptr[v + 1] - g->ptr[v] != a->row_ptr[r + 1] - a->row_ptr[r] - 1;
+    }
+    CHECK_MSG(wrong == 0 && z == part->n_edges, "%d rows or entries of part %d", (int)wrong, (int)i);
+    for (v = 0; v < part->n && part->clusters > 0; v++) wrong += g->map[v] < 0 || g->map[v] >= part->clusters;
+    for (v = 0; v < part->clusters; v++)
+        for (p = g[1].ptr[v]; p < g[1].ptr[v + 1]; p++) {
+            const int32_t u = g[1].adj[p];
+            int32_t back = 0;
+            for (q = g[1].ptr[u]; q < g[1].ptr[u + 1]; q++) back += g[1].adj[q] == v ? g[1].ew[q] : 0;
+            wrong += u < 0 || u == v || g[1].ew[p] <= 0 || back != g[1].ew[p];
+        }
+    CHECK_MSG(wrong == 0, "%d clusters or their edges of part %d", (int)wrong, (int)i);
+    free(mark);
+}
+
+/* A part that was not halved: minimum degree of its rows, with the separators around as neighbours. copy: the part before. */
+static void int_nd_leaf_right(const int_nd_steps *x, int32_t i, const hdi_nd_graph *copy) {
+    const hdi_nd_part *part = x->nd.part + i;
+    int32_t *mark = DENSE_NEW(int32_t, x->a->n_rows + 1), *perm = DENSE_NEW(int32_t, part->n), *work, p, v, wrong = 0;
+    hdi_amd_graph rows;
+    rows.n = rows.inner = part->n;
+    rows.wide = NULL;
+    rows.ptr = copy->ptr;
+    rows.col = copy->adj;
+    for (p = 0; p < part->n_edges; p++) {
+        const int32_t row = ~copy->adj[p];
+        if (row < 0) continue;
+        if (!mark[row]) mark[row] = ++rows.n;    /* number and 1 */
+        copy->adj[p] = mark[row] - 1;
+    }
+    work = DENSE_NEW(int32_t, hdi_amd_part_words(part->n, rows.n - part->n, part->n_edges));
+    hdi_amd_part(&rows, perm, work);
+    for (v = 0; v < part->n; v++) wrong += x->perm[part->first + v] != copy->id[perm[v]];
+    CHECK_MSG(wrong == 0, "%d of %d rows of part %d are in another order", (int)wrong, (int)part->n, (int)i);
+    free(mark);
+    free(perm);
+    free(work);
+}
+
+/* Two halves and a separator, which are all rows of the part; no edge joins the halves, and both have a fifth. Returns the rows of the separator. */
+static int32_t int_nd_split_right(int_nd_steps *x, int32_t i) {
+    const hdi_nd_part *part = x->nd.part + i, *child = part + i + 1;
+    const int32_t cut = part->n - child[0].n - child[1].n;
+    int32_t v, k, wrong = 0;
+    int64_t p;
+    CHECK(child[0].first == part->first && child[1].first == part->first + child[0].n);
+    CHECK_MSG(cut <= part->n / 2 && child[0].n <= part->n - part->n / 5 && child[1].n <= part->n - part->n / 5, "%d, %d of %d", (int)child[0].n,
+              (int)child[1].n, (int)part->n);
+    for (k = 0; k < 2; k++)
+        for (v = 0; v < child[k].n; v++) {
+            int32_t *where = x->where + x->nd.buffer[child[k].buffer].id[child[k].first + v];
+            wrong += *where != i;
+            *where = 2 * i + 1 + k;
+        }
+    for (v = part->first + part->n - cut; v < part->first + part->n; v++) {
+        wrong += x->where[x->perm[v]] != i;
+        x->where[x->perm[v]] = -1 - i;
+    }
+    for (v = 0; v < x->a->n_rows; v++)
+        for (p = x->a->row_ptr[v]; x->where[x->inv[v]] == 2 * i + 1 && p < x->a->row_ptr[v + 1]; p++)
+            wrong += x->where[x->inv[x->a->col[p]]] == 2 * i + 2;
+    CHECK_MSG(wrong == 0, "%d rows or edges in part %d", (int)wrong, (int)i);
+    return cut;
+}
+
+/* A copy of a part's rows. */
+static hdi_nd_graph int_nd_copy(const int_nd_steps *x, int32_t i) {
+    const hdi_nd_part *part = x->nd.part + i;
+    hdi_nd_graph g, c;
+    hdi_nd_graph level[2];
+    hdi_nd_graphs_of(&x->nd, part, level);
+    g = level[0];
+    c = g;
+    c.ptr = DENSE_NEW(int32_t, 2 * part->n + 1 + part->n_edges);
+    c.id = c.ptr + part->n + 1;
+    c.adj = c.id + part->n;
+    memcpy(c.ptr, g.ptr, ((size_t)part->n + 1) * sizeof *c.ptr);
+    memcpy(c.id, g.id, (size_t)part->n * sizeof *c.ptr);
+    memcpy(c.adj, g.adj, (size_t)part->n_edges * sizeof *c.ptr);
+    return c;
+}
+
+/* Of the sides that the whole is cut into, the vertices of one that touch the other: all, and of the side where they are fewer. */
+static void int_nd_list_right(const int_nd_steps *x) {
+    const hdi_nd_part *part = x->nd.part;
+    hdi_nd_space s = hdi_nd_space_of(&x->nd, 0);
+    hdi_nd_graph level[HDI_ND_LEVELS];
+    int32_t *list = DENSE_NEW(int32_t, 2 * part->n), n, v, touch[2] = {0, 0}, wrong = 0, size[3];
+    hdi_nd_graphs_of(&x->nd, part, level);
+    level->side = hdi_nd_take_bytes(&s, part->n);
+    n = hdi_nd_cut_clusters(&x->nd, part, level, list, s);
+    for (v = 0; v < part->n; v++) touch[level->side[v]] += hdi_nd_touches(level, v);
+    CHECK_MSG(n == hdi_low32(touch[0], touch[1]), "%d of %d and %d", (int)n, (int)touch[0], (int)touch[1]);
+    for (v = 0; v < n; v++) wrong += !hdi_nd_touches(level, list[v]) || level->side[list[v]] != level->side[list[0]] || (v > 0 && list[v] <= list[v - 1]);
+    CHECK(wrong == 0);
+    CHECK(hdi_nd_measure(level, size) && size[0] <= HDI_ND_HEAVIER * part->n + 1 && size[1] <= HDI_ND_HEAVIER * part->n + 1);
+    free(list);
+}
+
+/* A grid of w by h, wide: with diagonals of its cells. */
+static hd_csr int_nd_grid(int32_t w, int32_t h, int wide, double *xyz) {
+    const int32_t n = w * h;
+    int32_t *i = DENSE_NEW(int32_t, 9 * n), *j = DENSE_NEW(int32_t, 9 * n), v, k;
+    double *one = DENSE_NEW(double, 9 * n);
+    int64_t z = 0;
+    hd_csr a;
+    hd_error e;
+    for (v = 0; v < n; v++) {
+        xyz[3 * v] = v % w;
+        xyz[3 * v + 1] = v / w;
+        xyz[3 * v + 2] = 0;
+        for (k = 0; k < 9; k++) {
+            const int32_t x = v % w + k % 3 - 1, y = v / w + k / 3 - 1;
+            if (x < 0 || x >= w || y < 0 || y >= h || (!wide && k % 2 == 0 && k != 4)) continue;
+            i[z] = v;
+            j[z] = y * w + x;
+            one[z++] = 1;
+        }
+    }
+    CHECK(hd_csr_from_triplets(&a, n, n, z, i, j, one, NULL, &e) == HD_OK);
+    free(i);
+    free(j);
+    free(one);
+    return a;
+}
+
+/* Grids halved step by step. No separator of a rectangle needs more rows than its shorter side has. */
+static void int_nd_halvings(void) {
+    static const int32_t size[4][3] = {{80, 80, 0}, {72, 72, 1}, {40, 150, 0}, {20, 260, 1}};
+    int32_t way, i;
+    for (way = 0; way < 4; way++) {
+        const int32_t w = size[way][0], h = size[way][1];
+        double *xyz = DENSE_NEW(double, 3 * w * h);
+        hd_csr a = int_nd_grid(w, h, size[way][2], xyz);
+        int32_t cut = 0, halved = 0;
+        int_nd_steps x;
+        int_nd_begin(&x, &a, xyz);
+        int_nd_list_right(&x);
+        for (i = 0; i < HDI_ND_TASKS - 1; i++) {
+            const hdi_nd_part *part = x.nd.part + i;
+            hdi_nd_graph copy;
+            int_nd_part_right(&x, i);
+            copy = int_nd_copy(&x, i);
+            hdi_nd_split(&x.nd, part, x.nd.part + 2 * i + 1, hdi_nd_space_of(&x.nd, i));
+            CHECK((part->n > HDI_ND_LEAF) == (part[i + 1].n > 0));
+            if (part[i + 1].n > 0) {
+                const int32_t k = int_nd_split_right(&x, i);
+                if (i == 0) cut = k;
+                halved++;
+            } else if (part->n > 0) int_nd_leaf_right(&x, i, &copy);
+            free(copy.ptr);
+        }
+        CHECK_MSG(cut <= w && halved >= 3, "a separator of %d rows", (int)cut);
+        hdi_scope_end(&x.s);
+        hd_csr_free(&a, NULL);
+        free(xyz);
+    }
+}
+
+/* Fill and work of k by k grids with diagonals. Dissection by their middle lines: 31/4 k^2 log2 k non-zeros and 829/84 k^3 operations, a multiplication
+ * and an addition each, to leading order (A. George, J. Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, chapter 8). The
+ * next terms are negative for the first. Minimum degree does about as well; without diagonals both have less. */
+static void int_nd_fill(void) {
+    int32_t k, wide, way;
+    for (k = 45; k <= 90; k += 45) {
+        for (wide = 0; wide < 2; wide++) {
+            double *xyz = DENSE_NEW(double, 3 * k * k), flops[2] = {0, 0};
+            hd_csr a = int_nd_grid(k, k, wide, xyz);
+            int32_t *perm = DENSE_NEW(int32_t, k * k);
+            for (way = 0; way < 2; way++) {
+                hdi_symbolic s;
+                hd_context ctx;
+                hd_error e;
+                memset(&ctx, 0, sizeof ctx);
+                CHECK((way ? hdi_nd_order(&a, xyz, perm, &ctx, &e) : hdi_amd_order(&a, perm, &ctx, &e)) == HD_OK);
+                CHECK(hdi_symbolic_make(&s, &a, perm, &ctx, &e) == HD_OK);
+                flops[way] = s.flops / pow(k, 3);
+                CHECK_MSG((double)s.nnz < 0.7 * 31 / 4 * k * k * log2(k) && flops[way] < 1.1 * 2 * 829 / 84, "%d by %d: %g non-zeros a row, %g k^3 flops", (int)k,
+                          (int)k, (double)s.nnz / k / k, flops[way]);
+                hdi_symbolic_free(&ctx, &s);
+            }
+            CHECK_MSG(flops[0] < 1.2 * flops[1] && flops[1] < 1.2 * flops[0], "%g and %g k^3 flops", flops[0], flops[1]);
+            hd_csr_free(&a, NULL);
+            free(xyz);
+            free(perm);
+        }
+    }
 }
 
 /* The share of the way from the first residual to the target, by powers of ten. */
@@ -3410,6 +3922,9 @@ int main(void) {
     int_amd_dense();
     int_amd_steps();
     int_nd_moves();
+    int_nd_buckets();
+    int_nd_alone();
+    int_nd_copies();
     int_nd_refined();
     int_nd_sweeps();
     int_nd_sweep_values();
@@ -3417,6 +3932,9 @@ int main(void) {
     int_nd_clusters();
     int_nd_flows();
     int_nd_curve();
+    int_nd_halves_of_clusters();
+    int_nd_halvings();
+    int_nd_fill();
     int_krylov_done();
     int_ildl_trees();
     int_ildl_row_sums();
