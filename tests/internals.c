@@ -1213,7 +1213,7 @@ static void int_nd_copies(void) {
     for (way = 0; way < 6; way++) {
         hdi_nd_graph level[12];
         const int32_t n = 500;
-        int32_t *sum = DENSE_NEW(int32_t, n * n), most = 0;
+        int32_t *sum = DENSE_NEW(int32_t, n * n), *in = DENSE_NEW(int32_t, n), most = 0;
         hdi_nd_space s = int_nd_space(20 * n + 400), rest = s;
         hdi_nd_room room;
         memset(level, 0, sizeof level);
@@ -1224,11 +1224,13 @@ static void int_nd_copies(void) {
         q = room.n;
         for (l = 0; l < 10 && hdi_nd_coarser(level + l, n, &room, &rest); l++) q -= level[l + 1].ptr[level[l + 1].n];
         CHECK(l >= 2 && q == room.n);
+        for (v = 0; v < n; v++) in[v] = v;
         for (v = 0; v < l; v++) {
             const hdi_nd_graph *g = level + v, *c = g + 1;
             int32_t i, total = 0, entries = 0, wrong = 0;
             const int32_t mean = n / g->n, limit = 8 * mean < n / HDI_ND_CLUSTERS ? 8 * mean : n / HDI_ND_CLUSTERS;
             most = 0;
+            for (i = 0; i < n; i++) in[i] = g->map[in[i]];
             memset(sum, 0, (size_t)n * (size_t)n * sizeof *sum);
             CHECK(c->n <= g->n - g->n / 3);
             for (i = 0; i < g->n; i++) {
@@ -1240,13 +1242,14 @@ static void int_nd_copies(void) {
             for (i = 0; i < c->n; i++) {
                 total += c->w[i];
                 most = hdi_high32(most, c->w[i]);
-                wrong += c->w[i] != sum[i * n + i];
+                wrong += c->w[i] != sum[i * n + i] || in[c->id[i]] != i;
                 for (p = c->ptr[i]; p < c->ptr[i + 1]; p++) wrong += c->adj[p] == i || c->ew[p] != sum[i * n + c->adj[p]];
             }
             CHECK_MSG(total == n && wrong == 0 && entries == c->n + c->ptr[c->n] && most <= limit + limit / 4, "copy %d: %d wrong, the heaviest %d", (int)v,
                       (int)wrong, (int)most);
         }
         free(sum);
+        free(in);
         free(room.adj - (level->ptr[n] - room.n));
         free(room.ew - (level->ptr[n] - room.n));
         free(s.at);
@@ -2489,6 +2492,15 @@ static void int_tree_one(const hd_csr *a, const int32_t *order, const char *what
         CHECK_MSG(w.count[j] == k, "%s: column %d has %d entries, not %d", what, (int)j, (int)k, (int)w.count[j]);
         CHECK_MSG(w.parent[j] == first, "%s: postordered, the parent of %d is %d, not %d", what, (int)j, (int)first, (int)w.parent[j]);
         CHECK(j == 0 || w.parent[j - 1] == -1 || w.parent[j - 1] >= j);
+    }
+    for (j = 0; j < n; j++) plain[j] = w.count[j];
+    k = hdi_sym_supernodes(n, &w);
+    hdi_sym_relax(k, &w);
+    while (k-- > 0) {                            /* merging lets in zeros: what a front holds beyond its columns */
+        int64_t held = 0;
+        if (w.node[k].merged) continue;
+        for (j = w.node[k].first; j >= 0; j = w.next_col[j]) held += plain[j];
+        CHECK_MSG(w.node[k].zeros == hdi_node_size(w.node + k) - held, "%s: %lld zeros", what, (long long)w.node[k].zeros);
     }
     hdi_scope_end(&s);
     free(perm);
