@@ -1016,7 +1016,8 @@ static void int_nd_sweep_values(void) {
             for (i = 0; i < 3; i++) d[i] = (double)xyz[3 * b + i] - (double)xyz[3 * a + i];
             CHECK(int_nd_in_order(xyz, N, key, d));
         } else if (kind == 1) {
-            for (v = 2; v < N; v++) CHECK((key[v].key > key[v - 1].key) == (key[1].key > key[0].key) && key[v].key != key[v - 1].key);
+            i = key[1].key > key[0].key ? 1 : -1;
+            for (v = 0; v < N; v++) CHECK(key[v].key == hdi_nd_key((double)i * (2 * v - (N - 1))));
         } else {
             int32_t found = 0;
             for (i = 0; i < 27; i++) {
@@ -1206,6 +1207,27 @@ static void int_nd_alone(void) {
     for (v = 0; v < 4; v++) CHECK(weight[v] == v * (v + 1) / 2);
 }
 
+/* Sides by number. */
+static void int_nd_by_number(void) {
+    uint64_t seed = 21;
+    int32_t way, v, p;
+    for (way = 0; way < 6; way++) {
+        hdi_nd_graph g = int_nd_graph(20 + 7 * way, way % 2 ? 0 : 5, 0, &seed);
+        int32_t cut = 0, size[3];
+        memset(g.side, 7, (size_t)g.n);
+        hdi_nd_halve(&g);
+        for (v = 0; v < g.n; v++) {
+            int touches = 0;
+            for (p = g.ptr[v]; p < g.ptr[v + 1]; p++) touches |= g.adj[p] >= g.n / 2;
+            CHECK(g.side[v] == (v >= g.n / 2 ? 1 : touches ? 2 : 0));
+            cut += v < g.n / 2 && touches;
+        }
+        CHECK(hdi_nd_measure(&g, size) == (g.n / 2 - cut <= g.n - g.n / 5 && cut <= g.n / 2));
+        CHECK(size[0] == g.n / 2 - cut && size[1] == g.n - g.n / 2 && size[2] == cut);
+        free(g.ptr);
+    }
+}
+
 /* Copies and copies of copies: each has at most two thirds of the vertices, light ones, and the edges between their clusters. */
 static void int_nd_copies(void) {
     uint64_t seed = 19;
@@ -1225,6 +1247,17 @@ static void int_nd_copies(void) {
         for (l = 0; l < 10 && hdi_nd_coarser(level + l, n, &room, &rest); l++) q -= level[l + 1].ptr[level[l + 1].n];
         CHECK(l >= 2 && q == room.n);
         for (v = 0; v < n; v++) in[v] = v;
+        for (v = 0; v < level[l].n; v++) level[l].side[v] = (int8_t)(v % 2);    /* a bad cut, which each copy improves */
+        hdi_nd_descend(level, l, n, rest);
+        for (v = 1; v < l; v++) {
+            const hdi_nd_graph *g = level + v;
+            const hdi_nd_cut kept = int_nd_cut(g);
+            double above = 0;
+            for (p = 0; p < g->n; p++) g->side[p] = g[1].side[g->map[p]];
+            above = int_nd_cut(g).cut;
+            CHECK(kept.cut < above || v + 1 < l);
+            CHECK_MSG(kept.cut <= above && hdi_max(kept.weight[0], kept.weight[1]) <= HDI_ND_HEAVIER * n, "a cut of %g, %g on the copy", kept.cut, above);
+        }
         for (v = 0; v < l; v++) {
             const hdi_nd_graph *g = level + v, *c = g + 1;
             int32_t i, total = 0, entries = 0, wrong = 0;
@@ -1344,9 +1377,9 @@ static void int_nd_flow_of(const hdi_nd_graph *g, int32_t most, int32_t layers) 
 static void int_nd_flows(void) {
     uint64_t seed = 12;
     int32_t way, v;
-    for (way = 0; way < 60; way++) {
+    for (way = 0; way < 160; way++) {
         const int32_t wide = way % 2 ? 4 + way % 9 : 0;
-        hdi_nd_graph g = int_nd_graph(40 + way, wide, 0, &seed);
+        hdi_nd_graph g = int_nd_graph(40 + way / 2, wide, 0, &seed);
         for (v = 0; v < g.n; v++) {
             const int32_t x = wide ? v / wide : v / 5, m = wide ? g.n / wide : g.n / 5;
             g.side[v] = (int8_t)(2 * x + (int32_t)(dense_random(&seed) % 5) > m + way % 3);
@@ -1623,11 +1656,11 @@ static void int_nd_list_right(const int_nd_steps *x) {
     free(list);
 }
 
-/* A grid of w by h, wide: with diagonals of its cells. */
+/* A grid of w by h, wide = 1: with diagonals of its cells, 2: with edges from some vertices to far ones. */
 static hd_csr int_nd_grid(int32_t w, int32_t h, int wide, double *xyz) {
     const int32_t n = w * h;
-    int32_t *i = DENSE_NEW(int32_t, 9 * n), *j = DENSE_NEW(int32_t, 9 * n), v, k;
-    double *one = DENSE_NEW(double, 9 * n);
+    int32_t *i = DENSE_NEW(int32_t, 11 * n), *j = DENSE_NEW(int32_t, 11 * n), v, k;
+    double *one = DENSE_NEW(double, 11 * n);
     int64_t z = 0;
     hd_csr a;
     hd_error e;
@@ -1637,9 +1670,14 @@ static hd_csr int_nd_grid(int32_t w, int32_t h, int wide, double *xyz) {
         xyz[3 * v + 2] = 0;
         for (k = 0; k < 9; k++) {
             const int32_t x = v % w + k % 3 - 1, y = v / w + k / 3 - 1;
-            if (x < 0 || x >= w || y < 0 || y >= h || (!wide && k % 2 == 0 && k != 4)) continue;
+            if (x < 0 || x >= w || y < 0 || y >= h || (wide != 1 && k % 2 == 0 && k != 4)) continue;
             i[z] = v;
             j[z] = y * w + x;
+            one[z++] = 1;
+        }
+        for (k = 0; k < 2 && wide == 2 && v % 11 == 0; k++) {
+            i[z] = k ? v : v * 7 % n;
+            j[z] = k ? v * 7 % n : v;
             one[z++] = 1;
         }
     }
@@ -1650,11 +1688,38 @@ static hd_csr int_nd_grid(int32_t w, int32_t h, int wide, double *xyz) {
     return a;
 }
 
+/* Fresh clusters: about a dozen vertices each, and their graph. */
+static void int_nd_fresh_right(const int_nd_steps *x) {
+    const hdi_nd_part *part = x->nd.part;
+    hdi_nd_graph level[2];
+    int32_t v, p, q, wrong = 0, entries = 0, *sum;
+    hdi_nd_graphs_of(&x->nd, part, level);
+    hdi_nd_fresh(&x->nd, part, level, hdi_nd_space_of(&x->nd, 0));
+    CHECK_MSG(6 * level[1].n < part->n && 24 * level[1].n > part->n, "%d clusters of %d", (int)level[1].n, (int)part->n);
+    sum = DENSE_NEW(int32_t, level[1].n * level[1].n);
+    for (v = 0; v < part->n; v++) {
+        wrong += level->map[v] < 0 || level->map[v] >= level[1].n;
+        for (p = level->ptr[v]; p < level->ptr[v + 1] && wrong == 0; p++) {
+            int32_t *at = sum + level->map[v] * level[1].n + level->map[level->adj[p]];
+            if (level->map[v] == level->map[level->adj[p]]) continue;
+            entries += *at == 0;
+            ++*at;
+        }
+    }
+    for (v = 0; v < level[1].n && wrong == 0; v++) {
+        for (p = level[1].ptr[v]; p < level[1].ptr[v + 1]; p++) wrong += level[1].ew[p] != sum[v * level[1].n + level[1].adj[p]];
+        for (q = 0; q < part->n && (level->id[q] != level[1].id[v] || level->map[q] != v); q++) {}
+        wrong += q == part->n;                   /* a row of its own stands for it */
+    }
+    CHECK_MSG(wrong == 0 && level[1].ptr[level[1].n] == entries, "%d entries or rows", (int)wrong);
+    free(sum);
+}
+
 /* Grids halved step by step. No separator of a rectangle needs more rows than its shorter side has. */
 static void int_nd_halvings(void) {
-    static const int32_t size[4][3] = {{80, 80, 0}, {72, 72, 1}, {40, 150, 0}, {20, 260, 1}};
+    static const int32_t size[5][3] = {{80, 80, 0}, {72, 72, 1}, {40, 150, 0}, {20, 260, 1}, {45, 60, 2}};
     int32_t way, i;
-    for (way = 0; way < 4; way++) {
+    for (way = 0; way < 5; way++) {
         const int32_t w = size[way][0], h = size[way][1];
         double *xyz = DENSE_NEW(double, 3 * w * h);
         hd_csr a = int_nd_grid(w, h, size[way][2], xyz);
@@ -1662,6 +1727,7 @@ static void int_nd_halvings(void) {
         int_nd_steps x;
         int_nd_begin(&x, &a, xyz);
         int_nd_list_right(&x);
+        int_nd_fresh_right(&x);
         for (i = 0; i < HDI_ND_TASKS - 1; i++) {
             const hdi_nd_part *part = x.nd.part + i;
             hdi_nd_graph copy;
@@ -1676,7 +1742,7 @@ static void int_nd_halvings(void) {
             } else if (part->n > 0) int_nd_leaf_right(&x, i, &copy);
             free(copy.ptr);
         }
-        CHECK_MSG(cut <= w && halved >= 3, "a separator of %d rows", (int)cut);
+        CHECK_MSG(way == 4 || (cut <= w && halved >= 3), "a separator of %d rows", (int)cut);
         hdi_scope_end(&x.s);
         hd_csr_free(&a, NULL);
         free(xyz);
@@ -3937,6 +4003,7 @@ int main(void) {
     int_nd_buckets();
     int_nd_alone();
     int_nd_copies();
+    int_nd_by_number();
     int_nd_refined();
     int_nd_sweeps();
     int_nd_sweep_values();
