@@ -3835,6 +3835,67 @@ static void int_sort_keys(void) {
     CHECK_MSG(bad == 0, "%d lists out of order", (int)bad);
 }
 
+/* The k-th point along an axis, among points of which many are equal, and the longest axis of a box. */
+static void int_select_points(void) {
+    hdi_point a[81];
+    hdi_cell cell;
+    uint64_t seed = 14;
+    int32_t n, k, i, c, bad = 0;
+    for (n = 1; n <= 80; n += 1 + n / 4) {
+        for (k = 0; k < n; k++) {
+            const int axis = k % 3;
+            int64_t sum = 0;
+            for (i = 0; i < n; i++) {
+                for (c = 0; c < 3; c++) a[i].x[c] = k % 2 ? (double)(dense_random(&seed) % 6) : dense_signed(&seed);
+                a[i].id = i;
+            }
+            for (c = 0; c < 3; c++) a[n].x[c] = -9;      /* not one of them */
+            a[n].id = 1000;
+            hdi_select_point(a, n, k, axis);
+            for (i = 0; i < n; i++) {
+                sum += a[i].id;
+                bad += i < k ? a[i].x[axis] > a[k].x[axis] : a[i].x[axis] < a[k].x[axis];
+            }
+            bad += sum != n * (n - 1) / 2 || a[n].id != 1000;
+        }
+    }
+    CHECK_MSG(bad == 0, "%d on the wrong side of the k-th", (int)bad);
+    for (k = 0; k < 3; k++) {
+        for (i = 0; i < 80; i++)
+            for (c = 0; c < 3; c++) a[i].x[c] = (c == k ? 3 : c == (k + 1) % 3 ? 2 : 1) * (dense_signed(&seed) + 4);
+        a[7].x[k] = 0;
+        CHECK(hdi_cell_box(&cell, a, 80) == k && cell.lo[k] == 0);
+    }
+}
+
+/* The plane through points of a plane, whatever comes behind them in memory. */
+static void int_tangent_planes(void) {
+    double rel[3 * 13], normal[3] = {2.0 / 3, -1.0 / 3, 2.0 / 3};
+    uint64_t seed = 16;
+    hdi_plane plane[2];
+    int32_t way, k, c;
+    for (k = 0; k < 12; k++) {
+        const double x = dense_signed(&seed), y = dense_signed(&seed);
+        rel[3 * k] = x;                          /* 2 x - y + 2 z = 0 */
+        rel[3 * k + 1] = y;
+        rel[3 * k + 2] = (y - 2 * x) / 2;
+    }
+    memset(plane, 0, sizeof plane);
+    for (way = 0; way < 2; way++) {
+        double along = 0;
+        for (c = 0; c < 3; c++) rel[36 + c] = way ? 50 : 0;
+        plane[way] = hdi_tangent_plane(rel, 12);
+        for (c = 0; c < 3; c++) along += plane[way].axis[2][c] * normal[c];
+        CHECK_MSG(fabs(fabs(along) - 1) < 1e-12 && fabs(plane[way].height) < 1e-12, "%.17g from the normal", along);
+    }
+    rel[0] += 0.3;
+    rel[36] = 0;
+    plane[0] = hdi_tangent_plane(rel, 12);
+    rel[36] = 50;
+    plane[1] = hdi_tangent_plane(rel, 12);
+    CHECK(memcmp(plane[0].axis, plane[1].axis, sizeof plane[0].axis) == 0 && plane[0].height == plane[1].height);
+}
+
 static void int_kth(void) {
     double a[100], b[100];
     uint64_t seed = 6;
@@ -3979,6 +4040,8 @@ int main(void) {
     int_star();
     int_sort_keys();
     int_kth();
+    int_select_points();
+    int_tangent_planes();
     int_eigen3();
     int_polygon();
     int_polygon_room();
