@@ -114,6 +114,20 @@ static void int_texts(void) {
     for (k = 0; k + 1 < sizeof e.text; k++) CHECK(e.text[k] == (char)('a' + k % 7));
 }
 
+/* Megabytes to one decimal, rounded up. */
+static void int_megabytes(void) {
+    static const double tenths[12] = {0, 1, 9, 10, 11, 99, 100, 101, 109, 110, 1005, 10000};
+    char want[40];
+    hd_error e;
+    int k;
+    for (k = 0; k < 12; k++) {
+        hdi_error_clear(&e);
+        hdi_text_bytes(&e, 1e5 * (tenths[k] - (k % 2 ? 0.5 : 0)));
+        sprintf(want, "%.1f MB", tenths[k] / 10);
+        CHECK_MSG(strcmp(e.text, want) == 0, "%s, not %s", e.text, want);
+    }
+}
+
 /* Takes that are only added up: as many bytes as blocks of their own would count, and 2^60 where a number has no meaning. */
 static void int_tally(void) {
     hd_context ctx;
@@ -309,8 +323,9 @@ static void int_tridiagonal(void) {
     int k;
     for (k = 0; k < 6; k++) {
         const int32_t m = sizes[k];
-        double *d = DENSE_NEW(double, m), *e = DENSE_NEW(double, m), *z0 = DENSE_NEW(double, m), *z1 = DENSE_NEW(double, m), worst = 0;
+        double *d = DENSE_NEW(double, m + 1), *e = DENSE_NEW(double, m + 1), *z0 = DENSE_NEW(double, m), *z1 = DENSE_NEW(double, m), worst = 0;
         int32_t i, j;
+        d[m] = e[m] = NAN;                       /* not theirs */
         for (i = 0; i < m; i++) {
             d[i] = 2;
             e[i] = i + 1 < m ? -1 : 1e300;       /* the last is not to be used */
@@ -3775,6 +3790,29 @@ static void int_soup(void) {
     free(tri);
 }
 
+/* Wheels whose hub has as many faces as a list sorted by insertion, one less and one more, two of them the same. */
+static void int_wheels(void) {
+    int32_t n, i;
+    for (n = HDI_SHORT_LIST - 2; n < HDI_SHORT_LIST + 3; n++) {
+        double xyz[3 * 30];
+        int32_t tri[3 * 30];
+        hd_laplacian *lap = NULL;
+        memset(xyz, 0, sizeof xyz);
+        for (i = 0; i < n; i++) {                /* n - 1 about the hub 0, the last of them again */
+            const int32_t f = i < n - 1 ? i : n - 2;
+            xyz[3 * i + 3] = cos(6.283185307179586 * i / (n - 1));
+            xyz[3 * i + 4] = sin(6.283185307179586 * i / (n - 1));
+            tri[3 * i] = 0;
+            tri[3 * i + 1] = 1 + f;
+            tri[3 * i + 2] = 1 + (f + 1) % (n - 1);
+        }
+        if (hd_laplacian_triangles(&lap, xyz, n, tri, n, NULL, NULL) >= 0)
+            CHECK_MSG(lap->mesh.n_repeated_face == 1, "%d faces: %lld repeated", (int)n, (long long)lap->mesh.n_repeated_face);
+        else CHECK(0);
+        hd_laplacian_free(lap);
+    }
+}
+
 /* A star by its definition: q is a neighbour of the origin in the Delaunay triangulation if some circle through both is empty. */
 static void int_star(void) {
     enum { N = 40 };
@@ -4038,6 +4076,7 @@ int main(void) {
     int_around();
     int_soup();
     int_star();
+    int_wheels();
     int_sort_keys();
     int_kth();
     int_select_points();
@@ -4050,6 +4089,7 @@ int main(void) {
     int_sizes();
     int_texts();
     int_tally();
+    int_megabytes();
     int_arrays();
     int_memory();
     int_scope_room();
