@@ -1019,7 +1019,7 @@ static void int_nd_sweep_values(void) {
             if (kind >= 2) xyz[3 * i + 2] = 13;
             memset(key, 0xff, sizeof key);
             CHECK(hdi_nd_sweep_keys(&nd, &g, kind, key, work) == 1);
-            for (v = 0; v < N; v++) CHECK(key[v].id == (uint64_t)v && (v == i) == (key[v].key != key[i ? 0 : 1].key));
+            for (v = 0; v < N; v++) CHECK(key[v].id == v && (v == i) == (key[v].key != key[i ? 0 : 1].key));
             xyz[3 * i] = xyz[3 * i + 1] = xyz[3 * i + 2] = 1;
         }
         for (v = 0; v < N; v++)                          /* a path of points on a curve */
@@ -1222,10 +1222,21 @@ static void int_nd_alone(void) {
     for (v = 0; v < 4; v++) CHECK(weight[v] == v * (v + 1) / 2);
 }
 
-/* Sides by number. */
+/* Halves of at most four fifths and a separator of at most half; sides by number. */
 static void int_nd_by_number(void) {
     uint64_t seed = 21;
-    int32_t way, v, p;
+    int32_t way, v, p, q, sizes[3];
+    int8_t side[21];
+    hdi_nd_graph all;
+    memset(&all, 0, sizeof all);
+    all.n = 20;
+    all.side = side;
+    for (p = 0; p <= 20; p++)
+        for (q = 0; p + q <= 20; q++) {
+            for (v = 0; v < 20; v++) side[v] = (int8_t)(v < p ? 0 : v < p + q ? 1 : 2);
+            CHECK(hdi_nd_measure(&all, sizes) == (p <= 16 && q <= 16 && 20 - p - q <= 10));
+            CHECK(sizes[0] == p && sizes[1] == q && sizes[2] == 20 - p - q);
+        }
     for (way = 0; way < 6; way++) {
         hdi_nd_graph g = int_nd_graph(20 + 7 * way, way % 2 ? 0 : 5, 0, &seed);
         int32_t cut = 0, size[3];

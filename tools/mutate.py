@@ -80,6 +80,8 @@ Fault = collections.namedtuple("Fault", "line kind text")
 WORD = r"[\w.>\[\]-]+"
 EITHER = re.compile(r"(%s) (?:<=?|>=?) (%s)(?: \? (%s) : (%s)|\) (%s) = (%s);)" % ((WORD,) * 6))
 
+LIMITED = re.compile(r"^\s*if \((%s) (?:<=?|>=?) ([^;&|]+)\) \1 = \2;$" % WORD)
+
 
 def no_fault(kind, code, m):
     """Equal numbers, of which either may be taken: < and <= make no difference in x < y ? x : y and if (x < y) y = x."""
@@ -87,6 +89,8 @@ def no_fault(kind, code, m):
         chosen = [w for w in e.groups()[2:] if w]
         if e.start() <= m.start() < e.end() and set(chosen) == set(e.groups()[:2]):
             return True
+    if kind == "comparison" and LIMITED.search(code):
+        return True
     before, after = code[:m.start()], code[m.end():]
     if kind == "constant" and "HDI_TAKE(" in before and not re.search(r"HDI_TAKE\([^;]*[;/-]|[;/-] ?$", before):
         return ";" in after                  # more room than is needed
