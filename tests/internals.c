@@ -114,6 +114,18 @@ static void int_texts(void) {
     for (k = 0; k + 1 < sizeof e.text; k++) CHECK(e.text[k] == (char)('a' + k % 7));
 }
 
+/* Sums keep what rounding takes away, whichever of two numbers is the larger. */
+static void int_sums(void) {
+    static const double x[2][5] = {{1, 1e16, 3, -1e16, 1e-3}, {1e16, 1, -1e16, 3, 1e-3}};
+    int k, i;
+    for (k = 0; k < 2; k++) {
+        hdi_sum s;
+        memset(&s, 0, sizeof s);
+        for (i = 0; i < 5; i++) hdi_sum_add(&s, x[k][i]);
+        CHECK_MSG(fabs(s.high + s.low - 4.001) < 1e-15 * 8, "%.17g", s.high + s.low);
+    }
+}
+
 /* Megabytes to one decimal, rounded up. */
 static void int_megabytes(void) {
     static const double tenths[12] = {0, 1, 9, 10, 11, 99, 100, 101, 109, 110, 1005, 10000};
@@ -4100,6 +4112,7 @@ int main(void) {
     int_sizes();
     int_texts();
     int_tally();
+    int_sums();
     int_megabytes();
     int_arrays();
     int_memory();
