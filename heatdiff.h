@@ -11115,7 +11115,7 @@ typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
  * all 9.5 c; where a copy fails it keeps 3.17 N at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N
  * on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is 9.5 c (1 - (2/3)^l) +
  * 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words a copy, of which there are
- * 24. The flow takes 10.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), clusters of a half 2 n; hdi_nd_leaf looks
+ * 24. The flow takes 9.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), clusters of a half 2 n; hdi_nd_leaf looks
  * itself. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
@@ -11372,7 +11372,6 @@ static int32_t hdi_nd_bucket(const hdi_nd_mover *m, int32_t gain) {
 static hdi_nd_mover hdi_nd_mover_make(const hdi_nd_graph *g, hdi_nd_space *s) {
     hdi_nd_mover m;
     m.g = g;
-    m.shift = 0;
     m.gain = hdi_nd_take(s, g->n);
     m.q.next = hdi_nd_take(s, g->n);
     m.q.prev = hdi_nd_take(s, g->n);
@@ -11473,11 +11472,7 @@ static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes
                 keep = n;
             }
         }
-        while (n > keep) {
-            v = m->moved[--n];
-            m->locked[v] = 1;
-            hdi_nd_mover_move(m, v, cut);
-        }
+        while (n > keep) hdi_nd_mover_move(m, m->moved[--n], cut);
         if (!(best < first)) break;
     }
 }
@@ -11627,7 +11622,7 @@ static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t to
 typedef struct hdi_nd_flow {
     const hdi_nd_graph *g;
     int32_t *band, n_band;      /* its vertices, by distance from the separator */
-    int32_t *prev, *next;       /* on the path through v: HDI_ND_NONE without one, -1 at its ends */
+    int32_t *prev;              /* on the path through v: HDI_ND_NONE without one, -1 at its beginning */
     int32_t *seen, stamp;       /* states reached: [2 v], [2 v + 1] = stamp */
     int32_t *up, *log, n_log;   /* of a search: the state before each, all states seen */
     int32_t *link, head[2 * HDI_ND_MIDDLE], top;   /* states still to go on from, a list for each layer; the
@@ -11660,7 +11655,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
     }
     for (i = 0; i < f->n_band; i++) {
         const int32_t v = f->band[i];
-        f->prev[v] = f->next[v] = HDI_ND_NONE;
+        f->prev[v] = HDI_ND_NONE;
         f->seen[2 * v] = f->seen[2 * v + 1] = 0;
     }
     f->stamp = 0;
@@ -11670,15 +11665,11 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
  * takes back. */
 static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     int32_t up;
-    f->next[state >> 1] = -1;
     for (; (up = f->up[state]) >= 0; state = up) {
         const int32_t a = up >> 1, b = state >> 1;
         if (!(up & 1)) continue;
-        if (a == b) f->prev[a] = f->next[a] = HDI_ND_NONE;
-        else {
-            f->next[a] = b;
-            f->prev[b] = a;
-        }
+        if (a == b) f->prev[a] = HDI_ND_NONE;
+        else f->prev[b] = a;
     }
     f->prev[state >> 1] = -1;
 }
@@ -11887,7 +11878,6 @@ static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_grap
     memcpy(level, kept, sizeof kept);   /* without what was in work space */
     hdi_nd_measure(level, size);
     f.prev = hdi_nd_take(&s, n);
-    f.next = hdi_nd_take(&s, n);
     f.seen = hdi_nd_take(&s, 2 * n);
     f.up = hdi_nd_take(&s, 2 * n);
     f.link = hdi_nd_take(&s, 2 * n);

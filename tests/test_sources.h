@@ -403,6 +403,29 @@ static void src_same(const heat_case *c, hd_method method) {
     free(V);
 }
 
+/* Points without barycentric coordinates are the means of their corners. */
+static void src_means(void) {
+    shape g = shape_grid(6, 5, 0.2);
+    hd_laplacian *lap = test_laplacian(&g, HD_LAPLACIAN_FEM);
+    hd_heat *heat = eng_plan(lap, HD_METHOD_DIRECT, HD_POLES_DEFAULT, 0);
+    const double t = 4 * lap->h * lap->h, third = 1.0 / 3;
+    double *U = DENSE_NEW(double, 2 * g.n);
+    src_room room;
+    hd_source s[2];
+    hd_report rep;
+    src_make(&room, lap, 0);
+    room.bary[0] = room.bary[1] = third;
+    room.bary[2] = 1 - 2 * third;
+    s[0] = s[1] = room.s;
+    s[1].bary = NULL;
+    CHECK(eng_ok(hd_heat_columns_from(heat, HD_KERNEL_OPERATOR, 1, &t, 2, s, U, 0, &rep, NULL), &rep, "means"));
+    CHECK(dense_max_diff(U, U + g.n, g.n) <= 1e-12 * dense_max_abs(U, g.n));
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&g);
+    free(U);
+}
+
 /* ---- symmetry: what one source takes of the column of another ---- */
 
 static void src_symmetric(const heat_case *c, hd_method method) {
@@ -1044,6 +1067,7 @@ static void test_sources(void) {
     src_sample_report();
     src_pairs_degree();
     src_operators();
+    src_means();
     src_pairs();
     src_square();
     src_line();

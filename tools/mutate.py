@@ -8,7 +8,8 @@
 Up to N faults are drawn in every room (default 500), no two of one line, rooms in turn: another sign, comparison,
 operator, index, constant, conjugate, minimum for maximum, a condition turned round, a statement left out. Only lines
 that tests run in a build without threads and vector instructions are drawn. No faults are those of a prefetch, one that
-takes the other of two equal numbers, one that leaves the compiled code as it was, and one that does not compile.
+takes the other of two equal numbers, one that only takes more work space, one that leaves the compiled code as it was,
+and one that does not compile.
 
 Each fault is compiled by tcc, in a tenth of a second. The tests are cut into pieces: every call that stands in the
 body of a group. The pieces that run the line follow, those first that are quick or found other faults of the function,
@@ -79,6 +80,8 @@ Fault = collections.namedtuple("Fault", "line kind text")
 WORD = r"[\w.>\[\]-]+"
 EITHER = re.compile(r"(%s) (?:<=?|>=?) (%s)(?: \? (%s) : (%s)|\) (%s) = (%s);)" % ((WORD,) * 6))
 
+LIMITED = re.compile(r"^\s*if \((%s) (?:<=?|>=?) ([^;&|]+)\) \1 = \2;$" % WORD)
+
 
 def no_fault(kind, code, m):
     """Equal numbers, of which either may be taken: < and <= make no difference in x < y ? x : y and if (x < y) y = x."""
@@ -86,7 +89,20 @@ def no_fault(kind, code, m):
         chosen = [w for w in e.groups()[2:] if w]
         if e.start() <= m.start() < e.end() and set(chosen) == set(e.groups()[:2]):
             return True
+    if kind == "comparison" and LIMITED.search(code):
+        return True
+    before, after = code[:m.start()], code[m.end():]
+    if kind == "constant" and "HDI_TAKE(" in before and not re.search(r"HDI_TAKE\([^;]*[;/-]|[;/-] ?$", before):
+        return ";" in after                  # more room than is needed
     return "HDI_PREFETCH" in code
+
+
+def only_fetches(h, n):
+    """Whether the line stands in a function that does nothing but fetch what will be read."""
+    f = next((f for f in h.functions if f.first <= n <= f.last), None)
+    body = [t.strip() for t in h.code_lines[f.first:f.last - 1]] if f else []
+    return any("HDI_PREFETCH" in t for t in body) and all(
+        not t or t.endswith("{") or "HDI_PREFETCH" in t or t.endswith("return;") or t.startswith(("enum ", "const ", "int")) for t in body)
 
 
 def faults_of(h, n):
@@ -95,7 +111,7 @@ def faults_of(h, n):
         h.code_lines = h.code.split("\n")
     code, raw = h.code_lines[n - 1].rstrip(), h.raw[n - 1]
     found = []
-    if '"' in code or code.lstrip().startswith("#"):
+    if '"' in code or code.lstrip().startswith("#") or only_fetches(h, n):
         return found
     for kind, pattern, new in FAULTS:
         if kind == "statement" and DECLARES.match(code):
