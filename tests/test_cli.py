@@ -473,6 +473,14 @@ class Usage(Case):
                     self.assertEqual(p.stderr.count(b"\n"), 1, (args, p.stderr))
 
 
+def file_limit(size):
+    """What sets a limit of the size of files before the tool runs. The hard limit stays."""
+    def limit():
+        import resource
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+    return limit
+
+
 class Failures(Case):
     def kernel(self, content, name="bad.obj"):
         out = self.path("out.txt")
@@ -512,12 +520,11 @@ class Failures(Case):
     @unittest.skipUnless(POSIX, "needs limits")
     def test_file_size_limit(self):
         """A limit of the file's size is told as a full disk is, and leaves nothing."""
-        import resource
+        mesh = self.file("torus.obj", obj_text(*torus(60, 40)))             # files larger than the buffer
         before = sorted(os.listdir(self.folder))
-        for out in ("limit.txt", "limit.csv", "limit.npy", "limit.ply", "limit.vtu", "limit.png"):
-            run = [TOOL, "kernel", self.patch, "--source", "0", "--t", "1h2,2h2", "--quiet", "-o", self.path(out)]
-            p = subprocess.run(run, stderr=subprocess.PIPE,
-                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+        for out in ("limit.txt", "limit.csv", "limit.npy", "limit.ply", "limit.obj", "limit.vtu", "limit.png"):
+            run = [TOOL, "kernel", mesh, "--source", "0", "--t", "1h2,2h2", "--quiet", "-o", self.path(out)]
+            p = subprocess.run(run, stderr=subprocess.PIPE, preexec_fn=file_limit(1000))
             self.assertEqual(p.returncode, 1, p.stderr)
             self.assertRegex(p.stderr.decode(), r"^heatdiff: error: .*limit\....: cannot write: .*\n$")
             self.assertEqual(sorted(os.listdir(self.folder)), before)
@@ -525,7 +532,6 @@ class Failures(Case):
     @unittest.skipUnless(POSIX, "needs limits")
     def test_file_size_limit_of_every_command(self):
         """The same for each command and each kind of file that it writes."""
-        import resource
         values, pairs = self.file("values.txt", "\n".join(map(str, range(12)))), self.file("pairs.txt", "0 1\n2 3\n")
         fields = ("txt", "csv", "npy", "ply", "obj", "vtu", "png")
         for name, kinds, *more in (("diffuse", fields, "--input", values, "--t", "1"), ("distance", fields, "--source", "0", "--t", "1"),
@@ -537,7 +543,7 @@ class Failures(Case):
             for kind in kinds:
                 with self.subTest((name, kind)):
                     run = (name, self.small, *more, "--quiet", "-o", self.path("over." + kind))
-                    text = self.hostile(*run, limit=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10, 10)))
+                    text = self.hostile(*run, limit=file_limit(10))
                     self.assertIn("over.%s: cannot write: " % kind, text)
 
     @unittest.skipUnless(POSIX, "needs limits")

@@ -433,7 +433,7 @@ typedef struct option_def {
     char letter;                     /* 0: none */
     unsigned commands;               /* that take it */
     int is_list;                     /* given twice is an error: which of the two lists was meant? */
-    option_parser parse;             /* returns 1, or 0 when text is not what the option takes */
+    option_parser parse;             /* returns 1; 0: text is not what the option takes; -1: no memory */
     size_t field;                    /* offset in options, for the general parsers */
     const word *words;
     long least, most;
@@ -619,7 +619,7 @@ static int parse_times(options *o, const option_def *def, const char *text)
     (void)def;
     if (count_items(text) > 100000) return 0;
     o->times = (time_spec *)calloc(count_items(text), sizeof *o->times);
-    if (!o->times) return 0;
+    if (!o->times) return -1;
     for (;; text++) {
         if (!read_time(text, &o->times[o->n_times++], &text)) return 0;
         if (*text != ',') return *text == 0;
@@ -682,7 +682,7 @@ static int parse_levels(options *o, const option_def *def, const char *text)
     }
     if (count_items(text) > 100000) return 0;
     o->levels = (double *)calloc(count_items(text), sizeof *o->levels);
-    if (!o->levels) return 0;
+    if (!o->levels) return -1;
     for (;; text++) {
         if (!read_number(text, &o->levels[o->n_levels++], &text)) return 0;
         if (*text != ',') return *text == 0;
@@ -714,7 +714,7 @@ static int parse_sources(options *o, const option_def *def, const char *text)
     o->source_text = text;
     o->sources = (int64_t *)calloc(most, sizeof *o->sources);
     o->points = (source_point *)calloc(most, sizeof *o->points);
-    if (!o->sources || !o->points) return 0;
+    if (!o->sources || !o->points) return -1;
     for (;; text++) {
         source_point *p = &o->points[o->n_points++];
         const int joined = o->n_points > 1 && text[-1] == '+';
@@ -1068,6 +1068,7 @@ static int take_option(options *o, char *seen, int argc, char **argv, int *i)
     const char *value, *arg = argv[*i];
     const option_def *def = find_option(arg, o->command, &value);
     char name[32], commands[120];
+    int parsed;
     if (!def)
         return fail(USAGE, "%.80s is not an option; see heatdiff %s --help", arg, command_name(o->command));
     option_text(def, name, sizeof name);
@@ -1082,8 +1083,9 @@ static int take_option(options *o, char *seen, int argc, char **argv, int *i)
     if (def->is_list && seen[def - OPTIONS])
         return fail(USAGE, "%s is given twice; it takes %s", name, def->takes);
     seen[def - OPTIONS] = 1;
-    if (!def->parse(o, def, value)) return fail(USAGE, "%s takes %s, not '%.80s'", name, def->takes, value);
-    return DONE;
+    parsed = def->parse(o, def, value);
+    if (parsed < 0) return fail_memory("the command line");
+    return parsed ? DONE : fail(USAGE, "%s takes %s, not '%.80s'", name, def->takes, value);
 }
 
 static int take_mesh(options *o, const char *arg)
@@ -1278,17 +1280,17 @@ static int check_lengths(const options *o)
     return DONE;
 }
 
-/* There is one mesh for all fields, or one for each. Standard input can be read only once. */
-static int check_render(const options *o)
+static int is_stream(const char *name) { return name && strcmp(name, "-") == 0; }
+
+/* Standard input can be read only once. */
+static int check_streams(const options *o)
 {
-    int i, streams = 0;
-    if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
-        return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes",
-                    o->n_inputs, o->n_meshes);
-    for (i = 0; i < o->n_inputs; i++) streams += strcmp(o->inputs[i], "-") == 0;
-    for (i = 0; i < o->n_meshes; i++) streams += strcmp(o->meshes[i], "-") == 0;
-    return streams > 1 ? fail(USAGE, "--input takes a file name here: standard input can be read only once")
-           : DONE;
+    int i, streams = is_stream(o->lengths) + is_stream(o->source_file) + (!o->n_inputs && is_stream(o->input));
+    for (i = 0; i < o->n_inputs; i++) streams += is_stream(o->inputs[i]);
+    for (i = 0; i < o->n_meshes; i++) streams += is_stream(o->meshes[i]);
+    if (streams < 2) return DONE;
+    return fail(USAGE, "%s takes a file name here: standard input can be read only once",
+                is_stream(o->lengths) ? "--lengths" : is_stream(o->source_file) ? "--source-file" : "--input");
 }
 
 static int check_options(const options *o)
@@ -1322,13 +1324,10 @@ static int check_options(const options *o)
     if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
         return fail(USAGE,
                     "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
-    if (o->command == CMD_RENDER && (code = check_render(o)) != DONE) return code;
-    if ((code = check_lengths(o)) != DONE) return code;
-    if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
-        return fail(USAGE, "--input takes a file name here: the mesh comes from standard input already");
-    if (o->lengths && strcmp(o->lengths, "-") == 0 &&
-        (strcmp(o->mesh, "-") == 0 || (o->input && strcmp(o->input, "-") == 0)))
-        return fail(USAGE, "--lengths takes a file name here: standard input can be read only once");
+    if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
+        return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes",
+                    o->n_inputs, o->n_meshes);
+    if ((code = check_lengths(o)) != DONE || (code = check_streams(o)) != DONE) return code;
     return check_output(o);
 }
 
@@ -2164,44 +2163,49 @@ static void time_text(const char *name, char *text, size_t size)
 
 /* ---- solving ---- */
 
-/* The points of the command line, and those of the file as one source more. */
+/* A point on each line of a file, as one source more. */
+static int read_point_lines(run *r, mio_in *in, size_t room)
+{
+    const char *end;
+    char shown[48];
+    in->hash = 1;
+    while (mio_space(in)) {
+        source_point p, *more = r->points;
+        const int64_t line = in->line;
+        const char *text = in->p;
+        const int good = read_point(text, &p, &end);
+        if (good) in->p = text = end;
+        if (!good || mio_blanks(in))
+            return mio_fail(in, line, "'%s' is no point: a vertex such as 17, or a place in a face such as "
+                            "12:0.2,0.3", mio_show(in, in->p, shown));
+        if ((size_t)r->n_points == room)
+            more = r->n_points < INT32_MAX ? (source_point *)mio_grow(more, &room, room + 1, sizeof *more) : NULL;
+        if (!more) return mio_no_memory(in);
+        r->points = more;
+        p.source = r->o->n_sources;
+        p.line = line;
+        r->points[r->n_points++] = p;
+    }
+    return r->n_points > r->o->n_points ? MIO_OK : mio_fail(in, 0, "there is no point in it");
+}
+
+/* The points of the command line, and those of the file. */
 static int read_points(run *r)
 {
     const options *o = r->o;
-    const char *name = o->source_file, *end;
-    char line[256];
-    size_t room = (size_t)o->n_points + 16;
-    int64_t number = 0;
+    const size_t room = (size_t)o->n_points + 16;
     mio_error e;
-    FILE *f = NULL;
+    mio_in in;
+    int status;
     r->n_points = o->n_points;
     r->points = (source_point *)malloc(room * sizeof *r->points);
-    if (r->points && o->points) memcpy(r->points, o->points, (size_t)o->n_points * sizeof *r->points);
-    if (name && !(f = strcmp(name, "-") == 0 ? stdin : fopen(name, "r")))
-        return fail(FAILED, "%s: %s", name, strerror(errno));
-    while (f && r->points && fgets(line, sizeof line, f)) {
-        source_point p;
-        char *text = line + strspn(line, " \t");
-        text[strcspn(text, "#\r\n")] = 0;
-        number++;
-        if (!*text) continue;
-        if (!read_point(text, &p, &end) || end[strspn(end, " \t")]) {
-            if (f != stdin) fclose(f);
-            mio_fail_at(&e, display_name(name), number, "'%.60s' is no point: a vertex such as 17, or a place in a face such as 12:0.2,0.3", text);
-            return fail(FAILED, "%s", e.text);
-        }
-        if ((size_t)r->n_points == room) {
-            source_point *more = (source_point *)realloc(r->points, (room *= 2) * sizeof *more);
-            if (!more) free(r->points);
-            r->points = more;
-        }
-        p.source = o->n_sources;
-        p.line = number;
-        if (r->points && r->n_points < 100000000) r->points[r->n_points++] = p;
-    }
-    if (f && f != stdin) fclose(f);
     if (!r->points) return fail_memory("the sources");
-    return name && r->n_points == o->n_points ? fail(FAILED, "%s: there is no point in it", display_name(name)) : DONE;
+    if (o->points) memcpy(r->points, o->points, (size_t)o->n_points * sizeof *r->points);
+    if (!o->source_file) return DONE;
+    status = mio_open(&in, o->source_file, NULL, &e);
+    if (status == MIO_OK) status = read_point_lines(r, &in, room);
+    mio_close(&in);
+    return status < 0 ? fail_file(status, &e) : DONE;
 }
 
 /* An error at a point of a source. */
@@ -4648,7 +4652,7 @@ static int command_demo(run *r)
     o.sources = sources;
     o.n_sources = DEMO_SOURCES;
     o.log_scale = 1;                 /* of the colours in the PLY files */
-    if (!parse_times(&o, NULL, DEMO_TIMES)) return fail_memory("the times");
+    if (parse_times(&o, NULL, DEMO_TIMES) < 1) return fail_memory("the times");
     r->o = &o;
     code = run_assemble(r);
     if (!code) code = run_times(r);
