@@ -677,6 +677,116 @@ class Failures(Case):
         for extra in ((), ("--kernel", "symmetric")):
             self.assertIn("/dev/full", self.hostile("kernel", self.small, "--source", "0", "--t", "1", "-o", "/dev/full", *extra))
 
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_hostile_places(self):
+        """--source-file: lines without an end, long comments, zero bytes, devices, folders."""
+        def refused(content):
+            return self.hostile("kernel", self.small, "--t", "1", "--source-file", self.file("places.txt", content))
+        for content in (b"1" * (100 << 20), b"# " + b"x" * (20 << 20), b"\0" * (20 << 20), b"0.5*" * (5 << 20), b"0:0." + b"1" * (20 << 20)):
+            with self.subTest(content[:8]):
+                self.assertIn("places.txt", refused(content))
+        self.assertIn("places.txt:2: 12 is beyond", refused(b"# " + b"3 " * 200 + b"\n12\n"))
+        self.assertIn("places.txt:2: '?' is no point", refused(b"1\n2\0\n"))
+        self.assertIn("places.txt:1: '4' is no point", refused(b"3" + b" " * 300 + b"4\n"))
+        for name, text in (("/dev/zero", "a device that has no end"), (self.folder, "cannot read"), ("/dev/null", "no point")):
+            self.assertIn(text, self.hostile("kernel", self.small, "--t", "1", "--source-file", name))
+        many = self.file("places.txt", "".join("0:0.25,0.25  # %d\r\n" % i for i in range(5000)))
+        one = self.field("kernel", self.small, "--t", 1, "--source", "0:0.25,0.25")
+        self.close(self.field("kernel", self.small, "--t", 1, "--source-file", many), [[5000 * x for x in row] for row in one], 1e-7)
+        os.remove(many)
+
+    def test_input_is_the_output(self):
+        """The input is read whole before the output takes its place."""
+        rows = [[math.sin(i)] for i in range(12)]
+        for name, content in (("same.txt", "\n".join("%.17g" % r[0] for r in rows)), ("same.npy", npy_bytes(rows))):
+            path = self.file(name, content)
+            want = self.field("diffuse", self.small, "--input", path, "--t", "1h2")
+            self.good("diffuse", self.small, "--input", path, "--t", "1h2", "-o", path)
+            with open(path, "rb") as f:
+                data = f.read()
+            self.assertEqual(read_npy(data) if name.endswith("npy") else numbers(data.decode()), want)
+            os.remove(path)
+        mesh = self.file("same.obj", obj_text(*icosahedron()))
+        want = self.field("kernel", mesh, "--source", 0, "--t", "1h2")
+        self.good("kernel", mesh, "--source", 0, "--t", "1h2", "-o", mesh)
+        self.assertEqual(self.field("kernel", mesh, "--source", 0, "--t", "1h2"), want)
+        os.remove(mesh)
+
+    def test_two_at_once(self):
+        """Runs that write the same output at the same time: it is one of theirs, whole."""
+        before = sorted(os.listdir(self.folder))
+        for name in ("once.ply", "once.npy"):
+            out, wants = self.path(name), []
+            for source in (0, 55):
+                self.good("kernel", self.patch, "--source", source, "--t", "1h2", "-o", out)
+                with open(out, "rb") as f:
+                    wants.append(f.read())
+            runs = [subprocess.Popen([TOOL, "kernel", self.patch, "--source", str(55 * (i % 2)), "--t", "1h2", "--quiet", "-o", out], stderr=subprocess.PIPE)
+                    for i in range(12)]
+            for p in runs:
+                self.assertEqual((p.communicate(timeout=60)[1], p.returncode), (b"", 0))
+            with open(out, "rb") as f:
+                self.assertIn(f.read(), wants)
+            os.remove(out)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    @unittest.skipUnless(POSIX, "names are of bytes")
+    def test_odd_names(self):
+        """Names of files with line ends, quotes and bytes that are no text: read, written, told in one line and in JSON."""
+        folder = os.fsencode(self.folder) + b"/"
+        for name in (b"a\nb", b"'\"$(x)`%s%n", b"-o", "\u00e9\u20ac\U0001d11e".encode(), b"\xff\xc3(\xe0\x80\x80\xf0\x80\x80\x80\xed\xa0\x80\xf4\x90\x80\x80\xc0\xf8",
+                     b"\x01\x1b[2J\x7f"):
+            mesh, out = folder + name + b".obj", folder + name + b".vtu"
+            try:
+                shutil.copy(os.fsencode(self.small), mesh)
+            except OSError:
+                continue                         # some file systems take text alone
+            p = self.run_bytes(b"kernel", mesh, b"--source", b"0", b"--t", b"1", b"--json", b"-o", out)
+            self.assertEqual(p.returncode, 0, p.stderr)
+            self.assertEqual(json.loads(p.stderr)["mesh"], mesh.decode(errors="replace") if b"\xff" not in name else json.loads(p.stderr)["mesh"])
+            with open(out, "rb") as f:
+                self.assertEqual(read_vtu(f.read())[1:], (12, 20))
+            for args in ((b"kernel", mesh, b"--source", b"99", b"--t", b"1"), (b"info", mesh + b".off"), (b"kernel", mesh, b"--source", b"0", b"--t", b"1", b"-o", out + b"/x.txt"),
+                         (b"info", mesh, b"--" + name), (name, mesh), (b"info", b"--", name)):
+                p = self.run_bytes(*args)
+                self.assertIn(p.returncode, (1, 2), args)
+                self.assertRegex(p.stderr, b"^heatdiff: error: [^\n\x01\x1b\x7f]*\n$")
+            os.remove(mesh)
+            os.remove(out)
+
+    @staticmethod
+    def run_bytes(*args):
+        return subprocess.run([os.fsencode(TOOL), *args], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
+
+    @unittest.skipUnless(POSIX, "needs signals")
+    def test_nobody_reads_standard_output(self):
+        """A pipe that is closed ends the run without a word, or with one where SIGPIPE is ignored; a closed descriptor is told."""
+        for args in (["kernel", self.patch, "--source", "0", "--t", "1", "--quiet"], ["info", self.patch], ["--help"]):
+            for restore, code in ((True, -signal.SIGPIPE), (False, 1)):
+                read, write = os.pipe()
+                os.close(read)
+                p = subprocess.run([TOOL, *args], stdout=write, stderr=subprocess.PIPE, restore_signals=restore)
+                os.close(write)
+                self.assertEqual(p.returncode, code)
+                self.assertRegex(p.stderr, b"^$" if restore else b"^heatdiff: error: [^\n]*cannot write: [^\n]*\n$")
+            p = subprocess.run([TOOL, *args], stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1))
+            self.assertEqual(p.returncode, 1)
+            self.assertRegex(p.stderr, b"^heatdiff: error: [^\n]*cannot write: [^\n]*\n$")
+
+    @unittest.skipUnless(os.path.exists("/dev/stdout"), "needs /dev/stdout")
+    def test_standard_streams_by_name(self):
+        want = self.good("kernel", self.small, "--source", 0, "--t", 1, "--quiet").stdout
+        with open(self.small, "rb") as mesh:
+            self.assertEqual(self.good("kernel", "-", "--source", 0, "--t", 1, "--quiet", "-o", "/dev/stdout", stdin=mesh.read()).stdout, want)
+        with open(self.path("stdout.txt"), "wb") as out:
+            for mesh in ("/dev/stdin", "-"):
+                with open(self.small, "rb") as f:
+                    subprocess.run([TOOL, "kernel", mesh, "--source", "0", "--t", "1", "--quiet", "-o", "-"], stdin=f, stdout=out, check=True)
+        with open(self.path("stdout.txt"), "rb") as f:
+            self.assertEqual(f.read(), 2 * want)
+        field = self.file("field.txt", "\n".join(map(str, range(12))))
+        self.assertEqual(read_png(self.good("render", self.small, "--input", field, "--size", "80x64", "-o", "-").stdout)[:2], (80, 64))
+
     @unittest.skipUnless(POSIX, "names end elsewhere")
     def test_long_names(self):
         for e in ("txt", "csv", "npy", "ply", "obj", "vtu", "png"):
@@ -775,6 +885,87 @@ class Failures(Case):
             with open(keep) as f:
                 self.assertEqual(f.read(), "precious")
             self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+
+class Memory(Case):
+    """Each place of the tool that allocates memory finds none, once: one line says so, and nothing is left behind."""
+
+    RUNS = ("info small.obj", "kernel small.obj --source 0 --t 1h2,auto:2 -o x.png --size 64x64", "kernel s.off --source 0,1:0.2,0.3 --t 1h2 -o x.vtu",
+            "diffuse s.ply --input v.npy --t 1h2,3h2 -o x.ply", "kernel s.stl --source 0,3 --t 4,1,3 --method krylov -o x.csv",
+            "distance s.stl --source 0,3 --t 1 --matrix -o x.csv", "distance small.obj --source-file spots.txt --t 1 --nearest -o x.obj",
+            "pairs small.obj --input pairs.txt --t 1 -o x.npy", "pairs small.obj --input pairs.txt --t 1 --dry-run",
+            "hks small.obj --filter wave:1,1 -o x.txt", "hks small.obj --filter fractional:1,0.5 -o x.txt",
+            "hks s.xyz --bandwidth 1h2 --t 1,2 --scale-invariant 2 -o x.txt", "trace small.obj --t 1/l1", "sample small.obj --t 1 --count 3 -o x.csv",
+            "geodesic small.obj --source 0 -o x.txt --json", "geodesic small.obj --lengths lengths.txt --source 0:0.3,0.3 --dry-run",
+            "spectrum small.obj -k 3 -o x.csv", "levels small.obj --input v.npy --levels auto:3 -o x.obj",
+            "levels small.obj --input v.npy --levels 1,2 -o x.csv", "render small.obj --input v.npy --input pairs.csv -o x.png --size 128x64")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        v, f = icosahedron()
+        cls.file("s.off", off_text(v, f))
+        cls.file("s.xyz", "".join("%g %g %g\n" % p for p in v))
+        cls.file("s.ply", "ply\nformat ascii 1.0\nelement vertex 12\nproperty double x\nproperty double y\nproperty double z\nelement face 20\n"
+                 "property list uchar int vertex_indices\nend_header\n" + "".join("%g %g %g\n" % p for p in v) + "".join("3 %d %d %d\n" % t for t in f))
+        cls.file("s.stl", "solid s\n" + "".join("facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % v[i] for i in t) + "endloop\nendfacet\n"
+                                               for t in f) + "endsolid\n")
+        cls.file("v.npy", npy_bytes([[float(i)] for i in range(12)]))
+        cls.file("pairs.csv", "i,j\n" + "0,1\n2,3\n" * 6)
+        cls.file("pairs.txt", "0 1\n2 3\n")
+        cls.file("spots.txt", "0:0.2,0.3\n" * 17)
+        cls.file("lengths.txt", "2 2 2\n" * 20)
+        cls.list = cls.path("list.txt")
+
+    @classmethod
+    def preload(cls):
+        """The library that lets one allocation fail; None where there is no compiler, or no way to preload it."""
+        library = os.path.join(cls.folder, "starve.so")
+        source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "starve.c")
+        try:
+            built = subprocess.run([os.environ.get("CC", "cc"), "-O1", "-w", "-shared", "-fPIC", source, "-o", library, "-ldl"], stderr=subprocess.DEVNULL)
+            run = subprocess.run([TOOL, "--version"], env=dict(os.environ, LD_PRELOAD=library, STARVE_LIST=cls.list), stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL)
+        except OSError:
+            return None
+        return library if built.returncode == 0 and run.returncode == 0 and os.path.exists(cls.list) else None
+
+    def run_with(self, args, **environment):
+        p = subprocess.run([TOOL] + args, env=dict(os.environ, LD_PRELOAD=self.library, **environment), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                           stderr=subprocess.PIPE, cwd=self.folder, timeout=60)
+        output, out = p.stdout, self.path(args[args.index("-o") + 1]) if "-o" in args else ""
+        if os.path.exists(out):
+            with open(out, "rb") as f:
+                output += f.read()
+            os.remove(out)
+        return p.returncode, p.stderr.decode(), output
+
+    def test_every_allocation(self):
+        self.library = self.preload()
+        if not self.library:
+            self.skipTest("nothing can be preloaded here")
+        seen, refused = set(), 0
+        for line in self.RUNS:
+            args = line.split() + ([] if line.startswith(("levels", "render")) else ["--threads", "1"])
+            code, text, want = self.run_with(args, STARVE_LIST=self.list)
+            self.assertEqual(code, 0, (line, text))
+            with open(self.list) as f:
+                places = f.read().splitlines()
+            before = sorted(os.listdir(self.folder))
+            for k, place in enumerate(places):
+                if place in seen:
+                    continue
+                seen.add(place)
+                code, text, output = self.run_with(args, STARVE_AT=str(k + 1))
+                told = (line, k + 1, text)
+                self.assertIn(code, (0, 1), told)
+                if code:
+                    self.assertRegex(text, r"^heatdiff: error: [^\n]*[Mm]emory[^\n]*\n$", told)
+                    refused += 1
+                elif "--dry-run" not in line:
+                    self.assertEqual(output, want, told)         # what did without
+                self.assertEqual(sorted(os.listdir(self.folder)), before, told)
+        self.assertGreater(refused, 300)
 
 
 class Numbers(Case):

@@ -34,6 +34,7 @@ enum { PIC_MAX_SIDE = 16384 };
 typedef struct pic_image {
     int32_t width, height;
     uint8_t *rgb;
+    int lacking;                /* while it is drawn: something was left out for want of memory */
 } pic_image;
 
 /* What one panel shows. Nothing is copied or kept. */
@@ -886,8 +887,8 @@ static double pic_text_walk(pic_pen *pen, const char *text, double x, double y, 
 
 static double pic_text_width(const char *text, double cap) { return text ? pic_text_walk(NULL, text, 0, 0, cap) : 0; }
 
-/* Text with its baseline at y; align 0: x is the left end, 0.5 the middle, 1 the right end. weight 1 is regular. Out of
- * memory leaves the text out: the picture is still worth having. */
+/* Text with its baseline at y; align 0: x is the left end, 0.5 the middle, 1 the right end. weight 1 is regular. Without
+ * memory the text is left out, and the image told. */
 static void pic_text(pic_image *img, const char *text, double x, double y, double cap, double align, double weight,
                      const uint8_t rgb[3])
 {
@@ -902,7 +903,7 @@ static void pic_text(pic_image *img, const char *text, double x, double y, doubl
     pen.w = (int32_t)pic_min(width + 2 * cap + 4, img->width + 8.0);
     pen.h = (int32_t)(2.2 * cap) + 3;
     pen.cover = (uint8_t *)pic_zalloc((size_t)pen.w * (size_t)pen.h, 1);
-    if (!pen.cover) return;
+    if (!pen.cover) { img->lacking = 1; return; }
     pic_text_walk(&pen, text, x, y, cap);
     for (j = 0; j < pen.h; j++) for (i = 0; i < pen.w; i++)
         pic_blend(img, pen.x0 + i, pen.y0 + j, rgb, pen.cover[(size_t)j * (size_t)pen.w + (size_t)i] / 255.0);
@@ -1300,17 +1301,15 @@ static int pic_view_planar(const pic_scene *sc, double *azimuth, double *elevati
     return c < 3;
 }
 
-static void pic_view_choose(pic_scene *sc, double fov, double *azimuth, double *elevation)
+/* Returns 0 without memory. */
+static int pic_view_choose(pic_scene *sc, double fov, double *azimuth, double *elevation)
 {
     static const double rise[4] = {12, 22, 35, 52}, prior[4] = {0.96, 1.0, 0.97, 0.88};
     pic_thumb *th = (pic_thumb *)pic_alloc(1, sizeof *th);
     double best = -1;
     int32_t i, warmest = -1;
     int a, e;
-    if (pic_view_planar(sc, azimuth, elevation)) { free(th); return; }
-    *azimuth = 33;
-    *elevation = 22;
-    if (!th) return;
+    if (!th || pic_view_planar(sc, azimuth, elevation)) { free(th); return th != NULL; }
     for (i = 0; i < sc->panel->n; i++)
         if (sc->used[i] && pic_finite(sc->s[i]) && (warmest < 0 || sc->s[i] > sc->s[warmest])) warmest = i;
     for (e = 0; e < 4; e++) for (a = 0; a < 20; a++) {
@@ -1325,6 +1324,7 @@ static void pic_view_choose(pic_scene *sc, double fov, double *azimuth, double *
         *elevation = rise[e];
     }
     free(th);
+    return 1;
 }
 
 /* Zoom and centre so that the shape fits the middle of w x h pixels, then project all vertices. */
@@ -1911,15 +1911,17 @@ static void pic_paint_markers(pic_image *img, const pic_scene *sc, const pic_buf
 /* One view shared by panels of the same mesh. */
 typedef struct pic_view { int known; double azimuth, elevation; } pic_view;
 
-static void pic_panel_aim(pic_scene *sc, const pic_opts *o, pic_view *view)
+/* Returns 0 without memory. */
+static int pic_panel_aim(pic_scene *sc, const pic_opts *o, pic_view *view)
 {
     const double fov = o->fov > 0 ? pic_clamp(o->fov, 0.5, 90) : 24;
     if (o->view_given && pic_finite(o->azimuth) && pic_finite(o->elevation)) {
         view->azimuth = o->azimuth;
         view->elevation = o->elevation;
-    } else if (!view->known) pic_view_choose(sc, fov, &view->azimuth, &view->elevation);
+    } else if (!view->known && !pic_view_choose(sc, fov, &view->azimuth, &view->elevation)) return 0;
     view->known = 1;
     pic_camera_aim(&sc->cam, view->azimuth, view->elevation, fov);
+    return 1;
 }
 
 /* Draws one panel into the rectangle of w x h pixels at (left, top), which lies inside the image. size: pixels per unit of
@@ -1937,13 +1939,12 @@ static int pic_panel_draw(pic_image *img, const pic_panel *p, const pic_scale *s
     while (ss > 1 && pixels * (size_t)(ss * ss) > (size_t)64 << 20) ss--;
     if (!open) return PIC_ERR_MEMORY;
     if (pic_scene_make(&sc, p, scale, o) != PIC_OK) { free(open); return PIC_ERR_MEMORY; }
-    if (pic_buffer_make(&b, w * ss, h * ss) != PIC_OK) { pic_scene_free(&sc); free(open); return PIC_ERR_MEMORY; }
-    pic_panel_aim(&sc, o, view);
+    if (!pic_panel_aim(&sc, o, view) || pic_buffer_make(&b, w * ss, h * ss) != PIC_OK) { pic_scene_free(&sc); free(open); return PIC_ERR_MEMORY; }
     pic_scene_fit(&sc, b.w, b.h);
     pic_raster_scene(&b, &sc);
     pic_line_scene(&b, &sc, scale, pic_max(0.95 * size, 0.5) * ss);
     pic_openness_all(&b, &sc, ss, open, open + pixels);
-    if (sc.cam.eye[1] > 0.08 && sc.n_drawn > 0) ground = pic_ground_make(&sc);
+    if (sc.cam.eye[1] > 0.08 && sc.n_drawn > 0 && (ground = pic_ground_make(&sc)) == NULL) img->lacking = 1;
     pt.scene = &sc; pt.buffer = &b; pt.ground = ground; pt.lut = lut; pt.open = open; pt.ss = ss;
     pt.edge = o->edges ? 0.32 * ss : 0;
     pic_paint_panel(img, &pt, left, top);
@@ -2215,6 +2216,7 @@ static int pic_render_grid(pic_image *out, const pic_panel *panels, int32_t n_pa
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
     out->rgb = NULL;
+    out->lacking = 0;
     out->width = o.width > 0 ? o.width : 1200;
     out->height = o.height > 0 ? o.height : 900;
     if (out->width > PIC_MAX_SIDE || out->height > PIC_MAX_SIDE || n_panels < 1 || !panels) status = PIC_ERR_ARGUMENT;
@@ -2226,6 +2228,7 @@ static int pic_render_grid(pic_image *out, const pic_panel *panels, int32_t n_pa
     if (out->rgb && scales && lut) status = pic_figure_draw(out, panels, n_panels, &o, scales, lut);
     free(scales);
     free(lut);
+    if (status == PIC_OK && out->lacking) status = PIC_ERR_MEMORY;
     if (status != PIC_OK) pic_image_free(out);
     return status;
 }
