@@ -374,6 +374,59 @@ class Usage(Case):
             self.assertIn("--%s takes" % option, text)
             self.kernel("--t", 1, "--source", 0, "--" + option, value)
 
+    def test_values_that_begin_well(self):
+        for option, value in (("range", "x,1"), ("range", "1;2"), ("range", "1,2,"), ("range", "0,0X1"), ("range", ".,1"), ("view", "3601,0"), ("view", "0,1,2"), ("size", "x"), ("size", "64x"),
+                              ("size", "64x64x"), ("size", "9000x64"), ("size", "64x9000"), ("size", "64x63"), ("memory-limit", "x"), ("memory-limit", "0.5"),
+                              ("memory-limit", "1e19"), ("memory-limit", "5KK"), ("threads", "1025"), ("filter", "a-name-of-no-filter:1"), ("filter", "none:1"), ("filter", "wave:x,1"),
+                              ("filter", "wave:1,x"), ("filter", "wave:1,0"), ("filter", "band:2"), ("filter", "heat:1/l1x"), ("source", "2:0.1,-0.4"), ("source", "2:0.1,x"),
+                              ("source", "2:0.1;0.2"), ("title", "")):
+            self.assertIn("--%s takes" % option, self.bad(2, "kernel", self.small, "--%s=%s" % (option, value)))
+        for command, option, value in (("spectrum", "below", "x"), ("spectrum", "below", "0"), ("spectrum", "tol", "x"), ("render", "input", ""), ("levels", "levels", "auto:x"), ("levels", "levels", "auto:3x"),
+                                       ("levels", "levels", "auto:0"), ("levels", "levels", "auto:1001"), ("levels", "levels", "1,x"), ("levels", "levels", "1;")):
+            self.assertIn("--%s takes" % option, self.bad(2, command, self.small, "--%s=%s" % (option, value)))
+        self.assertEqual(self.field("kernel", self.small, "--source=0", "--t=.5"), self.field("kernel", self.small, "--source=0:1,0", "--t=0.5"))
+
+    def test_what_excludes_each_other(self):
+        def refused(text, *args):
+            self.assertIn(text, self.bad(2, *args, self.small))
+        kernel, pairs, hks, matrix = ("kernel", "--source", 0, "--t", 1), ("pairs", "--input", "p.txt"), ("hks",), ("distance", "--source", 0, "--t", 1, "--matrix")
+        refused("--filter takes no --poles", "kernel", "--source", 0, "--filter", "heat:1", "--poles", "kernel")
+        for more in (("--solver", "cocg"), ("--precond", "ildl"), ("--method", "iterative")):
+            refused("read off the factors", *pairs, "--filter", "heat:1", *more)
+        refused("--ordering takes no --precond", *kernel, "--ordering", "amd", "--precond", "ildl")
+        refused("single time", "sample", "--count", 3, "--t", "auto:3")
+        refused("--method takes auto or direct", *pairs, "--definition", "commute", "--method", "krylov")
+        refused("--method takes auto or direct", *pairs, "--definition", "commute", "--method", "iterative")
+        refused("--solver takes --definition", *pairs, "--definition", "commute", "--solver", "cocg")
+        refused("--precond takes --definition", *pairs, "--definition", "biharmonic", "--precond", "ildl")
+        refused("at most --count", "sample", "--count", 1, "--t", 1, "--source", "0,1")
+        refused("--normalise takes no --filter", *hks, "--normalise", "--filter", "heat:1")
+        for t in ("auto:2,1", "1,auto:2"):
+            refused("the first and the last time", *hks, "--scale-invariant", 2, "--t", t)
+        refused("exp has no gradient", "geodesic", "--source", 0, "--laplacian", "exp")
+        refused("one time above 0", "geodesic", "--source", 0, "--t", "auto:3")
+        refused("exp needs places", *kernel, "--lengths", "l.txt", "--laplacian", "exp")
+        refused("--weight-cut of exponential", *kernel, "--lengths", "l.txt", "--weight-cut", "1e-4")
+        for more in (("--source", "0+1"), ("--curve",), ("--source-file", "s.txt")):
+            refused("--matrix takes vertices", *[a for a in matrix if more[0] != "--source" or a not in ("--source", 0)], *more)
+        refused("needs --levels", "levels", "--input", "f.txt")
+        for name in ("--lengths", "--source-file"):
+            self.assertIn(name + " takes a file name here", self.bad(2, "kernel", "-", "--t", 1, "--source", 0, name, "-"))
+        self.assertIn("read only once", self.bad(2, "kernel", self.small, "--t", 1, "--source-file", "-", "--lengths", "-"))
+        self.assertIn("read only once", self.bad(2, "render", "-", "--input", "-", "-o", "x.png"))
+        self.assertIn("for 2 meshes", self.bad(2, "render", self.small, self.small, "--input", "f.txt", "-o", "x.png"))
+        self.assertIn("not ''", self.bad(2, "info", ""))
+        self.assertIn("at most 12 meshes", self.bad(2, "render", *["a.obj"] * 13, "--input", "f.txt", "-o", "x.png"))
+        self.assertIn("up to twelve times", self.bad(2, "render", "a.obj", *["--input=f.txt"] * 13, "-o", "x.png"))
+        self.assertIn(".png here", self.bad(2, "render", "a.obj", "--input=f.txt", "-o", "x.txt"))
+        for more in (("--source", "0:0.2,0.3,1,2"), ("--source", "0+1,2+3,4+5", "--curve"), ("--source", "0,1,2", "--source-file", self.file("one.txt", "3\n"))):
+            self.assertEqual(len(self.field("sample", self.small, "--count", 2, "--t", 1, *more)), 2)     # places to stay away from are not counted
+        field = self.file("ones.txt", "1\n" * 12)
+        self.good("diffuse", self.small, "--t", 1, "--input", field, "--degree", 1, "--method", "direct")
+        for t in ("1", "auto:1"):
+            self.good("sample", self.small, "--count", 2, "--t", t)
+            self.good("geodesic", self.small, "--source", 0, "--t", t)
+
     def test_names_options(self):
         self.assertIn("--nosuch", self.kernel("--t", 1, "--source", 0, "--nosuch"))
         self.assertIn("-x", self.kernel("--t", 1, "--source", 0, "-x"))
@@ -870,6 +923,24 @@ class Failures(Case):
         f = self.file("c.txt", "1 2\n" * 12)
         self.assertIn("2", self.bad(1, "render", self.small, "--input", f, "--column", 2, "-o", self.path("c.png")))
         self.assertFalse(os.path.exists(self.path("c.png")))
+
+    def test_out_of_range(self):
+        """Numbers that no double holds, and where they are told."""
+        self.assertIn("the time 1e+308h2 is too large for h", self.bad(1, "kernel", self.small, "--source", 0, "--t", "1e308h2"))
+        line = self.file("line.obj", "v 0 0 0\nv 9 0 0\nv 9 9 0\nf 1 2 3\n")
+        self.assertIn("the time 1e+308/l1 is too large", self.bad(1, "kernel", line, "--source", 0, "--t", "1e308/l1"))
+        self.assertIn("is too far above the first", self.bad(1, "hks", self.small, "--scale-invariant", 2, "--t", "1e-300,1e300"))
+        self.assertIn("is not above the first", self.bad(1, "hks", self.small, "--scale-invariant", 2, "--t", "2,1"))
+        self.assertEqual(len(self.field("hks", self.small, "--scale-invariant", 40, "--t", "1,2")[0]), 40)
+        huge = self.file("huge.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3 4\nf 1 5 6\n")
+        for kind in ("fem", "polygon"):             # the faces of the file are counted, not its triangles
+            self.assertIn("face 1: ", self.bad(1, "kernel", huge, "--source", 0, "--t", 1, "--laplacian", kind))
+        big = self.file("big.txt", "1\n" * 4 + "1.7e308\n-1.7e308\n" * 4)
+        text = self.run_tool("diffuse", self.small, "--input", big, "--t", "1e-9", "--method", "direct").stderr.decode()
+        self.assertNotIn("nan", text)
+        self.assertIn("1000000000000 is beyond", self.bad(1, "sample", self.small, "--t", 1, "--count", 3, "--source", 10 ** 12))
+        self.assertIn("2000000000 is beyond", self.bad(1, "spectrum", self.small, "-k", 2000000000))
+        self.assertIn("2000000000 is beyond", self.bad(1, "sample", self.small, "--t", 1, "--count", 2000000000))
 
     def test_limits(self):
         error = self.bad(1, "kernel", self.patch, "--source", 0, "--t", "10h2", "--memory-limit", 2000)
@@ -2377,6 +2448,69 @@ class Reports(Case):
         r = json.loads(self.good("info", odd, "--json").stdout)
         self.assertEqual(r["mesh"], odd)
 
+    def test_every_remark(self):
+        """What reports and messages say of rare inputs."""
+        v, f = icosahedron()
+        loose = self.file("loose.obj", obj_text(v + [(9.0, 9.0, 9.0)], f))
+        self.assertRegex(self.good("geodesic", loose, "--source", 0, "-o", self.path("g.txt")).stderr.decode(), "1 distance (is )?infinite")
+        two = self.file("two.obj", obj_text(*apart((v, f), (v, f))))
+        r = self.field("geodesic", two, "--source", "0,12", "--matrix")
+        self.assertEqual(r, [[0.0, math.inf], [math.inf, 0.0]])
+        r = json.loads(self.good("geodesic", self.small, "--source", "0:0.1,0.1,1:0.5,0.2,2", "--laplacian", "voronoi-cot", "--json", "-o", self.path("g.txt")).stderr)
+        self.assertLess(r["residual_heat"], 1e-9)
+        places = self.file("places.txt", "0:0.1,0.1\n5\n")
+        r = json.loads(self.good("kernel", self.small, "--source-file", places, "--t", 1, "--json", "-o", self.path("g.txt")).stderr)
+        self.assertEqual((r["source_file"], r.get("source")), (places, None))
+        far = self.file("far.txt", "0\n3\n")           # a curve between vertices with no face between
+        self.assertIn("far.txt:", self.bad(1, "geodesic", self.small, "--source-file", far, "--curve"))
+        least = json.loads(self.good("spectrum", self.patch, "--border", "dirichlet", "-k", 1, "--json").stderr)["eigenvalues"][0]
+        text = self.bad(1, "spectrum", self.patch, "--border", "dirichlet", "--below", 0.5 * least)
+        self.assertIn("no eigenvalue is below", text)
+        self.assertTrue(0.5 * least <= float(text.split()[-1]) <= least * (1 + 1e-5), (text, least))
+        quad = self.file("quad.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
+        self.assertIn("polygons are split as fans" if "fans" in self.good("info", quad, "--laplacian", "fem").stdout.decode() else "polygon",
+                      self.good("info", quad, "--laplacian", "fem").stdout.decode())
+        self.assertIn("intrinsic Delaunay", self.good("info", self.small, "--intrinsic-delaunay").stdout.decode())
+        xyz = self.file("p.xyz", "".join("%g %g %g\n" % p for p in v) + "5 5 5\n" * 20)
+        text = self.good("info", xyz, "--laplacian", "exp", "--bandwidth", "1h2").stdout.decode()
+        self.assertNotIn("from the sampling", text)
+        self.assertRegex(text, "coincident")
+        flat = self.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        self.assertNotIn("meaningful times", self.good("info", flat).stdout.decode())
+        self.assertEqual(self.good("info", self.small, "--quiet").stdout, b"")
+        values = self.file("values.txt", "\n".join(map(str, range(12))))
+        self.assertEqual(self.good("levels", self.small, "--input", values, "--levels", "auto:2", "--quiet", "-o", self.path("l.txt")).stderr, b"")
+        nearly = self.file("nearly.txt", "-1e-9\n" + "\n".join(map(str, range(1, 12))))
+        self.good("render", self.small, "--input", nearly, "--size", "64x64", "-o", self.path("r.png"))
+        self.assertIn("2 columns", self.bad(1, "kernel", self.small, "--source", "0,1", "--t", 1, "--column", 2, "-o", self.path("r.png")))
+        for n in (2, 3):                             # the height suits the number of pictures
+            self.good("render", self.small, *["--input=" + values] * n, "-o", self.path("r.png"))
+            with open(self.path("r.png"), "rb") as f:
+                self.assertLess(read_png(f.read())[1], 900)
+        r = [self.field("kernel", self.small, "--source", "0,1", "--t", "1,2,3", *more) for more in ((), ("--degree", 13), ("--poles", "uniform"), ("--precond", "ildl"))]
+        for other in r[1:]:
+            self.close(other, r[0], 1e-6)
+
+    def test_every_estimate(self):
+        """--dry-run of each question, and of runs that do not fit: in words and as JSON."""
+        pairs = self.file("pairs.txt", "0 1\n2 3\n1 0\n")
+        torus_file = self.file("torus.obj", obj_text(*torus(60, 40)))
+        for run in (("hks", "--t", 1, "--kernel", "operator"), ("pairs", "--input", pairs, "--definition", "commute"), ("pairs", "--input", pairs, "--t", "1,2"),
+                    ("geodesic", "--source", "0", "--ordering", "amd"), ("trace", "--t", "1"), ("sample", "--count", 3, "--source", "0+1", "--t", 1)):
+            self.assertIn("method", self.good(*run, torus_file, "--dry-run").stderr.decode())
+        self.assertIn("real factors", self.good("geodesic", self.patch, "--source", 0, "--border", "mean", "--dry-run").stderr.decode())
+        run = ("kernel", torus_file, "--source", "0,1,2", "--t", "1h2,2h2,4h2", "--method", "direct", "--degree", "12")
+        need = json.loads(self.good(*run, "--dry-run", "--json").stderr)
+        limit = int(need["bytes_in_use"] + 0.3 * (need["estimate"]["bytes"] - need["bytes_in_use"]))
+        text = self.good(*run, "--memory-limit", limit, "--dry-run").stderr.decode()
+        self.assertIn(": too much", text)
+        for way in ("--method iterative", "--degree 8"):
+            self.assertRegex(text, way + r" needs [0-9.]+ MB and about")
+        self.assertIn("--degree 8 needs ", self.bad(1, *run, "--memory-limit", limit))
+        xyz = self.file("cloud.xyz", "".join("%.9g %.9g %.9g\n" % p for p in torus(60, 40)[0]))
+        for more, text in ((("--weight-cut", "1e-3"), "--tufted needs less"), (("--laplacian", "exp"), "more than the memory limit")):
+            self.assertIn(text, self.bad(1, "kernel", xyz, "--source", 0, "--t", 1, *more, "--memory-limit", "100K"))
+
     def test_quiet_and_default(self):
         p = self.good("kernel", self.small, "--source", 0, "--t", 1, "--quiet")
         self.assertEqual(p.stderr, b"")
@@ -2407,11 +2541,17 @@ class Reports(Case):
         for line in text.split(b"\r"):
             self.assertLessEqual(len(line.split(b"\n")[0]), 79 if b"%" in line else 1000)
 
-    def on_a_terminal(self, *args):
-        """What the tool writes to standard error when that is a terminal."""
+    @unittest.skipUnless(POSIX, "needs a terminal")
+    def test_no_picture_on_a_terminal(self):
+        field = self.file("twelve.txt", "\n".join(map(str, range(12))))
+        text = self.on_a_terminal("render", self.small, "--input", field, "-o", "-", code=2, output=None)
+        self.assertIn(b"nothing for a terminal", text)
+
+    def on_a_terminal(self, *args, code=0, output=subprocess.DEVNULL):
+        """What the tool writes to standard error when that is a terminal. output None: standard output is one, too."""
         import pty
         master, slave = pty.openpty()
-        p = subprocess.Popen([TOOL] + [str(a) for a in args], stdout=subprocess.DEVNULL, stderr=slave)
+        p = subprocess.Popen([TOOL] + [str(a) for a in args], stdout=slave if output is None else output, stderr=slave)
         os.close(slave)
         text = b""
         while True:
@@ -2423,7 +2563,7 @@ class Reports(Case):
                 break
             text += block
         os.close(master)
-        self.assertEqual(p.wait(), 0)
+        self.assertEqual(p.wait(), code)
         return text
 
 
@@ -2434,14 +2574,16 @@ class Interrupts(Case):
         super().setUpClass()
         cls.big = cls.file("big.obj", obj_text(*torus(500, 300)))
 
-    def interrupt(self, seconds, *args):
+    def interrupt(self, seconds, *args, twice=False):
         before = sorted(os.listdir(self.folder))
         p = subprocess.Popen([TOOL] + [str(a) for a in args], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                              preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         time.sleep(seconds)
         self.assertIsNone(p.poll(), "ended before it could be interrupted: %s" % p.stderr)
         start = time.time()
-        p.send_signal(signal.SIGINT)
+        for _ in range(2 if twice else 1):       # the second does not wait for the computation
+            p.send_signal(signal.SIGINT)
+            time.sleep(0.001)
         text = p.communicate(timeout=60)[1]
         self.assertEqual(p.returncode, 130, text)
         self.assertNotIn(b"error", text)
@@ -2453,7 +2595,8 @@ class Interrupts(Case):
         slow = ["--t", "100000h2,200000h2,300000h2", "--solver", "cocg", "--precond", "jacobi", "--tol", "1e-12"]
         for seconds in (0.05, 0.3, 1.5):
             for out in ("new.npy", "keep.npy"):
-                waited = self.interrupt(seconds, "kernel", self.big, "--source", ",".join(map(str, range(40))), *slow, "-o", self.path(out))
+                waited = self.interrupt(seconds, "kernel", self.big, "--source", ",".join(map(str, range(40))), *slow, "-o", self.path(out),
+                                        twice=seconds == 1.5)
                 self.assertLess(waited, 10)
         with open(keep) as f:
             self.assertEqual(f.read(), "precious")
@@ -2873,8 +3016,10 @@ class Demo(Case):
         self.assertEqual((len(r["sources"]), len(r["times"])), (2, 4))
         self.assertLess(r["mass_drift"], 1e-9)
 
-    def test_folder_is_a_file(self):
-        self.bad(1, "demo", "-o", self.small)
+    def test_folder_that_cannot_be(self):
+        """Told before anything is computed."""
+        for folder in (self.small, self.path("no/such/folder"), self.path("x" * 300)):
+            self.assertIn("cannot make this folder", self.bad(1, "demo", "-o", folder))
 
 
 class Points(Case):

@@ -2911,6 +2911,9 @@ static int solve_spectrum(run *r)
     }
     if (r->spectrum_status < 0) return fail_library(r->mesh_name, &err);
     r->n_columns = r->spectrum->count;
+    if (r->n_columns == 0)                       /* the border is held at zero, or constants would be one */
+        return fail(FAILED, "%s: no eigenvalue is below %g: the smallest is at least %.6g", r->mesh_name,
+                    r->o->below, r->spectrum->next);
     if (r->o->column < r->n_columns) return DONE;
     return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column,
                 (long long)r->n_columns);
@@ -3456,10 +3459,8 @@ static void print_spectrum(const run *r)
 {
     const hd_spectrum *s = r->spectrum;
     print_surface(r);
-    if (s->count > 0)
-        fprintf(stderr, "%ld eigenvalue%s from %.6g to %.6g, largest residual %.1e\n", (long)s->count,
-                plural(s->count), s->value[0], s->value[s->count - 1], s->largest_residual);
-    else fprintf(stderr, "no eigenvalue is below %g\n", r->o->below);
+    fprintf(stderr, "%ld eigenvalue%s from %.6g to %.6g, largest residual %.1e\n", (long)s->count,
+            plural(s->count), s->value[0], s->value[s->count - 1], s->largest_residual);
     fprintf(stderr, "%s: all others are at least %.6g\n", s->proven ? "proven complete" : "NOT proven complete",
             s->next);
     fprintf(stderr, "%ld factorisations, %ld runs, %lld solves; factor: %.3g non-zeros, ordering %s\n",
