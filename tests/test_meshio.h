@@ -1017,7 +1017,7 @@ static void tmio_test_nearly(void)
     tmio_fine("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf", "OBJ", 3, 1);
     tmio_bad("x.off", "4nOFF\n3 1 0\n", "x.off:1", "nOFF");
     tmio_fine("a.xyz", "// points\n2\n1;2;3\n4,5,6\n", "XYZ", 2, 0);
-    v = tmio_table("a.csv", "nax,ina\n1,2\n3,4\n", 18, 2, 2);
+    v = tmio_table("a.csv", "nax,ina\n1,2\n3,4\n", 16, 2, 2);
     CHECK(v && v[0] == 1 && v[3] == 4);
     free(v);
     tmio_make_npy(&t, "|u1", "False", "(2L, 1L)", 1);
