@@ -1254,6 +1254,11 @@ class Intrinsic(Case):
         self.bad(2, "render", "--tufted", self.book)
 
 
+def on_both_axes(width, i, j, one):
+    """A product over both directions between two vertices of a grid, numbered row by row: one(a, b) is that of a line."""
+    return one(i % width, j % width) * one(i // width, j // width)
+
+
 class Borders(Case):
     """A square of n x n cells: with voronoi-cot its Laplacian is the five-point one, whose eigenvectors are products of sines."""
     N = 12
@@ -1268,12 +1273,10 @@ class Borders(Case):
         cls.points = cls.file("square.xyz", "".join("%.9g %.9g %.9g\n" % p for p in v))
 
     def kernel(self, i, j, t):
-        """K_t between two vertices: a product over both directions."""
-        n, k = self.N, 1.0
-        for a, b in ((i % (n + 1), j % (n + 1)), (i // (n + 1), j // (n + 1))):
-            k *= sum(2 / n * math.sin(m * math.pi * a / n) * math.sin(m * math.pi * b / n) *
-                     math.exp(-t * 4 * n * n * math.sin(m * math.pi / 2 / n) ** 2) for m in range(1, n))
-        return k
+        """K_t between two vertices."""
+        n = self.N
+        return on_both_axes(n + 1, i, j, lambda a, b: sum(2 / n * math.sin(m * math.pi * a / n) * math.sin(m * math.pi * b / n) *
+                                                          math.exp(-t * 4 * n * n * math.sin(m * math.pi / 2 / n) ** 2) for m in range(1, n)))
 
     def test_kernel(self):
         n, t, source = self.N, 0.02, 5 * (self.N + 1) + 4
@@ -1388,11 +1391,10 @@ class Lengths(Case):
         return "# lengths\n" + "".join("%.17g %.17g %.17g\n" % r for r in rows)
 
     def kernel(self, i, j, t):
-        """K_t between two vertices: a product over both directions."""
-        n, k = self.N, 1.0
-        for a in (i % n - j % n, i // n - j // n):
-            k *= sum(math.cos(2 * math.pi * m * a / n) * math.exp(-t * 4 * n * n * math.sin(m * math.pi / n) ** 2) for m in range(n)) / n
-        return k
+        """K_t between two vertices."""
+        n = self.N
+        return on_both_axes(n, i, j, lambda a, b: sum(math.cos(2 * math.pi * m * (a - b) / n) *
+                                                      math.exp(-t * 4 * n * n * math.sin(m * math.pi / n) ** 2) for m in range(n)) / n)
 
     def test_flat_torus(self):
         n, source = self.N, 23
