@@ -19,14 +19,16 @@ enum { DEPTH = 7, OWN = 2 };         /* of the calls that are listed; the first 
 static long count, starve_at;
 static int counting, list = -1;
 
-static void starve_end(void) { counting = 0; }
+/* For coverage.py, which counts on memory at the end. */
+void starve_end(void);
+void starve_end(void) { counting = 0; }
 
 __attribute__((constructor)) static void starve_begin(void)
 {
     const char *at = getenv("STARVE_AT"), *file = getenv("STARVE_LIST");
     if (file) list = open(file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     if (at) starve_at = atol(at);
-    counting = (at || list >= 0) && atexit(starve_end) == 0;     /* counters of coverage are written after this */
+    counting = at || list >= 0;
 }
 
 /* Addresses are listed from where the program or library begins, which changes from run to run. */

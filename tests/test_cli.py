@@ -563,6 +563,17 @@ class Failures(Case):
         self.kernel(self.folder)
         self.bad(1, "kernel", self.small, "--source", 0, "--t", 1, "-o", self.path("no/such/folder/x.txt"))
 
+    def test_meshes_of_every_command(self):
+        """A mesh that is not there, and one that no heat can be on."""
+        line = self.file("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        field, pairs = self.file("three.txt", "1\n2\n3\n"), self.file("two.txt", "0 1\n")
+        for command, *more in (("kernel", "--source", 0, "--t", 1), ("diffuse", "--input", field, "--t", 1), ("distance", "--source", 0, "--t", 1), ("hks", "--t", 1),
+                               ("pairs", "--input", pairs, "--t", 1), ("trace", "--t", 1), ("sample", "--count", 1, "--t", 1), ("geodesic", "--source", 0),
+                               ("spectrum", "-k", 1), ("levels", "--input", field, "--levels", 1), ("render", "--input", field, "-o", self.path("r.png")), ("info",)):
+            self.assertIn("not-there.obj: cannot open", self.bad(1, command, self.path("not-there.obj"), *more))
+            if command not in ("levels", "render", "info"):
+                self.bad(1, command, line, *more)
+
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
     def test_full_disk(self):
         with open("/dev/full", "wb") as full:
@@ -2632,6 +2643,36 @@ class Interrupts(Case):
                     self.assertEqual(sum(1 for line in text if len(line.split()) == 60), 150000)
                 os.remove(out)
             self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def test_when_the_bar_says_what_runs(self):
+        """The signal comes while it computes, however busy the machine is; a second one does not wait for the end."""
+        import pty
+        many = ",".join(map(str, range(40)))
+        for word, run in ((b"% solve", ["kernel", "--source", many, "--t", "100000h2,200000h2", "--solver", "cocg", "--precond", "jacobi", "--tol", "1e-12"]),
+                          (b"% factor", ["kernel", "--source", many, "--t", "auto:20", "--method", "direct"]), (b"% ", ["geodesic", "--source", many]),
+                          (b"% ", ["spectrum", "-k", "300"]), (b"% ", ["hks", "--t", "auto:20", "--dry-run"])):
+            before = sorted(os.listdir(self.folder))
+            for signals in (1, 2):
+                master, slave = pty.openpty()
+                p = subprocess.Popen([TOOL, *run, self.big, "-o", self.path("new.npy")], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=slave,
+                                     preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+                os.close(slave)
+                text = b""
+                try:
+                    while word not in text:
+                        text += os.read(master, 4096)
+                    for _ in range(signals):
+                        p.send_signal(signal.SIGINT)
+                        time.sleep(0.002)
+                    while True:
+                        text += os.read(master, 4096)
+                except OSError:                  # it has ended
+                    pass
+                os.close(master)
+                self.assertNotIn(b"error", text)
+                self.assertIn(p.wait(timeout=60), (130,) if run[-1] != "--dry-run" else (0, 130), (run, text))
+                self.assertTrue(signals == 2 or p.returncode == 0 or b"heatdiff: interrupted" in text, text)
+                self.assertEqual(sorted(os.listdir(self.folder)), before)
 
     def test_waiting_for_standard_input(self):
         p = subprocess.Popen([TOOL, "info", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,

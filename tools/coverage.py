@@ -29,25 +29,31 @@ PROGRAMS = (("runner", "tests/runner.c"), ("internals", "tests/internals.c"))
 TOOL_FILES = ("heatdiff.c", "levels.h", "meshio.h", "picture.h", "shapes.h")
 TOOL_GROUPS = ("meshio", "picture")
 
-# What the tests do to the tool must not cost it its counters: a limit of the size of files, and the exit at once after Ctrl-C.
-KEEP_COUNTERS = """#include <stdlib.h>
+# What the tests do to the tool must not cost it its counters: a limit of the size of files, allocations that fail
+# (tests/starve.c), and the exit at once after Ctrl-C.
+KEEP_COUNTERS = """#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <stdlib.h>
 #include <sys/resource.h>
 void __gcov_dump(void);
 void __real__exit(int code);
-static void lift_limit(void)
+static void lift_limits(void)
 {
+    void (*starve_end)(void);
     struct rlimit limit;
+    *(void **)&starve_end = dlsym(RTLD_DEFAULT, "starve_end");
+    if (starve_end) starve_end();
     if (getrlimit(RLIMIT_FSIZE, &limit)) abort();
     limit.rlim_cur = limit.rlim_max;
     if (setrlimit(RLIMIT_FSIZE, &limit)) abort();
 }
 __attribute__((constructor)) static void begin(void)
 {
-    if (atexit(lift_limit)) abort();             /* called before the counters are written */
+    if (atexit(lift_limits)) abort();             /* called before the counters are written */
 }
 void __wrap__exit(int code)
 {
-    lift_limit();
+    lift_limits();
     __gcov_dump();
     __real__exit(code);
 }
@@ -78,7 +84,7 @@ def build_tool(folder):
             f.write(content)
     for command in (["-O2", "-c", os.path.join(TOP, "tools", "heatdiff_shared.c"), "-o", "library.o"], ["-c", "keep.c"],
                     ["-O0", "--coverage", "-c", "-I" + os.path.join(TOP, "tools"), "tool.c"],
-                    ["--coverage", "-Wl,--wrap=_exit", "tool.o", "keep.o", "library.o", "-o", "heatdiff", "-lm"]):
+                    ["--coverage", "-Wl,--wrap=_exit", "tool.o", "keep.o", "library.o", "-o", "heatdiff", "-lm", "-ldl"]):
         subprocess.run(["gcc", "-w"] + command, cwd=at, check=True)
     return at
 

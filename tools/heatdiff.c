@@ -3018,7 +3018,7 @@ static void json_begin(json *j, const run *r, FILE *out)
     json_text(j, "command", command_name(r->o->command));
     json_text(j, "version", version);
     json_text(j, "mesh", r->mesh_name);
-    if (r->mesh.file.format) json_text(j, "format", r->mesh.file.format);
+    json_text(j, "format", r->mesh.file.format);
     json_integer(j, "n", r->mesh.n);
     json_integer(j, "faces", r->mesh.n_faces);
     if (r->lengths) json_text(j, "lengths", r->o->lengths);
@@ -3885,7 +3885,7 @@ static void info_intrinsic(const hd_mesh_report *m)
 static void info_points(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_point_report *p = &lap->points;
-    printf("%-22s %s (%s)\n", "points", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    printf("%-22s %s (%s)\n", "points", r->mesh_name, r->mesh.file.format);
     info_laplacian(r, lap);
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "components", (long)lap->n_components);
     printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1],
@@ -3914,7 +3914,7 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
 static void info_print(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_mesh_report *m = &lap->mesh;
-    printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format);
     info_laplacian(r, lap);
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "faces", (long)r->mesh.n_faces);
     if (m->n_faces != r->mesh.n_faces)
