@@ -2598,7 +2598,8 @@ class Interrupts(Case):
             p.send_signal(signal.SIGINT)
             time.sleep(0.001)
         text = p.communicate(timeout=60)[1]
-        self.assertEqual(p.returncode, 130, text)
+        early = (-signal.SIGINT,) if seconds < 0.1 else ()      # a busy machine: main had not begun
+        self.assertIn(p.returncode, (130, *early), text)
         self.assertNotIn(b"error", text)
         self.assertEqual(sorted(os.listdir(self.folder)), before)
         return time.time() - start
