@@ -1284,7 +1284,8 @@ static int is_stream(const char *name) { return name && strcmp(name, "-") == 0; 
 /* Standard input can be read only once. */
 static int check_streams(const options *o)
 {
-    int i, streams = is_stream(o->lengths) + is_stream(o->source_file) + (!o->n_inputs && is_stream(o->input));
+    int i, streams = is_stream(o->lengths) + is_stream(o->source_file);
+    if (!o->n_inputs) streams += is_stream(o->input);
     for (i = 0; i < o->n_inputs; i++) streams += is_stream(o->inputs[i]);
     for (i = 0; i < o->n_meshes; i++) streams += is_stream(o->meshes[i]);
     if (streams < 2) return DONE;
@@ -2181,7 +2182,8 @@ static int read_point_lines(run *r, mio_in *in, size_t room)
             return mio_fail(in, line, "'%s' is no point: a vertex such as 17, or a place in a face such as "
                             "12:0.2,0.3", mio_show(in, in->p, shown));
         if ((size_t)r->n_points == room)
-            more = r->n_points < INT32_MAX ? (source_point *)mio_grow(more, &room, room + 1, sizeof *more) : NULL;
+            more = r->n_points < INT32_MAX
+                   ? (source_point *)mio_grow(more, &room, room + 1, sizeof *more) : NULL;
         if (!more) return mio_no_memory(in);
         r->points = more;
         p.source = r->o->n_sources;
