@@ -374,6 +374,59 @@ class Usage(Case):
             self.assertIn("--%s takes" % option, text)
             self.kernel("--t", 1, "--source", 0, "--" + option, value)
 
+    def test_values_that_begin_well(self):
+        for option, value in (("range", "x,1"), ("range", "1;2"), ("range", "1,2,"), ("range", "0,0X1"), ("range", ".,1"), ("view", "3601,0"), ("view", "0,1,2"), ("size", "x"), ("size", "64x"),
+                              ("size", "64x64x"), ("size", "9000x64"), ("size", "64x9000"), ("size", "64x63"), ("memory-limit", "x"), ("memory-limit", "0.5"),
+                              ("memory-limit", "1e19"), ("memory-limit", "5KK"), ("threads", "1025"), ("filter", "a-name-of-no-filter:1"), ("filter", "none:1"), ("filter", "wave:x,1"),
+                              ("filter", "wave:1,x"), ("filter", "wave:1,0"), ("filter", "band:2"), ("filter", "heat:1/l1x"), ("source", "2:0.1,-0.4"), ("source", "2:0.1,x"),
+                              ("source", "2:0.1;0.2"), ("title", "")):
+            self.assertIn("--%s takes" % option, self.bad(2, "kernel", self.small, "--%s=%s" % (option, value)))
+        for command, option, value in (("spectrum", "below", "x"), ("spectrum", "below", "0"), ("spectrum", "tol", "x"), ("render", "input", ""), ("levels", "levels", "auto:x"), ("levels", "levels", "auto:3x"),
+                                       ("levels", "levels", "auto:0"), ("levels", "levels", "auto:1001"), ("levels", "levels", "1,x"), ("levels", "levels", "1;")):
+            self.assertIn("--%s takes" % option, self.bad(2, command, self.small, "--%s=%s" % (option, value)))
+        self.assertEqual(self.field("kernel", self.small, "--source=0", "--t=.5"), self.field("kernel", self.small, "--source=0:1,0", "--t=0.5"))
+
+    def test_what_excludes_each_other(self):
+        def refused(text, *args):
+            self.assertIn(text, self.bad(2, *args, self.small))
+        kernel, pairs, hks, matrix = ("kernel", "--source", 0, "--t", 1), ("pairs", "--input", "p.txt"), ("hks",), ("distance", "--source", 0, "--t", 1, "--matrix")
+        refused("--filter takes no --poles", "kernel", "--source", 0, "--filter", "heat:1", "--poles", "kernel")
+        for more in (("--solver", "cocg"), ("--precond", "ildl"), ("--method", "iterative")):
+            refused("read off the factors", *pairs, "--filter", "heat:1", *more)
+        refused("--ordering takes no --precond", *kernel, "--ordering", "amd", "--precond", "ildl")
+        refused("single time", "sample", "--count", 3, "--t", "auto:3")
+        refused("--method takes auto or direct", *pairs, "--definition", "commute", "--method", "krylov")
+        refused("--method takes auto or direct", *pairs, "--definition", "commute", "--method", "iterative")
+        refused("--solver takes --definition", *pairs, "--definition", "commute", "--solver", "cocg")
+        refused("--precond takes --definition", *pairs, "--definition", "biharmonic", "--precond", "ildl")
+        refused("at most --count", "sample", "--count", 1, "--t", 1, "--source", "0,1")
+        refused("--normalise takes no --filter", *hks, "--normalise", "--filter", "heat:1")
+        for t in ("auto:2,1", "1,auto:2"):
+            refused("the first and the last time", *hks, "--scale-invariant", 2, "--t", t)
+        refused("exp has no gradient", "geodesic", "--source", 0, "--laplacian", "exp")
+        refused("one time above 0", "geodesic", "--source", 0, "--t", "auto:3")
+        refused("exp needs places", *kernel, "--lengths", "l.txt", "--laplacian", "exp")
+        refused("--weight-cut of exponential", *kernel, "--lengths", "l.txt", "--weight-cut", "1e-4")
+        for more in (("--source", "0+1"), ("--curve",), ("--source-file", "s.txt")):
+            refused("--matrix takes vertices", *[a for a in matrix if more[0] != "--source" or a not in ("--source", 0)], *more)
+        refused("needs --levels", "levels", "--input", "f.txt")
+        for name in ("--lengths", "--source-file"):
+            self.assertIn(name + " takes a file name here", self.bad(2, "kernel", "-", "--t", 1, "--source", 0, name, "-"))
+        self.assertIn("read only once", self.bad(2, "kernel", self.small, "--t", 1, "--source-file", "-", "--lengths", "-"))
+        self.assertIn("read only once", self.bad(2, "render", "-", "--input", "-", "-o", "x.png"))
+        self.assertIn("for 2 meshes", self.bad(2, "render", self.small, self.small, "--input", "f.txt", "-o", "x.png"))
+        self.assertIn("not ''", self.bad(2, "info", ""))
+        self.assertIn("at most 12 meshes", self.bad(2, "render", *["a.obj"] * 13, "--input", "f.txt", "-o", "x.png"))
+        self.assertIn("up to twelve times", self.bad(2, "render", "a.obj", *["--input=f.txt"] * 13, "-o", "x.png"))
+        self.assertIn(".png here", self.bad(2, "render", "a.obj", "--input=f.txt", "-o", "x.txt"))
+        for more in (("--source", "0:0.2,0.3,1,2"), ("--source", "0+1,2+3,4+5", "--curve"), ("--source", "0,1,2", "--source-file", self.file("one.txt", "3\n"))):
+            self.assertEqual(len(self.field("sample", self.small, "--count", 2, "--t", 1, *more)), 2)     # places to stay away from are not counted
+        field = self.file("ones.txt", "1\n" * 12)
+        self.good("diffuse", self.small, "--t", 1, "--input", field, "--degree", 1, "--method", "direct")
+        for t in ("1", "auto:1"):
+            self.good("sample", self.small, "--count", 2, "--t", t)
+            self.good("geodesic", self.small, "--source", 0, "--t", t)
+
     def test_names_options(self):
         self.assertIn("--nosuch", self.kernel("--t", 1, "--source", 0, "--nosuch"))
         self.assertIn("-x", self.kernel("--t", 1, "--source", 0, "-x"))
@@ -473,6 +526,14 @@ class Usage(Case):
                     self.assertEqual(p.stderr.count(b"\n"), 1, (args, p.stderr))
 
 
+def file_limit(size):
+    """What sets a limit of the size of files before the tool runs. The hard limit stays."""
+    def limit():
+        import resource
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+    return limit
+
+
 class Failures(Case):
     def kernel(self, content, name="bad.obj"):
         out = self.path("out.txt")
@@ -502,6 +563,17 @@ class Failures(Case):
         self.kernel(self.folder)
         self.bad(1, "kernel", self.small, "--source", 0, "--t", 1, "-o", self.path("no/such/folder/x.txt"))
 
+    def test_meshes_of_every_command(self):
+        """A mesh that is not there, and one that no heat can be on."""
+        line = self.file("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        field, pairs = self.file("three.txt", "1\n2\n3\n"), self.file("two.txt", "0 1\n")
+        for command, *more in (("kernel", "--source", 0, "--t", 1), ("diffuse", "--input", field, "--t", 1), ("distance", "--source", 0, "--t", 1), ("hks", "--t", 1),
+                               ("pairs", "--input", pairs, "--t", 1), ("trace", "--t", 1), ("sample", "--count", 1, "--t", 1), ("geodesic", "--source", 0),
+                               ("spectrum", "-k", 1), ("levels", "--input", field, "--levels", 1), ("render", "--input", field, "-o", self.path("r.png")), ("info",)):
+            self.assertIn("not-there.obj: cannot open", self.bad(1, command, self.path("not-there.obj"), *more))
+            if command not in ("levels", "render", "info"):
+                self.bad(1, command, line, *more)
+
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
     def test_full_disk(self):
         with open("/dev/full", "wb") as full:
@@ -512,12 +584,11 @@ class Failures(Case):
     @unittest.skipUnless(POSIX, "needs limits")
     def test_file_size_limit(self):
         """A limit of the file's size is told as a full disk is, and leaves nothing."""
-        import resource
+        mesh = self.file("torus.obj", obj_text(*torus(60, 40)))             # files larger than the buffer
         before = sorted(os.listdir(self.folder))
-        for out in ("limit.txt", "limit.csv", "limit.npy", "limit.ply", "limit.vtu", "limit.png"):
-            run = [TOOL, "kernel", self.patch, "--source", "0", "--t", "1h2,2h2", "--quiet", "-o", self.path(out)]
-            p = subprocess.run(run, stderr=subprocess.PIPE,
-                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+        for out in ("limit.txt", "limit.csv", "limit.npy", "limit.ply", "limit.obj", "limit.vtu", "limit.png"):
+            run = [TOOL, "kernel", mesh, "--source", "0", "--t", "1h2,2h2", "--quiet", "-o", self.path(out)]
+            p = subprocess.run(run, stderr=subprocess.PIPE, preexec_fn=file_limit(1000))
             self.assertEqual(p.returncode, 1, p.stderr)
             self.assertRegex(p.stderr.decode(), r"^heatdiff: error: .*limit\....: cannot write: .*\n$")
             self.assertEqual(sorted(os.listdir(self.folder)), before)
@@ -525,7 +596,6 @@ class Failures(Case):
     @unittest.skipUnless(POSIX, "needs limits")
     def test_file_size_limit_of_every_command(self):
         """The same for each command and each kind of file that it writes."""
-        import resource
         values, pairs = self.file("values.txt", "\n".join(map(str, range(12)))), self.file("pairs.txt", "0 1\n2 3\n")
         fields = ("txt", "csv", "npy", "ply", "obj", "vtu", "png")
         for name, kinds, *more in (("diffuse", fields, "--input", values, "--t", "1"), ("distance", fields, "--source", "0", "--t", "1"),
@@ -537,7 +607,7 @@ class Failures(Case):
             for kind in kinds:
                 with self.subTest((name, kind)):
                     run = (name, self.small, *more, "--quiet", "-o", self.path("over." + kind))
-                    text = self.hostile(*run, limit=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10, 10)))
+                    text = self.hostile(*run, limit=file_limit(10))
                     self.assertIn("over.%s: cannot write: " % kind, text)
 
     @unittest.skipUnless(POSIX, "needs limits")
@@ -671,6 +741,116 @@ class Failures(Case):
         for extra in ((), ("--kernel", "symmetric")):
             self.assertIn("/dev/full", self.hostile("kernel", self.small, "--source", "0", "--t", "1", "-o", "/dev/full", *extra))
 
+    @unittest.skipUnless(POSIX, "needs limits")
+    def test_hostile_places(self):
+        """--source-file: lines without an end, long comments, zero bytes, devices, folders."""
+        def refused(content):
+            return self.hostile("kernel", self.small, "--t", "1", "--source-file", self.file("places.txt", content))
+        for content in (b"1" * (100 << 20), b"# " + b"x" * (20 << 20), b"\0" * (20 << 20), b"0.5*" * (5 << 20), b"0:0." + b"1" * (20 << 20)):
+            with self.subTest(content[:8]):
+                self.assertIn("places.txt", refused(content))
+        self.assertIn("places.txt:2: 12 is beyond", refused(b"# " + b"3 " * 200 + b"\n12\n"))
+        self.assertIn("places.txt:2: '?' is no point", refused(b"1\n2\0\n"))
+        self.assertIn("places.txt:1: '4' is no point", refused(b"3" + b" " * 300 + b"4\n"))
+        for name, text in (("/dev/zero", "a device that has no end"), (self.folder, "cannot read"), ("/dev/null", "no point")):
+            self.assertIn(text, self.hostile("kernel", self.small, "--t", "1", "--source-file", name))
+        many = self.file("places.txt", "".join("0:0.25,0.25  # %d\r\n" % i for i in range(5000)))
+        one = self.field("kernel", self.small, "--t", 1, "--source", "0:0.25,0.25")
+        self.close(self.field("kernel", self.small, "--t", 1, "--source-file", many), [[5000 * x for x in row] for row in one], 1e-7)
+        os.remove(many)
+
+    def test_input_is_the_output(self):
+        """The input is read whole before the output takes its place."""
+        rows = [[math.sin(i)] for i in range(12)]
+        for name, content in (("same.txt", "\n".join("%.17g" % r[0] for r in rows)), ("same.npy", npy_bytes(rows))):
+            path = self.file(name, content)
+            want = self.field("diffuse", self.small, "--input", path, "--t", "1h2")
+            self.good("diffuse", self.small, "--input", path, "--t", "1h2", "-o", path)
+            with open(path, "rb") as f:
+                data = f.read()
+            self.assertEqual(read_npy(data) if name.endswith("npy") else numbers(data.decode()), want)
+            os.remove(path)
+        mesh = self.file("same.obj", obj_text(*icosahedron()))
+        want = self.field("kernel", mesh, "--source", 0, "--t", "1h2")
+        self.good("kernel", mesh, "--source", 0, "--t", "1h2", "-o", mesh)
+        self.assertEqual(self.field("kernel", mesh, "--source", 0, "--t", "1h2"), want)
+        os.remove(mesh)
+
+    def test_two_at_once(self):
+        """Runs that write the same output at the same time: it is one of theirs, whole."""
+        before = sorted(os.listdir(self.folder))
+        for name in ("once.ply", "once.npy"):
+            out, wants = self.path(name), []
+            for source in (0, 55):
+                self.good("kernel", self.patch, "--source", source, "--t", "1h2", "-o", out)
+                with open(out, "rb") as f:
+                    wants.append(f.read())
+            runs = [subprocess.Popen([TOOL, "kernel", self.patch, "--source", str(55 * (i % 2)), "--t", "1h2", "--quiet", "-o", out], stderr=subprocess.PIPE)
+                    for i in range(12)]
+            for p in runs:
+                self.assertEqual((p.communicate(timeout=60)[1], p.returncode), (b"", 0))
+            with open(out, "rb") as f:
+                self.assertIn(f.read(), wants)
+            os.remove(out)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    @unittest.skipUnless(POSIX, "names are of bytes")
+    def test_odd_names(self):
+        """Names of files with line ends, quotes and bytes that are no text: read, written, told in one line and in JSON."""
+        folder = os.fsencode(self.folder) + b"/"
+        for name in (b"a\nb", b"'\"$(x)`%s%n", b"-o", "\u00e9\u20ac\U0001d11e".encode(), b"\xff\xc3(\xe0\x80\x80\xf0\x80\x80\x80\xed\xa0\x80\xf4\x90\x80\x80\xc0\xf8",
+                     b"\x01\x1b[2J\x7f"):
+            mesh, out = folder + name + b".obj", folder + name + b".vtu"
+            try:
+                shutil.copy(os.fsencode(self.small), mesh)
+            except OSError:
+                continue                         # some file systems take text alone
+            p = self.run_bytes(b"kernel", mesh, b"--source", b"0", b"--t", b"1", b"--json", b"-o", out)
+            self.assertEqual(p.returncode, 0, p.stderr)
+            self.assertEqual(json.loads(p.stderr)["mesh"], mesh.decode(errors="replace") if b"\xff" not in name else json.loads(p.stderr)["mesh"])
+            with open(out, "rb") as f:
+                self.assertEqual(read_vtu(f.read())[1:], (12, 20))
+            for args in ((b"kernel", mesh, b"--source", b"99", b"--t", b"1"), (b"info", mesh + b".off"), (b"kernel", mesh, b"--source", b"0", b"--t", b"1", b"-o", out + b"/x.txt"),
+                         (b"info", mesh, b"--" + name), (name, mesh), (b"info", b"--", name)):
+                p = self.run_bytes(*args)
+                self.assertIn(p.returncode, (1, 2), args)
+                self.assertRegex(p.stderr, b"^heatdiff: error: [^\n\x01\x1b\x7f]*\n$")
+            os.remove(mesh)
+            os.remove(out)
+
+    @staticmethod
+    def run_bytes(*args):
+        return subprocess.run([os.fsencode(TOOL), *args], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
+
+    @unittest.skipUnless(POSIX, "needs signals")
+    def test_nobody_reads_standard_output(self):
+        """A pipe that is closed ends the run without a word, or with one where SIGPIPE is ignored; a closed descriptor is told."""
+        for args in (["kernel", self.patch, "--source", "0", "--t", "1", "--quiet"], ["info", self.patch], ["--help"]):
+            for restore, code in ((True, -signal.SIGPIPE), (False, 1)):
+                read, write = os.pipe()
+                os.close(read)
+                p = subprocess.run([TOOL, *args], stdout=write, stderr=subprocess.PIPE, restore_signals=restore)
+                os.close(write)
+                self.assertEqual(p.returncode, code)
+                self.assertRegex(p.stderr, b"^$" if restore else b"^heatdiff: error: [^\n]*cannot write: [^\n]*\n$")
+            p = subprocess.run([TOOL, *args], stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1))
+            self.assertEqual(p.returncode, 1)
+            self.assertRegex(p.stderr, b"^heatdiff: error: [^\n]*cannot write: [^\n]*\n$")
+
+    @unittest.skipUnless(os.path.exists("/dev/stdout"), "needs /dev/stdout")
+    def test_standard_streams_by_name(self):
+        want = self.good("kernel", self.small, "--source", 0, "--t", 1, "--quiet").stdout
+        with open(self.small, "rb") as mesh:
+            self.assertEqual(self.good("kernel", "-", "--source", 0, "--t", 1, "--quiet", "-o", "/dev/stdout", stdin=mesh.read()).stdout, want)
+        with open(self.path("stdout.txt"), "wb") as out:
+            for mesh in ("/dev/stdin", "-"):
+                with open(self.small, "rb") as f:
+                    subprocess.run([TOOL, "kernel", mesh, "--source", "0", "--t", "1", "--quiet", "-o", "-"], stdin=f, stdout=out, check=True)
+        with open(self.path("stdout.txt"), "rb") as f:
+            self.assertEqual(f.read(), 2 * want)
+        field = self.file("field.txt", "\n".join(map(str, range(12))))
+        self.assertEqual(read_png(self.good("render", self.small, "--input", field, "--size", "80x64", "-o", "-").stdout)[:2], (80, 64))
+
     @unittest.skipUnless(POSIX, "names end elsewhere")
     def test_long_names(self):
         for e in ("txt", "csv", "npy", "ply", "obj", "vtu", "png"):
@@ -755,6 +935,24 @@ class Failures(Case):
         self.assertIn("2", self.bad(1, "render", self.small, "--input", f, "--column", 2, "-o", self.path("c.png")))
         self.assertFalse(os.path.exists(self.path("c.png")))
 
+    def test_out_of_range(self):
+        """Numbers that no double holds, and where they are told."""
+        self.assertIn("the time 1e+308h2 is too large for h", self.bad(1, "kernel", self.small, "--source", 0, "--t", "1e308h2"))
+        line = self.file("line.obj", "v 0 0 0\nv 9 0 0\nv 9 9 0\nf 1 2 3\n")
+        self.assertIn("the time 1e+308/l1 is too large", self.bad(1, "kernel", line, "--source", 0, "--t", "1e308/l1"))
+        self.assertIn("is too far above the first", self.bad(1, "hks", self.small, "--scale-invariant", 2, "--t", "1e-300,1e300"))
+        self.assertIn("is not above the first", self.bad(1, "hks", self.small, "--scale-invariant", 2, "--t", "2,1"))
+        self.assertEqual(len(self.field("hks", self.small, "--scale-invariant", 40, "--t", "1,2")[0]), 40)
+        huge = self.file("huge.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3 4\nf 1 5 6\n")
+        for kind in ("fem", "polygon"):             # the faces of the file are counted, not its triangles
+            self.assertIn("face 1: ", self.bad(1, "kernel", huge, "--source", 0, "--t", 1, "--laplacian", kind))
+        big = self.file("big.txt", "1\n" * 4 + "1.7e308\n-1.7e308\n" * 4)
+        text = self.run_tool("diffuse", self.small, "--input", big, "--t", "1e-9", "--method", "direct").stderr.decode()
+        self.assertNotIn("nan", text)
+        self.assertIn("1000000000000 is beyond", self.bad(1, "sample", self.small, "--t", 1, "--count", 3, "--source", 10 ** 12))
+        self.assertIn("2000000000 is beyond", self.bad(1, "spectrum", self.small, "-k", 2000000000))
+        self.assertIn("2000000000 is beyond", self.bad(1, "sample", self.small, "--t", 1, "--count", 2000000000))
+
     def test_limits(self):
         error = self.bad(1, "kernel", self.patch, "--source", 0, "--t", "10h2", "--memory-limit", 2000)
         self.assertIn("--memory-limit", error)
@@ -769,6 +967,87 @@ class Failures(Case):
             with open(keep) as f:
                 self.assertEqual(f.read(), "precious")
             self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+
+class Memory(Case):
+    """Each place of the tool that allocates memory finds none, once: one line says so, and nothing is left behind."""
+
+    RUNS = ("info small.obj", "kernel small.obj --source 0 --t 1h2,auto:2 -o x.png --size 64x64", "kernel s.off --source 0,1:0.2,0.3 --t 1h2 -o x.vtu",
+            "diffuse s.ply --input v.npy --t 1h2,3h2 -o x.ply", "kernel s.stl --source 0,3 --t 4,1,3 --method krylov -o x.csv",
+            "distance s.stl --source 0,3 --t 1 --matrix -o x.csv", "distance small.obj --source-file spots.txt --t 1 --nearest -o x.obj",
+            "pairs small.obj --input pairs.txt --t 1 -o x.npy", "pairs small.obj --input pairs.txt --t 1 --dry-run",
+            "hks small.obj --filter wave:1,1 -o x.txt", "hks small.obj --filter fractional:1,0.5 -o x.txt",
+            "hks s.xyz --bandwidth 1h2 --t 1,2 --scale-invariant 2 -o x.txt", "trace small.obj --t 1/l1", "sample small.obj --t 1 --count 3 -o x.csv",
+            "geodesic small.obj --source 0 -o x.txt --json", "geodesic small.obj --lengths lengths.txt --source 0:0.3,0.3 --dry-run",
+            "spectrum small.obj -k 3 -o x.csv", "levels small.obj --input v.npy --levels auto:3 -o x.obj",
+            "levels small.obj --input v.npy --levels 1,2 -o x.csv", "render small.obj --input v.npy --input pairs.csv -o x.png --size 128x64")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        v, f = icosahedron()
+        cls.file("s.off", off_text(v, f))
+        cls.file("s.xyz", "".join("%g %g %g\n" % p for p in v))
+        cls.file("s.ply", "ply\nformat ascii 1.0\nelement vertex 12\nproperty double x\nproperty double y\nproperty double z\nelement face 20\n"
+                 "property list uchar int vertex_indices\nend_header\n" + "".join("%g %g %g\n" % p for p in v) + "".join("3 %d %d %d\n" % t for t in f))
+        cls.file("s.stl", "solid s\n" + "".join("facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % v[i] for i in t) + "endloop\nendfacet\n"
+                                               for t in f) + "endsolid\n")
+        cls.file("v.npy", npy_bytes([[float(i)] for i in range(12)]))
+        cls.file("pairs.csv", "i,j\n" + "0,1\n2,3\n" * 6)
+        cls.file("pairs.txt", "0 1\n2 3\n")
+        cls.file("spots.txt", "0:0.2,0.3\n" * 17)
+        cls.file("lengths.txt", "2 2 2\n" * 20)
+        cls.list = cls.path("list.txt")
+
+    @classmethod
+    def preload(cls):
+        """The library that lets one allocation fail; None where there is no compiler, or no way to preload it."""
+        library = os.path.join(cls.folder, "starve.so")
+        source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "starve.c")
+        try:
+            built = subprocess.run([os.environ.get("CC", "cc"), "-O1", "-w", "-shared", "-fPIC", source, "-o", library, "-ldl"], stderr=subprocess.DEVNULL)
+            run = subprocess.run([TOOL, "--version"], env=dict(os.environ, LD_PRELOAD=library, STARVE_LIST=cls.list), stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL)
+        except OSError:
+            return None
+        return library if built.returncode == 0 and run.returncode == 0 and os.path.exists(cls.list) else None
+
+    def run_with(self, args, **environment):
+        p = subprocess.run([TOOL] + args, env=dict(os.environ, LD_PRELOAD=self.library, **environment), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                           stderr=subprocess.PIPE, cwd=self.folder, timeout=60)
+        output, out = p.stdout, self.path(args[args.index("-o") + 1]) if "-o" in args else ""
+        if os.path.exists(out):
+            with open(out, "rb") as f:
+                output += f.read()
+            os.remove(out)
+        return p.returncode, p.stderr.decode(), output
+
+    def test_every_allocation(self):
+        self.library = self.preload()
+        if not self.library:
+            self.skipTest("nothing can be preloaded here")
+        seen, refused = set(), 0
+        for line in self.RUNS:
+            args = line.split() + ([] if line.startswith(("levels", "render")) else ["--threads", "1"])
+            code, text, want = self.run_with(args, STARVE_LIST=self.list)
+            self.assertEqual(code, 0, (line, text))
+            with open(self.list) as f:
+                places = f.read().splitlines()
+            before = sorted(os.listdir(self.folder))
+            for k, place in enumerate(places):
+                if place in seen:
+                    continue
+                seen.add(place)
+                code, text, output = self.run_with(args, STARVE_AT=str(k + 1))
+                told = (line, k + 1, text)
+                self.assertIn(code, (0, 1), told)
+                if code:
+                    self.assertRegex(text, r"^heatdiff: error: [^\n]*[Mm]emory[^\n]*\n$", told)
+                    refused += 1
+                elif "--dry-run" not in line:
+                    self.assertEqual(output, want, told)         # what did without
+                self.assertEqual(sorted(os.listdir(self.folder)), before, told)
+        self.assertGreater(refused, 300)
 
 
 class Numbers(Case):
@@ -986,6 +1265,11 @@ class Intrinsic(Case):
         self.bad(2, "render", "--tufted", self.book)
 
 
+def on_both_axes(width, i, j, one):
+    """A product over both directions between two vertices of a grid, numbered row by row: one(a, b) is that of a line."""
+    return one(i % width, j % width) * one(i // width, j // width)
+
+
 class Borders(Case):
     """A square of n x n cells: with voronoi-cot its Laplacian is the five-point one, whose eigenvectors are products of sines."""
     N = 12
@@ -1000,12 +1284,10 @@ class Borders(Case):
         cls.points = cls.file("square.xyz", "".join("%.9g %.9g %.9g\n" % p for p in v))
 
     def kernel(self, i, j, t):
-        """K_t between two vertices: a product over both directions."""
-        n, k = self.N, 1.0
-        for a, b in ((i % (n + 1), j % (n + 1)), (i // (n + 1), j // (n + 1))):
-            k *= sum(2 / n * math.sin(m * math.pi * a / n) * math.sin(m * math.pi * b / n) *
-                     math.exp(-t * 4 * n * n * math.sin(m * math.pi / 2 / n) ** 2) for m in range(1, n))
-        return k
+        """K_t between two vertices."""
+        n = self.N
+        return on_both_axes(n + 1, i, j, lambda a, b: sum(2 / n * math.sin(m * math.pi * a / n) * math.sin(m * math.pi * b / n) *
+                                                          math.exp(-t * 4 * n * n * math.sin(m * math.pi / 2 / n) ** 2) for m in range(1, n)))
 
     def test_kernel(self):
         n, t, source = self.N, 0.02, 5 * (self.N + 1) + 4
@@ -1120,11 +1402,10 @@ class Lengths(Case):
         return "# lengths\n" + "".join("%.17g %.17g %.17g\n" % r for r in rows)
 
     def kernel(self, i, j, t):
-        """K_t between two vertices: a product over both directions."""
-        n, k = self.N, 1.0
-        for a in (i % n - j % n, i // n - j // n):
-            k *= sum(math.cos(2 * math.pi * m * a / n) * math.exp(-t * 4 * n * n * math.sin(m * math.pi / n) ** 2) for m in range(n)) / n
-        return k
+        """K_t between two vertices."""
+        n = self.N
+        return on_both_axes(n, i, j, lambda a, b: sum(math.cos(2 * math.pi * m * (a - b) / n) *
+                                                      math.exp(-t * 4 * n * n * math.sin(m * math.pi / n) ** 2) for m in range(n)) / n)
 
     def test_flat_torus(self):
         n, source = self.N, 23
@@ -2180,6 +2461,69 @@ class Reports(Case):
         r = json.loads(self.good("info", odd, "--json").stdout)
         self.assertEqual(r["mesh"], odd)
 
+    def test_every_remark(self):
+        """What reports and messages say of rare inputs."""
+        v, f = icosahedron()
+        loose = self.file("loose.obj", obj_text(v + [(9.0, 9.0, 9.0)], f))
+        self.assertRegex(self.good("geodesic", loose, "--source", 0, "-o", self.path("g.txt")).stderr.decode(), "1 distance (is )?infinite")
+        two = self.file("two.obj", obj_text(*apart((v, f), (v, f))))
+        r = self.field("geodesic", two, "--source", "0,12", "--matrix")
+        self.assertEqual(r, [[0.0, math.inf], [math.inf, 0.0]])
+        r = json.loads(self.good("geodesic", self.small, "--source", "0:0.1,0.1,1:0.5,0.2,2", "--laplacian", "voronoi-cot", "--json", "-o", self.path("g.txt")).stderr)
+        self.assertLess(r["residual_heat"], 1e-9)
+        places = self.file("places.txt", "0:0.1,0.1\n5\n")
+        r = json.loads(self.good("kernel", self.small, "--source-file", places, "--t", 1, "--json", "-o", self.path("g.txt")).stderr)
+        self.assertEqual((r["source_file"], r.get("source")), (places, None))
+        far = self.file("far.txt", "0\n3\n")           # a curve between vertices with no face between
+        self.assertIn("far.txt:", self.bad(1, "geodesic", self.small, "--source-file", far, "--curve"))
+        least = json.loads(self.good("spectrum", self.patch, "--border", "dirichlet", "-k", 1, "--json").stderr)["eigenvalues"][0]
+        text = self.bad(1, "spectrum", self.patch, "--border", "dirichlet", "--below", 0.5 * least)
+        self.assertIn("no eigenvalue is below", text)
+        self.assertTrue(0.5 * least <= float(text.split()[-1]) <= least * (1 + 1e-5), (text, least))
+        quad = self.file("quad.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
+        self.assertIn("polygons are split as fans" if "fans" in self.good("info", quad, "--laplacian", "fem").stdout.decode() else "polygon",
+                      self.good("info", quad, "--laplacian", "fem").stdout.decode())
+        self.assertIn("intrinsic Delaunay", self.good("info", self.small, "--intrinsic-delaunay").stdout.decode())
+        xyz = self.file("p.xyz", "".join("%g %g %g\n" % p for p in v) + "5 5 5\n" * 20)
+        text = self.good("info", xyz, "--laplacian", "exp", "--bandwidth", "1h2").stdout.decode()
+        self.assertNotIn("from the sampling", text)
+        self.assertRegex(text, "coincident")
+        flat = self.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        self.assertNotIn("meaningful times", self.good("info", flat).stdout.decode())
+        self.assertEqual(self.good("info", self.small, "--quiet").stdout, b"")
+        values = self.file("values.txt", "\n".join(map(str, range(12))))
+        self.assertEqual(self.good("levels", self.small, "--input", values, "--levels", "auto:2", "--quiet", "-o", self.path("l.txt")).stderr, b"")
+        nearly = self.file("nearly.txt", "-1e-9\n" + "\n".join(map(str, range(1, 12))))
+        self.good("render", self.small, "--input", nearly, "--size", "64x64", "-o", self.path("r.png"))
+        self.assertIn("2 columns", self.bad(1, "kernel", self.small, "--source", "0,1", "--t", 1, "--column", 2, "-o", self.path("r.png")))
+        for n in (2, 3):                             # the height suits the number of pictures
+            self.good("render", self.small, *["--input=" + values] * n, "-o", self.path("r.png"))
+            with open(self.path("r.png"), "rb") as f:
+                self.assertLess(read_png(f.read())[1], 900)
+        r = [self.field("kernel", self.small, "--source", "0,1", "--t", "1,2,3", *more) for more in ((), ("--degree", 13), ("--poles", "uniform"), ("--precond", "ildl"))]
+        for other in r[1:]:
+            self.close(other, r[0], 1e-6)
+
+    def test_every_estimate(self):
+        """--dry-run of each question, and of runs that do not fit: in words and as JSON."""
+        pairs = self.file("pairs.txt", "0 1\n2 3\n1 0\n")
+        torus_file = self.file("torus.obj", obj_text(*torus(60, 40)))
+        for run in (("hks", "--t", 1, "--kernel", "operator"), ("pairs", "--input", pairs, "--definition", "commute"), ("pairs", "--input", pairs, "--t", "1,2"),
+                    ("geodesic", "--source", "0", "--ordering", "amd"), ("trace", "--t", "1"), ("sample", "--count", 3, "--source", "0+1", "--t", 1)):
+            self.assertIn("method", self.good(*run, torus_file, "--dry-run").stderr.decode())
+        self.assertIn("real factors", self.good("geodesic", self.patch, "--source", 0, "--border", "mean", "--dry-run").stderr.decode())
+        run = ("kernel", torus_file, "--source", "0,1,2", "--t", "1h2,2h2,4h2", "--method", "direct", "--degree", "12")
+        need = json.loads(self.good(*run, "--dry-run", "--json").stderr)
+        limit = int(need["bytes_in_use"] + 0.3 * (need["estimate"]["bytes"] - need["bytes_in_use"]))
+        text = self.good(*run, "--memory-limit", limit, "--dry-run").stderr.decode()
+        self.assertIn(": too much", text)
+        for way in ("--method iterative", "--degree 8"):
+            self.assertRegex(text, way + r" needs [0-9.]+ MB and about")
+        self.assertIn("--degree 8 needs ", self.bad(1, *run, "--memory-limit", limit))
+        xyz = self.file("cloud.xyz", "".join("%.9g %.9g %.9g\n" % p for p in torus(60, 40)[0]))
+        for more, text in ((("--weight-cut", "1e-3"), "--tufted needs less"), (("--laplacian", "exp"), "more than the memory limit")):
+            self.assertIn(text, self.bad(1, "kernel", xyz, "--source", 0, "--t", 1, *more, "--memory-limit", "100K"))
+
     def test_quiet_and_default(self):
         p = self.good("kernel", self.small, "--source", 0, "--t", 1, "--quiet")
         self.assertEqual(p.stderr, b"")
@@ -2210,11 +2554,17 @@ class Reports(Case):
         for line in text.split(b"\r"):
             self.assertLessEqual(len(line.split(b"\n")[0]), 79 if b"%" in line else 1000)
 
-    def on_a_terminal(self, *args):
-        """What the tool writes to standard error when that is a terminal."""
+    @unittest.skipUnless(POSIX, "needs a terminal")
+    def test_no_picture_on_a_terminal(self):
+        field = self.file("twelve.txt", "\n".join(map(str, range(12))))
+        text = self.on_a_terminal("render", self.small, "--input", field, "-o", "-", code=2, output=None)
+        self.assertIn(b"nothing for a terminal", text)
+
+    def on_a_terminal(self, *args, code=0, output=subprocess.DEVNULL):
+        """What the tool writes to standard error when that is a terminal. output None: standard output is one, too."""
         import pty
         master, slave = pty.openpty()
-        p = subprocess.Popen([TOOL] + [str(a) for a in args], stdout=subprocess.DEVNULL, stderr=slave)
+        p = subprocess.Popen([TOOL] + [str(a) for a in args], stdout=slave if output is None else output, stderr=slave)
         os.close(slave)
         text = b""
         while True:
@@ -2226,7 +2576,7 @@ class Reports(Case):
                 break
             text += block
         os.close(master)
-        self.assertEqual(p.wait(), 0)
+        self.assertEqual(p.wait(), code)
         return text
 
 
@@ -2237,16 +2587,19 @@ class Interrupts(Case):
         super().setUpClass()
         cls.big = cls.file("big.obj", obj_text(*torus(500, 300)))
 
-    def interrupt(self, seconds, *args):
+    def interrupt(self, seconds, *args, twice=False):
         before = sorted(os.listdir(self.folder))
         p = subprocess.Popen([TOOL] + [str(a) for a in args], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                              preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         time.sleep(seconds)
         self.assertIsNone(p.poll(), "ended before it could be interrupted: %s" % p.stderr)
         start = time.time()
-        p.send_signal(signal.SIGINT)
+        for _ in range(2 if twice else 1):       # the second does not wait for the computation
+            p.send_signal(signal.SIGINT)
+            time.sleep(0.001)
         text = p.communicate(timeout=60)[1]
-        self.assertEqual(p.returncode, 130, text)
+        early = (-signal.SIGINT,) if seconds < 0.1 else ()      # a busy machine: main had not begun
+        self.assertIn(p.returncode, (130, *early), text)
         self.assertNotIn(b"error", text)
         self.assertEqual(sorted(os.listdir(self.folder)), before)
         return time.time() - start
@@ -2256,7 +2609,8 @@ class Interrupts(Case):
         slow = ["--t", "100000h2,200000h2,300000h2", "--solver", "cocg", "--precond", "jacobi", "--tol", "1e-12"]
         for seconds in (0.05, 0.3, 1.5):
             for out in ("new.npy", "keep.npy"):
-                waited = self.interrupt(seconds, "kernel", self.big, "--source", ",".join(map(str, range(40))), *slow, "-o", self.path(out))
+                waited = self.interrupt(seconds, "kernel", self.big, "--source", ",".join(map(str, range(40))), *slow, "-o", self.path(out),
+                                        twice=seconds == 1.5)
                 self.assertLess(waited, 10)
         with open(keep) as f:
             self.assertEqual(f.read(), "precious")
@@ -2290,6 +2644,36 @@ class Interrupts(Case):
                     self.assertEqual(sum(1 for line in text if len(line.split()) == 60), 150000)
                 os.remove(out)
             self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def test_when_the_bar_says_what_runs(self):
+        """The signal comes while it computes, however busy the machine is; a second one does not wait for the end."""
+        import pty
+        many = ",".join(map(str, range(40)))
+        for word, run in ((b"% solve", ["kernel", "--source", many, "--t", "100000h2,200000h2", "--solver", "cocg", "--precond", "jacobi", "--tol", "1e-12"]),
+                          (b"% factor", ["kernel", "--source", many, "--t", "auto:20", "--method", "direct"]), (b"% ", ["geodesic", "--source", many]),
+                          (b"% ", ["spectrum", "-k", "300"]), (b"% ", ["hks", "--t", "auto:20", "--dry-run"])):
+            before = sorted(os.listdir(self.folder))
+            for signals in (1, 2):
+                master, slave = pty.openpty()
+                p = subprocess.Popen([TOOL, *run, self.big, "-o", self.path("new.npy")], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=slave,
+                                     preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+                os.close(slave)
+                text = b""
+                try:
+                    while word not in text:
+                        text += os.read(master, 4096)
+                    for _ in range(signals):
+                        p.send_signal(signal.SIGINT)
+                        time.sleep(0.002)
+                    while True:
+                        text += os.read(master, 4096)
+                except OSError:                  # it has ended
+                    pass
+                os.close(master)
+                self.assertNotIn(b"error", text)
+                self.assertIn(p.wait(timeout=60), (130,) if run[-1] != "--dry-run" else (0, 130), (run, text))
+                self.assertTrue(signals == 2 or p.returncode == 0 or b"heatdiff: interrupted" in text, text)
+                self.assertEqual(sorted(os.listdir(self.folder)), before)
 
     def test_waiting_for_standard_input(self):
         p = subprocess.Popen([TOOL, "info", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -2676,8 +3060,10 @@ class Demo(Case):
         self.assertEqual((len(r["sources"]), len(r["times"])), (2, 4))
         self.assertLess(r["mass_drift"], 1e-9)
 
-    def test_folder_is_a_file(self):
-        self.bad(1, "demo", "-o", self.small)
+    def test_folder_that_cannot_be(self):
+        """Told before anything is computed."""
+        for folder in (self.small, self.path("no/such/folder"), self.path("x" * 300)):
+            self.assertIn("cannot make this folder", self.bad(1, "demo", "-o", folder))
 
 
 class Points(Case):

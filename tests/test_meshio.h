@@ -911,21 +911,155 @@ static void tmio_test_failures(void)
     CHECK(mio_fail_at(&e, "a\nb", 7, "%d", 5) == MIO_FAILED && strcmp(e.text, "a?b:7: 5") == 0);
 }
 
-/* Loading something large stops on the way. */
+/* A large file of one row again and again, between a beginning and an end. */
+typedef struct tmio_large { const char *name, *head, *row; size_t head_size, row_size; int32_t rows; const char *tail; } tmio_large;
+
+/* Loads it; stop is asked so many times before it says so. Returns the status. */
+static int tmio_load_large(const tmio_large *x, int asked)
+{
+    const char *const path = tmio_path(x->name);
+    mio_error e;
+    mio_mesh m;
+    double *values = NULL;
+    int64_t rows;
+    int32_t columns;
+    const int table = strstr(x->name, "table") != NULL;
+    int status;
+    tmio_stop_count = 21 - asked;
+    if (!table) status = mio_load(&m, path, tmio_stop_later, &e);
+    else status = mio_load_table(&values, &rows, &columns, path, tmio_stop_later, &e);
+    CHECK_MSG(status != MIO_FAILED, "%s", e.text);
+    CHECK(status == MIO_OK ? table ? values != NULL : m.n > 0 : table ? !values : !m.xyz && m.n == 0);
+    free(values);
+    if (!table) mio_free(&m);
+    return status;
+}
+
+/* Loading something large stops wherever it is asked to, whatever the format. */
 static void tmio_test_stop(void)
 {
-    static char text[1600000];
+#define TMIO_XYZ "property float x\nproperty float y\nproperty float z\n"
+    static const char binary[] = "ply\nformat binary_little_endian 1.0\nelement vertex 70000\n" TMIO_XYZ "end_header\n";
+    static const char faces[] = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" TMIO_XYZ "element face 70000\n"
+        "property list uchar int vertex_indices\nend_header\n\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0";
+    static const char ascii[] = "ply\nformat ascii 1.0\nelement vertex 70000\n" TMIO_XYZ "end_header\n";
+    static const char facet[] = "facet normal 0 0 1 outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop endfacet\n";
+    static const char npy[] = "\x93NUMPY\1\0\x3c\0{'descr': '<f8', 'fortran_order': False, 'shape': (70000,)} \n";
+    static const char zeros[96] = "";
+    static char stl[84];
+    const tmio_large all[] = {
+        {"l.obj", "", "v 1 2 3\n", 0, 8, 70000, ""}, {"l.off", "OFF\n70000 0 0\n", "1 2 3\n", 14, 6, 70000, ""}, {"l.ply", ascii, "1 2 3\n", sizeof ascii - 1, 6, 70000, ""},
+        {"v.ply", binary, zeros, sizeof binary - 1, 12, 70000, ""}, {"f.ply", faces, "\3\0\0\0\0\1\0\0\0\2\0\0\0", sizeof faces - 1, 13, 70000, ""},
+        {"l.stl", "solid\n", facet, 6, sizeof facet - 1, 70000, "endsolid\n"}, {"b.stl", stl, zeros, 84, 50, 70000, ""}, {"l.xyz", "", "1 2 3\n", 0, 6, 70000, ""},
+        {"table.txt", "", "1 2\n", 0, 4, 70000, ""}, {"table.npy", npy, zeros, sizeof npy - 1, 8, 70000, ""}};
+    size_t k;
+    int32_t i;
+    int asked;
+    memcpy(stl + 80, "\x70\x11\x01", 4);           /* 70000 triangles */
+    for (k = 0; k < sizeof all / sizeof all[0]; k++) {
+        const tmio_large *const x = all + k;
+        FILE *const f = fopen(tmio_path(x->name), "wb");
+        if (!CHECK(f != NULL)) continue;
+        fwrite(x->head, 1, x->head_size, f);
+        for (i = 0; i < x->rows; i++) fwrite(x->row, 1, x->row_size, f);
+        CHECK(fputs(x->tail, f) >= 0 && fclose(f) == 0);
+        for (asked = 1; asked < 100 && tmio_load_large(x, asked) == MIO_STOPPED; asked++) {}
+        CHECK_MSG(asked > 3 && asked < 100, "%s: asked %d times", x->name, asked);
+        CHECK(tmio_stop_count == 20);            /* and not once more than that */
+        remove(tmio_path(x->name));
+    }
+#undef TMIO_XYZ
+}
+
+/* The reader puts corners of STL in the same place together, however many there are. */
+static void tmio_test_large_stl(void)
+{
+    enum { SIDE = 60 };
+    FILE *const f = fopen(tmio_path("side.stl"), "wb");
+    static const int turn[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
     mio_mesh m;
     mio_error e;
-    size_t i;
-    for (i = 0; i < 200000; i++) memcpy(text + 8 * i, "v 1 2 3\n", 8);
-    tmio_put(tmio_path("big.obj"), text, sizeof text);
-    tmio_stop_count = 18;
-    CHECK(mio_load(&m, tmio_path("big.obj"), tmio_stop_later, &e) == MIO_STOPPED && !m.xyz);
-    tmio_stop_count = -100;
-    CHECK(mio_load(&m, tmio_path("big.obj"), tmio_stop_later, &e) == 0 && m.n == 200000);
+    int x, y, c;
+    if (!CHECK(f != NULL)) return;
+    fputs("solid s\n", f);
+    for (y = 0; y < SIDE; y++) for (x = 0; x < SIDE; x++) for (c = 0; c < 6; c++) {
+        if (c % 3 == 0) fputs("facet normal 0 0 1\nouter loop\n", f);
+        fprintf(f, "vertex %d %d 0\n", x + turn[c][0], y + turn[c][1]);
+        if (c % 3 == 2) fputs("endloop\nendfacet\n", f);
+    }
+    CHECK(fputs("endsolid s\n", f) >= 0 && fclose(f) == 0);
+    CHECK_MSG(mio_load(&m, tmio_path("side.stl"), NULL, &e) == 0, "%s", e.text);
+    CHECK(m.n == (SIDE + 1) * (SIDE + 1) && m.n_faces == 2 * SIDE * SIDE);
+    for (x = 0, c = 1; x < 6 * SIDE * SIDE && m.n > 0; x++) {     /* corner by corner, as they were written */
+        const int cell = x / 6;
+        c = c && tmio_vertex_is(&m, m.face_idx[x], cell % SIDE + turn[x % 6][0], cell / SIDE + turn[x % 6][1], 0);
+    }
+    CHECK(c);
     mio_free(&m);
-    remove(tmio_path("big.obj"));
+    remove(tmio_path("side.stl"));
+}
+
+/* Words that are nearly others, names nearly keys, and callers that want no message. */
+static void tmio_test_nearly(void)
+{
+    static tmio_bytes t;
+    static tmio_sample s;
+    static char buf[8192], name[400];
+    const double nan_value = mio_is_finite(0) ? strtod("nan", NULL) : 0;
+    mio_mesh m;
+    mio_error e;
+    double *v;
+    tmio_bad("x.obj", "v nab 0 0\nv 1 0 0\nf 1 2 1\n", "x.obj:1", "'nab'");
+    tmio_bad("x.obj", "v inx 0 0\nv 1 0 0\nf 1 2 1\n", "x.obj:1", "'inx'");
+    tmio_bad("x.obj", "v n 0 0\nv 1 0 0\nf 1 2 1\n", "x.obj:1", "'n'");
+    tmio_fine("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nfo 1 2 3\n", "OBJ", 3, 1);
+    tmio_fine("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nfog 1 2 3\nf 1 2 3\n", "OBJ", 3, 1);
+    tmio_fine("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf", "OBJ", 3, 1);
+    tmio_bad("x.off", "4nOFF\n3 1 0\n", "x.off:1", "nOFF");
+    tmio_fine("a.xyz", "// points\n2\n1;2;3\n4,5,6\n", "XYZ", 2, 0);
+    v = tmio_table("a.csv", "nax,ina\n1,2\n3,4\n", 16, 2, 2);
+    CHECK(v && v[0] == 1 && v[3] == 4);
+    free(v);
+    tmio_make_npy(&t, "|u1", "False", "(2L, 1L)", 1);
+    tmio_text(&t, "\1\2");
+    v = tmio_table("a.npy", t.b, t.n, 2, 1);
+    CHECK(v && v[0] == 1 && v[1] == 2);
+    free(v);
+    tmio_make_npy(&t, "|b1", "False", "(2,)", 1);
+    tmio_text(&t, "\1\2");
+    v = tmio_table("a.npy", t.b, t.n, 2, 1);
+    CHECK(v && v[0] == 1);
+    free(v);
+    tmio_make_npy(&t, "<u8", "False", "(1,)", 1);
+    tmio_int(&t, (int64_t)1 << 62, 8);
+    v = tmio_table("a.npy", t.b, t.n, 1, 1);
+    CHECK(v && v[0] == ldexp(1, 62));
+    free(v);
+    tmio_make_npy(&t, "<f8", "False", "(0, 3)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "empty");
+    tmio_make_npy(&t, "<f8", "False", "(3, 0)", 1);
+    tmio_bad_table("x.npy", t.b, t.n, "x.npy", "empty");
+    memset(name, 'x', sizeof name - 1);
+    CHECK(mio_load(&m, name, NULL, &e) == MIO_FAILED && strncmp(e.text, "...xxx", 6) == 0 && strlen(e.text) < 300);
+    CHECK(mio_load(&m, name, NULL, NULL) == MIO_FAILED);
+    tmio_put(tmio_path("x.off"), "OFF\n1 1 0\n0 0 0\n", 17);
+    CHECK(mio_load(&m, tmio_path("x.off"), NULL, NULL) == MIO_FAILED);
+    remove(tmio_path("x.off"));
+    mio_free(NULL);
+    tmio_sample_make(&s);
+    s.names[0] = "a > 'b'\n\tc";
+    s.o.names = s.names;
+    s.values[0] = nan_value;
+    tmio_written(&s, "o.vtu", buf, sizeof buf);
+    CHECK(strstr(buf, "a &gt; &apos;b&apos;  c"));
+    tmio_written(&s, "o.txt", buf, sizeof buf);
+    CHECK(strncmp(buf, "nan ", 4) == 0);
+    s.o.cols = 0;
+    s.o.rgb = s.rgb;
+    tmio_written(&s, "o.vtu", buf, sizeof buf);
+    CHECK(!strstr(buf, "Scalars="));
+    s.o.rows = 5;
+    CHECK(mio_write(tmio_path("o.obj"), MIO_OBJ, &s.m, &s.o, &e) == MIO_FAILED && !fopen(tmio_path("o.obj"), "rb"));
 }
 
 static void tmio_test_triangulate(void)
@@ -1071,6 +1205,8 @@ static void test_meshio(void)
     tmio_test_long_names();
     tmio_test_failures();
     tmio_test_stop();
+    tmio_test_large_stl();
+    tmio_test_nearly();
     tmio_test_triangulate();
     tmio_test_broken();
 }

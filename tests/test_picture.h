@@ -523,6 +523,112 @@ static void tpic_test_degenerate(void)
     CHECK(pic_render(&img, &p, &o) == PIC_ERR_ARGUMENT && !img.rgb);
 }
 
+/* Letters beyond ASCII, superscripts and subscripts: by the widths of texts. */
+static void tpic_test_letters(void)
+{
+    static const char *const dashes[3] = {"\xe2\x80\x93", "\xe2\x80\x94", "\xe2\x88\x92"};
+    static const char *const unknown[6] = {"\xc3\xa9", "\xc2\xa0", "\xe2\x80\x9c", "\xe2\x88\x91", "\xe2\x82\xac", "\xf0\x9d\x84\x9e"};
+    static const char *const plain[7] = {"x^", "x^y", "x^-", "x_", "heat_on", "on_t", "k_t_"};
+    const double box = pic_text_width("\xff", 10);
+    int i;
+    for (i = 0; i < 3; i++) CHECK(pic_text_width(dashes[i], 10) == pic_text_width(dashes[0], 10) && pic_text_width(dashes[i], 10) != box);
+    CHECK(pic_text_width("\xc3\x97", 10) > 0 && pic_text_width("\xc2\xb7", 10) > 0 && pic_text_width("\xc2\xb7", 10) != box);
+    for (i = 0; i < 6; i++) CHECK_MSG(pic_text_width(unknown[i], 10) == box, "letter %d", i);
+    CHECK(pic_text_width("\t\x7f", 10) == pic_text_width("  ", 10));
+    CHECK(pic_text_width("10^-3", 10) < pic_text_width("10-3", 10) && pic_text_width("h^2", 10) < pic_text_width("h2", 10));
+    CHECK(pic_text_width("k_t", 10) < pic_text_width("kt", 10) && pic_text_width("a k_T 0", 10) < pic_text_width("a kT 0", 10));
+    for (i = 0; i < 7; i++) {                    /* every sign is drawn: as wide as its letters one by one */
+        double sum = 0;
+        const char *c;
+        for (c = plain[i]; *c; c++) {
+            const char one[2] = {*c, 0};
+            sum += pic_text_width(one, 10);
+        }
+        CHECK_MSG(fabs(pic_text_width(plain[i], 10) - sum) < 1e-9, "%s", plain[i]);
+    }
+}
+
+/* Scales whose range is given, and ticks of logarithmic ones from a part of a decade to hundreds. */
+static void tpic_test_given_scale(void)
+{
+    static const double v[2] = {1, 2};
+    pic_opts o;
+    pic_panel p;
+    pic_scale sc;
+    pic_ticks t;
+    double decades;
+    int i;
+    memset(&o, 0, sizeof o);
+    memset(&p, 0, sizeof p);
+    p.n = 2; p.field = v;
+    o.lo = -1; o.hi = 10; o.log_decades = 6;     /* logarithms begin above zero */
+    pic_scale_make(&sc, &p, 0, 1, &o);
+    CHECK(sc.lo > 0 && sc.hi == 10);
+    for (decades = 0.25; decades < 300; decades *= 1.5) {
+        o.hi = 1e30; o.lo = o.hi / pow(10, decades); o.log_decades = 400;
+        pic_scale_make(&sc, &p, 0, 1, &o);
+        pic_ticks_make(&t, &sc);
+        CHECK_MSG(sc.is_log && fabs(sc.lo / o.lo - 1) < 1e-9, "%g decades", decades);
+        CHECK_MSG(t.n >= 2 && t.n <= PIC_MAX_TICKS, "%g decades: %d ticks", decades, t.n);
+        for (i = 1; i < t.n; i++) CHECK(t.at[i] > t.at[i - 1]);
+    }
+    o.log_decades = 0;
+    for (i = -7; i < 8; i++) {                   /* numbers without factor from 1e-3 to 1e4 */
+        o.lo = 0; o.hi = 3 * pow(10, i);
+        pic_scale_make(&sc, &p, 0, 1, &o);
+        pic_ticks_make(&t, &sc);
+        CHECK_MSG((t.factor[0] != 0) == (i >= 5 || i <= -4) && t.n >= 4, "10^%d: '%s'", i, t.factor);
+    }
+}
+
+/* What options say of the layout, and what is refused. */
+static void tpic_test_taste(void)
+{
+    static const double wall[9] = {0, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const int32_t one[3] = {0, 1, 2};
+    shape s = shape_icosphere(1);
+    pic_opts o = tpic_small();
+    pic_panel three[3];
+    pic_image img;
+    uint8_t *data = NULL, rgb[3] = {1, 2, 3};
+    size_t size = 0;
+    int i, seen[2] = {0, 0};
+    for (i = 0; i < 3; i++) three[i] = tpic_panel(&s, s.xyz);
+    o.width = 120; o.height = 90;
+    for (i = 1; i < 10; i += 4) {
+        o.columns = i;
+        tpic_render_ok(three, 3, &o, "columns");
+    }
+    o.title = NULL; o.label = ""; o.supersample = 20; o.view_given = 1; o.azimuth = (double)NAN;
+    tpic_render_ok(three, 1, &o, "a subtitle alone");
+    three[1].n_tri = 0;
+    for (i = 0; i < 2; i++) {                    /* larger discs cover more */
+        int32_t k;
+        o.point_radius = i ? 1e9 : 0.05;
+        o.supersample = 1;
+        if (!CHECK(pic_render(&img, &three[1], &o) == PIC_OK)) continue;
+        for (k = 0; k < img.width * img.height; k++) seen[i] += img.rgb[3 * k] < 200;
+        pic_image_free(&img);
+    }
+    CHECK_MSG(seen[1] > 2 * seen[0] && seen[0] > 20, "%d and %d pixels", seen[0], seen[1]);
+    memset(three, 0, sizeof three);
+    three[0].n = 3; three[0].xyz = wall; three[0].n_tri = 1; three[0].tri = one;
+    tpic_render_ok(three, 1, NULL, "no options");
+    three[0].n_markers = -1;
+    CHECK(pic_render(&img, three, NULL) == PIC_ERR_ARGUMENT && !img.rgb);
+    three[0].n_markers = 0; three[0].tri = NULL;
+    CHECK(pic_render(&img, three, NULL) == PIC_ERR_ARGUMENT);
+    three[0].n = -1;
+    CHECK(pic_render(&img, three, NULL) == PIC_ERR_ARGUMENT);
+    o.height = PIC_MAX_SIDE + 1;
+    CHECK(pic_render_grid(&img, three, 0, &o) == PIC_ERR_ARGUMENT && pic_render_grid(&img, NULL, 1, NULL) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_encode(&data, &size, NULL, 1, 1) == PIC_ERR_ARGUMENT && pic_png_encode(&data, &size, rgb, 0, 1) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_encode(&data, &size, rgb, 1, 0) == PIC_ERR_ARGUMENT && pic_png_encode(&data, &size, rgb, PIC_MAX_SIDE + 1, 1) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_encode(&data, &size, rgb, 1, PIC_MAX_SIDE + 1) == PIC_ERR_ARGUMENT && !data);
+    CHECK(pic_png_write(NULL, rgb, 1, 1) != PIC_OK);
+    shape_free(&s);
+}
+
 /* A sphere fills about as much of the picture as it should, as faces and as points, whichever way its faces are turned. */
 static void tpic_test_picture_of_sphere(void)
 {
@@ -710,6 +816,9 @@ static void test_picture(void)
     tpic_test_isolines();
     tpic_test_one_view();
     tpic_test_degenerate();
+    tpic_test_letters();
+    tpic_test_given_scale();
+    tpic_test_taste();
     tpic_test_picture_of_sphere();
     tpic_test_simple_shapes();
     tpic_test_grid_upright();

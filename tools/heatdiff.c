@@ -90,7 +90,9 @@ static int stdout_is_terminal(void)
 static int make_folder(const char *path)
 {
 #ifdef TOOL_POSIX
-    return mkdir(path, 0777) == 0 || errno == EEXIST;
+    struct stat there;
+    if (mkdir(path, 0777) == 0) return 1;
+    return errno == EEXIST && stat(path, &there) == 0 && S_ISDIR(there.st_mode);
 #elif defined(_WIN32)
     return _mkdir(path) == 0 || errno == EEXIST;
 #else
@@ -434,7 +436,7 @@ typedef struct option_def {
     char letter;                     /* 0: none */
     unsigned commands;               /* that take it */
     int is_list;                     /* given twice is an error: which of the two lists was meant? */
-    option_parser parse;             /* returns 1, or 0 when text is not what the option takes */
+    option_parser parse;             /* returns 1; 0: text is not what the option takes; -1: no memory */
     size_t field;                    /* offset in options, for the general parsers */
     const word *words;
     long least, most;
@@ -618,9 +620,8 @@ static int read_time(const char *text, time_spec *t, const char **end)
 static int parse_times(options *o, const option_def *def, const char *text)
 {
     (void)def;
-    if (count_items(text) > 100000) return 0;
     o->times = (time_spec *)calloc(count_items(text), sizeof *o->times);
-    if (!o->times) return 0;
+    if (!o->times) return -1;
     for (;; text++) {
         if (!read_time(text, &o->times[o->n_times++], &text)) return 0;
         if (*text != ',') return *text == 0;
@@ -681,9 +682,8 @@ static int parse_levels(options *o, const option_def *def, const char *text)
         o->n_levels = (int)count;
         return 1;
     }
-    if (count_items(text) > 100000) return 0;
     o->levels = (double *)calloc(count_items(text), sizeof *o->levels);
-    if (!o->levels) return 0;
+    if (!o->levels) return -1;
     for (;; text++) {
         if (!read_number(text, &o->levels[o->n_levels++], &text)) return 0;
         if (*text != ',') return *text == 0;
@@ -711,11 +711,10 @@ static int parse_sources(options *o, const option_def *def, const char *text)
     size_t most = count_items(text), i;
     (void)def;
     for (i = 0; text[i]; i++) most += text[i] == '+';
-    if (most > 10000000) return 0;
     o->source_text = text;
     o->sources = (int64_t *)calloc(most, sizeof *o->sources);
     o->points = (source_point *)calloc(most, sizeof *o->points);
-    if (!o->sources || !o->points) return 0;
+    if (!o->sources || !o->points) return -1;
     for (;; text++) {
         source_point *p = &o->points[o->n_points++];
         const int joined = o->n_points > 1 && text[-1] == '+';
@@ -1069,6 +1068,7 @@ static int take_option(options *o, char *seen, int argc, char **argv, int *i)
     const char *value, *arg = argv[*i];
     const option_def *def = find_option(arg, o->command, &value);
     char name[32], commands[120];
+    int parsed;
     if (!def)
         return fail(USAGE, "%.80s is not an option; see heatdiff %s --help", arg, command_name(o->command));
     option_text(def, name, sizeof name);
@@ -1083,8 +1083,9 @@ static int take_option(options *o, char *seen, int argc, char **argv, int *i)
     if (def->is_list && seen[def - OPTIONS])
         return fail(USAGE, "%s is given twice; it takes %s", name, def->takes);
     seen[def - OPTIONS] = 1;
-    if (!def->parse(o, def, value)) return fail(USAGE, "%s takes %s, not '%.80s'", name, def->takes, value);
-    return DONE;
+    parsed = def->parse(o, def, value);
+    if (parsed < 0) return fail_memory("the command line");
+    return parsed ? DONE : fail(USAGE, "%s takes %s, not '%.80s'", name, def->takes, value);
 }
 
 static int take_mesh(options *o, const char *arg)
@@ -1279,17 +1280,18 @@ static int check_lengths(const options *o)
     return DONE;
 }
 
-/* There is one mesh for all fields, or one for each. Standard input can be read only once. */
-static int check_render(const options *o)
+static int is_stream(const char *name) { return name && strcmp(name, "-") == 0; }
+
+/* Standard input can be read only once. */
+static int check_streams(const options *o)
 {
-    int i, streams = 0;
-    if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
-        return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes",
-                    o->n_inputs, o->n_meshes);
-    for (i = 0; i < o->n_inputs; i++) streams += strcmp(o->inputs[i], "-") == 0;
-    for (i = 0; i < o->n_meshes; i++) streams += strcmp(o->meshes[i], "-") == 0;
-    return streams > 1 ? fail(USAGE, "--input takes a file name here: standard input can be read only once")
-           : DONE;
+    int i, streams = is_stream(o->lengths) + is_stream(o->source_file);
+    if (!o->n_inputs) streams += is_stream(o->input);
+    for (i = 0; i < o->n_inputs; i++) streams += is_stream(o->inputs[i]);
+    for (i = 0; i < o->n_meshes; i++) streams += is_stream(o->meshes[i]);
+    if (streams < 2) return DONE;
+    return fail(USAGE, "%s takes a file name here: standard input can be read only once",
+                is_stream(o->lengths) ? "--lengths" : is_stream(o->source_file) ? "--source-file" : "--input");
 }
 
 static int check_options(const options *o)
@@ -1323,13 +1325,10 @@ static int check_options(const options *o)
     if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
         return fail(USAGE,
                     "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
-    if (o->command == CMD_RENDER && (code = check_render(o)) != DONE) return code;
-    if ((code = check_lengths(o)) != DONE) return code;
-    if (o->input && o->mesh && strcmp(o->input, "-") == 0 && strcmp(o->mesh, "-") == 0)
-        return fail(USAGE, "--input takes a file name here: the mesh comes from standard input already");
-    if (o->lengths && strcmp(o->lengths, "-") == 0 &&
-        (strcmp(o->mesh, "-") == 0 || (o->input && strcmp(o->input, "-") == 0)))
-        return fail(USAGE, "--lengths takes a file name here: standard input can be read only once");
+    if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
+        return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes",
+                    o->n_inputs, o->n_meshes);
+    if ((code = check_lengths(o)) != DONE || (code = check_streams(o)) != DONE) return code;
     return check_output(o);
 }
 
@@ -2078,16 +2077,19 @@ static int put_times(run *r, time_spec s, double unit)
 }
 
 /* Times an octave of scale-invariant signatures, as in the paper. */
-enum { PER_OCTAVE = 16, MOST_SIGNATURE_TIMES = 10000 };
+enum { PER_OCTAVE = 16 };
 
 /* Fills in the times between the first and the last. */
 static int spread_times(run *r)
 {
-    const double t0 = r->times[0], t1 = r->times[1], octaves = log2(t1 / t0);
+    const double t0 = r->times[0], t1 = r->times[1];
     const int least = 2 * (int)r->o->frequencies + 1;
-    int k, n = octaves > 0 && octaves < MOST_SIGNATURE_TIMES ? 1 + (int)(PER_OCTAVE * octaves + 0.5) : 0;
+    int k, n;
     if (!(t1 > t0))
         return fail(FAILED, "%s: the last time, %g, is not above the first, %g", r->mesh_name, t1, t0);
+    if (!isfinite(t1 / t0))
+        return fail(FAILED, "%s: the last time, %g, is too far above the first, %g", r->mesh_name, t1, t0);
+    n = 1 + (int)(PER_OCTAVE * log2(t1 / t0) + 0.5);
     if (n < least) n = least;
     free(r->times);
     free(r->time_names);
@@ -2165,44 +2167,50 @@ static void time_text(const char *name, char *text, size_t size)
 
 /* ---- solving ---- */
 
-/* The points of the command line, and those of the file as one source more. */
+/* A point on each line of a file, as one source more. */
+static int read_point_lines(run *r, mio_in *in, size_t room)
+{
+    const char *end;
+    char shown[48];
+    in->hash = 1;
+    while (mio_space(in)) {
+        source_point p, *more = r->points;
+        const int64_t line = in->line;
+        const char *text = in->p;
+        const int good = read_point(text, &p, &end);
+        if (good) in->p = text = end;
+        if (!good || mio_blanks(in))
+            return mio_fail(in, line, "'%s' is no point: a vertex such as 17, or a place in a face such as "
+                            "12:0.2,0.3", mio_show(in, in->p, shown));
+        if ((size_t)r->n_points == room)
+            more = r->n_points < INT32_MAX
+                   ? (source_point *)mio_grow(more, &room, room + 1, sizeof *more) : NULL;
+        if (!more) return mio_no_memory(in);
+        r->points = more;
+        p.source = r->o->n_sources;
+        p.line = line;
+        r->points[r->n_points++] = p;
+    }
+    return r->n_points > r->o->n_points ? MIO_OK : mio_fail(in, 0, "there is no point in it");
+}
+
+/* The points of the command line, and those of the file. */
 static int read_points(run *r)
 {
     const options *o = r->o;
-    const char *name = o->source_file, *end;
-    char line[256];
-    size_t room = (size_t)o->n_points + 16;
-    int64_t number = 0;
+    const size_t room = (size_t)o->n_points + 16;
     mio_error e;
-    FILE *f = NULL;
+    mio_in in;
+    int status;
     r->n_points = o->n_points;
     r->points = (source_point *)malloc(room * sizeof *r->points);
-    if (r->points && o->points) memcpy(r->points, o->points, (size_t)o->n_points * sizeof *r->points);
-    if (name && !(f = strcmp(name, "-") == 0 ? stdin : fopen(name, "r")))
-        return fail(FAILED, "%s: %s", name, strerror(errno));
-    while (f && r->points && fgets(line, sizeof line, f)) {
-        source_point p;
-        char *text = line + strspn(line, " \t");
-        text[strcspn(text, "#\r\n")] = 0;
-        number++;
-        if (!*text) continue;
-        if (!read_point(text, &p, &end) || end[strspn(end, " \t")]) {
-            if (f != stdin) fclose(f);
-            mio_fail_at(&e, display_name(name), number, "'%.60s' is no point: a vertex such as 17, or a place in a face such as 12:0.2,0.3", text);
-            return fail(FAILED, "%s", e.text);
-        }
-        if ((size_t)r->n_points == room) {
-            source_point *more = (source_point *)realloc(r->points, (room *= 2) * sizeof *more);
-            if (!more) free(r->points);
-            r->points = more;
-        }
-        p.source = o->n_sources;
-        p.line = number;
-        if (r->points && r->n_points < 100000000) r->points[r->n_points++] = p;
-    }
-    if (f && f != stdin) fclose(f);
     if (!r->points) return fail_memory("the sources");
-    return name && r->n_points == o->n_points ? fail(FAILED, "%s: there is no point in it", display_name(name)) : DONE;
+    if (o->points) memcpy(r->points, o->points, (size_t)o->n_points * sizeof *r->points);
+    if (!o->source_file) return DONE;
+    status = mio_open(&in, o->source_file, NULL, &e);
+    if (status == MIO_OK) status = read_point_lines(r, &in, room);
+    mio_close(&in);
+    return status < 0 ? fail_file(status, &e) : DONE;
 }
 
 /* An error at a point of a source. */
@@ -2906,6 +2914,9 @@ static int solve_spectrum(run *r)
     }
     if (r->spectrum_status < 0) return fail_library(r->mesh_name, &err);
     r->n_columns = r->spectrum->count;
+    if (r->n_columns == 0)                       /* the border is held at zero, or constants would be one */
+        return fail(FAILED, "%s: no eigenvalue is below %g: the smallest is at least %.6g", r->mesh_name,
+                    r->o->below, r->spectrum->next);
     if (r->o->column < r->n_columns) return DONE;
     return fail(FAILED, "--column %ld: the result has %lld columns, numbered from 0", r->o->column,
                 (long long)r->n_columns);
@@ -3010,7 +3021,7 @@ static void json_begin(json *j, const run *r, FILE *out)
     json_text(j, "command", command_name(r->o->command));
     json_text(j, "version", version);
     json_text(j, "mesh", r->mesh_name);
-    if (r->mesh.file.format) json_text(j, "format", r->mesh.file.format);
+    json_text(j, "format", r->mesh.file.format);
     json_integer(j, "n", r->mesh.n);
     json_integer(j, "faces", r->mesh.n_faces);
     if (r->lengths) json_text(j, "lengths", r->o->lengths);
@@ -3451,10 +3462,8 @@ static void print_spectrum(const run *r)
 {
     const hd_spectrum *s = r->spectrum;
     print_surface(r);
-    if (s->count > 0)
-        fprintf(stderr, "%ld eigenvalue%s from %.6g to %.6g, largest residual %.1e\n", (long)s->count,
-                plural(s->count), s->value[0], s->value[s->count - 1], s->largest_residual);
-    else fprintf(stderr, "no eigenvalue is below %g\n", r->o->below);
+    fprintf(stderr, "%ld eigenvalue%s from %.6g to %.6g, largest residual %.1e\n", (long)s->count,
+            plural(s->count), s->value[0], s->value[s->count - 1], s->largest_residual);
     fprintf(stderr, "%s: all others are at least %.6g\n", s->proven ? "proven complete" : "NOT proven complete",
             s->next);
     fprintf(stderr, "%ld factorisations, %ld runs, %lld solves; factor: %.3g non-zeros, ordering %s\n",
@@ -3879,7 +3888,7 @@ static void info_intrinsic(const hd_mesh_report *m)
 static void info_points(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_point_report *p = &lap->points;
-    printf("%-22s %s (%s)\n", "points", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    printf("%-22s %s (%s)\n", "points", r->mesh_name, r->mesh.file.format);
     info_laplacian(r, lap);
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "components", (long)lap->n_components);
     printf("%-22s %.9g x %.9g x %.9g, from (%.6g, %.6g, %.6g)\n", "box", high[0] - low[0], high[1] - low[1],
@@ -3908,7 +3917,7 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
 static void info_print(const run *r, const hd_laplacian *lap, const double low[3], const double high[3])
 {
     const hd_mesh_report *m = &lap->mesh;
-    printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format ? r->mesh.file.format : "?");
+    printf("%-22s %s (%s)\n", "mesh", r->mesh_name, r->mesh.file.format);
     info_laplacian(r, lap);
     printf("%-22s %ld\n%-22s %ld\n", "vertices", (long)r->mesh.n, "faces", (long)r->mesh.n_faces);
     if (m->n_faces != r->mesh.n_faces)
@@ -4588,9 +4597,7 @@ static int demo_fields(const run *r)
 
 static int demo_files(const run *r)
 {
-    const char *folder = demo_folder(r);
     int q, code = DONE;
-    if (!make_folder(folder)) return fail(FAILED, "%s: cannot make this folder: %s", folder, strerror(errno));
     for (q = 0; q < DEMO_SOURCES && !code; q++) {
         code = demo_ply(r, q);
         if (!code) code = demo_grid(r, q);
@@ -4643,13 +4650,15 @@ static int command_demo(run *r)
     options o = *r->o;               /* with times and sources of its own */
     int64_t sources[DEMO_SOURCES] = { 0, 0 };
     demo_checks checks;
-    int code = demo_mesh(r);
-    if (code) return code;
+    int code;
+    if (!make_folder(demo_folder(r)))
+        return fail(FAILED, "%s: cannot make this folder: %s", demo_folder(r), strerror(errno));
+    if ((code = demo_mesh(r)) != DONE) return code;
     demo_sources(&r->mesh, sources);
     o.sources = sources;
     o.n_sources = DEMO_SOURCES;
     o.log_scale = 1;                 /* of the colours in the PLY files */
-    if (!parse_times(&o, NULL, DEMO_TIMES)) return fail_memory("the times");
+    if (parse_times(&o, NULL, DEMO_TIMES) < 1) return fail_memory("the times");
     r->o = &o;
     code = run_assemble(r);
     if (!code) code = run_times(r);

@@ -1917,6 +1917,9 @@ static int mio_file_name_temporary(mio_file *f)
     int keep = (int)(strlen(f->path) < most ? strlen(f->path) : most);
     uint32_t mix = (uint32_t)time(NULL) * 2654435761u ^ (uint32_t)clock() ^ (uint32_t)((uintptr_t)f >> 4);
     int tries;
+#if !defined(_WIN32)
+    mix ^= (uint32_t)getpid() * 2246822519u;            /* two runs that begin at once */
+#endif
     while (strlen(f->path) > most && ((unsigned char)f->path[keep] & 0xc0) == 0x80) keep--;  /* whole letters */
     f->temporary = (char *)mio_alloc(room, 1);
     if (!f->temporary) return MIO_FAILED;

@@ -34,6 +34,7 @@ enum { PIC_MAX_SIDE = 16384 };
 typedef struct pic_image {
     int32_t width, height;
     uint8_t *rgb;
+    int lacking;                /* while it is drawn: something was left out for want of memory */
 } pic_image;
 
 /* What one panel shows. Nothing is copied or kept. */
@@ -60,12 +61,9 @@ typedef struct pic_opts {
     int32_t colormap;           /* PIC_MAP_... */
     int32_t own_scale;          /* nonzero: every panel has its own range and legend, not one for all */
     int32_t no_legend;
-    int32_t edges;              /* nonzero: draw the mesh's edges, thin */
     int32_t view_given;         /* nonzero: the two angles hold; else a view that shows the shape and its warmest place */
     double azimuth, elevation;  /* of the camera, degrees; 0, 0 looks at the front, azimuth 90 at the right side */
     int32_t one_view;           /* nonzero: panels of different meshes, too, are seen from where the first one is */
-    char up;                    /* 'x', 'y' or 'z'; 0 means 'y' */
-    double fov;                 /* angle of view, degrees, 0.5..90; 24 */
     double point_radius;        /* of the discs, in the points' unit; 0: from their spacing */
     int32_t columns;            /* of the grid of panels; 0: what fits best */
 } pic_opts;
@@ -886,8 +884,8 @@ static double pic_text_walk(pic_pen *pen, const char *text, double x, double y, 
 
 static double pic_text_width(const char *text, double cap) { return text ? pic_text_walk(NULL, text, 0, 0, cap) : 0; }
 
-/* Text with its baseline at y; align 0: x is the left end, 0.5 the middle, 1 the right end. weight 1 is regular. Out of
- * memory leaves the text out: the picture is still worth having. */
+/* Text with its baseline at y; align 0: x is the left end, 0.5 the middle, 1 the right end. weight 1 is regular. Without
+ * memory the text is left out, and the image told. */
 static void pic_text(pic_image *img, const char *text, double x, double y, double cap, double align, double weight,
                      const uint8_t rgb[3])
 {
@@ -902,7 +900,7 @@ static void pic_text(pic_image *img, const char *text, double x, double y, doubl
     pen.w = (int32_t)pic_min(width + 2 * cap + 4, img->width + 8.0);
     pen.h = (int32_t)(2.2 * cap) + 3;
     pen.cover = (uint8_t *)pic_zalloc((size_t)pen.w * (size_t)pen.h, 1);
-    if (!pen.cover) return;
+    if (!pen.cover) { img->lacking = 1; return; }
     pic_text_walk(&pen, text, x, y, cap);
     for (j = 0; j < pen.h; j++) for (i = 0; i < pen.w; i++)
         pic_blend(img, pen.x0 + i, pen.y0 + j, rgb, pen.cover[(size_t)j * (size_t)pen.w + (size_t)i] / 255.0);
@@ -1022,15 +1020,15 @@ typedef struct pic_scene {
     int32_t n_drawn;            /* triangles or points that can be drawn */
 } pic_scene;
 
-static void pic_camera_aim(pic_camera *cam, double azimuth, double elevation, double fov)
+static void pic_camera_aim(pic_camera *cam, double azimuth, double elevation)
 {
+    const double fov = 24;      /* angle of view, degrees */
     const double rad = 0.017453292519943295, ca = cos(azimuth * rad), sa = sin(azimuth * rad), ce = cos(elevation * rad),
                  se = sin(elevation * rad);
     cam->right[0] = ca;       cam->right[1] = 0;   cam->right[2] = -sa;
     cam->up[0] = -se * sa;    cam->up[1] = ce;     cam->up[2] = -se * ca;
     cam->eye[0] = ce * sa;    cam->eye[1] = se;    cam->eye[2] = ce * ca;
-    cam->distance = 1 / sin(0.5 * rad * fov);
-    if (cam->distance < 1.4) cam->distance = 1.4;       /* never inside the shape */
+    cam->distance = 1 / sin(0.5 * rad * fov);           /* far outside the shape */
     cam->focal = 1;
     cam->cx = cam->cy = 0;
 }
@@ -1073,11 +1071,8 @@ static void pic_scene_mark_used(pic_scene *sc)
 }
 
 /* Fills q. Halves before subtracting, so that even the largest doubles do not overflow. */
-static void pic_scene_normalise(pic_scene *sc, char up)
+static void pic_scene_normalise(pic_scene *sc)
 {
-    /* side, up and front as signed axes of xyz, right-handed */
-    static const int axis[3][3] = {{1, 0, 2}, {0, 1, 2}, {0, 2, 1}}, sign[3] = {-1, 1, -1};
-    const int a = up == 'x' ? 0 : up == 'z' ? 2 : 1;
     const pic_panel *p = sc->panel;
     double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, mid[3], ext = 0, len = 0;
     int32_t i;
@@ -1097,8 +1092,7 @@ static void pic_scene_normalise(pic_scene *sc, char up)
     for (i = 0; i < p->n; i++) {
         double *q = sc->q + 3 * (size_t)i;
         for (c = 0; c < 3; c++)
-            q[c] = sc->used[i] ? (p->xyz[3 * (size_t)i + (size_t)axis[a][c]] / 2 - mid[axis[a][c]]) / ext * 2 / len : 0;
-        q[2] *= sign[a];
+            q[c] = sc->used[i] ? (p->xyz[3 * (size_t)i + (size_t)c] / 2 - mid[c]) / ext * 2 / len : 0;
     }
 }
 
@@ -1193,7 +1187,7 @@ static int pic_scene_make(pic_scene *sc, const pic_panel *p, const pic_scale *sc
     sc->v = (pic_vertex *)pic_zalloc(n, sizeof(pic_vertex));
     if (!sc->q || !sc->normal || !sc->s || !sc->used || !sc->v) { pic_scene_free(sc); return PIC_ERR_MEMORY; }
     pic_scene_mark_used(sc);
-    pic_scene_normalise(sc, o->up);
+    pic_scene_normalise(sc);
     pic_scene_normals(sc);
     for (i = 0; i < n; i++) sc->s[i] = p->field ? pic_scale_at(scale, p->field[i]) : 0.5;
     if (p->n_tri <= 0) sc->radius = o->point_radius > 0 ? pic_min(o->point_radius * sc->scale, 1) : pic_point_spacing(sc);
@@ -1300,23 +1294,21 @@ static int pic_view_planar(const pic_scene *sc, double *azimuth, double *elevati
     return c < 3;
 }
 
-static void pic_view_choose(pic_scene *sc, double fov, double *azimuth, double *elevation)
+/* Returns 0 without memory. */
+static int pic_view_choose(pic_scene *sc, double *azimuth, double *elevation)
 {
     static const double rise[4] = {12, 22, 35, 52}, prior[4] = {0.96, 1.0, 0.97, 0.88};
     pic_thumb *th = (pic_thumb *)pic_alloc(1, sizeof *th);
     double best = -1;
     int32_t i, warmest = -1;
     int a, e;
-    if (pic_view_planar(sc, azimuth, elevation)) { free(th); return; }
-    *azimuth = 33;
-    *elevation = 22;
-    if (!th) return;
+    if (!th || pic_view_planar(sc, azimuth, elevation)) { free(th); return th != NULL; }
     for (i = 0; i < sc->panel->n; i++)
         if (sc->used[i] && pic_finite(sc->s[i]) && (warmest < 0 || sc->s[i] > sc->s[warmest])) warmest = i;
     for (e = 0; e < 4; e++) for (a = 0; a < 20; a++) {
         const double az = 33 + 18.0 * a, front = 1 + 0.02 * cos((az - 33) * 0.0174532925);   /* ties: from the front */
         double score;
-        pic_camera_aim(&sc->cam, az, rise[e], fov);
+        pic_camera_aim(&sc->cam, az, rise[e]);
         pic_thumb_draw(th, sc);
         score = pic_thumb_score(th, sc, warmest) * prior[e] * front;
         if (score <= best) continue;
@@ -1325,6 +1317,7 @@ static void pic_view_choose(pic_scene *sc, double fov, double *azimuth, double *
         *elevation = rise[e];
     }
     free(th);
+    return 1;
 }
 
 /* Zoom and centre so that the shape fits the middle of w x h pixels, then project all vertices. */
@@ -1451,7 +1444,6 @@ typedef struct pic_hit {
     double normal[3];           /* unit, turned towards the eye */
     double toward[3];           /* unit, from the surface to the eye */
     double s;                   /* position on the colour bar; not finite: grey */
-    double edge;                /* samples to the nearest edge of the triangle */
 } pic_hit;
 
 /* The normal at one corner: the vertex normal turned to the face's side, or the face's own where they are 40 degrees
@@ -1473,12 +1465,6 @@ static void pic_hit_triangle(const pic_scene *sc, int32_t t, double x, double y,
     w[1] = ((x - v[0]->x) * (v[2]->y - v[0]->y) - (y - v[0]->y) * (v[2]->x - v[0]->x)) / det;
     w[2] = ((y - v[0]->y) * (v[1]->x - v[0]->x) - (x - v[0]->x) * (v[1]->y - v[0]->y)) / det;
     w[0] = 1 - w[1] - w[2];
-    hit->edge = HUGE_VAL;
-    for (k = 0; k < 3; k++) {
-        const pic_vertex *a = v[(k + 1) % 3], *b = v[(k + 2) % 3];
-        const double len = sqrt((a->x - b->x) * (a->x - b->x) + (a->y - b->y) * (a->y - b->y));
-        hit->edge = pic_min(hit->edge, w[k] * fabs(det) / pic_max(len, 1e-9));
-    }
     for (k = 0; k < 3; k++) sum += w[k] = pic_clamp(w[k], 0, 1) * v[k]->d;      /* perspective */
     pic_face_normal(sc->q, id, world);
     face[0] = pic_dot(world, sc->cam.right);
@@ -1511,7 +1497,6 @@ static void pic_hit_at(const pic_scene *sc, int32_t id, double x, double y, pic_
         hit->normal[1] = -0.8 * (y - v->y) / r;
         hit->normal[2] = sqrt(pic_max(0.1, 1 - hit->normal[0] * hit->normal[0] - hit->normal[1] * hit->normal[1]));
         hit->s = v->s;
-        hit->edge = HUGE_VAL;
     }
     if (pic_unit(hit->normal) <= 0) hit->normal[2] = 1;
     facing = pic_dot(hit->normal, hit->toward);
@@ -1801,23 +1786,21 @@ typedef struct pic_paint {
     const pic_lut *lut;
     const float *open;
     int32_t ss;                 /* samples per pixel and direction */
-    double edge;                /* half width of the mesh's edges in samples; 0: not drawn */
 } pic_paint;
 
 static void pic_paint_sample(const pic_paint *pt, int32_t x, int32_t y, double open, double rgb[3])
 {
     static const double clay[3] = {0.56, 0.60, 0.66}, missing[3] = {0.39, 0.39, 0.39};
     const size_t k = (size_t)y * (size_t)pt->buffer->w + (size_t)x;
-    double base[3], ink = 1;
+    double base[3];
     pic_hit hit;
     int c;
     pic_hit_at(pt->scene, pt->buffer->id[k], x + 0.5, y + 0.5, &hit);
     if (!pt->scene->panel->field) memcpy(base, clay, sizeof base);
     else if (!pic_finite(hit.s)) memcpy(base, missing, sizeof base);
     else pic_lut_at(pt->lut, hit.s, base);
-    if (pt->edge > 0) ink *= 1 - 0.5 * pic_clamp(pt->edge + 0.5 - hit.edge, 0, 1);
     pic_shade(base, &hit, open, rgb);
-    for (c = 0; c < 3; c++) rgb[c] = pic_min(rgb[c], 1) * ink;
+    for (c = 0; c < 3; c++) rgb[c] = pic_min(rgb[c], 1);
 }
 
 static double pic_line_ink(uint8_t line) { return 1 - 0.70 * line / 255; }
@@ -1839,7 +1822,7 @@ static int32_t pic_paint_pixel(const pic_paint *pt, int32_t x, int32_t y, double
         same += b->id[k] == first;
         ink += pic_line_ink(b->line[k]);
     }
-    if (seen > 0 && same == ss * ss && !(pt->edge > 0)) {
+    if (seen > 0 && same == ss * ss) {
         pic_paint_sample(pt, x * ss + ss / 2, y * ss + ss / 2, open, rgb);
         for (c = 0; c < 3; c++) sum[c] = rgb[c] * ink;
         return seen;
@@ -1911,15 +1894,16 @@ static void pic_paint_markers(pic_image *img, const pic_scene *sc, const pic_buf
 /* One view shared by panels of the same mesh. */
 typedef struct pic_view { int known; double azimuth, elevation; } pic_view;
 
-static void pic_panel_aim(pic_scene *sc, const pic_opts *o, pic_view *view)
+/* Returns 0 without memory. */
+static int pic_panel_aim(pic_scene *sc, const pic_opts *o, pic_view *view)
 {
-    const double fov = o->fov > 0 ? pic_clamp(o->fov, 0.5, 90) : 24;
     if (o->view_given && pic_finite(o->azimuth) && pic_finite(o->elevation)) {
         view->azimuth = o->azimuth;
         view->elevation = o->elevation;
-    } else if (!view->known) pic_view_choose(sc, fov, &view->azimuth, &view->elevation);
+    } else if (!view->known && !pic_view_choose(sc, &view->azimuth, &view->elevation)) return 0;
     view->known = 1;
-    pic_camera_aim(&sc->cam, view->azimuth, view->elevation, fov);
+    pic_camera_aim(&sc->cam, view->azimuth, view->elevation);
+    return 1;
 }
 
 /* Draws one panel into the rectangle of w x h pixels at (left, top), which lies inside the image. size: pixels per unit of
@@ -1937,15 +1921,13 @@ static int pic_panel_draw(pic_image *img, const pic_panel *p, const pic_scale *s
     while (ss > 1 && pixels * (size_t)(ss * ss) > (size_t)64 << 20) ss--;
     if (!open) return PIC_ERR_MEMORY;
     if (pic_scene_make(&sc, p, scale, o) != PIC_OK) { free(open); return PIC_ERR_MEMORY; }
-    if (pic_buffer_make(&b, w * ss, h * ss) != PIC_OK) { pic_scene_free(&sc); free(open); return PIC_ERR_MEMORY; }
-    pic_panel_aim(&sc, o, view);
+    if (!pic_panel_aim(&sc, o, view) || pic_buffer_make(&b, w * ss, h * ss) != PIC_OK) { pic_scene_free(&sc); free(open); return PIC_ERR_MEMORY; }
     pic_scene_fit(&sc, b.w, b.h);
     pic_raster_scene(&b, &sc);
     pic_line_scene(&b, &sc, scale, pic_max(0.95 * size, 0.5) * ss);
     pic_openness_all(&b, &sc, ss, open, open + pixels);
-    if (sc.cam.eye[1] > 0.08 && sc.n_drawn > 0) ground = pic_ground_make(&sc);
+    if (sc.cam.eye[1] > 0.08 && sc.n_drawn > 0 && (ground = pic_ground_make(&sc)) == NULL) img->lacking = 1;
     pt.scene = &sc; pt.buffer = &b; pt.ground = ground; pt.lut = lut; pt.open = open; pt.ss = ss;
-    pt.edge = o->edges ? 0.32 * ss : 0;
     pic_paint_panel(img, &pt, left, top);
     pic_paint_markers(img, &sc, &b, ss, left, top, 4.6 * pic_max(size, 0.75));
     free(ground);
@@ -2215,6 +2197,7 @@ static int pic_render_grid(pic_image *out, const pic_panel *panels, int32_t n_pa
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
     out->rgb = NULL;
+    out->lacking = 0;
     out->width = o.width > 0 ? o.width : 1200;
     out->height = o.height > 0 ? o.height : 900;
     if (out->width > PIC_MAX_SIDE || out->height > PIC_MAX_SIDE || n_panels < 1 || !panels) status = PIC_ERR_ARGUMENT;
@@ -2226,6 +2209,7 @@ static int pic_render_grid(pic_image *out, const pic_panel *panels, int32_t n_pa
     if (out->rgb && scales && lut) status = pic_figure_draw(out, panels, n_panels, &o, scales, lut);
     free(scales);
     free(lut);
+    if (status == PIC_OK && out->lacking) status = PIC_ERR_MEMORY;
     if (status != PIC_OK) pic_image_free(out);
     return status;
 }
