@@ -2,6 +2,8 @@
 
        cc -std=c99 tests/internals.c -I. -lm -o internals && ./internals
 
+   internals --traps    the first invalid operation, division by zero or overflow ends the run with SIGFPE (glibc, x86)
+
    Prints what failed, with file and line, and at the end `N passed, N failed`. Exit status 1 when any check failed. */
 
 #if defined(__GNUC__) || defined(__clang__)
@@ -14,6 +16,7 @@
 #include <string.h>
 
 #include "guard.h"
+#include "traps.h"
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
 #include "dense.h"
@@ -2624,10 +2627,7 @@ static void int_no_numbers(void) {
     CHECK(hdi_krylov_done(1, 1e-3, 1e-6) == 0.5 && hdi_krylov_done(1, 2, 1e-6) == 0 && hdi_krylov_done(1, 1, 0) == 0);
 }
 
-int main(void) {
-#if HDI_THREADS
-    GUARD_THREADS(sizeof(hd_threads));
-#endif
+static void int_all(void) {
     int_no_numbers();
     int_linear_precision();
     int_length_area();
@@ -2682,6 +2682,17 @@ int main(void) {
     int_ground_need();
     int_ground_refined();
     int_parts();
+}
+
+int main(int argc, char **argv) {
+#if HDI_THREADS
+    GUARD_THREADS(sizeof(hd_threads));
+#endif
+    if (argc > 1 && (strcmp(argv[1], "--traps") != 0 || !test_traps_start())) {
+        fprintf(stderr, "usage: internals [--traps]; traps are those of glibc on x86\n");
+        return 2;
+    }
+    int_all();
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }
