@@ -29753,7 +29753,7 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL, h0 = heat->source->h;
     hd_cost late;
     double room, held = 0;
-    int32_t q, windows, early = h->n_times;
+    int32_t q, windows, early;
     memset(&late, 0, sizeof late);
     x->to->method = HD_METHOD_DIRECT;
     x->to->reason = "diagonals and distances to all vertices need the direct method";
