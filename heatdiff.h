@@ -149,9 +149,10 @@
    Threads
      There is no global or thread-local state. One object serves one thread at a time, and so does one
      context, because it counts memory. Two threads may work at once if they share no object and no context.
-     One exception: plans read their Laplacian and never write to it. So several plans in several threads may
-     share one Laplacian if every plan has a context of its own (hd_heat_opts.context). Without one, a plan
-     uses the Laplacian's context. If you set allocators, they must allow calls from several threads.
+     One exception: plans and hd_spectrum_create read their Laplacian and never write to it. So several
+     threads may share one Laplacian if every plan and every spectrum has a context of its own, by its
+     options. Without one they use the Laplacian's. If you set allocators, they must allow calls from several
+     threads.
 
      The library's own threads belong to a context. They start when the first long work needs them (20 to 50
      microseconds each), sleep between calls, and end with the last object made with the context. Functions
@@ -16945,10 +16946,9 @@ static hd_status hdi_watch_look(const hdi_watch *w, double done, hd_error *e) {
 /* The share of the work that is done when a residual has come from start down to now, on a logarithmic
  * scale. */
 static double hdi_krylov_done(double start, double now, double target) {
-    double done;
     if (!(now > target) || !(start > target)) return 1;
-    done = target > 0 ? log(start / now) / log(start / target) : 0;
-    return done > 0 ? done : 0;                  /* no number where bounds are infinite */
+    if (!(target > 0) || !hdi_finite(start) || !hdi_finite(now)) return 0;   /* bounds may be infinite */
+    return hdi_max(0, (log(start) - log(now)) / (log(start) - log(target)));
 }
 
 /* Iterates until the recurrence says |r| <= target, or until it gains no more. Near the level of rounding it
@@ -30503,7 +30503,7 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL, h0 = heat->source->h;
     hd_cost late;
     double room, held = 0;
-    int32_t q, windows, early = h->n_times;
+    int32_t q, windows, early;
     memset(&late, 0, sizeof late);
     x->to->method = HD_METHOD_DIRECT;
     x->to->reason = "diagonals and distances to all vertices need the direct method";

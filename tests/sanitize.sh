@@ -4,7 +4,7 @@
 #                                                     whose code the others run as well
 #     sanitize.sh WORKFOLDER memory|threads|traps|valgrind [GROUP...]
 # Those modes print a line per group; the log of a group is WORKFOLDER/MODE.GROUP.log. Groups are those of `runner --list`, and
-# `internals`; none: all, for threads those that start some, for traps all but `internals`. JOBS groups at a time (2; threads: 1).
+# `internals`; none: all, for threads those that start some. JOBS groups at a time (2; threads: 1).
 #     memory     MemorySanitizer of clang: numbers that nobody wrote
 #     threads    ThreadSanitizer: races
 #     traps      the first invalid operation, division by zero or overflow ends a group (glibc on x86)
@@ -28,7 +28,7 @@ planted() {
 one() {
   local mode=$1 group=$2 log="$work/$1.$2.log" begin=$SECONDS status=0 run
   mkdir -p "$work/tmp.$group"
-  if [ "$group" = internals ]; then run="$work/internals.$mode"; else run="$work/runner.$mode $flag --tmp $work/tmp.$group $group"; fi
+  if [ "$group" = internals ]; then run="$work/internals.$mode $flag"; else run="$work/runner.$mode $flag --tmp $work/tmp.$group $group"; fi
   $wrap $run >"$log" 2>&1 || status=$?
   if [ $status = 0 ]; then word=ok; else word="FAILED ($status)"; fi
   printf '%-9s %-11s %-12s %5d s   %s\n' "$mode" "$group" "$word" $((SECONDS - begin)) "$(grep -a ' passed, ' "$log" | tail -1)"
@@ -41,7 +41,7 @@ each() {
   shift
   for p in runner internals; do
     $cc -std=c99 -g -O1 "$@" -I"$top" "$top/tests/$p.c" -o "$work/$p.$mode" -lm
-    [ -n "$groups" ] || groups=$("$work/runner.$mode" --list; [ $mode = traps ] || echo internals)
+    [ -n "$groups" ] || groups=$("$work/runner.$mode" --list; echo internals)
     grep -qx internals <<<"$groups" || break
   done
   export -f one
