@@ -1095,8 +1095,8 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
  *        diagonal, and later by solvers
  * h      unit length of the caller's mesh, for lap->h; 0 if there is none
  * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
- * Errors as hd_csr_check; HD_ERR_NOT_POSITIVE (row, column, value), HD_ERR_EMPTY, HD_ERR_MEMORY,
- *        HD_ERR_CANCELLED
+ * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row: the sum of |B_ij| overflows), HD_ERR_NOT_POSITIVE (row,
+ *        column, value), HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   linear, except for a factorisation of B */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
                                              double h, const hd_laplacian_opts *opts,
@@ -1205,8 +1205,9 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
  * rise until tol is reached. No pole lies on the spectrum.
  * Classical distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and weighted ones the same with
  * B f(B^-1 L). So f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
- * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_MEMORY. HD_WARN_ACCURACY: out
- *            is the best set found, and its error is above tol
+ * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (f is so large that
+ *            a weight overflows), HD_ERR_MEMORY. HD_WARN_ACCURACY: out is the best set found, and its error
+ *            is above tol
  * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f
  * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles */
 HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
@@ -1409,8 +1410,8 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
  *        them needs
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN,
- *        HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex:
+ *        where the answer overflows), HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
  * Cost   direct: one factorisation of all poles for each new t, then one sweep through the factors for eight
  *        fields at a time. krylov: one real factorisation, then 15 to 30 real solves for each field.
  *        iterative: one solve for each pole, started from the solutions before it, up to four fields in
@@ -9086,6 +9087,9 @@ static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal
         }
         if (!(b_diag > 0))
             return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
+        if (!hdi_finite(b_diag + b_off.high))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries add up to infinity",
+                                v, -1, b_diag + b_off.high);
         if (l_diag + 1e-12 * l_abs < 0)
             return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
                                 "L has a negative diagonal entry: L is positive semi-definite "
@@ -16993,6 +16997,8 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
     const double start = k->r_norm;
     double before = k->r_norm, floor_share = 0.5;
     int64_t left = max_iterations;
+    if (!hdi_finite(start))
+        return hdi_fail(e, HD_ERR_BREAKDOWN, "iterations leave the range of doubles: masses are too small");
     while (k->r_norm > target) {
         memcpy(k->spare, k->x, bytes);
         if (hdi_krylov_round(k, target, floor_share, start, &left, watch, e) < 0) return e->status;
@@ -18674,10 +18680,11 @@ static void hdi_fit_sort(hd_rational *set) {
 }
 
 /* The set of filter q for x = -t lambda. unit: t lambda_max. */
-static void hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, double unit,
-                         const hdi_fit_errors *off, hd_rational *out) {
+static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, double unit,
+                              const hdi_fit_errors *off, hd_rational *out, hd_error *e) {
     const double largest = k->largest[q];
     int32_t i;
+    int fine;
     memset(out, 0, sizeof *out);
     out->kind = HD_POLES_OWN;
     out->degree = s->degree;
@@ -18686,14 +18693,19 @@ static void hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, doubl
     out->lambda_max = k->top;
     out->largest = largest;
     out->a0 = largest * s->a0;
+    fine = hdi_finite(out->a0);
     for (i = 0; i < s->n; i++) {
         out->theta[i] = hdi_cscale(-unit, s->p[i]);
         out->a[i] = hdi_cscale(-unit * largest, s->a[i]);
         if (s->p[i].im == 0) out->theta[i].im = out->a[i].im = 0;
+        fine &= hdi_cfinite(out->a[i]);
     }
+    if (!fine)
+        return hdi_fail(e, HD_ERR_BREAKDOWN, "filter: a weight of its poles leaves the range of doubles");
     hdi_fit_sort(out);
     out->max_error = largest * (HDI_FIT_BETWEEN * off->plain + hdi_fit_rounding(s));
     out->max_weighted_error = largest * (HDI_FIT_BETWEEN * off->by_t + (1 + unit) * hdi_fit_rounding(s));
+    return HD_OK;
 }
 
 /* Work arrays of a fit of up to so many filters. */
@@ -18746,6 +18758,7 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
     hdi_scope scope = hdi_scope_begin(ctx, e);
     double unit = 1;
     hdi_fit_errors off;
+    hd_rational set;
     hdi_fitted s;
     hdi_fit k;
     int32_t round;
@@ -18758,9 +18771,18 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
         unit = hdi_fit_unit(&s);
         if (!hdi_fit_measure(&k, 0, &s, unit, 1.5 * hdi_max(k.tol, s.error), &off, e)) break;
     }
-    if (e->status >= 0) hdi_fit_take(&k, 0, &s, unit, &off, out);
+    if (e->status >= 0 && hdi_fit_take(&k, 0, &s, unit, &off, &set, e) >= 0) *out = set;
     (void)hdi_scope_end(&scope);
     return e->status < 0 ? e->status : off.fit > k.tol ? HD_WARN_ACCURACY : HD_OK;
+}
+
+/* The set of one more filter by the poles of s. */
+static hd_status hdi_fit_set(hdi_fit *k, hdi_fitted *s, const hd_filter *filter, double unit,
+                             hdi_fit_errors *off, hd_rational *out, hd_error *e) {
+    if (hdi_fit_load(k, k->count, filter, e) < 0) return e->status;
+    hdi_fit_residues(k, k->count, s);
+    (void)hdi_fit_measure(k, k->count, s, unit, HUGE_VAL, off, e);
+    return hdi_fit_take(k, k->count, s, unit, off, out, e);
 }
 
 /* The sets of all filters by the poles of s. Returns the filter that they serve worst, or -1 where the
@@ -18773,13 +18795,10 @@ static int32_t hdi_fit_sets(hdi_fit *k, hdi_fitted *s, int32_t count, const hd_f
     for (q = 0; q < count; q++) {
         hdi_fit_errors off;
         double part;
-        if (hdi_fit_load(k, k->count, filters + q, e) < 0) {
+        if (hdi_fit_set(k, s, filters + q, unit, &off, out + q, e) < 0) {
             e->column = q;
             return -1;
         }
-        hdi_fit_residues(k, k->count, s);
-        (void)hdi_fit_measure(k, k->count, s, unit, HUGE_VAL, &off, e);
-        hdi_fit_take(k, k->count, s, unit, &off, out + q);
         part = off.fit / hdi_fit_tol(filters + q);
         if (part <= most) continue;
         most = part;
@@ -24007,7 +24026,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
         const double error = hdi_pole_error(k);
         const double norm = sqrt(hdi_b_norm2_complex(lap, k->x, lane->tmp)) - error;
         report->iterations = k->iterations;
-        report->residual = b_norm > 0 ? k->r_norm / b_norm : 0;
+        report->residual = !hdi_finite(b_norm) ? HUGE_VAL : b_norm > 0 ? k->r_norm / b_norm : 0;
         report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
     }
     if (status > 0) e->status = status;
@@ -24995,6 +25014,12 @@ static void hdi_heat_store_inert(const hdi_heat_call *h, int32_t q, double *u) {
         if (h->lap->row[hdi_terms_at(&c, i)] < 0) u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
 }
 
+/* Fails where the answer at a vertex is so large that it leaves the range of doubles. */
+static hd_status hdi_fail_range(hd_error *e, int32_t v, double value) {
+    if (hdi_finite(value)) return HD_OK;
+    return hdi_fail_face(e, HD_ERR_BREAKDOWN, "heat: an answer leaves the range of doubles", -1, v, value);
+}
+
 /* Stores the answer of item q at the time under way, from its lane. */
 static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
@@ -25017,11 +25042,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     for (i = 0; i < lap->n_active && !lane->skip; i++) {
         const double value = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
         u[lap->vertex[i]] = value;
-        if (lane->exponent > 0 && !hdi_finite(value)) {
-            hdi_fail_face(h->e, HD_ERR_BREAKDOWN, "heat: an answer leaves the range of doubles", -1,
-                          lap->vertex[i], value);
-            return;
-        }
+        if (lane->exponent > 0 && hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
     }
 }
 
@@ -26619,8 +26640,10 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
     off.solver += one.solver;
     off.rounding += one.rounding + z->slip[q] + 4 * DBL_EPSILON * size;
     for (i = 0; i < lap->n_active; i++) {
+        const double value = ldexp(h->heat->scale * z->x[i], z->exponent[q]);
         largest = hdi_max(largest, fabs(z->x[i]));
-        u[lap->vertex[i]] = ldexp(h->heat->scale * z->x[i], z->exponent[q]);
+        u[lap->vertex[i]] = value;
+        if (hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
     }
     hdi_ledger_note(ledger, largest, hdi_parts_scale(to_values, off));
     all = hdi_parts_sum(&off);
@@ -26641,7 +26664,7 @@ static void hdi_halves_close(hdi_halves *z) {
     rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = 0;
     rep->error_bound_b = 0;
     for (q = 0; q < h->ask.k; q++)
-        for (m = 0; m < h->ask.n_times; m++) {
+        for (m = 0; m < h->ask.n_times && h->e->status >= 0; m++) {
             hdi_ledger ledger = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver,
                                                  HD_EVIDENCE_PROVEN, 0);
             hdi_halves_finish(z, q, m, hdi_ratio_root(lap) / sqrt(smallest), &ledger, rep);

@@ -253,6 +253,28 @@ static void adj_factors_shared(void) {
     shape_free(&s);
 }
 
+/* -A f of fields near the largest double is beyond it, and that is an error, not infinity. */
+static void adj_overflow(void) {
+    shape s = shape_icosphere(1);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const double zero = 0;
+    double *f = DENSE_NEW(double, lap->n);
+    hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
+    hd_heat *heat = eng_create(lap, &o);
+    hd_report rep;
+    hd_error e;
+    f[7] = DBL_MAX;
+    CHECK(hd_heat_derivative(heat, 1, &zero, 1, f, 0, f, 0, &rep, &e) == HD_ERR_BREAKDOWN && e.vertex >= 0 && e.vertex < lap->n);
+    CHECK(rep.status == HD_ERR_BREAKDOWN && strstr(e.text, "range of doubles"));
+    memset(f, 0, (size_t)lap->n * sizeof *f);
+    f[7] = DBL_MAX / 1024;                       /* the largest eigenvalue is below that */
+    CHECK(hd_heat_derivative(heat, 1, &zero, 1, f, 0, f, 0, &rep, &e) == HD_OK && f[7] < 0 && f[7] > -HUGE_VAL);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    free(f);
+    shape_free(&s);
+}
+
 static void adj_errors(void) {
     shape s = shape_icosphere(1);
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
@@ -395,6 +417,7 @@ static void test_adjoints(void) {
     adj_sets();
     adj_factors_shared();
     adj_scales();
+    adj_overflow();
     adj_errors();
     shape_free(&ball);
     shape_free(&bumpy);

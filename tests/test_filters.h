@@ -122,6 +122,26 @@ static void filt_honest(void) {
     CHECK(hd_rational_fit(&set, &f, 1e5, NULL, NULL) == HD_OK && set.degree < 16 && set.max_error < 1.06e-4);
 }
 
+static double filt_near_largest(double lambda, void *user) {
+    const double x = 1 / (1 + lambda);
+    (void)user;
+    return -DBL_MAX * x * x;
+}
+
+/* Two poles meet at -1, so that their weights are far larger than f, and overflow: told, and the set is left as it was. */
+static void filt_overflow(void) {
+    hd_filter f = filt_make(HD_FILTER_OWN, 0, 0);
+    hd_rational set, before;
+    hd_error e;
+    f.f = filt_near_largest;
+    f.max_degree = 8;
+    memset(&set, 0x6b, sizeof set);
+    before = set;
+    CHECK(hd_rational_fit(&set, &f, 28.9, NULL, &e) == HD_ERR_BREAKDOWN && strstr(e.text, "range of doubles"));
+    CHECK(memcmp(&set, &before, sizeof set) == 0);
+    CHECK(hd_rational_fit_shared(&set, 1, &f, 28.9, NULL, &e) == HD_ERR_BREAKDOWN && e.column == 0);
+}
+
 /* A weight makes the error small where it is large, and says so. */
 static void filt_weight(void) {
     hd_filter f = filt_make(HD_FILTER_WAVE, 3, 0.4);
@@ -662,6 +682,7 @@ static void test_filters(void) {
     filt_sets();
     filt_known();
     filt_honest();
+    filt_overflow();
     filt_weight();
     filt_own();
     filt_arguments();

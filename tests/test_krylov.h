@@ -202,6 +202,35 @@ static void kry_tiny(void) {
     hd_csr_free(&B, NULL);
 }
 
+/* Masses so small that their inverses overflow: the norm of the residual is not finite, and no answer is told to be fine. */
+static void kry_tiny_masses(void) {
+    shape s = shape_icosphere(0);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM), *tiny = NULL;
+    hd_c64 rhs[12], x[12];
+    hd_solve_opts o;
+    hd_solve_report rep;
+    hd_error e;
+    hd_csr B = lap->L;
+    double *mass = DENSE_NEW(double, lap->L.nnz);
+    int64_t p;
+    int32_t i;
+    int k;
+    for (p = 0; p < lap->L.nnz; p++) mass[p] = lap->B[p] * 1e-308;
+    B.val = mass;
+    memset(&o, 0, sizeof o);
+    CHECK(hd_laplacian_matrices(&tiny, &lap->L, &B, 0, NULL, &e) >= 0);
+    for (i = 0; i < 12; i++) rhs[i] = test_c(i - 5, -0.5);
+    for (k = 0; k < 3 && tiny; k++) {
+        o.solver = kry_solvers[k];
+        CHECK(hd_shifted_solve(tiny, 1e-3, test_c(-4, -4), rhs, x, &o, &rep, &e) == HD_ERR_BREAKDOWN && strstr(e.text, "range of doubles"));
+        CHECK(rep.residual >= 0);
+    }
+    free(mass);
+    hd_laplacian_free(tiny);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 /* t = 0: theta B x = b, and the zero right-hand side. */
 static void kry_special(void) {
     shape s = shape_icosphere(1);
@@ -382,6 +411,7 @@ static void test_krylov(void) {
     kry_against_dense();
     kry_tiny();
     kry_special();
+    kry_tiny_masses();
     kry_not_converged();
     kry_errors();
     kry_sizes();

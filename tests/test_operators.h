@@ -631,6 +631,7 @@ static void op_matrices_bad(void) {
     hd_laplacian *lap = NULL;
     hd_error e;
     hd_status st;
+    int k;
     CHECK(hd_laplacian_matrices(&lap, &L, &small, 0, NULL, &e) == HD_ERR_ARGUMENT && e.row == N && e.column == 3);
     CHECK(hd_laplacian_matrices(&lap, &L, &B, -1, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_laplacian_matrices(&lap, &L, &B, (double)NAN, NULL, &e) == HD_ERR_ARGUMENT);
@@ -657,6 +658,11 @@ static void op_matrices_bad(void) {
         hd_laplacian_free(lap);
     }
     CHECK_MSG(st == HD_ERR_NOT_POSITIVE, "indefinite B: %s", hd_status_name(st));
+    for (k = 0; k < indefinite.nnz; k++) indefinite.val[k] = DBL_MAX;    /* the sum of the first row overflows */
+    CHECK(hd_laplacian_matrices(&lap, &L, &indefinite, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 0 && strstr(e.text, "infinity"));
+    for (k = 0; k < N; k++) B.val[k] = DBL_MAX;  /* and here only that of all of them */
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) >= 0);
+    hd_laplacian_free(lap);
     hd_csr_free(&L, NULL);
     hd_csr_free(&B, NULL);
     hd_csr_free(&small, NULL);

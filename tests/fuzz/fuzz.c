@@ -824,37 +824,48 @@ static void fz_operators(const uint8_t *data, size_t size) {
     shape_free(&s);
 }
 
-/* Well-formed meshes, and every query of them. */
-static void fz_queries(const uint8_t *data, size_t size) {
+/* A ball and a grid that do not touch. */
+static shape fz_ball_and_grid(int finer, int32_t columns) {
     static const double offset[3] = {4, 0, 0};
-    fz_in in;
-    fz_context c;
+    shape a = shape_icosphere(finer), b = shape_grid(columns, 3, 0.3), s = shape_disjoint(&a, &b, offset);
+    shape_free(&a);
+    shape_free(&b);
+    return s;
+}
+
+/* The Laplacian of a shape, with options of four bits; NULL after an error. */
+static hd_laplacian *fz_open(const shape *s, int bits, int tufted, fz_context *c) {
+    static const int32_t held = 2;
     hd_laplacian_opts o;
     hd_laplacian *lap = NULL;
     hd_error e;
-    int32_t held = 2;
+    memset(&o, 0, sizeof o);
+    o.context = &c->ctx;
+    o.kind = (hd_laplacian_kind)(bits & 3);
+    if (bits & 4) o.border = HD_BORDER_DIRICHLET;
+    if (bits & 8) { o.n_held = 1; o.held = &held; }
+    o.tufted = tufted;
+    if (fz_status(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, &e), &e, c) < 0) FZ(!lap);
+    return lap;
+}
+
+/* Well-formed meshes, and every query of them. */
+static void fz_queries(const uint8_t *data, size_t size) {
+    fz_in in;
+    fz_context c;
+    hd_laplacian *lap;
     uint8_t way;
-    shape a, b, s;
+    shape s;
     in.p = data;
     in.end = data + size;
     fz_context_make(&c, &in);
     way = fz_byte(&in);
-    a = shape_icosphere(way & 1);
-    b = shape_grid(3 + (way >> 1 & 3), 3, 0.3);
-    s = shape_disjoint(&a, &b, offset);
-    memset(&o, 0, sizeof o);
-    o.context = &c.ctx;
-    o.kind = (hd_laplacian_kind)(way >> 3 & 3);
-    if (way & 32) o.border = HD_BORDER_DIRICHLET;
-    if (way & 64) { o.n_held = 1; o.held = &held; }
-    if (fz_status(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e), &e, &c) >= 0) {
-        fz_ask(&in, lap, &c);
-        fz_ask(&in, lap, &c);
-    }
+    s = fz_ball_and_grid(way & 1, 3 + (way >> 1 & 3));
+    lap = fz_open(&s, way >> 3, 0, &c);
+    if (lap) fz_ask(&in, lap, &c);
+    if (lap) fz_ask(&in, lap, &c);
     hd_laplacian_free(lap);
     fz_context_done(&c);
-    shape_free(&a);
-    shape_free(&b);
     shape_free(&s);
 }
 
@@ -1004,42 +1015,32 @@ static void fz_sources_ask(fz_in *in, const shape *s, const hd_laplacian *lap, h
 }
 
 static void fz_sources(const uint8_t *data, size_t size) {
-    static const double offset[3] = {4, 0, 0};
     fz_in in;
     fz_context c;
-    hd_laplacian_opts o;
-    hd_geodesic_opts go;
-    hd_laplacian *lap = NULL;
+    hd_geodesic_opts o;
+    hd_laplacian *lap;
     hd_geodesic *g = NULL;
     hd_error e;
-    int32_t held = 2;
     uint8_t way;
-    shape a, b, s;
+    shape s;
     in.p = data;
     in.end = data + size;
     fz_context_make(&c, &in);
     way = fz_byte(&in);
-    a = shape_icosphere(0);
-    b = shape_grid(3 + (way & 1), 3, 0.3);
-    s = way < 200 ? shape_disjoint(&a, &b, offset) : fz_soup(&in);
+    s = way < 200 ? fz_ball_and_grid(0, 3 + (way & 1)) : fz_soup(&in);
     memset(&o, 0, sizeof o);
-    memset(&go, 0, sizeof go);
-    o.context = go.context = &c.ctx;
-    o.kind = (hd_laplacian_kind)(way >> 1 & 3);
-    if (way & 8) o.border = HD_BORDER_DIRICHLET;
-    if (way & 16) { o.n_held = 1; o.held = &held; }
-    if (way & 32) o.tufted = go.tufted = 1;
-    go.border = (hd_geodesic_border)fz_below(&in, 3);
+    o.context = &c.ctx;
+    o.tufted = (way & 32) != 0;
+    o.border = (hd_geodesic_border)fz_below(&in, 3);
     fz_what = "sources";
-    if (fz_status(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e), &e, &c) >= 0) {
-        if (way & 64) (void)fz_status(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &go, &e), &e, &c);
+    lap = fz_open(&s, way >> 1, o.tufted, &c);
+    if (lap) {
+        if (way & 64) (void)fz_status(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, &e), &e, &c);
         fz_sources_ask(&in, &s, lap, g, &c);
     }
     hd_geodesic_free(g);
     hd_laplacian_free(lap);
     fz_context_done(&c);
-    shape_free(&a);
-    shape_free(&b);
     shape_free(&s);
 }
 
