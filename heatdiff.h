@@ -23747,21 +23747,33 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
 
+/* The power of two that brings the largest finite mass of a component near one. */
+static double hdi_heat_mass_unit(const hd_laplacian *lap) {
+    double most = 0;
+    int32_t i;
+    int exponent = 0;
+    for (i = 0; i < lap->n_components; i++)
+        if (hdi_finite(lap->component_mass[i])) most = hdi_max(most, lap->component_mass[i]);
+    (void)frexp(most, &exponent);
+    return ldexp(1, -exponent);
+}
+
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
  * values are noted elsewhere. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
                            const double *reach, int own, int by_value, hd_report *rep) {
     const double *out = hdi_lane_answer(lane);
+    const double unit = hdi_heat_mass_unit(lap);
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(out[i]));
         if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
-        heat += lap->mass[i] * lane->u[i];
-        heat_abs += fabs(lap->mass[i] * lane->u[i]);
+        heat += unit * lap->mass[i] * lane->u[i];
+        heat_abs += fabs(unit * lap->mass[i] * lane->u[i]);
     }
     for (i = 0; i < lap->n_components; i++)
-        if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
+        if (hdi_finite(lap->component_mass[i])) heat_in += unit * lane->target[i];
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
         hdi_parts off =
