@@ -375,10 +375,10 @@ static void doors_laplacians(doors *d) {
     DOORS_BAD(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, &d->e), "intrinsic triangulation is not updatable");
     DOORS_BAD(hd_laplacian_polygons(&lap, s->xyz, s->n, ptr, s->tri, 1, &o, &d->e), "intrinsic triangulation is not updatable");
     o.updatable = 0;
-    DOORS_BAD(hd_laplacian_points(&lap, s->xyz, s->n, &o, &d->e), "know no triangles");
+    DOORS_BAD(hd_laplacian_points(&lap, s->xyz, s->n, &o, &d->e), "use no triangles");
     o.tufted = 0;
     o.intrinsic_delaunay = 1;
-    DOORS_BAD(hd_laplacian_points(&lap, s->xyz, s->n, &o, &d->e), "know no triangles");
+    DOORS_BAD(hd_laplacian_points(&lap, s->xyz, s->n, &o, &d->e), "use no triangles");
     o.kind = HD_LAPLACIAN_POLYGON;
     DOORS_BAD(hd_laplacian_polygons(&lap, s->xyz, s->n, ptr, s->tri, 1, &o, &d->e), "intrinsic triangulations are for");
     o = zero;
@@ -580,7 +580,7 @@ static void doors_one_vertex(doors *d) {
     hd_laplacian *lap = NULL;
     zero.val = &nothing;
     CHECK(hd_laplacian_matrices(&lap, &zero, &B, 1, NULL, &d->e) == HD_OK && lap->conserves);
-    DOORS_BAD(hd_times_spectral(lap, 1, &c, &t, &d->e), "no eigenvalues but those of constants");
+    DOORS_BAD(hd_times_spectral(lap, 1, &c, &t, &d->e), "only eigenvalues are those of constants");
     CHECK(t == 7);
     hd_laplacian_free(lap);
     zero = L;
@@ -730,8 +730,8 @@ static void doors_distances(doors *d) {
     DOORS_NULL(hd_heat_filter_diagonals(h, 1, &set, NULL, 0, NULL, NULL, NULL, &d->e));
     DOORS_BAD(hd_heat_distance(h, (hd_distance_kind)-1, 1, t, 1, v, u, 0, NULL, &d->e), "unknown kind");
     DOORS_BAD(hd_heat_distance(h, (hd_distance_kind)99, 1, t, 1, v, u, 0, NULL, &d->e), "unknown kind");
-    DOORS_AT(hd_heat_distance(h, HD_DISTANCE_COMMUTE, 2, t, 1, v, u, 0, NULL, &d->e), HD_ERR_ARGUMENT, "have one time", value, 2);
-    DOORS_AT(hd_heat_distance(h, HD_DISTANCE_BIHARMONIC, -1, t, 1, v, u, 0, NULL, &d->e), HD_ERR_ARGUMENT, "have one time", value, -1);
+    DOORS_AT(hd_heat_distance(h, HD_DISTANCE_COMMUTE, 2, t, 1, v, u, 0, NULL, &d->e), HD_ERR_ARGUMENT, "n_times is 0 or 1", value, 2);
+    DOORS_AT(hd_heat_distance(h, HD_DISTANCE_BIHARMONIC, -1, t, 1, v, u, 0, NULL, &d->e), HD_ERR_ARGUMENT, "n_times is 0 or 1", value, -1);
     DOORS_BAD(hd_heat_distance(h, C, 1, t, -1, v, u, 0, NULL, &d->e), "is negative");
     DOORS_NULL(hd_heat_distance(h, C, 1, t, 1, NULL, u, 0, NULL, &d->e));
     DOORS_NULL(hd_heat_distance(h, C, 1, t, 1, v, NULL, 0, NULL, &d->e));
@@ -889,7 +889,7 @@ static void doors_filter_sets(doors *d) {
         if (k == 2) sets[1].lambda_max *= 2;
         if (k == 3) sets[1].theta[0].re += 1;
         if (k == 4) sets[1].theta[0].im = -1;
-        if (k > 0 && k < 4) DOORS_AT(hd_heat_filter_diagonals(heat, 2, sets, D, 0, NULL, NULL, NULL, &d->e), HD_ERR_ARGUMENT, "has not the poles", column, 1);
+        if (k > 0 && k < 4) DOORS_AT(hd_heat_filter_diagonals(heat, 2, sets, D, 0, NULL, NULL, NULL, &d->e), HD_ERR_ARGUMENT, "differs from the plan", column, 1);
         if (k == 4) DOORS_AT(hd_heat_filter_diagonals(heat, 2, sets, D, 0, NULL, NULL, NULL, &d->e), HD_ERR_ARGUMENT, "theta needs", column, 1);
     }
     hd_heat_free(heat);
