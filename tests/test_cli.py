@@ -405,7 +405,7 @@ class Usage(Case):
             refused("the first and the last time", *hks, "--scale-invariant", 2, "--t", t)
         refused("exp has no gradient", "geodesic", "--source", 0, "--laplacian", "exp")
         refused("one time above 0", "geodesic", "--source", 0, "--t", "auto:3")
-        refused("exp needs places", *kernel, "--lengths", "l.txt", "--laplacian", "exp")
+        refused("exp needs coordinates", *kernel, "--lengths", "l.txt", "--laplacian", "exp")
         refused("--weight-cut of exponential", *kernel, "--lengths", "l.txt", "--weight-cut", "1e-4")
         for more in (("--source", "0+1"), ("--curve",), ("--source-file", "s.txt")):
             refused("--matrix takes vertices", *[a for a in matrix if more[0] != "--source" or a not in ("--source", 0)], *more)
@@ -1480,7 +1480,7 @@ class Lengths(Case):
         kernel = ("kernel", "--source", "0", "--t", "1", self.torus, "--lengths", self.text)
         self.assertIn("takes --laplacian fem, voronoi-cot or cot", self.bad(2, *kernel, "--laplacian", "voronoi-exp"))
         self.assertIn("takes --laplacian fem, voronoi-cot or cot", self.bad(2, *kernel, "--laplacian", "polygon"))
-        self.assertIn("--bandwidth of exponential weights", self.bad(2, *kernel, "--bandwidth", "1"))
+        self.assertIn("--bandwidth for exponential weights", self.bad(2, *kernel, "--bandwidth", "1"))
         self.assertIn("--lambda of polygons", self.bad(2, *kernel, "--lambda", "2"))
         self.assertIn("dissection cuts in space", self.bad(2, *kernel, "--ordering", "dissection"))
         self.assertIn("--curve takes no --lengths", self.bad(2, *kernel, "--curve"))

@@ -39,8 +39,8 @@ FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
     "lines": 33600,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
-    "api": 1840,              # lines of room [api]; goal 1100; raised with the number of public functions
-    "median": 13,             # lines of a function; goal 13
+    "api": 1020,              # lines of room [api]; goal 1100
+    "median": 10,             # lines of a function; goal 13
     "longest": 60,            # lines of the longest function; goal 60
     "long": 0,                # functions longer than 60 lines; goal 0
     "widest": 110,            # characters of the widest line; goal 110
