@@ -406,7 +406,7 @@ class Usage(Case):
         refused("exp has no gradient", "geodesic", "--source", 0, "--laplacian", "exp")
         refused("one time above 0", "geodesic", "--source", 0, "--t", "auto:3")
         refused("exp needs coordinates", *kernel, "--lengths", "l.txt", "--laplacian", "exp")
-        refused("--weight-cut of exponential", *kernel, "--lengths", "l.txt", "--weight-cut", "1e-4")
+        refused("--weight-cut for exponential", *kernel, "--lengths", "l.txt", "--weight-cut", "1e-4")
         for more in (("--source", "0+1"), ("--curve",), ("--source-file", "s.txt")):
             refused("--matrix takes vertices", *[a for a in matrix if more[0] != "--source" or a not in ("--source", 0)], *more)
         refused("needs --levels", "levels", "--input", "f.txt")
@@ -1481,7 +1481,7 @@ class Lengths(Case):
         self.assertIn("takes --laplacian fem, voronoi-cot or cot", self.bad(2, *kernel, "--laplacian", "voronoi-exp"))
         self.assertIn("takes --laplacian fem, voronoi-cot or cot", self.bad(2, *kernel, "--laplacian", "polygon"))
         self.assertIn("--bandwidth for exponential weights", self.bad(2, *kernel, "--bandwidth", "1"))
-        self.assertIn("--lambda of polygons", self.bad(2, *kernel, "--lambda", "2"))
+        self.assertIn("--lambda for polygons", self.bad(2, *kernel, "--lambda", "2"))
         self.assertIn("dissection cuts in space", self.bad(2, *kernel, "--ordering", "dissection"))
         self.assertIn("--curve takes no --lengths", self.bad(2, *kernel, "--curve"))
         self.bad(2, "render", self.torus, "--input", self.text, "--lengths", self.text, "-o", "a.png")
