@@ -23747,15 +23747,20 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
 
-/* The power of two that brings the largest finite mass of a component near one. */
-static double hdi_heat_mass_unit(const hd_laplacian *lap) {
+/* The power of two that brings a number near one. */
+static double hdi_unit_of(double size) {
+    int exponent = 0;
+    (void)frexp(size, &exponent);
+    return ldexp(1, -exponent);
+}
+
+/* The largest mass of a component that is finite. */
+static double hdi_heat_largest_mass(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
-    int exponent = 0;
     for (i = 0; i < lap->n_components; i++)
         if (hdi_finite(lap->component_mass[i])) most = hdi_max(most, lap->component_mass[i]);
-    (void)frexp(most, &exponent);
-    return ldexp(1, -exponent);
+    return most;
 }
 
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
@@ -23763,17 +23768,19 @@ static double hdi_heat_mass_unit(const hd_laplacian *lap) {
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
                            const double *reach, int own, int by_value, hd_report *rep) {
     const double *out = hdi_lane_answer(lane);
-    const double unit = hdi_heat_mass_unit(lap);
-    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
+    const double unit = hdi_unit_of(hdi_heat_largest_mass(lap));
+    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0, scale;
     int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
+    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, fabs(lane->u[i]));
+    scale = hdi_unit_of(largest);
+    for (i = 0, largest = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(out[i]));
         if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
-        heat += unit * lap->mass[i] * lane->u[i];
-        heat_abs += fabs(unit * lap->mass[i] * lane->u[i]);
+        heat += unit * lap->mass[i] * (scale * lane->u[i]);
+        heat_abs += fabs(unit * lap->mass[i] * (scale * lane->u[i]));
     }
     for (i = 0; i < lap->n_components; i++)
-        if (hdi_finite(lap->component_mass[i])) heat_in += unit * lane->target[i];
+        if (hdi_finite(lap->component_mass[i])) heat_in += unit * lane->target[i] * scale;
     if (ledger) {
         const double total = hdi_parts_sum(&lane->off);
         hdi_parts off =
@@ -23792,7 +23799,7 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     }
     rep->residual = hdi_max(rep->residual, lane->residual);
     if (lap->conserves && !own && heat_abs > 0)
-        rep->mass_drift = hdi_max(rep->mass_drift, fabs(heat - heat_in) / heat_abs);
+        rep->mass_drift = hdi_max(rep->mass_drift, hdi_bound_of(fabs(heat - heat_in) / heat_abs));
 }
 
 /* By Gershgorin's theorem every eigenvalue of B^-1 L is below this. Where b_ratio is not known it is a guess,
