@@ -1096,7 +1096,7 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
  * h      unit length of the caller's mesh, for lap->h; 0 if there is none
  * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
  * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row: the sum of |B_ij| overflows), HD_ERR_NOT_POSITIVE (row,
- *        column, value), HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ *        column, value; so are entries B_ii below 2.3e-308), HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   linear, except for a factorisation of B */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
                                              double h, const hd_laplacian_opts *opts,
@@ -9087,6 +9087,9 @@ static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal
         }
         if (!(b_diag > 0))
             return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
+        if (b_diag < DBL_MIN)
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: the inverse of a diagonal entry overflows", v, v,
+                                b_diag);
         if (!hdi_finite(b_diag + b_off.high))
             return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries add up to infinity",
                                 v, -1, b_diag + b_off.high);
