@@ -18898,6 +18898,7 @@ typedef struct hdi_ledger {
     double largest, smallest;    /* |value|; smallest: not zero, HUGE_VAL when there is none */
     double relative;             /* largest error over its value; negative: not asked */
     int64_t n_values;
+    int32_t lost;                /* a value is not a number */
 } hdi_ledger;
 
 static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding,
@@ -18926,6 +18927,7 @@ static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     l->off.rational = hdi_max(l->off.rational, off.rational);
     l->off.solver = hdi_max(l->off.solver, off.solver);
     l->off.rounding = hdi_max(l->off.rounding, off.rounding);
+    l->lost |= hdi_nan(value);
     l->largest = hdi_max(l->largest, size);
     if (size > 0) l->smallest = hdi_min(l->smallest, size);
     /* relative to the exact value, which is at least size - all */
@@ -18955,6 +18957,7 @@ static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     hdi_parts part = l->off;
     double total;
     if (l->n_values == 0) return;
+    if (l->lost) hdi_fail(&rep->error, HD_ERR_BREAKDOWN, "heat: an answer leaves the range of doubles");
     part.rational = hdi_ledger_part(part.rational, l->largest);
     part.solver = hdi_ledger_part(part.solver, l->largest);
     part.rounding = hdi_ledger_part(part.rounding, l->largest);
@@ -25064,7 +25067,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     for (i = 0; i < lap->n_active && !lane->skip; i++) {
         const double value = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
         u[lap->vertex[i]] = value;
-        if (lane->exponent > 0 && hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
+        if ((lane->exponent > 0 || hdi_nan(value)) && hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
     }
 }
 
