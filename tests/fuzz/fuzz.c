@@ -492,8 +492,8 @@ static void fz_check_mass(const hd_laplacian *lap, const double *f, const double
         const int32_t v = lap->vertex[r];
         before += lap->mass[r] * f[v];
         after += lap->mass[r] * u[v];
-        size += lap->mass[r] * fabs(f[v]);
-        total += lap->mass[r];
+        size += fabs(lap->mass[r] * f[v]);        /* a row of B may sum to less than zero */
+        total += fabs(lap->mass[r]);
         if (fabs(u[v]) > most) most = fabs(u[v]);
     }
     if (!mio_is_finite(size) || !mio_is_finite(total * most)) return;
