@@ -1095,8 +1095,9 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
  *        diagonal, and later by solvers
  * h      unit length of the caller's mesh, for lap->h; 0 if there is none
  * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
- * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row: the sum of |B_ij| overflows), HD_ERR_NOT_POSITIVE (row,
- *        column, value; so are entries B_ii below 2.3e-308), HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to
+ *        more than 1e290), HD_ERR_NOT_POSITIVE (row, column, value; so are entries B_ii below 1e-290),
+ *        HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   linear, except for a factorisation of B */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
                                              double h, const hd_laplacian_opts *opts,
@@ -9061,6 +9062,10 @@ static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_c
     return n;
 }
 
+/* Numbers of the caller's matrices lie between this and its inverse: sums over all rows, and inverses of masses
+ * times numbers that are not large themselves, stay within the range of doubles. */
+#define HDI_PAIR_MOST 1e290
+
 /* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the
  * rounding of its entries. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry
  * leaves open. */
@@ -9087,12 +9092,14 @@ static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal
         }
         if (!(b_diag > 0))
             return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
-        if (b_diag < DBL_MIN)
-            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: the inverse of a diagonal entry overflows", v, v,
-                                b_diag);
-        if (!hdi_finite(b_diag + b_off.high))
-            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries add up to infinity",
+        if (b_diag < 1 / HDI_PAIR_MOST)
+            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is below 1e-290", v, v, b_diag);
+        if (!(b_diag + b_off.high <= HDI_PAIR_MOST))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries exceed 1e290 together",
                                 v, -1, b_diag + b_off.high);
+        if (!(l_abs <= HDI_PAIR_MOST))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "L: the sizes of a row's entries exceed 1e290 together",
+                                v, -1, l_abs);
         if (l_diag + 1e-12 * l_abs < 0)
             return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
                                 "L has a negative diagonal entry: L is positive semi-definite "
