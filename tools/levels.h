@@ -74,11 +74,11 @@ static uint64_t lev_edge(int32_t i, int32_t j)
     return i < j ? (uint64_t)i << 32 | (uint32_t)j : (uint64_t)j << 32 | (uint32_t)i;
 }
 
-/* The point at share s of the way from x to y, in between also where rounding or overflow would lead outside. */
+/* The point at share s of the way from x to y, 0 < s < 1. It lies between them also as rounded: s is below 1 by
+ * more of y - x than the difference can have been rounded up. */
 static double lev_between(double x, double y, double s)
 {
-    const double p = isfinite(y - x) ? x + s * (y - x) : (1 - s) * x + s * y, low = x < y ? x : y, high = x < y ? y : x;
-    return p < low ? low : p > high ? high : p;
+    return isfinite(y - x) ? x + s * (y - x) : (1 - s) * x + s * y;
 }
 
 static void lev_point(const lev_work *w, uint64_t edge, double *p)
