@@ -1374,6 +1374,8 @@ class Borders(Case):
         self.assertIn("method direct", self.good("hks", self.square, "--filter", "heat:10h2", "--dry-run").stderr.decode())
 
     def test_filter_refused(self):
+        for name in ("heat:1e-300", "heat:1e308", "band:1,1.0000001"):  # no better than an answer of zeros
+            self.assertRegex(self.bad(1, "kernel", self.small, "--source", 0, "--filter", name), r"--filter %s: the best poles found miss it by \d" % name)
         for bad in ("heat", "heat:", "heat:0", "heat:-1", "heat:1,2", "heat:auto:3", "wave:3", "wave:3,0", "wave:3h2,1", "band:3,2", "band:1h2,2", "sine:3", "fractional:1", "biharmonic:0"):
             self.assertIn("--filter takes heat:T, wave:E,SIGMA", self.bad(2, "hks", self.square, "--filter", bad))
         self.assertIn("no --t", self.bad(2, "hks", self.square, "--filter", "heat:1", "--t", 1))

@@ -2103,6 +2103,9 @@ static int spread_times(run *r)
     return DONE;
 }
 
+/* The function that is zero everywhere misses a filter by 1 of its largest value. */
+static const double USELESS = 0.9;
+
 /* The pole set of --filter, whose time is its own. */
 static int run_filter(run *r)
 {
@@ -2122,6 +2125,9 @@ static int run_filter(run *r)
     }
     if (hd_rational_fit(&r->filter, &f, hd_laplacian_lambda_max(r->lap), &r->context, &err) < 0)
         return fail_library(r->mesh_name, &err);
+    if (!(r->filter.max_error < USELESS * r->filter.largest))
+        return fail(FAILED, "%s: --filter %s: the best poles found miss it by %.1e of its largest value; "
+                    "another scale is needed", r->mesh_name, o->filter, r->filter.max_error / r->filter.largest);
     r->times[0] = r->filter.t;
     snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s", word_of(FILTERS, o->filter_kind));
     return DONE;
