@@ -2126,8 +2126,8 @@ static int run_filter(run *r)
     if (hd_rational_fit(&r->filter, &f, hd_laplacian_lambda_max(r->lap), &r->context, &err) < 0)
         return fail_library(r->mesh_name, &err);
     if (!(r->filter.max_error < USELESS * r->filter.largest))
-        return fail(FAILED, "%s: --filter %s: the best poles found miss it by %.1e of its largest value; "
-                    "another scale is needed", r->mesh_name, o->filter, r->filter.max_error / r->filter.largest);
+        return fail(FAILED, "%s: --filter %s: the best poles found miss it by %.1e of its largest value",
+                    r->mesh_name, o->filter, r->filter.max_error / r->filter.largest);
     r->times[0] = r->filter.t;
     snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s", word_of(FILTERS, o->filter_kind));
     return DONE;
@@ -2505,7 +2505,8 @@ static int fail_limit(run *r, const hd_error *e)
     hd_error err;
     double allowed = (double)r->context.byte_limit, needed;
     int i;
-    if (estimate_query(r, r->heat, r->n_times, &r->estimate, &err) < 0 || r->estimate.cost[0].fits || !r->estimate.cost[0].possible)
+    if (estimate_query(r, r->heat, r->n_times, &r->estimate, &err) < 0 || r->estimate.cost[0].fits ||
+        !r->estimate.cost[0].possible)
         return fail_library(r->mesh_name, e);
     needed = bytes_needed(r);
     needed = needed > e->value ? needed : e->value;
@@ -4273,7 +4274,8 @@ static int levels_of(run *r, const field_data *field)
     memset(&s, 0, sizeof s);
     code = levels_resolve(r, f, level);
     for (k = 0; k < r->o->n_levels && !code && !interrupt.asked; k++)
-        if (!has_level(level, k, level[k]) && !lev_trace(&s, &mesh, f, level[k])) code = fail_memory("the lines");
+        if (!has_level(level, k, level[k]) && !lev_trace(&s, &mesh, f, level[k]))
+            code = fail_memory("the lines");
     if (!code && interrupt.asked) code = INTERRUPTED;
     if (!code) code = levels_write(r, &s);
     if (!code) levels_report(r, &s, level);
@@ -4393,7 +4395,7 @@ static int command_render(run *r)
 
 /* ==== demo ==== */
 
-enum { DEMO_SOURCES = 2, DEMO_N_TIMES = 4, DEMO_PATH = 2048, DEMO_FILE_NAME = 48 };    /* the last two: bytes */
+enum { DEMO_SOURCES = 2, DEMO_N_TIMES = 4, DEMO_PATH = 2048, DEMO_FILE_NAME = 48 };  /* the last two: bytes */
 static const char *const DEMO_NAMES[DEMO_SOURCES] = { "trunk", "tail" };
 static const char DEMO_TIMES[] = "10h2,100h2,500h2,2000h2";
 static const char DEMO_FOLDER[] = "heatdiff-demo";

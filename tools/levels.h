@@ -74,8 +74,8 @@ static uint64_t lev_edge(int32_t i, int32_t j)
     return i < j ? (uint64_t)i << 32 | (uint32_t)j : (uint64_t)j << 32 | (uint32_t)i;
 }
 
-/* The point at share s of the way from x to y, 0 < s < 1. It lies between them also as rounded: s is below 1 by
- * more of y - x than the difference can have been rounded up. */
+/* The point at share s of the way from x to y, 0 < s < 1. It lies between them also as rounded: s is below 1
+ * by more of y - x than the difference can have been rounded up. */
 static double lev_between(double x, double y, double s)
 {
     return isfinite(y - x) ? x + s * (y - x) : (1 - s) * x + s * y;
@@ -195,8 +195,8 @@ static int lev_follow(lev_work *w, lev_set *s, int64_t from)
     lev_point(w, w->node[here], p);
     if (!lev_add_point(s, &line, p)) return 0;
     do {
-        /* There is an unused one: at the beginning by the caller's word, later because the second segment of a
-         * node is used only together with the first. */
+        /* There is an unused one: at the beginning by the caller's word, later because the second segment of
+         * a node is used only together with the first. */
         for (i = w->start[here]; w->used[w->at[i]]; i++) { }
         k = w->at[i];
         w->used[k] = 1;
