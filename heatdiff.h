@@ -1574,7 +1574,8 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  * such times is the auto-diffusion function of Gebal, Baerentzen, Aanaes, Larsen 2009, where c is called t.
  * Small c (0.1) shows details, c = 1 tips and branches.
  * c, t   [n_times] c > 0 without unit, t in length^2; both may be the same array
- * Errors and cost as hd_spectrum_create for one pair more than components */
+ * Errors and cost as hd_spectrum_create for one pair more than components; HD_ERR_BREAKDOWN if lambda_1 is
+ * not above zero, which rounding can do */
 HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times,
                                          const double *c, double *t, hd_error *err);
 
@@ -33204,6 +33205,8 @@ HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_time
     if (status < 0) return status;
     first = s->value[s->n_constant];
     hd_spectrum_free(s);
+    if (!(first > 0))
+        return hdi_fail(call.e, HD_ERR_BREAKDOWN, "times: the first eigenvalue is lost in rounding");
     for (q = 0; q < n_times; q++) t[q] = c[q] / first;
     return status;
 }

@@ -799,7 +799,7 @@ class Failures(Case):
         """Names of files with line ends, quotes and bytes that are no text: read, written, told in one line and in JSON."""
         folder = os.fsencode(self.folder) + b"/"
         for name in (b"a\nb", b"'\"$(x)`%s%n", b"-o", "\u00e9\u20ac\U0001d11e".encode(), b"\xff\xc3(\xe0\x80\x80\xf0\x80\x80\x80\xed\xa0\x80\xf4\x90\x80\x80\xc0\xf8",
-                     b"\x01\x1b[2J\x7f"):
+                     b"\xff\xe0\xa0\x80\xed\x9f\xbf\xf4\x8f\xbf\xbf\xe1\x80\x80", b"\x01\x1b[2J\x7f"):
             mesh, out = folder + name + b".obj", folder + name + b".vtu"
             try:
                 shutil.copy(os.fsencode(self.small), mesh)
@@ -881,6 +881,18 @@ class Failures(Case):
             self.assertEqual(f.readline().strip(), "s0_0.1,s1_0.1")
         self.good("kernel", mesh, "--source", "0:0.2,0.3,5", "--t", 0.1, "-o", self.path("s.png"))
 
+        pictures = []
+        for source in ("1", "0:0,1", "2", "0:0,0"):              # the mark stands at the nearest corner
+            self.good("kernel", mesh, "--source", source, "--t", 0.1, "--title", "x", "--size", "64x64", "-o", self.path("s.png"))
+            with open(self.path("s.png"), "rb") as f:
+                pictures.append(f.read())
+        self.assertEqual(pictures[::2], pictures[1::2])
+        self.assertNotEqual(pictures[0], pictures[2])
+        both = [json.loads(self.good("geodesic", mesh, "--laplacian", "fem", "--source", s, "--json", "-o", self.path("s.txt")).stderr)
+                for s in ("0:0.1,0.2,1:0.5,0.2,0+4", "0+4,1:0.5,0.2,0:0.1,0.2")]
+        for key in ("residual", "residual_heat", "residual_distance", "stages", "status"):
+            self.assertEqual(both[0][key], both[1][key])         # those of the worst source, in any order
+
         def bad(*args):
             return self.bad(1, "kernel", mesh, "--t", 0.1, *args)
         self.assertRegex(bad("--source", "3:0.1,0.2"), "3 is beyond.* 3 faces")
@@ -893,6 +905,8 @@ class Failures(Case):
         self.assertIn("no point", bad("--source-file", self.file("bad.txt", "# nothing\n")))
         self.assertIn("not-there", bad("--source-file", self.path("not-there.txt")))
         self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0,0+5"), "source (0|1)")
+        self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0+5,0+1"), "source 0, point [01].*no face")
+        self.assertIn("source 0 has one point", self.bad(1, "sample", mesh, "--t", 1, "--count", 1, "--curve", "--source", "1,2"))
         self.assertRegex(self.bad(1, "geodesic", mesh, "--curve", "--source", "0+1,0+2+4"), "source 1, point 1.*no face")
         # farthest from places: the first row is farthest from the source, with its distance
         for source in (("--source", "1:0.2,0.3"), ("--source", "3,0.5*4+1"), ("--source-file", self.file("from.txt", "1:0.2,0.3\n")),
@@ -949,6 +963,11 @@ class Failures(Case):
         big = self.file("big.txt", "1\n" * 4 + "1.7e308\n-1.7e308\n" * 4)
         text = self.run_tool("diffuse", self.small, "--input", big, "--t", "1e-9", "--method", "direct").stderr.decode()
         self.assertNotIn("nan", text)
+        signs = self.file("signs.txt", "".join("1 %g\n" % (1.7e308 * s) for s in (1, -1, 1, 1, 1, -1, 1, -1, 1, 1, -1, -1)))
+        for method in ("direct", "krylov"):
+            self.assertIn("leaves the range of doubles", self.bad(1, "diffuse", self.small, "--input", signs, "--t", "0.2,0.3", "--method", method))
+        self.assertIn("1089000000 columns are too many", self.bad(1, "kernel", self.small, "--source", ",".join(["0"] * 33000), "--t",
+                                                                  ",".join(["auto:1000"] * 33)))
         self.assertIn("1000000000000 is beyond", self.bad(1, "sample", self.small, "--t", 1, "--count", 3, "--source", 10 ** 12))
         self.assertIn("2000000000 is beyond", self.bad(1, "spectrum", self.small, "-k", 2000000000))
         self.assertIn("2000000000 is beyond", self.bad(1, "sample", self.small, "--t", 1, "--count", 2000000000))
@@ -957,6 +976,8 @@ class Failures(Case):
         error = self.bad(1, "kernel", self.patch, "--source", 0, "--t", "10h2", "--memory-limit", 2000)
         self.assertIn("--memory-limit", error)
         self.bad(1, "kernel", self.patch, "--source", 0, "--t", "1000h2", "--solver", "cocg", "--precond", "none", "--max-iterations", 2)
+        self.bad(1, "pairs", self.patch, "--input", self.file("two.txt", "0 1\n"), "--t", "1000h2,2000h2", "--solver", "cocg", "--precond", "none",
+                 "--max-iterations", 2)
 
     def test_existing_output_survives(self):
         for name in ("keep.txt", "keep.png", "keep.vtu"):
@@ -979,7 +1000,7 @@ class Memory(Case):
             "hks small.obj --filter wave:1,1 -o x.txt", "hks small.obj --filter fractional:1,0.5 -o x.txt",
             "hks s.xyz --bandwidth 1h2 --t 1,2 --scale-invariant 2 -o x.txt", "trace small.obj --t 1/l1", "sample small.obj --t 1 --count 3 -o x.csv",
             "geodesic small.obj --source 0 -o x.txt --json", "geodesic small.obj --lengths lengths.txt --source 0:0.3,0.3 --dry-run",
-            "spectrum small.obj -k 3 -o x.csv", "levels small.obj --input v.npy --levels auto:3 -o x.obj",
+            "spectrum small.obj -k 3 -o x.csv", "levels small.obj --input v.npy --levels auto:12 -o x.obj",
             "levels small.obj --input v.npy --levels 1,2 -o x.csv", "render small.obj --input v.npy --input pairs.csv -o x.png --size 128x64")
 
     @classmethod
@@ -1353,6 +1374,8 @@ class Borders(Case):
         self.assertIn("method direct", self.good("hks", self.square, "--filter", "heat:10h2", "--dry-run").stderr.decode())
 
     def test_filter_refused(self):
+        for name in ("heat:1e-300", "heat:1e308", "band:1,1.0000001"):  # no better than an answer of zeros
+            self.assertRegex(self.bad(1, "kernel", self.small, "--source", 0, "--filter", name), r"--filter %s: the best poles found miss it by \d" % name)
         for bad in ("heat", "heat:", "heat:0", "heat:-1", "heat:1,2", "heat:auto:3", "wave:3", "wave:3,0", "wave:3h2,1", "band:3,2", "band:1h2,2", "sine:3", "fractional:1", "biharmonic:0"):
             self.assertIn("--filter takes heat:T, wave:E,SIGMA", self.bad(2, "hks", self.square, "--filter", bad))
         self.assertIn("no --t", self.bad(2, "hks", self.square, "--filter", "heat:1", "--t", 1))
@@ -1817,6 +1840,19 @@ class Methods(Case):
                 text = self.bad(1, *run, "--memory-limit", int(limit), "-o", self.path("no.npy"))
                 for way in ways:
                     self.assertIn(way + " needs ", text)
+        # and do not name what excludes what was asked for, or what is there already
+        few = self.file("few.xyz", "".join("%.17g %.17g %.17g\n" % p for p in torus(24, 12)[0]))
+        run = ["kernel", few, "--source", 0, "--t", "10h2", "--method"]
+        for more, ways in ((run + ["direct", "--degree", "8"], ["--method iterative", "--tufted", "--weight-cut 1e-4"]),
+                           (run + ["direct", "--poles", "uniform", "--weight-cut", "1e-3"], ["--method iterative", "--tufted"]),
+                           (run + ["iterative", "--degree", "8"], ["--precond jacobi", "--tufted"]),
+                           (run + ["iterative", "--poles", "uniform"], ["--precond jacobi", "--tufted"]),
+                           (["spectrum", few, "-k", "4"], ["--tufted", "--weight-cut 1e-4"])):
+            d = self.dry(*more)
+            d = self.dry(*more, "--memory-limit", int(d["bytes_in_use"] + 0.3 * (d["estimate"]["bytes"] - d["bytes_in_use"])))
+            self.assertFalse(d["estimate"]["fits"])
+            self.assertLessEqual(set(d["ways_out"]), set(ways + ["--weight-cut 1e-4"] * ("--weight-cut" not in more)), more)
+            self.assertIn("--tufted", d["ways_out"])
         # not even the matrices
         text = self.bad(1, "spectrum", points, "-k", "4", "--memory-limit", "2M", "-o", self.path("no.npy"))
         self.assertRegex(text, r"matrices alone need at least [0-9.]+ MB, and 2.1 MB are allowed .*; --tufted and --weight-cut 1e-4 need less")
@@ -2337,7 +2373,7 @@ class Formats(Case):
             with open(out, "rb") as g:
                 self.assertEqual(read_png(g.read())[:2], (200, 200))
         constant = self.file("r1.npy", npy_bytes([[3.0]] * 100, flat=True))
-        self.good("render", self.patch, "--input", constant, "-o", out)
+        self.assertEqual(self.good("render", self.patch, "--input", constant, "--quiet", "-o", out).stderr, b"")
 
     def test_render_side_by_side(self):
         """Several fields, or several meshes with a field each, in one picture with one range of colours."""
@@ -2367,6 +2403,8 @@ class Formats(Case):
         self.assertIn("one mesh", self.bad(2, "info", self.patch, other))
         self.assertIn("twelve", self.bad(2, "render", self.patch, *(["--input", low] * 13), "-o", out))
         self.assertIn("rows", self.bad(1, "render", self.patch, self.small, "--input", low, "--input", high, "-o", out))
+        self.assertIn("not-there", self.bad(1, "render", self.patch, self.path("not-there.obj"), "--input", low, "--input", high, "-o", out))
+        self.assertEqual(self.good("render", self.patch, "--input", low, "--input", high, "--quiet", "--size", "64x64", "-o", out).stderr, b"")
         self.assertIn("high.txt", self.bad(1, "render", self.patch, "--input", self.file("two.txt", "1 2\n" * 100), "--input", high, "--column", 1, "-o", out))
 
     def test_outputs_can_be_read_again(self):
@@ -2957,6 +2995,59 @@ class Levels(Case):
             near = {min([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)], key=lambda c: sum(math.dist(c, p[:2]) for p in line[2])) for line in got}
             self.assertEqual(near, corners)
 
+    def test_at_vertices(self):
+        """What touches the level only in a vertex or an edge has no line; a level that is asked for twice has its lines once."""
+        level = self.field_file("top.txt", [1.0] + [0.0] * 11)
+        self.assertEqual(self.lines("--input", level, "--levels", "1", self.small), [])
+        ridge = self.field_file("ridge.txt", [1.0, 1.0] + [0.0] * 10)
+        self.assertEqual(self.lines("--input", ridge, "--levels", "1", self.small), [])
+        once = self.good("levels", "--input", level, "--levels", "0.5", self.small, "--json")
+        twice = self.good("levels", "--input", level, "--levels", "0.5,1,0.5", self.small, "--json")
+        self.assertEqual(once.stdout, twice.stdout)
+        a, b = json.loads(once.stderr), json.loads(twice.stderr)
+        self.assertEqual((b["lines"], b["lengths"]), (1, [a["lengths"][0], 0, a["lengths"][0]]))
+        self.assertAlmostEqual(a["lengths"][0], 5, 12)           # a pentagon around a vertex of edges of length 2
+        # upright; by faces with a corner twice, which have no lines of their own
+        wall = self.file("wall.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\nf 1 1 2\nf 3 3 4\nf 1 1 3\n")
+        got = self.lines("--input", self.field_file("wall.txt", [0, 1, 1, 0]), "--levels", "0.5", wall)
+        self.assertEqual([(c, sorted(p)) for c, _, p in got], [(False, [(0.5, 0, 0), (0.5, 0, 1)])])
+
+    def test_rounding(self):
+        """Points lie between the ends of their edges, where rounding would lead outside and where values are far apart."""
+        x, y = 1 + 2.0 ** -52, -0.75 * 2.0 ** -52
+        path = self.file("close.obj", obj_text([(x, -x, 0.0), (y, -y, 0.0), (y, -y, 1.0)], [(0, 1, 2)]))
+        (_, _, points), = self.lines("--input", self.field_file("f.txt", [0, 1, 1]), "--levels", "0.99999999999999989", path)
+        self.assertTrue(all(y <= p[0] <= x and -x <= p[1] <= -y for p in points), points)
+        path = self.file("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        (_, _, points), = self.lines("--input", self.field_file("f.txt", [-1.7e308, 1.7e308, 1.7e308]), "--levels", "0", path)
+        self.assertEqual(sorted(points), [(0, 0.5, 0), (0.5, 0, 0)])
+
+    def test_out_of_reach(self):
+        """Distances that are infinite have no lines, as text and as .npy, and pictures; heat needs finite fields."""
+        v, f = icosahedron()
+        two = self.file("two.obj", obj_text(*apart((v, f), (v, f))))
+        distance = [row[0] for row in self.field("geodesic", "--source", 0, self.small)]
+        want = self.lines("--input", self.field_file("d.txt", distance), "--levels", "1,2", self.small)
+        self.assertEqual(len(want), 2)
+        for name in ("d.txt", "d.npy"):
+            self.good("geodesic", "--source", 0, two, "--quiet", "-o", self.path(name))
+            got = self.lines("--input", self.path(name), "--levels", "1,2", two)
+            self.assertEqual([c for c, _, _ in got], [c for c, _, _ in want])
+            for a, b in zip(got, want):
+                for p, q in zip(a[2], b[2]):
+                    self.assertLess(math.dist(p, q), 1e-9)
+            self.assertRegex(self.bad(1, "diffuse", "--input", self.path(name), "--t", 1, two), r"inf.* not a finite number")
+        p = self.good("levels", "--input", self.path("d.npy"), "--levels", "auto:1", two, "--json")
+        self.assertAlmostEqual(json.loads(p.stderr)["levels"][0], max(distance) / 2, 9)
+        pictures = []
+        for last in ("inf", "-inf", "nan"):
+            field = self.file("p.txt", "-1e-9\n" + "1\n" * 10 + last + "\n")
+            self.good("render", "--input", field, self.small, "--size", "64x64", "--quiet", "-o", self.path("p.png"))
+            with open(self.path("p.png"), "rb") as file:
+                pictures.append(file.read())
+        self.assertEqual(pictures[0], pictures[2])               # the range of colours is that of the finite values
+        self.assertEqual(self.bad(1, "render", "--input", self.file("p.txt", "1\n" * 11 + "info\n"), self.small, "-o", self.path("p.png")).count("p.txt:12"), 1)
+
     def test_of_distances(self):
         """Any result of the tool is a field: circles around a vertex."""
         v, f = quad_grid(20, 20)
@@ -3062,8 +3153,15 @@ class Demo(Case):
 
     def test_folder_that_cannot_be(self):
         """Told before anything is computed."""
-        for folder in (self.small, self.path("no/such/folder"), self.path("x" * 300)):
+        folders = [self.small, self.path("no/such/folder"), self.path("x" * 300), self.path("." + "/." * 1100)]
+        if POSIX:
+            folders.append(self.path("dangling"))
+            os.symlink(self.path("nowhere"), folders[-1])
+        for folder in folders:
             self.assertIn("cannot make this folder", self.bad(1, "demo", "-o", folder))
+        empty = self.path("empty")                               # and a run that ends early writes nothing there
+        self.assertIn("memory limit", self.bad(1, "demo", "-o", empty, "--memory-limit", 1000))
+        self.assertEqual(os.listdir(empty), [])
 
 
 class Points(Case):

@@ -1077,6 +1077,188 @@ static void tmio_test_triangulate(void)
     free(tri);
 }
 
+/* ---- what is rare ---- */
+
+static int tmio_never(void) { return 0; }
+
+/* What is rare in text, but allowed or told. */
+static void tmio_test_rare_text(void)
+{
+    static char small[100100];
+    const char *const head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+    char text[512];
+    mio_mesh m;
+    double x = 1;
+    memset(small, '0', sizeof small);
+    memcpy(small, "0.", 2);
+    memcpy(small + sizeof small - 3, "17", 3);
+    CHECK(mio_number(small, &x) == small + sizeof small - 1 && x == 0);
+    CHECK(!mio_has_extension("a.3ds", "obj") && !mio_has_extension("a.1", "obj"));
+    m = tmio_good("a.off", "noff\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2", "OFF", 3, 1);    /* not nOFF */
+    CHECK(tmio_vertex_is(&m, 2, 0, 1, 0) && tmio_face_is(&m, 0, 3, 0, 1, 2, 0));
+    mio_free(&m);
+    tmio_bad("x.off", "OFF 1", "x.off:1", "number of faces");
+    m = tmio_good("a", "about\nv\t1 2 3\nf\t1 1 1\n", "OBJ", 1, 1);          /* the second line tells */
+    CHECK(tmio_vertex_is(&m, 0, 1, 2, 3));
+    mio_free(&m);
+    tmio_bad("x", "about\nv  \nv of\n", "x", "neither the content nor the name");
+    m = tmio_good("a.dat", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n5 5 5\n", "XYZ", 6, 0);       /* one line too much for an OFF */
+    CHECK(tmio_vertex_is(&m, 0, 3, 1, 0) && tmio_vertex_is(&m, 5, 5, 5, 5));
+    mio_free(&m);
+    tmio_bad("x.xyz", "1 2 3\n/ 5 6\n", "x.xyz:2", "'/'");
+    tmio_bad("x.xyz", "1 2 \\\n3\n", "x.xyz:1", "'\\'");
+    tmio_bad("x.csv", "x,y,z\n", "x.csv:1", "'x'");
+    tmio_bad("x.pts", "x y z\n", "x.pts:1", "'x'");
+    tmio_bad("x.dat", "# nothing\n", "x.dat", "nothing but comments");
+    tmio_bad("x.stl", "facet normal 0 0 1 outer loop vertex 0 0 0\n", "x.stl:2", "before 'endsolid'");
+    snprintf(text, sizeof text, "%selement face 0\nproperty int q\nend_header\n1 2 3\n", head);
+    tmio_fine("a.ply", text, "PLY ascii", 1, 0);
+    snprintf(text, sizeof text, "%sproperty float q\nend_header\n1 2 3\n", head);
+    tmio_bad("x.ply", text, "x.ply:9", "too few numbers for vertex 0");
+    snprintf(text, sizeof text, "%sproperty list uchar int q\nend_header\n1 2 3 1e16 1\n", head);
+    tmio_bad("x.ply", text, "x.ply:9", "a list of length 1e+16");
+    snprintf(text, sizeof text, "%sproperty list uchar int q\nend_header\n1 2 3 1.5 1 1\n", head);
+    tmio_bad("x.ply", text, "x.ply:9", "a list of length 1.5");
+    tmio_bad("x.ply", "ply\rformat ascii 1.0\relement vertex 1\rproperty int x\rproperty int y\rproperty int z\rend_header", "x.ply:7", "vertex 0");
+    tmio_bad_table("x.csv", "a,-nan\n2,3\n", 11, "x.csv:1", "'a'");
+    tmio_bad_table("x.csv", "a,+inf\n2,3\n", 11, "x.csv:1", "'a'");
+    free(tmio_table("a.csv", "a,-infra\n2,3\n", 13, 1, 2));
+}
+
+/* A binary PLY of one face per row of `corners`, with these properties of vertices and faces. */
+static void tmio_begin_ply(tmio_bytes *t, int vertices, const char *x, const char *y, const char *z, int faces, const char *properties)
+{
+    char head[400];
+    t->n = 0;
+    t->big = 0;
+    snprintf(head, sizeof head, "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty %s x\nproperty %s y\nproperty %s z\nelement face %d\n%send_header\n",
+             vertices, x, y, z, faces, properties);
+    tmio_text(t, head);
+}
+
+static void tmio_corners(tmio_bytes *t, int count, int size)
+{
+    int i;
+    for (i = 0; i < count; i++) tmio_int(t, i, size);
+}
+
+/* Properties in unusual orders and types, around the corners of faces too. */
+static void tmio_test_rare_ply(void)
+{
+    static const char *const faces[4] = {"property list uchar uint vertex_indices\nproperty short q\n", "property list uchar short vertex_indices\n",
+                                         "property list uchar float uv\nproperty list uchar int vertex_indices\n",
+                                         "property uchar q\nproperty list uchar int vertex_indices\nproperty double r\n"};
+    static tmio_bytes t;
+    mio_mesh m;
+    mio_error e;
+    int k, f, i;
+    for (k = 0; k < 4; k++) {
+        tmio_begin_ply(&t, 3, "float", k % 2 ? "float" : "double", "double", 2, faces[k]);
+        for (i = 0; i < 3; i++) {
+            tmio_float(&t, i + 0.5);
+            if (k % 2) tmio_float(&t, 2.5);
+            else tmio_double(&t, 2.5);
+            tmio_double(&t, -i);
+        }
+        for (f = 0; f < 2; f++) {
+            if (k == 2) { tmio_int(&t, 1, 1); tmio_float(&t, 7); }
+            if (k == 3) tmio_int(&t, 7, 1);
+            tmio_int(&t, 3, 1);
+            tmio_corners(&t, 3, k == 1 ? 2 : 4);
+            if (k == 0) tmio_int(&t, 7, 2);
+            if (k == 3) tmio_double(&t, 7);
+        }
+        CHECK_MSG(tmio_load_bytes(&m, &e, "a.ply", t.b, t.n) == 0, "%d: %s", k, e.text);
+        CHECK(m.n == 3 && m.n_faces == 2 && tmio_vertex_is(&m, 2, 2.5, 2.5, -2) && tmio_face_is(&m, 1, 3, 0, 1, 2, 0));
+        mio_free(&m);
+    }
+    tmio_begin_ply(&t, 6, "char", "char", "char", 100, "property list uchar int vertex_indices\n");   /* more corners than triangles have */
+    for (i = 0; i < 6; i++) tmio_corners(&t, 3, 1);
+    for (f = 0; f < 100; f++) { tmio_int(&t, 6, 1); tmio_corners(&t, 6, 4); }
+    CHECK_MSG(tmio_load_bytes(&m, &e, "a.ply", t.b, t.n) == 0, "%s", e.text);
+    CHECK(m.n == 6 && m.n_faces == 100 && m.face_ptr[100] == 600 && m.face_idx[599] == 5 && m.face_idx[300] == 0);
+    mio_free(&m);
+}
+
+/* Tables with inf and nan, where these are wanted; and headers of .npy files that end too early. */
+static void tmio_test_rare_tables(void)
+{
+    const char *const text = "d,e\n1 inf\n-Infinity NaN\n+INF -nan\n";
+    static const char *const heads[] = {"{'descr'", "{'descr': <f8', 'fortran_order': False, 'shape': (1,), }", "{'descr': '<f", "{'descr': 'f8'  , 'shape': (1,)}",
+                                        "{'descr': '|b1 ', 'shape': (1,)}", "{'descr':  ", "{'descr' : :"};
+    static tmio_bytes t;
+    double *v = NULL;
+    int64_t rows, total = 0;
+    int32_t cols;
+    mio_error e;
+    size_t i;
+    tmio_put(tmio_path("a.txt"), text, strlen(text));
+    CHECK_MSG(mio_load_field(&v, &rows, &cols, tmio_path("a.txt"), NULL, &e) == 0 && rows == 3 && cols == 2, "%s", e.text);
+    CHECK(v && v[0] == 1 && v[1] == -HUGE_VAL && v[2] == HUGE_VAL && v[3] == HUGE_VAL && v[4] != v[4] && v[5] != v[5]);
+    free(v);
+    for (i = 0; i < 4; i++) {
+        static const char *const wrong[4] = {"1\ninfinit\n", "1\n1e999\n", "1\nnana\n", "1\n- inf\n"};
+        tmio_put(tmio_path("a.txt"), wrong[i], strlen(wrong[i]));
+        CHECK_MSG(mio_load_field(&v, &rows, &cols, tmio_path("a.txt"), NULL, &e) == MIO_FAILED && strstr(e.text, "a.txt:2: "), "%s", wrong[i]);
+    }
+    remove(tmio_path("a.txt"));
+    tmio_make_npy(&t, "<f8", "False", "(2,)", 1);
+    tmio_double(&t, HUGE_VAL);
+    tmio_double(&t, (double)NAN);
+    tmio_put(tmio_path("a.npy"), t.b, t.n);
+    CHECK(mio_load_field(&v, &rows, &cols, tmio_path("a.npy"), NULL, &e) == 0 && rows == 2 && v[0] == HUGE_VAL && v[1] != v[1]);
+    free(v);
+    remove(tmio_path("a.npy"));
+    for (i = 0; i < sizeof heads / sizeof *heads; i++, total += rows) {
+        t.n = 0;
+        t.big = 0;
+        tmio_text(&t, "\x93NUMPY\1");
+        tmio_int(&t, 0, 1);
+        tmio_int(&t, (int64_t)strlen(heads[i]), 2);
+        tmio_text(&t, heads[i]);
+        rows = 1;
+        tmio_bad_table("x.npy", t.b, t.n, "x.npy", "the type of its numbers");
+    }
+    CHECK(total == 7);
+}
+
+/* Two files at once, a stop that never comes, names with line ends or none, callers that want no message. */
+static void tmio_test_rare_calls(void)
+{
+    static tmio_sample s;
+    static char buf[4096];
+    static mio_file a, b;
+    mio_mesh m;
+    mio_error e;
+    int32_t *tri, n;
+    CHECK(mio_file_open(&a, tmio_path("one.txt"), tmio_never, &e) == 0 && mio_file_open(&b, tmio_path("two.txt"), NULL, &e) == 0);
+    CHECK(strcmp(mio_temporary_path, a.temporary) == 0 && strcmp(a.temporary, b.temporary) != 0);
+    mio_file_put(&a, "1", 1);
+    mio_file_put(&b, "2", 1);
+    CHECK(mio_file_close(&b) == 0 && mio_temporary_set && mio_file_close(&a) == 0 && !mio_temporary_set);
+    CHECK(tmio_get(tmio_path("one.txt"), buf, sizeof buf) == 1 && buf[0] == '1' && tmio_get(tmio_path("two.txt"), buf, sizeof buf) == 1 && buf[0] == '2');
+    remove(tmio_path("one.txt"));
+    remove(tmio_path("two.txt"));
+    CHECK(mio_file_open(&a, tmio_path("no/such/folder/x.txt"), NULL, &e) == MIO_FAILED);
+    mio_file_cancel(&a);
+    CHECK(a.status == MIO_FAILED && strstr(e.text, "cannot write"));
+    tmio_sample_make(&s);
+    s.names[0] = "a\nb";
+    s.o.names = s.names;
+    tmio_written(&s, "o.csv", buf, sizeof buf);
+    CHECK_MSG(strncmp(buf, "\"a b\",second\n", 13) == 0, "%s", buf);
+    s.o.n_ids = 2;
+    s.o.ids = s.ids;
+    s.o.id_names = NULL;                         /* not all columns have names */
+    tmio_written(&s, "o.csv", buf, sizeof buf);
+    CHECK_MSG(strncmp(buf, "0,0,", 4) == 0, "%s", buf);
+    CHECK(mio_triangulate(&s.m, &tri, &n, NULL, &e) == 0 && n == 6 && tri[17] == 5);
+    free(tri);
+    tmio_put(tmio_path("x.ply"), "ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int y\nproperty int z\nend_header\n1 2\n", 98);
+    CHECK(mio_load(&m, tmio_path("x.ply"), NULL, NULL) == MIO_FAILED && !m.xyz);
+    remove(tmio_path("x.ply"));
+}
+
 /* ---- broken files ---- */
 
 /* Loads, and checks what holds for whatever the file was. Returns the status. */
@@ -1207,6 +1389,10 @@ static void test_meshio(void)
     tmio_test_stop();
     tmio_test_large_stl();
     tmio_test_nearly();
+    tmio_test_rare_text();
+    tmio_test_rare_ply();
+    tmio_test_rare_tables();
+    tmio_test_rare_calls();
     tmio_test_triangulate();
     tmio_test_broken();
 }

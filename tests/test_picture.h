@@ -279,6 +279,12 @@ static void tpic_test_png_file(void)
     CHECK(pic_png_write(path, rgb, 2, 2) == PIC_ERR_FILE);
     CHECK(pic_png_write(path, rgb, 0, 2) == PIC_ERR_ARGUMENT);
     CHECK(pic_png_write("", rgb, 2, 2) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_write("picture_test_here.png", rgb, 2, 2) == PIC_OK && remove("picture_test_here.png") == 0);
+    CHECK(pic_png_write(test_tmp_dir(), rgb, 2, 2) == PIC_ERR_FILE);    /* a folder is there, and nothing is left beside it */
+    snprintf(part, sizeof part, "%s.part", test_tmp_dir());
+    f = fopen(part, "rb");
+    CHECK(f == NULL);
+    if (f) fclose(f);
     CHECK(pic_png_write(path, NULL, 2, 2) == PIC_ERR_ARGUMENT);
 }
 
@@ -523,12 +529,84 @@ static void tpic_test_degenerate(void)
     CHECK(pic_render(&img, &p, &o) == PIC_ERR_ARGUMENT && !img.rgb);
 }
 
+/* Are two pictures the same? */
+static int tpic_same(const pic_panel *a, const pic_opts *oa, const pic_panel *b, const pic_opts *ob)
+{
+    pic_image x, y;
+    const int fine = (pic_render(&x, a, oa) == PIC_OK) + (pic_render(&y, b, ob) == PIC_OK) == 2;
+    const int same = fine && x.width == y.width && x.height == y.height && memcmp(x.rgb, y.rgb, 3 * (size_t)x.width * (size_t)x.height) == 0;
+    CHECK(fine);
+    pic_image_free(&x);
+    pic_image_free(&y);
+    return same;
+}
+
+/* Triangles with a corner twice or with two corners in one place draw nothing; a view that is no number is as none;
+ * a factor stands above the ticks of large values. */
+static void tpic_test_rare(void)
+{
+    static const double xyz[12] = {0, 0, 0, 1, 0, 0.2, 0, 1, 0, 0, 1, 0}, f[4] = {0, 1, 2, 2}, large[4] = {0, 1e6, 2e6, 2e6};
+    static const int32_t tri[15] = {0, 1, 2, 0, 0, 1, 0, 1, 1, 1, 0, 1, 1, 2, 3};
+    pic_opts o = tpic_small(), other;
+    pic_panel p, q, two[2];
+    pic_image img;
+    memset(&p, 0, sizeof p);
+    o.width = 120; o.height = 90;
+    p.n = 4; p.xyz = xyz; p.n_tri = 1; p.tri = tri; p.field = f;
+    q = p;
+    q.n_tri = 5;
+    o.view_given = 1;
+    o.azimuth = 20;
+    o.elevation = 50;
+    CHECK(tpic_same(&p, &o, &q, &o));
+    other = o;
+    o.view_given = 0;
+    CHECK(!tpic_same(&p, &o, &p, &other));
+    other.azimuth = (double)NAN;
+    CHECK(tpic_same(&p, &o, &p, &other));
+    other.azimuth = 0;
+    other.elevation = HUGE_VAL;
+    CHECK(tpic_same(&p, &o, &p, &other));
+    q = p;
+    q.field = large;
+    CHECK(!tpic_same(&p, &o, &q, &o));
+    other = o;
+    other.own_scale = 1;
+    tpic_render_ok(&p, 1, &other, "one panel, own scale");
+    two[0] = two[1] = p;
+    two[1].field = NULL;
+    tpic_render_ok(two, 2, &other, "own scales, one without a field");
+    q = p;
+    q.n = -1;
+    CHECK(pic_render(&img, &q, &o) == PIC_ERR_ARGUMENT);
+    q.n = 4;
+    q.n_tri = -1;
+    CHECK(pic_render(&img, &q, &o) == PIC_ERR_ARGUMENT);
+    q.n_tri = 1;
+    q.n_markers = -1;
+    CHECK(pic_render(&img, &q, &o) == PIC_ERR_ARGUMENT);
+    CHECK(fabs(pic_nice_step(10) - 10) < 1e-12 && fabs(pic_nice_step(0.0011) - 0.002) < 1e-15);
+    if (pic_render(&img, &p, &o) == PIC_OK) {
+        uint8_t *const before = (uint8_t *)malloc(3 * 120 * 90);
+        if (before) {
+            memcpy(before, img.rgb, 3 * 120 * 90);
+            pic_text(&img, "nothing", 10, 10, 0, 0, 1, pic_ink);
+            pic_text(&img, NULL, 10, 10, 10, 0, 1, pic_ink);
+            CHECK(memcmp(before, img.rgb, 3 * 120 * 90) == 0);
+            pic_text(&img, "all", 10, 50, 10, 0, 1, pic_ink);
+            CHECK(memcmp(before, img.rgb, 3 * 120 * 90) != 0);
+        }
+        free(before);
+        pic_image_free(&img);
+    }
+}
+
 /* Letters beyond ASCII, superscripts and subscripts: by the widths of texts. */
 static void tpic_test_letters(void)
 {
     static const char *const dashes[3] = {"\xe2\x80\x93", "\xe2\x80\x94", "\xe2\x88\x92"};
     static const char *const unknown[6] = {"\xc3\xa9", "\xc2\xa0", "\xe2\x80\x9c", "\xe2\x88\x91", "\xe2\x82\xac", "\xf0\x9d\x84\x9e"};
-    static const char *const plain[7] = {"x^", "x^y", "x^-", "x_", "heat_on", "on_t", "k_t_"};
+    static const char *const plain[13] = {"x^", "x^y", "x^-", "x_", "heat_on", "on_t", "k_t_", "x^:", "_x", "a_:", "a_[", "a_{", "@_a"};
     const double box = pic_text_width("\xff", 10);
     int i;
     for (i = 0; i < 3; i++) CHECK(pic_text_width(dashes[i], 10) == pic_text_width(dashes[0], 10) && pic_text_width(dashes[i], 10) != box);
@@ -537,7 +615,9 @@ static void tpic_test_letters(void)
     CHECK(pic_text_width("\t\x7f", 10) == pic_text_width("  ", 10));
     CHECK(pic_text_width("10^-3", 10) < pic_text_width("10-3", 10) && pic_text_width("h^2", 10) < pic_text_width("h2", 10));
     CHECK(pic_text_width("k_t", 10) < pic_text_width("kt", 10) && pic_text_width("a k_T 0", 10) < pic_text_width("a kT 0", 10));
-    for (i = 0; i < 7; i++) {                    /* every sign is drawn: as wide as its letters one by one */
+    CHECK(pic_text_width("h^2:", 10) < pic_text_width("h2:", 10) && pic_text_width("a_1:", 10) < pic_text_width("a1:", 10));
+    CHECK(pic_text_width("a_t[", 10) < pic_text_width("at[", 10) && pic_text_width("{a_t", 10) < pic_text_width("{at", 10));
+    for (i = 0; i < 13; i++) {                    /* every sign is drawn: as wide as its letters one by one */
         double sum = 0;
         const char *c;
         for (c = plain[i]; *c; c++) {
@@ -816,6 +896,7 @@ static void test_picture(void)
     tpic_test_isolines();
     tpic_test_one_view();
     tpic_test_degenerate();
+    tpic_test_rare();
     tpic_test_letters();
     tpic_test_given_scale();
     tpic_test_taste();

@@ -204,6 +204,30 @@ static void sign_torus(void) {
     hd_csr_free(&B, NULL);
 }
 
+/* Without weights on its edge the only eigenvalue but that of constants is 0 too: no time belongs to it. */
+static void sign_times_of_nothing(void) {
+    int64_t row_ptr[3] = {0, 2, 4}, diagonal[3] = {0, 1, 2};
+    int32_t col[4] = {0, 1, 0, 1}, one[2] = {0, 1};
+    double zero[4] = {0, 0, 0, 0}, mass[2] = {1, 1}, c = 1, t = -7;
+    hd_csr L, B;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    memset(&L, 0, sizeof L);
+    L.n_rows = L.n_cols = 2;
+    B = L;
+    L.nnz = 4;
+    L.row_ptr = row_ptr;
+    L.col = col;
+    L.val = zero;
+    B.nnz = 2;
+    B.row_ptr = diagonal;
+    B.col = one;
+    B.val = mass;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 1, NULL, &e) == HD_OK);
+    CHECK(hd_times_spectral(lap, 1, &c, &t, &e) == HD_ERR_BREAKDOWN && strstr(e.text, "lost in rounding") && t == -7);
+    hd_laplacian_free(lap);
+}
+
 static void sign_suitable_times(void) {
     shape s = shape_icosphere(2);
     const double apart[3] = {3, 0, 0}, c[2] = {1, 0.1};
@@ -378,6 +402,7 @@ static void test_signatures(void) {
     sign_sphere();
     sign_torus();
     sign_suitable_times();
+    sign_times_of_nothing();
     sign_limits();
     shape_free(&ball);
     shape_free(&bumpy);

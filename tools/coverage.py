@@ -29,7 +29,7 @@ import house  # noqa: E402
 TOP = house.TOP
 PLAIN = ["-Dalways_inline=unused", "-DNDEBUG"]      # system headers write __always_inline__ and are not meant
 PROGRAMS = (("runner", "tests/runner.c"), ("internals", "tests/internals.c"))
-TOOL_FILES = ("heatdiff.c", "levels.h", "meshio.h", "picture.h", "shapes.h")
+TOOL_FILES = ("heatdiff.c", "levels.h", "meshio.h", "picture.h")      # shapes.h has shapes of tests, and one of the tool
 TOOL_GROUPS = ("meshio", "picture")
 
 # What the tests do to the tool must not cost it its counters: a limit of the size of files, allocations that fail

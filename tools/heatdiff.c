@@ -127,7 +127,7 @@ static void bar_show(const char *stage, double done)
     full = (int)(done * BAR_CELLS);
     for (i = 0; i < BAR_CELLS; i++) cells[i] = i < full ? '#' : '.';
     cells[BAR_CELLS] = 0;
-    snprintf(text, sizeof text, "%.38s%s%s", stage ? stage : "", bar.part[0] ? ", " : "", bar.part);
+    snprintf(text, sizeof text, "%.38s%s%s", stage, bar.part[0] ? ", " : "", bar.part);
     fprintf(stderr, "\r[%s] %3.0f%% %-38.38s", cells, 100 * done, text);
     fflush(stderr);
     bar.visible = 1;
@@ -1592,7 +1592,7 @@ static void report_merge(hd_report *all, const hd_report *one)
     if (one->degree > all->degree) all->degree = one->degree;
     if (one->n_poles > all->n_poles) all->n_poles = one->n_poles;
     all->iterations += one->iterations;
-    for (p = 0; p < one->n_poles && p < HD_MAX_POLES; p++) all->pole_iterations[p] += one->pole_iterations[p];
+    for (p = 0; p < one->n_poles; p++) all->pole_iterations[p] += one->pole_iterations[p];
     if (one->factor_nnz > all->factor_nnz) all->factor_nnz = one->factor_nnz;
     all->factor_flops += one->factor_flops;
     keep_larger(&all->growth, one->growth);
@@ -1626,7 +1626,7 @@ static void summary_add(summary *s, const hd_report *r, const int *index, int n)
     add_word(&s->precond, ", ", precond_name(r));
     add_word(&s->poles, ", ", poles_name(r));
     add_word(&s->ordering, ", ", ordering_name(r));
-    if (r->reason) add_word(&s->reason, "; ", r->reason);
+    add_word(&s->reason, "; ", r->reason);
 }
 
 static const char *or_none(const word_list *list) { return list->text[0] ? list->text : "none"; }
@@ -1638,7 +1638,7 @@ static const char *method_text(const summary *s)
 }
 static const char *reason_text(const summary *s)
 {
-    return s->reason.text[0] ? s->reason.text : s->worst.reason ? s->worst.reason : "";
+    return s->reason.text[0] ? s->reason.text : s->worst.reason;
 }
 
 /* ==== meshes and fields ==== */
@@ -1664,10 +1664,7 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-static int fail_file(int status, const mio_error *e)
-{
-    return status == MIO_STOPPED ? INTERRUPTED : fail(FAILED, "%s", e->text);
-}
+static int fail_file(const mio_error *e) { return fail(FAILED, "%s", e->text); }
 
 static void mesh_free(mesh_data *m)
 {
@@ -1684,14 +1681,14 @@ static int mesh_finish(mesh_data *m)
     m->n = m->file.n;
     m->n_faces = m->file.n_faces;
     m->xyz = m->file.xyz;
-    return status < 0 ? fail_file(status, &e) : DONE;
+    return status < 0 ? fail_file(&e) : DONE;
 }
 
 static int mesh_load(mesh_data *m, const char *path)
 {
     mio_error e;
     const int status = mio_load(&m->file, path, NULL, &e);
-    return status < 0 ? fail_file(status, &e) : mesh_finish(m);
+    return status < 0 ? fail_file(&e) : mesh_finish(m);
 }
 
 /* Makes a mesh from a shape, and empties the shape. */
@@ -1716,13 +1713,15 @@ static void field_free(field_data *field)
     memset(field, 0, sizeof *field);
 }
 
-/* A field for a mesh of n vertices. */
-static int field_load(field_data *field, const char *path, const char *mesh_name, int32_t n)
+/* A field for a mesh of n vertices. infinite: inf and nan are values too, as pictures and level sets leave
+ * them out. */
+static int field_load(field_data *field, const char *path, const char *mesh_name, int32_t n, int infinite)
 {
     mio_error e;
     int64_t rows = 0;
-    const int status = mio_load_table(&field->values, &rows, &field->columns, path, NULL, &e);
-    if (status < 0) return fail_file(status, &e);
+    const int status = (infinite ? mio_load_field : mio_load_table)(&field->values, &rows, &field->columns,
+                                                                    path, NULL, &e);
+    if (status < 0) return fail_file(&e);
     if (rows != n)
         return fail(FAILED, "%s: %lld rows, but %s has %ld vertices", display_name(path), (long long)rows,
                     mesh_name, (long)n);
@@ -1819,10 +1818,10 @@ static void run_end(run *r)
 
 static int threads_used(const run *r) { return (int)hd_context_threads(&r->context); }
 
-/* n rows of doubles, with the size checked. */
+/* n rows of doubles, with the size checked; at least one column. */
 static double *new_columns(int64_t n, int64_t columns)
 {
-    if (columns > 0 && (uint64_t)n > SIZE_MAX / sizeof(double) / (uint64_t)columns) return NULL;
+    if ((uint64_t)n > SIZE_MAX / sizeof(double) / (uint64_t)columns) return NULL;
     return (double *)malloc((size_t)(n * columns) * sizeof(double) + 1);
 }
 
@@ -1830,7 +1829,7 @@ static double *new_columns(int64_t n, int64_t columns)
 static int fail_library(const char *file, const hd_error *e)
 {
     char place[120] = "";
-    if (e->status == HD_ERR_CANCELLED && interrupt.asked) return INTERRUPTED;
+    if (e->status == HD_ERR_CANCELLED) return INTERRUPTED;       /* on_progress said so */
     if (e->status == HD_ERR_MEMORY_LIMIT && e->value > 0)
         return fail(FAILED, "%s: at least %.1f MB are needed, more than the memory limit "
                     "(--memory-limit, by default nine tenths of the machine's memory)",
@@ -1869,7 +1868,7 @@ static int run_lengths(run *r)
     int64_t rows = 0, f;
     int32_t columns = 0;
     const int status = mio_load_table_lines(&table, &rows, &columns, &r->length_lines, r->o->lengths, NULL, &e);
-    int code = status < 0 ? fail_file(status, &e) : check_length_rows(r, rows, columns);
+    int code = status < 0 ? fail_file(&e) : check_length_rows(r, rows, columns);
     if (!code && (r->lengths = new_columns(rows, 3)) == NULL) code = fail_memory("the lengths");
     for (f = 0; f < 3 * rows && !code; f++) r->lengths[f] = table[f % 3 * rows + f / 3];
     free(table);
@@ -1926,8 +1925,8 @@ static hd_status point_spacing(run *r, double *h, hd_error *err)
         status = hd_neighbours_nearest(r->mesh.xyz, n, NULL, n, k, near_ids, d2, &r->context, err);
     for (i = 0; status >= 0 && i < n; i++) {
         const double *d = d2 + (size_t)i * (size_t)k;
-        /* in the place of an earlier one */
-        if (d[0] == 0 && near_ids[(size_t)i * (size_t)k] != i) continue;
+        /* the first is the point itself, or an earlier one in its place */
+        if (near_ids[(size_t)i * (size_t)k] != i) continue;
         for (j = 0; j < k && d[j] == 0; j++) { }
         if (j == k) continue;
         *h += sqrt(d[j]);
@@ -1992,16 +1991,14 @@ static int fail_length(const run *r, const hd_error *err)
 
 static int fail_laplacian(const run *r, hd_error *err)
 {
-    if (r->lengths && err->face >= 0 && (err->status == HD_ERR_ARGUMENT || err->status == HD_ERR_NOT_FINITE))
-        return fail_length(r, err);
+    if (r->lengths && err->face >= 0) return fail_length(r, err);
     /* the ways out that find_ways tries: a run whose matrices do not fit has no plan to ask */
-    if (err->status == HD_ERR_MEMORY_LIMIT && err->value > 0 && has_exponentials(r) &&
-        laplacian_kind(r) == HD_LAPLACIAN_VORONOI_EXP)
+    if (err->status == HD_ERR_MEMORY_LIMIT && err->value > 0 && laplacian_kind(r) == HD_LAPLACIAN_VORONOI_EXP)
         return fail(FAILED, "%s: the matrices alone need at least %.1f MB, and %.1f MB are allowed (--memory-limit, "
                     "by default nine tenths of the machine's memory); --tufted%s", r->mesh_name,
                     1e-6 * err->value, 1e-6 * (double)r->context.byte_limit,
                     r->o->weight_cut < WIDER_CUT ? " and --weight-cut 1e-4 need less" : " needs less");
-    if (err->face >= 0 && r->mesh.face_of && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
+    if (err->face >= 0 && laplacian_kind(r) != HD_LAPLACIAN_POLYGON)
         err->face = r->mesh.face_of[err->face];
     return fail_library(r->mesh_name, err);
 }
@@ -2106,6 +2103,9 @@ static int spread_times(run *r)
     return DONE;
 }
 
+/* The function that is zero everywhere misses a filter by 1 of its largest value. */
+static const double USELESS = 0.9;
+
 /* The pole set of --filter, whose time is its own. */
 static int run_filter(run *r)
 {
@@ -2125,6 +2125,9 @@ static int run_filter(run *r)
     }
     if (hd_rational_fit(&r->filter, &f, hd_laplacian_lambda_max(r->lap), &r->context, &err) < 0)
         return fail_library(r->mesh_name, &err);
+    if (!(r->filter.max_error < USELESS * r->filter.largest))
+        return fail(FAILED, "%s: --filter %s: the best poles found miss it by %.1e of its largest value",
+                    r->mesh_name, o->filter, r->filter.max_error / r->filter.largest);
     r->times[0] = r->filter.t;
     snprintf(r->time_names[r->n_times++], sizeof *r->time_names, "%s", word_of(FILTERS, o->filter_kind));
     return DONE;
@@ -2210,7 +2213,7 @@ static int read_points(run *r)
     status = mio_open(&in, o->source_file, NULL, &e);
     if (status == MIO_OK) status = read_point_lines(r, &in, room);
     mio_close(&in);
-    return status < 0 ? fail_file(status, &e) : DONE;
+    return status < 0 ? fail_file(&e) : DONE;
 }
 
 /* An error at a point of a source. */
@@ -2431,7 +2434,7 @@ static void try_options(run *r, const options *o, const char *option)
     other.context.n_threads = r->context.n_threads;
     if (!same) other.lap = NULL;
     other.heat = NULL;
-    if (!interrupt.asked && (same || run_laplacian(&other, &err) >= 0) && other.lap && !run_plan(&other)) {
+    if (!interrupt.asked && (same || run_laplacian(&other, &err) >= 0) && !run_plan(&other)) {
         /* the matrices are the run's own then, and so is the analysis where the run has made one */
         if (estimate_query(&other, other.heat, other.n_times, &e, &err) >= 0)
             add_way(r, option, e.cost[0].bytes + (same ? (double)r->context.bytes_in_use : 0) +
@@ -2446,7 +2449,7 @@ static void try_options(run *r, const options *o, const char *option)
 static void try_tufted(run *r)
 {
     options o = *r->o;
-    if (!has_exponentials(r) || laplacian_kind(r) != HD_LAPLACIAN_VORONOI_EXP) return;
+    if (laplacian_kind(r) != HD_LAPLACIAN_VORONOI_EXP) return;
     o.tufted = 1;
     o.laplacian = HD_LAPLACIAN_DEFAULT;
     o.weight_cut = 0;
@@ -2468,7 +2471,7 @@ static void find_ways(run *r)
         add_way(r, "--method iterative", e->bytes_in_use + iterative->bytes, iterative->seconds);
     if (r->o->method == HD_METHOD_DIRECT && krylov->possible && !r->o->degree && !r->o->poles)
         add_way(r, "--method krylov", e->bytes_in_use + krylov->bytes, krylov->seconds);
-    if (r->n_times > 1 && r->heat && estimate_query(r, r->heat, 1, &one, &err) >= 0 &&
+    if (r->n_times > 1 && estimate_query(r, r->heat, 1, &one, &err) >= 0 &&
         one.cost[0].bytes < 0.95 * e->cost[0].bytes)
         add_way(r, "one time after the other", one.bytes_in_use + one.cost[0].bytes,
                 one.cost[0].seconds * r->n_times);
@@ -2502,8 +2505,8 @@ static int fail_limit(run *r, const hd_error *e)
     hd_error err;
     double allowed = (double)r->context.byte_limit, needed;
     int i;
-    if (!r->heat || estimate_query(r, r->heat, r->n_times, &r->estimate, &err) < 0 ||
-        r->estimate.cost[0].fits || !r->estimate.cost[0].possible)
+    if (estimate_query(r, r->heat, r->n_times, &r->estimate, &err) < 0 || r->estimate.cost[0].fits ||
+        !r->estimate.cost[0].possible)
         return fail_library(r->mesh_name, e);
     needed = bytes_needed(r);
     needed = needed > e->value ? needed : e->value;
@@ -3122,7 +3125,7 @@ static void json_time(FILE *out, double t, const hd_report *p)
     json_open(&j, out);
     json_number(&j, "t", t);
     json_text(&j, "method", word_of(METHODS, (int)p->method));
-    json_text(&j, "reason", p->reason ? p->reason : "");
+    json_text(&j, "reason", p->reason);
     json_text(&j, "solver", solver_name(p));
     json_text(&j, "precond", precond_name(p));
     json_text(&j, "poles", poles_name(p));
@@ -3197,9 +3200,7 @@ static void json_heat(json *j, const run *r)
 static void print_method(const run *r)
 {
     const hd_report *w = &r->sum.worst;
-    const char *reason = reason_text(&r->sum);
-    fprintf(stderr, "method %s%s%s%s\n", method_text(&r->sum), *reason ? " (" : "", reason,
-            *reason ? ")" : "");
+    fprintf(stderr, "method %s (%s)\n", method_text(&r->sum), reason_text(&r->sum));
     if (w->factor_nnz > 0)
         fprintf(stderr, "factors: %.3g non-zeros, %.3g a row; %.3g flops, growth %.3g, ordering %s\n",
                 (double)w->factor_nnz, (double)w->factor_nnz / r->lap->n_active, w->factor_flops, w->growth,
@@ -3519,8 +3520,9 @@ static void picture_from_zero(pic_opts *opts, const pic_panel *panels, int n_pan
     if (opts->lo < opts->hi || opts->log_decades > 0) return;
     for (k = 0; k < n_panels; k++)
         for (i = 0; i < panels[k].n; i++) {
-            if (panels[k].field[i] < low) low = panels[k].field[i];
-            if (panels[k].field[i] > high) high = panels[k].field[i];
+            const double x = panels[k].field[i];
+            if (isfinite(x) && x < low) low = x;
+            if (isfinite(x) && x > high) high = x;
         }
     if (low < 0 && -low < 1e-4 * high) {
         opts->lo = 0;
@@ -3548,7 +3550,7 @@ static int write_picture(const char *path, const pic_panel *panels, int n_panels
     status = mio_file_close(file);
     free(file);
     free(data);
-    return status < 0 ? fail_file(status, &e) : DONE;
+    return status < 0 ? fail_file(&e) : DONE;
 }
 
 /* ==== results ==== */
@@ -3601,7 +3603,7 @@ static int write_table(const char *path, int kind, const run *r, const result *r
     out.no_header = r->o->no_header;
     status = mio_write(path, kind, &r->mesh.file, &out, &e);
     free(rgb);
-    return status < 0 ? fail_file(status, &e) : DONE;
+    return status < 0 ? fail_file(&e) : DONE;
 }
 
 /* The picture of one column, with the words that the command has for it. */
@@ -3799,7 +3801,7 @@ static int write_ids(run *r)
     status = mio_write(r->o->output, r->o->output ? output_format(r->o->output) : MIO_TXT, NULL, &out, &e);
     bar_hide();
     r->sec.write = now() - start;
-    return status < 0 ? fail_file(status, &e) : DONE;
+    return status < 0 ? fail_file(&e) : DONE;
 }
 
 /* ==== info ==== */
@@ -4026,7 +4028,7 @@ static int run_pairs(run *r)
     int64_t *lines = NULL, row;
     int32_t columns = 0;
     const int status = mio_load_table_lines(&values, &r->rows, &columns, &lines, r->o->input, NULL, &e);
-    int code = status < 0 ? fail_file(status, &e) : DONE;
+    int code = status < 0 ? fail_file(&e) : DONE;
     if (!code && columns != 2)
         code = fail(FAILED, "%s: %ld columns; a pair has two ids", display_name(r->o->input), (long)columns);
     if (!code && r->rows > INT32_MAX)
@@ -4090,12 +4092,12 @@ static int command_diffuse(run *r)
     int code;
     memset(&field, 0, sizeof field);
     code = run_load(r);
-    if (!code) code = field_load(&field, r->o->input, r->mesh_name, r->mesh.n);
+    if (!code) code = field_load(&field, r->o->input, r->mesh_name, r->mesh.n, 0);
     if (!code) code = run_assemble(r);
     if (!code) code = run_times(r);
     r->n_inputs = field.columns;
     r->fields = field.values;
-    r->field_name = r->o->input;
+    r->field_name = display_name(r->o->input);
     if (!code) code = command_finish(r, write_heat, report_heat);
     r->fields = NULL;
     field_free(&field);
@@ -4187,7 +4189,7 @@ static int levels_table(const run *r, const lev_set *s, int kind)
         out.names = names;
         out.no_header = r->o->no_header;
         status = mio_write(r->o->output, kind, NULL, &out, &e);
-        if (status < 0) code = fail_file(status, &e);
+        if (status < 0) code = fail_file(&e);
     }
     free(id);
     free(values);
@@ -4203,7 +4205,7 @@ static int levels_write(const run *r, const lev_set *s)
     if (kind != MIO_OBJ) return levels_table(r, s, kind);
     if (mio_file_open(&f, r->o->output, NULL, &e) == MIO_OK) levels_obj(&f, s);
     status = mio_file_close(&f);
-    return status < 0 ? fail_file(status, &e) : DONE;
+    return status < 0 ? fail_file(&e) : DONE;
 }
 
 /* Sums over the lines of one level. */
@@ -4249,6 +4251,14 @@ static void levels_report(const run *r, const lev_set *s, const double *level)
         }
 }
 
+/* Is x among the first n levels? Its lines are there already then. */
+static int has_level(const double *level, int n, double x)
+{
+    int k;
+    for (k = 0; k < n && level[k] != x; k++) { }
+    return k < n;
+}
+
 static int levels_of(run *r, const field_data *field)
 {
     const double *f = field->values + (size_t)r->o->column * (size_t)r->mesh.n;
@@ -4264,7 +4274,8 @@ static int levels_of(run *r, const field_data *field)
     memset(&s, 0, sizeof s);
     code = levels_resolve(r, f, level);
     for (k = 0; k < r->o->n_levels && !code && !interrupt.asked; k++)
-        if (!lev_trace(&s, &mesh, f, level[k])) code = fail_memory("the lines");
+        if (!has_level(level, k, level[k]) && !lev_trace(&s, &mesh, f, level[k]))
+            code = fail_memory("the lines");
     if (!code && interrupt.asked) code = INTERRUPTED;
     if (!code) code = levels_write(r, &s);
     if (!code) levels_report(r, &s, level);
@@ -4280,7 +4291,7 @@ static int command_levels(run *r)
     memset(&field, 0, sizeof field);
     if (!code && r->mesh.n_tri == 0)
         code = fail(FAILED, "%s: levels needs faces, and there are none", r->mesh_name);
-    if (!code) code = field_load(&field, r->o->input, r->mesh_name, r->mesh.n);
+    if (!code) code = field_load(&field, r->o->input, r->mesh_name, r->mesh.n, 1);
     if (!code && r->o->column >= field.columns)
         code = fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0",
                     display_name(r->o->input), r->o->column, (long)field.columns);
@@ -4321,7 +4332,7 @@ static int view_load(const run *r, int k, view_data *v)
     int code = own ? mesh_load(&v->own, o->meshes[k]) : DONE;
     v->mesh = own ? &v->own : &r->mesh;
     v->mesh_name = own ? display_name(o->meshes[k]) : r->mesh_name;
-    if (!code) code = field_load(&v->field, o->inputs[k], v->mesh_name, v->mesh->n);
+    if (!code) code = field_load(&v->field, o->inputs[k], v->mesh_name, v->mesh->n, 1);
     if (!code && o->column >= v->field.columns)
         code = fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0",
                     display_name(o->inputs[k]), o->column, (long)v->field.columns);
@@ -4384,7 +4395,7 @@ static int command_render(run *r)
 
 /* ==== demo ==== */
 
-enum { DEMO_SOURCES = 2 };
+enum { DEMO_SOURCES = 2, DEMO_N_TIMES = 4, DEMO_PATH = 2048, DEMO_FILE_NAME = 48 };  /* the last two: bytes */
 static const char *const DEMO_NAMES[DEMO_SOURCES] = { "trunk", "tail" };
 static const char DEMO_TIMES[] = "10h2,100h2,500h2,2000h2";
 static const char DEMO_FOLDER[] = "heatdiff-demo";
@@ -4404,18 +4415,15 @@ static int demo_mesh(run *r)
     return code;
 }
 
-/* The ends of the longest axis. */
+/* The ends of the longest axis, which is x. */
 static void demo_sources(const mesh_data *m, int64_t source[DEMO_SOURCES])
 {
     double low[3], high[3];
     int32_t i;
-    int c, axis = 0;
     bounding_box(m, low, high);
-    for (c = 1; c < 3; c++)
-        if (high[c] - low[c] > high[axis] - low[axis]) axis = c;
     for (i = 0; i < m->n; i++) {
-        if (m->xyz[3 * (size_t)i + (size_t)axis] == high[axis]) source[0] = i;
-        if (m->xyz[3 * (size_t)i + (size_t)axis] == low[axis]) source[1] = i;
+        if (m->xyz[3 * (size_t)i] == high[0]) source[0] = i;
+        if (m->xyz[3 * (size_t)i] == low[0]) source[1] = i;
     }
 }
 
@@ -4463,26 +4471,26 @@ static int demo_check(run *r, demo_checks *c)
 
 static const char *demo_folder(const run *r) { return r->o->output ? r->o->output : DEMO_FOLDER; }
 
-static int demo_path(const run *r, char *path, size_t size, const char *kind, const char *name,
-                     const char *extension)
+/* command_demo has seen to it that the folder's name is short enough. */
+static void demo_path(const run *r, char *path, size_t size, const char *kind, const char *name,
+                      const char *extension)
 {
-    const int n = snprintf(path, size, "%s/%s%s%s", demo_folder(r), kind, name, extension);
+    snprintf(path, size, "%s/%s%s%s", demo_folder(r), kind, name, extension);
     bar_show("writing", 0);
-    return n >= 0 && (size_t)n < size ? DONE : fail(FAILED, "%.60s...: the name is too long", demo_folder(r));
 }
 
 static int demo_ply(const run *r, int q)
 {
     const size_t first = (size_t)(q * r->n_times);
-    char path[2048];
-    const char *names[8];
+    char path[DEMO_PATH];
+    const char *names[DEMO_N_TIMES];
     result res;
-    int k, code = demo_path(r, path, sizeof path, "heat-", DEMO_NAMES[q], ".ply");
-    if (code) return code;
+    int k;
+    demo_path(r, path, sizeof path, "heat-", DEMO_NAMES[q], ".ply");
     memset(&res, 0, sizeof res);
     res.n_columns = r->n_times;
     res.values = r->values + first * (size_t)r->mesh.n;
-    for (k = 0; k < r->n_times && k < 8; k++) names[k] = r->time_names[k];
+    for (k = 0; k < DEMO_N_TIMES; k++) names[k] = r->time_names[k];
     res.names = names;
     res.colour = r->n_times / 2;
     return write_table(path, MIO_PLY, r, &res);
@@ -4490,13 +4498,13 @@ static int demo_ply(const run *r, int q)
 
 static int demo_grid(const run *r, int q)
 {
-    pic_panel panels[8];
-    char path[2048], captions[8][64], title[64];
+    pic_panel panels[DEMO_N_TIMES];
+    char path[DEMO_PATH], captions[DEMO_N_TIMES][64], title[64];
     pic_opts opts = picture_opts(r->o);
-    int k, code = demo_path(r, path, sizeof path, "heat-", DEMO_NAMES[q], ".png");
-    if (code) return code;
+    int k;
+    demo_path(r, path, sizeof path, "heat-", DEMO_NAMES[q], ".png");
     snprintf(title, sizeof title, "Heat that starts at the %s", DEMO_NAMES[q]);
-    for (k = 0; k < r->n_times && k < 8; k++) {
+    for (k = 0; k < DEMO_N_TIMES; k++) {
         panels[k] = picture_panel(&r->mesh, r->values + (size_t)(q * r->n_times + k) * (size_t)r->mesh.n);
         time_text(r->time_names[k], captions[k], sizeof captions[k]);
         panels[k].caption = captions[k];
@@ -4519,9 +4527,8 @@ static int demo_isolines(const run *r)
     const int k = r->n_times - 2;
     pic_panel panel = picture_panel(&r->mesh, r->values + (size_t)k * (size_t)r->mesh.n);
     pic_opts opts = picture_opts(r->o);
-    char path[2048], title[100], when[64];
-    int code = demo_path(r, path, sizeof path, "isolines", "", ".png");
-    if (code) return code;
+    char path[DEMO_PATH], title[100], when[64];
+    demo_path(r, path, sizeof path, "isolines", "", ".png");
     time_text(r->time_names[k], when, sizeof when);
     snprintf(title, sizeof title, "Lines of equal heat, %s", when);
     panel.markers = &r->sources[0];
@@ -4559,9 +4566,8 @@ static int demo_field(const run *r, int f, const double *values)
 {
     pic_panel panel = picture_panel(&r->mesh, values);
     pic_opts opts = picture_opts(r->o);
-    char path[2048], subtitle[100];
-    int code = demo_path(r, path, sizeof path, DEMO_FIELD_NAMES[f], "", ".png");
-    if (code) return code;
+    char path[DEMO_PATH], subtitle[100];
+    demo_path(r, path, sizeof path, DEMO_FIELD_NAMES[f], "", ".png");
     time_text(r->time_names[r->n_times / 2], subtitle, sizeof subtitle);
     opts.title = DEMO_FIELD_TITLES[f];
     opts.subtitle = subtitle;
@@ -4578,13 +4584,13 @@ static int demo_field(const run *r, int f, const double *values)
 static int demo_fields(const run *r)
 {
     double *values = new_columns(r->mesh.n, DEMO_FIELDS);
-    char path[2048];
+    char path[DEMO_PATH];
     result res;
     int f, code = values ? demo_inverse(r, values) : fail_memory("the demo's fields");
     for (f = 0; f < DEMO_FIELDS && !code; f++)
         code = demo_field(r, f, values + (size_t)f * (size_t)r->mesh.n);
-    if (!code) code = demo_path(r, path, sizeof path, "distance-signature", "", ".ply");
     if (!code) {
+        demo_path(r, path, sizeof path, "distance-signature", "", ".ply");
         memset(&res, 0, sizeof res);
         res.n_columns = DEMO_FIELDS;
         res.values = values;
@@ -4651,6 +4657,8 @@ static int command_demo(run *r)
     int64_t sources[DEMO_SOURCES] = { 0, 0 };
     demo_checks checks;
     int code;
+    if (strlen(demo_folder(r)) > DEMO_PATH - DEMO_FILE_NAME)
+        return fail(FAILED, "%.60s...: cannot make this folder: the name is too long", demo_folder(r));
     if (!make_folder(demo_folder(r)))
         return fail(FAILED, "%s: cannot make this folder: %s", demo_folder(r), strerror(errno));
     if ((code = demo_mesh(r)) != DONE) return code;

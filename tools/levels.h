@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Faces have corner face_idx[face_ptr[f]] .. face_idx[face_ptr[f + 1] - 1]; without face_ptr three each. */
+/* Faces have corner face_idx[face_ptr[f]] .. face_idx[face_ptr[f + 1] - 1]. */
 typedef struct lev_mesh {
     const double *xyz;
     const int64_t *face_ptr;
@@ -74,11 +74,11 @@ static uint64_t lev_edge(int32_t i, int32_t j)
     return i < j ? (uint64_t)i << 32 | (uint32_t)j : (uint64_t)j << 32 | (uint32_t)i;
 }
 
-/* The point at share s of the way from x to y, in between also where rounding or overflow would lead outside. */
+/* The point at share s of the way from x to y, 0 < s < 1. It lies between them also as rounded: s is below 1
+ * by more of y - x than the difference can have been rounded up. */
 static double lev_between(double x, double y, double s)
 {
-    const double p = isfinite(y - x) ? x + s * (y - x) : (1 - s) * x + s * y, low = x < y ? x : y, high = x < y ? y : x;
-    return p < low ? low : p > high ? high : p;
+    return isfinite(y - x) ? x + s * (y - x) : (1 - s) * x + s * y;
 }
 
 static void lev_point(const lev_work *w, uint64_t edge, double *p)
@@ -183,7 +183,7 @@ static int lev_add_point(lev_set *s, lev_line *line, const double *p)
     return 1;
 }
 
-/* Follows unused segments from a node to a node where none is left, or that is not simple, or back. */
+/* Follows unused segments from a node that has one to a node that is not simple, or back. */
 static int lev_follow(lev_work *w, lev_set *s, int64_t from)
 {
     lev_line line;
@@ -195,8 +195,9 @@ static int lev_follow(lev_work *w, lev_set *s, int64_t from)
     lev_point(w, w->node[here], p);
     if (!lev_add_point(s, &line, p)) return 0;
     do {
-        for (i = w->start[here]; i < w->start[here + 1] && w->used[w->at[i]]; i++) { }
-        if (i == w->start[here + 1]) break;
+        /* There is an unused one: at the beginning by the caller's word, later because the second segment of
+         * a node is used only together with the first. */
+        for (i = w->start[here]; w->used[w->at[i]]; i++) { }
         k = w->at[i];
         w->used[k] = 1;
         here = lev_node(w, w->segment[k].edge[w->segment[k].edge[0] == w->node[here]]);
@@ -204,7 +205,7 @@ static int lev_follow(lev_work *w, lev_set *s, int64_t from)
         if (!lev_add_point(s, &line, p)) return 0;
     } while (here != from && w->start[here + 1] - w->start[here] == 2);
     line.closed = here == from && line.count > 2;
-    if (line.closed && memcmp(s->xyz + 3 * line.first, s->xyz + 3 * (s->n_points - 1), sizeof p) == 0) {
+    if (line.closed) {                           /* the first point was added again */
         line.count--;
         s->n_points--;
     }
@@ -242,8 +243,8 @@ static int lev_trace(lev_set *s, const lev_mesh *mesh, const double *f, double l
     w.f = f;
     w.level = level;
     for (i = 0; i < mesh->n_faces && fine; i++) {
-        const int64_t first = mesh->face_ptr ? mesh->face_ptr[i] : 3 * (int64_t)i;
-        fine = lev_face(&w, mesh->face_idx + first, mesh->face_ptr ? mesh->face_ptr[i + 1] - first : 3);
+        const int64_t first = mesh->face_ptr[i];
+        fine = lev_face(&w, mesh->face_idx + first, mesh->face_ptr[i + 1] - first);
     }
     if (fine) fine = lev_graph(&w) && lev_lines(&w, s);
     free(w.segment);

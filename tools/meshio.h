@@ -112,6 +112,8 @@ typedef struct mio_file {
      int  mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, int64_t **lines, const char *path,
                                int (*stop)(void), mio_error *e);
               The same, and lines[rows], the line of each row for messages (NULL when the table is binary). The caller frees it.
+     int  mio_load_field(double **values, int64_t *rows, int32_t *cols, const char *path, int (*stop)(void), mio_error *e);
+              As mio_load_table, but inf and nan are values too: distances are infinite where no way leads.
      int  mio_fail_at(mio_error *e, const char *path, int64_t line, const char *format, ...);
               Writes `PATH:LINE: ...` (line < 1: `PATH: ...`) and returns MIO_FAILED: for the caller's own complaints.
 
@@ -222,6 +224,7 @@ typedef struct mio_in {
     int comma;                  /* 1: commas and semicolons separate numbers as blanks do; 2: they end a number, but are no blanks */
     int hash;                   /* # begins a comment */
     int joins;                  /* a backslash before the line end joins two lines */
+    int infinite;               /* inf and nan are numbers of a table */
     mio_error *e;
 } mio_in;
 
@@ -441,7 +444,7 @@ static const char *mio_number(const char *p, double *x)
         const unsigned d = (unsigned)(unsigned char)*p - '0';
         if (d <= 9) {
             if (digits < 19) m = 10 * m + d;
-            if (digits < 1000 && (m || digits)) digits++;
+            if (digits < 1000 && m) digits++;
         } else if (*p == '.' && !point) {
             point = p;
         } else break;
@@ -458,7 +461,7 @@ static const char *mio_number(const char *p, double *x)
         exponent += down ? -k : k;
         p = q;
     }
-    if (m == 0 && digits == 0) {
+    if (m == 0) {
         *x = minus ? -0.0 : 0.0;
         return p;
     }
@@ -530,6 +533,32 @@ static int mio_take_integer(mio_in *in, int64_t *x, const char *what)
     const char *const q = mio_integer(in->p, x);
     char word[48];
     if (!q || (q < in->end && !mio_is_end(in, *q))) return mio_fail(in, in->line, "'%s' is not %s", mio_show(in, in->p, word), what);
+    in->p = q;
+    return MIO_OK;
+}
+
+/* Reads inf, infinity or nan at p, in any case and with any sign, as mio_number does. */
+static const char *mio_infinite(const char *p, double *x)
+{
+    static const char *const words[3] = {"infinity", "inf", "nan"};
+    const int minus = *p == '-';
+    int i;
+    if (*p == '-' || *p == '+') p++;
+    for (i = 0; i < 3; i++) {
+        size_t k = 0;
+        while (words[i][k] && (p[k] | 32) == words[i][k]) k++;
+        if (words[i][k]) continue;
+        *x = i == 2 ? (double)NAN : minus ? -HUGE_VAL : HUGE_VAL;
+        return p + k;
+    }
+    return NULL;
+}
+
+/* Takes the value of a table that begins at p. */
+static int mio_take_value(mio_in *in, double *x)
+{
+    const char *const q = in->infinite ? mio_infinite(in->p, x) : NULL;
+    if (!q || (q < in->end && !mio_is_end(in, *q))) return mio_take_number(in, x);
     in->p = q;
     return MIO_OK;
 }
@@ -935,7 +964,7 @@ static int mio_is_word(const mio_in *in, const char *word)
 /* Steps to the next word of the line; fails when there is none. */
 static int mio_ply_word(mio_in *in, const char *what)
 {
-    if (in->p < in->end) in->p = mio_token_end(in, in->p);
+    in->p = mio_token_end(in, in->p);
     return mio_blanks(in) ? MIO_OK : mio_fail(in, in->line, "%s is missing", what);
 }
 
@@ -1199,7 +1228,7 @@ static int mio_ply_fast_vertices(mio_in *in, const mio_ply *s, mio_build *b, con
     return MIO_OK;
 }
 
-/* Binary faces with one-byte lengths and 32-bit indices, with nothing or fixed-size values around the list: the usual ones.
+/* Room for all faces has been made. Binary faces with one-byte lengths and 32-bit indices, with nothing or fixed-size values around the list: the usual ones.
    Steps in->p and s->row over them, and stops at the first that is wrong or odd, which is left to the general reader. */
 static int mio_ply_fast_faces(mio_in *in, mio_ply *s, mio_build *b, const mio_ply_element *e)
 {
@@ -1220,7 +1249,6 @@ static int mio_ply_fast_faces(mio_in *in, mio_ply *s, mio_build *b, const mio_pl
         if (status != MIO_OK) return status;
         if (corners < 3 || corners > 127 || mio_left(in) < size) return MIO_OK;
         if (b->n_idx + corners > b->room_idx && mio_reserve_corners(in, b, b->n_idx + corners) < 0) return MIO_FAILED;
-        if (b->n_faces == b->room_ptr && mio_reserve_faces(in, b, b->n_faces + 1) < 0) return MIO_FAILED;
         idx = b->idx + b->n_idx;
         for (k = 0; k < corners; k++, p += 4) {
             const uint32_t v = mio_u32(p, big);
@@ -1672,7 +1700,7 @@ static int mio_table_row(mio_in *in, mio_numbers *t)
     double x;
     for (;;) {
         if (*in->p == ',' || !mio_blanks(in)) return mio_fail(in, in->line, "a value is missing beside a comma");
-        if (mio_take_number(in, &x) < 0 || mio_add_value(in, t, x) < 0) return MIO_FAILED;
+        if (mio_take_value(in, &x) < 0 || mio_add_value(in, t, x) < 0) return MIO_FAILED;
         cols++;
         if (!mio_blanks(in)) break;
         if (*in->p == ',') { in->p++; (void)mio_blanks(in); }
@@ -1817,7 +1845,8 @@ static int mio_table_npy(mio_in *in, double **values, int64_t *rows, int32_t *co
         if (status != MIO_OK) return status;
         for (c = 0; c < nc; c++) {
             const double x = mio_value(p + (h.fortran ? c * nr + r : r * nc + c) * size, h.type, h.big);
-            if (!mio_is_finite(x)) return mio_fail(in, 0, "row %lu, column %lu: %g is not a finite number", (unsigned long)r, (unsigned long)c, x);
+            if (!in->infinite && !mio_is_finite(x))
+                return mio_fail(in, 0, "row %lu, column %lu: %g is not a finite number", (unsigned long)r, (unsigned long)c, x);
             (*values)[c * nr + r] = x;
         }
     }
@@ -1843,7 +1872,8 @@ static int mio_parse_table(mio_in *in, double **values, int64_t *rows, int32_t *
     return status;
 }
 
-static int mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, int64_t **lines, const char *path, int (*stop)(void), mio_error *e)
+static int mio_load_any(double **values, int64_t *rows, int32_t *cols, int64_t **lines, const char *path, int (*stop)(void), mio_error *e,
+                        int infinite)
 {
     mio_in in;
     int status;
@@ -1852,12 +1882,23 @@ static int mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, i
     *cols = 0;
     if (lines) *lines = NULL;
     status = mio_open(&in, path, stop, e);
+    in.infinite = infinite;
     return status == MIO_OK ? mio_parse_table(&in, values, rows, cols, lines) : status;
+}
+
+static int mio_load_table_lines(double **values, int64_t *rows, int32_t *cols, int64_t **lines, const char *path, int (*stop)(void), mio_error *e)
+{
+    return mio_load_any(values, rows, cols, lines, path, stop, e, 0);
 }
 
 static int mio_load_table(double **values, int64_t *rows, int32_t *cols, const char *path, int (*stop)(void), mio_error *e)
 {
     return mio_load_table_lines(values, rows, cols, NULL, path, stop, e);
+}
+
+static int mio_load_field(double **values, int64_t *rows, int32_t *cols, const char *path, int (*stop)(void), mio_error *e)
+{
+    return mio_load_any(values, rows, cols, NULL, path, stop, e, 1);
 }
 
 /* ==== [12] output files ==== */

@@ -700,7 +700,7 @@ static const char *const pic_glyph_dash = "a -0bab";
 static const char *const pic_glyph_dot = "0 .0b";
 static const char *const pic_glyph_unknown = "8 -04848i0i04";
 
-static int pic_digit(char c) { return c >= 'a' && c <= 'z' ? c - 'a' + 10 : c >= '0' && c <= '9' ? c - '0' : 0; }
+static int pic_digit(char c) { return c >= 'a' ? c - 'a' + 10 : c - '0'; }
 
 /* Blends colour over pixel (x, y) with weight a; outside the image nothing happens. */
 static void pic_blend(pic_image *img, int32_t x, int32_t y, const uint8_t rgb[3], double a)
@@ -806,8 +806,7 @@ static void pic_pen_glyph(pic_pen *pen, const char *g)
         char kind;
         int n = 0;
         while (*g == ' ') g++;
-        if (!*g) break;
-        for (kind = *g++; g[0] && g[0] != ' ' && g[1] && n < 24; g += 2, n++) {
+        for (kind = *g++; g[0] && g[0] != ' '; g += 2, n++) {
             p[n][0] = pic_digit(g[0]);
             p[n][1] = pic_digit(g[1]);
         }
@@ -911,7 +910,7 @@ static void pic_text(pic_image *img, const char *text, double x, double y, doubl
 static double pic_text_fit(const char *text, double cap, double width)
 {
     const double w = pic_text_width(text, cap);
-    return w > width && w > 0 ? cap * width / w : cap;
+    return w > width ? cap * width / w : cap;
 }
 
 /* ==== [5] scale ==== */

@@ -299,7 +299,7 @@ static void fz_levels(const uint8_t *data, size_t size) {
         ptr[k + 1] = at;
     }
     mesh.xyz = xyz;
-    mesh.face_ptr = way & 1 ? NULL : ptr;
+    mesh.face_ptr = ptr;
     mesh.face_idx = idx;
     fz_what = "level sets";
     for (k = 0; k < 2; k++) {
