@@ -19211,6 +19211,7 @@ typedef struct hdi_lane {
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
+    double step;                 /* how far apart the smallest doubles are, in the unit of u */
     int32_t dual;                /* what is asked for is B u, which goes to tmp in the end */
     double f_off, rhs_off;       /* what f, and B^-1 times the right-hand side, are off by in the B norm */
     /* outcome, norms absolute */
@@ -23753,6 +23754,16 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
 
+/* A bound of the norm of B of any d with |d_v| <= 1, by 2 |B_vw d_v d_w| <= B_vv d_v^2 + B_ww d_w^2; of a dual
+ * lane of the norm of B^-1. */
+static double hdi_lane_spread(const hd_laplacian *lap, int dual) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        sum += dual ? hdi_inverse_mass(lap, i) : (lap->B ? hdi_row_terms(lap, i) : 1) * lap->b_diag[i];
+    return sqrt(sum);
+}
+
 /* The power of two that brings a number near one. */
 static double hdi_unit_of(double size) {
     int exponent = 0;
@@ -23788,13 +23799,16 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     for (i = 0; i < lap->n_components; i++)
         if (hdi_finite(lap->component_mass[i])) heat_in += unit * lane->target[i] * scale;
     if (ledger) {
-        const double total = hdi_parts_sum(&lane->off);
+        double total = hdi_parts_sum(&lane->off);
         hdi_parts off =
             lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL)
                        : by_value ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
         if (lane->dual) off.rounding += 2 * DBL_EPSILON * largest;
         else if (total > 0) off.rounding += DBL_EPSILON * largest;
+        off.rounding += lane->step;              /* where answers are among the smallest doubles */
+        if (lane->step > DBL_EPSILON * DBL_EPSILON * largest)
+            total += lane->step * hdi_lane_spread(lap, lane->dual);
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
@@ -24833,14 +24847,15 @@ static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
                             : HDI_CAST(int32_t, h->ask.list->order[h->ask.list->begin[q]].key));
 }
 
-/* Brings fields near one, by a power of two, where their squares could leave the range of doubles. */
-static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
+/* Brings fields near one, by a power of two, where their squares could leave the range of doubles. Sums over
+ * eigenpairs are made with the caller's masses, which may be near that range themselves. */
+static void hdi_lane_unit(const hd_laplacian *lap, int by_pairs, hdi_lane *lane) {
     double most = 0;
     int32_t i;
     int exponent = 0;
     for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
     if (most > 0) frexp(most, &exponent);
-    if (exponent > -256 && exponent < 256) return;
+    if (!by_pairs && exponent > -256 && exponent < 256) return;
     lane->exponent = exponent;
     for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
@@ -24855,10 +24870,10 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
         double size = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             size += fabs(lap->B[p] * f[lap->L.col[p]]);
-        size *= hdi_row_terms(lap, i) * DBL_EPSILON / 2;
-        sum += size * size / lap->b_diag[i];
+        size *= hdi_row_terms(lap, i);
+        sum += size * (size / lap->b_diag[i]);
     }
-    return sum > 0 ? sqrt(sum) * hdi_ratio_root(lap) : 0;
+    return DBL_EPSILON / 2 * sqrt(sum) * hdi_ratio_root(lap);
 }
 
 /* Takes the constants out of a field for good: they do not change in time. */
@@ -24883,16 +24898,16 @@ static int hdi_lane_bounded(const hdi_heat_call *h) {
 /* Puts a source of several vertices into x by rows; those without rows leave nothing. Returns the norm of
  * diag(B)^-1/2 x. */
 static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double *x) {
-    double norm2 = 0;
+    double norm = 0;
     int32_t q;
     memset(x, 0, HDI_CAST(size_t, lap->n_active) * sizeof *x);
     for (q = 0; q < c->n; q++) {
         const int32_t row = lap->row[c->vertex[q]];
         if (row < 0) continue;
         x[row] = c->weight[q];
-        norm2 += c->weight[q] * c->weight[q] / lap->b_diag[row];
+        norm = hdi_pythag(norm, c->weight[q] / sqrt(lap->b_diag[row]));
     }
-    return sqrt(norm2);
+    return norm;
 }
 
 /* Brings a column near one in the norm of B, by a power of two. A small mass beside large ones has a column
@@ -24959,7 +24974,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->dual = h->ask.query == HDI_QUERY_ADJOINT;
     if (hdi_query_fields(h->ask.query)) {
         hdi_gather(lap, h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf, lane->f);
-        hdi_lane_unit(lap, lane);
+        hdi_lane_unit(lap, h->by_pairs, lane);
         if (lane->dual) {
             memcpy(lane->rhs, lane->f, bytes);
             if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
@@ -25009,6 +25024,14 @@ static double hdi_heat_unit(const hdi_heat_call *h) {
     return h->ask.query == HDI_QUERY_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
 }
 
+/* How far apart the smallest doubles are, in the unit of a lane's answers; 0 where these are exact. */
+static double hdi_heat_step(const hdi_heat_call *h, const hdi_lane *lane) {
+    const int given = h->ask.query == HDI_QUERY_FIELD || h->ask.query == HDI_QUERY_OPERATOR;
+    const double least = DBL_MIN * DBL_EPSILON;
+    if (h->t == 0 && h->still == 0 && given) return 0;
+    return ldexp(least, hdi_high32(-lane->exponent, 0)) / hdi_heat_unit(h) + (h->by_pairs ? 2 * least : 0);
+}
+
 /* The entries of item q, from the lane's answer. */
 static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
@@ -25027,6 +25050,7 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         if (!lane->skip && row >= 0)
             off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         if (!lane->skip && row >= 0 && h->by_pairs) off = lane->off_value;
+        if (!lane->skip && row >= 0) off.rounding += unit * lane->step;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
 }
@@ -25050,6 +25074,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     const hd_laplacian *lap = h->lap;
     const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, h->now);
     const double unit = hdi_heat_unit(h);
+    const int copy = h->t == 0 && h->ask.query == HDI_QUERY_FIELD && !h->rate;
     double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
     const double *out = hdi_lane_answer(lane);
     int32_t i;
@@ -25064,7 +25089,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     }
     for (i = 0; i < lap->n && (lap->n_held > 0 || h->rate); i++)
         if (h->rate || lap->row[i] == HD_ROW_HELD) u[i] = 0;
-    for (i = 0; i < lap->n_active && !lane->skip; i++) {
+    for (i = 0; i < lap->n_active && !lane->skip && !copy; i++) {
         const double value = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
         u[lap->vertex[i]] = value;
         if ((lane->exponent > 0 || hdi_nan(value)) && hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
@@ -25165,6 +25190,7 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
     const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
+    lane->step = hdi_heat_step(h, lane);
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
@@ -25687,10 +25713,9 @@ static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double v
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             row += (fabs(lap->L.val[p]) + (lap->B ? value * fabs(lap->B[p]) : 0)) *
                 fabs(x[lap->vertex[lap->L.col[p]]]);
-        row *= c;
-        sum += row * (row / lap->b_diag[i]);
+        sum = hdi_pythag(sum, c * (row / sqrt(lap->b_diag[i])));   /* squares could leave the range of doubles */
     }
-    return hdi_ratio_root(lap) * sqrt(sum);
+    return hdi_ratio_root(lap) * sum;
 }
 
 /* The largest |X' B X - 1|, in the norm of Frobenius. bx [n] */
@@ -25873,11 +25898,17 @@ static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most,
 typedef struct hdi_decay {
     int32_t first;               /* of the pairs that are not constants */
     double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds of the errors per |c_i| */
-    double scale, depth;         /* exp(-t low), t low */
+    double depth;                /* t low */
+    double scale, rest;          /* exp(-t low) = scale rest: a factor alone would underflow before products do */
     double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
     double rounding;             /* factor of |y| */
     double t, next;              /* all eigenvalues of the complement of the pairs are at least next */
 } hdi_decay;
+
+#define HDI_DECAY_FIRST 600      /* of t low, in the first factor */
+
+/* exp(-t low) x */
+static double hdi_decayed(const hdi_decay *d, double x) { return x * d->scale * d->rest; }
 
 /* work [2 count] */
 static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
@@ -25891,7 +25922,8 @@ static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
     a.off = work + s->count;
     a.first = s->n_constant;
     a.depth = t * of->low;
-    a.scale = exp(-a.depth);
+    a.scale = exp(-hdi_min(a.depth, HDI_DECAY_FIRST));
+    a.rest = exp(-hdi_max(0, a.depth - HDI_DECAY_FIRST));
     for (q = a.first; q < s->count; q++) {
         const double over = hdi_max(0, s->value[q] - of->low);
         a.weight[q] = exp(-t * over);
@@ -26027,7 +26059,12 @@ static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, 
 }
 
 /* A sum over the pairs by rows of the caller's pair. */
-typedef struct hdi_fading_sum { const hdi_modes *of; const double *c; double scale, *u; } hdi_fading_sum;
+typedef struct hdi_fading_sum {
+    const hdi_modes *of;
+    const hdi_decay *decay;
+    const double *c;
+    double *u;
+} hdi_fading_sum;
 
 static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
     const hdi_fading_sum *a = HDI_CAST(const hdi_fading_sum *, arg);
@@ -26040,7 +26077,7 @@ static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
         const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
         for (i = begin; i < end; i++) a->u[i] += a->c[q] * x[vertex[i]];
     }
-    for (i = begin; i < end; i++) a->u[i] *= a->scale;
+    for (i = begin; i < end; i++) a->u[i] = hdi_decayed(a->decay, a->u[i]);
 }
 
 /* What the coefficients of a field sum up to: |c|^2, |w c|^2, the sum of |r_i| min(t, ...) |c_i|, and s(c)
@@ -26055,17 +26092,18 @@ static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const h
     const double f2 = lane->f_norm * lane->f_norm, twice = hdi_decay_twice(of, x) * sqrt(c->found);
     const double rounding = x->rounding + terms * DBL_EPSILON;
     const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * c->found) + rounding * f2);
-    const double sums = x->scale * (2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
+    const double sums = hdi_decayed(x, 2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
     const double itself = 8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON;
     hdi_lane_clear_off(lane);
-    lane->u_norm = x->scale * sqrt(c->kept);
-    lane->off.rational = x->scale * x->cut * left;
-    lane->off.solver = x->scale * (c->inner + x->mixed * left);
-    lane->off.rounding = sums + itself * lane->u_norm + 4 * DBL_MIN * DBL_EPSILON;
+    lane->u_norm = hdi_decayed(x, sqrt(c->kept));
+    lane->off.rational = hdi_decayed(x, x->cut * left);
+    lane->off.solver = hdi_decayed(x, c->inner + x->mixed * left);
+    lane->off.rounding = sums + itself * lane->u_norm;
     lane->off_value.rational = lane->off.rational * most->left;
-    lane->off_value.solver = x->scale * (x->mixed * x->mixed * most->left * left + most->side * left +
-                                         (c->side + twice) * most->left + most->found * (c->inner + twice));
-    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm) + 4 * DBL_MIN * DBL_EPSILON;
+    lane->off_value.solver = hdi_decayed(x, x->mixed * x->mixed * most->left * left + most->side * left +
+                                            (c->side + twice) * most->left +
+                                            most->found * (c->inner + twice));
+    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm);
     lane->off_m = lane->off;
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
@@ -26090,7 +26128,7 @@ static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hd
     }
     a.of = of;
     a.c = work;
-    a.scale = x->scale;
+    a.decay = x;
     a.u = lane->u;
     hdi_parallel_ranges(h->heat->ctx, lap->n_active, 1024, hdi_fading_task, &a);
     hdi_fading_bound(h, x, most, &size, lane);
@@ -28055,11 +28093,12 @@ static void hdi_fading_diagonal_note(const hdi_fading_diagonal *a, int32_t i, do
     const double left = a->mass ? sqrt(a->of->s.left_mass[v] + gram * b) : left_g;
     const double twice = hdi_decay_twice(a->of, x), found_g = sqrt(g->found), found = sqrt(c->found);
     hdi_parts part;
-    out[v] = x->scale * a->value[i];
-    part.rational = x->scale * x->cut * left_g * left;
-    part.solver = x->scale * (x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
-                              (c->side + twice * found) * left_g + found_g * (c->inner + twice * found));
-    part.rounding = 2 * x->scale * x->rounding * found_g * sqrt(b) + 4 * DBL_MIN * DBL_EPSILON +
+    out[v] = hdi_decayed(x, a->value[i]);
+    part.rational = hdi_decayed(x, x->cut * left_g * left);
+    part.solver = hdi_decayed(x, x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
+                                 (c->side + twice * found) * left_g +
+                                 found_g * (c->inner + twice * found));
+    part.rounding = hdi_decayed(x, 2 * x->rounding * found_g * sqrt(b)) + 4 * DBL_MIN * DBL_EPSILON +
                     8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[v]);
     hdi_ledger_note(ledger, out[v], part);
 }
@@ -28107,7 +28146,7 @@ static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *boun
     }
     if (others > 0) off.rational = others * exp(-t * hdi_max(0, x->s.next));
     off.rounding = 8 * (2 + hdi_min(t * x->low, HDI_EQUAL_BEYOND)) * DBL_EPSILON * value +
-                   4 * DBL_MIN * DBL_EPSILON;
+                   (4 + x->s.count) * DBL_MIN * DBL_EPSILON;
     h->relative = 1;
     *Z = value;
     if (bound) *bound = hdi_parts_sum(&off);
@@ -28162,12 +28201,12 @@ static hd_status hdi_fading_edges_run(hdi_heat_call *h, double t, double *out) {
     a.w = x.weight;
     a.out = out;
     hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_edges_task, &a);
-    off.rational = x.scale * x.cut * most.left * most.left;
-    off.solver = x.scale *
-                 ((x.mixed * x.mixed * most.left + 2 * most.side) * most.left + most.found * most.inner);
+    off.rational = hdi_decayed(&x, x.cut * most.left * most.left);
+    off.solver = hdi_decayed(&x, (x.mixed * x.mixed * most.left + 2 * most.side) * most.left +
+                                 most.found * most.inner);
     for (p = 0; p < lap->L.nnz; p++) {
-        out[p] *= x.scale;
-        off.rounding = 2 * x.scale * x.rounding * most.found * (most.found + most.left) +
+        out[p] = hdi_decayed(&x, out[p]);
+        off.rounding = hdi_decayed(&x, 2 * x.rounding * most.found * (most.found + most.left)) +
                        8 * (1 + hdi_min(x.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[p]) +
                        4 * DBL_MIN * DBL_EPSILON;
         hdi_ledger_note(&ledger, out[p], off);
@@ -29037,6 +29076,7 @@ typedef struct hdi_mode_sum {
     int32_t own;                 /* its component, -1: none, or several */
     double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
     double left, whole;          /* |Q y| and |y| there, or bounds */
+    double unit;                 /* a power of two that brings entries near one, where they are squared */
     double constant_off;         /* what rounding of the sums over the source makes of the constants' part */
     double at, rest;             /* B 1 there, in two doubles */
     double *d;                   /* [n] */
@@ -29132,7 +29172,7 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
     int32_t q;
     for (v = begin; v < end; v++) sum[v] = off[v] = 0;
     for (q = a->decay.first; q < a->of->s.count; q++) {
-        const double *x = a->x + q * n, w = a->decay.weight[q], c = a->decay.off[q];
+        const double *x = a->x + q * n, w = a->unit * a->decay.weight[q], c = a->decay.off[q];
         const double from = hdi_modes_source_value(a, x, plain);
         for (v = begin; v < end; v++) {
             const double z = (plain ? x[v] : by[v] * x[v]) - from;
@@ -29145,7 +29185,7 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
         const double left = far_left + sqrt(hdi_modes_left(a, at));
         out[v] = a->decay.cut * left;
         off[v] += a->decay.mixed * left;
-        sum[v] = hdi_pythag(hdi_modes_constant(a, at), sqrt(sum[v]) * a->decay.scale);
+        sum[v] = hdi_pythag(hdi_modes_constant(a, at), hdi_decayed(&a->decay, sqrt(sum[v]) / a->unit));
     }
 }
 
@@ -29154,15 +29194,15 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
 static double hdi_modes_rounding(const hdi_mode_sum *a, int32_t v, double d) {
     const double sums = (a->source.n - 1) * DBL_EPSILON;
     const double off = a->decay.rounding * (a->whole + sqrt(hdi_modes_whole(a, v))) + sums * a->whole;
-    return a->decay.scale * off + a->constant_off +
+    return hdi_decayed(&a->decay, off) + a->constant_off +
            8 * (1 + hdi_min(a->decay.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d + 4 * DBL_MIN * DBL_EPSILON;
 }
 
 /* Notes the distance to v and its bound. */
 static void hdi_mode_sum_note(const hdi_mode_sum *a, int32_t v, hdi_ledger *ledger, hd_report *rep) {
     hdi_parts part;
-    part.rational = a->decay.scale * a->part[a->lap->n + v];
-    part.solver = a->decay.scale * a->part[v];
+    part.rational = hdi_decayed(&a->decay, a->part[a->lap->n + v]);
+    part.solver = hdi_decayed(&a->decay, a->part[v]);
     part.rounding = hdi_modes_rounding(a, v, a->d[v]);
     rep->n_lost += a->d[v] < 10 * hdi_parts_sum(&part);
     hdi_ledger_note(ledger, a->d[v], part);
@@ -29190,6 +29230,7 @@ static hdi_mode_sum hdi_mode_sum_at(const hd_heat *heat, hd_distance_kind kind, 
     a.lap = heat->source;
     a.weighted = kind == HD_DISTANCE_WEIGHTED;
     a.x = a.weighted && of->bx ? of->bx : of->s.vector;
+    a.unit = a.weighted ? sqrt(heat->scale) : 1 / sqrt(heat->scale);   /* the scale is a power of four */
     a.decay = hdi_decay_at(of, t, work);
     a.part = work + 2 * HDI_CAST(int64_t, of->s.count);
     return a;
