@@ -23754,8 +23754,8 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
 
-/* A bound of the norm of B of any d with |d_v| <= 1, by 2 |B_vw d_v d_w| <= B_vv d_v^2 + B_ww d_w^2; of a dual
- * lane of the norm of B^-1. */
+/* A bound of the B norm of any d with |d_v| <= 1, by 2 |B_vw d_v d_w| <= B_vv d_v^2 + B_ww d_w^2. Of a dual
+ * lane it is that of the norm of B^-1. */
 static double hdi_lane_spread(const hd_laplacian *lap, int dual) {
     double sum = 0;
     int32_t i;
@@ -25713,7 +25713,7 @@ static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double v
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             row += (fabs(lap->L.val[p]) + (lap->B ? value * fabs(lap->B[p]) : 0)) *
                 fabs(x[lap->vertex[lap->L.col[p]]]);
-        sum = hdi_pythag(sum, c * (row / sqrt(lap->b_diag[i])));   /* squares could leave the range of doubles */
+        sum = hdi_pythag(sum, c * (row / sqrt(lap->b_diag[i])));   /* not by squares, which may underflow */
     }
     return hdi_ratio_root(lap) * sum;
 }
@@ -25899,7 +25899,8 @@ typedef struct hdi_decay {
     int32_t first;               /* of the pairs that are not constants */
     double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds of the errors per |c_i| */
     double depth;                /* t low */
-    double scale, rest;          /* exp(-t low) = scale rest: a factor alone would underflow before products do */
+    /* exp(-t low) is their product: as one number it would underflow before answers do */
+    double scale, rest;
     double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
     double rounding;             /* factor of |y| */
     double t, next;              /* all eigenvalues of the complement of the pairs are at least next */
@@ -26995,7 +26996,6 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
 }
 
-
 /* Columns within another call: k of them at the (scaled) time t, with the factors that the plan holds or
  * makes. */
 typedef struct hdi_columns {
@@ -27391,7 +27391,8 @@ static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_diagonal *d, c
         double by, there = hdi_probe_value(h->heat, probe, i, set, 1, f, d->g[row], &by);
         rounding = hdi_max(rounding, hdi_probe_seen(there, by, d->value[row], d->size[row]));
     }
-    rounding = hdi_max(rounding, hdi_below_constants(lap, set, d->value, mass));
+    /* of K_t with a full B the parts of other eigenvectors, x(v) (B x)(v), may be negative */
+    if (!mass || !lap->B) rounding = hdi_max(rounding, hdi_below_constants(lap, set, d->value, mass));
     if (set->kind == HD_POLES_OWN) rounding = hdi_own_rounding(h->heat, set, h->t, rounding, d->size, mass);
     return rounding;
 }

@@ -1446,6 +1446,26 @@ static void diag_graded(void) {
     shape_free(&s);
 }
 
+/* With a full B the diagonal of K_t may be smaller than what the constants are of it. That is no sign of rounding. */
+static void diag_below_constants(void) {
+    shape s = shape_grid(5, 2, 0);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_heat *heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
+    double D[32], least = 1;
+    int32_t q, i;
+    for (q = 0; q < 30; q++) {
+        const double t = 0.1 * lap->h * lap->h * pow(1.3, q);
+        hd_report r;
+        CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D, 0, &r) == HD_OK);
+        CHECK_MSG(r.error_bound < 1e-6, "t = %g: bound %g", t, r.error_bound);
+        for (i = 0; i < lap->n_active; i++) least = fmin(least, D[lap->vertex[i]] * lap->component_mass[0] / lap->mass[i]);
+    }
+    CHECK_MSG(least < 0.998, "at least %g times the constants", least);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 static void test_diagonal(void) {
     diag_graded();
     diag_inverse_shapes();
@@ -1471,6 +1491,7 @@ static void test_diagonal(void) {
     diag_orders();
     diag_threads();
     diag_samples_lost();
+    diag_below_constants();
 }
 
 #endif
