@@ -1448,11 +1448,17 @@ static void diag_graded(void) {
 
 /* With a full B the diagonal of K_t may be smaller than what the constants are of it. That is no sign of rounding. */
 static void diag_below_constants(void) {
-    shape s = shape_grid(5, 2, 0);
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
-    hd_heat *heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
-    double D[32], least = 1;
+    shape s = shape_grid(2, 3, 0);
+    hd_laplacian *lap;
+    hd_heat *heat;
+    double D[6], least = 1;
     int32_t q, i;
+    for (i = 0; i < s.n; i++) {                  /* uneven cells */
+        s.xyz[3 * i] += 0.2 * sin(7.1 * i);
+        s.xyz[3 * i + 1] = 1.3 * s.xyz[3 * i + 1] + 0.2 * cos(3.3 * i);
+    }
+    lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
     for (q = 0; q < 30; q++) {
         const double t = 0.1 * lap->h * lap->h * pow(1.3, q);
         hd_report r;
