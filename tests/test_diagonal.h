@@ -1453,14 +1453,20 @@ static void diag_below_constants(void) {
     hd_heat *heat;
     double D[6], least = 1;
     int32_t q, i;
-    for (i = 0; i < s.n; i++) {                  /* uneven cells */
-        s.xyz[3 * i] += 0.2 * sin(7.1 * i);
-        s.xyz[3 * i + 1] = 1.3 * s.xyz[3 * i + 1] + 0.2 * cos(3.3 * i);
+    for (i = 0; i < s.n; i++) {                  /* uneven cells, and not flat */
+        s.xyz[3 * i] = i % 2 + 0.2 * sin(7.1 * i);
+        s.xyz[3 * i + 1] = 1.3 * (i / 2) + 0.2 * cos(3.3 * i);
+        s.xyz[3 * i + 2] = 0.3 * sin(0.5 * (i % 2));
+    }
+    for (i = 0; i < s.n_tri; i += 2) {           /* diagonals that run the other way */
+        const int32_t v = i;
+        s.tri[3 * i] = v, s.tri[3 * i + 1] = v + 1, s.tri[3 * i + 2] = v + 2;
+        s.tri[3 * i + 3] = v + 1, s.tri[3 * i + 4] = v + 3, s.tri[3 * i + 5] = v + 2;
     }
     lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
     for (q = 0; q < 30; q++) {
-        const double t = 0.1 * lap->h * lap->h * pow(1.3, q);
+        const double t = 0.05 * lap->h * lap->h * pow(1.2, q);
         hd_report r;
         CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D, 0, &r) == HD_OK);
         CHECK_MSG(r.error_bound < 1e-6, "t = %g: bound %g", t, r.error_bound);
