@@ -1404,8 +1404,9 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
  *        Where all heat flows out (every component has held vertices, or an L of your own does not conserve
  *        it) the answer falls like exp(-t lambda_1) instead, while the error of poles does not. With the
  *        method auto or direct it then comes from the few eigenpairs left, as in hd_heat_distance. The same
- *        holds for columns, entries, diagonals, edges and the trace, but not for derivatives. Values that
- *        underflow are 0, with an infinite bound and HD_WARN_ACCURACY
+ *        holds for columns, entries, diagonals, edges and the trace, but not for derivatives. Answers among
+ *        the smallest doubles have fewer digits, which the bound includes. Where all values underflow to 0 it
+ *        is above 1 or infinite, with HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
@@ -29763,6 +29764,7 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 typedef struct hdi_pair_columns {
     double *U;
     const int32_t *place;
+    double *size;                /* of each column, its norm of B */
     double *work;                /* [2 n_active] */
 } hdi_pair_columns;
 
@@ -29784,8 +29786,7 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
     for (q = 0; q < x->n; q++) {
         const double *ui = c->U + n * HDI_CAST(size_t, c->place[2 * q]);
         const double *uj = c->U + n * HDI_CAST(size_t, c->place[2 * q + 1]);
-        const double size_i = hdi_vertex_norm(lap, ui, NULL, c->work, heat->scale);
-        const double size_j = hdi_vertex_norm(lap, uj, NULL, c->work, heat->scale);
+        const double size_i = c->size[c->place[2 * q]], size_j = c->size[c->place[2 * q + 1]];
         const double off_i = hdi_pairs_column_off(lap, x->i[q], size_i, bound_b);
         const double off_j = hdi_pairs_column_off(lap, x->j[q], size_j, bound_b);
         if (x->K) {
@@ -29918,7 +29919,7 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
     hd_error e;
     hdi_scope s = hdi_scope_begin(heat->ctx, &e);
     hdi_pair *order = HDI_TAKE(&s, hdi_pair, twice);
-    int32_t *list = HDI_TAKE(&s, int32_t, twice), *place = HDI_TAKE(&s, int32_t, twice), n_list;
+    int32_t *list = HDI_TAKE(&s, int32_t, twice), *place = HDI_TAKE(&s, int32_t, twice), n_list, q;
     hdi_pair_columns c;
     hdi_heat_call h;
     c.place = place;
@@ -29931,6 +29932,7 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
         return hdi_pairs_by_entries(heat, x, t, rep);
     }
     c.U = HDI_TAKE(&s, double, n * HDI_CAST(uint64_t, n_list));
+    c.size = HDI_TAKE(&s, double, n_list);
     if (hdi_kernel_begin(&h, heat, kernel, rep, NULL) >= 0 && hdi_times_check(&h, 1, &t, 0) >= 0) {
         if (e.status < 0) *h.e = e;
         h.ask.k = n_list;
@@ -29939,7 +29941,11 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
         h.ask.ldu = HDI_CAST(size_t, n);
         h.degree = degree;
     }
-    if (hdi_heat_run(&h) >= 0) hdi_pairs_of_columns(heat, x, &c, rep);
+    if (hdi_heat_run(&h) >= 0) {
+        for (q = 0; q < n_list; q++)
+            c.size[q] = hdi_vertex_norm(heat->source, c.U + n * HDI_CAST(size_t, q), NULL, c.work, heat->scale);
+        hdi_pairs_of_columns(heat, x, &c, rep);
+    }
     hdi_scope_end(&s);
     return rep->status;
 }
@@ -30747,7 +30753,8 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
         to->reason = "t = 0";
         hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
     } else if (x->query <= HD_QUERY_PAIRS) {
-        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
+        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS
+                                      ? 8 * columns + 16.0 * heat->source->n + 8.0 * x->k : 0);
     } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
         (void)hdi_estimate_signature(x);
     } else {
