@@ -14666,7 +14666,7 @@ static hd_status hdi_ldl_factor(hd_ldl *f, const double *val, hd_error *e) {
 
 /* Room for packs for k matrices. */
 static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
-    const int32_t want = (k + HDI_PACK_LANES - 1) / HDI_PACK_LANES;
+    const int32_t want = k / HDI_PACK_LANES + (k % HDI_PACK_LANES > 0);
     hdi_factor *pack;
     int32_t i;
     if (f->n_packs >= want) return HD_OK;
@@ -25029,7 +25029,7 @@ static double hdi_heat_unit(const hdi_heat_call *h) {
 static double hdi_heat_step(const hdi_heat_call *h, const hdi_lane *lane) {
     const int given = h->ask.query == HDI_QUERY_FIELD || h->ask.query == HDI_QUERY_OPERATOR;
     const double least = DBL_MIN * DBL_EPSILON;
-    if (h->t == 0 && h->still == 0 && given) return 0;
+    if (lane->f_norm == 0 || (h->t == 0 && h->still == 0 && given)) return 0;
     return ldexp(least, hdi_high32(-lane->exponent, 0)) / hdi_heat_unit(h) + (h->by_pairs ? 2 * least : 0);
 }
 
@@ -25326,7 +25326,7 @@ static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, u
     uint64_t x, xr;
     *width = hdi_low32(k, HDI_LANES_BATCH);
     *doubles = (hdi_batch_size(m, *width, &x, &xr) + 7) / 8 * 8;
-    count = (k + *width - 1) / *width;
+    count = (k - 1) / *width + 1;
     if (count > HDI_BATCHES) count = HDI_BATCHES;
     if (!m->ctx->parallel_for) count = hdi_low32(count, hdi_context_width(m->ctx));
     while (count > 1 && HDI_CAST(uint64_t, count) * (*doubles + 7 * n * HDI_CAST(uint64_t, *width)) > most)
@@ -26694,6 +26694,7 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
     const hd_laplacian *lap = h->heat->source;
     const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, m);
     const double grow = 1 / (exp(1) * z->later[m] * h->heat->scale);
+    const double step = ldexp(DBL_MIN * DBL_EPSILON, hdi_high32(-z->exponent[q], 0)) / h->heat->scale;
     double *u = h->ask.U + column * h->ask.ldu, size, all, largest = 0;
     hdi_parts off, one;
     int32_t i;
@@ -26710,8 +26711,13 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
         u[lap->vertex[i]] = value;
         if (hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
     }
-    hdi_ledger_note(ledger, largest, hdi_parts_scale(to_values, off));
+    one = hdi_parts_scale(to_values, off);
     all = hdi_parts_sum(&off);
+    if (z->size[q] > 0) {                        /* where values are among the smallest doubles */
+        one.rounding += step;
+        if (step > DBL_EPSILON * DBL_EPSILON * largest) all += step * hdi_lane_spread(lap, 0);
+    }
+    hdi_ledger_note(ledger, largest, one);
     rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(all, size - all));
     hdi_bound_judge(rep->error_bound_b, rep);
 }
