@@ -21674,7 +21674,7 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
 }
 
 /* L by entries of the source, where the rows and columns held are those of the identity: real, or complex
- * with B times `imaginary`. */
+ * with the scaled B times `imaginary`. */
 static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double imaginary, double *real,
                               hd_c64 *z) {
     const hd_laplacian *lap = m->source;
@@ -21687,7 +21687,7 @@ static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double ima
             const double l = held ? i == j : lap->L.val[p];
             const double b = held ? 0 : lap->B ? lap->B[p] : i == j ? lap->mass[i] : 0;
             if (real) real[p] = l;
-            else z[p] = hdi_c(l, imaginary * b);
+            else z[p] = hdi_c(l, imaginary * (m->scale * b));
         }
     }
 }
@@ -21811,7 +21811,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
     b = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n_active));
     if (e->status >= 0 && hdi_factor_make(&pack, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
-        hdi_ground_values(m, g, step * m->scale, NULL, val);
+        hdi_ground_values(m, g, step, NULL, val);
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
         coef[4] = -1 / step;                     /* the first one's imaginary part */
@@ -28621,7 +28621,7 @@ static int hdi_heat_filtered(const hd_heat *heat) {
 typedef struct hdi_metric {
     hd_distance_kind kind;
     double t;                    /* of columns, scaled */
-    double unit;                 /* of f to the plan's numbers */
+    double root;                 /* of distances to roots of d^2: squares in their unit may leave the range */
     hd_rational set;             /* of the factors */
     int filter, equal;           /* no time; t is as good as infinite */
     double *diag, *g, *spread;
@@ -28659,10 +28659,10 @@ static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
     work = HDI_TAKE(scope, double, hdi_ground_room(m));
     u = HDI_TAKE(scope, double, m->sym.n);
     if (!work || !u) return scope->e->status;
-    x->unit = forms ? 1 / h->heat->scale : 1;
+    x->root = forms ? 1 / sqrt(h->heat->scale) : 1;
     for (i = 0; i < m->sym.n; i++) {
         const int32_t r = m->sym.perm[i];
-        x->diag[r] = x->unit * value[i];
+        x->diag[r] = value[i];
         x->g[r] = hdi_max(0, g->diag[i]);
         x->spread[r] = HUGE_VAL;
     }
@@ -28778,7 +28778,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     x->spread = x->g + n;
     /* d^2 of a filter is the sum of the filter itself */
     x->t = hdi_min((hdi_heat_filtered(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
-    x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
+    x->root = 1;
     scope = hdi_scope_begin(heat->ctx, e);
     if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, rep, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0) {
         hdi_inverse_tell(&h);
@@ -28858,8 +28858,8 @@ static hd_status hdi_metric_columns_ground(hd_heat *heat, const hdi_metric *x, c
         c[r].off_b = HUGE_VAL;
         memset(c[r].u, 0, HDI_CAST(size_t, heat->source->n) * sizeof(double));
         if (hdi_terms_component(m->lap, &source) < 0) continue;
-        c[r].off_m = x->unit * hdi_ground_column(m, &heat->ground, &source, forms, u, work);
-        for (i = 0; i < m->sym.n; i++) c[r].u[m->lap->vertex[i]] = x->unit * u[i];
+        c[r].off_m = hdi_ground_column(m, &heat->ground, &source, forms, u, work);
+        for (i = 0; i < m->sym.n; i++) c[r].u[m->lap->vertex[i]] = u[i];
     }
     return hdi_scope_end(&s);
 }
@@ -28993,8 +28993,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, co
         rounding += self.off + 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
         delta = rational + rounding;
         d = d2 > 0 ? sqrt(d2) : 0;
-        u[v] = d;
-        error = d2 > delta ? delta / d : sqrt(2 * delta);
+        error = x->root * (d2 > delta ? delta / d : sqrt(2 * delta));
+        u[v] = d = x->root * d;
         rep->n_lost += delta > 0 && d2 < 10 * delta;
         memset(&part, 0, sizeof part);
         if (delta > 0) {
@@ -29409,6 +29409,7 @@ static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call 
     z->one = HDI_TAKE_ZERO(s, hd_report, n_times);
     z->active = HDI_TAKE(s, char, HDI_CAST(int64_t, z->m->sym.n_super) + 1);
     z->metric.kind = kind;
+    z->metric.root = 1;
     z->metric.diag = HDI_TAKE(s, double, 3 * n + 1);
     if (s->e->status < 0) return s->e->status;
     z->metric.g = z->metric.diag + n;
@@ -29949,7 +29950,8 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
     }
     if (hdi_heat_run(&h) >= 0) {
         for (q = 0; q < n_list; q++)
-            c.size[q] = hdi_vertex_norm(heat->source, c.U + n * HDI_CAST(size_t, q), NULL, c.work, heat->scale);
+            c.size[q] = hdi_vertex_norm(heat->source, c.U + n * HDI_CAST(uint64_t, q), NULL, c.work,
+                                        heat->scale);
         hdi_pairs_of_columns(heat, x, &c, rep);
     }
     hdi_scope_end(&s);
