@@ -23324,7 +23324,8 @@ typedef struct hdi_spec_filter {
     double t;
     int power;                   /* 0: exp; 1, 2: of 1/lambda */
     double rest, error;
-    const double *coef;          /* [count] */
+    /* eigenvalues count times unit, so that their squares stay in the range of doubles; distances times root */
+    double unit, root;
 } hdi_spec_filter;
 
 /* A product of two parts of a bound, each at least 0: nothing times infinity is nothing. */
@@ -23335,26 +23336,31 @@ static double hdi_spec_times(double a, double b) {
 }
 
 static double hdi_spec_weight(const hdi_spec_filter *f, int32_t i) {
-    const double x = hdi_max(f->of->value[i], 0);
+    const double x = f->unit * hdi_max(f->of->value[i], 0);
     if (f->power == 0) return exp(-hdi_spec_times(f->t, x));
     return i < f->of->n_constant || x == 0 ? 0 : hdi_min(f->power == 1 ? 1 / x : 1 / (x * x), DBL_MAX);
 }
 
 static hdi_spec_filter hdi_spec_filter_of(const hd_spectrum *s, double t, int power) {
     const int32_t first = s->n_constant < s->count ? s->n_constant : s->count;
-    const double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0);
     const double root = hdi_ratio_root(s->lap);
     hdi_spec_filter f;
-    double sum = 0, most = 0;
+    double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0), sum = 0, most = 0;
     int32_t i;
+    int exponent = 0;
     memset(&f, 0, sizeof f);
     f.of = s;
     f.t = t;
     f.power = power;
+    if (power && low > 0 && hdi_finite(low)) frexp(low, &exponent);
+    f.unit = ldexp(1, -2 * (exponent / 2));
+    f.root = power == 2 ? f.unit : sqrt(f.unit);
+    low *= f.unit;
+    next *= f.unit;
     if (power == 0) f.rest = exp(-hdi_spec_times(t, next));
     else f.rest = next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
     for (i = 0; i < s->count; i++) {
-        const double x = s->value[i], w = hdi_spec_weight(&f, i);
+        const double x = f.unit * s->value[i], w = hdi_spec_weight(&f, i);
         double by = 0, r = hdi_spec_times(root, hdi_spec_times(s->residual[i], hdi_max(x, low)));
         if (power == 0) by = x > 0 ? hdi_min(t, 1 / x) : t;
         else if (i >= s->n_constant) by = power == 1 ? 1 / (low * x) : (1 / x + 1 / low) / (low * x);
@@ -23423,8 +23429,8 @@ static void hdi_spec_sum_store(const hdi_spec_sum *a, int32_t row, double sum) {
     if (a->distance) {
         const double far_left = sqrt(left) + sqrt(a->left), far_all = sqrt(whole) + sqrt(a->whole);
         off = hdi_spec_times(a->f.rest, far_left * far_left) + hdi_spec_times(a->f.error, far_all * far_all);
-        off = hdi_spec_root_off(sum, off);
-        sum = sqrt(sum);
+        off = a->f.root * hdi_spec_root_off(sum, off);
+        sum = a->f.root * sqrt(sum);
     } else {
         const double l = a->diagonal ? a->mass ? s->left_mass[v] : left : a->left;
         const double w = a->diagonal ? a->mass ? lap->b_diag[row] : whole : a->whole;
