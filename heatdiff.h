@@ -23771,6 +23771,14 @@ static double hdi_lane_spread(const hd_laplacian *lap, int dual) {
     return sqrt(sum);
 }
 
+/* The most terms in a row of products with B. */
+static double hdi_lane_terms_most(const hd_laplacian *lap) {
+    double most = 1;
+    int32_t i;
+    for (i = 0; i < lap->n_active && lap->B; i++) most = hdi_max(most, hdi_row_terms(lap, i));
+    return most;
+}
+
 /* The power of two that brings a number near one. */
 static double hdi_unit_of(double size) {
     int exponent = 0;
@@ -23814,8 +23822,11 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         if (lane->dual) off.rounding += 2 * DBL_EPSILON * largest;
         else if (total > 0) off.rounding += DBL_EPSILON * largest;
         off.rounding += lane->step;              /* where answers are among the smallest doubles */
-        if (lane->step > DBL_EPSILON * DBL_EPSILON * largest)
-            total += lane->step * hdi_lane_spread(lap, lane->dual);
+        if (lane->step > DBL_EPSILON * DBL_EPSILON * largest) {
+            const double terms = lane->dual ? hdi_lane_terms_most(lap) : 1;   /* B u is a sum */
+            off.rounding += terms * lane->step;
+            total += terms * lane->step * hdi_lane_spread(lap, lane->dual);
+        }
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
@@ -25036,14 +25047,14 @@ static double hdi_heat_step(const hdi_heat_call *h, const hdi_lane *lane) {
     const int given = h->ask.query == HDI_QUERY_FIELD || h->ask.query == HDI_QUERY_OPERATOR;
     const double least = DBL_MIN * DBL_EPSILON;
     if (lane->f_norm == 0 || (h->t == 0 && h->still == 0 && given)) return 0;
-    return ldexp(least, hdi_high32(-lane->exponent, 0)) / hdi_heat_unit(h) + (h->by_pairs ? 2 * least : 0);
+    return ldexp(least, hdi_high32(-lane->exponent, 0)) / hdi_heat_unit(h);
 }
 
 /* The entries of item q, from the lane's answer. */
 static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const hdi_entry_list *list = h->ask.list;
-    const double unit = hdi_heat_unit(h);
+    const double unit = hdi_heat_unit(h), step = unit * lane->step;
     double *values = list->values + list->n * h->now;
     int64_t p;
     for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
@@ -25057,7 +25068,7 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         if (!lane->skip && row >= 0)
             off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         if (!lane->skip && row >= 0 && h->by_pairs) off = lane->off_value;
-        if (!lane->skip && row >= 0) off.rounding += unit * lane->step;
+        if (!lane->skip && row >= 0) off.rounding += step;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
 }
@@ -26102,16 +26113,17 @@ static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const h
     const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * c->found) + rounding * f2);
     const double sums = hdi_decayed(x, 2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
     const double itself = 8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON;
+    const double least = lane->f_norm > 0 ? 2 * DBL_MIN * DBL_EPSILON : 0;   /* of each value */
     hdi_lane_clear_off(lane);
     lane->u_norm = hdi_decayed(x, sqrt(c->kept));
     lane->off.rational = hdi_decayed(x, x->cut * left);
     lane->off.solver = hdi_decayed(x, c->inner + x->mixed * left);
-    lane->off.rounding = sums + itself * lane->u_norm;
+    lane->off.rounding = sums + itself * lane->u_norm + least * hdi_lane_spread(h->lap, 0);
     lane->off_value.rational = lane->off.rational * most->left;
     lane->off_value.solver = hdi_decayed(x, x->mixed * x->mixed * most->left * left + most->side * left +
                                             (c->side + twice) * most->left +
                                             most->found * (c->inner + twice));
-    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm);
+    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm) + least;
     lane->off_m = lane->off;
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
