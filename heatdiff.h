@@ -23324,7 +23324,7 @@ typedef struct hdi_spec_filter {
     double t;
     int power;                   /* 0: exp; 1, 2: of 1/lambda */
     double rest, error;
-    /* eigenvalues count times unit, so that their squares stay in the range of doubles; distances times root */
+    /* eigenvalues count times unit, so that squares stay in the range of doubles, and distances times root */
     double unit, root;
 } hdi_spec_filter;
 
