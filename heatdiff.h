@@ -2147,6 +2147,13 @@ static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
 static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
 static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
 
+/* The power of four that brings a number near one: roots change by a power of two. 1 for 0. */
+static double hdi_even_unit(double size) {
+    int exponent = 0;
+    (void)frexp(size, &exponent);
+    return ldexp(1, hdi_low32(-2 * (exponent / 2), 1022));
+}
+
 /* Three numbers for each of n things; where those of thing number n begin. */
 static HDI_INLINE int64_t hdi_triple(int32_t n) { return 3 * HDI_CAST(int64_t, n); }
 static HDI_INLINE const double *hdi_at3(const double *xyz, int64_t i) { return xyz + 3 * i; }
@@ -9691,10 +9698,8 @@ static double hdi_pair_scale(hd_laplacian *lap) {
     double largest = 0, scale;
     int32_t i;
     int64_t p;
-    int exponent;
     for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    frexp(largest, &exponent);
-    scale = ldexp(1, -2 * (exponent / 2));       /* even: norms scale exactly too */
+    scale = hdi_even_unit(largest);              /* norms scale exactly too */
     for (i = 0; i < lap->n_active; i++) lap->mass[i] *= scale;
     for (i = 0; i < lap->n_active && lap->B; i++) lap->b_diag[i] *= scale;
     for (p = 0; p < lap->L.nnz && lap->B; p++) lap->B[p] *= scale;
@@ -23266,10 +23271,8 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
 static double hdi_heat_scale(const hd_laplacian *lap) {
     double largest = 0;
     int32_t i;
-    int exponent;
     for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    frexp(largest, &exponent);
-    return ldexp(1, -2 * (exponent / 2));
+    return hdi_even_unit(largest);
 }
 
 #define HDI_TOL_SPECTRUM 1e-10
@@ -23347,13 +23350,11 @@ static hdi_spec_filter hdi_spec_filter_of(const hd_spectrum *s, double t, int po
     hdi_spec_filter f;
     double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0), sum = 0, most = 0;
     int32_t i;
-    int exponent = 0;
     memset(&f, 0, sizeof f);
     f.of = s;
     f.t = t;
     f.power = power;
-    if (power && low > 0 && hdi_finite(low)) frexp(low, &exponent);
-    f.unit = ldexp(1, -2 * (exponent / 2));
+    f.unit = power && low > 0 && hdi_finite(low) ? hdi_even_unit(low) : 1;
     f.root = power == 2 ? f.unit : sqrt(f.unit);
     low *= f.unit;
     next *= f.unit;
@@ -23783,7 +23784,7 @@ static double hdi_lane_terms_most(const hd_laplacian *lap) {
 static double hdi_unit_of(double size) {
     int exponent = 0;
     (void)frexp(size, &exponent);
-    return ldexp(1, -exponent);
+    return ldexp(1, hdi_low32(-exponent, 1023)); /* which is the largest */
 }
 
 /* The largest mass of a component that is finite. */
@@ -29711,16 +29712,15 @@ static int32_t hdi_pairs_vertices(const hdi_pairs *x, hdi_pair *order, int32_t *
  * n_active]. */
 static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work,
                               double scale) {
-    double most = 0;
+    double most = 0, unit;
     int32_t r;
-    int exponent = 0;
     for (r = 0; r < lap->n_active; r++) {
         work[r] = u[lap->vertex[r]] - (v ? v[lap->vertex[r]] : 0);
         most = hdi_max(most, fabs(work[r]));
     }
     if (most == 0) return 0;
-    frexp(most, &exponent);
-    for (r = 0; r < lap->n_active; r++) work[r] = ldexp(work[r], -exponent);
+    unit = hdi_unit_of(most);
+    for (r = 0; r < lap->n_active; r++) work[r] *= unit;
     if (lap->B) {
         double sum = 0;
         int64_t p;
@@ -29730,10 +29730,10 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
                 s += scale * lap->B[p] * work[lap->L.col[p]];
             sum += work[r] * s;
         }
-        return ldexp(sqrt(hdi_max(0, sum)) / sqrt(scale), exponent);
+        return sqrt(hdi_max(0, sum)) / sqrt(scale) / unit;
     }
     for (most = 0, r = 0; r < lap->n_active; r++) most += scale * lap->mass[r] * (work[r] * work[r]);
-    return ldexp(sqrt(most) / sqrt(scale), exponent);
+    return sqrt(most) / sqrt(scale) / unit;
 }
 
 /* The parts of a report's bound. */
