@@ -1480,7 +1480,7 @@ static void diag_below_constants(void) {
 
 /* A path with L and B in other units: distances without a time, and their bounds, change by powers of two only. */
 static void diag_units(void) {
-    static const int units[][2] = {{0, 0}, {500, -300}, {500, -600}, {60, -990}, {30, -990}, {-500, 600}, {-60, 1000}};
+    static const int units[][2] = {{0, 0}, {500, -300}, {500, -600}, {60, -950}, {40, -950}, {-500, 600}, {-100, 940}};
     double want[2][6], bound[2] = {0, 0};
     const int32_t n = 6;
     int32_t q, i, a;
