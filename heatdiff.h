@@ -1405,8 +1405,9 @@ HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_
  *        Where all heat flows out (every component has held vertices, or an L of your own does not conserve
  *        it) the answer falls like exp(-t lambda_1) instead, while the error of poles does not. With the
  *        method auto or direct it then comes from the few eigenpairs left, as in hd_heat_distance. The same
- *        holds for columns, entries, diagonals, edges and the trace, but not for derivatives. Values that
- *        underflow are 0, with an infinite bound and HD_WARN_ACCURACY
+ *        holds for columns, entries, diagonals, edges and the trace, but not for derivatives. Answers among
+ *        the smallest doubles have fewer digits, which the bound includes. Where all values underflow to 0 it
+ *        is above 1 or infinite, with HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
@@ -2147,6 +2148,13 @@ static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
 /* By value, so that no branch has to be guessed. */
 static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
 static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
+
+/* The power of four that brings a number near one: roots change by a power of two. 1 for 0. */
+static double hdi_even_unit(double size) {
+    int exponent = 0;
+    (void)frexp(size, &exponent);
+    return ldexp(1, hdi_low32(-2 * (exponent / 2), 1022));
+}
 
 /* Three numbers for each of n things; where those of thing number n begin. */
 static HDI_INLINE int64_t hdi_triple(int32_t n) { return 3 * HDI_CAST(int64_t, n); }
@@ -9698,10 +9706,8 @@ static double hdi_pair_scale(hd_laplacian *lap) {
     double largest = 0, scale;
     int32_t i;
     int64_t p;
-    int exponent;
     for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    frexp(largest, &exponent);
-    scale = ldexp(1, -2 * (exponent / 2));       /* even: norms scale exactly too */
+    scale = hdi_even_unit(largest);              /* norms scale exactly too */
     for (i = 0; i < lap->n_active; i++) lap->mass[i] *= scale;
     for (i = 0; i < lap->n_active && lap->B; i++) lap->b_diag[i] *= scale;
     for (p = 0; p < lap->L.nnz && lap->B; p++) lap->B[p] *= scale;
@@ -14673,7 +14679,7 @@ static hd_status hdi_ldl_factor(hd_ldl *f, const double *val, hd_error *e) {
 
 /* Room for packs for k matrices. */
 static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
-    const int32_t want = (k + HDI_PACK_LANES - 1) / HDI_PACK_LANES;
+    const int32_t want = k / HDI_PACK_LANES + (k % HDI_PACK_LANES > 0);
     hdi_factor *pack;
     int32_t i;
     if (f->n_packs >= want) return HD_OK;
@@ -19219,6 +19225,7 @@ typedef struct hdi_lane {
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
+    double step;                 /* how far apart the smallest doubles are, in the unit of u */
     int32_t dual;                /* what is asked for is B u, which goes to tmp in the end */
     double f_off, rhs_off;       /* what f, and B^-1 times the right-hand side, are off by in the B norm */
     /* outcome, norms absolute */
@@ -21680,7 +21687,7 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
 }
 
 /* L by entries of the source, where the rows and columns held are those of the identity: real, or complex
- * with B times `imaginary`. */
+ * with the scaled B times `imaginary`. */
 static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double imaginary, double *real,
                               hd_c64 *z) {
     const hd_laplacian *lap = m->source;
@@ -21693,7 +21700,7 @@ static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double ima
             const double l = held ? i == j : lap->L.val[p];
             const double b = held ? 0 : lap->B ? lap->B[p] : i == j ? lap->mass[i] : 0;
             if (real) real[p] = l;
-            else z[p] = hdi_c(l, imaginary * b);
+            else z[p] = hdi_c(l, imaginary * (m->scale * b));
         }
     }
 }
@@ -21817,7 +21824,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
     b = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n_active));
     if (e->status >= 0 && hdi_factor_make(&pack, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
-        hdi_ground_values(m, g, step * m->scale, NULL, val);
+        hdi_ground_values(m, g, step, NULL, val);
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
         coef[4] = -1 / step;                     /* the first one's imaginary part */
@@ -23272,10 +23279,8 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
 static double hdi_heat_scale(const hd_laplacian *lap) {
     double largest = 0;
     int32_t i;
-    int exponent;
     for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    frexp(largest, &exponent);
-    return ldexp(1, -2 * (exponent / 2));
+    return hdi_even_unit(largest);
 }
 
 #define HDI_TOL_SPECTRUM 1e-10
@@ -23330,7 +23335,8 @@ typedef struct hdi_spec_filter {
     double t;
     int power;                   /* 0: exp; 1, 2: of 1/lambda */
     double rest, error;
-    const double *coef;          /* [count] */
+    /* eigenvalues count times unit, so that squares stay in the range of doubles, and distances times root */
+    double unit, root;
 } hdi_spec_filter;
 
 /* A product of two parts of a bound, each at least 0: nothing times infinity is nothing. */
@@ -23341,26 +23347,29 @@ static double hdi_spec_times(double a, double b) {
 }
 
 static double hdi_spec_weight(const hdi_spec_filter *f, int32_t i) {
-    const double x = hdi_max(f->of->value[i], 0);
+    const double x = f->unit * hdi_max(f->of->value[i], 0);
     if (f->power == 0) return exp(-hdi_spec_times(f->t, x));
     return i < f->of->n_constant || x == 0 ? 0 : hdi_min(f->power == 1 ? 1 / x : 1 / (x * x), DBL_MAX);
 }
 
 static hdi_spec_filter hdi_spec_filter_of(const hd_spectrum *s, double t, int power) {
     const int32_t first = s->n_constant < s->count ? s->n_constant : s->count;
-    const double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0);
     const double root = hdi_ratio_root(s->lap);
     hdi_spec_filter f;
-    double sum = 0, most = 0;
+    double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0), sum = 0, most = 0;
     int32_t i;
     memset(&f, 0, sizeof f);
     f.of = s;
     f.t = t;
     f.power = power;
+    f.unit = power && low > 0 && hdi_finite(low) ? hdi_even_unit(low) : 1;
+    f.root = power == 2 ? f.unit : sqrt(f.unit);
+    low *= f.unit;
+    next *= f.unit;
     if (power == 0) f.rest = exp(-hdi_spec_times(t, next));
     else f.rest = next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
     for (i = 0; i < s->count; i++) {
-        const double x = s->value[i], w = hdi_spec_weight(&f, i);
+        const double x = f.unit * s->value[i], w = hdi_spec_weight(&f, i);
         double by = 0, r = hdi_spec_times(root, hdi_spec_times(s->residual[i], hdi_max(x, low)));
         if (power == 0) by = x > 0 ? hdi_min(t, 1 / x) : t;
         else if (i >= s->n_constant) by = power == 1 ? 1 / (low * x) : (1 / x + 1 / low) / (low * x);
@@ -23429,8 +23438,8 @@ static void hdi_spec_sum_store(const hdi_spec_sum *a, int32_t row, double sum) {
     if (a->distance) {
         const double far_left = sqrt(left) + sqrt(a->left), far_all = sqrt(whole) + sqrt(a->whole);
         off = hdi_spec_times(a->f.rest, far_left * far_left) + hdi_spec_times(a->f.error, far_all * far_all);
-        off = hdi_spec_root_off(sum, off);
-        sum = sqrt(sum);
+        off = a->f.root * hdi_spec_root_off(sum, off);
+        sum = a->f.root * sqrt(sum);
     } else {
         const double l = a->diagonal ? a->mass ? s->left_mass[v] : left : a->left;
         const double w = a->diagonal ? a->mass ? lap->b_diag[row] : whole : a->whole;
@@ -23761,11 +23770,29 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
 
+/* A bound of the B norm of any d with |d_v| <= 1, by 2 |B_vw d_v d_w| <= B_vv d_v^2 + B_ww d_w^2. Of a dual
+ * lane it is that of the norm of B^-1. */
+static double hdi_lane_spread(const hd_laplacian *lap, int dual) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        sum += dual ? hdi_inverse_mass(lap, i) : (lap->B ? hdi_row_terms(lap, i) : 1) * lap->b_diag[i];
+    return sqrt(sum);
+}
+
+/* The most terms in a row of products with B. */
+static double hdi_lane_terms_most(const hd_laplacian *lap) {
+    double most = 1;
+    int32_t i;
+    for (i = 0; i < lap->n_active && lap->B; i++) most = hdi_max(most, hdi_row_terms(lap, i));
+    return most;
+}
+
 /* The power of two that brings a number near one. */
 static double hdi_unit_of(double size) {
     int exponent = 0;
     (void)frexp(size, &exponent);
-    return ldexp(1, -exponent);
+    return ldexp(1, hdi_low32(-exponent, 1023)); /* which is the largest */
 }
 
 /* The largest mass of a component that is finite. */
@@ -23796,13 +23823,19 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
     for (i = 0; i < lap->n_components; i++)
         if (hdi_finite(lap->component_mass[i])) heat_in += unit * lane->target[i] * scale;
     if (ledger) {
-        const double total = hdi_parts_sum(&lane->off);
+        double total = hdi_parts_sum(&lane->off);
         hdi_parts off =
             lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL)
                        : by_value ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
         if (lane->dual) off.rounding += 2 * DBL_EPSILON * largest;
         else if (total > 0) off.rounding += DBL_EPSILON * largest;
+        off.rounding += lane->step;              /* where answers are among the smallest doubles */
+        if (lane->step > DBL_EPSILON * DBL_EPSILON * largest) {
+            const double terms = lane->dual ? hdi_lane_terms_most(lap) : 1;   /* B u is a sum */
+            off.rounding += terms * lane->step;
+            total += terms * lane->step * hdi_lane_spread(lap, lane->dual);
+        }
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
@@ -24841,14 +24874,15 @@ static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
                             : HDI_CAST(int32_t, h->ask.list->order[h->ask.list->begin[q]].key));
 }
 
-/* Brings fields near one, by a power of two, where their squares could leave the range of doubles. */
-static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
+/* Brings fields near one, by a power of two, where their squares could leave the range of doubles. Sums over
+ * eigenpairs are made with the caller's masses, which may be near that range themselves. */
+static void hdi_lane_unit(const hd_laplacian *lap, int by_pairs, hdi_lane *lane) {
     double most = 0;
     int32_t i;
     int exponent = 0;
     for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
     if (most > 0) frexp(most, &exponent);
-    if (exponent > -256 && exponent < 256) return;
+    if (!by_pairs && exponent > -256 && exponent < 256) return;
     lane->exponent = exponent;
     for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
@@ -24863,10 +24897,10 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
         double size = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             size += fabs(lap->B[p] * f[lap->L.col[p]]);
-        size *= hdi_row_terms(lap, i) * DBL_EPSILON / 2;
-        sum += size * size / lap->b_diag[i];
+        size *= hdi_row_terms(lap, i);
+        sum += size * (size / lap->b_diag[i]);
     }
-    return sum > 0 ? sqrt(sum) * hdi_ratio_root(lap) : 0;
+    return DBL_EPSILON / 2 * sqrt(sum) * hdi_ratio_root(lap);
 }
 
 /* Takes the constants out of a field for good: they do not change in time. */
@@ -24891,16 +24925,16 @@ static int hdi_lane_bounded(const hdi_heat_call *h) {
 /* Puts a source of several vertices into x by rows; those without rows leave nothing. Returns the norm of
  * diag(B)^-1/2 x. */
 static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double *x) {
-    double norm2 = 0;
+    double norm = 0;
     int32_t q;
     memset(x, 0, HDI_CAST(size_t, lap->n_active) * sizeof *x);
     for (q = 0; q < c->n; q++) {
         const int32_t row = lap->row[c->vertex[q]];
         if (row < 0) continue;
         x[row] = c->weight[q];
-        norm2 += c->weight[q] * c->weight[q] / lap->b_diag[row];
+        norm = hdi_pythag(norm, c->weight[q] / sqrt(lap->b_diag[row]));
     }
-    return sqrt(norm2);
+    return norm;
 }
 
 /* Brings a column near one in the norm of B, by a power of two. A small mass beside large ones has a column
@@ -24967,7 +25001,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->dual = h->ask.query == HDI_QUERY_ADJOINT;
     if (hdi_query_fields(h->ask.query)) {
         hdi_gather(lap, h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf, lane->f);
-        hdi_lane_unit(lap, lane);
+        hdi_lane_unit(lap, h->by_pairs, lane);
         if (lane->dual) {
             memcpy(lane->rhs, lane->f, bytes);
             if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
@@ -25017,11 +25051,19 @@ static double hdi_heat_unit(const hdi_heat_call *h) {
     return h->ask.query == HDI_QUERY_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
 }
 
+/* How far apart the smallest doubles are, in the unit of a lane's answers; 0 where these are exact. */
+static double hdi_heat_step(const hdi_heat_call *h, const hdi_lane *lane) {
+    const int given = h->ask.query == HDI_QUERY_FIELD || h->ask.query == HDI_QUERY_OPERATOR;
+    const double least = DBL_MIN * DBL_EPSILON;
+    if (lane->f_norm == 0 || (h->t == 0 && h->still == 0 && given)) return 0;
+    return ldexp(least, hdi_high32(-lane->exponent, 0)) / hdi_heat_unit(h);
+}
+
 /* The entries of item q, from the lane's answer. */
 static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const hdi_entry_list *list = h->ask.list;
-    const double unit = hdi_heat_unit(h);
+    const double unit = hdi_heat_unit(h), step = unit * lane->step;
     double *values = list->values + list->n * h->now;
     int64_t p;
     for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
@@ -25035,6 +25077,7 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         if (!lane->skip && row >= 0)
             off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         if (!lane->skip && row >= 0 && h->by_pairs) off = lane->off_value;
+        if (!lane->skip && row >= 0) off.rounding += step;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
 }
@@ -25058,6 +25101,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     const hd_laplacian *lap = h->lap;
     const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, h->now);
     const double unit = hdi_heat_unit(h);
+    const int copy = h->t == 0 && h->ask.query == HDI_QUERY_FIELD && !h->rate;
     double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
     const double *out = hdi_lane_answer(lane);
     int32_t i;
@@ -25072,7 +25116,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     }
     for (i = 0; i < lap->n && (lap->n_held > 0 || h->rate); i++)
         if (h->rate || lap->row[i] == HD_ROW_HELD) u[i] = 0;
-    for (i = 0; i < lap->n_active && !lane->skip; i++) {
+    for (i = 0; i < lap->n_active && !lane->skip && !copy; i++) {
         const double value = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
         u[lap->vertex[i]] = value;
         if ((lane->exponent > 0 || hdi_nan(value)) && hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
@@ -25173,6 +25217,7 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
     const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
     ledger.known.rounding = lane->rounding;
+    lane->step = hdi_heat_step(h, lane);
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
@@ -25307,7 +25352,7 @@ static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, u
     uint64_t x, xr;
     *width = hdi_low32(k, HDI_LANES_BATCH);
     *doubles = (hdi_batch_size(m, *width, &x, &xr) + 7) / 8 * 8;
-    count = (k + *width - 1) / *width;
+    count = (k - 1) / *width + 1;
     if (count > HDI_BATCHES) count = HDI_BATCHES;
     if (!m->ctx->parallel_for) count = hdi_low32(count, hdi_context_width(m->ctx));
     while (count > 1 && HDI_CAST(uint64_t, count) * (*doubles + 7 * n * HDI_CAST(uint64_t, *width)) > most)
@@ -25695,10 +25740,9 @@ static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double v
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             row += (fabs(lap->L.val[p]) + (lap->B ? value * fabs(lap->B[p]) : 0)) *
                 fabs(x[lap->vertex[lap->L.col[p]]]);
-        row *= c;
-        sum += row * (row / lap->b_diag[i]);
+        sum = hdi_pythag(sum, c * (row / sqrt(lap->b_diag[i])));   /* not by squares, which may underflow */
     }
-    return hdi_ratio_root(lap) * sqrt(sum);
+    return hdi_ratio_root(lap) * sum;
 }
 
 /* The largest |X' B X - 1|, in the norm of Frobenius. bx [n] */
@@ -25881,11 +25925,18 @@ static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most,
 typedef struct hdi_decay {
     int32_t first;               /* of the pairs that are not constants */
     double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds of the errors per |c_i| */
-    double scale, depth;         /* exp(-t low), t low */
+    double depth;                /* t low */
+    /* exp(-t low) is their product: as one number it would underflow before answers do */
+    double scale, rest;
     double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
     double rounding;             /* factor of |y| */
     double t, next;              /* all eigenvalues of the complement of the pairs are at least next */
 } hdi_decay;
+
+#define HDI_DECAY_FIRST 600      /* of t low, in the first factor */
+
+/* exp(-t low) x */
+static double hdi_decayed(const hdi_decay *d, double x) { return x * d->scale * d->rest; }
 
 /* work [2 count] */
 static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
@@ -25899,7 +25950,8 @@ static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
     a.off = work + s->count;
     a.first = s->n_constant;
     a.depth = t * of->low;
-    a.scale = exp(-a.depth);
+    a.scale = exp(-hdi_min(a.depth, HDI_DECAY_FIRST));
+    a.rest = exp(-hdi_max(0, a.depth - HDI_DECAY_FIRST));
     for (q = a.first; q < s->count; q++) {
         const double over = hdi_max(0, s->value[q] - of->low);
         a.weight[q] = exp(-t * over);
@@ -26035,7 +26087,12 @@ static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, 
 }
 
 /* A sum over the pairs by rows of the caller's pair. */
-typedef struct hdi_fading_sum { const hdi_modes *of; const double *c; double scale, *u; } hdi_fading_sum;
+typedef struct hdi_fading_sum {
+    const hdi_modes *of;
+    const hdi_decay *decay;
+    const double *c;
+    double *u;
+} hdi_fading_sum;
 
 static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
     const hdi_fading_sum *a = HDI_CAST(const hdi_fading_sum *, arg);
@@ -26048,7 +26105,7 @@ static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
         const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
         for (i = begin; i < end; i++) a->u[i] += a->c[q] * x[vertex[i]];
     }
-    for (i = begin; i < end; i++) a->u[i] *= a->scale;
+    for (i = begin; i < end; i++) a->u[i] = hdi_decayed(a->decay, a->u[i]);
 }
 
 /* What the coefficients of a field sum up to: |c|^2, |w c|^2, the sum of |r_i| min(t, ...) |c_i|, and s(c)
@@ -26063,17 +26120,19 @@ static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const h
     const double f2 = lane->f_norm * lane->f_norm, twice = hdi_decay_twice(of, x) * sqrt(c->found);
     const double rounding = x->rounding + terms * DBL_EPSILON;
     const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * c->found) + rounding * f2);
-    const double sums = x->scale * (2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
+    const double sums = hdi_decayed(x, 2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
     const double itself = 8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON;
+    const double least = lane->f_norm > 0 ? 2 * DBL_MIN * DBL_EPSILON : 0;   /* of each value */
     hdi_lane_clear_off(lane);
-    lane->u_norm = x->scale * sqrt(c->kept);
-    lane->off.rational = x->scale * x->cut * left;
-    lane->off.solver = x->scale * (c->inner + x->mixed * left);
-    lane->off.rounding = sums + itself * lane->u_norm + 4 * DBL_MIN * DBL_EPSILON;
+    lane->u_norm = hdi_decayed(x, sqrt(c->kept));
+    lane->off.rational = hdi_decayed(x, x->cut * left);
+    lane->off.solver = hdi_decayed(x, c->inner + x->mixed * left);
+    lane->off.rounding = sums + itself * lane->u_norm + least * hdi_lane_spread(h->lap, 0);
     lane->off_value.rational = lane->off.rational * most->left;
-    lane->off_value.solver = x->scale * (x->mixed * x->mixed * most->left * left + most->side * left +
-                                         (c->side + twice) * most->left + most->found * (c->inner + twice));
-    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm) + 4 * DBL_MIN * DBL_EPSILON;
+    lane->off_value.solver = hdi_decayed(x, x->mixed * x->mixed * most->left * left + most->side * left +
+                                            (c->side + twice) * most->left +
+                                            most->found * (c->inner + twice));
+    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm) + least;
     lane->off_m = lane->off;
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
@@ -26098,7 +26157,7 @@ static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hd
     }
     a.of = of;
     a.c = work;
-    a.scale = x->scale;
+    a.decay = x;
     a.u = lane->u;
     hdi_parallel_ranges(h->heat->ctx, lap->n_active, 1024, hdi_fading_task, &a);
     hdi_fading_bound(h, x, most, &size, lane);
@@ -26662,6 +26721,7 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
     const hd_laplacian *lap = h->heat->source;
     const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, m);
     const double grow = 1 / (exp(1) * z->later[m] * h->heat->scale);
+    const double step = ldexp(DBL_MIN * DBL_EPSILON, hdi_high32(-z->exponent[q], 0)) / h->heat->scale;
     double *u = h->ask.U + column * h->ask.ldu, size, all, largest = 0;
     hdi_parts off, one;
     int32_t i;
@@ -26678,8 +26738,13 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
         u[lap->vertex[i]] = value;
         if (hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
     }
-    hdi_ledger_note(ledger, largest, hdi_parts_scale(to_values, off));
+    one = hdi_parts_scale(to_values, off);
     all = hdi_parts_sum(&off);
+    if (z->size[q] > 0) {                        /* where values are among the smallest doubles */
+        one.rounding += step;
+        if (step > DBL_EPSILON * DBL_EPSILON * largest) all += step * hdi_lane_spread(lap, 0);
+    }
+    hdi_ledger_note(ledger, largest, one);
     rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(all, size - all));
     hdi_bound_judge(rep->error_bound_b, rep);
 }
@@ -26964,7 +27029,6 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
     h->rep->ordering = h->heat->elim.sym.ordering;
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
 }
-
 
 /* Columns within another call: k of them at the (scaled) time t, with the factors that the plan holds or
  * makes. */
@@ -27361,7 +27425,8 @@ static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_diagonal *d, c
         double by, there = hdi_probe_value(h->heat, probe, i, set, 1, f, d->g[row], &by);
         rounding = hdi_max(rounding, hdi_probe_seen(there, by, d->value[row], d->size[row]));
     }
-    rounding = hdi_max(rounding, hdi_below_constants(lap, set, d->value, mass));
+    /* of K_t with a full B the parts of other eigenvectors, x(v) (B x)(v), may be negative */
+    if (!mass || !lap->B) rounding = hdi_max(rounding, hdi_below_constants(lap, set, d->value, mass));
     if (set->kind == HD_POLES_OWN) rounding = hdi_own_rounding(h->heat, set, h->t, rounding, d->size, mass);
     return rounding;
 }
@@ -28063,11 +28128,12 @@ static void hdi_fading_diagonal_note(const hdi_fading_diagonal *a, int32_t i, do
     const double left = a->mass ? sqrt(a->of->s.left_mass[v] + gram * b) : left_g;
     const double twice = hdi_decay_twice(a->of, x), found_g = sqrt(g->found), found = sqrt(c->found);
     hdi_parts part;
-    out[v] = x->scale * a->value[i];
-    part.rational = x->scale * x->cut * left_g * left;
-    part.solver = x->scale * (x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
-                              (c->side + twice * found) * left_g + found_g * (c->inner + twice * found));
-    part.rounding = 2 * x->scale * x->rounding * found_g * sqrt(b) + 4 * DBL_MIN * DBL_EPSILON +
+    out[v] = hdi_decayed(x, a->value[i]);
+    part.rational = hdi_decayed(x, x->cut * left_g * left);
+    part.solver = hdi_decayed(x, x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
+                                 (c->side + twice * found) * left_g +
+                                 found_g * (c->inner + twice * found));
+    part.rounding = hdi_decayed(x, 2 * x->rounding * found_g * sqrt(b)) + 4 * DBL_MIN * DBL_EPSILON +
                     8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[v]);
     hdi_ledger_note(ledger, out[v], part);
 }
@@ -28115,7 +28181,7 @@ static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *boun
     }
     if (others > 0) off.rational = others * exp(-t * hdi_max(0, x->s.next));
     off.rounding = 8 * (2 + hdi_min(t * x->low, HDI_EQUAL_BEYOND)) * DBL_EPSILON * value +
-                   4 * DBL_MIN * DBL_EPSILON;
+                   (4 + x->s.count) * DBL_MIN * DBL_EPSILON;
     h->relative = 1;
     *Z = value;
     if (bound) *bound = hdi_parts_sum(&off);
@@ -28170,12 +28236,12 @@ static hd_status hdi_fading_edges_run(hdi_heat_call *h, double t, double *out) {
     a.w = x.weight;
     a.out = out;
     hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_edges_task, &a);
-    off.rational = x.scale * x.cut * most.left * most.left;
-    off.solver = x.scale *
-                 ((x.mixed * x.mixed * most.left + 2 * most.side) * most.left + most.found * most.inner);
+    off.rational = hdi_decayed(&x, x.cut * most.left * most.left);
+    off.solver = hdi_decayed(&x, (x.mixed * x.mixed * most.left + 2 * most.side) * most.left +
+                                 most.found * most.inner);
     for (p = 0; p < lap->L.nnz; p++) {
-        out[p] *= x.scale;
-        off.rounding = 2 * x.scale * x.rounding * most.found * (most.found + most.left) +
+        out[p] = hdi_decayed(&x, out[p]);
+        off.rounding = hdi_decayed(&x, 2 * x.rounding * most.found * (most.found + most.left)) +
                        8 * (1 + hdi_min(x.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[p]) +
                        4 * DBL_MIN * DBL_EPSILON;
         hdi_ledger_note(&ledger, out[p], off);
@@ -28582,7 +28648,7 @@ static int hdi_heat_filtered(const hd_heat *heat) {
 typedef struct hdi_metric {
     hd_distance_kind kind;
     double t;                    /* of columns, scaled */
-    double unit;                 /* of f to the plan's numbers */
+    double root;                 /* of distances to roots of d^2: squares in their unit may leave the range */
     hd_rational set;             /* of the factors */
     int filter, equal;           /* no time; t is as good as infinite */
     double *diag, *g, *spread;
@@ -28620,10 +28686,10 @@ static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
     work = HDI_TAKE(scope, double, hdi_ground_room(m));
     u = HDI_TAKE(scope, double, m->sym.n);
     if (!work || !u) return scope->e->status;
-    x->unit = forms ? 1 / h->heat->scale : 1;
+    x->root = forms ? 1 / sqrt(h->heat->scale) : 1;
     for (i = 0; i < m->sym.n; i++) {
         const int32_t r = m->sym.perm[i];
-        x->diag[r] = x->unit * value[i];
+        x->diag[r] = value[i];
         x->g[r] = hdi_max(0, g->diag[i]);
         x->spread[r] = HUGE_VAL;
     }
@@ -28739,7 +28805,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     x->spread = x->g + n;
     /* d^2 of a filter is the sum of the filter itself */
     x->t = hdi_min((hdi_heat_filtered(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
-    x->unit = kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
+    x->root = 1;
     scope = hdi_scope_begin(heat->ctx, e);
     if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, rep, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0) {
         hdi_inverse_tell(&h);
@@ -28819,8 +28885,8 @@ static hd_status hdi_metric_columns_ground(hd_heat *heat, const hdi_metric *x, c
         c[r].off_b = HUGE_VAL;
         memset(c[r].u, 0, HDI_CAST(size_t, heat->source->n) * sizeof(double));
         if (hdi_terms_component(m->lap, &source) < 0) continue;
-        c[r].off_m = x->unit * hdi_ground_column(m, &heat->ground, &source, forms, u, work);
-        for (i = 0; i < m->sym.n; i++) c[r].u[m->lap->vertex[i]] = x->unit * u[i];
+        c[r].off_m = hdi_ground_column(m, &heat->ground, &source, forms, u, work);
+        for (i = 0; i < m->sym.n; i++) c[r].u[m->lap->vertex[i]] = u[i];
     }
     return hdi_scope_end(&s);
 }
@@ -28954,8 +29020,8 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, co
         rounding += self.off + 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
         delta = rational + rounding;
         d = d2 > 0 ? sqrt(d2) : 0;
-        u[v] = d;
-        error = d2 > delta ? delta / d : sqrt(2 * delta);
+        error = x->root * (d2 > delta ? delta / d : sqrt(2 * delta));
+        u[v] = d = x->root * d;
         rep->n_lost += delta > 0 && d2 < 10 * delta;
         memset(&part, 0, sizeof part);
         if (delta > 0) {
@@ -29045,6 +29111,7 @@ typedef struct hdi_mode_sum {
     int32_t own;                 /* its component, -1: none, or several */
     double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
     double left, whole;          /* |Q y| and |y| there, or bounds */
+    double unit;                 /* a power of two that brings entries near one, where they are squared */
     double constant_off;         /* what rounding of the sums over the source makes of the constants' part */
     double at, rest;             /* B 1 there, in two doubles */
     double *d;                   /* [n] */
@@ -29140,7 +29207,7 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
     int32_t q;
     for (v = begin; v < end; v++) sum[v] = off[v] = 0;
     for (q = a->decay.first; q < a->of->s.count; q++) {
-        const double *x = a->x + q * n, w = a->decay.weight[q], c = a->decay.off[q];
+        const double *x = a->x + q * n, w = a->unit * a->decay.weight[q], c = a->decay.off[q];
         const double from = hdi_modes_source_value(a, x, plain);
         for (v = begin; v < end; v++) {
             const double z = (plain ? x[v] : by[v] * x[v]) - from;
@@ -29153,7 +29220,7 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
         const double left = far_left + sqrt(hdi_modes_left(a, at));
         out[v] = a->decay.cut * left;
         off[v] += a->decay.mixed * left;
-        sum[v] = hdi_pythag(hdi_modes_constant(a, at), sqrt(sum[v]) * a->decay.scale);
+        sum[v] = hdi_pythag(hdi_modes_constant(a, at), hdi_decayed(&a->decay, sqrt(sum[v]) / a->unit));
     }
 }
 
@@ -29162,15 +29229,15 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
 static double hdi_modes_rounding(const hdi_mode_sum *a, int32_t v, double d) {
     const double sums = (a->source.n - 1) * DBL_EPSILON;
     const double off = a->decay.rounding * (a->whole + sqrt(hdi_modes_whole(a, v))) + sums * a->whole;
-    return a->decay.scale * off + a->constant_off +
+    return hdi_decayed(&a->decay, off) + a->constant_off +
            8 * (1 + hdi_min(a->decay.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d + 4 * DBL_MIN * DBL_EPSILON;
 }
 
 /* Notes the distance to v and its bound. */
 static void hdi_mode_sum_note(const hdi_mode_sum *a, int32_t v, hdi_ledger *ledger, hd_report *rep) {
     hdi_parts part;
-    part.rational = a->decay.scale * a->part[a->lap->n + v];
-    part.solver = a->decay.scale * a->part[v];
+    part.rational = hdi_decayed(&a->decay, a->part[a->lap->n + v]);
+    part.solver = hdi_decayed(&a->decay, a->part[v]);
     part.rounding = hdi_modes_rounding(a, v, a->d[v]);
     rep->n_lost += a->d[v] < 10 * hdi_parts_sum(&part);
     hdi_ledger_note(ledger, a->d[v], part);
@@ -29198,6 +29265,7 @@ static hdi_mode_sum hdi_mode_sum_at(const hd_heat *heat, hd_distance_kind kind, 
     a.lap = heat->source;
     a.weighted = kind == HD_DISTANCE_WEIGHTED;
     a.x = a.weighted && of->bx ? of->bx : of->s.vector;
+    a.unit = a.weighted ? sqrt(heat->scale) : 1 / sqrt(heat->scale);   /* the scale is a power of four */
     a.decay = hdi_decay_at(of, t, work);
     a.part = work + 2 * HDI_CAST(int64_t, of->s.count);
     return a;
@@ -29368,6 +29436,7 @@ static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call 
     z->one = HDI_TAKE_ZERO(s, hd_report, n_times);
     z->active = HDI_TAKE(s, char, HDI_CAST(int64_t, z->m->sym.n_super) + 1);
     z->metric.kind = kind;
+    z->metric.root = 1;
     z->metric.diag = HDI_TAKE(s, double, 3 * n + 1);
     if (s->e->status < 0) return s->e->status;
     z->metric.g = z->metric.diag + n;
@@ -29651,16 +29720,15 @@ static int32_t hdi_pairs_vertices(const hdi_pairs *x, hdi_pair *order, int32_t *
  * n_active]. */
 static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work,
                               double scale) {
-    double most = 0;
+    double most = 0, unit;
     int32_t r;
-    int exponent = 0;
     for (r = 0; r < lap->n_active; r++) {
         work[r] = u[lap->vertex[r]] - (v ? v[lap->vertex[r]] : 0);
         most = hdi_max(most, fabs(work[r]));
     }
     if (most == 0) return 0;
-    frexp(most, &exponent);
-    for (r = 0; r < lap->n_active; r++) work[r] = ldexp(work[r], -exponent);
+    unit = hdi_unit_of(most);
+    for (r = 0; r < lap->n_active; r++) work[r] *= unit;
     if (lap->B) {
         double sum = 0;
         int64_t p;
@@ -29670,10 +29738,10 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
                 s += scale * lap->B[p] * work[lap->L.col[p]];
             sum += work[r] * s;
         }
-        return ldexp(sqrt(hdi_max(0, sum)) / sqrt(scale), exponent);
+        return sqrt(hdi_max(0, sum)) / sqrt(scale) / unit;
     }
     for (most = 0, r = 0; r < lap->n_active; r++) most += scale * lap->mass[r] * (work[r] * work[r]);
-    return ldexp(sqrt(most) / sqrt(scale), exponent);
+    return sqrt(most) / sqrt(scale) / unit;
 }
 
 /* The parts of a report's bound. */
@@ -29729,6 +29797,7 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 typedef struct hdi_pair_columns {
     double *U;
     const int32_t *place;
+    double *size;                /* of each column, its norm of B */
     double *work;                /* [2 n_active] */
 } hdi_pair_columns;
 
@@ -29750,8 +29819,7 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
     for (q = 0; q < x->n; q++) {
         const double *ui = c->U + n * HDI_CAST(size_t, c->place[2 * q]);
         const double *uj = c->U + n * HDI_CAST(size_t, c->place[2 * q + 1]);
-        const double size_i = hdi_vertex_norm(lap, ui, NULL, c->work, heat->scale);
-        const double size_j = hdi_vertex_norm(lap, uj, NULL, c->work, heat->scale);
+        const double size_i = c->size[c->place[2 * q]], size_j = c->size[c->place[2 * q + 1]];
         const double off_i = hdi_pairs_column_off(lap, x->i[q], size_i, bound_b);
         const double off_j = hdi_pairs_column_off(lap, x->j[q], size_j, bound_b);
         if (x->K) {
@@ -29884,7 +29952,7 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
     hd_error e;
     hdi_scope s = hdi_scope_begin(heat->ctx, &e);
     hdi_pair *order = HDI_TAKE(&s, hdi_pair, twice);
-    int32_t *list = HDI_TAKE(&s, int32_t, twice), *place = HDI_TAKE(&s, int32_t, twice), n_list;
+    int32_t *list = HDI_TAKE(&s, int32_t, twice), *place = HDI_TAKE(&s, int32_t, twice), n_list, q;
     hdi_pair_columns c;
     hdi_heat_call h;
     c.place = place;
@@ -29897,6 +29965,7 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
         return hdi_pairs_by_entries(heat, x, t, rep);
     }
     c.U = HDI_TAKE(&s, double, n * HDI_CAST(uint64_t, n_list));
+    c.size = HDI_TAKE(&s, double, n_list);
     if (hdi_kernel_begin(&h, heat, kernel, rep, NULL) >= 0 && hdi_times_check(&h, 1, &t, 0) >= 0) {
         if (e.status < 0) *h.e = e;
         h.ask.k = n_list;
@@ -29905,7 +29974,12 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
         h.ask.ldu = HDI_CAST(size_t, n);
         h.degree = degree;
     }
-    if (hdi_heat_run(&h) >= 0) hdi_pairs_of_columns(heat, x, &c, rep);
+    if (hdi_heat_run(&h) >= 0) {
+        for (q = 0; q < n_list; q++)
+            c.size[q] = hdi_vertex_norm(heat->source, c.U + n * HDI_CAST(uint64_t, q), NULL, c.work,
+                                        heat->scale);
+        hdi_pairs_of_columns(heat, x, &c, rep);
+    }
     hdi_scope_end(&s);
     return rep->status;
 }
@@ -30531,10 +30605,11 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     const double n = heat->source->n_active, held = 40 * n + 16.0 * heat->source->n + 48.0 * x->k;
     const double real = f.flops / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS);
     const double solve = (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP * (forms ? 4 : 2);
+    const double columns = HDI_CAST(double, x->k) + HDI_PROBES;
     double bytes = 8 * f.real_stored * (forms ? 9 : 1);
     hdi_cost_direct(heat, forms ? 1 : 0, 1, HDI_AFTER_INVERSE, 0, c);
-    c->flops += (HDI_PROBES + x->k) * 4 * f.nnz * (forms ? 4 : 2);
-    c->seconds = hdi_max(c->seconds, real) + (HDI_PROBES + x->k) * solve;
+    c->flops += columns * 4 * f.nnz * (forms ? 4 : 2);
+    c->seconds = hdi_max(c->seconds, real) + columns * solve;
     if (heat->elim.ctx) {
         bytes = HDI_CAST(double, hdi_ground_need(&heat->elim, &heat->ground, forms));
         bytes += 16 * HDI_CAST(double, hdi_ground_room(&heat->elim));
@@ -30713,7 +30788,8 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
         to->reason = "t = 0";
         hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
     } else if (x->query <= HD_QUERY_PAIRS) {
-        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS ? 8 * columns + 16.0 * heat->source->n : 0);
+        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS
+                                      ? 8 * columns + 16.0 * heat->source->n + 8.0 * x->k : 0);
     } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
         (void)hdi_estimate_signature(x);
     } else {

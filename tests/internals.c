@@ -4142,7 +4142,7 @@ static void int_fading_note(void) {
     a.lap = lap;
     a.value = value;
     a.c = a.g = c;
-    a.decay.scale = 1;
+    a.decay.scale = a.decay.rest = 1;
     a.decay.mixed = 0.3;
     a.decay.t = 2;
     c[1].found = 4;

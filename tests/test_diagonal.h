@@ -1446,6 +1446,74 @@ static void diag_graded(void) {
     shape_free(&s);
 }
 
+/* With a full B the diagonal of K_t may be smaller than what the constants are of it. That is no sign of rounding. */
+static void diag_below_constants(void) {
+    shape s = shape_grid(2, 3, 0);
+    hd_laplacian *lap;
+    hd_heat *heat;
+    double D[6], least = 1;
+    int32_t q, i;
+    for (i = 0; i < s.n; i++) {                  /* uneven cells, and not flat */
+        s.xyz[3 * i] = i % 2 + 0.2 * sin(7.1 * i);
+        s.xyz[3 * i + 1] = 1.3 * (i / 2) + 0.2 * cos(3.3 * i);
+        s.xyz[3 * i + 2] = 0.3 * sin(0.5 * (i % 2));
+    }
+    for (i = 0; i < s.n_tri; i += 2) {           /* diagonals that run the other way */
+        const int32_t v = i;
+        s.tri[3 * i] = v, s.tri[3 * i + 1] = v + 1, s.tri[3 * i + 2] = v + 2;
+        s.tri[3 * i + 3] = v + 1, s.tri[3 * i + 4] = v + 3, s.tri[3 * i + 5] = v + 2;
+    }
+    lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    heat = eng_plan(lap, HD_METHOD_AUTO, HD_POLES_DEFAULT, 0);
+    for (q = 0; q < 30; q++) {
+        const double t = 0.05 * lap->h * lap->h * pow(1.2, q);
+        hd_report r;
+        CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D, 0, &r) == HD_OK);
+        CHECK_MSG(r.error_bound < 1e-6, "t = %g: bound %g", t, r.error_bound);
+        for (i = 0; i < lap->n_active; i++) least = fmin(least, D[lap->vertex[i]] * lap->component_mass[0] / lap->mass[i]);
+    }
+    CHECK_MSG(least < 0.998, "at least %g times the constants", least);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
+/* A path with L and B in other units: distances without a time, and their bounds, change by powers of two only. */
+static void diag_units(void) {
+    static const int units[][2] = {{0, 0}, {500, -300}, {500, -600}, {60, -950}, {40, -950}, {-500, 600}, {-100, 940}};
+    double want[2][6], bound[2] = {0, 0};
+    const int32_t n = 6;
+    int32_t q, i, a;
+    int64_t p;
+    double b[6];
+    for (q = 0; q < 7; q++) {
+        const int32_t source = 1;
+        hd_csr L = test_path_csr(n, 0), B;
+        hd_laplacian *lap = NULL;
+        hd_heat *heat = NULL;
+        for (p = 0; p < L.nnz; p++) L.val[p] = ldexp(L.val[p], units[q][0]);
+        for (i = 0; i < n; i++) b[i] = ldexp(1 + i % 3, units[q][1]);
+        B = test_diagonal_csr(n, b);
+        CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, NULL) == HD_OK && hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+        for (a = 0; a < 2; a++) {
+            const int power = a ? units[q][0] - units[q][1] / 2 : units[q][0] / 2;
+            double d[6];
+            hd_report r;
+            CHECK(heat_distance(heat, a ? HD_DISTANCE_BIHARMONIC : HD_DISTANCE_COMMUTE, 0, NULL, 1, &source, d, 0, &r) == HD_OK);
+            for (i = 0; i < n; i++) {
+                if (q == 0) want[a][i] = d[i];
+                CHECK_MSG(ldexp(d[i], power) == want[a][i], "units 2^%d, 2^%d: %g, want %g", units[q][0], units[q][1], d[i], want[a][i]);
+            }
+            if (q == 0) bound[a] = r.error_bound;
+            CHECK(r.error_bound > 0 && r.error_bound < 1e-10 && fabs(r.error_bound - bound[a]) <= 1e-6 * bound[a]);
+        }
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+        hd_csr_free(&L, NULL);
+        hd_csr_free(&B, NULL);
+    }
+}
+
 static void test_diagonal(void) {
     diag_graded();
     diag_inverse_shapes();
@@ -1471,6 +1539,8 @@ static void test_diagonal(void) {
     diag_orders();
     diag_threads();
     diag_samples_lost();
+    diag_below_constants();
+    diag_units();
 }
 
 #endif

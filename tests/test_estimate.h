@@ -467,6 +467,27 @@ static void est_flops(void) {
     shape_free(&s);
 }
 
+/* Work grows with the number of items up to the largest there is. */
+static void est_many(void) {
+    shape s = shape_grid(6, 5, 0.2);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    const double t = 10 * lap->h * lap->h;
+    int q;
+    for (q = HD_QUERY_FIELDS; q <= HD_QUERY_DISTANCE_BIHARMONIC; q++) {
+        hd_heat *heat = eng_plan(lap, HD_METHOD_DIRECT, HD_POLES_DEFAULT, 0);
+        const hd_query query = (hd_query)q;
+        const int each = q <= HD_QUERY_PAIRS || q >= HD_QUERY_DISTANCE;
+        hd_estimate half, all;
+        CHECK(hd_heat_estimate(heat, query, 1, &t, INT32_MAX / 2, &half, NULL) == HD_OK);
+        CHECK(hd_heat_estimate(heat, query, 1, &t, INT32_MAX, &all, NULL) == HD_OK);
+        CHECK_MSG(half.cost[HD_METHOD_AUTO].flops > 0 && (!each || fabs(all.cost[HD_METHOD_AUTO].flops / half.cost[HD_METHOD_AUTO].flops - 2) < 1e-3),
+                  "query %d: %g and %g flops", q, half.cost[HD_METHOD_AUTO].flops, all.cost[HD_METHOD_AUTO].flops);
+        hd_heat_free(heat);
+    }
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 static void test_estimate(void) {
     est_flops();
     static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_FEM};
@@ -487,6 +508,7 @@ static void test_estimate(void) {
     }
     est_model();
     est_sweeps();
+    est_many();
     shape_free(&ball);
     shape_free(&sheet);
     shape_free(&points);

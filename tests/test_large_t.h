@@ -502,6 +502,144 @@ static hd_laplacian *large_held(const shape *s, hd_laplacian_kind kind) {
     return bord_triangles(s, &o);
 }
 
+/* Lengths 2^j times as large are another unit: answers from eigenpairs and their bounds do not change, up to powers of two. */
+static void large_units(void) {
+    static const int units[] = {0, -480, -280, 250, 280, 480};
+    static double want[3][40], seen[3];
+    shape s = shape_grid(8, 5, 0.2);
+    double *given = DENSE_NEW(double, 3 * s.n), f[40], u[40];
+    const int32_t source = 17;
+    int32_t q, i, a;
+    memcpy(given, s.xyz, 3 * (size_t)s.n * sizeof *given);
+    for (i = 0; i < s.n; i++) f[i] = 1e60 * (cos(1.7 * i) + 0.3);
+    TRAPS_OFF;                                   /* of a solve that auto compares with */
+    for (q = 0; q < 6; q++) {
+        const int j = units[q];
+        for (i = 0; i < 3 * s.n; i++) s.xyz[i] = ldexp(given[i], j);
+        for (a = 0; a < 3; a++) {
+            const hd_distance_kind kind = a == 1 ? HD_DISTANCE_CLASSICAL : HD_DISTANCE_WEIGHTED;
+            hd_laplacian *lap = a == 0 ? large_held(&s, HD_LAPLACIAN_FEM) : test_laplacian(&s, HD_LAPLACIAN_FEM);
+            const double c = 8;
+            double t, worst = 0, most = 0;
+            hd_heat *heat = NULL;
+            hd_report r;
+            CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK && hd_times_spectral(lap, 1, &c, &t, NULL) == HD_OK);
+            if (a == 0) CHECK(heat_apply(heat, t, 1, f, 0, u, 0, &r) == HD_OK);
+            else CHECK(heat_distance(heat, kind, 1, &t, 1, &source, u, 0, &r) == HD_OK);
+            for (i = 0; i < s.n; i++) {
+                const double v = ldexp(u[i], a == 0 ? 0 : a == 1 ? j : -j);
+                if (q == 0) want[a][i] = v;
+                worst = fmax(worst, fabs(v - want[a][i]));
+                most = fmax(most, want[a][i]);
+            }
+            if (q == 0) seen[a] = r.error_bound;
+            CHECK_MSG(most > 0 && worst <= r.error_bound * most && fabs(r.error_bound - seen[a]) <= 1e-3 * seen[a],
+                      "unit 2^%d, answer %d: %g off, bound %g, %g in the given unit", j, a, worst / most, r.error_bound, seen[a]);
+            hd_heat_free(heat);
+            hd_laplacian_free(lap);
+        }
+    }
+    TRAPS_ON;
+    free(given);
+    shape_free(&s);
+}
+
+/* Where one eigenpair is left distances fall like exp(-t lambda), also where that alone is among the smallest doubles or below. */
+static void large_below(void) {
+    static const double c[] = {600, 735, 800};
+    shape s = shape_grid(8, 5, 0.2);
+    double t[3], d[120];
+    const int32_t source = 17;
+    int32_t q, i, m;
+    for (i = 0; i < 3 * s.n; i++) s.xyz[i] = ldexp(s.xyz[i], 350);
+    for (q = 0; q < 2; q++) {                    /* small lengths: classical distances are large; large ones: weighted ones */
+        hd_laplacian *lap;
+        hd_heat *heat = NULL;
+        hd_report r;
+        for (i = 0; i < 3 * s.n && q; i++) s.xyz[i] = ldexp(s.xyz[i], -700);
+        lap = large_held(&s, HD_LAPLACIAN_FEM);
+        CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK && hd_times_spectral(lap, 3, c, t, NULL) == HD_OK);
+        CHECK(heat_distance(heat, q ? HD_DISTANCE_CLASSICAL : HD_DISTANCE_WEIGHTED, 3, t, 1, &source, d, 0, &r) == HD_OK);
+        CHECK(r.error_bound <= 1e-9);
+        for (m = 1; m < 3; m++) {
+            double worst = 0, most = 0;
+            for (i = 0; i < s.n; i++) {
+                const double want = d[i] * exp(c[0] - c[m]);
+                worst = fmax(worst, fabs(d[m * s.n + i] - want));
+                most = fmax(most, want);
+            }
+            CHECK_MSG(most > 0 && worst <= 1e-11 * most, "kind %d, exp(-%g): %g off", (int)q, c[m], worst / most);
+        }
+        hd_heat_free(heat);
+        hd_laplacian_free(lap);
+    }
+    shape_free(&s);
+}
+
+/* K_t f, K_t' f and dK_t/dt f. */
+static hd_status large_ask(hd_heat *heat, int what, double t, const double *f, double *u, hd_report *r) {
+    return what == 0 ? hd_heat_apply(heat, 1, &t, 1, f, 0, u, 0, r, NULL)
+         : what == 1 ? hd_heat_adjoint(heat, 1, &t, 1, f, 0, u, 0, r, NULL)
+                     : hd_heat_derivative(heat, 1, &t, 1, f, 0, u, 0, r, NULL);
+}
+
+/* Answers among the smallest doubles have few digits, which bounds tell. Those that underflow are warned of; zeros of zeros are not. */
+static void large_smallest(void) {
+    static const double sizes[] = {0, 1e-300, 1e-308, 1e-312, 1e-316, 1e-320, 5e-323, 5e-324}, times[] = {0.3, 3, 200};
+    shape s = shape_grid(8, 5, 0.2);
+    hd_laplacian *lap = large_held(&s, HD_LAPLACIAN_FEM);
+    double f[40], up[40], u[40], want[40];
+    int32_t q, i, m, a, what;
+    TRAPS_OFF;
+    for (m = 0; m < 4; m++) {
+        hd_heat_opts o;
+        memset(&o, 0, sizeof o);
+        o.method = (hd_method)m;
+        for (a = 0; a < 8; a++) {
+            for (q = 0; q < 9; q++) {
+                hd_heat *heat = NULL;
+                hd_report r;
+                double worst = 0, most = 0;
+                what = q / 3;
+                CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
+                for (i = 0; i < s.n; i++) up[i] = ldexp(f[i] = sizes[a] * (1 + i % 3), 1000);
+                CHECK(large_ask(heat, what, times[q % 3], up, want, NULL) >= HD_OK);
+                CHECK(large_ask(heat, what, times[q % 3], f, u, &r) >= HD_OK);
+                for (i = 0; i < s.n; i++) {
+                    worst = fmax(worst, fabs(ldexp(u[i], 1000) - want[i]));
+                    most = fmax(most, fabs(ldexp(u[i], 1000)));
+                }
+                CHECK_MSG(a == 0   ? r.status == HD_OK && most == 0 && r.error_bound == 0
+                          : most > 0 ? worst <= (2 * r.error_bound + 1e-15) * most : r.status == HD_WARN_ACCURACY && r.error_bound >= 1,
+                          "method %d, question %d, t = %g, size %g: %g off, bound %g", (int)m, (int)what, times[q % 3], sizes[a], worst / most,
+                          r.error_bound);
+                hd_heat_free(heat);
+            }
+        }
+    }
+    TRAPS_ON;
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
+/* t = 0 copies fields, whatever lies between their values. */
+static void large_copies(void) {
+    shape s = shape_grid(8, 5, 0.2);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_heat *heat = NULL;
+    double f[40], u[40];
+    int32_t i;
+    for (i = 0; i < s.n; i++) f[i] = i % 2 ? 1e300 * (i + 1) / 100 : 1e-300 / (i + 3);
+    CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+    TRAPS_OFF;
+    CHECK(heat_apply(heat, 0, 1, f, 0, u, 0, NULL) == HD_OK);
+    TRAPS_ON;
+    CHECK(memcmp(f, u, sizeof f) == 0);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 static void test_large_t(void) {
     const double offset[3] = {4, 0, 0};
     shape ball = shape_bumpy(2, 5), torus = shape_torus(18, 10, 1, 0.4), grid = shape_grid(15, 11, 0.2);
@@ -521,6 +659,10 @@ static void test_large_t(void) {
     large_fading("disk", large_held(&disk, HD_LAPLACIAN_FEM));
     large_fading("hemisphere", large_held(&half, HD_LAPLACIAN_VORONOI_COT));
     large_square(64);
+    large_units();
+    large_below();
+    large_smallest();
+    large_copies();
     shape_free(&disk);
     shape_free(&half);
     shape_free(&ball);

@@ -614,6 +614,44 @@ static void spec_one_run(void) {
     shape_free(&s);
 }
 
+/* B in other units: distances from the pairs and their bounds change by powers of two only. */
+static void spec_units(void) {
+    static const int units[] = {0, -940, -600, 400, 600, 940};
+    double want[4][12], bound[4][12], b[12];
+    int32_t q, i, a;
+    for (q = 0; q < 6; q++) {
+        const int k = units[q];
+        const int32_t source = 2;
+        const double t = ldexp(3, k);
+        hd_csr L = test_path_csr(12, 0), B;
+        hd_laplacian *lap = NULL;
+        hd_spectrum *s = NULL;
+        hd_spectrum_opts o;
+        for (i = 0; i < 12; i++) b[i] = ldexp(1 + i % 3, k);
+        B = test_diagonal_csr(12, b);
+        memset(&o, 0, sizeof o);
+        o.count = 5;
+        CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, NULL) == HD_OK && hd_spectrum_create(&s, lap, &o, NULL) == HD_OK);
+        for (a = HD_DISTANCE_CLASSICAL; a <= HD_DISTANCE_BIHARMONIC; a++) {
+            const int power = a == HD_DISTANCE_CLASSICAL ? k / 2 : a == HD_DISTANCE_COMMUTE ? 0 : -k / 2;
+            double d[12], off[12];
+            CHECK(hd_spectrum_distance(s, (hd_distance_kind)a, a < HD_DISTANCE_COMMUTE, &t, 1, &source, d, off, 0, NULL) == HD_OK);
+            for (i = 0; i < 12; i++) {
+                d[i] = ldexp(d[i], power);
+                off[i] = ldexp(off[i], power);
+                if (q == 0) want[a][i] = d[i];
+                if (q == 0) bound[a][i] = off[i];
+                CHECK_MSG(fabs(d[i] - want[a][i]) <= 1e-12 * want[a][i] && fabs(off[i] - bound[a][i]) <= 1e-9 * bound[a][i],
+                          "unit 2^%d, kind %d: %g +- %g, want %g +- %g", k, (int)a, d[i], off[i], want[a][i], bound[a][i]);
+            }
+        }
+        hd_spectrum_free(s);
+        hd_laplacian_free(lap);
+        hd_csr_free(&L, NULL);
+        hd_csr_free(&B, NULL);
+    }
+}
+
 static void test_spectrum(void) {
     spec_one_run();
     spec_against_dense();
@@ -632,6 +670,7 @@ static void test_spectrum(void) {
     spec_against_heat();
     spec_threads();
     spec_errors();
+    spec_units();
 }
 
 #endif
