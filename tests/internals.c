@@ -247,6 +247,13 @@ static void int_memory(void) {
     hdi_free(&ctx, NULL);
     CHECK(ctx.bytes_in_use == 0 && freed == ctx.bytes_peak);
     CHECK(hdi_alloc(&ctx, SIZE_MAX / 2, 8, &e) == NULL && e.status == HD_ERR_TOO_LARGE && ctx.bytes_in_use == 0);
+    ctx.byte_limit = 1;                          /* the largest array that an address can tell meets the limit, one byte more does not */
+    hdi_error_clear(&e);
+    CHECK(hdi_alloc(&ctx, PTRDIFF_MAX - HDI_ALIGN - HDI_HEADER, 1, &e) == NULL && e.status == HD_ERR_MEMORY_LIMIT);
+    hdi_error_clear(&e);
+    CHECK(hdi_alloc(&ctx, PTRDIFF_MAX - HDI_ALIGN - HDI_HEADER + 1, 1, &e) == NULL && e.status == HD_ERR_TOO_LARGE);
+    ctx.byte_limit = 0;
+    hdi_error_clear(&e);
     s = hdi_scope_begin(&ctx, &e);
     CHECK(e.status == HD_OK && e.face == -1 && e.pole == -1);
     block[0] = hdi_take_zero(&s, 10, sizeof(double));
@@ -285,7 +292,8 @@ static uint64_t int_key(int shape_of, int64_t i, int64_t n, uint64_t *seed) {
 
 static void int_sorting(void) {
     static const int64_t sizes[14] = {0, 1, 2, 3, 7, 23, 24, 25, 26, 63, 64, 65, 1000, 4097};
-    uint64_t seed = 1;
+    int32_t beside = 5;
+    uint64_t seed = 1, room = 77;
     int k, form;
     int64_t i;
     for (k = 0; k < 14; k++) {
@@ -317,6 +325,8 @@ static void int_sorting(void) {
             free(x);
         }
     }
+    hdi_sort_indices(&beside, 0, &room);         /* an empty list has no room */
+    CHECK(beside == 5 && room == 77);
 }
 
 static void int_union_find(void) {
@@ -3010,6 +3020,40 @@ static void int_sweeps(void) {
     }
 }
 
+/* A full matrix is one front, of two blocks of columns, which its pivots cross in the middle. */
+static void int_sweep_panels(void) {
+    enum { N = HDI_PANEL + 70 };
+    double *l = DENSE_NEW(double, N * N), *b = DENSE_NEW(double, N * N);
+    hd_laplacian *lap = NULL;
+    hd_context ctx;
+    hd_csr L, B;
+    hd_error e;
+    hdi_elim m;
+    hd_rational set;
+    int32_t *row = DENSE_NEW(int32_t, N * N), *col = DENSE_NEW(int32_t, N * N), i;
+    for (i = 0; i < N * N; i++) {
+        row[i] = i / N;
+        col[i] = i % N;
+        l[i] = row[i] == col[i] ? N - 1 : -1;
+        b[i] = row[i] == col[i] ? 1 + row[i] % 5 : 0;
+    }
+    memset(&ctx, 0, sizeof ctx);
+    CHECK(hd_csr_from_triplets(&L, N, N, N * N, row, col, l, NULL, &e) == HD_OK);
+    CHECK(hd_csr_from_triplets(&B, N, N, N * N, row, col, b, NULL, &e) == HD_OK);
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK);
+    CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK && hdi_rational_get(&set, HD_POLES_UNIFORM, 9, &e) == HD_OK);
+    CHECK(m.sym.n_super == 1 && hdi_elim_poles(&m, &set, 0.01 * m.scale, &e) == HD_OK);
+    int_sweep_one(&m, m.pack, 1, &ctx, "a full matrix");
+    hdi_elim_free(&m);
+    hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    free(row);
+    free(col);
+    free(l);
+    free(b);
+}
+
 /* ---- [17] shifted: checks of packs ---- */
 
 static void int_checks(void) {
@@ -3418,6 +3462,48 @@ static void int_silan_bounds(void) {
 }
 
 #include "test_shared.h"
+/* Large numbers where the next call's variables will be. */
+static double int_soil(int seed) {
+    double a[600];
+    int i;
+    for (i = 0; i < 600; i++) a[i] = 1e300;
+    return a[(seed * 7) % 600];
+}
+
+/* Without poles the best weighted fit of any function is its weighted mean, and with one real pole that of a + b/(x - p) is exact. */
+static void int_fit_constant(void) {
+    enum { N = 40 };
+    double x[N], f[HDI_FIT_ROOM] = {0}, u[HDI_FIT_ROOM] = {0}, A[(N + 2) * 2], b[N + 2], sum = 0, all = 0;
+    hdi_fit k;
+    hdi_fitted s;
+    int i, poles;
+    memset(&k, 0, sizeof k);
+    k.count = k.constant = 1;
+    k.n = N;
+    k.x = x;
+    k.f = f;
+    k.u = u;
+    k.A = A;
+    k.b = b;
+    for (poles = 0; poles < 2; poles++) {
+        memset(&s, 0, sizeof s);
+        s.n = poles;
+        s.p[0].re = -0.5;
+        for (i = 0, sum = all = 0; i < N; i++) {
+            x[i] = i / (double)N;
+            u[i] = 1 + i % 3;
+            f[i] = poles ? 3 - 2 / (x[i] + 0.5) : sin(9 * x[i]);
+            sum += u[i] * u[i] * f[i];
+            all += u[i] * u[i];
+        }
+        CHECK(int_soil(poles) > 1e299);
+        hdi_fit_residues(&k, 0, &s);
+        CHECK_MSG(fabs(s.a0 - (poles ? 3 : sum / all)) < 1e-12 && fabs(s.a[0].re + 2 * poles) < 1e-12, "%d poles: %g and %g", poles, s.a0,
+                  s.a[0].re);
+        CHECK(poles == 0 || s.error < 1e-12);
+    }
+}
+
 /* ---- [13] selinv, and what [18] and [21] make of it ---- */
 
 /* Sums of entries of the inverses of all poles, a lone real one and one pack or two packs, with weights of three sets: against dense solutions. */
@@ -4388,6 +4474,29 @@ static double int_pair_difference(const hd_laplacian *a, const hd_laplacian *b, 
     return fmax(worst[0] / most[0], worst[1] / most[1]);
 }
 
+/* Two flat triangles, which a flip makes Delaunay, come 400 times: each copy is flipped on both sheets, and the sum is 400 times that of one. */
+static void int_many_copies(void) {
+    enum { COPIES = 400 };
+    static const double xyz[12] = {0, 0, 0, 1, 0, 0, 0.5, 0.1, 0, 0.5, -0.1, 0};
+    static const int32_t faces[6] = {0, 1, 2, 1, 0, 3};
+    int32_t *tri = DENSE_NEW(int32_t, 6 * COPIES);
+    hd_context ctx;
+    hd_mesh_report rep;
+    hd_laplacian *one, *all;
+    int k;
+    memset(&ctx, 0, sizeof ctx);
+    for (k = 0; k < 6 * COPIES; k++) tri[k] = faces[k % 6];
+    one = int_soup_pair(xyz, 4, tri, 2, 0, &ctx, &rep);
+    CHECK(rep.n_flips == 2 && rep.n_not_delaunay == 0);
+    all = int_soup_pair(xyz, 4, tri, 2 * COPIES, 0, &ctx, &rep);
+    CHECK_MSG(rep.n_flips == 2 * COPIES && rep.n_not_delaunay == 0, "%d flips, %d edges left", (int)rep.n_flips, (int)rep.n_not_delaunay);
+    CHECK(int_pair_difference(one, all, COPIES) < 1e-12);
+    hdi_laplacian_free(one, &ctx);
+    hdi_laplacian_free(all, &ctx);
+    free(tri);
+    CHECK(ctx.bytes_in_use == 0);
+}
+
 /* The cover of a soup unfolded where it has to be, against all of it; and for faces that come once, against that of the mesh, which is glued elsewhere. */
 static void int_soup(void) {
     enum { N = 400 };
@@ -4693,6 +4802,39 @@ static void int_linear_precision(void) {
     shape_poly_free(&s);
 }
 
+/* A curve's piece in a face of sides 2, about corners that the face does not begin with: its length, and how far the corners are from it. */
+static void int_item_near(void) {
+    double near_by[6], want[6];
+    hdi_geo_face face;
+    hdi_geo_item item;
+    hdi_geo_spot spot;
+    int i;
+    memset(&face, 0, sizeof face);
+    memset(&item, 0, sizeof item);
+    memset(&spot, 0, sizeof spot);
+    face.l = 1;                                  /* half of the sides */
+    face.p = 0.5;
+    face.q = sqrt(0.75);
+    face.v[0] = 4;
+    face.v[1] = 2;
+    face.v[2] = 5;
+    face.copies = 1;
+    item.n = 2;                                  /* from the middle of a side to the corner at (2, 0) */
+    item.row[0] = 4;
+    item.row[1] = 2;
+    item.a[0] = item.a[1] = 0.5;
+    item.b[1] = 1;
+    spot.near_by = near_by;
+    for (i = 0; i < 6; i++) near_by[i] = want[i] = HUGE_VAL;
+    want[4] = 1;
+    want[2] = 0;
+    want[5] = sqrt(3.0);
+    CHECK(hdi_geo_item_in(&spot, &item, &face) && fabs(item.length - 1) < 1e-15);
+    for (i = 0; i < 6; i++) CHECK_MSG(near_by[i] == want[i] || fabs(near_by[i] - want[i]) < 1e-15, "corner %d: %g", i, near_by[i]);
+    item.row[1] = 3;                             /* no corner of this face */
+    CHECK(!hdi_geo_item_in(&spot, &item, &face));
+}
+
 /* The residual of the heat equation stays within its arrays. */
 static void int_geo_heat_off(void) {
     shape s = shape_grid(6, 5, 0.2);
@@ -4758,6 +4900,10 @@ static void int_all(void) {
     int_star();
     int_wheels();
     int_sort_keys();
+    int_fit_constant();
+    int_sweep_panels();
+    int_many_copies();
+    int_item_near();
     int_kth();
     int_select_points();
     int_tangent_planes();
