@@ -4077,6 +4077,42 @@ static void int_window_probes(void) {
     }
 }
 
+/* The same for the diagonal of the kernel. */
+static void int_window_diagonal(void) {
+    enum { TIMES = 4 };
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    hd_heat *heat = int_plan(lap);
+    hdi_heat_call h;
+    hdi_scope s;
+    hdi_window w;
+    hdi_probe probe;
+    double t[TIMES], *at;
+    int32_t q, i, p;
+    for (q = 0; q < TIMES; q++) t[q] = lap->h * lap->h * pow(3, q);
+    CHECK(hdi_distance_begin(&h, heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, NULL, NULL) >= 0);
+    CHECK(hdi_heat_sort_times(&h, 1, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0);
+    s = hdi_scope_begin(heat->ctx, h.e);
+    hdi_window_take(&w, &h, 0, TIMES, &s);
+    CHECK(hdi_window_run(&h, &w, HDI_SHARED_TOL, HDI_WANT_DIAGONAL) >= 0);
+    probe = hdi_probe_rows(heat->elim.lap, hdi_window_at(&w, w.values, TIMES - 1), -1);     /* one row or two */
+    CHECK(hdi_probe_run(&h, &probe, HD_KERNEL_SYMMETRIC, w.set) >= 0);
+    for (i = 0; i == probe.row[0] || i == probe.row[probe.k - 1]; i++) {}
+    for (q = 0; q < TIMES; q++) {
+        const double off = hdi_window_rounding(heat, &w, &probe, q);
+        CHECK_MSG(off > 0 && off < 1e-6, "time %d: %g", (int)q, off);
+        at = hdi_window_at(&w, w.values, q);
+        for (p = 0; p < lap->n_active; p++) at[p] *= 1.001;
+        CHECK_MSG(hdi_window_rounding(heat, &w, &probe, q) >= 0.00099, "time %d: %g", (int)q, hdi_window_rounding(heat, &w, &probe, q));
+        for (p = 0; p < lap->n_active; p++) at[p] /= 1.001;
+        at[i] = 0.1 / heat->elim.lap->component_mass[0];    /* a row without a probe, below the constants */
+        CHECK_MSG(hdi_window_rounding(heat, &w, &probe, q) >= 8.99, "time %d: %g", (int)q, hdi_window_rounding(heat, &w, &probe, q));
+    }
+    hdi_scope_end(&s);
+    hdi_heat_end(&h);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+}
+
 /* Resistances: what the residual of a column admits is part of rounding even where the column agrees with the diagonal, and a diagonal that is not
  * positive is of no use. */
 static void int_ground_probes(void) {
@@ -4980,6 +5016,7 @@ static void int_all(void) {
     int_turned();
     int_many_packs();
     int_window_probes();
+    int_window_diagonal();
     int_ground_probes();
     int_ground_apart();
     int_fading_reach();
