@@ -2660,7 +2660,6 @@ struct hd_threads {
     hdi_seat seat[HDI_THREADS_MOST - 1];
 };
 
-
 static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
 #if defined(__GNUC__) || defined(__clang__)
     return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
@@ -26957,7 +26956,6 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
 }
 
-
 /* Columns within another call: k of them at the (scaled) time t, with the factors that the plan holds or
  * makes. */
 typedef struct hdi_columns {
@@ -27701,17 +27699,14 @@ static int32_t hdi_window_worst(const double *k, const double *g, int32_t n) {
     return worst;
 }
 
-/* What rounding does to the diagonal of k_t at time q, relative to it: as the probes see it, and as values
- * below the constants show. */
-static double hdi_window_rounding(const hd_heat *heat, const hdi_window *w, const hdi_probe *probe,
-                                  int32_t q) {
-    const hd_rational *set = w->set + q;
+/* What rounding does to k at time q, relative to it, as the probes see it and values below the constants. */
+static double hdi_window_rounding(const hd_heat *heat, const hdi_window *w, const hdi_probe *x, int32_t q) {
     const double *value = hdi_window_at(w, w->values, q), *g = value + w->n;
-    double most = hdi_below_constants(heat->elim.lap, set, value, 0);
+    double most = hdi_below_constants(heat->elim.lap, w->set + q, value, 0);
     int32_t r;
-    for (r = 0; r < probe->k; r++) {
-        const int32_t row = probe->row[r];
-        double by, there = hdi_probe_value(heat, probe, r, set, w->t[q] / w->t[0], 0, g[row], &by);
+    for (r = 0; r < x->k; r++) {
+        const int32_t row = x->row[r];
+        double by, there = hdi_probe_value(heat, x, r, w->set + q, w->t[q] / w->t[0], 0, g[row], &by);
         most = hdi_max(most, hdi_probe_seen(there, by, value[row], value[row]));
     }
     return most;
