@@ -2436,7 +2436,7 @@ static void int_lanczos_bound(void) {
     dense_pair_free(&whole);
 }
 
-/* ---- [07] kernels: packs ---- */
+/* ---- [07] kernels: real fronts ---- */
 
 static double int_off(const double *a, const double *b, int64_t n) {
     return dense_max_diff(a, b, n) / (1 + dense_max_abs(b, n));
@@ -2446,6 +2446,183 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
     int64_t i;
     for (i = 0; i < n; i++) x[i] = dense_signed(seed);
 }
+
+/* A front by its definition: a random one of p pivots and u rows below, and L, D and what is left of the update. */
+typedef struct int_real { int32_t p, u, m; double *P, *U, *L, *left; } int_real;
+
+static int64_t int_packed(int64_t u, int64_t i, int64_t j) { return j * u - j * (j - 1) / 2 - j + i; }
+
+static int_real int_real_make(int32_t p, int32_t u, uint64_t seed) {
+    int_real f;
+    int64_t m = p + u, i, j, k;
+    f.p = p;
+    f.u = u;
+    f.m = p + u;
+    f.P = DENSE_NEW(double, m * p);
+    f.U = DENSE_NEW(double, (int64_t)u * (u + 1) / 2);
+    f.L = DENSE_NEW(double, m * p);
+    f.left = DENSE_NEW(double, (int64_t)u * (u + 1) / 2);
+    for (j = 0; j < p; j++) {
+        for (i = 0; i < m; i++) f.L[i + j * m] = i < j ? (p % 2 ? NAN : 7) : i > j ? dense_signed(&seed) : j % 3 ? m : -m;
+    }
+    for (i = 0; i < (int64_t)u * (u + 1) / 2; i++) f.U[i] = f.left[i] = dense_signed(&seed);
+    memcpy(f.P, f.L, (size_t)(m * p) * sizeof *f.P);     /* above the diagonal nothing is read, nor written */
+    for (k = 0; k < p; k++) {
+        const double d = f.L[k + k * m];
+        for (j = k + 1; j < m; j++) {
+            const double s = f.L[j + k * m] / d;
+            for (i = j; i < m; i++) *(j < p ? f.L + i + j * m : f.left + int_packed(u, i - p, j - p)) -= f.L[i + k * m] * s;
+        }
+        for (i = k + 1; i < m; i++) f.L[i + k * m] /= d;
+    }
+    return f;
+}
+
+/* The factorisation, its rows and those of the update in pieces that do not begin with tiles. */
+static void int_real_factor(const hdi_real_ops *o, const int_real *f, double *dinv, const char *what) {
+    double *S = DENSE_NEW(double, hdi_real_s_size(f->p)), *work = DENSE_NEW(double, hdi_real_work(f->u, f->p)), off = 0;
+    const int64_t m = f->m, u = f->u;
+    hdi_real_pivots pivots;
+    int64_t i, j, at;
+    int32_t k, negative = 0;
+    pivots.largest = 0;
+    pivots.smallest = DBL_MAX;
+    pivots.negative = 0;
+    for (k = 0; k < f->p; k += HDI_REAL_NB) {
+        const int32_t nb = f->p - k < HDI_REAL_NB ? f->p - k : HDI_REAL_NB, kb = k + nb;
+        const int64_t end = kb + (kb <= HDI_REAL_KC ? (m - kb) / 2 : 0), middle = end + (m - end) / 3;
+        CHECK(hdi_real_block(o, f->P, m, k, nb, end, S, dinv, &pivots, work) == -1);
+        hdi_real_rows(o, f->P, m, k, nb, S, kb, dinv, middle, m, work);
+        hdi_real_rows(o, f->P, m, k, nb, S, kb, dinv, end, middle, work);
+    }
+    for (at = 0; at < u; at = i) {
+        i = hdi_least(u, at + 1 + (at * 7 + 5) % 97);
+        hdi_real_update(o, f->U, u, f->P, m, f->p, work, at, i);
+    }
+    for (j = 0; j < f->p; j++) {
+        off += memcmp(f->P + j * m, f->L + j * m, (size_t)j * sizeof *f->L) != 0;
+        for (i = j; i < m; i++) off = fmax(off, fabs(f->P[i + j * m] - f->L[i + j * m]) / (i == j ? (double)m : 1));
+        off = fmax(off, fabs(dinv[j] * f->L[j + j * m] - 1));
+        negative += f->L[j + j * m] < 0;
+    }
+    CHECK_MSG(off < 1e-13, "%s: L is off by %g", what, off);
+    CHECK(pivots.negative == negative);
+    if (u > 0) off = dense_max_diff(f->U, f->left, u * (u + 1) / 2);
+    CHECK_MSG(off < 1e-13, "%s: the update is off by %g", what, off);
+    free(S);
+    free(work);
+}
+
+/* Solves with L for one right-hand side and for eight, against its definition. x [n]: the rows below stand at idx. */
+static void int_real_solves(const hdi_real_ops *o, const int_real *f, const double *dinv, const char *what) {
+    const int64_t m = f->m, p = f->p, u = f->u;
+    double *y = DENSE_NEW(double, 8 * p), *t = DENSE_NEW(double, 8 * u), *want = DENSE_NEW(double, 8 * m), *x = DENSE_NEW(double, 16 * (u + 1)),
+        *b = DENSE_NEW(double, 8 * p), *got = DENSE_NEW(double, 8 * m), *work = DENSE_NEW(double, u);
+    int32_t *idx = DENSE_NEW(int32_t, u), w, first, k;
+    uint64_t seed = 3;
+    int64_t i, j, r;
+    int_noise(y, 8 * p, &seed);
+    int_noise(t, 8 * u, &seed);
+    int_noise(x, 16 * (u + 1), &seed);
+    for (i = 0; i < u; i++) idx[i] = (int32_t)(2 * (i * 2 % (u | 1)) + i % 2);
+    for (w = 1; w <= 8; w += 7) {
+        for (first = 0; first < (w == 1 ? 2 : 1); first++) {     /* first: t is not read */
+            for (i = 0; i < m; i++)
+                for (r = 0; r < w; r++) want[w * i + r] = i < p ? y[w * i + r] : first ? 0 : t[w * (i - p) + r];
+            for (j = 0; j < p; j++)
+                for (i = j + 1; i < m; i++)
+                    for (r = 0; r < w; r++) want[w * i + r] -= f->L[i + j * m] * want[w * j + r];
+            memcpy(got, y, (size_t)(w * p) * sizeof *y);
+            for (i = 0; i < w * u; i++) got[w * p + i] = first ? NAN : t[i];
+            for (k = 0; k < p; k += 8) {
+                const int32_t nc = p - k < 8 ? (int32_t)p - k : 8;
+                if (w == 1) o->forward(got + k, f->P + k + k * m, m, nc, p - k - nc, got + p, u, first && k == 0);
+                else if (k) o->gemv8(got + 8 * k, NULL, f->P + k, m, nc, got, k);
+                if (w == 8) o->lower8(got + 8 * k, f->P + k + k * m, m, nc);
+            }
+            if (w == 8 && u > 0) o->gemv8(got + 8 * p, NULL, f->P + p, m, u, got, (int32_t)p);
+            CHECK_MSG(dense_max_diff(got, want, w * m) < 1e-13, "%s: %d forward off by %g", what, (int)w, dense_max_diff(got, want, w * m));
+        }
+        memcpy(b, y, (size_t)(w * p) * sizeof *y);
+        for (j = p - 1; j >= 0; j--)
+            for (r = 0; r < w; r++) {
+                double sum = y[w * j + r] / f->L[j + j * m];
+                for (i = j + 1; i < m; i++) sum -= f->L[i + j * m] * (i < p ? want[w * i + r] : x[w * idx[i - p] + r]);
+                want[w * j + r] = sum;
+            }
+        if (w == 1) hdi_real_backward(o, f->P, m, (int32_t)p, dinv, b, x, idx, work);
+        else hdi_real_backward8(o, f->P, m, (int32_t)p, dinv, b, x, idx);
+        CHECK_MSG(dense_max_diff(b, want, w * p) < 1e-13, "%s: %d backward off by %g", what, (int)w, dense_max_diff(b, want, w * p));
+    }
+    free(y);
+    free(t);
+    free(want);
+    free(x);
+    free(b);
+    free(got);
+    free(work);
+    free(idx);
+}
+
+/* The update of a child of u rows into a front that has more. every: rows between those of the child. */
+static void int_real_child(const hdi_real_ops *o, const int_real *f, int32_t every, const char *what) {
+    const int64_t m = f->m, u = f->u;
+    const int64_t uc = m / every;
+    double *child = DENSE_NEW(double, uc * (uc + 1) / 2), *P = DENSE_NEW(double, m * f->p), *U = DENSE_NEW(double, u * (u + 1) / 2),
+        *want_p = DENSE_NEW(double, m * f->p), *want_u = DENSE_NEW(double, u * (u + 1) / 2);
+    int32_t *rel = DENSE_NEW(int32_t, uc);
+    uint64_t seed = 4;
+    int64_t i, j;
+    int_noise(child, uc * (uc + 1) / 2, &seed);
+    for (i = 0; i < uc; i++) rel[i] = (int32_t)(i * every + (every > 1 ? i % 2 : 0));
+    for (j = 0; j < uc; j++)
+        for (i = j; i < uc; i++)
+            *(rel[j] < f->p ? want_p + rel[i] + rel[j] * m : want_u + int_packed(u, rel[i] - f->p, rel[j] - f->p)) += child[int_packed(uc, i, j)];
+    hdi_real_extend(o, P, m, f->p, U, child, uc, rel, uc / 3, uc);
+    hdi_real_extend(o, P, m, f->p, U, child, uc, rel, 0, uc / 3);
+    CHECK_MSG(memcmp(P, want_p, (size_t)(m * f->p) * sizeof *P) == 0 && memcmp(U, want_u, (size_t)(u * (u + 1) / 2) * sizeof *U) == 0,
+              "%s: a child of every %d. row", what, (int)every);
+    free(child);
+    free(P);
+    free(U);
+    free(want_p);
+    free(want_u);
+    free(rel);
+}
+
+static void int_real_kernels(void) {
+    static const int32_t sizes[][2] = {{1, 0}, {1, 3}, {2, 5}, {3, 1}, {4, 70}, {5, 9}, {7, 12}, {8, 24}, {9, 25}, {13, 30}, {24, 50}, {63, 11},
+                                       {64, 64}, {65, 100}, {129, 0}, {150, 41}, {200, 120}, {20, 530}};
+    static const hd_simd simds[4] = {HD_SIMD_AUTO, HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512};
+    const int best = hdi_simd_best();
+    hd_context ctx;
+    char what[60];
+    int level, k;
+    for (level = 0; level <= best; level++) {
+        const hdi_real_ops *o = hdi_real_ops_get(level);
+        for (k = 0; k < (int)(sizeof sizes / sizeof *sizes); k++) {
+            int_real f = int_real_make(sizes[k][0], sizes[k][1], 5);
+            double *dinv = DENSE_NEW(double, f.p);
+            sprintf(what, "level %d, %d pivots, %d rows", level, (int)f.p, (int)f.u);
+            int_real_factor(o, &f, dinv, what);
+            int_real_solves(o, &f, dinv, what);
+            int_real_child(o, &f, 1, what);
+            int_real_child(o, &f, 3, what);
+            free(dinv);
+            free(f.P);
+            free(f.U);
+            free(f.L);
+            free(f.left);
+        }
+    }
+    memset(&ctx, 0, sizeof ctx);
+    for (k = 0; k < 4; k++) {                    /* the set that is asked for, or the best one below it */
+        ctx.simd = simds[k];
+        CHECK(hdi_simd_level(&ctx) == (k == 0 || k - 1 > best ? best : k - 1));
+    }
+}
+
+/* ---- [07] kernels: packs ---- */
 
 /* Products of all shapes about the tiles' sizes, whole, lower triangles, packed, stored or subtracted, columns from somewhere in the middle. */
 static void int_pack_multiply(const hdi_pack_ops *ops, int level) {
@@ -4992,6 +5169,7 @@ static void int_all(void) {
     int_warm_start();
     int_pole_bounds();
     int_lanczos_bound();
+    int_real_kernels();
     int_pack_kernels();
     int_symbolic();
     int_symbolic_large();
