@@ -2447,23 +2447,52 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
     for (i = 0; i < n; i++) x[i] = dense_signed(seed);
 }
 
+/* Memory of zeros whose end is that of a page, where the system is asked for pages: nothing can be read behind it. */
+#if HDI_LARGE_PAGES && defined(MAP_ANONYMOUS)
+enum { INT_PAGE = 65536 };
+static size_t int_edge_whole(size_t bytes) { return (bytes + INT_PAGE - 1) / INT_PAGE * INT_PAGE; }
+static void *int_edge(int64_t count, size_t size) {
+    const size_t bytes = (size_t)count * size, whole = int_edge_whole(bytes);
+    char *p = (char *)mmap(NULL, whole + INT_PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (p == MAP_FAILED || mprotect(p + whole, INT_PAGE, PROT_NONE) != 0) {
+        fprintf(stderr, "internals: out of memory\n");
+        exit(2);
+    }
+    return p + whole - bytes;
+}
+static void int_edge_free(void *p, int64_t count, size_t size) {
+    const size_t bytes = (size_t)count * size, whole = int_edge_whole(bytes);
+    CHECK(munmap((char *)p + bytes - whole, whole + INT_PAGE) == 0);
+}
+#else
+static void *int_edge(int64_t count, size_t size) { return dense_alloc(count, size); }
+static void int_edge_free(void *p, int64_t count, size_t size) {
+    (void)count;
+    (void)size;
+    free(p);
+}
+#endif
+#define INT_EDGE(type, count) ((type *)int_edge(count, sizeof(type)))
+#define INT_EDGE_FREE(p, count) int_edge_free(p, count, sizeof *(p))
+
 /* A front by its definition: a random one of p pivots and u rows below, and L, D and what is left of the update. */
 typedef struct int_real { int32_t p, u, m; double *P, *U, *L, *left; } int_real;
 
 static int64_t int_packed(int64_t u, int64_t i, int64_t j) { return j * u - j * (j - 1) / 2 - j + i; }
 
 static int_real int_real_make(int32_t p, int32_t u, uint64_t seed) {
+    const double beside = p % 2 ? (double)NAN : 7;
     int_real f;
     int64_t m = p + u, i, j, k;
     f.p = p;
     f.u = u;
     f.m = p + u;
-    f.P = DENSE_NEW(double, m * p);
-    f.U = DENSE_NEW(double, (int64_t)u * (u + 1) / 2);
+    f.P = INT_EDGE(double, m * p);
+    f.U = INT_EDGE(double, (int64_t)u * (u + 1) / 2);
     f.L = DENSE_NEW(double, m * p);
     f.left = DENSE_NEW(double, (int64_t)u * (u + 1) / 2);
     for (j = 0; j < p; j++) {
-        for (i = 0; i < m; i++) f.L[i + j * m] = i < j ? (p % 2 ? NAN : 7) : i > j ? dense_signed(&seed) : j % 3 ? m : -m;
+        for (i = 0; i < m; i++) f.L[i + j * m] = i < j ? beside : i > j ? dense_signed(&seed) : (double)(j % 3 ? m : -m);
     }
     for (i = 0; i < (int64_t)u * (u + 1) / 2; i++) f.U[i] = f.left[i] = dense_signed(&seed);
     memcpy(f.P, f.L, (size_t)(m * p) * sizeof *f.P);     /* above the diagonal nothing is read, nor written */
@@ -2513,55 +2542,57 @@ static void int_real_factor(const hdi_real_ops *o, const int_real *f, double *di
     free(work);
 }
 
-/* Solves with L for one right-hand side and for eight, against its definition. x [n]: the rows below stand at idx. */
+/* Solves with L for one right-hand side and for eight, against its definition. */
 static void int_real_solves(const hdi_real_ops *o, const int_real *f, const double *dinv, const char *what) {
     const int64_t m = f->m, p = f->p, u = f->u;
     double *y = DENSE_NEW(double, 8 * p), *t = DENSE_NEW(double, 8 * u), *want = DENSE_NEW(double, 8 * m), *x = DENSE_NEW(double, 16 * (u + 1)),
-        *b = DENSE_NEW(double, 8 * p), *got = DENSE_NEW(double, 8 * m), *work = DENSE_NEW(double, u);
-    int32_t *idx = DENSE_NEW(int32_t, u), w, first, k;
+        *top = INT_EDGE(double, 8 * p), *below = INT_EDGE(double, 8 * u), *work = INT_EDGE(double, u);
+    int32_t *idx = INT_EDGE(int32_t, u), w, first, k;
     uint64_t seed = 3;
     int64_t i, j, r;
     int_noise(y, 8 * p, &seed);
     int_noise(t, 8 * u, &seed);
     int_noise(x, 16 * (u + 1), &seed);
-    for (i = 0; i < u; i++) idx[i] = (int32_t)(2 * (i * 2 % (u | 1)) + i % 2);
+    for (i = 0; i < u; i++) idx[i] = (int32_t)(2 * (i * 2 % (u | 1)) + i % 2);   /* the rows of x below */
     for (w = 1; w <= 8; w += 7) {
-        for (first = 0; first < (w == 1 ? 2 : 1); first++) {     /* first: t is not read */
-            for (i = 0; i < m; i++)
-                for (r = 0; r < w; r++) want[w * i + r] = i < p ? y[w * i + r] : first ? 0 : t[w * (i - p) + r];
+        double *a = top + (8 - w) * p, *b = below + (8 - w) * u, off;
+        for (first = 0; first < (w == 1 ? 2 : 1); first++) {     /* first: b is not read */
+            memcpy(a, y, (size_t)(w * p) * sizeof *y);
+            for (i = 0; i < w * u; i++) b[i] = first ? (double)NAN : t[i];
+            for (i = 0; i < w * m; i++) want[i] = i < w * p ? y[i] : first ? 0 : t[i - w * p];
             for (j = 0; j < p; j++)
                 for (i = j + 1; i < m; i++)
                     for (r = 0; r < w; r++) want[w * i + r] -= f->L[i + j * m] * want[w * j + r];
-            memcpy(got, y, (size_t)(w * p) * sizeof *y);
-            for (i = 0; i < w * u; i++) got[w * p + i] = first ? NAN : t[i];
             for (k = 0; k < p; k += 8) {
                 const int32_t nc = p - k < 8 ? (int32_t)p - k : 8;
-                if (w == 1) o->forward(got + k, f->P + k + k * m, m, nc, p - k - nc, got + p, u, first && k == 0);
-                else if (k) o->gemv8(got + 8 * k, NULL, f->P + k, m, nc, got, k);
-                if (w == 8) o->lower8(got + 8 * k, f->P + k + k * m, m, nc);
+                if (w == 1) o->forward(a + k, f->P + k + k * m, m, nc, p - k - nc, b, u, first && k == 0);
+                else if (k) o->gemv8(a + 8 * k, NULL, f->P + k, m, nc, a, k);
+                if (w == 8) o->lower8(a + 8 * k, f->P + k + k * m, m, nc);
             }
-            if (w == 8 && u > 0) o->gemv8(got + 8 * p, NULL, f->P + p, m, u, got, (int32_t)p);
-            CHECK_MSG(dense_max_diff(got, want, w * m) < 1e-13, "%s: %d forward off by %g", what, (int)w, dense_max_diff(got, want, w * m));
+            if (w == 8 && u > 0) o->gemv8(b, NULL, f->P + p, m, u, a, (int32_t)p);
+            off = fmax(dense_max_diff(a, want, w * p), u > 0 ? dense_max_diff(b, want + w * p, w * u) : 0);
+            CHECK_MSG(off < 1e-13, "%s: %d forward off by %g", what, (int)w, off);
         }
-        memcpy(b, y, (size_t)(w * p) * sizeof *y);
+        memcpy(a, y, (size_t)(w * p) * sizeof *y);
         for (j = p - 1; j >= 0; j--)
             for (r = 0; r < w; r++) {
                 double sum = y[w * j + r] / f->L[j + j * m];
                 for (i = j + 1; i < m; i++) sum -= f->L[i + j * m] * (i < p ? want[w * i + r] : x[w * idx[i - p] + r]);
                 want[w * j + r] = sum;
             }
-        if (w == 1) hdi_real_backward(o, f->P, m, (int32_t)p, dinv, b, x, idx, work);
-        else hdi_real_backward8(o, f->P, m, (int32_t)p, dinv, b, x, idx);
-        CHECK_MSG(dense_max_diff(b, want, w * p) < 1e-13, "%s: %d backward off by %g", what, (int)w, dense_max_diff(b, want, w * p));
+        if (w == 1) hdi_real_backward(o, f->P, m, (int32_t)p, dinv, a, x, idx, work);
+        else hdi_real_backward8(o, f->P, m, (int32_t)p, dinv, a, x, idx);
+        off = dense_max_diff(a, want, w * p);
+        CHECK_MSG(off < 1e-13, "%s: %d backward off by %g", what, (int)w, off);
     }
     free(y);
     free(t);
     free(want);
     free(x);
-    free(b);
-    free(got);
-    free(work);
-    free(idx);
+    INT_EDGE_FREE(top, 8 * p);
+    INT_EDGE_FREE(below, 8 * u);
+    INT_EDGE_FREE(work, u);
+    INT_EDGE_FREE(idx, u);
 }
 
 /* The update of a child of u rows into a front that has more. every: rows between those of the child. */
@@ -2609,8 +2640,8 @@ static void int_real_kernels(void) {
             int_real_child(o, &f, 1, what);
             int_real_child(o, &f, 3, what);
             free(dinv);
-            free(f.P);
-            free(f.U);
+            INT_EDGE_FREE(f.P, (int64_t)f.m * f.p);
+            INT_EDGE_FREE(f.U, (int64_t)f.u * (f.u + 1) / 2);
             free(f.L);
             free(f.left);
         }
