@@ -278,7 +278,7 @@ static void thr_nap_task(void *arg, int64_t index, int32_t worker) {
     const time_t start = time(NULL);
     (void)index;
     if (worker > 0 && HDI_ATOMIC_ADD(&w->begun, 1) == 1) {
-        while (!thr_caller_sleeps(w->threads) && time(NULL) < start + 5) {}
+        while (!thr_caller_sleeps(w->threads) && time(NULL) < start + 30) {}
         HDI_ATOMIC_SET(&w->slept, thr_caller_sleeps(w->threads));
     }
     while (worker == 0 && HDI_ATOMIC_GET(&w->begun) == 0 && time(NULL) < start + 60) {}
