@@ -453,6 +453,7 @@ static void test_threads(void) {
     thr_few_tasks();
     thr_orders();
     thr_light();
+    CHECK(GUARD_IN_USE == 0);                    /* all that threads had is free */
     free(want);
     free(u);
     shape_free(&s);
