@@ -2670,7 +2670,6 @@ struct hd_threads {
     hdi_seat seat[HDI_THREADS_MOST - 1];
 };
 
-
 static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
 #if defined(__GNUC__) || defined(__clang__)
     return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
@@ -27774,6 +27773,19 @@ static int32_t hdi_window_worst(const double *k, const double *g, int32_t n) {
     return worst;
 }
 
+/* What rounding does to k at time q, relative to it, as the probes see it and values below the constants. */
+static double hdi_window_rounding(const hd_heat *heat, const hdi_window *w, const hdi_probe *x, int32_t q) {
+    const double *value = hdi_window_at(w, w->values, q), *g = value + w->n;
+    double most = hdi_below_constants(heat->elim.lap, w->set + q, value, 0);
+    int32_t r;
+    for (r = 0; r < x->k; r++) {
+        const int32_t row = x->row[r];
+        double by, there = hdi_probe_value(heat, x, r, w->set + q, w->t[q] / w->t[0], 0, g[row], &by);
+        most = hdi_max(most, hdi_probe_seen(there, by, value[row], value[row]));
+    }
+    return most;
+}
+
 /* k_t(v,v) for times q0 to q1 - 1 of the call by one set of poles. */
 static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, double *D, size_t ldd) {
     const hdi_elim *m = &h->heat->elim;
@@ -27782,7 +27794,7 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, d
     hdi_window w;
     hdi_diagonal d;
     hdi_probe probe;
-    int32_t q, i, r;
+    int32_t q, i;
     memset(&d, 0, sizeof d);
     d.kernel = HD_KERNEL_SYMMETRIC;
     hdi_window_take(&w, h, q0, q1, &s);
@@ -27793,20 +27805,14 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, d
     if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, w.set) < 0) return hdi_scope_end(&s);
     for (q = 0; q < w.n_times; q++) {
         const hd_rational *set = w.set + q;
-        double rounding = 0;
         d.value = d.size = hdi_window_at(&w, w.values, q);
         d.g = d.value + w.n;
-        for (r = 0; r < probe.k; r++) {
-            const int32_t row = probe.row[r];
-            double by, there = hdi_probe_value(h->heat, &probe, r, set, w.t[q] / w.t[0], 0, d.g[row], &by);
-            rounding = hdi_max(rounding, hdi_probe_seen(there, by, d.value[row], d.value[row]));
-        }
-        rounding = hdi_max(rounding, hdi_below_constants(lap, set, d.value, 0));
         for (i = 0; i < m->sym.n; i++) {
             const double spread = lap->b_ratio * lap->b_diag[i];
             d.off[i] = hdi_min(set->max_weighted_error * hdi_max(0, d.g[i]), set->max_error / spread);
         }
-        (void)hdi_diagonal_tell(h, &d, rounding, D + HDI_CAST(size_t, h->time_column[q0 + q]) * ldd);
+        (void)hdi_diagonal_tell(h, &d, hdi_window_rounding(h->heat, &w, &probe, q),
+                                D + HDI_CAST(size_t, h->time_column[q0 + q]) * ldd);
     }
     return hdi_scope_end(&s);
 }

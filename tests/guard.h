@@ -32,6 +32,15 @@ typedef struct guard_head { char *raw; size_t size; } guard_head;
 static size_t guard_threads;
 #define GUARD_THREADS(size) (guard_threads = (size))
 
+/* How many of them are in use, where threads can share a counter. */
+static int guard_in_use;
+#define GUARD_IN_USE guard_in_use
+#if defined(__GNUC__) || defined(__clang__)
+#define GUARD_COUNT(by) ((void)__atomic_add_fetch(&guard_in_use, by, __ATOMIC_ACQ_REL))
+#else
+#define GUARD_COUNT(by) ((void)(by))
+#endif
+
 /* At an address for which the library leaves the most room before its array, and with that a byte behind it. */
 static void *guard_malloc(size_t size) {
     const size_t before = 2 * GUARD_ALIGN;
@@ -43,7 +52,10 @@ static void *guard_malloc(size_t size) {
     if (!head.raw) return NULL;
     p = head.raw + before - ((size_t)head.raw + GUARD_HEADER) % GUARD_ALIGN + 1 - GUARD_ALIGN;
     if (p < head.raw + (int)sizeof head) p += GUARD_ALIGN;
-    if (size == guard_threads) p = head.raw + before;
+    if (size == guard_threads) {
+        p = head.raw + before;
+        GUARD_COUNT(1);
+    }
     memcpy(p - sizeof head, &head, sizeof head);
     memset(p, GUARD_FILL, size + GUARD_BYTES);
     return p;
@@ -60,6 +72,7 @@ static void guard_free(void *block) {
         fprintf(stderr, "guard.h: byte %d behind a block of %lu bytes was written to\n", i, (unsigned long)head.size);
         abort();
     }
+    if (head.size == guard_threads) GUARD_COUNT(-1);
     free(head.raw);
 }
 
@@ -68,6 +81,7 @@ static void guard_free(void *block) {
 
 #else
 #define GUARD_THREADS(size) ((void)(size))
+#define GUARD_IN_USE 0
 #endif
 
 #endif

@@ -247,6 +247,13 @@ static void int_memory(void) {
     hdi_free(&ctx, NULL);
     CHECK(ctx.bytes_in_use == 0 && freed == ctx.bytes_peak);
     CHECK(hdi_alloc(&ctx, SIZE_MAX / 2, 8, &e) == NULL && e.status == HD_ERR_TOO_LARGE && ctx.bytes_in_use == 0);
+    ctx.byte_limit = 1;                          /* the largest array that an address can tell meets the limit, one byte more does not */
+    hdi_error_clear(&e);
+    CHECK(hdi_alloc(&ctx, PTRDIFF_MAX - HDI_ALIGN - HDI_HEADER, 1, &e) == NULL && e.status == HD_ERR_MEMORY_LIMIT);
+    hdi_error_clear(&e);
+    CHECK(hdi_alloc(&ctx, PTRDIFF_MAX - HDI_ALIGN - HDI_HEADER + 1, 1, &e) == NULL && e.status == HD_ERR_TOO_LARGE);
+    ctx.byte_limit = 0;
+    hdi_error_clear(&e);
     s = hdi_scope_begin(&ctx, &e);
     CHECK(e.status == HD_OK && e.face == -1 && e.pole == -1);
     block[0] = hdi_take_zero(&s, 10, sizeof(double));
@@ -285,7 +292,8 @@ static uint64_t int_key(int shape_of, int64_t i, int64_t n, uint64_t *seed) {
 
 static void int_sorting(void) {
     static const int64_t sizes[14] = {0, 1, 2, 3, 7, 23, 24, 25, 26, 63, 64, 65, 1000, 4097};
-    uint64_t seed = 1;
+    int32_t beside = 5;
+    uint64_t seed = 1, room = 77;
     int k, form;
     int64_t i;
     for (k = 0; k < 14; k++) {
@@ -317,6 +325,8 @@ static void int_sorting(void) {
             free(x);
         }
     }
+    hdi_sort_indices(&beside, 0, &room);         /* an empty list has no room */
+    CHECK(beside == 5 && room == 77);
 }
 
 static void int_union_find(void) {
@@ -2426,7 +2436,7 @@ static void int_lanczos_bound(void) {
     dense_pair_free(&whole);
 }
 
-/* ---- [07] kernels: packs ---- */
+/* ---- [07] kernels: real fronts ---- */
 
 static double int_off(const double *a, const double *b, int64_t n) {
     return dense_max_diff(a, b, n) / (1 + dense_max_abs(b, n));
@@ -2436,6 +2446,214 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
     int64_t i;
     for (i = 0; i < n; i++) x[i] = dense_signed(seed);
 }
+
+/* Memory of zeros whose end is that of a page, where the system is asked for pages: nothing can be read behind it. */
+#if HDI_LARGE_PAGES && defined(MAP_ANONYMOUS)
+enum { INT_PAGE = 65536 };
+static size_t int_edge_whole(size_t bytes) { return (bytes + INT_PAGE - 1) / INT_PAGE * INT_PAGE; }
+static void *int_edge(int64_t count, size_t size) {
+    const size_t bytes = (size_t)count * size, whole = int_edge_whole(bytes);
+    char *p = (char *)mmap(NULL, whole + INT_PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (p == MAP_FAILED || mprotect(p + whole, INT_PAGE, PROT_NONE) != 0) {
+        fprintf(stderr, "internals: out of memory\n");
+        exit(2);
+    }
+    return p + whole - bytes;
+}
+static void int_edge_free(void *p, int64_t count, size_t size) {
+    const size_t bytes = (size_t)count * size, whole = int_edge_whole(bytes);
+    CHECK(munmap((char *)p + bytes - whole, whole + INT_PAGE) == 0);
+}
+#else
+static void *int_edge(int64_t count, size_t size) { return dense_alloc(count, size); }
+static void int_edge_free(void *p, int64_t count, size_t size) {
+    (void)count;
+    (void)size;
+    free(p);
+}
+#endif
+#define INT_EDGE(type, count) ((type *)int_edge(count, sizeof(type)))
+#define INT_EDGE_FREE(p, count) int_edge_free(p, count, sizeof *(p))
+
+/* A front by its definition: a random one of p pivots and u rows below, and L, D and what is left of the update. */
+typedef struct int_real { int32_t p, u, m; double *P, *U, *L, *left; } int_real;
+
+static int64_t int_packed(int64_t u, int64_t i, int64_t j) { return j * u - j * (j - 1) / 2 - j + i; }
+
+static int_real int_real_make(int32_t p, int32_t u, uint64_t seed) {
+    const double beside = p % 2 ? (double)NAN : 7;
+    int_real f;
+    int64_t m = p + u, i, j, k;
+    f.p = p;
+    f.u = u;
+    f.m = p + u;
+    f.P = INT_EDGE(double, m * p);
+    f.U = INT_EDGE(double, (int64_t)u * (u + 1) / 2);
+    f.L = DENSE_NEW(double, m * p);
+    f.left = DENSE_NEW(double, (int64_t)u * (u + 1) / 2);
+    for (j = 0; j < p; j++) {
+        for (i = 0; i < m; i++) f.L[i + j * m] = i < j ? beside : i > j ? dense_signed(&seed) : (double)(j % 3 ? m : -m);
+    }
+    for (i = 0; i < (int64_t)u * (u + 1) / 2; i++) f.U[i] = f.left[i] = dense_signed(&seed);
+    memcpy(f.P, f.L, (size_t)(m * p) * sizeof *f.P);     /* above the diagonal nothing is read, nor written */
+    for (k = 0; k < p; k++) {
+        const double d = f.L[k + k * m];
+        for (j = k + 1; j < m; j++) {
+            const double s = f.L[j + k * m] / d;
+            for (i = j; i < m; i++) *(j < p ? f.L + i + j * m : f.left + int_packed(u, i - p, j - p)) -= f.L[i + k * m] * s;
+        }
+        for (i = k + 1; i < m; i++) f.L[i + k * m] /= d;
+    }
+    return f;
+}
+
+/* The factorisation, its rows and those of the update in pieces that do not begin with tiles. */
+static void int_real_factor(const hdi_real_ops *o, const int_real *f, double *dinv, const char *what) {
+    double *S = DENSE_NEW(double, hdi_real_s_size(f->p)), *work = DENSE_NEW(double, hdi_real_work(f->u, f->p)), off = 0;
+    const int64_t m = f->m, u = f->u;
+    hdi_real_pivots pivots;
+    int64_t i, j, at;
+    int32_t k, negative = 0;
+    pivots.largest = 0;
+    pivots.smallest = DBL_MAX;
+    pivots.negative = 0;
+    for (k = 0; k < f->p; k += HDI_REAL_NB) {
+        const int32_t nb = f->p - k < HDI_REAL_NB ? f->p - k : HDI_REAL_NB, kb = k + nb;
+        const int64_t end = kb + (kb <= HDI_REAL_KC ? (m - kb) / 2 : 0), middle = end + (m - end) / 3;
+        CHECK(hdi_real_block(o, f->P, m, k, nb, end, S, dinv, &pivots, work) == -1);
+        hdi_real_rows(o, f->P, m, k, nb, S, kb, dinv, middle, m, work);
+        hdi_real_rows(o, f->P, m, k, nb, S, kb, dinv, end, middle, work);
+    }
+    for (at = 0; at < u; at = i) {
+        i = hdi_least(u, at + 1 + (at * 7 + 5) % 97);
+        hdi_real_update(o, f->U, u, f->P, m, f->p, work, at, i);
+    }
+    for (j = 0; j < f->p; j++) {
+        off += memcmp(f->P + j * m, f->L + j * m, (size_t)j * sizeof *f->L) != 0;
+        for (i = j; i < m; i++) off = fmax(off, fabs(f->P[i + j * m] - f->L[i + j * m]) / (i == j ? (double)m : 1));
+        off = fmax(off, fabs(dinv[j] * f->L[j + j * m] - 1));
+        negative += f->L[j + j * m] < 0;
+    }
+    CHECK_MSG(off < 1e-13, "%s: L is off by %g", what, off);
+    CHECK(pivots.negative == negative);
+    if (u > 0) off = dense_max_diff(f->U, f->left, u * (u + 1) / 2);
+    CHECK_MSG(off < 1e-13, "%s: the update is off by %g", what, off);
+    free(S);
+    free(work);
+}
+
+/* Solves with L for one right-hand side and for eight, against its definition. */
+static void int_real_solves(const hdi_real_ops *o, const int_real *f, const double *dinv, const char *what) {
+    const int64_t m = f->m, p = f->p, u = f->u;
+    double *y = DENSE_NEW(double, 8 * p), *t = DENSE_NEW(double, 8 * u), *want = DENSE_NEW(double, 8 * m), *x = DENSE_NEW(double, 16 * (u + 1)),
+        *top = INT_EDGE(double, 8 * p), *below = INT_EDGE(double, 8 * u), *work = INT_EDGE(double, u);
+    int32_t *idx = INT_EDGE(int32_t, u), w, first, k;
+    uint64_t seed = 3;
+    int64_t i, j, r;
+    int_noise(y, 8 * p, &seed);
+    int_noise(t, 8 * u, &seed);
+    int_noise(x, 16 * (u + 1), &seed);
+    for (i = 0; i < u; i++) idx[i] = (int32_t)(2 * (i * 2 % (u | 1)) + i % 2);   /* the rows of x below */
+    for (w = 1; w <= 8; w += 7) {
+        double *a = top + (8 - w) * p, *b = below + (8 - w) * u, off;
+        for (first = 0; first < (w == 1 ? 2 : 1); first++) {     /* first: b is not read */
+            memcpy(a, y, (size_t)(w * p) * sizeof *y);
+            for (i = 0; i < w * u; i++) b[i] = first ? (double)NAN : t[i];
+            for (i = 0; i < w * m; i++) want[i] = i < w * p ? y[i] : first ? 0 : t[i - w * p];
+            for (j = 0; j < p; j++)
+                for (i = j + 1; i < m; i++)
+                    for (r = 0; r < w; r++) want[w * i + r] -= f->L[i + j * m] * want[w * j + r];
+            for (k = 0; k < p; k += 8) {
+                const int32_t nc = p - k < 8 ? (int32_t)p - k : 8;
+                if (w == 1) o->forward(a + k, f->P + k + k * m, m, nc, p - k - nc, b, u, first && k == 0);
+                else if (k) o->gemv8(a + 8 * k, NULL, f->P + k, m, nc, a, k);
+                if (w == 8) o->lower8(a + 8 * k, f->P + k + k * m, m, nc);
+            }
+            if (w == 8 && u > 0) o->gemv8(b, NULL, f->P + p, m, u, a, (int32_t)p);
+            off = fmax(dense_max_diff(a, want, w * p), u > 0 ? dense_max_diff(b, want + w * p, w * u) : 0);
+            CHECK_MSG(off < 1e-13, "%s: %d forward off by %g", what, (int)w, off);
+        }
+        memcpy(a, y, (size_t)(w * p) * sizeof *y);
+        for (j = p - 1; j >= 0; j--)
+            for (r = 0; r < w; r++) {
+                double sum = y[w * j + r] / f->L[j + j * m];
+                for (i = j + 1; i < m; i++) sum -= f->L[i + j * m] * (i < p ? want[w * i + r] : x[w * idx[i - p] + r]);
+                want[w * j + r] = sum;
+            }
+        if (w == 1) hdi_real_backward(o, f->P, m, (int32_t)p, dinv, a, x, idx, work);
+        else hdi_real_backward8(o, f->P, m, (int32_t)p, dinv, a, x, idx);
+        off = dense_max_diff(a, want, w * p);
+        CHECK_MSG(off < 1e-13, "%s: %d backward off by %g", what, (int)w, off);
+    }
+    free(y);
+    free(t);
+    free(want);
+    free(x);
+    INT_EDGE_FREE(top, 8 * p);
+    INT_EDGE_FREE(below, 8 * u);
+    INT_EDGE_FREE(work, u);
+    INT_EDGE_FREE(idx, u);
+}
+
+/* The update of a child of u rows into a front that has more. every: rows between those of the child. */
+static void int_real_child(const hdi_real_ops *o, const int_real *f, int32_t every, const char *what) {
+    const int64_t m = f->m, u = f->u;
+    const int64_t uc = m / every;
+    double *child = DENSE_NEW(double, uc * (uc + 1) / 2), *P = DENSE_NEW(double, m * f->p), *U = DENSE_NEW(double, u * (u + 1) / 2),
+        *want_p = DENSE_NEW(double, m * f->p), *want_u = DENSE_NEW(double, u * (u + 1) / 2);
+    int32_t *rel = DENSE_NEW(int32_t, uc);
+    uint64_t seed = 4;
+    int64_t i, j;
+    int_noise(child, uc * (uc + 1) / 2, &seed);
+    for (i = 0; i < uc; i++) rel[i] = (int32_t)(i * every + (every > 1 ? i % 2 : 0));
+    for (j = 0; j < uc; j++)
+        for (i = j; i < uc; i++)
+            *(rel[j] < f->p ? want_p + rel[i] + rel[j] * m : want_u + int_packed(u, rel[i] - f->p, rel[j] - f->p)) += child[int_packed(uc, i, j)];
+    hdi_real_extend(o, P, m, f->p, U, child, uc, rel, uc / 3, uc);
+    hdi_real_extend(o, P, m, f->p, U, child, uc, rel, 0, uc / 3);
+    CHECK_MSG(memcmp(P, want_p, (size_t)(m * f->p) * sizeof *P) == 0 && memcmp(U, want_u, (size_t)(u * (u + 1) / 2) * sizeof *U) == 0,
+              "%s: a child of every %d. row", what, (int)every);
+    free(child);
+    free(P);
+    free(U);
+    free(want_p);
+    free(want_u);
+    free(rel);
+}
+
+static void int_real_kernels(void) {
+    static const int32_t sizes[][2] = {{1, 0}, {1, 3}, {2, 5}, {3, 1}, {4, 70}, {5, 9}, {7, 12}, {8, 24}, {9, 25}, {13, 30}, {24, 50}, {63, 11},
+                                       {64, 64}, {65, 100}, {129, 0}, {150, 41}, {200, 120}, {20, 530}};
+    static const hd_simd simds[4] = {HD_SIMD_AUTO, HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512};
+    const int best = hdi_simd_best();
+    hd_context ctx;
+    char what[60];
+    int level, k;
+    for (level = 0; level <= best; level++) {
+        const hdi_real_ops *o = hdi_real_ops_get(level);
+        for (k = 0; k < (int)(sizeof sizes / sizeof *sizes); k++) {
+            int_real f = int_real_make(sizes[k][0], sizes[k][1], 5);
+            double *dinv = DENSE_NEW(double, f.p);
+            sprintf(what, "level %d, %d pivots, %d rows", level, (int)f.p, (int)f.u);
+            int_real_factor(o, &f, dinv, what);
+            int_real_solves(o, &f, dinv, what);
+            int_real_child(o, &f, 1, what);
+            int_real_child(o, &f, 3, what);
+            free(dinv);
+            INT_EDGE_FREE(f.P, (int64_t)f.m * f.p);
+            INT_EDGE_FREE(f.U, (int64_t)f.u * (f.u + 1) / 2);
+            free(f.L);
+            free(f.left);
+        }
+    }
+    memset(&ctx, 0, sizeof ctx);
+    for (k = 0; k < 4; k++) {                    /* the set that is asked for, or the best one below it */
+        ctx.simd = simds[k];
+        CHECK(hdi_simd_level(&ctx) == (k == 0 || k - 1 > best ? best : k - 1));
+    }
+}
+
+/* ---- [07] kernels: packs ---- */
 
 /* Products of all shapes about the tiles' sizes, whole, lower triangles, packed, stored or subtracted, columns from somewhere in the middle. */
 static void int_pack_multiply(const hdi_pack_ops *ops, int level) {
@@ -3010,6 +3228,40 @@ static void int_sweeps(void) {
     }
 }
 
+/* A full matrix is one front, of two blocks of columns, which its pivots cross in the middle. */
+static void int_sweep_panels(void) {
+    enum { N = HDI_PANEL + 70 };
+    double *l = DENSE_NEW(double, N * N), *b = DENSE_NEW(double, N * N);
+    hd_laplacian *lap = NULL;
+    hd_context ctx;
+    hd_csr L, B;
+    hd_error e;
+    hdi_elim m;
+    hd_rational set;
+    int32_t *row = DENSE_NEW(int32_t, N * N), *col = DENSE_NEW(int32_t, N * N), i;
+    for (i = 0; i < N * N; i++) {
+        row[i] = i / N;
+        col[i] = i % N;
+        l[i] = row[i] == col[i] ? N - 1 : -1;
+        b[i] = row[i] == col[i] ? 1 + row[i] % 5 : 0;
+    }
+    memset(&ctx, 0, sizeof ctx);
+    CHECK(hd_csr_from_triplets(&L, N, N, N * N, row, col, l, NULL, &e) == HD_OK);
+    CHECK(hd_csr_from_triplets(&B, N, N, N * N, row, col, b, NULL, &e) == HD_OK);
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK);
+    CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK && hdi_rational_get(&set, HD_POLES_UNIFORM, 9, &e) == HD_OK);
+    CHECK(m.sym.n_super == 1 && hdi_elim_poles(&m, &set, 0.01 * m.scale, &e) == HD_OK);
+    int_sweep_one(&m, m.pack, 1, &ctx, "a full matrix");
+    hdi_elim_free(&m);
+    hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    free(row);
+    free(col);
+    free(l);
+    free(b);
+}
+
 /* ---- [17] shifted: checks of packs ---- */
 
 static void int_checks(void) {
@@ -3418,6 +3670,48 @@ static void int_silan_bounds(void) {
 }
 
 #include "test_shared.h"
+/* Large numbers where the next call's variables will be. */
+static double int_soil(int seed) {
+    double a[600];
+    int i;
+    for (i = 0; i < 600; i++) a[i] = 1e300;
+    return a[(seed * 7) % 600];
+}
+
+/* Without poles the best weighted fit of any function is its weighted mean, and with one real pole that of a + b/(x - p) is exact. */
+static void int_fit_constant(void) {
+    enum { N = 40 };
+    double x[N], f[HDI_FIT_ROOM] = {0}, u[HDI_FIT_ROOM] = {0}, A[(N + 2) * 2], b[N + 2], sum = 0, all = 0;
+    hdi_fit k;
+    hdi_fitted s;
+    int i, poles;
+    memset(&k, 0, sizeof k);
+    k.count = k.constant = 1;
+    k.n = N;
+    k.x = x;
+    k.f = f;
+    k.u = u;
+    k.A = A;
+    k.b = b;
+    for (poles = 0; poles < 2; poles++) {
+        memset(&s, 0, sizeof s);
+        s.n = poles;
+        s.p[0].re = -0.5;
+        for (i = 0, sum = all = 0; i < N; i++) {
+            x[i] = i / (double)N;
+            u[i] = 1 + i % 3;
+            f[i] = poles ? 3 - 2 / (x[i] + 0.5) : sin(9 * x[i]);
+            sum += u[i] * u[i] * f[i];
+            all += u[i] * u[i];
+        }
+        CHECK(int_soil(poles) > 1e299);
+        hdi_fit_residues(&k, 0, &s);
+        CHECK_MSG(fabs(s.a0 - (poles ? 3 : sum / all)) < 1e-12 && fabs(s.a[0].re + 2 * poles) < 1e-12, "%d poles: %g and %g", poles, s.a0,
+                  s.a[0].re);
+        CHECK(poles == 0 || s.error < 1e-12);
+    }
+}
+
 /* ---- [13] selinv, and what [18] and [21] make of it ---- */
 
 /* Sums of entries of the inverses of all poles, a lone real one and one pack or two packs, with weights of three sets: against dense solutions. */
@@ -3991,6 +4285,42 @@ static void int_window_probes(void) {
     }
 }
 
+/* The same for the diagonal of the kernel. */
+static void int_window_diagonal(void) {
+    enum { TIMES = 4 };
+    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    hd_heat *heat = int_plan(lap);
+    hdi_heat_call h;
+    hdi_scope s;
+    hdi_window w;
+    hdi_probe probe;
+    double t[TIMES], *at;
+    int32_t q, i, p;
+    for (q = 0; q < TIMES; q++) t[q] = lap->h * lap->h * pow(3, q);
+    CHECK(hdi_distance_begin(&h, heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, NULL, NULL) >= 0);
+    CHECK(hdi_heat_sort_times(&h, 1, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0);
+    s = hdi_scope_begin(heat->ctx, h.e);
+    hdi_window_take(&w, &h, 0, TIMES, &s);
+    CHECK(hdi_window_run(&h, &w, HDI_SHARED_TOL, HDI_WANT_DIAGONAL) >= 0);
+    probe = hdi_probe_rows(heat->elim.lap, hdi_window_at(&w, w.values, TIMES - 1), -1);     /* one row or two */
+    CHECK(hdi_probe_run(&h, &probe, HD_KERNEL_SYMMETRIC, w.set) >= 0);
+    for (i = 0; i == probe.row[0] || i == probe.row[probe.k - 1]; i++) {}
+    for (q = 0; q < TIMES; q++) {
+        const double off = hdi_window_rounding(heat, &w, &probe, q);
+        CHECK_MSG(off > 0 && off < 1e-6, "time %d: %g", (int)q, off);
+        at = hdi_window_at(&w, w.values, q);
+        for (p = 0; p < lap->n_active; p++) at[p] *= 1.001;
+        CHECK_MSG(hdi_window_rounding(heat, &w, &probe, q) >= 0.00099, "time %d: %g", (int)q, hdi_window_rounding(heat, &w, &probe, q));
+        for (p = 0; p < lap->n_active; p++) at[p] /= 1.001;
+        at[i] = 0.1 / heat->elim.lap->component_mass[0];    /* a row without a probe, below the constants */
+        CHECK_MSG(hdi_window_rounding(heat, &w, &probe, q) >= 8.99, "time %d: %g", (int)q, hdi_window_rounding(heat, &w, &probe, q));
+    }
+    hdi_scope_end(&s);
+    hdi_heat_end(&h);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+}
+
 /* Resistances: what the residual of a column admits is part of rounding even where the column agrees with the diagonal, and a diagonal that is not
  * positive is of no use. */
 static void int_ground_probes(void) {
@@ -4388,6 +4718,29 @@ static double int_pair_difference(const hd_laplacian *a, const hd_laplacian *b, 
     return fmax(worst[0] / most[0], worst[1] / most[1]);
 }
 
+/* Two flat triangles, which a flip makes Delaunay, come 400 times: each copy is flipped on both sheets, and the sum is 400 times that of one. */
+static void int_many_copies(void) {
+    enum { COPIES = 400 };
+    static const double xyz[12] = {0, 0, 0, 1, 0, 0, 0.5, 0.1, 0, 0.5, -0.1, 0};
+    static const int32_t faces[6] = {0, 1, 2, 1, 0, 3};
+    int32_t *tri = DENSE_NEW(int32_t, 6 * COPIES);
+    hd_context ctx;
+    hd_mesh_report rep;
+    hd_laplacian *one, *all;
+    int k;
+    memset(&ctx, 0, sizeof ctx);
+    for (k = 0; k < 6 * COPIES; k++) tri[k] = faces[k % 6];
+    one = int_soup_pair(xyz, 4, tri, 2, 0, &ctx, &rep);
+    CHECK(rep.n_flips == 2 && rep.n_not_delaunay == 0);
+    all = int_soup_pair(xyz, 4, tri, 2 * COPIES, 0, &ctx, &rep);
+    CHECK_MSG(rep.n_flips == 2 * COPIES && rep.n_not_delaunay == 0, "%d flips, %d edges left", (int)rep.n_flips, (int)rep.n_not_delaunay);
+    CHECK(int_pair_difference(one, all, COPIES) < 1e-12);
+    hdi_laplacian_free(one, &ctx);
+    hdi_laplacian_free(all, &ctx);
+    free(tri);
+    CHECK(ctx.bytes_in_use == 0);
+}
+
 /* The cover of a soup unfolded where it has to be, against all of it; and for faces that come once, against that of the mesh, which is glued elsewhere. */
 static void int_soup(void) {
     enum { N = 400 };
@@ -4693,6 +5046,39 @@ static void int_linear_precision(void) {
     shape_poly_free(&s);
 }
 
+/* A curve's piece in a face of sides 2, about corners that the face does not begin with: its length, and how far the corners are from it. */
+static void int_item_near(void) {
+    double near_by[6], want[6];
+    hdi_geo_face face;
+    hdi_geo_item item;
+    hdi_geo_spot spot;
+    int i;
+    memset(&face, 0, sizeof face);
+    memset(&item, 0, sizeof item);
+    memset(&spot, 0, sizeof spot);
+    face.l = 1;                                  /* half of the sides */
+    face.p = 0.5;
+    face.q = sqrt(0.75);
+    face.v[0] = 4;
+    face.v[1] = 2;
+    face.v[2] = 5;
+    face.copies = 1;
+    item.n = 2;                                  /* from the middle of a side to the corner at (2, 0) */
+    item.row[0] = 4;
+    item.row[1] = 2;
+    item.a[0] = item.a[1] = 0.5;
+    item.b[1] = 1;
+    spot.near_by = near_by;
+    for (i = 0; i < 6; i++) near_by[i] = want[i] = HUGE_VAL;
+    want[4] = 1;
+    want[2] = 0;
+    want[5] = sqrt(3.0);
+    CHECK(hdi_geo_item_in(&spot, &item, &face) && fabs(item.length - 1) < 1e-15);
+    for (i = 0; i < 6; i++) CHECK_MSG(near_by[i] == want[i] || fabs(near_by[i] - want[i]) < 1e-15, "corner %d: %g", i, near_by[i]);
+    item.row[1] = 3;                             /* no corner of this face */
+    CHECK(!hdi_geo_item_in(&spot, &item, &face));
+}
+
 /* The residual of the heat equation stays within its arrays. */
 static void int_geo_heat_off(void) {
     shape s = shape_grid(6, 5, 0.2);
@@ -4758,6 +5144,10 @@ static void int_all(void) {
     int_star();
     int_wheels();
     int_sort_keys();
+    int_fit_constant();
+    int_sweep_panels();
+    int_many_copies();
+    int_item_near();
     int_kth();
     int_select_points();
     int_tangent_planes();
@@ -4810,6 +5200,7 @@ static void int_all(void) {
     int_warm_start();
     int_pole_bounds();
     int_lanczos_bound();
+    int_real_kernels();
     int_pack_kernels();
     int_symbolic();
     int_symbolic_large();
@@ -4834,6 +5225,7 @@ static void int_all(void) {
     int_turned();
     int_many_packs();
     int_window_probes();
+    int_window_diagonal();
     int_ground_probes();
     int_ground_apart();
     int_fading_reach();

@@ -261,6 +261,55 @@ static void thr_release(void) {
     }
 }
 
+#if HDI_THREADS
+/* The caller's tasks wait until another thread has one, and that one until the caller sleeps. */
+typedef struct thr_nap { hd_threads *threads; int32_t begun, slept; } thr_nap;
+
+static int thr_caller_sleeps(hd_threads *t) {
+    int yes;
+    hdi_lock(&t->lock);
+    yes = t->caller_asleep;
+    hdi_unlock(&t->lock);
+    return yes;
+}
+
+static void thr_nap_task(void *arg, int64_t index, int32_t worker) {
+    thr_nap *w = (thr_nap *)arg;
+    const time_t start = time(NULL);
+    (void)index;
+    if (worker > 0 && HDI_ATOMIC_ADD(&w->begun, 1) == 1) {
+        while (!thr_caller_sleeps(w->threads) && time(NULL) < start + 30) {}
+        HDI_ATOMIC_SET(&w->slept, thr_caller_sleeps(w->threads));
+    }
+    while (worker == 0 && HDI_ATOMIC_GET(&w->begun) == 0 && time(NULL) < start + 60) {}
+}
+#endif
+
+/* No more threads start than there are tasks besides the caller's; and a caller that has nothing to do sleeps. */
+static void thr_few_tasks(void) {
+#if HDI_THREADS
+    enum { TASKS = HDI_TASKS_START };
+    hd_context ctx;
+    thr_nap w;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&w, 0, sizeof w);
+    ctx.n_threads = 4 * TASKS;
+    hdi_hold(&ctx);
+    w.threads = hdi_threads_own(&ctx, TASKS - 1);
+    CHECK(!w.threads);                           /* too few to start any */
+    w.threads = hdi_threads_own(&ctx, TASKS);
+    if (w.threads) {
+        CHECK_MSG(w.threads->n == TASKS - 1, "%d threads", (int)w.threads->n);
+        hdi_parallel(&ctx, TASKS, thr_nap_task, &w);
+        CHECK(w.begun > 0 && w.slept && ctx.waits > 0 && ctx.helped == (uint64_t)w.begun && ctx.regions == 1);
+        CHECK(hdi_threads_own(&ctx, TASKS - 1) == w.threads);    /* those that run take part in loops of few tasks, too */
+    }
+    CHECK(w.threads || !hdi_threads_linked());
+    hdi_let_go(&ctx);
+    CHECK(!ctx.threads);
+#endif
+}
+
 /* Cancels at the last of so many reports. */
 static hd_progress thr_cancel(void *user, const char *stage, double done) {
     int *left = (int *)user;
@@ -401,8 +450,10 @@ static void test_threads(void) {
     thr_nested(&s, want);
 #endif
     thr_release();
+    thr_few_tasks();
     thr_orders();
     thr_light();
+    CHECK(GUARD_IN_USE == 0);                    /* all that threads had is free */
     free(want);
     free(u);
     shape_free(&s);
