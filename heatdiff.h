@@ -11,7 +11,7 @@
 
    which takes a handful of sparse complex-symmetric systems. It needs no eigenvectors and cuts no part of the
    spectrum off. Eigenpairs serve only where t is so large that few of them are left. Every answer comes with
-   a bound of its error. The method is that of G. Patane and M. Spagnuolo, "Heat
+   a bound on its error. The method is that of G. Patane and M. Spagnuolo, "Heat
    diffusion kernel and distance on surface meshes and point sets", Computers & Graphics 37, 2013, called the
    paper below.
 
@@ -142,7 +142,7 @@
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
      no file and never exits.
      Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). x87 registers keep more digits now and then:
-     results are as accurate, but neither bits nor bounds of the error near rounding are promised. On 32-bit
+     results are as accurate, but neither bits nor bounds on the error near rounding are promised. On 32-bit
      x86 compile with -msse2 -mfpmath=sse. -ffast-math takes away the same promises. Even then coordinates,
      matrices, fields and times that are not finite are refused, but options are not.
 
@@ -176,10 +176,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define HD_VERSION_MAJOR 0
-#define HD_VERSION_MINOR 1
+#define HD_VERSION_MAJOR 1
+#define HD_VERSION_MINOR 0
 #define HD_VERSION_PATCH 0
-/* Versions compare as numbers: HD_VERSION >= HD_MAKE_VERSION(0, 2, 0). */
+/* Versions are semantic, and compare as numbers: HD_VERSION >= HD_MAKE_VERSION(1, 2, 0). */
 #define HD_MAKE_VERSION(major, minor, patch) ((major) * 1000000 + (minor) * 1000 + (patch))
 #define HD_VERSION HD_MAKE_VERSION(HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH)
 
@@ -205,7 +205,7 @@ typedef struct hd_c64 { double re, im; } hd_c64;
 #define HD_STATUS_LIST(X)                                                                         \
     X(HD_OK, 0, "done")                                                                           \
     X(HD_WARN_ACCURACY, 1,                                                                        \
-      "done, but the bound of the error is above the tolerance, or says little")                  \
+      "done, but the bound on the error is above the tolerance, or says little")                  \
     X(HD_ERR_ARGUMENT, -1, "an argument or option is out of its range")                           \
     X(HD_ERR_MEMORY, -2, "out of memory")                                                         \
     X(HD_ERR_MEMORY_LIMIT, -3, "the byte or allocation limit of the context is reached")          \
@@ -737,15 +737,15 @@ typedef struct hd_report {
     double factor_flops;        /* real floating-point operations of all factorisations that the plan holds */
     double growth;              /* largest |pivot| / largest |diagonal entry|, see hd_ldl_report */
     /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1, computed from x. 0 for Lanczos.
-     * After HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound of the relative error. */
+     * After HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound on the relative error. */
     double residual;
     double error_bound;         /* the sum of the next three */
     double error_rational, error_solver, error_rounding;
     hd_evidence evidence_rational, evidence_solver, evidence_rounding;
-    /* Fields and columns: bound of |error|_B / |answer|_B. Otherwise HUGE_VAL and HD_EVIDENCE_NONE. */
+    /* Fields and columns: bound on |error|_B / |answer|_B. Otherwise HUGE_VAL and HD_EVIDENCE_NONE. */
     double error_bound_b;
     hd_evidence evidence_b;
-    /* Diagonals, distances, pairs: bound of the largest error relative to the value itself. HUGE_VAL if it
+    /* Diagonals, distances, pairs: bound on the largest error relative to the value itself. HUGE_VAL if it
      * does not apply, or if a value is zero that need not be zero. */
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
@@ -1141,7 +1141,7 @@ HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
-/* A bound of the largest eigenvalue of B^-1 L in 1/area, by Gershgorin's circles. On meshes it is up to about
+/* A bound on the largest eigenvalue of B^-1 L in 1/area, by Gershgorin's circles. On meshes it is up to about
  * five times as large as that eigenvalue. HUGE_VAL if b_ratio is 0. Cost: one pass over L. */
 HEATDIFF_API double hd_laplacian_lambda_max(const hd_laplacian *lap);
 
@@ -1215,7 +1215,7 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, const hd_filter *filter
                                        hd_context *ctx, hd_error *err);
 
 /* Sets for several filters that share their poles, so that one set of factors serves them all: see
- * hd_heat_filter.
+ * hd_heat_set_rational.
  * out     [count] of one t and the same theta; only the weights a differ
  * filters [count] count >= 1. max_degree is ignored: up to HD_MAX_POLES pairs are taken
  * Poles are found for at most 20 of the filters, and weights for all. Wave filters over three decades of
@@ -1247,7 +1247,7 @@ typedef struct hd_solve_opts {
 typedef struct hd_solve_report {
     int64_t iterations;
     double residual;            /* reached, computed from x, in the norm of diag(B)^-1 */
-    double error_b;             /* bound of |x - exact|_B / |x|_B; infinite if nothing is known about B */
+    double error_b;             /* bound on |x - exact|_B / |x|_B; infinite if nothing is known about B */
 } hd_solve_report;
 
 /* Solves (t L + theta B) x = rhs, a complex-symmetric system, by iterations.
@@ -1390,7 +1390,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
  * Errors HD_ERR_ARGUMENT (also if the plan is of method krylov or of Lanczos), HD_ERR_NOT_FINITE; then
  *        nothing has changed
  * Cost   O(1) */
-HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_error *err);
+HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, const hd_rational *set, hd_error *err);
 
 /* Common to all queries of a plan:
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
@@ -1507,7 +1507,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
  * the integral of k_t(x,x). Vertices without mass and held ones do not count.
  * t      > 0
  * Z      [n_times]; no unit
- * bound  [n_times] or NULL: bounds of the absolute error of each
+ * bound  [n_times] or NULL: bounds on the absolute error of each
  * report as hd_heat_diagonal; error_relative is that of the least accurate time
  * Errors as hd_heat_diagonal
  * Cost   as hd_heat_diagonal; many times share poles whatever B is. Memory for the inverses of each pole: up
@@ -1529,11 +1529,11 @@ HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const 
 /* Diagonals of many filters whose sets share their poles, by one factorisation and inversion: a column for
  * each set, k = f(B^-1 L) B^-1 at every vertex. For wave filters D/Z are the wave kernel signatures at all
  * energies.
- * heat   a plan whose set is one of them, or has their poles: hd_heat_opts.rational or hd_heat_filter
+ * heat   a plan whose set is one of them, or has their poles: hd_heat_opts.rational or hd_heat_set_rational
  * sets   [count] of one t and the same theta, as from hd_rational_fit_shared; each with its lambda_max
  * D      n x count as in hd_heat_diagonal, the symmetric kernel
  * Z      [count] or NULL: sum of f over all eigenvalues
- * bound  [count] or NULL: bounds of the absolute errors of Z
+ * bound  [count] or NULL: bounds on the absolute errors of Z
  * report bounds of D. Rounding is measured at the rows where it may be largest in the first column. One t
  *        serves all sets, so that bounds are looser than those of a filter by itself: with waves over three
  *        decades 1e-5 to 1e-3 where errors are below 1e-7
@@ -1707,7 +1707,7 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
  * x_i(y) and the like. Definitions, kinds, shapes and vertices without mass are those of hd_heat_columns,
  * hd_heat_diagonal and hd_heat_distance. What is left out is bounded.
  * t      >= 0, unit length^2; commute and biharmonic ignore it
- * bound  NULL, or as large as the output, with the same ldu or ldd: bounds of the error of each value. The
+ * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. The
  *        part of the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That
  *        of residuals follows from their sizes, and rounding is estimated. The bound is small for large t;
  *        for small t it shows how much the missing pairs count
@@ -1832,9 +1832,9 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources,
  * Errors  as above
  * Cost    eight sources are solved side by side, in a third of the time of eight calls. The first call with
  *         three sources or more allocates about 150 bytes for each vertex */
-HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources,
-                                             double *D, size_t ldd, hd_geodesic_report *report,
-                                             hd_error *err);
+HEATDIFF_API hd_status hd_geodesic_distance_each(hd_geodesic *g, int32_t k, const int32_t *sources,
+                                                 double *D, size_t ldd, hd_geodesic_report *report,
+                                                 hd_error *err);
 
 /* The distance of every vertex to a source that need not be a vertex: to the nearest of its points, or to its
  * curve. Weights are ignored.
@@ -9070,8 +9070,8 @@ static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_c
     return n;
 }
 
-/* Numbers of the caller's matrices lie between this and its inverse: sums over all rows, and inverses of masses
- * times numbers that are not large themselves, stay within the range of doubles. */
+/* Numbers of the caller's matrices lie between this and its inverse: sums over all rows, and inverses of
+ * masses times numbers that are not large themselves, stay within the range of doubles. */
 #define HDI_PAIR_MOST 1e290
 
 /* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the
@@ -16732,7 +16732,7 @@ static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
     k->ready = 0;
 }
 
-/* A bound of what rounding contributes to the residual of x, in the same norm. Usually less than half of
+/* A bound on what rounding contributes to the residual of x, in the same norm. Usually less than half of
  * it is seen. */
 static double hdi_krylov_noise(const hdi_krylov *k) {
     const hd_laplacian *lap = k->a.lap;
@@ -18019,7 +18019,7 @@ static double hdi_shared_exp_rest(double tau, double c, double w, int32_t m) {
     return hdi_min(2 * M * pow(rho, -m) / (rho - 1), (1 + tau * (c - w)) * exp(-tau * (c - w)));
 }
 
-/* A bound of the weighted error on y in [lo, hi], or on [lo, inf) if hi is 0. It holds between the points
+/* A bound on the weighted error on y in [lo, hi], or on [lo, inf) if hi is 0. It holds between the points
  * too. In u, where y = c + w u (or 1/y = c + w u), a fraction (1 + tau y)/(y + theta) is a constant and
  * g/(u - z). The Chebyshev coefficients of 1/(u - z) are known: |b_j| = 2 rho^-j/|sqrt(z^2 - 1)| with rho
  * + 1/rho = |z - 1| + |z + 1|. So the error is a polynomial of degree m and a rest that is bounded. m is
@@ -18861,7 +18861,7 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
 
 /* ==== [22] poles ====
  * Owns the family t L + theta_i B over the poles of a set: solutions for one right-hand side, by iterations
- * or with factors, their weighted sum, the bound of its error, and weighted sums of the inverses. May call
+ * or with factors, their weighted sum, the bound on its error, and weighted sums of the inverses. May call
  * [18], [20] and [21].
  * Iterations take the poles one after the other, because the solutions at hand give a good start for the next
  * pole. With
@@ -18931,7 +18931,7 @@ static double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a /
 /* A bound. Of one that is not a number nothing is known. */
 static double hdi_bound_of(double off) { return hdi_nan(off) ? HUGE_VAL : off; }
 
-/* Notes a value and the bound of its error. */
+/* Notes a value and the bound on its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     const double size = fabs(value);
     off.rational = hdi_bound_of(off.rational);
@@ -19036,7 +19036,7 @@ static double hdi_rat_reach(const hd_rational *set) {
     return most;
 }
 
-/* Bound of what an error of size one of x_p does to the weighted sum of the poles' solutions. */
+/* Bound on what an error of size one of x_p does to the weighted sum of the poles' solutions. */
 static double hdi_pole_size(const hd_rational *set, int32_t p) {
     return hdi_rat_count(set, p) * hdi_cabs(set->a[p]);
 }
@@ -19229,12 +19229,12 @@ typedef struct hdi_lane {
     double f_off, rhs_off;       /* what f, and B^-1 times the right-hand side, are off by in the B norm */
     /* outcome, norms absolute */
     double f_norm, u_norm;
-    hdi_parts off, off_m;        /* bounds of the error in the norms of B and of B + tL */
+    hdi_parts off, off_m;        /* bounds on the error in the norms of B and of B + tL */
     hdi_parts off_value;         /* the same of each value of u, where answers are sums over eigenpairs */
     hd_evidence rounding;        /* how the part of rounding is known */
     double residual;
     double b_norm;               /* of the right-hand side, in the norm of diag(B)^-1 */
-    double first_norm;           /* bound of |x|_B of one of the solutions, and its pole */
+    double first_norm;           /* bound on |x|_B of one of the solutions, and its pole */
     double energy;               /* bound of f'B (B + tL)^-1 B f */
     int32_t first_pole;
     int32_t negative;            /* x'Lx < 0 was seen */
@@ -19356,7 +19356,7 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
     return HD_OK;
 }
 
-/* Bound of |x - exact|_B by the residual. */
+/* Bound on |x - exact|_B by the residual. */
 static double hdi_pole_error(const hdi_krylov *k) {
     return k->r_norm * hdi_ratio_root(k->a.lap) / hdi_pole_distance(k->a.theta);
 }
@@ -19365,7 +19365,7 @@ static double hdi_pole_error(const hdi_krylov *k) {
  * unit in the last place of every row. */
 static double hdi_residual_seen(double found, double rounding) { return 2 * found + rounding / 8; }
 
-/* Enters the residual of pole p into the lane's bounds. found: as computed, rounding: its bound of rounding,
+/* Enters the residual of pole p into the lane's bounds. found: as computed, rounding: its bound on rounding,
  * both in the norm of D^-1. Where nothing was iterated found is a part of rounding. */
 static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
                               double found, double rounding, int iterated) {
@@ -19396,7 +19396,7 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
     lane->negative = 0;
 }
 
-/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds of its error without the rational
+/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error without the rational
  * part. */
 static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
@@ -20023,7 +20023,7 @@ static hd_status hdi_not_semidefinite(hd_error *e) {
 
 /* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
  * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm2: |x|_B^2 as computed.
- * off: bound of its residual. */
+ * off: bound on its residual. */
 static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
                            double norm2, double off, const double *x, int64_t stride) {
     const hd_c64 theta = set->theta[p];
@@ -20402,7 +20402,7 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
     hdi_component_add(lap, lane->sums, lane->u);
 }
 
-/* Bound of what rounding does to the heat of components, which are n sums of masses times values; to that of
+/* Bound on what rounding does to the heat of components, which are n sums of masses times values; to that of
  * the field itself where it is dense; and of what is left of L 1, which counts as zero up to 1e-8. The bound
  * is the same in both norms. */
 static double hdi_conserve_off(const hd_laplacian *lap, const hdi_lane *lane, double drift_t, int dense) {
@@ -20929,7 +20929,7 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
     return HD_OK;
 }
 
-/* A bound of what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) +
+/* A bound on what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) +
  * errors of size noise in the norm of B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j)
  * e_j' exp(-s T) e_1 ds. This is at most noise sqrt(m) times the integral of |exp(-s T) e_1|, which falls
  * with s, so that left Riemann sums are above it. Rounding of the answer's own sum comes on top. */
@@ -21078,7 +21078,7 @@ typedef struct hdi_silan {
     int32_t eigen_room[HDI_SILAN_WIDE];   /* the largest m that there is room for */
     int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
     double g;
-    double from;                 /* the time that the fields are answers of, with bounds of their errors */
+    double from;                 /* the time that the fields are answers of, with bounds on their errors */
     hdi_parts before[HDI_SILAN_WIDE];
     double last;                 /* the last time of the windows that will go on from this one, or 0 */
 } hdi_silan;
@@ -21206,7 +21206,7 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     return HD_OK;
 }
 
-/* Compares the residual of the solve w = S B v of right-hand side 0 with the bound of rounding. Only some of
+/* Compares the residual of the solve w = S B v of right-hand side 0 with the bound on rounding. Only some of
  * the first solves are measured. */
 static void hdi_silan_probe(hdi_silan *z) {
     const hd_laplacian *lap = z->m->lap;
@@ -21582,7 +21582,7 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
     return worst;
 }
 
-/* Bound of what rounding does to the answer of right-hand side r after m steps, relative to |f|_B. With S V =
+/* Bound on what rounding does to the answer of right-hand side r after m steps, relative to |f|_B. With S V =
  * V T + ... + errors Phi_j of the steps, the answer is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, with
  * divided differences as in hdi_ritz_bound. The residual of a solve is an error that is no larger in the B
  * norm. y: the answer's coefficients. given: the error of the right-hand side, which is an error of the first
@@ -21637,7 +21637,7 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, const doubl
 
 /* ==== [24] ground ====
  * Owns the pair grounded, that is L with one vertex of each component held at zero: its inverse, for
- * distances without a time, and a bound of the smallest eigenvalue that is not zero. May call [22]. */
+ * distances without a time, and a bound on the smallest eigenvalue that is not zero. May call [22]. */
 
 /* L with one vertex of each component held at zero. All by rows in elimination order. */
 typedef struct hdi_ground {
@@ -21806,7 +21806,7 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
  * of this. */
 #define HDI_GROUND_STEP 1e-9
 
-/* form: diag of G B G without the part of the means. mean: G b, and the bound of its error. */
+/* form: diag of G B G without the part of the means. mean: G b, and the bound on its error. */
 static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const hd_laplacian *lap = m->lap;
@@ -23726,7 +23726,7 @@ struct hd_heat {
     hdi_family fam;              /* of the last set and time */
     hdi_lane *lane;              /* [n_lanes] work arrays, kept from call to call; HDI_LANES at most */
     int32_t n_lanes;
-    double lambda_max;           /* bound of the largest eigenvalue of B^-1 L */
+    double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
     hdi_steps_scales scales;
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
     /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
@@ -23739,7 +23739,7 @@ struct hd_heat {
 /* What the caller gets, by rows. */
 static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ? lane->tmp : lane->u; }
 
-/* The bounds of the error of B u: |(B d)_v| is at most sqrt(B_vv) times |d| in both norms, for B M^-1 B <= B
+/* The bounds on the error of B u: |(B d)_v| is at most sqrt(B_vv) times |d| in both norms, for B M^-1 B <= B
  * if M = B + tL. both: off_m is known. */
 static hdi_parts hdi_lane_bound_dual(const hd_laplacian *lap, const hdi_lane *lane, int both) {
     double largest_b = 0;
@@ -24886,7 +24886,7 @@ static void hdi_lane_unit(const hd_laplacian *lap, int by_pairs, hdi_lane *lane)
     for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
 
-/* Bound of what rounding does to B f for a full B, in the B norm after B^-1. It is large where f lies along
+/* Bound on what rounding does to B f for a full B, in the B norm after B^-1. It is large where f lies along
  * eigenvectors of B with small eigenvalues. */
 static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     double sum = 0;
@@ -24915,7 +24915,7 @@ static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
         if (hdi_finite(lap->component_mass[i])) lane->target[i] = 0;
 }
 
-/* Is a bound of the norm of B^-1 e all that a column of k_t needs, and not B^-1 e? */
+/* Is a bound on the norm of B^-1 e all that a column of k_t needs, and not B^-1 e? */
 static int hdi_lane_bounded(const hdi_heat_call *h) {
     if (h->by_pairs) return h->lap->b_ratio > 0;
     return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
@@ -25026,7 +25026,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
             if (!lap->B) lane->rhs[row] = lap->mass[row];
         } else {
             lane->rhs[row] = 1;
-            /* B^-1 e is not needed, only a bound of its norm */
+            /* B^-1 e is not needed, only a bound on its norm */
             if (hdi_lane_bounded(h)) {
                 hdi_component_sums(lap, NULL, lane->rhs, lane->target);
                 lane->f_norm = 1 / sqrt(lap->b_ratio * lap->b_diag[row]);
@@ -25295,7 +25295,7 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 /* Lanes, the pole set and its preconditioners. */
 static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    /* without a bound of the eigenvalues nothing is known of the steps */
+    /* without a bound on the eigenvalues nothing is known of the steps */
     const int known = heat->source->b_ratio > 0;
     const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
@@ -25923,7 +25923,7 @@ static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most,
  * they are used. */
 typedef struct hdi_decay {
     int32_t first;               /* of the pairs that are not constants */
-    double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds of the errors per |c_i| */
+    double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds on the errors per |c_i| */
     double depth;                /* t low */
     /* exp(-t low) is their product: as one number it would underflow before answers do */
     double scale, rest;
@@ -26713,7 +26713,7 @@ static hdi_parts hdi_halves_parts(const hd_report *rep, double size) {
     return hdi_parts_scale(all, part);
 }
 
-/* Brings an answer into the caller's units, and notes it with the bound of its error. rep: both runs'. */
+/* Brings an answer into the caller's units, and notes it with the bound on its error. rep: both runs'. */
 static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_values, hdi_ledger *ledger,
                               hd_report *rep) {
     hdi_heat_call *h = z->h;
@@ -27186,7 +27186,7 @@ static double hdi_probe_seen(double probe, double off, double value, double size
 }
 
 /* Probe q's own entry by the weights of `set`, a set in terms of a time that is tau times that of the
- * factors, and a bound of its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
+ * factors, and a bound on its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
 static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q, const hd_rational *set,
                               double tau, double f, double g, double *off) {
     const hd_laplacian *lap = heat->elim.lap;
@@ -27265,7 +27265,7 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
     return HD_OK;
 }
 
-/* Bound of the rational error of k_t(i,i), from g(i,i). */
+/* Bound on the rational error of k_t(i,i), from g(i,i). */
 static double hdi_entry_error(const hdi_entries *x, const hd_laplacian *lap, int32_t i, double g) {
     const double spread = hdi_inverse_mass(lap, i), out = x->left_out > 0 ? x->left_out * spread : 0;
     const double uniform = x->uniform > 0 ? x->uniform * spread : 0;
@@ -27322,7 +27322,7 @@ static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
 /* A diagonal that is computed, by rows in elimination order and in the unit of the scaled pair. */
 typedef struct hdi_diagonal {
     hd_kernel kernel;
-    double *value, *off;         /* [n] and bounds of the rational errors */
+    double *value, *off;         /* [n] and bounds on the rational errors */
     double *g;                   /* [n] at least diag((B + tL)^-1) */
     double *size;                /* [n] what rounding is relative to: value, or own */
     double *own;                 /* [n] work */
@@ -27963,7 +27963,7 @@ static void hdi_trace_diagonals(const hdi_elim *m, const hdi_trace *z) {
     }
 }
 
-/* The trace at time q of the window and bounds of its errors. */
+/* The trace at time q of the window and bounds on its errors. */
 static double hdi_trace_at(hdi_heat_call *h, const hdi_trace *z, int32_t q, hdi_parts *off) {
     const hd_rational *set = z->w.set + q;
     const hd_laplacian *lap = h->lap;
@@ -28648,7 +28648,7 @@ static int hdi_heat_filtered(const hd_heat *heat) {
 }
 
 /* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source,
- * and bounds of their errors. The rational error of f is at most weighted times a form with diagonal g, and
+ * and bounds on their errors. The rational error of f is at most weighted times a form with diagonal g, and
  * at most uniform times one with diagonal spread. Rounding of a column is at most sqrt(g_v) times a number
  * that comes with each column. */
 typedef struct hdi_metric {
@@ -28939,7 +28939,7 @@ static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, const hd
     return hdi_scope_end(&s);
 }
 
-/* Bound of the rational error of d^2 between s and v: by the form of g, whose column g_sv may be known, and
+/* Bound on the rational error of d^2 between s and v: by the form of g, whose column g_sv may be known, and
  * by that of spread. Each bounds it alone. */
 static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss,
                                   double sv) {
@@ -29044,7 +29044,7 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
                             HD_EVIDENCE_MEASURED, 1);
 }
 
-/* The default goes to the highest degree where the bound of the error relative to the largest distance is
+/* The default goes to the highest degree where the bound on the error relative to the largest distance is
  * above the first number. The bound of degree 9 is expected at the second one times sqrt(t)/h, as seen on
  * meshes of 1K to 50K vertices. */
 #define HDI_DISTANCE_SURE 3.5e-7
@@ -33184,7 +33184,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     return c.e->status;
 }
 
-HEATDIFF_API hd_status hd_heat_filter(hd_heat *heat, const hd_rational *set, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, const hd_rational *set, hd_error *err) {
     hd_heat_opts *o = heat ? &heat->opts : NULL;
     hdi_call c;
     if (hdi_enter(&c, heat ? heat->ctx : NULL, err) < 0) return c.e->status;
@@ -33637,8 +33637,8 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
     return hdi_geo_end(report, c.e);
 }
 
-HEATDIFF_API hd_status hd_geodesic_distances(hd_geodesic *g, int32_t k, const int32_t *sources, double *D,
-                                             size_t ldd, hd_geodesic_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_geodesic_distance_each(hd_geodesic *g, int32_t k, const int32_t *sources, double *D,
+                                                 size_t ldd, hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
     if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
         return hdi_geo_end(report, c.e);

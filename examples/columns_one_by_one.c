@@ -13,7 +13,7 @@
    HD_METHOD_DIRECT  factorises the systems of all poles at the first click, and each click then takes one solve. Set it
                      where you know that many columns at the same t will follow: nothing is spent on another method first.
 
-   The answers differ by less than the bounds of their errors, which the program checks. */
+   The answers differ by less than the bounds on their errors, which the program checks. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"

@@ -80,7 +80,7 @@ int main(void) {
         f[q].tol = 1e-8;
     }
     if (hd_rational_fit_shared(set, ENERGIES, f, hd_laplacian_lambda_max(lap), NULL, &err) < 0) goto end;
-    if (hd_heat_filter(heat, set, &err) < 0) goto end;
+    if (hd_heat_set_rational(heat, set, &err) < 0) goto end;
     if (hd_heat_filter_diagonals(heat, ENERGIES, set, u, 0, integral, NULL, &report, &err) < 0) goto end;
     printf("%d vertices, %d poles for all energies, bound %.0e\nenergy  off by   thin     thick    "
            "%d pairs are off by\n", N, (int)set[0].degree, report.error_bound, PAIRS);

@@ -71,7 +71,7 @@ int main(void) {
     }
 
     /* Distances from each sample by itself. Eight columns take little longer than two. */
-    if (hd_geodesic_distances(g, SAMPLES, sample, D, 0, &report, NULL) < 0) return fail(&report.error, g);
+    if (hd_geodesic_distance_each(g, SAMPLES, sample, D, 0, &report, NULL) < 0) return fail(&report.error, g);
     for (k = 0; k < SAMPLES; k++)
         for (i = 0; i < SAMPLES; i++)
             if (i != k && D[k * N + sample[i]] < nearest) nearest = D[k * N + sample[i]];

@@ -6,7 +6,7 @@
 
    A torus is made in memory. Heat starts at one vertex and is followed up to three times t. For each t
    the example prints how warm it is at the source and on the far side, the total heat (it is conserved), and
-   the bound of the error. */
+   the bound on the error. */
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"

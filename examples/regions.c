@@ -65,7 +65,7 @@ int main(void) {
         make_sheet(way, xyz[way], ptr, idx);
         if (hd_geodesic_create_polygons(&g, xyz[way], N, ptr, idx, N_FACES, &opts, &err) < 0)
             return fprintf(stderr, "regions: %s\n", err.text), 1;
-        if (hd_geodesic_distances(g, MARKS, mark, D[way], 0, &report, &err) < 0)
+        if (hd_geodesic_distance_each(g, MARKS, mark, D[way], 0, &report, &err) < 0)
             return fprintf(stderr, "regions: %s\n", err.text), 1;
         hd_geodesic_free(g);
     }

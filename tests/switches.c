@@ -293,7 +293,7 @@ static void check_geodesic(void) {
     if (!BUILT(hd_geodesic_create(&g, xyz, 6, tri, 8, NULL, &err), no.geodesic)) {
         (void)BUILT(hd_geodesic_distance(NULL, 1, &zero, d, &rep, &err), no.geodesic);
         CHECK(rep.status == HD_ERR_NOT_BUILT && strstr(rep.error.text, no.geodesic) != NULL);
-        (void)BUILT(hd_geodesic_distances(NULL, 1, &zero, d, 0, NULL, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_distance_each(NULL, 1, &zero, d, 0, NULL, &err), no.geodesic);
         (void)BUILT(hd_geodesic_distance_from(NULL, &source, d, NULL, &err), no.geodesic);
         (void)BUILT(hd_geodesic_create_lengths(&g, d, 6, tri, 8, NULL, &err), no.geodesic);
         (void)BUILT(hd_geodesic_update(NULL, xyz, &err), no.geodesic);
@@ -437,10 +437,10 @@ static void check_filter(const hd_laplacian *lap) {
     }
     heat = NULL;
     CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
-    if (BUILT(hd_heat_filter(heat, &set, &err), lacking)) {
+    if (BUILT(hd_heat_set_rational(heat, &set, &err), lacking)) {
         if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &set.t, u, 0, NULL, &err), no.diagonal))
             for (i = 0; i < 6; i++) CHECK(near_to(u[i], between(i, i, 1, f4, f6)));
-        CHECK(hd_rational_fit_shared(&set, 1, &f, hd_laplacian_lambda_max(lap), NULL, &err) == HD_OK && hd_heat_filter(heat, &set, &err) == HD_OK);
+        CHECK(hd_rational_fit_shared(&set, 1, &f, hd_laplacian_lambda_max(lap), NULL, &err) == HD_OK && hd_heat_set_rational(heat, &set, &err) == HD_OK);
         if (BUILT(hd_heat_filter_diagonals(heat, 1, &set, u, 0, sum, NULL, NULL, &err), no.diagonal))
             CHECK(near_to(sum[0], 1 + 3 * f4 + 2 * f6));
     }

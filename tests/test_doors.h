@@ -191,7 +191,7 @@ static void doors_context_surfaces(doors *d) {
     DOORS_CONTEXT(hd_geodesic_update(d->geodesic, d->s.xyz, &d->e));
     DOORS_CONTEXT(hd_geodesic_update_view(d->geodesic, &view, &d->e));
     DOORS_CONTEXT(hd_geodesic_distance(d->geodesic, 1, &v, u, NULL, &d->e));
-    DOORS_CONTEXT(hd_geodesic_distances(d->geodesic, 1, &v, u, 0, NULL, &d->e));
+    DOORS_CONTEXT(hd_geodesic_distance_each(d->geodesic, 1, &v, u, 0, NULL, &d->e));
     DOORS_CONTEXT(hd_geodesic_distance_from(d->geodesic, &from, u, NULL, &d->e));
     CHECK(lap == rob_mark_lap && heat == rob_mark_heat && !g && !s && u[0] == 0);
 }
@@ -207,7 +207,7 @@ static void doors_context_heat(doors *d) {
     hd_estimate estimate;
     hd_report rep;
     memset(&set, 0, sizeof set);
-    DOORS_CONTEXT(hd_heat_filter(h, NULL, &d->e));
+    DOORS_CONTEXT(hd_heat_set_rational(h, NULL, &d->e));
     DOORS_CONTEXT(hd_heat_apply(h, 1, &t, 1, f, 0, u, 0, &rep, &d->e));
     CHECK(rep.status == HD_ERR_ARGUMENT && strstr(rep.error.text, "n_threads"));
     DOORS_CONTEXT(hd_heat_derivative(h, 1, &t, 1, f, 0, u, 0, NULL, &d->e));
@@ -660,7 +660,7 @@ static void doors_queries(doors *d) {
     hd_heat *const h = d->heat;
     double f[8 * DOORS_N] = {0}, u[8 * DOORS_N] = {0};
     hd_report rep;
-    DOORS_NULL(hd_heat_filter(NULL, NULL, &d->e));
+    DOORS_NULL(hd_heat_set_rational(NULL, NULL, &d->e));
     DOORS_BAD(hd_heat_apply(h, 0, t, 1, f, 0, u, 0, NULL, &d->e), "there is no time");
     DOORS_NULL(hd_heat_apply(h, 1, NULL, 1, f, 0, u, 0, NULL, &d->e));
     DOORS_AT(hd_heat_apply(h, 2, low, 1, f, 0, u, 0, NULL, &d->e), HD_ERR_ARGUMENT, "t is negative", column, 1);
@@ -824,8 +824,8 @@ static void doors_geodesics(doors *d) {
     DOORS_NULL(hd_geodesic_distance(d->geodesic, 1, v, NULL, NULL, &d->e));
     DOORS_BAD(hd_geodesic_distance(d->geodesic, 0, v, u, NULL, &d->e), "there is no source");
     DOORS_AT(hd_geodesic_distance(d->geodesic, 2, v, u, NULL, &d->e), HD_ERR_INDEX, "not in the mesh", column, 1);
-    DOORS_BAD(hd_geodesic_distances(d->geodesic, -1, v, u, 0, NULL, &d->e), "is negative");
-    DOORS_BAD(hd_geodesic_distances(d->geodesic, 1, v, u, DOORS_N - 1, NULL, &d->e), "leading dimension");
+    DOORS_BAD(hd_geodesic_distance_each(d->geodesic, -1, v, u, 0, NULL, &d->e), "is negative");
+    DOORS_BAD(hd_geodesic_distance_each(d->geodesic, 1, v, u, DOORS_N - 1, NULL, &d->e), "leading dimension");
     DOORS_NULL(hd_geodesic_distance_from(d->geodesic, NULL, u, NULL, &d->e));
     CHECK(!g && u[0] == 0);
 }
@@ -898,7 +898,7 @@ static void doors_filter_sets(doors *d) {
     o.method = HD_METHOD_ITERATIVE;
     o.solver = HD_SOLVER_LANCZOS;
     CHECK(hd_heat_create(&heat, d->lap, &o, &d->e) == HD_OK);
-    DOORS_BAD(hd_heat_filter(heat, sets, &d->e), "");
+    DOORS_BAD(hd_heat_set_rational(heat, sets, &d->e), "");
     hd_heat_free(heat);
 }
 

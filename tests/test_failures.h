@@ -367,7 +367,7 @@ static hd_status fail_filter(fail_world *w, int variant) {
     f.tol = 1e-6;
     CHECK(hd_rational_fit(&set, &f, hd_laplacian_lambda_max(w->lap), NULL, NULL) == HD_OK);
     w->n_out = 21;
-    if (hd_heat_filter(w->heat, &set, &w->e) < 0) return w->e.status;
+    if (hd_heat_set_rational(w->heat, &set, &w->e) < 0) return w->e.status;
     w->has_report = 1;
     return hd_heat_column(w->heat, HD_KERNEL_SYMMETRIC, set.t, 3, w->out, &w->rep, &w->e);
 }
@@ -375,7 +375,7 @@ static hd_status fail_filter(fail_world *w, int variant) {
 /* Back to the exponential after a filter has been at work. */
 static hd_status fail_unfilter(fail_world *w, int variant) {
     w->n_out = 21;
-    if (hd_heat_filter(w->heat, NULL, &w->e) < 0) return w->e.status;
+    if (hd_heat_set_rational(w->heat, NULL, &w->e) < 0) return w->e.status;
     return fail_ask(w, variant);
 }
 
@@ -518,7 +518,7 @@ static hd_status fail_geodesic_ask(fail_world *w, int variant) {
     fail_sources(sources);
     if (variant == 0) st = hd_geodesic_distance(w->geodesic, 4, id, w->out, &rep, &w->e);
     else if (variant >= 4) st = hd_geodesic_distance_from(w->geodesic, sources + variant - 4, w->out, &rep, &w->e);
-    else st = hd_geodesic_distances(w->geodesic, 6, id, w->out, 0, &rep, &w->e);
+    else st = hd_geodesic_distance_each(w->geodesic, 6, id, w->out, 0, &rep, &w->e);
     CHECK(rep.status == st && (st >= 0 || rep.error.status == st));
     return st;
 }

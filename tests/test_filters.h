@@ -410,7 +410,7 @@ static void filt_one_plan(void) {
     for (q = 0; q < FILT_LIST; q++) {
         hd_heat *own;
         if (!CHECK(hd_rational_fit(&set, f + q, top, NULL, &e) == HD_OK)) continue;
-        CHECK(hd_heat_filter(one, &set, &e) == HD_OK);
+        CHECK(hd_heat_set_rational(one, &set, &e) == HD_OK);
         o.rational = &set;
         own = eng_create(lap, &o);
         CHECK(heat_diagonal(own, 1, &set.t, HD_KERNEL_SYMMETRIC, want, 0, NULL) >= 0 && heat_diagonal(one, 1, &set.t, HD_KERNEL_SYMMETRIC, D, 0, &rep) >= 0);
@@ -420,17 +420,17 @@ static void filt_one_plan(void) {
         CHECK(heat_column(one, t, 5, u, NULL) == HD_ERR_ARGUMENT);
         hd_heat_free(own);
         if (q % 3) continue;
-        CHECK(hd_heat_filter(one, NULL, &e) == HD_OK && heat_diagonal(one, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_OK);
+        CHECK(hd_heat_set_rational(one, NULL, &e) == HD_OK && heat_diagonal(one, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_OK);
         CHECK(dense_max_diff(D, heat, s.n) == 0 && rep.poles != HD_POLES_OWN);
     }
-    CHECK(hd_heat_filter(NULL, &set, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_set_rational(NULL, &set, &e) == HD_ERR_ARGUMENT);
     set.theta[0].im = -1;
-    CHECK(hd_heat_filter(one, &set, &e) == HD_ERR_ARGUMENT && e.pole == 0);
+    CHECK(hd_heat_set_rational(one, &set, &e) == HD_ERR_ARGUMENT && e.pole == 0);
     set.theta[0].im = 1;
     o.rational = NULL;
     o.method = HD_METHOD_KRYLOV;
     krylov = eng_create(lap, &o);
-    CHECK(hd_heat_filter(krylov, &set, &e) == HD_ERR_ARGUMENT && strstr(e.text, "krylov") && hd_heat_filter(krylov, NULL, &e) == HD_OK);
+    CHECK(hd_heat_set_rational(krylov, &set, &e) == HD_ERR_ARGUMENT && strstr(e.text, "krylov") && hd_heat_set_rational(krylov, NULL, &e) == HD_OK);
     hd_heat_free(krylov);
     hd_heat_free(one);
     hd_laplacian_free(lap);
@@ -584,13 +584,13 @@ static void filt_shared_diagonals(const heat_case *c, double low) {
         }
     }
     calls = 0;                                   /* the factors serve columns of another filter as well */
-    CHECK(hd_heat_filter(heat, set + 5, NULL) == HD_OK);
+    CHECK(hd_heat_set_rational(heat, set + 5, NULL) == HD_OK);
     CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, set[5].t, lap->vertex[2], D, &rep, NULL) == HD_OK && rep.method == HD_METHOD_DIRECT);
     CHECK_MSG(fabs(D[lap->vertex[2]] - D[(size_t)5 * ((size_t)n + 1) + (size_t)lap->vertex[2]]) <= 1e-7 * dense_max_abs(D, n), "%s: column and diagonal", c->what);
     set[2].theta[1].re *= 1.0001;
     CHECK(hd_heat_filter_diagonals(heat, COUNT, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 2);
     CHECK(hd_heat_filter_diagonals(heat, 0, set, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT && hd_heat_filter_diagonals(heat, 1, NULL, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_filter(heat, NULL, NULL) == HD_OK && hd_heat_filter_diagonals(heat, 1, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_set_rational(heat, NULL, NULL) == HD_OK && hd_heat_filter_diagonals(heat, 1, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
     hd_heat_free(heat);
     free(D);
 }

@@ -285,7 +285,7 @@ static void geo_against_dense(shape s, const char *what) {
             CHECK_MSG(fabs(rep.h - oracle.h) <= 1e-13 * oracle.h && fabs(rep.t - oracle.t) <= 1e-12 * oracle.t && rep.n_stages == 1 && rep.factor_nnz >= s.n / 2,
                       "%s: report", what);
             for (q = 0; q < 8; q++) geo_dense_distance(&oracle, sources + q, 1, want + q * s.n);
-            CHECK(hd_geodesic_distances(g, 8, sources, d, 0, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_distance > 0 && rep.residual_distance < 1e-11);
+            CHECK(hd_geodesic_distance_each(g, 8, sources, d, 0, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_distance > 0 && rep.residual_distance < 1e-11);
             CHECK_MSG(geo_difference(d, want, 8 * s.n) <= tol * geo_largest(want, 8 * s.n), "%s, t %g h2, mass %d: eight columns off by %g", what, times[k], mass,
                       geo_difference(d, want, 8 * s.n) / geo_largest(want, 8 * s.n));
             hd_geodesic_free(g);
@@ -319,7 +319,7 @@ static void geo_tube(int32_t around, int32_t rows, double tau, int32_t n_stages)
     shape_free(&s);
 }
 
-/* Straight lines in the plane and great circles on the sphere are approached. most: bounds of the largest error, level by level. */
+/* Straight lines in the plane and great circles on the sphere are approached. most: bounds on the largest error, level by level. */
 static void geo_refine(int ball, const double *most, int levels) {
     double before = 1e30;
     int k;
@@ -357,7 +357,7 @@ static void geo_long(void) {
     for (i = 0; i < 4; i++) CHECK(hd_geodesic_distance(g, 1, four + i, d + i * s.n, NULL, NULL) == HD_OK);
     {
         double *wide = DENSE_NEW(double, 4 * s.n);
-        CHECK(hd_geodesic_distances(g, 4, four, wide, 0, &rep, NULL) == HD_OK && rep.n_stages >= 6);
+        CHECK(hd_geodesic_distance_each(g, 4, four, wide, 0, &rep, NULL) == HD_OK && rep.n_stages >= 6);
         CHECK(memcmp(wide, d, 4 * (size_t)s.n * sizeof *d) == 0);      /* all are done again alone */
         free(wide);
     }
@@ -527,7 +527,7 @@ static void geo_parts(void) {
         int32_t k, q;
         for (k = 0; k <= 11; k++) {
             for (i = 0; i < (int32_t)(11 * ld); i++) all[i] = -7;
-            CHECK(hd_geodesic_distances(g, k, columns, all, ld, &rep, NULL) == HD_OK && (k == 0 || rep.residual_distance > 0));
+            CHECK(hd_geodesic_distance_each(g, k, columns, all, ld, &rep, NULL) == HD_OK && (k == 0 || rep.residual_distance > 0));
             for (q = 0; q < k; q++) {
                 CHECK(hd_geodesic_distance(g, 1, columns + q, one, NULL, NULL) == HD_OK);
                 CHECK_MSG(geo_difference(one, all + (size_t)q * ld, r.n) < 1e-12, "column %d of %d: off by %g", (int)q, (int)k, geo_difference(one, all + (size_t)q * ld, r.n));
@@ -557,7 +557,7 @@ static void geo_ugly_of(shape s, const char *what, int finite) {
     for (k = 0; k < 4; k++) {
         hd_geodesic *g = geo_plan(&s, times[k] * hh, HD_GEODESIC_MASS_BARYCENTRIC, NULL);
         hd_geodesic_report rep;
-        hd_status st = hd_geodesic_distances(g, 4, sources, d, 0, &rep, NULL);
+        hd_status st = hd_geodesic_distance_each(g, 4, sources, d, 0, &rep, NULL);
         CHECK_MSG(st >= 0 || st == HD_ERR_BREAKDOWN, "%s: %s", what, rep.error.text);
         for (i = 0; st >= 0 && i < 4 * s.n; i++)
             if (!CHECK_MSG(d[i] >= 0 && (d[i] <= DBL_MAX || !finite), "%s, t %g h2: %g at %d", what, times[k], d[i], (int)i)) break;
@@ -669,13 +669,13 @@ static void geo_errors(void) {
     CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, &e) == HD_OK && e.status == HD_OK);
     CHECK(hd_geodesic_distance(g, 3, beyond, d, &rep, NULL) == HD_ERR_INDEX && rep.status == HD_ERR_INDEX && rep.error.vertex == 42 && rep.error.value == 42 && rep.error.column == 2);
     CHECK(hd_geodesic_distance(g, 1, &below, d, &rep, NULL) == HD_ERR_INDEX && rep.error.vertex == -1 && rep.error.value == -1 && rep.error.column == 0);
-    CHECK(hd_geodesic_distances(g, 3, beyond, d, 0, &rep, NULL) == HD_ERR_INDEX && rep.error.column == 2);
+    CHECK(hd_geodesic_distance_each(g, 3, beyond, d, 0, &rep, NULL) == HD_ERR_INDEX && rep.error.column == 2);
     CHECK(hd_geodesic_distance(g, 0, beyond, d, &rep, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, -1, beyond, d, NULL, NULL) == HD_ERR_ARGUMENT);
     CHECK(hd_geodesic_distance(g, 1, NULL, d, &rep, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, 1, beyond, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
     CHECK(hd_geodesic_distance(NULL, 1, beyond, d, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.text[0]);
-    CHECK(hd_geodesic_distances(g, -1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distances(g, 1, beyond, d, 41, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distances(NULL, 1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distances(g, 1, NULL, d, 0, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distances(g, 0, NULL, NULL, 0, &rep, NULL) == HD_OK && rep.h > 0);
+    CHECK(hd_geodesic_distance_each(g, -1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance_each(g, 1, beyond, d, 41, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance_each(NULL, 1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance_each(g, 1, NULL, d, 0, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance_each(g, 0, NULL, NULL, 0, &rep, NULL) == HD_OK && rep.h > 0);
     CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, NULL) == HD_OK && d[0] == 0 && d[1] > 0);     /* and is as good as before */
     hd_geodesic_free(g);
     hd_geodesic_free(NULL);
@@ -726,7 +726,7 @@ static int64_t geo_thread_run(const shape *s, hd_simd simd, int way, double *out
     ldl_way_begin(w, way, simd);
     g = geo_plan(s, 0, HD_GEODESIC_MASS_BARYCENTRIC, &w->ctx);
     CHECK(hd_geodesic_distance(g, 3, sources, out, NULL, NULL) == HD_OK);
-    CHECK(hd_geodesic_distances(g, 11, sources, out + s->n, 0, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance_each(g, 11, sources, out + s->n, 0, NULL, NULL) == HD_OK);
     hd_geodesic_free(g);
     ldl_way_end(w, way);
     calls = w->calls;
@@ -783,7 +783,7 @@ static hd_status geo_job(hd_context *ctx, int variant) {
     CHECK(e.status == st && (st >= 0) == (g != geo_mark));
     if (st >= 0) {
         if (variant == 1 || variant == 3) st = hd_geodesic_distance(g, 2, sources, d, &rep, NULL);
-        if (variant == 2) st = hd_geodesic_distances(g, 6, sources, d, 0, &rep, NULL);
+        if (variant == 2) st = hd_geodesic_distance_each(g, 6, sources, d, 0, &rep, NULL);
         if (variant) CHECK(rep.status == st && rep.error.status == (st < 0 ? st : HD_OK));
         hd_geodesic_free(g);
     }
@@ -807,9 +807,9 @@ static void geo_survives(void) {
         hd_status st = HD_OK;
         m.fail_at = k ? m.calls + k : 0;
         if (k) st = hd_geodesic_distance(g, 4, sources, d, NULL, NULL);
-        if (k && st >= 0) st = hd_geodesic_distances(g, 4, sources, d, 0, NULL, NULL);
+        if (k && st >= 0) st = hd_geodesic_distance_each(g, 4, sources, d, 0, NULL, NULL);
         m.fail_at = 0;
-        CHECK(hd_geodesic_distances(g, 4, sources, k ? d : want, 0, NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance_each(g, 4, sources, k ? d : want, 0, NULL, NULL) == HD_OK);
         CHECK(k == 0 || memcmp(d, want, 4 * (size_t)s.n * sizeof *d) == 0);
         hd_geodesic_free(g);
         if (k && st >= 0) break;

@@ -211,7 +211,7 @@ static void gall_against_dense(shape_poly s, int32_t inner, const char *what) {
                 gall_dense_distance(&s, lambda, t, b, held, one, 1, want);
                 CHECK(hd_geodesic_distance(g, 1, one, d, &rep, NULL) == HD_OK && rep.residual_heat < 1e-12 && rep.residual_distance < 1e-10);
                 CHECK(geo_difference(d, want, s.n) <= tol * geo_largest(want, s.n));
-                CHECK(hd_geodesic_distances(g, 3, one, d, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-12 && rep.residual_distance < 1e-10);
+                CHECK(hd_geodesic_distance_each(g, 3, one, d, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-12 && rep.residual_distance < 1e-10);
                 CHECK(geo_difference(d + 2 * s.n, want, s.n) <= tol * geo_largest(want, s.n));
                 for (q = 0; q < s.n && !held[q]; q++) {}
                 if (q < s.n) CHECK(hd_geodesic_distance(g, 1, &q, d, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.vertex == q && strstr(rep.error.text, "border"));
@@ -223,7 +223,7 @@ static void gall_against_dense(shape_poly s, int32_t inner, const char *what) {
                 CHECK_MSG(rep.residual_heat < (times[k / 2] > 100 ? 1e-7 : 1e-12) && rep.residual_distance < 1e-10 && fabs(rep.h - h) < 1e-13 * h, "%s: residuals %g %g", what,
                           rep.residual_heat, rep.residual_distance);
                 for (q = 0; q < 8; q++) gall_dense_distance(&s, lambda, t, b, held, several + q, 1, want + q * s.n);
-                CHECK(hd_geodesic_distances(g, 8, several, d, 0, &rep, NULL) == HD_OK && rep.residual_heat < (times[k / 2] > 100 ? 1e-7 : 1e-12));
+                CHECK(hd_geodesic_distance_each(g, 8, several, d, 0, &rep, NULL) == HD_OK && rep.residual_heat < (times[k / 2] > 100 ? 1e-7 : 1e-12));
                 CHECK_MSG(geo_difference(d, want, 8 * s.n) <= tol * geo_largest(want, 8 * s.n), "%s, t %g, border %d: eight columns off by %g", what, times[k / 2], border,
                           geo_difference(d, want, 8 * s.n) / geo_largest(want, 8 * s.n));
             }
@@ -247,7 +247,7 @@ static void gall_equal(void) {
     hd_geodesic *g = gall_triangles(&s, NULL);
     hd_geodesic_report rep;
     int way;
-    CHECK(hd_geodesic_distance(g, 4, sources, want, NULL, NULL) == HD_OK && hd_geodesic_distances(g, 4, sources, want + s.n, 0, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, 4, sources, want, NULL, NULL) == HD_OK && hd_geodesic_distance_each(g, 4, sources, want + s.n, 0, NULL, NULL) == HD_OK);
     hd_geodesic_free(g);
     for (way = 0; way < 5; way++) {
         o.intrinsic_delaunay = way == 1 || way == 4;
@@ -257,7 +257,7 @@ static void gall_equal(void) {
         if (way == 3) o.border = HD_GEODESIC_BORDER_NATURAL;
         g = way == 0 || way == 4 ? gall_polygons(&p, &o) : way == 3 ? gall_points(s.xyz, s.n, &o) : gall_triangles(&s, &o);
         CHECK(hd_geodesic_distance(g, 4, sources, d, &rep, NULL) == HD_OK && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-11);
-        CHECK(hd_geodesic_distances(g, 4, sources, d + s.n, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-11);
+        CHECK(hd_geodesic_distance_each(g, 4, sources, d + s.n, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-11);
         CHECK_MSG(geo_difference(d, want, 5 * s.n) < 1e-10, "way %d is off by %g", way, geo_difference(d, want, 5 * s.n));
         hd_geodesic_free(g);
     }
@@ -303,7 +303,7 @@ static double gall_sphere(hd_geodesic *g, const double *xyz, int32_t n, double *
     int32_t sources[8], i, q;
     hd_geodesic_report rep;
     for (q = 0; q < 8; q++) sources[q] = (int32_t)((int64_t)q * (n - 1) / 7);
-    CHECK(hd_geodesic_distances(g, 8, sources, d, 0, &rep, NULL) == HD_OK && rep.residual_distance < 1e-10);
+    CHECK(hd_geodesic_distance_each(g, 8, sources, d, 0, &rep, NULL) == HD_OK && rep.residual_distance < 1e-10);
     for (q = 0; q < 8; q++)
         for (i = 0; i < n; i++) sum += fabs(d[q * n + i] - 2 * asin(fmin(1, shape_distance(xyz + 3 * i, xyz + 3 * sources[q]) / 2)));
     *h = rep.h;
@@ -563,7 +563,7 @@ static void gall_thread_run(const shape_poly *s, hd_simd simd, int way, double *
         o.border = k == 1 ? HD_GEODESIC_BORDER_MEAN : HD_GEODESIC_BORDER_NATURAL;
         g = k < 2 ? gall_polygons(s, &o) : gall_points(s->xyz, s->n, &o);
         CHECK(hd_geodesic_distance(g, 3, sources, out, NULL, NULL) == HD_OK);
-        CHECK(hd_geodesic_distances(g, 11, sources, out + s->n, 0, NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance_each(g, 11, sources, out + s->n, 0, NULL, NULL) == HD_OK);
         out += 12 * s->n;
         hd_geodesic_free(g);
     }
@@ -611,7 +611,7 @@ static hd_status gall_job(hd_context *ctx, int variant) {
     CHECK(e.status == st && (st >= 0) == (g != geo_mark));
     if (st >= 0) {
         st = hd_geodesic_distance(g, 2, sources, d, &rep, NULL);
-        if (st >= 0) st = hd_geodesic_distances(g, 6, sources, d, 0, &rep, NULL);
+        if (st >= 0) st = hd_geodesic_distance_each(g, 6, sources, d, 0, &rep, NULL);
         CHECK(rep.status == st && rep.error.status == (st < 0 ? st : HD_OK));
         hd_geodesic_free(g);
     }

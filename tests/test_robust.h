@@ -525,7 +525,7 @@ static void rob_trap_geodesic(const shape *s, hd_context *ctx) {
     o.context = ctx;
     if (CHECK(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) >= 0)) {
         (void)hd_geodesic_distance(g, 1, sources + 3, d, &rep, NULL);
-        (void)hd_geodesic_distances(g, 9, sources, d, 0, &rep, NULL);
+        (void)hd_geodesic_distance_each(g, 9, sources, d, 0, &rep, NULL);
     }
     hd_geodesic_free(g);
     free(d);

@@ -1554,7 +1554,7 @@ static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run 
     }
     for (q = 0; q < 2 && r->fine; q++) {
         t0 = now();
-        r->fine = hd_geodesic_distances(g, GEO_SOURCES - 1, sources + 1, D + n, 0, NULL, NULL) >= 0;
+        r->fine = hd_geodesic_distance_each(g, GEO_SOURCES - 1, sources + 1, D + n, 0, NULL, NULL) >= 0;
         r->batch = (now() - t0) / (GEO_SOURCES - 1);
     }
     if (r->fine) r->fine = hd_geodesic_distance(g, 1, sources, D, &rep, NULL) >= 0;

@@ -394,7 +394,7 @@ typedef struct truth {
     quad *lambda, *x, *y;
     double *xd, *yd;             /* |x|, |y| */
     int32_t *comp, *first;       /* of a row; [n_comp + 1] modes of a component */
-    double off;                  /* bound of the errors of lambda */
+    double off;                  /* bound on the errors of lambda */
     double edge, top;            /* the smallest and largest |lambda| that is not zero */
     double x_most, y_most;
 } truth;
@@ -690,7 +690,7 @@ static void filter_fill(filter *f, const truth *T, form what, double t, const hd
     }
 }
 
-/* sum_l left(i,l) g_l w_l over the modes of component c; *off: bound of its error. Terms beyond the cut are
+/* sum_l left(i,l) g_l w_l over the modes of component c; *off: bound on its error. Terms beyond the cut are
  * counted in it. */
 static quad truth_sum(const truth *T, const filter *f, int32_t c, const quad *left, const double *left_abs,
                       const quad *gw, const double *gw_off, double beyond, double *off) {

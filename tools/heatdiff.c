@@ -588,7 +588,7 @@ static int parse_bytes(options *o, const option_def *def, const char *text)
     return 1;
 }
 
-/* An upper bound of the number of entries in a comma list. */
+/* An upper bound on the number of entries in a comma list. */
 static size_t count_items(const char *text)
 {
     size_t n = 1;
@@ -985,7 +985,7 @@ static const command_def COMMANDS[] = {
       "instead, si_0, si_1: moduli of the Fourier transform of the steps of log k_T(i,i)." },
     { "trace", CMD_TRACE, "the heat trace at many times", "--t T[,T..] [OPTIONS] MESH",
       "A row for each time, in the order of --t: t, the trace of K_t (the sum of exp(-t lambda) over\n"
-      "all eigenvalues), and a bound of its error." },
+      "all eigenvalues), and a bound on its error." },
     { "sample", CMD_SAMPLE, "farthest points under the diffusion distance", "--count K --t T [OPTIONS] MESH",
       "A row for each point, in the order in which they were chosen: vertex, its id counted from 0,\n"
       "and distance, to the nearest of those before it (0 in the first row, unless places in faces\n"
@@ -2890,7 +2890,7 @@ static int solve_geodesic(run *r)
         return fail_source(r, (int)r->geodesic_report.error.column, r->geodesic_report.error.row,
                            r->geodesic_report.error.text);
     if (!r->from)
-        (void)hd_geodesic_distances(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL);
+        (void)hd_geodesic_distance_each(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL);
     if (r->geodesic_report.status < 0) return fail_library(r->mesh_name, &r->geodesic_report.error);
     r->times[0] = r->geodesic_report.t;          /* h of points is that of their triangles */
     return DONE;

@@ -38,7 +38,7 @@ FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # 
 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
-    "lines": 33600,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
+    "lines": 33700,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
     "api": 1020,              # lines of room [api]; goal 1100
     "median": 10,             # lines of a function; goal 13
     "longest": 60,            # lines of the longest function; goal 60

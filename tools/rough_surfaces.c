@@ -243,7 +243,7 @@ static void maximum_principle(void) {
     const method *const methods[3] = {&PLAIN, &DELAUNAY, &TUFTED};
     int k, m;
     int32_t i;
-    printf("\n| least value of K_t e_i, t = 0.01 to 10 h^2 (bound of its error) | voronoi-cot: weights < 0 "
+    printf("\n| least value of K_t e_i, t = 0.01 to 10 h^2 (bound on its error) | voronoi-cot: weights < 0 "
            "| least | Delaunay: weights < 0 | least | tufted: "
            "weights < 0 | least |\n|---|---|---|---|---|---|---|\n");
     for (k = 0; k < 6; k++) {

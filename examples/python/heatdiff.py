@@ -280,7 +280,7 @@ class Heat:
         return out
 
     def trace(self, t):
-        """The sum of exp(-t lambda) over all eigenvalues for each time, and bounds of its error."""
+        """The sum of exp(-t lambda) over all eigenvalues for each time, and bounds on its error."""
         t, times = self._times(t)
         out = np.zeros((2, len(t)))
         self._query("hd_heat_trace", *times, _at(out), _at(out[1]))

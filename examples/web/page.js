@@ -371,7 +371,7 @@ function distanceAt(i) {
     if (d.values[j] > top) top = d.values[j];
     if (Math.abs(c.values[j]) > peak) peak = Math.abs(c.values[j]);
   }
-  const square = 2 * (d.bound * top + c.bound * peak); // bound of the error of d^2
+  const square = 2 * (d.bound * top + c.bound * peak); // bound on the error of d^2
   for (let j = 0; j < n; j++) if (j !== s && values[j] * values[j] < 10 * square) lost++;
   const bound = (Math.sqrt(most * most + square) - most) / most;
   return { values, bound, evidence: Math.max(c.evidence, d.evidence), lost, ms: c.ms, many: c.many };

@@ -483,7 +483,7 @@ static void fz_check_report(hd_status st, const hd_report *rep) {
     FZ(rep->mass_drift == rep->mass_drift);
 }
 
-/* 1'B u = 1'B f for a field and its answer, up to what the bound of the error allows. */
+/* 1'B u = 1'B f for a field and its answer, up to what the bound on the error allows. */
 static void fz_check_mass(const hd_laplacian *lap, const double *f, const double *u, const hd_report *rep) {
     double before = 0, after = 0, size = 0, most = 0, total = 0;
     int32_t r;
@@ -770,7 +770,7 @@ static void fz_geodesic(fz_in *in, const shape *s, fz_context *c) {
             s->xyz[fz_below(in, 3 * s->n)] = fz_number(in);
             (void)fz_status(hd_geodesic_update(g, s->xyz, &e), &e, c);
         }
-        st = fz_status(hd_geodesic_distances(g, count, id, d, 0, &rep, &e), &e, c);
+        st = fz_status(hd_geodesic_distance_each(g, count, id, d, 0, &rep, &e), &e, c);
         if (st >= 0) for (k = 0; k < s->n * count; k++) FZ(d[k] >= 0);
     } else {
         FZ(!g);
@@ -1125,7 +1125,7 @@ static void fz_geodesics(const uint8_t *data, size_t size) {
         for (turn = 0; turn < 2; turn++) {
             for (k = 0; k < 3; k++) id[k] = fz_int(&in, s.n);
             if (fz_status(hd_geodesic_distance(g, 1 + fz_below(&in, 3), id, d, NULL, &e), &e, &c) >= 0) for (k = 0; k < s.n; k++) FZ(d[k] >= 0);
-            if (fz_status(hd_geodesic_distances(g, 3, id, d, 0, NULL, &e), &e, &c) >= 0) for (k = 0; k < 3 * s.n; k++) FZ(d[k] >= 0);
+            if (fz_status(hd_geodesic_distance_each(g, 3, id, d, 0, NULL, &e), &e, &c) >= 0) for (k = 0; k < 3 * s.n; k++) FZ(d[k] >= 0);
             fz_source_make(&from, &in, &s);
             if (fz_status(hd_geodesic_distance_from(g, &from.source, d, NULL, &e), &e, &c) >= 0) for (k = 0; k < s.n; k++) FZ(d[k] >= 0);
             s.xyz[fz_below(&in, 3 * s.n)] = fz_number(&in);
@@ -1563,7 +1563,7 @@ static void fz_filters(const uint8_t *data, size_t size) {
             else FZ(k || memcmp(&set, &before, sizeof set) == 0);
             if (e.status < 0) continue;
             if (fz_byte(&in) > 240) set.theta[fz_below(&in, HD_MAX_POLES)].re = fz_number(&in);
-            if (fz_status(hd_heat_filter(heat, fz_byte(&in) > 250 ? NULL : &set, &e), &e, &c) >= 0) {
+            if (fz_status(hd_heat_set_rational(heat, fz_byte(&in) > 250 ? NULL : &set, &e), &e, &c) >= 0) {
                 fz_query q;
                 fz_query_make(&q, &in, lap);
                 if (fz_byte(&in) < 240) q.t[0] = set.t, q.n_times = 1;
