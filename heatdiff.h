@@ -30611,7 +30611,7 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     const double n = heat->source->n_active, held = 40 * n + 16.0 * heat->source->n + 48.0 * x->k;
     const double real = f.flops / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS);
     const double solve = (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP * (forms ? 4 : 2);
-    const double columns = HDI_CAST(double, x->k) + HDI_PROBES;
+    const double columns = HDI_CAST(double, x->k) + HDI_CAST(double, HDI_PROBES);
     double bytes = 8 * f.real_stored * (forms ? 9 : 1);
     hdi_cost_direct(heat, forms ? 1 : 0, 1, HDI_AFTER_INVERSE, 0, c);
     c->flops += columns * 4 * f.nnz * (forms ? 4 : 2);
