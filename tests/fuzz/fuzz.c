@@ -485,16 +485,17 @@ static void fz_check_report(hd_status st, const hd_report *rep) {
 
 /* 1'B u = 1'B f for a field and its answer, up to what the bound on the error allows. */
 static void fz_check_mass(const hd_laplacian *lap, const double *f, const double *u, const hd_report *rep) {
+    const double unit = 1.0 / (1 << 30);          /* sums of numbers near the largest double stay finite */
     double before = 0, after = 0, size = 0, most = 0, total = 0;
     int32_t r;
     if (lap->conserves != 1) return;
     for (r = 0; r < lap->n_active; r++) {
         const int32_t v = lap->vertex[r];
-        before += lap->mass[r] * f[v];
-        after += lap->mass[r] * u[v];
-        size += fabs(lap->mass[r] * f[v]);        /* a row of B may sum to less than zero */
+        before += lap->mass[r] * (unit * f[v]);
+        after += lap->mass[r] * (unit * u[v]);
+        size += fabs(lap->mass[r] * (unit * f[v]));      /* a row of B may sum to less than zero */
         total += fabs(lap->mass[r]);
-        if (fabs(u[v]) > most) most = fabs(u[v]);
+        if (unit * fabs(u[v]) > most) most = unit * fabs(u[v]);
     }
     if (!mio_is_finite(size) || !mio_is_finite(total * most)) return;
     FZ(fabs(after - before) <= rep->error_bound * most * total + 1e-12 * size + DBL_MIN);
