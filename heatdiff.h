@@ -23769,7 +23769,7 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
 }
 
-/* A bound of the B norm of any d with |d_v| <= 1, by 2 |B_vw d_v d_w| <= B_vv d_v^2 + B_ww d_w^2. Of a dual
+/* A bound on the B norm of any d with |d_v| <= 1, by 2 |B_vw d_v d_w| <= B_vv d_v^2 + B_ww d_w^2. Of a dual
  * lane it is that of the norm of B^-1. */
 static double hdi_lane_spread(const hd_laplacian *lap, int dual) {
     double sum = 0;
