@@ -709,7 +709,7 @@ typedef enum hd_evidence {
     /* Measured at some columns or solves of this answer, and assumed for all of it. Filters: measured at the
      * points of a grid, and assumed between them. */
     HD_EVIDENCE_MEASURED,
-    HD_EVIDENCE_ESTIMATED       /* a model of rounding */
+    HD_EVIDENCE_ESTIMATED       /* a model: of rounding, or of how the iterations of krylov converge */
 } hd_evidence;
 
 /* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
@@ -16722,14 +16722,28 @@ static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
     hdi_deflate(k->a.lap, z, k->sums);
 }
 
+/* r without its part in B W, and its norm. That part is rounding, which no direction can bring down. It would
+ * change nothing but the means of x, which the caller sets. */
+static void hdi_krylov_measure(hdi_krylov *k) {
+    const hd_laplacian *lap = k->a.lap;
+    int32_t i;
+    memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
+    for (i = 0; i < lap->n_active && lap->conserves; i++)
+        k->sums[lap->component[i]] = hdi_cadd(k->sums[lap->component[i]], k->r[i]);
+    for (i = 0; i < lap->n_active && lap->conserves; i++) {
+        const int32_t c = lap->component[i];
+        k->r[i] = hdi_csub(k->r[i], hdi_cscale(lap->mass[i] / lap->component_mass[c], k->sums[c]));
+    }
+    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, lap->n_active));
+    k->ready = 0;
+}
+
 /* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. */
 static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
-    const int32_t n = k->a.lap->n_active;
     int32_t i;
     hdi_system_apply(&k->a, k->x, k->r);
-    for (i = 0; i < n; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
-    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
-    k->ready = 0;
+    for (i = 0; i < k->a.lap->n_active; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
+    hdi_krylov_measure(k);
 }
 
 /* A bound on what rounding contributes to the residual of x, in the same norm. Usually less than half of
@@ -16942,10 +16956,10 @@ static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
     const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
     memset(k->x, 0, bytes);
     memcpy(k->r, b, bytes);
-    k->r_norm = sqrt(hdi_cnorm2w(b, k->weight, k->a.lap->n_active));
+    hdi_krylov_measure(k);
     k->b_norm = b_norm;
     k->iterations = 0;
-    k->broken = k->ready = 0;
+    k->broken = 0;
 }
 
 /* How a running solver reports progress and learns that it shall stop. */
@@ -18911,7 +18925,7 @@ typedef struct hdi_ledger {
     double largest, smallest;    /* |value|; smallest: not zero, HUGE_VAL when there is none */
     double relative;             /* largest error over its value; negative: not asked */
     int64_t n_values;
-    int32_t lost;                /* a value is not a number */
+    int32_t lost;                /* a value is not finite: a share of it would hide any error */
 } hdi_ledger;
 
 static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding,
@@ -18940,7 +18954,7 @@ static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     l->off.rational = hdi_max(l->off.rational, off.rational);
     l->off.solver = hdi_max(l->off.solver, off.solver);
     l->off.rounding = hdi_max(l->off.rounding, off.rounding);
-    l->lost |= hdi_nan(value);
+    l->lost |= !hdi_finite(value);
     l->largest = hdi_max(l->largest, size);
     if (size > 0) l->smallest = hdi_min(l->smallest, size);
     /* relative to the exact value, which is at least size - all */
@@ -21206,19 +21220,23 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     return HD_OK;
 }
 
-/* Compares the residual of the solve w = S B v of right-hand side 0 with the bound on rounding. Only some of
- * the first solves are measured. */
+/* Compares the residuals of the solves w = S B v with the bounds on their rounding. Only some of the first
+ * solves are measured. */
 static void hdi_silan_probe(hdi_silan *z) {
     const hd_laplacian *lap = z->m->lap;
-    double *x = z->probe, *r = x + lap->n_active, sum = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) x[i] = z->w[HDI_CAST(int64_t, z->wide) * i];
-    hdi_pair_apply(lap, z->g, 1, x, r);
-    for (i = 0; i < lap->n_active; i++) {
-        const double d = z->c[HDI_CAST(int64_t, z->wide) * i] - r[i];
-        sum += z->m->weight[i] * (d * d);
+    double *x = z->probe, *rest = x + lap->n_active;
+    int32_t i, r;
+    for (r = 0; r < z->wide; r++) {
+        double sum = 0;
+        if (!(z->noise[z->steps][r] > 0)) continue;          /* no such right-hand side, or constants alone */
+        for (i = 0; i < lap->n_active; i++) x[i] = z->w[HDI_CAST(int64_t, z->wide) * i + r];
+        hdi_pair_apply(lap, z->g, 1, x, rest);
+        for (i = 0; i < lap->n_active; i++) {
+            const double d = z->c[HDI_CAST(int64_t, z->wide) * i + r] - rest[i];
+            sum += z->m->weight[i] * (d * d);
+        }
+        z->solved = hdi_max(z->solved, sqrt(sum) / z->noise[z->steps][r]);
     }
-    if (z->noise[z->steps][0] > 0) z->solved = hdi_max(z->solved, sqrt(sum) / z->noise[z->steps][0]);
 }
 
 /* out[r] = sqrt(sum_i weight_i x_ir^2) */
@@ -23739,23 +23757,13 @@ struct hd_heat {
 /* What the caller gets, by rows. */
 static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ? lane->tmp : lane->u; }
 
-/* The bounds on the error of B u: |(B d)_v| is at most sqrt(B_vv) times |d| in both norms, for B M^-1 B <= B
- * if M = B + tL. both: off_m is known. */
-static hdi_parts hdi_lane_bound_dual(const hd_laplacian *lap, const hdi_lane *lane, int both) {
-    double largest_b = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++)
-        if (lane->u[i] != 0) largest_b = hdi_max(largest_b, lap->b_diag[i]);
-    return hdi_parts_scale(sqrt(largest_b > 0 ? largest_b : lap->b_diag[0]),
-                           both ? hdi_parts_least(lane->off, lane->off_m) : lane->off);
-}
-
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero, or of all if
- * it is zero: by the B norm, and by the norm of B + tL where reach is known. reach: a bound of
- * diag((B + tL)^-1), or NULL. */
+ * it is zero: by the B norm, and by the norm of M = B + tL where reach is known. A zero of the answer says
+ * nothing of its own error: rows that the steps of an iteration have not reached are exact zeros. reach: a
+ * bound of diag(M^-1), or NULL. A dual lane answers with B u, where |(B d)_v| is at most sqrt(B_vv) times |d|
+ * in both norms, for B M^-1 B <= B. */
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
-    double smallest_b = HUGE_VAL, largest_g = 0, *touched = lane->spare_sums;
-    hdi_parts by_b;
+    double smallest_b = HUGE_VAL, largest_b = 0, largest_g = 0, *touched = lane->spare_sums, by_b, by_m;
     int32_t i, any = 0;
     memset(touched, 0, HDI_CAST(size_t, lap->n_components) * sizeof *touched);
     for (i = 0; i < lap->n_active; i++)
@@ -23763,10 +23771,13 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
     for (i = 0; i < lap->n_active; i++) {
         if (any && touched[lap->component[i]] == 0) continue;
         smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
+        largest_b = hdi_max(largest_b, lap->b_diag[i]);
         if (reach) largest_g = hdi_max(largest_g, reach[i]);
     }
-    by_b = hdi_parts_scale(hdi_ratio_root(lap) / sqrt(smallest_b), lane->off);
-    return reach ? hdi_parts_least(by_b, hdi_parts_scale(sqrt(largest_g), lane->off_m)) : by_b;
+    by_b = lane->dual ? sqrt(largest_b) : hdi_ratio_root(lap) / sqrt(smallest_b);
+    by_m = sqrt(lane->dual ? largest_b : largest_g);
+    return reach ? hdi_parts_least(hdi_parts_scale(by_b, lane->off), hdi_parts_scale(by_m, lane->off_m))
+                 : hdi_parts_scale(by_b, lane->off);
 }
 
 /* A bound on the B norm of any d with |d_v| <= 1, by 2 |B_vw d_v d_w| <= B_vv d_v^2 + B_ww d_w^2. Of a dual
@@ -23823,9 +23834,7 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         if (hdi_finite(lap->component_mass[i])) heat_in += unit * lane->target[i] * scale;
     if (ledger) {
         double total = hdi_parts_sum(&lane->off);
-        hdi_parts off =
-            lane->dual ? hdi_lane_bound_dual(lap, lane, reach != NULL)
-                       : by_value ? lane->off_value : hdi_lane_bound(lap, lane, reach);
+        hdi_parts off = by_value && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
         if (lane->dual) off.rounding += 2 * DBL_EPSILON * largest;
         else if (total > 0) off.rounding += DBL_EPSILON * largest;
@@ -24902,15 +24911,19 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     return DBL_EPSILON / 2 * sqrt(sum) * hdi_ratio_root(lap);
 }
 
-/* Takes the constants out of a field for good: they do not change in time. */
+/* Takes the constants out of a field for good: they do not change in time. Where they are nearly all of it,
+ * rounding leaves some of them, and the second time takes those. */
 static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
-    int32_t i;
+    const double whole = lane->f_norm;
+    int32_t i, pass;
     if (!lap->conserves) return;
-    hdi_lane_means(lane, lap);
-    for (i = 0; i < lap->n_active; i++) lane->f[i] -= lane->sums[lap->component[i]];
-    hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-    lane->rhs_off = hdi_lane_rhs_off(lap, lane->f) + DBL_EPSILON * lane->f_norm;
-    hdi_heat_measure(lap, lane);
+    for (pass = 0; pass < 2; pass++) {
+        hdi_lane_means(lane, lap);
+        for (i = 0; i < lap->n_active; i++) lane->f[i] -= lane->sums[lap->component[i]];
+        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+        hdi_heat_measure(lap, lane);
+    }
+    lane->rhs_off = hdi_lane_rhs_off(lap, lane->f) + DBL_EPSILON * whole;
     for (i = 0; i < lap->n_components; i++)
         if (hdi_finite(lap->component_mass[i])) lane->target[i] = 0;
 }

@@ -387,6 +387,106 @@ static void adj_chosen(void) {
     free(u);
 }
 
+/* A path from 0 to HEAVY and one vertex beyond, where HEAVY has nearly all the mass and a little heat leaves at 0. What has arrived there
+ * from one unit at 0 is what the other path would have lost to a held vertex: int_0^t u(HEAVY - 1) ds, by the dense oracle. */
+static void adj_heavy_end(void) {
+    enum { HEAVY = 10, N = HEAVY + 2 };
+    const double leak = 1e-3, t = 60;
+    double *L = DENSE_NEW(double, HEAVY * HEAVY), *B = DENSE_NEW(double, HEAVY * HEAVY), g[HEAVY], one[HEAVY] = {1}, w[HEAVY];
+    dense_pair pair;
+    int i, decade;
+    for (i = 0; i < HEAVY; i++) {
+        L[i * HEAVY + i] = i == 0 ? 1 + leak : 2;
+        if (i > 0) L[i * HEAVY + i - 1] = L[(i - 1) * HEAVY + i] = -1;
+        B[i * HEAVY + i] = 1;
+    }
+    CHECK(dense_pair_solve(&pair, L, B, HEAVY));
+    for (i = 0; i < HEAVY; i++) g[i] = -expm1(-t * pair.lambda[i]) / pair.lambda[i];
+    dense_pair_filter(&pair, g, one, w);         /* w[HEAVY - 1]: the heat that has arrived */
+    for (decade = 12; decade <= 20; decade += 4) {
+        int32_t ri[3 * N], rj[3 * N];
+        double v[3 * N], mass[N], field[N], u[N];
+        hd_laplacian *lap = NULL;
+        hd_csr csr_L, csr_B;
+        hd_error e;
+        int c = 0, which;
+        for (i = 0; i < N; i++) {
+            mass[i] = i == HEAVY ? pow(10, decade) : 1;
+            field[i] = i == 0;
+            ri[c] = rj[c] = i;
+            v[c++] = (i > 0) + (i + 1 < N) + (i == 0 ? leak : 0);
+            if (i == 0) continue;
+            ri[c] = i - 1;
+            rj[c] = i;
+            v[c++] = -1;
+        }
+        csr_L = test_symmetric_csr(N, c, ri, rj, v);
+        csr_B = test_diagonal_csr(N, mass);
+        CHECK_MSG(hd_laplacian_matrices(&lap, &csr_L, &csr_B, 0, NULL, &e) == HD_OK, "%s", e.text);
+        for (which = 0; which < ADJ_PLANS; which++) {
+            hd_heat *heat = adj_plan(lap, which);
+            hd_report rep;
+            double off;
+            CHECK(hd_heat_adjoint(heat, 1, &t, 1, field, 0, u, 0, &rep, NULL) >= 0);
+            off = fabs(u[HEAVY] - w[HEAVY - 1]) / dense_max_abs(u, N);
+            CHECK_MSG(off <= rep.error_bound, "%s, mass 1e%d: %g for %g, off by %g, bound %g", adj_names[which], decade, u[HEAVY],
+                w[HEAVY - 1], off, rep.error_bound);
+            hd_heat_free(heat);
+        }
+        hd_laplacian_free(lap);
+        hd_csr_free(&csr_L, NULL);
+        hd_csr_free(&csr_B, NULL);
+    }
+    dense_pair_free(&pair);
+}
+
+enum { ADJ_ENGINES = 6 };
+
+/* The derivative of f by one engine. Constants have none, so the truth is that of f - 1, which is exact. */
+static void adj_level_one(const heat_case *c, int engine, int depth, double t, const double *f, double *u) {
+    static const hd_solver solvers[ADJ_ENGINES] = {HD_SOLVER_COCG, HD_SOLVER_COCR, HD_SOLVER_MINRES, HD_SOLVER_LANCZOS};
+    const hd_laplacian *lap = c->lap;
+    double *ripple = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n), off = 0, most = 0;
+    hd_heat_opts o = eng_opts(engine < 4 ? HD_METHOD_ITERATIVE : engine == 4 ? HD_METHOD_AUTO : HD_METHOD_DIRECT);
+    hd_report rep;
+    hd_heat *heat;
+    hd_status st;
+    int32_t v;
+    o.solver = solvers[engine];
+    heat = eng_create(lap, &o);
+    for (v = 0; v < lap->n; v++) ripple[v] = f[v] - 1;
+    adj_truth(c, 0, t, ripple, want);
+    st = hd_heat_derivative(heat, 1, &t, 1, f, 0, u, 0, &rep, NULL);
+    CHECK_MSG(st >= 0, "%s, ripple 2^-%d, engine %d, t %g: %s, %g", c->what, depth, engine, t, rep.error.text, rep.error.value);
+    for (v = 0; v < lap->n_active; v++) {
+        off = fmax(off, fabs(u[lap->vertex[v]] - want[v]));
+        most = fmax(most, fabs(u[lap->vertex[v]]));
+    }
+    CHECK_MSG(rep.error_bound == HUGE_VAL || off <= (rep.error_bound + 1e-12) * most, "%s, ripple 2^-%d, engine %d, t %g: off by %g, bound %g", c->what, depth, engine, t, off / most,
+        rep.error_bound);
+    CHECK(st == HD_WARN_ACCURACY || rep.error_bound <= 1e-2);
+    if (depth == 20) CHECK_MSG(rep.error_bound <= 1e-5, "%s, engine %d, t %g: bound %g", c->what, engine, t, rep.error_bound);
+    hd_heat_free(heat);
+    free(ripple);
+    free(want);
+}
+
+/* Fields that are constant but for a ripple, down to the last digit and below. */
+static void adj_level(const heat_case *c) {
+    const int32_t n = c->lap->n;
+    double *f = DENSE_NEW(double, n), *u = DENSE_NEW(double, n);
+    int depth, engine, decade;
+    int32_t v;
+    for (depth = 20; depth <= 60; depth += 10) {
+        uint64_t seed = (uint64_t)depth;
+        for (v = 0; v < n; v++) f[v] = 1 + ldexp(dense_signed(&seed), -depth);
+        for (engine = 0; engine < ADJ_ENGINES; engine++)
+            for (decade = -1; decade <= 1; decade++) adj_level_one(c, engine, depth, pow(10, decade) / c->top, f, u);
+    }
+    free(f);
+    free(u);
+}
+
 static void test_adjoints(void) {
     adj_chosen();
     shape ball = shape_icosphere(2), bumpy = shape_bumpy(2, 3), disk = bord_disk(5, 1), inert = eng_with_inert(&ball), soup = eng_soup(60, 90, 9);
@@ -412,8 +512,10 @@ static void test_adjoints(void) {
         adj_duality(c + k);
         adj_differences(c + k);
         if (k < 6) adj_extremes(c + k);
+        if (k < 4) adj_level(c + k);
         heat_case_free(c + k);
     }
+    adj_heavy_end();
     adj_sets();
     adj_factors_shared();
     adj_scales();

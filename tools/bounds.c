@@ -713,11 +713,15 @@ typedef struct body {
     shape_poly p;
     hd_csr L;
     int points, matrix;
+    uint64_t seed;               /* of the masses of a graph */
 } body;
 
 static double power10(uint64_t *seed, double lo, double hi) {
     return pow(10, lo + (hi - lo) * shape_uniform(seed));
 }
+
+static int draw(uint64_t *seed, int n) { return (int)(shape_uniform(seed) * n); }
+static int chance(uint64_t *seed, double p) { return shape_uniform(seed) < p; }
 
 /* m x m vertices, places given by the caller; triangles, and quadrilaterals too. */
 static void lattice(body *b, int m) {
@@ -834,6 +838,17 @@ static void graph_matrix(body *b, weights *g) {
     free(g->extra);
 }
 
+/* "tree/n/s": the s-th random tree, where a little heat leaves at one vertex. */
+static void random_tree(body *b, weights *g, const double *p) {
+    uint64_t seed = 7 + (uint64_t)p[1];
+    const int loose = chance(&seed, 0.5) ? 3 : g->n;     /* bushy, or hardly more than a path */
+    int i;
+    for (i = 1; i < g->n; i++)
+        join(g, i, i - 1 - (int)((i < loose ? i : loose) * shape_uniform(&seed)), 1 + floor(7 * shape_uniform(&seed)));
+    g->extra[(int)(g->n * shape_uniform(&seed))] = power10(&seed, -8, 0);
+    b->seed = seed;
+}
+
 /* "graph/n/k": a random tree and n more edges, weights 1..7, one edge of 10^k; "lattice/m/k": a grid graph of
  * the same kind. */
 static void random_graph(weights *g, const double *p, int grid) {
@@ -863,6 +878,8 @@ static int make_graph(body *b, const char *name, const double *p) {
     g.sign = 1;
     if (strcmp(name, "graph") == 0 || strcmp(name, "lattice") == 0) {
         random_graph(&g, p, name[0] == 'l');
+    } else if (strcmp(name, "tree") == 0) {
+        random_tree(b, &g, p);
     } else if (strcmp(name, "path") == 0) {
         for (i = 0; i + 1 < g.n; i++) join(&g, i, i + 1, 1);
     } else if (strcmp(name, "star") == 0) {
@@ -992,6 +1009,7 @@ static int body_make(body *b, const char *spec) {
     char name[16];
     double p[4] = {0, 0, 0, 0};
     memset(b, 0, sizeof *b);
+    b->seed = 41;
     if (sscanf(spec, "%15[a-z]/%lf/%lf/%lf/%lf", name, p, p + 1, p + 2, p + 3) < 1) return 0;
     return make_mesh(b, name, p) || make_graph(b, name, p);
 }
@@ -1005,12 +1023,16 @@ static void body_free(body *b) {
 /* one thread: the answers do not depend on it, and small problems are quicker */
 static hd_context serial;
 
-/* B for a graph: "I", "diag" over twelve decades, "tri" uneven, "near" the smallest eigenvalue of which is
- * 1e-9. */
+/* B for a graph: "I", "diag" over twelve decades, "massN" over N, "tri" uneven, "near" the smallest eigenvalue
+ * of which is 1e-9. */
 static hd_status graph_pair(hd_laplacian **out, const body *b, const char *op, double scale, hd_error *e) {
     const int n = b->L.n_rows;
     double *a = ROOM(double, n * n);
-    uint64_t seed = 41;
+    const double decades = strncmp(op, "mass", 4) == 0 ? atof(op + 4)
+                           : strcmp(op, "diag") == 0   ? 12
+                           : strcmp(op, "tri") == 0    ? 4
+                                                       : 0;
+    uint64_t seed = b->seed;
     hd_csr B;
     hd_laplacian_opts o;
     hd_status st;
@@ -1018,9 +1040,7 @@ static hd_status graph_pair(hd_laplacian **out, const body *b, const char *op, d
     memset(&o, 0, sizeof o);
     o.context = &serial;
     for (i = 0; i < n; i++) {
-        a[i * n + i] = strcmp(op, "diag") == 0  ? power10(&seed, -6, 6)
-                       : strcmp(op, "tri") == 0 ? power10(&seed, -2, 2)
-                                                : 1;
+        a[i * n + i] = decades > 0 ? power10(&seed, -decades / 2, decades / 2) : 1;
         if (strcmp(op, "near") == 0) a[i * n + i] = 1 + 1e-9;
     }
     for (i = 0; i + 1 < n; i++) {
@@ -1039,7 +1059,7 @@ static hd_status graph_pair(hd_laplacian **out, const body *b, const char *op, d
 }
 
 /* The pair of a shape by an operator: fem, vor, cot, poly with +id or +tuft; vexp, exp, tuft for points; all
- * these also with +held; I, diag, tri, near for graphs. */
+ * these also with +held; I, diag, massN, tri, near for graphs. */
 static hd_status pair_make(hd_laplacian **out, const char *spec, const char *op, double scale, hd_error *e) {
     hd_laplacian_opts o;
     hd_status st;
@@ -1105,7 +1125,7 @@ enum { QUERY_APPLY, QUERY_COLUMN, QUERY_TIMES, QUERY_DERIVATIVE, QUERY_ADJOINT, 
        QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERIES };
 enum { OWN_NONE, OWN_COPY, OWN_COPY0, OWN_LOOSE, OWN_NEAR, OWN_RANDOM, OWN_RESOLVENT, OWN_A0, OWNS };
 enum { FIELD_RANDOM, FIELD_SMOOTH, FIELD_NEARLY, FIELD_HUGE, FIELD_TINY, FIELD_DELTA, FIELD_ALTERNATE,
-       FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELDS };
+       FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELD_LEVEL, FIELDS };
 
 static const char *const query_names[] = {"apply",    "column", "times",    "derivative",    "adjoint",
                                           "from",     "filter", "entries",  "pairs",         "diagonal",
@@ -1120,7 +1140,7 @@ static const char *const own_names[] = {"none",   "copy",      "copy0", "loose",
                                         "random", "resolvent", "a0",    NULL};
 static const char *const field_names[] = {"random", "smooth",    "nearly", "huge",     "tiny",
                                           "delta",  "alternate", "mode",   "constant", "step",
-                                          "linear", "zero",      NULL};
+                                          "linear", "zero",      "level",  NULL};
 
 typedef struct trial {
     char shape[32], op[16];
@@ -1403,8 +1423,6 @@ enum { FIXED = sizeof fixed_cases / sizeof *fixed_cases };
 
 /* ---- drawing ---- */
 
-static int draw(uint64_t *seed, int n) { return (int)(shape_uniform(seed) * n); }
-static int chance(uint64_t *seed, double p) { return shape_uniform(seed) < p; }
 
 /* What an index is drawn with these odds, in parts. */
 static int among(uint64_t *seed, const int *parts, int n) {
@@ -1427,7 +1445,7 @@ static double draw_time(uint64_t *seed, double unit) {
 
 static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
     static const int queries[] = {8, 8, 4, 4, 4, 4, 3, 6, 6, 8, 2, 10, 4}, methods[] = {5, 6, 5, 5},
-                     fields[] = {6, 4, 3, 1, 1, 2, 2, 2, 1, 2, 1, 1};
+                     fields[] = {6, 4, 3, 1, 1, 2, 2, 2, 1, 2, 1, 1, 3};
     static const double tols[] = {0, 0, 0, 1e-6, 1e-11, 1e-13};
     trial c = *from;
     int direct;
@@ -1460,6 +1478,7 @@ static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
     c.field = c.query == QUERY_APPLY || c.query == QUERY_DERIVATIVE || c.query == QUERY_ADJOINT || (c.query == QUERY_TIMES && chance(seed, 0.5))
                   ? among(seed, fields, FIELDS)
                   : 0;
+    if (c.query == QUERY_ADJOINT && chance(seed, 0.3)) c.field = FIELD_DELTA;
     /* rounding of huge fields over tiny times leaves the range of doubles */
     if (c.query == QUERY_DERIVATIVE && c.field == FIELD_HUGE) c.field = FIELD_RANDOM;
     if (c.query == QUERY_TIMES) c.kind = chance(seed, 0.5);   /* a field or a column */
@@ -1844,13 +1863,15 @@ static void filter_for(work *w, double t, int squared) {
 static void make_field(const work *w, int what, uint64_t *seed, double *f) {
     const hd_laplacian *lap = w->s->lap;
     const truth *T = &w->s->exact;
-    const double small = what == FIELD_TINY  ? (chance(seed, 0.5) ? 1e-170 : 1e-300)
-                         : chance(seed, 0.5) ? 1e160
-                                             : 1e200;
+    const double small = what == FIELD_TINY    ? (chance(seed, 0.5) ? 1e-170 : 1e-300)
+                         : what == FIELD_LEVEL ? (chance(seed, 0.8) ? 1 : 1e300)
+                         : chance(seed, 0.5)   ? 1e160
+                                               : 1e200;
     double coefficient[6];
     int32_t v, r, l, c;
     const int32_t one = draw(seed, lap->n),
                   mode = what == FIELD_MODE && w->c->seed < T->n ? (int32_t)w->c->seed : draw(seed, T->n);
+    const double ripple = ldexp(1, -10 - (int)(w->c->seed % 43));   /* of a level field: down to an ulp */
     for (l = 0; l < 6; l++) coefficient[l] = shape_signed(seed);
     for (v = 0; v < lap->n; v++) {
         const double u = shape_signed(seed);
@@ -1864,6 +1885,7 @@ static void make_field(const work *w, int what, uint64_t *seed, double *f) {
         else if (what == FIELD_STEP) f[v] = v < lap->n / 2 ? 1 : -1;
         else if (what == FIELD_LINEAR) f[v] = v + 1;
         else if (what == FIELD_ZERO) f[v] = 0;
+        else if (what == FIELD_LEVEL) f[v] = small * (1 + ripple * u);
         else if (what == FIELD_MODE) f[v] = r < 0 ? 0 : (double)T->x[r * T->n + mode];
         else if (what == FIELD_SMOOTH) {
             f[v] = 0;
@@ -2576,6 +2598,8 @@ static const family large[] = {{"grid/9/%d", 1, 10, "fem vor cot poly"},
                                {"turned/24", 0, 0, "I"},
                                {"star/40", 0, 0, "I diag near"},
                                {"none/%d", 1, 5, "I diag"},
+                               {"tree/12/%d", 1, 20, "mass2 mass8 mass16"},
+                               {"tree/24/%d", 21, 40, "mass2 mass8 mass16"},
                                {"grid/9/%d", 1, 10, "fem+held vor+held poly+held"},
                                {"strip/8/%d", 2, 8, "vor+tuft+held"},
                                {"bump/8/%d", 1, 3, "fem+held cot+held fem+id+held"},
@@ -2603,6 +2627,7 @@ static const family small[] = {{"grid/5/%d", 2, 10, "fem vor"},
                                {"weak/24/%d", 12, 40, "I"},
                                {"penalty/24/%d", 3, 9, "I"},
                                {"leak/24/1e-%d", 4, 12, "I"},
+                               {"tree/12/%d", 1, 20, "mass8 mass16"},
                                {"bump/6/1", 0, 0, "fem+held vor+held"},
                                {"two/1/%d", 0, 7, "fem+held"},
                                {"inert/5/1", 0, 0, "vor+held"}};
