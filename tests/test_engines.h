@@ -1824,6 +1824,7 @@ static void test_engines(void) {
     eng_counts();
     eng_reuse();
     eng_again();
+    eng_constant_first();
     eng_switch();
     eng_times();
     eng_times_columns();
