@@ -2,8 +2,9 @@
 # The tests under checkers. In each mode a planted error first proves that the checker is on.
 #     sanitize.sh WORKFOLDER [all]                    addresses and undefined behaviour, as CI does; all: the slow groups too,
 #                                                     whose code the others run as well
+#     sanitize.sh WORKFOLDER python [COUNT]           the arguments that test_python.py throws, under the address sanitizer
 #     sanitize.sh WORKFOLDER memory|threads|traps|valgrind [GROUP...]
-# Those modes print a line per group; the log of a group is WORKFOLDER/MODE.GROUP.log. Groups are those of `runner --list`, and
+# The last modes print a line per group; the log of a group is WORKFOLDER/MODE.GROUP.log. Groups are those of `runner --list`, and
 # `internals`; none: all, for threads those that start some. JOBS groups at a time (2; threads: 1).
 #     memory     MemorySanitizer of clang: numbers that nobody wrote
 #     threads    ThreadSanitizer: races
@@ -82,6 +83,15 @@ valgrind)
   wrap='valgrind --quiet --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all --error-exitcode=9 --fair-sched=try'
   planted gcc -g <<<"$unwritten"
   each gcc -O2 -DHEATDIFF_NO_SIMD ;;             # vectors take valgrind ten times as long; the other modes have them
+python)
+  gcc -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -shared -fPIC "$top/tools/heatdiff_shared.c" \
+    -o "$work/libheatdiff.so" -lm
+  export HEATDIFF_LIBRARY="$work/libheatdiff.so" PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0
+  python() { LD_PRELOAD=$(gcc -print-file-name=libasan.so) "${PYTHON:-python3}" "$@"; }
+  if python -c 'import ctypes; ctypes.memset(ctypes.create_string_buffer(8), 1, 4096)' >/dev/null 2>&1; then
+    echo "python: the checker is not on"; exit 1
+  fi
+  python "$top/tests/test_python.py" --throw "${groups:-5000}" 2>"$work/python.log" || { tail -50 "$work/python.log"; exit 1; } ;;
 '' | all)
   flags="-std=c99 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -I$top"
   for cc in gcc clang; do
@@ -102,6 +112,6 @@ int main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; 
   wait $! || { cat "$work/long.log"; exit 1; }
   cat "$work/long.log" ;;
 *)
-  echo "usage: sanitize.sh WORKFOLDER [all | memory | threads | traps | valgrind [GROUP...]]"
+  echo "usage: sanitize.sh WORKFOLDER [all | python [COUNT] | memory | threads | traps | valgrind [GROUP...]]"
   exit 2 ;;
 esac

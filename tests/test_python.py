@@ -1,12 +1,23 @@
 """examples/python against dense matrices of SciPy: with the library's own L and B, and with L and B assembled here.
 Builds the shared library itself. Without NumPy, SciPy or a compiler it says so and exits 77, which ctest shows as skipped,
-or 1 with HEATDIFF_NO_SKIP in the environment. Usage: test_python.py [unittest arguments]"""
+or 1 with HEATDIFF_NO_SKIP in the environment.
+
+    test_python.py [unittest arguments]
+    test_python.py --throw COUNT [SEED]     throws arguments at every function of the library in HEATDIFF_LIBRARY
+"""
+import copy
+import gc
+import inspect
 import os
+import pickle
+import random
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
+import warnings
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
@@ -23,12 +34,17 @@ hd = folder = None
 
 
 def setUpModule():
-    global hd, folder
+    global folder
     folder = tempfile.TemporaryDirectory()
     library = os.path.join(folder.name, "libheatdiff.so")
     subprocess.run([CC, "-O1", "-shared", "-fPIC", "-fvisibility=hidden", os.path.join(TOP, "tools", "heatdiff_shared.c"),
                     "-o", library, "-lm"], check=True)
     os.environ["HEATDIFF_LIBRARY"] = library
+    load()
+
+
+def load():
+    global hd
     sys.path.insert(0, os.path.join(TOP, "examples", "python"))
     import heatdiff
     hd = heatdiff
@@ -377,8 +393,412 @@ class Python(unittest.TestCase):
             self.assertGreater(np.unique(image.reshape(-1, image.shape[-1]), axis=0).shape[0], 30, name)
 
 
+# Wrong arguments. On this sheet of 25 vertices all numbers are floats of 32 bits, so that they survive every disguise.
+
+def small():
+    xyz, tri, squares = bumpy(5)
+    xyz = np.round(xyz * 1024) / 1024
+    lap = hd.triangles(xyz, tri)
+    return {"np": np, "sparse": scipy.sparse, "hd": hd, "xyz": xyz, "tri": tri, "squares": squares, "n": 25, "lap": lap,
+            "L": lap.L, "B": lap.B, "heat": hd.Heat(lap), "f": xyz[:, :2].copy(), "g": np.tile(xyz, 2)[:, :4].copy(),
+            "t": np.array([1, 2]) / 32, "moving": hd.triangles(xyz, tri, updatable=1), "geo": hd.Geodesic(xyz, tri)}
+
+
+# call, error, a part of its text
+WRONG = [
+    ("heat.apply(t, f[:3, 0])", ValueError, "f has shape (3,), wanted is (25, k) or (25,)"),
+    ("heat.apply(t, f[:24])", ValueError, "f has shape (24, 2)"),
+    ("heat.apply(t, f.T)", ValueError, "f has shape (2, 25)"),
+    ("heat.apply(t, f[None])", ValueError, "f has shape (1, 25, 2)"),
+    ("heat.apply(t, 1.0)", ValueError, "f has shape ()"),
+    ("heat.apply(t, f + 0j)", TypeError, "f has dtype complex128 and shape (25, 2), wanted are numbers"),
+    ("heat.apply(t, f.astype(str))", TypeError, "f has dtype <U"),
+    ("heat.apply(t, f.astype(object))", TypeError, "f has dtype object"),
+    ("heat.apply(t, L)", TypeError, "f has dtype object"),
+    ("heat.apply(t, [[1, 2], [3]])", (ValueError, TypeError), "f "),
+    ("heat.apply(t, np.ma.masked_less(f, 0.1))", TypeError, "f is a masked array"),
+    ("heat.apply(t, f * np.nan)", ValueError, "field is not finite (row 0, column 0)"),
+    ("heat.apply(t, np.full(n, np.longdouble('1e4000')))", ValueError, "field is not finite"),
+    ("heat.apply([], f)", ValueError, "t has shape (0,), wanted is at least one time"),
+    ("heat.apply([[1, 2]], f)", ValueError, "t has shape (1, 2), wanted is () or (n_times,)"),
+    ("heat.apply(None, f)", TypeError, "t has dtype object"),
+    ("heat.apply('0.1', f)", TypeError, "t has dtype <U3"),
+    ("heat.apply(True, f)", TypeError, "t has dtype bool"),
+    ("heat.apply(1j, f)", TypeError, "t has dtype complex128"),
+    ("heat.apply(-1, f)", ValueError, "t is negative or not finite"),
+    ("heat.apply([0.1, np.nan], f)", ValueError, "t is negative or not finite (column 1)"),
+    ("heat.derivative(t, f[:3])", ValueError, "f has shape (3, 2)"),
+    ("heat.adjoint(t, f[:3])", ValueError, "g has shape (3, 2)"),
+    ("heat.vjp(t, f[:3], g)", ValueError, "f has shape (3, 2)"),
+    ("heat.vjp(t, f, g[:, :1])", ValueError, "g has shape (25, 1), wanted is (25, 4)"),
+    ("heat.vjp(t, f, g[:, 0])", ValueError, "g has shape (25,), wanted is (25, 4)"),
+    ("heat.vjp(t, f, g[:3])", ValueError, "g has shape (3, 4)"),
+    ("heat.columns(t, 25)", ValueError, "not in the mesh (vertex 25, column 0)"),
+    ("heat.columns(t, [0, -1])", ValueError, "not in the mesh (column 1)"),
+    ("heat.columns(t, 1.5)", TypeError, "sources has dtype float64 and shape (), wanted are integers"),
+    ("heat.columns(t, [2 ** 32])", ValueError, "sources is 4294967296, wanted is an integer from -2147483648 to 2147483647"),
+    ("heat.columns(t, np.uint64(2 ** 63))", ValueError, "sources is 9223372036854775808"),
+    ("heat.columns(t, [2 ** 70])", TypeError, "sources has dtype object"),
+    ("heat.columns(t, np.arange(n) == 3)", TypeError, "sources has dtype bool"),
+    ("heat.columns(t, [[0, 1]])", ValueError, "sources has shape (1, 2), wanted is () or (any,)"),
+    ("heat.columns(t, 0, [3, 4])", TypeError, "symmetric is [3, 4]"),
+    ("heat.columns(t, 0, 'yes')", TypeError, "symmetric is 'yes'"),
+    ("heat.diagonal(0)", ValueError, "not positive"),
+    ("heat.diagonal([])", ValueError, "at least one time"),
+    ("heat.trace([])", ValueError, "at least one time"),
+    ("heat.normalised(np.inf)", ValueError, "not positive and finite"),
+    ("heat.scale_invariant(1, 2, 2 ** 32 + 9)", ValueError, "n_times is 4294967305"),
+    ("heat.scale_invariant(1, 2, 9.5)", TypeError, "n_times is 9.5, wanted is an integer"),
+    ("heat.scale_invariant(1, 2, 9, 6)", ValueError, "n_freq is 6, wanted is an integer from 1 to 5"),
+    ("heat.scale_invariant(1, 2, 9, -1)", ValueError, "n_freq is -1"),
+    ("heat.scale_invariant([1, 1], 2)", ValueError, "t0 has shape (2,), wanted is ()"),
+    ("heat.scale_invariant(1, np.nan)", ValueError, "0 < t0 < t1"),
+    ("heat.distance([], 0, 'HD_DISTANCE_COMMUTE')", ValueError, "at least one time"),
+    ("heat.distance([1, 2], 0, 'HD_DISTANCE_COMMUTE')", ValueError, "time"),
+    ("heat.distance(None, 0)", TypeError, "t has dtype object"),
+    ("heat.distance(t, 0, 'HD_DISTANCE_COMMUT')", ValueError, "did you mean HD_DISTANCE_COMMUTE?"),
+    ("heat.distance(t, 0, 'HD_METHOD_DIRECT')", ValueError, "kind is 'HD_METHOD_DIRECT'"),
+    ("heat.distance(t, 0, 17)", ValueError, "kind is 17"),
+    ("heat.distance(t, 0, None)", TypeError, "kind is None"),
+    ("heat.distance(t, 25)", ValueError, "not in the mesh"),
+    ("heat.entries(t, [0, 1], [2, 3, 4])", ValueError, "j has shape (3,), wanted is (2,)"),
+    ("heat.entries(t, [0.5], [1])", TypeError, "i has dtype float64"),
+    ("heat.entries(t, [0], [25])", ValueError, "not in the mesh"),
+    ("heat.entries([], 0, 1)", ValueError, "at least one time"),
+    ("heat.pairs(None, 0, 1)", TypeError, "t has dtype object"),
+    ("heat.pairs(t, [0], [[1]])", ValueError, "j has shape (1, 1)"),
+    ("heat.pairs(t, [-1], [0])", ValueError, "not in the mesh"),
+    ("heat.pairs([], 0, 1, 'HD_DISTANCE_COMMUTE')", ValueError, "at least one time"),
+    ("heat.sample(0.1, 3, [1.5])", TypeError, "given has dtype float64"),
+    ("heat.sample(0.1, 3, [0, 1, 2, 3])", ValueError, "count is 3, wanted is an integer from 4 to 25"),
+    ("heat.sample(0.1, 3, [2 ** 32])", ValueError, "given is 4294967296"),
+    ("heat.sample(0.1, 3, [25])", ValueError, "not in the mesh"),
+    ("heat.sample(0.1, 2 ** 32 + 3)", ValueError, "count is 4294967299"),
+    ("heat.sample(0.1, -1)", ValueError, "count is -1"),
+    ("heat.sample(0.1, 2.5)", TypeError, "count is 2.5"),
+    ("heat.sample(t, 3)", ValueError, "t has shape (2,), wanted is ()"),
+    ("hd.triangles(xyz.ravel(), tri)", ValueError, "xyz has shape (75,), wanted is (n, 3)"),
+    ("hd.triangles(xyz[:, :2], tri)", ValueError, "xyz has shape (25, 2)"),
+    ("hd.triangles(xyz, tri[:, :2])", ValueError, "tri has shape (32, 2), wanted is (n_tri, 3)"),
+    ("hd.triangles(xyz, tri.ravel())", ValueError, "tri has shape (96,)"),
+    ("hd.triangles(xyz, tri + 0.5)", TypeError, "tri has dtype float64"),
+    ("hd.triangles(xyz, tri + 2 ** 32)", ValueError, "tri is 4294967296"),
+    ("hd.triangles(xyz, tri - 1)", ValueError, "does not exist"),
+    ("hd.triangles(xyz, tri + 1)", ValueError, "does not exist"),
+    ("hd.triangles(xyz + 1j, tri)", TypeError, "xyz has dtype complex128"),
+    ("hd.triangles(xyz * np.inf, tri)", ValueError, "coordinate is not finite (vertex 0)"),
+    ("hd.triangles(xyz[:0], tri[:0])", ValueError, "no vertex"),
+    ("hd.triangles(xyz, tri[:0])", ValueError, "no vertex"),
+    ("hd.polygons(xyz, squares.ravel())", ValueError, "faces[0] has shape ()"),
+    ("hd.polygons(xyz, squares.astype(float))", TypeError, "faces[0] has dtype float64"),
+    ("hd.polygons(xyz, [[0, 1, 6], [0, 1, 6.5]])", TypeError, "faces[1] has dtype float64"),
+    ("hd.polygons(xyz, squares[None])", ValueError, "faces[0] has shape (16, 4)"),
+    ("hd.polygons(xyz, 5)", TypeError, "faces are no lists of vertices"),
+    ("hd.polygons(xyz, squares + 2 ** 32)", ValueError, "faces is 4294967296"),
+    ("hd.polygons(xyz, squares + 1)", ValueError, "does not exist"),
+    ("hd.polygons(xyz, [])", ValueError, "no vertex"),
+    ("hd.polygons(xyz[:, 0], squares)", ValueError, "xyz has shape (25,)"),
+    ("hd.points(xyz.T)", ValueError, "xyz has shape (3, 25)"),
+    ("hd.points(xyz.tolist()[:4] + [[1, 2]])", (ValueError, TypeError), "xyz "),
+    ("hd.matrices(L.toarray(), B)", TypeError, "L is a ndarray, wanted is a matrix of scipy.sparse"),
+    ("hd.matrices(L[:, :24], B)", ValueError, "L has shape (25, 24), wanted is (25, 25)"),
+    ("hd.matrices(L, B[:24, :24])", ValueError, "B has shape (24, 24), wanted is (25, 25)"),
+    ("hd.matrices(L * 1j, B)", TypeError, "L has dtype complex128"),
+    ("hd.matrices(L, B.astype(bool))", TypeError, "B has dtype bool"),
+    ("hd.matrices(L, B * np.nan)", ValueError, "B has an entry that is not finite"),
+    ("hd.matrices(torn(L), B)", ValueError, ""),
+    ("hd.matrices(sparse.triu(L), B)", ValueError, "not symmetric"),
+    ("hd.matrices(-L, B)", ValueError, ""),
+    ("hd.matrices(L, B, -1)", ValueError, "h is negative"),
+    ("hd.matrices(L, B, np.nan)", ValueError, "h is negative or not finite"),
+    ("hd.matrices(L, B, 'a')", TypeError, "h has dtype <U1"),
+    ("hd.Geodesic(xyz[:, :2], tri)", ValueError, "xyz has shape (25, 2)"),
+    ("hd.Geodesic(xyz, tri.astype(float))", TypeError, "faces has dtype float64"),
+    ("hd.Geodesic(xyz, tri[:, 0])", ValueError, "faces[0] has shape ()"),
+    ("hd.Geodesic(xyz, tri + 1)", ValueError, "does not exist"),
+    ("geo.distance(1.5)", TypeError, "sources has dtype float64"),
+    ("geo.distance([])", ValueError, "no source"),
+    ("geo.distance(25)", ValueError, "not in the mesh"),
+    ("geo.distance([[1]])", ValueError, "sources has shape (1, 1)"),
+    ("lap.times(0)", ValueError, "n is 0, wanted is an integer from 1"),
+    ("lap.times(2 ** 32 + 1)", ValueError, "n is 4294967297"),
+    ("lap.times(2.0)", TypeError, "n is 2.0"),
+    ("lap.spectral_times(-1)", ValueError, "not positive"),
+    ("lap.spectral_times([])", ValueError, "no time"),
+    ("lap.spectral_times([[1]])", ValueError, "c has shape (1, 1)"),
+    ("moving.update(xyz[:24])", ValueError, "xyz has shape (24, 3), wanted is (25, 3)"),
+    ("moving.update(xyz * np.nan)", ValueError, "not finite"),
+    ("lap.update(xyz)", ValueError, "updatable"),
+    ("hd.Heat(5)", TypeError, "lap is a int, wanted is a Laplacian"),
+    ("hd.Heat(heat)", TypeError, "lap is a Heat"),
+    ("hd.Heat(None)", TypeError, "lap is a NoneType"),
+    ("hd.Laplacian('hd_laplacian_free', 0)", TypeError, ""),
+    ("hd.Heat(lap, methd='HD_METHOD_DIRECT')", TypeError, "unknown option methd: did you mean method?"),
+    ("hd.Heat(lap, context=5)", TypeError, "unknown option context"),
+    ("hd.Heat(lap, rational=5)", TypeError, "unknown option rational"),
+    ("hd.Heat(lap, begin_zero=1)", TypeError, "unknown option begin_zero"),
+    ("hd.Heat(lap, held=[1])", TypeError, "unknown option held"),
+    ("hd.Heat(lap, method='HD_METHOD_DIREKT')", ValueError, "method is 'HD_METHOD_DIREKT': did you mean HD_METHOD_DIRECT?"),
+    ("hd.Heat(lap, method='HD_POLES_KERNEL')", ValueError, "method is 'HD_POLES_KERNEL'"),
+    ("hd.Heat(lap, method=99)", ValueError, "method is 99, wanted is one of HD_METHOD_AUTO, HD_METHOD_ITERATIVE"),
+    ("hd.Heat(lap, method=1.0)", TypeError, "method is 1.0"),
+    ("hd.Heat(lap, degree=9.5)", TypeError, "degree is 9.5"),
+    ("hd.Heat(lap, degree='HD_OK')", TypeError, "degree is 'HD_OK'"),
+    ("hd.Heat(lap, degree=2 ** 32 + 9)", ValueError, "degree is 4294967305"),
+    ("hd.Heat(lap, tol='small')", TypeError, "tol has dtype <U5"),
+    ("hd.Heat(lap, tol=[1e-9, 1e-8])", ValueError, "tol has shape (2,)"),
+    ("hd.Heat(lap, tol=np.nan)", ValueError, "tol"),
+    ("hd.Heat(lap, tol=1j)", TypeError, "tol has dtype complex128"),
+    ("hd.Heat(lap, ordering='HD_ORDERING_OWN')", ValueError, "perm"),
+    ("hd.Heat(lap, ordering='HD_ORDERING_OWN', perm=np.arange(24))", ValueError, "perm has shape (24,), wanted is (25,)"),
+    ("hd.Heat(lap, ordering='HD_ORDERING_OWN', perm=np.zeros(n, int)).diagonal(t)", ValueError, "permutation"),
+    ("hd.triangles(xyz, tri, held=[1.5])", TypeError, "held has dtype float64"),
+    ("hd.triangles(xyz, tri, held=[25])", ValueError, "not in the mesh"),
+    ("hd.triangles(xyz, tri, held=[-1])", ValueError, "not in the mesh"),
+    ("hd.triangles(xyz, tri, held=np.arange(n) == 3)", TypeError, "held has dtype bool"),
+    ("hd.triangles(xyz, tri, n_held=3)", TypeError, "unknown option n_held"),
+    ("hd.triangles(xyz, tri, border='HD_BORDER_NEUMANN')", ValueError, "border is 'HD_BORDER_NEUMANN'"),
+    ("hd.polygons(xyz, squares, lambda_=1)", TypeError, "unknown option lambda_: did you mean lambda?"),
+    ("hd.points(xyz, bandwidth=np.nan)", ValueError, "bandwidth"),
+    ("hd.points(xyz, neighbours=2 ** 40)", ValueError, "neighbours is 1099511627776"),
+    ("hd.Geodesic(xyz, tri, t=-1)", ValueError, "t is negative"),
+    ("hd.Geodesic(xyz, tri, mass='HD_BORDER_NATURAL')", ValueError, "mass is 'HD_BORDER_NATURAL'"),
+    ("hd.Geodesic(xyz, tri, time=1)", TypeError, "unknown option time"),
+    ("copy.copy(lap)", TypeError, "a Laplacian cannot be copied or pickled"),
+    ("copy.deepcopy(heat)", TypeError, "a Heat cannot be copied or pickled"),
+    ("pickle.dumps(geo)", TypeError, "a Geodesic cannot be copied or pickled"),
+]
+
+
+def torn(a):
+    """A matrix whose first row is said to reach far beyond its arrays."""
+    a = a.copy()
+    a.indptr[1:] += 10 ** 6
+    return a
+
+
+class Arguments(unittest.TestCase):
+    def test_wrong(self):
+        names = dict(small(), copy=copy, pickle=pickle, torn=torn)
+        want = names["heat"].apply(names["t"], names["f"])
+        for call, error, text in WRONG:
+            with self.subTest(call), warnings.catch_warnings():
+                warnings.simplefilter("ignore")                 # of NumPy about values that it cannot convert
+                with self.assertRaises(error) as e:
+                    eval(call, names)
+                self.assertIn(text, str(e.exception))
+        self.assertTrue(np.array_equal(names["heat"].apply(names["t"], names["f"]), want))
+
+    def test_right(self):
+        """What looks unusual and is not wrong."""
+        names = small()
+        n, xyz, tri, lap, heat, f, t = (names[x] for x in ("n", "xyz", "tri", "lap", "heat", "f", "t"))
+        self.assertEqual(heat.apply(t, np.zeros((n, 0))).shape, (n, 0))
+        self.assertEqual(heat.columns(t, []).shape, (n, 0))
+        self.assertEqual(heat.entries(t, [], []).shape, (0, 2))
+        mask = np.arange(n) == 3
+        self.assertLess(abs(heat.apply(t[0], mask) - heat.columns(t[0], 3)).max(), 1e-7)
+        self.assertTrue(np.array_equal(heat.entries(t, 3, range(n)), heat.entries(t, np.full(n, 3), np.arange(n))))
+        self.assertTrue(np.array_equal(heat.columns(t, 3, np.bool_(True)), heat.columns(t, 3, 1)))
+        self.assertEqual(heat.sample(None, 2, kind="HD_DISTANCE_COMMUTE")[0].shape, (2,))
+        self.assertEqual(hd.polygons(xyz, [[]] + tri.tolist()).info.mesh.n_zero_area, 1)
+        self.assertEqual(hd.triangles(xyz, tri, held=3, tufted=np.bool_(True), kind=hd.C["HD_LAPLACIAN_COT"]).info.n_held, 1)
+        own = hd.Heat(lap, ordering="HD_ORDERING_OWN", perm=np.arange(n)[::-1], method="HD_METHOD_DIRECT", tol=np.float32(1e-9))
+        self.assertLess(abs(own.apply(t, f) - heat.apply(t, f)).max(), 1e-7)
+        twice = scipy.sparse.coo_matrix((np.repeat(lap.L.tocoo().data / 2, 2), [np.repeat(x, 2) for x in lap.L.nonzero()]))
+        self.assertLess(abs(hd.matrices(twice, lap.B).L - lap.L).max(), 1e-15)
+
+    def test_closed(self):
+        """Whatever is closed raises; a Laplacian takes its plans with it; info is a copy that stays."""
+        names = small()
+        lap, heat, geo = names["lap"], names["heat"], names["geo"]
+        info, other = lap.info, hd.Heat(lap)
+        info.n = info.n_active = 10 ** 6                        # of a copy
+        self.assertEqual((lap.n, len(lap.mass)), (25, 25))
+        with self.assertRaises(AttributeError):
+            lap.n = 10 ** 6
+        other.close()
+        other.close()
+        with self.assertRaisesRegex(ValueError, "closed"):
+            other.columns(1, 0)
+        with lap:
+            heat.columns(1, 0)
+        geo.close()
+        for use in ("lap.n", "lap.info", "lap.L", "lap.B", "lap.mass", "lap.vertex", "lap.times(3)", "lap.spectral_times(1)",
+                    "lap.update(xyz)", "hd.Heat(lap)", "heat.apply(t, f)", "heat.columns(t, 0)", "heat.diagonal(t)",
+                    "heat.trace(t)", "heat.entries(t, 0, 1)", "heat.sample(1, 2)", "geo.distance(0)"):
+            with self.subTest(use), self.assertRaisesRegex(ValueError, "closed"):
+                eval(use, names)
+        lap.close()
+        del lap, heat, geo, other, names
+
+    def test_threads(self):
+        """Threads that share a plan, its Laplacian and other plans of it get the right numbers."""
+        names = small()
+        lap, heat, t = names["lap"], names["heat"], names["t"]
+        want, right = heat.columns(t, range(25)), []
+
+        def work(k):
+            for s in range(k, k + 15):
+                plan = heat if s % 3 else hd.Heat(lap)
+                right.append(abs(plan.columns(t, s % 25) - want[:, 2 * (s % 25):][:, :2]).max() < 1e-7)
+
+        threads = [threading.Thread(target=work, args=(k,)) for k in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(right, [True] * 60)
+
+    def test_throw(self):
+        """In a process of its own, which a crash would end, and where freed memory is overwritten."""
+        environment = dict(os.environ, GLIBC_TUNABLES="glibc.malloc.tcache_count=0:glibc.malloc.perturb=165")
+        for seed in "12":
+            done = subprocess.run([sys.executable, os.path.abspath(__file__), "--throw", "1500", seed], env=environment,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+            self.assertEqual(done.returncode, 0, done.stdout[-2000:])
+
+
+# Throwing arguments: every function gets what looks unusual and is right, or with it one argument that is wrong.
+
+def disguised(kind, x, rng):
+    """The same in another array: of another type, order, alignment, or a part of a larger one."""
+    if kind == "sparse":
+        return x.asformat(rng.choice(["csr", "csc", "coo", "lil", "bsr", "dia"]))
+    if kind == "count":
+        return rng.choice([int, np.int64, np.uint8, np.array])(x)
+    a = x.astype(rng.choice(["f8", "f4", ">f8", np.longdouble] if x.dtype.kind == "f" else ["i8", "i4", "u2", ">i4"]))
+    odd = np.zeros(a.nbytes + 1, np.uint8)[1:].view(a.dtype).reshape(a.shape)
+    wide = np.zeros([2 * m for m in a.shape], a.dtype)[tuple(slice(None, None, 2) for _ in a.shape)]
+    odd[...] = wide[...] = a
+    a.setflags(write=False)
+    return rng.choice([a, odd, wide, np.asfortranarray(a), np.flip(np.flip(a).copy()), a.tolist()])
+
+
+def spoilt(kind, x, rng):
+    """No right argument of this kind any more."""
+    if kind == "sparse":
+        return rng.choice([x.toarray(), x[:-1], x[:, :-1], x[:-1, :-1], x * 1j, x.astype(bool), x * np.nan, torn(x), -x, None,
+                           "L", scipy.sparse.csr_matrix((0, 0)), x + scipy.sparse.diags([1.0], [1], x.shape)])
+    if kind == "count":
+        return rng.choice([None, "abc", {}, [x], x + 0.5, float(x), 1j, -1, x + 2 ** 32, x - 2 ** 64])
+    a = x.copy()
+    a.flat[rng.randrange(a.size)] = rng.choice([np.nan, np.inf, -np.inf] if a.dtype.kind == "f" else [-1, 10 ** 6])
+    ways = [a, "abc", {}, object(), 1j * x, x.astype(str), x.astype(object), np.ma.array(x), x[None, None], [[1], [2, 3]]]
+    if x.dtype.kind == "i":
+        ways += [x.astype(float), x + 0.5, x > 0, x + 2 ** 32, x - 2 ** 32, x + np.uint64(2 ** 63)]
+    if x.ndim == 2:
+        ways += [x.ravel(), x[..., None]] + [x.T] * (kind != "faces") + [x[:, :-1], x[:, 0]] * (kind not in ("field", "faces"))
+    if kind not in ("any", "faces"):
+        ways += [x[:0]] + [x[:-1]] * (kind != "some")
+    if kind in ("same", "field"):
+        ways += [np.concatenate([x, x[:1]]), x.repeat(2, 0)]
+    return rng.choice(ways)
+
+
+def throws(names):
+    """Calls with kinds and right values of their arguments. same: of this shape only; field: any columns; faces: any rows
+    and columns; all: rows that are missed; some: at least one; any: none or more."""
+    xyz, tri, f, g, t = (names[x] for x in ("xyz", "tri", "f", "g", "t"))
+    heat, lap, moving, geo = (names[x] for x in ("heat", "lap", "moving", "geo"))
+    ids, others, t1 = np.array([3, 17, 3]), np.array([0, 24, 9]), t[0]
+    made = lambda lap: (lap.L.data, lap.B.data, lap.mass, lap.vertex)
+    heated = lambda **options: hd.Heat(lap, **options).columns(t, 5)
+    return [
+        (lambda x, y: made(hd.triangles(x, y)), ("all", xyz), ("any", tri)),
+        (lambda x: made(hd.triangles(xyz, tri, held=x)), ("any", ids)),
+        (lambda x, y: made(hd.polygons(x, y)), ("all", xyz), ("faces", names["squares"])),
+        (lambda x: made(hd.points(x, neighbours=8)), ("any", xyz)),
+        (lambda x, y: made(hd.matrices(x, y)), ("sparse", names["L"]), ("sparse", names["B"])),
+        (lambda x: (moving.update(x), made(moving))[1], ("same", xyz)),
+        (lambda n: lap.times(n), ("count", 4)),
+        (lambda x: lap.spectral_times(x), ("some", t)),
+        (lambda s, x: heat.apply(s, x), ("some", t), ("field", f)),
+        (lambda s, x: heat.derivative(s, x), ("some", t), ("field", f)),
+        (lambda s, x: heat.adjoint(s, x), ("some", t), ("field", f)),
+        (lambda s, x, y: heat.vjp(s, x, y), ("same", t), ("field", f), ("same", g)),
+        (lambda s, i: heat.columns(s, i), ("some", t), ("any", ids)),
+        (lambda s: heat.diagonal(s), ("some", t)),
+        (lambda s: heat.trace(s), ("some", t)),
+        (lambda s: heat.normalised(s), ("some", t)),
+        (lambda n, k: heat.scale_invariant(0.1, 8, n, k), ("count", 17), ("count", 6)),
+        (lambda s, i: heat.distance(s, i), ("some", t), ("any", ids)),
+        (lambda i: heat.distance(None, i, "HD_DISTANCE_COMMUTE"), ("any", ids)),
+        (lambda s, i, j: heat.entries(s, i, j), ("some", t), ("same", ids), ("same", others)),
+        (lambda s, i, j: heat.pairs(s, i, j), ("some", t), ("same", ids), ("same", others)),
+        (lambda n, i: heat.sample(t1, n, i), ("count", 5), ("any", ids[:2])),
+        (lambda x, y: hd.Geodesic(x, y).distance(4), ("all", xyz), ("any", tri)),
+        (lambda x: hd.Geodesic(x, neighbours=8).distance(4), ("any", xyz)),
+        (lambda i: geo.distance(i), ("some", ids)),
+        (lambda x: heated(degree=x, method="HD_METHOD_DIRECT"), ("count", 9)),
+        (lambda x: heated(ordering="HD_ORDERING_OWN", perm=x), ("same", np.arange(25)[::-1])),
+    ]
+
+
+def alike(a, b):
+    finite = np.isfinite(b)
+    return a.shape == b.shape and np.array_equal(a[~finite], b[~finite]) and np.allclose(a[finite], b[finite], 1e-6, 1e-7)
+
+
+def lifetimes():
+    """update reads a copy of coordinates of any kind before it is freed. Plans and their Laplacian in a circle are freed in
+    any order, in any thread, and once."""
+    xyz, tri, _ = bumpy(20)
+    lap, want = hd.triangles(xyz, tri, updatable=1), hd.triangles(np.float32(xyz), tri).L
+    for other in (np.float32, lambda x: np.asfortranarray(np.float32(x)), lambda x: np.float32(x).tolist()):
+        lap.update(xyz)
+        lap.update(other(xyz))
+        assert abs(lap.L - want).max() < 1e-12
+    for k in range(20):
+        names = small()
+        plans = [hd.Heat(names["lap"]) for _ in range(3)]
+        names["lap"].circle = plans, names
+        plans[k % 3].columns(1, 0)
+        del plans, names
+        if k % 2:
+            gc.collect()
+        else:
+            threading.Thread(target=gc.collect).start()
+
+
+def throw(count, seed):
+    """Ends with 1 after a wrong number, or an exception of another kind than those promised."""
+    load()
+    rng, bad, right, refused = random.Random(seed), 0, 0, 0
+    names = small()
+    for _ in range(count):
+        k = rng.randrange(len(throws(names)))
+        call, *args = throws(names)[k]
+        spoil = rng.randrange(2 * len(args))                    # this one, or none
+        given = [(spoilt if q == spoil else disguised)(kind, x, rng) for q, (kind, x) in enumerate(args)]
+        what = inspect.getsource(call).strip() + "".join("\n    %.200r" % (x,) for x in given)
+        print(what, file=sys.stderr, flush=True)                # is the last line if it crashes
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")                 # of NumPy about values that it cannot convert
+                got = call(*given)
+        except (ValueError, TypeError) as error:
+            refused += 1
+            text = "" if spoil < len(args) else "refused by %r, but right" % error
+        except Exception as error:
+            text = "%r" % error
+        else:
+            right += 1
+            got, want = (np.concatenate([np.ravel(a) for a in (x if type(x) is tuple else (x,))])
+                         for x in (got, call(*(x for _, x in args))))
+            text = "not refused" if spoil < len(args) else "" if alike(got, want) else "wrong numbers"
+        if text:
+            bad += 1
+            print(what + "\n" + text)
+    print("seed %d: %d right, %d refused, %d bad" % (seed, right, refused, bad))
+    lifetimes()
+    return bad > 0
+
+
 if __name__ == "__main__":
     if np is None or CC is None or os.name == "nt":
         print("not here: NumPy, SciPy or a C compiler")
         sys.exit(1 if os.environ.get("HEATDIFF_NO_SKIP") else 77)
+    if sys.argv[1:2] == ["--throw"]:
+        sys.exit(throw(int(sys.argv[2]), int((sys.argv[3:] or [0])[0])))
     unittest.main()

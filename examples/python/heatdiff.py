@@ -5,6 +5,8 @@
 
 Structs and constants are read from heatdiff.h, so that they are those of the library. Arrays go in and come out as
 NumPy arrays of doubles; columns of results are columns of Fortran-ordered arrays. Errors are exceptions that say where.
+Arguments are copied and checked: a wrong shape is a ValueError, wrong numbers (complex ones, or floats as indices) are a
+TypeError, and so are unknown options. What the library itself refuses is an InputError, which is a ValueError.
 
     import heatdiff as hd
     lap = hd.triangles(xyz, tri)                        # or polygons, points, matrices(L, B) of scipy.sparse
@@ -15,10 +17,15 @@ NumPy arrays of doubles; columns of results are columns of Fortran-ordered array
     d = heat.pairs(t, [0, 1], [5, 7])                   # of pairs; entries and sample: single entries, farthest points
     by_t, by_f = heat.vjp(t, f, g)                      # gradients for training; see learn_time.py
     far = hd.Geodesic(xyz, tri).distance([0])           # along the surface
+
+close() or a with block frees at once what these objects hold, and a Laplacian's plans with it.
 """
 import ctypes
+import difflib
+import operator
 import os
 import re
+import threading
 
 import numpy as np
 
@@ -32,29 +39,27 @@ def _header():
 
 
 def _constants(text):
-    """Names of enumerations, of their constants, and of those in the list of statuses."""
-    values, kinds = {}, set()
-    values.update((name, int(number)) for name, number in re.findall(r"X\((HD_\w+), (-?\d+),", text))
+    """All constants, and those of each enumeration. Those of the statuses stand in a list of their own."""
+    values = {name: int(number) for name, number in re.findall(r"X\((HD_\w+), (-?\d+),", text)}
+    kinds = {"hd_status": dict(values)}
     for body, kind in re.findall(r"enum(?:\s+\w+)?\s*\{([^}]*)\}\s*(\w*);", text):
-        kinds.add(kind)
-        at = 0
+        at, of = 0, kinds.setdefault(kind, {})
         for item in body.split(","):
             m = re.match(r"\s*(HD_\w+)\s*(?:=\s*(-?\w+))?\s*$", item)
             if m:
                 at = int(m.group(2), 0) if m.group(2) else at
-                values[m.group(1)] = at
+                values[m.group(1)] = of[m.group(1)] = at
                 at += 1
-    kinds.add("hd_status")
     return values, kinds
 
 
 def _structs(text, constants, kinds):
-    """Classes for the header's structs: pointers are addresses, enumerations integers."""
+    """Classes for the header's structs: pointers are addresses, enumerations integers, listed in enums by their fields."""
     plain = {"int32_t": ctypes.c_int32, "int64_t": ctypes.c_int64, "uint64_t": ctypes.c_uint64, "double": ctypes.c_double,
              "char": ctypes.c_char, "size_t": ctypes.c_size_t}
     made = {}
     for name, body in re.findall(r"typedef struct (\w+)\s*\{(.*?)\}\s*\1;", text, re.S):
-        fields = []
+        fields, enums = [], {}
         for line in filter(None, (x.strip() for x in body.split(";"))):
             if "(" in line:                                     # a callback
                 fields.append((re.search(r"\(\s*\*\s*(\w+)\s*\)", line).group(1), ctypes.c_void_p))
@@ -69,7 +74,9 @@ def _structs(text, constants, kinds):
                 m = re.match(r"(\w+)(?:\[([\w +]+)\])?$", one)
                 count = m.group(2) and sum(int(constants.get(x.strip(), x)) for x in m.group(2).split("+"))
                 fields.append((m.group(1), base * count if count else base))
-        made[name] = type(name, (ctypes.Structure,), {"_fields_": fields})
+                if kind in kinds:
+                    enums[m.group(1)] = kind
+        made[name] = type(name, (ctypes.Structure,), {"_fields_": fields, "enums": enums})
     return made
 
 
@@ -90,61 +97,243 @@ class Error(Exception):
         super().__init__(f"{self.text}" + (f" ({', '.join(where)})" if where else ""))
 
 
+class InputError(Error, ValueError):
+    """An argument that the library refused: an index out of range, a number that is not finite, a time below zero."""
+
+
+_INPUT = {C["HD_ERR_" + x] for x in ("ARGUMENT", "TOO_LARGE", "INDEX", "NOT_FINITE", "NOT_SYMMETRIC", "NOT_POSITIVE",
+                                      "STRUCTURE", "EMPTY")}
+
+
 def _call(name, *args):
-    """Calls a function whose last argument is the error."""
+    """Calls a function whose last argument is the error. Arrays go as addresses, and live as long as args; integers are
+    counts of 32 bits."""
     error = S["hd_error"]()
-    status = getattr(_lib, name)(*args, ctypes.byref(error))
+    status = getattr(_lib, name)(*(_argument(x) for x in args), ctypes.byref(error))
     if status < 0:
-        raise Error(error)
-    return status
+        raise (InputError if status in _INPUT else Error)(error)
 
 
-def _doubles(x):
-    return np.ascontiguousarray(x, dtype=np.float64)
+def _argument(x):
+    if isinstance(x, np.ndarray):
+        return ctypes.c_void_p(x.ctypes.data)
+    if isinstance(x, float):
+        return ctypes.c_double(x)
+    return ctypes.c_int32(_int("a size", x)) if isinstance(x, int) else x
 
 
-def _ints(x):
-    return np.ascontiguousarray(x, dtype=np.int32)
+# Every argument goes through one of these. They take its name for their errors.
+
+def _array(name, x, shapes, kinds, dtype, order):
+    """A copy of x, which no other thread can change. Its shape must be one of shapes, in which a name stands for any
+    number, and its dtype of one of the kinds."""
+    try:
+        a = np.asarray(x)
+    except Exception as error:
+        raise ValueError(f"{name} is no array: {error}") from None
+    wanted = "numbers" if "f" in kinds else "integers"
+    if isinstance(x, np.ma.MaskedArray):
+        raise TypeError(f"{name} is a masked array, wanted are {wanted} without a mask")
+    if a.dtype.kind not in kinds and not (a.size == 0 and a.dtype == np.float64):       # as an empty list is
+        raise TypeError(f"{name} has dtype {a.dtype} and shape {a.shape}, wanted are {wanted}")
+    if not any(len(s) == a.ndim and all(isinstance(m, str) or m == n for m, n in zip(s, a.shape)) for s in shapes):
+        text = " or ".join("(" + ", ".join(map(str, s)) + ("," if len(s) == 1 else "") + ")" for s in shapes)
+        raise ValueError(f"{name} has shape {a.shape}, wanted is {text}")
+    if dtype == np.int32 and a.size:
+        for extreme in a.min(), a.max():
+            _int(name, extreme)
+    return np.array(a, dtype=dtype, order=order)
 
 
-def _at(array):
-    return ctypes.c_void_p(array.ctypes.data)
+def _doubles(name, x, *shapes, kinds="iuf", order="C"):
+    return _array(name, x, shapes, kinds, np.float64, order)
 
 
-def _options(name, values):
-    o = S[name]()
-    for key, value in values.items():
-        value = C.get(value, value) if isinstance(value, str) else value
+def _ints(name, x, *shapes):
+    return _array(name, x, shapes, "iu", np.int32, "C")
+
+
+def _double(name, x):
+    return float(_doubles(name, x, ()))
+
+
+def _list(name, x):
+    """One index or several."""
+    return _ints(name, x, (), ("any",)).reshape(-1)
+
+
+def _int(name, x, least=-2 ** 31, most=2 ** 31 - 1):
+    """x as an integer in this range. True and False are 1 and 0."""
+    try:
+        n = operator.index(bool(x) if isinstance(x, np.bool_) else x)
+    except TypeError:
+        raise TypeError(f"{name} is {x!r}, wanted is an integer") from None
+    if not least <= n <= most:
+        raise ValueError(f"{name} is {n}, wanted is an integer from {least} to {most}")
+    return n
+
+
+def _near(word, words):
+    """The word most like this one, and all the others."""
+    near = difflib.get_close_matches(str(word), words, 1, 0.4)
+    return (f"did you mean {near[0]}? " if near else "") + f"There are {', '.join(words)}"
+
+
+def _enum(name, x, kind):
+    """The number of a constant of this enumeration, given by name or number."""
+    names = _kinds[kind]
+    if isinstance(x, str):
+        if x not in names:
+            raise ValueError(f"{name} is {x!r}: {_near(x, names)}")
+        return names[x]
+    number = _int(name, x)
+    if number not in names.values():
+        raise ValueError(f"{name} is {number}, wanted is one of {', '.join(names)}")
+    return number
+
+
+def _options(name, options, n):
+    """The struct of options for n vertices. Its lists of vertices live as long as it does."""
+    o, lists = S[name](), {}
+    kinds, numbers = dict(o._fields_), (ctypes.c_int, ctypes.c_int32, ctypes.c_double)
+    known = [key for key in kinds if key in ("held", "perm") or
+             kinds[key] in numbers and key not in ("begin_zero", "end_zero", "n_held")]
+    for key, value in options.items():
+        if key not in known:
+            raise TypeError(f"unknown option {key}: {_near(key, known)}")
+        if key in ("held", "perm"):
+            lists[key] = _list(key, value) if key == "held" else _ints(key, value, (n,))
+            value = lists[key].ctypes.data
+        elif key in o.enums:
+            value = _enum(key, value, o.enums[key])
+        else:
+            value = (_double if kinds[key] is ctypes.c_double else _int)(key, value)
         setattr(o, key, value)
+    if "held" in lists:
+        o.n_held = len(lists["held"])
+    o.lists = lists
     return o
 
 
-class Laplacian:
-    """The pair (L, B) of a surface. L and B are scipy.sparse matrices by rows; vertex gives the vertex of each row.
-    held: vertices that are held at zero; border="HD_BORDER_DIRICHLET" holds those of the border."""
+def _faces(faces):
+    """Where each polygon begins among the corners of all, and the corners."""
+    try:
+        faces = list(faces)
+        lists = [np.asarray(f) for f in faces]
+    except Exception as error:
+        raise TypeError(f"faces are no lists of vertices: {error}") from None
+    for k, (given, f) in enumerate(zip(faces, lists)):
+        if f.ndim != 1 or f.size and f.dtype.kind not in "iu" or isinstance(given, np.ma.MaskedArray):
+            _ints(f"faces[{k}]", given, ("corners",))
+    ptr = np.cumsum([0] + [len(f) for f in lists], dtype=np.int64)
+    return ptr, _ints("faces", np.concatenate([f for f in lists if len(f)] or [[]]), ("corners",)), len(lists)
 
-    def __init__(self, function, *args, held=(), **options):
-        held = _ints(held)
-        self._free, self._as_parameter_ = _lib.hd_laplacian_free, ctypes.c_void_p()
-        self._options = _options("hd_laplacian_opts", dict(options, n_held=len(held), held=_at(held)))
-        _call(function, ctypes.byref(self._as_parameter_), *args, ctypes.byref(self._options))
-        self.info = S["hd_laplacian"].from_address(self._as_parameter_.value)
-        self.n, self.h, self.area = self.info.n, self.info.h, self.info.area
+
+class _Pointer:
+    """A pointer to what the library made. Plans are freed before their Laplacian, in whatever order they are dropped. A with
+    block borrows the address. A Laplacian and its plans share a lock, because one thread at a time may use them."""
+
+    def __init__(self, free, owner=None):
+        self.address, self.free, self.owner, self.plans = ctypes.c_void_p(), getattr(_lib, free), owner, set()
+        self.lock, self.dropped = (owner.lock, owner.dropped) if owner else (threading.RLock(), [])
+
+    def __enter__(self):
+        self.lock.acquire()
+        if not self.address:
+            self.lock.release()
+            raise ValueError("this object is closed, or the Laplacian under it")
+        return self.address
+
+    def __exit__(self, *_):
+        self.lock.release()
+        self.sweep()
+
+    def close(self):
+        with self.lock:
+            while self.plans:
+                self.plans.pop().close()
+            if self.owner:
+                self.owner.plans.discard(self)
+            address, self.address = self.address, None
+            if address:
+                self.free(address)
+
+    def drop(self):
+        """Closes as soon as no thread is at work. The garbage collector calls this from any thread, and must not wait."""
+        self.dropped.append(self)
+        self.sweep()
+
+    def sweep(self):
+        while self.dropped and self.lock.acquire(blocking=False):
+            try:
+                if self.dropped:                                # else another thread was faster
+                    self.dropped.pop().close()
+            finally:
+                self.lock.release()
+
+
+class _Object:
+    """Something that the library made. It can be closed, by close() or a with block; afterwards its methods raise."""
+    _pointer = None
+
+    def _make(self, pointer, function, *args):
+        _call(function, ctypes.byref(pointer.address), *args)
+        self._pointer = pointer
+
+    def close(self):
+        if self._pointer:
+            self._pointer.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
 
     def __del__(self):
-        if getattr(self, "_as_parameter_", None):
-            self._free(self._as_parameter_)
+        if self._pointer:
+            self._pointer.drop()
+
+    def __reduce__(self):
+        raise TypeError(f"a {type(self).__name__} cannot be copied or pickled")
+
+
+class Laplacian(_Object):
+    """The pair (L, B) of a surface, from triangles, polygons, points or matrices. L and B are scipy.sparse matrices by rows;
+    vertex gives the vertex of each row. Options held: vertices that are held at zero; border="HD_BORDER_DIRICHLET" holds
+    those of the border."""
+
+    def __init__(self):
+        raise TypeError("a Laplacian comes from triangles, polygons, points or matrices")
+
+    @classmethod
+    def _of(cls, function, n, options, *args):
+        lap, options = cls.__new__(cls), _options("hd_laplacian_opts", options, n)
+        lap._make(_Pointer("hd_laplacian_free"), function, *args, ctypes.byref(options))
+        return lap
+
+    @property
+    def info(self):
+        """A copy of the struct hd_laplacian."""
+        with self._pointer as address:
+            return S["hd_laplacian"].from_buffer_copy(ctypes.string_at(address, ctypes.sizeof(S["hd_laplacian"])))
+
+    n = property(lambda self: self.info.n)
+    h = property(lambda self: self.info.h)
+    area = property(lambda self: self.info.area)
 
     def _array(self, address, kind, n):
         return np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(kind)), (n,)).copy()
 
     @property
     def vertex(self):
-        return self._array(self.info.vertex, ctypes.c_int32, self.info.n_active)
+        with self._pointer:
+            return self._array(self.info.vertex, ctypes.c_int32, self.info.n_active)
 
     @property
     def mass(self):
-        return self._array(self.info.mass, ctypes.c_double, self.info.n_active)
+        with self._pointer:
+            return self._array(self.info.mass, ctypes.c_double, self.info.n_active)
 
     def _matrix(self, values):
         import scipy.sparse
@@ -154,85 +343,119 @@ class Laplacian:
 
     @property
     def L(self):
-        return self._matrix(self.info.L.val)
+        with self._pointer:
+            return self._matrix(self.info.L.val)
 
     @property
     def B(self):
         import scipy.sparse
-        return self._matrix(self.info.B) if self.info.B else scipy.sparse.diags(self.mass).tocsr()
+        with self._pointer:
+            return self._matrix(self.info.B) if self.info.B else scipy.sparse.diags(self.mass).tocsr()
 
     def times(self, n):
         """n times that suit the area, from small details to the whole."""
-        t = np.zeros(n)
-        _call("hd_times_auto", self, ctypes.c_int32(n), _at(t))
+        t = np.zeros(_int("n", n, 1))
+        with self._pointer as lap:
+            _call("hd_times_auto", lap, len(t), t)
         return t
 
     def spectral_times(self, c):
         """c divided by the first eigenvalue that does not belong to constants."""
-        c = np.atleast_1d(_doubles(c))
+        c = _doubles("c", c, (), ("n_times",)).reshape(-1)
         t = np.zeros(len(c))
-        _call("hd_times_spectral", self, ctypes.c_int32(len(c)), _at(c), _at(t))
+        with self._pointer as lap:
+            _call("hd_times_spectral", lap, len(c), c, t)
         return t
 
     def update(self, xyz):
         """New coordinates for the same faces; made with updatable=1."""
-        _call("hd_laplacian_update", self, _at(_doubles(xyz)))
-        self.h, self.area = self.info.h, self.info.area
+        xyz = _doubles("xyz", xyz, (self.n, 3))
+        with self._pointer as lap:
+            _call("hd_laplacian_update", lap, xyz)
 
 
 def triangles(xyz, tri, **options):
-    xyz, tri = _doubles(xyz), _ints(tri)
-    return Laplacian("hd_laplacian_triangles", _at(xyz), len(xyz), _at(tri), len(tri), **options)
+    xyz, tri = _doubles("xyz", xyz, ("n", 3)), _ints("tri", tri, ("n_tri", 3))
+    return Laplacian._of("hd_laplacian_triangles", len(xyz), options, xyz, len(xyz), tri, len(tri))
 
 
 def polygons(xyz, faces, **options):
     """faces: lists of vertices."""
-    xyz, ptr = _doubles(xyz), np.cumsum([0] + [len(f) for f in faces], dtype=np.int64)
-    idx = _ints(np.concatenate([np.asarray(f) for f in faces]) if len(faces) else [])
-    return Laplacian("hd_laplacian_polygons", _at(xyz), len(xyz), _at(ptr), _at(idx), len(faces), **options)
+    xyz = _doubles("xyz", xyz, ("n", 3))
+    return Laplacian._of("hd_laplacian_polygons", len(xyz), options, xyz, len(xyz), *_faces(faces))
 
 
 def points(xyz, **options):
-    xyz = _doubles(xyz)
-    return Laplacian("hd_laplacian_points", _at(xyz), len(xyz), **options)
+    xyz = _doubles("xyz", xyz, ("n", 3))
+    return Laplacian._of("hd_laplacian_points", len(xyz), options, xyz, len(xyz))
 
 
 def matrices(L, B, h=0, **options):
     """L and B of scipy.sparse, square and symmetric; L positive semi-definite, B positive definite."""
     keep, csr = [], []
-    for a in (L, B):
-        a = a.tocsr().sorted_indices()
-        keep += [a.indptr.astype(np.int64), _ints(a.indices), _doubles(a.data)]
-        csr.append(S["hd_csr"](a.shape[0], a.shape[1], a.nnz, *(x.ctypes.data for x in keep[-3:])))
-    return Laplacian("hd_laplacian_matrices", ctypes.byref(csr[0]), ctypes.byref(csr[1]), ctypes.c_double(h), **options)
+    for name, a in (("L", L), ("B", B)):
+        if not hasattr(a, "tocsr"):
+            raise TypeError(f"{name} is a {type(a).__name__}, wanted is a matrix of scipy.sparse")
+        if len(a.shape) != 2 or a.shape != (L.shape[0],) * 2:
+            raise ValueError(f"{name} has shape {a.shape}, wanted is {(L.shape[0],) * 2}, for both matrices")
+        if hasattr(a, "check_format"):                          # its indices may have been changed by hand
+            a.check_format()
+        a = a.tocsr(copy=True)
+        a.sum_duplicates()
+        keep.append((a.indptr.astype(np.int64), _ints(name, a.indices, (a.nnz,)), _doubles(name, a.data, (a.nnz,))))
+        if not np.isfinite(a.data).all():
+            raise ValueError(f"{name} has an entry that is not finite")
+        csr.append(S["hd_csr"](*(_int(name, m) for m in a.shape), a.nnz, *(x.ctypes.data for x in keep[-1])))
+    return Laplacian._of("hd_laplacian_matrices", L.shape[0], options, *map(ctypes.byref, csr), _double("h", h))
 
 
-class Heat:
+class Heat(_Object):
     """A plan. After each query report is a dictionary: method, reason, error_bound and all the others."""
 
     def __init__(self, lap, **options):
-        self.lap, self._free, self._as_parameter_ = lap, _lib.hd_heat_free, ctypes.c_void_p()
-        self.report, self._options = {}, _options("hd_heat_opts", options)
-        _call("hd_heat_create", ctypes.byref(self._as_parameter_), lap, ctypes.byref(self._options))
+        if not isinstance(lap, Laplacian):
+            raise TypeError(f"lap is a {type(lap).__name__}, wanted is a Laplacian")
+        options = _options("hd_heat_opts", options, lap.n)
+        with lap._pointer as address:
+            pointer = _Pointer("hd_heat_free", lap._pointer)
+            self._make(pointer, "hd_heat_create", address, ctypes.byref(options))
+            lap._pointer.plans.add(pointer)
+        self._lap, self.report = lap, {}
 
-    def __del__(self):
-        if getattr(self, "_as_parameter_", None):
-            self._free(self._as_parameter_)
+    lap = property(lambda self: self._lap)
 
     def _query(self, name, *args):
         report = S["hd_report"]()
-        _call(name, self, *args, ctypes.byref(report))
+        with self._pointer as heat:
+            _call(name, heat, *args, ctypes.byref(report))
         self.report = {key: getattr(report, key) for key, _ in report._fields_ if key not in ("error", "pole_iterations")}
         self.report["reason"] = (report.reason or b"").decode()
 
     @staticmethod
     def _times(t):
-        t = np.atleast_1d(_doubles(t))
-        return t, (ctypes.c_int32(len(t)), _at(t))
+        t = _doubles("t", t, (), ("n_times",)).reshape(-1)
+        if not len(t):
+            raise ValueError("t has shape (0,), wanted is at least one time")
+        return len(t), t
+
+    def _distance(self, t, kind):
+        """The kind, and its times: None for those that have none."""
+        kind = _enum("kind", kind, "hd_distance_kind")
+        timeless = t is None and kind in (C["HD_DISTANCE_COMMUTE"], C["HD_DISTANCE_BIHARMONIC"])
+        return (kind, *self._times(0 if timeless else t))
+
+    @staticmethod
+    def _kernel(symmetric):
+        return C["HD_KERNEL_SYMMETRIC" if _int("symmetric", symmetric, 0, 1) else "HD_KERNEL_OPERATOR"]
+
+    def _field(self, name, f, k="k"):
+        """k columns of values at the vertices; one column may be flat. True and False are 1 and 0."""
+        shapes = [(self.lap.n, k)] + [(self.lap.n,)] * (k in (1, "k"))
+        return _doubles(name, f, *shapes, kinds="biuf", order="F").reshape(self.lap.n, -1, order="F")
 
     def _room(self, columns):
         out = np.zeros((self.lap.n, columns), order="F")
-        return out, (_at(out), ctypes.c_size_t(0))
+        return out, (out, ctypes.c_size_t(0))
 
     def apply(self, t, f):
         """K_t f for each column of f and each time: column q n_times + m for field q and time m."""
@@ -248,116 +471,120 @@ class Heat:
 
     def vjp(self, t, f, g):
         """The gradients by t and by f of sum(g * apply(t, f)): a number for each time, and a column for each field."""
-        f, g = (np.atleast_2d(np.asarray(x, dtype=np.float64).T).T for x in (f, g))
-        t = np.atleast_1d(_doubles(t))
-        by_t, by_f = np.zeros(len(t)), np.zeros(f.shape)
-        for m in range(len(t)):
-            part = g[:, m::len(t)]
+        (n_times, t), f = self._times(t), self._field("f", f)
+        g = self._field("g", g, f.shape[1] * n_times)
+        by_t, by_f = np.zeros(n_times), np.zeros(f.shape)
+        for m in range(n_times):
+            part = g[:, m::n_times]
             by_t[m] = np.sum(part * self.derivative(t[m], f))
             by_f += self.adjoint(t[m], part)                    # by the factors of the derivative
         return by_t, by_f
 
     def _fields(self, name, t, f):
-        f = np.asfortranarray(np.atleast_2d(np.asarray(f, dtype=np.float64).T).T)
-        t, times = self._times(t)
-        out, to = self._room(f.shape[1] * len(t))
-        self._query(name, *times, ctypes.c_int32(f.shape[1]), _at(f), ctypes.c_size_t(0), *to)
+        times, f = self._times(t), self._field("f" if name != "hd_heat_adjoint" else "g", f)
+        out, to = self._room(f.shape[1] * times[0])
+        self._query(name, *times, f.shape[1], f, ctypes.c_size_t(0), *to)
         return out
 
     def columns(self, t, sources, symmetric=False):
         """Columns of K_t, or of k_t = K_t B^-1."""
-        sources, (t, times) = _ints(np.atleast_1d(sources)), self._times(t)
-        out, to = self._room(len(sources) * len(t))
-        self._query("hd_heat_columns", C["HD_KERNEL_SYMMETRIC" if symmetric else "HD_KERNEL_OPERATOR"], *times,
-                    ctypes.c_int32(len(sources)), _at(sources), *to)
+        sources, times = _list("sources", sources), self._times(t)
+        out, to = self._room(len(sources) * times[0])
+        self._query("hd_heat_columns", self._kernel(symmetric), *times, len(sources), sources, *to)
         return out
 
     def diagonal(self, t, symmetric=True):
         """k_t(v,v), the heat kernel signature: a column for each time."""
-        t, times = self._times(t)
-        out, to = self._room(len(t))
-        self._query("hd_heat_diagonal", C["HD_KERNEL_SYMMETRIC" if symmetric else "HD_KERNEL_OPERATOR"], *times, *to)
+        times = self._times(t)
+        out, to = self._room(times[0])
+        self._query("hd_heat_diagonal", self._kernel(symmetric), *times, *to)
         return out
 
     def trace(self, t):
         """The sum of exp(-t lambda) over all eigenvalues for each time, and bounds on its error."""
-        t, times = self._times(t)
-        out = np.zeros((2, len(t)))
-        self._query("hd_heat_trace", *times, _at(out), _at(out[1]))
-        return out[0], out[1]
+        times = self._times(t)
+        trace, bound = np.zeros((2, times[0]))
+        self._query("hd_heat_trace", *times, trace, bound)
+        return trace, bound
 
     def normalised(self, t):
         """k_t(v,v)/trace: a column for each time."""
-        t, times = self._times(t)
-        out, to = self._room(len(t))
+        times = self._times(t)
+        out, to = self._room(times[0])
         self._query("hd_heat_normalised", *times, *to)
         return out
 
     def scale_invariant(self, t0, t1, n_times=257, n_freq=6):
         """Moduli of Fourier coefficients of the steps of log k_t(v,v) over log t: a column for each frequency."""
+        n_times = _int("n_times", n_times, 3)
+        n_freq = _int("n_freq", n_freq, 1, (n_times + 1) // 2)
         out, to = self._room(n_freq)
-        self._query("hd_heat_scale_invariant", ctypes.c_double(t0), ctypes.c_double(t1), ctypes.c_int32(n_times),
-                    ctypes.c_int32(n_freq), *to)
+        self._query("hd_heat_scale_invariant", _double("t0", t0), _double("t1", t1), n_times, n_freq, *to)
         return out
 
     def distance(self, t, sources, kind="HD_DISTANCE_CLASSICAL"):
         """Diffusion distances from each source to every vertex. Commute and biharmonic distances have no time: t is None."""
-        sources, (t, times) = _ints(np.atleast_1d(sources)), self._times(0 if t is None else t)
-        out, to = self._room(len(sources) * len(t))
-        self._query("hd_heat_distance", C[kind], *times, ctypes.c_int32(len(sources)), _at(sources), *to)
+        sources, (kind, *times) = _list("sources", sources), self._distance(t, kind)
+        out, to = self._room(len(sources) * times[0])
+        self._query("hd_heat_distance", kind, *times, len(sources), sources, *to)
         return out
 
     def entries(self, t, i, j, symmetric=False):
         """Entries (i, j) of K_t or k_t: a row for each pair, a column for each time."""
-        i, j, (t, times) = _ints(np.atleast_1d(i)), _ints(np.atleast_1d(j)), self._times(t)
-        i, j = (np.ascontiguousarray(x) for x in np.broadcast_arrays(i, j))
-        out = np.zeros((len(i), len(t)), order="F")
-        self._query("hd_heat_entries", C["HD_KERNEL_SYMMETRIC" if symmetric else "HD_KERNEL_OPERATOR"], *times,
-                    ctypes.c_int64(len(i)), _at(i), _at(j), _at(out))
+        times, (n, i, j) = self._times(t), self._pairs(i, j)
+        out = np.zeros((len(i), times[0]), order="F")
+        self._query("hd_heat_entries", self._kernel(symmetric), *times, n, i, j, out)
         return out
 
     def pairs(self, t, i, j, kind="HD_DISTANCE_CLASSICAL"):
         """Diffusion distances of listed pairs, without cancellation: a row for each pair, a column for each time."""
-        i, j, (t, times) = _ints(np.atleast_1d(i)), _ints(np.atleast_1d(j)), self._times(0 if t is None else t)
-        i, j = (np.ascontiguousarray(x) for x in np.broadcast_arrays(i, j))
-        out = np.zeros((len(i), len(t)), order="F")
-        self._query("hd_heat_pairs", C[kind], *times, ctypes.c_int64(len(i)), _at(i), _at(j), None, _at(out))
+        (kind, *times), (n, i, j) = self._distance(t, kind), self._pairs(i, j)
+        out = np.zeros((len(i), times[0]), order="F")
+        self._query("hd_heat_pairs", kind, *times, n, i, j, None, out)
         return out
+
+    @staticmethod
+    def _pairs(i, j):
+        """As many i as j; one serves many."""
+        i, j = _list("i", i), _list("j", j)
+        if len(i) != len(j) and 1 not in (len(i), len(j)):
+            raise ValueError(f"j has shape {j.shape}, wanted is {i.shape} as that of i, or ()")
+        i, j = (np.array(x) for x in np.broadcast_arrays(i, j))
+        return ctypes.c_int64(len(i)), i, j
 
     def sample(self, t, count, given=(), kind="HD_DISTANCE_CLASSICAL"):
         """Farthest points: count vertices, those given first, and the distance of each to the ones before it."""
+        given, (kind, n_times, t) = _list("given", given), self._distance(t, kind)
+        if n_times != 1:
+            raise ValueError(f"t has shape {t.shape}, wanted is ()")
+        count = _int("count", count, max(1, len(given)), self.lap.n)
         vertex, distance = np.zeros(count, dtype=np.int32), np.zeros(count)
         vertex[:len(given)] = given
-        self._query("hd_heat_sample", C[kind], ctypes.c_double(t), ctypes.c_int32(count), ctypes.c_int32(len(given)),
-                    _at(vertex), _at(distance))
+        self._query("hd_heat_sample", kind, t[0].item(), count, len(given), vertex, distance)
         return vertex, distance
 
 
-class Geodesic:
+class Geodesic(_Object):
     """Distances along a surface by the heat method: of triangles (an array of three columns), of polygons (a list of
     lists), or of points without faces."""
 
     def __init__(self, xyz, faces=None, **options):
-        xyz = _doubles(xyz)
-        self.n, self._free, self._as_parameter_ = len(xyz), _lib.hd_geodesic_free, ctypes.c_void_p()
-        self._options = _options("hd_geodesic_opts", options)
-        head, tail = (ctypes.byref(self._as_parameter_), _at(xyz), len(xyz)), (ctypes.byref(self._options),)
+        xyz = _doubles("xyz", xyz, ("n", 3))
+        n, options, pointer = len(xyz), _options("hd_geodesic_opts", options, len(xyz)), _Pointer("hd_geodesic_free")
         if faces is None:
-            _call("hd_geodesic_create_points", *head, None, None, *tail)
+            function, args = "hd_geodesic_create_points", (None, None)
         elif isinstance(faces, np.ndarray) and faces.ndim == 2 and faces.shape[1] == 3:
-            tri = _ints(faces)
-            _call("hd_geodesic_create", *head, _at(tri), len(tri), *tail)
+            function, args = "hd_geodesic_create", (_ints("faces", faces, ("n_tri", 3)), len(faces))
         else:
-            ptr = np.concatenate([[0], np.cumsum([len(f) for f in faces])]).astype(np.int64)
-            idx = _ints(np.concatenate(faces))
-            _call("hd_geodesic_create_polygons", *head, _at(ptr), _at(idx), len(faces), *tail)
+            function, args = "hd_geodesic_create_polygons", _faces(faces)
+        self._make(pointer, function, xyz, n, *args, ctypes.byref(options))
+        self._n = n
 
-    def __del__(self):
-        if getattr(self, "_as_parameter_", None):
-            self._free(self._as_parameter_)
+    n = property(lambda self: self._n)
 
     def distance(self, sources):
         """To the nearest of the sources."""
-        sources, d = _ints(np.atleast_1d(sources)), np.zeros(self.n)
-        _call("hd_geodesic_distance", self, ctypes.c_int32(len(sources)), _at(sources), _at(d), None)
+        sources, d = _list("sources", sources), np.zeros(self.n)
+        with self._pointer as geodesic:
+            _call("hd_geodesic_distance", geodesic, len(sources), sources, d, None)
         return d
