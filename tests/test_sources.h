@@ -818,6 +818,148 @@ static void src_geo_rules(void) {
     free(e);
 }
 
+/* A plan of the triangles of a shape: 0 as they are, 1 by their lengths, 2 intrinsic Delaunay, 3 tufted, 4 as polygons that are split, 5 points. */
+static hd_geodesic *src_plan(const shape *s, int kind, hd_geodesic_border border, double t) {
+    shape_poly p = shape_poly_of(s);
+    double *length = DENSE_NEW(double, 3 * s->n_tri);
+    hd_geodesic *g = NULL;
+    hd_geodesic_opts o;
+    hd_error e;
+    int32_t q;
+    memset(&o, 0, sizeof o);
+    o.t = t;
+    o.border = border;
+    o.intrinsic_delaunay = kind == 2 || kind == 4;
+    o.tufted = kind == 3;
+    for (q = 0; q < 3 * s->n_tri; q++) length[q] = src_gap(s->xyz + 3 * s->tri[q], s->xyz + 3 * s->tri[q % 3 == 2 ? q - 2 : q + 1]);
+    if (kind == 1) (void)hd_geodesic_create_lengths(&g, length, s->n, s->tri, s->n_tri, &o, &e);
+    else if (kind == 4) (void)hd_geodesic_create_polygons(&g, p.xyz, p.n, p.face_ptr, p.face_idx, p.n_faces, &o, &e);
+    else if (kind == 5) (void)hd_geodesic_create_points(&g, s->xyz, s->n, NULL, NULL, &o, &e);
+    else (void)hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e);
+    CHECK_MSG(g != NULL, "plan %d: %s", kind, e.text);
+    shape_poly_free(&p);
+    free(length);
+    return g;
+}
+
+/* Where another kind of plan has the same triangles, it gives the same distances from points in faces, on an edge, and from curves. */
+static void src_geo_kinds(const shape *s, int last) {
+    double *d = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    const double bary[9] = {0.2, 0.3, 0.5, 0, 0.6, 0.4, 0.7, 0.2, 0.1};
+    const int32_t far_face = s->n_tri / 2;
+    int32_t vertex[9];
+    int b, kind, which;
+    for (b = 0; b < (last == 5 ? 1 : 3); b++) {
+        hd_geodesic *g = src_plan(s, 0, (hd_geodesic_border)b, 0.02);
+        for (kind = 1; kind <= last; kind++) {
+            hd_geodesic *other = src_plan(s, kind, (hd_geodesic_border)b, 0.02);
+            for (which = 0; which < 3; which++) {    /* a point; three points, of two faces; a curve in a face */
+                hd_source src = src_in_triangles(which == 0 ? 1 : 3, vertex, bary);
+                hd_geodesic_report rep;
+                int q;
+                for (q = 0; q < 3; q++) memcpy(vertex + 3 * q, s->tri + 3 * (which == 1 && q == 2 ? far_face : 3), 3 * sizeof *vertex);
+                src.curve = which == 2;
+                CHECK(hd_geodesic_distance_from(g, &src, want, &rep, NULL) == HD_OK && hd_geodesic_distance_from(other, &src, d, &rep, NULL) == HD_OK);
+                CHECK_MSG(dense_max_diff(d, want, s->n) < 1e-11, "border %d, plan %d, source %d: off by %g", b, kind, which, dense_max_diff(d, want, s->n));
+            }
+            hd_geodesic_free(other);
+        }
+        hd_geodesic_free(g);
+    }
+    free(d);
+    free(want);
+}
+
+/* The largest error of a source on a square: the points, or the straight line from the first to the last of them. -1: it was refused. */
+static double src_square_off(hd_geodesic *g, const shape *s, const hd_source *src, hd_error *e) {
+    double *d = DENSE_NEW(double, s->n), p[8][2] = {{0, 0}}, most = -1;
+    hd_geodesic_report rep;
+    int32_t q, c, v;
+    if (hd_geodesic_distance_from(g, src, d, &rep, e) == HD_OK && rep.residual_heat < 1e-13) {
+        for (q = 0; q < src->count; q++)
+            for (c = 0; c < 6; c++) p[q][c % 2] += src->bary[3 * q + c / 2] * s->xyz[3 * src->vertex[3 * q + c / 2] + c % 2];
+        for (v = 0; v < s->n; v++) {
+            const double *x = s->xyz + 3 * v;
+            double want = HUGE_VAL;
+            for (q = 0; q < src->count; q++) want = fmin(want, hypot(x[0] - p[q][0], x[1] - p[q][1]));
+            if (src->curve) {
+                const double dx = p[src->count - 1][0] - p[0][0], dy = p[src->count - 1][1] - p[0][1];
+                const double at = fmax(0, fmin(1, ((x[0] - p[0][0]) * dx + (x[1] - p[0][1]) * dy) / (dx * dx + dy * dy)));
+                want = hypot(p[0][0] + at * dx - x[0], p[0][1] + at * dy - x[1]);
+            }
+            most = fmax(most, fabs(d[v] - want));
+        }
+        for (q = 0; q < src->count && !src->curve; q++)
+            for (c = 0; c < 3; c++) {
+                const int32_t corner = src->vertex[3 * q + c];
+                if (src->bary[3 * q + c] > 0) CHECK(fabs(d[corner] - hypot(s->xyz[3 * corner] - p[q][0], s->xyz[3 * corner + 1] - p[q][1])) < 1e-14);
+            }
+    }
+    free(d);
+    return most;
+}
+
+/* Sources at a border that is held at zero are as far off as the vertex beside it; with the two other borders less. Of points and pieces that
+ * lie on it nothing is left, and they are refused. */
+static void src_geo_borders(void) {
+    enum { N = 41, MIDDLE = N / 2 };
+    static const double bary[15] = {1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, third[3] = {1 / 3.0, 1 / 3.0, 1 / 3.0};
+    static const double edge[6] = {0.5, 0.5, 0, 1 / 3.0, 1 / 3.0, 1 / 3.0}, close[6] = {0.5, 0.5 - 1e-6, 1e-6, 1 / 3.0, 1 / 3.0, 1 / 3.0};
+    const int32_t a = MIDDLE, up = N, far = 30 * N + MIDDLE;
+    const int32_t one[3] = {a, a + 1 + up, a + up}, two[3] = {a, a + 1, a + 1 + up}, beside[3] = {a + up, a, a + 1}, ear[3] = {N - 2, N - 1, 2 * N - 1};
+    const int32_t with_far[6] = {a, a + 1, a + 1 + up, far, far + 1, far + 1 + up};
+    const int32_t line[15] = {a, a + 1, a + up, a + up, a, a + 1, a + 2 * up, a, a + 1, a + 3 * up, a, a + 1, a + 4 * up, a, a + 1};
+    const int32_t stays[6] = {a + 4 * up, a, a + 1, a + 4 * up, a, a + 1};
+    const int32_t along[9] = {a + up, a, a + 1, a, a + 1, a + up, a + 1, a, a + up};
+    shape s = shape_grid(N, N, 0);
+    int b;
+    for (b = 0; b < 3; b++) {
+        const int zero = b == HD_GEODESIC_BORDER_DIRICHLET;
+        hd_geodesic *g = src_plan(&s, 0, (hd_geodesic_border)b, 0);
+        hd_source src = src_in_triangles(1, one, third);
+        double off[6], like;
+        hd_error e;
+        off[0] = src_square_off(g, &s, &src, &e);
+        src.vertex = two;
+        off[1] = src_square_off(g, &s, &src, &e);
+        src.vertex = beside;
+        src.bary = bary;
+        like = src_square_off(g, &s, &src, &e);
+        CHECK_MSG(off[0] >= 0 && off[0] < 1.3 * like && off[1] >= 0 && off[1] < 1.3 * like && like < (zero ? 0.13 : 0.05), "border %d: %g, %g, vertex %g", b, off[0], off[1], like);
+        src.count = 2;                           /* as warm as one that lies in the middle */
+        src.vertex = with_far;
+        src.bary = close;
+        off[2] = src_square_off(g, &s, &src, &e);
+        CHECK_MSG(off[2] >= 0 && off[2] < (zero ? 0.13 : 0.05), "border %d: two points %g", b, off[2]);
+        src.bary = edge;
+        off[3] = src_square_off(g, &s, &src, &e);
+        CHECK_MSG(zero ? off[3] < 0 && e.status == HD_ERR_ARGUMENT && e.row == 0 && strstr(e.text, "border") : off[3] >= 0 && off[3] < 0.05, "border %d: an edge %g", b, off[3]);
+        src.count = 5;
+        src.curve = 1;
+        src.vertex = line;
+        src.bary = bary;
+        off[4] = src_square_off(g, &s, &src, &e);
+        CHECK_MSG(off[4] >= 0 && off[4] < (zero ? 0.13 : 0.05), "border %d: a curve from the border %g", b, off[4]);
+        src.count = 3;
+        src.vertex = along;
+        off[5] = src_square_off(g, &s, &src, &e);
+        CHECK((off[5] < 0) == zero && (!zero || (e.status == HD_ERR_ARGUMENT && e.row == 1)));
+        src.curve = 0;
+        CHECK((src_square_off(g, &s, &src, &e) < 0) == zero && (!zero || (e.status == HD_ERR_ARGUMENT && e.row == 1 && e.vertex == a)));
+        src.count = 1;
+        src.vertex = ear;
+        src.bary = third;
+        CHECK((src_square_off(g, &s, &src, &e) < 0) == zero && (!zero || (e.status == HD_ERR_ARGUMENT && e.row == 0)));
+        src.count = 2;                           /* a curve that stays where it is */
+        src.curve = 1;
+        src.vertex = stays;
+        src.bary = bary;
+        CHECK(src_square_off(g, &s, &src, &e) < 0 && e.status == HD_ERR_ARGUMENT);
+        hd_geodesic_free(g);
+    }
+    shape_free(&s);
+}
+
 /* ---- errors ---- */
 
 static void src_refused(hd_heat *heat, const hd_source *s, hd_status want, int64_t row, int64_t vertex, const char *what) {
@@ -1076,6 +1218,14 @@ static void test_sources(void) {
     src_geo_square();
     src_geo_strip();
     src_geo_rules();
+    {
+        shape ball = shape_icosphere(2), cap = bord_disk(6, 1);
+        src_geo_kinds(&ball, 5);
+        src_geo_kinds(&cap, 4);
+        shape_free(&ball);
+        shape_free(&cap);
+    }
+    src_geo_borders();
     src_far_weights();
     src_errors();
     src_memory();
