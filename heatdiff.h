@@ -854,7 +854,9 @@ typedef enum hd_geodesic_border {
                                        angle */
     HD_GEODESIC_BORDER_MEAN,        /* the mean of the two others (Crane et al. 2013, section 3.4). Takes a
                                        third factor. Fronts hardly bend, and t may be larger, such as 8 h^2 */
-    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border: fronts bend to follow it */
+    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border, where no source can lie: fronts bend to follow it.
+                                       From places beside it distances are too short: in a square of 40 x 40
+                                       cells by 0.05 on average, against 0.007 with the natural border */
 } hd_geodesic_border;
 
 typedef struct hd_geodesic_opts {
@@ -1119,8 +1121,8 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  * rounding in the order of sums for triangles.
  * Points have no update. The pairs that are joined, the planes and the cells follow from the places, so that
  * new places make a new pattern.
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large); HD_ERR_EMPTY (vertex: none of its
- *        faces has an area any more). After an error nothing has changed
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large, or none: the whole area);
+ *        HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an error nothing has changed
  * Cost   one pass over faces and entries; allocates nothing. Not while a plan on lap is at work */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err);
 /* The same for positions in a vertex buffer. view->n must be lap->n; indices are ignored. Errors also as
@@ -1844,10 +1846,11 @@ HEATDIFF_API hd_status hd_geodesic_distance_each(hd_geodesic *g, int32_t k, cons
  *        inside them the gradient of these distances takes the place of that of heat. The constant in phi
  *        follows from them too: for a point the mean of phi_v - d_v at its corners, by its barycentric
  *        coordinates; for a curve one mean along its length
- * Heat starts with the functional of the source, see hd_source. A source of vertices only gives the distances
- * of hd_geodesic_distance to the last bit.
+ * Heat starts with the functional of the source, see hd_source. Where corners of a point or of a piece are
+ * held at zero, its other corners take all of its heat. A source of vertices only gives the distances of
+ * hd_geodesic_distance to the last bit.
  * Errors and cost as above, and those of hd_heat_columns_from; HD_ERR_ARGUMENT (row): a point or a piece is
- *        in no face. Plans of polygons take vertices only */
+ *        in no face, or all its corners are held at zero. Plans of polygons take vertices only */
 HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source *source, double *d,
                                                  hd_geodesic_report *report, hd_error *err);
 
@@ -31589,12 +31592,12 @@ static int hdi_geo_divergence8(const hd_geodesic *g, const double *u, const doub
     return hdi_geo_divergence8_plain(g, u, least, b);
 }
 
-/* What L x has of a face: g[1], g[2] at corners 1 and 2, minus their sum at corner 0. */
+/* What -L x has of a face, as the g of hdi_geo_flow. */
 static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *f, const double *x, double *g) {
     const double d1 = x[f->v[1]] - x[f->v[0]], d2 = x[f->v[2]] - x[f->v[0]];
     const double gx = d1 / (2 * f->l), gy = (d2 - f->p / f->l * d1) / (2 * f->q);    /* grad x */
-    g[1] = f->copies * (f->q * gx - f->p * gy);
-    g[2] = f->copies * (f->l * gy);
+    g[1] = -f->copies * (f->q * gx - f->p * gy);
+    g[2] = -f->copies * (f->l * gy);
 }
 
 /* r -= L x */
@@ -31607,8 +31610,6 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
     for (f = 0; f < g->n_faces && g->face; f++) {
         double flow[3];
         hdi_geo_stiff(g->face + f, x, flow);
-        flow[1] = -flow[1];
-        flow[2] = -flow[2];
         hdi_geo_add(g->face + f, flow, r);
     }
 }
@@ -32223,8 +32224,8 @@ static void hdi_geo_near(const hdi_geo_spot *z, double least) {
         double known[3], flow[3];
         hdi_geo_stiff(f, z->near_by, known);
         (void)hdi_geo_flow(f, u[f->v[0]], u[f->v[1]], u[f->v[2]], least, flow);
-        flow[1] = known[1] - flow[1];
-        flow[2] = known[2] - flow[2];
+        flow[1] = -known[1] - flow[1];
+        flow[2] = -known[2] - flow[2];
         hdi_geo_add(f, flow, g->b);
     }
 }
